@@ -1,0 +1,14 @@
+# The relocatable tree: bin/ lib/ include/ share/spark, and the CMake package.
+include(CMakePackageConfigHelpers)
+install(TARGETS spark spark-plugin-interface EXPORT SparkTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY core/include/spark DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES ${CMAKE_BINARY_DIR}/generated/spark/abi.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spark)
+install(DIRECTORY plugins/api DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY lua/ DESTINATION ${CMAKE_INSTALL_DATADIR}/spark/lua)
+install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/spark/scenes)
+install(EXPORT SparkTargets NAMESPACE Spark:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Spark)
+configure_package_config_file(cmake/SparkConfig.cmake.in ${CMAKE_BINARY_DIR}/SparkConfig.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Spark)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/SparkConfigVersion.cmake COMPATIBILITY SameMajorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/SparkConfig.cmake ${CMAKE_BINARY_DIR}/SparkConfigVersion.cmake cmake/SparkPlugin.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Spark)

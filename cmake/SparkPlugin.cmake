@@ -1,0 +1,16 @@
+# spark_plugin(<name> SOURCES ... [LIBRARIES ...]): one plugin, <name>.so, target plugin-<name>.
+# Used by Spark's own plugins and, from the installed package, by anybody's.
+function(spark_plugin name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  set(target plugin-${name})
+  add_library(${target} MODULE ${ARG_SOURCES})
+  set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${name} DEFINE_SYMBOL ""
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_link_libraries(${target} PRIVATE Spark::plugin ${ARG_LIBRARIES})
+  if(TARGET spark-pch)  # inside the project
+    set_target_properties(${target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/plugins
+      INSTALL_RPATH "$ORIGIN/../..")
+    target_precompile_headers(${target} REUSE_FROM spark-pch)
+    install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/spark/plugins)
+  endif()
+endfunction()

@@ -1,0 +1,42 @@
+# Compiler settings of the project itself, and the ABI word's header hash.
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_DEBUG "-Og -g1")
+
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} ${CCACHE})
+endif()
+
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+
+# g++ 12 warns falsely of std::variant members (maybe-uninitialized).
+# Same digits in every build: no contraction of a*b+c, no fast math.
+add_compile_options(-Wall -Wextra -Wpedantic -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  add_compile_options(-Wno-gnu-zero-variadic-macro-arguments)
+endif()
+if(SPARK_SANITIZER STREQUAL "address")
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+elseif(SPARK_SANITIZER STREQUAL "thread")
+  add_compile_options(-fsanitize=thread -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=thread)
+endif()
+
+# The ABI word: any change of a public header makes old plugins refuse.
+file(GLOB abi_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/core/include/spark/*.h ${CMAKE_SOURCE_DIR}/plugins/api/*.h)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${abi_headers})
+set(abi_text "")
+foreach(header ${abi_headers})
+  file(SHA256 ${header} hash)
+  string(APPEND abi_text ${hash})
+endforeach()
+string(SHA256 abi_hash "${abi_text}")
+string(SUBSTRING ${abi_hash} 0 16 SPARK_ABI_HEADERS)
+configure_file(${CMAKE_SOURCE_DIR}/core/abi.h.in ${CMAKE_BINARY_DIR}/generated/spark/abi.h)

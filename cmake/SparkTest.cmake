@@ -1,0 +1,23 @@
+# spark_test(<name> SOURCES ... [LIBRARIES ...] [LABELS ...] [PLUGINS ...]): one Catch2 program that ctest runs.
+# PLUGINS: names of plugins that must be built first. Exit code 77 counts as skipped.
+function(spark_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBRARIES;LABELS;PLUGINS" ${ARGN})
+  if(NOT SPARK_BUILD_TESTS)
+    return()
+  endif()
+  set(target test-${name})
+  add_executable(${target} ${ARG_SOURCES})
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests DEFINE_SYMBOL "")
+  target_link_libraries(${target} PRIVATE spark-test-main Spark::plugin ${ARG_LIBRARIES})
+  target_precompile_headers(${target} REUSE_FROM spark-test-pch)
+  target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
+  foreach(plugin ${ARG_PLUGINS})
+    add_dependencies(${target} plugin-${plugin})
+  endforeach()
+  add_test(NAME ${name} COMMAND ${target})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT}
+    ENVIRONMENT "SPARK_REFERENCE_DIR=${SPARK_REFERENCE_DIR}")
+endfunction()

@@ -1,0 +1,255 @@
+#pragma once
+/// \file
+/// The tree: everything that exists at run time is a Leaf with a name, a parent, a class object and a path.
+///
+/// One owner per object (its parent). Everybody else holds a Ref, which turns empty when the object dies.
+/// Paths: components separated by '/', absolute or relative, '.' and '..'; `name[k]` is the k-th sibling of that name, from 1.
+/// The tree is changed by the simulation's thread only.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace spark {
+
+class ClassObject;
+class Kernel;
+class Leaf;
+class Node;
+class StateReader;
+class StateWriter;
+
+/// A versioned interface id. Two ids are equal when name and version are; the number is a hash of both.
+struct InterfaceId {
+  const char* name;
+  unsigned version;
+  std::uint64_t id;
+  constexpr InterfaceId(const char* n, unsigned v) : name(n), version(v), id(14695981039346656037ull) {
+    for (const char* c = n; *c; ++c) id = (id ^ static_cast<unsigned char>(*c)) * 1099511628211ull;
+    id = (id ^ v) * 1099511628211ull;
+  }
+};
+
+/// In an interface's definition: gives it its id.
+#define SPARK_INTERFACE(Name, Version) static constexpr ::spark::InterfaceId kInterface{#Name, Version}
+
+/// In a class's definition: its name in the tree and its base. The compiler checks the rest when the plugin registers it.
+#define SPARK_CLASS(Self, Base)                                   \
+ public:                                                          \
+  static constexpr const char* kClassName = #Self;                \
+  using ClassSelf = Self;                                         \
+  using ClassBase = Base;                                         \
+  static constexpr ::spark::InterfaceId kInterface{#Self, 1};     \
+                                                                  \
+ private:
+
+namespace detail {
+/// Outlives its leaf while references remain; `leaf` is nulled when the leaf dies.
+struct Life {
+  Leaf* leaf;
+  unsigned references;
+};
+}  // namespace detail
+
+/// A checked, non-owning reference: empty once the object died. Copy and assign it on the simulation's thread; read it anywhere.
+template <class T>
+class Ref {
+ public:
+  Ref() = default;
+  Ref(T* object);
+  Ref(const Ref& other) : life_(other.life_), object_(other.object_) {
+    if (life_) ++life_->references;
+  }
+  Ref& operator=(const Ref& other) {
+    if (other.life_) ++other.life_->references;
+    release();
+    life_ = other.life_;
+    object_ = other.object_;
+    return *this;
+  }
+  ~Ref() { release(); }
+
+  /// The object, or nullptr when it is dead or was never set.
+  T* get() const { return life_ && life_->leaf ? object_ : nullptr; }
+  T* operator->() const { return get(); }
+  T& operator*() const { return *get(); }
+  explicit operator bool() const { return get() != nullptr; }
+
+ private:
+  void release() {
+    if (life_ && --life_->references == 0) delete life_;
+  }
+  detail::Life* life_ = nullptr;
+  T* object_ = nullptr;
+};
+
+/// A named element of the tree.
+class Leaf {
+ public:
+  static constexpr const char* kClassName = "Leaf";
+  static constexpr InterfaceId kInterface{"Leaf", 1};
+
+  Leaf() = default;
+  virtual ~Leaf();
+  Leaf(const Leaf&) = delete;
+  Leaf& operator=(const Leaf&) = delete;
+
+  const std::string& name() const { return name_; }
+  /// Renames; siblings may share a name (the first is found by it, the others as `name[k]`).
+  void setName(std::string name);
+  /// The owner, nullptr for the root and for what is not linked.
+  Node* parent() const { return parent_; }
+  /// The class that made this object. Set before onLink; nullptr only inside constructors.
+  ClassObject* classObject() const { return class_; }
+  /// The kernel this object lives in. Not to be called in constructors.
+  Kernel& kernel() const;
+  /// "/usr/scene/Ball"; the root is "/". What is not linked starts with its own name.
+  std::string path() const;
+  /// True when this object hangs below the kernel's root.
+  bool isLinked() const;
+
+  /// This object as class or interface T, through the class object's table; nullptr when it is none.
+  template <class T>
+  T* as() const {
+    return static_cast<T*>(query(T::kInterface));
+  }
+  /// The object at `path` (relative to this one), nullptr when there is none.
+  Leaf* find(std::string_view path) const;
+  /// The object at `path` as T; nullptr when it is missing or no T.
+  template <class T>
+  T* find(std::string_view path) const {
+    Leaf* found = find(path);
+    return found ? found->as<T>() : nullptr;
+  }
+  /// As find, but throws Error that says what is missing: the path (with the nearest names) or the interface.
+  template <class T>
+  T& require(std::string_view path) const {
+    return *static_cast<T*>(requireInterface(path, T::kInterface));
+  }
+  /// The nearest ancestor that is a T, nullptr when there is none.
+  template <class T>
+  T* ancestor() const;
+
+  /// This object as Node, nullptr for a mere Leaf.
+  virtual Node* asNode() { return nullptr; }
+  const Node* asNode() const { return const_cast<Leaf*>(this)->asNode(); }
+  /// Stable number of this object in its kernel, never used again.
+  std::uint64_t id() const { return id_; }
+
+ protected:
+  /// Runs when the object (and its parents) hang in the tree, before its children are linked. May throw Error: it is then not added.
+  virtual void onLink() {}
+  /// Runs when a parent further up changed (Node::reparent): look up again what onLink looked up.
+  virtual void onMoved() {}
+  /// Runs before the object leaves the tree, after its children's.
+  virtual void onUnlink() {}
+  /// State that is not a property: write it in a fixed order, read it back in the same.
+  virtual void saveState(StateWriter&) const {}
+  virtual void loadState(StateReader&) {}
+
+ private:
+  friend class Node;
+  friend class Kernel;
+  friend class ClassObject;
+  friend class Events;
+  friend class Channel;
+  template <class>
+  friend class Ref;
+  friend std::uint64_t stateHash(const Leaf&);
+  friend void saveTree(const Leaf&, StateWriter&);
+  friend void loadTree(Leaf&, StateReader&);
+
+  void* query(const InterfaceId& id) const;
+  void* requireInterface(std::string_view path, const InterfaceId& id) const;
+  detail::Life* life() const;
+
+  std::string name_;
+  Node* parent_ = nullptr;
+  ClassObject* class_ = nullptr;
+  mutable detail::Life* life_ = nullptr;
+  std::uint64_t id_ = 0;
+  std::uint32_t preOrder_ = 0, postOrder_ = 0;
+  bool linked_ = false;
+  bool hooked_ = false;  ///< some channel has an entry of it
+};
+
+/// A Leaf that owns children, in order.
+class Node : public Leaf {
+ public:
+  static constexpr const char* kClassName = "Node";
+  using ClassSelf = Node;
+  using ClassBase = Leaf;
+  static constexpr InterfaceId kInterface{"Node", 1};
+
+  ~Node() override;
+  Node* asNode() override { return this; }
+
+  /// The children in order; owned by this node, valid until the tree changes.
+  const std::vector<std::unique_ptr<Leaf>>& children() const { return children_; }
+  /// The first child of that name, nullptr when there is none. Takes `name[k]`.
+  Leaf* child(std::string_view name) const;
+  /// Appends and links. Throws what onLink throws; the tree is then as before.
+  Leaf& add(std::unique_ptr<Leaf> leaf);
+  /// Makes an object of the named class, names it (unless `name` is empty) and adds it. Throws Error.
+  Leaf& create(std::string_view className, std::string_view name = {});
+  /// Makes an object and returns it as T. Throws Error when the class has no such interface.
+  template <class T>
+  T& create(std::string_view className, std::string_view name = {}) {
+    Leaf& leaf = create(className, name);
+    if (T* t = leaf.as<T>()) return *t;
+    throwLacks(leaf, T::kInterface);
+  }
+  /// Unlinks and destroys a child with all below it.
+  void remove(Leaf& child);
+  /// Unlinks and destroys all children, first to last.
+  void removeChildren();
+  /// Moves a child to another parent (appended) without destroying anything; onMoved runs for all that moved.
+  void reparent(Leaf& child, Node& newParent);
+  /// All descendants that are a T, depth first, in child order; `deep` false: do not look below a match.
+  template <class T>
+  void collect(std::vector<T*>& out, bool deep = true) const {
+    for (const auto& c : children_) {
+      T* match = c->as<T>();
+      if (match) out.push_back(match);
+      if ((!match || deep) && c->asNode()) c->asNode()->collect(out, deep);
+    }
+  }
+  /// The first child that is a T, nullptr when there is none.
+  template <class T>
+  T* childOf() const {
+    for (const auto& c : children_)
+      if (T* match = c->as<T>()) return match;
+    return nullptr;
+  }
+
+ private:
+  friend class Kernel;
+  [[noreturn]] static void throwLacks(const Leaf& leaf, const InterfaceId& id);
+  static void link(Leaf& leaf);
+  static void unlink(Leaf& leaf);
+  static void moved(Leaf& leaf);
+  std::vector<std::unique_ptr<Leaf>> children_;
+};
+
+template <class T>
+T* Leaf::ancestor() const {
+  for (Leaf* p = parent_; p; p = p->parent_)
+    if (T* match = p->as<T>()) return match;
+  return nullptr;
+}
+
+template <class T>
+Ref<T>::Ref(T* object) : object_(object) {
+  Leaf* leaf = nullptr;
+  if constexpr (std::is_base_of_v<Leaf, T>) leaf = object;
+  else leaf = object ? &object->leaf() : nullptr;
+  if (leaf) {
+    life_ = leaf->life();
+    ++life_->references;
+  }
+}
+
+}  // namespace spark

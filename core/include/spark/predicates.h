@@ -1,0 +1,136 @@
+#pragma once
+/// \file
+/// Nested lists of atoms in one flat buffer: what parsers make of bytes, what effectors read and perceptors write. Reused from cycle to
+/// cycle, it allocates nothing in steady state. And the S-expression reader that scene files, agents and monitors share.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spark {
+
+/// One token of the buffer. A list's `end` is the index behind its last element.
+struct Token {
+  enum class Kind : std::uint8_t { list, text, number, integer };
+  Kind kind = Kind::text;
+  bool quoted = false;         ///< text only: was written in quotes
+  std::uint32_t begin = 0;     ///< text: offset into the text store
+  std::uint32_t size = 0;      ///< text: bytes
+  std::uint32_t end = 0;       ///< list: index behind the last element
+  double number = 0;           ///< number
+  std::int64_t integer = 0;    ///< integer
+  std::uint32_t line = 0, column = 0;  ///< where it was read, from 1; 0 when it was written
+};
+
+class Predicates;
+
+/// A view of one element. Valid while its Predicates is unchanged.
+class Element {
+ public:
+  Element() = default;
+  Element(const Predicates& owner, std::uint32_t index) : owner_(&owner), index_(index) {}
+  explicit operator bool() const { return owner_ != nullptr; }
+  const Token& token() const;
+  bool isList() const { return token().kind == Token::Kind::list; }
+  bool isText() const { return token().kind == Token::Kind::text; }
+  /// The text of an atom; "" for lists and numbers.
+  std::string_view text() const;
+  /// A number: as written, or as C atof reads the text (garbage is 0, trailing junk ignored). Lists are 0.
+  double number() const;
+  /// The number truncated; out of range is clamped, NaN is 0.
+  std::int64_t integer() const;
+
+  /// Number of elements of a list (0 for atoms). Linear.
+  std::size_t size() const;
+  /// Element i of a list, empty when there is none. Linear.
+  Element at(std::size_t i) const;
+  /// The first element's text: a predicate's name. "" when it is no text.
+  std::string_view head() const;
+  /// The first sub-list with that head and at least two elements, empty when there is none: named parameters.
+  Element named(std::string_view name) const;
+  std::uint32_t index() const { return index_; }
+
+  /// Iterates over the elements of a list.
+  class Iterator {
+   public:
+    Iterator(const Predicates& owner, std::uint32_t index) : owner_(&owner), index_(index) {}
+    Element operator*() const { return Element(*owner_, index_); }
+    Iterator& operator++();
+    bool operator!=(const Iterator& o) const { return index_ != o.index_; }
+
+   private:
+    const Predicates* owner_;
+    std::uint32_t index_;
+  };
+  Iterator begin() const;
+  Iterator end() const;
+
+ private:
+  const Predicates* owner_ = nullptr;
+  std::uint32_t index_ = 0;
+};
+
+/// A sequence of top-level elements, usually lists: `(he1 1.2)(init (unum 7))`.
+class Predicates {
+ public:
+  void clear();
+  bool empty() const { return tokens_.empty(); }
+
+  /// Writing: open a list with a name (or none), add atoms, close it. Lists left open at the end are a programming error.
+  Predicates& open(std::string_view name = {});
+  Predicates& close();
+  Predicates& add(std::string_view text, bool quoted = false);
+  Predicates& add(const char* text) { return add(std::string_view(text)); }
+  Predicates& add(double number);
+  Predicates& add(std::int64_t integer);
+  Predicates& add(int integer) { return add(static_cast<std::int64_t>(integer)); }
+  /// `(name value)`.
+  template <class T>
+  Predicates& pair(std::string_view name, const T& value) {
+    return open(name).add(value).close();
+  }
+  /// Sets where the token just added was read.
+  void mark(std::uint32_t line, std::uint32_t column);
+  /// Removes everything from token `index` on (that a reader began and could not finish).
+  void truncate(std::uint32_t index);
+  /// Appends a copy of an element of another buffer.
+  void append(const Element& element);
+
+  Element::Iterator begin() const { return {*this, 0}; }
+  Element::Iterator end() const { return {*this, static_cast<std::uint32_t>(tokens_.size())}; }
+  const std::vector<Token>& tokens() const { return tokens_; }
+  std::string_view textOf(const Token& t) const { return std::string_view(text_).substr(t.begin, t.size); }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(tokens_.size()); }
+
+ private:
+  std::vector<Token> tokens_;
+  std::string text_;
+  std::vector<std::uint32_t> openLists_;
+};
+
+/// What an S-expression reader met. `message` is empty when all was read.
+struct ReadResult {
+  std::string message;
+  std::uint32_t line = 0, column = 0;
+  std::size_t consumed = 0;    ///< bytes read
+};
+
+/// Limits of a reader of outside bytes.
+struct ReadLimits {
+  std::uint32_t maxDepth = 64;
+  std::uint32_t maxTokens = 65536;
+};
+
+/// Reads top-level expressions of the sfsexp dialect (atoms, "..." and '...' quoting, backslash escapes, ';' comments where a token may
+/// start) and appends them to `out`; at most `maxExpressions` (0: all). At an error what was complete before stays, the rest is dropped.
+/// Never throws on bad bytes. Text becomes tokens of kind text; numbers are not recognised.
+ReadResult readSexp(std::string_view bytes, Predicates& out, const ReadLimits& limits = {}, std::size_t maxExpressions = 0);
+
+/// Writes all top-level elements as S-expressions as agents and monitors of the installed base expect them: `(name a b)`, one blank
+/// after the name even without arguments, `decimals` fixed decimals for numbers.
+void writeSexp(const Predicates& predicates, int decimals, std::string& out);
+/// Appends a number with fixed decimals as C prints it (single precision when `asFloat`): -0.00, nan, inf included.
+void appendFixed(std::string& out, double v, int decimals, bool asFloat = true);
+
+}  // namespace spark

@@ -1,0 +1,52 @@
+#include "spark/log.h"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <mutex>
+
+#include "spark/error.h"
+
+namespace spark {
+
+struct Log::Impl {
+  std::mutex mutex;
+  Sink sink;
+  spdlog::logger logger{"spark", std::make_shared<spdlog::sinks::stderr_color_sink_mt>()};
+};
+
+Log::Log() : impl_(std::make_unique<Impl>()) {
+  impl_->logger.set_pattern("%H:%M:%S.%e %^%-7l%$ %v");
+  impl_->logger.set_level(spdlog::level::trace);
+}
+Log::~Log() = default;
+
+Level levelFromName(std::string_view name) {
+  const std::vector<std::string> names{"trace", "debug", "info", "warning", "error", "off"};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == name) return static_cast<Level>(i);
+  throw Error("expected a log level (trace, debug, info, warning, error, off), found '" + std::string(name) + "'." + didYouMean(name, names));
+}
+
+void Log::setSink(Sink sink) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->sink = std::move(sink);
+}
+
+void Log::write(Level level, std::string_view line) {
+  if (!enabled(level)) return;
+  std::string clean;
+  clean.reserve(line.size());
+  for (const char c : line) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte == '\n' || byte == '\t' || (byte >= 0x20 && byte != 0x7f)) clean += c;
+    else clean += fmt::format("\\x{:02x}", byte);
+  }
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->sink) return impl_->sink(level, clean);
+  constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::trace, spdlog::level::debug, spdlog::level::info,
+                                                   spdlog::level::warn,  spdlog::level::err,   spdlog::level::off};
+  impl_->logger.log(kLevels[static_cast<int>(level)], "{}", clean);
+}
+
+}  // namespace spark

@@ -1,0 +1,181 @@
+#include "spark/value.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "spark/error.h"
+
+namespace spark {
+
+const Value* Value::at(std::string_view key) const {
+  if (!isList()) return nullptr;
+  for (const Value& entry : toList())
+    if (entry.isList() && entry.toList().size() == 2 && entry.toList()[0].isString() && entry.toList()[0].toString() == key) return &entry.toList()[1];
+  return nullptr;
+}
+
+const Value* Value::at(std::size_t index) const { return isList() && index < toList().size() ? &toList()[index] : nullptr; }
+
+namespace {
+std::string numberText(double v) {
+  if (std::isnan(v)) return "nan";
+  if (std::isinf(v)) return v < 0 ? "-inf" : "inf";
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, v).ptr;
+  std::string out(buffer, end);
+  if (out.find_first_of(".e") == std::string::npos) out += ".0";
+  return out;
+}
+
+void skipBlanks(std::string_view& t) {
+  while (!t.empty() && (t.front() == ' ' || t.front() == '\t')) t.remove_prefix(1);
+}
+
+Value scalarFromText(std::string_view t) {
+  if (t == "nil") return {};
+  if (t == "true") return true;
+  if (t == "false") return false;
+  const char* end = t.data() + t.size();
+  std::int64_t i = 0;
+  const char* begin = t.size() > 1 && t.front() == '+' ? t.data() + 1 : t.data();
+  if (auto r = std::from_chars(begin, end, i); r.ec == std::errc() && r.ptr == end) return i;
+  double d = 0;
+  if (auto r = std::from_chars(begin, end, d); r.ec == std::errc() && r.ptr == end) return d;
+  return t;
+}
+
+Value valueFromText(std::string_view& t, bool inList, int depth) {
+  skipBlanks(t);
+  if (depth < 32 && !t.empty() && (t.front() == '{' || t.front() == '[')) {
+    const char close = t.front() == '{' ? '}' : ']';
+    t.remove_prefix(1);
+    List list;
+    for (skipBlanks(t); !t.empty() && t.front() != close; skipBlanks(t)) {
+      list.push_back(valueFromText(t, true, depth + 1));
+      skipBlanks(t);
+      if (!t.empty() && t.front() == ',') t.remove_prefix(1);
+    }
+    if (!t.empty()) t.remove_prefix(1);
+    return list;
+  }
+  if (!t.empty() && (t.front() == '"' || t.front() == '\'')) {
+    if (const auto end = t.find(t.front(), 1); end != std::string_view::npos && (inList || end + 1 == t.size())) {
+      Value v(t.substr(1, end - 1));
+      t.remove_prefix(end + 1);
+      return v;
+    }
+  }
+  std::size_t n = inList ? t.find_first_of(",}] ") : t.size();
+  if (n == std::string_view::npos) n = t.size();
+  Value v = scalarFromText(t.substr(0, n));
+  t.remove_prefix(n);
+  return v;
+}
+}  // namespace
+
+std::string Value::text() const {
+  switch (type()) {
+    case Type::nil: return "nil";
+    case Type::boolean: return toBool() ? "true" : "false";
+    case Type::integer: return std::to_string(toInteger());
+    case Type::number: return numberText(toNumber());
+    case Type::string: return '"' + toString() + '"';
+    case Type::list: break;
+  }
+  std::string out = "{";
+  for (const Value& v : toList()) out += (out.size() > 1 ? ", " : "") + v.text();
+  return out + "}";
+}
+
+std::string Value::plain() const { return isString() ? toString() : text(); }
+
+Value Value::fromText(std::string_view text) { return valueFromText(text, false, 0); }
+
+std::string_view typeName(Value::Type type) {
+  constexpr std::string_view kNames[] = {"nil", "bool", "integer", "number", "string", "list"};
+  return kNames[static_cast<int>(type)];
+}
+
+const Value& Args::take() {
+  if (atEnd()) throw Error("expected one more argument");
+  return values[next++];
+}
+
+namespace {
+[[noreturn]] void wrongType(std::string_view expected, const Value& found) {
+  throw Error("expected " + std::string(expected) + ", found " + std::string(typeName(found.type())) + " " + found.text());
+}
+
+/// A single value, also when it comes as a list of one.
+const Value& takeScalar(Args& args) {
+  const Value& v = args.take();
+  return v.isList() && v.toList().size() == 1 ? v.toList()[0] : v;
+}
+
+double numberFrom(Args& args) {
+  const Value& v = takeScalar(args);
+  if (v.isNumber()) return v.toNumber();
+  if (v.isString()) {
+    if (args.loose) return std::atof(v.toString().c_str());
+    if (const Value parsed = scalarFromText(v.toString()); parsed.isNumber()) return parsed.toNumber();
+  }
+  if (args.loose && v.isBool()) return v.toBool();
+  wrongType("number", v);
+}
+
+template <class I>
+I integerFrom(Args& args) {
+  const Value& before = args.atEnd() ? args.take() : args.values[args.next];
+  if (before.isInteger()) {
+    const std::int64_t i = takeScalar(args).toInteger();
+    if (i >= static_cast<std::int64_t>(std::numeric_limits<I>::min()) &&
+        (sizeof(I) >= 8 || i <= static_cast<std::int64_t>(std::numeric_limits<I>::max())))
+      return static_cast<I>(i);
+    throw Error("expected an integer that fits, found " + std::to_string(i));
+  }
+  const double d = numberFrom(args);
+  if (!std::isfinite(d) || std::abs(d) > 9e15) {
+    if (args.loose) return 0;
+    throw Error("expected an integer, found " + numberText(d));
+  }
+  if (!args.loose && d != std::trunc(d)) throw Error("expected an integer, found " + numberText(d));
+  if (std::is_unsigned_v<I> && d < 0) throw Error("expected an integer of at least 0, found " + numberText(d));
+  return static_cast<I>(d);
+}
+}  // namespace
+
+bool Convert<bool>::from(Args& args) {
+  const Value& v = takeScalar(args);
+  if (v.isBool()) return v.toBool();
+  if (v.isString() && v.toString() == "true") return true;
+  if (v.isString() && v.toString() == "false") return false;
+  if (v.isInteger() && !args.loose && (v.toInteger() == 0 || v.toInteger() == 1)) return v.toInteger() == 1;
+  wrongType("bool (true or false)", v);
+}
+Value Convert<bool>::to(const bool& v) { return v; }
+int Convert<int>::from(Args& args) { return integerFrom<int>(args); }
+Value Convert<int>::to(const int& v) { return v; }
+std::int64_t Convert<std::int64_t>::from(Args& args) { return integerFrom<std::int64_t>(args); }
+Value Convert<std::int64_t>::to(const std::int64_t& v) { return v; }
+std::uint64_t Convert<std::uint64_t>::from(Args& args) {
+  if (!args.atEnd() && args.values[args.next].isInteger()) return static_cast<std::uint64_t>(args.take().toInteger());
+  return integerFrom<std::uint64_t>(args);
+}
+Value Convert<std::uint64_t>::to(const std::uint64_t& v) { return v; }
+double Convert<double>::from(Args& args) { return numberFrom(args); }
+Value Convert<double>::to(const double& v) { return v; }
+float Convert<float>::from(Args& args) { return static_cast<float>(numberFrom(args)); }
+Value Convert<float>::to(const float& v) { return static_cast<double>(v); }
+std::string Convert<std::string>::from(Args& args) {
+  const Value& v = takeScalar(args);
+  if (v.isString()) return v.toString();
+  if (v.isNumber() || v.isBool()) return v.text();
+  wrongType("string", v);
+}
+Value Convert<std::string>::to(const std::string& v) { return v; }
+Value Convert<Value>::from(Args& args) { return args.take(); }
+Value Convert<Value>::to(const Value& v) { return v; }
+
+}  // namespace spark

@@ -1,0 +1,135 @@
+#pragma once
+/// \file
+/// Agents: the aspect that makes a subtree an agent, its perceptors and effectors, control aspects, parsers, and game control's services.
+
+#include "api/net.h"
+#include "api/phases.h"
+#include "api/scene.h"
+#include "spark/predicates.h"
+
+namespace spark {
+
+/// Bytes to predicates and back. Below game control, or below a port to speak another language there.
+class IParser {
+ public:
+  SPARK_INTERFACE(IParser, 1);
+  virtual ~IParser() = default;
+  /// Appends what the message holds. What was complete before an error stays. Never throws on bad bytes.
+  virtual ReadResult parse(std::string_view message, Predicates& out) = 0;
+  /// Appends the message for `predicates`.
+  virtual void write(const Predicates& predicates, std::string& out) = 0;
+};
+
+/// Turns a subtree into an agent. Game control makes one per connection (`/usr/scene/AgentAspect<n>`); robots of the installed base nest
+/// a second one. Registered by `gamecontrol`.
+class AgentAspect : public Transform {
+  SPARK_CLASS(AgentAspect, Transform)
+ public:
+  static void describe(Description<AgentAspect>& d) {
+    d.doc("Root of an agent: collects the perceptors and effectors below it.");
+    d.property("number", &AgentAspect::number).doc("Game control's number of the agent; 0 for nested aspects.");
+  }
+  /// Agents act and are numbered in this order. 0: nested, not an agent of its own.
+  int number() const { return number_; }
+  void setNumber(int n) { number_ = n; }
+  /// The outermost aspect above (or this).
+  AgentAspect& outermost() {
+    AgentAspect* top = this;
+    for (auto* up = ancestor<AgentAspect>(); up; up = up->ancestor<AgentAspect>()) top = up;
+    return *top;
+  }
+
+ private:
+  int number_ = 0;
+};
+
+/// Writes what it senses. Called in the sense phase, possibly by several threads, one agent a thread: reads the world, changes only itself.
+/// Registered by `gamecontrol`.
+class Perceptor : public SceneNode {
+  SPARK_CLASS(Perceptor, SceneNode)
+ public:
+  static void describe(Description<Perceptor>& d) {
+    d.doc("A sensor of the agent above it.");
+    d.property("interval", &Perceptor::interval_).min(1).doc("Senses in every n-th cycle of its agent.");
+    d.property("predicateName", &Perceptor::predicateName_).doc("Name of its percept where the class allows another.");
+    d.abstract();
+  }
+  int interval() const { return interval_; }
+  const std::string& predicateName() const { return predicateName_; }
+  /// Appends zero or more top-level lists. `event`: the sense phase.
+  virtual void sense(Predicates& out, const Event& event) = 0;
+
+ protected:
+  int interval_ = 1;
+  std::string predicateName_;
+};
+
+/// Acts for its agent. Registered by `gamecontrol`.
+class Effector : public SceneNode {
+  SPARK_CLASS(Effector, SceneNode)
+ public:
+  static void describe(Description<Effector>& d) {
+    d.doc("An actuator of the agent above it, addressed by its predicate.");
+    d.property("predicate", &Effector::predicate).doc("The predicate it answers to.");
+    d.abstract();
+  }
+  /// The predicate it answers to: the node's name for joints, a fixed word for others. Asked when the tree changed.
+  virtual std::string predicate() const { return name(); }
+  /// The act phase: a list `(predicate arguments...)` came. Immediate effectors act now; others keep it and act in prepare. Returns "" or
+  /// one line that says what was wrong (expected, found); nothing is thrown.
+  virtual std::string act(const Element& action) = 0;
+
+  /// The innermost agent aspect above; nullptr outside of agents.
+  AgentAspect* agent() const { return ancestor<AgentAspect>(); }
+};
+
+/// A rule of the simulation, child of game control; runs in the rule phase, in child order. Registered by `gamecontrol`.
+class ControlAspect : public Node {
+  SPARK_CLASS(ControlAspect, Node)
+ public:
+  static void describe(Description<ControlAspect>& d) {
+    d.doc("A rule of the simulation.");
+    d.abstract();
+    d.on<&ControlAspect::rule>("rule");
+  }
+  virtual void rule(const Event& event) = 0;
+  /// Game control tells of agents: after the aspect is linked, before it is removed.
+  virtual void agentConnected(AgentAspect&) {}
+  virtual void agentLeaving(AgentAspect&) {}
+};
+
+/// An agent that thinks inside the host: C++ classes or Lua. Below /usr/agent. Registered by `gamecontrol`.
+class Behavior : public Node {
+  SPARK_CLASS(Behavior, Node)
+ public:
+  static void describe(Description<Behavior>& d) {
+    d.doc("A program that drives an agent from inside the host.");
+    d.abstract();
+  }
+  /// Once, when the agent exists: the first actions, e.g. `(scene ...)`.
+  virtual void start(Predicates& actions) = 0;
+  /// The percepts of the last cycle came; append the actions for the next.
+  virtual void think(const Predicates& percepts, Predicates& actions) = 0;
+};
+
+/// Game control, at /sys/server/gamecontrol.
+class IGameControl {
+ public:
+  SPARK_INTERFACE(IGameControl, 1);
+  virtual ~IGameControl() = default;
+  /// The agents in order of number. Valid until an agent comes or goes.
+  virtual const std::vector<AgentAspect*>& agents() const = 0;
+  /// Removes the agent; its connection is closed when `close`. At the end of the cycle.
+  virtual void removeAgent(AgentAspect& agent, bool close) = 0;
+  /// Number of agents that ever had a robot.
+  virtual int agentsSeen() const = 0;
+};
+
+/// Marks an agent as having answered in lockstep. Offered by the `syn` effector.
+class ISyncEffector {
+ public:
+  SPARK_INTERFACE(ISyncEffector, 1);
+  virtual ~ISyncEffector() = default;
+};
+
+}  // namespace spark

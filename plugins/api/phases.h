@@ -1,0 +1,56 @@
+#pragma once
+/// \file
+/// The phases of one simulated instant, as channels, and the run loop's services. The order within a phase is tree order as stated.
+
+#include "spark/event.h"
+#include "spark/node.h"
+
+namespace spark::phase {
+// Defined by `simulation`, in this order each cycle. Event: time [s] of the simulated clock, step [s], cycle.
+inline constexpr const char* kAct = "act";          ///< parents first. Agents' messages are realised.
+inline constexpr const char* kPrepare = "prepare";  ///< children first. Deferred actions, controllers, sampling before the step.
+inline constexpr const char* kPhysics = "physics";  ///< parents first. Contacts, collision handlers, joints, one solver step.
+inline constexpr const char* kPlace = "place";      ///< parents first. Bodies write transforms; world matrices.
+inline constexpr const char* kRule = "rule";        ///< parents first. Control aspects.
+inline constexpr const char* kSense = "sense";      ///< parents first. Perceptors.
+inline constexpr const char* kPublish = "publish";  ///< parents first. Monitors, recorders.
+}  // namespace spark::phase
+
+namespace spark {
+
+/// The run loop, at /sys/server/simulation.
+class ISimulation {
+ public:
+  SPARK_INTERFACE(ISimulation, 1);
+  virtual ~ISimulation() = default;
+  /// Simulated time [s] since start: sum of executed steps.
+  virtual double time() const = 0;
+  virtual std::int64_t cycle() const = 0;
+  /// Simulated seconds per cycle.
+  virtual double step() const = 0;
+  /// True when the clock waits for all agents of a cycle.
+  virtual bool lockstep() const = 0;
+};
+
+/// Something the clock waits for: agents that have not answered. Any node in the tree may offer it.
+class IInputGate {
+ public:
+  SPARK_INTERFACE(IInputGate, 1);
+  virtual ~IInputGate() = default;
+  /// False: the next cycle must not start yet. Asked after every batch of input. `lockstep`: the clock waits for every agent;
+  /// otherwise only what holds the very first cycle (agents that are expected) counts.
+  virtual bool ready(bool lockstep) = 0;
+};
+
+/// Something that brings input: the network. Found by the run loop as children of /sys/server.
+class IInputSource {
+ public:
+  SPARK_INTERFACE(IInputSource, 1);
+  virtual ~IInputSource() = default;
+  /// Takes all input that is there without waiting: ports in tree order.
+  virtual void poll() = 0;
+  /// Waits for input until a deadline (s from now) or a stop request, takes what came. Returns false when the time ran out.
+  virtual bool wait(double seconds) = 0;
+};
+
+}  // namespace spark
