@@ -1,0 +1,107 @@
+-- The rooms of a house, ready furnished. A config says
+--
+--     include "house.lua"
+--     files() scene() physics() simulation()      -- in this order
+--     agents{ port = 3100 }
+--     monitors{ port = 3200 }
+--     control()
+--
+-- and adds what makes it special. Each function loads the plugins it needs, builds one server with its helpers, and returns the server,
+-- so that a config can set properties or swap a helper. Nothing here is magic: a config may write the same lines itself.
+--
+-- `host` is what the program that runs the config says about itself: host.share (the folder with lua/ and scenes/, "" when there is
+-- none) and host.scenePaths (folders from --scene-path). Programs that embed the kernel may leave it out.
+host = host or { share = "", scenePaths = {} }
+
+--- File server. A folder given by --scene-path holds rsg/...; it is asked before the scenes that come with Spark.
+function files()
+  plugin "files"
+  local server = new("FileServer", "/sys/server/file")
+  for i, folder in ipairs(host.scenePaths) do
+    new("DirectoryFileSystem", "/sys/server/file/scenePath" .. i).folder = folder
+  end
+  if host.share ~= "" then
+    local share = new("DirectoryFileSystem", "/sys/server/file/share")
+    share.folder = host.share .. "/scenes"
+    share.prefix = "rsg"                        -- scenes/agent/sphere.rsg is known as rsg/agent/sphere.rsg
+  end
+  return server
+end
+
+--- Scene server with the importer of the scene language, and an empty active scene at /usr/scene.
+function scene()
+  plugin "scene"
+  plugin "scene-rsg"
+  local server = new("SceneServer", "/sys/server/scene")
+  new("RsgImporter", "/sys/server/scene/rsg")
+  new("Scene", "/usr/scene")
+  return server
+end
+
+--- Physics server, its engine, and a world with a space in the active scene.
+function physics(engine)
+  plugin "physics"
+  plugin "physics-ode"
+  local server = new("PhysicsServer", "/sys/server/physics")
+  new(engine or "OdeEngine", "/sys/server/physics/engine")
+  new("World", "/usr/scene/world")
+  new("Space", "/usr/scene/space")
+  return server
+end
+
+--- The run loop. It drives everything below; sparkhost calls its run().
+function simulation()
+  plugin "simulation"
+  return new("Simulation", "/sys/server/simulation")
+end
+
+-- One TCP port with its framing. `consumer` is the path of the server that takes the messages.
+local function tcpPort(name, port, consumer)
+  plugin "net-tcp"
+  if not get("/sys/server/net") then new("NetServer", "/sys/server/net") end
+  local node = new("TcpPort", "/sys/server/net/" .. name)
+  new("LengthFraming", "/sys/server/net/" .. name .. "/framing")
+  node.consumer = consumer
+  node.port = port
+  return node
+end
+
+-- Both languages are known in every house, so that --set parser=JsonParser is all it takes.
+local function languages()
+  plugin "parser-sexp"
+  plugin "parser-json"
+end
+
+--- Game control and the port through which agents come. `parser`: class of the language they speak.
+function agents(t)
+  languages()
+  plugin "gamecontrol"
+  local server = new("GameControl", "/sys/server/gamecontrol")
+  new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
+  tcpPort("agents", t.port or 3100, "/sys/server/gamecontrol")
+  return server
+end
+
+--- One more port for agents that speak another language than the first. The port's own parser wins over game control's.
+function agentPort(name, port, parser)
+  local node = tcpPort(name, port, "/sys/server/gamecontrol")
+  if parser then new(parser, "/sys/server/net/" .. name .. "/parser") end
+  return node
+end
+
+--- Monitor server and the port through which monitors come. `encoder`: class of the language it speaks.
+function monitors(t)
+  plugin "monitor"
+  plugin "monitor-sexp"
+  plugin "monitor-json"
+  local server = new("MonitorServer", "/sys/server/monitor")
+  new(t.encoder or "SexpMonitor", "/sys/server/monitor/encoder")
+  tcpPort("monitors", t.port or 3200, "/sys/server/monitor")
+  return server
+end
+
+--- The socket through which sparkctl looks at the running house; only the host's own user can open it.
+function control()
+  plugin "control"
+  return new("ControlServer", "/sys/server/control")
+end
