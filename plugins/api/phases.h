@@ -51,6 +51,8 @@ class IInputSource {
   virtual void poll() = 0;
   /// Waits for input until a deadline (s from now) or a stop request, takes what came. Returns false when the time ran out.
   virtual bool wait(double seconds) = 0;
+  /// False: it has no wait worth calling; the run loop waits on another source and polls this one now and then.
+  virtual bool canWait() const { return true; }
 };
 
 }  // namespace spark
