@@ -1,0 +1,42 @@
+#pragma once
+
+#include "joint_command.h"
+
+namespace spark {
+
+/// `(he1 1.5)`: speed of the angular motor above it, rad/s, at once and until the next command.
+class AngularMotorEffector : public Effector {
+  SPARK_CLASS(AngularMotorEffector, Effector)
+ public:
+  static void describe(Description<AngularMotorEffector>& d) {
+    d.doc("Drives the angular motor above it: (name speed) in rad/s, within the greatest speed of the motor or of the hinge that holds it.");
+  }
+  std::string act(const Element& action) override {
+    if (!motor_) return "there is no AngularMotor above it";
+    double speed = 0;
+    if (std::string wrong = readNumber(action, 0, speed); !wrong.empty()) return wrong;
+    speed = clampSpeed(*motor_, 0, speed);
+    drive(*motor_, 0, hinge_ ? clampSpeed(*hinge_, 0, speed) : speed);
+    return {};
+  }
+
+ protected:
+  void onLink() override {
+    Effector::onLink();
+    lookUp();
+  }
+  void onMoved() override {
+    Effector::onMoved();
+    lookUp();
+  }
+
+ private:
+  void lookUp() {
+    motor_ = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
+    hinge_ = motor_ ? motor_->leaf().ancestor<IJoint>() : nullptr;
+  }
+  IJoint* motor_ = nullptr;
+  IJoint* hinge_ = nullptr;
+};
+
+}  // namespace spark

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "api/agents.h"
+
+namespace spark {
+
+/// `(create)`: builds a fixed scene file below the agent, before the next step. Without a file it has no effect.
+class CreateEffector : public Effector {
+  SPARK_CLASS(CreateEffector, Effector)
+ public:
+  static void describe(Description<CreateEffector>& d) {
+    d.doc("Builds the agent from a fixed scene file: (create). Arguments are ignored; without a file it has no effect.");
+    d.property("scene", &CreateEffector::scene_).doc("The scene file that is built.");
+    d.on<&CreateEffector::prepare>(phase::kPrepare);
+  }
+  std::string predicate() const override { return "create"; }
+  std::string act(const Element&) override {
+    pending_ = !scene_.empty();
+    return {};
+  }
+
+ private:
+  void prepare(const Event&) {
+    if (!pending_) return;
+    pending_ = false;
+    AgentAspect* owner = agent();
+    if (!owner) return;
+    try {
+      owner->importScene(scene_, {});
+    } catch (const std::exception& e) {
+      kernel().log().warning("{}: could not build its agent: {}", path(), e.what());
+    }
+  }
+  std::string scene_;
+  bool pending_ = false;
+};
+
+}  // namespace spark

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "joint_command.h"
+
+namespace spark {
+
+/// `(force 0 0 10)`: a force on the body above it (or beside it, below its transform), N in the world's frame, for the next step.
+class ForceEffector : public Effector {
+  SPARK_CLASS(ForceEffector, Effector)
+ public:
+  static void describe(Description<ForceEffector>& d) {
+    d.doc("Pushes the body above or beside it during one step: (force x y z) in N, world frame. The last command of a cycle counts.");
+    d.on<&ForceEffector::prepare>(phase::kPrepare);
+  }
+  std::string predicate() const override { return "force"; }
+  std::string act(const Element& action) override {
+    Vec3 force;
+    for (int i = 0; i < 3; ++i)
+      if (std::string wrong = readNumber(action, i, force[i]); !wrong.empty()) return wrong;
+    force_ = force;
+    pending_ = true;
+    return {};
+  }
+
+ private:
+  void prepare(const Event&) {
+    if (!pending_) return;
+    pending_ = false;
+    auto* body = ancestor<IRigidBody>();
+    if (!body && transform()) body = transform()->childOf<IRigidBody>();
+    if (!body) return;
+    body->enable();
+    body->addForce(force_);
+  }
+  Vec3 force_ = Vec3::Zero();
+  bool pending_ = false;
+};
+
+}  // namespace spark

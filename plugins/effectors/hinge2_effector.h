@@ -1,0 +1,34 @@
+#pragma once
+
+#include "joint_command.h"
+
+namespace spark {
+
+/// `(wheel 90)`: speed of the second axis (the wheel) of the hinge2 above it, in degrees per second as the installed base has it; no limit.
+class Hinge2Effector : public Effector {
+  SPARK_CLASS(Hinge2Effector, Effector)
+ public:
+  static void describe(Description<Hinge2Effector>& d) { d.doc("Drives the second axis of the hinge2 joint above it: (name speed) in deg/s."); }
+  std::string act(const Element& action) override {
+    if (!joint_) return "there is no Hinge2Joint above it";
+    double speedDeg = 0;
+    if (std::string wrong = readNumber(action, 0, speedDeg); !wrong.empty()) return wrong;
+    drive(*joint_, 1, degToRad(speedDeg));
+    return {};
+  }
+
+ protected:
+  void onLink() override {
+    Effector::onLink();
+    joint_ = jointAbove(*this, engine::JointType::hinge2, "Hinge2Joint");
+  }
+  void onMoved() override {
+    Effector::onMoved();
+    joint_ = jointAbove(*this, engine::JointType::hinge2, "Hinge2Joint");
+  }
+
+ private:
+  IJoint* joint_ = nullptr;
+};
+
+}  // namespace spark

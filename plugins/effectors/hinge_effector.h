@@ -1,0 +1,44 @@
+#pragma once
+
+#include "joint_command.h"
+
+namespace spark {
+
+/// `(he1 1.5)`: speed of the hinge above it, rad/s, at once and until the next command.
+class HingeEffector : public Effector {
+  SPARK_CLASS(HingeEffector, Effector)
+ public:
+  static void describe(Description<HingeEffector>& d) {
+    d.doc("Drives the hinge joint above it: (name speed) in rad/s, within the joint's greatest speed.");
+    d.property("ignoreCommandAtStop", &HingeEffector::ignoreCommandAtStop_)
+        .doc("At or beyond a stop commands are ignored and the speed stays, as the installed base does against exploding feet.");
+  }
+  std::string act(const Element& action) override {
+    if (!joint_) return "there is no HingeJoint above it";
+    double speed = 0;
+    if (std::string wrong = readNumber(action, 0, speed); !wrong.empty()) return wrong;
+    if (ignoreCommandAtStop_ && atStop()) return {};
+    drive(*joint_, 0, clampSpeed(*joint_, 0, speed));
+    return {};
+  }
+
+ protected:
+  void onLink() override {
+    Effector::onLink();
+    joint_ = jointAbove(*this, engine::JointType::hinge, "HingeJoint");
+  }
+  void onMoved() override {
+    Effector::onMoved();
+    joint_ = jointAbove(*this, engine::JointType::hinge, "HingeJoint");
+  }
+
+ private:
+  bool atStop() const {
+    const double angle = joint_->angle(0);
+    return angle <= joint_->parameter(engine::JointParameter::lowStop, 0) || angle >= joint_->parameter(engine::JointParameter::highStop, 0);
+  }
+  IJoint* joint_ = nullptr;
+  bool ignoreCommandAtStop_ = true;
+};
+
+}  // namespace spark

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "joint_command.h"
+
+namespace spark {
+
+/// `(he1s 0.8)`: which part of its greatest torque the angular motor above it may use, 0..1, at once and until the next command.
+class StiffnessEffector : public Effector {
+  SPARK_CLASS(StiffnessEffector, Effector)
+ public:
+  static void describe(Description<StiffnessEffector>& d) {
+    d.doc("Sets the stiffness of the angular motor above it: (name part), 0..1.");
+    d.property("stiffness", &StiffnessEffector::stiffness_).range(0, 1).state().doc("What was commanded last.");
+  }
+  std::string act(const Element& action) override {
+    double stiffness = 0;
+    if (std::string wrong = readNumber(action, 0, stiffness); !wrong.empty()) return wrong;
+    stiffness_ = std::clamp(stiffness, 0.0, 1.0);
+    if (motorStiffness_) {
+      const Value value = stiffness_;
+      Args args{{&value, 1}};
+      motorStiffness_->set(motor_->leaf(), args);
+    }
+    return {};
+  }
+
+ protected:
+  void onLink() override {
+    Effector::onLink();
+    lookUp();
+  }
+  void onMoved() override {
+    Effector::onMoved();
+    lookUp();
+  }
+
+ private:
+  void lookUp() {
+    motorStiffness_ = nullptr;
+    motor_ = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
+    const Property* p = motor_ ? motor_->leaf().classObject()->property("stiffness") : nullptr;
+    if (p && !p->readOnly && p->get(motor_->leaf()).isNumber()) motorStiffness_ = p;
+  }
+  IJoint* motor_ = nullptr;
+  const Property* motorStiffness_ = nullptr;
+  double stiffness_ = 1;
+};
+
+}  // namespace spark

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "joint_command.h"
+
+namespace spark {
+
+/// `(lae1_2 0.5 -0.5)`: speeds of both axes of the universal joint above it, rad/s, at once and until the next command.
+class UniversalJointEffector : public Effector {
+  SPARK_CLASS(UniversalJointEffector, Effector)
+ public:
+  static void describe(Description<UniversalJointEffector>& d) {
+    d.doc("Drives the universal joint above it: (name speed1 speed2) in rad/s, within the joint's greatest speeds.");
+  }
+  std::string act(const Element& action) override {
+    if (!joint_) return "there is no UniversalJoint above it";
+    double speed[2] = {0, 0};
+    for (int axis = 0; axis < 2; ++axis)
+      if (std::string wrong = readNumber(action, axis, speed[axis]); !wrong.empty()) return wrong;
+    for (int axis = 0; axis < 2; ++axis) drive(*joint_, axis, clampSpeed(*joint_, axis, speed[axis]));
+    return {};
+  }
+
+ protected:
+  void onLink() override {
+    Effector::onLink();
+    joint_ = jointAbove(*this, engine::JointType::universal, "UniversalJoint");
+  }
+  void onMoved() override {
+    Effector::onMoved();
+    joint_ = jointAbove(*this, engine::JointType::universal, "UniversalJoint");
+  }
+
+ private:
+  IJoint* joint_ = nullptr;
+};
+
+}  // namespace spark

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "cached_lookup.h"
+#include "api/agents.h"
+#include "api/physics.h"
+
+namespace spark {
+
+/// `(ACC (n torso) (a 0.00 0.00 9.81))`: what a real accelerometer feels, in its body's frame: at rest upright (0 0 9.81), in free fall 0.
+///
+/// It samples in the prepare phase, before the step, from the velocities after the two steps before: its percept is one cycle older than
+/// the rest of the message. The installed base's robots were tuned with this delay.
+class Accelerometer : public Perceptor {
+  SPARK_CLASS(Accelerometer, Perceptor)
+ public:
+  static void describe(Description<Accelerometer>& d) {
+    d.doc("Senses the specific force on its transform's body, in the body's frame: (ACC (n name) (a x y z)) in m/s^2.");
+    d.property("gravity", &Accelerometer::gravity_).unit("m/s^2").doc("What it takes for gravity.");
+    d.property("lastVelocity", &Accelerometer::lastVelocity_).unit("m/s").state().doc("The body's velocity at the last sample, world frame.");
+    d.property("acceleration", &Accelerometer::acceleration_).unit("m/s^2").state().doc("The last sample, body frame.");
+    d.on<&Accelerometer::prepare>(phase::kPrepare);
+  }
+  void sense(Predicates& out, const Event&) override {
+    if (!body()) return;
+    out.open("ACC").pair("n", name()).open("a");
+    for (const float a : acceleration_) out.add(a);
+    out.close().close();
+  }
+
+ private:
+  void prepare(const Event& event) {
+    if (!body() || event.step <= 0) return;
+    const Vec3f velocity = body()->state().linearVelocity.cast<float>();
+    const Vec3f felt = (velocity - lastVelocity_) / static_cast<float>(event.step) - gravity_;
+    acceleration_ = transform()->world().block<3, 3>(0, 0).transpose() * felt;
+    lastVelocity_ = velocity;
+  }
+  IRigidBody* body() {
+    return body_.get(kernel(), [this] { return transform() ? transform()->childOf<IRigidBody>() : nullptr; });
+  }
+  CachedLookup<IRigidBody> body_;
+  Vec3f gravity_{0, 0, -9.81f};
+  Vec3f lastVelocity_ = Vec3f::Zero(), acceleration_ = Vec3f::Zero();
+};
+
+}  // namespace spark

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "joint_above.h"
+
+namespace spark {
+
+/// `(HJ (n hj1) (ax 1.72) (rt 0.00) (tq 0.00) (tp 23.00) (ct 0.00))`, each item as switched on: angle [deg] and rate [deg/s] of the hinge
+/// that the motor above it drives, the motor's torque [Nm], temperature [deg C] (when it changed by more than one) and current [mA].
+class AngularMotorPerceptor : public Perceptor {
+  SPARK_CLASS(AngularMotorPerceptor, Perceptor)
+ public:
+  static void describe(Description<AngularMotorPerceptor>& d) {
+    using P = AngularMotorPerceptor;
+    d.doc("Senses the angular motor above it: (HJ (n name) (ax deg) (rt deg/s) (tq Nm) (tp C) (ct mA)), as switched on.");
+    d.property("senseAngle", &P::senseAngle_).doc("Says the hinge's angle.");
+    d.property("senseRate", &P::senseRate_).doc("Says the hinge's speed.");
+    d.property("senseTorque", &P::senseTorque_).doc("Says the motor's torque; the motor must have feedback enabled.");
+    d.property("senseCurrent", &P::senseCurrent_).doc("Says the motor's current where the motor models one.");
+    d.property("senseTemperature", &P::senseTemperature_).doc("Says the motor's temperature after each change above 1 C, where the motor models one.");
+    d.property("toldTemperature", &P::toldTemperature_).unit("C").state().doc("The temperature that was said last.");
+  }
+  void sense(Predicates& out, const Event&) override {
+    if (!motor_) return;
+    const IJoint& angles = hinge_ ? *hinge_ : *motor_;
+    out.open("HJ").pair("n", name());
+    if (senseAngle_) out.pair("ax", radToDeg(angles.angle(0)));
+    if (senseRate_) out.pair("rt", radToDeg(angles.angleRate(0)));
+    if (senseTorque_) out.pair("tq", motor_->feedbackTorque());
+    if (senseTemperature_ && temperature_) {
+      const double now = temperature_->get(motor_->leaf()).toNumber();
+      if (std::abs(now - toldTemperature_) > 1) out.pair("tp", toldTemperature_ = now);
+    }
+    if (senseCurrent_ && current_) out.pair("ct", 1000 * current_->get(motor_->leaf()).toNumber());
+    out.close();
+  }
+
+ protected:
+  void onLink() override {
+    Perceptor::onLink();
+    lookUp();
+  }
+  void onMoved() override {
+    Perceptor::onMoved();
+    lookUp();
+  }
+
+ private:
+  void lookUp() {
+    hinge_ = nullptr;
+    motor_ = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
+    if (!motor_) return;
+    hinge_ = motor_->leaf().ancestor<IJoint>();
+    temperature_ = number("temperature");
+    current_ = number("current");
+  }
+  const Property* number(const char* property) const {
+    const Property* p = motor_->leaf().classObject()->property(property);
+    return p && p->get(motor_->leaf()).isNumber() ? p : nullptr;
+  }
+  IJoint* motor_ = nullptr;
+  IJoint* hinge_ = nullptr;
+  const Property* temperature_ = nullptr;
+  const Property* current_ = nullptr;
+  double toldTemperature_ = -1000;
+  bool senseAngle_ = true, senseRate_ = false, senseTorque_ = false, senseCurrent_ = false, senseTemperature_ = false;
+};
+
+}  // namespace spark

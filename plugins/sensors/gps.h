@@ -1,0 +1,22 @@
+#pragma once
+
+#include "api/agents.h"
+
+namespace spark {
+
+/// `(GPS (n torso) (tf m00 m01 ... m33))`: world matrix of its transform, row by row.
+class GPS : public Perceptor {
+  SPARK_CLASS(GPS, Perceptor)
+ public:
+  static void describe(Description<GPS>& d) { d.doc("Senses its transform's world matrix, row by row: (GPS (n name) (tf m00 m01 ... m33))."); }
+  void sense(Predicates& out, const Event&) override {
+    if (!transform()) return;
+    const Matrix& world = transform()->world();
+    out.open("GPS").pair("n", name()).open("tf");
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) out.add(double(world(row, column)));
+    out.close().close();
+  }
+};
+
+}  // namespace spark

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "cached_lookup.h"
+#include "api/agents.h"
+#include "api/physics.h"
+
+namespace spark {
+
+/// `(GYR (n torso) (rt 0.01 0.00 -0.09))`: how fast the body beside it turns, in the body's own frame, degrees per second.
+class GyroRatePerceptor : public Perceptor {
+  SPARK_CLASS(GyroRatePerceptor, Perceptor)
+ public:
+  static void describe(Description<GyroRatePerceptor>& d) {
+    d.doc("Senses the angular velocity of its transform's body, in the body's frame: (GYR (n name) (rt x y z)) in deg/s.");
+  }
+
+  void sense(Predicates& out, const Event&) override {
+    IRigidBody* body = body_.get(kernel(), [this] { return transform() ? transform()->childOf<IRigidBody>() : nullptr; });
+    if (!body) return;
+
+    const Vec3f world = body->state().angularVelocity.cast<float>();
+    const Vec3f local = transform()->world().block<3, 3>(0, 0).transpose() * world;
+
+    out.open("GYR").pair("n", name()).open("rt");
+    for (const float rate : local) out.add(radToDeg(rate));
+    out.close().close();
+  }
+
+ private:
+  CachedLookup<IRigidBody> body_;
+};
+
+}  // namespace spark

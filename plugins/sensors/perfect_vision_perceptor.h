@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "api/agents.h"
+
+namespace spark {
+
+/// `(PerfectVision (Ball (pos 1.00 2.00 0.04)) ...)`: world positions of all transforms of the scene. For demos.
+class PerfectVisionPerceptor : public Perceptor {
+  SPARK_CLASS(PerfectVisionPerceptor, Perceptor)
+ public:
+  static void describe(Description<PerfectVisionPerceptor>& d) {
+    d.doc("Senses the positions of all transforms of the scene: (PerfectVision (name (pos x y z)) ...) in m.");
+    d.method("setInversion", &PerfectVisionPerceptor::setInversion).parameters({"x", "y", "z"}).doc("Mirrors these axes.");
+  }
+  void setInversion(bool x, bool y, bool z) { signs_ = {x ? -1.f : 1.f, y ? -1.f : 1.f, z ? -1.f : 1.f}; }
+
+  void sense(Predicates& out, const Event&) override {
+    if (version_ != kernel().structureVersion()) collect();
+    out.open("PerfectVision");
+    for (const Transform* t : transforms_) {
+      const Vec3f p = positionOf(t->world()).cwiseProduct(signs_);
+      out.open(t->name()).open("pos").add(p.x()).add(p.y()).add(p.z()).close().close();
+    }
+    out.close();
+  }
+
+ private:
+  void collect() {
+    transforms_.clear();
+    if (auto* server = kernel().root().find<ISceneServer>("/sys/server/scene")) server->scene().collect(transforms_);
+    version_ = kernel().structureVersion();
+  }
+  std::vector<Transform*> transforms_;
+  std::uint64_t version_ = 0;
+  Vec3f signs_{1, 1, 1};
+};
+
+}  // namespace spark
