@@ -1,0 +1,186 @@
+#include "simulation.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "spark/plugin.h"
+#include "spark/state.h"
+
+// One cycle, and where waiting happens:
+//
+//   wait for the clock ─► input ─► act ─► prepare ─► physics ─► place ─► rule ─► sense ─► publish
+//   (real time only;       │
+//    input is taken        └ poll all sources; while a gate is closed, wait for input and ask again;
+//    meanwhile)              then poll once more: what was received when the last answer was read counts
+//
+// All waiting is inside a source's wait(), so that input is taken as it comes, and in slices, so that a stop request and sources that can
+// only be polled are seen soon. Waiting never shows in the state: the simulated clock stands still meanwhile. In real time, what a cycle
+// takes longer than its step is dropped: the simulation gets slower, it never catches up with double steps.
+//
+// Unlike the original, the first cycle has a step like every other: nobody can see the difference (an agent's robot exists from the end
+// of a cycle's act phase at the earliest), and cycles * step is the time.
+
+namespace spark {
+
+namespace {
+constexpr double kSlice = 0.02;    // s; bound on the delay of a stop request and of polled sources
+constexpr double kJitter = 0.002;  // s; a cycle that starts later than this lost time that is not made up for
+using simulation::Part;
+
+double secondsUntil(std::chrono::steady_clock::time_point t) {
+  return std::chrono::duration<double>(t - std::chrono::steady_clock::now()).count();
+}
+}  // namespace
+
+void Simulation::describe(Description<Simulation>& d) {
+  d.doc("The run loop: names the phases and drives them.");
+  d.implements<ISimulation>();
+  d.property("step", &Simulation::step_).unit("s").range(1e-6, 1).doc("Simulated time of one cycle.");
+  d.property("rate", &Simulation::rate_).choices({"real", "max"}).doc("real: paced to wall time; max: as fast as it goes.");
+  d.property("sync", &Simulation::sync_).doc("Lockstep: a cycle starts when every agent has answered.");
+  d.property("duration", &Simulation::duration_).unit("s").min(0).doc("Simulated time after which run() ends; 0: never.");
+  d.property("threads", &Simulation::threads, &Simulation::setThreads).range(1, 64).doc("Host threads for sensing and encoding. Results do not depend on it.");
+  d.property("cycle", &Simulation::cycle).doc("Number of the current cycle, from 1; 0 before the first.");
+  d.property("time", &Simulation::time).unit("s").doc("Simulated time since the start.");
+  d.property("phaseMicros", &Simulation::phaseMicros).doc("Mean wall time per cycle of each phase since resetTimers() [microseconds].");
+  d.method("run", &Simulation::run).doc("Runs until duration is reached or something asks to stop.");
+  d.method("runCycles", &Simulation::runCycles).parameters({"count"}).doc("Runs that many cycles.");
+  d.method("stop", &Simulation::stop).doc("Ends run() after the current cycle.");
+  d.method("resetTimers", &Simulation::resetTimers).doc("Starts the means of phaseMicros anew.");
+}
+
+void Simulation::onLink() {
+  Events& events = kernel().events();
+  act_ = &events.define(phase::kAct, Order::parentsFirst, "Agents' messages are realised; immediate effectors act.");
+  prepare_ = &events.define(phase::kPrepare, Order::childrenFirst, "Deferred actions, controllers, sampling before the step.");
+  physics_ = &events.define(phase::kPhysics, Order::parentsFirst, "Contacts, collision handlers, joints, one solver step.");
+  place_ = &events.define(phase::kPlace, Order::parentsFirst, "Bodies write transforms; world matrices.");
+  rule_ = &events.define(phase::kRule, Order::parentsFirst, "Control aspects see the new world.");
+  sense_ = &events.define(phase::kSense, Order::parentsFirst, "Perceptors read the world.");
+  publish_ = &events.define(phase::kPublish, Order::parentsFirst, "Monitors and recorders take a frame.");
+  kernel().jobs().setThreads(threads_);
+}
+
+void Simulation::setThreads(int count) {
+  threads_ = count;
+  if (isLinked()) kernel().jobs().setThreads(count);
+}
+
+void Simulation::saveState(StateWriter& out) const {
+  out.write(cycle_);
+  out.write(time_);
+}
+
+void Simulation::loadState(StateReader& in) {
+  cycle_ = in.readInteger();
+  time_ = in.readNumber();
+}
+
+void Simulation::run() {
+  stopped_ = false;
+  due_ = Clock::now();
+  while (!finished() && collectInput()) executeCycle();
+}
+
+void Simulation::runCycles(std::int64_t count) {
+  stopped_ = false;
+  due_ = Clock::now();
+  while (count-- > 0 && collectInput()) executeCycle();
+}
+
+// Half a step of tolerance: the sum of steps is not exact.
+bool Simulation::finished() const { return stopping() || (duration_ > 0 && time_ > duration_ - 0.5 * step_); }
+
+void Simulation::resolve() {
+  if (resolvedAt_ == kernel().structureVersion()) return;
+  resolvedAt_ = kernel().structureVersion();
+  sources_.clear();
+  gates_.clear();
+  waiter_ = nullptr;
+  if (Node* server = kernel().root().find<Node>("/sys/server"))
+    for (const auto& child : server->children())
+      if (auto* source = child->as<IInputSource>()) sources_.push_back(source);
+  kernel().root().collect(gates_);
+  for (IInputSource* s : sources_)
+    if (!waiter_ && s->canWait()) waiter_ = s;
+}
+
+// Input changes the tree (agents come and go), so positions are looked up anew for every source.
+void Simulation::poll() {
+  for (std::size_t i = 0;; ++i) {
+    resolve();
+    if (i >= sources_.size()) return;
+    sources_[i]->poll();
+  }
+}
+
+bool Simulation::gatesOpen() {
+  for (std::size_t i = 0;; ++i) {
+    resolve();
+    if (i >= gates_.size()) return true;
+    if (!gates_[i]->ready(sync_)) return false;
+  }
+}
+
+void Simulation::waitForInput(double seconds) {
+  resolve();
+  const double slice = std::min(seconds, kSlice);
+  if (waiter_) waiter_->wait(slice);
+  else std::this_thread::sleep_for(std::chrono::duration<double>(slice));
+  if (sources_.size() > 1) poll();
+}
+
+void Simulation::waitForClock() {
+  while (rate_ == "real" && !stopping()) {
+    const double left = secondsUntil(due_);
+    if (left <= 0) break;
+    waitForInput(left);
+  }
+  if (secondsUntil(due_) < -kJitter) due_ = Clock::now();
+  due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step_));
+}
+
+bool Simulation::collectInput() {
+  waitForClock();
+  const auto mark = Clock::now();
+  poll();
+  bool waited = false;
+  while (!stopping() && !gatesOpen()) {
+    waitForInput(kSlice);
+    waited = true;
+  }
+  if (stopping()) return false;
+  if (waited) poll();
+  timers_.add(Part::input, waited ? Clock::duration::zero() : Clock::now() - mark);
+  return !stopping();
+}
+
+void Simulation::emit(Part part, Channel& channel, Clock::time_point& mark) {
+  Event event;
+  event.name = channel.name();
+  event.time = time_;
+  event.step = step_;
+  event.cycle = cycle_;
+  channel.emit(event);
+  const auto now = Clock::now();
+  timers_.add(part, now - mark);
+  mark = now;
+}
+
+void Simulation::executeCycle() {
+  ++cycle_;
+  auto mark = Clock::now();
+  emit(Part::act, *act_, mark);
+  emit(Part::prepare, *prepare_, mark);
+  emit(Part::physics, *physics_, mark);
+  time_ += step_;
+  emit(Part::place, *place_, mark);
+  emit(Part::rule, *rule_, mark);
+  emit(Part::sense, *sense_, mark);
+  emit(Part::publish, *publish_, mark);
+  timers_.cycleDone();
+}
+
+}  // namespace spark
+
+SPARK_PLUGIN("simulation", "1.0", "The run loop: names the phases and drives them in real time, in lockstep, or as fast as possible.", spark::Simulation)

@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// The run loop: names the phases of a cycle and drives them in real time, in lockstep, or as fast as possible.
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "api/phases.h"
+#include "spark/describe.h"
+#include "spark/kernel.h"
+#include "timers.h"
+
+namespace spark {
+
+/// The run loop, at /sys/server/simulation.
+class Simulation : public Node, public ISimulation {
+  SPARK_CLASS(Simulation, Node)
+ public:
+  static void describe(Description<Simulation>& d);
+
+  double time() const override { return time_; }
+  std::int64_t cycle() const override { return cycle_; }
+  double step() const override { return step_; }
+  bool lockstep() const override { return sync_; }
+
+  /// Runs cycles until `duration` is reached, stop() or Kernel::requestStop().
+  void run();
+  /// Runs `count` cycles, or fewer when asked to stop; for tests and benches. Waits as run() does.
+  void runCycles(std::int64_t count);
+  /// Lets the current run() return after the cycle it is in.
+  void stop() { stopped_ = true; }
+
+ protected:
+  void onLink() override;
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
+
+ private:
+  using Clock = simulation::Timers::Clock;
+
+  void setThreads(int count);
+  int threads() const { return threads_; }
+  Value phaseMicros() const { return timers_.means(); }
+  void resetTimers() { timers_.reset(); }
+
+  bool stopping() const { return stopped_ || kernel().stopRequested(); }
+  bool finished() const;
+  /// Looks up sources and gates again when the tree's shape changed.
+  void resolve();
+  void poll();
+  bool gatesOpen();
+  /// Waits for input or until `seconds` have passed, at most one slice, and takes what came.
+  void waitForInput(double seconds);
+  void waitForClock();
+  /// Everything that must have been read before the cycle starts; false when asked to stop meanwhile.
+  bool collectInput();
+  void emit(simulation::Part part, Channel& channel, Clock::time_point& mark);
+  void executeCycle();
+
+  double step_ = 0.02, duration_ = 0, time_ = 0;
+  std::int64_t cycle_ = 0;
+  std::string rate_ = "real";
+  bool sync_ = false, stopped_ = false;
+  int threads_ = 1;
+
+  std::vector<IInputSource*> sources_;
+  std::vector<IInputGate*> gates_;
+  IInputSource* waiter_ = nullptr;  ///< the source to wait on, nullptr: sleep
+  std::uint64_t resolvedAt_ = 0;
+
+  Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr, *sense_ = nullptr, *publish_ = nullptr;
+  Clock::time_point due_{};  ///< when the next cycle may start in real time
+  simulation::Timers timers_;
+};
+
+}  // namespace spark

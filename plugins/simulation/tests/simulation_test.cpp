@@ -1,0 +1,193 @@
+#include <catch2/catch.hpp>
+
+#include <chrono>
+#include <deque>
+#include <string>
+
+#include "api/phases.h"
+#include "spark/error.h"
+#include "spark/state.h"
+#include "test_support.h"
+
+using namespace spark;
+
+namespace {
+/// A source that plays a list of batches: each wait() takes the next one, poll() takes those marked as already received.
+class Batches : public Node, public IInputSource, public IInputGate {
+  SPARK_CLASS(Batches, Node)
+ public:
+  static void describe(Description<Batches>& d) {
+    d.implements<IInputSource>();
+    d.implements<IInputGate>();
+  }
+  void poll() override { log += "p"; }
+  bool wait(double seconds) override {
+    log += "w";
+    waited += seconds;
+    if (waitsBeforeReady > 0) --waitsBeforeReady;
+    if (stopAt > 0 && --stopAt == 0) kernel().requestStop();
+    return true;
+  }
+  bool ready(bool lockstep) override {
+    seenLockstep = lockstep;
+    return waitsBeforeReady == 0;
+  }
+  std::string log;
+  double waited = 0;
+  int waitsBeforeReady = 0, stopAt = 0;
+  bool seenLockstep = false;
+};
+
+/// A source that is only polled.
+class Polled : public Node, public IInputSource {
+  SPARK_CLASS(Polled, Node)
+ public:
+  static void describe(Description<Polled>& d) { d.implements<IInputSource>(); }
+  void poll() override { ++polls; }
+  bool wait(double) override { return ++waits, false; }
+  bool canWait() const override { return false; }
+  int polls = 0, waits = 0;
+};
+
+struct Fixture {
+  test::House house;
+  Leaf* simulation = nullptr;
+  ISimulation* loop = nullptr;
+  Fixture() {
+    house.kernel.registerClass<Batches>();
+    house.kernel.registerClass<Polled>();
+    house.kernel.plugins().use("simulation");
+    simulation = &house.kernel.create("Simulation", "/sys/server/simulation");
+    loop = simulation->as<ISimulation>();
+    setProperty(*simulation, "rate", "max");
+  }
+  void runCycles(int n) { callMethod(*simulation, "runCycles", std::vector<Value>{n}); }
+  void run() { callMethod(*simulation, "run", {}); }
+};
+}  // namespace
+
+TEST_CASE("A cycle runs its phases in the order of the design") {
+  Fixture f;
+  std::string order;
+  for (const char* name : {"publish", "sense", "rule", "place", "physics", "prepare", "act"})
+    f.house.kernel.events().channel(name).add(f.house.kernel.root(), [&](Leaf&, const Event& e) { order += std::string(e.name) + " "; });
+  f.runCycles(1);
+  REQUIRE(order == "act prepare physics place rule sense publish ");
+}
+
+TEST_CASE("Time is the sum of executed steps, and phases after the solver see the new time") {
+  Fixture f;
+  double act = -1, sense = -1, step = 0;
+  std::int64_t cycle = 0;
+  f.house.kernel.events().channel("act").add(f.house.kernel.root(), [&](Leaf&, const Event& e) { act = e.time; });
+  f.house.kernel.events().channel("sense").add(f.house.kernel.root(), [&](Leaf&, const Event& e) { sense = e.time, step = e.step, cycle = e.cycle; });
+  REQUIRE(f.loop->cycle() == 0);
+  f.runCycles(1);
+  REQUIRE(act == 0);
+  REQUIRE(sense == Approx(0.02));
+  REQUIRE(step == Approx(0.02));
+  REQUIRE(cycle == 1);
+  f.runCycles(4);
+  REQUIRE(f.loop->cycle() == 5);
+  REQUIRE(f.loop->time() == Approx(0.1));
+}
+
+TEST_CASE("run ends at its duration, neither a cycle early nor late") {
+  Fixture f;
+  setProperty(*f.simulation, "duration", 600.0);
+  f.run();
+  REQUIRE(f.loop->cycle() == 30000);
+}
+
+TEST_CASE("run ends when the kernel or a script asks for it") {
+  Fixture f;
+  f.house.kernel.events().channel("sense").add(f.house.kernel.root(), [&](Leaf&, const Event& e) {
+    if (e.cycle == 7) callMethod(*f.simulation, "stop", {});
+    if (e.cycle == 9) f.house.kernel.requestStop();
+  });
+  f.run();
+  REQUIRE(f.loop->cycle() == 7);
+  f.run();
+  REQUIRE(f.loop->cycle() == 9);
+  f.run();
+  REQUIRE(f.loop->cycle() == 9);
+}
+
+TEST_CASE("The clock waits for closed gates, then reads once more what was received meanwhile") {
+  Fixture f;
+  auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");
+  source.waitsBeforeReady = 3;
+  setProperty(*f.simulation, "sync", true);
+  f.runCycles(1);
+  REQUIRE(source.log == "pwwwp");
+  REQUIRE(source.seenLockstep);
+  REQUIRE(f.loop->cycle() == 1);
+  REQUIRE(f.loop->time() == Approx(0.02));
+}
+
+TEST_CASE("A stop request ends the wait at a gate that never opens") {
+  Fixture f;
+  auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");
+  source.waitsBeforeReady = 1000000;
+  source.stopAt = 5;
+  f.run();
+  REQUIRE(f.loop->cycle() == 0);
+  REQUIRE(source.log == "pwwwww");
+}
+
+TEST_CASE("A source that cannot wait is polled before every cycle") {
+  Fixture f;
+  auto& polled = f.house.kernel.create<Polled>("Polled", "/sys/server/control");
+  f.runCycles(10);
+  REQUIRE(polled.polls == 10);
+  REQUIRE(polled.waits == 0);
+}
+
+TEST_CASE("In real time the clock never runs faster than wall time") {
+  Fixture f;
+  setProperty(*f.simulation, "rate", "real");
+  const auto start = std::chrono::steady_clock::now();
+  f.runCycles(6);
+  const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  REQUIRE(spent >= 5 * 0.02);
+}
+
+TEST_CASE("Input is taken while real time passes") {
+  Fixture f;
+  auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");
+  setProperty(*f.simulation, "rate", "real");
+  f.runCycles(2);
+  REQUIRE(source.log.find('w') != std::string::npos);
+  REQUIRE(source.waited > 0);
+}
+
+TEST_CASE("Wall time is measured per phase and is no state") {
+  Fixture f, g;
+  f.runCycles(3);
+  g.runCycles(3);
+  const Value micros = getProperty(*f.simulation, "phaseMicros");
+  REQUIRE(micros.toList().size() == 8);
+  REQUIRE(micros.at("physics")->toNumber() > 0);
+  REQUIRE(stateHash(*f.simulation) == stateHash(*g.simulation));
+  callMethod(*f.simulation, "resetTimers", {});
+  REQUIRE(getProperty(*f.simulation, "phaseMicros").at("physics")->toNumber() == 0);
+}
+
+TEST_CASE("Cycle and time are saved and restored") {
+  Fixture f, g;
+  f.runCycles(8);
+  StateWriter out(true);
+  saveTree(*f.simulation, out);
+  REQUIRE(stateHash(*g.simulation) != stateHash(*f.simulation));
+  StateReader in(out.bytes());
+  loadTree(*g.simulation, in);
+  REQUIRE(g.loop->cycle() == 8);
+  REQUIRE(stateHash(*g.simulation) == stateHash(*f.simulation));
+}
+
+TEST_CASE("The number of threads follows the property") {
+  Fixture f;
+  setProperty(*f.simulation, "threads", 4);
+  REQUIRE(f.house.kernel.jobs().threads() == 4);
+  REQUIRE_THROWS_AS(setProperty(*f.simulation, "threads", 0), Error);
+}
