@@ -1,0 +1,22 @@
+#pragma once
+
+#include "api/monitor.h"
+
+namespace spark {
+
+/// Writes monitor messages as JSON that mirrors the S-expressions:
+///
+///     [[["time",0.8],["play_mode",3]],["RDS",0,1],[["nd",["nd"]],["nd",["SLT",1,0,...,1],["nd","StaticMesh",["setVisible",1]]]]]
+///
+/// Numbers are numbers with six significant digits; what is not finite is null.
+class JsonMonitor : public Node, public IMonitorEncoder {
+  SPARK_CLASS(JsonMonitor, Node)
+ public:
+  static void describe(Description<JsonMonitor>& d) {
+    d.doc("Encodes monitor messages as JSON: [[environment],[\"RSG\"|\"RDS\",0,1],[nodes]].");
+    d.implements<IMonitorEncoder>();
+  }
+  void encode(const MonitorUpdate& update, std::string& out) override;
+};
+
+}  // namespace spark

@@ -1,0 +1,65 @@
+#include "visible_nodes.h"
+
+namespace spark {
+
+bool VisibleNodes::fresh(Kernel& kernel) const {
+  return structure_ == kernel.structureVersion() && (!server_ || server_->modifiedCount() == modified_);
+}
+
+bool VisibleNodes::refresh(Kernel& kernel) {
+  if (fresh(kernel)) return false;
+  auto* server = kernel.root().find<ISceneServer>("/sys/server/scene");
+  std::swap(ids_, lastIds_);
+  std::swap(depths_, lastDepths_);
+  entries_.clear();
+  ids_.clear();
+  depths_.clear();
+  try {
+    if (server) collect(server->scene(), 0);
+  } catch (const Error&) {
+    // There is no active scene: monitors see an empty one.
+  }
+  const std::uint64_t modified = server ? server->modifiedCount() : 0;
+  const bool changed = modified != modified_ || ids_ != lastIds_ || depths_ != lastDepths_;
+  server_ = server;
+  modified_ = modified;
+  structure_ = kernel.structureVersion();
+  return changed;
+}
+
+void VisibleNodes::collect(const Node& above, int depth) {
+  for (const auto& child : above.children()) {
+    Entry entry{child->as<Transform>(), child->as<IVisual>(), depth};
+    const bool seen = entry.transform || entry.visual;
+    if (seen) {
+      entries_.push_back(entry);
+      ids_.push_back(child->id());
+      depths_.push_back(depth);
+    }
+    if (child->asNode()) collect(*child->asNode(), seen ? depth + 1 : depth);
+  }
+}
+
+void VisibleNodes::copyTo(std::vector<FrameNode>& out) const {
+  out.resize(entries_.size());
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const Entry& entry = entries_[i];
+    FrameNode& node = out[i];
+    node.depth = entry.depth;
+    node.visual = entry.transform ? nullptr : entry.visual;
+    if (entry.transform) {
+      node.kind = FrameNode::Kind::transform;
+      node.local = entry.transform->local();
+      continue;
+    }
+    switch (entry.visual->kind()) {
+      case IVisual::Kind::light: node.kind = FrameNode::Kind::light; break;
+      case IVisual::Kind::mesh: node.kind = FrameNode::Kind::mesh; break;
+      case IVisual::Kind::singleMaterial: node.kind = FrameNode::Kind::singleMaterial; break;
+    }
+    node.visible = entry.visual->visible();
+    node.transparent = entry.visual->transparent();
+  }
+}
+
+}  // namespace spark
