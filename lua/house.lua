@@ -18,11 +18,11 @@ function files()
   plugin "files"
   local server = new("FileServer", "/sys/server/file")
   for i, folder in ipairs(host.scenePaths) do
-    new("DirectoryFileSystem", "/sys/server/file/scenePath" .. i).folder = folder
+    new("DirectoryFileSystem", "/sys/server/file/scenePath" .. i).path = folder
   end
   if host.share ~= "" then
     local share = new("DirectoryFileSystem", "/sys/server/file/share")
-    share.folder = host.share .. "/scenes"
+    share.path = host.share .. "/scenes"
     share.prefix = "rsg"                        -- scenes/agent/sphere.rsg is known as rsg/agent/sphere.rsg
   end
   return server
@@ -60,7 +60,7 @@ local function tcpPort(name, port, consumer)
   plugin "net-tcp"
   if not get("/sys/server/net") then new("NetServer", "/sys/server/net") end
   local node = new("TcpPort", "/sys/server/net/" .. name)
-  new("LengthFraming", "/sys/server/net/" .. name .. "/framing")
+  new("LengthPrefixFraming", "/sys/server/net/" .. name .. "/framing")
   node.consumer = consumer
   node.port = port
   return node
