@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "spark/value.h"
+
 namespace spark {
 
 /// One token of the buffer. A list's `end` is the index behind its last element.
@@ -108,6 +110,11 @@ class Predicates {
   std::string text_;
   std::vector<std::uint32_t> openLists_;
 };
+
+/// The top-level elements as a list of values (lists, texts, numbers), for scripts and tools; allocates.
+List toList(const Predicates& predicates);
+/// Appends a list of values as top-level elements; bools and nil become texts.
+void append(const List& values, Predicates& out);
 
 /// What an S-expression reader met. `message` is empty when all was read.
 struct ReadResult {
