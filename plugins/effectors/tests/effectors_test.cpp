@@ -1,0 +1,181 @@
+#include <catch2/catch.hpp>
+
+#include "fake_physics.h"
+#include "test_support.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// A robot of one transform `/usr/robot` with a body and a joint, to which tests add effectors.
+struct Robot : House {
+  Robot() {
+    registerFakePhysics(kernel);
+    kernel.plugins().use("effectors");
+    transform = &kernel.create<Transform>("Transform", "/usr/robot");
+    body = &transform->create<FakeBody>("FakeBody", "body");
+    joint = &transform->create<FakeJoint>("FakeJoint", "joint");
+    joint->bodies = {body, nullptr};
+  }
+  Effector& add(engine::JointType type, const char* className, const char* name) {
+    joint->type = type;
+    return joint->create<Effector>(className, name);
+  }
+  std::string act(Effector& effector, std::string_view message) {
+    Predicates actions;
+    REQUIRE(readSexp(message, actions).message.empty());
+    return effector.act(*actions.begin());
+  }
+  void prepare() { kernel.events().channel("prepare").emit({"prepare", 0, 0.02, 1, nullptr}); }
+  Transform* transform;
+  FakeBody* body;
+  FakeJoint* joint;
+};
+
+}  // namespace
+
+TEST_CASE("a hinge is driven at once, within its greatest speed, and keeps its speed") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
+  CHECK(he1.predicate() == "he1");
+  CHECK(robot.act(he1, "(he1 99)").empty());
+  CHECK(robot.joint->velocity(0) == 99);
+  robot.joint->maxSpeeds[0] = 6.1395;
+  CHECK(robot.act(he1, "(he1 99)").empty());
+  CHECK(robot.joint->velocity(0) == 6.1395);
+  CHECK(robot.act(he1, "(he1 -99 surplus)").empty());
+  CHECK(robot.joint->velocity(0) == -6.1395);
+  CHECK(robot.act(he1, "(he1 1.5x)").empty());
+  CHECK(robot.joint->velocity(0) == 1.5);
+  CHECK(robot.act(he1, "(he1 garbage)").empty());
+  CHECK(robot.joint->velocity(0) == 0);
+}
+
+TEST_CASE("bad arguments are refused with a sentence and change nothing") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
+  robot.act(he1, "(he1 2)");
+  CHECK(robot.act(he1, "(he1)") == "expected a number as argument 1, found none");
+  CHECK(robot.act(he1, "(he1 (1))") == "expected a number as argument 1, found a list");
+  CHECK(robot.act(he1, "(he1 nan)") == "expected a finite number as argument 1, found nan");
+  CHECK(robot.act(he1, "(he1 -inf)") == "expected a finite number as argument 1, found -inf");
+  CHECK(robot.joint->velocity(0) == 2);
+  auto& uj = robot.add(engine::JointType::universal, "UniversalJointEffector", "uj");
+  CHECK(robot.act(uj, "(uj 1)") == "expected a number as argument 2, found none");
+  CHECK(robot.joint->velocity(0) == 2);
+}
+
+TEST_CASE("at or beyond a stop commands are ignored unless that is switched off") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
+  robot.joint->setParameter(engine::JointParameter::lowStop, 0, -1);
+  robot.joint->setParameter(engine::JointParameter::highStop, 0, 1);
+  robot.act(he1, "(he1 0.5)");
+  for (const double angle : {1.0, 1.1, -1.0, -1.2}) {
+    robot.joint->angles[0] = angle;
+    CHECK(robot.act(he1, "(he1 3)").empty());
+    CHECK(robot.joint->velocity(0) == 0.5);
+  }
+  setProperty(he1, "ignoreCommandAtStop", false);
+  CHECK(robot.act(he1, "(he1 3)").empty());
+  CHECK(robot.joint->velocity(0) == 3);
+  setProperty(he1, "ignoreCommandAtStop", true);
+  robot.joint->angles[0] = 0.999;
+  robot.act(he1, "(he1 4)");
+  CHECK(robot.joint->velocity(0) == 4);
+}
+
+TEST_CASE("only a speed that is not zero wakes the body") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
+  robot.body->awake = false;
+  robot.act(he1, "(he1 0)");
+  CHECK_FALSE(robot.body->awake);
+  robot.act(he1, "(he1 0.1)");
+  CHECK(robot.body->awake);
+}
+
+TEST_CASE("the other joints have their own units and limits") {
+  Robot robot;
+  robot.joint->maxSpeeds = {2, 3, 0};
+  SECTION("universal: both axes, each clamped, no stops") {
+    auto& uj = robot.add(engine::JointType::universal, "UniversalJointEffector", "uj");
+    robot.joint->angles = {9, 9, 0};
+    robot.joint->setParameter(engine::JointParameter::highStop, 0, 1);
+    CHECK(robot.act(uj, "(uj -5 5)").empty());
+    CHECK(robot.joint->velocity(0) == -2);
+    CHECK(robot.joint->velocity(1) == 3);
+  }
+  SECTION("hinge2: degrees per second on the wheel's axis, no limit") {
+    auto& wheel = robot.add(engine::JointType::hinge2, "Hinge2Effector", "wheel");
+    CHECK(robot.act(wheel, "(wheel 720)").empty());
+    CHECK(robot.joint->velocity(1) == Approx(4 * kPi));
+    CHECK(robot.joint->velocity(0) == 0);
+  }
+  SECTION("angular motor: the hinge's limit counts too") {
+    auto& motor = robot.joint->create<FakeJoint>("FakeJoint", "motor");
+    motor.type = engine::JointType::angularMotor;
+    auto& effector = motor.create<Effector>("AngularMotorEffector", "he1");
+    auto& stiffness = motor.create<Effector>("StiffnessEffector", "he1s");
+    CHECK(robot.act(effector, "(he1 50)").empty());
+    CHECK(motor.velocity(0) == 2);
+    CHECK(robot.act(stiffness, "(he1s 1.5)").empty());
+    CHECK(motor.stiffness == 1);
+    CHECK(robot.act(stiffness, "(he1s 0.25)").empty());
+    CHECK(motor.stiffness == 0.25);
+    CHECK(robot.act(stiffness, "(he1s nan)") == "expected a finite number as argument 1, found nan");
+    CHECK(motor.stiffness == 0.25);
+  }
+}
+
+TEST_CASE("an effector without its joint says so") {
+  Robot robot;
+  auto& lost = robot.transform->create<Effector>("HingeEffector", "lost");
+  CHECK(robot.act(lost, "(lost 1)") == "there is no HingeJoint above it");
+  CHECK(robot.text.find("/usr/robot/lost: expected a HingeJoint above it, found none") != std::string::npos);
+}
+
+TEST_CASE("a force acts once, in the prepare phase, the last command of a cycle alone") {
+  Robot robot;
+  auto& force = robot.transform->create<Effector>("ForceEffector", "f");
+  CHECK(force.predicate() == "force");
+  robot.body->awake = false;
+  CHECK(robot.act(force, "(force 1 1 1)").empty());
+  CHECK(robot.act(force, "(force 0 0 10)").empty());
+  CHECK(robot.act(force, "(force 0 0 inf)") == "expected a finite number as argument 3, found inf");
+  CHECK(robot.body->force == Vec3(0, 0, 0));
+  robot.prepare();
+  CHECK(robot.body->force == Vec3(0, 0, 10));
+  CHECK(robot.body->awake);
+  robot.prepare();
+  CHECK(robot.body->force == Vec3(0, 0, 10));
+}
+
+TEST_CASE("fixed predicates, and syn marks an answer") {
+  Robot robot;
+  auto& syn = robot.transform->create<Effector>("AgentSyncEffector", "s");
+  CHECK(syn.predicate() == "syn");
+  CHECK(syn.as<ISyncEffector>() != nullptr);
+  CHECK(robot.act(syn, "(syn 1 2 3)").empty());
+  auto& chip = robot.transform->create<Effector>("HMDPEffector", "h");
+  CHECK(chip.predicate() == "HMDP");
+  CHECK(robot.act(chip, "(HMDP x)").empty());
+  auto& create = robot.transform->create<Effector>("CreateEffector", "c");
+  CHECK(create.predicate() == "create");
+  CHECK(robot.act(create, "(create ignored)").empty());
+  robot.prepare();
+}
+
+TEST_CASE("create builds its file once below the agent, and a failure stays in the log") {
+  Robot robot;
+  auto& agent = robot.kernel.create<AgentAspect>("AgentAspect", "/usr/agent1");
+  auto& create = agent.create<Effector>("CreateEffector", "c");
+  setProperty(create, "scene", "rsg/robot.rsg");
+  CHECK(robot.act(create, "(create)").empty());
+  robot.prepare();
+  CHECK(robot.text.find("/usr/agent1/c: could not build its agent") != std::string::npos);
+  robot.text.clear();
+  robot.prepare();
+  CHECK(robot.text.empty());
+}

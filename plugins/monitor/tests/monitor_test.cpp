@@ -1,0 +1,322 @@
+#include <catch2/catch.hpp>
+
+#include "fake_scene.h"
+#include "replica.h"
+#include "test_support.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// Says a score and counts fouls up when told.
+class TestItem : public Node, public IMonitorItem {
+  SPARK_CLASS(TestItem, Node)
+ public:
+  static void describe(Description<TestItem>& d) { d.implements<IMonitorItem>(); }
+  void contribute(Environment& env) override {
+    env.put(EnvPolicy::full, "FieldLength", 30.0);
+    env.put(EnvPolicy::always, "time", time);
+    env.put(EnvPolicy::change, "score", score);
+    for (; waiting > 0; --waiting) env.open(EnvPolicy::once, "foul").add(++fouls).close();
+  }
+  double time = 0;
+  int score = 0, fouls = 0, waiting = 0;
+};
+
+/// Takes `(push n)`.
+class TestTrainer : public Node, public ITrainer {
+  SPARK_CLASS(TestTrainer, Node)
+ public:
+  static void describe(Description<TestTrainer>& d) { d.implements<ITrainer>(); }
+  bool command(const Element& command, std::string& why) override {
+    if (command.head() != "push") return false;
+    if (command.size() < 2)
+      why = "expected a number, found none";
+    else
+      pushed.push_back(command.at(1).integer());
+    return true;
+  }
+  std::vector<std::int64_t> pushed;
+};
+
+/// A monitor server with a small scene: a light, a robot of two parts, a box.
+struct Stage : House {
+  Stage() : scene(makeFakeScene(kernel)) {
+    kernel.log().setLevel(Level::debug);
+    kernel.registerClass<TestItem>();
+    kernel.registerClass<TestTrainer>();
+    kernel.plugins().use("monitor");
+    kernel.plugins().use("monitor-sexp");
+    auto& root = kernel.root().require<Node>("/usr/scene");
+    root.create<FakeVisual>("FakeVisual", "light").kindIs = IVisual::Kind::light;
+    auto& space = root.create<Node>("BaseNode", "space");  // transparent
+    for (const char* name : {"robot", "box"}) parts.push_back(&space.create<Transform>("Transform", name));
+    parts.push_back(&parts[0]->create<Transform>("Transform", "head"));
+    head = &parts[2]->create<FakeVisual>("FakeVisual", "mesh");
+    parts[1]->create<FakeVisual>("FakeVisual", "mesh").kindIs = IVisual::Kind::singleMaterial;
+    port = &kernel.create<Node>("Node", "/sys/server/net/monitors");
+    monitor = &kernel.create<IConnectionConsumer>("MonitorServer", "/sys/server/monitor");
+    server = &kernel.root().require<IMonitorServer>("/sys/server/monitor");
+    node().create("SexpMonitor", "encoder");
+    item = &node().create<TestItem>("TestItem", "item");
+    trainer = &node().create<TestTrainer>("TestTrainer", "trainer");
+  }
+  Node& node() { return kernel.root().require<Node>("/sys/server/monitor"); }
+  FakeConnection& connect() {
+    connections.push_back(std::make_unique<FakeConnection>(*port, connections.size() + 1));
+    monitor->connected(*connections.back());
+    return *connections.back();
+  }
+  /// One cycle, due or not.
+  void cycle() {
+    ++cycles;
+    const Event event{"", 0.02 * cycles, 0.02, cycles, nullptr};
+    kernel.events().channel("act").emit(event);
+    item->time = event.time;
+    for (std::size_t i = 0; i < parts.size(); ++i) parts[i]->setLocalPos({0.004f * (cycles % 7), 0.01f * i * cycles, -1.f / cycles});
+    kernel.events().channel("publish").emit(event);
+  }
+  void nextFrame() {
+    do cycle();
+    while (cycles % 2);
+  }
+  FakeSceneServer& scene;
+  std::vector<Transform*> parts;
+  FakeVisual* head;
+  Node* port;
+  IConnectionConsumer* monitor;
+  IMonitorServer* server;
+  TestItem* item;
+  TestTrainer* trainer;
+  std::vector<std::unique_ptr<FakeConnection>> connections;
+  std::int64_t cycles = 0;
+};
+
+/// A full message now, as a newcomer gets it.
+Replica newcomer(Stage& stage) {
+  Replica replica;
+  FakeConnection& connection = stage.connect();
+  replica.take(connection.read());
+  stage.monitor->disconnected(connection);
+  return replica;
+}
+
+/// True when both show the same scene, matrices within `precision`.
+bool same(const Replica& a, const Replica& b, double precision) {
+  if (a.nodes.size() != b.nodes.size() || a.score != b.score) return false;
+  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
+    const auto &x = a.nodes[i], &y = b.nodes[i];
+    if (x.depth != y.depth || x.type != y.type || x.visible != y.visible || x.rest != y.rest || x.matrix.size() != y.matrix.size()) return false;
+    for (std::size_t k = 0; k < x.matrix.size(); ++k)
+      if (std::abs(x.matrix[k] - y.matrix[k]) > precision) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("a newcomer gets a full message at once, before any frame was made") {
+  Stage stage;
+  FakeConnection& connection = stage.connect();
+  REQUIRE(connection.sent == 1);
+  Replica replica;
+  replica.take(connection.read());
+  CHECK(replica.fulls == 1);
+  CHECK(replica.lastEnv == std::vector<std::string>{"FieldLength", "time", "score"});
+  REQUIRE(replica.nodes.size() == 6);
+  const char* types[] = {"Light", "TRF", "TRF", "StaticMesh", "TRF", "SMN"};
+  const int depths[] = {0, 0, 1, 2, 0, 1};
+  for (int i = 0; i < 6; ++i) {
+    CHECK(replica.nodes[i].type == types[i]);
+    CHECK(replica.nodes[i].depth == depths[i]);
+  }
+}
+
+TEST_CASE("frames leave in every interval-th cycle, as diffs that add up to the full scene") {
+  Stage stage;
+  setProperty(stage.node(), "precision", 0.0);
+  FakeConnection& connection = stage.connect();
+  Replica replica;
+  replica.take(connection.read());
+  for (int i = 0; i < 20; ++i) {
+    stage.item->score = i / 5;
+    stage.head->shown = i % 3 != 0;
+    stage.cycle();
+    CHECK(connection.idle() == (stage.cycles % 2 != 0));
+    if (connection.idle()) continue;
+    replica.take(connection.read());
+    CHECK(same(replica, newcomer(stage), 0));
+  }
+  CHECK(replica.fulls == 1);
+  CHECK(replica.diffs == 10);
+  setProperty(stage.node(), "interval", 1);
+  stage.cycle();
+  CHECK_FALSE(connection.idle());
+}
+
+TEST_CASE("a diff holds only what changed") {
+  Stage stage;
+  FakeConnection& connection = stage.connect();
+  connection.read();
+  for (Transform* part : stage.parts) part->setLocalPos({0, 0, 0});
+  const auto publish = [&] {
+    stage.kernel.events().channel("publish").emit({"", 0, 0.02, 2, nullptr});
+    return connection.read();
+  };
+  // The first one repeats the visibility of every mesh.
+  CHECK(publish() == "((time 0))(RDS 0 1)((nd)(nd(nd(nd StaticMesh (setVisible 1))))(nd(nd SMN (setVisible 1))))");
+  CHECK(publish() == "((time 0))(RDS 0 1)((nd)(nd(nd(nd StaticMesh)))(nd(nd SMN)))");
+  stage.parts[1]->setLocalPos({0, 0.0049f, 0});
+  stage.head->shown = false;
+  stage.item->score = 2;
+  CHECK(publish() == "((time 0)(score 2))(RDS 0 1)((nd)(nd(nd(nd StaticMesh (setVisible 0))))(nd(nd SMN)))");
+  stage.parts[1]->setLocalPos({0, 0.0051f, 0});
+  CHECK(publish() == "((time 0))(RDS 0 1)((nd)(nd(nd(nd StaticMesh)))(nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0.0051 0 1)(nd SMN)))");
+  stage.parts[1]->setLocalPos({0, 0.01f, 0});  // the reference is what was sent
+  CHECK(publish() == "((time 0))(RDS 0 1)((nd)(nd(nd(nd StaticMesh)))(nd(nd SMN)))");
+}
+
+TEST_CASE("a full message follows when the scene changed, and on request, to everybody") {
+  Stage stage;
+  FakeConnection& a = stage.connect();
+  FakeConnection& b = stage.connect();
+  const auto fulls = [&] {
+    stage.nextFrame();
+    const std::string x = a.read(), y = b.read();
+    const bool full = x.find("(RSG 0 1)") != std::string::npos;
+    CHECK(full == (y.find("(RSG 0 1)") != std::string::npos));
+    return full;
+  };
+  a.read(), b.read();
+  CHECK_FALSE(fulls());
+  stage.scene.markModified();
+  CHECK(fulls());
+  CHECK_FALSE(fulls());
+  stage.parts[1]->create("FakeVisual", "new");
+  CHECK(fulls());
+  CHECK_FALSE(fulls());
+  stage.kernel.create("Node", "/usr/elsewhere");  // the tree changed, what is visible did not
+  CHECK_FALSE(fulls());
+  stage.monitor->received(b, "(reqfullstate)");
+  CHECK(fulls());
+  CHECK_FALSE(fulls());
+  stage.server->requestFullState();
+  CHECK(fulls());
+  CHECK_FALSE(fulls());
+}
+
+TEST_CASE("five monitors of different speed each see everything and each event exactly once") {
+  Stage stage;
+  const int threads = GENERATE(1, 4);
+  stage.kernel.jobs().setThreads(threads);
+  const int everyNth[] = {1, 2, 3, 7, 50};
+  Replica replicas[5];
+  FakeConnection* clients[5];
+  for (int i = 0; i < 5; ++i) replicas[i].take((clients[i] = &stage.connect())->read());
+  for (int frame = 1; frame <= 200; ++frame) {
+    stage.item->score = frame / 9;
+    stage.head->shown = (frame / 4) % 2;
+    if (frame % 11 == 0) stage.item->waiting = 1 + frame % 3;
+    stage.nextFrame();
+    for (int i = 0; i < 5; ++i)
+      if (frame % everyNth[i] == 0) replicas[i].take(clients[i]->read());
+  }
+  for (int round = 0; round < 2; ++round) {  // what was in flight, then the newest
+    for (int i = 0; i < 5; ++i)
+      if (!clients[i]->idle()) replicas[i].take(clients[i]->read());
+    if (round == 0) stage.nextFrame();
+  }
+  std::vector<std::string> all;
+  for (int i = 1; i <= stage.item->fouls; ++i) all.push_back(std::to_string(i));
+  REQUIRE(all.size() > 20);
+  const Replica now = newcomer(stage);
+  for (int i = 0; i < 5; ++i) {
+    INFO("client " << i);
+    CHECK(replicas[i].events == all);
+    CHECK(same(replicas[i], now, 0.005001));
+    CHECK(replicas[i].fulls == 1);
+  }
+  CHECK(replicas[0].diffs == 201);
+}
+
+TEST_CASE("a monitor that never reads holds one message, then it is closed; the others go on") {
+  Stage stage;
+  FakeConnection& deaf = stage.connect();
+  FakeConnection& good = stage.connect();
+  good.read();
+  for (int i = 0; i < 100; ++i) {
+    stage.nextFrame();
+    CHECK_FALSE(good.read().empty());
+  }
+  CHECK(deaf.sent == 1);
+  CHECK(deaf.closes == 0);
+  deaf.stalled = 10.5;
+  stage.nextFrame();
+  stage.nextFrame();
+  CHECK(deaf.closes == 1);
+  CHECK(deaf.closed == "the monitor took nothing for 10 s");
+  CHECK(good.closes == 0);
+  CHECK(good.sent == 102);
+  stage.monitor->disconnected(deaf);
+  CHECK(getProperty(stage.node(), "clients") == Value(1));
+}
+
+TEST_CASE("commands act in the next due cycle, in order of arrival, and bad ones are ignored with a line") {
+  Stage stage;
+  FakeConnection& a = stage.connect();
+  FakeConnection& b = stage.connect();
+  stage.nextFrame();
+  stage.monitor->received(a, "(push 1)(push 2)");
+  stage.monitor->received(b, "(init)(push 3)");
+  stage.monitor->received(a, "(push 4)garbage(nosuchcommand 1 2 3)(push)()((push 9))(push 5)(unbalanced (a");
+  CHECK(stage.trainer->pushed.empty());
+  stage.cycle();  // not due
+  CHECK(stage.trainer->pushed.empty());
+  stage.cycle();
+  CHECK(stage.trainer->pushed == std::vector<std::int64_t>{1, 2, 3, 4, 5});
+  CHECK(stage.text.find("unknown command 'nosuchcommand' ignored") != std::string::npos);
+  CHECK(stage.text.find("found 'garbage'; ignored") != std::string::npos);
+  CHECK(stage.text.find("command 'push' ignored: expected a number, found none") != std::string::npos);
+  CHECK(stage.text.find("from client1: 1:") != std::string::npos);
+  stage.nextFrame();
+  CHECK(stage.trainer->pushed.size() == 5);
+  CHECK_FALSE(stage.kernel.stopRequested());
+  stage.monitor->received(b, "(killsim)");
+  CHECK_FALSE(stage.kernel.stopRequested());
+  stage.nextFrame();
+  CHECK(stage.kernel.stopRequested());
+}
+
+TEST_CASE("a flood of commands does not grow memory without end") {
+  Stage stage;
+  FakeConnection& a = stage.connect();
+  std::string flood;
+  for (int i = 0; i < 10000; ++i) flood += "(push 1)";
+  for (int i = 0; i < 100; ++i) stage.monitor->received(a, flood);
+  stage.nextFrame();
+  CHECK(stage.trainer->pushed.size() < 200000);
+  CHECK(stage.text.find("more commands than can wait") != std::string::npos);
+  stage.monitor->received(a, "(push 7)");
+  stage.nextFrame();
+  CHECK(stage.trainer->pushed.back() == 7);
+}
+
+TEST_CASE("without an item the server says the time, and without a scene or an encoder it does not fall over") {
+  Stage stage;
+  stage.node().remove(*stage.node().child("item"));
+  FakeConnection& a = stage.connect();
+  a.read();
+  stage.kernel.events().channel("publish").emit({"", 1.5, 0.02, 2, nullptr});
+  CHECK(a.read().rfind("((time 1.5))(RDS 0 1)(", 0) == 0);
+
+  Node& usr = stage.kernel.root().require<Node>("/usr");
+  usr.remove(*usr.child("scene"));
+  stage.kernel.events().channel("publish").emit({"", 1.5, 0.02, 4, nullptr});
+  CHECK(a.read() == "((time 1.5))(RSG 0 1)()");
+
+  stage.node().remove(*stage.node().child("encoder"));
+  stage.kernel.events().channel("publish").emit({"", 1.5, 0.02, 6, nullptr});
+  CHECK(a.idle());
+  CHECK(stage.text.find("/sys/server/monitor: expected an encoder below it, found none") != std::string::npos);
+}

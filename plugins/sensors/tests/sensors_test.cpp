@@ -1,0 +1,217 @@
+#include <catch2/catch.hpp>
+
+#include "fake_physics.h"
+#include "test_support.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// A robot of one transform `/usr/robot` with a body, to which tests add sensors.
+struct Robot : House {
+  Robot() {
+    registerFakePhysics(kernel);
+    kernel.plugins().use("sensors");
+    transform = &kernel.create<Transform>("Transform", "/usr/robot");
+    body = &transform->create<FakeBody>("FakeBody", "body");
+  }
+  std::string sense(Leaf& sensor) {
+    Predicates out;
+    sensor.as<Perceptor>()->sense(out, event("sense"));
+    return sexpOf(out);
+  }
+  Event event(const char* name) { return {name, 7.36, 0.02, 1, nullptr}; }
+  void prepare() { kernel.events().channel("prepare").emit(event("prepare")); }
+  FakeJoint& joint(engine::JointType type) {
+    auto& j = transform->create<FakeJoint>("FakeJoint", "joint");
+    j.type = type;
+    return j;
+  }
+  Transform* transform;
+  FakeBody* body;
+};
+
+}  // namespace
+
+TEST_CASE("the time is simulated seconds") {
+  Robot robot;
+  CHECK(robot.sense(robot.transform->create("TimePerceptor", "t")) == "(time (now 7.36))");
+}
+
+TEST_CASE("joint sensors say degrees in the formats of the installed base") {
+  Robot robot;
+  SECTION("hinge") {
+    auto& joint = robot.joint(engine::JointType::hinge);
+    joint.angles = {degToRad(-1.154), 0, 0};
+    CHECK(robot.sense(joint.create("HingePerceptor", "hj2")) == "(HJ (n hj2) (ax -1.15))");
+  }
+  SECTION("universal") {
+    auto& joint = robot.joint(engine::JointType::universal);
+    joint.angles = {degToRad(10), degToRad(-20), 0};
+    CHECK(robot.sense(joint.create("UniversalJointPerceptor", "uj")) == "(UJ (n uj) (ax1 10.00) (ax2 -20.00))");
+  }
+  SECTION("hinge2 says its axis first") {
+    auto& joint = robot.joint(engine::JointType::hinge2);
+    joint.angles = {degToRad(12.5), 1, 0};
+    CHECK(robot.sense(joint.create("Hinge2Perceptor", "wheel")) == "(H2J (n wheel) (ax 0 12.50))");
+  }
+  SECTION("a joint of another type above is passed over") {
+    auto& outer = robot.joint(engine::JointType::hinge);
+    outer.angles[0] = degToRad(5);
+    auto& inner = outer.create<FakeJoint>("FakeJoint", "inner");
+    inner.type = engine::JointType::angularMotor;
+    CHECK(robot.sense(inner.create("HingePerceptor", "h")) == "(HJ (n h) (ax 5.00))");
+  }
+  SECTION("without a joint it is silent and says why") {
+    CHECK(robot.sense(robot.transform->create("HingePerceptor", "lost")).empty());
+    CHECK(robot.text.find("/usr/robot/lost: expected a HingeJoint above it") != std::string::npos);
+  }
+}
+
+TEST_CASE("the angular motor's sensor says what is switched on, and a temperature only when it changed") {
+  Robot robot;
+  auto& hinge = robot.joint(engine::JointType::hinge);
+  hinge.angles[0] = degToRad(3);
+  hinge.rates[0] = degToRad(30);
+  auto& motor = hinge.create<FakeJoint>("FakeJoint", "motor");
+  motor.type = engine::JointType::angularMotor;
+  motor.torque = 1.5;
+  motor.current = 0.25;
+  Leaf& sensor = motor.create("AngularMotorPerceptor", "hj1");
+  CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00))");
+  for (const char* item : {"senseRate", "senseTorque", "senseTemperature", "senseCurrent"}) setProperty(sensor, item, true);
+  CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00) (rt 30.00) (tq 1.50) (tp 23.00) (ct 250.00))");
+  motor.temperature = 24;
+  CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00) (rt 30.00) (tq 1.50) (ct 250.00))");
+  motor.temperature = 24.5;
+  CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00) (rt 30.00) (tq 1.50) (tp 24.50) (ct 250.00))");
+}
+
+TEST_CASE("the gyroscope says degrees per second in the body's own frame") {
+  Robot robot;
+  Leaf& gyro = robot.transform->create("GyroRatePerceptor", "torso");
+  robot.body->now.angularVelocity = {degToRad(90), 0, degToRad(1)};
+  robot.transform->setLocalRotationDeg(0, 0, 90);
+  CHECK(robot.sense(gyro) == "(GYR (n torso) (rt -0.00 -90.00 1.00))");
+}
+
+TEST_CASE("the accelerometer samples before the step and feels no free fall") {
+  Robot robot;
+  Leaf& sensor = robot.transform->create("Accelerometer", "torso");
+  CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 0.00))");
+  robot.prepare();  // at rest
+  CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 9.81))");
+  robot.body->now.linearVelocity = {0, 0, -9.81 * 0.02};
+  CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 9.81))");  // one cycle late
+  robot.prepare();
+  CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 0.00))");
+  robot.body->now.linearVelocity = {0, 0, -2 * 9.81 * 0.02};
+  robot.prepare();
+  CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 0.00))");
+  robot.body->now.linearVelocity = Vec3::Zero();  // put down at once, as a beam does
+  robot.prepare();
+  CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 29.43))");
+}
+
+TEST_CASE("a foot feels the weighted mean point and the sum of forces in its own frame, only when touched") {
+  Robot robot;
+  Leaf& sensor = robot.transform->create("ForceResistancePerceptor", "rf");
+  auto& foot = robot.transform->create<FakeCollider>("FakeCollider", "foot");
+  auto& floor = robot.kernel.create<FakeCollider>("FakeCollider", "/usr/floor");
+  auto& handler = foot.create<CollisionHandler>("TouchPerceptorHandler", "touch");
+  robot.transform->setLocalPos({1, 0, 0.5f});
+
+  const auto contact = [&](Vec3 point, Vec3 force, bool direct, bool solve) {
+    engine::Contact c{};
+    c.position = point;
+    c.solve = solve;
+    const Collision collision{foot, floor, c, direct};
+    handler.onCollision(collision);
+    const bool wanted = c.feedback;
+    c.forceOnA = force;
+    handler.onSolved(collision);
+    return wanted;
+  };
+  CHECK(handler.surface() != nullptr);
+
+  robot.prepare();
+  CHECK(robot.sense(sensor).empty());
+  CHECK(contact({1.1, 0, 0.4}, {0, 0, 30}, true, true));
+  CHECK(contact({0.9, 0, 0.4}, {0, 0, 10}, true, true));
+  CHECK(robot.sense(sensor) == "(FRP (n rf) (c 0.05 0.00 -0.10) (f 0.00 0.00 40.00))");
+
+  robot.prepare();
+  CHECK(robot.sense(sensor).empty());
+
+  robot.prepare();  // asleep: there are contacts, but no forces
+  contact({1, 0, 0.4}, Vec3::Zero(), true, true);
+  CHECK(robot.sense(sensor) == "(FRP (n rf) (c 0.05 0.00 -0.10) (f 0.00 0.00 40.00))");
+
+  robot.prepare();  // neither the second role nor what is not solved is felt
+  CHECK_FALSE(contact({1, 0, 0.4}, {0, 0, 9}, false, true));
+  contact({1, 0, 0.4}, {0, 0, 9}, true, false);
+  CHECK(robot.sense(sensor).empty());
+
+  robot.transform->setLocalRotationDeg(0, 0, 90);
+  robot.prepare();
+  contact({1, 0.2, 0.4}, {5, 0, 1}, true, true);
+  CHECK(robot.sense(sensor) == "(FRP (n rf) (c 0.20 -0.00 -0.10) (f -0.00 -5.00 1.00))");
+}
+
+TEST_CASE("collision sensors say what touched since they last sensed") {
+  Robot robot;
+  auto& shell = robot.transform->create<FakeCollider>("FakeCollider", "shell");
+  auto& ball = robot.kernel.create<FakeCollider>("FakeCollider", "/usr/ball");
+  auto& wall = robot.kernel.create<FakeCollider>("FakeCollider", "/usr/wall");
+  auto& handler = shell.create<CollisionHandler>("PerceptorHandler", "handler");
+  engine::Contact contact{};
+  CHECK(handler.surface() == nullptr);
+
+  SECTION("names") {
+    Leaf& sensor = robot.transform->create("CollisionPerceptor", "c");
+    CHECK(robot.sense(sensor).empty());
+    handler.onCollision({shell, ball, contact, true});
+    handler.onCollision({shell, ball, contact, true});
+    handler.onCollision({shell, wall, contact, false});
+    CHECK(robot.sense(sensor) == "(collision ball wall)");
+    CHECK(robot.sense(sensor).empty());
+  }
+  SECTION("touch") {
+    Leaf& sensor = robot.transform->create("TouchPerceptor", "lf");
+    CHECK(robot.sense(sensor) == "(TCH (n lf) (val 0))");
+    handler.onCollision({shell, ball, contact, true});
+    CHECK(robot.sense(sensor) == "(TCH (n lf) (val 1))");
+    CHECK(robot.sense(sensor) == "(TCH (n lf) (val 0))");
+  }
+}
+
+TEST_CASE("the satellite receiver says the world matrix row by row") {
+  Robot robot;
+  robot.transform->setLocalPos({1, 2, 3});
+  CHECK(robot.sense(robot.transform->create("GPS", "torso")) ==
+        "(GPS (n torso) (tf 1.00 0.00 0.00 1.00 0.00 1.00 0.00 2.00 0.00 0.00 1.00 3.00 0.00 0.00 0.00 1.00))");
+}
+
+TEST_CASE("the battery's sensor is named as its node") {
+  Robot robot;
+  auto& battery = robot.transform->create<Battery>("Battery", "battery");
+  CHECK(robot.sense(battery.create("BatteryPerceptor", "BAT")) == "(BAT 1000.00)");
+  CHECK(robot.sense(robot.transform->create("BatteryPerceptor", "BAT")).empty());
+  CHECK(robot.text.find("expected a Battery above it") != std::string::npos);
+}
+
+TEST_CASE("sensors that are only accepted keep their settings and are silent") {
+  Robot robot;
+  for (const char* name : {"SonarPerceptor", "ImagePerceptor", "HMDPPerceptor"}) CHECK(robot.sense(robot.transform->create(name, name)).empty());
+  Leaf& sonar = *robot.transform->find("SonarPerceptor");
+  callMethod(sonar, "setRange", std::vector<Value>{0.5, 4.0});
+  callMethod(sonar, "addNoise", std::vector<Value>{true});
+  CHECK(getProperty(sonar, "maxRange") == Value(4.0));
+  CHECK(getProperty(sonar, "noise") == Value(true));
+  Leaf& image = *robot.transform->find("ImagePerceptor");
+  callMethod(image, "setResolution", std::vector<Value>{640, 480});
+  callMethod(image, "setFOV", std::vector<Value>{45.0});
+  CHECK(getProperty(image, "width") == Value(640));
+  CHECK(getProperty(image, "fov") == Value(45.0));
+}

@@ -1,0 +1,108 @@
+#pragma once
+/// \file
+/// Bodies, joints and colliders without an engine: tests set what they say.
+
+#include <array>
+#include <map>
+#include <utility>
+
+#include "api/agents.h"
+#include "api/physics.h"
+
+namespace spark::test {
+
+/// A body that is where the test puts it and counts what is done to it.
+class FakeBody : public SceneNode, public IRigidBody {
+  SPARK_CLASS(FakeBody, SceneNode)
+ public:
+  static void describe(Description<FakeBody>& d) { d.implements<IRigidBody>(); }
+  Leaf& leaf() override { return *this; }
+  engine::BodyState state() const override { return now; }
+  double mass() const override { return 1; }
+  void setPose(const Pose& pose) override { now.position = pose.position, now.rotation = pose.rotation; }
+  void setVelocity(const Vec3& v) override { now.linearVelocity = v; }
+  void setAngularVelocity(const Vec3& w) override { now.angularVelocity = w; }
+  void addForce(const Vec3& f) override { force += f; }
+  void addTorque(const Vec3&) override {}
+  bool enabled() const override { return awake; }
+  void enable() override { awake = true; }
+  Transform* bodyTransform() const override { return transform(); }
+
+  engine::BodyState now{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Mat3::Identity()};
+  Vec3 force = Vec3::Zero();
+  bool awake = true;
+};
+
+/// A joint with parameters and angles as the test sets them.
+class FakeJoint : public SceneNode, public IJoint {
+  SPARK_CLASS(FakeJoint, SceneNode)
+ public:
+  static void describe(Description<FakeJoint>& d) {
+    d.implements<IJoint>();
+    d.property("stiffness", &FakeJoint::stiffness);
+    d.property("temperature", &FakeJoint::temperature);
+    d.property("current", &FakeJoint::current);
+  }
+  Leaf& leaf() override { return *this; }
+  engine::JointType jointType() const override { return type; }
+  IRigidBody* body(int index) const override { return bodies[index]; }
+  double angle(int axis) const override { return angles[axis]; }
+  double angleRate(int axis) const override { return rates[axis]; }
+  double parameter(engine::JointParameter p, int axis) const override {
+    const auto found = parameters.find({p, axis});
+    if (found != parameters.end()) return found->second;
+    return p == engine::JointParameter::lowStop ? -HUGE_VAL : p == engine::JointParameter::highStop ? HUGE_VAL : 0.0;
+  }
+  void setParameter(engine::JointParameter p, int axis, double v) override { parameters[{p, axis}] = v; }
+  double maxSpeed(int axis) const override { return maxSpeeds[axis]; }
+  double feedbackTorque() const override { return torque; }
+  double velocity(int axis) const { return parameter(engine::JointParameter::velocity, axis); }
+
+  engine::JointType type = engine::JointType::hinge;
+  std::array<IRigidBody*, 2> bodies{};
+  std::array<double, 3> angles{}, rates{}, maxSpeeds{};
+  std::map<std::pair<engine::JointParameter, int>, double> parameters;
+  double torque = 0, stiffness = 1, temperature = 23, current = 0;
+};
+
+/// A collider without a shape.
+class FakeCollider : public SceneNode, public ICollider {
+  SPARK_CLASS(FakeCollider, SceneNode)
+ public:
+  static void describe(Description<FakeCollider>& d) { d.implements<ICollider>(); }
+  Leaf& leaf() override { return *this; }
+  IRigidBody* body() const override { return nullptr; }
+  void bounds(Vec3& low, Vec3& high) const override { low = high = Vec3::Zero(); }
+};
+
+/// A battery with 1000 J.
+class Battery : public SceneNode {
+  SPARK_CLASS(Battery, SceneNode)
+ public:
+  static void describe(Description<Battery>& d) { d.property("power", &Battery::power).unit("J"); }
+  double power = 1000;
+};
+
+/// Registers the fakes and the bases that sensors and effectors derive from.
+inline void registerFakePhysics(Kernel& kernel) {
+  kernel.registerClass<SceneNode>();
+  kernel.registerClass<Transform>();
+  kernel.registerClass<Perceptor>();
+  kernel.registerClass<Effector>();
+  kernel.registerClass<AgentAspect>();
+  kernel.registerClass<CollisionHandler>();
+  kernel.registerClass<ContactJointHandler>();
+  kernel.registerClass<FakeBody>();
+  kernel.registerClass<FakeJoint>();
+  kernel.registerClass<FakeCollider>();
+  kernel.registerClass<Battery>();
+}
+
+/// What an agent would be sent, with two decimals.
+inline std::string sexpOf(const Predicates& predicates) {
+  std::string text;
+  writeSexp(predicates, 2, text);
+  return text;
+}
+
+}  // namespace spark::test
