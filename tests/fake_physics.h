@@ -75,12 +75,12 @@ class FakeCollider : public SceneNode, public ICollider {
   void bounds(Vec3& low, Vec3& high) const override { low = high = Vec3::Zero(); }
 };
 
-/// A battery with 1000 J.
+/// A battery that has lost a quarter of its energy.
 class Battery : public SceneNode {
   SPARK_CLASS(Battery, SceneNode)
  public:
-  static void describe(Description<Battery>& d) { d.property("power", &Battery::power).unit("J"); }
-  double power = 1000;
+  static void describe(Description<Battery>& d) { d.property("power", &Battery::power), d.property("capacity", &Battery::capacity); }
+  double power = 750, capacity = 1000;
 };
 
 /// Registers the fakes and the bases that sensors and effectors derive from.

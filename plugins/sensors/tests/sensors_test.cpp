@@ -196,7 +196,7 @@ TEST_CASE("the satellite receiver says the world matrix row by row") {
 TEST_CASE("the battery's sensor is named as its node") {
   Robot robot;
   auto& battery = robot.transform->create<Battery>("Battery", "battery");
-  CHECK(robot.sense(battery.create("BatteryPerceptor", "BAT")) == "(BAT 1000.00)");
+  CHECK(robot.sense(battery.create("BatteryPerceptor", "BAT")) == "(BAT 0.75)");
   CHECK(robot.sense(robot.transform->create("BatteryPerceptor", "BAT")).empty());
   CHECK(robot.text.find("expected a Battery above it") != std::string::npos);
 }
