@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "spark/error.h"
 #include "spark/plugin.h"
 #include "spark/state.h"
 
@@ -77,15 +78,22 @@ void Simulation::loadState(StateReader& in) {
 }
 
 void Simulation::run() {
-  stopped_ = false;
-  due_ = Clock::now();
-  while (!finished() && collectInput()) executeCycle();
+  loop([this] { return !finished(); });
 }
 
 void Simulation::runCycles(std::int64_t count) {
+  loop([&count] { return count-- > 0; });
+}
+
+// A trainer or sparkctl may call what it likes, also run() while it runs.
+template <class More>
+void Simulation::loop(More more) {
+  if (running_) throw Error(path() + " runs already: run() and runCycles() cannot be called from within a cycle");
   stopped_ = false;
+  running_ = true;
   due_ = Clock::now();
-  while (count-- > 0 && collectInput()) executeCycle();
+  while (more() && collectInput()) executeCycle();
+  running_ = false;
 }
 
 // Half a step of tolerance: the sum of steps is not exact.

@@ -44,6 +44,8 @@ class Simulation : public Node, public ISimulation {
   Value phaseMicros() const { return timers_.means(); }
   void resetTimers() { timers_.reset(); }
 
+  template <class More>
+  void loop(More more);
   bool stopping() const { return stopped_ || kernel().stopRequested(); }
   bool finished() const;
   /// Looks up sources and gates again when the tree's shape changed.
@@ -61,7 +63,7 @@ class Simulation : public Node, public ISimulation {
   double step_ = 0.02, duration_ = 0, time_ = 0;
   std::int64_t cycle_ = 0;
   std::string rate_ = "real";
-  bool sync_ = false, stopped_ = false;
+  bool sync_ = false, stopped_ = false, running_ = false;
   int threads_ = 1;
 
   std::vector<IInputSource*> sources_;

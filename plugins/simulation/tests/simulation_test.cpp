@@ -173,6 +173,22 @@ TEST_CASE("Wall time is measured per phase and is no state") {
   REQUIRE(getProperty(*f.simulation, "phaseMicros").at("physics")->toNumber() == 0);
 }
 
+TEST_CASE("A run within a run is refused and does no harm") {
+  Fixture f;
+  std::string refusal;
+  f.house.kernel.events().channel("rule").add(f.house.kernel.root(), [&](Leaf&, const Event& e) {
+    if (e.cycle != 2) return;
+    try {
+      f.run();
+    } catch (const Error& error) {
+      refusal = error.what();
+    }
+  });
+  f.runCycles(3);
+  REQUIRE(f.loop->cycle() == 3);
+  REQUIRE(refusal.find("/sys/server/simulation runs already") != std::string::npos);
+}
+
 TEST_CASE("Cycle and time are saved and restored") {
   Fixture f, g;
   f.runCycles(8);

@@ -1,0 +1,84 @@
+#include "host.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "spark/error.h"
+#include "spark/state.h"
+#include "tree_values.h"
+
+namespace sparkhost {
+
+using namespace spark;
+namespace fs = std::filesystem;
+
+namespace {
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) ? fmt::format("\\{:03}", static_cast<unsigned char>(c)) : std::string(1, c);
+  return out + "\"";
+}
+
+/// A port's number as JSON: null where a house has no such port.
+std::string portText(const Leaf& root, const char* path) {
+  const Value v = valueAt(root, path, "port");
+  return v.isNil() ? "null" : v.plain();
+}
+
+std::int64_t messagesDropped(const Leaf& root) {
+  std::int64_t sum = 0;
+  if (const Node* net = root.find<Node>(kNet))
+    for (const auto& port : net->children()) sum += integerAt(*port, ".", "messagesDropped");
+  return sum;
+}
+}  // namespace
+
+Host::Host(const Options& options) : options_(options), bin_(fs::canonical("/proc/self/exe").parent_path()), share_(bin_.parent_path() / "share" / "spark") {
+  kernel_.log().setLevel(levelFromName(options.logLevel));
+  if (options.seed) kernel_.setSeed(*options.seed);
+  scanPlugins();
+}
+
+void Host::scanPlugins() {
+  for (const std::string& folder : options_.pluginPaths) kernel_.plugins().scan(folder);
+  for (const fs::path& folder : {bin_ / ".." / "plugins", bin_ / SPARK_PLUGIN_FOLDER})
+    if (fs::is_directory(folder)) kernel_.plugins().scan(folder.lexically_normal());
+}
+
+void Host::tellScripts() {
+  std::string paths;
+  for (const std::string& p : options_.scenePaths) paths += quoted(p) + ", ";
+  const std::string share = fs::is_directory(share_) ? share_.string() : std::string();
+  kernel_.lua().run(fmt::format("host = {{ share = {}, scenePaths = {{ {} }} }}", quoted(share), paths), "sparkhost");
+}
+
+void Host::build() {
+  kernel_.lua().addFolder(share_ / "lua");
+  tellScripts();
+  for (const auto& [key, value] : options_.overrides) kernel_.lua().addOverride(key, value);
+  kernel_.lua().runConfig(options_.config);
+}
+
+std::string Host::open() {
+  if (!kernel_.root().find(kSimulation))
+    throw Error(fmt::format("config '{}' has no run loop: expected a node {}. Add simulation() of house.lua.", options_.config, kSimulation));
+  if (Leaf* net = kernel_.root().find(kNet)) callMethod(*net, "listen", {});
+  const Node& root = kernel_.root();
+  return fmt::format("{{\"agentPort\":{},\"monitorPort\":{}}}", portText(root, "/sys/server/net/agents"), portText(root, "/sys/server/net/monitors"));
+}
+
+std::string Host::run() {
+  Node& root = kernel_.root();
+  const double start = numberAt(root, kSimulation, "time");
+  const auto begin = std::chrono::steady_clock::now();
+  callMethod(root.require<Leaf>(kSimulation), "run", {});
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double time = numberAt(root, kSimulation, "time");
+  return fmt::format(
+      "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"score\":[{},{}],\"agentsSeen\":{},\"messagesDropped\":{},\"stateHash\":\"{:016x}\"}}",
+      integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0, integerAt(root, kGameState, "scoreLeft"),
+      integerAt(root, kGameState, "scoreRight"), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root), stateHash(root));
+}
+
+}  // namespace sparkhost

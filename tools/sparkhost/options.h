@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// The command line of sparkhost.
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "spark/value.h"
+
+namespace sparkhost {
+
+/// What the user asked for.
+struct Options {
+  std::string config;
+  /// From --set and from the flags that stand for a property: key and value, in order; the last of a key wins.
+  std::vector<std::pair<std::string, spark::Value>> overrides;
+  std::optional<std::uint64_t> seed;
+  std::vector<std::string> pluginPaths, scenePaths;  ///< absolute, existing folders
+  std::string logLevel = "info";
+  std::string describe;      ///< class name, "" for none
+  bool check = false, listPlugins = false;
+};
+
+/// Reads the command line. When the program is to end at once (help, version, an error, which it has printed) returns the exit code
+/// instead: 0, or 2 for an error.
+std::optional<int> readOptions(int argc, char** argv, Options& out);
+
+}  // namespace sparkhost
