@@ -6,6 +6,7 @@
 #include "spark/describe.h"
 #include "spark/kernel.h"
 #include "spark/node.h"
+#include "spark/state.h"
 
 namespace spark {
 
@@ -111,33 +112,48 @@ class Transform : public SceneNode {
     movedByHand();
   }
   /// From a body in the place phase: nothing follows.
-  void setLocalFromBody(const Matrix& m) { local_ = m; }
+  void setLocalFromBody(const Matrix& m) {
+    local_ = m;
+    dirty_ = true;
+  }
   /// The world matrix from all locals above, computed now (set-up and trainer commands; the step reads world()).
   Matrix worldNow() const { return transform() ? Matrix(transform()->worldNow() * local_) : local_; }
   /// For the scene server's place: world := above * local. True when moved by hand since the last call or when told that above was.
   bool updateWorld(bool aboveMoved) {
     world_ = transform() ? Matrix(transform()->world_ * local_) : local_;
     const bool moved = moved_ || aboveMoved;
-    moved_ = false;
+    moved_ = dirty_ = false;
     return moved;
   }
   bool movedSincePlace() const { return moved_; }
+  /// True when the local matrix changed, by hand or by a body, since the last place.
+  bool dirty() const { return dirty_; }
 
  protected:
   void onLink() override {
     SceneNode::onLink();
     world_ = worldNow();
   }
+  /// The local matrix is state; a restored one does not pull bodies along, they are restored themselves.
+  void saveState(StateWriter& out) const override {
+    for (int i = 0; i < 16; ++i) out.write(double(local_.data()[i]));
+    out.write(moved_);
+  }
+  void loadState(StateReader& in) override {
+    for (int i = 0; i < 16; ++i) local_.data()[i] = static_cast<float>(in.readNumber());
+    moved_ = in.readBool();
+    dirty_ = true;
+  }
 
  private:
   void movedByHand() {
-    moved_ = true;
+    moved_ = dirty_ = true;
     if (!isLinked()) return;
     world_ = worldNow();
     if (auto* server = kernel().root().find<ISceneServer>("/sys/server/scene")) server->moved(*this);
   }
   Matrix local_ = Matrix::Identity(), world_ = Matrix::Identity();
-  bool moved_ = false;
+  bool moved_ = false, dirty_ = true;
 };
 
 inline void SceneNode::onLink() { transform_ = ancestor<Transform>(); }

@@ -1,0 +1,93 @@
+#include "file_server.h"
+
+#include <vector>
+
+#include "spark/error.h"
+
+namespace spark::files {
+
+std::string normalName(std::string_view resource) {
+  const auto refuse = [&](const char* why) {
+    throw Error("expected a relative resource name such as 'rsg/agent/sphere.rsg', found '" + std::string(resource) + "': " + why);
+  };
+  if (resource.empty()) refuse("it is empty");
+  if (resource.size() > 1024) throw Error("expected a resource name of at most 1024 bytes, found one of " + std::to_string(resource.size()));
+  if (resource.front() == '/') refuse("it is absolute");
+  for (const char c : resource) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) refuse("it holds a control character");
+    if (c == '\\') refuse("it holds a backslash; use '/'");
+    if (c == ':') refuse("it holds a ':'");
+  }
+  std::string out;
+  while (!resource.empty()) {
+    const std::size_t n = std::min(resource.find('/'), resource.size());
+    const std::string_view part = resource.substr(0, n);
+    resource.remove_prefix(std::min(n + 1, resource.size()));
+    if (part.empty() || part == ".") continue;
+    if (part == "..") throw Error("expected a resource name that stays inside, found one with '..'");
+    out.append(out.empty() ? "" : "/").append(part);
+  }
+  if (out.empty()) throw Error("expected a resource name, found only dots and slashes");
+  return out;
+}
+
+}  // namespace spark::files
+
+namespace spark {
+
+void FileServer::describe(Description<FileServer>& d) {
+  d.doc("Finds resources by name in the file systems below it, asked in order.");
+  d.implements<IFileServer>();
+  d.method("read", &FileServer::readText).parameters({"resource"}).doc("The content of a resource.");
+  d.method("exist", &FileServer::hasResource).parameters({"resource"}).doc("True when a file system has the resource.");
+}
+
+template <class F>
+void FileServer::forEach(F visit) const {
+  for (const auto& child : children())
+    if (auto* system = child->as<IFileSystem>())
+      if (visit(*system)) return;
+}
+
+std::string FileServer::read(std::string_view resource) {
+  const std::string name = files::normalName(resource);
+  std::optional<std::string> content;
+  std::optional<Error> trouble;  // of the first that has it but cannot give it; a later one may
+  forEach([&](IFileSystem& system) {
+    try {
+      content = system.read(name);
+    } catch (const Error& e) {
+      if (!trouble) trouble = e;
+    }
+    return content.has_value();
+  });
+  if (content) return *std::move(content);
+  if (trouble) throw *trouble;
+  notFound(name);
+}
+
+bool FileServer::exists(std::string_view resource) { return stamp(resource) != 0; }
+
+std::uint64_t FileServer::stamp(std::string_view resource) {
+  const std::string name = files::normalName(resource);
+  std::uint64_t stamp = 0, place = 0;
+  forEach([&](IFileSystem& system) {
+    ++place;
+    stamp = system.stamp(name);
+    return stamp != 0;
+  });
+  // Which file system answers is part of it: two folders may hold files of one age.
+  return stamp == 0 ? 0 : std::max<std::uint64_t>(1, stamp ^ (place << 56));
+}
+
+void FileServer::notFound(const std::string& name) const {
+  std::string places;
+  forEach([&](IFileSystem& system) {
+    places += (places.empty() ? "" : ", ") + system.where();
+    return false;
+  });
+  throw Error("there is no resource '" + name + "'. " +
+              (places.empty() ? path() + " has no file systems below it: add a DirectoryFileSystem." : "Looked in " + places + "."));
+}
+
+}  // namespace spark

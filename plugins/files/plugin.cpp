@@ -1,0 +1,4 @@
+#include "file_server.h"
+#include "spark/plugin.h"
+
+SPARK_PLUGIN("files", "1.0", "The file server, and folders as file systems.", spark::FileServer, spark::DirectoryFileSystem)

@@ -1,0 +1,124 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "api/files.h"
+#include "test_support.h"
+
+namespace fs = std::filesystem;
+using namespace spark;
+
+namespace {
+
+/// A folder that goes with the test.
+struct Folder {
+  fs::path path;
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "spark-files-XXXXXX").string();
+    path = ::mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path); }
+  void write(const std::string& name, const std::string& text) const {
+    fs::create_directories((path / name).parent_path());
+    std::ofstream(path / name) << text;
+  }
+};
+
+struct Files {
+  test::House house;
+  Folder folder;
+  IFileServer* server = nullptr;
+  Files() {
+    house.kernel.plugins().use("files");
+    server = &house.kernel.create<IFileServer>("FileServer", "/sys/server/file");
+    mount("one", folder.path, "");
+  }
+  Leaf& mount(const std::string& name, const fs::path& path, const std::string& prefix) {
+    Leaf& system = house.kernel.create("DirectoryFileSystem", "/sys/server/file/" + name);
+    setProperty(system, "path", path.string());
+    setProperty(system, "prefix", prefix);
+    return system;
+  }
+  std::string errorOf(const std::string& resource) const {
+    try {
+      server->read(resource);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a resource is read by its name, also in a form that is not normal") {
+  Files f;
+  f.folder.write("rsg/a/b.rsg", "text");
+  CHECK(f.server->read("rsg/a/b.rsg") == "text");
+  CHECK(f.server->read("rsg//./a/b.rsg") == "text");
+  CHECK(f.server->exists("rsg/a/b.rsg"));
+  CHECK_FALSE(f.server->exists("rsg/a/c.rsg"));
+  CHECK_FALSE(f.server->exists("rsg/a"));
+}
+
+TEST_CASE("file systems are asked in order, and a prefix mounts a folder below a name") {
+  Files f;
+  Folder installed;
+  f.mount("two", installed.path, "rsg");
+  installed.write("a.rsg", "installed");
+  CHECK(f.server->read("rsg/a.rsg") == "installed");
+  CHECK(f.errorOf("a.rsg").find("there is no resource 'a.rsg'") != std::string::npos);
+  const auto before = f.server->stamp("rsg/a.rsg");
+  f.folder.write("rsg/a.rsg", "mine");
+  CHECK(f.server->read("rsg/a.rsg") == "mine");
+  CHECK(f.server->stamp("rsg/a.rsg") != before);
+}
+
+TEST_CASE("a missing resource says where it was looked for") {
+  Files f;
+  CHECK(f.errorOf("rsg/none.rsg").find(f.folder.path.string()) != std::string::npos);
+}
+
+TEST_CASE("names that are absolute, climb out or are no names are refused") {
+  Files f;
+  f.folder.write("a", "a");
+  for (const char* name : {"/etc/passwd", "../a", "x/../../a", "x/..", "..", ".", "", "./", "\\\\host\\a", "..\\a", "C:/a", "a\nb"}) {
+    INFO(name);
+    CHECK(f.errorOf(name).find("expected") != std::string::npos);
+    CHECK_THROWS_AS(f.server->exists(name), Error);
+  }
+  CHECK(f.errorOf(std::string("a\0b", 3)).find("control") != std::string::npos);
+}
+
+TEST_CASE("a folder and a device are not files, and a folder does not hide a later file") {
+  Files f;
+  fs::create_directories(f.folder.path / "rsg/agent");
+  CHECK(f.errorOf("rsg/agent").find("found a folder") != std::string::npos);
+  CHECK(f.errorOf("rsg/agent/").find("found a folder") != std::string::npos);
+  Folder second;
+  second.write("rsg/agent", "file");
+  f.mount("two", second.path, "");
+  CHECK(f.server->read("rsg/agent") == "file");
+}
+
+TEST_CASE("a link inside the folder is followed, one that leaves it is refused") {
+  Files f;
+  Folder outside;
+  outside.write("secret", "s");
+  f.folder.write("real", "r");
+  fs::create_symlink(f.folder.path / "real", f.folder.path / "inside");
+  fs::create_symlink(outside.path / "secret", f.folder.path / "out");
+  fs::create_directory_symlink(outside.path, f.folder.path / "outdir");
+  CHECK(f.server->read("inside") == "r");
+  CHECK(f.errorOf("out").find("a link leads out") != std::string::npos);
+  CHECK(f.errorOf("outdir/secret").find("a link leads out") != std::string::npos);
+}
+
+TEST_CASE("a file beyond the limit is refused") {
+  Files f;
+  f.folder.write("big", std::string(101, 'x'));
+  Leaf& system = *f.house.kernel.root().find("/sys/server/file/one");
+  setProperty(system, "maxBytes", 100);
+  CHECK(f.errorOf("big").find("too large: 101 bytes, at most 100") != std::string::npos);
+  setProperty(system, "maxBytes", 101);
+  CHECK(f.server->read("big").size() == 101);
+}

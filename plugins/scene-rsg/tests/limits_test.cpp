@@ -1,0 +1,76 @@
+// Scene names and arguments come from agents: whatever they send ends in an Error, not in a crash or an endless import.
+
+#include <catch2/catch.hpp>
+
+#include "scene_house.h"
+
+using namespace spark;
+using namespace spark::test;
+
+TEST_CASE("scenes that do not exist, climb out or are absolute are refused") {
+  SceneHouse h;
+  for (const char* name : {"none.rsg", "", "/etc/passwd", "../x.rsg", "a/../../x", "rsg\\x.rsg", "."}) {
+    INFO(name);
+    CHECK_THROWS_AS(h.import(name), Error);
+  }
+  CHECK(h.scene->children().empty());
+}
+
+TEST_CASE("a file that imports itself ends") {
+  SceneHouse h;
+  h.run("(nd Probe)(importScene test.rsg)(importScene test.rsg)");
+  CHECK(h.logged("deep: does a file import itself?"));
+  CHECK(h.count("imports") <= 10000);
+  h.set("strict", true);
+  CHECK(h.failure("(importScene test.rsg)").find("deep: does a file import itself?") != std::string::npos);
+}
+
+TEST_CASE("files that import each other many times end at the number of imports or nodes") {
+  SceneHouse h;
+  h.set("maxImports", 50);
+  h.set("maxNodes", 100);
+  std::string many;
+  for (int i = 0; i < 40; ++i) many += "(importScene b.rsg)";
+  h.write("b.rsg", "(RSG 0 1)((nd Probe)(nd Probe)(nd Probe))");
+  h.run(many + many);
+  CHECK(h.logged("too many imports"));
+  CHECK(h.logged("too many nodes"));
+  CHECK(h.scene->children().size() <= 100);
+  h.run("(importScene b.rsg)");
+  CHECK(h.timesLogged("too many imports") == 1);
+}
+
+TEST_CASE("texts cannot grow without end") {
+  SceneHouse h;
+  std::string body = "(def $a 0123456789)";
+  for (int i = 0; i < 60; ++i) body += "(def $a (join $a $a $a))";
+  CHECK(h.failure(body).find("at most 4096 bytes") != std::string::npos);
+}
+
+TEST_CASE("deep nesting is refused, not recursed into") {
+  SceneHouse h;
+  CHECK(h.failure(std::string(200000, '(')) != "");
+  CHECK(h.failure(std::string(200000, '(') + std::string(200000, ')')) != "");
+  std::string eval = "1";
+  for (int i = 0; i < 1000; ++i) eval = "(eval " + eval + ")";
+  CHECK(h.failure("(nd Probe (tell " + eval + "))") != "");
+}
+
+TEST_CASE("numbers from outside are finite and of a sane size, names that look like them are texts") {
+  SceneHouse h;
+  for (const char* bad : {"nan", "inf", "-inf", "infinity", "+inf", "1e999", "-1e999", "1e12", "nan(7)"}) {
+    INFO(bad);
+    CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {bad}).find("argument 1 is '" + std::string(bad) + "'") != std::string::npos);
+  }
+  CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {std::string(5000, 'x')}).find("at most 4096 bytes") != std::string::npos);
+  CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {"nano"}).empty());
+  CHECK(h.failure("(templ $x)(nd Probe (tell (eval $x)))", {"1; os.exit()"}).find("test.rsg:2:") == 0);
+  CHECK(deeds().back() == "nano");
+}
+
+TEST_CASE("arguments with odd bytes name nodes or are refused, nothing else") {
+  SceneHouse h;
+  h.run("(templ $x)(nd Probe (setName $x)(tell $x))", {"a/b"});
+  CHECK(h.logged("must not hold '/'"));
+  CHECK_NOTHROW(h.run("(templ $x)(nd Probe (setName $x))", {std::string("\xff\x01\n[", 4)}));
+}

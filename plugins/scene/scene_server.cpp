@@ -1,0 +1,138 @@
+#include "scene_server.h"
+
+#include "api/files.h"
+#include "spark/error.h"
+
+namespace spark {
+
+void SceneServer::describe(Description<SceneServer>& d) {
+  d.doc("Holds the active scene, imports scene files, keeps world matrices up to date.");
+  d.implements<ISceneServer>();
+  d.property("activeScene", &SceneServer::scenePath, &SceneServer::setScenePath).doc("Path of the active scene's root.");
+  d.property("flattenTransforms", &SceneServer::flattenTransforms_)
+      .doc("After an import, transforms that hold nothing but transforms, and empty ones, go; their children move up.");
+  d.property("modifiedCount", &SceneServer::modifiedCount).doc("How often nodes or materials of the scene changed.");
+  d.method("createScene", &SceneServer::createScene).parameters({"path"}).doc("Makes a scene root and the active scene of it.");
+  d.method("defineMesh", &SceneServer::defineMesh)
+      .parameters({"mesh", "materials"})
+      .doc("Says which materials a mesh has, for meshes whose file is not there.");
+  d.on<&SceneServer::onPlace>("place");
+}
+
+Node& SceneServer::scene() {
+  if (!scene_ || sceneVersion_ != kernel().structureVersion()) {
+    scene_ = nullptr;
+    Leaf* found = kernel().root().find(scenePath_);
+    if (!found || !found->asNode())
+      throw Error("there is no scene at '" + scenePath_ + "': make one, new(\"Scene\", \"" + scenePath_ + "\"), or set " + path() + ".activeScene");
+    scene_ = found->asNode();
+    sceneVersion_ = kernel().structureVersion();
+  }
+  return *scene_;
+}
+
+void SceneServer::setScenePath(std::string path) {
+  scenePath_ = std::move(path);
+  scene_ = nullptr;
+}
+
+void SceneServer::createScene(std::string path) {
+  kernel().create("Scene", path);
+  setScenePath(std::move(path));
+}
+
+ISceneImporter& SceneServer::importerFor(const std::string& file) {
+  std::vector<ISceneImporter*> importers;
+  for (const auto& child : children())
+    if (auto* importer = child->as<ISceneImporter>()) importers.push_back(importer);
+  if (importers.empty()) throw Error(path() + " has no importer below it: add one, for instance new(\"RsgImporter\", \"" + path() + "/rsg\")");
+  if (importers.size() == 1) return *importers.front();
+
+  auto& files = kernel().root().require<IFileServer>("/sys/server/file");
+  const std::uint64_t stamp = files.stamp(file);
+  if (const auto known = known_.find(file); known != known_.end() && known->second.stamp == stamp && known->second.importer)
+    return *known->second.importer->as<ISceneImporter>();
+  const std::string text = files.read(file);
+  for (const auto& child : children())
+    if (auto* importer = child->as<ISceneImporter>(); importer && importer->recognises(text)) {
+      known_.insert_or_assign(file, Known{stamp, Ref<Leaf>(child.get())});
+      return *importer;
+    }
+  throw Error("none of the " + std::to_string(importers.size()) + " importers below " + path() + " knows the format of '" + file + "'");
+}
+
+void SceneServer::importScene(std::string_view file, Node& root, const List& arguments) {
+  const std::string name(file);
+  const Ref<Node> rootAlive(&root);
+  try {
+    importerFor(name).import(name, root, arguments);
+  } catch (...) {
+    markModified();  // what it made before stays
+    throw;
+  }
+  if (flattenTransforms_ && rootAlive) spark::flattenTransforms(root);
+  markModified();
+}
+
+void SceneServer::place() {
+  if (Leaf* found = scene_ && sceneVersion_ == kernel().structureVersion() ? scene_ : kernel().root().find(scenePath_); found && found->asNode()) {
+    scene_ = found->asNode();
+    sceneVersion_ = kernel().structureVersion();
+    placement_.place(*scene_);
+  }
+}
+
+void Placement::collect(Node& node, int parent) {
+  for (const auto& child : node.children()) {
+    int above = parent;
+    if (auto* transform = child->as<Transform>()) {
+      above = static_cast<int>(entries_.size());
+      entries_.push_back({transform, parent, false, false, {}});
+    } else if (auto* follower = child->as<IFollowsTransform>(); follower && parent >= 0) {
+      entries_[static_cast<std::size_t>(parent)].followers.push_back(follower);
+    }
+    if (Node* inner = child->asNode()) collect(*inner, above);
+  }
+}
+
+void Placement::place(Node& scene) {
+  if (version_ != scene.kernel().structureVersion() || scene_ != &scene) {
+    entries_.clear();
+    collect(scene, -1);
+    scene_ = &scene;
+    version_ = scene.kernel().structureVersion();
+  }
+  for (Entry& e : entries_) {
+    const Entry* above = e.parent < 0 ? nullptr : &entries_[static_cast<std::size_t>(e.parent)];
+    e.changed = e.transform->dirty() || (above && above->changed);
+    e.moved = e.changed && e.transform->updateWorld(above && above->moved);
+    if (e.moved)
+      for (IFollowsTransform* follower : e.followers) follower->follow(e.transform->world());
+  }
+}
+
+void flattenTransforms(Node& root) {
+  // Children that move up are appended to `root` and seen by the same loop.
+  for (std::size_t i = 0; i < root.children().size();) {
+    Leaf& child = *root.children()[i];
+    if (Node* node = child.asNode()) {
+      flattenTransforms(*node);
+      if (child.as<Transform>() && node->children().empty()) {
+        root.remove(child);
+        continue;
+      }
+    }
+    ++i;
+  }
+  auto* transform = root.as<Transform>();
+  if (!transform || root.children().empty() || !root.parent() || !root.parent()->as<SceneNode>()) return;
+  for (const auto& child : root.children())
+    if (!child->as<Transform>()) return;
+  while (!root.children().empty()) {
+    auto& child = *root.children().front()->as<Transform>();
+    child.setLocalFromBody(transform->local() * child.local());
+    root.reparent(child, *root.parent());
+  }
+}
+
+}  // namespace spark

@@ -1,0 +1,253 @@
+#include <catch2/catch.hpp>
+
+#include "api/files.h"
+#include "api/phases.h"
+#include "api/scene.h"
+#include "test_support.h"
+
+using namespace spark;
+
+namespace {
+
+/// Counts how often it was told to follow, and where to.
+class Follower : public SceneNode, public IFollowsTransform {
+  SPARK_CLASS(Follower, SceneNode)
+ public:
+  static void describe(Description<Follower>& d) {
+    d.doc("Follows its transform.");
+    d.implements<IFollowsTransform>();
+  }
+  void follow(const Matrix& world) override {
+    ++count;
+    at = positionOf(world);
+  }
+  int count = 0;
+  Vec3f at = Vec3f::Zero();
+};
+
+/// One file.
+class OneFile : public Leaf, public IFileSystem {
+  SPARK_CLASS(OneFile, Leaf)
+ public:
+  static void describe(Description<OneFile>& d) {
+    d.doc("One file.");
+    d.implements<IFileSystem>();
+  }
+  std::optional<std::string> read(const std::string& name) override { return name == "models/x.obj" ? std::optional(text) : std::nullopt; }
+  std::uint64_t stamp(const std::string& name) override { return name == "models/x.obj" ? 1 + text.size() : 0; }
+  std::string where() const override { return "here"; }
+  std::string text;
+};
+
+struct Fixture {
+  test::House house;
+  Kernel& kernel = house.kernel;
+  Node* scene = nullptr;
+  ISceneServer* server = nullptr;
+  Fixture() {
+    kernel.plugins().use("files");
+    kernel.plugins().use("scene");
+    kernel.registerClass<Follower>();
+    kernel.registerClass<OneFile>();
+    kernel.create("FileServer", "/sys/server/file");
+    server = &kernel.create<ISceneServer>("SceneServer", "/sys/server/scene");
+    scene = &kernel.create<Node>("Scene", "/usr/scene");
+  }
+};
+
+List numbers(std::initializer_list<double> v) { return List(v.begin(), v.end()); }
+
+}  // namespace
+
+TEST_CASE("place brings world matrices up to date below what changed") {
+  Fixture f;
+  auto& a = f.scene->create<Transform>("Transform", "a");
+  auto& b = a.create<Transform>("Transform", "b");
+  a.setLocalPos({1, 0, 0});
+  b.setLocalPos({0, 2, 0});
+  f.server->place();
+  CHECK(positionOf(b.world()) == Vec3f(1, 2, 0));
+  a.setLocalFromBody(translation({5, 0, 0}));
+  CHECK(positionOf(b.world()) == Vec3f(1, 2, 0));
+  f.server->place();
+  CHECK(positionOf(b.world()) == Vec3f(5, 2, 0));
+  auto& c = b.create<Transform>("Transform", "c");
+  CHECK(positionOf(c.world()) == Vec3f(5, 2, 0));
+  c.setLocalPos({0, 0, 3});
+  f.kernel.events().define(phase::kPlace, Order::parentsFirst, "");
+  f.kernel.events().channel(phase::kPlace).emit({phase::kPlace});
+  CHECK(positionOf(c.world()) == Vec3f(5, 2, 3));
+}
+
+TEST_CASE("what is below a transform moved by hand follows once, what a body moved does not") {
+  Fixture f;
+  auto& a = f.scene->create<Transform>("Transform", "a");
+  auto& b = a.create<Transform>("Transform", "b");
+  auto& follower = b.create<Follower>("Follower", "f");
+  f.server->place();
+  follower.count = 0;
+  f.server->place();
+  CHECK(follower.count == 0);
+  b.setLocalFromBody(translation({9, 0, 0}));
+  f.server->place();
+  CHECK(follower.count == 0);
+  a.setLocalPos({0, 0, 4});
+  f.server->place();
+  f.server->place();
+  CHECK(follower.count == 1);
+  CHECK(follower.at == Vec3f(9, 0, 4));
+  a.create("Follower", "beside").as<Follower>()->count = 0;
+  a.setLocalRotationDeg(0, 0, 90);
+  f.server->place();
+  CHECK(f.scene->require<Follower>("a/beside").count == 1);
+  CHECK((follower.at - Vec3f(0, 9, 4)).norm() < 1e-5f);
+}
+
+TEST_CASE("a transform that is gone or new is noticed") {
+  Fixture f;
+  auto& a = f.scene->create<Transform>("Transform", "a");
+  f.server->place();
+  f.scene->remove(a);
+  f.server->place();
+  auto& b = f.scene->create<Transform>("Transform", "b");
+  b.setLocalFromBody(translation({0, 1, 0}));
+  f.server->place();
+  CHECK(positionOf(b.world()) == Vec3f(0, 1, 0));
+  f.kernel.root().require<Node>("/usr").remove(*f.scene);
+  CHECK_NOTHROW(f.server->place());
+  CHECK_THROWS_WITH(f.server->scene(), Catch::Contains("there is no scene at '/usr/scene'"));
+}
+
+TEST_CASE("the local matrix of a transform is state, and restoring it pulls nothing along") {
+  Fixture f;
+  auto& a = f.scene->create<Transform>("Transform", "a");
+  auto& follower = a.create<Follower>("Follower", "f");
+  a.setLocalPos({1, 2, 3});
+  f.server->place();
+  StateWriter out(true);
+  saveTree(*f.scene, out);
+  const std::uint64_t before = stateHash(*f.scene);
+  a.setLocalPos({4, 5, 6});
+  f.server->place();
+  CHECK(stateHash(*f.scene) != before);
+  follower.count = 0;
+  StateReader in(out.bytes());
+  loadTree(*f.scene, in);
+  f.server->place();
+  CHECK(positionOf(a.world()) == Vec3f(1, 2, 3));
+  CHECK(follower.count == 0);
+  CHECK(stateHash(*f.scene) == before);
+}
+
+TEST_CASE("another path may hold the active scene") {
+  Fixture f;
+  callMethod(*f.kernel.root().find("/sys/server/scene"), "createScene", List{"/usr/other"});
+  CHECK(f.server->scene().path() == "/usr/other");
+  setProperty(*f.kernel.root().find("/sys/server/scene"), "activeScene", "/usr/scene");
+  CHECK(&f.server->scene() == f.scene);
+}
+
+TEST_CASE("an import without an importer says what to add") {
+  Fixture f;
+  CHECK_THROWS_WITH(f.server->importScene("x.rsg", *f.scene, {}), Catch::Contains("has no importer below it"));
+}
+
+TEST_CASE("standard meshes have the names that monitors expect") {
+  Fixture f;
+  const auto load = [&](const char* className, const char* method, const List& arguments) -> IVisual& {
+    Leaf& leaf = f.scene->create(className);
+    if (*method) callMethod(leaf, method, arguments);
+    return *leaf.as<IVisual>();
+  };
+  CHECK(load("Capsule", "setParams", {0.015, 0.08}).load() == "StdCapsule 0.015 0.08");
+  CHECK(load("Cylinder", "setParams", {1.0, 1.0}).load() == "StdUnitCylinder 1 1");
+  CHECK(load("StaticMesh", "load", {"models/x.obj"}).load() == "models/x.obj");
+  IVisual& box = load("Box", "setExtents", {1, 2, 3});
+  CHECK(box.load() == "StdUnitBox");
+  CHECK(box.scale() == Vec3f(1, 2, 3));
+  CHECK(box.kind() == IVisual::Kind::singleMaterial);
+  CHECK(load("Sphere", "setRadius", {0.5}).scale() == Vec3f(0.5f, 0.5f, 0.5f));
+}
+
+TEST_CASE("visible takes numbers as the installed base does: the text true hides") {
+  Fixture f;
+  Leaf& box = f.scene->create("Box");
+  const auto& visual = *box.as<IVisual>();
+  CHECK(visual.visible());
+  const Method& set = *box.classObject()->method("setVisible");
+  std::string why;
+  CHECK(callLoosely(box, set, List{"true"}, why));
+  CHECK_FALSE(visual.visible());
+  CHECK(callLoosely(box, set, List{"1"}, why));
+  CHECK(visual.visible());
+  callMethod(box, "setVisible", List{false});
+  CHECK_FALSE(visual.visible());
+  CHECK_FALSE(visual.transparent());
+  callMethod(box, "setTransparent", {});
+  CHECK(visual.transparent());
+}
+
+TEST_CASE("a mesh has the materials of its file in alphabetical order, or those that were declared for it") {
+  Fixture f;
+  auto& file = f.kernel.create<OneFile>("OneFile", "/sys/server/file/one");
+  file.text = "# a\n# b\nmtllib x.mtl\no x\nv 0 0 0\nusemtl white\r\nf 1/1/1 1/1/1 1/1/1\nusemtl matTeam\r\nf 1//1 1//1 1//1\nusemtl unused\nusemtl white\nf 1//1 1//1 1//1\n";
+  Leaf& mesh = f.scene->create("StaticMesh");
+  callMethod(mesh, "load", List{"models/x.obj"});
+  auto& visual = *mesh.as<IVisual>();
+  CHECK(visual.materials() == std::vector<std::string>{"matTeam", "white"});
+  const auto before = f.server->modifiedCount();
+  visual.setMaterialName(0, "matLeft");
+  visual.setMaterialName(7, "no");
+  CHECK(visual.materials() == std::vector<std::string>{"matLeft", "white"});
+  CHECK(f.server->modifiedCount() == before + 1);
+  callMethod(mesh, "load", List{"models/none.obj"});
+  CHECK(visual.materials().empty());
+  callMethod(*f.kernel.root().find("/sys/server/scene"), "defineMesh", List{"models/none.obj", "a", "b"});
+  callMethod(mesh, "load", List{"models/none.obj"});
+  CHECK(visual.materials() == std::vector<std::string>{"a", "b"});
+  callMethod(mesh, "resetMaterials", List{"c"});
+  CHECK(visual.materials() == std::vector<std::string>{"c"});
+}
+
+TEST_CASE("an unknown material is told once, a known one never") {
+  Fixture f;
+  Leaf& materials = f.kernel.create("MaterialServer", "/sys/server/material");
+  callMethod(materials, "define", List{"matRed", 1, 0, 0, 1});
+  Leaf& box = f.scene->create("Box");
+  callMethod(box, "setMaterial", List{"matRed"});
+  CHECK(f.house.text.empty());
+  callMethod(box, "setMaterial", List{"matRad"});
+  CHECK(f.house.text.find("'matRad'") != std::string::npos);
+  CHECK(f.house.text.find("Did you mean 'matRed'") != std::string::npos);
+  const auto once = f.house.text;
+  callMethod(box, "setMaterial", List{"matRad"});
+  CHECK(f.house.text == once);
+  CHECK(box.as<IVisual>()->materials() == std::vector<std::string>{"matRad"});
+}
+
+TEST_CASE("lights and cameras hold their values") {
+  Fixture f;
+  Leaf& light = f.scene->create("Light");
+  callMethod(light, "setAmbient", numbers({0.1, 0.2, 0.3, 1}));
+  CHECK(light.as<IVisual>()->lightColors()[1].g == 0.2f);
+  CHECK(light.as<IVisual>()->kind() == IVisual::Kind::light);
+  Leaf& camera = f.scene->create("Camera");
+  callMethod(camera, "setViewport", List{0, 0, 320, 200});
+  callMethod(camera, "setFOV", List{90});
+  callMethod(camera, "lookAt", numbers({1, 2, 3}));
+  CHECK(callMethod(camera, "getViewportWidth", {}) == Value(320));
+  CHECK(callMethod(camera, "getFOV", {}) == Value(90.0));
+}
+
+TEST_CASE("variables are read by name, lists by the bare group") {
+  Fixture f;
+  Leaf& soccer = f.kernel.create("Variables", "/sys/variables/Soccer");
+  callMethod(soccer, "set", List{"FieldLength", 30.0});
+  const auto& read = *soccer.as<IVariables>();
+  CHECK(read.variable("FieldLength") == Value(30.0));
+  CHECK(read.variable("FieldWidth").isNil());
+  CHECK(read.variable("").isNil());
+  setProperty(soccer, "value", List{1, 2});
+  CHECK(read.variable("") == Value(List{1, 2}));
+  CHECK(getProperty(soccer, "names") == Value(List{"FieldLength"}));
+}

@@ -1,0 +1,28 @@
+#pragma once
+/// \file
+/// Named variables for scene files.
+
+#include <map>
+
+#include "api/scene.h"
+
+namespace spark {
+
+/// A group of variables below /sys/variables: its name is the group's (`Soccer`), scene files read `Soccer.FieldLength`.
+/// What is read without a member (`NaoType[0]['UseToe']`) is the group's own `value`.
+class Variables : public Leaf, public IVariables {
+  SPARK_CLASS(Variables, Leaf)
+ public:
+  static void describe(Description<Variables>& d);
+  /// The empty name is the group's own value.
+  Value variable(std::string_view name) const override;
+
+ private:
+  void set(std::string name, Value value);
+  Value get(std::string name) const { return variable(name); }
+  std::vector<std::string> names() const;
+  Value value_;
+  std::map<std::string, Value, std::less<>> variables_;
+};
+
+}  // namespace spark

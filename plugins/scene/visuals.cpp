@@ -1,0 +1,158 @@
+#include "visuals.h"
+
+#include "materials.h"
+#include "scene_server.h"
+
+namespace spark {
+
+namespace {
+SceneServer* serverOf(const Leaf& leaf) {
+  return leaf.isLinked() ? leaf.kernel().root().find<SceneServer>("/sys/server/scene") : nullptr;
+}
+void modified(const Leaf& leaf) {
+  if (!leaf.isLinked()) return;
+  if (auto* server = leaf.kernel().root().find<ISceneServer>("/sys/server/scene")) server->markModified();
+}
+}  // namespace
+
+void Light::describe(Description<Light>& d) {
+  d.doc("A light source, for viewers.");
+  d.implements<IVisual>();
+  d.property("diffuse", &Light::diffuse_).doc("Diffuse colour.");
+  d.property("ambient", &Light::ambient_).doc("Ambient colour.");
+  d.property("specular", &Light::specular_).doc("Specular colour.");
+  d.property("radius", &Light::radius_).unit("m").min(0).doc("How far it shines.");
+}
+
+void Camera::describe(Description<Camera>& d) {
+  d.doc("A view into the scene, for viewers.");
+  d.method("setViewport", &Camera::setViewport).parameters({"x [px]", "y [px]", "width [px]", "height [px]"}).doc("The part of the window it fills.");
+  d.property("viewportX", &Camera::x_).unit("px").doc("Left edge.");
+  d.property("viewportY", &Camera::y_).unit("px").doc("Lower edge.");
+  d.property("viewportWidth", &Camera::width_).unit("px").min(0).doc("Width.");
+  d.property("viewportHeight", &Camera::height_).unit("px").min(0).doc("Height.");
+  d.property("FOV", &Camera::fovDeg_).unit("deg").range(0, 180).doc("Horizontal opening angle.");
+  d.property("zNear", &Camera::zNear_).unit("m").doc("Nothing nearer is seen.");
+  d.property("zFar", &Camera::zFar_).unit("m").doc("Nothing farther is seen.");
+  d.method("adjustZNear", &Camera::adjustZNear).parameters({"by [m]"}).doc("Adds to zNear.");
+  d.method("adjustZFar", &Camera::adjustZFar).parameters({"by [m]"}).doc("Adds to zFar.");
+  d.property("target", &Camera::lookAt_).unit("m").doc("The point it looks at, world frame.");
+  d.alias("lookAt", "setTarget");
+}
+
+void Axis::describe(Description<Axis>& d) {
+  d.doc("A cross that shows the axes of its transform, for viewers.");
+  d.property("size", &Axis::size_).unit("m").min(0).doc("Length of the arms.");
+}
+
+void RenderNode::describe(Description<RenderNode>& d) {
+  d.doc("Base of all visible shapes.");
+  d.property("visible", &RenderNode::isVisible, &RenderNode::show).doc("Viewers show it.");
+  d.method("setVisible", &RenderNode::setVisibleValue).parameters({"on"}).doc("1 shows, 0 hides; a text counts as number, so that 'true' hides as in the installed base.");
+  d.property("transparent", &RenderNode::isTransparent).doc("Drawn with its material's opacity.");
+  d.method("setTransparent", &RenderNode::setTransparent).doc("Makes it transparent, for good.");
+  d.abstract();
+}
+
+void RenderNode::show(bool on) {
+  if (visible_ == on) return;
+  visible_ = on;
+  modified(*this);
+}
+
+void RenderNode::setVisibleValue(Value v) {
+  if (v.isBool()) return show(v.toBool());
+  Args args{std::span(&v, 1), true};
+  show(Convert<int>::from(args) != 0);
+}
+
+void StaticMesh::describe(Description<StaticMesh>& d) {
+  d.doc("A mesh by name, for viewers; the simulation never loads it.");
+  d.implements<IVisual>();
+  d.property("mesh", &StaticMesh::load_).readOnly().doc("Name and parameters.");
+  d.method("load", &StaticMesh::loadCall).parameters({"mesh", "parameters"}).doc("Takes another mesh: 'models/x.obj', or a standard one with parameters.");
+  d.property("scale", &StaticMesh::scale_).readOnly().doc("Scale of what is shown.");
+  d.method("setScale", &StaticMesh::setScale).parameters({"scale"}).doc("Scales what is shown.");
+  d.property("materials", &StaticMesh::materials_).readOnly().doc("Material of each face group, in the mesh's alphabetical order.");
+  d.method("resetMaterials", &StaticMesh::resetMaterials).parameters({"materials"}).doc("Replaces all materials.");
+  d.property("castShadows", &StaticMesh::castShadows_).doc("Viewers let it cast shadows.");
+  d.property("useExternalMesh", &StaticMesh::useExternalMesh_).doc("Viewers show the external mesh instead.");
+  d.property("externalMeshName", &StaticMesh::externalMesh_).doc("The external mesh.");
+  d.property("externalMeshScale", &StaticMesh::externalScale_).doc("Its scale.");
+}
+
+void StaticMesh::loadCall(std::string mesh, std::vector<Value> parameters) {
+  for (const Value& p : parameters) mesh += " " + p.plain();
+  loadMesh(std::move(mesh));
+}
+
+void StaticMesh::loadMesh(std::string load) {
+  load_ = std::move(load);
+  if (!classObject()) return;
+  meshChanged();
+  modified(*this);
+}
+
+void StaticMesh::meshChanged() {
+  if (SceneServer* server = serverOf(*this)) materials_ = server->meshes().materials(kernel(), load_);
+}
+
+void StaticMesh::setScale(Vec3f scale) {
+  scale_ = scale;
+  if (classObject()) modified(*this);
+}
+
+void StaticMesh::resetMaterials(std::vector<std::string> names) {
+  if (isLinked())
+    if (auto* known = kernel().root().find<MaterialServer>("/sys/server/material"))
+      for (const std::string& name : names) known->warnUnlessKnown(name, *this);
+  materials_ = std::move(names);
+  modified(*this);
+}
+
+void StaticMesh::setMaterialName(std::size_t i, std::string name) {
+  if (i >= materials_.size() || materials_[i] == name) return;
+  materials_[i] = std::move(name);
+  modified(*this);
+}
+
+void SingleMatNode::describe(Description<SingleMatNode>& d) {
+  d.doc("A mesh with one material.");
+  d.method("setMaterial", &SingleMatNode::setMaterial).parameters({"material"}).doc("Gives it a material by name.");
+}
+
+void Box::describe(Description<Box>& d) {
+  d.doc("A visible box.");
+  d.method("setExtents", &Box::setScale).parameters({"edges [m]"}).doc("Full edge lengths.");
+}
+
+void Sphere::describe(Description<Sphere>& d) {
+  d.doc("A visible sphere.");
+  d.property("radius", &Sphere::radius, &Sphere::setRadius).unit("m").min(0).doc("Radius.");
+}
+
+void Capsule::describe(Description<Capsule>& d) {
+  d.doc("A visible capsule along z.");
+  d.method("setParams", &Capsule::setParams).parameters({"radius [m]", "length [m]"}).doc("Radius, and length without the caps.");
+  d.property("radius", &Capsule::radius_).unit("m").readOnly().doc("Radius.");
+  d.property("length", &Capsule::length_).unit("m").readOnly().doc("Length without the caps.");
+}
+
+void Capsule::setParams(float radius, float length) {
+  radius_ = radius, length_ = length;
+  loadMesh(fmt::format("StdCapsule {:g} {:g}", radius, length));
+}
+
+void Cylinder::describe(Description<Cylinder>& d) {
+  d.doc("A visible cylinder along z.");
+  d.method("setParams", &Cylinder::setParams).parameters({"radius [m]", "length [m]"}).doc("Radius and length; viewers draw a unit cylinder, so scale it as well.");
+  d.property("radius", &Cylinder::radius_).unit("m").readOnly().doc("Radius.");
+  d.property("length", &Cylinder::length_).unit("m").readOnly().doc("Length.");
+}
+
+void Cylinder::setParams(float radius, float length) {
+  radius_ = radius, length_ = length;
+  loadMesh(fmt::format("StdUnitCylinder {:g} {:g}", radius, length));
+}
+
+}  // namespace spark
