@@ -44,6 +44,7 @@ void MonitorServer::received(IConnection& connection, std::string_view message) 
     return;
   }
   auto* parser = connection.port().childOf<IParser>();
+  if (!parser) parser = childOf<IParser>();
   const ReadResult result = parser ? parser->parse(message, commands_) : readSexp(message, commands_);
   if (!result.message.empty())
     kernel().log().debug("{}: from {}: {}:{}: {}; what came before it counts", path(), connection.peer(), result.line, result.column, result.message);

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "api/agents.h"
 #include "fake_scene.h"
 #include "replica.h"
 #include "test_support.h"
@@ -38,6 +39,18 @@ class TestTrainer : public Node, public ITrainer {
     return true;
   }
   std::vector<std::int64_t> pushed;
+};
+
+/// A language of its own: every word is a push of its length.
+class WordParser : public Node, public IParser {
+  SPARK_CLASS(WordParser, Node)
+ public:
+  static void describe(Description<WordParser>& d) { d.implements<IParser>(); }
+  ReadResult parse(std::string_view message, Predicates& out) override {
+    out.pair("push", static_cast<std::int64_t>(message.size()));
+    return {};
+  }
+  void write(const Predicates&, std::string&) override {}
 };
 
 /// A monitor server with a small scene: a light, a robot of two parts, a box.
@@ -286,6 +299,17 @@ TEST_CASE("commands act in the next due cycle, in order of arrival, and bad ones
   CHECK_FALSE(stage.kernel.stopRequested());
   stage.nextFrame();
   CHECK(stage.kernel.stopRequested());
+}
+
+TEST_CASE("a parser below the server, or below the port before it, reads the commands") {
+  Stage stage;
+  stage.kernel.registerClass<WordParser>();
+  FakeConnection& a = stage.connect();
+  Node& parserAt = GENERATE(0, 1) ? *stage.port : stage.node();
+  parserAt.create("WordParser", "parser");
+  stage.monitor->received(a, "hello");
+  stage.nextFrame();
+  CHECK(stage.trainer->pushed == std::vector<std::int64_t>{5});
 }
 
 TEST_CASE("a flood of commands does not grow memory without end") {
