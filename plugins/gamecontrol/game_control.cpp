@@ -1,0 +1,253 @@
+#include "gamecontrol/game_control.h"
+
+#include <algorithm>
+
+#include "spark/error.h"
+#include "spark/state.h"
+
+namespace spark {
+
+void GameControl::describe(Description<GameControl>& d) {
+  d.doc("Makes agents of connections and behaviours, dispatches their actions, asks their perceptors.");
+  d.property("createEffector", &GameControl::createEffector_).doc("Class of the effector with which an agent asks for its robot.");
+  d.property("expect", &GameControl::expect_).range(0, 64).doc("Holds the clock at cycle 0 until so many agents have sent scene, init and syn; they are numbered by team and number.");
+  d.property("maxAgents", &GameControl::maxAgents_).range(0, 1000).doc("Further connections are closed.");
+  d.property("maxPending", &GameControl::maxPending_).unit("bytes").range(1024, 1 << 28).doc("A client that sends more within one cycle is closed.");
+  d.property("perceptDelay", &GameControl::perceptDelay_).range(0, 1).doc("Cycles between sensing and sending; the installed base has 1.");
+  d.property("sync", &GameControl::sync_).doc("Waits for the agents' (syn) although the run loop is not in lockstep.");
+  d.property("grace", &GameControl::grace_).unit("cycles").min(0).doc("Lockstep: so long after connecting an agent is waited for no longer than graceWait.");
+  d.property("graceWait", &GameControl::graceWait_).unit("s").min(0).doc("See grace; wall clock.");
+  d.property("holdWait", &GameControl::holdWait_).unit("s").min(0).doc("Expected agents that named a robot and are silent for so long get a first message (wall clock).");
+  d.property("syncTimeout", &GameControl::syncTimeout_).unit("s").min(0).doc("Lockstep: an agent that does not answer for so long is closed (wall clock); 0: never.");
+  d.property("agentCount", &GameControl::agentCount).doc("Agents now.");
+  d.property("agentsSeen", &GameControl::agentsSeen).doc("Agents that ever had a robot.");
+  d.property("messagesDropped", &GameControl::messagesDropped).doc("Percepts not sent because the client had not taken earlier ones.");
+  d.implements<IGameControl>();
+  d.implements<IConnectionConsumer>();
+  d.implements<IInputGate>();
+  d.on<&GameControl::act>(phase::kAct);
+  d.on<&GameControl::sense>(phase::kSense);
+}
+
+void GameControl::onUnlink() {
+  newcomers_.clear();
+  participants_.clear();
+  agents_.clear();
+}
+
+void GameControl::note(const std::string& line) {
+  auto& log = kernel().log();
+  if (!budget_.take(cycle_)) return;
+  if (const auto n = budget_.leftOut()) log.info("{} further lines about agents were left out.", n);
+  log.info("{}", line);
+}
+
+GameControl::Participant* GameControl::participantOf(const IConnection& connection) const {
+  for (const auto* list : {&participants_, &newcomers_})
+    for (const auto& p : *list)
+      if (p->connection() == &connection) return p.get();
+  return nullptr;
+}
+
+void GameControl::connected(IConnection& connection) {
+  if (participants_.size() + newcomers_.size() >= static_cast<std::size_t>(maxAgents_))
+    return connection.close(fmt::format("there are {} agents already (maxAgents)", maxAgents_));
+  newcomers_.push_back(std::make_unique<Participant>(connection));
+  newcomers_.back()->resolveParser(*this);
+}
+
+void GameControl::received(IConnection& connection, std::string_view message) {
+  Participant* p = participantOf(connection);
+  if (!p || p->leaving()) return;
+  resolveParsers();
+  const std::string why = p->receive(message, static_cast<std::size_t>(maxPending_), kernel().log(), cycle_);
+  if (why.empty()) return;
+  connection.close(why);
+  p->leave();
+}
+
+void GameControl::disconnected(IConnection& connection) {
+  Participant* p = participantOf(connection);
+  if (!p) return;
+  p->disconnect();
+  if (p->number() == 0) std::erase_if(newcomers_, [p](const auto& n) { return n.get() == p; });
+}
+
+void GameControl::removeAgent(AgentAspect& agent, bool close) {
+  for (const auto& p : participants_) {
+    if (p->aspect() != &agent) continue;
+    if (close && p->connection()) p->connection()->close("its agent was removed");
+    p->leave();
+  }
+}
+
+bool GameControl::ready(bool lockstep) {
+  resolveParsers();
+  if (holding()) return hold_.over(newcomers_, expect_, holdWait_, kernel().log());
+  if (!lockstep && !sync_) return true;
+  const auto now = Clock::now();
+  if (!waiting_) waitingSince_ = now;
+  waiting_ = true;
+  bool all = true;
+  for (const auto& p : participants_) all &= answered(*p, now);
+  return all;
+}
+
+/// Who is waited for in lockstep: agents that can answer and were sent something, for ever (until syncTimeout); new ones a moment, so
+/// that their robot and their first answers come in the cycle in which a client that is quick enough expects them. Agents without a
+/// sync effector are not waited for: an idle connection must not stop the others.
+bool GameControl::answered(Participant& p, Clock::time_point now) {
+  if (p.leaving() || p.inside()) return true;
+  const auto since = [now](Clock::time_point t) { return std::chrono::duration<double>(now - t).count(); };
+  const bool fresh = p.counter() < grace_;
+  if (!p.mustSync()) return !fresh || p.heardFrom() || since(p.connectedAt()) >= graceWait_;
+  if (p.synced()) return true;
+  const double waited = since(waitingSince_);
+  if (fresh && !p.expected()) return waited >= graceWait_;
+  if (syncTimeout_ <= 0 || waited <= syncTimeout_) return false;
+  p.connection()->close(fmt::format("{} did not answer for {} s, all others wait", p.label(), syncTimeout_));
+  p.leave();
+  return true;
+}
+
+void GameControl::act(const Event& event) {
+  cycle_ = event.cycle;
+  waiting_ = false;
+  removeLeaving();
+  joinBehaviors();
+  joinNewcomers();
+  resolveParsers();
+  if (perceptDelay_ > 0) deliver();
+  else
+    for (const auto& p : participants_) p->promote();
+  for (const auto& p : participants_) p->realise(kernel().log(), cycle_);
+  if (perceptDelay_ > 0)
+    for (const auto& p : participants_) p->promote();
+  resolveRobots();
+}
+
+void GameControl::sense(const Event& event) {
+  kernel().jobs().run(participants_.size(), [this, &event](std::size_t i) { participants_[i]->sense(event); });
+  if (perceptDelay_ == 0) deliver();
+}
+
+void GameControl::deliver() {
+  for (const auto& p : participants_)
+    if (!p->deliver()) ++messagesDropped_;
+}
+
+void GameControl::removeLeaving() {
+  const auto stays = std::stable_partition(participants_.begin(), participants_.end(), [](const auto& p) { return !p->leaving(); });
+  if (stays == participants_.end()) return;
+  for (auto it = stays; it != participants_.end(); ++it) {
+    Participant& p = **it;
+    note(fmt::format("{} leaves.", p.label()));
+    if (AgentAspect* aspect = p.aspect()) {
+      for (const auto& child : children())
+        if (auto* rule = child->as<ControlAspect>()) rule->agentLeaving(*aspect);
+      aspect->parent()->remove(*aspect);
+    } else if (p.connection()) {
+      p.connection()->close("its agent was removed from the scene");
+    }
+  }
+  participants_.erase(stays, participants_.end());
+  listAgents();
+}
+
+void GameControl::joinBehaviors() {
+  if (behaviorsAt_ == kernel().structureVersion()) return;
+  std::vector<Behavior*> behaviors;
+  if (auto* home = kernel().root().find<Node>("/usr/agent")) home->collect(behaviors);
+  const auto known = [this](Behavior* b) {
+    return std::any_of(participants_.begin(), participants_.end(), [b](const auto& p) { return p->behavior() == b; }) ||
+           std::find(refusedBehaviors_.begin(), refusedBehaviors_.end(), b->id()) != refusedBehaviors_.end();
+  };
+  for (Behavior* b : behaviors)
+    if (!known(b) && !join(std::make_unique<Participant>(*b))) refusedBehaviors_.push_back(b->id());
+  behaviorsAt_ = kernel().structureVersion();
+}
+
+void GameControl::joinNewcomers() {
+  if (holding()) gamecontrol::Hold::order(newcomers_, expect_);
+  released_ = true;
+  auto joining = std::move(newcomers_);
+  newcomers_.clear();
+  for (auto& p : joining)
+    if (!p->leaving()) join(std::move(p));
+}
+
+bool GameControl::join(std::unique_ptr<Participant> participant) {
+  const int number = nextNumber_++;
+  Participant& p = *participant;
+  participants_.push_back(std::move(participant));
+  AgentAspect* aspect = nullptr;
+  try {
+    auto* server = kernel().root().find<ISceneServer>("/sys/server/scene");
+    Node& scene = server ? server->scene() : kernel().root().require<Node>("/usr/scene");
+    aspect = &scene.create<AgentAspect>("AgentAspect", fmt::format("AgentAspect{}", number));
+    aspect->setNumber(number);
+    aspect->create(createEffector_, "_CreateEffector");
+    p.join(number, *aspect);
+  } catch (const std::exception& e) {
+    kernel().log().error("{} cannot be made: {}", p.label(), e.what());
+    if (p.connection()) p.connection()->close("no agent could be made for it");
+    if (aspect) aspect->parent()->remove(*aspect);
+    participants_.pop_back();
+    return false;
+  }
+  listAgents();
+  note(fmt::format("{} joins.", p.label()));
+  for (const auto& child : children())
+    if (auto* rule = child->as<ControlAspect>()) rule->agentConnected(*aspect);
+  return true;
+}
+
+void GameControl::listAgents() {
+  agents_.clear();
+  for (const auto& p : participants_)
+    if (AgentAspect* a = p->aspect()) agents_.push_back(a);
+  if (auto* server = kernel().root().find<ISceneServer>("/sys/server/scene")) server->markModified();
+}
+
+void GameControl::resolveParsers() {
+  if (parsersAt_ == kernel().structureVersion()) return;
+  parsersAt_ = kernel().structureVersion();
+  for (const auto* list : {&participants_, &newcomers_})
+    for (const auto& p : *list) p->resolveParser(*this);
+}
+
+/// After the cycle's actions: what a scene brought in the last cycle answers and senses from here on.
+void GameControl::resolveRobots() {
+  if (robotsAt_ == kernel().structureVersion()) return;
+  robotsAt_ = kernel().structureVersion();
+  for (const auto& p : participants_)
+    if (p->resolveRobot()) {
+      ++agentsSeen_;
+      note(fmt::format("{} has its robot.", p->label()));
+    }
+}
+
+void GameControl::saveState(StateWriter& out) const {
+  out.write(nextNumber_);
+  out.write(agentsSeen_);
+  out.write(static_cast<std::int64_t>(participants_.size()));
+  for (const auto& p : participants_) {
+    out.write(p->number());
+    out.write(p->counter());
+  }
+}
+
+void GameControl::loadState(StateReader& in) {
+  nextNumber_ = static_cast<int>(in.readInteger());
+  agentsSeen_ = static_cast<int>(in.readInteger());
+  const auto n = in.readInteger();
+  if (n != static_cast<std::int64_t>(participants_.size()))
+    throw Error(fmt::format("{}: the state has {} agents, here are {}. Connect the same agents first.", path(), n, participants_.size()));
+  for (const auto& p : participants_) {
+    if (const auto number = in.readInteger(); number != p->number())
+      throw Error(fmt::format("{}: the state has agent {} where agent {} is.", path(), number, p->number()));
+    p->setCounter(in.readInteger());
+  }
+}
+
+}  // namespace spark

@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// Game control: makes agents of connections and behaviours, dispatches their actions to effectors, asks their perceptors.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "api/agents.h"
+#include "gamecontrol/hold.h"
+#include "gamecontrol/participant.h"
+
+namespace spark {
+
+/// At /sys/server/gamecontrol. Children: a parser, control aspects.
+class GameControl : public Node, public IGameControl, public IConnectionConsumer, public IInputGate {
+  SPARK_CLASS(GameControl, Node)
+ public:
+  static void describe(Description<GameControl>& d);
+
+  const std::vector<AgentAspect*>& agents() const override { return agents_; }
+  void removeAgent(AgentAspect& agent, bool close) override;
+  int agentsSeen() const override { return agentsSeen_; }
+
+  void connected(IConnection& connection) override;
+  void received(IConnection& connection, std::string_view message) override;
+  void disconnected(IConnection& connection) override;
+
+  bool ready(bool lockstep) override;
+
+ protected:
+  void onUnlink() override;
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
+
+ private:
+  using Participant = gamecontrol::Participant;
+  using Clock = gamecontrol::Clock;
+
+  void act(const Event& event);
+  void sense(const Event& event);
+
+  void removeLeaving();
+  void joinBehaviors();
+  void joinNewcomers();
+  bool join(std::unique_ptr<Participant> participant);
+  void resolveParsers();
+  void resolveRobots();
+  void deliver();
+  bool answered(Participant& p, Clock::time_point now);
+  bool holding() const { return expect_ > 0 && !released_; }
+  Participant* participantOf(const IConnection& connection) const;
+  void listAgents();
+  void note(const std::string& line);
+  int agentCount() const { return static_cast<int>(agents_.size()); }
+  std::int64_t messagesDropped() const { return messagesDropped_; }
+
+  std::vector<std::unique_ptr<Participant>> participants_;  ///< in order of number
+  std::vector<std::unique_ptr<Participant>> newcomers_;     ///< in order of arrival
+  std::vector<std::uint64_t> refusedBehaviors_;             ///< ids of those that could not be made an agent; not tried again
+  std::vector<AgentAspect*> agents_;
+  gamecontrol::Hold hold_;
+  gamecontrol::LineBudget budget_{40};
+
+  std::string createEffector_ = "SceneEffector";
+  int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, grace_ = 5;
+  bool sync_ = false, released_ = false;
+  double graceWait_ = 1, holdWait_ = 0.5, syncTimeout_ = 60;
+
+  int nextNumber_ = 1, agentsSeen_ = 0;
+  std::int64_t messagesDropped_ = 0, cycle_ = 0;
+  std::uint64_t parsersAt_ = 0, robotsAt_ = 0, behaviorsAt_ = 0;
+  bool waiting_ = false;
+  Clock::time_point waitingSince_{};
+};
+
+}  // namespace spark

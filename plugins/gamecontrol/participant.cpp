@@ -1,0 +1,166 @@
+#include "gamecontrol/participant.h"
+
+#include <algorithm>
+
+namespace spark::gamecontrol {
+
+namespace {
+// Tokens are larger than the bytes they come from.
+constexpr std::uint32_t kMaxPendingTokens = 1 << 17;
+}  // namespace
+
+Participant::Participant(IConnection& connection)
+    : label_(fmt::format("agent at {}", connection.peer())), connection_(&connection), inside_(false) {}
+
+Participant::Participant(Behavior& behavior) : label_(fmt::format("agent of {}", behavior.path())), behavior_(&behavior), inside_(true) {}
+
+void Participant::join(int number, AgentAspect& aspect) {
+  number_ = number;
+  aspect_ = &aspect;
+  label_ = fmt::format("agent {} ({})", number, inside_ ? behavior()->path() : connection_->peer());
+  if (inside_) behavior()->start(pending_);
+}
+
+void Participant::resolveParser(Node& gameControl) {
+  if (inside_ || !connection_) return;
+  parser_ = connection_->port().childOf<IParser>();
+  Node* home = &connection_->port();
+  if (!parser_) parser_ = gameControl.childOf<IParser>(), home = &gameControl;
+  parserLeaf_ = {};
+  for (const auto& child : home->children())
+    if (parser_ && child->as<IParser>() == parser_) {
+      parserLeaf_ = child.get();
+      break;
+    }
+}
+
+void Participant::warn(Log& log, std::int64_t cycle, const std::string& text) {
+  if (!budget_.take(cycle)) return;
+  if (const auto n = budget_.leftOut()) log.warning("{}: {} further lines were left out.", label_, n);
+  log.warning("{}: {}", label_, text);
+}
+
+std::string Participant::receive(std::string_view message, std::size_t maxPending, Log& log, std::int64_t cycle) {
+  heardFrom_ = true;
+  lastHeard_ = Clock::now();
+  pendingBytes_ += message.size();
+  if (pendingBytes_ > maxPending || pending_.size() + later_.size() > kMaxPendingTokens)
+    return fmt::format("it sent more than {} bytes within one cycle", maxPending);
+  if (!parser()) return "there is no parser below its port or below game control";
+  arrived_.clear();
+  const ReadResult result = parser()->parse(message, arrived_);
+  if (!result.message.empty())
+    warn(log, cycle, fmt::format("{} at {}:{}; the rest of that message is ignored.", result.message, result.line, result.column));
+  if (!syncPredicate_.empty())
+    for (const Element e : arrived_) synced_ |= e.head() == syncPredicate_;
+  keep(arrived_);
+  return {};
+}
+
+void Participant::keep(const Predicates& arrived) {
+  for (const Element e : arrived)
+    if (e.isList()) (holdingBack_ && e.head() != first_ ? later_ : pending_).append(e);
+}
+
+void Participant::holdBack(std::string_view first) {
+  expected_ = holdingBack_ = true;
+  first_ = first;
+  arrived_.clear();
+  std::swap(arrived_, pending_);
+  keep(arrived_);
+}
+
+bool Participant::resolveRobot() {
+  effectors_.clear();
+  perceptors_.clear();
+  syncPredicate_.clear();
+  AgentAspect* root = aspect();
+  if (!root) return false;
+  std::vector<Effector*> effectors;
+  root->collect(effectors);
+  for (Effector* e : effectors) effectors_.push_back({e->predicate(), e});
+  // Of equal predicates the last in tree order counts.
+  std::stable_sort(effectors_.begin(), effectors_.end(), [](const Slot& a, const Slot& b) { return a.predicate < b.predicate; });
+  for (std::size_t i = 0; i + 1 < effectors_.size();)
+    if (effectors_[i].predicate == effectors_[i + 1].predicate) effectors_.erase(effectors_.begin() + static_cast<std::ptrdiff_t>(i));
+    else ++i;
+  for (const Slot& s : effectors_)
+    if (s.effector->as<ISyncEffector>()) syncPredicate_ = s.predicate;
+  std::vector<Perceptor*> perceptors;
+  root->collect(perceptors);
+  perceptors_.assign(perceptors.begin(), perceptors.end());
+  const bool first = !hadRobot_ && (!perceptors_.empty() || effectors.size() > 1);
+  hadRobot_ |= first;
+  return first;
+}
+
+Effector* Participant::effector(std::string_view predicate) const {
+  const auto it = std::lower_bound(effectors_.begin(), effectors_.end(), predicate, [](const Slot& s, std::string_view p) { return s.predicate < p; });
+  return it != effectors_.end() && it->predicate == predicate ? it->effector.get() : nullptr;
+}
+
+void Participant::realise(Log& log, std::int64_t cycle) {
+  synced_ = false;
+  // The cycle in which an agent connects only makes its aspect.
+  if (skipCycle_) {
+    skipCycle_ = false;
+    return;
+  }
+  for (const Element action : pending_) {
+    const std::string_view head = action.head();
+    if (head.empty()) continue;
+    if (Effector* e = effector(head)) {
+      if (const std::string why = e->act(action); !why.empty()) warn(log, cycle, why);
+    } else {
+      warn(log, cycle, fmt::format("no effector registered for predicate {}.", head));
+    }
+  }
+  pending_.clear();
+  pendingBytes_ = 0;
+}
+
+void Participant::promote() {
+  if (!inside_) return;
+  for (const Element e : later_) pending_.append(e);
+  later_.clear();
+}
+
+void Participant::sense(const Event& event) {
+  ++counter_;
+  percepts_.clear();
+  message_.clear();
+  for (const auto& ref : perceptors_)
+    if (Perceptor* p = ref.get(); p && counter_ % std::max(1, p->interval()) == 0) p->sense(percepts_, event);
+  if (!percepts_.empty() && connection_ && parser()) parser()->write(percepts_, message_);
+}
+
+bool Participant::deliver() {
+  if (percepts_.empty() || leaving()) return true;
+  if (inside_) {
+    behavior()->think(percepts_, later_);
+    return true;
+  }
+  const bool first = sent_ == 0;
+  if (!connection_->send(message_)) return false;
+  ++sent_;
+  // What was held back answers the first percepts: it is realised with what comes next, before it.
+  if (first && holdingBack_) {
+    skipCycle_ = true;
+    holdingBack_ = false;
+    std::swap(pending_, later_);
+    for (const Element e : later_) pending_.append(e);
+    later_.clear();
+  }
+  return true;
+}
+
+void Participant::greet(const Predicates& percepts) {
+  greeted_ = true;
+  if (!connection_ || !parser()) return;
+  message_.clear();
+  parser()->write(percepts, message_);
+  connection_->send(message_);
+  message_.clear();
+}
+
+}  // namespace spark::gamecontrol

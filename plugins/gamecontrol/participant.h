@@ -1,0 +1,117 @@
+#pragma once
+/// \file
+/// One agent as game control sees it: where its actions come from, what is still to be realised, what it is to be sent.
+///
+/// The latency of the installed base, which recorded sessions depend on:
+///
+///     cycle k      connected: aspect made, counter 1
+///     cycle k+1    first message realised: (scene ...) is stored in act, the robot built in prepare
+///     cycle k+2    end of act: effectors and perceptors are looked up; sense: first percepts
+///     cycle k+3    act: percepts sent, after this cycle's inputs were taken; what answers them acts in k+4
+///
+/// Effectors that a message addresses before they were looked up are "not registered": the action is lost with a warning.
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "api/agents.h"
+#include "gamecontrol/line_budget.h"
+
+namespace spark::gamecontrol {
+
+using Clock = std::chrono::steady_clock;
+
+class Participant {
+ public:
+  /// Behind a connection, which outlives it or is taken away by disconnect().
+  explicit Participant(IConnection& connection);
+  /// Driven from inside.
+  explicit Participant(Behavior& behavior);
+
+  /// "agent 3 (127.0.0.1:4711)".
+  const std::string& label() const { return label_; }
+  int number() const { return number_; }
+  IConnection* connection() const { return connection_; }
+  AgentAspect* aspect() const { return aspect_.get(); }
+  Behavior* behavior() const { return behavior_.get(); }
+  bool inside() const { return inside_; }
+  /// From now on it is to be removed at the start of the next act.
+  void leave() { leaving_ = true; }
+  /// True when it has to go: told to, or what it lives from is gone.
+  bool leaving() const { return leaving_ || (number_ > 0 && !aspect()) || (inside_ ? !behavior() : !connection_); }
+  void disconnect() { connection_ = nullptr; }
+
+  /// Gets its place in the tree and, when it lives inside, its first actions.
+  void join(int number, AgentAspect& aspect);
+  /// Looks its parser up again.
+  void resolveParser(Node& gameControl);
+  IParser* parser() const { return parserLeaf_ ? parser_ : nullptr; }
+
+  /// A message came: parsed at once, realised in the next act. Returns "" or why the connection has to be closed.
+  std::string receive(std::string_view message, std::size_t maxPending, Log& log, std::int64_t cycle);
+  /// Looks effectors and perceptors up again. True when it has a robot now and had none before.
+  bool resolveRobot();
+  /// Realises what is pending.
+  void realise(Log& log, std::int64_t cycle);
+  /// What a behaviour thought of becomes pending.
+  void promote();
+  /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent.
+  void sense(const Event& event);
+  /// Sends or hands over what was sensed last. False when the message was dropped because an earlier one has not left.
+  bool deliver();
+
+  /// Lockstep: it has to answer percepts with a sync predicate.
+  bool mustSync() const { return !syncPredicate_.empty() && sent_ > 0; }
+  bool synced() const { return synced_; }
+  bool heardFrom() const { return heardFrom_; }
+  bool hasRobot() const { return hadRobot_; }
+  Clock::time_point connectedAt() const { return connectedAt_; }
+  Clock::time_point lastHeard() const { return lastHeard_; }
+  /// Cycles it took part in.
+  std::int64_t counter() const { return counter_; }
+  void setCounter(std::int64_t n) { counter_ = n; }
+
+  /// What was received and not realised yet.
+  const Predicates& pending() const { return pending_; }
+  /// Keeps all but the predicate `first` back until the first percepts were sent: what it sent during the hold then comes in time.
+  void holdBack(std::string_view first);
+  /// True for agents that were held until all expected ones were there.
+  bool expected() const { return expected_; }
+  /// One message outside of the cycle, to a client that waits for something before it goes on.
+  void greet(const Predicates& percepts);
+  bool greeted() const { return greeted_; }
+
+ private:
+  struct Slot {
+    std::string predicate;
+    Ref<Effector> effector;
+  };
+  Effector* effector(std::string_view predicate) const;
+  void keep(const Predicates& arrived);
+  void warn(Log& log, std::int64_t cycle, const std::string& text);
+
+  std::string label_;
+  int number_ = 0;
+  IConnection* connection_ = nullptr;
+  Ref<Behavior> behavior_;
+  Ref<AgentAspect> aspect_;
+  Ref<Leaf> parserLeaf_;
+  IParser* parser_ = nullptr;
+  const bool inside_;
+  bool leaving_ = false, skipCycle_ = true, greeted_ = false, synced_ = false, heardFrom_ = false, hadRobot_ = false, expected_ = false, holdingBack_ = false;
+  const Clock::time_point connectedAt_ = Clock::now();
+  Clock::time_point lastHeard_ = connectedAt_;
+
+  Predicates pending_, arrived_, percepts_;
+  Predicates later_;  ///< held back, or thought of and not due yet
+  std::size_t pendingBytes_ = 0;
+  std::string message_, first_;
+  std::vector<Slot> effectors_;  ///< by predicate
+  std::vector<Ref<Perceptor>> perceptors_;
+  std::string syncPredicate_;
+  std::int64_t counter_ = 0, sent_ = 0;
+  LineBudget budget_{10};
+};
+
+}  // namespace spark::gamecontrol

@@ -1,0 +1,67 @@
+#pragma once
+/// \file
+/// `(scene file arguments...)`: how an agent asks for its robot.
+
+#include "api/agents.h"
+#include "spark/error.h"
+
+namespace spark {
+
+/// The effector that every agent has from the start. Deferred: the file is imported below the agent in the prepare phase.
+class SceneEffector : public Effector {
+  SPARK_CLASS(SceneEffector, Effector)
+ public:
+  static void describe(Description<SceneEffector>& d) {
+    d.doc("(scene file arguments...): loads the agent's robot, once.");
+    d.on<&SceneEffector::prepare>(phase::kPrepare);
+  }
+  std::string predicate() const override { return "scene"; }
+
+  std::string act(const Element& action) override {
+    if (loaded_) return "(scene ...): it has a robot already; a second one is refused.";
+    const Element file = action.at(1);
+    if (!file || !file.isText() || file.text().empty()) return "(scene <file> <arguments>...): expected a file name after scene.";
+    file_ = file.text();
+    arguments_.clear();
+    for (auto it = ++++action.begin(); it != action.end(); ++it) arguments_.push_back(value(*it));
+    return {};
+  }
+
+ private:
+  static Value value(const Element& e) {
+    switch (e.token().kind) {
+      case Token::Kind::text: return e.text();
+      case Token::Kind::number: return e.number();
+      case Token::Kind::integer: return e.integer();
+      case Token::Kind::list: break;
+    }
+    List out;
+    for (const Element inner : e) out.push_back(value(inner));
+    return out;
+  }
+
+  void prepare(const Event&) {
+    if (file_.empty()) return;
+    const std::string file = std::move(file_);
+    file_.clear();
+    AgentAspect* inner = agent();
+    if (!inner) return kernel().log().error("{}: (scene {}) needs an agent aspect above the effector.", path(), file);
+    AgentAspect& root = inner->outermost();
+    const std::size_t before = root.children().size();
+    try {
+      auto& server = kernel().root().require<ISceneServer>("/sys/server/scene");
+      server.importScene(file, root, arguments_);
+      loaded_ = true;
+      server.markModified();
+    } catch (const std::exception& e) {
+      while (root.children().size() > before) root.remove(*root.children().back());
+      kernel().log().error("Agent {} gets no robot: {}", root.number(), e.what());
+    }
+  }
+
+  std::string file_;
+  List arguments_;
+  bool loaded_ = false;
+};
+
+}  // namespace spark

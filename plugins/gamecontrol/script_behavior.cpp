@@ -1,0 +1,32 @@
+#include "gamecontrol/script_behavior.h"
+
+#include "spark/kernel.h"
+
+namespace spark {
+
+void ScriptBehavior::describe(Description<ScriptBehavior>& d) {
+  d.doc("A behaviour written in Lua: handles start and think, leaves S-expressions in actions.");
+  d.property("actions", &ScriptBehavior::actions_).doc("What is to be done: S-expressions, set by the script's handlers.");
+  d.method("script", &ScriptBehavior::script).parameters({"file"}).doc("Attaches the script.");
+}
+
+void ScriptBehavior::script(std::string file) { kernel().lua().attach(*this, file); }
+
+void ScriptBehavior::start(Predicates& actions) { run("start", nullptr, actions); }
+
+void ScriptBehavior::think(const Predicates& percepts, Predicates& actions) {
+  const Value data(toList(percepts));
+  run("think", &data, actions);
+}
+
+void ScriptBehavior::run(std::string_view channel, const Value* data, Predicates& actions) {
+  actions_.clear();
+  Event event;
+  event.name = channel;
+  event.data = data;
+  kernel().events().channel(channel).emitAt(*this, event);
+  const ReadResult result = readSexp(actions_, actions);
+  if (!result.message.empty()) kernel().log().warning("{}.actions: {} at {}:{}.", path(), result.message, result.line, result.column);
+}
+
+}  // namespace spark

@@ -1,0 +1,75 @@
+#include "net-tcp/net_server.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "net-tcp/length_prefix_framing.h"
+#include "net-tcp/tcp_port.h"
+#include "spark/plugin.h"
+
+namespace spark {
+
+namespace {
+using Clock = std::chrono::steady_clock;
+// How soon a request to stop is seen while nothing arrives.
+constexpr auto kSlice = std::chrono::milliseconds(25);
+}  // namespace
+
+NetServer::NetServer() = default;
+
+void NetServer::describe(Description<NetServer>& d) {
+  d.doc("Network server: ports below it bring input to the run loop.");
+  d.implements<IInputSource>();
+  d.method("listen", &NetServer::listen).doc("Opens all ports below; otherwise the first poll does.");
+}
+
+void NetServer::resolve() {
+  if (resolvedAt_ == kernel().structureVersion()) return;
+  ports_.clear();
+  collect(ports_);
+  resolvedAt_ = kernel().structureVersion();
+}
+
+void NetServer::listen() {
+  resolve();
+  for (TcpPort* port : ports_) port->listen();
+}
+
+void NetServer::poll() { round(); }
+
+bool NetServer::round() {
+  resolve();
+  if (!std::all_of(ports_.begin(), ports_.end(), [](TcpPort* p) { return p->listening(); })) {
+    try {
+      listen();
+    } catch (const Error& e) {
+      kernel().log().error("The network cannot be opened, the host ends. {}", e.what());
+      kernel().requestStop();
+      return true;
+    }
+  }
+  io_->restart();
+  io_->poll();
+  bool any = false;
+  for (TcpPort* port : ports_) any |= port->poll();
+  return any;
+}
+
+bool NetServer::wait(double seconds) {
+  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::clamp(seconds, 0.0, 3600.0)));
+  for (;;) {
+    if (round() || kernel().stopRequested()) return true;
+    const auto now = Clock::now();
+    if (now >= end) return false;
+    timer_.expires_at(std::min(end, now + kSlice));
+    timer_.async_wait(net::MemoryHandler(timerMemory_, [](const boost::system::error_code&) {}));
+    io_->restart();
+    io_->run_one();
+    timer_.cancel();
+  }
+}
+
+}  // namespace spark
+
+SPARK_PLUGIN("net-tcp", "1.0", "Network server with TCP ports on Boost.Asio, and the length-prefix framing.", spark::NetServer, spark::TcpPort,
+             spark::LengthPrefixFraming)

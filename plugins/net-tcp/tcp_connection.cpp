@@ -1,0 +1,121 @@
+#include "net-tcp/tcp_connection.h"
+
+#include <fmt/format.h>
+
+#include <boost/asio/buffer.hpp>
+
+#include "net-tcp/tcp_port.h"
+
+namespace spark::net {
+
+namespace {
+using boost::asio::error::would_block;
+using boost::system::error_code;
+
+std::string describePeer(const tcp::socket& socket) {
+  error_code ec;
+  const auto end = socket.remote_endpoint(ec);
+  return ec ? std::string("(gone)") : fmt::format("{}:{}", end.address().to_string(), end.port());
+}
+}  // namespace
+
+TcpConnection::TcpConnection(tcp::socket socket, std::uint64_t id, Node& port)
+    : socket_(std::move(socket)), port_(port), id_(id), peer_(describePeer(socket_)) {
+  error_code ignored;
+  socket_.non_blocking(true, ignored);
+  socket_.set_option(tcp::no_delay(true), ignored);
+}
+
+void TcpConnection::watchRead() {
+  readable_ = false;
+  socket_.async_wait(tcp::socket::wait_read, MemoryHandler(readMemory_, [self = shared_from_this()](const error_code& ec) {
+                       if (!ec) self->readable_ = true;
+                     }));
+}
+
+void TcpConnection::watchWrite() {
+  if (watchingWrite_ || closing_) return;
+  watchingWrite_ = true;
+  socket_.async_wait(tcp::socket::wait_write, MemoryHandler(writeMemory_, [self = shared_from_this()](const error_code& ec) {
+                       self->watchingWrite_ = false;
+                       if (!ec) self->flush();
+                     }));
+}
+
+void TcpConnection::shut() {
+  closing_ = true;
+  readable_ = false;
+  error_code ignored;
+  socket_.shutdown(tcp::socket::shutdown_both, ignored);
+  socket_.close(ignored);
+}
+
+void TcpConnection::close(std::string_view reason) {
+  if (closing_) return;
+  static_cast<TcpPort&>(port_).complain(Level::warning, fmt::format("{} is closed: {}.", peer_, reason));
+  shut();
+}
+
+bool TcpConnection::send(std::string_view message) {
+  if (closing_) return false;
+  if (!flush() || !idle()) {
+    static_cast<TcpPort&>(port_).countDropped();
+    return false;
+  }
+  out_.clear();
+  written_ = 0;
+  static_cast<TcpPort&>(port_).frame(message, out_);
+  stalledSince_ = Clock::now();
+  return flush();
+}
+
+bool TcpConnection::flush() {
+  while (!closing_ && !idle()) {
+    error_code ec;
+    const std::size_t n = socket_.write_some(boost::asio::buffer(out_.data() + written_, out_.size() - written_), ec);
+    if (n > 0) {
+      written_ += n;
+      stalledSince_ = Clock::now();
+    }
+    if (ec == would_block) {
+      watchWrite();
+      return true;
+    }
+    if (ec) {
+      // The reason comes with the next read, which ends the connection.
+      written_ = out_.size();
+      readable_ = true;
+      return false;
+    }
+  }
+  return !closing_;
+}
+
+double TcpConnection::stalledSeconds() const {
+  return idle() ? 0.0 : std::chrono::duration<double>(Clock::now() - stalledSince_).count();
+}
+
+TcpConnection::Read TcpConnection::read(std::string& scratch) {
+  error_code ec;
+  const std::size_t n = socket_.read_some(boost::asio::buffer(scratch), ec);
+  if (ec == would_block) {
+    watchRead();
+    return Read::nothing;
+  }
+  if (ec) return Read::ended;
+  input_.append(scratch, 0, n);
+  return Read::some;
+}
+
+void TcpConnection::consume(std::size_t bytes) { input_.erase(0, bytes); }
+
+void TcpConnection::markPartial(bool partial) {
+  if (partial && !partial_) partialSince_ = Clock::now();
+  partial_ = partial;
+}
+
+double TcpConnection::partialSeconds(Clock::time_point now) const {
+  return partial_ ? std::chrono::duration<double>(now - partialSince_).count() : 0.0;
+}
+
+}  // namespace spark::net

@@ -1,0 +1,105 @@
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "api/agents.h"
+#include "parser-json/json_reader.h"
+#include "spark/describe.h"
+#include "spark/plugin.h"
+
+namespace spark {
+
+namespace {
+
+bool isPlain(std::string_view text) {
+  for (const unsigned char c : text)
+    if (c < 0x20 || c > 0x7E || c == '"' || c == '\\') return false;
+  return true;
+}
+
+void writeText(std::string_view text, std::string& out) {
+  if (isPlain(text)) {
+    out.append(1, '"').append(text).append(1, '"');
+  } else {
+    out += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
+}
+
+void writeNumber(double v, int decimals, std::string& out) {
+  if (!std::isfinite(decimals < 0 ? v : static_cast<float>(v))) {
+    out += "null";
+  } else if (decimals >= 0) {
+    appendFixed(out, v, decimals);
+  } else {
+    char buffer[32];
+    out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, v).ptr);
+  }
+}
+
+void writeElement(const Element& e, int decimals, std::string& out) {
+  const Token& t = e.token();
+  switch (t.kind) {
+    case Token::Kind::text: writeText(e.text(), out); return;
+    case Token::Kind::number: writeNumber(t.number, decimals, out); return;
+    case Token::Kind::integer: out += std::to_string(t.integer); return;
+    case Token::Kind::list: break;
+  }
+  out += '[';
+  bool first = true;
+  for (const Element inner : e) {
+    if (!first) out += ',';
+    first = false;
+    writeElement(inner, decimals, out);
+  }
+  out += ']';
+}
+
+}  // namespace
+
+/// The same messages as JSON: `[["he1",1.2],["init",["unum",7],["teamname","A"]]]`.
+class JsonParser : public Leaf, public IParser {
+  SPARK_CLASS(JsonParser, Leaf)
+ public:
+  static void describe(Description<JsonParser>& d) {
+    d.doc("Reads and writes JSON that mirrors the S-expressions.");
+    d.property("decimals", &JsonParser::decimals_).range(-1, 9).doc("Decimals of every number that is no integer, as the S-expressions have them; -1: as many as it has.");
+    d.property("maxDepth", &JsonParser::maxDepth_).range(1, 1000).doc("Lists nested deeper are refused.");
+    d.property("maxTokens", &JsonParser::maxTokens_).range(1, 1e6).doc("Longer messages are refused.");
+    d.method("parse", &JsonParser::parseText).parameters({"text"}).doc("The text's top-level elements, as far as it can be read.");
+    d.method("write", &JsonParser::writeText).parameters({"elements"}).doc("The message for a list of top-level elements.");
+    d.implements<IParser>();
+  }
+
+  ReadResult parse(std::string_view message, Predicates& out) override {
+    return json::read(message, out, {static_cast<std::uint32_t>(maxDepth_), static_cast<std::uint32_t>(maxTokens_)});
+  }
+  void write(const Predicates& predicates, std::string& out) override {
+    out += '[';
+    bool first = true;
+    for (const Element e : predicates) {
+      if (!first) out += ',';
+      first = false;
+      writeElement(e, decimals_, out);
+    }
+    out += ']';
+  }
+
+ private:
+  List parseText(std::string text) {
+    Predicates out;
+    parse(text, out);
+    return toList(out);
+  }
+  std::string writeText(List elements) {
+    Predicates in;
+    append(elements, in);
+    std::string out;
+    write(in, out);
+    return out;
+  }
+  int decimals_ = 2, maxDepth_ = 64, maxTokens_ = 65536;
+};
+
+}  // namespace spark
+
+SPARK_PLUGIN("parser-json", "1.0", "JSON between bytes and predicates.", spark::JsonParser)

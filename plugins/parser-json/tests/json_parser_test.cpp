@@ -1,0 +1,105 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "api/agents.h"
+#include "test_support.h"
+
+using namespace spark;
+
+namespace {
+struct Fixture {
+  test::House house;
+  IParser* parser;
+  Fixture() {
+    house.kernel.plugins().use("parser-json");
+    parser = &house.kernel.create<IParser>("JsonParser", "/usr/parser");
+  }
+  /// What was read, as S-expressions.
+  std::string read(std::string_view text, std::string* error = nullptr) {
+    Predicates p;
+    const auto result = parser->parse(text, p);
+    if (error) *error = result.message;
+    else CHECK(result.message == "");
+    std::string out;
+    writeSexp(p, 2, out);
+    return out;
+  }
+  std::string written(const Predicates& p) {
+    std::string out;
+    parser->write(p, out);
+    return out;
+  }
+};
+}  // namespace
+
+TEST_CASE("JSON mirrors the S-expressions") {
+  Fixture f;
+  const auto [text, same] = GENERATE(table<std::string, std::string>({
+      {R"([["he1",1.2],["init",["unum",7],["teamname","A"]]])", "(he1 1.20)(init (unum 7) (teamname A))"},
+      {R"(["syn"])", "(syn )"},
+      {R"(["he1",1.5] ["he2",-2]["syn"])", "(he1 1.50)(he2 -2)(syn )"},
+      {R"([["a"]][["b"],["c"]])", "(a )(b )(c )"},
+      {"[]", ""},
+      {" \n ", ""},
+      {R"([["see",true,null]])", "(see true nan)"},
+      {R"([["x",18446744073709551615]])", "(x 18446744073709551616.00)"},
+      {R"([["say","h\u00e9"]])", "(say h\xc3\xa9)"},
+  }));
+  CAPTURE(text);
+  REQUIRE(f.read(text) == same);
+}
+
+TEST_CASE("Numbers arrive as numbers") {
+  Fixture f;
+  Predicates p;
+  f.parser->parse(R"(["he1",1.25,7])", p);
+  const Element list = *p.begin();
+  REQUIRE(list.at(1).token().kind == Token::Kind::number);
+  REQUIRE(list.at(1).number() == 1.25);
+  REQUIRE(list.at(2).integer() == 7);
+}
+
+TEST_CASE("Bad JSON keeps what was complete before the error and says what is wrong") {
+  Fixture f;
+  const auto [text, kept, what] = GENERATE(table<std::string, std::string, std::string>({
+      {R"(["a"]["b")", "(a )", "expected"},
+      {R"([["a",1],["b",)", "(a 1)", "unexpected end"},
+      {R"([["a",1],{"b":2}])", "(a 1)", "objects"},
+      {R"(["a"]])", "(a )", "unexpected"},
+      {R"(["a"] nonsense)", "(a )", "invalid literal"},
+      {R"(["a","x)", "", "missing closing quote"},
+      {"[\"a\",\"\xff\xfe\"]", "", "UTF-8"},
+      {R"(["a",1e999])", "", "out of range"},
+      {R"(["a",NaN])", "", "invalid literal"},
+  }));
+  CAPTURE(text);
+  std::string error;
+  REQUIRE(f.read(text, &error) == kept);
+  REQUIRE_THAT(error, Catch::Contains(what));
+}
+
+TEST_CASE("200,000 nested arrays are refused without harm") {
+  Fixture f;
+  std::string error;
+  REQUIRE(f.read(R"(["syn"])" + std::string(200000, '['), &error) == "(syn )");
+  REQUIRE_THAT(error, Catch::Contains("deeper than 64"));
+}
+
+TEST_CASE("JSON is written compact, with null for what JSON cannot say") {
+  Fixture f;
+  Predicates p;
+  p.open("time").open("now").add(0.3).close().close();
+  p.open("See").close();
+  p.open("x").add(std::nan("")).add(HUGE_VAL).add(1e300).add(-0.001).add(3).close();
+  REQUIRE(f.written(p) == R"([["time",["now",0.30]],["See"],["x",null,null,null,-0.00,3]])");
+  setProperty(*f.house.kernel.root().find("/usr/parser"), "decimals", -1);
+  REQUIRE(f.written(p) == R"([["time",["now",0.3]],["See"],["x",null,null,1e+300,-0.001,3]])");
+}
+
+TEST_CASE("Any text comes out as valid UTF-8") {
+  Fixture f;
+  Predicates p;
+  p.open("hear").add("a\"b\\c\n").add("\xff").add("h\xc3\xa9").close();
+  REQUIRE(f.written(p) == "[[\"hear\",\"a\\\"b\\\\c\\n\",\"\xef\xbf\xbd\",\"h\xc3\xa9\"]]");
+}

@@ -1,0 +1,63 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "api/agents.h"
+#include "test_support.h"
+
+using namespace spark;
+
+namespace {
+struct Fixture {
+  test::House house;
+  IParser* parser;
+  Fixture() {
+    house.kernel.plugins().use("parser-sexp");
+    parser = &house.kernel.create<IParser>("SexpParser", "/usr/parser");
+  }
+  std::string written(const Predicates& p) {
+    std::string out;
+    parser->write(p, out);
+    return out;
+  }
+};
+}  // namespace
+
+TEST_CASE("S-expressions are written as the installed base's clients read them") {
+  Fixture f;
+  Predicates p;
+  p.open("time").open("now").add(7.359).close().close();
+  p.open("See").close();
+  p.open("HJ").open("n").add("hj1").close().open("ax").add(-0.001).close().close();
+  p.open("GS").open("unum").add(3).close().open("t").add(0.0).close().close();
+  REQUIRE(f.written(p) == "(time (now 7.36))(See )(HJ (n hj1) (ax -0.00))(GS (unum 3) (t 0.00))");
+  SECTION("decimals are a property") {
+    setProperty(*f.house.kernel.root().find("/usr/parser"), "decimals", 3);
+    REQUIRE(f.written(p).starts_with("(time (now 7.359))"));
+  }
+}
+
+TEST_CASE("Not-a-number and infinity keep C's spelling") {
+  Fixture f;
+  Predicates p;
+  p.open("a").add(std::nan("")).add(HUGE_VAL).add(-HUGE_VAL).close();
+  REQUIRE(f.written(p) == "(a nan inf -inf)");
+}
+
+TEST_CASE("A message with an error keeps what was complete before it") {
+  Fixture f;
+  const auto [text, kept] = GENERATE(table<std::string, std::string>({
+      {"(a 1)(b 2", "(a 1)"}, {"(a 1))(b 2)", "(a 1)"}, {")(he1 2)", ""}, {"(a \"x", ""}, {"(a 1)(say ;zz)(he1 1)", "(a 1)"}, {"(a 1)\x01(b 2)", "(a 1)"}}));
+  Predicates p;
+  CAPTURE(text);
+  REQUIRE(!f.parser->parse(text, p).message.empty());
+  REQUIRE(f.written(p) == kept);
+}
+
+TEST_CASE("200,000 nested lists are refused without harm") {
+  Fixture f;
+  Predicates p;
+  const auto result = f.parser->parse("(syn)" + std::string(200000, '('), p);
+  REQUIRE(result.message.find("deeper than 64") != std::string::npos);
+  REQUIRE(f.written(p) == "(syn )");
+}

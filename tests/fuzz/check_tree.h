@@ -1,0 +1,29 @@
+#pragma once
+/// \file
+/// What must hold of predicates whatever the bytes were.
+
+#include <cstdlib>
+
+#include "spark/predicates.h"
+
+namespace spark::fuzz {
+
+/// Walks all elements; aborts when lists do not nest or texts lie outside. Uses what effectors use.
+inline void checkElement(const Element& e, std::uint32_t end) {
+  const Token& t = e.token();
+  if (e.index() >= end) std::abort();
+  (void)e.number();
+  (void)e.integer();
+  (void)e.text().size();
+  if (!e.isList()) return;
+  if (t.end <= e.index() || t.end > end) std::abort();
+  (void)e.head();
+  (void)e.named("unum");
+  for (const Element inner : e) checkElement(inner, t.end);
+}
+
+inline void checkTree(const Predicates& p) {
+  for (const Element e : p) checkElement(e, p.size());
+}
+
+}  // namespace spark::fuzz

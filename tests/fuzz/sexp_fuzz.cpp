@@ -1,0 +1,23 @@
+// The S-expression reader: no crash, no runaway; what it wrote, it reads again.
+#include <cstdint>
+#include <cstdlib>
+
+#include "fuzz/check_tree.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  spark::Predicates read;
+  const spark::ReadLimits limits{16, 4096};
+  const auto result = spark::readSexp(bytes, read, limits);
+  if (result.consumed > size || read.size() > limits.maxTokens) std::abort();
+  if (result.message.empty() && result.consumed != size) std::abort();
+  spark::fuzz::checkTree(read);
+  std::string text;
+  spark::writeSexp(read, 2, text);
+
+  // A reader that is told to stop stops at an expression.
+  spark::Predicates one;
+  spark::readSexp(bytes, one, limits, 1);
+  spark::fuzz::checkTree(one);
+  return 0;
+}

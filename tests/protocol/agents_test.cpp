@@ -1,0 +1,331 @@
+#include <catch2/catch.hpp>
+
+#include "arena.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+using Deeds = std::vector<std::string>;
+
+/// Connects and cycles until the first percepts are there.
+Client robot(Arena& a, std::string_view scene = "(scene robot)", const std::string& port = "agents") {
+  Client c = a.client(port);
+  const auto before = a.agents();
+  a.until([&] { return a.agents() > before; });
+  c.send(scene);
+  std::vector<std::string> got;
+  a.until([&] { return !(got = c.drain()).empty(); });
+  return c;
+}
+/// Delivers what clients sent and realises it in one cycle.
+void realise(Arena& a, std::size_t deedsWanted) {
+  a.until([&] {
+    a.cycle();
+    return deeds().size() >= deedsWanted;
+  }, false);
+}
+/// Notes who comes and goes.
+class TestRule : public ControlAspect {
+  SPARK_CLASS(TestRule, ControlAspect)
+ public:
+  static void describe(Description<TestRule>& d) { d.doc("Notes who comes and goes."); }
+  void rule(const Event&) override {}
+  void agentConnected(AgentAspect& agent) override { deeds().push_back("come " + agent.path()); }
+  void agentLeaving(AgentAspect& agent) override { deeds().push_back("go " + agent.path()); }
+};
+}  // namespace
+
+TEST_CASE("A session opens as the installed base's do: silence, robot, percepts with the original's latency") {
+  Arena a;
+  Client c = a.client();
+  a.until([&] { return a.agents() == 1; });
+  const auto joined = a.cycles();
+  REQUIRE(c.drain().empty());
+  c.send("(scene robot 4 abc)");
+  a.until([&] { return !deeds().empty(); });
+  const auto loaded = a.cycles();
+  REQUIRE(loaded > joined);
+  REQUIRE(deeds() == Deeds{"argument \"4\"", "argument \"abc\""});
+  // Nothing in the loading cycle; sensed first in the next, sent one later.
+  a.cycle();
+  REQUIRE(c.drain().empty());
+  a.cycle();
+  const auto first = c.receive();
+  REQUIRE(first);
+  REQUIRE(first->starts_with(fmt::format("(time (now {:.2f}))", 0.02 * static_cast<double>(loaded + 1))));
+  REQUIRE(a.control->agents()[0]->path() == "/usr/scene/AgentAspect1");
+  REQUIRE(a.control->agentsSeen() == 1);
+}
+
+TEST_CASE("A perceptor of interval 3 senses when the agent's cycle count, from connecting on, is a multiple of 3") {
+  Arena a;
+  Client c = a.client();
+  a.until([&] { return a.agents() == 1; });
+  c.send("(scene robot)(syn)");
+  // Connected in cycle 1, loaded in 2, sensed from 3 on: as recorded, the first message has it.
+  a.until([&] { return a.agents() == 1 && !a.kernel.root().find("/usr/scene/AgentAspect1/vision"); }, false);
+  a.until([&] {
+    a.cycle();
+    return a.kernel.root().find("/usr/scene/AgentAspect1/vision") != nullptr;
+  }, false);
+  const auto loaded = a.cycles();
+  std::string seen;
+  for (int i = 0; i < 7; ++i) a.cycle();
+  for (int i = 0; i < 6; ++i) seen += c.receive()->find("vision") == std::string::npos ? '.' : 'V';
+  const auto counter = loaded + 1;  // joined in cycle 1
+  REQUIRE(seen == (counter % 3 == 0 ? "V..V.." : counter % 3 == 1 ? "..V..V" : ".V..V."));
+}
+
+TEST_CASE("init in the message that names the robot is lost with a warning") {
+  Arena a;
+  Client c = a.client();
+  a.until([&] { return a.agents() == 1; });
+  c.send("(scene robot)(init (unum 1)(teamname A))");
+  std::vector<std::string> got;
+  a.until([&] { return !(got = c.drain()).empty(); });
+  REQUIRE(a.logged("no effector registered for predicate init"));
+  REQUIRE(deeds().empty());
+  c.send("(init (unum 7)(teamname A))");
+  realise(a, 1);
+  REQUIRE(deeds() == Deeds{"1 init A 7"});
+}
+
+TEST_CASE("Messages are realised in order of agents' numbers, predicates in order") {
+  Arena a;
+  Client one = robot(a), two = robot(a);
+  // The later one first on the wire.
+  two.send("(he2 5)(he1 6)");
+  two.send("(he1 7)");
+  one.send("(he1 1)(he2 2)(he1 3)");
+  a.until([&] { return true; }, false);
+  for (int i = 0; i < 50; ++i) a.net->poll();
+  a.cycle();
+  REQUIRE(deeds() == Deeds{"1 he1 1", "1 he2 2", "1 he1 3", "2 he2 5", "2 he1 6", "2 he1 7"});
+}
+
+TEST_CASE("Bad actions harm nothing but themselves") {
+  Arena a;
+  Client c = robot(a);
+  c.send("(nonsense 1)(he1)(he1 nan)((he1 2))()(he1 abc)atom(he1 3)");
+  realise(a, 3);
+  REQUIRE(deeds() == Deeds{"1 he1 nan", "1 he1 0", "1 he1 3"});
+  REQUIRE(a.logged("no effector registered for predicate nonsense"));
+  REQUIRE(a.logged("agent 1 (" + c.name() + "): (he1 <value>): expected a number."));
+}
+
+TEST_CASE("A message with an error keeps what came before, the connection stays") {
+  Arena a;
+  Client c = robot(a);
+  c.send("(he1 1))(he1 2)");
+  realise(a, 1);
+  c.send("(he1 3)" + std::string(60000, '('));
+  realise(a, 2);
+  c.send("\x01\x02\xff garbage");
+  c.send("(he1 4)");
+  realise(a, 3);
+  REQUIRE(deeds() == Deeds{"1 he1 1", "1 he1 3", "1 he1 4"});
+  REQUIRE(a.logged("the rest of that message is ignored"));
+}
+
+TEST_CASE("200,000 nested parentheses over several messages close at most that connection") {
+  Arena a;
+  Client other = robot(a), c = robot(a);
+  for (int i = 0; i < 4; ++i) c.send(std::string(50000, '('));
+  c.raw("\x00\x03\x0d\x40");  // and once in a single message that is too long
+  REQUIRE(c.closed());
+  other.send("(he1 1)");
+  realise(a, 1);
+  REQUIRE(a.agents() == 1);
+}
+
+TEST_CASE("Complaints about one agent are limited") {
+  Arena a;
+  Client c = robot(a);
+  std::string flood;
+  for (int i = 0; i < 5000; ++i) flood += "(bad 1)";
+  c.send(flood + "(he1 1)");
+  realise(a, 1);
+  std::size_t lines = 0;
+  for (std::size_t at = 0; (at = a.house.text.find("predicate bad", at)) != std::string::npos; ++at) ++lines;
+  REQUIRE(lines >= 1);
+  REQUIRE(lines <= 10);
+}
+
+TEST_CASE("Scenes that cannot be loaded leave the agent empty and say why") {
+  Arena a;
+  Client c = a.client();
+  a.until([&] { return a.agents() == 1; });
+  const std::string file = GENERATE("missing", "broken", "/etc/passwd", "../x");
+  c.send("(scene " + file + ")");
+  a.until([&] { return a.logged("Agent 1 gets no robot"); });
+  a.cycle();
+  a.cycle();
+  a.cycle();
+  REQUIRE(c.drain().empty());
+  REQUIRE(a.control->agents()[0]->children().size() == 1);
+  c.send("(scene robot)");
+  std::vector<std::string> got;
+  a.until([&] { return !(got = c.drain()).empty(); });
+}
+
+TEST_CASE("A second robot is refused") {
+  Arena a;
+  Client c = robot(a);
+  const auto children = a.control->agents()[0]->children().size();
+  c.send("(scene robot)(he1 1)");
+  realise(a, 1);
+  REQUIRE(a.logged("it has a robot already"));
+  REQUIRE(a.control->agents()[0]->children().size() == children);
+}
+
+TEST_CASE("A leaving client's agent goes at the start of the next cycle, the others stay") {
+  Arena a;
+  Client one = robot(a), two = robot(a);
+  one.leave();
+  a.until([&] {
+    a.cycle();
+    return a.agents() == 1;
+  }, false);
+  REQUIRE(a.kernel.root().find("/usr/scene/AgentAspect1") == nullptr);
+  REQUIRE(a.control->agents()[0]->number() == 2);
+  Client three = robot(a);
+  REQUIRE(a.control->agents()[1]->number() == 3);
+}
+
+TEST_CASE("An agent that is removed loses its connection if that is wanted") {
+  Arena a;
+  Client c = robot(a);
+  const bool close = GENERATE(true, false);
+  a.control->removeAgent(*a.control->agents()[0], close);
+  a.cycle();
+  REQUIRE(a.agents() == 0);
+  if (close) REQUIRE(c.closed());
+  else {
+    c.send("(he1 1)");
+    a.cycle();
+    a.cycle();
+    REQUIRE(deeds().empty());
+  }
+}
+
+TEST_CASE("Control aspects hear of agents") {
+  Arena a;
+  a.kernel.registerClass<TestRule>();
+  a.kernel.create("TestRule", "/sys/server/gamecontrol/rule");
+  {
+    Client c = robot(a);
+  }
+  realise(a, 2);
+  REQUIRE(deeds() == Deeds{"come /usr/scene/AgentAspect1", "go /usr/scene/AgentAspect1"});
+}
+
+TEST_CASE("30 agents at once") {
+  Arena a;
+  std::vector<Client> clients;
+  for (int i = 0; i < 30; ++i) clients.push_back(a.client());
+  for (auto& c : clients) c.send("(scene robot)(syn)");
+  std::vector<std::size_t> got(30, 0);
+  a.until([&] {
+    for (std::size_t i = 0; i < 30; ++i) {
+      const std::size_t n = clients[i].drain().size();
+      got[i] += n;
+      for (std::size_t k = 0; k < n; ++k) clients[i].send("(he1 1)(syn)");
+    }
+    return *std::min_element(got.begin(), got.end()) >= 5;
+  });
+  REQUIRE(a.control->agentsSeen() == 30);
+  REQUIRE(a.get("messagesDropped").toInteger() == 0);
+}
+
+TEST_CASE("More agents than allowed are turned away") {
+  Arena a;
+  a.set("maxAgents", 1);
+  Client one = robot(a);
+  Client two = a.client();
+  REQUIRE(two.closed());
+  REQUIRE(a.logged("there are 1 agents already (maxAgents)"));
+}
+
+TEST_CASE("A client that never reads costs a bounded amount and does not disturb the others") {
+  Arena a;
+  Client other = robot(a);
+  Client deaf = a.client();
+  a.until([&] { return a.agents() == 2; });
+  deaf.send("(scene loud)");
+  std::size_t heard = 0;
+  for (int i = 0; i < 1200; ++i) {
+    a.cycle();
+    heard += other.drain().size();
+  }
+  REQUIRE(heard >= 1100);
+  REQUIRE(a.get("messagesDropped").toInteger() > 100);
+}
+
+TEST_CASE("A client that sends more than maxPending within a cycle is closed") {
+  Arena a;
+  Client other = robot(a), flood = robot(a);
+  std::string message;
+  for (int i = 0; i < 5000; ++i) message += "(he1 1)";
+  for (int i = 0; i < 20; ++i) flood.send(message);
+  REQUIRE(flood.closed());
+  REQUIRE(a.logged("it sent more than 262144 bytes within one cycle"));
+  a.cycle();
+  REQUIRE(a.agents() == 1);
+}
+
+TEST_CASE("Two ports speak two languages at the same time") {
+  Arena a;
+  a.addPort("json", "JsonParser");
+  Client sexp = robot(a);
+  Client json = robot(a, R"([["scene","robot"]])", "json");
+  sexp.send("(he1 1.5)(init (unum 3)(teamname A))");
+  json.send(R"([["he1",2.5],["init",["unum",7],["teamname","B"]]])");
+  json.send(R"(["he2",3])");
+  for (int i = 0; i < 50; ++i) a.net->poll();
+  a.cycle();
+  REQUIRE(deeds() == Deeds{"1 he1 1.5", "1 init A 3", "2 he1 2.5", "2 init B 7", "2 he2 3"});
+  sexp.drain();
+  json.drain();
+  a.cycle();
+  REQUIRE(sexp.receive()->starts_with("(time (now "));
+  REQUIRE(json.receive()->starts_with(R"([["time",["now",)"));
+}
+
+TEST_CASE("The parser is swapped by exchanging one node") {
+  Arena a;
+  Node& home = a.kernel.root().require<Node>("/sys/server/gamecontrol");
+  home.remove(*home.child("parser"));
+  home.create("JsonParser", "parser");
+  Client c = robot(a, R"(["scene","robot"])");
+  c.send(R"(["he1",2.5])");
+  realise(a, 1);
+  REQUIRE(deeds() == Deeds{"1 he1 2.5"});
+}
+
+TEST_CASE("Percepts do not depend on the number of threads") {
+  const auto run = [](int threads) {
+    Arena a;
+    a.kernel.jobs().setThreads(threads);
+    std::vector<Client> clients;
+    for (int i = 0; i < 8; ++i) {
+      clients.push_back(a.client());
+      a.until([&] { return a.agents() == static_cast<std::size_t>(i + 1); });
+      clients.back().send("(scene robot)");
+    }
+    const auto from = a.cycles();
+    (void)from;
+    a.until([&] { return a.control->agentsSeen() == 8; });
+    a.kernel.jobs().setThreads(threads);
+    for (auto& c : clients) c.drain();
+    std::string all;
+    for (int i = 0; i < 12; ++i) a.cycle();
+    for (auto& c : clients)
+      for (int i = 0; i < 11; ++i) {
+        const std::string message = *c.receive();
+        all += message.substr(message.find("))") + 2) + "\n";  // the time depends on when they connected
+      }
+    return std::count(all.begin(), all.end(), 'v');
+  };
+  REQUIRE(run(1) == run(4));
+}

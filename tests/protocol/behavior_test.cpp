@@ -1,0 +1,109 @@
+#include <catch2/catch.hpp>
+
+#include "arena.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+/// Asks for a robot, then answers every message with `(he1 <messages so far>)`.
+class TestBehavior : public Behavior {
+  SPARK_CLASS(TestBehavior, Behavior)
+ public:
+  static void describe(Description<TestBehavior>& d) {
+    d.doc("Counts what it hears.");
+    d.property("heard", &TestBehavior::heard).doc("Messages.");
+  }
+  void start(Predicates& actions) override { actions.open("scene").add("robot").close(); }
+  void think(const Predicates& percepts, Predicates& actions) override {
+    if (heard++ == 0) first = (*percepts.begin()).named("now").at(1).number();
+    actions.open("he1").add(heard).close();
+  }
+  int heard = 0;
+  double first = 0;
+};
+}  // namespace
+
+TEST_CASE("A behaviour drives an agent with the latency of a connection") {
+  Arena a;
+  a.kernel.registerClass<TestBehavior>();
+  auto& b = a.kernel.create<TestBehavior>("TestBehavior", "/usr/agent/b");
+  a.cycle();  // joins
+  a.cycle();  // robot
+  a.cycle();  // first percepts
+  REQUIRE(b.heard == 0);
+  a.cycle();  // thinks
+  REQUIRE(b.heard == 1);
+  REQUIRE(b.first == Approx(3 * 0.02));
+  REQUIRE(deeds().empty());
+  a.cycle();  // acts
+  REQUIRE(deeds() == std::vector<std::string>{"1 he1 1"});
+  a.cycle();
+  REQUIRE(deeds() == std::vector<std::string>{"1 he1 1", "1 he1 2"});
+}
+
+TEST_CASE("Without percept delay a behaviour acts one cycle earlier") {
+  Arena a;
+  a.set("perceptDelay", 0);
+  a.kernel.registerClass<TestBehavior>();
+  auto& b = a.kernel.create<TestBehavior>("TestBehavior", "/usr/agent/b");
+  a.cycle();
+  a.cycle();
+  a.cycle();
+  REQUIRE(b.heard == 1);
+  a.cycle();
+  REQUIRE(deeds() == std::vector<std::string>{"1 he1 1"});
+}
+
+TEST_CASE("Behaviours are agents in tree order, before connections, and need no answer in lockstep") {
+  Arena a;
+  a.kernel.registerClass<TestBehavior>();
+  a.kernel.create("TestBehavior", "/usr/agent/team/one");
+  a.kernel.create("TestBehavior", "/usr/agent/two");
+  Client c = a.client();
+  a.until([&] { return a.agents() == 3; });
+  for (int i = 0; i < 6; ++i) a.cycle();
+  REQUIRE(deeds().size() >= 2);
+  REQUIRE(deeds()[0] == "1 he1 1");
+  REQUIRE(deeds()[1] == "2 he1 1");
+  REQUIRE(a.step());
+}
+
+TEST_CASE("A removed behaviour takes its agent along") {
+  Arena a;
+  a.kernel.registerClass<TestBehavior>();
+  Leaf& b = a.kernel.create("TestBehavior", "/usr/agent/b");
+  a.cycle();
+  REQUIRE(a.agents() == 1);
+  b.parent()->remove(b);
+  a.cycle();
+  REQUIRE(a.agents() == 0);
+}
+
+TEST_CASE("A behaviour written in Lua hears percepts and acts") {
+  Arena a;
+  Leaf& b = a.kernel.create("ScriptBehavior", "/usr/agent/lua");
+  a.kernel.lua().attachText(b, R"lua(
+    on("start", function(self) self.actions = "(scene robot)" end)
+    on("think", function(self, event)
+      local time = event.data[1]          -- {"time", {"now", t}}
+      self.actions = string.format("(he1 %.2f)", time[2][2] * 100)
+    end)
+  )lua", "test", true);
+  for (int i = 0; i < 5; ++i) a.cycle();
+  REQUIRE(deeds() == std::vector<std::string>{"1 he1 6"});
+}
+
+TEST_CASE("A behaviour for which no agent can be made is reported once") {
+  Arena a;
+  a.kernel.registerClass<TestBehavior>();
+  a.set("createEffector", "NoSuchEffector");
+  a.kernel.create("TestBehavior", "/usr/agent/b");
+  a.cycle();
+  a.cycle();
+  a.cycle();
+  const auto at = a.house.text.find("cannot be made");
+  REQUIRE(at != std::string::npos);
+  REQUIRE(a.house.text.find("cannot be made", at + 1) == std::string::npos);
+  REQUIRE(a.agents() == 0);
+}

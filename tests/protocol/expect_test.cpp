@@ -1,0 +1,145 @@
+#include <catch2/catch.hpp>
+
+#include "arena.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+std::string init(const std::string& team, int unum) { return fmt::format("(init (unum {})(teamname {}))", unum, team); }
+
+/// How a client opens its session.
+enum class Style { atOnce, inTurn };
+
+/// A client that answers every message with `(he1 <number of the message>)(syn)`.
+struct Player {
+  Player(Arena& a, std::string t, int u, Style s) : client(a.client()), team(std::move(t)), unum(u), style(s) {
+    if (style == Style::atOnce) {
+      client.send("(scene robot)");
+      client.send(init(team, unum) + "(syn)");
+      named = true;
+    } else {
+      client.send("(scene robot)(syn)");
+    }
+  }
+  void play() {
+    for (const auto& message : client.drain()) {
+      heard.push_back(message);
+      if (!named) client.send(init(team, unum) + "(syn)");
+      else client.send(fmt::format("(he1 {})(syn)", message.size()));
+      named = true;
+    }
+  }
+  Client client;
+  std::string team;
+  int unum;
+  Style style;
+  bool named = false;
+  std::vector<std::string> heard;
+};
+
+/// Plays 40 cycles with players in this order of connecting; returns everything that was done.
+std::vector<std::string> match(const std::vector<int>& order, Style style, std::int64_t cycles = 40) {
+  static const std::vector<std::pair<std::string, int>> kPlayers{{"Alpha", 1}, {"Alpha", 2}, {"Beta", 1}, {"Beta", 10}, {"Beta", 3}};
+  Arena a;
+  a.set("expect", static_cast<int>(order.size()));
+  a.set("holdWait", 0.02);
+  std::vector<std::unique_ptr<Player>> players;
+  for (const int i : order) {
+    const auto& [team, unum] = kPlayers[static_cast<std::size_t>(i)];
+    players.push_back(std::make_unique<Player>(a, team, unum, style));
+    for (int k = 0; k < i; ++k) a.net->poll();
+  }
+  a.until([&] {
+    for (auto& p : players) p->play();
+    return a.cycles() >= cycles;
+  });
+  return deeds();
+}
+
+}  // namespace
+
+TEST_CASE("The clock stands until the expected agents are there, in any mode") {
+  Arena a;
+  a.set("expect", 2);
+  Client one = a.client();
+  one.send("(scene robot)" + init("A", 1) + "(syn)");
+  Client two = a.client();
+  two.send("(scene robot)" + init("A", 2));
+  for (int i = 0; i < 300; ++i) {
+    a.net->poll();
+    REQUIRE_FALSE(a.gate->ready(false));
+    REQUIRE_FALSE(a.gate->ready(true));
+  }
+  REQUIRE(a.agents() == 0);
+  two.send("(syn)");
+  a.until([&] { return a.gate->ready(true); }, false);
+  a.cycle();
+  REQUIRE(a.agents() == 2);
+  REQUIRE(a.logged("2 of 2 expected agents are ready."));
+}
+
+TEST_CASE("Expected agents are numbered by team and number, whoever came first, and play the same match") {
+  const Style style = GENERATE(Style::atOnce, Style::inTurn);
+  const auto first = match({0, 1, 2, 3, 4}, style);
+  REQUIRE(std::vector<std::string>(first.begin(), first.begin() + 5) ==
+          std::vector<std::string>{"1 init Alpha 1", "1 he1 " + first[1].substr(6), "2 init Alpha 2", "2 he1 " + first[3].substr(6), "3 init Beta 1"});
+  REQUIRE(std::count_if(first.begin(), first.end(), [](const auto& s) { return s.find("init") != s.npos; }) == 5);
+  REQUIRE(std::find(first.begin(), first.end(), "4 init Beta 3") != first.end());
+  REQUIRE(std::find(first.begin(), first.end(), "5 init Beta 10") != first.end());
+  REQUIRE(match({4, 3, 2, 1, 0}, style) == first);
+  REQUIRE(match({2, 4, 0, 3, 1}, style) == first);
+}
+
+TEST_CASE("A client that waits for a first message gets a minimal one, the others none") {
+  Arena a;
+  a.set("expect", 2);
+  a.set("holdWait", 0.01);
+  Client waits = a.client();
+  waits.send("(scene robot)");
+  Client complete = a.client();
+  complete.send("(scene robot)" + init("A", 1) + "(syn)");
+  std::vector<std::string> got;
+  a.until([&] {
+    REQUIRE_FALSE(a.gate->ready(true));
+    return !(got = waits.drain()).empty();
+  }, false);
+  REQUIRE(got == std::vector<std::string>{"(time (now 0.00))"});
+  for (int i = 0; i < 100; ++i) {
+    a.net->wait(0.0005);
+    REQUIRE_FALSE(a.gate->ready(true));
+  }
+  REQUIRE(waits.drain().empty());
+  REQUIRE(complete.drain().empty());
+}
+
+TEST_CASE("Who leaves during the hold is not counted, who comes on top joins afterwards") {
+  Arena a;
+  a.set("expect", 2);
+  const auto ready = [&](const std::string& team, int unum) {
+    Client c = a.client();
+    c.send("(scene robot)" + init(team, unum) + "(syn)");
+    return c;
+  };
+  {
+    Client gone = ready("A", 1);
+    a.until([&] { return a.gate->ready(true) || a.logged("1 of 2"); }, false);
+  }
+  a.until([&] { return a.gate->ready(true) || a.logged("0 of 2 expected agents are ready.\n1 of 2") || getProperty(a.port(), "connections").toInteger() == 0; }, false);
+  REQUIRE_FALSE(a.gate->ready(true));
+  Client idle = a.client();
+  Client late = ready("B", 5);
+  REQUIRE_FALSE(a.gate->ready(true));
+  a.until([&] { a.gate->ready(true); return a.house.text.ends_with("1 of 2 expected agents are ready.\n"); }, false);
+  Client last = ready("A", 9);
+  a.until([&] { return a.gate->ready(true); }, false);
+  a.cycle();
+  REQUIRE(a.agents() == 3);
+  a.until([&] {
+    for (auto* c : {&late, &last})
+      for (std::size_t n = c->drain().size(); n > 0; --n) c->send("(syn)");
+    return deeds().size() >= 2;
+  });
+  REQUIRE(deeds() == std::vector<std::string>{"1 init A 9", "2 init B 5"});
+}

@@ -1,0 +1,272 @@
+#include <catch2/catch.hpp>
+
+#include "arena.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// Notes what a port delivers.
+class TestConsumer : public Node, public IConnectionConsumer {
+  SPARK_CLASS(TestConsumer, Node)
+ public:
+  static void describe(Description<TestConsumer>& d) {
+    d.doc("Notes what a port delivers.");
+    d.implements<IConnectionConsumer>();
+  }
+  void connected(IConnection& c) override {
+    connections.push_back(&c);
+    events.push_back(fmt::format("+{}", c.id()));
+  }
+  void received(IConnection& c, std::string_view message) override { events.push_back(fmt::format("{}:{}", c.id(), message.size() > 40 ? "long" : message)); }
+  void disconnected(IConnection& c) override {
+    std::erase(connections, &c);
+    events.push_back(fmt::format("-{}", c.id()));
+  }
+  std::vector<IConnection*> connections;
+  std::vector<std::string> events;
+};
+
+struct Wire : Arena {
+  TestConsumer* consumer;
+  Wire() {
+    kernel.registerClass<TestConsumer>();
+    consumer = &kernel.create<TestConsumer>("TestConsumer", "/usr/consumer");
+    setProperty(port(), "consumer", "/usr/consumer");
+  }
+  void waitForEvents(std::size_t n) {
+    until([&] { return consumer->events.size() >= n; }, false);
+  }
+  using Events = std::vector<std::string>;
+};
+
+std::string framed(std::string_view message) {
+  const auto n = htonl(static_cast<std::uint32_t>(message.size()));
+  return std::string(reinterpret_cast<const char*>(&n), 4) + std::string(message);
+}
+
+}  // namespace
+
+TEST_CASE("Messages are cut from the stream wherever segments end") {
+  Wire w;
+  Client c = w.client();
+  SECTION("several in one segment") { c.raw(framed("a") + framed("bc") + framed("") + framed("d")); }
+  SECTION("byte by byte") {
+    for (const char byte : framed("a") + framed("bc") + framed("") + framed("d")) {
+      c.raw({&byte, 1});
+      w.net->poll();
+    }
+  }
+  w.waitForEvents(4);
+  REQUIRE(w.consumer->events == Wire::Events{"+1", "1:a", "1:bc", "1:d"});
+}
+
+TEST_CASE("Messages are delivered connection by connection in accept order, ports in tree order") {
+  Wire w;
+  w.addPort("second");
+  setProperty(w.port("second"), "consumer", "/usr/consumer");
+  Client late = w.client("second");
+  w.waitForEvents(1);
+  Client a = w.client();
+  w.waitForEvents(2);
+  Client b = w.client();
+  w.waitForEvents(3);
+  w.consumer->events.clear();
+  late.send("3");
+  b.send("2");
+  a.send("1");
+  w.waitForEvents(3);
+  REQUIRE(w.consumer->events == Wire::Events{"1:1", "2:2", "1:3"});
+}
+
+TEST_CASE("A length over the limit closes that connection only, with one line") {
+  Wire w;
+  Client good = w.client();
+  Client bad = w.client();
+  const std::string prefix = GENERATE(std::string("\x80\0\0\0", 4), std::string("\xff\xff\xff\xff", 4), std::string("\0\x01\0\x01", 4), std::string("GET / HTTP/1.1\r\n"));
+  bad.raw(prefix);
+  REQUIRE(bad.closed());
+  REQUIRE(w.logged(bad.name() + " is closed: it announces a message of"));
+  good.send("still here");
+  w.until([&] { return w.consumer->events.back() == "1:still here"; }, false);
+  REQUIRE(w.consumer->connections.size() == 1);
+}
+
+TEST_CASE("The longest message allowed passes") {
+  Wire w;
+  Client c = w.client();
+  c.send(std::string(65536, 'x'));
+  w.waitForEvents(2);
+  REQUIRE(w.consumer->events.back() == "1:long");
+}
+
+TEST_CASE("Half a message and then silence is closed after messageTimeout") {
+  Wire w;
+  setProperty(w.port(), "messageTimeout", 0.01);
+  Client c = w.client();
+  c.raw(framed("0123456789").substr(0, 9));
+  REQUIRE(c.closed());
+  REQUIRE(w.logged("it began a message and did not finish it within 0.01 s"));
+}
+
+TEST_CASE("A client that only waits is not closed") {
+  Wire w;
+  setProperty(w.port(), "messageTimeout", 0.01);
+  Client c = w.client();
+  c.send("a");
+  Client half = w.client();
+  half.raw("\0");
+  REQUIRE(half.closed());
+  c.send("b");
+  w.until([&] { return w.consumer->events.back() == "1:b"; }, false);
+}
+
+TEST_CASE("A disconnect in the middle of a message is told and logged") {
+  Wire w;
+  {
+    Client c = w.client();
+    c.raw(framed("whole") + framed("0123456789").substr(0, 8));
+    w.waitForEvents(2);
+  }
+  w.waitForEvents(3);
+  REQUIRE(w.consumer->events == Wire::Events{"+1", "1:whole", "-1"});
+  REQUIRE(w.logged("left in the middle of a message"));
+}
+
+TEST_CASE("What was sent before leaving is delivered") {
+  Wire w;
+  {
+    Client c = w.client();
+    c.send("last words");
+  }
+  w.waitForEvents(3);
+  REQUIRE(w.consumer->events == Wire::Events{"+1", "1:last words", "-1"});
+}
+
+TEST_CASE("200 clients come and go") {
+  Wire w;
+  for (int i = 0; i < 200; ++i) {
+    Client c = w.client();
+    c.send("x");
+    if (i % 7 == 0) w.net->poll();
+  }
+  w.until([&] { return w.consumer->connections.empty() && getProperty(w.port(), "connections").toInteger() == 0 && w.consumer->events.size() > 3; }, false);
+  Client c = w.client();
+  c.send("match goes on");
+  w.until([&] { return w.consumer->events.back().ends_with(":match goes on"); }, false);
+}
+
+TEST_CASE("Too many clients: the newcomer is closed with a line") {
+  Wire w;
+  setProperty(w.port(), "maxConnections", 2);
+  Client a = w.client(), b = w.client(), c = w.client();
+  REQUIRE(c.closed());
+  REQUIRE(w.logged("2 clients are connected already (maxConnections)"));
+  REQUIRE(w.consumer->connections.size() == 2);
+  a.leave();
+  w.until([&] { return w.consumer->connections.size() == 1; }, false);
+  Client d = w.client();
+  w.until([&] { return w.consumer->connections.size() == 2; }, false);
+}
+
+TEST_CASE("A client that does not read: the tail stays, newer messages are dropped and counted, framing holds") {
+  Wire w;
+  Client c = w.client();
+  w.waitForEvents(1);
+  IConnection& connection = *w.consumer->connections[0];
+  int sent = 0, dropped = 0;
+  while (dropped < 50) {
+    const bool left = connection.send(fmt::format("{:06}", sent) + std::string(60000, 'x'));
+    ++(left ? sent : dropped);
+    REQUIRE(sent < 10000);
+  }
+  REQUIRE_FALSE(connection.idle());
+  REQUIRE(connection.stalledSeconds() > 0);
+  REQUIRE(getProperty(w.port(), "messagesDropped").toInteger() == 50);
+  for (int i = 0; i < sent; ++i) {
+    const auto message = c.receive();
+    REQUIRE(message);
+    REQUIRE(message->size() == 60006);
+    REQUIRE(message->substr(0, 6) == fmt::format("{:06}", i));
+  }
+  w.until([&] { return connection.idle(); }, false);
+  REQUIRE(connection.stalledSeconds() == 0);
+  REQUIRE(connection.send("again"));
+  REQUIRE(c.receive() == "again");
+}
+
+TEST_CASE("A flood from one client does not keep the others waiting") {
+  Wire w;
+  Client flood = w.client();
+  w.waitForEvents(1);
+  Client other = w.client();
+  w.waitForEvents(2);
+  std::string bytes;
+  for (int i = 0; i < 400000; ++i) bytes += framed("xx");
+  other.send("hello");
+  std::string_view rest = bytes;
+  bool heard = false;
+  // As much as fits, one poll, again: in the poll that reads the flood the other is heard.
+  flood.raw(rest.substr(0, 65536));
+  for (int polls = 0; polls < 100 && !heard; ++polls) {
+    w.net->poll();
+    heard = std::find(w.consumer->events.begin(), w.consumer->events.end(), "2:hello") != w.consumer->events.end();
+  }
+  REQUIRE(heard);
+}
+
+TEST_CASE("A closed connection delivers nothing more and is told once") {
+  Wire w;
+  Client c = w.client();
+  w.waitForEvents(1);
+  c.send("a");
+  w.consumer->connections[0]->close("the test says so");
+  w.net->poll();
+  REQUIRE(w.consumer->events == Wire::Events{"+1", "-1"});
+  REQUIRE(w.logged("is closed: the test says so."));
+}
+
+TEST_CASE("Waiting ends with input, at the deadline, and on a stop request") {
+  Wire w;
+  REQUIRE_FALSE(w.net->wait(0.01));
+  Client c = w.client();
+  c.send("a");
+  while (w.consumer->events.size() < 2) REQUIRE(w.net->wait(20));
+  w.kernel.requestStop();
+  REQUIRE(w.net->wait(3600));
+}
+
+TEST_CASE("A port that cannot listen says why") {
+  Wire w;
+  const auto listen = [&](const std::string& name) {
+    try {
+      callMethod(w.port(name), "listen", {});
+      return std::string();
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+  };
+  w.addPort("twin");
+  setProperty(w.port("twin"), "port", w.portNumber());
+  REQUIRE_THAT(listen("twin"), Catch::Contains("cannot") && Catch::Contains("in use") && Catch::Contains("0 picks a free one"));
+  w.addPort("astray");
+  setProperty(w.port("astray"), "consumer", "/usr/nobody");
+  REQUIRE_THAT(listen("astray"), Catch::Contains("/usr/nobody"));
+  setProperty(w.port("astray"), "consumer", "/usr/consumer");
+  setProperty(w.port("astray"), "address", "somewhere");
+  REQUIRE_THAT(listen("astray"), Catch::Contains("expected an IP address"));
+  w.kernel.create("TcpPort", "/sys/server/net/bare");
+  REQUIRE_THAT(listen("bare"), Catch::Contains("has no framing"));
+  REQUIRE_THROWS_WITH(setProperty(w.port(), "port", 1), Catch::Contains("listens on"));
+}
+
+TEST_CASE("The network server can be taken down with clients connected") {
+  Wire w;
+  Client c = w.client();
+  w.waitForEvents(1);
+  Node& servers = w.kernel.root().require<Node>("/sys/server");
+  w.port().parent()->remove(w.port());
+  REQUIRE(w.consumer->events == Wire::Events{"+1", "-1"});
+  servers.remove(*servers.find("net"));
+}
