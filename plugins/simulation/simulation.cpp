@@ -89,11 +89,14 @@ void Simulation::runCycles(std::int64_t count) {
 template <class More>
 void Simulation::loop(More more) {
   if (running_) throw Error(path() + " runs already: run() and runCycles() cannot be called from within a cycle");
+  struct Running {
+    explicit Running(bool& f) : flag(f) { flag = true; }
+    ~Running() { flag = false; }
+    bool& flag;
+  } running(running_);
   stopped_ = false;
-  running_ = true;
   due_ = Clock::now();
   while (more() && collectInput()) executeCycle();
-  running_ = false;
 }
 
 // Half a step of tolerance: the sum of steps is not exact.

@@ -1,0 +1,184 @@
+#include "requests.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "api/phases.h"
+#include "spark/error.h"
+
+namespace spark::control {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+constexpr int kMaxNodes = 100000;  // of one tree answer
+
+Json toJson(const Value& v) {
+  switch (v.type()) {
+    case Value::Type::nil: return nullptr;
+    case Value::Type::boolean: return v.toBool();
+    case Value::Type::integer: return v.toInteger();
+    case Value::Type::number: return std::isfinite(v.toNumber()) ? Json(v.toNumber()) : Json(v.text());
+    case Value::Type::string: return v.toString();
+    case Value::Type::list: break;
+  }
+  Json out = Json::array();
+  for (const Value& e : v.toList()) out.push_back(toJson(e));
+  return out;
+}
+
+Value fromJson(const Json& j) {
+  if (j.is_boolean()) return j.get<bool>();
+  if (j.is_number_integer()) return j.get<std::int64_t>();
+  if (j.is_number()) return j.get<double>();
+  if (j.is_string()) return Value::fromText(j.get<std::string>());
+  if (!j.is_array()) return {};
+  List out;
+  for (const Json& e : j) out.push_back(fromJson(e));
+  return out;
+}
+
+std::string textOf(const Json& request, const char* key) {
+  const auto at = request.find(key);
+  if (at == request.end() || !at->is_string()) throw Error(std::string("the request lacks a text \"") + key + "\"");
+  return at->get<std::string>();
+}
+
+Leaf& nodeOf(Kernel& kernel, const Json& request) { return kernel.root().require<Leaf>(textOf(request, "path")); }
+
+const Property& propertyOf(Leaf& leaf, const std::string& name) {
+  if (const Property* p = leaf.classObject()->property(name)) return *p;
+  std::vector<std::string> names;
+  for (const Property* p : leaf.classObject()->properties()) names.push_back(p->name);
+  throw Error(leaf.path() + " (" + leaf.classObject()->name() + ") has no property '" + name + "'." + didYouMean(name, names));
+}
+
+Json describe(const Leaf& leaf, const Property& p) {
+  const Value v = p.get(leaf);
+  Json out{{"name", p.name}, {"value", toJson(v)}, {"text", v.plain()}, {"type", p.type}, {"unit", p.unit}, {"doc", p.doc}};
+  if (p.readOnly) out["readOnly"] = true;
+  if (p.min) out["min"] = *p.min;
+  if (p.max) out["max"] = *p.max;
+  if (!p.choices.empty()) out["choices"] = p.choices;
+  return out;
+}
+
+Json describeTree(const Leaf& leaf, int depth, int& budget) {
+  Json out{{"name", leaf.name()}, {"class", leaf.classObject()->name()}, {"doc", leaf.classObject()->doc()}};
+  const Node* node = leaf.asNode();
+  if (!node || node->children().empty()) return out;
+  Json& children = out["children"] = Json::array();
+  if (depth == 0) return out["more"] = node->children().size(), out;
+  for (const auto& c : node->children()) {
+    if (--budget < 0) throw Error("the tree has more than " + std::to_string(kMaxNodes) + " nodes below that path: ask for less depth");
+    children.push_back(describeTree(*c, depth - 1, budget));
+  }
+  return out;
+}
+
+Json tree(Kernel& kernel, const Json& request) {
+  int budget = kMaxNodes;
+  return {{"ok", true}, {"tree", describeTree(nodeOf(kernel, request), request.value("depth", -1), budget)}};
+}
+
+Json get(Kernel& kernel, const Json& request) {
+  Leaf& leaf = nodeOf(kernel, request);
+  Json properties = Json::array();
+  if (request.contains("property")) properties.push_back(describe(leaf, propertyOf(leaf, textOf(request, "property"))));
+  else
+    for (const Property* p : leaf.classObject()->properties()) properties.push_back(describe(leaf, *p));
+  return {{"ok", true}, {"path", leaf.path()}, {"class", leaf.classObject()->name()}, {"properties", properties}};
+}
+
+Json set(Kernel& kernel, const Json& request) {
+  if (!request.contains("value")) throw Error("the request lacks a \"value\"");
+  setProperty(nodeOf(kernel, request), textOf(request, "property"), fromJson(request["value"]));
+  return get(kernel, request);
+}
+
+/// The run loop and this server are at work while a request is answered: they cannot go.
+void refuseSawing(const Leaf& target, const std::string& method, const Leaf& self) {
+  if (method != "unlinkLeaf" && method != "unlinkChildren") return;
+  bool inServers = false;
+  for (const Leaf* up = &target; up; up = up->parent()) inServers |= up == self.parent();
+  for (const Leaf* up = &self; up; up = up->parent()) inServers |= up == &target;
+  if (inServers) throw Error("cannot remove " + target.path() + " while the house runs: servers stay until its end");
+}
+
+Json call(Kernel& kernel, const Leaf& self, const Json& request) {
+  Leaf& leaf = nodeOf(kernel, request);
+  const std::string method = textOf(request, "method");
+  refuseSawing(leaf, method, self);
+  std::vector<Value> arguments;
+  if (const auto at = request.find("arguments"); at != request.end() && at->is_array())
+    for (const Json& a : *at) arguments.push_back(fromJson(a));
+  const Value v = callMethod(leaf, method, arguments);
+  return {{"ok", true}, {"value", toJson(v)}, {"text", v.isNil() ? "" : v.plain()}};
+}
+
+Json plugins(Kernel& kernel) {
+  std::vector<Plugin*> all;
+  kernel.root().require<Node>("/plugins").collect(all);
+  std::sort(all.begin(), all.end(), [](Plugin* a, Plugin* b) { return a->name() < b->name(); });
+  Json list = Json::array();
+  for (const Plugin* p : all)
+    list.push_back({{"name", p->name()}, {"version", p->version()}, {"doc", p->doc()}, {"file", p->file()}, {"registered", p->registered()}, {"classes", p->classes()}});
+  return {{"ok", true}, {"plugins", list}};
+}
+
+std::string dump(const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string failure(const std::exception& e) { return dump({{"ok", false}, {"error", e.what()}}); }
+
+std::string watchLine(Kernel& kernel, const Watch& watch) {
+  Json out{{"ok", true}, {"text", watch.last.plain()}, {"value", toJson(watch.last)}, {"unit", watch.unit}};
+  if (const auto* clock = kernel.root().find<ISimulation>("/sys/server/simulation")) {
+    out["cycle"] = clock->cycle();
+    out["time"] = clock->time();
+  }
+  return dump(out);
+}
+
+std::string startWatch(Kernel& kernel, const Json& request, Watch& watch) {
+  Leaf& leaf = nodeOf(kernel, request);
+  const Property& p = propertyOf(leaf, textOf(request, "property"));
+  watch = {leaf.path(), p.name, p.unit, &leaf, p.get(leaf), true};
+  return watchLine(kernel, watch);
+}
+
+std::string dispatch(Kernel& kernel, const Leaf& self, const Json& request, Watch& watch) {
+  const std::string what = textOf(request, "do");
+  if (what == "tree") return dump(tree(kernel, request));
+  if (what == "get") return dump(get(kernel, request));
+  if (what == "set") return dump(set(kernel, request));
+  if (what == "call") return dump(call(kernel, self, request));
+  if (what == "plugins") return dump(plugins(kernel));
+  if (what == "watch") return startWatch(kernel, request, watch);
+  throw Error("expected tree, get, set, call, watch or plugins, found '" + what + "'");
+}
+}  // namespace
+
+std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch) {
+  try {
+    const Json request = Json::parse(line);
+    if (!request.is_object()) throw Error("expected one JSON object a line");
+    return dispatch(kernel, self, request, watch);
+  } catch (const std::exception& e) {
+    return failure(e);
+  }
+}
+
+std::string nextOf(Kernel& kernel, Watch& watch, bool& done) {
+  try {
+    if (!watch.leaf) throw Error("there is no " + watch.path + " any more");
+    Value now = getProperty(*watch.leaf, watch.property);
+    if (now == watch.last) return {};
+    watch.last = std::move(now);
+    return watchLine(kernel, watch);
+  } catch (const std::exception& e) {
+    done = true;
+    return failure(e);
+  }
+}
+
+}  // namespace spark::control

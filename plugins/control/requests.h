@@ -1,0 +1,39 @@
+#pragma once
+/// \file
+/// What sparkctl may ask: JSON in, JSON out, answered from the tree's own descriptions.
+///
+///     {"do":"tree","path":"/sys","depth":2}         {"ok":true,"tree":{"name","class","doc","children":[...]}}
+///     {"do":"get","path":"/x","property":"step"}    {"ok":true,"properties":[{"name","value","text","type","unit","doc",...}]}
+///     {"do":"get","path":"/x"}                      all properties of the node
+///     {"do":"set","path","property","value"}        as get, after the change
+///     {"do":"call","path","method","arguments":[]}  {"ok":true,"text","value"}
+///     {"do":"watch","path","property"}              one line {"ok":true,"cycle","time","text","value"} now and after every change
+///     {"do":"plugins"}                              {"ok":true,"plugins":[{"name","version","doc","file","classes","registered"}]}
+///
+/// Texts in "value" and "arguments" are read as people type them (true, 3, {1,2}, words). Errors: {"ok":false,"error":"..."}.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "spark/class_object.h"
+#include "spark/kernel.h"
+
+namespace spark::control {
+
+/// What a client watches; looked up anew when the tree changed.
+struct Watch {
+  std::string path, property, unit;
+  Ref<Leaf> leaf;
+  Value last;
+  bool started = false;
+};
+
+/// The answer to one line, without the line feed. Bad requests give an error answer; nothing is thrown. `self`: the server's own node, which
+/// requests must not saw off. When the request is a watch, `watch` is filled in and the answer is its first line.
+std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch);
+
+/// The next line of a watch, "" when the value is as before. An error answer when the property is gone (`done` is set).
+std::string nextOf(Kernel& kernel, Watch& watch, bool& done);
+
+}  // namespace spark::control

@@ -1,0 +1,56 @@
+#include "socket_place.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <cstdlib>
+#include <cstring>
+
+#include "spark/error.h"
+
+namespace spark::control {
+
+namespace fs = std::filesystem;
+namespace asio = boost::asio;
+
+namespace {
+fs::path folderName() {
+  if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime && fs::is_directory(runtime)) return fs::path(runtime) / "spark";
+  return fmt::format("/tmp/spark-{}", geteuid());
+}
+
+/// True when a house answers there.
+bool alive(const fs::path& file) {
+  asio::io_context io;
+  asio::local::stream_protocol::socket socket(io);
+  boost::system::error_code ec;
+  socket.connect(asio::local::stream_protocol::endpoint(file.string()), ec);
+  return !ec;
+}
+}  // namespace
+
+fs::path socketFolder() {
+  const fs::path folder = folderName();
+  if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
+    throw Error(fmt::format("cannot make {} for the control socket: {}", folder.string(), std::strerror(errno)));
+  struct stat s = {};
+  if (lstat(folder.c_str(), &s) != 0 || !S_ISDIR(s.st_mode)) throw Error(folder.string() + ", where the control socket belongs, is no folder. Remove it.");
+  if (s.st_uid != geteuid()) throw Error(folder.string() + ", where the control socket belongs, is another user's. Set XDG_RUNTIME_DIR to a folder of your own.");
+  if ((s.st_mode & 077) != 0) throw Error(folder.string() + ", where the control socket belongs, is open to other users. Say chmod 700 " + folder.string() + ".");
+  return folder;
+}
+
+fs::path freeSocket(const fs::path& folder) {
+  for (int n = 1;; ++n) {
+    const fs::path file = folder / (n == 1 ? fmt::format("{}.sock", getpid()) : fmt::format("{}-{}.sock", getpid(), n));
+    if (!fs::exists(file)) return file;
+    if (alive(file)) continue;
+    fs::remove(file);
+    return file;
+  }
+}
+
+}  // namespace spark::control

@@ -1,0 +1,205 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/read_until.hpp>
+#include <boost/asio/streambuf.hpp>
+#include <boost/asio/write.hpp>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "api/phases.h"
+#include "spark/error.h"
+#include "test_support.h"
+
+using namespace spark;
+using Json = nlohmann::json;
+namespace asio = boost::asio;
+namespace fs = std::filesystem;
+
+namespace {
+/// A folder of this test's own for the sockets.
+struct RuntimeFolder {
+  fs::path path;
+  RuntimeFolder() {
+    char name[] = "/tmp/spark-test-XXXXXX";
+    path = mkdtemp(name);
+    setenv("XDG_RUNTIME_DIR", path.c_str(), 1);
+  }
+  ~RuntimeFolder() { fs::remove_all(path); }
+};
+
+struct Fixture {
+  RuntimeFolder folder;
+  test::House house;
+  Leaf* simulation = nullptr;
+  Leaf* control = nullptr;
+  asio::io_context io;
+  asio::local::stream_protocol::socket client{io};
+  asio::streambuf buffer;
+
+  Fixture() {
+    house.kernel.plugins().use("simulation");
+    house.kernel.plugins().use("control");
+    simulation = &house.kernel.create("Simulation", "/sys/server/simulation");
+    setProperty(*simulation, "rate", "max");
+    control = &house.kernel.create("ControlServer", "/sys/server/control");
+  }
+  std::string socket() { return getProperty(*control, "socket").toString(); }
+  void connect() { client.connect(asio::local::stream_protocol::endpoint(socket())); }
+  void cycle() { callMethod(*simulation, "runCycles", std::vector<Value>{1}); }
+  void send(const std::string& line) { asio::write(client, asio::buffer(line + "\n")); }
+  Json receive() {
+    asio::read_until(client, buffer, '\n');
+    std::istream in(&buffer);
+    std::string line;
+    std::getline(in, line);
+    return Json::parse(line);
+  }
+  Json ask(const Json& request) {
+    send(request.dump());
+    cycle();
+    return receive();
+  }
+};
+}  // namespace
+
+TEST_CASE("Only the user can reach the control socket") {
+  Fixture f;
+  struct stat s = {};
+  REQUIRE(stat(f.socket().c_str(), &s) == 0);
+  REQUIRE((s.st_mode & 0777) == 0600);
+  REQUIRE(stat(fs::path(f.socket()).parent_path().c_str(), &s) == 0);
+  REQUIRE((s.st_mode & 0777) == 0700);
+}
+
+TEST_CASE("A socket folder that is open to others is not used, and the house stands without") {
+  RuntimeFolder folder;
+  fs::create_directory(folder.path / "spark");
+  chmod((folder.path / "spark").c_str(), 0755);
+  test::House house;
+  house.kernel.plugins().use("control");
+  Leaf& control = house.kernel.create("ControlServer", "/sys/server/control");
+  REQUIRE(getProperty(control, "socket").toString().empty());
+  REQUIRE(house.text.find("open to other users") != std::string::npos);
+}
+
+TEST_CASE("Two houses of one process have a socket each, and take it away when they go") {
+  RuntimeFolder folder;
+  test::House a, b;
+  a.kernel.plugins().use("control");
+  b.kernel.plugins().use("control");
+  const std::string first = getProperty(a.kernel.create("ControlServer", "/sys/server/control"), "socket").toString();
+  Leaf& other = b.kernel.create("ControlServer", "/sys/server/control");
+  REQUIRE(getProperty(other, "socket").toString() != first);
+  a.kernel.root().require<Node>("/sys/server").removeChildren();
+  REQUIRE_FALSE(fs::exists(first));
+}
+
+TEST_CASE("A property is read with its value, unit and documentation") {
+  Fixture f;
+  f.connect();
+  const Json a = f.ask({{"do", "get"}, {"path", "/sys/server/simulation"}, {"property", "step"}});
+  REQUIRE(a["ok"] == true);
+  const Json p = a["properties"][0];
+  REQUIRE(p["value"] == 0.02);
+  REQUIRE(p["unit"] == "s");
+  REQUIRE(p["doc"] == "Simulated time of one cycle.");
+}
+
+TEST_CASE("A node without a property lists them all") {
+  Fixture f;
+  f.connect();
+  const Json a = f.ask({{"do", "get"}, {"path", "/sys/server/simulation"}});
+  REQUIRE(a["properties"].size() >= 8);
+}
+
+TEST_CASE("set changes a property, also from typed text; wrong values are refused with the reason") {
+  Fixture f;
+  f.connect();
+  REQUIRE(f.ask({{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", "0.01"}})["ok"] == true);
+  REQUIRE(getProperty(*f.simulation, "step").toNumber() == 0.01);
+  const Json bad = f.ask({{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", -1}});
+  REQUIRE(bad["ok"] == false);
+  REQUIRE(getProperty(*f.simulation, "step").toNumber() == 0.01);
+  const Json unknown = f.ask({{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "stepp"}, {"value", 1}});
+  REQUIRE(unknown["error"].get<std::string>().find("'step'") != std::string::npos);
+}
+
+TEST_CASE("call runs a method between cycles; the run loop cannot be nested or removed") {
+  Fixture f;
+  f.connect();
+  REQUIRE(f.ask({{"do", "call"}, {"path", "/sys/server/simulation"}, {"method", "getStep"}})["value"] == 0.02);
+  const Json nested = f.ask({{"do", "call"}, {"path", "/sys/server/simulation"}, {"method", "run"}});
+  REQUIRE(nested["error"].get<std::string>().find("runs already") != std::string::npos);
+  for (const char* path : {"/", "/sys", "/sys/server", "/sys/server/control", "/sys/server/simulation"}) {
+    for (const char* method : {"unlinkLeaf", "unlinkChildren"}) {
+      const Json a = f.ask({{"do", "call"}, {"path", path}, {"method", method}});
+      CAPTURE(path, method, a.dump());
+      REQUIRE(a["ok"] == false);
+    }
+  }
+}
+
+TEST_CASE("The tree comes with classes and documentation, as deep as asked") {
+  Fixture f;
+  f.connect();
+  const Json whole = f.ask({{"do", "tree"}, {"path", "/sys"}});
+  const Json servers = whole["tree"]["children"][0];
+  REQUIRE(servers["name"] == "server");
+  REQUIRE(servers["children"][0]["class"] == "Simulation");
+  REQUIRE_FALSE(servers["children"][0]["doc"].get<std::string>().empty());
+  const Json flat = f.ask({{"do", "tree"}, {"path", "/sys"}, {"depth", 1}});
+  REQUIRE(flat["tree"]["children"][0]["more"] == 2);
+}
+
+TEST_CASE("A watch tells every change and nothing else, and ends with its node") {
+  Fixture f;
+  f.house.kernel.create("Node", "/usr/box");
+  f.connect();
+  REQUIRE(f.ask({{"do", "watch"}, {"path", "/usr/box"}, {"property", "name"}})["value"] == "box");
+  f.cycle();
+  Leaf* box = f.house.kernel.root().find("/usr/box");
+  box->setName("crate");
+  f.cycle();
+  REQUIRE(f.receive()["value"] == "crate");
+  box->parent()->remove(*box);
+  f.cycle();
+  REQUIRE(f.receive()["ok"] == false);
+}
+
+TEST_CASE("Plugins are listed with what they provide") {
+  Fixture f;
+  f.connect();
+  const Json a = f.ask({{"do", "plugins"}});
+  bool found = false;
+  for (const Json& p : a["plugins"]) found |= p["name"] == "simulation" && p["registered"] == true && p["classes"][0] == "Simulation";
+  REQUIRE(found);
+}
+
+TEST_CASE("Bad requests get an error and harm nobody") {
+  Fixture f;
+  f.connect();
+  for (const char* line : {"garbage", "[]", "{}", R"({"do":"dance"})", R"({"do":"get"})", R"({"do":"get","path":"/nowhere"})", R"({"do":"get","path":7})", "\xff\xfe"}) {
+    f.send(line);
+    f.cycle();
+    CAPTURE(line);
+    REQUIRE(f.receive()["ok"] == false);
+  }
+  REQUIRE(f.ask({{"do", "plugins"}})["ok"] == true);
+}
+
+TEST_CASE("A client that never ends its line is turned away") {
+  Fixture f;
+  f.connect();
+  f.cycle();
+  REQUIRE(getProperty(*f.control, "clients").toInteger() == 1);
+  const std::string endless(4096, 'x');
+  boost::system::error_code ec;
+  for (int i = 0; i < 40 && !ec; ++i) {
+    asio::write(f.client, asio::buffer(endless), ec);
+    f.cycle();
+  }
+  REQUIRE(getProperty(*f.control, "clients").toInteger() == 0);
+}
