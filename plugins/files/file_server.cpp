@@ -8,7 +8,10 @@ namespace spark::files {
 
 std::string normalName(std::string_view resource) {
   const auto refuse = [&](const char* why) {
-    throw Error("expected a relative resource name such as 'rsg/agent/sphere.rsg', found '" + std::string(resource) + "': " + why);
+    std::string shown(resource);
+    for (char& c : shown)
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    throw Error("expected a relative resource name such as 'rsg/agent/sphere.rsg', found '" + shown + "': " + why);
   };
   if (resource.empty()) refuse("it is empty");
   if (resource.size() > 1024) throw Error("expected a resource name of at most 1024 bytes, found one of " + std::to_string(resource.size()));

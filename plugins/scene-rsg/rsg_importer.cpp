@@ -78,14 +78,22 @@ std::string RsgImporter::chain() const {
   return out.empty() ? out : out + ")";
 }
 
+void RsgImporter::exhausted(const std::string& sentence) {
+  budget_.exhausted = true;
+  throw Error(sentence);
+}
+
 void RsgImporter::import(std::string_view file, Node& root, const List& arguments) {
   const std::string name(file);
-  if (frames_.empty()) budget_.imports = budget_.nodes = 0;
+  if (frames_.empty()) {
+    budget_.imports = budget_.nodes = 0;
+    budget_.exhausted = false;
+  }
   if (frames_.size() >= static_cast<std::size_t>(budget_.maxDepth))
     throw Error("'" + name + "' is imported " + std::to_string(frames_.size()) + " deep: does a file import itself? At most " + std::to_string(budget_.maxDepth) +
                 " are allowed (" + path() + ".maxDepth)");
   if (++budget_.imports > budget_.maxImports)
-    throw Error("too many imports: at most " + std::to_string(budget_.maxImports) + " are allowed (" + path() + ".maxImports)");
+    exhausted("too many imports: at most " + std::to_string(budget_.maxImports) + " are allowed (" + path() + ".maxImports)");
   std::vector<std::string> texts = textsOf(name, arguments);
   const std::shared_ptr<const rsg::Program> program = load(name, root);
   if (unlinkOnCompleteScenes_ && !program->delta && frames_.empty()) root.removeChildren();

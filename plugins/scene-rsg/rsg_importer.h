@@ -28,6 +28,7 @@ struct Budget {
   int maxDepth = 32;               ///< imports within imports
   std::int64_t maxImports = 10000, maxNodes = 200000;
   std::int64_t imports = 0, nodes = 0;
+  bool exhausted = false;          ///< ends all files under way
 };
 
 /// An import under way: which file, and where it stands.
@@ -59,6 +60,8 @@ class RsgImporter : public Leaf, public ISceneImporter {
   std::vector<std::string> textsOf(std::string_view file, const List& arguments) const;
   /// " (imported from a:1:2, from b:3:4)" for the frames above the innermost.
   std::string chain() const;
+  /// Throws for an import that did too much.
+  [[noreturn]] void exhausted(const std::string& sentence);
   template <bool rsg::Rules::*Member>
   bool rule() const {
     return rules_.*Member;

@@ -82,7 +82,7 @@ Node& Run::makeNode(const Statement& s, Node& parent) {
   if (!made.isA(SceneNode::kClassName)) throw Error("expected a class of scene nodes, found " + made.name() + ", which does not derive from " + SceneNode::kClassName);
   Budget& budget = importer_.budget_;
   if (++budget.nodes > budget.maxNodes)
-    throw Error("too many nodes: one import may make at most " + std::to_string(budget.maxNodes) + " (" + importer_.path() + ".maxNodes)");
+    importer_.exhausted("too many nodes: one import may make at most " + std::to_string(budget.maxNodes) + " (" + importer_.path() + ".maxNodes)");
   return *parent.add(made.create()).asNode();
 }
 
@@ -109,7 +109,7 @@ void Run::choose(const Statement& s, const Cursor& cursor) {
     try {
       walk(s.blocks[i], cursor);
     } catch (const Error& e) {
-      if (importer_.rules_.strict) throw;
+      if (importer_.rules_.strict || importer_.budget_.exhausted) throw;
       complain(s, Level::error, "the case '" + value + "' failed, the rest goes on: " + e.what());
     }
     return;
@@ -135,7 +135,7 @@ void Run::import(const Statement& s, Node& node, const List& arguments) {
   try {
     importer_.kernel().root().require<ISceneServer>("/sys/server/scene").importScene(file, node, List(arguments.begin() + 1, arguments.end()));
   } catch (const std::exception& e) {
-    if (importer_.rules_.strict) throw Located(where(program_, s.site) + ": the import of '" + file + "' failed", e);
+    if (importer_.rules_.strict || importer_.budget_.exhausted) throw Located(where(program_, s.site) + ": the import of '" + file + "' failed", e);
     complain(s, Level::error, "the import of '" + file + "' failed, the rest goes on: " + e.what());
   }
 }

@@ -111,7 +111,7 @@ TEST_CASE("arguments are texts: numbers and bools from scripts are written as te
   h.run("(templ $a $b $c)(nd Probe (setName $a)(setNumber $b)(setFlag $c))", {"x", 2.5, true});
   CHECK(h.probe("x").number() == 2.5);
   CHECK(h.probe("x").flag());
-  CHECK(h.failure("(templ $a)", {List{1, 2}}).find("argument 1") != std::string::npos);
+  CHECK(h.failure("(templ $a)", {Value(List{1, 2})}).find("argument 1") != std::string::npos);
 }
 
 TEST_CASE("join concatenates, eval inside join and join inside eval") {
@@ -166,7 +166,7 @@ TEST_CASE("for monitors a complete scene replaces what was there") {
 TEST_CASE("strict turns into errors what is otherwise passed over") {
   SceneHouse h;
   h.set("strict", true);
-  CHECK(h.failure("(nd Probe (setVector 1 2))").find("test.rsg:2:12: ") == 0);
+  CHECK(h.failure("(nd Probe (setVector 1 2))").find("test.rsg:2:13: ") == 0);
   CHECK(h.failure("(nd Probe (setNumber garbage))").find("expected number") != std::string::npos);
   CHECK(h.failure("(nd Probe (nothing))").find("has no method") != std::string::npos);
   CHECK(h.failure("(nd Probe (setVector 1 2 3)(setFlag true)(setNumber 1e-5)(setName ok))").empty());

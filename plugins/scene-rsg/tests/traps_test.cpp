@@ -52,7 +52,7 @@ TEST_CASE("the name of a call decides whether it waits, not the class of the nod
   SceneHouse h;
   h.run("(nd Probe (tell queued)(setLocalPos 1 2 3)(tell too))");
   CHECK(deeds() == Texts{"link 0 0 0", "queued", "too"});
-  CHECK(h.logged("test.rsg:2:25: class Probe has no method 'setLocalPos'"));
+  CHECK(h.logged("test.rsg:2:26: class Probe has no method 'setLocalPos'"));
 }
 
 TEST_CASE("an imported file makes its calls at its own end, before those of the importing file") {
@@ -105,9 +105,9 @@ TEST_CASE("a call with a wrong number of arguments is skipped, with one warning 
   CHECK(h.probe("p").vector() == Vec3(4, 5, 6));
   h.import("test.rsg");
   CHECK(h.timesLogged("setSlip of Probe is skipped") == 1);
-  CHECK(h.timesLogged("test.rsg:2:23") == 1);
+  CHECK(h.timesLogged("test.rsg:2:24") == 1);
   h.set("looseArguments", false);
-  CHECK_THROWS_WITH(h.import("test.rsg"), Catch::Contains("setSlip") && Catch::StartsWith("test.rsg:2:23: "));
+  CHECK_THROWS_WITH(h.import("test.rsg"), Catch::Contains("setSlip") && Catch::StartsWith("test.rsg:2:24: "));
 }
 
 TEST_CASE("the first case that matches runs, only the first list in it, and no match ends the file") {
@@ -119,7 +119,7 @@ TEST_CASE("the first case that matches runs, only the first list in it, and no m
   CHECK_FALSE(h.scene->child("d"));
   h.run("(switch 1 (1))(switch x)(switch (eval 1 + 1) ((join 2) (nd Probe (setName two))))");
   CHECK(h.scene->child("two"));
-  CHECK(h.failure("(switch 1 (1.0 (nd Probe)))(nd Probe (setName never))") == "test.rsg:2:2: no case matches '1', there are '1.0'");
+  CHECK(h.failure("(switch 1 (1.0 (nd Probe)))(nd Probe (setName never))") == "test.rsg:2:3: no case matches '1', there are '1.0'");
   CHECK_FALSE(h.scene->child("never"));
   CHECK(h.failure("(switch x y)").find("expected a case") != std::string::npos);
 }

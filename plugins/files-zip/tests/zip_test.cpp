@@ -1,0 +1,106 @@
+#include <zip.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "api/files.h"
+#include "test_support.h"
+
+namespace fs = std::filesystem;
+using namespace spark;
+
+namespace {
+
+struct Archive {
+  fs::path folder, file;
+  test::House house;
+  IFileServer* server = nullptr;
+  Leaf* system = nullptr;
+
+  Archive() {
+    std::string name = (fs::temp_directory_path() / "spark-zip-XXXXXX").string();
+    folder = ::mkdtemp(name.data());
+    file = folder / "a.zip";
+    house.kernel.plugins().use("files");
+    house.kernel.plugins().use("files-zip");
+    server = &house.kernel.create<IFileServer>("FileServer", "/sys/server/file");
+    system = &house.kernel.create("ZipFileSystem", "/sys/server/file/zip");
+    setProperty(*system, "path", file.string());
+  }
+  ~Archive() { fs::remove_all(folder); }
+
+  void write(const std::vector<std::pair<std::string, std::string>>& members, bool encrypt = false) const {
+    fs::remove(file);
+    int code = 0;
+    zip_t* zip = zip_open(file.c_str(), ZIP_CREATE, &code);
+    REQUIRE(zip);
+    for (const auto& [name, text] : members) {
+      if (name.ends_with('/')) {
+        zip_dir_add(zip, name.c_str(), ZIP_FL_ENC_UTF_8);
+        continue;
+      }
+      const auto index = zip_file_add(zip, name.c_str(), zip_source_buffer(zip, text.data(), text.size(), 0), ZIP_FL_ENC_UTF_8);
+      if (encrypt) zip_file_set_encryption(zip, static_cast<zip_uint64_t>(index), ZIP_EM_AES_128, "secret");
+    }
+    REQUIRE(zip_close(zip) == 0);
+  }
+  std::string errorOf(const std::string& resource) const {
+    try {
+      server->read(resource);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("members of an archive are resources, below a prefix if there is one") {
+  Archive a;
+  a.write({{"agent/", ""}, {"agent/x.rsg", "text"}, {"empty", ""}, {"../evil", "e"}});
+  CHECK(a.server->read("agent/x.rsg") == "text");
+  CHECK(a.server->read("empty").empty());
+  CHECK_FALSE(a.server->exists("agent/y.rsg"));
+  CHECK(a.errorOf("agent").find("found a folder") != std::string::npos);
+  CHECK(a.errorOf("../evil").find("'..'") != std::string::npos);
+  setProperty(*a.system, "prefix", "rsg");
+  CHECK(a.server->read("rsg/agent/x.rsg") == "text");
+  CHECK_FALSE(a.server->exists("agent/x.rsg"));
+}
+
+TEST_CASE("an archive that changed is read again, one that is not there has nothing") {
+  Archive a;
+  CHECK_FALSE(a.server->exists("x"));
+  a.write({{"x", "one"}});
+  CHECK(a.server->read("x") == "one");
+  const auto before = a.server->stamp("x");
+  a.write({{"x", "three"}, {"y", ""}});
+  CHECK(a.server->read("x") == "three");
+  CHECK(a.server->stamp("x") != before);
+}
+
+TEST_CASE("what is no archive, too large or encrypted is refused with the reason") {
+  Archive a;
+  std::ofstream(a.file) << "no archive at all";
+  CHECK(a.errorOf("x").find("cannot open archive") != std::string::npos);
+  a.write({{"x", std::string(1000, 'x')}});
+  setProperty(*a.system, "maxBytes", 999);
+  CHECK(a.errorOf("x").find("too large: 1000 bytes") != std::string::npos);
+  setProperty(*a.system, "maxBytes", 1000);
+  CHECK(a.server->read("x").size() == 1000);
+  a.write({{"x", "secret text"}}, true);
+  CHECK(a.errorOf("x").find("encrypted") != std::string::npos);
+}
+
+TEST_CASE("a damaged member is refused, not half read") {
+  Archive a;
+  std::string noise(600, '\0');
+  for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<char>(i * i * 31 + i / 7);
+  a.write({{"x", noise}});
+  std::fstream f(a.file, std::ios::in | std::ios::out | std::ios::binary);
+  f.seekp(100);
+  f.write("\x55\xaa\x55\xaa", 4);
+  f.close();
+  CHECK(a.errorOf("x").find("cannot read 'x'") != std::string::npos);
+}

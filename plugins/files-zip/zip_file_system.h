@@ -1,0 +1,43 @@
+#pragma once
+/// \file
+/// A zip archive as file system.
+
+#include <zip.h>
+
+#include <memory>
+
+#include "api/files.h"
+#include "spark/describe.h"
+
+namespace spark {
+
+/// A zip archive. It is opened at the first look and again whenever the file changed. Encrypted members are refused.
+class ZipFileSystem : public Leaf, public IFileSystem {
+  SPARK_CLASS(ZipFileSystem, Leaf)
+ public:
+  static void describe(Description<ZipFileSystem>& d);
+
+  std::optional<std::string> read(const std::string& resource) override;
+  std::uint64_t stamp(const std::string& resource) override;
+  std::string where() const override;
+
+ private:
+  struct Close {
+    void operator()(zip_t* archive) const { zip_discard(archive); }
+  };
+  /// Opens or reopens the archive; false when there is no such file. Throws Error when it is no archive.
+  bool refresh();
+  /// The member's number, -1 when there is none.
+  zip_int64_t locate(const std::string& resource);
+  const std::string& file() const { return path_; }
+  void setFile(std::string path);
+  const std::string& prefix() const { return prefix_; }
+  void setPrefix(std::string prefix);
+
+  std::string path_, prefix_;
+  std::int64_t maxBytes_ = 16 << 20;
+  std::unique_ptr<zip_t, Close> archive_;
+  std::uint64_t identity_ = 0;  ///< of the archive file when it was opened
+};
+
+}  // namespace spark
