@@ -1,0 +1,16 @@
+-- 54 crates, marbles and pills fall into a walled yard: the smallest house with physics in it.
+--
+--     sparkhost --config boxes.lua --rate max --duration 10
+include "house.lua"
+include "materials.lua"
+
+local sceneFile = option{ name = "scene", default = "rsg/boxspheres/yard.rsg", doc = "The scene file to drop." }
+local half = option{ name = "half", default = 6.0, doc = "Half the yard's edge, in metres." }
+
+files()
+scene()
+materials()
+physics()
+simulation()
+
+get("/usr/scene"):importScene(sceneFile, half)
