@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "lua_impl.h"
+
+namespace fs = std::filesystem;
+
+namespace spark {
+
+struct Lua::Impl : script::Runtime {
+  using Runtime::Runtime;
+};
+
+Lua::Lua(Kernel& kernel) : impl_(std::make_unique<Impl>(kernel)) {}
+Lua::~Lua() = default;
+
+void Lua::addFolder(fs::path folder) { impl_->folders.push_back(std::move(folder)); }
+void Lua::addOverride(std::string key, Value value) { impl_->settings.add(std::move(key), std::move(value)); }
+
+void Lua::runConfig(std::string_view file) {
+  const script::Script config = impl_->read(file, "config");
+  const script::Restore keepFolder(impl_->configFolder, config.path.parent_path());
+  {
+    const script::Restore shielding(impl_->inConfig, true);
+    impl_->run(config.text, "@" + std::string(file));
+  }
+  impl_->settings.finish();
+}
+
+Value Lua::run(std::string_view text, std::string_view chunkName) { return impl_->run(text, "=" + std::string(chunkName)); }
+
+void Lua::attach(Leaf& node, std::string_view file) { impl_->attach(node, impl_->read(file, "script").text, "@" + std::string(file), true); }
+
+void Lua::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) {
+  impl_->attach(node, text, "=" + std::string(chunkName), trusted);
+}
+
+std::vector<List> Lua::options() const { return impl_->settings.options(); }
+
+namespace script {
+
+Runtime::Runtime(Kernel& k) : kernel(k), settings(k), trusted(std::make_shared<State>(*this, nullptr)), scriptNode(&k.root()) {}
+
+Runtime::~Runtime() {
+  trusted->close();
+  for (const auto& weak : sandboxes)
+    if (const auto state = weak.lock()) state->close();
+}
+
+Script Runtime::read(std::string_view file, std::string_view what) const {
+  std::vector<fs::path> places{fs::current_path()};
+  if (!configFolder.empty()) places.push_back(configFolder);
+  places.insert(places.end(), folders.begin(), folders.end());
+  if (fs::path(file).is_absolute()) places = {fs::path(file).parent_path()};
+  std::string looked;
+  std::vector<std::string> names;
+  for (const fs::path& place : places) {
+    const fs::path path = place / file;  // an absolute file stays what it is
+    std::error_code ec;
+    if (fs::is_directory(path, ec)) throw Error("cannot read " + std::string(what) + " '" + std::string(file) + "': " + path.string() + " is a folder");
+    if (fs::exists(path, ec)) {
+      std::ifstream in(path, std::ios::binary);
+      std::string text{std::istreambuf_iterator<char>(in), {}};
+      if (!in) throw Error("cannot read " + std::string(what) + " " + path.string() + ": no permission?");
+      return {path, std::move(text)};
+    }
+    looked += (looked.empty() ? "" : ", ") + place.string();
+    for (fs::directory_iterator it(path.parent_path(), ec), end; !ec && it != end; it.increment(ec))
+      if (it->path().extension() == ".lua") names.push_back(it->path().filename().string());
+  }
+  throw Error("there is no " + std::string(what) + " '" + std::string(file) + "'. Looked in: " + looked + "." +
+              didYouMean(fs::path(file).filename().string(), names));
+}
+
+void Runtime::load(lua_State* L, std::string_view text, std::string_view chunkName, int environment) {
+  if (luaL_loadbufferx(L, text.data(), text.size(), std::string(chunkName).c_str(), "t") != LUA_OK) lua_error(L);
+  lua_pushvalue(L, environment);
+  lua_setupvalue(L, -2, 1);
+}
+
+void Runtime::pushConfigEnvironment(lua_State* L) {
+  if (configEnvironment_ == LUA_NOREF) {
+    pushEnvironment(L, kernel.root(), true);
+    configEnvironment_ = luaL_ref(L, LUA_REGISTRYINDEX);
+  }
+  lua_rawgeti(L, LUA_REGISTRYINDEX, configEnvironment_);
+}
+
+Value Runtime::run(std::string_view text, std::string_view chunkName) {
+  const Restore asConfig(scriptNode, Ref<Leaf>(&kernel.root()));
+  Value result;
+  const auto failure = trusted->run(kUnlimited, [&](lua_State* L) {
+    pushConfigEnvironment(L);
+    load(L, text, chunkName, lua_gettop(L));
+    lua_call(L, 0, 1);
+    result = toValue(L, -1);
+  });
+  if (failure) throw Error(failure->text);
+  return result;
+}
+
+void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted) {
+  const std::string path = node.path();
+  if (!node.isLinked()) throw Error("cannot attach a script to " + path + ": it is not linked into the tree");
+  std::shared_ptr<State> state = trusted;
+  if (!isTrusted) {
+    state = std::make_shared<State>(*this, &node);
+    std::erase_if(sandboxes, [](const auto& weak) { return weak.expired(); });
+    sandboxes.push_back(state);
+  }
+  std::vector<std::weak_ptr<Subscription>> subscribed;
+  std::optional<Failure> failure;
+  {
+    const Restore running(scriptNode, Ref<Leaf>(&node));
+    const Restore collecting(made, &subscribed);
+    failure = state->run(isTrusted ? kHandlerBudget : kSandboxBudget, [&](lua_State* L) {
+      pushEnvironment(L, node, false);
+      load(L, text, chunkName, lua_gettop(L));
+      lua_call(L, 0, 0);
+    });
+  }
+  if (!failure) return;
+  for (const auto& weak : subscribed)
+    if (const auto s = weak.lock()) s->remove();
+  throw Error("the script attached to " + path + " failed: " + failure->text);
+}
+
+std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::string_view channel) {
+  auto s = std::make_shared<Subscription>();
+  State& state = State::of(L);
+  s->state = state.shared_from_this();
+  s->node = Ref<Leaf>(&node);
+  s->owner = scriptNode;
+  s->channel = &kernel.events().channel(channel);
+  s->function = luaL_ref(L, LUA_REGISTRYINDEX);
+  s->number = s->channel->add(node, [s](Leaf&, const Event& event) { s->run(event); });
+  if (made) made->push_back(s);
+  return s;
+}
+
+void Runtime::report(const Failure& failure, const Subscription& s) {
+  if (!reported_.insert(failure.where.empty() ? failure.text : failure.where).second) return;
+  kernel.log().error("handler of '{}' at {} failed: {}\n  It stays; further errors of this line are not logged.", s.channel->name(),
+                     s.node ? s.node->path() : "a deleted node", failure.text);
+}
+
+Subscription::~Subscription() { state->release(function); }
+
+void Subscription::remove() {
+  if (!removed && node) channel->remove(number);
+  removed = true;
+}
+
+void Subscription::run(const Event& event) {
+  if (removed || state->closed() || !node) return;
+  if (!owner) return remove();  // the script's own node has gone
+  Runtime& runtime = state->runtime();
+  const Restore running(runtime.scriptNode, owner);
+  const auto failure = state->run(state->trusted() ? kHandlerBudget : kSandboxBudget, [&](lua_State* L) {
+    lua_rawgeti(L, LUA_REGISTRYINDEX, function);
+    pushNode(L, node.get());
+    lua_createtable(L, 0, 5);
+    lua_pushlstring(L, event.name.data(), event.name.size());
+    lua_setfield(L, -2, "name");
+    lua_pushnumber(L, event.time);
+    lua_setfield(L, -2, "time");
+    lua_pushnumber(L, event.step);
+    lua_setfield(L, -2, "step");
+    lua_pushinteger(L, event.cycle);
+    lua_setfield(L, -2, "cycle");
+    if (event.data) pushValue(L, *event.data);
+    else lua_pushnil(L);
+    lua_setfield(L, -2, "data");
+    lua_call(L, 2, 0);
+  });
+  if (failure) runtime.report(*failure, *this);
+}
+
+}  // namespace script
+}  // namespace spark

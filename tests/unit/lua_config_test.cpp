@@ -1,0 +1,187 @@
+// Config files: lookup, include, options, and what is set from outside.
+#include "lua_fixture.h"
+
+using namespace spark;
+using namespace spark::test;
+using Catch::Contains;
+using Catch::Equals;
+
+namespace {
+/// Works in another folder for a while.
+struct WorkingFolder {
+  std::filesystem::path before = std::filesystem::current_path();
+  explicit WorkingFolder(const std::filesystem::path& folder) { std::filesystem::current_path(folder); }
+  ~WorkingFolder() { std::filesystem::current_path(before); }
+};
+}  // namespace
+
+TEST_CASE("a config is found in the working folder first, then in the added folders in order") {
+  LuaHouse h;
+  for (const char* sub : {"work", "second"}) std::filesystem::create_directory(h.folder / sub);
+  h.kernel.lua().addFolder(h.folder / "second");
+  h.write("second/c.lua", "found = 'second'");
+  h.kernel.lua().runConfig("c.lua");
+  CHECK(h.run("return found") == Value("second"));
+  h.write("c.lua", "found = 'first'");
+  h.kernel.lua().runConfig("c.lua");
+  CHECK(h.run("return found") == Value("first"));
+  const WorkingFolder there(h.folder / "work");
+  h.write("work/c.lua", "found = 'work'");
+  h.kernel.lua().runConfig("c.lua");
+  CHECK(h.run("return found") == Value("work"));
+  h.kernel.lua().runConfig((h.folder / "second/c.lua").string());
+  CHECK(h.run("return found") == Value("second"));
+}
+
+TEST_CASE("a config that is not there says where it was sought and what is near") {
+  LuaHouse h;
+  h.write("soccer.lua", "");
+  const std::string text = LuaHouse::errorOf([&] { h.kernel.lua().runConfig("socer.lua"); });
+  CHECK_THAT(text, Contains("there is no config 'socer.lua'. Looked in: " + std::filesystem::current_path().string() + ", " + h.folder.string() +
+                            ". Did you mean 'soccer.lua'?"));
+  std::filesystem::create_directory(h.folder / "folder");
+  CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().runConfig("folder"); }), Contains("is a folder"));
+}
+
+TEST_CASE("include runs a file in the environment of who includes it and gives its results") {
+  LuaHouse h;
+  h.write("rooms.lua", "function room(name) return new('Thing', '/usr/' .. name) end return 42");
+  CHECK(h.configFailure("answer = include 'rooms.lua'\nroom('kitchen')") == "");
+  CHECK(h.run("return {answer, get('/usr/kitchen').path}") == Value(List{42, "/usr/kitchen"}));
+  CHECK_THAT(h.configFailure("include 'room.lua'"), Contains("config.lua:1: there is no script 'room.lua'") && Contains("Did you mean 'rooms.lua'?"));
+}
+
+TEST_CASE("include also looks beside the config that runs") {
+  LuaHouse h;
+  std::filesystem::create_directory(h.folder / "mine");
+  h.write("mine/a.lua", "include 'b.lua'");
+  h.write("mine/b.lua", "b = 1");
+  h.kernel.lua().runConfig((h.folder / "mine/a.lua").string());
+  CHECK(h.run("return b") == Value(1));
+}
+
+TEST_CASE("errors in configs name file and line, also through includes") {
+  LuaHouse h;
+  h.write("inner.lua", "function wrong()\n  new('Nothing', '/usr/x')\nend");
+  CHECK_THAT(h.configFailure("include 'inner.lua'\n\nwrong()"), Equals("inner.lua:2: there is no class 'Nothing'. Did you mean 'Thing'?\n  from config.lua:3"));
+  h.write("syntax.lua", "\nif");
+  CHECK_THAT(h.configFailure("include 'syntax.lua'"), Equals("syntax.lua:2: unexpected symbol near <eof>\n  from config.lua:1"));
+}
+
+TEST_CASE("only text is run, no bytecode") {
+  LuaHouse h;
+  CHECK_THAT(h.configFailure("\x1bLua"), Contains("attempt to load a binary chunk"));
+}
+
+TEST_CASE("plugin names the nearest when there is none of that name") {
+  LuaHouse h;
+  CHECK_THAT(h.configFailure("plugin 'sensrs'"), Contains("config.lua:1: there is no plugin 'sensrs'."));
+}
+
+TEST_CASE("an option gives its default or what was set, and is listed") {
+  LuaHouse h;
+  h.kernel.lua().addOverride("agents", Value(22));
+  CHECK(h.configFailure("a = option{name = 'agents', default = 11, doc = 'Players a side.'}\n"
+                        "b = option{name = 'parser', default = 'SexpParser', choices = {'SexpParser', 'JsonParser'}}\n"
+                        "c = option{name = 'free'}") == "");
+  CHECK(h.run("return {a, b, c}") == Value(List{22, "SexpParser"}));
+  const std::vector<List> expected{{"agents", 11, "Players a side.", 22}, {"parser", "SexpParser", "", "SexpParser"}, {"free", Value(), "", Value()}};
+  CHECK(h.kernel.lua().options() == expected);
+}
+
+TEST_CASE("an option's value takes the type of its default") {
+  LuaHouse h;
+  h.kernel.lua().addOverride("step", Value(1));
+  h.kernel.lua().addOverride("team", Value(42));
+  h.kernel.lua().addOverride("whole", Value(3.0));
+  CHECK(h.configFailure("v = {option{name = 'step', default = 0.02}, option{name = 'team', default = 'A'}, option{name = 'whole', default = 1}}") == "");
+  CHECK(h.run("return v") == Value(List{1.0, "42", 3}));
+}
+
+TEST_CASE("an option refuses another type and what is not among its choices") {
+  LuaHouse h;
+  h.kernel.lua().addOverride("agents", Value("many"));
+  CHECK_THAT(h.configFailure("option{name = 'agents', default = 11}"),
+             Equals("config.lua:1: cannot set option 'agents'\n  because: expected integer (its default is 11), found string \"many\""));
+  h.kernel.lua().addOverride("parser", Value("XmlParser"));
+  CHECK_THAT(h.configFailure("option{name = 'parser', default = 'a', choices = {'a', 'b'}}"),
+             Contains("cannot set option 'parser'\n  because: expected one of \"a\", \"b\", found \"XmlParser\""));
+  CHECK_THAT(h.configFailure("option{name = 'x', default = 'c', choices = {'a', 'b'}}"), Contains("the default of option 'x' is not among its choices"));
+}
+
+TEST_CASE("option checks how it is used") {
+  LuaHouse h;
+  CHECK_THAT(h.failure("option{name = 'a', defualt = 1}"), Contains("option knows no field 'defualt'. Did you mean 'default'?"));
+  CHECK_THAT(h.failure("option('a')"), Contains("option expected a table"));
+  CHECK_THAT(h.failure("option{default = 1}"), Contains("expected an option's name (a string), found nil"));
+  CHECK_THAT(h.failure("option{name = 'a.b'}"), Contains("cannot declare option 'a.b'"));
+  CHECK(h.failure("option{name = 'a', default = 1} option{name = 'a', default = 1}") == "");
+  CHECK_THAT(h.failure("option{name = 'a', default = 2}"), Contains("option 'a' is declared already"));
+}
+
+TEST_CASE("what is set from outside wins over the config, by assignment or by setter") {
+  LuaHouse h;
+  h.kernel.lua().addOverride("/usr/a.mass", Value(9));
+  CHECK(h.configFailure("a = new('Thing', '/usr/a')\natOnce = a.mass\na.mass = 3\na:setMass(4)\na.count = 5") == "");
+  CHECK(h.run("return {atOnce, a.mass, a.count}") == Value(List{9.0, 9.0, 5}));
+  h.run("a.mass = 6");  // after the config, scripts are free
+  CHECK(h.run("return a.mass") == Value(6.0));
+}
+
+TEST_CASE("an ignored assignment is said at debug level") {
+  LuaHouse h;
+  h.kernel.log().setLevel(Level::debug);
+  h.kernel.lua().addOverride("/usr/a.mass", Value(9));
+  CHECK(h.configFailure("new('Thing', '/usr/a').mass = 3") == "");
+  CHECK_THAT(h.text, Contains("/usr/a.mass stays 9: it was set from outside the config"));
+}
+
+TEST_CASE("what is set from outside also meets nodes made by node:new, made again, or made by others") {
+  LuaHouse h;
+  h.kernel.lua().addOverride("/usr/a.mass", Value(9));
+  h.kernel.lua().addOverride("/usr/scene/ball.mass", Value(5));
+  CHECK(h.configFailure("get('/usr'):new('Thing', 'a') delete('/usr/a') again = get('/usr'):new('Thing', 'a').mass") == "unknown setting '/usr/scene/ball.mass': there is no /usr/scene/ball.");
+  CHECK(h.run("return again") == Value(9.0));
+  Thing& ball = h.thing("/usr/scene/ball");  // as an import would
+  CHECK(h.configFailure("get('/usr/scene/ball').mass = 2") == "");
+  CHECK(ball.mass == 5);
+}
+
+TEST_CASE("Namespace.Name is set as soon as the namespace exists") {
+  LuaHouse h;
+  h.kernel.lua().addOverride("Field.mass", Value(12));
+  h.kernel.lua().addOverride("Soccer.FieldLength", Value(30));
+  CHECK(h.configFailure("f = new('Thing', '/sys/variables/Field')\natOnce = {f.mass}\n"
+                        "s = new('Group', '/sys/variables/Soccer')\natOnce[2] = s.FieldLength\n"
+                        "f.mass = 1\nSoccer.FieldLength = 20\ns:set('FieldLength', 21)") == "");
+  CHECK(h.run("return {atOnce, Field.mass, Soccer.FieldLength}") == Value(List{List{12.0, 30}, 12.0, 30}));
+}
+
+TEST_CASE("settings that meet nothing are errors with the nearest names") {
+  const std::string config = "option{name = 'agents', default = 11}\nnew('Thing', '/usr/ball')\nnew('Group', '/sys/variables/Soccer'):set('FieldLength', 30)";
+  const std::vector<std::pair<const char*, std::string>> cases{
+      {"agnets", "unknown setting 'agnets': the config declares no option of that name. Did you mean 'agents'?"},
+      {"Soccer.FieldLenght", "unknown setting 'Soccer.FieldLenght': /sys/variables/Soccer has no variable of that name. Did you mean 'Soccer.FieldLength'?"},
+      {"Socer.FieldLength", "unknown setting 'Socer.FieldLength': there is no /sys/variables/Socer. Did you mean 'Soccer.FieldLength'?"},
+      {"/usr/bal.mass", "unknown setting '/usr/bal.mass': there is no /usr/bal. Did you mean '/usr/ball.mass'"},
+      {"/usr/ball.mas", "unknown setting '/usr/ball.mas': /usr/ball (class Thing) has no property 'mas'. Did you mean 'mass'?"}};
+  for (const auto& [key, expected] : cases) {
+    LuaHouse h;
+    h.kernel.lua().addOverride(key, Value(1));
+    CHECK_THAT(h.configFailure(config), Contains(expected));
+  }
+}
+
+TEST_CASE("a setting with a wrong value names the property and what was expected") {
+  LuaHouse h;
+  h.kernel.lua().addOverride("/usr/a.mass", Value(-1));
+  CHECK_THAT(h.configFailure("new('Thing', '/usr/a')"), Equals("config.lua:1: cannot set /usr/a.mass\n  because: expected 0.0 to inf kg, found -1"));
+  CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().addOverride("/usr/a", Value(1)); }), Contains("expected /path.property"));
+}
+
+TEST_CASE("log and print write to the kernel's log") {
+  LuaHouse h;
+  h.kernel.log().setLevel(Level::debug);
+  h.run("log.debug('d') log.info('i', 1, {}) log.warning('w') log.error('e') print('p', 2.5)");
+  CHECK(h.text == "d\ni 1 table\nw\ne\np 2.5\n");
+}

@@ -1,0 +1,174 @@
+// Events, attached scripts, and what happens when nodes die.
+#include "lua_fixture.h"
+
+using namespace spark;
+using namespace spark::test;
+using Catch::Contains;
+using Catch::Equals;
+
+TEST_CASE("a handler gets its node and the event") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.run("get('/usr/a'):on('tick', function(self, e) seen = {self.path, e.name, e.time, e.step, e.cycle, e.data} end)");
+  const Value data(List{1, "two"});
+  h.kernel.events().channel("tick").emit({"tick", 1.5, 0.25, 7, &data});
+  CHECK(h.run("return seen") == Value(List{"/usr/a", "tick", 1.5, 0.25, 7, data}));
+}
+
+TEST_CASE("on without a node listens at the root in configs and at self in attached scripts") {
+  LuaHouse h;
+  h.run("on('tick', function(self) where = self.path end)");
+  h.kernel.lua().attachText(h.thing("/usr/a"), "on('tock', function(node, e) node.label = e.name self.count = 9 end)", "script", true);
+  h.emit("tick");
+  h.emit("tock");
+  CHECK(h.run("return where") == Value("/"));
+  CHECK(h.run("return {get('/usr/a').label, get('/usr/a').count}") == Value(List{"tock", 9}));
+}
+
+TEST_CASE("a subscription can be removed, once and for all") {
+  LuaHouse h;
+  h.run("n = 0; s = on('tick', function() n = n + 1 end)");
+  h.emit("tick");
+  h.run("s:remove()");
+  h.emit("tick");
+  h.run("other = on('tick', function() n = n + 10 end); s:remove()");
+  h.emit("tick");
+  CHECK(h.run("return n") == Value(11));
+}
+
+TEST_CASE("a handler may remove itself and delete its node while it runs") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.run("n = 0; local s; s = on('tick', function() s:remove() n = n + 1 end)");
+  h.run("get('/usr/a'):on('tick', function(self) self:delete() n = n + 10 end)");
+  h.emit("tick");
+  h.emit("tick");
+  CHECK(h.run("return {n, get('/usr/a') == nil}") == Value(List{11, true}));
+  CHECK(h.text == "");
+}
+
+TEST_CASE("subscriptions go with their node") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.run("n = 0; s = get('/usr/a'):on('tick', function() n = n + 1 end)");
+  h.run("delete('/usr/a')");
+  h.emit("tick");
+  CHECK(h.run("s:remove() return n") == Value(0));
+  CHECK(h.kernel.events().channel("tick").empty());
+}
+
+TEST_CASE("what an attached script subscribes elsewhere goes with its own node") {
+  LuaHouse h;
+  Thing& b = h.thing("/usr/b");
+  h.kernel.lua().attachText(h.thing("/usr/a"), "get('/usr/b'):on('tick', function(b) b.count = b.count + 1 end)", "script", true);
+  h.emit("tick");
+  CHECK(b.count == 1);
+  h.run("delete('/usr/a')");
+  h.emit("tick");
+  h.emit("tick");
+  CHECK(b.count == 1);
+  CHECK(h.kernel.events().channel("tick").empty());
+}
+
+TEST_CASE("a script file attaches to a node and runs at once in an environment of its own") {
+  LuaHouse h;
+  Thing& a = h.thing("/usr/a");
+  Thing& b = h.thing("/usr/b");
+  h.write("mark.lua", "counter = (counter or 0) + 1; self.count = counter; string.mine = true");
+  h.kernel.lua().attach(a, "mark.lua");
+  h.run("get('/usr/b'):attach('mark.lua')");
+  CHECK(a.count == 1);
+  CHECK(b.count == 1);
+  CHECK(h.run("return {counter, self, string.mine}") == Value(List{}));
+  CHECK_THAT(h.failure("get('/usr/b'):attach('marc.lua')"), Contains("test:1: there is no script 'marc.lua'") && Contains("Did you mean 'mark.lua'?"));
+}
+
+TEST_CASE("get in an attached script starts at its node") {
+  LuaHouse h;
+  Thing& a = h.thing("/usr/a");
+  h.thing("/usr/b").label = "neighbour";
+  h.kernel.lua().attachText(a, "self.label = get('../b').label", "script", true);
+  CHECK(a.label == "neighbour");
+}
+
+TEST_CASE("a script that fails while it is attached leaves no handlers") {
+  LuaHouse h;
+  Thing& a = h.thing("/usr/a");
+  const std::string text = LuaHouse::errorOf([&] { h.kernel.lua().attachText(a, "on('tick', function() self.count = 1 end)\nerror('no')", "script", true); });
+  CHECK_THAT(text, Equals("the script attached to /usr/a failed: script:2: no"));
+  h.emit("tick");
+  CHECK(a.count == 0);
+}
+
+TEST_CASE("an error in a handler is logged once for its line, and the handler stays") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.run("n = 0\nget('/usr/a'):on('tick', function(self)\n  n = n + 1\n  local none\n  none.x = 1\nend)");
+  for (int i = 0; i < 3; ++i) CHECK_NOTHROW(h.emit("tick"));
+  CHECK(h.run("return n") == Value(3));
+  CHECK_THAT(h.text, Equals("handler of 'tick' at /usr/a failed: test:5: attempt to index a nil value (local 'none')\n"
+                            "  It stays; further errors of this line are not logged.\n"));
+}
+
+TEST_CASE("a handler's traceback shows who called whom") {
+  LuaHouse h;
+  h.run("local function deep()\n  error('boom')\nend\nlocal function top()\n  deep()\nend\non('tick', function()\n  top()\nend)");
+  h.emit("tick");
+  CHECK_THAT(h.text, Contains("test:2: boom\n  from test:5 in 'top'\n  from test:8\n"));
+}
+
+TEST_CASE("an endless loop in a handler becomes an error that names script, line and node") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.run("get('/usr/a'):on('tick', function(self)\n  while true do end\nend)");
+  h.emit("tick");
+  CHECK_THAT(h.text, Contains("handler of 'tick' at /usr/a failed: test:2: stopped after 50000000 instructions: is there an endless loop?"));
+}
+
+TEST_CASE("neither pcall nor a coroutine saves an endless loop") {
+  LuaHouse h;
+  h.run("on('tick', function() while true do pcall(function() while true do end end) end end)");
+  h.run("on('tick', function() while true do coroutine.wrap(function() while true do end end)() end end)");
+  h.run("on('tick', function() while true do coroutine.resume(coroutine.create(function() while true do end end)) end end)");
+  h.run("on('tick', function() after = true end)");
+  h.emit("tick");
+  CHECK(h.run("return after") == Value(true));
+  h.text.clear();
+  h.run("n = 0 on('tock', function() for i = 1, 100000 do n = n + 1 end end)");  // the next run has its budget again
+  h.emit("tock");
+  CHECK(h.run("return n") == Value(100000));
+  CHECK(h.text == "");
+}
+
+TEST_CASE("an attached script that never ends is stopped") {
+  LuaHouse h;
+  Thing& a = h.thing("/usr/a");
+  CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().attachText(a, "while true do end", "script", true); }),
+             Contains("the script attached to /usr/a failed: script:1: stopped after"));
+}
+
+TEST_CASE("handlers may raise events, but not without end") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.run("get('/usr/a'):on('tick', function(self) self:raise('tock') end)");
+  h.run("get('/usr/a'):on('tock', function(self) self.count = self.count + 1 end)");
+  h.emit("tick");
+  CHECK(h.run("return get('/usr/a').count") == Value(1));
+  h.run("get('/usr/a'):on('loop', function(self) self:raise('loop') end)");
+  CHECK_NOTHROW(h.emit("loop"));
+  CHECK_THAT(h.text, Contains("scripts entered each other more than 16 deep: does a handler raise its own event?"));
+}
+
+TEST_CASE("scripts end before the nodes and the handlers they left do nothing") {
+  std::string text;
+  {
+    Kernel kernel;
+    kernel.log().setSink([&](Level, std::string_view line) { text += line; });
+    kernel.registerClass<Thing>();
+    kernel.create("Thing", "/usr/a");
+    kernel.lua().run("held = get('/usr/a') get('/usr/a'):on('gone', function() log.info('ran') end)", "test");
+    kernel.lua().attachText(*kernel.root().find("/usr/a"), "self:on('gone', function() end)", "script", false);
+    kernel.events().channel("gone").emit({"gone"});
+  }
+  CHECK(text == "ran");
+}

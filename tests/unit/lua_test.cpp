@@ -1,0 +1,156 @@
+// Nodes and values as a script sees them.
+#include "lua_fixture.h"
+
+using namespace spark;
+using namespace spark::test;
+using Catch::Contains;
+using Catch::Equals;
+
+TEST_CASE("a script reads and writes properties and calls methods by name") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.run("local a = get('/usr/a'); a.mass = 2.5; a.count = 3; a.label = 'ball'");
+  CHECK(h.run("return get('/usr/a').mass") == Value(2.5));
+  CHECK(h.run("return get('/usr/a').count") == Value(3));
+  CHECK(h.run("return get('/usr/a').label") == Value("ball"));
+  CHECK(h.run("return get('/usr/a'):add(1, 2)") == Value(3.0));
+  CHECK(h.run("return get('/usr/a'):getMass()") == Value(2.5));
+  CHECK(h.run("get('/usr/a'):setMass(4) return get('/usr/a').mass") == Value(4.0));
+}
+
+TEST_CASE("every node has name, path, class, parent, alive, find and children") {
+  LuaHouse h;
+  h.thing("/usr/a").create("Thing", "b");
+  CHECK(h.run("return get('/usr/a/b').name") == Value("b"));
+  CHECK(h.run("return get('/usr/a/b').path") == Value("/usr/a/b"));
+  CHECK(h.run("return get('/usr/a/b').class") == Value("Thing"));
+  CHECK(h.run("return get('/usr/a/b').parent.path") == Value("/usr/a"));
+  CHECK(h.run("return get('/').parent") == Value());
+  CHECK(h.run("return get('/usr/a').alive") == Value(true));
+  CHECK(h.run("return get('/usr'):find('a/b').path") == Value("/usr/a/b"));
+  CHECK(h.run("return get('/usr'):find('a/c')") == Value());
+  CHECK(h.run("return get('/nowhere')") == Value());
+  CHECK(h.run("local n = {} for i, c in ipairs(get('/usr/a'):children()) do n[i] = c.name end return n") == Value(List{"b"}));
+  CHECK(h.run("return tostring(get('/usr/a/b'))") == Value("/usr/a/b"));
+}
+
+TEST_CASE("children are reached by find only") {
+  LuaHouse h;
+  h.thing("/usr/a").create("Thing", "b");
+  CHECK_THAT(h.failure("return get('/usr/a').b"), Contains("has no property or method 'b'"));
+}
+
+TEST_CASE("nodes are equal by identity and work as table keys") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.thing("/usr/b");
+  CHECK(h.run("return get('/usr/a') == get('/usr'):find('a')") == Value(true));
+  CHECK(h.run("return get('/usr/a') == get('/usr/b')") == Value(false));
+  CHECK(h.run("local t = {[get('/usr/a')] = 5} return t[get('/usr/a')]") == Value(5));
+}
+
+TEST_CASE("scripts make and delete nodes") {
+  LuaHouse h;
+  CHECK(h.run("return new('Thing', '/usr/x/y').path") == Value("/usr/x/y"));
+  CHECK(h.run("return get('/usr/x'):new('Thing', 'z').path") == Value("/usr/x/z"));
+  CHECK(h.run("return get('/usr/x'):new('Thing').name") == Value("Thing"));
+  h.run("get('/usr/x/z'):delete() delete('/usr/x/y') delete(get('/usr/x/Thing'))");
+  CHECK(h.kernel.root().find<Node>("/usr/x")->children().empty());
+}
+
+TEST_CASE("what belongs to the kernel cannot be deleted") {
+  LuaHouse h;
+  for (const char* path : {"/", "/classes", "/classes/Thing", "/plugins"})
+    CHECK_THAT(h.failure(std::string("delete('") + path + "')"), Contains(std::string("cannot delete ") + path + ": it belongs to the kernel"));
+}
+
+TEST_CASE("a dead node says so and knows what it was") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.run("a = get('/usr/a') a:delete()");
+  CHECK(h.run("return a.alive") == Value(false));
+  CHECK(h.run("return tostring(a)") == Value("dead node (was /usr/a)"));
+  for (const char* use : {"a.mass = 1", "a:add(1, 2)", "return a.path", "return a:children()", "delete(a)"}) {
+    INFO(use);
+    CHECK_THAT(h.failure(use), Contains("test:1: this node is gone"));
+  }
+  CHECK_THAT(h.failure("return a.mass"), Equals("test:1: this node is gone: it was /usr/a and has been deleted. Ask node.alive before you use a node that may die."));
+  h.thing("/usr/b");
+  CHECK_THAT(h.failure("get('/usr/b').anything = a"), Contains("this node is gone"));
+}
+
+TEST_CASE("values keep their type both ways") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  const std::vector<std::pair<const char*, Value>> cases{
+      {"nil", {}}, {"true", true}, {"3", 3}, {"3.0", 3.0}, {"0.1", 0.1}, {"'x\\0y'", std::string("x\0y", 3)}, {"9007199254740993", std::int64_t{9007199254740993}},
+      {"{}", List{}}, {"{1, 2.5, 'a', {true}}", List{1, 2.5, "a", List{true}}}};
+  for (const auto& [text, value] : cases) {
+    INFO(text);
+    CHECK(h.run(std::string("return ") + text) == value);
+    CHECK(h.run(std::string("return get('/usr/a'):echo(") + text + ")") == value);
+  }
+  CHECK(h.run("return math.type(get('/usr/a'):echo(3))") == Value("integer"));
+  CHECK(h.run("return math.type(get('/usr/a'):echo(3.0))") == Value("float"));
+}
+
+TEST_CASE("a table that is no sequence becomes a list of pairs, sorted by key") {
+  LuaHouse h;
+  CHECK(h.run("return {b = 1, a = 2, [3] = 'x', [1.5] = 'y'}") == Value(List{List{1.5, "y"}, List{3, "x"}, List{"a", 2}, List{"b", 1}}));
+  CHECK(h.run("return {1, nil, 3}") == Value(List{List{1, 1}, List{3, 3}}));
+}
+
+TEST_CASE("a node as a value is its path") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  CHECK(h.run("return {get('/usr/a')}") == Value(List{"/usr/a"}));
+}
+
+TEST_CASE("what is no value is refused") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  CHECK_THAT(h.failure("get('/usr/a').anything = print"),
+             Equals("test:1: expected a value (nil, boolean, number, string, table or node), found a function"));
+  CHECK_THAT(h.failure("local t = {} t[1] = t get('/usr/a').anything = t"), Contains("is nested more than 64 deep, or holds itself"));
+}
+
+TEST_CASE("an unknown name is answered with the nearest") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  CHECK_THAT(h.failure("return get('/usr/a').mas"), Equals("test:1: /usr/a (class Thing) has no property or method 'mas'. Did you mean 'mass'?"));
+  CHECK_THAT(h.failure("get('/usr/a'):ad(1, 2)"), Contains("has no property or method 'ad'. Did you mean 'add'"));
+  CHECK_THAT(h.failure("get('/usr/a').lable = 'x'"), Equals("test:1: /usr/a (class Thing) has no property 'lable'. Did you mean 'label'?"));
+  CHECK_THAT(h.failure("get('/usr/a'):childen()"), Contains("Did you mean 'children'?"));
+  CHECK_THAT(h.failure("new('Thin', '/usr/b')"), Contains("test:1: there is no class 'Thin'. Did you mean 'Thing'?"));
+}
+
+TEST_CASE("wrong values and arguments say what was expected") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  CHECK_THAT(h.failure("get('/usr/a').mass = -1"), Equals("test:1: cannot set /usr/a.mass\n  because: expected 0.0 to inf kg, found -1"));
+  CHECK_THAT(h.failure("get('/usr/a').mass = {}"), Contains("cannot set /usr/a.mass"));
+  CHECK_THAT(h.failure("get('/usr/a').fixed = 1"), Contains("/usr/a.fixed is read only"));
+  CHECK_THAT(h.failure("get('/usr/a').path = 'x'"), Contains("cannot set /usr/a.path: it is read only"));
+  CHECK_THAT(h.failure("get('/usr/a'):add(1)"), Contains("expected 2 arguments, found 1"));
+  CHECK_THAT(h.failure("get('/usr/a').add(1, 2)"), Contains("expected a node before add, found number: write node:add(...), with a colon"));
+  CHECK_THAT(h.failure("get('/usr/a'):on('tick', 5)"), Contains("expected a function(self, event) to handle 'tick', found number"));
+  CHECK_THAT(h.failure("get(5)"), Contains("expected a path (a string), found number"));
+}
+
+TEST_CASE("the variables of a group read and write like properties") {
+  LuaHouse h;
+  h.kernel.create<Group>("Group", "/sys/variables/Nao").values["UseTexture"] = "true";
+  CHECK(h.run("return Nao.UseTexture") == Value("true"));
+  h.run("Nao.UseTexture = 'false' Nao.New = 5");
+  CHECK(h.run("return {Nao.UseTexture, Nao.New}") == Value(List{"false", 5}));
+  CHECK_THAT(h.failure("return Nao.UseTextur"), Contains("Did you mean 'UseTexture'?"));
+  CHECK(h.run("return Unheard") == Value());
+}
+
+TEST_CASE("a script's error has file, line and a short traceback") {
+  LuaHouse h;
+  CHECK_THAT(h.failure("local x = nil\nreturn x.y"), Equals("test:2: attempt to index a nil value (local 'x')"));
+  CHECK_THAT(h.failure("function f()\n  error('boom')\nend\nlocal function g()\n  f()\nend\ng()"), Equals("test:2: boom\n  from test:5 in 'g'\n  from test:7"));
+  CHECK_THAT(h.failure("x ="), Equals("test:1: unexpected symbol near <eof>"));
+  CHECK_THAT(h.failure("error({})"), Equals("table\n  from test:1"));
+}
