@@ -152,6 +152,7 @@ const Method* Run::methodOf(const Statement& s, Leaf& node) const {
 void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
   const Method* method = methodOf(s, node);
   if (!method) {
+    if (s.complained && !importer_.rules_.strict) return;
     std::vector<std::string> names;
     for (const Method* m : node.classObject()->methods()) names.push_back(m->name);
     return complain(s, Level::error, "class " + node.classObject()->name() + " has no method '" + s.text + "'." + didYouMean(s.text, names));

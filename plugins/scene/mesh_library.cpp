@@ -27,24 +27,25 @@ std::vector<std::string> objMaterials(std::string_view text) {
   return {names.begin(), names.end()};
 }
 
-void MeshLibrary::define(std::string mesh, std::vector<std::string> materials) {
-  entries_[std::move(mesh)].declared = std::move(materials);
-}
+void MeshLibrary::define(std::string mesh, std::vector<std::string> materials) { declared_[std::move(mesh)] = std::move(materials); }
 
 const std::vector<std::string>& MeshLibrary::materials(Kernel& kernel, const std::string& mesh) {
-  Entry& entry = entries_[mesh];
+  // Mesh names may come from a client: only those that exist are remembered.
+  static const std::vector<std::string> kNone;
+  const auto declared = declared_.find(mesh);
+  const auto& otherwise = declared == declared_.end() ? kNone : declared->second;
   auto* files = mesh.ends_with(".obj") ? kernel.root().find<IFileServer>("/sys/server/file") : nullptr;
-  if (files) {
-    try {
-      const std::uint64_t stamp = files->stamp(mesh);
-      if (!entry.asked || stamp != entry.stamp) entry.found = stamp ? objMaterials(files->read(mesh)) : std::vector<std::string>();
-      entry.stamp = stamp;
-    } catch (const Error& e) {
-      if (!entry.asked) kernel.log().warning("mesh '{}' cannot be read: {}", mesh, e.what());
-    }
-    entry.asked = true;
+  if (!files) return otherwise;
+  try {
+    const std::uint64_t stamp = files->stamp(mesh);
+    if (stamp == 0) return otherwise;
+    const auto known = read_.find(mesh);
+    if (known != read_.end() && known->second.stamp == stamp) return known->second.materials;
+    return read_.insert_or_assign(mesh, Entry{stamp, objMaterials(files->read(mesh))}).first->second.materials;
+  } catch (const Error& e) {
+    kernel.log().warning("mesh '{}' cannot be read: {}", mesh, e.what());
+    return otherwise;
   }
-  return entry.stamp ? entry.found : entry.declared;
 }
 
 }  // namespace spark

@@ -20,11 +20,11 @@ class MeshLibrary {
 
  private:
   struct Entry {
-    std::uint64_t stamp = 0;  ///< of the file; 0: there was none
-    bool asked = false;
-    std::vector<std::string> declared, found;
+    std::uint64_t stamp;  ///< of the file
+    std::vector<std::string> materials;
   };
-  std::map<std::string, Entry, std::less<>> entries_;
+  std::map<std::string, std::vector<std::string>, std::less<>> declared_;
+  std::map<std::string, Entry, std::less<>> read_;
 };
 
 /// The names after `usemtl` in an OBJ file: each once, in alphabetical order; names that no face follows are left out.

@@ -1,0 +1,210 @@
+// What the installed base's scenes amount to: scene-language Appendix A, and the robots' bodies and joints.
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iostream>
+#include <regex>
+
+#include "reference_house.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+std::filesystem::path reference() {
+  const auto folder = referenceFolder();
+  if (std::filesystem::is_directory(folder / "scenes-reference")) return folder;
+  std::cout << "skipped: SPARK_REFERENCE_DIR has no scenes-reference\n";
+  std::exit(77);
+}
+
+/// A row of Appendix A.
+struct Row {
+  const char* file;
+  List arguments;
+  int nodes, transforms, bodies;
+  double mass;
+  int colliders, joints, motors, perceptors, effectors, imports, evals, calls;
+};
+
+const Row kNao{"rsg/agent/nao/nao.rsg", {}, 219, 26, 23, 4.6071, 13, 22, 0, 30, 27, 95, 212, 820};
+const Row kWorlds[] = {{"rsg/agent/nao/soccer.rsg", {}, 116, 50, 1, 0.026, 16, 0, 0, 0, 0, 34, 136, 200},
+                       {"rsg/boxspheres/simspark.rsg", {}, 341, 60, 54, 443.876, 59, 0, 0, 0, 0, 68, 0, 914}};
+
+void check(const Row& row, const Inventory& found, const ReferenceHouse& h) {
+  INFO(row.file);
+  CHECK(found.nodes == row.nodes);
+  CHECK(found.transforms == row.transforms);
+  CHECK(found.bodies == row.bodies);
+  CHECK(found.mass == Approx(row.mass).epsilon(1e-5));
+  CHECK(found.colliders == row.colliders);
+  CHECK(found.joints == row.joints);
+  CHECK(found.angularMotors == row.motors);
+  CHECK(found.perceptors == row.perceptors);
+  CHECK(found.effectors == row.effectors);
+  CHECK(h.count("imports") == row.imports);
+  CHECK(h.count("evals") == row.evals);
+  CHECK(h.count("calls") == row.calls);
+  if (h.house.text.find("failed") != std::string::npos || h.house.text.find("no method") != std::string::npos) FAIL(h.house.text);
+}
+
+using Match = std::smatch;
+double number(const std::string& text) { return std::stod(text); }
+Vec3 vector(const Match& m, std::size_t first) { return {number(m[first]), number(m[first + 1]), number(m[first + 2])}; }
+std::string triple() { return R"(\['([^']*)', '([^']*)', '([^']*)'\])"; }
+
+/// A robot as the facts have it, line by line.
+struct Facts {
+  std::vector<std::string> lines;
+  explicit Facts(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line) && lines.size() < 60;) lines.push_back(line);
+    REQUIRE(lines.size() == 60);
+  }
+  template <class F>
+  int each(const std::string& pattern, F visit) const {
+    const std::regex expression(pattern);
+    int n = 0;
+    for (const std::string& line : lines)
+      if (Match m; std::regex_search(line, m, expression)) visit(m, line), ++n;
+    return n;
+  }
+};
+
+void checkBodies(const Facts& facts, const Node& robot) {
+  const int n = facts.each(R"(^    body (\S+)/ mass (\S+) pos )" + triple(), [&](const Match& m, const std::string&) {
+    INFO(m[1].str());
+    const auto& body = robot.require<IRigidBody>(m[1].str());
+    CHECK(body.mass() == Approx(number(m[2])).epsilon(1e-5));
+    CHECK((body.state().position - vector(m, 3)).norm() < 2e-5);
+  });
+  CHECK(n >= 23);
+}
+
+void checkParameters(const IJoint& joint, const std::string& line) {
+  using P = engine::JointParameter;
+  const std::pair<const char*, P> kNames[] = {{"setMaxMotorForce", P::maxForce}, {"setCFM", P::cfm},      {"setStopCFM", P::stopCfm},     {"setStopERP", P::stopErp},
+                                              {"setFudgeFactor", P::fudgeFactor}, {"setBounce", P::bounce}, {"setLowStopDeg", P::lowStop}, {"setHighStopDeg", P::highStop}};
+  for (const auto& [name, parameter] : kNames) {
+    INFO(name);
+    Match m;
+    REQUIRE(std::regex_search(line, m, std::regex("'" + std::string(name) + R"(': \['0 ([^']*)'\])")));
+    const double wanted = number(m[1]) * (std::string_view(name).ends_with("Deg") ? kPi / 180 : 1);
+    CHECK(joint.parameter(parameter, 0) == Approx(wanted).margin(1e-12));
+  }
+  Match m;
+  REQUIRE(std::regex_search(line, m, std::regex(R"('setJointMaxSpeed1': \['([^']*)'\])")));
+  CHECK(joint.maxSpeed(0) == Approx(number(m[1])));
+}
+
+void checkJoints(const Facts& facts, const Node& robot) {
+  std::vector<IJoint*> joints;
+  robot.collect(joints);
+  std::size_t next = 0;
+  const int n = facts.each(R"(^    HingeJoint \['(\S+)/', '(\S+)/'\] anchor )" + triple() + R"( axis \[)" + triple() + R"(\].*'HingePerceptor', '([^']+)'.*'HingeEffector', '([^']+)')",
+                           [&](const Match& m, const std::string& line) {
+                             REQUIRE(next < joints.size());
+                             IJoint& joint = *joints[next++];
+                             INFO(m[9].str());
+                             CHECK(&joint.body(0)->leaf() == robot.find(m[1].str()));
+                             CHECK(&joint.body(1)->leaf() == robot.find(m[2].str()));
+                             CHECK(joint.leaf().find(m[9].str())->as<Perceptor>());
+                             CHECK(joint.leaf().find(m[10].str())->as<Effector>());
+                             checkParameters(joint, line);
+                             Args anchor{}, axis{};
+                             const Value at = callMethod(joint.leaf(), "getAnchor", {}), along = callMethod(joint.leaf(), "getAxis", List{0});
+                             anchor.values = {&at, 1};
+                             axis.values = {&along, 1};
+                             CHECK((Convert<Vec3>::from(anchor) - vector(m, 3)).norm() < 2e-5);
+                             CHECK((Convert<Vec3>::from(axis) - vector(m, 6)).norm() < 1e-5);
+                           });
+  CHECK(n >= 22);
+  CHECK(next == joints.size());
+}
+
+/// The facts count a scene with one agent, its world, space and create effector.
+void checkClasses(const Facts& facts, Inventory found) {
+  for (const char* one : {"Scene", "World", "Space", "AgentAspect", "SceneEffector"}) ++found.classes[one];
+  CHECK(facts.each("^  classes ", [&](const Match&, const std::string& line) {
+    const std::regex entry("'([A-Za-z0-9]+)': ([0-9]+)");
+    std::map<std::string, int> wanted;
+    for (std::sregex_iterator m(line.begin(), line.end(), entry), end; m != end; ++m) wanted[(*m)[1]] = std::stoi((*m)[2]);
+    CHECK(found.classes == wanted);
+  }) == 1);
+}
+
+/// Perceptors and effectors in order, as [class, name]; names that the original made up are not compared.
+template <class T>
+void checkOrder(const Facts& facts, const char* title, const Node& robot, const char* skip) {
+  std::vector<T*> all;
+  robot.collect(all);
+  CHECK(facts.each("^  " + std::string(title) + " ", [&](const Match&, const std::string& line) {
+    const std::regex entry(R"(\('([A-Za-z0-9]+)', '([^']*)'\))");
+    std::size_t i = 0;
+    for (std::sregex_iterator m(line.begin(), line.end(), entry), end; m != end; ++m) {
+      if ((*m)[1] == skip) continue;
+      REQUIRE(i < all.size());
+      CHECK(all[i]->classObject()->name() == (*m)[1].str());
+      if ((*m)[2].str().front() != '<') CHECK(all[i]->name() == (*m)[2].str());
+      ++i;
+    }
+    CHECK(i == all.size());
+  }) == 1);
+}
+
+}  // namespace
+
+TEST_CASE("every robot of the reference scenes has the nodes, bodies, joints, sensors and effectors of the installed base") {
+  const auto folder = reference();
+  for (int type = 0; type < 5; ++type) {
+    INFO("type " << type);
+    ReferenceHouse h(folder);
+    Node& robot = h.agent("AgentAspect1");
+    h.import("rsg/agent/nao/nao_hetero.rsg", robot, {type});
+    Row row{"rsg/agent/nao/nao_hetero.rsg", {}, 219, 26, 23, 4.6071, 13, 22, 0, 30, 27, 94, 212, 819};
+    if (type == 4) row = {row.file, {}, 239, 28, 25, 4.6071, 15, 24, 0, 34, 29, 102, 252, 917};
+    Inventory found;
+    found.add(robot);
+    check(row, found, h);
+    const Facts facts(folder / "spec" / "models" / ("nao-type" + std::to_string(type) + ".txt"));
+    checkClasses(facts, found);
+    checkBodies(facts, robot);
+    checkJoints(facts, robot);
+    checkOrder<Perceptor>(facts, "perceptors", robot, "");
+    checkOrder<Effector>(facts, "effectors", robot, "SceneEffector");
+  }
+}
+
+TEST_CASE("the plain robot is the first of its kind") {
+  ReferenceHouse h(reference());
+  Node& robot = h.agent("AgentAspect1");
+  h.import(kNao.file, robot);
+  Inventory found;
+  found.add(robot);
+  check(kNao, found, h);
+}
+
+TEST_CASE("every world of the reference scenes has the nodes, bodies and colliders of the installed base") {
+  const auto folder = reference();
+  for (const Row& row : kWorlds) {
+    ReferenceHouse h(folder);
+    h.import(row.file, *h.scene);
+    Inventory found;
+    found.add(*h.scene);
+    check(row, found, h);
+  }
+}
+
+TEST_CASE("a second robot of a kind parses nothing") {
+  ReferenceHouse h(reference());
+  h.import("rsg/agent/nao/nao_hetero.rsg", h.agent("AgentAspect1"), {0});
+  const std::int64_t parsed = h.count("filesParsed");
+  CHECK(parsed > 5);
+  Node& second = h.agent("AgentAspect2");
+  h.import("rsg/agent/nao/nao_hetero.rsg", second, {1});
+  CHECK(h.count("filesParsed") == parsed);
+  Inventory found;
+  found.add(second);
+  CHECK(found.nodes == 219);
+}
