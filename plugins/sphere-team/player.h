@@ -34,38 +34,51 @@ class SpherePlayer {
   double time() const { return now_; }
 
  private:
-  /// A point on the field. Frame: own half at negative x, opponents' goal at +x, y to the left [m].
+  /// A point or a way on the field, as the team sees it: opponents' goal at +x, y to the left [m].
   struct Point {
     double x = 0, y = 0;
+    Point operator+(Point o) const { return {x + o.x, y + o.y}; }
+    Point operator-(Point o) const { return {x - o.x, y - o.y}; }
+    Point operator*(double k) const { return {x * k, y * k}; }
+    double length() const;
+    Point unit() const;
+    double dot(Point o) const { return x * o.x + y * o.y; }
   };
-  /// What was seen of somebody: offset from here in the server's field frame [m].
-  struct Seen {
+  /// Another player.
+  struct Other {
     bool mate = false;
     int unum = 0;
-    Point offset;
+    Point place;
   };
 
   void read(const Predicates& percepts);
   void readGameState(const Element& gs);
   void readVision(const Element& see);
-  void locate(Point sum, int count);
-  void beam(Predicates& actions) const;
+  void readField(const Element& see);
+  void noteRestart(const std::string& before);
+  void join(Predicates& actions);
+  void takePlaces(Predicates& actions);
   void play(Predicates& actions);
   void keepGoal(Predicates& actions);
-  void runTo(Point target, Predicates& actions) const;
-  void kickIfNear(Predicates& actions) const;
+  void attack(Predicates& actions);
+  void kickTowards(Point target, double speed, double elevationDeg, Predicates& actions);
+  void runTo(Point target, double speed, Predicates& actions) const;
+  bool goesToBall() const;
+  bool ours(std::string_view kind) const;
+  bool theirs() const;
   Point formation() const;
-  Point ballSoon() const;
-  bool nearestOfTeam() const;
-  bool mayTouch() const;
+  Point ballSoon(double seconds) const { return ball_ + ballVelocity_ * seconds; }
+  double offsideLine() const;
 
   std::string team_, scene_ = "rsg/agent/sphere.rsg", side_, playMode_ = "BeforeKickOff";
-  int unum_, left_ = 0, right_ = 0, seenOwn_ = 0;
-  bool initSent_ = false, located_ = false, ballSeen_ = false;
-  double now_ = 0, ballTime_ = 0;
-  Point self_, velocity_, ball_, ballVelocity_;
-  double ballHeight_ = 0;
-  std::vector<Seen> seen_;
+  int unum_, left_ = 0, right_ = 0;
+  bool seesField_ = false, seesBall_ = false, placed_ = false;
+  double now_ = 0, joinedAt_ = -1, ballTime_ = 0, modeSince_ = 0, caughtAt_ = -10;
+  double halfLength_ = 52, halfWidth_ = 34, goalHalfWidth_ = 3.66;
+  Point self_, ball_, toBall_, ballVelocity_;
+  int taker_ = 0;                ///< number of the team-mate (or self) who took our last restart
+  double takerUntil_ = -1;       ///< s: he leaves the ball to others until then
+  std::vector<Other> others_;
 };
 
 }  // namespace spark

@@ -1,0 +1,48 @@
+-- Soccer as in 2004: two teams of spheres on a field of 104 x 68 m.
+--
+--     sparkhost --config soccer-sphere.lua
+include "house.lua"
+include "materials.lua"
+include "soccer-house.lua"
+
+local robots  = option{ name = "team", default = "", doc = "A team of this name plays inside the host; \"A B\": two teams." }
+local players = option{ name = "players", default = 11, doc = "Players of each team inside the host." }
+local offside = option{ name = "offside", default = true, doc = "Offside is judged." }
+local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of the language that agents speak." }
+local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
+
+-- the rooms
+files()
+scene()
+materials()
+physics()
+simulation()
+agents{ parser = parser }
+monitors{ encoder = encoder }
+control()
+plugin "sensors"
+plugin "effectors"
+
+-- the match
+soccerVariables {
+  FieldLength = 104, FieldWidth = 68, GoalWidth = 7.32, GoalDepth = 2, GoalHeight = 0.5, BorderSize = 10,
+  PenaltyLength = 16.5, PenaltyWidth = 33, FreeKickDistance = 9.15, FreeKickMoveDist = 10,
+  AgentRadius = 0.22, AgentMass = 75, AgentMaxSpeed = 10, AgentLinearDrag = 600,
+  BallRadius = 0.111, BallMass = 0.425878, BallLinearDrag = 0.1, BallAngularDrag = 0.001, BallMaxSpeed = 40,
+  RuleHalfTime = 480, RuleDropBallTime = 30, WaitBeforeKickOff = 2, AutomaticKickOff = true,
+  MaxRobotTypeCount = 11, MinRobotTypesCount = 1, MaxSumTwoRobotTypes = 22,   -- all spheres are of one type
+  MaxPlayersInsideOwnArea = 11,
+}
+soccerRules()
+if offside then new("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect") end
+soccerMonitor()
+get("/usr/scene"):importScene("rsg/soccer/field.rsg")
+
+-- teams inside the host, if any; others come over the network
+if robots ~= "" then plugin "sphere-team" end
+for team in robots:gmatch("%S+") do
+  for number = 1, players do
+    local player = new("SphereBehavior", "/usr/agent/" .. team .. number)
+    player.team, player.unum = team, number
+  end
+end

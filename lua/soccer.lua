@@ -1,0 +1,30 @@
+-- Soccer of the 3D league: 30 x 20 m, humanoids. Robots are scene files that agents name; --scene-path says where others than Spark's are.
+--
+--     sparkhost --config soccer.lua --scene-path <folder with rsg/agent/nao/...>
+include "house.lua"
+include "materials.lua"
+include "naotypes.lua"
+include "soccer-house.lua"
+
+local field   = option{ name = "scene", default = "rsg/soccer/field.rsg", doc = "The field's scene file." }
+local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of the language that agents speak." }
+local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
+
+-- the rooms
+files()
+scene()
+materials()
+physics()
+simulation()
+agents{ parser = parser }
+monitors{ encoder = encoder }
+control()
+plugin "sensors"
+plugin "effectors"
+
+-- the match
+naoVariables()
+soccerVariables()
+soccerRules()
+soccerMonitor()
+get("/usr/scene"):importScene(field)

@@ -1,0 +1,90 @@
+#pragma once
+/// \file
+/// Beam, say and pass: what players of all leagues do.
+
+#include "match_lookup.h"
+
+namespace spark {
+
+/// `(beam x y angle)`: jumps to a place of the own half, before kick-offs and after goals. x, y as the team sees the field.
+class BeamEffector : public Effector {
+  SPARK_CLASS(BeamEffector, Effector)
+ public:
+  static void describe(Description<BeamEffector>& d) {
+    d.doc("Jumps to a place of the own half: (beam x y angle), m and deg; only before kick-offs and after goals.");
+    d.property("random", &BeamEffector::random_).state().doc("Its noise.");
+    d.on<&BeamEffector::prepare>(phase::kPrepare);
+  }
+  std::string predicate() const override { return "beam"; }
+  std::string act(const Element& action) override {
+    double v[3];
+    if (std::string wrong = readNumbers(action, v, 3); !wrong.empty()) return wrong;
+    x_ = v[0], y_ = v[1], angle_ = v[2];
+    pending_ = true;
+    return {};
+  }
+
+ private:
+  void prepare(const Event&) {
+    if (!std::exchange(pending_, false)) return;
+    const soccer::Player* player = match_.player(*this);
+    if (!player || !match_.game()->paused()) return;
+    const SoccerSettings& s = *match_.settings();
+    double x = x_ + s.beamNoiseXY * random_.uniform(-1, 1), y = y_ + s.beamNoiseXY * random_.uniform(-1, 1);
+    const double angle = angle_ + s.beamNoiseAngle * random_.uniform(-1, 1);
+    if (!s.startAnyFieldPosition) x = std::clamp(x, -s.fieldLength / 2, 0.0);
+    y = std::clamp(y, -s.fieldWidth / 2, s.fieldWidth / 2);
+    const bool left = player->side() == soccer::Side::left;
+    const double d = direction(player->side());
+    player->moveTo(Vec3(d * x, d * y, s.agentRadius), degToRad(left ? angle - 90 : angle + 90));
+  }
+
+  MatchLookup match_;
+  RandomStream random_{*this, "beam"};
+  double x_ = 0, y_ = 0, angle_ = 0;
+  bool pending_ = false;
+};
+
+/// `(say message)`: heard by everybody within range in the same cycle's percepts.
+class SayEffector : public Effector {
+  SPARK_CLASS(SayEffector, Effector)
+ public:
+  static constexpr std::size_t kMaxLength = 20;
+  static constexpr double kRange = 50;  ///< m
+
+  static void describe(Description<SayEffector>& d) { d.doc("Says something: (say message), at most 20 printable characters, heard within 50 m."); }
+  std::string predicate() const override { return "say"; }
+  std::string act(const Element& action) override {
+    const Element word = action.at(1);
+    if (!word || !word.isText()) return "expected one word, found none";
+    const std::string_view text = word.text();
+    if (text.empty()) return "expected one word, found an empty one";
+    for (const unsigned char c : text)
+      if (c < 0x21 || c > 0x7e || c == '(' || c == ')') return fmt::format("byte {} is not allowed in a message", int(c));
+    const soccer::Player* speaker = match_.player(*this);
+    if (!speaker || text.size() > kMaxLength) return {};
+    speaker->state->hearSelf(text);
+    const Vec3 mouth = speaker->position();
+    for (const soccer::Player& hearer : match_.game()->pitch().players()) {
+      if (&hearer == speaker || hearer.side() == soccer::Side::none) continue;
+      const Vec3 way = (mouth - hearer.position()) * direction(hearer.side());
+      if (way.norm() > kRange) continue;
+      hearer.state->hear(hearer.side() == speaker->side(), speaker->state->team(), radToDeg(std::atan2(way.y(), way.x())), text);
+    }
+    return {};
+  }
+
+ private:
+  MatchLookup match_;
+};
+
+/// `(pass)`: accepted. Pass mode itself is a play mode that trainers may set.
+class PassEffector : public Effector {
+  SPARK_CLASS(PassEffector, Effector)
+ public:
+  static void describe(Description<PassEffector>& d) { d.doc("Accepts (pass); no rule grants pass mode to agents yet."); }
+  std::string predicate() const override { return "pass"; }
+  std::string act(const Element&) override { return {}; }
+};
+
+}  // namespace spark

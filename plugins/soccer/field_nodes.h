@@ -1,0 +1,74 @@
+#pragma once
+/// \file
+/// What stands on a field: the ball, flags, goal posts, lines, and what makes them visible to agents.
+
+#include <string>
+
+#include "api/scene.h"
+
+namespace spark {
+
+/// The ball; must be `Ball` below the scene, with a body and a collider with a recorder.
+class Ball : public Transform {
+  SPARK_CLASS(Ball, Transform)
+ public:
+  static void describe(Description<Ball>& d) { d.doc("The ball: /usr/scene/Ball with children physics and geometry/recorder."); }
+};
+
+/// A flag without a body.
+class FieldFlag : public Transform {
+  SPARK_CLASS(FieldFlag, Transform)
+ public:
+  static void describe(Description<FieldFlag>& d) { d.doc("A flag that marks a point of the field."); }
+};
+
+/// Base of what soccer attaches to a transform.
+class SoccerNode : public SceneNode {
+  SPARK_CLASS(SoccerNode, SceneNode)
+ public:
+  static void describe(Description<SoccerNode>& d) {
+    d.doc("Base of what soccer attaches to a transform.");
+    d.abstract();
+  }
+};
+
+/// Makes the transform above it visible to agents.
+class ObjectState : public SoccerNode {
+  SPARK_CLASS(ObjectState, SoccerNode)
+ public:
+  static void describe(Description<ObjectState>& d) {
+    d.doc("Makes the transform above it visible to agents.");
+    d.property("perceptName", &ObjectState::perceptName_).doc("Its label in See: B, F1L, ...; \"\" for parts of robots.");
+    d.property("ID", &ObjectState::id_).doc("Name of the part of a robot that it marks: head, lfoot, ...");
+  }
+  const std::string& perceptName() const { return perceptName_; }
+  const std::string& id() const { return id_; }
+
+ protected:
+  std::string perceptName_, id_;
+};
+
+/// A goal post that sonars see too.
+class GoalPost : public ObjectState {
+  SPARK_CLASS(GoalPost, ObjectState)
+ public:
+  static void describe(Description<GoalPost>& d) { d.doc("A goal post: visible, and seen by sonars."); }
+};
+
+/// A straight line on the field.
+class Line : public SoccerNode {
+  SPARK_CLASS(Line, SoccerNode)
+ public:
+  static void describe(Description<Line>& d) {
+    d.doc("A straight line on the field, seen by cone vision.");
+    d.property("beginPoint", &Line::begin_).unit("m").doc("One end, in the frame of the transform above.");
+    d.property("endPoint", &Line::end_).unit("m").doc("The other end.");
+  }
+  const Vec3f& begin() const { return begin_; }
+  const Vec3f& end() const { return end_; }
+
+ private:
+  Vec3f begin_ = Vec3f::Zero(), end_ = Vec3f::Zero();
+};
+
+}  // namespace spark

@@ -1,0 +1,210 @@
+#include "game_state_aspect.h"
+
+#include "team_material.h"
+
+namespace spark {
+
+using soccer::PlayMode;
+using soccer::Side;
+
+void GameStateAspect::describe(Description<GameStateAspect>& d) {
+  using G = GameStateAspect;
+  d.doc("Clock, half, play mode, score, teams and their numbers.");
+  d.property("playMode", &G::modeText, &G::setModeText)
+      .choices({soccer::kPlayModeNames.begin(), soccer::kPlayModeNames.end()})
+      .state()
+      .doc("The play mode. Setting it does not move the ball.");
+  d.property("time", &G::time, &G::setTime).unit("s").min(0).state().doc("Time of play; stands before the kick-off and after the match.");
+  d.property("modeTime", &G::modeTime).unit("s").doc("Since the play mode changed.");
+  d.property("half", &G::half).doc("1 or 2.");
+  d.property("score", &G::scoreList).doc("Goals of the left and of the right team.");
+  d.property("teamLeft", &G::leftName).doc("Name of the team that defends the left goal, \"\" while it is unknown.");
+  d.property("teamRight", &G::rightName).doc("Name of the team that defends the right goal, \"\" while it is unknown.");
+  d.property("random", &G::random_).state().doc("Where coins and shuffles come from.");
+  d.method("kickOff", &G::kickOffForWhoIsDue).doc("Kick-off for the team that is due.");
+  d.method("setScores", &G::setScores).parameters({"left", "right"}).doc("Sets the score.");
+}
+
+void GameStateAspect::setModeText(std::string name) {
+  PlayMode mode = mode_;
+  soccer::playModeFromName(name, mode);
+  setMode(mode);
+}
+
+void GameStateAspect::setMode(PlayMode mode) {
+  if (mode == mode_) return;
+  kernel().log().info("soccer: {:.2f} s, {} after {}", time_, soccer::playModeName(mode), soccer::playModeName(mode_));
+  mode_ = mode;
+  modeTime_ = 0;
+  leadTime_ = 0;
+  ++modeChanges_;
+}
+
+void GameStateAspect::setScores(int left, int right) {
+  teams_[0].score = std::max(0, left);
+  teams_[1].score = std::max(0, right);
+}
+
+void GameStateAspect::rule(const Event& event) {
+  soccer::Pitch& p = pitch();
+  if (!p.ready()) return;
+  modeTime_ += event.step;
+  if (mode_ == PlayMode::beforeKickOff) {
+    if (p.players().empty()) return;
+    leadTime_ += event.step;
+    if (p.settings().automaticKickOff && leadTime_ >= p.settings().waitBeforeKickOff) kickOff(Side::none);
+    return;
+  }
+  if (mode_ != PlayMode::gameOver) time_ += event.step;
+  if (advanceHalf()) return;
+  if (mode_ == PlayMode::gameOver && p.settings().automaticQuit && modeTime_ >= 10) kernel().requestStop();
+}
+
+/// True when the half or the match ended now.
+bool GameStateAspect::advanceHalf() {
+  const SoccerSettings& s = pitch_.settings();
+  if (half_ == 1 && time_ >= s.ruleHalfTime) {
+    if (s.singleHalfTime) {
+      setMode(PlayMode::gameOver);
+      return true;
+    }
+    half_ = 2;
+    kickedOffInHalf_ = false;
+    setMode(PlayMode::beforeKickOff);
+    if (s.changeSidesInSecondHalf) swapSides();
+    for (const soccer::Player& p : pitch_.players()) p.state->setBattery(AgentState::kFullBattery);
+    return true;
+  }
+  if (half_ == 2 && time_ >= 2 * s.ruleHalfTime) {
+    setMode(PlayMode::gameOver);
+    return true;
+  }
+  return false;
+}
+
+void GameStateAspect::swapSides() {
+  std::swap(teams_[0], teams_[1]);
+  for (const soccer::Player& p : pitch_.players()) {
+    if (p.side() == Side::none) continue;
+    p.state->assign(soccer::opponent(p.side()), p.state->unum(), p.state->team(), false);
+    soccer::paintTeam(*p.agent, p.side(), p.state->unum());
+  }
+  if (auto* scene = pitch_.scene()) scene->markModified();
+}
+
+void GameStateAspect::kickOff(Side side) {
+  soccer::Pitch& p = pitch();
+  if (!p.ready()) return;
+  const auto coin = [this] { return random_.below(2) == 0 ? Side::left : Side::right; };
+  if (side == Side::none) {
+    const SoccerSettings& s = p.settings();
+    if (kickedOffInHalf_) {
+      side = coin();
+    } else if (half_ == 1) {
+      side = s.coinTossForKickOff ? coin() : Side::left;
+      secondHalfKickOff_ = s.changeSidesInSecondHalf ? side : soccer::opponent(side);
+    } else {
+      side = secondHalfKickOff_ == Side::none ? Side::right : secondHalfKickOff_;
+    }
+  }
+  kickedOffInHalf_ = true;
+  p.placeBall(p.centre());
+  setMode(forSide(PlayMode::kickOffLeft, side));
+}
+
+std::string GameStateAspect::join(AgentState& state, const std::string& name, std::int64_t unum) {
+  pitch();
+  if (name.empty()) return "expected (teamname <name>) with a name, found none";
+  if (name.size() > 64) return fmt::format("the team name has {} bytes, at most 64 are allowed", name.size());
+  Side side = Side::none;
+  for (Side s : {Side::left, Side::right}) {
+    if (side == Side::none && (team(s).name == name || team(s).name.empty())) side = s;
+  }
+  if (side == Side::none)
+    return fmt::format("there are two teams already, '{}' and '{}': a third, '{}', cannot play", teams_[0].name, teams_[1].name, name);
+  if (unum < 0 || unum > kTeamSize) return fmt::format("number {} is not one of 1..{}", unum, kTeamSize);
+  Team& wanted = team(side);
+  if (unum == 0)
+    for (int n = kTeamSize; n >= 1; --n)
+      if (!wanted.taken[n]) unum = n;
+  if (unum == 0) return fmt::format("team '{}' has {} players already", name, kTeamSize);
+  if (wanted.taken[unum]) return fmt::format("number {} of team '{}' is taken", unum, name);
+  if (std::string problem = robotTypeProblem(side, state); !problem.empty()) return problem;
+
+  if (state.side() != Side::none) team(state.side()).taken[state.unum()] = false;
+  const bool first = state.side() == Side::none;
+  wanted.name = name;
+  wanted.taken[unum] = true;
+  state.assign(side, static_cast<int>(unum), name, first);
+  return {};
+}
+
+std::string GameStateAspect::robotTypeProblem(Side side, const AgentState& joining) const {
+  const SoccerSettings& s = pitch_.settings();
+  std::array<int, 64> count{};
+  int types = 0, registered = 0, most = 0;
+  const int type = std::min(joining.robotType(), 63);
+  for (const soccer::Player& p : pitch_.players()) {
+    if (p.state == &joining || p.side() != side) continue;
+    ++registered;
+    if (count[std::min(p.state->robotType(), 63)]++ == 0) ++types;
+  }
+  for (int t = 0; t < 64; ++t)
+    if (t != type) most = std::max(most, count[t]);
+  if (count[type] >= s.maxRobotTypeCount) return fmt::format("the team has {} robots of type {} already", count[type], type);
+  if (count[type] + most + 1 > s.maxSumTwoRobotTypes)
+    return fmt::format("more than {} robots of two types (type {} is one) are not allowed", s.maxSumTwoRobotTypes, type);
+  if (count[type] > 0 && kTeamSize - registered <= s.minRobotTypesCount - types)
+    return fmt::format("the team needs robots of {} types: type {} is there already", s.minRobotTypesCount, type);
+  return {};
+}
+
+Vec3 GameStateAspect::nextStart(Side side) {
+  const SoccerSettings& s = pitch().settings();
+  const double r = s.agentRadius, first = s.fieldWidth / 2 - 2 * r;
+  const int perColumn = static_cast<int>((first + s.fieldWidth / 2) / (3 * r)) + 1;
+  // start positions are never given back: after half the field they begin anew
+  const int columns = std::max(1, static_cast<int>((s.fieldLength / 2 - 2 * r) / (2 * r)));
+  const int n = team(side).starts++ % (perColumn * columns);
+  const double x0 = -direction(side) * (s.fieldLength / 2 - 2 * r);
+  return {x0 + direction(side) * 2 * r * (n / perColumn), first - 3 * r * (n % perColumn), r};
+}
+
+void GameStateAspect::agentLeaving(AgentAspect& agent) {
+  std::vector<AgentState*> states;
+  agent.collect(states);
+  for (const AgentState* s : states)
+    if (s->side() != Side::none) team(s->side()).taken[s->unum()] = false;
+}
+
+void GameStateAspect::saveState(StateWriter& out) const {
+  out.write(static_cast<int>(mode_));
+  for (double v : {time_, modeTime_, leadTime_}) out.write(v);
+  out.write(modeChanges_);
+  out.write(half_);
+  out.write(kickedOffInHalf_);
+  out.write(static_cast<int>(secondHalfKickOff_));
+  for (const Team& t : teams_) {
+    out.write(std::string_view(t.name));
+    out.write(t.score);
+    for (bool taken : t.taken) out.write(taken);
+    out.write(t.starts);
+  }
+}
+
+void GameStateAspect::loadState(StateReader& in) {
+  mode_ = static_cast<PlayMode>(in.readInteger());
+  for (double* v : {&time_, &modeTime_, &leadTime_}) *v = in.readNumber();
+  modeChanges_ = in.readInteger();
+  half_ = static_cast<int>(in.readInteger());
+  kickedOffInHalf_ = in.readBool();
+  secondHalfKickOff_ = static_cast<Side>(in.readInteger());
+  for (Team& t : teams_) {
+    t.name = in.readString();
+    t.score = static_cast<int>(in.readInteger());
+    for (bool& taken : t.taken) taken = in.readBool();
+    t.starts = static_cast<int>(in.readInteger());
+  }
+}
+
+}  // namespace spark

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "soccer_control_aspect.h"
+
+namespace spark {
+
+/// Clock, half, play mode, score, teams and their numbers. The first of the soccer aspects in child order.
+class GameStateAspect : public SoccerControlAspect {
+  SPARK_CLASS(GameStateAspect, SoccerControlAspect)
+ public:
+  using Side = soccer::Side;
+  using PlayMode = soccer::PlayMode;
+  static constexpr int kTeamSize = 11;
+
+  static void describe(Description<GameStateAspect>& d);
+  void rule(const Event& event) override;
+  void agentLeaving(AgentAspect& agent) override;
+
+  /// Refreshed; for rules and effectors.
+  soccer::Pitch& pitch() {
+    pitch_.refresh(kernel());
+    return pitch_;
+  }
+  RandomStream& random() { return random_; }
+
+  PlayMode mode() const { return mode_; }
+  /// Sets the mode; nothing happens when it is the mode already.
+  void setMode(PlayMode mode);
+  /// s since the last real change; 0 in the cycle of the change.
+  double modeTime() const { return modeTime_; }
+  /// Counts real changes of the mode.
+  std::int64_t modeChanges() const { return modeChanges_; }
+  /// s of play: stands before the kick-off and after the match.
+  double time() const { return time_; }
+  void setTime(double seconds) { time_ = std::max(0.0, seconds); }
+  int half() const { return half_; }
+  /// No fouls are judged, beams are allowed.
+  bool paused() const { return mode_ == PlayMode::beforeKickOff || mode_ == PlayMode::goalLeft || mode_ == PlayMode::goalRight; }
+
+  int score(Side side) const { return side == Side::none ? 0 : team(side).score; }
+  void addGoal(Side side) { ++team(side).score; }
+  void setScores(int left, int right);
+  const std::string& teamName(Side side) const { return team(side).name; }
+
+  /// Kick-off for a side; none: who is due, or a coin decides. The ball goes to the centre.
+  void kickOff(Side side);
+  /// Gives an agent its team and number (0: the lowest free one). Returns "" or what forbids it; nothing has changed then.
+  std::string join(AgentState& state, const std::string& teamName, std::int64_t unum);
+  /// The next start position of the team.
+  Vec3 nextStart(Side side);
+
+ protected:
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
+
+ private:
+  struct Team {
+    std::string name;
+    int score = 0;
+    std::array<bool, kTeamSize + 1> taken{};  ///< by number
+    int starts = 0;                           ///< start positions given so far
+  };
+  Team& team(Side s) { return teams_[s == Side::right]; }
+  const Team& team(Side s) const { return teams_[s == Side::right]; }
+  bool advanceHalf();
+  void swapSides();
+  std::string robotTypeProblem(Side side, const AgentState& joining) const;
+
+  // Script view
+  std::string modeText() const { return soccer::playModeName(mode_); }
+  void setModeText(std::string name);
+  std::vector<int> scoreList() const { return {teams_[0].score, teams_[1].score}; }
+  std::string leftName() const { return teams_[0].name; }
+  std::string rightName() const { return teams_[1].name; }
+  void kickOffForWhoIsDue() { kickOff(Side::none); }
+
+  soccer::Pitch pitch_;
+  RandomStream random_{*this, "referee"};
+  PlayMode mode_ = PlayMode::beforeKickOff;
+  double time_ = 0, modeTime_ = 0, leadTime_ = 0;
+  std::int64_t modeChanges_ = 0;
+  int half_ = 1;
+  bool kickedOffInHalf_ = false;
+  Side secondHalfKickOff_ = Side::none;
+  std::array<Team, 2> teams_;
+};
+
+/// The SPL variant: accepted, plays by the same rules.
+class SPLState : public GameStateAspect {
+  SPARK_CLASS(SPLState, GameStateAspect)
+ public:
+  static void describe(Description<SPLState>& d) { d.doc("Accepted for SPL configs; the same as GameStateAspect."); }
+};
+
+}  // namespace spark

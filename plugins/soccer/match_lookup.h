@@ -1,0 +1,71 @@
+#pragma once
+
+#include "ball_state_aspect.h"
+#include "soccer_rule_aspect.h"
+
+namespace spark {
+
+/// What an effector or perceptor needs of the match, found again when the shape of the tree changed. One object each; refresh() and the
+/// pointers are safe in the sense phase, player() is for the simulation's thread.
+class MatchLookup {
+ public:
+  /// What is missing is nullptr.
+  void refresh(const Leaf& from) {
+    if (version_ == from.kernel().structureVersion()) return;
+    version_ = from.kernel().structureVersion();
+    Node& root = from.kernel().root();
+    settings_ = root.find<SoccerSettings>("/sys/variables/Soccer");
+    Node* control = root.find<Node>("/sys/server/gamecontrol");
+    game_ = control ? control->childOf<GameStateAspect>() : nullptr;
+    ball_ = control ? control->childOf<BallStateAspect>() : nullptr;
+    referee_ = control ? control->childOf<SoccerRuleAspect>() : nullptr;
+    state_ = from.ancestor<AgentState>();
+    auto* aspect = from.ancestor<AgentAspect>();
+    agent_ = aspect ? &aspect->outermost() : nullptr;
+    player_ = nullptr;
+    if (state_ || !agent_) return;
+    std::vector<AgentState*> states;
+    agent_->collect(states);
+    if (!states.empty()) state_ = states.front();
+  }
+  const SoccerSettings* settings() const { return settings_; }
+  GameStateAspect* game() const { return game_; }
+  BallStateAspect* ball() const { return ball_; }
+  SoccerRuleAspect* referee() const { return referee_; }
+  /// Of the agent that `from` belongs to.
+  AgentState* state() const { return state_; }
+  AgentAspect* agent() const { return agent_; }
+
+  /// Refreshes, and gives the player that `from` belongs to; nullptr unless there are a match, a body and a team.
+  const soccer::Player* player(const Leaf& from) {
+    refresh(from);
+    if (!game_) return nullptr;
+    const soccer::Pitch& pitch = game_->pitch();
+    if (!pitch.ready()) return nullptr;
+    if (!player_) player_ = pitch.playerOf(&from);
+    return player_ && player_->torso && player_->side() != soccer::Side::none ? player_ : nullptr;
+  }
+
+ private:
+  std::uint64_t version_ = 0;
+  const SoccerSettings* settings_ = nullptr;
+  GameStateAspect* game_ = nullptr;
+  BallStateAspect* ball_ = nullptr;
+  SoccerRuleAspect* referee_ = nullptr;
+  AgentState* state_ = nullptr;
+  AgentAspect* agent_ = nullptr;
+  const soccer::Player* player_ = nullptr;
+};
+
+/// Reads `count` finite numbers behind an action's name. Returns "" or what is wrong.
+inline std::string readNumbers(const Element& action, double* out, int count) {
+  for (int i = 0; i < count; ++i) {
+    const Element e = action.at(static_cast<std::size_t>(i) + 1);
+    if (!e || e.isList()) return fmt::format("expected {} numbers, found {}", count, action.size() - 1);
+    out[i] = e.number();
+    if (!std::isfinite(out[i])) return fmt::format("argument {} is not a finite number", i + 1);
+  }
+  return {};
+}
+
+}  // namespace spark

@@ -1,0 +1,102 @@
+#pragma once
+/// \file
+/// What agents are told of the match and of themselves. Each line is in protocol section 3.
+
+#include "match_lookup.h"
+
+namespace spark {
+
+/// `(GS (unum 3) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))`; unum and team once, after init.
+class GameStatePerceptor : public Perceptor {
+  SPARK_CLASS(GameStatePerceptor, Perceptor)
+ public:
+  static void describe(Description<GameStatePerceptor>& d) { d.doc("The state of the match: (GS (sl n) (sr n) (t s) (pm mode))."); }
+  void sense(Predicates& out, const Event&) override {
+    match_.refresh(*this);
+    const GameStateAspect* game = match_.game();
+    if (!game || !match_.settings()) return;
+    out.open("GS");
+    if (AgentState* s = match_.state(); s && s->takeAnnouncement()) {
+      out.pair("unum", s->unum());
+      out.pair("team", sideName(s->side()));
+    }
+    if (match_.settings()->reportScore) {
+      out.pair("sl", game->score(soccer::Side::left));
+      out.pair("sr", game->score(soccer::Side::right));
+    }
+    out.pair("t", game->time());
+    out.pair("pm", playModeName(game->mode()));
+    out.close();
+  }
+
+ private:
+  MatchLookup match_;
+};
+
+/// `(hear A 1.20 self hello)(hear A 1.20 -45.00 hi)`: itself, a team-mate, an opponent.
+class HearPerceptor : public Perceptor {
+  SPARK_CLASS(HearPerceptor, Perceptor)
+ public:
+  static void describe(Description<HearPerceptor>& d) {
+    d.doc("What was said in this cycle: (hear team time direction message); direction in deg from the team's own x axis.");
+  }
+  void sense(Predicates& out, const Event&) override {
+    match_.refresh(*this);
+    AgentState* state = match_.state();
+    const GameStateAspect* game = match_.game();
+    if (!state || !game || !match_.settings()) return;
+    tell(out, state->own(), *game, true);
+    for (std::size_t ear : {0, 1}) tell(out, state->heard(ear), *game, false);
+    state->recoverEars();
+  }
+
+ private:
+  void tell(Predicates& out, AgentState::Heard& heard, const GameStateAspect& game, bool self) {
+    if (!std::exchange(heard.waiting, false)) return;
+    out.open("hear");
+    if (match_.settings()->labelMessages) out.add(heard.team);
+    out.add(game.time());
+    if (self) out.add("self");
+    else out.add(heard.directionDeg);
+    out.add(heard.text).close();
+  }
+  MatchLookup match_;
+};
+
+/// `(AgentState (pan_tilt 0 0) (battery 99.20) (temp 23.00))` in every tenth cycle.
+class AgentStatePerceptor : public Perceptor {
+  SPARK_CLASS(AgentStatePerceptor, Perceptor)
+ public:
+  AgentStatePerceptor() { interval_ = 10; }
+  static void describe(Description<AgentStatePerceptor>& d) { d.doc("Where the agent looks, its battery and its temperature."); }
+  void sense(Predicates& out, const Event&) override {
+    match_.refresh(*this);
+    const AgentState* s = match_.state();
+    if (!s) return;
+    out.open("AgentState");
+    out.open("pan_tilt").add(static_cast<int>(std::lround(s->pan()))).add(static_cast<int>(std::lround(s->tilt()))).close();
+    out.pair("battery", s->battery());
+    out.pair("temp", s->temperature());
+    out.close();
+  }
+
+ private:
+  MatchLookup match_;
+};
+
+/// `(time (now 12.34))` with the time of play.
+class GameTimePerceptor : public Perceptor {
+  SPARK_CLASS(GameTimePerceptor, Perceptor)
+ public:
+  static void describe(Description<GameTimePerceptor>& d) { d.doc("The time of play: (time (now s))."); }
+  void sense(Predicates& out, const Event&) override {
+    match_.refresh(*this);
+    if (!match_.game()) return;
+    out.open("time").pair("now", match_.game()->time()).close();
+  }
+
+ private:
+  MatchLookup match_;
+};
+
+}  // namespace spark

@@ -1,0 +1,76 @@
+#include "offside_aspect.h"
+
+namespace spark {
+
+using soccer::opponent;
+using soccer::PlayMode;
+using soccer::Side;
+
+void OffsideAspect::rule(const Event&) {
+  GameStateAspect* game = beside(game_, gameVersion_);
+  BallStateAspect* ball = beside(ball_, ballVersion_);
+  SoccerRuleAspect* referee = beside(referee_, refereeVersion_);
+  if (!game || !ball || !referee) return;
+  soccer::Pitch& pitch = game->pitch();
+  if (!pitch.ready()) return;
+  const PlayMode mode = game->mode();
+  if (mode == PlayMode::offsideLeft || mode == PlayMode::offsideRight) {
+    pitch.placeBall(spot_);
+    if (game->modeTime() >= pitch.settings().ruleKickInPauseTime)
+      referee->award(forSide(PlayMode::freeKickLeft, opponent(sideOf(mode))), spot_);
+    return;
+  }
+  if (mode != PlayMode::playOn) {
+    marked_.fill(false);
+    return;
+  }
+  // a touch that takes a restart is not one in PlayOn
+  if (ball->newTouch() && game->modeTime() > 0) touch(pitch);
+}
+
+void OffsideAspect::touch(soccer::Pitch& pitch) {
+  const BallStateAspect::Touch& last = ball_->last();
+  const bool offends = last.side == markedSide_ && marked_[last.unum];
+  marked_.fill(false);
+  if (!offends) return mark(pitch, last.side, last.unum);
+  spot_ = pitch.freeBallPosition(ball_->lastValid());
+  kernel().log().info("soccer: offside, {} {}", soccer::sideName(last.side), last.unum);
+  game_->setMode(forSide(PlayMode::offsideLeft, last.side));
+}
+
+void OffsideAspect::mark(const soccer::Pitch& pitch, Side side, int toucher) {
+  markedSide_ = side;
+  const double towards = direction(side);
+  // x of the two last opponents as the attackers see them
+  double last = -HUGE_VAL, second = -HUGE_VAL;
+  for (const soccer::Player& p : pitch.players()) {
+    if (p.side() != opponent(side)) continue;
+    const double x = towards * p.position().x();
+    if (x > last) second = std::exchange(last, x);
+    else second = std::max(second, x);
+  }
+  const double line = std::max({0.0, towards * ball_->position().x(), second});
+  for (const soccer::Player& p : pitch.players())
+    if (p.side() == side && p.state->unum() != toucher) marked_[p.state->unum()] = towards * p.position().x() > line;
+}
+
+std::vector<int> OffsideAspect::markedUnums() const {
+  std::vector<int> out;
+  for (std::size_t n = 1; n < marked_.size(); ++n)
+    if (marked_[n]) out.push_back(static_cast<int>(n));
+  return out;
+}
+
+void OffsideAspect::saveState(StateWriter& out) const {
+  for (bool m : marked_) out.write(m);
+  out.write(static_cast<int>(markedSide_));
+  for (int i = 0; i < 3; ++i) out.write(spot_[i]);
+}
+
+void OffsideAspect::loadState(StateReader& in) {
+  for (bool& m : marked_) m = in.readBool();
+  markedSide_ = static_cast<Side>(in.readInteger());
+  for (int i = 0; i < 3; ++i) spot_[i] = in.readNumber();
+}
+
+}  // namespace spark

@@ -1,0 +1,238 @@
+#include "pitch.h"
+
+#include <array>
+#include <cmath>
+
+namespace spark::soccer {
+
+namespace {
+
+/// The first descendant that is a T, depth first.
+template <class T>
+T* firstBelow(const Node& node) {
+  for (const auto& c : node.children()) {
+    if (T* match = c->as<T>()) return match;
+    if (Node* inner = c->asNode())
+      if (T* match = firstBelow<T>(*inner)) return match;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Bounds Player::bounds() const {
+  Bounds all;
+  Vec3 low, high;
+  for (const ICollider* c : colliders) {
+    c->bounds(low, high);
+    all.low = all.low.cwiseMin(low);
+    all.high = all.high.cwiseMax(high);
+  }
+  return all;
+}
+
+void Player::moveTo(const Vec3& target) const {
+  const Vec3 shift = target - position();
+  for (IRigidBody* b : bodies) {
+    const engine::BodyState s = b->state();
+    b->setPose({s.position + shift, s.rotation});
+    b->setVelocity(Vec3::Zero());
+    b->setAngularVelocity(Vec3::Zero());
+  }
+}
+
+void Player::moveTo(const Vec3& target, double yaw) const {
+  if (!torso) return;
+  const engine::BodyState reference = torso->state();
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  Mat3 upright;
+  upright << c, -s, 0, s, c, 0, 0, 0, 1;
+  const Mat3 turn = upright * reference.rotation.transpose();
+  for (IRigidBody* b : bodies) {
+    const engine::BodyState old = b->state();
+    b->setPose({target + turn * (old.position - reference.position), turn * old.rotation});
+    b->setVelocity(Vec3::Zero());
+    b->setAngularVelocity(Vec3::Zero());
+  }
+}
+
+void Pitch::refresh(Kernel& kernel) {
+  if (version_ == kernel.structureVersion()) return;
+  version_ = kernel.structureVersion();
+  Node& root = kernel.root();
+  settings_ = root.find<SoccerSettings>("/sys/variables/Soccer");
+  gameControl_ = root.find<IGameControl>("/sys/server/gamecontrol");
+  scene_ = root.find<ISceneServer>("/sys/server/scene");
+  ball_ = nullptr;
+  ballRecorder_ = leftGoal_ = rightGoal_ = nullptr;
+  players_.clear();
+  Node* field = scene_ ? root.find<Node>("/usr/scene") : nullptr;
+  if (field && settings_) {
+    if (Node* ball = field->find<Node>("Ball")) ball_ = firstBelow<IRigidBody>(*ball);
+    ballRecorder_ = field->find<ICollisionRecorder>(settings_->ballRecorder);
+    leftGoal_ = field->find<ICollisionRecorder>(settings_->leftGoalRecorder);
+    rightGoal_ = field->find<ICollisionRecorder>(settings_->rightGoalRecorder);
+  }
+  if (!gameControl_) return;
+  for (AgentAspect* agent : gameControl_->agents()) {
+    Player p;
+    p.agent = agent;
+    p.state = firstBelow<AgentState>(*agent);
+    if (!p.state) continue;
+    agent->collect(p.bodies);
+    agent->collect(p.colliders);
+    auto* inner = p.state->ancestor<AgentAspect>();
+    p.torso = inner ? firstBelow<IRigidBody>(*inner) : nullptr;
+    if (!p.torso && !p.bodies.empty()) p.torso = p.bodies.front();
+    players_.push_back(std::move(p));
+  }
+  order_.reserve(players_.size());
+}
+
+const Player* Pitch::player(Side side, int unum) const {
+  if (side == Side::none) return nullptr;
+  for (const Player& p : players_)
+    if (p.side() == side && p.state->unum() == unum) return &p;
+  return nullptr;
+}
+
+const Player* Pitch::playerOfAgent(int agentNumber) const {
+  for (const Player& p : players_)
+    if (p.agent->number() == agentNumber) return &p;
+  return nullptr;
+}
+
+const Player* Pitch::playerOf(const Leaf* leaf) const {
+  for (; leaf; leaf = leaf->parent())
+    for (const Player& p : players_)
+      if (p.agent == leaf) return &p;
+  return nullptr;
+}
+
+int Pitch::count(Side side) const {
+  int n = 0;
+  for (const Player& p : players_) n += p.side() == side;
+  return n;
+}
+
+void Pitch::placeBall(const Vec3& position) const {
+  if (!ball_) return;
+  ball_->setPose({position, ball_->state().rotation});
+  ball_->setVelocity(Vec3::Zero());
+  ball_->setAngularVelocity(Vec3::Zero());
+}
+
+Area Pitch::penaltyArea(Side side) const {
+  const double half = settings_->fieldLength / 2, front = half - settings_->penaltyLength;
+  const double width = (settings_->penaltyWidth + settings_->goalWidth) / 2;
+  return side == Side::left ? Area{-half, -width, -front, width} : Area{front, -width, half, width};
+}
+
+Area Pitch::opponentHalf(Side side) const {
+  constexpr double far = 1e6;
+  return side == Side::left ? Area{0, -far, far, far} : Area{-far, -far, 0, far};
+}
+
+Vec3 Pitch::freeBallPosition(const Vec3& wanted) const {
+  Vec3 p(wanted.x(), wanted.y(), settings_->ballRadius);
+  for (Side s : {Side::left, Side::right}) {
+    const Area a = penaltyArea(s);
+    if (!a.contains(p.x(), p.y())) continue;
+    p.x() = s == Side::left ? a.maxX : a.minX;
+    p.y() = p.y() < 0 ? a.minY : a.maxY;
+  }
+  const double edge = settings_->fieldWidth / 2 - settings_->ballRadius;
+  p.y() = std::clamp(p.y(), -edge, edge);
+  return p;
+}
+
+template <class F>
+void Pitch::shuffled(Side side, RandomStream& random, F each) const {
+  order_.clear();
+  for (const Player& p : players_)
+    if (p.side() == side && p.torso) order_.push_back(&p);
+  random.shuffle(std::span(order_));
+  for (const Player* p : order_) each(*p);
+}
+
+void Pitch::clearSphere(const Player& player, const Vec3& centre, double radius, double distance) const {
+  if (!player.bounds().touchesSphere(centre, radius)) return;
+  const double d = direction(player.side());
+  Vec3 target = player.position();
+  target.x() = centre.x() - d * distance;
+  if (d * target.x() < -settings_->fieldLength / 2) {
+    target.x() = player.position().x();
+    target.y() = centre.y() + (centre.y() > 0 ? -distance : distance);
+  }
+  moveSafely(player, target, true);
+}
+
+void Pitch::clearSphere(Side side, const Vec3& centre, double radius, double distance, RandomStream& random) const {
+  shuffled(side, random, [&](const Player& p) { clearSphere(p, centre, radius, distance); });
+}
+
+void Pitch::clearArea(Side side, const Area& area, double distance, RandomStream& random) const {
+  shuffled(side, random, [&](const Player& p) {
+    if (!area.touches(p.bounds())) return;
+    Vec3 target = p.position();
+    target.x() = side == Side::left ? area.minX - distance : area.maxX + distance;
+    moveSafely(p, target, true);
+  });
+}
+
+void Pitch::repel(Side side, const Vec3& centre, double distance, RandomStream& random) const {
+  shuffled(side, random, [&](const Player& p) {
+    Vec3 away = p.position() - centre;
+    away.z() = 0;
+    const double now = away.norm();
+    if (now >= distance) return;
+    // who stands on the very spot goes towards his own end
+    const Vec3 outward = now > 1e-6 ? Vec3(away / now) : Vec3(-direction(side), 0, 0);
+    const Vec3 target = centre + outward * distance;
+    moveSafely(p, Vec3(target.x(), target.y(), p.position().z()), false);
+  });
+}
+
+bool Pitch::isSafe(const Player& player, double x, double y, bool avoidBall) const {
+  const SoccerSettings& s = *settings_;
+  const Area own = penaltyArea(player.side());
+  if (own.contains(x, y, s.agentRadius)) {
+    int inside = 0;
+    for (const Player& p : players_)
+      if (&p != &player && p.side() == player.side() && own.contains(p.position().x(), p.position().y())) ++inside;
+    if (inside >= s.maxPlayersInsideOwnArea) return false;
+  }
+  if (std::abs(x) > s.fieldLength / 2 && std::abs(y) < s.goalWidth / 2 + s.agentRadius) return false;
+  const Vec3 ball = ballPosition();
+  if (avoidBall && std::hypot(x - ball.x(), y - ball.y()) < std::max(2 * s.agentRadius, s.passModeMinOppBallDist)) return false;
+  const Vec3 here(x, y, s.agentRadius);
+  for (const Player& p : players_)
+    if (&p != &player && p.bounds().touchesSphere(here, s.agentRadius)) return false;
+  return true;
+}
+
+void Pitch::moveSafely(const Player& player, const Vec3& target, bool avoidBall) const {
+  if (isSafe(player, target.x(), target.y(), avoidBall)) return player.moveTo(target);
+  // a grid of steps of one radius, away from the centre line and from the middle, nearest to the player first
+  struct Candidate {
+    double x, y, distance;
+    int number;
+  };
+  constexpr int kSide = 10;
+  std::array<Candidate, kSide * kSide> candidates;
+  const Vec3 from = player.position();
+  const double stepX = -direction(player.side()) * settings_->agentRadius;
+  const double stepY = (from.y() < 0 ? -1 : 1) * settings_->agentRadius;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const double x = target.x() + stepX * (i % kSide), y = target.y() + stepY * (i / kSide);
+    candidates[i] = {x, y, std::hypot(x - from.x(), y - from.y()), i};
+  }
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& a, const Candidate& b) { return a.distance != b.distance ? a.distance < b.distance : a.number < b.number; });
+  const int attempts = std::min(settings_->maxNumSafeRepositionAttempts, kSide * kSide);
+  for (int i = 0; i < attempts; ++i)
+    if (isSafe(player, candidates[i].x, candidates[i].y, avoidBall)) return player.moveTo(Vec3(candidates[i].x, candidates[i].y, target.z()));
+  player.moveTo(target);
+}
+
+}  // namespace spark::soccer

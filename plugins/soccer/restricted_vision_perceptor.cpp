@@ -1,0 +1,107 @@
+#include "restricted_vision_perceptor.h"
+
+namespace spark {
+
+using soccer::placeOf;
+using soccer::writePoint;
+
+namespace {
+constexpr float kTooNear = 0.1f;  ///< m: what is nearer is the head itself
+}
+
+void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>& d) {
+  using V = RestrictedVisionPerceptor;
+  d.doc("Sees within a cone: flags, goals, ball, parts of players.");
+  d.property("staticSenseAxis", &V::staticAxis_).doc("Angles from the field's x axis as the team sees it, less pan and tilt; else in the head's frame.");
+  d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
+  d.property("senseMyOrien", &V::senseMyOrien_).doc("Tells its own heading too.");
+  d.property("senseBallPos", &V::senseBallPos_).doc("Tells the ball's position too.");
+  d.property("senseLine", &V::senseLine_).doc("Sees field lines.");
+  d.property("senseLineName", &V::senseLineName_).doc("Lines carry names.");
+  d.property("viewCones", &V::cones).unit("deg").doc("Full horizontal and vertical cone.");
+  d.property("noise", &V::noisy).doc("Noise is on.");
+  d.property("random", &V::randomState, &V::setRandomState).state().doc("Its noise.");
+  d.method("setViewCones", &V::setViewCones).parameters({"horizontal [deg]", "vertical [deg]"}).doc("Full cones in the head's frame; half cones with static axes.");
+  d.method("setPanRange", &V::setPanRange).parameters({"low [deg]", "high [deg]"}).doc("How far it may be turned aside.");
+  d.method("setTiltRange", &V::setTiltRange).parameters({"low [deg]", "high [deg]"}).doc("How far it may be turned up and down.");
+  d.method("addNoise", &V::setNoise).parameters({"on"}).doc("Noise on or off.");
+  d.method("setNoiseParams", &V::setNoiseParameters)
+      .parameters({"distance [%]", "phi [deg]", "theta [deg]", "error [m]"})
+      .doc("Standard deviations of distance, vertical and horizontal angle; half width of the calibration error.");
+}
+
+/// Into the frame in which it looks: the head's, or the field's as the team sees it.
+Vec3f RestrictedVisionPerceptor::toView(const Vec3f& way) const {
+  if (staticAxis_ || !transform()) return soccer::seenBy(side(), way);
+  return transform()->world().block<3, 3>(0, 0).transpose() * way;
+}
+
+soccer::Polar RestrictedVisionPerceptor::direction(const Vec3f& view) const {
+  soccer::Polar p = soccer::polarOf(view);
+  if (!staticAxis_) {
+    p.horizontal = normalizeDeg(p.horizontal - 90);  // heads look along y
+  } else if (const AgentState* s = objects_.state()) {
+    p.horizontal = normalizeDeg(p.horizontal - s->pan());
+    p.vertical = normalizeDeg(p.vertical - s->tilt());
+  }
+  return p;
+}
+
+bool RestrictedVisionPerceptor::inCone(const soccer::Polar& p) const {
+  const int divisor = staticAxis_ ? 1 : 2;
+  return std::abs(p.horizontal) <= cone_[0] / divisor && std::abs(p.vertical) <= cone_[1] / divisor;
+}
+
+bool RestrictedVisionPerceptor::look(const SceneNode& object, soccer::Polar& out) {
+  const Vec3f way = placeOf(object) - placeOf(*this);
+  if (way.norm() <= kTooNear) return false;
+  out = direction(toView(way) + noise_.calibration());
+  if (!inCone(out)) return false;
+  // after the cone: values slightly outside can appear
+  if (noise_.on) noise_.apply(out);
+  return true;
+}
+
+void RestrictedVisionPerceptor::seeRobot(const soccer::VisibleObjects::Robot& robot, Predicates& out) {
+  if (robot.state->side() == soccer::Side::none) return;
+  soccer::Polar polar;
+  bool seen = false;
+  const auto begin = [&] {
+    if (!std::exchange(seen, true)) out.open(robot.state->perceptName()).pair("team", std::string_view(robot.state->team())).pair("id", robot.state->unum());
+  };
+  for (const ObjectState* part : robot.parts) {
+    if (!look(*part, polar)) continue;
+    begin();
+    out.open(part->id());
+    writePolar(out, polar);
+    out.close();
+  }
+  if (robot.parts.empty() && robot.agent != objects_.agent() && look(*robot.state, polar)) {
+    begin();
+    writePolar(out, polar);
+  }
+  if (seen) out.close();
+}
+
+void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {
+  objects_.refresh(*this);
+  soccer::Polar polar;
+  out.open(predicateName_);
+  for (const ObjectState* o : objects_.field()) {
+    if (!look(*o, polar)) continue;
+    out.open(o->perceptName());
+    writePolar(out, polar);
+    out.close();
+  }
+  for (const soccer::VisibleObjects::Robot& r : objects_.robots()) seeRobot(r, out);
+  if (senseMyPos_) writePoint(out, "mypos", soccer::seenBy(side(), placeOf(*this)));
+  if (senseMyOrien_ && transform()) {
+    const Matrix& m = transform()->world();
+    const double heading = radToDeg(std::atan2(m(1, 1), m(0, 1)));  // of the y axis
+    out.pair("myorien", normalizeDeg(side() == soccer::Side::right ? heading - 180 : heading));
+  }
+  if (const ObjectState* ball = objects_.ball(); ball && senseBallPos_) writePoint(out, "ballpos", soccer::seenBy(side(), placeOf(*ball)));
+  out.close();
+}
+
+}  // namespace spark

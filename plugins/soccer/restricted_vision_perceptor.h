@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+
+#include "vision.h"
+
+namespace spark {
+
+/// Sees within a cone, in the frame of the head or along the field's axes:
+/// `(See (G1R (pol ...)) (B (pol ...)) (P (team A) (id 3) (rlowerarm (pol ...)) ...))`.
+class RestrictedVisionPerceptor : public Perceptor {
+  SPARK_CLASS(RestrictedVisionPerceptor, Perceptor)
+ public:
+  RestrictedVisionPerceptor() { predicateName_ = "See"; }
+  static void describe(Description<RestrictedVisionPerceptor>& d);
+  void sense(Predicates& out, const Event& event) override;
+  /// deg, of the static axis mode.
+  const std::array<int, 2>& panRange() const { return pan_; }
+  const std::array<int, 2>& tiltRange() const { return tilt_; }
+
+ protected:
+  void saveState(StateWriter& out) const override { noise_.save(out); }
+  void loadState(StateReader& in) override { noise_.load(in); }
+
+ private:
+  void setViewCones(int horizontal, int vertical) { cone_ = {horizontal, vertical}; }
+  void setPanRange(int low, int high) { pan_ = {std::min(low, high), std::max(low, high)}; }
+  void setTiltRange(int low, int high) { tilt_ = {std::min(low, high), std::max(low, high)}; }
+  void setNoise(bool on) { noise_.on = on; }
+  bool noisy() const { return noise_.on; }
+  std::vector<int> cones() const { return {cone_[0], cone_[1]}; }
+  void setNoiseParameters(double distance, double phi, double theta, double error) { noise_.set(distance, phi, theta, error); }
+  const RandomStream& randomState() const { return noise_.random; }
+  void setRandomState(RandomStream r) { noise_.random = r; }
+  soccer::Side side() const { return objects_.state() ? objects_.state()->side() : soccer::Side::none; }
+  Vec3f toView(const Vec3f& way) const;
+  soccer::Polar direction(const Vec3f& view) const;
+  bool inCone(const soccer::Polar& p) const;
+  bool look(const SceneNode& object, soccer::Polar& out);
+  void seeRobot(const soccer::VisibleObjects::Robot& robot, Predicates& out);
+
+  soccer::VisibleObjects objects_;
+  soccer::VisionNoise noise_{*this};
+  std::array<int, 2> cone_{90, 90}, pan_{-90, 90}, tilt_{-20, 20};
+  bool staticAxis_ = true, senseMyPos_ = false, senseMyOrien_ = false, senseBallPos_ = false, senseLine_ = false, senseLineName_ = false;
+};
+
+}  // namespace spark

@@ -1,0 +1,27 @@
+#include "agent_collision_handler.h"
+#include "field_effectors.h"
+#include "init_effector.h"
+#include "kick_effector.h"
+#include "match_perceptors.h"
+#include "monitor_items.h"
+#include "offside_aspect.h"
+#include "spark/plugin.h"
+#include "sphere_effectors.h"
+#include "trainer_command_parser.h"
+#include "vision_perceptor.h"
+
+SPARK_PLUGIN("soccer", "1.0", "Soccer: field, rules, and what players sense and do.",
+             // the field
+             spark::SoccerSettings, spark::Ball, spark::FieldFlag, spark::SoccerNode, spark::ObjectState, spark::GoalPost, spark::Line,
+             spark::AgentState, spark::AgentCollisionHandler,
+             // rules
+             spark::SoccerControlAspect, spark::GameStateAspect, spark::BallStateAspect, spark::SoccerRuleAspect, spark::OffsideAspect,
+             spark::SPLState, spark::SPLRule,
+             // what players sense
+             spark::GameStatePerceptor, spark::HearPerceptor, spark::AgentStatePerceptor, spark::GameTimePerceptor, spark::VisionPerceptor,
+             spark::RestrictedVisionPerceptor,
+             // what players do
+             spark::InitEffector, spark::SingleMatInitEffector, spark::StaticMeshInitEffector, spark::BeamEffector, spark::SayEffector,
+             spark::PassEffector, spark::KickEffector, spark::DriveEffector, spark::CatchEffector, spark::PanTiltEffector,
+             // monitors and trainers
+             spark::GameStateItem, spark::SoccerRuleItem, spark::TrainerCommandParser)

@@ -1,0 +1,153 @@
+#pragma once
+/// \file
+/// Drive, catch and pan/tilt: what sphere players do besides kicking (protocol section 7).
+
+#include "match_lookup.h"
+#include "restricted_vision_perceptor.h"
+
+namespace spark {
+
+/// `(drive x y z)`: a force that acts in every step until the next command, in the team's view of the field.
+class DriveEffector : public Effector {
+  SPARK_CLASS(DriveEffector, Effector)
+ public:
+  static void describe(Description<DriveEffector>& d) {
+    using E = DriveEffector;
+    d.doc("Drives the sphere: (drive x y z), length up to maxPower, until the next command; acts on the ground only.");
+    d.property("forceFactor", &E::forceFactor_).unit("N").min(0).doc("Force per power.");
+    d.property("maxPower", &E::maxPower_).min(0).doc("Greatest power: longer commands are shortened.");
+    d.property("sigma", &E::sigma_).min(0).doc("Relative standard deviation of each component.");
+    d.property("consumption", &E::consumption_).unit("%/(N s)").min(0).doc("Battery used per force and second.");
+    d.property("force", &E::force_).unit("N").readOnly().state().doc("The force in the team's view of the field.");
+    d.property("random", &E::random_).state().doc("Its noise.");
+    d.on<&E::prepare>(phase::kPrepare);
+  }
+  std::string predicate() const override { return "drive"; }
+  std::string act(const Element& action) override {
+    double v[3];
+    if (std::string wrong = readNumbers(action, v, 3); !wrong.empty()) return wrong;
+    Vec3 power(v[0], v[1], v[2]);
+    // stableNorm: 1e300 is finite, its square is not
+    if (const double length = power.stableNorm(); length > maxPower_) power *= maxPower_ / length;
+    for (int i = 0; i < 3; ++i) force_[i] = power[i] * (sigma_ > 0 ? random_.normal(1, sigma_) : 1) * forceFactor_;
+    return {};
+  }
+
+ protected:
+  void saveState(StateWriter& out) const override {
+    for (int i = 0; i < 3; ++i) out.write(force_[i]);
+  }
+  void loadState(StateReader& in) override {
+    for (int i = 0; i < 3; ++i) force_[i] = in.readNumber();
+  }
+
+ private:
+  void prepare(const Event& event) {
+    if (force_.isZero()) return;
+    const soccer::Player* player = match_.player(*this);
+    if (!player || player->position().z() > match_.settings()->agentRadius + 0.001) return;
+    if (!player->state->drain(force_.norm() * consumption_ * event.step)) return;
+    const double d = direction(player->side());
+    player->torso->enable();
+    player->torso->addForce(Vec3(d * force_.x(), d * force_.y(), force_.z()));
+  }
+
+  MatchLookup match_;
+  RandomStream random_{*this, "drive"};
+  double forceFactor_ = 60, maxPower_ = 100, sigma_ = 0, consumption_ = 1.0 / 18000;
+  Vec3 force_ = Vec3::Zero();
+};
+
+/// `(catch)`: the goalie takes the ball inside his penalty area and lays it in front of himself.
+class CatchEffector : public Effector {
+  SPARK_CLASS(CatchEffector, Effector)
+ public:
+  static void describe(Description<CatchEffector>& d) {
+    d.doc("The goalie (number 1) catches the ball inside his penalty area: (catch).");
+    d.property("catchMargin", &CatchEffector::margin_).unit("m").min(0).doc("So near the surfaces of goalie and ball must be.");
+    d.on<&CatchEffector::prepare>(phase::kPrepare);
+  }
+  std::string predicate() const override { return "catch"; }
+  std::string act(const Element&) override {
+    pending_ = true;
+    return {};
+  }
+
+ private:
+  static constexpr double kClearRadius = 2, kClearDistance = 5, kGap = 0.07;  ///< m
+
+  void prepare(const Event&) {
+    if (!std::exchange(pending_, false)) return;
+    const soccer::Player* goalie = match_.player(*this);
+    if (!goalie || goalie->state->unum() != 1) return;
+    const soccer::Pitch& pitch = match_.game()->pitch();
+    const SoccerSettings& s = pitch.settings();
+    const Vec3 from = goalie->position(), ball = pitch.ballPosition();
+    if (!pitch.ball() || !pitch.penaltyArea(goalie->side()).contains(ball.x(), ball.y())) return;
+    if (from.z() > s.agentRadius + 0.01 || (ball - from).norm() > s.agentRadius + s.ballRadius + margin_) return;
+    const Vec3 target = from + Vec3(direction(goalie->side()) * (s.agentRadius + s.ballRadius + kGap), 0, 0);
+    for (const soccer::Player& p : pitch.players())
+      if (&p != goalie && p.torso && p.side() != soccer::Side::none) pitch.clearSphere(p, target, kClearRadius, kClearDistance);
+    pitch.placeBall(target);
+    if (auto* state = match_.ball()) state->kickedBy(*goalie->agent);
+  }
+
+  MatchLookup match_;
+  double margin_ = 1.0;
+  bool pending_ = false;
+};
+
+/// `(pantilt dpan dtilt)`: turns the cone vision.
+class PanTiltEffector : public Effector {
+  SPARK_CLASS(PanTiltEffector, Effector)
+ public:
+  static void describe(Description<PanTiltEffector>& d) {
+    using E = PanTiltEffector;
+    d.doc("Turns the agent's view: (pantilt dpan dtilt), deg.");
+    d.property("maxPanAngleDelta", &E::maxPan_).unit("deg").min(0).doc("Greatest turn to the side by one command.");
+    d.property("maxTiltAngleDelta", &E::maxTilt_).unit("deg").min(0).doc("Greatest turn up or down by one command.");
+    d.property("sigma", &E::sigma_).unit("deg").min(0).doc("Standard deviation of a turn.");
+    d.property("random", &E::random_).state().doc("Its noise.");
+    d.on<&E::prepare>(phase::kPrepare);
+  }
+  std::string predicate() const override { return "pantilt"; }
+  std::string act(const Element& action) override {
+    double v[2];
+    if (std::string wrong = readNumbers(action, v, 2); !wrong.empty()) return wrong;
+    pan_ = v[0], tilt_ = v[1];
+    pending_ = true;
+    return {};
+  }
+
+ private:
+  void prepare(const Event&) {
+    if (!std::exchange(pending_, false)) return;
+    match_.refresh(*this);
+    AgentState* state = match_.state();
+    if (!state) return;
+    std::array<int, 2> pan{-90, 90}, tilt{-20, 20};
+    if (auto* eye = match_.agent() ? eyeOf(*match_.agent()) : nullptr) pan = eye->panRange(), tilt = eye->tiltRange();
+    const auto turned = [this](double now, double by, int limit, const std::array<int, 2>& range) {
+      const double delta = std::clamp(by, -double(limit), double(limit)) + random_.normal(0, sigma_);
+      return std::clamp(now + delta, double(range[0]), double(range[1]));
+    };
+    const double newPan = turned(state->pan(), pan_, maxPan_, pan);
+    state->look(newPan, turned(state->tilt(), tilt_, maxTilt_, tilt));
+  }
+  static RestrictedVisionPerceptor* eyeOf(const Node& node) {
+    for (const auto& c : node.children()) {
+      if (auto* eye = c->as<RestrictedVisionPerceptor>()) return eye;
+      if (Node* inner = c->asNode())
+        if (auto* eye = eyeOf(*inner)) return eye;
+    }
+    return nullptr;
+  }
+
+  MatchLookup match_;
+  RandomStream random_{*this, "pantilt"};
+  int maxPan_ = 90, maxTilt_ = 10;
+  double sigma_ = 0.25, pan_ = 0, tilt_ = 0;
+  bool pending_ = false;
+};
+
+}  // namespace spark

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "vision.h"
+
+namespace spark {
+
+/// Sees everything around, by default along the field's axes as the team sees them:
+/// `(See (F1L (pol 12.1 30.4 -0.3)) ... (B (pol ...)) (P (team A) (id 1) (pol ...)))`.
+class VisionPerceptor : public Perceptor {
+  SPARK_CLASS(VisionPerceptor, Perceptor)
+ public:
+  VisionPerceptor() { predicateName_ = "See"; }
+  static void describe(Description<VisionPerceptor>& d) {
+    using V = VisionPerceptor;
+    d.doc("Sees everything around: flags, goals, ball, players.");
+    d.property("staticSenseAxis", &V::staticAxis_).doc("Angles from the field's x axis as the team sees it; else in the frame of the transform above.");
+    d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
+    d.method("addNoise", &V::setNoise).parameters({"on"}).doc("Noise on or off.");
+    d.method("useRandomNoise", &V::setRandom).parameters({"on"}).doc("False: only the constant calibration error.");
+    d.method("setNoiseParams", &V::setNoiseParameters)
+        .parameters({"distance [%]", "phi [deg]", "theta [deg]", "error [m]"})
+        .doc("Standard deviations of distance, vertical and horizontal angle; half width of the calibration error.");
+    d.property("noise", &V::noisy).doc("Noise is on.");
+    d.property("random", &V::randomState, &V::setRandomState).state().doc("Its noise.");
+  }
+  void sense(Predicates& out, const Event& event) override;
+
+ protected:
+  void saveState(StateWriter& out) const override { noise_.save(out); }
+  void loadState(StateReader& in) override { noise_.load(in); }
+
+ private:
+  void setNoise(bool on) { noise_.on = on; }
+  void setRandom(bool on) { randomNoise_ = on; }
+  bool noisy() const { return noise_.on; }
+  void setNoiseParameters(double distance, double phi, double theta, double error) { noise_.set(distance, phi, theta, error); }
+  const RandomStream& randomState() const { return noise_.random; }
+  void setRandomState(RandomStream r) { noise_.random = r; }
+  bool look(const SceneNode& object, soccer::Polar& out);
+
+  soccer::VisibleObjects objects_;
+  soccer::VisionNoise noise_{*this};
+  bool staticAxis_ = true, senseMyPos_ = false, randomNoise_ = true;
+};
+
+}  // namespace spark

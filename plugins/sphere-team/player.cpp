@@ -1,0 +1,287 @@
+#include "player.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace spark {
+
+// How a player decides, every time it gets a message:
+//
+//     no team yet           -> (init ...)
+//     before a kick-off     -> (beam ...) to its place in the formation
+//     number 1              -> between ball and goal; catches and clears what comes near
+//     nearest to the ball   -> behind the ball, as seen from where it is to go, and kick
+//     everybody else        -> its place in the formation, which moves with the ball; never offside
+//
+// Positions come from vision alone: the four corner flags give the field's size and the own place. All angles are along the field's axes.
+
+namespace {
+
+constexpr double kReach = 0.35;         ///< m between the centres of player and ball at which a kick works
+constexpr double kTopSpeed = 9.5;       ///< m/s
+constexpr double kPowerPerSpeed = 10;   ///< drive power that keeps 1 m/s
+constexpr double kSpeedPerKick = 1.7;   ///< m/s of the ball per kick power
+constexpr double kTakerRest = 3;        ///< s for which the taker of a restart leaves the ball to others
+
+/// Places at kick-off in parts of the half field, by number.
+struct Place {
+  double x, y;
+};
+constexpr std::array<Place, 12> kFormation{{{0, 0}, {-0.98, 0}, {-0.72, 0.5}, {-0.78, 0.17}, {-0.78, -0.17}, {-0.72, -0.5},
+                                            {-0.42, 0.42}, {-0.46, 0}, {-0.42, -0.42}, {-0.12, 0.32}, {-0.24, 0.02}, {-0.12, -0.32}}};
+
+}  // namespace
+
+double SpherePlayer::Point::length() const { return std::hypot(x, y); }
+SpherePlayer::Point SpherePlayer::Point::unit() const {
+  const double l = length();
+  return l > 1e-9 ? Point{x / l, y / l} : Point{1, 0};
+}
+
+SpherePlayer::SpherePlayer(std::string team, int unum) : team_(std::move(team)), unum_(std::clamp(unum, 1, 11)) { others_.reserve(32); }
+
+void SpherePlayer::start(Predicates& actions) { actions.open("scene").add(scene_).close(); }
+
+void SpherePlayer::think(const Predicates& percepts, Predicates& actions) {
+  read(percepts);
+  if (side_.empty()) return join(actions);
+  if (playMode_ == "BeforeKickOff" || playMode_.starts_with("Goal_")) return takePlaces(actions);
+  placed_ = false;
+  if (!seesField_ || !seesBall_) return;
+  if (playMode_ == "GameOver") return runTo(self_, 0, actions);
+  play(actions);
+}
+
+// ---- what it knows ----
+
+void SpherePlayer::read(const Predicates& percepts) {
+  for (const Element e : percepts) {
+    if (e.head() == "time") {
+      if (const Element now = e.named("now")) now_ = now.at(1).number();
+    } else if (e.head() == "GS") {
+      readGameState(e);
+    } else if (e.head() == "See") {
+      readVision(e);
+    }
+  }
+}
+
+void SpherePlayer::readGameState(const Element& gs) {
+  for (const Element e : gs) {
+    if (!e.isList()) continue;
+    const std::string_view key = e.head();
+    if (key == "team") side_ = e.at(1).text();
+    else if (key == "unum") unum_ = static_cast<int>(e.at(1).integer());
+    else if (key == "sl") left_ = static_cast<int>(e.at(1).integer());
+    else if (key == "sr") right_ = static_cast<int>(e.at(1).integer());
+    else if (key == "pm" && e.at(1).text() != playMode_) {
+      const std::string before = std::exchange(playMode_, std::string(e.at(1).text()));
+      modeSince_ = now_;
+      noteRestart(before);
+    }
+  }
+}
+
+/// Who is nearest to the ball when our restart turns into play took it, and must not touch the ball again before somebody else.
+void SpherePlayer::noteRestart(const std::string& before) {
+  if (playMode_ != "PlayOn") return;
+  const std::string now = std::exchange(playMode_, before);
+  const bool wasOurs = ours("");
+  playMode_ = now;
+  if (!wasOurs || !seesBall_) return;
+  taker_ = unum_;
+  double nearest = toBall_.length();
+  for (const Other& o : others_)
+    if (const double d = (o.place - ball_).length(); o.mate && d < nearest) nearest = d, taker_ = o.unum;
+  takerUntil_ = now_ + kTakerRest;
+}
+
+void SpherePlayer::readVision(const Element& see) {
+  readField(see);
+  if (!seesField_) return;
+  others_.clear();
+  for (const Element e : see) {
+    const Element pol = e.isList() ? e.named("pol") : Element();
+    if (!pol) continue;
+    const double d = pol.at(1).number(), h = pol.at(2).number() * (std::numbers::pi / 180), v = pol.at(3).number() * (std::numbers::pi / 180);
+    const Point way{d * std::cos(v) * std::cos(h), d * std::cos(v) * std::sin(h)};
+    if (e.head() == "B") {
+      const Point place = self_ + way;
+      const double dt = now_ - ballTime_;
+      if (seesBall_ && dt > 0) ballVelocity_ = ballVelocity_ * 0.5 + (place - ball_) * (0.5 / dt);
+      if (ballVelocity_.length() > 40) ballVelocity_ = {};
+      ball_ = place, toBall_ = way, ballTime_ = now_, seesBall_ = true;
+    } else if (e.head() == "P") {
+      const Element team = e.named("team"), id = e.named("id");
+      if (team && id) others_.push_back({team.at(1).text() == team_, static_cast<int>(id.at(1).integer()), self_ + way});
+    }
+  }
+}
+
+/// The corner flags' mean is the centre of the field, their spread its size.
+void SpherePlayer::readField(const Element& see) {
+  std::array<Point, 4> corner, post;
+  int corners = 0, posts = 0;
+  for (const Element e : see) {
+    const Element pol = e.isList() ? e.named("pol") : Element();
+    const std::string_view name = e.head();
+    if (!pol || name.size() != 3 || (name[0] != 'F' && name[0] != 'G')) continue;
+    const double d = pol.at(1).number(), h = pol.at(2).number() * (std::numbers::pi / 180), v = pol.at(3).number() * (std::numbers::pi / 180);
+    const Point way{d * std::cos(v) * std::cos(h), d * std::cos(v) * std::sin(h)};
+    if (name[0] == 'F' && corners < 4) corner[corners++] = way;
+    if (name[0] == 'G' && posts < 4) post[posts++] = way;
+  }
+  if (corners < 4) return;
+  Point mean;
+  for (const Point& c : corner) mean = mean + c * 0.25;
+  double length = 0, width = 0, goal = 0;
+  for (const Point& c : corner) length += std::abs(c.x - mean.x) / 4, width += std::abs(c.y - mean.y) / 4;
+  for (int i = 0; i < posts; ++i) goal += std::abs(post[i].y - mean.y) / posts;
+  self_ = Point{} - mean;
+  halfLength_ = length, halfWidth_ = width;
+  if (posts == 4) goalHalfWidth_ = goal;
+  seesField_ = true;
+}
+
+/// A restart of the given kind ("" for any) is ours.
+bool SpherePlayer::ours(std::string_view kind) const {
+  std::string_view mode = playMode_;
+  const bool left = mode.ends_with("_left") || mode.ends_with("_Left"), right = mode.ends_with("_right") || mode.ends_with("_Right");
+  if ((!left && !right) || (left ? "left" : "right") != side_) return false;
+  return !mode.starts_with("offside") && (kind.empty() || mode.starts_with(kind));
+}
+
+/// The ball belongs to the others: keep away.
+bool SpherePlayer::theirs() const { return playMode_ != "PlayOn" && !ours(""); }
+
+/// x beyond which a team-mate ahead of the ball would be offside.
+double SpherePlayer::offsideLine() const {
+  double last = -1e9, second = -1e9;
+  for (const Other& o : others_) {
+    if (o.mate) continue;
+    if (o.place.x > last) second = std::exchange(last, o.place.x);
+    else second = std::max(second, o.place.x);
+  }
+  return std::max({0.0, ball_.x, second});
+}
+
+// ---- what it does ----
+
+void SpherePlayer::join(Predicates& actions) {
+  if (joinedAt_ >= 0 && now_ < joinedAt_ + 1) return;
+  joinedAt_ = now_;
+  actions.open("init").pair("unum", unum_).pair("teamname", std::string_view(team_)).close();
+}
+
+void SpherePlayer::takePlaces(Predicates& actions) {
+  runTo(self_, 0, actions);
+  if (!seesField_ || std::exchange(placed_, true)) return;
+  const Place p = kFormation[static_cast<std::size_t>(unum_)];
+  actions.open("beam").add(p.x * halfLength_).add(p.y * halfWidth_).add(0.0).close();
+}
+
+SpherePlayer::Point SpherePlayer::formation() const {
+  const Place home = kFormation[static_cast<std::size_t>(unum_)];
+  Point p{home.x * halfLength_, home.y * halfWidth_};
+  // the team moves with the ball, forwards more than defenders
+  const double follow = unum_ >= 9 ? 0.75 : unum_ >= 6 ? 0.6 : 0.45;
+  p.x += follow * ball_.x + (unum_ >= 9 ? 8 : 0) * halfLength_ / 52;
+  p.y = 0.7 * p.y + 0.3 * ball_.y;
+  p.x = std::min(p.x, offsideLine() - 1);
+  p.x = std::clamp(p.x, -0.9 * halfLength_, 0.9 * halfLength_);
+  if (theirs()) {
+    const Point away = p - ball_;
+    const double clear = 11.0 * halfLength_ / 52;
+    if (away.length() < clear) p = ball_ + away.unit() * clear;
+    if (playMode_.starts_with("KickOff")) p.x = std::min(p.x, -0.5);
+  }
+  return p;
+}
+
+/// Nearest of the team to where the ball will be; the goalie counts only near his goal, the taker of a restart not for a while.
+bool SpherePlayer::goesToBall() const {
+  const Point soon = ballSoon(0.3);
+  const auto cost = [&](int unum, Point place) {
+    if (unum == taker_ && now_ < takerUntil_) return 1e6 + unum;
+    if (unum == 1 && !ours("goal_kick")) return 1e5;
+    if (unum == 1) return -1.0;
+    // who is ahead of the ball has to run round it
+    return (place - soon).length() + (place.x > soon.x ? 1.0 : 0.0);
+  };
+  const double mine = cost(unum_, self_);
+  for (const Other& o : others_)
+    if (o.mate && (cost(o.unum, o.place) < mine - (o.unum < unum_ ? 0 : 1e-9))) return false;
+  return true;
+}
+
+void SpherePlayer::play(Predicates& actions) {
+  if (unum_ == 1 && !ours("goal_kick")) return keepGoal(actions);
+  if (!theirs() && goesToBall()) return attack(actions);
+  runTo(formation(), kTopSpeed, actions);
+}
+
+void SpherePlayer::keepGoal(Predicates& actions) {
+  const Point goal{-halfLength_, 0};
+  const bool inArea = ball_.x < -halfLength_ + 16 * halfLength_ / 52 && std::abs(ball_.y) < goalHalfWidth_ + 16 * halfWidth_ / 34;
+  if (inArea && playMode_ == "PlayOn") {
+    if (toBall_.length() < 1.8 && now_ > caughtAt_ + 2) {
+      caughtAt_ = now_;
+      actions.open("catch").close();
+      return;
+    }
+    if (now_ < caughtAt_ + 2 || (toBall_.length() < 5 && ballVelocity_.length() < 6))
+      return kickTowards({0, self_.y > 0 ? halfWidth_ : -halfWidth_}, 28, 25, actions);
+  }
+  // on the line from the goal to the ball, or where a shot will cross
+  Point post = goal + (ball_ - goal).unit() * 1.5;
+  if (ballVelocity_.x < -4) {
+    const double t = (post.x - ball_.x) / ballVelocity_.x;
+    if (t > 0 && t < 3) post.y = ball_.y + ballVelocity_.y * t;
+  }
+  post.y = std::clamp(post.y, -goalHalfWidth_, goalHalfWidth_);
+  runTo(post, kTopSpeed, actions);
+}
+
+void SpherePlayer::attack(Predicates& actions) {
+  const double toGoal = (Point{halfLength_, 0} - ball_).length(), scale = halfLength_ / 52;
+  if (ours("KickOff")) return kickTowards({6 * scale, (unum_ % 2 ? 9 : -9) * scale}, 8, 0, actions);
+  if (ours("goal_kick")) return kickTowards({0, ball_.y > 0 ? halfWidth_ * 0.6 : -halfWidth_ * 0.6}, 28, 20, actions);
+  if (ball_.x < -0.5 * halfLength_) return kickTowards({0.2 * halfLength_, 1.2 * ball_.y}, 20, 15, actions);
+  // a shot goes to the corner that is farther from the keeper, otherwise the ball is played ahead
+  double keeper = 0;
+  for (const Other& o : others_)
+    if (!o.mate && o.unum == 1) keeper = o.place.y;
+  const Point corner{halfLength_ + 1, (keeper > 0 ? -0.75 : 0.75) * goalHalfWidth_};
+  if (toGoal < 28 * scale) return kickTowards(corner, 26, 0, actions);
+  kickTowards({halfLength_, 0}, 11, 0, actions);
+}
+
+/// Runs behind the ball as seen from the target, and kicks when it lies right.
+void SpherePlayer::kickTowards(Point target, double speed, double elevationDeg, Predicates& actions) {
+  const Point wanted = (target - ball_).unit(), side{-wanted.y, wanted.x};
+  const Point rel = toBall_ + ballVelocity_ * (now_ - ballTime_);
+  const double along = rel.dot(wanted), across = rel.dot(side);
+  const double aim = std::atan2(std::abs(across), along);
+  if (rel.length() < kReach + 0.25 && aim < 0.45) actions.open("kick").add(elevationDeg).add(std::clamp(speed / kSpeedPerKick, 1.0, 100.0)).close();
+  Point spot = ball_ + ballVelocity_ * 0.1;
+  if (along < 0.25 && std::abs(across) < 1.2) {
+    // in front of the ball: round it
+    spot = spot - wanted * 1.2 - side * ((across > 0 ? 1 : -1) * 1.2);
+  } else if (aim > 0.3) {
+    spot = spot - wanted * std::min(1.0, 0.36 + 0.5 * std::abs(across));
+  }
+  const double near = rel.length() - kReach;
+  runTo(spot, std::clamp(2.0 + 4.0 * near + std::max(0.0, ballVelocity_.dot(wanted)), 2.0, kTopSpeed), actions);
+}
+
+void SpherePlayer::runTo(Point target, double speed, Predicates& actions) const {
+  const Point way = target - self_;
+  const double v = std::min(speed, 4 * way.length());
+  const Point power = way.unit() * (v * kPowerPerSpeed);
+  actions.open("drive").add(power.x).add(power.y).add(0.0).close();
+}
+
+}  // namespace spark
