@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "spark/error.h"
@@ -37,6 +38,14 @@ std::string propertyLine(ClassObject& owner, const Property& p) {
   else if (!owner.isAbstract()) type += ", default " + owner.defaultOf(p).text();
   if (p.state) type += ", state";
   return fmt::format("    {:<22} {}\n{:27}{}\n", p.name, type, "", p.doc);
+}
+
+/// setX and getX, which every property has.
+bool isAccessor(ClassObject& c, const std::string& method) {
+  if (method.size() < 4 || (method.compare(0, 3, "set") != 0 && method.compare(0, 3, "get") != 0)) return false;
+  std::string property = method.substr(3);
+  property[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(property[0])));
+  return c.property(property) != nullptr;
 }
 
 std::string methodLine(const Method& m) {
@@ -96,8 +105,8 @@ std::string classDescription(Kernel& kernel, std::string_view className) {
   for (const Hook* h : c.hooks()) phases += (phases.empty() ? "" : ", ") + h->channel;
   if (!phases.empty()) out += fmt::format("  handles: {}\n", phases);
   out += sections<Property>(c, "properties", &ClassObject::properties, [&](const Property& p) { return propertyLine(c, p); });
-  out += sections<Method>(c, "methods", &ClassObject::methods, methodLine);
-  return out;
+  out += sections<Method>(c, "methods", &ClassObject::methods, [&](const Method& m) { return isAccessor(c, m.name) ? std::string() : methodLine(m); });
+  return out + "\n  Every property x also has the methods getX and, unless it is read only, setX.\n";
 }
 
 }  // namespace sparkhost

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <stdexcept>
+
+#include "house.h"
+#include "print.h"
+
+// Exit codes: 0 done; 1 the house refused or there is none; 2 the command line is wrong.
+
+using namespace sparkctl;
+
+namespace {
+/// What the command line names: a node, or a property or method of it.
+struct Target {
+  std::string path, member;
+};
+
+/// `/sys/server/simulation.step`: what follows the last dot behind the last slash is the member.
+Target split(const std::string& text, bool memberNeeded) {
+  const std::size_t slash = text.rfind('/');
+  const std::size_t dot = text.rfind('.');
+  if (dot != std::string::npos && (slash == std::string::npos || dot > slash) && dot + 1 < text.size()) return {text.substr(0, dot), text.substr(dot + 1)};
+  if (memberNeeded) throw std::runtime_error("expected PATH.NAME, such as /sys/server/simulation.step, found '" + text + "'");
+  return {text, ""};
+}
+
+/// The one house that is meant; throws when it is unclear.
+std::string choose(const std::string& socket, int pid) {
+  if (!socket.empty()) return socket;
+  std::vector<std::string> all = houses();
+  if (pid > 0) std::erase_if(all, [&](const std::string& s) { return s.find(fmt::format("/{}.sock", pid)) == std::string::npos; });
+  if (all.empty()) throw std::runtime_error(pid > 0 ? fmt::format("process {} has no house with a control socket", pid) : "no house is running that has a control socket (plugin \"control\")");
+  if (all.size() == 1) return all.front();
+  throw std::runtime_error(fmt::format("several houses are running; say which with --socket:\n  {}", fmt::join(all, "\n  ")));
+}
+
+void print(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+void get(House& house, const std::string& what) {
+  const Target t = split(what, false);
+  Json request{{"do", "get"}, {"path", t.path}};
+  if (!t.member.empty()) request["property"] = t.member;
+  const Json answer = house.ask(request);
+  if (t.member.empty()) print(fmt::format("{}  ({})\n", answer.value("path", ""), answer.value("class", "")));
+  for (const Json& p : answer["properties"]) print(propertyText(p));
+}
+
+void set(House& house, const std::string& what, const std::string& value) {
+  const Target t = split(what, true);
+  for (const Json& p : house.ask({{"do", "set"}, {"path", t.path}, {"property", t.member}, {"value", value}})["properties"]) print(propertyText(p));
+}
+
+void call(House& house, const std::string& what, const std::vector<std::string>& arguments) {
+  const Target t = split(what, true);
+  const std::string result = house.ask({{"do", "call"}, {"path", t.path}, {"method", t.member}, {"arguments", arguments}}).value("text", "");
+  if (!result.empty()) print(result + "\n");
+}
+
+void watch(House& house, const std::string& what) {
+  const Target t = split(what, true);
+  for (Json line = house.ask({{"do", "watch"}, {"path", t.path}, {"property", t.member}});; line = house.next())
+    print(fmt::format("{:10.2f} s  {} {}\n", line.value("time", 0.0), line.value("text", ""), line.value("unit", "")));
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Looks into a running Spark house: its tree, properties, plugins.", "sparkctl"};
+  std::string socket, path = "/", target, value;
+  std::vector<std::string> arguments;
+  int pid = 0, depth = -1;
+  bool all = false;
+  app.add_option("--socket", socket, "The house's control socket, where several run");
+  app.add_option("--pid", pid, "The house's process, where several run");
+  app.require_subcommand(1);
+  CLI::App* tree = app.add_subcommand("tree", "The tree below a path, with classes and what they are for");
+  tree->add_option("PATH", path, "Where to begin")->capture_default_str();
+  tree->add_option("--depth", depth, "Levels to show");
+  tree->add_flag("--all", all, "Show every one of many brothers of one class");
+  CLI::App* gets = app.add_subcommand("get", "A property, or all properties of a node, with units and documentation");
+  gets->add_option("PATH.PROPERTY", target)->required();
+  CLI::App* sets = app.add_subcommand("set", "Sets a property between two cycles");
+  sets->add_option("PATH.PROPERTY", target)->required();
+  sets->add_option("VALUE", value, "true, 3, 0.5, {1,2,3}, words")->required();
+  CLI::App* calls = app.add_subcommand("call", "Calls a method between two cycles");
+  calls->add_option("PATH.METHOD", target)->required();
+  calls->add_option("ARGUMENTS", arguments);
+  CLI::App* watches = app.add_subcommand("watch", "Prints a property now and whenever it changes");
+  watches->add_option("PATH.PROPERTY", target)->required();
+  CLI::App* plugins = app.add_subcommand("plugins", "The plugins that were found");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  try {
+    House house(choose(socket, pid));
+    if (*tree) print(treeText(house.ask({{"do", "tree"}, {"path", path}, {"depth", depth}})["tree"], path, all));
+    if (*gets) get(house, target);
+    if (*sets) set(house, target, value);
+    if (*calls) call(house, target, arguments);
+    if (*watches) watch(house, target);
+    if (*plugins) print(pluginsText(house.ask({{"do", "plugins"}})["plugins"]));
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "sparkctl: {}\n", e.what());
+    return 1;
+  }
+  return 0;
+}
