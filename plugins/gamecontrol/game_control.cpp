@@ -128,12 +128,13 @@ void GameControl::act(const Event& event) {
 
 void GameControl::sense(const Event& event) {
   kernel().jobs().run(participants_.size(), [this, &event](std::size_t i) { participants_[i]->sense(event); });
+  for (const auto& p : participants_) p->reportFault(kernel().log());
   if (perceptDelay_ == 0) deliver();
 }
 
 void GameControl::deliver() {
   for (const auto& p : participants_)
-    if (!p->deliver()) ++messagesDropped_;
+    if (!p->deliver(kernel().log(), cycle_)) ++messagesDropped_;
 }
 
 void GameControl::removeLeaving() {

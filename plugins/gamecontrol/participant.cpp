@@ -7,6 +7,8 @@ namespace spark::gamecontrol {
 namespace {
 // Tokens are larger than the bytes they come from.
 constexpr std::uint32_t kMaxPendingTokens = 1 << 17;
+// What a client sent may stand in a line, but not at any length.
+constexpr std::size_t kLongestLine = 300;
 }  // namespace
 
 Participant::Participant(IConnection& connection)
@@ -34,10 +36,10 @@ void Participant::resolveParser(Node& gameControl) {
     }
 }
 
-void Participant::warn(Log& log, std::int64_t cycle, const std::string& text) {
+void Participant::warn(Log& log, std::int64_t cycle, std::string_view text) {
   if (!budget_.take(cycle)) return;
   if (const auto n = budget_.leftOut()) log.warning("{}: {} further lines were left out.", label_, n);
-  log.warning("{}: {}", label_, text);
+  log.warning("{}: {}{}", label_, text.substr(0, kLongestLine), text.size() > kLongestLine ? " ..." : "");
 }
 
 std::string Participant::receive(std::string_view message, std::size_t maxPending, Log& log, std::int64_t cycle) {
@@ -110,7 +112,11 @@ void Participant::realise(Log& log, std::int64_t cycle) {
     const std::string_view head = action.head();
     if (head.empty()) continue;
     if (Effector* e = effector(head)) {
-      if (const std::string why = e->act(action); !why.empty()) warn(log, cycle, why);
+      try {
+        if (const std::string why = e->act(action); !why.empty()) warn(log, cycle, why);
+      } catch (const std::exception& fault) {
+        warn(log, cycle, fmt::format("{} ({}) threw: {}", e->path(), e->classObject()->name(), fault.what()));
+      }
     } else {
       warn(log, cycle, fmt::format("no effector registered for predicate {}.", head));
     }
@@ -129,15 +135,37 @@ void Participant::sense(const Event& event) {
   ++counter_;
   percepts_.clear();
   message_.clear();
-  for (const auto& ref : perceptors_)
-    if (Perceptor* p = ref.get(); p && counter_ % std::max(1, p->interval()) == 0) p->sense(percepts_, event);
+  for (std::size_t i = 0; i < perceptors_.size(); ++i) {
+    Perceptor* p = perceptors_[i].get();
+    if (!p || counter_ % std::max(1, p->interval()) != 0) continue;
+    const std::uint32_t before = percepts_.size();
+    try {
+      p->sense(percepts_, event);
+    } catch (const std::exception& fault) {
+      percepts_.truncate(before);
+      faulty_ = i;
+      fault_ = fault.what();
+    }
+  }
   if (!percepts_.empty() && connection_ && parser()) parser()->write(percepts_, message_);
 }
 
-bool Participant::deliver() {
+void Participant::reportFault(Log& log) {
+  if (faulty_ == kNone) return;
+  if (const Perceptor* p = perceptors_[faulty_].get())
+    log.error("{}: {} ({}) threw and is asked no more: {}", label_, p->path(), p->classObject()->name(), fault_);
+  perceptors_.erase(perceptors_.begin() + static_cast<std::ptrdiff_t>(faulty_));
+  faulty_ = kNone;
+}
+
+bool Participant::deliver(Log& log, std::int64_t cycle) {
   if (percepts_.empty() || leaving()) return true;
   if (inside_) {
-    behavior()->think(percepts_, later_);
+    try {
+      behavior()->think(percepts_, later_);
+    } catch (const std::exception& fault) {
+      warn(log, cycle, fmt::format("it threw: {}", fault.what()));
+    }
     return true;
   }
   const bool first = sent_ == 0;

@@ -58,8 +58,10 @@ class Participant {
   void promote();
   /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent.
   void sense(const Event& event);
+  /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more.
+  void reportFault(Log& log);
   /// Sends or hands over what was sensed last. False when the message was dropped because an earlier one has not left.
-  bool deliver();
+  bool deliver(Log& log, std::int64_t cycle);
 
   /// Lockstep: it has to answer percepts with a sync predicate.
   bool mustSync() const { return !syncPredicate_.empty() && sent_ > 0; }
@@ -83,13 +85,14 @@ class Participant {
   bool greeted() const { return greeted_; }
 
  private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   struct Slot {
     std::string predicate;
     Ref<Effector> effector;
   };
   Effector* effector(std::string_view predicate) const;
   void keep(const Predicates& arrived);
-  void warn(Log& log, std::int64_t cycle, const std::string& text);
+  void warn(Log& log, std::int64_t cycle, std::string_view text);
 
   std::string label_;
   int number_ = 0;
@@ -109,6 +112,8 @@ class Participant {
   std::string message_, first_;
   std::vector<Slot> effectors_;  ///< by predicate
   std::vector<Ref<Perceptor>> perceptors_;
+  std::size_t faulty_ = kNone;   ///< index of a perceptor that threw
+  std::string fault_;
   std::string syncPredicate_;
   std::int64_t counter_ = 0, sent_ = 0;
   LineBudget budget_{10};

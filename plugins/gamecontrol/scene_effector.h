@@ -21,6 +21,7 @@ class SceneEffector : public Effector {
     if (loaded_) return "(scene ...): it has a robot already; a second one is refused.";
     const Element file = action.at(1);
     if (!file || !file.isText() || file.text().empty()) return "(scene <file> <arguments>...): expected a file name after scene.";
+    if (file.text().size() > kLongestName) return "(scene <file> ...): the file's name is too long.";
     file_ = file.text();
     arguments_.clear();
     for (auto it = ++++action.begin(); it != action.end(); ++it) arguments_.push_back(value(*it));
@@ -28,6 +29,8 @@ class SceneEffector : public Effector {
   }
 
  private:
+  static constexpr std::size_t kLongestName = 512;
+
   static Value value(const Element& e) {
     switch (e.token().kind) {
       case Token::Kind::text: return e.text();

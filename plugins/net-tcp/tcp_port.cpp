@@ -28,6 +28,7 @@ void TcpPort::describe(Description<TcpPort>& d) {
   d.property("maxMessage", &TcpPort::maxMessage_).unit("bytes").range(1, 1 << 30).doc("A client that announces a longer message is closed.");
   d.property("maxConnections", &TcpPort::maxConnections_).range(1, 65536).doc("Further clients are closed at once.");
   d.property("messageTimeout", &TcpPort::messageTimeout_).unit("s").min(0.001).doc("A client that takes longer to finish a message it began is closed (wall clock).");
+  d.property("sendBuffer", &TcpPort::sendBuffer_).unit("bytes").range(4096, 1 << 28).doc("What the system may hold back for a client that does not read.");
   d.property("connections", &TcpPort::connectionCount).doc("Clients now.");
   d.property("connectionsSeen", &TcpPort::connectionsSeen).doc("Clients that were ever taken.");
   d.property("messagesDropped", &TcpPort::messagesDropped).doc("Messages not sent because their client had not taken an earlier one.");
@@ -160,6 +161,8 @@ bool TcpPort::acceptAll() {
 }
 
 void TcpPort::take(tcp::socket socket) {
+  error_code ignored;
+  socket.set_option(tcp::socket::send_buffer_size(sendBuffer_), ignored);
   auto connection = std::make_shared<TcpConnection>(std::move(socket), static_cast<std::uint64_t>(connectionsSeen_ + 1), *this);
   if (!consumer_ || !consumerLeaf_) {
     connection->close(fmt::format("nothing at '{}' takes connections", consumerPath_));

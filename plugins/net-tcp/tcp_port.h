@@ -71,7 +71,7 @@ class TcpPort : public Node {
 
   int port_ = 0;
   std::string address_ = "0.0.0.0", consumerPath_ = "/sys/server/gamecontrol";
-  int maxMessage_ = 65536, maxConnections_ = 64;
+  int maxMessage_ = 65536, maxConnections_ = 64, sendBuffer_ = 262144;
   double messageTimeout_ = 30;
   std::int64_t messagesDropped_ = 0, connectionsSeen_ = 0;
 

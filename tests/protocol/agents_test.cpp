@@ -25,6 +25,25 @@ void realise(Arena& a, std::size_t deedsWanted) {
     return deeds().size() >= deedsWanted;
   }, false);
 }
+/// Throws.
+class TestFault : public Perceptor {
+  SPARK_CLASS(TestFault, Perceptor)
+ public:
+  static void describe(Description<TestFault>& d) { d.doc("Throws."); }
+  void sense(Predicates& out, const Event&) override {
+    out.open("half");
+    throw Error("the sensor is broken");
+  }
+};
+
+/// Throws.
+class TestBomb : public Effector {
+  SPARK_CLASS(TestBomb, Effector)
+ public:
+  static void describe(Description<TestBomb>& d) { d.doc("Throws."); }
+  std::string act(const Element&) override { throw Error("the motor is broken"); }
+};
+
 /// Notes who comes and goes.
 class TestRule : public ControlAspect {
   SPARK_CLASS(TestRule, ControlAspect)
@@ -98,8 +117,8 @@ TEST_CASE("Messages are realised in order of agents' numbers, predicates in orde
   two.send("(he2 5)(he1 6)");
   two.send("(he1 7)");
   one.send("(he1 1)(he2 2)(he1 3)");
-  a.until([&] { return true; }, false);
-  for (int i = 0; i < 50; ++i) a.net->poll();
+  two.arrive();
+  one.arrive();
   a.cycle();
   REQUIRE(deeds() == Deeds{"1 he1 1", "1 he2 2", "1 he1 3", "2 he2 5", "2 he1 6", "2 he1 7"});
 }
@@ -132,7 +151,7 @@ TEST_CASE("200,000 nested parentheses over several messages close at most that c
   Arena a;
   Client other = robot(a), c = robot(a);
   for (int i = 0; i < 4; ++i) c.send(std::string(50000, '('));
-  c.raw("\x00\x03\x0d\x40");  // and once in a single message that is too long
+  c.raw(std::string("\x00\x03\x0d\x40", 4));  // and once in a single message that is too long
   REQUIRE(c.closed());
   other.send("(he1 1)");
   realise(a, 1);
@@ -220,6 +239,32 @@ TEST_CASE("Control aspects hear of agents") {
   REQUIRE(deeds() == Deeds{"come /usr/scene/AgentAspect1", "go /usr/scene/AgentAspect1"});
 }
 
+TEST_CASE("A perceptor or effector that throws is named, its agent and the host go on") {
+  Arena a;
+  a.kernel.registerClass<TestFault>();
+  a.kernel.registerClass<TestBomb>();
+  Client c = robot(a);
+  a.control->agents()[0]->create("TestFault", "fault");
+  a.control->agents()[0]->create("TestBomb", "bomb");
+  a.cycle();
+  c.drain();
+  c.send("(bomb)(he1 1)");
+  realise(a, 1);
+  REQUIRE(a.logged("/usr/scene/AgentAspect1/fault (TestFault) threw and is asked no more: the sensor is broken"));
+  REQUIRE(a.logged("/usr/scene/AgentAspect1/bomb (TestBomb) threw: the motor is broken"));
+  REQUIRE(c.receive()->find("half") == std::string::npos);
+}
+
+TEST_CASE("Long texts of a client do not fill the log") {
+  Arena a;
+  Client c = robot(a);
+  a.house.text.clear();
+  c.send("(" + std::string(60000, 'x') + " 1)(scene " + std::string(3000, 'y') + ")(he1 1)");
+  realise(a, 1);
+  REQUIRE(a.logged("no effector registered for predicate xxx"));
+  REQUIRE(a.house.text.size() < 2000);
+}
+
 TEST_CASE("30 agents at once") {
   Arena a;
   std::vector<Client> clients;
@@ -282,7 +327,8 @@ TEST_CASE("Two ports speak two languages at the same time") {
   sexp.send("(he1 1.5)(init (unum 3)(teamname A))");
   json.send(R"([["he1",2.5],["init",["unum",7],["teamname","B"]]])");
   json.send(R"(["he2",3])");
-  for (int i = 0; i < 50; ++i) a.net->poll();
+  sexp.arrive();
+  json.arrive();
   a.cycle();
   REQUIRE(deeds() == Deeds{"1 he1 1.5", "1 init A 3", "2 he1 2.5", "2 init B 7", "2 he2 3"});
   sexp.drain();

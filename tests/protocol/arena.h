@@ -4,9 +4,10 @@
 /// for bytes polls the server meanwhile, so nothing here sleeps or depends on timing.
 
 #include <arpa/inet.h>
+#include <linux/sockios.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -137,6 +138,8 @@ class Client {
   }
   /// Bytes as they are; the server is polled when it has to make room. Stops when the server has closed.
   void raw(std::string_view bytes);
+  /// Returns when everything sent is where the server's next poll finds it.
+  void arrive() const;
   /// The next message; polls the server until it is there. Empty when the connection was closed.
   std::optional<std::string> receive();
   /// What is there now, without waiting.
@@ -163,8 +166,9 @@ class Arena {
   IInputSource* net = nullptr;
   IInputGate* gate = nullptr;
   IGameControl* control = nullptr;
+  const bool lockstep;
 
-  Arena() {
+  explicit Arena(bool waitsForAgents = false) : lockstep(waitsForAgents) {
     deeds().clear();
     kernel.registerClass<SceneNode>();
     kernel.registerClass<Transform>();
@@ -210,15 +214,15 @@ class Arena {
     net->poll();
     run();
   }
-  /// As a lockstep run loop: takes input; runs one cycle if the gate is open.
+  /// As a run loop: takes input; runs one cycle if the gate is open.
   bool step() {
     net->poll();
-    if (!gate->ready(true)) return false;
+    if (!gate->ready(lockstep)) return false;
     net->poll();
     run();
     return true;
   }
-  /// Polls and runs lockstep cycles until `done`; fails after 20 s.
+  /// Polls and runs cycles until `done`; fails after 20 s.
   void until(const std::function<bool()>& done, bool cycles = true) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (!done()) {
@@ -273,6 +277,14 @@ inline void Client::raw(std::string_view bytes) {
     else if (errno == EAGAIN) arena_.net->poll();
     else return;
   }
+}
+
+inline void Client::arrive() const {
+  arena_.until([this] {
+    int unacknowledged = 0;
+    ::ioctl(fd_, SIOCOUTQ, &unacknowledged);
+    return unacknowledged == 0;
+  }, false);
 }
 
 inline bool Client::take() {

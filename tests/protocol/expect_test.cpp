@@ -42,7 +42,7 @@ struct Player {
 /// Plays 40 cycles with players in this order of connecting; returns everything that was done.
 std::vector<std::string> match(const std::vector<int>& order, Style style, std::int64_t cycles = 40) {
   static const std::vector<std::pair<std::string, int>> kPlayers{{"Alpha", 1}, {"Alpha", 2}, {"Beta", 1}, {"Beta", 10}, {"Beta", 3}};
-  Arena a;
+  Arena a(true);
   a.set("expect", static_cast<int>(order.size()));
   a.set("holdWait", 0.02);
   std::vector<std::unique_ptr<Player>> players;
@@ -61,7 +61,7 @@ std::vector<std::string> match(const std::vector<int>& order, Style style, std::
 }  // namespace
 
 TEST_CASE("The clock stands until the expected agents are there, in any mode") {
-  Arena a;
+  Arena a(true);
   a.set("expect", 2);
   Client one = a.client();
   one.send("(scene robot)" + init("A", 1) + "(syn)");
@@ -93,7 +93,7 @@ TEST_CASE("Expected agents are numbered by team and number, whoever came first, 
 }
 
 TEST_CASE("A client that waits for a first message gets a minimal one, the others none") {
-  Arena a;
+  Arena a(true);
   a.set("expect", 2);
   a.set("holdWait", 0.01);
   Client waits = a.client();
@@ -115,7 +115,7 @@ TEST_CASE("A client that waits for a first message gets a minimal one, the other
 }
 
 TEST_CASE("Who leaves during the hold is not counted, who comes on top joins afterwards") {
-  Arena a;
+  Arena a(true);
   a.set("expect", 2);
   const auto ready = [&](const std::string& team, int unum) {
     Client c = a.client();

@@ -116,7 +116,7 @@ TEST_CASE("A client that only waits is not closed") {
   Client c = w.client();
   c.send("a");
   Client half = w.client();
-  half.raw("\0");
+  half.raw(std::string(2, '\0'));
   REQUIRE(half.closed());
   c.send("b");
   w.until([&] { return w.consumer->events.back() == "1:b"; }, false);

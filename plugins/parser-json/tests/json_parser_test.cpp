@@ -70,7 +70,7 @@ TEST_CASE("Bad JSON keeps what was complete before the error and says what is wr
       {R"(["a"] nonsense)", "(a )", "invalid literal"},
       {R"(["a","x)", "", "missing closing quote"},
       {"[\"a\",\"\xff\xfe\"]", "", "UTF-8"},
-      {R"(["a",1e999])", "", "out of range"},
+      {R"(["a",1e999])", "", "overflow"},
       {R"(["a",NaN])", "", "invalid literal"},
   }));
   CAPTURE(text);
