@@ -1,0 +1,50 @@
+#pragma once
+/// \file
+/// One agent's connection to a server: messages behind a 4-byte big-endian length, over TCP.
+
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <functional>
+#include <string>
+
+#include "language.h"
+#include "spark/predicates.h"
+
+namespace spark::agent {
+
+/// Runs on the io_context that it is given, in the thread that runs it. Must outlive the io_context's run().
+class AgentConnection {
+ public:
+  /// A message came; append the answer's predicates. An empty answer is not sent.
+  using OnMessage = std::function<void(const Predicates& percepts, Predicates& actions)>;
+  /// The connection ended; `why` is one sentence.
+  using OnEnd = std::function<void(const std::string& why)>;
+
+  AgentConnection(boost::asio::io_context& io, Language& language) : socket_(io), language_(language) {}
+  /// Connects, and tries again for `patience` seconds while nobody listens. Blocks. Throws spark::Error.
+  void connect(const std::string& host, int port, double patience = 0);
+  /// Sends `first` (when it is not empty) and answers messages from then on.
+  void start(const Predicates& first, OnMessage onMessage, OnEnd onEnd);
+  void close();
+  /// Messages received so far.
+  std::uint64_t received() const { return received_; }
+
+ private:
+  void send(const Predicates& predicates);
+  void receive();
+  void receiveBody();
+  void answer();
+  void end(const std::string& why);
+
+  boost::asio::ip::tcp::socket socket_;
+  Language& language_;
+  OnMessage onMessage_;
+  OnEnd onEnd_;
+  Predicates percepts_, actions_;
+  std::array<unsigned char, 4> prefix_{};
+  std::string body_, out_;
+  std::uint64_t received_ = 0;
+};
+
+}  // namespace spark::agent
