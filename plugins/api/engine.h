@@ -151,6 +151,9 @@ class IEngine {
   virtual void detect(World, PairFilter, int perPair, Contacts& out) = 0;
   /// Solves the contacts that say `solve` and all joints, integrates by `dt` [s], clears forces, writes wanted feedback.
   virtual void step(World, Contacts&, double dt) = 0;
+  /// Bodies whose state was not finite (or beyond all reason) after the last step: they were put back to their last good pose, at rest.
+  /// Valid until the next step.
+  virtual std::span<const Body> repaired(World) const = 0;
 };
 
 }  // namespace spark::engine

@@ -1,0 +1,158 @@
+#include <Eigen/Cholesky>
+
+#include "ode_engine.h"
+
+namespace spark {
+
+using namespace ode;
+using engine::Body;
+
+Body OdeEngine::createBody(engine::World world) {
+  WorldData& w = *data(world);
+  auto b = std::make_unique<BodyData>();
+  b->id = dBodyCreate(w.id);
+  b->world = &w;
+  b->stepsLeft = kIdleSteps;
+  b->good = {{0, 0, 0}, {1, 0, 0, 0}};
+  dBodySetData(b->id, b.get());
+  const Body handle{reinterpret_cast<std::uintptr_t>(b.get())};
+  w.bodies.push_back(std::move(b));
+  w.repaired.reserve(w.bodies.size());
+  return handle;
+}
+
+void OdeEngine::destroyBody(Body body) {
+  BodyData* b = data(body);
+  WorldData& w = *b->world;
+  for (const auto& g : w.geoms)
+    if (g->body == b) {
+      g->offset = pose(engine::Geom{reinterpret_cast<std::uintptr_t>(g.get())});
+      g->body = nullptr;
+      dGeomSetBody(g->id, nullptr);
+    }
+  for (const auto& j : w.joints) {
+    if (j->a != b && j->b != b) continue;
+    dJointAttach(j->id, nullptr, nullptr);
+    if (j->a && j->a != b) --j->a->joints;
+    if (j->b && j->b != b) --j->b->joints;
+    j->a = j->b = nullptr;
+  }
+  dBodyDestroy(b->id);
+  forget(w.bodies, b);
+}
+
+void OdeEngine::setMass(Body body, const engine::Mass& mass) {
+  const bool finite = std::isfinite(mass.mass) && mass.center.allFinite() && mass.inertia.allFinite();
+  if (!finite || mass.mass <= 0) throw Error("expected a mass above 0 kg and finite numbers, found " + std::to_string(mass.mass) + " kg");
+  if (mass.center.norm() > 1e-9) throw Error("expected a centre of mass at the body's origin; move the body there first");
+  if (Eigen::LLT<Mat3>(mass.inertia).info() != Eigen::Success || !mass.inertia.isApprox(mass.inertia.transpose(), 1e-9))
+    throw Error("expected a symmetric, positive definite inertia: no real body has the one given. Check its diagonal and products of inertia");
+  dMass m;
+  dMassSetZero(&m);
+  m.mass = mass.mass;
+  toOde(mass.inertia, m.I);
+  dBodySetMass(data(body)->id, &m);
+}
+
+engine::BodyState OdeEngine::state(Body body) const {
+  const dBodyID b = data(body)->id;
+  return {toVec(dBodyGetPosition(b)), toVec(dBodyGetLinearVel(b)), toVec(dBodyGetAngularVel(b)), toMat(dBodyGetRotation(b))};
+}
+
+void OdeEngine::states(std::span<const Body> bodies, std::span<engine::BodyState> out) const {
+  for (std::size_t i = 0; i < bodies.size(); ++i) out[i] = OdeEngine::state(bodies[i]);
+}
+
+void OdeEngine::setPosition(Body body, const Vec3& p) {
+  if (!sane(p)) return;
+  BodyData& b = *data(body);
+  dBodySetPosition(b.id, p.x(), p.y(), p.z());
+  std::copy(p.data(), p.data() + 3, b.good.position);
+}
+
+void OdeEngine::setRotation(Body body, const Mat3& r) {
+  if (!sane(r.data(), 9) || std::abs(r.determinant()) < 1e-6) return;
+  BodyData& b = *data(body);
+  dMatrix3 m;
+  toOde(r, m);
+  dBodySetRotation(b.id, m);
+  std::copy(dBodyGetQuaternion(b.id), dBodyGetQuaternion(b.id) + 4, b.good.quaternion);
+}
+
+void OdeEngine::setLinearVelocity(Body body, const Vec3& v) {
+  if (sane(v)) dBodySetLinearVel(data(body)->id, v.x(), v.y(), v.z());
+}
+
+void OdeEngine::setAngularVelocity(Body body, const Vec3& w) {
+  if (sane(w)) dBodySetAngularVel(data(body)->id, w.x(), w.y(), w.z());
+}
+
+void OdeEngine::addForce(Body body, const Vec3& f) {
+  if (f.allFinite()) dBodyAddForce(data(body)->id, f.x(), f.y(), f.z());
+}
+
+void OdeEngine::addTorque(Body body, const Vec3& t) {
+  if (t.allFinite()) dBodyAddTorque(data(body)->id, t.x(), t.y(), t.z());
+}
+
+Vec3 OdeEngine::force(Body body) const { return toVec(dBodyGetForce(data(body)->id)); }
+Vec3 OdeEngine::torque(Body body) const { return toVec(dBodyGetTorque(data(body)->id)); }
+
+void OdeEngine::setForce(Body body, const Vec3& f) {
+  if (f.allFinite()) dBodySetForce(data(body)->id, f.x(), f.y(), f.z());
+}
+
+void OdeEngine::setTorque(Body body, const Vec3& t) {
+  if (t.allFinite()) dBodySetTorque(data(body)->id, t.x(), t.y(), t.z());
+}
+
+void OdeEngine::setEnabled(Body body, bool on) {
+  BodyData& b = *data(body);
+  if (!on) return dBodyDisable(b.id);
+  dBodyEnable(b.id);
+  b.stepsLeft = kIdleSteps;
+  b.timeLeft = 0;
+}
+
+bool OdeEngine::enabled(Body body) const { return dBodyIsEnabled(data(body)->id) != 0; }
+void OdeEngine::setGravityMode(Body body, bool on) { dBodySetGravityMode(data(body)->id, on); }
+
+// Position, quaternion, rotation, velocities, accumulated force and torque, then what decides about sleep and gravity.
+constexpr std::size_t kSaved = 3 + 4 + 12 + 3 + 3 + 3 + 3 + 4;
+
+void OdeEngine::saveBody(Body body, std::vector<double>& out) const {
+  const BodyData& b = *data(body);
+  const auto put = [&](const dReal* from, int n) { out.insert(out.end(), from, from + n); };
+  put(dBodyGetPosition(b.id), 3);
+  put(dBodyGetQuaternion(b.id), 4);
+  put(dBodyGetRotation(b.id), 12);
+  put(dBodyGetLinearVel(b.id), 3);
+  put(dBodyGetAngularVel(b.id), 3);
+  put(dBodyGetForce(b.id), 3);
+  put(dBodyGetTorque(b.id), 3);
+  const double rest[] = {double(dBodyIsEnabled(b.id)), double(dBodyGetGravityMode(b.id)), double(b.stepsLeft), b.timeLeft};
+  put(rest, 4);
+}
+
+void OdeEngine::loadBody(Body body, std::span<const double> in) {
+  if (in.size() != kSaved) throw Error("expected " + std::to_string(kSaved) + " numbers of a body's saved state, found " + std::to_string(in.size()));
+  BodyData& b = *data(body);
+  const double* p = in.data();
+  // ODE's own setters normalise again, which may change the last bit: the state is written where ODE keeps it.
+  std::copy(p + 3, p + 7, const_cast<dReal*>(dBodyGetQuaternion(b.id)));
+  std::copy(p + 7, p + 19, const_cast<dReal*>(dBodyGetRotation(b.id)));
+  dBodySetPosition(b.id, p[0], p[1], p[2]);  // also tells the geoms
+  dBodySetLinearVel(b.id, p[19], p[20], p[21]);
+  dBodySetAngularVel(b.id, p[22], p[23], p[24]);
+  dBodySetForce(b.id, p[25], p[26], p[27]);
+  dBodySetTorque(b.id, p[28], p[29], p[30]);
+  if (p[31] != 0) dBodyEnable(b.id);
+  else dBodyDisable(b.id);
+  dBodySetGravityMode(b.id, p[32] != 0);
+  b.stepsLeft = static_cast<int>(p[33]);
+  b.timeLeft = p[34];
+  std::copy(p, p + 3, b.good.position);
+  std::copy(p + 3, p + 7, b.good.quaternion);
+}
+
+}  // namespace spark

@@ -1,0 +1,178 @@
+#include "ode_engine.h"
+
+#include "spark/plugin.h"
+
+namespace spark {
+
+using namespace ode;
+using engine::Body;
+using engine::Space;
+using engine::World;
+
+OdeEngine::~OdeEngine() {
+  while (!worlds_.empty()) destroyWorld(World{reinterpret_cast<std::uintptr_t>(worlds_.back().get())});
+}
+
+World OdeEngine::createWorld() {
+  const Listening listening(said_);
+  auto w = std::make_unique<WorldData>();
+  w->id = dWorldCreate();
+  w->root = dHashSpaceCreate(nullptr);
+  dSpaceSetCleanup(w->root, 0);
+  w->contactJoints = dJointGroupCreate(0);
+  const World handle{reinterpret_cast<std::uintptr_t>(w.get())};
+  worlds_.push_back(std::move(w));
+  setWorldParameters(handle, {});
+  return handle;
+}
+
+void OdeEngine::destroyWorld(World world) {
+  const Listening listening(said_);
+  WorldData& w = *data(world);
+  dJointGroupDestroy(w.contactJoints);
+  while (!w.joints.empty()) destroyJoint(engine::Joint{reinterpret_cast<std::uintptr_t>(w.joints.back().get())});
+  while (!w.geoms.empty()) destroyGeom(engine::Geom{reinterpret_cast<std::uintptr_t>(w.geoms.back().get())});
+  while (!w.bodies.empty()) destroyBody(Body{reinterpret_cast<std::uintptr_t>(w.bodies.back().get())});
+  // Inner spaces are younger than those around them.
+  while (!w.spaces.empty()) destroySpace(Space{reinterpret_cast<std::uintptr_t>(w.spaces.back().get())});
+  dSpaceDestroy(w.root);
+  dWorldDestroy(w.id);
+  forget(worlds_, &w);
+}
+
+void OdeEngine::setWorldParameters(World world, const engine::WorldParameters& p) {
+  WorldData& w = *data(world);
+  if (!sane(p.gravity)) throw Error("expected a finite gravity for the world");
+  dWorldSetGravity(w.id, p.gravity.x(), p.gravity.y(), p.gravity.z());
+  dWorldSetERP(w.id, p.erp);
+  dWorldSetCFM(w.id, p.cfm);
+  dWorldSetContactSurfaceLayer(w.id, p.contactSurfaceLayer);
+  dWorldSetAutoDisableFlag(w.id, 0);
+  w.autoDisable = p.autoDisable;
+}
+
+Space OdeEngine::createSpace(World world, Space parent) {
+  WorldData& w = *data(world);
+  auto s = std::make_unique<SpaceData>();
+  s->world = &w;
+  s->id = dHashSpaceCreate(parent == Space::none ? w.root : data(parent)->id);
+  dSpaceSetCleanup(s->id, 0);
+  const Space handle{reinterpret_cast<std::uintptr_t>(s.get())};
+  w.spaces.push_back(std::move(s));
+  return handle;
+}
+
+void OdeEngine::destroySpace(Space space) {
+  SpaceData* s = data(space);
+  dSpaceDestroy(s->id);
+  forget(s->world->spaces, s);
+}
+
+void OdeEngine::setInnerCollision(Space space, bool on) { data(space)->inner = on; }
+
+void OdeEngine::addContactJoint(WorldData& w, engine::Contact& c) {
+  const GeomData& a = *data(c.geomA);
+  const GeomData& b = *data(c.geomB);
+  if (!a.body && !b.body) return;
+  const engine::Surface& s = c.surface;
+  dContact contact{};
+  contact.surface.mode = (s.bounceOn ? dContactBounce : 0) | (s.softErpOn ? dContactSoftERP : 0) | (s.softCfmOn ? dContactSoftCFM : 0) |
+                         (s.slipOn ? dContactSlip1 | dContactSlip2 : 0);
+  contact.surface.mu = s.mu;
+  contact.surface.bounce = s.bounce;
+  contact.surface.bounce_vel = s.bounceVelocity;
+  contact.surface.soft_erp = s.softErp;
+  contact.surface.soft_cfm = s.softCfm;
+  contact.surface.slip1 = s.slip1;
+  contact.surface.slip2 = s.slip2;
+  for (int i = 0; i < 3; ++i) contact.geom.pos[i] = c.position[i], contact.geom.normal[i] = c.normal[i];
+  contact.geom.depth = c.depth;
+  contact.geom.g1 = a.id;
+  contact.geom.g2 = b.id;
+  const dJointID joint = dJointCreateContact(w.id, w.contactJoints, &contact);
+  dJointAttach(joint, a.body ? a.body->id : nullptr, b.body ? b.body->id : nullptr);
+  if (a.body) a.body->touchedAt = w.steps;
+  if (b.body) b.body->touchedAt = w.steps;
+  if (c.feedback) {
+    w.feedback.push_back({});
+    dJointSetFeedback(joint, &w.feedback.back());
+  }
+}
+
+void OdeEngine::sleep(WorldData& w, double dt) {
+  for (const auto& body : w.bodies) {
+    BodyData& b = *body;
+    // Nothing sleeps in mid-air.
+    if ((b.joints == 0 && b.touchedAt != w.steps) || !dBodyIsEnabled(b.id)) continue;
+    const dReal* v = dBodyGetLinearVel(b.id);
+    const dReal* r = dBodyGetAngularVel(b.id);
+    if (dCalcVectorDot3(v, v) > kIdleSpeedSquared || dCalcVectorDot3(r, r) > kIdleSpeedSquared) {
+      b.stepsLeft = kIdleSteps;
+      b.timeLeft = 0;
+      continue;
+    }
+    --b.stepsLeft;
+    b.timeLeft -= dt;
+    if (b.stepsLeft > 0 || b.timeLeft > 0) continue;
+    dBodyDisable(b.id);
+    dBodySetLinearVel(b.id, 0, 0, 0);
+    dBodySetAngularVel(b.id, 0, 0, 0);
+  }
+}
+
+void OdeEngine::repair(WorldData& w) {
+  w.repaired.clear();
+  for (const auto& body : w.bodies) {
+    BodyData& b = *body;
+    if (!dBodyIsEnabled(b.id)) continue;
+    const dReal* p = dBodyGetPosition(b.id);
+    const dReal* q = dBodyGetQuaternion(b.id);
+    if (sane(p, 3) && sane(q, 4) && sane(dBodyGetLinearVel(b.id), 3) && sane(dBodyGetAngularVel(b.id), 3)) {
+      std::copy(p, p + 3, b.good.position);
+      std::copy(q, q + 4, b.good.quaternion);
+      continue;
+    }
+    dBodySetPosition(b.id, b.good.position[0], b.good.position[1], b.good.position[2]);
+    dBodySetQuaternion(b.id, b.good.quaternion);
+    dBodySetLinearVel(b.id, 0, 0, 0);
+    dBodySetAngularVel(b.id, 0, 0, 0);
+    w.repaired.push_back(Body{reinterpret_cast<std::uintptr_t>(&b)});
+  }
+}
+
+void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
+  WorldData& w = *data(world);
+  const Listening listening(said_);
+  ++w.steps;
+  w.feedback.clear();
+  // ODE keeps pointers into it: it must not grow below.
+  if (w.feedback.capacity() < contacts.size()) w.feedback.reserve(contacts.size() * 2);
+  for (engine::Contact& c : contacts)
+    if (c.solve) addContactJoint(w, c);
+  if (w.autoDisable) sleep(w, dt);
+  dWorldStep(w.id, dt);
+
+  std::size_t next = 0;
+  for (engine::Contact& c : contacts) {
+    const BodyData* a = data(c.geomA)->body;
+    if (!c.solve || !c.feedback || (!a && !data(c.geomB)->body)) continue;
+    const Vec3 onFirst = toVec(w.feedback[next++].f1);
+    // A joint whose first body is the world is turned round by ODE.
+    c.forceOnA = a ? onFirst : Vec3(-onFirst);
+  }
+  dJointGroupEmpty(w.contactJoints);
+  repair(w);
+  if (!said_.empty()) report();
+}
+
+std::span<const Body> OdeEngine::repaired(World world) const { return data(world)->repaired; }
+
+void OdeEngine::report() {
+  ++messages_;
+  if ((messages_ & (messages_ - 1)) == 0) kernel().log().warning("{}: ODE says: {} (message {} of this kind of trouble)", path(), said_, messages_);
+  said_.clear();
+}
+
+}  // namespace spark
+
+SPARK_PLUGIN("physics-ode", "1.0", "The Open Dynamics Engine as engine of the physics server.", spark::OdeEngine)

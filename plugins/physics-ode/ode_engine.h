@@ -1,0 +1,234 @@
+#pragma once
+/// \file
+/// The engine interface on ODE 0.16, double precision. ODE's types do not leave this folder.
+///
+/// What is ours and not ODE's, and why:
+///  - Auto-disable: ODE's rule with ODE's thresholds, but its counters live here, where they can be saved. A restored world goes on
+///    bit for bit.
+///  - Pair order: ODE's hash space reports pairs in an order that depends on history. Pairs are collected, sorted by the age of their
+///    geoms, then collided: same tree, same state, same contacts.
+///  - Spaces: each space collides its own geoms once per step, and never twice.
+///  - Faults: a body whose state is no number after a step is put back to its last good pose, at rest. Numbers that are no numbers do
+///    not get in.
+///
+///     detect:  hash spaces -> close pairs -> filters -> sort -> narrow phase -> contacts
+///     step:    contacts -> joints -> auto-disable -> dWorldStep -> feedback, faults
+
+#include <ode/ode.h>
+
+#include <memory>
+#include <vector>
+
+#include "api/engine.h"
+#include "ode_process.h"
+#include "spark/describe.h"
+#include "spark/kernel.h"
+
+namespace spark {
+namespace ode {
+
+struct WorldData;
+
+/// Position and quaternion of a body, as ODE keeps them.
+struct GoodPose {
+  dReal position[3], quaternion[4];
+};
+
+struct BodyData {
+  dBodyID id;
+  WorldData* world;
+  int joints = 0;                ///< joints attached, contacts not counted
+  std::uint64_t touchedAt = 0;   ///< number of the step in which it last had a contact joint
+  int stepsLeft;                 ///< idle steps until it sleeps
+  double timeLeft = 0;           ///< idle time until it sleeps [s]
+  GoodPose good;
+};
+
+struct SpaceData {
+  dSpaceID id;
+  WorldData* world;
+  bool inner = true;
+};
+
+struct GeomData {
+  dGeomID id;
+  WorldData* world;
+  dSpaceID space;
+  engine::ShapeDescription shape;  ///< keeps the numbers of a mesh alive
+  void* owner;
+  std::uint64_t age;               ///< counts up in order of creation
+  BodyData* body = nullptr;
+  Pose base;                       ///< the shape's own frame: a ray's direction, else identity
+  Pose offset;                     ///< in the body's frame, or in the world without a body
+  dTriMeshDataID mesh = nullptr;
+};
+
+struct JointData {
+  dJointID id;
+  engine::JointType type;
+  WorldData* world;
+  BodyData* a = nullptr;
+  BodyData* b = nullptr;
+  bool wantsFeedback = false;
+  dJointFeedback feedback{};
+  bool attached() const { return a || b; }
+};
+
+/// Two geoms whose bounds overlap.
+struct Pair {
+  GeomData* a;
+  GeomData* b;
+  bool operator<(const Pair& o) const { return a->age != o.a->age ? a->age < o.a->age : b->age < o.b->age; }
+};
+
+struct WorldData {
+  dWorldID id;
+  dSpaceID root;
+  dJointGroupID contactJoints;
+  bool autoDisable = true;
+  std::uint64_t steps = 0, nextAge = 1;
+  std::vector<std::unique_ptr<BodyData>> bodies;
+  std::vector<std::unique_ptr<SpaceData>> spaces;
+  std::vector<std::unique_ptr<GeomData>> geoms;
+  std::vector<std::unique_ptr<JointData>> joints;
+  engine::PairFilter filter = nullptr;
+  std::vector<Pair> pairs;
+  std::vector<dJointFeedback> feedback;
+  std::vector<engine::Body> repaired;
+};
+
+inline WorldData* data(engine::World h) { return reinterpret_cast<WorldData*>(h); }
+inline SpaceData* data(engine::Space h) { return reinterpret_cast<SpaceData*>(h); }
+inline BodyData* data(engine::Body h) { return reinterpret_cast<BodyData*>(h); }
+inline GeomData* data(engine::Geom h) { return reinterpret_cast<GeomData*>(h); }
+inline JointData* data(engine::Joint h) { return reinterpret_cast<JointData*>(h); }
+
+inline Vec3 toVec(const dReal* v) { return {v[0], v[1], v[2]}; }
+/// ODE's rotations are three rows of four.
+inline Mat3 toMat(const dReal* r) {
+  Mat3 m;
+  m << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
+  return m;
+}
+inline void toOde(const Mat3& m, dReal* r) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) r[4 * row + column] = m(row, column);
+    r[4 * row + 3] = 0;
+  }
+}
+/// Finite and within reach of the broad phase: farther than 1e9 (m, m/s, rad/s) is nowhere.
+inline bool sane(const dReal* v, int n) {
+  dReal most = 0;
+  for (int i = 0; i < n; ++i) most += std::abs(v[i]);
+  return most < 1e9;
+}
+inline bool sane(const Vec3& v) { return sane(v.data(), 3); }
+inline Pose compose(const Pose& outer, const Pose& inner) {
+  return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
+}
+/// ODE's rule for sleeping with its default thresholds: slower than 0.01 m/s and 0.01 rad/s for 10 steps.
+inline constexpr int kIdleSteps = 10;
+inline constexpr dReal kIdleSpeedSquared = 0.01 * 0.01;
+/// Contact points found for one pair at most, whatever is asked for.
+inline constexpr int kMostPerPair = 16;
+
+/// Removes the element that points to `p`, keeping the others' order.
+template <class T>
+void forget(std::vector<std::unique_ptr<T>>& list, T* p) {
+  for (auto it = list.begin(); it != list.end(); ++it)
+    if (it->get() == p) {
+      list.erase(it);
+      return;
+    }
+}
+
+}  // namespace ode
+
+/// ODE as engine of the physics server.
+class OdeEngine : public Leaf, public engine::IEngine {
+  SPARK_CLASS(OdeEngine, Leaf)
+ public:
+  ~OdeEngine() override;
+  static void describe(Description<OdeEngine>& d) {
+    d.doc("Rigid bodies by the Open Dynamics Engine (direct solver).");
+    d.implements<engine::IEngine>();
+    d.property("version", &OdeEngine::version).doc("The library's configuration.");
+    d.property("messages", &OdeEngine::messages).doc("How often ODE complained about something.");
+  }
+
+  engine::World createWorld() override;
+  void destroyWorld(engine::World world) override;
+  void setWorldParameters(engine::World world, const engine::WorldParameters& p) override;
+
+  engine::Space createSpace(engine::World world, engine::Space parent) override;
+  void destroySpace(engine::Space space) override;
+  void setInnerCollision(engine::Space space, bool on) override;
+
+  engine::Body createBody(engine::World world) override;
+  void destroyBody(engine::Body body) override;
+  void setMass(engine::Body body, const engine::Mass& mass) override;
+  engine::BodyState state(engine::Body body) const override;
+  void states(std::span<const engine::Body> bodies, std::span<engine::BodyState> out) const override;
+  void setPosition(engine::Body body, const Vec3& p) override;
+  void setRotation(engine::Body body, const Mat3& r) override;
+  void setLinearVelocity(engine::Body body, const Vec3& v) override;
+  void setAngularVelocity(engine::Body body, const Vec3& w) override;
+  void addForce(engine::Body body, const Vec3& f) override;
+  void addTorque(engine::Body body, const Vec3& t) override;
+  Vec3 force(engine::Body body) const override;
+  Vec3 torque(engine::Body body) const override;
+  void setForce(engine::Body body, const Vec3& f) override;
+  void setTorque(engine::Body body, const Vec3& t) override;
+  void setEnabled(engine::Body body, bool on) override;
+  bool enabled(engine::Body body) const override;
+  void setGravityMode(engine::Body body, bool on) override;
+  void saveBody(engine::Body body, std::vector<double>& out) const override;
+  void loadBody(engine::Body body, std::span<const double> in) override;
+
+  engine::Geom createGeom(engine::Space space, const engine::ShapeDescription& shape, void* owner) override;
+  void destroyGeom(engine::Geom geom) override;
+  void setShape(engine::Geom geom, const engine::ShapeDescription& shape) override;
+  void setBody(engine::Geom geom, engine::Body body, const Pose& offset) override;
+  void setPose(engine::Geom geom, const Pose& pose) override;
+  Pose pose(engine::Geom geom) const override;
+  void setCollides(engine::Geom geom, bool on) override;
+
+  engine::Joint createJoint(engine::World world, engine::JointType type) override;
+  void destroyJoint(engine::Joint joint) override;
+  void attach(engine::Joint joint, engine::Body a, engine::Body b) override;
+  void setAnchor(engine::Joint joint, const Vec3& world) override;
+  void setAxis(engine::Joint joint, int axis, const Vec3& world, int frame) override;
+  void setAngularMotor(engine::Joint joint, int axes, bool euler) override;
+  void setMotorAngle(engine::Joint joint, int axis, double angle) override;
+  void setFixed(engine::Joint joint) override;
+  Vec3 anchor(engine::Joint joint) const override;
+  Vec3 axis(engine::Joint joint, int axis) const override;
+  void setParameter(engine::Joint joint, engine::JointParameter p, int axis, double v) override;
+  double parameter(engine::Joint joint, engine::JointParameter p, int axis) const override;
+  double angle(engine::Joint joint, int axis) const override;
+  double angleRate(engine::Joint joint, int axis) const override;
+  void setFeedback(engine::Joint joint, bool on) override;
+  void feedback(engine::Joint joint, Vec3& force1, Vec3& torque1, Vec3& force2, Vec3& torque2) const override;
+
+  void detect(engine::World world, engine::PairFilter filter, int perPair, engine::Contacts& out) override;
+  void step(engine::World world, engine::Contacts& contacts, double dt) override;
+  std::span<const engine::Body> repaired(engine::World world) const override;
+
+ private:
+  std::string version() const { return dGetConfiguration(); }
+  std::int64_t messages() const { return messages_; }
+  void makeShape(ode::GeomData& g);
+  void place(ode::GeomData& g);
+  void addContactJoint(ode::WorldData& w, engine::Contact& c);
+  void sleep(ode::WorldData& w, double dt);
+  void repair(ode::WorldData& w);
+  /// Logs what ODE said since the last call: the first time, the second, the fourth ...
+  void report();
+
+  ode::ProcessUse use_;
+  std::vector<std::unique_ptr<ode::WorldData>> worlds_;
+  std::string said_;
+  std::int64_t messages_ = 0;
+};
+
+}  // namespace spark

@@ -1,0 +1,235 @@
+#include "ode_engine.h"
+
+namespace spark {
+
+using namespace ode;
+using engine::Joint;
+using engine::JointParameter;
+using engine::JointType;
+
+namespace {
+
+/// Axes that have motor and stops.
+int axesOf(JointType type) {
+  switch (type) {
+    case JointType::hinge:
+    case JointType::slider: return 1;
+    case JointType::universal:
+    case JointType::hinge2: return 2;
+    case JointType::angularMotor: return 3;
+    default: return 0;
+  }
+}
+
+int odeParameter(JointParameter p, int axis) {
+  static constexpr int kNames[] = {dParamLoStop, dParamHiStop, dParamVel,     dParamFMax,          dParamFudgeFactor,  dParamBounce,
+                                   dParamCFM,    dParamStopERP, dParamStopCFM, dParamSuspensionERP, dParamSuspensionCFM};
+  return kNames[static_cast<int>(p)] + dParamGroup * axis;
+}
+static_assert(static_cast<int>(JointParameter::stopErp) == 7 && static_cast<int>(JointParameter::suspensionCfm) == 10);
+
+Vec3 angularVelocity(const BodyData* b) { return b ? toVec(dBodyGetAngularVel(b->id)) : Vec3(Vec3::Zero()); }
+
+/// The axis of an angular motor, in the world.
+Vec3 motorAxis(const JointData& j, int axis) {
+  dVector3 v{};
+  if (j.attached()) dJointGetAMotorAxis(j.id, axis, v);
+  return toVec(v);
+}
+
+}  // namespace
+
+Joint OdeEngine::createJoint(engine::World world, JointType type) {
+  const Listening listening(said_);
+  WorldData& w = *data(world);
+  auto j = std::make_unique<JointData>();
+  j->world = &w;
+  j->type = type;
+  switch (type) {
+    case JointType::ball: j->id = dJointCreateBall(w.id, nullptr); break;
+    case JointType::hinge: j->id = dJointCreateHinge(w.id, nullptr); break;
+    case JointType::hinge2: j->id = dJointCreateHinge2(w.id, nullptr); break;
+    case JointType::slider: j->id = dJointCreateSlider(w.id, nullptr); break;
+    case JointType::universal: j->id = dJointCreateUniversal(w.id, nullptr); break;
+    case JointType::fixed: j->id = dJointCreateFixed(w.id, nullptr); break;
+    case JointType::angularMotor: j->id = dJointCreateAMotor(w.id, nullptr); break;
+  }
+  const Joint handle{reinterpret_cast<std::uintptr_t>(j.get())};
+  w.joints.push_back(std::move(j));
+  return handle;
+}
+
+void OdeEngine::destroyJoint(Joint joint) {
+  JointData* j = data(joint);
+  if (j->a) --j->a->joints;
+  if (j->b) --j->b->joints;
+  dJointDestroy(j->id);
+  forget(j->world->joints, j);
+}
+
+void OdeEngine::attach(Joint joint, engine::Body a, engine::Body b) {
+  if (a == b && a != engine::Body::none) throw Error("a joint cannot connect a body with itself: name two bodies, or one and the world");
+  const Listening listening(said_);
+  JointData& j = *data(joint);
+  if (j.a) --j.a->joints;
+  if (j.b) --j.b->joints;
+  j.a = data(a);
+  j.b = data(b);
+  if (j.a) ++j.a->joints;
+  if (j.b) ++j.b->joints;
+  dJointAttach(j.id, j.a ? j.a->id : nullptr, j.b ? j.b->id : nullptr);
+}
+
+void OdeEngine::setAnchor(Joint joint, const Vec3& p) {
+  const Listening listening(said_);
+  JointData& j = *data(joint);
+  if (!j.attached() || !sane(p)) return;
+  switch (j.type) {
+    case JointType::ball: dJointSetBallAnchor(j.id, p.x(), p.y(), p.z()); break;
+    case JointType::hinge: dJointSetHingeAnchor(j.id, p.x(), p.y(), p.z()); break;
+    case JointType::hinge2: dJointSetHinge2Anchor(j.id, p.x(), p.y(), p.z()); break;
+    case JointType::universal: dJointSetUniversalAnchor(j.id, p.x(), p.y(), p.z()); break;
+    default: break;
+  }
+}
+
+void OdeEngine::setAxis(Joint joint, int axis, const Vec3& v, int frame) {
+  const Listening listening(said_);
+  JointData& j = *data(joint);
+  if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return;
+  if (!sane(v) || v.norm() < 1e-9) throw Error("expected an axis longer than 0");
+  const dReal direction[4] = {v.x(), v.y(), v.z(), 0};
+  switch (j.type) {
+    case JointType::hinge: dJointSetHingeAxis(j.id, v.x(), v.y(), v.z()); break;
+    case JointType::slider: dJointSetSliderAxis(j.id, v.x(), v.y(), v.z()); break;
+    case JointType::universal:
+      if (axis == 0) dJointSetUniversalAxis1(j.id, v.x(), v.y(), v.z());
+      else dJointSetUniversalAxis2(j.id, v.x(), v.y(), v.z());
+      break;
+    case JointType::hinge2: dJointSetHinge2Axes(j.id, axis == 0 ? direction : nullptr, axis == 1 ? direction : nullptr); break;
+    case JointType::angularMotor:
+      if ((frame == 1 && !j.a) || (frame == 2 && !j.b) || frame < 0 || frame > 2) frame = 0;  // the world is that body
+      if (axis < dJointGetAMotorNumAxes(j.id)) dJointSetAMotorAxis(j.id, axis, frame, v.x(), v.y(), v.z());
+      break;
+    default: break;
+  }
+}
+
+void OdeEngine::setAngularMotor(Joint joint, int axes, bool euler) {
+  const Listening listening(said_);
+  JointData& j = *data(joint);
+  if (j.type != JointType::angularMotor) return;
+  if (axes < 0 || axes > 3) throw Error("expected 0 to 3 axes of an angular motor, found " + std::to_string(axes));
+  dJointSetAMotorMode(j.id, euler ? dAMotorEuler : dAMotorUser);
+  if (!euler) dJointSetAMotorNumAxes(j.id, axes);
+}
+
+void OdeEngine::setMotorAngle(Joint joint, int axis, double angle) {
+  JointData& j = *data(joint);
+  if (j.type == JointType::angularMotor && axis >= 0 && axis < 3 && std::isfinite(angle)) dJointSetAMotorAngle(j.id, axis, angle);
+}
+
+void OdeEngine::setFixed(Joint joint) {
+  const Listening listening(said_);
+  JointData& j = *data(joint);
+  if (j.type == JointType::fixed && j.attached()) dJointSetFixed(j.id);
+}
+
+Vec3 OdeEngine::anchor(Joint joint) const {
+  const JointData& j = *data(joint);
+  dVector3 v{};
+  if (!j.attached()) return Vec3::Zero();
+  switch (j.type) {
+    case JointType::ball: dJointGetBallAnchor(j.id, v); break;
+    case JointType::hinge: dJointGetHingeAnchor(j.id, v); break;
+    case JointType::hinge2: dJointGetHinge2Anchor(j.id, v); break;
+    case JointType::universal: dJointGetUniversalAnchor(j.id, v); break;
+    default: break;
+  }
+  return toVec(v);
+}
+
+Vec3 OdeEngine::axis(Joint joint, int axis) const {
+  const JointData& j = *data(joint);
+  dVector3 v{};
+  if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return Vec3::Zero();
+  switch (j.type) {
+    case JointType::hinge: dJointGetHingeAxis(j.id, v); break;
+    case JointType::slider: dJointGetSliderAxis(j.id, v); break;
+    case JointType::universal: axis == 0 ? dJointGetUniversalAxis1(j.id, v) : dJointGetUniversalAxis2(j.id, v); break;
+    case JointType::hinge2: axis == 0 ? dJointGetHinge2Axis1(j.id, v) : dJointGetHinge2Axis2(j.id, v); break;
+    default: return motorAxis(j, axis);
+  }
+  return toVec(v);
+}
+
+void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double v) {
+  JointData& j = *data(joint);
+  if (axis < 0 || axis >= axesOf(j.type) || std::isnan(v)) return;
+  const int name = odeParameter(p, axis);
+  switch (j.type) {
+    case JointType::hinge: dJointSetHingeParam(j.id, name, v); break;
+    case JointType::slider: dJointSetSliderParam(j.id, name, v); break;
+    case JointType::universal: dJointSetUniversalParam(j.id, name, v); break;
+    case JointType::hinge2: dJointSetHinge2Param(j.id, name, v); break;
+    default: dJointSetAMotorParam(j.id, name, v); break;
+  }
+}
+
+double OdeEngine::parameter(Joint joint, JointParameter p, int axis) const {
+  const JointData& j = *data(joint);
+  if (axis < 0 || axis >= axesOf(j.type)) return 0;
+  const int name = odeParameter(p, axis);
+  switch (j.type) {
+    case JointType::hinge: return dJointGetHingeParam(j.id, name);
+    case JointType::slider: return dJointGetSliderParam(j.id, name);
+    case JointType::universal: return dJointGetUniversalParam(j.id, name);
+    case JointType::hinge2: return dJointGetHinge2Param(j.id, name);
+    default: return dJointGetAMotorParam(j.id, name);
+  }
+}
+
+double OdeEngine::angle(Joint joint, int axis) const {
+  const JointData& j = *data(joint);
+  if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return 0;
+  switch (j.type) {
+    case JointType::hinge: return dJointGetHingeAngle(j.id);
+    case JointType::slider: return dJointGetSliderPosition(j.id);
+    case JointType::universal: return axis == 0 ? dJointGetUniversalAngle1(j.id) : dJointGetUniversalAngle2(j.id);
+    case JointType::hinge2: return axis == 0 ? dJointGetHinge2Angle1(j.id) : dJointGetHinge2Angle2(j.id);
+    default: return axis < dJointGetAMotorNumAxes(j.id) ? dJointGetAMotorAngle(j.id, axis) : 0;
+  }
+}
+
+double OdeEngine::angleRate(Joint joint, int axis) const {
+  const JointData& j = *data(joint);
+  if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return 0;
+  switch (j.type) {
+    case JointType::hinge: return dJointGetHingeAngleRate(j.id);
+    case JointType::slider: return dJointGetSliderPositionRate(j.id);
+    case JointType::universal: return axis == 0 ? dJointGetUniversalAngle1Rate(j.id) : dJointGetUniversalAngle2Rate(j.id);
+    case JointType::hinge2: return axis == 0 ? dJointGetHinge2Angle1Rate(j.id) : dJointGetHinge2Angle2Rate(j.id);
+    default: break;
+  }
+  if (axis >= dJointGetAMotorNumAxes(j.id)) return 0;
+  return motorAxis(j, axis).dot(angularVelocity(j.a) - angularVelocity(j.b));
+}
+
+void OdeEngine::setFeedback(Joint joint, bool on) {
+  JointData& j = *data(joint);
+  j.wantsFeedback = on;
+  j.feedback = {};
+  dJointSetFeedback(j.id, on ? &j.feedback : nullptr);
+}
+
+void OdeEngine::feedback(Joint joint, Vec3& force1, Vec3& torque1, Vec3& force2, Vec3& torque2) const {
+  const JointData& j = *data(joint);
+  force1 = toVec(j.feedback.f1), torque1 = toVec(j.feedback.t1);
+  force2 = toVec(j.feedback.f2), torque2 = toVec(j.feedback.t2);
+  if (j.a || !j.b) return;
+  // Attached to the world first, the joint is turned round by ODE.
+  std::swap(force1, force2);
+  std::swap(torque1, torque2);
+}
+
+}  // namespace spark

@@ -1,0 +1,128 @@
+#include "engine_fixture.h"
+
+using namespace spark;
+using namespace spark::test;
+using engine::Body;
+
+TEST_CASE("a falling body is where the solver's integration puts it, and near where physics does") {
+  EngineHouse house;
+  house.setGravity(9.81);
+  const Body b = house.body({0, 0, 100});
+  const double dt = 0.001;
+  for (int i = 0; i < 1000; ++i) house.step(dt);
+  // Semi-implicit Euler: z = z0 - g dt^2 n (n + 1) / 2.
+  CHECK(house.position(b).z() == Approx(100 - 9.81 * dt * dt * 1000 * 1001 / 2).epsilon(1e-12));
+  CHECK(house.position(b).z() == Approx(100 - 9.81 / 2).epsilon(1e-4));
+  CHECK(house.ode.state(b).linearVelocity.z() == Approx(-9.81).epsilon(1e-9));
+}
+
+TEST_CASE("a force acts for one step, in proportion to mass") {
+  EngineHouse house;
+  house.setGravity(0);
+  const Body b = house.body({0, 0, 0});
+  house.ode.setMass(b, {2.0, Vec3::Zero(), Mat3::Identity() * 0.5});
+  house.ode.addForce(b, {4, 0, 0});
+  house.ode.addTorque(b, {0, 0, 1});
+  CHECK(house.ode.force(b).x() == 4);
+  house.step(0.1);
+  CHECK(house.ode.state(b).linearVelocity.x() == Approx(0.2));
+  CHECK(house.ode.state(b).angularVelocity.z() == Approx(0.2));
+  CHECK(house.ode.force(b).isZero(0));
+  house.step(0.1);
+  CHECK(house.ode.state(b).linearVelocity.x() == Approx(0.2));
+}
+
+TEST_CASE("gravity can be taken from one body") {
+  EngineHouse house;
+  house.setGravity(9.81);
+  const Body light = house.body({0, 0, 1}), heavy = house.body({3, 0, 1});
+  house.ode.setGravityMode(light, false);
+  house.step();
+  CHECK(house.position(light).z() == 1);
+  CHECK(house.position(heavy).z() < 1);
+}
+
+TEST_CASE("masses that no body can have are refused with a sentence") {
+  EngineHouse house;
+  const Body b = house.body({0, 0, 0});
+  CHECK_THROWS_WITH(house.ode.setMass(b, {0, Vec3::Zero(), Mat3::Identity()}), Catch::Contains("mass above 0 kg"));
+  CHECK_THROWS_WITH(house.ode.setMass(b, {1, Vec3(0.1, 0, 0), Mat3::Identity()}), Catch::Contains("centre of mass"));
+  CHECK_THROWS_WITH(house.ode.setMass(b, {1, Vec3::Zero(), -Mat3::Identity()}), Catch::Contains("positive definite"));
+  CHECK_THROWS_WITH(house.ode.setMass(b, {std::nan(""), Vec3::Zero(), Mat3::Identity()}), Catch::Contains("finite"));
+}
+
+TEST_CASE("numbers that are none do not get into a body") {
+  EngineHouse house;
+  house.setGravity(0);
+  const Body b = house.body({1, 2, 3});
+  const double nan = std::nan(""), inf = HUGE_VAL;
+  house.ode.setPosition(b, {nan, 0, 0});
+  house.ode.setRotation(b, Mat3::Constant(inf));
+  house.ode.setRotation(b, Mat3::Zero());
+  house.ode.setLinearVelocity(b, {inf, 0, 0});
+  house.ode.setAngularVelocity(b, {0, nan, 0});
+  house.ode.addForce(b, {nan, 0, 0});
+  house.ode.addTorque(b, {0, 0, inf});
+  house.ode.setForce(b, {nan, 0, 0});
+  house.ode.setTorque(b, {0, 0, inf});
+  house.step();
+  CHECK(house.position(b) == Vec3(1, 2, 3));
+  CHECK(house.ode.repaired(house.world).empty());
+}
+
+TEST_CASE("a body that flies apart is put back to its last good pose, at rest, and named once") {
+  EngineHouse house;
+  house.setGravity(0);
+  const Body bad = house.body({1, 2, 3}), good = house.body({5, 0, 0});
+  house.ode.setLinearVelocity(bad, {1, 0, 0});
+  house.step(0.5);
+  CHECK(house.position(bad).x() == 1.5);
+  house.ode.addForce(bad, {1e300, 0, 0});
+  house.ode.addForce(bad, {1e308, 0, 0});
+  house.step(0.5);
+  REQUIRE(house.ode.repaired(house.world).size() == 1);
+  CHECK(house.ode.repaired(house.world)[0] == bad);
+  CHECK(house.position(bad) == Vec3(1.5, 2, 3));
+  CHECK(house.ode.state(bad).linearVelocity.isZero(0));
+  house.step(0.5);
+  CHECK(house.ode.repaired(house.world).empty());
+  CHECK(house.position(good) == Vec3(5, 0, 0));
+}
+
+TEST_CASE("a body at rest on the ground falls asleep after ten steps, and not in mid-air") {
+  EngineHouse house;
+  house.setGravity(9.81, true);
+  house.geom(plane(0, 0, 1, 0));
+  const Body b = house.body({0, 0, 0.4995}), floating = house.body({5, 0, 5});
+  house.ode.setGravityMode(floating, false);
+  house.geom(box(1, 1, 1), b);
+  int steps = 0;
+  while (house.ode.enabled(b) && steps < 200) house.step(), ++steps;
+  CHECK(steps >= 10);
+  CHECK_FALSE(house.ode.enabled(b));
+  CHECK(house.ode.enabled(floating));
+  CHECK(house.ode.state(b).linearVelocity.isZero(0));
+  house.ode.setEnabled(b, true);
+  house.step();
+  CHECK(house.ode.enabled(b));
+}
+
+TEST_CASE("many states come in one call") {
+  EngineHouse house;
+  std::vector<Body> bodies{house.body({1, 0, 0}), house.body({2, 0, 0})};
+  std::vector<engine::BodyState> out(2);
+  house.ode.states(bodies, out);
+  CHECK(out[0].position.x() == 1);
+  CHECK(out[1].position.x() == 2);
+  CHECK(out[1].rotation == Mat3::Identity());
+}
+
+TEST_CASE("the plugin stays while an engine lives, and goes afterwards") {
+  House house;
+  house.kernel.plugins().use("physics-ode");
+  Leaf& engine = house.kernel.create("OdeEngine", "/sys/engine");
+  CHECK_THROWS_WITH(house.kernel.plugins().unload("physics-ode"), Catch::Contains("/sys/engine"));
+  engine.parent()->remove(engine);
+  house.kernel.plugins().unload("physics-ode");
+  CHECK(house.kernel.findClass("OdeEngine") == nullptr);
+}
