@@ -6,6 +6,18 @@ using namespace spark::test;
 using Catch::Contains;
 using Catch::Equals;
 
+namespace {
+/// Says goodbye when it leaves the tree.
+class Farewell : public Leaf {
+  SPARK_CLASS(Farewell, Leaf)
+ public:
+  static void describe(Description<Farewell>& d) { d.doc("Emits 'gone' when it goes."); }
+
+ protected:
+  void onUnlink() override { kernel().events().channel("gone").emit({"gone"}); }
+};
+}  // namespace
+
 TEST_CASE("a handler gets its node and the event") {
   LuaHouse h;
   h.thing("/usr/a");
@@ -159,16 +171,19 @@ TEST_CASE("handlers may raise events, but not without end") {
   CHECK_THAT(h.text, Contains("scripts entered each other more than 16 deep: does a handler raise its own event?"));
 }
 
-TEST_CASE("scripts end before the nodes and the handlers they left do nothing") {
+TEST_CASE("scripts end before the nodes: what nodes emit when they go reaches no script") {
   std::string text;
   {
     Kernel kernel;
     kernel.log().setSink([&](Level, std::string_view line) { text += line; });
-    kernel.registerClass<Thing>();
-    kernel.create("Thing", "/usr/a");
-    kernel.lua().run("held = get('/usr/a') get('/usr/a'):on('gone', function() log.info('ran') end)", "test");
-    kernel.lua().attachText(*kernel.root().find("/usr/a"), "self:on('gone', function() end)", "script", false);
-    kernel.events().channel("gone").emit({"gone"});
+    kernel.registerClass<Farewell>();
+    kernel.create("Farewell", "/usr/first");
+    kernel.create("Farewell", "/usr/second");
+    kernel.lua().run("held = get('/usr/second') on('gone', function() log.info('ran') end)", "test");
+    kernel.lua().attachText(*kernel.root().find("/usr/second"), "self:on('gone', function() error('no') end)", "script", false);
+    kernel.lua().run("delete('/usr/first')", "test");
+    CHECK_THAT(text, Contains("ran") && Contains("script:1: no"));
+    text.clear();
   }
-  CHECK(text == "ran");
+  CHECK(text == "");
 }
