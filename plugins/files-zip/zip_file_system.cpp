@@ -71,8 +71,10 @@ std::optional<std::string> ZipFileSystem::read(const std::string& resource) {
   if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) && stat.encryption_method != ZIP_EM_NONE) fail("it is encrypted");
   if (!(stat.valid & ZIP_STAT_SIZE)) fail("its size is unknown");
   if (stat.size > static_cast<zip_uint64_t>(maxBytes_))
-    fail("it is too large: " + std::to_string(stat.size) + " bytes, at most " + std::to_string(maxBytes_) + " are allowed (" + path() + ".maxBytes)");
-  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(zip_fopen_index(archive_.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
+    fail("it is too large: " + std::to_string(stat.size) + " bytes, at most " + std::to_string(maxBytes_) + " are allowed (" + path() +
+         ".maxBytes)");
+  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(zip_fopen_index(archive_.get(), static_cast<zip_uint64_t>(index), 0),
+                                                               zip_fclose);
   if (!file) fail(zip_strerror(archive_.get()));
   std::string content(stat.size, '\0');
   for (std::size_t have = 0; have < content.size();) {

@@ -37,8 +37,7 @@ std::optional<fs::path> DirectoryFileSystem::locate(const std::string& resource)
   const fs::path file = fs::canonical(root / resource.substr(prefix_.size()), failed);
   if (failed) return {};
   const fs::path inside = file.lexically_relative(root);
-  if (inside.empty() || *inside.begin() == "..")
-    throw Error("resource '" + resource + "' is refused: a link leads out of " + where());
+  if (inside.empty() || *inside.begin() == "..") throw Error("resource '" + resource + "' is refused: a link leads out of " + where());
   return file;
 }
 
@@ -53,8 +52,8 @@ std::optional<std::string> DirectoryFileSystem::read(const std::string& resource
   const std::uintmax_t size = fs::file_size(*file, failed);
   if (failed) throw Error("cannot look at '" + file->string() + "': " + failed.message());
   if (size > static_cast<std::uintmax_t>(maxBytes_))
-    throw Error("resource '" + resource + "' is too large: " + std::to_string(size) + " bytes, at most " + std::to_string(maxBytes_) + " are allowed (" + path() +
-                ".maxBytes)");
+    throw Error("resource '" + resource + "' is too large: " + std::to_string(size) + " bytes, at most " + std::to_string(maxBytes_) +
+                " are allowed (" + path() + ".maxBytes)");
   std::ifstream in(*file, std::ios::binary);
   std::string content(size, '\0');
   if (!in || !in.read(content.data(), static_cast<std::streamsize>(size))) throw Error("cannot read '" + file->string() + "'");

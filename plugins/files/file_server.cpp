@@ -14,7 +14,8 @@ std::string normalName(std::string_view resource) {
     throw Error("expected a relative resource name such as 'rsg/agent/sphere.rsg', found '" + shown + "': " + why);
   };
   if (resource.empty()) refuse("it is empty");
-  if (resource.size() > 1024) throw Error("expected a resource name of at most 1024 bytes, found one of " + std::to_string(resource.size()));
+  if (resource.size() > 1024)
+    throw Error("expected a resource name of at most 1024 bytes, found one of " + std::to_string(resource.size()));
   if (resource.front() == '/') refuse("it is absolute");
   for (const char c : resource) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) refuse("it holds a control character");

@@ -5,7 +5,12 @@
 namespace spark::rsg {
 
 Environment::Environment(const Program& program, std::vector<std::string> arguments, bool byName)
-    : program_(program), arguments_(std::move(arguments)), values_(program.variables.size()), index_(program.variables.size(), -1), given_(arguments_.size()), byName_(byName) {}
+    : program_(program),
+      arguments_(std::move(arguments)),
+      values_(program.variables.size()),
+      index_(program.variables.size(), -1),
+      given_(arguments_.size()),
+      byName_(byName) {}
 
 void Environment::parameter(int slot) {
   const auto s = static_cast<std::size_t>(slot);
@@ -33,7 +38,8 @@ void Environment::define(int slot, std::string value) {
 const std::string& Environment::value(int slot) const {
   const auto s = static_cast<std::size_t>(slot);
   if (byName_ && values_[s]) return *values_[s];
-  if (!byName_ && index_[s] >= 0 && static_cast<std::size_t>(index_[s]) < arguments_.size()) return arguments_[static_cast<std::size_t>(index_[s])];
+  if (!byName_ && index_[s] >= 0 && static_cast<std::size_t>(index_[s]) < arguments_.size())
+    return arguments_[static_cast<std::size_t>(index_[s])];
   missing(slot);
 }
 

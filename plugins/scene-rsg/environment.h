@@ -28,9 +28,9 @@ class Environment {
  private:
   [[noreturn]] void missing(int slot) const;
   const Program& program_;
-  std::vector<std::string> arguments_;  // not by name: the one list
+  std::vector<std::string> arguments_;              // not by name: the one list
   std::vector<std::optional<std::string>> values_;  // by name: of each slot
-  std::vector<int> index_;              // of each declared slot: its place in the list, else -1
+  std::vector<int> index_;                          // of each declared slot: its place in the list, else -1
   std::size_t given_;
   int names_ = 0, parameters_ = 0;
   bool byName_;

@@ -17,7 +17,8 @@ bool isDigit(char c) { return c >= '0' && c <= '9'; }
 /// Recursive descent; the depth of parentheses and indices is limited.
 class Expression {
  public:
-  Expression(std::string_view text, const VariableLookup& lookup, bool integerDivision) : text_(text), rest_(text), lookup_(lookup), floors_(integerDivision) {}
+  Expression(std::string_view text, const VariableLookup& lookup, bool integerDivision)
+      : text_(text), rest_(text), lookup_(lookup), floors_(integerDivision) {}
   Value all() {
     Value v = sum();
     if (next() != '\0') fail("an operator or the end");
@@ -35,11 +36,13 @@ class Expression {
     return true;
   }
   [[noreturn]] void fail(const std::string& expected) const {
-    throw Error("expected " + expected + (rest_.empty() ? " at the end" : " at '" + std::string(rest_.substr(0, 20)) + "'") + " of expression '" +
-                std::string(text_.substr(0, 200)) + "'");
+    throw Error("expected " + expected + (rest_.empty() ? " at the end" : " at '" + std::string(rest_.substr(0, 20)) + "'") +
+                " of expression '" + std::string(text_.substr(0, 200)) + "'");
   }
   const Value& number(const Value& v) const {
-    if (!v.isNumber()) throw Error("expected a number to calculate with, found " + std::string(typeName(v.type())) + " " + v.text().substr(0, 80) + " in expression '" + std::string(text_.substr(0, 200)) + "'");
+    if (!v.isNumber())
+      throw Error("expected a number to calculate with, found " + std::string(typeName(v.type())) + " " + v.text().substr(0, 80) +
+                  " in expression '" + std::string(text_.substr(0, 200)) + "'");
     return v;
   }
   Value apply(char op, const Value& a, const Value& b) const;
@@ -110,7 +113,8 @@ Value Expression::indexed() {
     const Value index = sum();
     if (!take(']')) fail("']'");
     const Value* element = nullptr;
-    if (index.isString()) element = v.at(index.toString());
+    if (index.isString())
+      element = v.at(index.toString());
     else if (index.isNumber() && index.toNumber() >= 0 && index.toNumber() < 1e6 && index.toNumber() == std::floor(index.toNumber()))
       element = v.at(static_cast<std::size_t>(index.toNumber()));
     if (!element)
@@ -174,19 +178,24 @@ Value Expression::name() {
 
 }  // namespace
 
-Value evaluate(std::string_view text, const VariableLookup& lookup, bool integerDivision) { return Expression(text, lookup, integerDivision).all(); }
+Value evaluate(std::string_view text, const VariableLookup& lookup, bool integerDivision) {
+  return Expression(text, lookup, integerDivision).all();
+}
 
 std::string resultText(const Value& value, bool digits6) {
   switch (value.type()) {
-    case Value::Type::string: return value.toString();
+    case Value::Type::string:
+      return value.toString();
     case Value::Type::boolean:
-    case Value::Type::integer: return value.text();
+    case Value::Type::integer:
+      return value.text();
     case Value::Type::number: {
       const float narrow = static_cast<float>(value.toNumber());
       if (!std::isfinite(narrow)) throw Error("expected a finite number that fits single precision, found " + value.text());
       return digits6 ? fmt::format("{:.6g}", static_cast<double>(narrow)) : fmt::format("{}", value.toNumber());
     }
-    default: throw Error("expected a number or a text as result, found a " + std::string(typeName(value.type())));
+    default:
+      throw Error("expected a number or a text as result, found a " + std::string(typeName(value.type())));
   }
 }
 

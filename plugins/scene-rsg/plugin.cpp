@@ -1,4 +1,5 @@
-#include "rsg_importer.h"
 #include "spark/plugin.h"
+
+#include "rsg_importer.h"
 
 SPARK_PLUGIN("scene-rsg", "1.0", "The importer of the RSG scene language.", spark::RsgImporter)

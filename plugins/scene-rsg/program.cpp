@@ -19,10 +19,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kHeadAlia
                                                                                      {"SLT", "setLocalTransform"},
                                                                                      {"sSc", "setScale"},
                                                                                      {"sMat", "setMaterial"}}};
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kClassAliases{{{"BN", "BaseNode"}, {"SMN", "SingleMatNode"}, {"TRF", "Transform"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kClassAliases{
+    {{"BN", "BaseNode"}, {"SMN", "SingleMatNode"}, {"TRF", "Transform"}}};
 /// The methods of the original's class Transform: calls of these names are done at once, whatever the class of the node.
-constexpr std::array<std::string_view, 10> kImmediate{"getFullPath", "setName",     "getName",         "isLeaf",      "unlinkLeaf", "unlinkChildren",
-                                                      "importScene", "setLocalPos", "setLocalRotation", "setLocalTransform"};
+constexpr std::array<std::string_view, 10> kImmediate{"getFullPath",      "setName",          "getName",     "isLeaf",
+                                                      "unlinkLeaf",       "unlinkChildren",   "importScene", "setLocalPos",
+                                                      "setLocalRotation", "setLocalTransform"};
 
 template <std::size_t N>
 std::string_view resolve(const std::array<std::pair<std::string_view, std::string_view>, N>& aliases, std::string_view word) {
@@ -116,7 +118,8 @@ Statement Compiler::parameters(Position at, const Position& end, const Site& sit
   s.site = site;
   for (; at != end && !(*at).isList(); ++at) {
     const std::string_view name = (*at).text();
-    if (name.size() < 2 || name[0] != '$') return failing(siteOf(*at), "expected a parameter such as '$size' in template, found '" + std::string(name) + "'");
+    if (name.size() < 2 || name[0] != '$')
+      return failing(siteOf(*at), "expected a parameter such as '$size' in template, found '" + std::string(name) + "'");
     s.slots.push_back(slot(name));
   }
   return s;
@@ -127,7 +130,8 @@ Statement Compiler::define(Position at, const Position& end, const Site& site) {
   s.kind = Statement::Kind::define;
   s.site = site;
   const std::string_view name = at != end ? (*at).text() : std::string_view();
-  if (name.size() < 2 || name[0] != '$') return failing(site, "expected a variable such as '$size' after define, found '" + std::string(name) + "'");
+  if (name.size() < 2 || name[0] != '$')
+    return failing(site, "expected a variable such as '$size' after define, found '" + std::string(name) + "'");
   s.slots.push_back(slot(name));
   if (!(++at != end)) return failing(site, "expected a value for " + std::string(name) + ", found nothing");
   s.operands.push_back(operand(*at));
@@ -148,7 +152,8 @@ Statement Compiler::choose(Position at, const Position& end, const Site& site) {
     } else {
       o.kind = Operand::Kind::bad;
       o.site = siteOf(*at);
-      o.text = "expected a case such as (true (nd Box)), found " + ((*at).isList() ? "an empty list" : "'" + std::string((*at).text()) + "'");
+      o.text =
+          "expected a case such as (true (nd Box)), found " + ((*at).isList() ? "an empty list" : "'" + std::string((*at).text()) + "'");
     }
     s.operands.push_back(std::move(o));
     const Element body = (*at).isList() ? (*at).at(1) : Element();
@@ -205,13 +210,15 @@ std::string place(std::string_view resource, std::uint32_t line, std::uint32_t c
 }
 
 void checkHeader(std::string_view resource, const Element& header) {
-  const auto number = [&](std::size_t i) { return header.at(i) && header.at(i).isText() ? std::atoi(std::string(header.at(i).text()).c_str()) : -1; };
+  const auto number = [&](std::size_t i) {
+    return header.at(i) && header.at(i).isText() ? std::atoi(std::string(header.at(i).text()).c_str()) : -1;
+  };
   if (header.isList() && header.size() == 3 && isMagic(header.head()) && number(1) == 0 && number(2) == 1) return;
   std::string found = header.isList() ? "(" : std::string(header.text());
   for (std::size_t i = 0; header.isList() && i < std::min<std::size_t>(header.size(), 4); ++i)
     found += (i ? " " : "") + (header.at(i).isList() ? "..." : std::string(header.at(i).text().substr(0, 32)));
-  throw Error(place(resource, header.token().line, header.token().column) + "expected the header (RSG 0 1) or (RDS 0 1), found " + found.substr(0, 140) +
-              (header.isList() ? ")" : ""));
+  throw Error(place(resource, header.token().line, header.token().column) + "expected the header (RSG 0 1) or (RDS 0 1), found " +
+              found.substr(0, 140) + (header.isList() ? ")" : ""));
 }
 
 }  // namespace
@@ -236,13 +243,18 @@ std::shared_ptr<const Program> compile(std::string_view resource, std::string_vi
   program->delta = (*at).head() == "RDS" || (*at).head() == "RubyDeltaScene";
   ++at;
   if (!result.message.empty()) throw Error(place(resource, result.line, result.column) + result.message);
-  if (!(at != read.end())) throw Error(place(resource, std::max(result.line, 1u), std::max(result.column, 1u)) + "expected the scene's body, a list, after the header, found nothing");
-  if (!(*at).isList()) throw Error(where(*program, siteOf(*at)) + ": expected the scene's body, a list, after the header, found '" + std::string((*at).text()) + "'");
+  if (!(at != read.end()))
+    throw Error(place(resource, std::max(result.line, 1u), std::max(result.column, 1u)) +
+                "expected the scene's body, a list, after the header, found nothing");
+  if (!(*at).isList())
+    throw Error(where(*program, siteOf(*at)) + ": expected the scene's body, a list, after the header, found '" +
+                std::string((*at).text()) + "'");
   if (!rules.looseTrailingParen) {
     Predicates rest;
     const ReadResult more = readSexp(text.substr(result.consumed), rest, limits, 1);
     if (!rest.empty() || !more.message.empty())
-      throw Error(where(*program, siteOf(*at)) + ": expected nothing after the body that begins here, found " + (rest.empty() ? more.message : "more"));
+      throw Error(where(*program, siteOf(*at)) + ": expected nothing after the body that begins here, found " +
+                  (rest.empty() ? more.message : "more"));
   }
   program->body = Compiler(*program).block(*at);
   return program;

@@ -39,19 +39,19 @@ struct Block {
 /// One step of a list.
 struct Statement {
   enum class Kind {
-    block,     ///< a list in the list
-    node,      ///< nd: make `text`, go on in it
-    nextNode,  ///< nd of a delta scene: go on in the next child
-    select,    ///< sel: go on in the child `text`
-    print,     ///< pwd
-    parameters,///< templ: `slots`
-    define,    ///< def: `slots[0]` := `operands[0]`
-    choose,    ///< switch: `operands[0]` against `operands[1 + i]`, then `blocks[i]`
-    call,      ///< method `text` with `operands`
-    error      ///< `text` is wrong with the file; ends it once it is reached
+    block,       ///< a list in the list
+    node,        ///< nd: make `text`, go on in it
+    nextNode,    ///< nd of a delta scene: go on in the next child
+    select,      ///< sel: go on in the child `text`
+    print,       ///< pwd
+    parameters,  ///< templ: `slots`
+    define,      ///< def: `slots[0]` := `operands[0]`
+    choose,      ///< switch: `operands[0]` against `operands[1 + i]`, then `blocks[i]`
+    call,        ///< method `text` with `operands`
+    error        ///< `text` is wrong with the file; ends it once it is reached
   };
   Kind kind = Kind::block;
-  bool immediate = false;      ///< call: done while the file is read, not at its end
+  bool immediate = false;  ///< call: done while the file is read, not at its end
   std::string text;
   std::vector<int> slots;
   std::vector<Operand> operands;
@@ -67,7 +67,7 @@ struct Statement {
 /// A scene file.
 struct Program {
   std::string resource;
-  bool delta = false;          ///< RDS: changes of what is there
+  bool delta = false;                  ///< RDS: changes of what is there
   std::vector<std::string> variables;  ///< by slot, with '$'
   Block body;
 };

@@ -13,14 +13,17 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
   using R = rsg::Rules;
   d.doc("Imports scene files of the RSG language.");
   d.implements<ISceneImporter>();
-  d.property("strict", &I::rule<&R::strict>, &I::setRule<&R::strict>).doc("Whatever is otherwise only logged is an error; wins over the loose switches.");
-  d.property("evalDigits6", &I::rule<&R::evalDigits6>, &I::setRule<&R::evalDigits6>).doc("Every eval rounds to six significant digits, as the installed base does.");
+  d.property("strict", &I::rule<&R::strict>, &I::setRule<&R::strict>)
+      .doc("Whatever is otherwise only logged is an error; wins over the loose switches.");
+  d.property("evalDigits6", &I::rule<&R::evalDigits6>, &I::setRule<&R::evalDigits6>)
+      .doc("Every eval rounds to six significant digits, as the installed base does.");
   d.property("integerDivision", &I::rule<&R::integerDivision>, &I::setRule<&R::integerDivision>).doc("Two integers divide to the floor.");
   d.property("looseArguments", &I::rule<&R::looseArguments>, &I::setRule<&R::looseArguments>)
       .doc("Calls with wrong arguments are skipped with a warning, once for each place.");
   d.property("defineByName", &I::rule<&R::defineByName>, &I::setRule<&R::defineByName>)
       .doc("Each name has its own value; off: definitions and parameters share one list that drifts when arguments are missing.");
-  d.property("looseTrailingParen", &I::rule<&R::looseTrailingParen>, &I::setRule<&R::looseTrailingParen>).doc("What follows a file's body is ignored.");
+  d.property("looseTrailingParen", &I::rule<&R::looseTrailingParen>, &I::setRule<&R::looseTrailingParen>)
+      .doc("What follows a file's body is ignored.");
   d.property("unlinkOnCompleteScenes", &I::unlinkOnCompleteScenes_).doc("A complete scene replaces what is below its root; for monitors.");
   d.property("unlinkOnUnreadable", &I::unlinkOnUnreadable_).doc("A file with broken brackets empties its root, as the original did.");
   d.property("maxDepth", &I::maxDepth, &I::setMaxDepth).range(1, 256).doc("Imports within imports.");
@@ -36,7 +39,8 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
 std::shared_ptr<const rsg::Program> RsgImporter::load(const std::string& file, Node& root) {
   auto& files = kernel().root().require<IFileServer>("/sys/server/file");
   const std::uint64_t stamp = files.stamp(file);
-  if (const auto cached = cache_.find(file); stamp != 0 && cached != cache_.end() && cached->second.stamp == stamp) return cached->second.program;
+  if (const auto cached = cache_.find(file); stamp != 0 && cached != cache_.end() && cached->second.stamp == stamp)
+    return cached->second.program;
   const std::string text = files.read(file);
   ++filesParsed_;
   std::shared_ptr<const rsg::Program> program;
@@ -54,7 +58,8 @@ std::vector<std::string> RsgImporter::textsOf(std::string_view file, const List&
   std::vector<std::string> texts;
   for (const Value& v : arguments) {
     const auto refuse = [&](const std::string& why) {
-      throw Error("cannot import '" + std::string(file) + "': argument " + std::to_string(texts.size() + 1) + " is '" + v.plain().substr(0, 80) + "': " + why);
+      throw Error("cannot import '" + std::string(file) + "': argument " + std::to_string(texts.size() + 1) + " is '" +
+                  v.plain().substr(0, 80) + "': " + why);
     };
     if (v.isList() || v.isNil()) refuse("expected a text, a number or a bool");
     std::string text = v.plain();
@@ -74,7 +79,8 @@ std::vector<std::string> RsgImporter::textsOf(std::string_view file, const List&
 
 std::string RsgImporter::chain() const {
   std::string out;
-  for (std::size_t i = frames_.size(); i-- > 1;) out += (out.empty() ? " (imported from " : ", from ") + rsg::where(*frames_[i - 1].program, frames_[i - 1].site);
+  for (std::size_t i = frames_.size(); i-- > 1;)
+    out += (out.empty() ? " (imported from " : ", from ") + rsg::where(*frames_[i - 1].program, frames_[i - 1].site);
   return out.empty() ? out : out + ")";
 }
 
@@ -90,8 +96,8 @@ void RsgImporter::import(std::string_view file, Node& root, const List& argument
     budget_.exhausted = false;
   }
   if (frames_.size() >= static_cast<std::size_t>(budget_.maxDepth))
-    throw Error("'" + name + "' is imported " + std::to_string(frames_.size()) + " deep: does a file import itself? At most " + std::to_string(budget_.maxDepth) +
-                " are allowed (" + path() + ".maxDepth)");
+    throw Error("'" + name + "' is imported " + std::to_string(frames_.size()) + " deep: does a file import itself? At most " +
+                std::to_string(budget_.maxDepth) + " are allowed (" + path() + ".maxDepth)");
   if (++budget_.imports > budget_.maxImports)
     exhausted("too many imports: at most " + std::to_string(budget_.maxImports) + " are allowed (" + path() + ".maxImports)");
   std::vector<std::string> texts = textsOf(name, arguments);

@@ -25,10 +25,10 @@ struct Rules {
 
 /// How much one import from outside may do.
 struct Budget {
-  int maxDepth = 32;               ///< imports within imports
+  int maxDepth = 32;  ///< imports within imports
   std::int64_t maxImports = 10000, maxNodes = 200000;
   std::int64_t imports = 0, nodes = 0;
-  bool exhausted = false;          ///< ends all files under way
+  bool exhausted = false;  ///< ends all files under way
 };
 
 /// An import under way: which file, and where it stands.

@@ -62,34 +62,46 @@ void Run::step(const Statement& s, Cursor& cursor, std::size_t& passed) {
     passed = 0;
   };
   switch (s.kind) {
-    case Statement::Kind::block: return walk(s.blocks.front(), cursor);
-    case Statement::Kind::node: return enter(makeNode(s, node));
-    case Statement::Kind::nextNode: return enter(nextNode(cursor));
-    case Statement::Kind::select: return enter(select(s, node));
-    case Statement::Kind::print: return importer_.kernel().log().debug("{}: {}", where(program_, s.site), node.path());
+    case Statement::Kind::block:
+      return walk(s.blocks.front(), cursor);
+    case Statement::Kind::node:
+      return enter(makeNode(s, node));
+    case Statement::Kind::nextNode:
+      return enter(nextNode(cursor));
+    case Statement::Kind::select:
+      return enter(select(s, node));
+    case Statement::Kind::print:
+      return importer_.kernel().log().debug("{}: {}", where(program_, s.site), node.path());
     case Statement::Kind::parameters:
       for (const int slot : s.slots) environment_.parameter(slot);
       return;
-    case Statement::Kind::define: return environment_.define(s.slots.front(), textOf(s.operands.front()));
-    case Statement::Kind::choose: return choose(s, cursor);
-    case Statement::Kind::call: return call(s, node);
-    case Statement::Kind::error: throw Error(s.text);
+    case Statement::Kind::define:
+      return environment_.define(s.slots.front(), textOf(s.operands.front()));
+    case Statement::Kind::choose:
+      return choose(s, cursor);
+    case Statement::Kind::call:
+      return call(s, node);
+    case Statement::Kind::error:
+      throw Error(s.text);
   }
 }
 
 Node& Run::makeNode(const Statement& s, Node& parent) {
   ClassObject& made = importer_.kernel().classOf(s.text);
-  if (!made.isA(SceneNode::kClassName)) throw Error("expected a class of scene nodes, found " + made.name() + ", which does not derive from " + SceneNode::kClassName);
+  if (!made.isA(SceneNode::kClassName))
+    throw Error("expected a class of scene nodes, found " + made.name() + ", which does not derive from " + SceneNode::kClassName);
   Budget& budget = importer_.budget_;
   if (++budget.nodes > budget.maxNodes)
-    importer_.exhausted("too many nodes: one import may make at most " + std::to_string(budget.maxNodes) + " (" + importer_.path() + ".maxNodes)");
+    importer_.exhausted("too many nodes: one import may make at most " + std::to_string(budget.maxNodes) + " (" + importer_.path() +
+                        ".maxNodes)");
   return *parent.add(made.create()).asNode();
 }
 
 Node& Run::nextNode(Cursor& cursor) {
   const auto& children = cursor.node->children();
   const std::size_t i = (*cursor.passed)++;
-  if (i >= children.size()) throw Error("expected at most " + std::to_string(children.size()) + " nodes below " + cursor.node->path() + ", found one more");
+  if (i >= children.size())
+    throw Error("expected at most " + std::to_string(children.size()) + " nodes below " + cursor.node->path() + ", found one more");
   if (auto* node = children[i]->as<SceneNode>()) return *node;
   throw Error("expected a scene node, found " + children[i]->path());
 }
@@ -124,18 +136,25 @@ void Run::call(const Statement& s, Node& node) {
   ++importer_.calls_;
   List arguments;
   for (const Operand& o : s.operands) arguments.emplace_back(textOf(o));
-  if (!s.immediate) queue_.push_back({&node, &s, std::move(arguments)});
-  else if (s.text == "importScene") import(s, node, arguments);
-  else invoke(s, node, arguments);
+  if (!s.immediate)
+    queue_.push_back({&node, &s, std::move(arguments)});
+  else if (s.text == "importScene")
+    import(s, node, arguments);
+  else
+    invoke(s, node, arguments);
 }
 
 void Run::import(const Statement& s, Node& node, const List& arguments) {
   if (!methodOf(s, node) || arguments.empty()) return invoke(s, node, arguments);  // says what is wrong
   const std::string& file = arguments.front().toString();
   try {
-    importer_.kernel().root().require<ISceneServer>("/sys/server/scene").importScene(file, node, List(arguments.begin() + 1, arguments.end()));
+    importer_.kernel()
+        .root()
+        .require<ISceneServer>("/sys/server/scene")
+        .importScene(file, node, List(arguments.begin() + 1, arguments.end()));
   } catch (const std::exception& e) {
-    if (importer_.rules_.strict || importer_.budget_.exhausted) throw Located(where(program_, s.site) + ": the import of '" + file + "' failed", e);
+    if (importer_.rules_.strict || importer_.budget_.exhausted)
+      throw Located(where(program_, s.site) + ": the import of '" + file + "' failed", e);
     complain(s, Level::error, "the import of '" + file + "' failed, the rest goes on: " + e.what());
   }
 }
@@ -155,7 +174,8 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
     if (s.complained && !importer_.rules_.strict) return;
     std::vector<std::string> names;
     for (const Method* m : node.classObject()->methods()) names.push_back(m->name);
-    return complain(s, Level::error, "class " + node.classObject()->name() + " has no method '" + s.text + "'." + didYouMean(s.text, names));
+    return complain(s, Level::error,
+                    "class " + node.classObject()->name() + " has no method '" + s.text + "'." + didYouMean(s.text, names));
   }
   if (s.text == "unlinkLeaf" && &node == root_) throw Error("a scene cannot remove the node that it is imported into");
   if (importer_.rules_.strict || !importer_.rules_.looseArguments) {
@@ -173,8 +193,10 @@ void Run::flush() {
     importer_.frames_.back().site = q.call->site;
     try {
       located(q.call->site, [&] {
-        if (q.node) invoke(*q.call, *q.node, q.arguments);
-        else complain(*q.call, Level::error, "the node of this call was removed before it was made");
+        if (q.node)
+          invoke(*q.call, *q.node, q.arguments);
+        else
+          complain(*q.call, Level::error, "the node of this call was removed before it was made");
       });
     } catch (const Error& e) {
       if (!failure) failure = e;
@@ -186,10 +208,14 @@ void Run::flush() {
 std::string Run::textOf(const Operand& o) {
   return located(o.site, [&]() -> std::string {
     switch (o.kind) {
-      case Operand::Kind::text: return o.text;
-      case Operand::Kind::variable: return environment_.value(o.slot);
-      case Operand::Kind::bad: throw Error(o.text);
-      default: break;
+      case Operand::Kind::text:
+        return o.text;
+      case Operand::Kind::variable:
+        return environment_.value(o.slot);
+      case Operand::Kind::bad:
+        throw Error(o.text);
+      default:
+        break;
     }
     const bool eval = o.kind == Operand::Kind::eval;
     std::string text;

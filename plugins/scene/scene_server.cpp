@@ -24,7 +24,8 @@ Node& SceneServer::scene() {
     scene_ = nullptr;
     Leaf* found = kernel().root().find(scenePath_);
     if (!found || !found->asNode())
-      throw Error("there is no scene at '" + scenePath_ + "': make one, new(\"Scene\", \"" + scenePath_ + "\"), or set " + path() + ".activeScene");
+      throw Error("there is no scene at '" + scenePath_ + "': make one, new(\"Scene\", \"" + scenePath_ + "\"), or set " + path() +
+                  ".activeScene");
     scene_ = found->asNode();
     sceneVersion_ = kernel().structureVersion();
   }
@@ -45,7 +46,8 @@ ISceneImporter& SceneServer::importerFor(const std::string& file) {
   std::vector<ISceneImporter*> importers;
   for (const auto& child : children())
     if (auto* importer = child->as<ISceneImporter>()) importers.push_back(importer);
-  if (importers.empty()) throw Error(path() + " has no importer below it: add one, for instance new(\"RsgImporter\", \"" + path() + "/rsg\")");
+  if (importers.empty())
+    throw Error(path() + " has no importer below it: add one, for instance new(\"RsgImporter\", \"" + path() + "/rsg\")");
   if (importers.size() == 1) return *importers.front();
 
   auto& files = kernel().root().require<IFileServer>("/sys/server/file");
@@ -75,7 +77,8 @@ void SceneServer::importScene(std::string_view file, Node& root, const List& arg
 }
 
 void SceneServer::place() {
-  if (Leaf* found = scene_ && sceneVersion_ == kernel().structureVersion() ? scene_ : kernel().root().find(scenePath_); found && found->asNode()) {
+  if (Leaf* found = scene_ && sceneVersion_ == kernel().structureVersion() ? scene_ : kernel().root().find(scenePath_);
+      found && found->asNode()) {
     scene_ = found->asNode();
     sceneVersion_ = kernel().structureVersion();
     placement_.place(*scene_);

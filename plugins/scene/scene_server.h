@@ -25,7 +25,7 @@ class Placement {
  private:
   struct Entry {
     Transform* transform;
-    int parent;                ///< index of the next transform above, -1 for none
+    int parent;  ///< index of the next transform above, -1 for none
     bool changed = false, moved = false;
     std::vector<IFollowsTransform*> followers;
   };

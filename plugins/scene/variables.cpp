@@ -18,9 +18,12 @@ Value Variables::variable(std::string_view name) const {
 }
 
 void Variables::set(std::string name, Value value) {
-  if (name.empty()) value_ = std::move(value);
-  else if (value.isNil()) variables_.erase(name);
-  else variables_.insert_or_assign(std::move(name), std::move(value));
+  if (name.empty())
+    value_ = std::move(value);
+  else if (value.isNil())
+    variables_.erase(name);
+  else
+    variables_.insert_or_assign(std::move(name), std::move(value));
 }
 
 std::vector<std::string> Variables::names() const {

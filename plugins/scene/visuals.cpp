@@ -6,9 +6,7 @@
 namespace spark {
 
 namespace {
-SceneServer* serverOf(const Leaf& leaf) {
-  return leaf.isLinked() ? leaf.kernel().root().find<SceneServer>("/sys/server/scene") : nullptr;
-}
+SceneServer* serverOf(const Leaf& leaf) { return leaf.isLinked() ? leaf.kernel().root().find<SceneServer>("/sys/server/scene") : nullptr; }
 void modified(const Leaf& leaf) {
   if (!leaf.isLinked()) return;
   if (auto* server = leaf.kernel().root().find<ISceneServer>("/sys/server/scene")) server->markModified();
@@ -26,7 +24,9 @@ void Light::describe(Description<Light>& d) {
 
 void Camera::describe(Description<Camera>& d) {
   d.doc("A view into the scene, for viewers.");
-  d.method("setViewport", &Camera::setViewport).parameters({"x [px]", "y [px]", "width [px]", "height [px]"}).doc("The part of the window it fills.");
+  d.method("setViewport", &Camera::setViewport)
+      .parameters({"x [px]", "y [px]", "width [px]", "height [px]"})
+      .doc("The part of the window it fills.");
   d.property("viewportX", &Camera::x_).unit("px").doc("Left edge.");
   d.property("viewportY", &Camera::y_).unit("px").doc("Lower edge.");
   d.property("viewportWidth", &Camera::width_).unit("px").min(0).doc("Width.");
@@ -48,7 +48,9 @@ void Axis::describe(Description<Axis>& d) {
 void RenderNode::describe(Description<RenderNode>& d) {
   d.doc("Base of all visible shapes.");
   d.property("visible", &RenderNode::isVisible, &RenderNode::show).doc("Viewers show it.");
-  d.method("setVisible", &RenderNode::setVisibleValue).parameters({"on"}).doc("1 shows, 0 hides; a text counts as number, so that 'true' hides as in the installed base.");
+  d.method("setVisible", &RenderNode::setVisibleValue)
+      .parameters({"on"})
+      .doc("1 shows, 0 hides; a text counts as number, so that 'true' hides as in the installed base.");
   d.property("transparent", &RenderNode::isTransparent).doc("Drawn with its material's opacity.");
   d.method("setTransparent", &RenderNode::setTransparent).doc("Makes it transparent, for good.");
   d.abstract();
@@ -70,7 +72,9 @@ void StaticMesh::describe(Description<StaticMesh>& d) {
   d.doc("A mesh by name, for viewers; the simulation never loads it.");
   d.implements<IVisual>();
   d.property("mesh", &StaticMesh::load_).readOnly().doc("Name and parameters.");
-  d.method("load", &StaticMesh::loadCall).parameters({"mesh", "parameters"}).doc("Takes another mesh: 'models/x.obj', or a standard one with parameters.");
+  d.method("load", &StaticMesh::loadCall)
+      .parameters({"mesh", "parameters"})
+      .doc("Takes another mesh: 'models/x.obj', or a standard one with parameters.");
   d.property("scale", &StaticMesh::scale_).readOnly().doc("Scale of what is shown.");
   d.method("setScale", &StaticMesh::setScale).parameters({"scale"}).doc("Scales what is shown.");
   d.property("materials", &StaticMesh::materials_).readOnly().doc("Material of each face group, in the mesh's alphabetical order.");
@@ -145,7 +149,9 @@ void Capsule::setParams(float radius, float length) {
 
 void Cylinder::describe(Description<Cylinder>& d) {
   d.doc("A visible cylinder along z.");
-  d.method("setParams", &Cylinder::setParams).parameters({"radius [m]", "length [m]"}).doc("Radius and length; viewers draw a unit cylinder, so scale it as well.");
+  d.method("setParams", &Cylinder::setParams)
+      .parameters({"radius [m]", "length [m]"})
+      .doc("Radius and length; viewers draw a unit cylinder, so scale it as well.");
   d.property("radius", &Cylinder::radius_).unit("m").readOnly().doc("Radius.");
   d.property("length", &Cylinder::length_).unit("m").readOnly().doc("Length.");
 }

@@ -47,8 +47,8 @@ struct House {
 
   House() {
     kernel.log().setLevel(Level::off);
-    registerAll<SceneNode, Transform, Scene, SceneServer, Light, Camera, Axis, RenderNode, StaticMesh, SingleMatNode, Box, Sphere, Capsule, Cylinder, MaterialSolid, MaterialServer,
-                Variables, RsgImporter, TwoFiles>();
+    registerAll<SceneNode, Transform, Scene, SceneServer, Light, Camera, Axis, RenderNode, StaticMesh, SingleMatNode, Box, Sphere, Capsule,
+                Cylinder, MaterialSolid, MaterialServer, Variables, RsgImporter, TwoFiles>();
     files = &kernel.create<TwoFiles>("TwoFiles", "/sys/server/file");
     server = &kernel.create<ISceneServer>("SceneServer", "/sys/server/scene");
     importer = &kernel.create("RsgImporter", "/sys/server/scene/rsg");
@@ -80,8 +80,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const unsigned switches = data[0];
   std::vector<std::string> chunks(1);
   for (std::size_t i = 1; i < size; ++i) {
-    if (data[i] == 0) chunks.emplace_back();
-    else chunks.back() += static_cast<char>(data[i]);
+    if (data[i] == 0)
+      chunks.emplace_back();
+    else
+      chunks.back() += static_cast<char>(data[i]);
   }
   house.files->files.clear();
   ++house.files->round;

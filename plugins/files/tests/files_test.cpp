@@ -1,7 +1,8 @@
+#include "api/files.h"
+
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "api/files.h"
 #include "test_support.h"
 
 namespace fs = std::filesystem;

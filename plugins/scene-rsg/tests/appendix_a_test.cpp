@@ -84,8 +84,9 @@ void checkBodies(const Facts& facts, const Node& robot) {
 
 void checkParameters(const IJoint& joint, const std::string& line) {
   using P = engine::JointParameter;
-  const std::pair<const char*, P> kNames[] = {{"setMaxMotorForce", P::maxForce}, {"setCFM", P::cfm},      {"setStopCFM", P::stopCfm},     {"setStopERP", P::stopErp},
-                                              {"setFudgeFactor", P::fudgeFactor}, {"setBounce", P::bounce}, {"setLowStopDeg", P::lowStop}, {"setHighStopDeg", P::highStop}};
+  const std::pair<const char*, P> kNames[] = {
+      {"setMaxMotorForce", P::maxForce},  {"setCFM", P::cfm},       {"setStopCFM", P::stopCfm},    {"setStopERP", P::stopErp},
+      {"setFudgeFactor", P::fudgeFactor}, {"setBounce", P::bounce}, {"setLowStopDeg", P::lowStop}, {"setHighStopDeg", P::highStop}};
   for (const auto& [name, parameter] : kNames) {
     INFO(name);
     Match m;
@@ -102,7 +103,8 @@ void checkJoints(const Facts& facts, const Node& robot) {
   std::vector<IJoint*> joints;
   robot.collect(joints);
   std::size_t next = 0;
-  const int n = facts.each(R"(^    HingeJoint \['(\S+)/', '(\S+)/'\] anchor )" + triple() + R"( axis \[)" + triple() + R"(\].*'HingePerceptor', '([^']+)'.*'HingeEffector', '([^']+)')",
+  const int n = facts.each(R"(^    HingeJoint \['(\S+)/', '(\S+)/'\] anchor )" + triple() + R"( axis \[)" + triple() +
+                               R"(\].*'HingePerceptor', '([^']+)'.*'HingeEffector', '([^']+)')",
                            [&](const Match& m, const std::string& line) {
                              REQUIRE(next < joints.size());
                              IJoint& joint = *joints[next++];
@@ -113,7 +115,8 @@ void checkJoints(const Facts& facts, const Node& robot) {
                              CHECK(joint.leaf().find(m[10].str())->as<Effector>());
                              checkParameters(joint, line);
                              Args anchor{}, axis{};
-                             const Value at = callMethod(joint.leaf(), "getAnchor", {}), along = callMethod(joint.leaf(), "getAxis", List{0});
+                             const Value at = callMethod(joint.leaf(), "getAnchor", {}),
+                                         along = callMethod(joint.leaf(), "getAxis", List{0});
                              anchor.values = {&at, 1};
                              axis.values = {&along, 1};
                              CHECK((Convert<Vec3>::from(anchor) - vector(m, 3)).norm() < 2e-5);

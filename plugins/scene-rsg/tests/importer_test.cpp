@@ -55,7 +55,8 @@ TEST_CASE("errors say file, line and column, and what is near") {
   CHECK(h.failure("(nd\n  Transfrom)").find("test.rsg:2:3: there is no class 'Transfrom'. Did you mean 'Transform'") == 0);
   CHECK(h.failure("\n\n   (nd Probe (tell $what))").find("test.rsg:4:20: there is no variable $what here") == 0);
   CHECK(h.failure("(def $size 1)(nd Probe (tell $sise))").find("Did you mean '$size'") != std::string::npos);
-  CHECK(h.failure("(templ $a $b)(nd Probe (tell $b))", {1}).find("parameter $b was not given: the import passed 1 arguments") != std::string::npos);
+  CHECK(h.failure("(templ $a $b)(nd Probe (tell $b))", {1}).find("parameter $b was not given: the import passed 1 arguments") !=
+        std::string::npos);
   CHECK(h.failure("(nd Probe (tell (eval 1 +)))").find("test.rsg:2:18: expected a number") == 0);
   CHECK(h.failure("(nd Probe (tell (evil 1)))").find("begins with 'evil'") != std::string::npos);
   CHECK(h.failure("(nd (Probe))").find("expected a name after 'node'") != std::string::npos);
@@ -99,7 +100,8 @@ TEST_CASE("template parameters and definitions have values of their own when arg
 TEST_CASE("without defineByName, definitions drift onto other places as in the installed base") {
   SceneHouse h;
   h.set("defineByName", false);
-  CHECK(h.failure("(templ $a $b)(def $c 3)(def $d 4)(nd Probe (tell $b)(tell $c)(tell $d))", {"1"}).find("$d was not given") != std::string::npos);
+  CHECK(h.failure("(templ $a $b)(def $c 3)(def $d 4)(nd Probe (tell $b)(tell $c)(tell $d))", {"1"}).find("$d was not given") !=
+        std::string::npos);
   CHECK(deeds() == Texts{"link 0 0 0", "3", "4"});
   deeds().clear();
   h.run("(templ $a)(def $b 5)(def $a 6)(nd Probe (tell $a)(tell $b))", {"1", "surplus"});
@@ -116,7 +118,9 @@ TEST_CASE("arguments are texts: numbers and bools from scripts are written as te
 
 TEST_CASE("join concatenates, eval inside join and join inside eval") {
   SceneHouse h;
-  h.run("(def $n 2)(nd Probe (tell (join ../ a $n /b))(tell (join x (eval $n * 2)))(tell (eval (join 1 0) + 1))(tell (join))(tell a$n)(tell '$n'))");
+  h.run(
+      "(def $n 2)(nd Probe (tell (join ../ a $n /b))(tell (join x (eval $n * 2)))(tell (eval (join 1 0) + 1))(tell (join))(tell a$n)(tell "
+      "'$n'))");
   CHECK(deeds() == Texts{"link 0 0 0", "../a2/b", "x4", "11", "", "a$n", "2"});
 }
 
@@ -145,7 +149,8 @@ TEST_CASE("calls of nodes that are gone are logged, and a scene cannot remove it
 TEST_CASE("delta scenes change the existing children in order") {
   SceneHouse h;
   h.run("(nd Transform (setName a)(nd Probe (setName p)))(nd Transform (setName b)(nd Probe))");
-  h.write("delta.rsg", "(RDS 0 1)((nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1)(nd (setNumber 5)))(nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 2 0 0 1)))");
+  h.write("delta.rsg",
+          "(RDS 0 1)((nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1)(nd (setNumber 5)))(nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 2 0 0 1)))");
   h.import("delta.rsg");
   CHECK(h.scene->require<Transform>("a").localPos().x() == 1);
   CHECK(h.scene->require<Transform>("b").localPos().x() == 2);

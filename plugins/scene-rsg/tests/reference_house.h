@@ -40,7 +40,8 @@ struct ReferenceHouse {
   Leaf* importer = nullptr;
 
   explicit ReferenceHouse(const std::filesystem::path& reference) {
-    for (const char* plugin : {"files", "scene", "scene-rsg", "physics", "physics-ode", "gamecontrol", "sensors", "effectors", "soccer"}) kernel.plugins().use(plugin);
+    for (const char* plugin : {"files", "scene", "scene-rsg", "physics", "physics-ode", "gamecontrol", "sensors", "effectors", "soccer"})
+      kernel.plugins().use(plugin);
     kernel.create("FileServer", "/sys/server/file");
     setProperty(kernel.create("DirectoryFileSystem", "/sys/server/file/reference"), "path", (reference / "scenes-reference").string());
     kernel.create("SceneServer", "/sys/server/scene");
@@ -50,16 +51,31 @@ struct ReferenceHouse {
     scene = &kernel.create<Node>("Scene", "/usr/scene");
     scene->create("World", "world");
     scene->create("Space", "space");
-    variables("Soccer", {{"FieldLength", 30.0}, {"FieldWidth", 20.0}, {"FieldHeight", 40.0}, {"GoalWidth", 2.1}, {"GoalDepth", 0.6}, {"GoalHeight", 0.8},
-                         {"PenaltyLength", 1.8}, {"PenaltyWidth", 3.9}, {"FreeKickDistance", 2.0}, {"BorderSize", 0.0}, {"BallRadius", 0.042}, {"BallMass", 0.026}});
+    variables("Soccer", {{"FieldLength", 30.0},
+                         {"FieldWidth", 20.0},
+                         {"FieldHeight", 40.0},
+                         {"GoalWidth", 2.1},
+                         {"GoalDepth", 0.6},
+                         {"GoalHeight", 0.8},
+                         {"PenaltyLength", 1.8},
+                         {"PenaltyWidth", 3.9},
+                         {"FreeKickDistance", 2.0},
+                         {"BorderSize", 0.0},
+                         {"BallRadius", 0.042},
+                         {"BallMass", 0.026}});
     variables("Nao", {{"UseTexture", "true"}});
     const double thigh[] = {-0.04, -0.05832, -0.04, -0.067868424, -0.04}, ankle[] = {-0.055, -0.07332, -0.055, -0.082868424, -0.055};
     const double elbow[] = {0.07, 0.10664, 0.07, 0.125736848, 0.07};
     List types;
     for (int i = 0; i < 5; ++i) {
-      List type{List{"Hip1RelTorso_X", i == 3 ? 0.072954143 : 0.055}, List{"Hip1RelTorso_Z", -0.115}, List{"ThighRelHip2_Z", thigh[i]},
-                List{"AnkleRelShank_Z", ankle[i]}, List{"lj5_max_abs_speed", i == 2 ? 8.80667 : 6.1395}, List{"lj6_max_abs_speed", i == 2 ? 3.47234 : 6.1395},
-                List{"ElbowRelUpperArm_Y", elbow[i]}, List{"UseToe", i == 4 ? "true" : "false"}};
+      List type{List{"Hip1RelTorso_X", i == 3 ? 0.072954143 : 0.055},
+                List{"Hip1RelTorso_Z", -0.115},
+                List{"ThighRelHip2_Z", thigh[i]},
+                List{"AnkleRelShank_Z", ankle[i]},
+                List{"lj5_max_abs_speed", i == 2 ? 8.80667 : 6.1395},
+                List{"lj6_max_abs_speed", i == 2 ? 3.47234 : 6.1395},
+                List{"ElbowRelUpperArm_Y", elbow[i]},
+                List{"UseToe", i == 4 ? "true" : "false"}};
       if (i == 4) type.push_back(List{"ToeLength", 0.035517656});
       types.push_back(std::move(type));
     }

@@ -142,9 +142,11 @@ TEST_CASE("a file that fails keeps its nodes and makes the calls that were queue
 
 TEST_CASE("transforms that place nothing but transforms go, world poses stay") {
   SceneHouse h;
-  h.run("(nd Transform (setName outer)(setLocalPos 0 0 1)(setLocalRotation 0 0 90)"
-        " (nd Transform (setName a)(setLocalPos 1 0 0)(nd Probe)) (nd Transform (setName b)(setLocalPos 2 0 0)(nd Probe)) (nd Transform (setName empty)))"
-        "(nd Transform (setName alone))");
+  h.run(
+      "(nd Transform (setName outer)(setLocalPos 0 0 1)(setLocalRotation 0 0 90)"
+      " (nd Transform (setName a)(setLocalPos 1 0 0)(nd Probe)) (nd Transform (setName b)(setLocalPos 2 0 0)(nd Probe)) (nd Transform "
+      "(setName empty)))"
+      "(nd Transform (setName alone))");
   CHECK(h.scene->children().size() == 2);
   CHECK_FALSE(h.scene->child("outer"));
   CHECK_FALSE(h.scene->child("alone"));
@@ -167,7 +169,9 @@ TEST_CASE("an import below a transform moves its transforms up while the outer f
 
 TEST_CASE("methods and classes have short names") {
   SceneHouse h;
-  h.run("(nd Probe (sSc 2)(sMat matRed)(att ../x)) (node TRF (setName t)(SLT 1 0 0 0 0 1 0 0 0 0 1 0 7 8 9 1)(nd Probe)) (nd BN (setName b)) (nd SMN (setName s))");
+  h.run(
+      "(nd Probe (sSc 2)(sMat matRed)(att ../x)) (node TRF (setName t)(SLT 1 0 0 0 0 1 0 0 0 0 1 0 7 8 9 1)(nd Probe)) (nd BN (setName b)) "
+      "(nd SMN (setName s))");
   CHECK(deeds() == Texts{"link 0 0 0", "link 7 8 9", "scale 2", "material matRed", "../x is missing"});
   CHECK(h.scene->require<Transform>("t").localPos() == Vec3f(7, 8, 9));
   CHECK(h.scene->child("b")->classObject()->name() == "BaseNode");

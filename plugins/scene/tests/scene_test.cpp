@@ -1,8 +1,9 @@
+#include "api/scene.h"
+
 #include <catch2/catch.hpp>
 
 #include "api/files.h"
 #include "api/phases.h"
-#include "api/scene.h"
 #include "test_support.h"
 
 using namespace spark;
@@ -190,7 +191,9 @@ TEST_CASE("visible takes numbers as the installed base does: the text true hides
 TEST_CASE("a mesh has the materials of its file in alphabetical order, or those that were declared for it") {
   Fixture f;
   auto& file = f.kernel.create<OneFile>("OneFile", "/sys/server/file/one");
-  file.text = "# a\n# b\nmtllib x.mtl\no x\nv 0 0 0\nusemtl white\r\nf 1/1/1 1/1/1 1/1/1\nusemtl matTeam\r\nf 1//1 1//1 1//1\nusemtl unused\nusemtl white\nf 1//1 1//1 1//1\n";
+  file.text =
+      "# a\n# b\nmtllib x.mtl\no x\nv 0 0 0\nusemtl white\r\nf 1/1/1 1/1/1 1/1/1\nusemtl matTeam\r\nf 1//1 1//1 1//1\nusemtl "
+      "unused\nusemtl white\nf 1//1 1//1 1//1\n";
   Leaf& mesh = f.scene->create("StaticMesh");
   callMethod(mesh, "load", List{"models/x.obj"});
   auto& visual = *mesh.as<IVisual>();
