@@ -38,6 +38,7 @@ class InitEffector : public Effector {
       kernel().log().warning("{}: init refused: it needs an AgentState in the robot and soccer's rules below game control", path());
       return;
     }
+    if (state->side() != soccer::Side::none && state->team() == team_ && (unum_ == 0 || unum_ == state->unum())) return;  // plays already
     if (const std::string problem = game->join(*state, team_, unum_); !problem.empty()) {
       kernel().log().warning("{}: init refused: {}", agent->path(), problem);
       return;

@@ -7,17 +7,42 @@ using soccer::writePoint;
 
 namespace {
 constexpr float kTooNear = 0.1f;  ///< m: what is nearer is the head itself
+
+/// Cuts a segment to what a camera that looks along y sees: y >= kTooNear and a window of the given half widths at y = 1.
+/// False when nothing is left.
+bool clip(Vec3f& begin, Vec3f& end, float halfX, float halfZ) {
+  const Vec3f from = begin, way = end - begin;
+  float first = 0, last = 1;
+  // each plane: n . p >= c
+  const std::pair<Vec3f, float> planes[] = {
+      {{0, 1, 0}, kTooNear}, {{-1, halfX, 0}, 0}, {{1, halfX, 0}, 0}, {{0, halfZ, -1}, 0}, {{0, halfZ, 1}, 0}};
+  for (const auto& [n, c] : planes) {
+    const float at = n.dot(from) - c, slope = n.dot(way);
+    if (slope == 0) {
+      if (at < 0) return false;
+      continue;
+    }
+    const float t = -at / slope;
+    if (slope > 0) first = std::max(first, t);
+    else last = std::min(last, t);
+  }
+  if (first >= last) return false;
+  begin = from + first * way;
+  end = from + last * way;
+  return true;
 }
+
+}  // namespace
 
 void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>& d) {
   using V = RestrictedVisionPerceptor;
-  d.doc("Sees within a cone: flags, goals, ball, parts of players.");
+  d.doc("Sees within a cone: flags, goals, ball, parts of players, lines.");
   d.property("staticSenseAxis", &V::staticAxis_).doc("Angles from the field's x axis as the team sees it, less pan and tilt; else in the head's frame.");
   d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
   d.property("senseMyOrien", &V::senseMyOrien_).doc("Tells its own heading too.");
   d.property("senseBallPos", &V::senseBallPos_).doc("Tells the ball's position too.");
   d.property("senseLine", &V::senseLine_).doc("Sees field lines.");
-  d.property("senseLineName", &V::senseLineName_).doc("Lines carry names.");
+  d.property("senseLineName", &V::senseLineName_).doc("Accepted; lines have no names.");
   d.property("viewCones", &V::cones).unit("deg").doc("Full horizontal and vertical cone.");
   d.property("noise", &V::noisy).doc("Noise is on.");
   d.property("random", &V::randomState, &V::setRandomState).state().doc("Its noise.");
@@ -62,6 +87,25 @@ bool RestrictedVisionPerceptor::look(const SceneNode& object, soccer::Polar& out
   return true;
 }
 
+/// The visible part of a line. With static axes a line is seen whole or not at all.
+bool RestrictedVisionPerceptor::lookAtLine(const Line& line, soccer::Polar& begin, soccer::Polar& end) {
+  const Matrix frame = line.transform() ? line.transform()->world() : Matrix(Matrix::Identity());
+  const auto seen = [&](const Vec3f& p) {
+    const Vec3f place = frame.block<3, 3>(0, 0) * p + positionOf(frame);
+    return Vec3f(toView(place - placeOf(*this)) + noise_.calibration());
+  };
+  Vec3f a = seen(line.begin()), b = seen(line.end());
+  const auto visible = [this](const Vec3f& p) { return p.norm() > kTooNear && inCone(direction(p)); };
+  if (!visible(a) || !visible(b)) {
+    const float halfX = std::tan(static_cast<float>(degToRad(std::min(cone_[0], 178) / 2)));
+    const float halfZ = std::tan(static_cast<float>(degToRad(std::min(cone_[1], 178) / 2)));
+    if (staticAxis_ || !clip(a, b, halfX, halfZ)) return false;
+  }
+  begin = direction(a), end = direction(b);
+  if (noise_.on) noise_.apply(begin), noise_.apply(end);
+  return true;
+}
+
 void RestrictedVisionPerceptor::seeRobot(const soccer::VisibleObjects::Robot& robot, Predicates& out) {
   if (robot.state->side() == soccer::Side::none) return;
   soccer::Polar polar;
@@ -101,6 +145,14 @@ void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {
     out.pair("myorien", normalizeDeg(side() == soccer::Side::right ? heading - 180 : heading));
   }
   if (const ObjectState* ball = objects_.ball(); ball && senseBallPos_) writePoint(out, "ballpos", soccer::seenBy(side(), placeOf(*ball)));
+  for (const Line* line : objects_.lines()) {
+    soccer::Polar end;
+    if (!senseLine_ || !lookAtLine(*line, polar, end)) continue;
+    out.open("L");
+    writePolar(out, polar);
+    writePolar(out, end);
+    out.close();
+  }
   out.close();
 }
 

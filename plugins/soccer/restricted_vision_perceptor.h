@@ -37,6 +37,7 @@ class RestrictedVisionPerceptor : public Perceptor {
   soccer::Polar direction(const Vec3f& view) const;
   bool inCone(const soccer::Polar& p) const;
   bool look(const SceneNode& object, soccer::Polar& out);
+  bool lookAtLine(const Line& line, soccer::Polar& begin, soccer::Polar& end);
   void seeRobot(const soccer::VisibleObjects::Robot& robot, Predicates& out);
 
   soccer::VisibleObjects objects_;

@@ -1,0 +1,224 @@
+// Init, and what players do.
+#include "match_house.h"
+
+using namespace spark;
+using namespace spark::test;
+
+TEST_CASE("init gives team, number and a start position, and is announced once", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 7);
+  CHECK(getProperty(h.stateOf(1), "side").toString() == "left");
+  CHECK(getProperty(h.stateOf(1), "unum").toInteger() == 7);
+  const Vec3 p = h.bodyOf(1).state().position;
+  CHECK(p.x() == Approx(-52 + 0.44).margin(0.01));
+  CHECK(p.y() == Approx(34 - 0.44).margin(0.01));
+  const std::string announced = "(GS (unum 7) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))";
+  h.run(5);
+  CHECK(a.all.find(announced) != std::string::npos);
+  CHECK(a.all.find(announced, a.all.find(announced) + 1) == std::string::npos);
+  CHECK(a.heard.find("(GS (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))") != std::string::npos);
+  h.join("B", 1);
+  CHECK(getProperty(h.stateOf(2), "side").toString() == "right");
+  CHECK(h.bodyOf(2).state().position.x() == Approx(52 - 0.44).margin(0.01));
+}
+
+TEST_CASE("number 0, none or a word is the lowest free one", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.join("A", 1);
+  for (const auto& [name, action, unum] : {std::tuple{"x", "(init (unum 0)(teamname A))", 2}, {"y", "(init (teamname A))", 3}, {"z", "(init (unum seven)(teamname A))", 4}}) {
+    h.act(h.connect(name), action);
+    h.run(1);
+    CHECK(getProperty(h.stateOf(unum), "unum").toInteger() == unum);
+  }
+}
+
+TEST_CASE("an init that is refused leaves the agent where it is, with one line in the log", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.join("A", 1), h.join("B", 1);
+  Puppet& c = h.connect("C");
+  const Vec3 before = h.bodyOf(3).state().position;
+  const auto [action, reason] = GENERATE(table<std::string, std::string>({
+      {"(init (unum 3))", "expected (teamname <name>)"},
+      {"(init (unum 3)(teamname C))", "there are two teams already"},
+      {"(init (unum 1)(teamname A))", "number 1 of team 'A' is taken"},
+      {"(init (unum 12)(teamname A))", "number 12 is not one of 1..11"},
+      {"(init (unum -1)(teamname A))", "number -1 is not one of 1..11"},
+  }));
+  h.text.clear();
+  h.act(c, action);
+  h.run(2);
+  CHECK(h.text.find(reason) != std::string::npos);
+  CHECK(getProperty(h.stateOf(3), "side").toString() == "none");
+  CHECK((h.bodyOf(3).state().position - before).norm() < 0.05);
+  CHECK(c.heard.find("unum") == std::string::npos);
+  // and can still be mended
+  h.act(c, "(init (unum 5)(teamname B))");
+  h.run(1);
+  CHECK(getProperty(h.stateOf(3), "unum").toInteger() == 5);
+}
+
+TEST_CASE("a twelfth player of a team is refused; a number is free again when its player leaves", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  for (int n = 1; n <= 11; ++n) h.join("A", n);
+  Puppet& late = h.connect("late");
+  h.text.clear();
+  h.act(late, "(init (teamname A))");
+  h.run(1);
+  CHECK(h.text.find("has 11 players already") != std::string::npos);
+  CHECK(h.trainer("(kill (unum 4)(team Left))").empty());
+  h.run(2);
+  h.act(late, "(init (teamname A))");
+  h.run(1);
+  CHECK(getProperty(h.stateOf(12), "unum").toInteger() == 4);
+}
+
+TEST_CASE("a second init with another number gives the first one back", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 3);
+  h.act(a, "(init (unum 9)(teamname A))");
+  h.run(1);
+  CHECK(getProperty(h.stateOf(1), "unum").toInteger() == 9);
+  h.join("A", 3);
+  CHECK(getProperty(h.stateOf(2), "unum").toInteger() == 3);
+}
+
+TEST_CASE("the league's limits of robot types hold", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.set("MaxRobotTypeCount", 1);
+  h.join("A", 1);
+  Puppet& b = h.connect("b");
+  h.text.clear();
+  h.act(b, "(init (unum 2)(teamname A))");
+  h.run(1);
+  CHECK(h.text.find("robots of type 0 already") != std::string::npos);
+  // the number was not used up
+  h.set("MaxRobotTypeCount", 11);
+  h.act(b, "(init (unum 2)(teamname A))");
+  h.run(1);
+  CHECK(getProperty(h.stateOf(2), "unum").toInteger() == 2);
+}
+
+TEST_CASE("beams are in the team's own view, and only before kick-offs", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet &a = h.join("A", 1), &b = h.join("B", 1);
+  a.next = b.next = "(beam -10 5 0)";
+  h.run(3);
+  CHECK(h.bodyOf(1).state().position.head<2>().isApprox(Eigen::Vector2d(-10, 5), 0.01));
+  CHECK(h.bodyOf(2).state().position.head<2>().isApprox(Eigen::Vector2d(10, -5), 0.01));
+  h.act(a, "(beam 10 50 0)");  // beyond the centre line and the touch line
+  h.run(1);
+  CHECK(h.bodyOf(1).state().position.x() <= 0.0);
+  CHECK(h.bodyOf(1).state().position.y() == Approx(34).margin(0.01));
+  h.setMode("PlayOn");
+  h.act(a, "(beam -20 0 0)");
+  CHECK(h.bodyOf(1).state().position.x() > -1);
+}
+
+TEST_CASE("a kick's force follows the formula and lasts its steps", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 2);
+  h.setMode("PlayOn");
+  Leaf& kick = h.at("/usr/scene/AgentAspect1/body/KickEffector");
+  callMethod(kick, "setNoiseParams", std::vector<Value>{0.0, 0.0, 0.0, 0.0});
+  h.placeBall(10, 0);
+  h.placeAgent(1, 10 - 0.35, 0);
+  a.next = "(kick 30 10)";
+  h.run(2);
+  const List force = getProperty(kick, "force").toList();
+  CHECK(force[0].toNumber() == Approx(4 * 10 * std::cos(degToRad(30))).margin(0.3));
+  CHECK(force[1].toNumber() == Approx(0).margin(0.3));
+  CHECK(force[2].toNumber() == Approx(4 * 10 * std::sin(degToRad(30))).margin(0.01));
+  CHECK(getProperty(kick, "stepsLeft").toInteger() == 9);
+  CHECK(h.get("/sys/server/gamecontrol/BallStateAspect", "lastUnum").toInteger() == 2);
+  h.run(9);
+  CHECK(getProperty(kick, "stepsLeft").toInteger() == 0);
+  CHECK(h.ball().state().linearVelocity.x() > 10);
+  CHECK(h.ball().state().linearVelocity.z() > 3);
+  // out of reach: nothing
+  a.next = "(kick 0 100)";
+  h.run(2);
+  CHECK(getProperty(kick, "stepsLeft").toInteger() == 0);
+}
+
+TEST_CASE("a drive pushes until the next one, mirrored for the right team, and empties the battery", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet &a = h.join("A", 1), &b = h.join("B", 1);
+  h.setMode("PlayOn");
+  h.placeAgent(1, -20, 0);
+  h.placeAgent(2, 20, 0);
+  for (int agent : {1, 2}) setProperty(h.at("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/DriveEffector"), "sigma", 0);
+  a.next = b.next = "(drive 1000 0 0)";
+  h.runSeconds(2);
+  CHECK(getProperty(h.at("/usr/scene/AgentAspect1/body/DriveEffector"), "force").text() == "{6000.0, 0.0, 0.0}");
+  CHECK(h.bodyOf(1).state().linearVelocity.x() > 8);
+  CHECK(h.bodyOf(1).state().linearVelocity.x() < 10.5);
+  CHECK(h.bodyOf(2).state().linearVelocity.x() < -8);
+  // 6000 N use a third of a percent in a second
+  CHECK(getProperty(h.stateOf(1), "battery").toNumber() == Approx(100 - 2.0 / 3).margin(0.03));
+  setProperty(h.stateOf(1), "battery", 0);
+  h.act(b, "(drive 0 0 0)");
+  h.runSeconds(2);
+  for (int agent : {1, 2}) CHECK(std::abs(h.bodyOf(agent).state().linearVelocity.x()) < 0.5);
+}
+
+TEST_CASE("what is not finite is refused", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  h.setMode("PlayOn");
+  const Vec3 before = h.bodyOf(1).state().position;
+  h.text.clear();
+  h.act(a, "(drive nan 0 0)(drive inf 0 0)(drive 1)(kick nan 100)(beam nan 0 0)(pantilt inf 0)");
+  h.run(2);
+  CHECK((h.bodyOf(1).state().position - before).norm() < 0.01);
+  CHECK(h.text.find("not a finite number") != std::string::npos);
+  CHECK(h.text.find("expected 3 numbers, found 1") != std::string::npos);
+}
+
+TEST_CASE("only the goalie catches, inside his area", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet &goalie = h.join("A", 1), &other = h.join("A", 2);
+  h.join("B", 9);
+  h.setMode("PlayOn");
+  h.placeBall(-48, 0);
+  h.placeAgent(1, -49, 0);
+  h.placeAgent(2, -49, 1);
+  h.placeAgent(3, -47, 0);
+  h.act(other, "(catch)");
+  CHECK(h.ball().state().position.x() == Approx(-48).margin(0.05));
+  h.act(goalie, "(catch)");
+  CHECK(h.ball().state().position.x() == Approx(-49 + 0.22 + 0.111 + 0.07).margin(0.05));
+  CHECK(h.bodyOf(3).state().position.x() > -46);
+  // outside of the area
+  h.placeBall(-20, 0);
+  h.placeAgent(1, -20.8, 0);
+  h.act(goalie, "(catch)");
+  CHECK(h.ball().state().position.x() == Approx(-20).margin(0.05));
+}
+
+TEST_CASE("pan and tilt stay within their ranges and are told", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  setProperty(h.at("/usr/scene/AgentAspect1/body/PanTiltEffector"), "sigma", 0);
+  h.act(a, "(pantilt 30 50)");
+  h.run(2);
+  CHECK(getProperty(h.stateOf(1), "pan").toNumber() == 30);
+  CHECK(getProperty(h.stateOf(1), "tilt").toNumber() == 10);
+  h.act(a, "(pantilt 500 10)");
+  h.act(a, "(pantilt 500 10)");
+  CHECK(getProperty(h.stateOf(1), "pan").toNumber() == 90);
+  CHECK(getProperty(h.stateOf(1), "tilt").toNumber() == 20);
+  h.run(12);
+  CHECK(a.all.find("(AgentState (pan_tilt 90 20) (battery 100.00) (temp 23.00))") != std::string::npos);
+}

@@ -1,0 +1,271 @@
+// Restarts, goals and clocks: what the referee does.
+#include "match_house.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// Two players a side: A1 A2 are agents 1 and 2, B1 B2 agents 3 and 4; the match is in PlayOn, everybody far from the ball.
+struct Match : MatchHouse {
+  Match() {
+    importField();
+    join("A", 1), join("A", 2), join("B", 1), join("B", 2);
+    setMode("PlayOn");
+    aside();
+    placeBall(0, 0);
+    run(1);
+  }
+  void aside() {
+    placeAgent(1, -30, 20), placeAgent(2, -30, -20), placeAgent(3, 30, 20), placeAgent(4, 30, -20);
+  }
+  /// Side: agent's last touch; then the ball lies at x, y.
+  void lastTouchThenBallAt(int agent, double x, double y) {
+    touch(agent);
+    aside();
+    placeBall(x, y);
+    run(1);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("before the kick-off the ball is held and the clock stands", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.join("A", 1);
+  h.placeBall(5, 5);
+  h.ball().setVelocity(Vec3(3, 0, 0));
+  h.run(2);
+  CHECK(h.mode() == "BeforeKickOff");
+  CHECK(h.ball().state().position.isApprox(Vec3(0, 0, 0.111), 1e-6));
+  CHECK(h.gameTime() == 0);
+}
+
+TEST_CASE("an empty field waits without a match", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.set("AutomaticKickOff", true);
+  h.set("WaitBeforeKickOff", 0.1);
+  h.run(20);
+  CHECK(h.mode() == "BeforeKickOff");
+}
+
+TEST_CASE("an automatic kick-off comes after the wait, for the left team", "[soccer]") {
+  MatchHouse h;
+  h.set("AutomaticKickOff", true);
+  h.set("WaitBeforeKickOff", 1.0);
+  h.importField();
+  h.join("A", 1);
+  h.run(20);
+  CHECK(h.mode() == "BeforeKickOff");
+  h.run(50);
+  CHECK(h.mode() == "KickOff_Left");
+  CHECK(h.gameTime() > 0);
+}
+
+TEST_CASE("at a kick-off players stay in their halves and out of the circle; a touch starts play", "[soccer]") {
+  Match h;
+  h.placeAgent(1, 20, 10);   // A in B's half
+  h.placeAgent(3, -20, 0);   // B in A's half
+  h.placeAgent(4, 5, 0);     // B in the circle
+  CHECK(h.trainer("(kickOff Left)").empty());
+  h.run(1);
+  CHECK(h.bodyOf(1).state().position.x() == Approx(-10).margin(0.1));
+  CHECK(h.bodyOf(3).state().position.x() > 0);
+  CHECK(h.bodyOf(4).state().position.head<2>().norm() > 9.15);
+  h.run(5);
+  CHECK(h.mode() == "KickOff_Left");
+  h.touch(2);
+  CHECK(h.mode() == "PlayOn");
+}
+
+TEST_CASE("a ball in the goal box is a goal, and the other side kicks off", "[soccer]") {
+  Match h;
+  h.lastTouchThenBallAt(2, 53, 1);
+  CHECK(h.mode() == "Goal_Left");
+  CHECK(h.score() == "{1, 0}");
+  h.runSeconds(2.9);
+  CHECK(h.mode() == "Goal_Left");
+  h.runSeconds(0.2);
+  CHECK(h.mode() == "KickOff_Right");
+  CHECK(h.ball().state().position.head<2>().norm() < 0.01);
+  h.setMode("PlayOn");
+  h.lastTouchThenBallAt(3, -53, -2);
+  CHECK(h.mode() == "Goal_Right");
+  CHECK(h.score() == "{1, 1}");
+}
+
+TEST_CASE("a ball that flies through the goal line is a goal without the recorder, beside it is none", "[soccer]") {
+  Match h;
+  h.set("RightGoalRecorder", "nowhere");
+  h.connect("Bystander");  // the tree changed: paths are looked up again
+  const double y = GENERATE(2.0, 5.0);
+  h.touch(2);
+  h.aside();
+  h.placeBall(52.2, y, 0.3);
+  h.ball().setVelocity(Vec3(20, 0, 0));
+  h.run(1);
+  CHECK(h.mode() == (y < 3 ? "Goal_Left" : "goal_kick_right"));
+}
+
+TEST_CASE("a ball over the touch line gives a kick-in to the other team", "[soccer]") {
+  Match h;
+  h.lastTouchThenBallAt(1, 10, 33.9);
+  h.ball().setVelocity(Vec3(0, 20, 0));
+  h.run(1);
+  CHECK(h.mode() == "KickIn_Right");
+  // the pause, then the ball is pinned inside the line and the other team kept away
+  h.placeAgent(1, 9, 33);
+  h.runSeconds(1.1);
+  const Vec3 b = h.ball().state().position;
+  CHECK(b.x() == Approx(10).margin(0.1));
+  CHECK(b.y() == Approx(34 - 0.111).margin(0.001));
+  CHECK((h.bodyOf(1).state().position - b).norm() > 9);
+  CHECK(h.mode() == "KickIn_Right");
+  h.touch(4);
+  CHECK(h.mode() == "PlayOn");
+}
+
+TEST_CASE("over the goal line it is a goal kick or a corner", "[soccer]") {
+  Match h;
+  SECTION("the attackers' touch gives a goal kick") {
+    h.lastTouchThenBallAt(2, 52.3, 20);
+    CHECK(h.mode() == "goal_kick_right");
+    h.placeAgent(1, 45, 3);  // an opponent inside the area
+    h.runSeconds(1.1);
+    CHECK(h.ball().state().position.x() == Approx(51).margin(0.01));
+    CHECK(h.bodyOf(1).state().position.x() < 52 - 16.5);
+    h.touch(3);
+    CHECK(h.mode() == "goal_kick_right");
+    h.aside();
+    h.placeBall(30, 0);
+    h.run(1);
+    CHECK(h.mode() == "PlayOn");
+  }
+  SECTION("the defenders' touch gives a corner") {
+    h.lastTouchThenBallAt(4, 52.3, -20);
+    CHECK(h.mode() == "corner_kick_left");
+    h.runSeconds(1.1);
+    const Vec3 b = h.ball().state().position;
+    CHECK(b.x() == Approx(52 - 0.111).margin(0.001));
+    CHECK(b.y() == Approx(-((68 + 7.32) / 4 - 0.111)).margin(0.001));
+    h.touch(2);
+    CHECK(h.mode() == "PlayOn");
+  }
+}
+
+TEST_CASE("when nobody touched the ball it comes back and nothing is awarded", "[soccer]") {
+  Match h;
+  h.placeBall(20, 36);
+  h.run(2);
+  CHECK(h.mode() == "PlayOn");
+  CHECK(h.ball().state().position.y() < 34.2);
+}
+
+TEST_CASE("a restart that nobody takes becomes a drop ball", "[soccer]") {
+  Match h;
+  h.set("RuleDropBallTime", 3);
+  h.lastTouchThenBallAt(1, 10, 35);
+  CHECK(h.mode() == "KickIn_Right");
+  h.placeAgent(2, 10, 30);
+  h.placeAgent(4, 12, 30);
+  h.runSeconds(3.1);
+  CHECK(h.mode() == "PlayOn");
+  const Vec3 b = h.ball().state().position;
+  for (int agent : {2, 4}) CHECK((h.bodyOf(agent).state().position - b).norm() > 8);
+}
+
+TEST_CASE("a drop ball in a penalty area is laid at its corner", "[soccer]") {
+  Match h;
+  h.placeBall(48, -3);
+  CHECK(h.trainer("(dropBall)").empty());
+  h.run(1);
+  CHECK(h.ball().state().position.isApprox(Vec3(52 - 16.5, -20.16, 0.111), 0.01));
+}
+
+TEST_CASE("the taker of a restart may not touch the ball twice", "[soccer]") {
+  Match h;
+  h.trainer("(kickOff Left)");
+  h.run(3);
+  h.touch(1);
+  CHECK(h.mode() == "PlayOn");
+  h.aside();
+  h.placeBall(3, 0);
+  h.run(10);
+  SECTION("again: a free kick for the others") {
+    h.touch(1);
+    CHECK(h.mode() == "free_kick_right");
+  }
+  SECTION("a team-mate in between: play goes on") {
+    h.touch(2);
+    h.aside();
+    h.run(10);
+    h.touch(1);
+    CHECK(h.mode() == "PlayOn");
+  }
+}
+
+TEST_CASE("a goal straight from the kick-off does not count", "[soccer]") {
+  Match h;
+  h.trainer("(kickOff Left)");
+  h.run(3);
+  h.touch(1);
+  h.aside();
+  h.placeBall(53, 0);
+  h.run(1);
+  CHECK(h.mode() == "goal_kick_right");
+  CHECK(h.score() == "{0, 0}");
+}
+
+TEST_CASE("halves: half time, the other kick-off, the end", "[soccer]") {
+  Match h;
+  h.set("RuleHalfTime", 1);
+  h.set("AutomaticKickOff", true);
+  h.set("WaitBeforeKickOff", 0.5);
+  setProperty(h.at("/sys/server/gamecontrol/GameStateAspect"), "time", 0.5);
+  h.runSeconds(0.6);
+  CHECK(h.mode() == "BeforeKickOff");
+  CHECK(h.get("/sys/server/gamecontrol/GameStateAspect", "half").toInteger() == 2);
+  const double before = h.gameTime();
+  h.runSeconds(0.6);
+  CHECK(h.mode() == "KickOff_Right");
+  CHECK(h.gameTime() == Approx(before).margin(0.15));
+  h.runSeconds(1.2);
+  CHECK(h.mode() == "GameOver");
+  h.setMode("PlayOn");  // re-imposed until the time is set back
+  h.run(1);
+  CHECK(h.mode() == "GameOver");
+}
+
+TEST_CASE("teams change sides at half time when they are told to", "[soccer]") {
+  Match h;
+  h.set("RuleHalfTime", 1);
+  h.set("ChangeSidesInSecondHalf", true);
+  h.trainer("(score (left 2)(right 1))");
+  setProperty(h.at("/sys/server/gamecontrol/GameStateAspect"), "time", 0.99);
+  h.run(2);
+  CHECK(h.score() == "{1, 2}");
+  CHECK(h.get("/sys/server/gamecontrol/GameStateAspect", "teamLeft").toString() == "B");
+  CHECK(getProperty(h.stateOf(1), "side").toString() == "right");
+}
+
+TEST_CASE("with one half the match is over after it", "[soccer]") {
+  Match h;
+  h.set("RuleHalfTime", 1);
+  h.set("SingleHalfTime", true);
+  setProperty(h.at("/sys/server/gamecontrol/GameStateAspect"), "time", 0.99);
+  h.run(2);
+  CHECK(h.mode() == "GameOver");
+}
+
+TEST_CASE("the match is state: a saved one goes on alike", "[soccer]") {
+  Match h;
+  h.lastTouchThenBallAt(1, 10, 35);
+  Node& rules = h.kernel.root().require<Node>("/sys/server/gamecontrol");
+  StateWriter saved(true);
+  for (const auto& rule : rules.children()) saveTree(*rule, saved);
+  const std::uint64_t then = stateHash(rules);
+  h.run(7);
+  CHECK(stateHash(rules) != then);
+}

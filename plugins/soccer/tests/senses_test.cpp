@@ -1,0 +1,236 @@
+// What players see and hear, what monitors are told, what trainers may do.
+#include "match_house.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+void quiet(MatchHouse& h, int agent) {
+  const Value off(false);
+  callMethod(h.at("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/VisionPerceptor"), "addNoise", std::span(&off, 1));
+}
+
+int count(const std::string& text, const std::string& what) {
+  int n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("vision is along the field's axes as the team sees them, all around, without itself", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet &a = h.join("A", 1), &b = h.join("B", 2);
+  h.setMode("PlayOn");
+  quiet(h, 1), quiet(h, 2);
+  h.placeAgent(1, -10, 0);
+  h.placeAgent(2, 10, 0);
+  h.placeBall(0, 10);
+  a.all.clear(), b.all.clear();
+  h.run(6);
+  // A looks to +x: the ball is ahead to the left. B looks to -x: the ball is ahead to the right.
+  CHECK(a.all.find("(B (pol 14.14 45.00 -0.44))") != std::string::npos);
+  CHECK(b.all.find("(B (pol 14.14 -45.00 -0.44))") != std::string::npos);
+  CHECK(a.all.find("(P (team B) (id 2) (pol 20.00 0.00 0.00))") != std::string::npos);
+  CHECK(b.all.find("(P (team A) (id 1) (pol 20.00 0.00 0.00))") != std::string::npos);
+  CHECK(a.all.find("(team A)") == std::string::npos);
+  // behind: the own corner flag, 42 m back and 34 m to the left
+  CHECK(a.all.find("(F1L (pol 54.04 141.01 -0.23))") != std::string::npos);
+  CHECK(b.all.find("(F2R (pol 54.04 141.01 -0.23))") != std::string::npos);
+  for (const char* mark : {"F1L", "F2L", "F1R", "F2R", "G1L", "G2L", "G1R", "G2R"}) CHECK(a.all.find(mark) != std::string::npos);
+  CHECK(count(a.all, "(See ") == 2);  // every third cycle
+}
+
+TEST_CASE("vision has noise, small and different each time", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  h.setMode("PlayOn");
+  h.placeAgent(1, -10, 0);
+  h.placeBall(40, 0);
+  a.all.clear();
+  h.run(60);
+  Predicates p;
+  readSexp(a.all, p);
+  double sum = 0, squares = 0;
+  int n = 0;
+  for (const Element e : p) {
+    if (e.head() != "See") continue;
+    const double d = e.named("B").named("pol").at(1).number();
+    sum += d, squares += d * d, ++n;
+  }
+  REQUIRE(n == 20);
+  const double mean = sum / n, sigma = std::sqrt(std::max(0.0, squares / n - mean * mean));
+  CHECK(mean == Approx(50).margin(0.1));
+  CHECK(sigma > 0.005);
+  CHECK(sigma < 0.2);
+}
+
+TEST_CASE("cone vision sees what is in the cone, turned by pan", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  h.setMode("PlayOn");
+  Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect1/body");
+  body.remove(*body.child("VisionPerceptor"));
+  Leaf& eye = body.create("RestrictedVisionPerceptor", "eye");
+  const Value off(false);
+  callMethod(eye, "addNoise", std::span(&off, 1));
+  callMethod(eye, "setViewCones", std::vector<Value>{30, 30});
+  h.placeAgent(1, 0, 0);
+  h.placeBall(10, 0);
+  h.run(3);
+  CHECK(a.heard.find("(B (pol 10.00 0.00") != std::string::npos);
+  CHECK(a.heard.find("F1R") == std::string::npos);  // 33 degrees to the left
+  CHECK(a.heard.find("G1R") != std::string::npos);
+  setProperty(h.stateOf(1), "pan", 20);
+  h.run(3);
+  CHECK(a.heard.find("(B (pol 10.00 -20.00") != std::string::npos);
+  CHECK(a.heard.find("F1R") != std::string::npos);
+}
+
+TEST_CASE("cone vision in the head's frame looks along y", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  h.setMode("PlayOn");
+  Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect1/body");
+  body.remove(*body.child("VisionPerceptor"));
+  Leaf& eye = body.create("RestrictedVisionPerceptor", "eye");
+  const Value off(false);
+  callMethod(eye, "addNoise", std::span(&off, 1));
+  callMethod(eye, "setStaticSenseAxis", std::span(&off, 1));
+  callMethod(eye, "setViewCones", std::vector<Value>{120, 120});
+  h.placeAgent(1, 0, 0);
+  h.placeBall(0, 10);
+  h.run(3);
+  CHECK(a.heard.find("(B (pol 10.00 -0.00") != std::string::npos);
+  h.placeBall(-5, 5);  // ahead to the left
+  h.run(3);
+  CHECK(a.heard.find("(B (pol 7.07 45.00") != std::string::npos);
+  h.placeBall(0, -10);  // behind
+  h.run(3);
+  CHECK(a.heard.find("(B ") == std::string::npos);
+}
+
+TEST_CASE("what is said every cycle is heard every other cycle, by itself always", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet &a = h.join("A", 1), &mate = h.join("A", 2), &b = h.join("B", 1);
+  h.setMode("PlayOn");
+  h.placeAgent(1, 0, 10), h.placeAgent(2, 0, 0), h.placeAgent(3, 10, 10);
+  h.run(3);
+  for (Puppet* p : {&a, &mate, &b}) p->all.clear();
+  for (int i = 0; i < 6; ++i) {
+    a.next = "(say m" + std::to_string(i) + ")";
+    h.run(1);
+  }
+  h.run(3);
+  for (int i = 0; i < 6; ++i) {
+    const std::string word = "m" + std::to_string(i) + ")";
+    CHECK(count(a.all, "self " + word) == 1);
+    CHECK(count(mate.all, "90.00 " + word) == (i % 2 == 0));
+    CHECK(count(b.all, "-0.00 " + word) + count(b.all, " 0.00 " + word) == (i % 2 == 0));  // ahead, as B sees the field
+  }
+  CHECK(mate.all.find("(hear A ") != std::string::npos);
+}
+
+TEST_CASE("messages that are too long, unprintable or out of range are not heard", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet &a = h.join("A", 1), &mate = h.join("A", 2);
+  h.setMode("PlayOn");
+  h.placeAgent(1, -40, 0), h.placeAgent(2, 20, 0);
+  mate.all.clear();
+  h.act(a, "(say far)");
+  h.run(2);
+  h.placeAgent(2, -35, 0);
+  h.act(a, "(say 123456789012345678901)");
+  h.run(2);
+  h.act(a, "(say \"two words\")");
+  h.run(2);
+  CHECK(mate.all.find("hear") == std::string::npos);
+  CHECK(h.text.find("byte 32 is not allowed") != std::string::npos);
+  h.act(a, "(say 12345678901234567890)");
+  h.run(2);
+  CHECK(mate.all.find("180.00 12345678901234567890)") != std::string::npos);
+}
+
+TEST_CASE("monitors are told field, modes, teams, score and fouls", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  const auto environment = [&h] {
+    Environment env;
+    for (const char* item : {"GameStateItem", "SoccerRuleItem"})
+      h.kernel.root().require<IMonitorItem>(std::string("/sys/server/monitor/") + item).contribute(env);
+    std::string text;
+    writeSexp(env.predicates, 3, text);
+    return text;
+  };
+  CHECK(environment().find("team_left") == std::string::npos);
+  h.join("A", 1);
+  h.trainer("(score (left 3)(right 2))");
+  const std::string env = environment();
+  CHECK(env.starts_with("(FieldLength 104.000)(FieldWidth 68.000)"));
+  CHECK(env.find("(play_modes BeforeKickOff KickOff_Left KickOff_Right PlayOn") != std::string::npos);
+  CHECK(env.find("(team_left A)(half 1)(score_left 3)(score_right 2)(play_mode 0)") != std::string::npos);
+  callMethod(h.at("/sys/server/gamecontrol/SoccerRuleAspect"), "reportFoul", std::vector<Value>{6, "right", 4});
+  CHECK(environment().find("(foul 1 6 2 4)") != std::string::npos);
+  CHECK(environment().find("foul") == std::string::npos);
+}
+
+TEST_CASE("trainers move ball and players, set modes and clocks; nonsense is ignored with a reason", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.join("A", 1), h.join("B", 2);
+  CHECK(h.trainer("(playMode PlayOn)").empty());
+  CHECK(h.mode() == "PlayOn");
+  CHECK(h.trainer("(ball (pos 3 4 0.111)(vel 1 0 0))").empty());
+  h.run(1);
+  CHECK(h.ball().state().position.isApprox(Vec3(3.02, 4, 0.111), 0.01));
+  CHECK(h.trainer("(agent (unum 1)(team Left)(pos -3 1 0.22))").empty());
+  CHECK(h.bodyOf(1).state().position.isApprox(Vec3(-3, 1, 0.22), 0.001));
+  CHECK(h.trainer("(agent (unum 2)(team Right)(move 5 6 0.22 -90)(battery 40))").empty());
+  CHECK(h.bodyOf(2).state().rotation(0, 1) == Approx(1).margin(1e-3));  // its y axis along +x
+  CHECK(getProperty(h.stateOf(2), "battery").toNumber() == 40);
+  CHECK(h.trainer("(time 12.5)").empty());
+  CHECK(h.gameTime() == 12.5);
+  CHECK(h.trainer("(select (unum 2)(team Right))").empty());
+  CHECK(getProperty(h.stateOf(2), "selected").toBool());
+  CHECK(h.trainer("(select)").empty());
+  CHECK(getProperty(h.stateOf(1), "selected").toBool());
+  CHECK_FALSE(getProperty(h.stateOf(2), "selected").toBool());
+  CHECK(h.trainer("(repos (unum 1)(team Left))").empty());
+  CHECK(h.bodyOf(1).state().position.isApprox(Vec3(-3.6, -34.5, 1.0), 0.01));
+  CHECK(h.trainer("(select (unum -1))").empty());
+  CHECK(h.trainer("(playMode Kickoff)") == "no such play mode");
+  CHECK(h.trainer("(kickOff left)") == "expected Left, Right or None");
+  CHECK(h.trainer("(ball (pos 1 nan 0))") == "expected (pos x y z) or (vel x y z)");
+  CHECK(h.trainer("(agent (unum 9)(team Left)(pos 0 0 0))") == "no such player");
+  CHECK(h.trainer("(score (left 1))") == "expected (left a)(right b), both 0 or more");
+  CHECK(h.trainer("(time -1)") == "expected a time of 0 s or more");
+  CHECK(h.trainer("(dance)") == "unknown");
+  CHECK(h.gameTime() == 12.5);
+}
+
+TEST_CASE("cone vision sees the visible part of field lines", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  h.setMode("PlayOn");
+  Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect1/body");
+  body.remove(*body.child("VisionPerceptor"));
+  Leaf& eye = body.create("RestrictedVisionPerceptor", "eye");
+  const Value off(false), on(true);
+  callMethod(eye, "addNoise", std::span(&off, 1));
+  callMethod(eye, "setStaticSenseAxis", std::span(&off, 1));
+  callMethod(eye, "setSenseLine", std::span(&on, 1));
+  callMethod(eye, "setViewCones", std::vector<Value>{90, 90});
+  h.placeAgent(1, 0, 24);  // 10 m before the touch line, which runs across from 10 m right to 10 m left
+  h.run(3);
+  CHECK((a.heard.find("(L (pol 14.14 -45.00 -0.89) (pol 14.14 45.00 -0.89))") != std::string::npos ||
+         a.heard.find("(L (pol 14.14 45.00 -0.89) (pol 14.14 -45.00 -0.89))") != std::string::npos));
+  CHECK(a.heard.find("nan") == std::string::npos);
+}
