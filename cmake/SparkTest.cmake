@@ -1,3 +1,12 @@
+# Makes a test wait for a plugin; called last, when all plugins are known.
+function(spark_test_needs target plugin)
+  if(TARGET plugin-${plugin})
+    add_dependencies(${target} plugin-${plugin})
+  else()
+    message(WARNING "${target} needs plugin '${plugin}', which is not there")
+  endif()
+endfunction()
+
 # spark_test(<name> SOURCES ... [LIBRARIES ...] [LABELS ...] [PLUGINS ...]): one Catch2 program that ctest runs.
 # PLUGINS: names of plugins that must be built first. Exit code 77 counts as skipped.
 function(spark_test name)
@@ -12,7 +21,7 @@ function(spark_test name)
   target_precompile_headers(${target} REUSE_FROM spark-test-pch)
   target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
   foreach(plugin ${ARG_PLUGINS})
-    add_dependencies(${target} plugin-${plugin})
+    cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL spark_test_needs ${target} ${plugin})")
   endforeach()
   add_test(NAME ${name} COMMAND ${target})
   if(NOT ARG_TIMEOUT)

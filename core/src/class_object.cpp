@@ -16,18 +16,14 @@ std::string capitalised(std::string_view prefix, std::string_view name) {
   return out;
 }
 
-int scalarsOf(const std::string& type) {
-  if (type == "vec3") return 3;
-  if (type == "rgba") return 4;
-  if (type == "matrix") return 16;
-  return type.starts_with("list") || type == "random stream" ? -1 : 1;
-}
-
-void checkRange(const Property& p, const Value& v) {
+/// Numbers may come as text: what will be read from it is checked.
+void checkRange(const Property& p, const Value& v, bool loose) {
+  if (!p.min && !p.max) return;
   if (v.isList()) {
-    for (const Value& e : v.toList()) checkRange(p, e);
-  } else if (v.isNumber()) {
-    const double d = v.toNumber();
+    for (const Value& e : v.toList()) checkRange(p, e, loose);
+  } else if (v.isNumber() || v.isString()) {
+    Args args{std::span(&v, 1), loose};
+    const double d = Convert<double>::from(args);
     if ((p.min && !(d >= *p.min)) || (p.max && !(d <= *p.max)))
       throw Error("expected " + (p.min ? Value(*p.min).text() : std::string("-inf")) + " to " + (p.max ? Value(*p.max).text() : std::string("inf")) +
                   (p.unit.empty() ? "" : " " + p.unit) + ", found " + v.text());
@@ -44,7 +40,7 @@ void checkChoices(const Property& p, const Value& v) {
 
 void write(const Property& p, Leaf& leaf, Args& args) {
   for (const Value& v : args.values) {
-    checkRange(p, v);
+    checkRange(p, v, args.loose);
     checkChoices(p, v);
   }
   p.set(leaf, args);
@@ -59,7 +55,7 @@ ClassObject::ClassObject(ClassDescription description, Plugin* plugin) : descrip
   };
   std::vector<Method> generated;
   for (const Property& p : description_.properties) {
-    const int scalars = scalarsOf(p.type);
+    const int scalars = p.scalars;
     if (!p.readOnly && !has(capitalised("set", p.name))) {
       Method m;
       m.name = capitalised("set", p.name);
@@ -114,6 +110,8 @@ void ClassObject::resolve() {
   if (resolved_) return;
   if (ClassObject* b = base()) hooks_ = b->hooks();
   for (const Hook& h : description_.hooks) hooks_.push_back(&h);
+  for (const Property* p : properties())
+    if (p->state) stateProperties_.push_back(p);
   resolved_ = true;
 }
 
@@ -180,6 +178,11 @@ std::vector<const Method*> ClassObject::methods() {
 const std::vector<const Hook*>& ClassObject::hooks() {
   resolve();
   return hooks_;
+}
+
+const std::vector<const Property*>& ClassObject::stateProperties() {
+  resolve();
+  return stateProperties_;
 }
 
 Value ClassObject::defaultOf(const Property& property) {

@@ -9,23 +9,29 @@
 namespace spark {
 
 // Handlers are kept sorted by tree order, sorted again only when the tree's shape or the handlers changed since the last emit. While a
-// channel runs, entries are only appended (they run next time) and blanked (their node left), never moved: handlers may change the tree.
+// channel runs its entries are never moved nor destroyed: what is added waits in pending_, what goes is blanked. So handlers may change
+// the tree and the handlers, their own included. Afterwards settle() makes it so.
 
 void Channel::run(Entry& entry, const Event& event) {
+  const auto report = [&](const char* what) {
+    std::string who = "a removed node";
+    if (entry.node) {
+      const ClassObject& c = *entry.node->classObject();
+      who = entry.node->path() + " (class " + c.name() + (c.plugin() ? " of plugin " + c.plugin()->name() : "") + ")";
+    }
+    kernel_->log().error("{} of {} failed: {}", name_, who, what);
+  };
   try {
     if (entry.plain) entry.plain(*entry.node, event);
     else entry.handler(*entry.node, event);
   } catch (const std::exception& e) {
-    kernel_->log().error("{} of {} (class {}) failed: {}", name_, entry.node ? entry.node->path() : "a removed node",
-                         entry.node && entry.node->classObject() ? entry.node->classObject()->name() : "?", e.what());
+    report(e.what());
+  } catch (...) {
+    report("it threw something that is no std::exception");
   }
 }
 
 void Channel::sort() {
-  if (holes_) {
-    std::erase_if(entries_, [](const Entry& e) { return !e.node; });
-    holes_ = false;
-  }
   if (!dirty_ && sortedAt_ == kernel_->structureVersion()) return;
   kernel_->updateOrder();
   const bool first = order_ == Order::parentsFirst;
@@ -36,47 +42,71 @@ void Channel::sort() {
   dirty_ = false;
 }
 
+void Channel::settle() {
+  if (depth_ > 0) return;
+  std::vector<Handler> dying;  // their destructors may come back here
+  if (holes_) {
+    for (Entry& e : entries_)
+      if (!e.node && e.handler) dying.push_back(std::move(e.handler));
+    std::erase_if(entries_, [](const Entry& e) { return !e.node; });
+    holes_ = false;
+  }
+  if (!pending_.empty()) {
+    for (Entry& e : pending_) entries_.push_back(std::move(e));
+    pending_.clear();
+    dirty_ = true;
+  }
+}
+
 void Channel::emit(const Event& event) {
+  settle();
   if (depth_ == 0) sort();
   ++depth_;
-  const std::size_t n = entries_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!entries_[i].node) continue;
-    if (entries_[i].plain) {
-      run(entries_[i], event);
-    } else {
-      Entry copy = entries_[i];  // the handler may add handlers, and the vector may move
-      run(copy, event);
-    }
-  }
+  for (Entry& e : entries_)
+    if (e.node) run(e, event);
   --depth_;
+  if (holes_ || !pending_.empty()) settle();
 }
 
 void Channel::emitAt(Leaf& node, const Event& event) {
+  settle();
   if (depth_ == 0) sort();
   ++depth_;
-  const std::size_t n = entries_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    if (entries_[i].node != &node) continue;
-    Entry copy = entries_[i];
-    run(copy, event);
-  }
+  for (Entry& e : entries_)
+    if (e.node == &node) run(e, event);
   --depth_;
+  if (holes_ || !pending_.empty()) settle();
+}
+
+void Channel::insert(Entry entry) {
+  settle();
+  entry.node->hooked_ = true;
+  (depth_ > 0 ? pending_ : entries_).push_back(std::move(entry));
+  dirty_ = true;
+}
+
+void Channel::blank(Entry& entry) {
+  entry.node = nullptr;
+  holes_ = true;
 }
 
 std::uint64_t Channel::add(Leaf& node, Handler handler) {
   if (!node.isLinked()) throw Error("cannot handle '" + name_ + "' at " + node.path() + ": it is not linked into the tree");
-  node.hooked_ = true;
-  std::uint64_t number = 1;
-  for (const Entry& e : entries_) number = std::max(number, e.number + 1);
-  entries_.push_back({&node, nullptr, std::move(handler), number});
-  dirty_ = true;
-  return number;
+  insert({&node, nullptr, std::move(handler), ++lastNumber_});
+  return lastNumber_;
 }
 
 void Channel::remove(std::uint64_t subscription) {
+  if (subscription == 0) return;
+  std::vector<Handler> dying;
+  std::erase_if(pending_, [&](Entry& e) {
+    if (e.number != subscription) return false;
+    dying.push_back(std::move(e.handler));
+    return true;
+  });
   for (Entry& e : entries_)
-    if (e.number == subscription && !e.plain) e.node = nullptr, e.handler = nullptr, holes_ = true;
+    if (e.number == subscription) blank(e);
+  settle();
 }
 
 Channel& Events::channel(std::string_view name) {
@@ -105,25 +135,26 @@ std::vector<Channel*> Events::all() const {
 }
 
 void Events::hook(Leaf& node) {
-  for (const Hook* h : node.classObject()->hooks()) {
-    Channel& c = channel(h->channel);
-    c.entries_.push_back({&node, h->run, {}, 0});
-    c.dirty_ = true;
-    node.hooked_ = true;
-  }
+  for (const Hook* h : node.classObject()->hooks()) channel(h->channel).insert({&node, h->run, {}, 0});
 }
 
 void Events::unhook(Leaf& node) {
   if (!node.hooked_) return;
   node.hooked_ = false;
-  for (const auto& c : channels_)
-    for (Channel::Entry& e : c->entries_)
-      if (e.node == &node) {
-        e.node = nullptr;
-        e.plain = nullptr;
-        c->holes_ = true;
-        if (c->depth_ == 0) e.handler = nullptr;
-      }
+  std::vector<Channel::Handler> dying;  // their destructors may come back here
+  for (const auto& c : channels_) {
+    std::erase_if(c->pending_, [&](Channel::Entry& e) {
+      if (e.node != &node) return false;
+      if (e.handler) dying.push_back(std::move(e.handler));
+      return true;
+    });
+    for (Channel::Entry& e : c->entries_) {
+      if (e.node != &node) continue;
+      c->blank(e);
+      // A handler that nobody runs dies with its node: its code may be unmapped soon.
+      if (c->depth_ == 0 && e.handler) dying.push_back(std::move(e.handler)), e.handler = nullptr;
+    }
+  }
 }
 
 }  // namespace spark

@@ -1,5 +1,6 @@
 #include "spark/kernel.h"
 
+#include <algorithm>
 #include <mutex>
 
 #include "spark/error.h"
@@ -72,7 +73,7 @@ Kernel::Kernel() : events_(std::make_unique<Events>(*this)) {
   pluginsNode_ = root_->create("Node", "plugins").asNode();
   root_->create<Node>("Node", "sys").create("Node", "server");
   root_->create("Node", "usr");
-  for (auto& [name, c] : classIndex_) classesNode_->add(std::unique_ptr<Leaf>(c));
+  for (auto& [name, c] : classIndex_) classesNode_->attach(std::unique_ptr<Leaf>(c));
   loader_ = std::make_unique<Loader>(*this);
   lua_ = std::make_unique<Lua>(*this);
 }
@@ -81,13 +82,15 @@ Kernel::Kernel() : events_(std::make_unique<Events>(*this)) {
 Kernel::~Kernel() {
   lua_.reset();
   for (const char* top : {"usr", "sys"})
-    if (Leaf* l = root_->child(top)) root_->remove(*l);
-  while (root_->children().size() > 2) root_->remove(*root_->children().back());
+    while (Leaf* l = root_->child(top)) root_->detach(*l);
+  for (std::size_t i = root_->children_.size(); i-- > 0; i = std::min(i, root_->children_.size()))
+    if (Leaf* l = root_->children_[i].get(); l != classesNode_ && l != pluginsNode_) root_->detach(*l);
   loader_.reset();
   // Class objects count their products; the nodes that remain go before their classes.
   std::vector<std::unique_ptr<Leaf>> classes = std::move(classesNode_->children_);
   classesNode_->children_.clear();
-  root_->removeChildren();
+  root_->detach(*classesNode_);
+  root_->detach(*pluginsNode_);
   root_.reset();
   classIndex_.clear();
 }
@@ -108,7 +111,7 @@ ClassObject& Kernel::addClass(ClassDescription description, Plugin* plugin) {
   if (classesNode_) {
     // Kept in order of name.
     auto& list = classesNode_->children_;
-    classesNode_->add(std::move(made));
+    classesNode_->attach(std::move(made));
     for (std::size_t i = list.size() - 1; i > 0 && list[i]->name() < list[i - 1]->name(); --i) std::swap(list[i], list[i - 1]);
   } else {
     made.release();  // the constructor hands the first classes to the tree

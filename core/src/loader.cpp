@@ -2,6 +2,8 @@
 #include <ltdl.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstddef>
 #include <cstring>
 #include <mutex>
 
@@ -49,15 +51,19 @@ std::string abiProblem(const AbiWord& theirs) {
 
 class ClassCollector : public Registrar {
  public:
-  explicit ClassCollector(Kernel& kernel) : kernel_(kernel) {}
   void add(ClassDescription description) override { classes.push_back(std::move(description)); }
   void atUnload(std::function<void()> action) override { actions.push_back(std::move(action)); }
   std::vector<ClassDescription> classes;
   std::vector<std::function<void()>> actions;
-
- private:
-  Kernel& kernel_;
 };
+
+std::string absolutePath(const fs::path& file) { return fs::absolute(file).lexically_normal().string(); }
+
+/// The word for a plugin in paths, configs and messages: letters, digits, '-', '_', '.'.
+bool isPluginName(const char* name) {
+  const std::string_view n = name ? name : "";
+  return !n.empty() && n.front() != '.' && n.size() <= 100 && std::all_of(n.begin(), n.end(), [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; });
+}
 }  // namespace
 
 Loader::Loader(Kernel& kernel) : kernel_(kernel) {
@@ -66,31 +72,54 @@ Loader::Loader(Kernel& kernel) : kernel_(kernel) {
 }
 
 Loader::~Loader() {
-  for (const auto& p : kernel_.pluginsNode_->children())
-    for (const auto& action : static_cast<Plugin&>(*p).atUnload_) action();
   std::vector<void*> handles;
   for (const auto& p : kernel_.pluginsNode_->children()) {
     Plugin& plugin = static_cast<Plugin&>(*p);
-    plugin.atUnload_.clear();
+    runActions(plugin);
     handles.push_back(plugin.handle_);
   }
-  // The classes hold functions of the plugins: they go first.
-  std::vector<Leaf*> foreign;
-  for (const auto& [name, c] : kernel_.classIndex_)
-    if (c->plugin_) foreign.push_back(c);
-  for (Leaf* c : foreign) {
-    kernel_.classIndex_.erase(kernel_.classIndex_.find(c->name()));
-    kernel_.classesNode_->remove(*c);
+  // The classes hold functions of the plugins: they go first. Somebody who still owns an object outside the tree will need its class
+  // and its code: both are then left to the process.
+  bool keep = false;
+  std::vector<ClassObject*> foreign;
+  for (const auto& [name, c] : kernel_.classIndex_) {
+    if (!c->plugin_) continue;
+    foreign.push_back(c);
+    if (c->living() == 0) continue;
+    kernel_.log().error("{} object(s) of class {} outlive their kernel: plugins stay loaded", c->living(), c->name());
+    keep = true;
   }
-  kernel_.pluginsNode_->removeChildren();
+  for (ClassObject* c : foreign) drop(*c, keep);
+  for (const auto& p : kernel_.pluginsNode_->children()) static_cast<Plugin&>(*p).handle_ = nullptr;
+  while (!kernel_.pluginsNode_->children().empty()) kernel_.pluginsNode_->detach(*kernel_.pluginsNode_->children().front());
+  if (keep) return;
   const std::lock_guard lock(ltdlMutex());
-  for (void* h : handles) lt_dlclose(static_cast<lt_dlhandle>(h));
+  for (void* h : handles)
+    if (h) lt_dlclose(static_cast<lt_dlhandle>(h));
   lt_dlexit();
+}
+
+void Loader::runActions(Plugin& plugin) {
+  const std::vector<std::function<void()>> actions = std::move(plugin.atUnload_);
+  plugin.atUnload_.clear();
+  for (const auto& action : actions) try {
+      action();
+    } catch (const std::exception& e) {
+      kernel_.log().error("plugin '{}' failed while it was unloaded: {}", plugin.name(), e.what());
+    }
+}
+
+void Loader::drop(ClassObject& c, bool leak) {
+  kernel_.classIndex_.erase(kernel_.classIndex_.find(c.name()));
+  if (!leak) return kernel_.classesNode_->detach(c);
+  for (auto& owner : kernel_.classesNode_->children_)
+    if (owner.get() == &c) owner.release();
+  std::erase(kernel_.classesNode_->children_, nullptr);
 }
 
 Plugin& Loader::open(const fs::path& file) {
   const std::lock_guard lock(ltdlMutex());
-  const std::string path = fs::absolute(file).lexically_normal().string();
+  const std::string path = absolutePath(file);
   void* first = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!first) {
     const char* text = dlerror();
@@ -107,12 +136,15 @@ Plugin& Loader::open(const fs::path& file) {
   if (!handle) refuse(why ? why : "libltdl cannot open it");
   if (!d) refuse("it has no symbol sparkPlugin; a plugin ends with SPARK_PLUGIN(name, version, doc, classes...)");
   if (std::memcmp(d->magic, "SPARKPLG", 8) != 0) refuse("its descriptor lacks the magic word SPARKPLG");
+  if (d->size < offsetof(PluginDescriptor, name)) refuse("its descriptor has only " + std::to_string(d->size) + " bytes");
   if (const std::string problem = abiProblem(d->abi); !problem.empty()) refuse(problem + ". Build it again with this host's headers.");
   if (d->size != sizeof(PluginDescriptor)) refuse("its descriptor has " + std::to_string(d->size) + " bytes, this host's " + std::to_string(sizeof(PluginDescriptor)));
-  if (!d->name || !*d->name || std::strchr(d->name, '/')) refuse("its descriptor has no name");
+  if (!isPluginName(d->name)) refuse("its name '" + std::string(d->name ? d->name : "") + "' is none: letters, digits, '-', '_' and '.' make one");
   if (Leaf* other = kernel_.pluginsNode_->child(d->name))
     refuse(std::string("there is a plugin '") + d->name + "' already, from " + static_cast<Plugin*>(other)->file_);
-  Plugin& plugin = kernel_.pluginsNode_->create<Plugin>("Plugin", d->name);
+  auto made = kernel_.classOf("Plugin").create();
+  made->setName(d->name);
+  Plugin& plugin = static_cast<Plugin&>(kernel_.pluginsNode_->attach(std::move(made)));
   plugin.version_ = d->version ? d->version : "";
   plugin.doc_ = d->doc ? d->doc : "";
   plugin.file_ = path;
@@ -130,11 +162,12 @@ std::vector<std::string> Loader::scan(const fs::path& folder) {
     if (it->path().extension() == ".so") files.push_back(it->path());
   if (ec) {
     problems.push_back("cannot read plugin folder " + folder.string() + ": " + ec.message());
-  } else {
-    folders_.push_back(fs::absolute(folder).lexically_normal());
+  } else if (const fs::path full = absolutePath(folder); std::find(folders_.begin(), folders_.end(), full) == folders_.end()) {
+    folders_.push_back(full);
   }
   std::sort(files.begin(), files.end());
   for (const fs::path& f : files) {
+    if (fromFile(f)) continue;
     try {
       open(f);
     } catch (const std::exception& e) {
@@ -147,31 +180,26 @@ std::vector<std::string> Loader::scan(const fs::path& folder) {
 
 void Loader::registerPlugin(Plugin& plugin) {
   if (plugin.registered_) return;
-  ClassCollector collector(kernel_);
-  const auto takeBack = [&](std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) {
-      ClassObject* c = kernel_.findClass(plugin.classes_[i]);
-      kernel_.classIndex_.erase(kernel_.classIndex_.find(c->name()));
-      kernel_.classesNode_->remove(*c);
-    }
+  ClassCollector collector;
+  const std::string failed = "plugin '" + plugin.name() + "' (" + plugin.file_ + ") failed to register";
+  std::vector<ClassObject*> added;
+  const auto takeBack = [&] {
+    for (ClassObject* c : added) drop(*c, false);
   };
-  std::size_t added = 0;
   std::vector<std::string> names;
   try {
     plugin.descriptor_->registerClasses(collector);
     for (ClassDescription& d : collector.classes) {
+      if (d.base == d.name) throw Error("class '" + d.name + "' names itself as its base");
       names.push_back(d.name);
-      kernel_.addClass(std::move(d), &plugin);
-      ++added;
+      added.push_back(&kernel_.addClass(std::move(d), &plugin));
     }
   } catch (const std::exception& e) {
-    plugin.classes_ = names;
-    takeBack(added);
-    throw Error("plugin '" + plugin.name() + "' (" + plugin.file_ + ") failed to register", e);
+    takeBack();
+    throw Error(failed, e);
   } catch (...) {
-    plugin.classes_ = names;
-    takeBack(added);
-    throw Error("plugin '" + plugin.name() + "' (" + plugin.file_ + ") failed to register: it threw something that is no std::exception");
+    takeBack();
+    throw Error(failed + ": it threw something that is no std::exception");
   }
   plugin.classes_ = names;
   plugin.atUnload_ = std::move(collector.actions);
@@ -192,6 +220,11 @@ Plugin& Loader::use(std::string_view name) {
 }
 
 Plugin& Loader::useFile(const fs::path& file) {
+  Plugin* known = fromFile(file);
+  if (known) {
+    registerPlugin(*known);
+    return *known;
+  }
   Plugin& plugin = open(file);
   try {
     registerPlugin(plugin);
@@ -204,9 +237,16 @@ Plugin& Loader::useFile(const fs::path& file) {
 
 void Loader::close(Plugin& plugin) {
   void* handle = plugin.handle_;
-  kernel_.pluginsNode_->remove(plugin);
+  kernel_.pluginsNode_->detach(plugin);
   const std::lock_guard lock(ltdlMutex());
   lt_dlclose(static_cast<lt_dlhandle>(handle));
+}
+
+Plugin* Loader::fromFile(const fs::path& file) const {
+  const std::string path = absolutePath(file);
+  for (const auto& p : kernel_.pluginsNode_->children())
+    if (static_cast<Plugin&>(*p).file_ == path) return static_cast<Plugin*>(p.get());
+  return nullptr;
 }
 
 void Loader::unload(std::string_view name) {
@@ -231,15 +271,11 @@ void Loader::unload(std::string_view name) {
     throw Error("cannot unload plugin '" + plugin.name() + "' while its objects live:" + (living.empty() ? " " + std::to_string(products) + " outside the tree" : living) +
                 "\nRemove them first.");
   for (const auto& [n, c] : kernel_.classIndex_)
-    if (c->plugin_ != &plugin && std::any_of(mine.begin(), mine.end(), [&](ClassObject* m) { return m->name() == c->baseName(); }))
+    if (c->plugin_ != &plugin && std::any_of(mine.begin(), mine.end(), [&, derivedClass = c](ClassObject* m) { return m->name() == derivedClass->baseName(); }))
       derived += "\n  " + n + (c->plugin_ ? " of plugin '" + c->plugin_->name() + "'" : "");
   if (!derived.empty()) throw Error("cannot unload plugin '" + plugin.name() + "' while classes derive from its classes:" + derived + "\nUnload those first.");
-  for (const auto& action : plugin.atUnload_) action();
-  plugin.atUnload_.clear();
-  for (ClassObject* c : mine) {
-    kernel_.classIndex_.erase(kernel_.classIndex_.find(c->name()));
-    kernel_.classesNode_->remove(*c);
-  }
+  runActions(plugin);
+  for (ClassObject* c : mine) drop(*c, false);
   close(plugin);
 }
 

@@ -37,9 +37,12 @@ void Log::write(Level level, std::string_view line) {
   if (!enabled(level)) return;
   std::string clean;
   clean.reserve(line.size());
-  for (const char c : line) {
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
     const auto byte = static_cast<unsigned char>(c);
-    if (byte == '\n' || byte == '\t' || (byte >= 0x20 && byte != 0x7f)) clean += c;
+    // What follows a line break is indented: text from a client cannot pass for a line of its own.
+    if (byte == '\n') clean += i + 1 < line.size() && line[i + 1] == ' ' ? "\n" : "\n  ";
+    else if (byte == '\t' || (byte >= 0x20 && byte != 0x7f)) clean += c;
     else clean += fmt::format("\\x{:02x}", byte);
   }
   const std::lock_guard lock(impl_->mutex);

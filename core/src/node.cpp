@@ -7,7 +7,28 @@
 #include "spark/error.h"
 #include "spark/kernel.h"
 
+// How a node joins and leaves. link: onLink of the parent, its hooks, then its children's; when one throws, what was linked is unlinked
+// again and add() throws. unlink: children first, then onUnlink, then its handlers go. Both may change the tree around them, so lists are
+// walked by index and looked at again; only what is on its way in or out itself must stay where it is (`changing_`). Once all is unlinked
+// references turn empty, then destructors run: none sees another object half destroyed.
+
 namespace spark {
+
+/// Marks a leaf as on its way.
+struct Node::Changing {
+  explicit Changing(Leaf& l) : leaf(l), before(l.changing_) {
+    leaf.changing_ = true;
+    ++leaf.kernel().changing_;
+  }
+  ~Changing() {
+    leaf.changing_ = before;
+    --leaf.kernel().changing_;
+  }
+  Changing(const Changing&) = delete;
+  Changing& operator=(const Changing&) = delete;
+  Leaf& leaf;
+  bool before;
+};
 
 Leaf::~Leaf() {
   if (life_) {
@@ -23,7 +44,11 @@ detail::Life* Leaf::life() const {
 }
 
 void Leaf::setName(std::string name) {
-  if (name.find('/') != std::string::npos) throw Error("cannot name " + path() + " '" + name + "': a name must not hold '/'");
+  const auto refuse = [&](const char* why) { throw Error("cannot name " + path() + " '" + name + "': " + why); };
+  if (name.find_first_of("/\\") != std::string::npos) refuse("a name must not hold '/' or '\\', which separate names in paths");
+  if (name == "." || name == "..") refuse("'.' and '..' have a meaning in paths");
+  if (name.empty() && parent_) refuse("what has a parent needs a name");
+  if (linked_ && Node::isFixed(*this)) refuse("classes, plugins and their folders keep their names");
   name_ = std::move(name);
   if (linked_) kernel().changed();
 }
@@ -48,8 +73,11 @@ std::string Leaf::path() const {
 
 Leaf* Leaf::find(std::string_view path) const {
   const Leaf* at = this;
-  if (!path.empty() && (path.front() == '/' || path.front() == '\\'))
+  if (!path.empty() && (path.front() == '/' || path.front() == '\\')) {
+    // What is not linked knows its kernel all the same.
+    if (class_ && class_->kernel_->root_) at = class_->kernel_->root_.get();
     while (at->parent_) at = at->parent_;
+  }
   while (!path.empty()) {
     const std::size_t n = std::min(path.find_first_of("/\\"), path.size());
     const std::string_view part = path.substr(0, n);
@@ -103,7 +131,9 @@ void* Leaf::requireInterface(std::string_view path, const InterfaceId& id) const
 }
 
 Node::~Node() {
-  for (auto& c : children_) c.reset();
+  // Away from the list first: a child's destructor may look at its siblings.
+  const std::vector<std::unique_ptr<Leaf>> dying = std::move(children_);
+  children_.clear();
 }
 
 Leaf* Node::child(std::string_view name) const {
@@ -125,22 +155,52 @@ Leaf* Node::child(std::string_view name) const {
 
 void Node::throwLacks(const Leaf& leaf, const InterfaceId& id) { Kernel::throwLacks(leaf, id); }
 
+bool Node::isFixed(const Leaf& leaf) {
+  const Kernel& kernel = leaf.kernel();
+  const auto folder = [&](const Leaf* l) { return l && (l == kernel.classesNode_ || l == kernel.pluginsNode_); };
+  return &leaf == kernel.root_.get() || folder(&leaf) || folder(leaf.parent_);
+}
+
+void Node::mustRest(const Leaf& leaf, const char* verb) {
+  if (isFixed(leaf)) throw Error("cannot " + std::string(verb) + " " + leaf.path() + ": it belongs to the kernel (a plugin's classes go when it is unloaded)");
+  if (leaf.kernel().changing_ == 0) return;
+  const auto walk = [&](const auto& self, const Leaf& l) -> void {
+    if (l.changing_) throw Error("cannot " + std::string(verb) + " " + leaf.path() + " now: " + (&l == &leaf ? "it" : l.path()) + " is just being linked or unlinked");
+    if (l.asNode())
+      for (const auto& c : l.asNode()->children_) self(self, *c);
+  };
+  walk(walk, leaf);
+}
+
+std::size_t Node::indexOf(const Leaf& child) const {
+  return static_cast<std::size_t>(std::find_if(children_.begin(), children_.end(), [&](const auto& c) { return c.get() == &child; }) - children_.begin());
+}
+
 Leaf& Node::add(std::unique_ptr<Leaf> leaf) {
   if (!leaf) throw Error("cannot add nothing to " + path());
   Leaf& added = *leaf;
-  if (added.parent_) throw Error("cannot add " + added.path() + " to " + path() + ": it has a parent already");
-  if (added.name_.empty() && added.class_) added.name_ = added.class_->name();
+  if (!added.class_) throw Error("cannot add an object without a class to " + path() + ": make it through its class object");
+  if (added.parent_ || added.linked_) throw Error("cannot add " + added.path() + " to " + path() + ": it has a parent already");
+  if (class_ && class_->kernel_ != added.class_->kernel_) throw Error("cannot add " + added.path() + " to " + path() + ": it was made by another kernel");
+  if (class_ && (this == kernel().classesNode_ || this == kernel().pluginsNode_))
+    throw Error("cannot add " + added.path() + " to " + path() + ": what is there comes from plugins");
+  return attach(std::move(leaf));
+}
+
+Leaf& Node::attach(std::unique_ptr<Leaf> leaf) {
+  Leaf& added = *leaf;
+  if (added.name_.empty()) added.name_ = added.class_->name();
   children_.push_back(std::move(leaf));
   added.parent_ = this;
-  if (linked_) {
-    try {
-      link(added);
-    } catch (...) {
-      if (added.linked_) unlink(added);
-      added.parent_ = nullptr;
-      children_.erase(std::find_if(children_.begin(), children_.end(), [&](const auto& c) { return c.get() == &added; }));
-      throw;
-    }
+  if (!linked_) return added;
+  try {
+    link(added);
+  } catch (...) {
+    bury(added);
+    const std::size_t i = indexOf(added);
+    const std::unique_ptr<Leaf> dying = std::move(children_[i]);
+    children_.erase(children_.begin() + static_cast<std::ptrdiff_t>(i));
+    throw;
   }
   return added;
 }
@@ -151,60 +211,129 @@ Leaf& Node::create(std::string_view className, std::string_view name) {
   return add(std::move(leaf));
 }
 
+void Node::linkChildren(Node& node) {
+  for (std::size_t i = 0; i < node.children_.size();) {
+    Leaf& child = *node.children_[i];
+    if (!child.linked_) link(child);
+    i = i < node.children_.size() && node.children_[i].get() == &child ? i + 1 : 0;
+  }
+}
+
+void Node::unlinkChildren(Leaf& leaf) {
+  Node* node = leaf.asNode();
+  if (!node) return;
+  for (std::size_t i = 0; i < node->children_.size();) {
+    Leaf& child = *node->children_[i];
+    if (child.linked_) unlink(child);
+    i = i < node->children_.size() && node->children_[i].get() == &child ? i + 1 : 0;
+  }
+}
+
 void Node::link(Leaf& leaf) {
   Kernel& kernel = leaf.kernel();
+  const Changing guard(leaf);
   leaf.linked_ = true;
   kernel.changed();
-  leaf.onLink();
-  kernel.events().hook(leaf);
-  if (Node* node = leaf.asNode())
-    for (std::size_t i = 0; i < node->children_.size(); ++i)
-      if (!node->children_[i]->linked_) link(*node->children_[i]);
+  bool entered = false;
+  try {
+    leaf.onLink();
+    entered = true;
+    kernel.events().hook(leaf);
+    if (Node* node = leaf.asNode()) linkChildren(*node);
+  } catch (...) {
+    unlinkChildren(leaf);
+    if (entered) leave(leaf);
+    kernel.events().unhook(leaf);
+    leaf.linked_ = false;
+    kernel.changed();
+    throw;
+  }
+}
+
+void Node::leave(Leaf& leaf) {
+  try {
+    leaf.onUnlink();
+  } catch (const std::exception& e) {
+    leaf.kernel().log().error("{} (class {}) failed to leave the tree: {}", leaf.path(), leaf.class_->name(), e.what());
+  }
 }
 
 void Node::unlink(Leaf& leaf) {
-  if (Node* node = leaf.asNode())
-    for (std::size_t i = 0; i < node->children_.size(); ++i)
-      if (node->children_[i]->linked_) unlink(*node->children_[i]);
-  leaf.onUnlink();
+  const Changing guard(leaf);
+  unlinkChildren(leaf);
+  leave(leaf);
+  unlinkChildren(leaf);  // what onUnlink made
   Kernel& kernel = leaf.kernel();
   kernel.events().unhook(leaf);
   leaf.linked_ = false;
   kernel.changed();
 }
 
+void Node::bury(Leaf& leaf) {
+  if (leaf.life_) leaf.life_->leaf = nullptr;
+  if (Node* node = leaf.asNode())
+    for (const auto& c : node->children_) bury(*c);
+}
+
 void Node::remove(Leaf& child) {
-  const auto it = std::find_if(children_.begin(), children_.end(), [&](const auto& c) { return c.get() == &child; });
-  if (it == children_.end()) throw Error("cannot remove " + child.path() + " from " + path() + ": it is no child of it");
+  if (child.parent_ != this) throw Error("cannot remove " + child.path() + " from " + path() + ": it is no child of it");
+  mustRest(child, "remove");
+  detach(child);
+}
+
+void Node::detach(Leaf& child) {
   if (child.linked_) unlink(child);
-  // onUnlink may have changed the list.
-  const auto now = std::find_if(children_.begin(), children_.end(), [&](const auto& c) { return c.get() == &child; });
-  std::unique_ptr<Leaf> dying = std::move(*now);
-  children_.erase(now);
-  if (Node* node = dying->asNode()) node->removeChildren();
+  bury(child);
+  const std::size_t i = indexOf(child);
+  const std::unique_ptr<Leaf> dying = std::move(children_[i]);
+  children_.erase(children_.begin() + static_cast<std::ptrdiff_t>(i));
+  if (Node* node = dying->asNode())
+    while (!node->children_.empty()) node->detach(*node->children_.front());
 }
 
 void Node::removeChildren() {
+  for (const auto& c : children_) mustRest(*c, "remove");
   while (!children_.empty()) remove(*children_.front());
 }
 
 void Node::reparent(Leaf& child, Node& newParent) {
-  const auto it = std::find_if(children_.begin(), children_.end(), [&](const auto& c) { return c.get() == &child; });
-  if (it == children_.end()) throw Error("cannot move " + child.path() + ": it is no child of " + path());
+  if (child.parent_ != this) throw Error("cannot move " + child.path() + ": it is no child of " + path());
   for (Node* p = &newParent; p; p = p->parent_)
     if (p == &child) throw Error("cannot move " + child.path() + " below itself");
-  std::unique_ptr<Leaf> moving = std::move(*it);
-  children_.erase(it);
-  child.parent_ = &newParent;
-  newParent.children_.push_back(std::move(moving));
-  kernel().changed();
-  moved(child);
+  mustRest(child, "move");
+  if (&newParent.kernel() != &kernel()) throw Error("cannot move " + child.path() + " to " + newParent.path() + ", which belongs to another kernel");
+  if (&newParent == kernel().classesNode_ || &newParent == kernel().pluginsNode_)
+    throw Error("cannot move " + child.path() + " to " + newParent.path() + ": what is there comes from plugins");
+  if (child.linked_ && !newParent.linked_) unlink(child);
+  const auto carry = [&](Node& from, Node& to) {
+    to.children_.reserve(to.children_.size() + 1);
+    const std::size_t i = from.indexOf(child);
+    std::unique_ptr<Leaf> moving = std::move(from.children_[i]);
+    from.children_.erase(from.children_.begin() + static_cast<std::ptrdiff_t>(i));
+    child.parent_ = &to;
+    to.children_.push_back(std::move(moving));
+    to.kernel().changed();
+  };
+  carry(*this, newParent);
+  try {
+    if (child.linked_ == newParent.linked_) moved(child);
+    else link(child);
+  } catch (...) {
+    carry(newParent, *this);
+    try {
+      if (child.linked_) moved(child);
+    } catch (const std::exception& e) {
+      kernel().log().error("{} could not be moved, nor back: {}", child.path(), e.what());
+    }
+    throw;
+  }
 }
 
 void Node::moved(Leaf& leaf) {
+  const Changing guard(leaf);
   leaf.onMoved();
   if (Node* node = leaf.asNode())
-    for (const auto& c : node->children_) moved(*c);
+    for (std::size_t i = 0; i < node->children_.size(); ++i) moved(*node->children_[i]);
 }
 
 }  // namespace spark

@@ -1,5 +1,6 @@
 #include "spark/predicates.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -22,10 +23,11 @@ double Element::number() const {
     case Token::Kind::list: return 0;
     case Token::Kind::text: break;
   }
-  // atof wants a terminated string; numbers are short, longer text is cut.
+  // atof wants a terminated string; numbers are short.
   char buffer[64];
   const std::string_view s = owner_->textOf(t);
-  const std::size_t n = std::min(s.size(), sizeof buffer - 1);
+  const std::size_t n = s.size();
+  if (n >= sizeof buffer) return std::atof(std::string(s).c_str());
   s.copy(buffer, n);
   buffer[n] = 0;
   return std::atof(buffer);
@@ -169,7 +171,7 @@ class Reader {
       skipBlanksAndComments();
       if (at_ >= bytes_.size()) break;
       if (depth_ == 0) expressionStart = out_.size();
-      if (out_.size() - firstToken >= limits_.maxTokens) {
+      if (bytes_[at_] != ')' && out_.size() - firstToken >= limits_.maxTokens) {
         fail("more than " + std::to_string(limits_.maxTokens) + " tokens");
         break;
       }
@@ -202,17 +204,22 @@ class Reader {
         expressionStart = out_.size();
       }
     }
-    if (result_.message.empty() && depth_ > 0) fail("the list is not closed");
+    if (result_.message.empty() && depth_ > 0) {
+      fail("the list is not closed");
+      result_.line = out_.tokens()[expressionStart].line;
+      result_.column = out_.tokens()[expressionStart].column;
+    }
     if (!result_.message.empty()) out_.truncate(expressionStart);
     result_.consumed = at_;
     return result_;
   }
 
  private:
-  void fail(std::string message) {
+  void fail(std::string message) { fail(std::move(message), line_, column_); }
+  void fail(std::string message, std::uint32_t line, std::uint32_t column) {
     result_.message = std::move(message);
-    result_.line = line_;
-    result_.column = column_;
+    result_.line = line;
+    result_.column = column;
   }
   void step() {
     if (bytes_[at_] == '\n') ++line_, column_ = 1;
@@ -237,17 +244,18 @@ class Reader {
   }
   void atom() {
     text_.clear();
+    const std::uint32_t line = line_, column = column_;
     const char c = bytes_[at_];
     if (c == '"') {
       step();
       while (at_ < bytes_.size() && bytes_[at_] != '"') escapeOrByte();
-      if (at_ >= bytes_.size()) return fail("the string is not closed");
+      if (at_ >= bytes_.size()) return fail("the string is not closed", line, column);
       step();
       out_.add(text_, true);
     } else if (c == '\'') {
       step();
       if (at_ < bytes_.size() && bytes_[at_] == '(') {
-        quotedList();
+        quotedList(line, column);
       } else {
         while (at_ < bytes_.size() && isAtom(static_cast<unsigned char>(bytes_[at_]))) escapeOrByte();
         if (at_ < bytes_.size() && bytes_[at_] == '\'') step();
@@ -263,10 +271,10 @@ class Reader {
     }
   }
   /// `'(...)`: kept as text.
-  void quotedList() {
+  void quotedList(std::uint32_t line, std::uint32_t column) {
     std::size_t depth = 0;
     do {
-      if (at_ >= bytes_.size()) return fail("the quoted list is not closed");
+      if (at_ >= bytes_.size()) return fail("the quoted list is not closed", line, column);
       if (bytes_[at_] == '(') ++depth;
       if (bytes_[at_] == ')') --depth;
       text_ += bytes_[at_];
@@ -319,7 +327,7 @@ void writeSexp(const Predicates& predicates, int decimals, std::string& out) {
 void appendFixed(std::string& out, double v, int decimals, bool asFloat) {
   char buffer[400];
   if (asFloat) v = static_cast<float>(v);
-  const auto r = std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::fixed, decimals);
+  const auto r = std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::fixed, std::clamp(decimals, 0, 60));
   out.append(buffer, r.ptr);
 }
 

@@ -89,8 +89,7 @@ Value StateReader::readValue() {
 
 void saveTree(const Leaf& leaf, StateWriter& out) {
   if (leaf.classObject())
-    for (const Property* p : leaf.classObject()->properties())
-      if (p->state) out.write(p->get(leaf));
+    for (const Property* p : leaf.classObject()->stateProperties()) out.write(p->get(leaf));
   leaf.saveState(out);
   if (const Node* node = leaf.asNode())
     for (const auto& c : node->children()) saveTree(*c, out);
@@ -98,8 +97,7 @@ void saveTree(const Leaf& leaf, StateWriter& out) {
 
 void loadTree(Leaf& leaf, StateReader& in) {
   if (leaf.classObject())
-    for (const Property* p : leaf.classObject()->properties()) {
-      if (!p->state) continue;
+    for (const Property* p : leaf.classObject()->stateProperties()) {
       const Value v = in.readValue();
       Args args{std::span(&v, 1)};
       if (p->set) p->set(leaf, args);

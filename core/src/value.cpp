@@ -39,25 +39,28 @@ Value scalarFromText(std::string_view t) {
   if (t == "false") return false;
   const char* end = t.data() + t.size();
   std::int64_t i = 0;
-  const char* begin = t.size() > 1 && t.front() == '+' ? t.data() + 1 : t.data();
+  const char* begin = t.size() > 1 && t.front() == '+' && t[1] != '-' ? t.data() + 1 : t.data();
   if (auto r = std::from_chars(begin, end, i); r.ec == std::errc() && r.ptr == end) return i;
   double d = 0;
   if (auto r = std::from_chars(begin, end, d); r.ec == std::errc() && r.ptr == end) return d;
   return t;
 }
 
-Value valueFromText(std::string_view& t, bool inList, int depth) {
+/// Takes one value off `t`; `ok` turns false where a list is not well formed.
+Value valueFromText(std::string_view& t, bool inList, int depth, bool& ok) {
   skipBlanks(t);
   if (depth < 32 && !t.empty() && (t.front() == '{' || t.front() == '[')) {
     const char close = t.front() == '{' ? '}' : ']';
     t.remove_prefix(1);
     List list;
     for (skipBlanks(t); !t.empty() && t.front() != close; skipBlanks(t)) {
-      list.push_back(valueFromText(t, true, depth + 1));
+      list.push_back(valueFromText(t, true, depth + 1, ok));
+      if (!ok) return {};
       skipBlanks(t);
       if (!t.empty() && t.front() == ',') t.remove_prefix(1);
     }
-    if (!t.empty()) t.remove_prefix(1);
+    ok = !t.empty();
+    if (ok) t.remove_prefix(1);
     return list;
   }
   if (!t.empty() && (t.front() == '"' || t.front() == '\'')) {
@@ -69,6 +72,7 @@ Value valueFromText(std::string_view& t, bool inList, int depth) {
   }
   std::size_t n = inList ? t.find_first_of(",}] ") : t.size();
   if (n == std::string_view::npos) n = t.size();
+  if (inList && n == 0) ok = false;
   Value v = scalarFromText(t.substr(0, n));
   t.remove_prefix(n);
   return v;
@@ -91,7 +95,13 @@ std::string Value::text() const {
 
 std::string Value::plain() const { return isString() ? toString() : text(); }
 
-Value Value::fromText(std::string_view text) { return valueFromText(text, false, 0); }
+Value Value::fromText(std::string_view text) {
+  std::string_view rest = text;
+  bool ok = true;
+  Value v = valueFromText(rest, false, 0, ok);
+  skipBlanks(rest);
+  return ok && rest.empty() ? v : Value(text);
+}
 
 std::string_view typeName(Value::Type type) {
   constexpr std::string_view kNames[] = {"nil", "bool", "integer", "number", "string", "list"};
@@ -141,8 +151,10 @@ I integerFrom(Args& args) {
     throw Error("expected an integer, found " + numberText(d));
   }
   if (!args.loose && d != std::trunc(d)) throw Error("expected an integer, found " + numberText(d));
-  if (std::is_unsigned_v<I> && d < 0) throw Error("expected an integer of at least 0, found " + numberText(d));
-  return static_cast<I>(d);
+  constexpr double kLow = static_cast<double>(std::numeric_limits<I>::min()), kHigh = static_cast<double>(std::numeric_limits<I>::max());
+  if (d >= kLow && d <= kHigh) return static_cast<I>(d);
+  if (!args.loose) throw Error("expected an integer of " + numberText(kLow) + " to " + numberText(kHigh) + ", found " + numberText(d));
+  return d < kLow ? std::numeric_limits<I>::min() : std::numeric_limits<I>::max();
 }
 }  // namespace
 

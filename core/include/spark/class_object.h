@@ -28,6 +28,7 @@ struct Property {
   std::string doc;           ///< one sentence
   std::optional<double> min, max;  ///< inclusive range of every number in it
   std::vector<std::string> choices;  ///< when not empty: the only texts allowed
+  int scalars = 1;           ///< plain arguments that set takes, -1 for any number
   bool readOnly = false;
   bool state = false;        ///< part of the state hash and of saved state
   std::function<Value(const Leaf&)> get;
@@ -98,6 +99,8 @@ class ClassObject : public Leaf {
   std::vector<const Property*> properties();
   std::vector<const Method*> methods();
   const std::vector<const Hook*>& hooks();
+  /// The properties that are state, own and inherited, in order of properties().
+  const std::vector<const Property*>& stateProperties();
   /// Own interfaces only.
   const std::vector<ClassDescription::Interface>& interfaces() const { return description_.interfaces; }
   /// The default of a property, read from a fresh object; nil for abstract classes.
@@ -116,6 +119,7 @@ class ClassObject : public Leaf {
   ClassDescription description_;
   Kernel* kernel_ = nullptr;
   std::vector<const Hook*> hooks_;
+  std::vector<const Property*> stateProperties_;
   Plugin* plugin_;
   ClassObject* base_ = nullptr;
   bool resolved_ = false;

@@ -106,7 +106,7 @@ class Description {
     requires(std::is_base_of_v<C, T> && std::is_object_v<M>)
   PropertyBuilder property(std::string name, M C::*member) {
     return addProperty(
-        std::move(name), Convert<M>::typeName(), [member](const Leaf& l) { return Convert<M>::to(static_cast<const T&>(l).*member); },
+        std::move(name), Convert<M>::typeName(), Convert<M>::kScalars, [member](const Leaf& l) { return Convert<M>::to(static_cast<const T&>(l).*member); },
         [member](Leaf& l, Args& a) { static_cast<T&>(l).*member = Convert<M>::from(a); });
   }
   /// A getter alone: read only.
@@ -115,7 +115,7 @@ class Description {
   PropertyBuilder property(std::string name, G getter) {
     using V = std::decay_t<typename detail::Signature<G>::Result>;
     return addProperty(
-        std::move(name), Convert<V>::typeName(), [getter](const Leaf& l) { return Convert<V>::to((const_cast<T&>(static_cast<const T&>(l)).*getter)()); },
+        std::move(name), Convert<V>::typeName(), Convert<V>::kScalars, [getter](const Leaf& l) { return Convert<V>::to((const_cast<T&>(static_cast<const T&>(l)).*getter)()); },
         nullptr);
   }
   /// A getter and a setter of one argument.
@@ -124,7 +124,7 @@ class Description {
   PropertyBuilder property(std::string name, G getter, S setter) {
     using V = std::decay_t<typename detail::Signature<G>::Result>;
     return addProperty(
-        std::move(name), Convert<V>::typeName(), [getter](const Leaf& l) { return Convert<V>::to((const_cast<T&>(static_cast<const T&>(l)).*getter)()); },
+        std::move(name), Convert<V>::typeName(), Convert<V>::kScalars, [getter](const Leaf& l) { return Convert<V>::to((const_cast<T&>(static_cast<const T&>(l)).*getter)()); },
         [setter](Leaf& l, Args& a) { (static_cast<T&>(l).*setter)(Convert<V>::from(a)); });
   }
 
@@ -183,10 +183,11 @@ class Description {
   void abstract() { d_.make = nullptr; }
 
  private:
-  PropertyBuilder addProperty(std::string name, std::string type, std::function<Value(const Leaf&)> get, std::function<void(Leaf&, Args&)> set) {
+  PropertyBuilder addProperty(std::string name, std::string type, int scalars, std::function<Value(const Leaf&)> get, std::function<void(Leaf&, Args&)> set) {
     Property p;
     p.name = std::move(name);
     p.type = std::move(type);
+    p.scalars = scalars;
     p.readOnly = !set;
     p.get = std::move(get);
     p.set = std::move(set);

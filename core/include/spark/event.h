@@ -36,7 +36,7 @@ class Channel {
   /// Adds a handler to a linked node; it goes when the node is unlinked. Returns a number for `remove`.
   std::uint64_t add(Leaf& node, Handler handler);
   void remove(std::uint64_t subscription);
-  bool empty() const { return entries_.empty(); }
+  bool empty() const { return entries_.empty() && pending_.empty(); }
   const std::string& name() const { return name_; }
   const std::string& doc() const { return doc_; }
   Order order() const { return order_; }
@@ -50,12 +50,15 @@ class Channel {
     std::uint64_t number;
   };
   void sort();
+  void settle();
+  void insert(Entry entry);
+  void blank(Entry& entry);
   void run(Entry& entry, const Event& event);
   std::string name_, doc_;
   Order order_ = Order::parentsFirst;
   Kernel* kernel_ = nullptr;
-  std::vector<Entry> entries_;
-  std::uint64_t sortedAt_ = 0;
+  std::vector<Entry> entries_, pending_;  // what is added while the channel runs waits in pending_
+  std::uint64_t sortedAt_ = 0, lastNumber_ = 0;
   int depth_ = 0;
   bool dirty_ = false, holes_ = false;
 };

@@ -53,7 +53,7 @@ class Loader {
   explicit Loader(Kernel& kernel);
   ~Loader();
   /// Reads the descriptors of all `*.so` in a folder (by name) and lists them under /plugins. What is no good is logged and skipped;
-  /// returns the sentences that were logged.
+  /// returns the sentences that were logged. A file that is listed already is left alone.
   std::vector<std::string> scan(const std::filesystem::path& folder);
   /// Registers a scanned plugin's classes; does nothing when it is registered. Throws Error: unknown name (with the nearest and the
   /// folders that were searched), duplicate class, what the plugin threw.
@@ -72,6 +72,9 @@ class Loader {
   Plugin& open(const std::filesystem::path& file);
   void registerPlugin(Plugin& plugin);
   void close(Plugin& plugin);
+  void runActions(Plugin& plugin);
+  void drop(ClassObject& c, bool leak);
+  Plugin* fromFile(const std::filesystem::path& file) const;
   Kernel& kernel_;
   std::vector<std::filesystem::path> folders_;
 };
@@ -162,12 +165,13 @@ class Kernel {
   Node* classesNode_ = nullptr;
   Node* pluginsNode_ = nullptr;
   std::uint64_t seed_ = 1, structureVersion_ = 1, orderedAt_ = 0, nextId_ = 1;
+  int changing_ = 0;  // leaves that are being linked, moved or unlinked
   std::map<std::uint64_t, std::uint32_t> streamOrdinals_;
   std::mutex streamMutex_;
   std::atomic<bool> stop_{false};
 };
 
-/// The script side. One Lua 5.4 state per kernel; configs and scripts share it.
+/// The script side, Lua 5.4. Configs and trusted scripts share one state; every untrusted script has a limited one of its own.
 ///
 /// Globals of a config: plugin, new, get, delete, option, include, log, on, Soccer-like namespaces (see lua/README.md). Deterministic:
 /// `pairs` goes by key, `math.random` draws from a kernel stream, no clock, no io; only text chunks.

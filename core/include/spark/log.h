@@ -39,7 +39,7 @@ class Log {
   void warning(fmt::format_string<A...> f, A&&... a) { if (enabled(Level::warning)) write(Level::warning, fmt::format(f, std::forward<A>(a)...)); }
   template <class... A>
   void error(fmt::format_string<A...> f, A&&... a) { if (enabled(Level::error)) write(Level::error, fmt::format(f, std::forward<A>(a)...)); }
-  /// One line (control characters are escaped: the text may come from a client).
+  /// One line, or several of which all but the first are indented (control characters are escaped: the text may come from a client).
   void write(Level level, std::string_view line);
 
  private:

@@ -98,7 +98,8 @@ class Leaf {
   Leaf& operator=(const Leaf&) = delete;
 
   const std::string& name() const { return name_; }
-  /// Renames; siblings may share a name (the first is found by it, the others as `name[k]`).
+  /// Renames; siblings may share a name (the first is found by it, the others as `name[k]`). Throws Error for names that no path can
+  /// hold ("", ".", "..", with '/' or '\\') and for classes and plugins, whose names are fixed.
   void setName(std::string name);
   /// The owner, nullptr for the root and for what is not linked.
   Node* parent() const { return parent_; }
@@ -144,7 +145,7 @@ class Leaf {
   virtual void onLink() {}
   /// Runs when a parent further up changed (Node::reparent): look up again what onLink looked up.
   virtual void onMoved() {}
-  /// Runs before the object leaves the tree, after its children's.
+  /// Runs before the object leaves the tree, after its children's. What it throws is logged.
   virtual void onUnlink() {}
   /// State that is not a property: write it in a fixed order, read it back in the same.
   virtual void saveState(StateWriter&) const {}
@@ -173,7 +174,8 @@ class Leaf {
   std::uint64_t id_ = 0;
   std::uint32_t preOrder_ = 0, postOrder_ = 0;
   bool linked_ = false;
-  bool hooked_ = false;  ///< some channel has an entry of it
+  bool hooked_ = false;    ///< some channel has an entry of it
+  bool changing_ = false;  ///< is being linked, moved or unlinked: it must stay where it is
 };
 
 /// A Leaf that owns children, in order.
@@ -202,11 +204,13 @@ class Node : public Leaf {
     if (T* t = leaf.as<T>()) return *t;
     throwLacks(leaf, T::kInterface);
   }
-  /// Unlinks and destroys a child with all below it.
+  /// Unlinks and destroys a child with all below it. References to them are empty before the first destructor runs. Throws Error for what
+  /// is being linked or unlinked at that moment, and for classes and plugins (unload the plugin).
   void remove(Leaf& child);
-  /// Unlinks and destroys all children, first to last.
+  /// Unlinks and destroys all children, first to last. Throws as `remove`.
   void removeChildren();
-  /// Moves a child to another parent (appended) without destroying anything; onMoved runs for all that moved.
+  /// Moves a child to another parent (appended) without destroying anything; onMoved runs for all that moved (between linked parents;
+  /// else they are linked or unlinked). Throws what onMoved and onLink throw; the child is then back, as the last one.
   void reparent(Leaf& child, Node& newParent);
   /// All descendants that are a T, depth first, in child order; `deep` false: do not look below a match.
   template <class T>
@@ -226,8 +230,20 @@ class Node : public Leaf {
   }
 
  private:
+  friend class Leaf;
   friend class Kernel;
+  friend class Loader;
   [[noreturn]] static void throwLacks(const Leaf& leaf, const InterfaceId& id);
+  struct Changing;
+  Leaf& attach(std::unique_ptr<Leaf> leaf);
+  void detach(Leaf& child);
+  std::size_t indexOf(const Leaf& child) const;
+  static bool isFixed(const Leaf& leaf);
+  static void mustRest(const Leaf& leaf, const char* verb);
+  static void linkChildren(Node& node);
+  static void unlinkChildren(Leaf& leaf);
+  static void leave(Leaf& leaf);
+  static void bury(Leaf& leaf);
   static void link(Leaf& leaf);
   static void unlink(Leaf& leaf);
   static void moved(Leaf& leaf);

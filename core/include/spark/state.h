@@ -25,6 +25,7 @@ class StateWriter {
   void write(int v) { write(static_cast<std::int64_t>(v)); }
   void write(bool v) { write(static_cast<std::int64_t>(v)); }
   void write(std::string_view v);
+  void write(const char* v) { write(std::string_view(v)); }
   void write(const Value& v);
   /// Hash of all that was written so far.
   std::uint64_t hash() const;

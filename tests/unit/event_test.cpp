@@ -1,0 +1,206 @@
+#include <catch2/catch.hpp>
+
+#include "core_classes.h"
+#include "spark/error.h"
+
+using namespace spark;
+using spark::test::Core;
+using spark::test::Thing;
+
+namespace {
+/// Things whose ticks write their name into one text.
+struct Ticking : Core {
+  std::string order;
+  Channel& tick = kernel.events().define("tick", Order::parentsFirst, "For tests.");
+  Thing& named(Node& parent, const char* name) {
+    Thing& t = make(parent, name);
+    t.onTick = [this](Thing& self, const Event&) { order += self.name(); };
+    return t;
+  }
+  std::string emit(const char* channel = "tick") {
+    order.clear();
+    kernel.events().channel(channel).emit({channel, 0, 0, 0, nullptr});
+    return order;
+  }
+};
+}  // namespace
+
+TEST_CASE("Handlers run in tree order, whatever the order in which they came") {
+  Ticking t;
+  Thing& b = t.named(*t.top, "b");
+  Thing& a = t.named(*t.top, "a");
+  t.named(a, "x");
+  t.named(b, "y");
+  CHECK(t.emit() == "byax");
+  t.top->reparent(b, a);
+  CHECK(t.emit() == "axby");
+}
+
+TEST_CASE("A channel may run children before parents") {
+  Ticking t;
+  Channel& up = t.kernel.events().define("up", Order::childrenFirst, "For tests.");
+  Thing &a = t.named(*t.top, "a"), &b = t.named(a, "b");
+  for (Thing* n : {&a, &b}) up.add(*n, [&](Leaf& l, const Event&) { t.order += l.name(); });
+  CHECK(t.emit("up") == "ba");
+}
+
+TEST_CASE("A node's handlers run in the order of subscription, hooks first") {
+  Ticking t;
+  Thing& a = t.named(*t.top, "a");
+  t.tick.add(a, [&](Leaf&, const Event&) { t.order += "1"; });
+  t.tick.add(a, [&](Leaf&, const Event&) { t.order += "2"; });
+  CHECK(t.emit() == "a12");
+}
+
+TEST_CASE("Events carry their data") {
+  Ticking t;
+  const Value data("hello");
+  Event seen;
+  std::string text;
+  t.tick.add(*t.top, [&](Leaf&, const Event& e) {
+    seen = e;
+    text = e.data->toString();
+  });
+  t.tick.emit({"tick", 1.5, 0.02, 75, &data});
+  CHECK(seen.time == 1.5);
+  CHECK(seen.cycle == 75);
+  CHECK(text == "hello");
+}
+
+TEST_CASE("Handlers go with their node, and by number") {
+  Ticking t;
+  Thing& a = t.named(*t.top, "a");
+  const auto first = t.tick.add(a, [&](Leaf&, const Event&) { t.order += "1"; });
+  const auto second = t.tick.add(a, [&](Leaf&, const Event&) { t.order += "2"; });
+  t.tick.remove(second);
+  const auto third = t.tick.add(a, [&](Leaf&, const Event&) { t.order += "3"; });
+  CHECK(third != second);
+  t.tick.remove(second);
+  t.tick.remove(0);
+  CHECK(t.emit() == "a13");
+  t.tick.remove(first);
+  CHECK(t.emit() == "a3");
+  t.top->remove(a);
+  CHECK(t.emit().empty());
+  const auto loose = t.kernel.classOf("Thing").create();
+  CHECK_THROWS_WITH(t.tick.add(*loose, [](Leaf&, const Event&) {}), Catch::Contains("not linked"));
+}
+
+TEST_CASE("A handler that a running handler removes does not run, and its resources live until the end") {
+  Ticking t;
+  Thing &a = t.named(*t.top, "a"), &b = t.named(*t.top, "b"), &c = t.named(*t.top, "c");
+  a.onTick = [&](Thing&, const Event&) {
+    t.order += "a";
+    t.top->remove(b);
+  };
+  CHECK(t.emit() == "ac");
+  const auto alive = std::make_shared<int>(7);
+  std::weak_ptr<int> weak = alive;
+  std::uint64_t number = 0;
+  number = t.tick.add(c, [&, held = alive](Leaf&, const Event&) {
+    t.tick.remove(number);
+    t.order += std::to_string(*held);
+  });
+  a.onTick = nullptr;
+  CHECK(t.emit() == "c7");
+  CHECK(alive.use_count() == 1);
+  CHECK(t.emit() == "c");
+}
+
+TEST_CASE("A node may remove itself and everything around it while its channel runs") {
+  Ticking t;
+  Thing& a = t.named(*t.top, "a");
+  t.named(*t.top, "b");
+  t.tick.add(a, [&](Leaf&, const Event&) {
+    t.order += "!";
+    t.top->removeChildren();
+  });
+  t.tick.add(a, [&](Leaf&, const Event&) { t.order += "never"; });
+  CHECK(t.emit() == "a!");
+  CHECK(t.top->children().empty());
+}
+
+TEST_CASE("What a handler adds runs from the next time on") {
+  Ticking t;
+  Thing& a = t.named(*t.top, "a");
+  bool once = true;
+  a.onTick = [&](Thing& self, const Event&) {
+    t.order += "a";
+    if (!std::exchange(once, false)) return;
+    for (int i = 0; i < 100; ++i) t.named(self, "n");
+    t.tick.add(self, [&](Leaf&, const Event&) { t.order += "h"; });
+  };
+  t.named(*t.top, "z");
+  CHECK(t.emit() == "az");
+  CHECK(t.emit() == "ah" + std::string(100, 'n') + "z");
+}
+
+TEST_CASE("What comes and goes within one event leaves nothing behind") {
+  Ticking t;
+  Thing& a = t.named(*t.top, "a");
+  const auto held = std::make_shared<int>(0);
+  a.onTick = [&](Thing& self, const Event&) {
+    Thing& brief = t.named(self, "brief");
+    t.tick.add(brief, [held](Leaf&, const Event&) {});
+    self.remove(brief);
+    t.tick.remove(t.tick.add(self, [held](Leaf&, const Event&) {}));
+  };
+  for (int i = 0; i < 3; ++i) t.emit();
+  CHECK(held.use_count() == 1);
+  CHECK(t.emit().empty());
+}
+
+TEST_CASE("A channel may be emitted within itself") {
+  Ticking t;
+  Thing& a = t.named(*t.top, "a");
+  t.named(*t.top, "b");
+  int depth = 0;
+  a.onTick = [&](Thing& self, const Event& e) {
+    t.order += "a";
+    if (++depth == 3) self.parent()->remove(self);
+    else t.tick.emit(e);
+  };
+  CHECK(t.emit() == "aaabbb");
+  CHECK(t.emit() == "b");
+}
+
+TEST_CASE("A handler that throws is reported with channel, node and class, and the others run") {
+  Ticking t;
+  Thing& a = t.named(*t.top, "a");
+  t.named(*t.top, "b");
+  a.onTick = [](Thing&, const Event&) { throw Error("broken"); };
+  CHECK(t.emit() == "b");
+  CHECK_THAT(t.text, Catch::Contains("tick of /usr/t/a (class Thing) failed: broken"));
+  a.onTick = [](Thing&, const Event&) { throw 7; };
+  CHECK(t.emit() == "b");
+  CHECK_THAT(t.text, Catch::Contains("no std::exception"));
+  a.onTick = [&](Thing& self, const Event&) {
+    for (int i = 0; i < 50; ++i) t.tick.add(*t.top, [](Leaf&, const Event&) {});
+    t.top->remove(self);
+    throw Error("while leaving");
+  };
+  CHECK(t.emit() == "b");
+  CHECK_THAT(t.text, Catch::Contains("tick of a removed node failed: while leaving"));
+}
+
+TEST_CASE("One node alone can be told") {
+  Ticking t;
+  t.named(*t.top, "a");
+  Thing& b = t.named(*t.top, "b");
+  t.tick.add(b, [&](Leaf&, const Event&) { t.order += "!"; });
+  t.tick.emitAt(b, {"tick", 0, 0, 0, nullptr});
+  CHECK(t.order == "b!");
+}
+
+TEST_CASE("Listeners may come before definers, and a second definition must agree") {
+  Core core;
+  Channel& late = core.kernel.events().channel("late");
+  core.kernel.events().channel("aaa");
+  CHECK(&core.kernel.events().define("late", Order::childrenFirst, "Defined now.") == &late);
+  CHECK(late.doc() == "Defined now.");
+  CHECK_THROWS_WITH(core.kernel.events().define("late", Order::parentsFirst, "Again."), Catch::Contains("'late' is defined already"));
+  std::vector<std::string> names;
+  for (const Channel* c : core.kernel.events().all()) names.push_back(c->name());
+  CHECK(names == std::vector<std::string>{"aaa", "late", "tick"});
+  CHECK(late.empty());
+}

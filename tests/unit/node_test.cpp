@@ -1,0 +1,330 @@
+#include <catch2/catch.hpp>
+
+#include "core_classes.h"
+#include "spark/error.h"
+
+using namespace spark;
+using spark::test::Core;
+using spark::test::ICounter;
+using spark::test::Thing;
+
+TEST_CASE("Paths lead to nodes, absolute and relative") {
+  Core core;
+  Thing& a = core.make("a");
+  Thing& b = core.make(a, "b");
+  CHECK(b.path() == "/usr/t/a/b");
+  CHECK(core.kernel.root().path() == "/");
+  CHECK(b.find("/usr/t/a") == &a);
+  CHECK(b.find("..") == &a);
+  CHECK(b.find("../../a/./b/") == &b);
+  CHECK(b.find("") == &b);
+  CHECK(b.find(".") == &b);
+  CHECK(b.find("/") == &core.kernel.root());
+  CHECK(b.find("//usr//t") == core.top);
+  CHECK(b.find("\\usr\\t") == core.top);
+  CHECK(b.find("/..") == nullptr);
+  CHECK(b.find("../c") == nullptr);
+  CHECK(b.find("x/y/z") == nullptr);
+}
+
+TEST_CASE("A leaf has nothing below it") {
+  Core core;
+  Leaf& leaf = core.top->create("Leaf", "l");
+  CHECK(leaf.asNode() == nullptr);
+  CHECK(leaf.find("x") == nullptr);
+  CHECK(leaf.find("..") == core.top);
+}
+
+TEST_CASE("Siblings of one name are told apart by number") {
+  Core core;
+  Thing &a = core.make("x"), &b = core.make("x"), &c = core.make("x");
+  CHECK(a.path() == "/usr/t/x");
+  CHECK(b.path() == "/usr/t/x[2]");
+  CHECK(c.path() == "/usr/t/x[3]");
+  for (Thing* t : {&a, &b, &c}) CHECK(core.kernel.root().find(t->path()) == t);
+  CHECK(core.top->child("x[1]") == &a);
+  CHECK(core.top->child("x[4]") == nullptr);
+  CHECK(core.top->child("x[0]") == nullptr);
+  CHECK(core.top->child("x[-1]") == nullptr);
+  CHECK(core.top->child("x[]") == nullptr);
+  CHECK(core.top->child("x[99999999999999999999]") == nullptr);
+  Thing& literal = core.make("odd]");
+  CHECK(core.top->child("odd]") == &literal);
+}
+
+TEST_CASE("Names that no path can hold are refused") {
+  Core core;
+  Thing& a = core.make("a");
+  for (const char* bad : {"x/y", "x\\y", ".", "..", ""}) {
+    CAPTURE(bad);
+    CHECK_THROWS_AS(a.setName(bad), Error);
+  }
+  CHECK(a.name() == "a");
+  CHECK_THROWS_AS(core.kernel.create("Thing", "/usr/../x"), Error);
+  const std::uint64_t before = core.kernel.structureVersion();
+  a.setName("b");
+  CHECK(core.top->child("b") == &a);
+  CHECK(core.kernel.structureVersion() > before);
+}
+
+TEST_CASE("An absolute path is the kernel's also for what is not linked") {
+  Core core;
+  const auto loose = core.kernel.classOf("Thing").create();
+  CHECK(loose->find("/usr/t") == core.top);
+  CHECK_FALSE(loose->isLinked());
+  CHECK(loose->path() == "Thing");
+}
+
+TEST_CASE("A missing path says where it ends and what is near") {
+  Core core;
+  core.make("wheel");
+  CHECK_THROWS_WITH(core.top->require<Thing>("/usr/t/wheal"),
+                    Catch::Contains("expected a Thing at '/usr/t/wheal'") && Catch::Contains("no 'wheal' in /usr/t") && Catch::Contains("'wheel'"));
+  core.top->create("Leaf", "plain");
+  CHECK_THROWS_WITH(core.top->require<Thing>("plain"), Catch::Contains("found a Leaf") && Catch::Contains("lacks interface Thing version 1"));
+  CHECK(&core.top->require<ICounter>("wheel").leaf() == core.top->child("wheel"));
+}
+
+TEST_CASE("Interfaces are found through the class, bases included") {
+  Core core;
+  Leaf& heavy = core.top->create("HeavyThing", "h");
+  CHECK(heavy.as<Thing>() != nullptr);
+  CHECK(heavy.as<Node>() != nullptr);
+  CHECK(heavy.as<Leaf>() == &heavy);
+  REQUIRE(heavy.as<ICounter>() != nullptr);
+  CHECK(&heavy.as<ICounter>()->leaf() == &heavy);
+  CHECK(core.top->create("Node").as<ICounter>() == nullptr);
+  CHECK(core.top->as<ClassObject>() == nullptr);
+}
+
+TEST_CASE("Creating makes parents, refuses what exists, and names class and plugin") {
+  Core core;
+  Leaf& deep = core.kernel.create("Thing", "/usr/x/y/z");
+  CHECK(deep.path() == "/usr/x/y/z");
+  CHECK(deep.parent()->classObject()->name() == "Node");
+  CHECK_THROWS_WITH(core.kernel.create("Thing", "/usr/x/y/z"), Catch::Contains("exists already, as Thing"));
+  CHECK_THROWS_WITH(core.kernel.create("Thing", "relative"), Catch::Contains("absolute path"));
+  CHECK_THROWS_WITH(core.kernel.create("Thing", "/usr/"), Catch::Contains("expected a name"));
+  CHECK_THROWS_WITH(core.kernel.create("Thang", "/usr/q"), Catch::Contains("'Thing'"));
+  core.kernel.create("Leaf", "/usr/leaf");
+  CHECK_THROWS_WITH(core.kernel.create("Thing", "/usr/leaf/x"), Catch::Contains("/usr/leaf cannot have children"));
+  CHECK(core.top->create("Thing").name() == "Thing");
+  CHECK(core.top->create("somewhere/Thing", "p").classObject()->name() == "Thing");
+}
+
+TEST_CASE("Only what a class made, without a parent, from this kernel can be added") {
+  Core core, other;
+  CHECK_THROWS_AS(core.top->add(nullptr), Error);
+  CHECK_THROWS_WITH(core.top->add(std::make_unique<Thing>()), Catch::Contains("without a class"));
+  CHECK_THROWS_WITH(core.top->add(other.kernel.classOf("Thing").create()), Catch::Contains("another kernel"));
+}
+
+TEST_CASE("Parents are linked before children, and unlinked after them") {
+  Core core;
+  std::string order;
+  auto tree = core.kernel.classOf("Thing").create();
+  const auto watch = [&](Thing& t, char c) {
+    t.atLink = [&order, c](Thing&) { order += c; };
+    t.atUnlink = [&order, c](Thing&) { order += static_cast<char>(c - 32); };
+  };
+  Thing& a = *tree->as<Thing>();
+  watch(a, 'a');
+  watch(core.make(a, "b"), 'b');
+  watch(core.make(a, "c"), 'c');
+  CHECK(order.empty());
+  core.top->add(std::move(tree));
+  CHECK(order == "abc");
+  core.top->remove(a);
+  CHECK(order == "abcBCA");
+}
+
+TEST_CASE("When linking fails the tree is as before and what was linked is unlinked") {
+  Core core;
+  std::string order;
+  auto tree = core.kernel.classOf("Thing").create();
+  Thing& a = *tree->as<Thing>();
+  a.atLink = [&](Thing& t) {
+    order += "a";
+    core.make(t, "own");
+  };
+  a.atUnlink = [&](Thing&) { order += "A"; };
+  Thing& b = core.make(a, "b");
+  b.atUnlink = [&](Thing&) { order += "B"; };
+  Thing& c = core.make(a, "c");
+  c.atLink = [&](Thing&) { throw Error("c cannot be linked"); };
+  c.atUnlink = [&](Thing&) { order += "C"; };
+  const Ref<Leaf> ref(&a);
+  CHECK_THROWS_WITH(core.top->add(std::move(tree)), "c cannot be linked");
+  CHECK(order == "aBA");
+  CHECK_FALSE(ref);
+  CHECK(core.top->children().empty());
+  CHECK(core.kernel.classOf("Thing").living() == 1);
+}
+
+TEST_CASE("A node may add and remove others while it is linked, but not itself") {
+  Core core;
+  Thing& victim = core.make("victim");
+  auto made = core.kernel.classOf("Thing").create();
+  Thing& t = *made->as<Thing>();
+  core.make(t, "first");
+  core.make(t, "second");
+  std::string linked;
+  t.child("first")->as<Thing>()->atLink = [&](Thing& self) {
+    core.top->remove(victim);
+    self.parent()->create("Thing", "third").as<Thing>()->atLink = nullptr;
+    linked += "1";
+  };
+  t.child("second")->as<Thing>()->atLink = [&](Thing&) { linked += "2"; };
+  core.top->add(std::move(made));
+  CHECK(linked == "12");
+  CHECK(core.top->child("victim") == nullptr);
+  CHECK(t.child("third")->isLinked());
+
+  auto suicidal = core.kernel.classOf("Thing").create();
+  suicidal->as<Thing>()->atLink = [](Thing& self) { self.parent()->remove(self); };
+  CHECK_THROWS_WITH(core.top->add(std::move(suicidal)), Catch::Contains("just being linked"));
+}
+
+TEST_CASE("What onUnlink throws is logged, and the node goes all the same") {
+  Core core;
+  core.make("x").atUnlink = [](Thing& self) { self.parent()->remove(self); };
+  core.top->remove(*core.top->child("x"));
+  CHECK(core.top->children().empty());
+  CHECK_THAT(core.text, Catch::Contains("/usr/t/x (class Thing) failed to leave the tree"));
+}
+
+TEST_CASE("What onUnlink makes goes too") {
+  Core core;
+  Thing& x = core.make("x");
+  x.atUnlink = [&](Thing& self) { core.make(self, "late"); };
+  core.top->remove(x);
+  CHECK(core.kernel.classOf("Thing").living() == 1);
+}
+
+TEST_CASE("Removing destroys children first, front to back") {
+  Core core;
+  std::string order;
+  Thing& a = core.make("a");
+  for (const char* n : {"b", "c"}) core.make(a, n).atEnd = [&order](Thing& t) { order += t.name(); };
+  a.atEnd = [&order](Thing& t) { order += t.name(); };
+  core.top->remove(a);
+  CHECK(order == "bca");
+  CHECK_THROWS_AS(core.top->remove(*core.top), Error);
+}
+
+TEST_CASE("References are empty before the first destructor runs") {
+  Core core;
+  Thing &a = core.make("a"), &b = core.make(a, "b");
+  const Ref<Thing> toA(&a);
+  const Ref<ICounter> toB(&b);
+  Ref<Thing> copy = toA;
+  REQUIRE(copy.get() == &a);
+  CHECK(toB->count() == 0);
+  bool seen = true;
+  b.atEnd = [&](Thing&) { seen = toA || toB; };
+  core.top->remove(a);
+  CHECK_FALSE(seen);
+  CHECK_FALSE(copy);
+  CHECK(toB.get() == nullptr);
+  Ref<Thing> empty;
+  copy = empty;
+  CHECK_FALSE(copy);
+}
+
+TEST_CASE("A reference outlives the kernel") {
+  Ref<Thing> ref;
+  {
+    Core core;
+    ref = Ref<Thing>(core.top);
+    CHECK(ref);
+  }
+  CHECK_FALSE(ref);
+}
+
+TEST_CASE("Reparenting keeps the object, tells all that moved, and appends") {
+  Core core;
+  Thing &a = core.make("a"), &b = core.make("b"), &c = core.make(a, "c"), &d = core.make(c, "d");
+  core.make(b, "first");
+  const Ref<Thing> ref(&c);
+  std::string order;
+  c.atMove = [&](Thing&) { order += "c"; };
+  d.atMove = [&](Thing&) { order += "d"; };
+  c.atUnlink = [&](Thing&) { order += "!"; };
+  a.reparent(c, b);
+  CHECK(order == "cd");
+  CHECK(ref);
+  CHECK(d.path() == "/usr/t/b/c/d");
+  CHECK(b.children().back().get() == &c);
+  CHECK(a.children().empty());
+  CHECK_THROWS_WITH(b.reparent(c, d), Catch::Contains("below itself"));
+  CHECK_THROWS_AS(a.reparent(c, *core.top), Error);
+}
+
+TEST_CASE("A move that fails is taken back") {
+  Core core;
+  Thing &a = core.make("a"), &b = core.make("b"), &c = core.make(a, "c");
+  c.atMove = [&](Thing& t) {
+    if (t.parent() == &b) throw Error("not there");
+  };
+  CHECK_THROWS_WITH(a.reparent(c, b), "not there");
+  CHECK(c.path() == "/usr/t/a/c");
+  CHECK(b.children().empty());
+}
+
+TEST_CASE("Moving to a tree that is not linked unlinks, and back links") {
+  Core core;
+  auto loose = core.kernel.classOf("Node").create();
+  Thing& c = core.make("c");
+  int links = 0, unlinks = 0;
+  c.atLink = [&](Thing&) { ++links; };
+  c.atUnlink = [&](Thing&) { ++unlinks; };
+  core.top->reparent(c, *loose->asNode());
+  CHECK_FALSE(c.isLinked());
+  CHECK(unlinks == 1);
+  loose->asNode()->reparent(c, *core.top);
+  CHECK(c.isLinked());
+  CHECK(links == 1);
+}
+
+TEST_CASE("The kernel's own nodes cannot be removed, moved, renamed or joined") {
+  Core core;
+  Node& root = core.kernel.root();
+  Leaf &classes = *root.child("classes"), &plugins = *root.child("plugins"), &thing = core.kernel.classOf("Thing");
+  CHECK_THROWS_AS(root.remove(classes), Error);
+  CHECK_THROWS_AS(root.remove(plugins), Error);
+  CHECK_THROWS_AS(root.removeChildren(), Error);
+  CHECK_THROWS_AS(root.reparent(classes, *core.top), Error);
+  CHECK_THROWS_WITH(classes.asNode()->remove(thing), Catch::Contains("/classes/Thing"));
+  CHECK_THROWS_AS(classes.asNode()->removeChildren(), Error);
+  CHECK_THROWS_AS(classes.asNode()->reparent(thing, *core.top), Error);
+  CHECK_THROWS_AS(thing.setName("Other"), Error);
+  CHECK_THROWS_AS(root.setName("x"), Error);
+  CHECK_THROWS_AS(core.kernel.create("Thing", "/classes/x"), Error);
+  CHECK_THROWS_AS(core.kernel.create("Node", "/plugins/x"), Error);
+  CHECK_THROWS_AS(core.top->reparent(core.make("m"), *classes.asNode()), Error);
+  CHECK(core.top->child("m") != nullptr);
+  CHECK(core.top->isLinked());
+}
+
+TEST_CASE("Descendants of a type are collected depth first") {
+  Core core;
+  Thing &a = core.make("a"), &b = core.make(a, "b"), &c = core.make("c");
+  core.top->create("Node", "n");
+  std::vector<Thing*> all, shallow;
+  core.top->collect(all);
+  CHECK(all == std::vector<Thing*>{&a, &b, &c});
+  core.top->collect(shallow, false);
+  CHECK(shallow == std::vector<Thing*>{&a, &c});
+  CHECK(core.top->childOf<Thing>() == &a);
+  CHECK(b.ancestor<Thing>() == &a);
+  CHECK(core.top->ancestor<Thing>() == nullptr);
+}
+
+TEST_CASE("Ids are never used again, and several kernels live side by side") {
+  Core core, other;
+  Thing& a = core.make("a");
+  const std::uint64_t id = a.id();
+  core.top->remove(a);
+  CHECK(core.make("b").id() > id);
+  CHECK(other.kernel.root().find("/usr/t/b") == nullptr);
+}

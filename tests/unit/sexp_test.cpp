@@ -1,0 +1,242 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "spark/predicates.h"
+
+using namespace spark;
+
+namespace {
+/// Reads and shows the tokens: lists in brackets, atoms with a mark for quoted ones. An error follows as line:column message.
+std::string shown(std::string_view text, ReadLimits limits = {}, std::size_t maxExpressions = 0) {
+  Predicates p;
+  const ReadResult r = readSexp(text, p, limits, maxExpressions);
+  std::string out;
+  bool first = true;
+  const auto show = [&](const auto& self, const Element& e) -> void {
+    if (!std::exchange(first, false)) out += ' ';
+    if (!e.isList()) {
+      out += e.token().quoted ? "'" + std::string(e.text()) : std::string(e.text());
+      return;
+    }
+    out += '[';
+    first = true;
+    for (const Element inner : e) self(self, inner);
+    first = false;
+    out += ']';
+  };
+  for (const Element e : p) show(show, e);
+  if (!r.message.empty()) out += " !" + std::to_string(r.line) + ":" + std::to_string(r.column) + " " + r.message;
+  return out;
+}
+}  // namespace
+
+TEST_CASE("Expressions stand one after another, blanks between them or not") {
+  CHECK(shown("(he1 1.2)(he2 -0.3)(syn)") == "[he1 1.2] [he2 -0.3] [syn]");
+  CHECK(shown(" \t\r\n(a\n\t(b  c)\r)  ") == "[a [b c]]");
+  CHECK(shown("").empty());
+  CHECK(shown("()") == "[]");
+  CHECK(shown("((a) b)") == "[[a] b]");
+  CHECK(shown("top (x) level") == "top [x] level");
+}
+
+TEST_CASE("A comment starts where a token may start, and swallows the rest of the line") {
+  CHECK(shown("(say ;zz)(he1 1)") == " !1:1 the list is not closed");
+  CHECK(shown("(a ; one\n b) ;; two") == "[a b]");
+  CHECK(shown("(setAxis 1 0 0 ;note\n)") == "[setAxis 1 0 0]");
+  CHECK(shown("(foo;bar a;)") == "[foo;bar a;]");
+  CHECK(shown(";only") == "");
+}
+
+TEST_CASE("Double quotes make one atom and may touch their neighbours") {
+  CHECK(shown(R"(("NaoType["$type"]['UseToe']"))") == "['NaoType[ $type ']['UseToe']]");
+  CHECK(shown(R"(("a b" c))") == "['a b c]");
+  CHECK(shown(R"((a"b"c))") == "[a 'b c]");
+  CHECK(shown(R"((""))") == "[']");
+  CHECK(shown("(\"a\nb\")") == "['a\nb]");
+  CHECK(shown(R"(("a;b)(" ))") == "['a;b)(]");
+}
+
+TEST_CASE("Single quotes begin an atom and end one") {
+  CHECK(shown("('models/naohead.obj' x)") == "['models/naohead.obj x]");
+  CHECK(shown("('abc)") == "['abc]");
+  CHECK(shown("('a b')") == "['a b ']");
+  CHECK(shown("(abc'def')") == "[abc 'def]");
+  CHECK(shown("('(a (b) \"c)' d)") == "['(a (b) \"c) ' d]");
+}
+
+TEST_CASE("A backslash escapes quotes, parentheses and itself, and nothing else") {
+  CHECK(shown(R"((a\(b\)c))") == "[a(b)c]");
+  CHECK(shown(R"((a\"b \'c \\d))") == R"([a"b 'c \d])");
+  CHECK(shown(R"(("a\"b\n"))") == R"(['a"b\n])");
+  CHECK(shown("(a\\") == " !1:1 the list is not closed");
+  CHECK(shown("a\\") == "a\\");
+}
+
+TEST_CASE("Atoms are made of the bytes that the installed base takes") {
+  for (int c = 1; c < 256; ++c) {
+    const bool atom = c == '!' || (c >= 0x23 && c <= 0x26) || (c >= 0x2A && c <= 0x7E && c != ';') || c > 0x7F;
+    if (std::string_view(" \t\r\n();\"'\\").find(static_cast<char>(c)) != std::string_view::npos) continue;
+    const std::string text{'(', 'x', ' ', static_cast<char>(c), ')'};
+    CAPTURE(c);
+    Predicates p;
+    const bool ok = readSexp(text, p).message.empty();
+    CHECK(ok == atom);
+    if (ok) CHECK((*p.begin()).at(1).text() == std::string_view(text).substr(3, 1));
+  }
+  CHECK(shown(std::string("(a \x01)")) == " !1:4 byte 0x01 is no part of an atom");
+  CHECK(shown(std::string_view("(a \0b)", 6)) == " !1:4 byte 0x00 is no part of an atom");
+}
+
+TEST_CASE("A stray parenthesis ends the message; what came before stays") {
+  CHECK(shown("(a))(b)") == "[a] !1:4 ')' without '('");
+  CHECK(shown(")") == " !1:1 ')' without '('");
+}
+
+TEST_CASE("What is not closed is dropped, and the error says where it began") {
+  CHECK(shown("(a)\n  (b (c)") == "[a] !2:3 the list is not closed");
+  CHECK(shown("(a \"bc)") == " !1:4 the string is not closed");
+  CHECK(shown("(a\n '(b)") == " !1:1 the list is not closed");
+  CHECK(shown("(a\n '((b)") == " !2:2 the quoted list is not closed");
+}
+
+TEST_CASE("Tokens know line and column, from 1") {
+  Predicates p;
+  REQUIRE(readSexp("(a \"b\"\n  (c)\n)", p).message.empty());
+  std::vector<std::pair<int, int>> at;
+  for (const Token& t : p.tokens()) at.emplace_back(t.line, t.column);
+  CHECK(at == std::vector<std::pair<int, int>>{{1, 1}, {1, 2}, {1, 4}, {2, 3}, {2, 4}});
+}
+
+TEST_CASE("Only as many expressions are read as wanted") {
+  CHECK(shown("(a)(b)))", {}, 2) == "[a] [b]");
+  Predicates p;
+  CHECK(readSexp("(a) (b) (c)", p, {}, 2).consumed == 7);
+  CHECK(readSexp("x (b)", p, {}, 1).consumed == 1);
+}
+
+TEST_CASE("Depth and number of tokens are limited") {
+  CHECK(shown("(((a)))", {3, 100}) == "[[[a]]]");
+  CHECK(shown("(x)((((a))))", {3, 100}) == "[x] !1:7 lists nested deeper than 3");
+  CHECK(shown("(a b)", {3, 3}) == "[a b]");
+  CHECK(shown("(a b c)", {3, 3}) == " !1:6 more than 3 tokens");
+}
+
+TEST_CASE("200,000 nested parentheses are refused in no time, and read where they are allowed") {
+  const std::string deep(200000, '(');
+  CHECK(shown(deep) == " !1:65 lists nested deeper than 64");
+  Predicates p;
+  const ReadResult r = readSexp(deep + std::string(200000, ')'), p, {300000, 300000});
+  CHECK(r.message.empty());
+  CHECK(p.size() == 200000);
+  CHECK(p.tokens()[0].end == 200000);
+}
+
+TEST_CASE("Reading appends, and an error takes back only its own expression") {
+  Predicates p;
+  p.open("before").add(1).close();
+  CHECK_FALSE(readSexp("(ok)(bad (x", p).message.empty());
+  std::string out;
+  writeSexp(p, 2, out);
+  CHECK(out == "(before 1)(ok )");
+}
+
+TEST_CASE("Numbers are read from text as C does") {
+  Predicates p;
+  readSexp("(1e-3 +2 0x10 nan inf abc 12abc -0 () -3.9)", p);
+  const Element e = *p.begin();
+  CHECK(e.at(0).number() == 1e-3);
+  CHECK(e.at(1).number() == 2);
+  CHECK(e.at(2).number() == 16);
+  CHECK(std::isnan(e.at(3).number()));
+  CHECK(e.at(3).integer() == 0);
+  CHECK(std::isinf(e.at(4).number()));
+  CHECK(e.at(4).integer() == std::numeric_limits<std::int64_t>::max());
+  CHECK(e.at(5).number() == 0);
+  CHECK(e.at(6).number() == 12);
+  CHECK(std::signbit(e.at(7).number()));
+  CHECK(e.at(8).number() == 0);
+  CHECK(e.at(9).integer() == -3);
+  CHECK_FALSE(e.at(10));
+  Predicates longNumber;
+  readSexp("1" + std::string(100, '0'), longNumber);
+  CHECK((*longNumber.begin()).number() == 1e100);
+}
+
+TEST_CASE("Named parameters are the first sub-list of that name with a value") {
+  Predicates p;
+  readSexp("(init (unum) unum (x 1) (unum 7 8) (unum 9) (teamname \"A B\"))", p);
+  const Element e = *p.begin();
+  CHECK(e.head() == "init");
+  CHECK(e.named("unum").at(1).integer() == 7);
+  CHECK(e.named("teamname").at(1).text() == "A B");
+  CHECK_FALSE(e.named("nothing"));
+  CHECK(e.size() == 7);
+}
+
+TEST_CASE("Messages are written as the installed base expects them") {
+  Predicates p;
+  p.open("See").close();
+  p.open("time").open("now").add(12.345).close().close();
+  p.open("GYR").open("n").add("torso").close().open("rt").add(0.0).add(-0.001).add(-1.005).close().close();
+  p.open("GS").pair("sl", 3).pair("pm", "BeforeKickOff").close();
+  p.open("empty").open("inner").close().close();
+  p.open("raw").add("two words", true).close();
+  std::string out;
+  writeSexp(p, 2, out);
+  CHECK(out ==
+        "(See )(time (now 12.35))(GYR (n torso) (rt 0.00 -0.00 -1.00))(GS (sl 3) (pm BeforeKickOff))(empty (inner))(raw two words)");
+  out.clear();
+  Predicates three;
+  three.open("a").add(1.0f / 3.0).close();
+  writeSexp(three, 3, out);
+  CHECK(out == "(a 0.333)");
+}
+
+TEST_CASE("Fixed numbers look as C prints them") {
+  const auto text = [](double v, int decimals, bool single = true) {
+    std::string out;
+    appendFixed(out, v, decimals, single);
+    return out;
+  };
+  CHECK(text(-0.0, 2) == "-0.00");
+  CHECK(text(-0.004, 2) == "-0.00");
+  CHECK(text(1e6, 2) == "1000000.00");
+  CHECK(text(0.1, 9) == "0.100000001");
+  CHECK(text(0.1, 9, false) == "0.100000000");
+  CHECK(text(std::nan(""), 2) == "nan");
+  CHECK(text(-std::numeric_limits<double>::infinity(), 2) == "-inf");
+  CHECK(text(1e308, 2) == "inf");
+  CHECK(text(1e308, 1000, false).size() == 309 + 1 + 60);
+}
+
+TEST_CASE("Predicates copy, cut and reuse their memory") {
+  Predicates p;
+  readSexp("(a (b 1) \"c d\")(e)", p);
+  Predicates copy;
+  copy.append(*p.begin());
+  std::string out;
+  writeSexp(copy, 2, out);
+  CHECK(out == "(a (b 1) c d)");
+  CHECK(copy.tokens()[5].quoted);
+  p.truncate(0);
+  CHECK(p.empty());
+  readSexp("(x)", p);
+  CHECK((*p.begin()).head() == "x");
+  p.clear();
+  CHECK(p.size() == 0);
+}
+
+TEST_CASE("Predicates become values and back") {
+  Predicates p;
+  readSexp("(a (b 1))", p);
+  p.open("n").add(2.5).add(3).close();
+  const List values = toList(p);
+  CHECK(Value(values) == Value(List{List{"a", List{"b", "1"}}, List{"n", 2.5, 3}}));
+  Predicates back;
+  append(values, back);
+  append(List{List{true, Value()}}, back);
+  std::string out;
+  writeSexp(back, 2, out);
+  CHECK(out == "(a (b 1))(n 2.50 3)(true nil)");
+}
