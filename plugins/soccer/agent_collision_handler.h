@@ -8,7 +8,9 @@ namespace spark {
 class AgentCollisionHandler : public CollisionHandler {
   SPARK_CLASS(AgentCollisionHandler, CollisionHandler)
  public:
-  static void describe(Description<AgentCollisionHandler>& d) { d.doc("Marks the colliders of robots for the rules; contacts are not changed."); }
+  static void describe(Description<AgentCollisionHandler>& d) {
+    d.doc("Marks the colliders of robots for the rules; contacts are not changed.");
+  }
   void onCollision(const Collision&) override {}
 };
 

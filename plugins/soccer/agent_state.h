@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <utility>
 #include <string>
+#include <utility>
 
+#include "api/phases.h"
 #include "field_nodes.h"
 #include "play_mode.h"
 #include "spark/state.h"
@@ -17,7 +18,7 @@ namespace spark {
 class AgentState : public ObjectState {
   SPARK_CLASS(AgentState, ObjectState)
  public:
-  static constexpr double kFullBattery = 100;  ///< %
+  static constexpr double kFullBattery = 100;                      ///< %
   static constexpr int kHearCost = 2, kHearMax = 2, kHearInc = 1;  ///< protocol section 3.8
 
   /// A message on its way from the act phase to the sense phase of the same cycle.
@@ -39,7 +40,8 @@ class AgentState : public ObjectState {
     d.property("temperature", &S::temperature_).unit("degC").state().doc("Temperature; nothing changes it by itself.");
     d.property("pan", &S::pan_).unit("deg").state().doc("Where it looks, to the left.");
     d.property("tilt", &S::tilt_).unit("deg").state().doc("Where it looks, up.");
-    d.property("selected", &S::selected).doc("A trainer has selected it.");
+    d.property("selected", &S::selected).doc("A trainer has selected it: its SelectionMarker is visible.");
+    d.on<&S::prepare>(phase::kPrepare);
   }
 
   soccer::Side side() const { return side_; }
@@ -68,8 +70,7 @@ class AgentState : public ObjectState {
   void look(double panDeg, double tiltDeg) { pan_ = panDeg, tilt_ = tiltDeg; }
 
   bool selected() const { return selected_; }
-  /// Shows or hides the visual named SelectionMarker below, where there is one.
-  void select(bool on);
+  void select(bool on) { selected_ = on, showMarker(); }
 
   /// Its own message: the last of a cycle counts.
   void hearSelf(std::string_view text) { own_.waiting = true, own_.text = text, own_.team = team_; }
@@ -123,6 +124,17 @@ class AgentState : public ObjectState {
 
  private:
   std::string sideText() const { return soccer::sideName(side_); }
+  /// Robots come with a visible marker.
+  void prepare(const Event&) {
+    if (std::exchange(shownAt_, kernel().structureVersion()) != kernel().structureVersion()) showMarker();
+  }
+  /// Shows or hides the visual named SelectionMarker below, where there is one.
+  void showMarker() {
+    std::vector<IVisual*> visuals;
+    collect(visuals);
+    for (IVisual* v : visuals)
+      if (v->leaf().name() == "SelectionMarker" && v->visible() != selected_) v->setVisible(selected_);
+  }
 
   soccer::Side side_ = soccer::Side::none;
   int unum_ = 0, robotType_ = 0;
@@ -132,14 +144,7 @@ class AgentState : public ObjectState {
   std::array<int, 2> capacity_{kHearMax, kHearMax};
   Heard own_;
   std::array<Heard, 2> heard_;
+  std::uint64_t shownAt_ = 0;
 };
-
-inline void AgentState::select(bool on) {
-  selected_ = on;
-  std::vector<IVisual*> visuals;
-  collect(visuals);
-  for (IVisual* v : visuals)
-    if (v->leaf().name() == "SelectionMarker") v->setVisible(on);
-}
 
 }  // namespace spark

@@ -15,10 +15,10 @@ class BallStateAspect : public SoccerControlAspect {
 
   /// A touch of the ball.
   struct Touch {
-    int agent = 0;             ///< the agent's number, 0: none yet
+    int agent = 0;  ///< the agent's number, 0: none yet
     Side side = Side::none;
     int unum = 0;
-    double time = 0;           ///< s of play, of the last contact
+    double time = 0;  ///< s of play, of the last contact
   };
 
   static void describe(Description<BallStateAspect>& d);

@@ -52,7 +52,9 @@ class SayEffector : public Effector {
   static constexpr std::size_t kMaxLength = 20;
   static constexpr double kRange = 50;  ///< m
 
-  static void describe(Description<SayEffector>& d) { d.doc("Says something: (say message), at most 20 printable characters, heard within 50 m."); }
+  static void describe(Description<SayEffector>& d) {
+    d.doc("Says something: (say message), at most 20 printable characters, heard within 50 m.");
+  }
   std::string predicate() const override { return "say"; }
   std::string act(const Element& action) override {
     const Element word = action.at(1);

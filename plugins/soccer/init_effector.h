@@ -60,7 +60,9 @@ class InitEffector : public Effector {
 class SingleMatInitEffector : public InitEffector {
   SPARK_CLASS(SingleMatInitEffector, InitEffector)
  public:
-  static void describe(Description<SingleMatInitEffector>& d) { d.doc("Init; gives certain parts the material matLeft<unum> or matRight<unum>."); }
+  static void describe(Description<SingleMatInitEffector>& d) {
+    d.doc("Init; gives certain parts the material matLeft<unum> or matRight<unum>.");
+  }
 
  protected:
   void dress(AgentAspect& agent, soccer::Side side, int unum) override {
@@ -85,7 +87,9 @@ class SingleMatInitEffector : public InitEffector {
 class StaticMeshInitEffector : public InitEffector {
   SPARK_CLASS(StaticMeshInitEffector, InitEffector)
  public:
-  static void describe(Description<StaticMeshInitEffector>& d) { d.doc("Init; matTeam becomes matLeft or matRight, matNum becomes matNum<unum>."); }
+  static void describe(Description<StaticMeshInitEffector>& d) {
+    d.doc("Init; matTeam becomes matLeft or matRight, matNum becomes matNum<unum>.");
+  }
 
  protected:
   void dress(AgentAspect& agent, soccer::Side side, int unum) override { soccer::paintTeam(agent, side, unum); }

@@ -56,8 +56,10 @@ class HearPerceptor : public Perceptor {
     out.open("hear");
     if (match_.settings()->labelMessages) out.add(heard.team);
     out.add(game.time());
-    if (self) out.add("self");
-    else out.add(heard.directionDeg);
+    if (self)
+      out.add("self");
+    else
+      out.add(heard.directionDeg);
     out.add(heard.text).close();
   }
   MatchLookup match_;

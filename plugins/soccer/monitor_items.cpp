@@ -23,9 +23,6 @@ void GameStateItem::field(Environment& env, const SoccerSettings& s) const {
                                                    {"PassModeMinOppBallDist", s.passModeMinOppBallDist},
                                                    {"PassModeDuration", s.passModeDuration}};
   for (const auto& [name, value] : values) env.put(EnvPolicy::full, name, value);
-  // what monitors need beyond that to draw the lines of another field than the league's
-  env.put(EnvPolicy::full, "PenaltyAreaLength", s.penaltyLength);
-  env.put(EnvPolicy::full, "PenaltyAreaWidth", s.penaltyWidth + s.goalWidth);
   Predicates& modes = env.open(EnvPolicy::full, "play_modes");
   for (const char* name : soccer::kPlayModeNames) modes.add(name);
   modes.close();
@@ -43,6 +40,9 @@ void GameStateItem::contribute(Environment& env) {
   env.put(EnvPolicy::change, "score_left", game->score(Side::left));
   env.put(EnvPolicy::change, "score_right", game->score(Side::right));
   env.put(EnvPolicy::change, "play_mode", static_cast<int>(game->mode()));
+  // newer monitors draw the lines of any field with these
+  env.put(EnvPolicy::full, "PenaltyAreaLength", match_.settings()->penaltyLength);
+  env.put(EnvPolicy::full, "PenaltyAreaWidth", match_.settings()->penaltyWidth + match_.settings()->goalWidth);
 }
 
 void SoccerRuleItem::contribute(Environment& env) {

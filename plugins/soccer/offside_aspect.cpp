@@ -46,8 +46,10 @@ void OffsideAspect::mark(const soccer::Pitch& pitch, Side side, int toucher) {
   for (const soccer::Player& p : pitch.players()) {
     if (p.side() != opponent(side)) continue;
     const double x = towards * p.position().x();
-    if (x > last) second = std::exchange(last, x);
-    else second = std::max(second, x);
+    if (x > last)
+      second = std::exchange(last, x);
+    else
+      second = std::max(second, x);
   }
   const double line = std::max({0.0, towards * ball_->position().x(), second});
   for (const soccer::Player& p : pitch.players())

@@ -17,7 +17,8 @@ class OffsideAspect : public SoccerControlAspect {
   using Side = soccer::Side;
   static void describe(Description<OffsideAspect>& d) {
     d.doc("Offside. Its presence below game control is what switches the rule on.");
-    d.property("marked", &OffsideAspect::markedUnums).doc("Numbers of the marked players; they are of the team that touched the ball last.");
+    d.property("marked", &OffsideAspect::markedUnums)
+        .doc("Numbers of the marked players; they are of the team that touched the ball last.");
   }
   void rule(const Event& event) override;
 

@@ -227,11 +227,13 @@ void Pitch::moveSafely(const Player& player, const Vec3& target, bool avoidBall)
     const double x = target.x() + stepX * (i % kSide), y = target.y() + stepY * (i / kSide);
     candidates[i] = {x, y, std::hypot(x - from.x(), y - from.y()), i};
   }
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& a, const Candidate& b) { return a.distance != b.distance ? a.distance < b.distance : a.number < b.number; });
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.number < b.number;
+  });
   const int attempts = std::min(settings_->maxNumSafeRepositionAttempts, kSide * kSide);
   for (int i = 0; i < attempts; ++i)
-    if (isSafe(player, candidates[i].x, candidates[i].y, avoidBall)) return player.moveTo(Vec3(candidates[i].x, candidates[i].y, target.z()));
+    if (isSafe(player, candidates[i].x, candidates[i].y, avoidBall))
+      return player.moveTo(Vec3(candidates[i].x, candidates[i].y, target.z()));
   player.moveTo(target);
 }
 

@@ -24,9 +24,7 @@ struct Bounds {
 /// A rectangle on the ground.
 struct Area {
   double minX = 0, minY = 0, maxX = 0, maxY = 0;
-  bool contains(double x, double y, double pad = 0) const {
-    return x > minX - pad && x < maxX + pad && y > minY - pad && y < maxY + pad;
-  }
+  bool contains(double x, double y, double pad = 0) const { return x > minX - pad && x < maxX + pad && y > minY - pad && y < maxY + pad; }
   /// As Bounds of any height.
   bool touches(const Bounds& b) const {
     return !b.empty() && b.high.x() > minX && b.low.x() < maxX && b.high.y() > minY && b.low.y() < maxY;
@@ -35,9 +33,9 @@ struct Area {
 
 /// An agent with a robot that is a player.
 struct Player {
-  AgentAspect* agent = nullptr;      ///< the outermost aspect
+  AgentAspect* agent = nullptr;  ///< the outermost aspect
   AgentState* state = nullptr;
-  IRigidBody* torso = nullptr;       ///< first body of the innermost aspect; nullptr: a robot without bodies
+  IRigidBody* torso = nullptr;  ///< first body of the innermost aspect; nullptr: a robot without bodies
   std::vector<IRigidBody*> bodies;
   std::vector<ICollider*> colliders;
 

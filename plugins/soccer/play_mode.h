@@ -20,16 +20,51 @@ constexpr Side sideFromTrainer(std::string_view text) { return text == "Left" ? 
 
 /// The order is the number on the wire.
 enum class PlayMode {
-  beforeKickOff, kickOffLeft, kickOffRight, playOn, kickInLeft, kickInRight, cornerKickLeft, cornerKickRight, goalKickLeft, goalKickRight,
-  offsideLeft, offsideRight, gameOver, goalLeft, goalRight, freeKickLeft, freeKickRight, directFreeKickLeft, directFreeKickRight, passLeft,
+  beforeKickOff,
+  kickOffLeft,
+  kickOffRight,
+  playOn,
+  kickInLeft,
+  kickInRight,
+  cornerKickLeft,
+  cornerKickRight,
+  goalKickLeft,
+  goalKickRight,
+  offsideLeft,
+  offsideRight,
+  gameOver,
+  goalLeft,
+  goalRight,
+  freeKickLeft,
+  freeKickRight,
+  directFreeKickLeft,
+  directFreeKickRight,
+  passLeft,
   passRight
 };
 
 /// Names as agents, monitors and trainers know them.
-inline constexpr std::array<const char*, 21> kPlayModeNames{
-    "BeforeKickOff", "KickOff_Left", "KickOff_Right", "PlayOn", "KickIn_Left", "KickIn_Right", "corner_kick_left", "corner_kick_right",
-    "goal_kick_left", "goal_kick_right", "offside_left", "offside_right", "GameOver", "Goal_Left", "Goal_Right", "free_kick_left",
-    "free_kick_right", "direct_free_kick_left", "direct_free_kick_right", "pass_left", "pass_right"};
+inline constexpr std::array<const char*, 21> kPlayModeNames{"BeforeKickOff",
+                                                            "KickOff_Left",
+                                                            "KickOff_Right",
+                                                            "PlayOn",
+                                                            "KickIn_Left",
+                                                            "KickIn_Right",
+                                                            "corner_kick_left",
+                                                            "corner_kick_right",
+                                                            "goal_kick_left",
+                                                            "goal_kick_right",
+                                                            "offside_left",
+                                                            "offside_right",
+                                                            "GameOver",
+                                                            "Goal_Left",
+                                                            "Goal_Right",
+                                                            "free_kick_left",
+                                                            "free_kick_right",
+                                                            "direct_free_kick_left",
+                                                            "direct_free_kick_right",
+                                                            "pass_left",
+                                                            "pass_right"};
 
 constexpr const char* playModeName(PlayMode mode) { return kPlayModeNames[static_cast<std::size_t>(mode)]; }
 /// False when there is no mode of that name.
@@ -48,6 +83,8 @@ constexpr Side sideOf(PlayMode m) {
   return (n < 12) == (n % 2 == 0) ? Side::left : Side::right;
 }
 /// The mode of that kind for the other side: `forSide(PlayMode::kickInLeft, Side::right)` is kickInRight.
-constexpr PlayMode forSide(PlayMode left, Side side) { return side == Side::right ? static_cast<PlayMode>(static_cast<int>(left) + 1) : left; }
+constexpr PlayMode forSide(PlayMode left, Side side) {
+  return side == Side::right ? static_cast<PlayMode>(static_cast<int>(left) + 1) : left;
+}
 
 }  // namespace spark::soccer

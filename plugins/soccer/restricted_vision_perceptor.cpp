@@ -23,8 +23,10 @@ bool clip(Vec3f& begin, Vec3f& end, float halfX, float halfZ) {
       continue;
     }
     const float t = -at / slope;
-    if (slope > 0) first = std::max(first, t);
-    else last = std::min(last, t);
+    if (slope > 0)
+      first = std::max(first, t);
+    else
+      last = std::min(last, t);
   }
   if (first >= last) return false;
   begin = from + first * way;
@@ -37,7 +39,8 @@ bool clip(Vec3f& begin, Vec3f& end, float halfX, float halfZ) {
 void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>& d) {
   using V = RestrictedVisionPerceptor;
   d.doc("Sees within a cone: flags, goals, ball, parts of players, lines.");
-  d.property("staticSenseAxis", &V::staticAxis_).doc("Angles from the field's x axis as the team sees it, less pan and tilt; else in the head's frame.");
+  d.property("staticSenseAxis", &V::staticAxis_)
+      .doc("Angles from the field's x axis as the team sees it, less pan and tilt; else in the head's frame.");
   d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
   d.property("senseMyOrien", &V::senseMyOrien_).doc("Tells its own heading too.");
   d.property("senseBallPos", &V::senseBallPos_).doc("Tells the ball's position too.");
@@ -46,7 +49,9 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
   d.property("viewCones", &V::cones).unit("deg").doc("Full horizontal and vertical cone.");
   d.property("noise", &V::noisy).doc("Noise is on.");
   d.property("random", &V::randomState, &V::setRandomState).state().doc("Its noise.");
-  d.method("setViewCones", &V::setViewCones).parameters({"horizontal [deg]", "vertical [deg]"}).doc("Full cones in the head's frame; half cones with static axes.");
+  d.method("setViewCones", &V::setViewCones)
+      .parameters({"horizontal [deg]", "vertical [deg]"})
+      .doc("Full cones in the head's frame; half cones with static axes.");
   d.method("setPanRange", &V::setPanRange).parameters({"low [deg]", "high [deg]"}).doc("How far it may be turned aside.");
   d.method("setTiltRange", &V::setTiltRange).parameters({"low [deg]", "high [deg]"}).doc("How far it may be turned up and down.");
   d.method("addNoise", &V::setNoise).parameters({"on"}).doc("Noise on or off.");
@@ -111,7 +116,8 @@ void RestrictedVisionPerceptor::seeRobot(const soccer::VisibleObjects::Robot& ro
   soccer::Polar polar;
   bool seen = false;
   const auto begin = [&] {
-    if (!std::exchange(seen, true)) out.open(robot.state->perceptName()).pair("team", std::string_view(robot.state->team())).pair("id", robot.state->unum());
+    if (!std::exchange(seen, true))
+      out.open(robot.state->perceptName()).pair("team", std::string_view(robot.state->team())).pair("id", robot.state->unum());
   };
   for (const ObjectState* part : robot.parts) {
     if (!look(*part, polar)) continue;

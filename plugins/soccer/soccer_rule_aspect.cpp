@@ -8,7 +8,7 @@ using soccer::PlayMode;
 using soccer::Side;
 
 namespace {
-constexpr double kTouchDelay = 0.03;   ///< s after the pause before a touch takes a restart
+constexpr double kTouchDelay = 0.03;  ///< s after the pause before a touch takes a restart
 constexpr std::size_t kFoulsKept = 64;
 }  // namespace
 
@@ -30,10 +30,13 @@ void SoccerRuleAspect::rule(const Event&) {
   const PlayMode mode = game->mode();
   const Side side = sideOf(mode);
   switch (mode) {
-    case PlayMode::beforeKickOff: return beforeKickOff();
+    case PlayMode::beforeKickOff:
+      return beforeKickOff();
     case PlayMode::kickOffLeft:
-    case PlayMode::kickOffRight: return kickOff(side);
-    case PlayMode::playOn: return playOn();
+    case PlayMode::kickOffRight:
+      return kickOff(side);
+    case PlayMode::playOn:
+      return playOn();
     case PlayMode::kickInLeft:
     case PlayMode::kickInRight:
     case PlayMode::cornerKickLeft:
@@ -41,16 +44,21 @@ void SoccerRuleAspect::rule(const Event&) {
     case PlayMode::freeKickLeft:
     case PlayMode::freeKickRight:
     case PlayMode::directFreeKickLeft:
-    case PlayMode::directFreeKickRight: return restart(side);
+    case PlayMode::directFreeKickRight:
+      return restart(side);
     case PlayMode::goalKickLeft:
-    case PlayMode::goalKickRight: return goalKick(side);
+    case PlayMode::goalKickRight:
+      return goalKick(side);
     case PlayMode::goalLeft:
-    case PlayMode::goalRight: return goalPause(side);
+    case PlayMode::goalRight:
+      return goalPause(side);
     case PlayMode::passLeft:
-    case PlayMode::passRight: return passMode(side);
+    case PlayMode::passRight:
+      return passMode(side);
     case PlayMode::offsideLeft:
     case PlayMode::offsideRight:
-    case PlayMode::gameOver: return;
+    case PlayMode::gameOver:
+      return;
   }
 }
 
@@ -76,15 +84,18 @@ void SoccerRuleAspect::award(PlayMode mode, const Vec3& where) {
 Vec3 SoccerRuleAspect::positionFor(PlayMode mode) const {
   switch (mode) {
     case PlayMode::goalKickLeft:
-    case PlayMode::goalKickRight: return goalKickPosition(sideOf(mode));
+    case PlayMode::goalKickRight:
+      return goalKickPosition(sideOf(mode));
     case PlayMode::cornerKickLeft:
-    case PlayMode::cornerKickRight: return cornerPosition(opponent(sideOf(mode)));
+    case PlayMode::cornerKickRight:
+      return cornerPosition(opponent(sideOf(mode)));
     case PlayMode::kickInLeft:
     case PlayMode::kickInRight: {
       const double y = pitch_->settings().fieldWidth / 2 - pitch_->settings().ballRadius;
       return {ball_->lastValid().x(), ball_->position().y() < 0 ? -y : y, pitch_->settings().ballRadius};
     }
-    default: return pitch_->freeBallPosition(ball_->lastValid());
+    default:
+      return pitch_->freeBallPosition(ball_->lastValid());
   }
 }
 
@@ -104,7 +115,8 @@ void SoccerRuleAspect::beforeKickOff() {
   if (pitch_->players().empty()) return;
   pitch_->placeBall(pitch_->centre());
   if (pitch_->settings().startAnyFieldPosition) return;
-  for (Side s : {Side::left, Side::right}) pitch_->clearArea(s, pitch_->opponentHalf(s), pitch_->settings().freeKickMoveDist, game_->random());
+  for (Side s : {Side::left, Side::right})
+    pitch_->clearArea(s, pitch_->opponentHalf(s), pitch_->settings().freeKickMoveDist, game_->random());
 }
 
 void SoccerRuleAspect::clearForKickOff(Side side) {
@@ -142,7 +154,8 @@ void SoccerRuleAspect::restart(Side side) {
   repelOnce(side, kickPosition_);
   const PlayMode mode = game_->mode();
   if (ball_->touched() && game_->modeTime() > s.ruleKickInPauseTime + kTouchDelay)
-    taken(mode == PlayMode::kickInLeft || mode == PlayMode::kickInRight || mode == PlayMode::freeKickLeft || mode == PlayMode::freeKickRight);
+    taken(mode == PlayMode::kickInLeft || mode == PlayMode::kickInRight || mode == PlayMode::freeKickLeft ||
+          mode == PlayMode::freeKickRight);
   else
     pitch_->placeBall(kickPosition_);
 }
@@ -254,8 +267,10 @@ bool SoccerRuleAspect::goal() {
   const Side scorer = opponent(goalOf);
   // a goal does not count: a goal kick, or after an own goal a corner
   const auto refuse = [&](bool own) {
-    if (own) award(forSide(PlayMode::cornerKickLeft, scorer), cornerPosition(goalOf));
-    else award(forSide(PlayMode::goalKickLeft, goalOf), goalKickPosition(goalOf));
+    if (own)
+      award(forSide(PlayMode::cornerKickLeft, scorer), cornerPosition(goalOf));
+    else
+      award(forSide(PlayMode::goalKickLeft, goalOf), goalKickPosition(goalOf));
   };
   if (restricted() && kickOffSide_ != Side::none) {
     refuse(kickOffSide_ == goalOf);
@@ -283,8 +298,10 @@ void SoccerRuleAspect::ballOut() {
   if (last == Side::none) return pitch_->placeBall(Vec3(ball_->lastValid().x(), ball_->lastValid().y(), s.ballRadius));
   if (std::abs(p.x()) >= s.fieldLength / 2 + s.ballRadius) {
     const Side defending = p.x() < 0 ? Side::left : Side::right;
-    if (last == opponent(defending)) award(forSide(PlayMode::goalKickLeft, defending), goalKickPosition(defending));
-    else award(forSide(PlayMode::cornerKickLeft, opponent(defending)), cornerPosition(defending));
+    if (last == opponent(defending))
+      award(forSide(PlayMode::goalKickLeft, defending), goalKickPosition(defending));
+    else
+      award(forSide(PlayMode::cornerKickLeft, opponent(defending)), cornerPosition(defending));
   } else {
     const double y = s.fieldWidth / 2 - s.ballRadius;
     award(forSide(PlayMode::kickInLeft, opponent(last)), Vec3(ball_->lastValid().x(), p.y() < 0 ? -y : y, s.ballRadius));

@@ -22,8 +22,8 @@ class SoccerRuleAspect : public SoccerControlAspect {
 
   /// What monitors are told of a foul.
   struct Foul {
-    std::int64_t index = 0;    ///< counts from 1
-    int type = 0;              ///< protocol section 6.7
+    std::int64_t index = 0;  ///< counts from 1
+    int type = 0;            ///< protocol section 6.7
     Side side = Side::none;
     int unum = 0;
   };
@@ -71,17 +71,17 @@ class SoccerRuleAspect : public SoccerControlAspect {
 
   GameStateAspect* game_ = nullptr;
   BallStateAspect* ball_ = nullptr;
-  soccer::Pitch* pitch_ = nullptr;   ///< of this cycle
+  soccer::Pitch* pitch_ = nullptr;  ///< of this cycle
   std::uint64_t gameVersion_ = 0, ballVersion_ = 0;
 
   std::int64_t modeSeen_ = 0;
   Vec3 kickPosition_ = Vec3::Zero();
   bool positionGiven_ = false, repelled_ = false;
-  int taker_ = 0;                    ///< agent that took the restart and that nobody else has touched the ball after; 0: none
-  double takerContact_ = 0;          ///< s of play
-  bool takerTouching_ = false;       ///< his contact of the restart itself still counts
+  int taker_ = 0;               ///< agent that took the restart and that nobody else has touched the ball after; 0: none
+  double takerContact_ = 0;     ///< s of play
+  bool takerTouching_ = false;  ///< his contact of the restart itself still counts
   bool indirect_ = false;
-  Side kickOffSide_ = Side::none;    ///< has not earned the right to score; none: no restriction
+  Side kickOffSide_ = Side::none;  ///< has not earned the right to score; none: no restriction
   std::vector<Foul> fouls_;
   std::int64_t foulCount_ = 0;
 };

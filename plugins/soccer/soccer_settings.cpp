@@ -15,7 +15,10 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("GoalDepth", &S::goalDepth).unit("m").min(0).doc("Depth of the goals behind the goal line.");
   d.property("GoalHeight", &S::goalHeight).unit("m").min(0).doc("Inner height of the goals.");
   d.property("PenaltyLength", &S::penaltyLength).unit("m").min(0).doc("Extent of the penalty areas from the goal line into the field.");
-  d.property("PenaltyWidth", &S::penaltyWidth).unit("m").min(0).doc("Width of the penalty areas beyond the goal's width, both sides together.");
+  d.property("PenaltyWidth", &S::penaltyWidth)
+      .unit("m")
+      .min(0)
+      .doc("Width of the penalty areas beyond the goal's width, both sides together.");
   d.property("BorderSize", &S::borderSize).unit("m").min(0).doc("Border around the field; told to monitors.");
 
   d.property("BallRadius", &S::ballRadius).unit("m").min(0.001).doc("Radius of the ball.");
@@ -31,7 +34,10 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("MinRobotTypesCount", &S::minRobotTypesCount).min(0).doc("At least so many types in a team of 11.");
   d.property("MaxSumTwoRobotTypes", &S::maxSumTwoRobotTypes).min(0).doc("At most so many robots of any two types together.");
 
-  d.property("FreeKickDistance", &S::freeKickDistance).unit("m").min(0).doc("Opponents stay so far from the ball at restarts; radius of the centre circle.");
+  d.property("FreeKickDistance", &S::freeKickDistance)
+      .unit("m")
+      .min(0)
+      .doc("Opponents stay so far from the ball at restarts; radius of the centre circle.");
   d.property("FreeKickMoveDist", &S::freeKickMoveDist).unit("m").min(0).doc("So far players are moved away at restarts.");
   d.property("KickRepelDist", &S::kickRepelDist).unit("m").min(0).doc("At a restart the kicking team is once pushed so far from the ball.");
   d.property("GoalKickDist", &S::goalKickDist).unit("m").min(0).doc("Distance of the goal kick's ball from the goal line.");
@@ -39,7 +45,10 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("RuleKickInPauseTime", &S::ruleKickInPauseTime).unit("s").min(0).doc("Pause between an award and the restart.");
   d.property("RuleDropBallTime", &S::ruleDropBallTime).unit("s").min(0).doc("A restart that nobody takes becomes a drop ball.");
   d.property("RuleHalfTime", &S::ruleHalfTime).unit("s").min(0).doc("Length of a half.");
-  d.property("WaitBeforeKickOff", &S::waitBeforeKickOff).unit("s").min(0).doc("With AutomaticKickOff: from the first agent's coming to the kick-off.");
+  d.property("WaitBeforeKickOff", &S::waitBeforeKickOff)
+      .unit("s")
+      .min(0)
+      .doc("With AutomaticKickOff: from the first agent's coming to the kick-off.");
   d.property("AutomaticKickOff", &S::automaticKickOff).doc("The match kicks off by itself.");
   d.property("CoinTossForKickOff", &S::coinTossForKickOff).doc("A coin decides the first kick-off; else the left team has it.");
   d.property("SingleHalfTime", &S::singleHalfTime).doc("The match has one half.");
@@ -48,7 +57,9 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("StartAnyFieldPosition", &S::startAnyFieldPosition).doc("Beams and starts anywhere on the field.");
   d.property("AutomaticQuit", &S::automaticQuit).doc("The host ends 10 s after the match.");
   d.property("UseOffside", &S::useOffside).doc("Without effect, as in the installed base: offside is a control aspect (OffsideAspect).");
-  d.property("MaxNumSafeRepositionAttempts", &S::maxNumSafeRepositionAttempts).min(0).doc("So many places are tried when a player is moved.");
+  d.property("MaxNumSafeRepositionAttempts", &S::maxNumSafeRepositionAttempts)
+      .min(0)
+      .doc("So many places are tried when a player is moved.");
 
   d.property("ReportScore", &S::reportScore).doc("Agents are told the score.");
   d.property("LabelMessages", &S::labelMessages).doc("Heard messages carry the speaker's team.");
@@ -57,7 +68,10 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
 
   d.property("PassModeMaxBallSpeed", &S::passModeMaxBallSpeed).unit("m/s").min(0).doc("Pass mode: the ball must not be faster.");
   d.property("PassModeMaxBallDist", &S::passModeMaxBallDist).unit("m").min(0).doc("Pass mode: the player must be as near to the ball.");
-  d.property("PassModeMinOppBallDist", &S::passModeMinOppBallDist).unit("m").min(0).doc("Pass mode: opponents must be as far from the ball.");
+  d.property("PassModeMinOppBallDist", &S::passModeMinOppBallDist)
+      .unit("m")
+      .min(0)
+      .doc("Pass mode: opponents must be as far from the ball.");
   d.property("PassModeDuration", &S::passModeDuration).unit("s").min(0).doc("Pass mode ends by itself.");
   d.property("PassModeScoreWaitTime", &S::passModeScoreWaitTime).unit("s").min(0).doc("Goals do not count so long after pass mode.");
   d.property("PassModeRetryWaitTime", &S::passModeRetryWaitTime).unit("s").min(0).doc("Pass mode is not given again before.");
@@ -76,18 +90,48 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("TouchingFoulBeamPenalty", &S::touchingFoulBeamPenalty).doc("Touching is penalised by a beam.");
   d.property("UseCharging", &S::useCharging).doc("Charging is a foul.");
   d.property("ChargingMinSpeed", &S::chargingMinSpeed).unit("m/s").min(0).doc("Charging: least speed.");
-  d.property("ChargingMinBallSpeedAngle", &S::chargingMinBallSpeedAngle).unit("deg").min(0).doc("Charging: least angle between motion and ball.");
-  d.property("ChargingMinDeltaDist", &S::chargingMinDeltaDist).unit("m").min(0).doc("Charging: least difference of the distances to the ball.");
-  d.property("ChargingMinDeltaAng", &S::chargingMinDeltaAng).unit("deg").min(0).doc("Charging: least difference of the angles to the opponent.");
+  d.property("ChargingMinBallSpeedAngle", &S::chargingMinBallSpeedAngle)
+      .unit("deg")
+      .min(0)
+      .doc("Charging: least angle between motion and ball.");
+  d.property("ChargingMinDeltaDist", &S::chargingMinDeltaDist)
+      .unit("m")
+      .min(0)
+      .doc("Charging: least difference of the distances to the ball.");
+  d.property("ChargingMinDeltaAng", &S::chargingMinDeltaAng)
+      .unit("deg")
+      .min(0)
+      .doc("Charging: least difference of the angles to the opponent.");
   d.property("ChargingImmunityTime", &S::chargingImmunityTime).unit("s").min(0).doc("Charging: immunity after a touch of the ball.");
-  d.property("ChargingCollisionMinTime", &S::chargingCollisionMinTime).unit("s").min(0).doc("Charging: quiet time after a harmless contact.");
-  d.property("ChargingMaxBallRulesDist", &S::chargingMaxBallRulesDist).unit("m").min(0).doc("Charging: the ball counts within this distance.");
-  d.property("ChargingMinCollBallDist", &S::chargingMinCollBallDist).unit("m").min(0).doc("Charging: contacts nearer to the ball are none.");
-  d.property("ChargingMinCollisionSpeed", &S::chargingMinCollisionSpeed).unit("m/s").min(0).doc("Charging: least speed towards the contact.");
-  d.property("SelfCollisionsTolerance", &S::selfCollisionsTolerance).unit("m").min(0).doc("Overlap of a robot's own parts that is tolerated.");
-  d.property("SelfCollisionJointFrozenTime", &S::selfCollisionJointFrozenTime).unit("s").min(0).doc("Joints of a self-collision are frozen so long.");
+  d.property("ChargingCollisionMinTime", &S::chargingCollisionMinTime)
+      .unit("s")
+      .min(0)
+      .doc("Charging: quiet time after a harmless contact.");
+  d.property("ChargingMaxBallRulesDist", &S::chargingMaxBallRulesDist)
+      .unit("m")
+      .min(0)
+      .doc("Charging: the ball counts within this distance.");
+  d.property("ChargingMinCollBallDist", &S::chargingMinCollBallDist)
+      .unit("m")
+      .min(0)
+      .doc("Charging: contacts nearer to the ball are none.");
+  d.property("ChargingMinCollisionSpeed", &S::chargingMinCollisionSpeed)
+      .unit("m/s")
+      .min(0)
+      .doc("Charging: least speed towards the contact.");
+  d.property("SelfCollisionsTolerance", &S::selfCollisionsTolerance)
+      .unit("m")
+      .min(0)
+      .doc("Overlap of a robot's own parts that is tolerated.");
+  d.property("SelfCollisionJointFrozenTime", &S::selfCollisionJointFrozenTime)
+      .unit("s")
+      .min(0)
+      .doc("Joints of a self-collision are frozen so long.");
   d.property("SelfCollisionJointThawTime", &S::selfCollisionJointThawTime).unit("s").min(0).doc("And immune so long afterwards.");
-  d.property("SelfCollisionBeamCooldownTime", &S::selfCollisionBeamCooldownTime).unit("s").min(0).doc("Least time between two beam penalties.");
+  d.property("SelfCollisionBeamCooldownTime", &S::selfCollisionBeamCooldownTime)
+      .unit("s")
+      .min(0)
+      .doc("Least time between two beam penalties.");
   d.property("PrintSelfCollisions", &S::printSelfCollisions).doc("Self-collisions are logged.");
   d.property("FoulOnSelfCollisions", &S::foulOnSelfCollisions).doc("Self-collisions are fouls.");
   d.property("SelfCollisionBeamPenalty", &S::selfCollisionBeamPenalty).doc("Self-collisions are penalised by a beam.");

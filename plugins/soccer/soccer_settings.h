@@ -45,7 +45,8 @@ class SoccerSettings : public Node, public IVariables {
   double chargingMinSpeed = 0.4, chargingMinBallSpeedAngle = 30, chargingMinDeltaDist = 0.05, chargingMinDeltaAng = 15;
   double chargingImmunityTime = 1, chargingCollisionMinTime = 0.2, chargingMaxBallRulesDist = 1, chargingMinCollBallDist = 0.1;
   double chargingMinCollisionSpeed = 0.2;
-  double selfCollisionsTolerance = 0.04, selfCollisionJointFrozenTime = 1, selfCollisionJointThawTime = 2, selfCollisionBeamCooldownTime = 10;
+  double selfCollisionsTolerance = 0.04, selfCollisionJointFrozenTime = 1, selfCollisionJointThawTime = 2,
+         selfCollisionBeamCooldownTime = 10;
   bool printSelfCollisions = true, foulOnSelfCollisions = true, selfCollisionBeamPenalty = false, writeSelfCollisionsToFile = false;
   std::string selfCollisionRecordFilename = "SelfCollisions.txt";
   // Keep-away

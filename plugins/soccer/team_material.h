@@ -17,8 +17,10 @@ inline void paintTeam(Node& robot, Side side, int unum) {
     if (v->kind() == IVisual::Kind::light) continue;
     for (std::size_t i = 0; i < v->materials().size(); ++i) {
       const std::string& old = v->materials()[i];
-      if (old == "matTeam" || old == "matLeft" || old == "matRight") v->setMaterialName(i, colour);
-      else if (old.starts_with("matNum")) v->setMaterialName(i, "matNum" + std::to_string(unum));
+      if (old == "matTeam" || old == "matLeft" || old == "matRight")
+        v->setMaterialName(i, colour);
+      else if (old.starts_with("matNum"))
+        v->setMaterialName(i, "matNum" + std::to_string(unum));
     }
   }
 }

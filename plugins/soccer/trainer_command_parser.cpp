@@ -24,15 +24,18 @@ const char* const kNoSuchPlayer = "no such player";
 bool TrainerCommandParser::command(const Element& c, std::string& why) {
   using Run = std::string (TrainerCommandParser::*)(const Element&);
   static constexpr std::pair<std::string_view, Run> kCommands[] = {
-      {"playMode", &TrainerCommandParser::playMode}, {"kickOff", &TrainerCommandParser::kickOff}, {"dropBall", &TrainerCommandParser::dropBall},
-      {"ball", &TrainerCommandParser::ball},         {"agent", &TrainerCommandParser::agent},     {"select", &TrainerCommandParser::select},
-      {"kill", &TrainerCommandParser::kill},         {"repos", &TrainerCommandParser::repos},     {"time", &TrainerCommandParser::time},
-      {"score", &TrainerCommandParser::score}};
+      {"playMode", &TrainerCommandParser::playMode}, {"kickOff", &TrainerCommandParser::kickOff},
+      {"dropBall", &TrainerCommandParser::dropBall}, {"ball", &TrainerCommandParser::ball},
+      {"agent", &TrainerCommandParser::agent},       {"select", &TrainerCommandParser::select},
+      {"kill", &TrainerCommandParser::kill},         {"repos", &TrainerCommandParser::repos},
+      {"time", &TrainerCommandParser::time},         {"score", &TrainerCommandParser::score}};
   for (const auto& [name, run] : kCommands) {
     if (c.head() != name) continue;
     match_.refresh(*this);
-    if (!match_.game() || !match_.game()->pitch().ready()) why = "there is no match";
-    else why = (this->*run)(c);
+    if (!match_.game() || !match_.game()->pitch().ready())
+      why = "there is no match";
+    else
+      why = (this->*run)(c);
     return true;
   }
   return false;
@@ -92,8 +95,10 @@ std::string TrainerCommandParser::agent(const Element& c) {
       if (!p.state->selected() || !p.torso) continue;
       const double d = direction(p.side());
       Vec3 target = p.position();
-      if (std::abs(target.x() - d * distance) <= pitch.settings().fieldLength / 2) target.x() -= d * distance;
-      else target.y() += target.y() > 0 ? -distance : distance;
+      if (std::abs(target.x() - d * distance) <= pitch.settings().fieldLength / 2)
+        target.x() -= d * distance;
+      else
+        target.y() += target.y() > 0 ? -distance : distance;
       p.moveTo(target);
     }
     return {};

@@ -36,8 +36,10 @@ void VisibleObjects::refresh(const SceneNode& eye) {
     }
     AgentAspect* agent = &inner->outermost();
     if (robots_.empty() || robots_.back().agent != agent) robots_.push_back({agent, nullptr, {}});
-    if (auto* state = o->as<AgentState>()) robots_.back().state = state;
-    else if (!o->id().empty()) robots_.back().parts.push_back(o);
+    if (auto* state = o->as<AgentState>())
+      robots_.back().state = state;
+    else if (!o->id().empty())
+      robots_.back().parts.push_back(o);
   }
   std::erase_if(robots_, [](const Robot& r) { return !r.state; });
   for (const Robot& r : robots_)

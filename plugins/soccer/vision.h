@@ -13,9 +13,9 @@ namespace spark::soccer {
 
 /// A direction and distance as agents get it.
 struct Polar {
-  double distance = 0;           ///< m
-  double horizontal = 0;         ///< deg, positive to the left
-  double vertical = 0;           ///< deg, positive up
+  double distance = 0;    ///< m
+  double horizontal = 0;  ///< deg, positive to the left
+  double vertical = 0;    ///< deg, positive up
 };
 
 /// Polar coordinates of a point in a frame with x forward, y to the left, z up.

@@ -39,7 +39,8 @@ void VisionPerceptor::sense(Predicates& out, const Event&) {
     writePolar(out, polar);
     out.close();
   }
-  if (senseMyPos_) writePoint(out, "mypos", soccer::seenBy(objects_.state() ? objects_.state()->side() : soccer::Side::none, placeOf(*this)));
+  if (senseMyPos_)
+    writePoint(out, "mypos", soccer::seenBy(objects_.state() ? objects_.state()->side() : soccer::Side::none, placeOf(*this)));
   out.close();
 }
 

@@ -13,7 +13,8 @@ class VisionPerceptor : public Perceptor {
   static void describe(Description<VisionPerceptor>& d) {
     using V = VisionPerceptor;
     d.doc("Sees everything around: flags, goals, ball, players.");
-    d.property("staticSenseAxis", &V::staticAxis_).doc("Angles from the field's x axis as the team sees it; else in the frame of the transform above.");
+    d.property("staticSenseAxis", &V::staticAxis_)
+        .doc("Angles from the field's x axis as the team sees it; else in the frame of the transform above.");
     d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
     d.method("addNoise", &V::setNoise).parameters({"on"}).doc("Noise on or off.");
     d.method("useRandomNoise", &V::setRandom).parameters({"on"}).doc("False: only the constant calibration error.");

@@ -20,18 +20,28 @@ namespace spark {
 
 namespace {
 
-constexpr double kReach = 0.35;         ///< m between the centres of player and ball at which a kick works
-constexpr double kTopSpeed = 9.5;       ///< m/s
-constexpr double kPowerPerSpeed = 10;   ///< drive power that keeps 1 m/s
-constexpr double kSpeedPerKick = 1.7;   ///< m/s of the ball per kick power
-constexpr double kTakerRest = 3;        ///< s for which the taker of a restart leaves the ball to others
+constexpr double kReach = 0.35;        ///< m between the centres of player and ball at which a kick works
+constexpr double kTopSpeed = 9.5;      ///< m/s
+constexpr double kPowerPerSpeed = 10;  ///< drive power that keeps 1 m/s
+constexpr double kSpeedPerKick = 1.7;  ///< m/s of the ball per kick power
+constexpr double kTakerRest = 3;       ///< s for which the taker of a restart leaves the ball to others
 
 /// Places at kick-off in parts of the half field, by number.
 struct Place {
   double x, y;
 };
-constexpr std::array<Place, 12> kFormation{{{0, 0}, {-0.98, 0}, {-0.72, 0.5}, {-0.78, 0.17}, {-0.78, -0.17}, {-0.72, -0.5},
-                                            {-0.42, 0.42}, {-0.46, 0}, {-0.42, -0.42}, {-0.12, 0.32}, {-0.24, 0.02}, {-0.12, -0.32}}};
+constexpr std::array<Place, 12> kFormation{{{0, 0},
+                                            {-0.98, 0},
+                                            {-0.72, 0.5},
+                                            {-0.78, 0.17},
+                                            {-0.78, -0.17},
+                                            {-0.72, -0.5},
+                                            {-0.42, 0.42},
+                                            {-0.46, 0},
+                                            {-0.42, -0.42},
+                                            {-0.12, 0.32},
+                                            {-0.24, 0.02},
+                                            {-0.12, -0.32}}};
 
 }  // namespace
 
@@ -73,10 +83,14 @@ void SpherePlayer::readGameState(const Element& gs) {
   for (const Element e : gs) {
     if (!e.isList()) continue;
     const std::string_view key = e.head();
-    if (key == "team") side_ = e.at(1).text();
-    else if (key == "unum") unum_ = static_cast<int>(e.at(1).integer());
-    else if (key == "sl") left_ = static_cast<int>(e.at(1).integer());
-    else if (key == "sr") right_ = static_cast<int>(e.at(1).integer());
+    if (key == "team")
+      side_ = e.at(1).text();
+    else if (key == "unum")
+      unum_ = static_cast<int>(e.at(1).integer());
+    else if (key == "sl")
+      left_ = static_cast<int>(e.at(1).integer());
+    else if (key == "sr")
+      right_ = static_cast<int>(e.at(1).integer());
     else if (key == "pm" && e.at(1).text() != playMode_) {
       const std::string before = std::exchange(playMode_, std::string(e.at(1).text()));
       modeSince_ = now_;
@@ -106,7 +120,8 @@ void SpherePlayer::readVision(const Element& see) {
   for (const Element e : see) {
     const Element pol = e.isList() ? e.named("pol") : Element();
     if (!pol) continue;
-    const double d = pol.at(1).number(), h = pol.at(2).number() * (std::numbers::pi / 180), v = pol.at(3).number() * (std::numbers::pi / 180);
+    const double d = pol.at(1).number(), h = pol.at(2).number() * (std::numbers::pi / 180),
+                 v = pol.at(3).number() * (std::numbers::pi / 180);
     const Point way{d * std::cos(v) * std::cos(h), d * std::cos(v) * std::sin(h)};
     if (e.head() == "B") {
       const Point place = self_ + way;
@@ -129,7 +144,8 @@ void SpherePlayer::readField(const Element& see) {
     const Element pol = e.isList() ? e.named("pol") : Element();
     const std::string_view name = e.head();
     if (!pol || name.size() != 3 || (name[0] != 'F' && name[0] != 'G')) continue;
-    const double d = pol.at(1).number(), h = pol.at(2).number() * (std::numbers::pi / 180), v = pol.at(3).number() * (std::numbers::pi / 180);
+    const double d = pol.at(1).number(), h = pol.at(2).number() * (std::numbers::pi / 180),
+                 v = pol.at(3).number() * (std::numbers::pi / 180);
     const Point way{d * std::cos(v) * std::cos(h), d * std::cos(v) * std::sin(h)};
     if (name[0] == 'F' && corners < 4) corner[corners++] = way;
     if (name[0] == 'G' && posts < 4) post[posts++] = way;
@@ -162,8 +178,10 @@ double SpherePlayer::offsideLine() const {
   double last = -1e9, second = -1e9;
   for (const Other& o : others_) {
     if (o.mate) continue;
-    if (o.place.x > last) second = std::exchange(last, o.place.x);
-    else second = std::max(second, o.place.x);
+    if (o.place.x > last)
+      second = std::exchange(last, o.place.x);
+    else
+      second = std::max(second, o.place.x);
   }
   return std::max({0.0, ball_.x, second});
 }
@@ -265,7 +283,8 @@ void SpherePlayer::kickTowards(Point target, double speed, double elevationDeg, 
   const Point rel = toBall_ + ballVelocity_ * (now_ - ballTime_);
   const double along = rel.dot(wanted), across = rel.dot(side);
   const double aim = std::atan2(std::abs(across), along);
-  if (rel.length() < kReach + 0.25 && aim < 0.45) actions.open("kick").add(elevationDeg).add(std::clamp(speed / kSpeedPerKick, 1.0, 100.0)).close();
+  if (rel.length() < kReach + 0.25 && aim < 0.45)
+    actions.open("kick").add(elevationDeg).add(std::clamp(speed / kSpeedPerKick, 1.0, 100.0)).close();
   Point spot = ball_ + ballVelocity_ * 0.1;
   if (along < 0.25 && std::abs(across) < 1.2) {
     // in front of the ball: round it

@@ -76,8 +76,8 @@ class SpherePlayer {
   double now_ = 0, joinedAt_ = -1, ballTime_ = 0, modeSince_ = 0, caughtAt_ = -10;
   double halfLength_ = 52, halfWidth_ = 34, goalHalfWidth_ = 3.66;
   Point self_, ball_, toBall_, ballVelocity_;
-  int taker_ = 0;                ///< number of the team-mate (or self) who took our last restart
-  double takerUntil_ = -1;       ///< s: he leaves the ball to others until then
+  int taker_ = 0;           ///< number of the team-mate (or self) who took our last restart
+  double takerUntil_ = -1;  ///< s: he leaves the ball to others until then
   std::vector<Other> others_;
 };
 

@@ -60,10 +60,11 @@ struct MatchHouse : House {
       kernel.create(item, std::string("/sys/server/monitor/") + item);
   }
   void sphereLeague() {
-    const std::pair<const char*, double> values[] = {{"FieldLength", 104}, {"FieldWidth", 68}, {"GoalWidth", 7.32}, {"GoalDepth", 2},
-        {"GoalHeight", 0.5}, {"PenaltyLength", 16.5}, {"PenaltyWidth", 33}, {"FreeKickDistance", 9.15}, {"FreeKickMoveDist", 10},
-        {"AgentRadius", 0.22}, {"AgentLinearDrag", 600}, {"BallRadius", 0.111}, {"BallMass", 0.425878}, {"BallLinearDrag", 0.1},
-        {"BallAngularDrag", 0.001}, {"BallMaxSpeed", 40}, {"BeamNoiseXY", 0}, {"BeamNoiseAngle", 0}};
+    const std::pair<const char*, double> values[] = {
+        {"FieldLength", 104},     {"FieldWidth", 68},    {"GoalWidth", 7.32},        {"GoalDepth", 2},         {"GoalHeight", 0.5},
+        {"PenaltyLength", 16.5},  {"PenaltyWidth", 33},  {"FreeKickDistance", 9.15}, {"FreeKickMoveDist", 10}, {"AgentRadius", 0.22},
+        {"AgentLinearDrag", 600}, {"BallRadius", 0.111}, {"BallMass", 0.425878},     {"BallLinearDrag", 0.1},  {"BallAngularDrag", 0.001},
+        {"BallMaxSpeed", 40},     {"BeamNoiseXY", 0},    {"BeamNoiseAngle", 0}};
     for (const auto& [name, value] : values) set(name, value);
     set("MaxRobotTypeCount", 11);
     set("MinRobotTypesCount", 1);
@@ -73,7 +74,11 @@ struct MatchHouse : House {
   Leaf& at(std::string_view path) { return kernel.root().require<Leaf>(path); }
   Value get(std::string_view path, std::string_view property) { return getProperty(at(path), property); }
 
-  void importField() { kernel.root().require<ISceneServer>("/sys/server/scene").importScene("rsg/soccer/field.rsg", kernel.root().require<Node>("/usr/scene"), {}); }
+  void importField() {
+    kernel.root()
+        .require<ISceneServer>("/sys/server/scene")
+        .importScene("rsg/soccer/field.rsg", kernel.root().require<Node>("/usr/scene"), {});
+  }
   void run(int cycles) {
     const Value n(cycles);
     callMethod(at("/sys/server/simulation"), "runCycles", std::span(&n, 1));
@@ -98,7 +103,9 @@ struct MatchHouse : House {
     run(2);
     return p;
   }
-  IRigidBody& bodyOf(int agent) { return kernel.root().require<IRigidBody>("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/physics"); }
+  IRigidBody& bodyOf(int agent) {
+    return kernel.root().require<IRigidBody>("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/physics");
+  }
   IRigidBody& ball() { return kernel.root().require<IRigidBody>("/usr/scene/Ball/physics"); }
   Leaf& stateOf(int agent) { return at("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/AgentState"); }
 

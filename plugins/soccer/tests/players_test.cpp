@@ -27,7 +27,8 @@ TEST_CASE("number 0, none or a word is the lowest free one", "[soccer]") {
   MatchHouse h;
   h.importField();
   h.join("A", 1);
-  for (const auto& [name, action, unum] : {std::tuple{"x", "(init (unum 0)(teamname A))", 2}, {"y", "(init (teamname A))", 3}, {"z", "(init (unum seven)(teamname A))", 4}}) {
+  for (const auto& [name, action, unum] :
+       {std::tuple{"x", "(init (unum 0)(teamname A))", 2}, {"y", "(init (teamname A))", 3}, {"z", "(init (unum seven)(teamname A))", 4}}) {
     h.act(h.connect(name), action);
     h.run(1);
     CHECK(getProperty(h.stateOf(unum), "unum").toInteger() == unum);

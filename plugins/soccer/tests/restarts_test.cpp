@@ -16,9 +16,7 @@ struct Match : MatchHouse {
     placeBall(0, 0);
     run(1);
   }
-  void aside() {
-    placeAgent(1, -30, 20), placeAgent(2, -30, -20), placeAgent(3, 30, 20), placeAgent(4, 30, -20);
-  }
+  void aside() { placeAgent(1, -30, 20), placeAgent(2, -30, -20), placeAgent(3, 30, 20), placeAgent(4, 30, -20); }
   /// Side: agent's last touch; then the ball lies at x, y.
   void lastTouchThenBallAt(int agent, double x, double y) {
     touch(agent);
@@ -66,9 +64,9 @@ TEST_CASE("an automatic kick-off comes after the wait, for the left team", "[soc
 
 TEST_CASE("at a kick-off players stay in their halves and out of the circle; a touch starts play", "[soccer]") {
   Match h;
-  h.placeAgent(1, 20, 10);   // A in B's half
-  h.placeAgent(3, -20, 0);   // B in A's half
-  h.placeAgent(4, 5, 0);     // B in the circle
+  h.placeAgent(1, 20, 10);  // A in B's half
+  h.placeAgent(3, -20, 0);  // B in A's half
+  h.placeAgent(4, 5, 0);    // B in the circle
   CHECK(h.trainer("(kickOff Left)").empty());
   h.run(1);
   CHECK(h.bodyOf(1).state().position.x() == Approx(-10).margin(0.1));
