@@ -52,7 +52,7 @@ void printDescriptions(spark::Kernel& kernel, const sparkhost::Options& options)
 
 void runHouse(sparkhost::Host& host, const std::string& firstLine) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  if (terminal) sparkhost::StatusLine::install(host.kernel());
+  sparkhost::StatusLine::install(host.kernel(), terminal);
   printLine(firstLine);
   const std::string lastLine = host.run();
   if (terminal) fmt::print(stderr, "\n");

@@ -11,33 +11,49 @@ namespace sparkhost {
 using namespace spark;
 
 namespace {
-constexpr auto kPeriod = std::chrono::milliseconds(250);
+constexpr auto kTerminalPeriod = std::chrono::milliseconds(250);
+constexpr auto kLogPeriod = std::chrono::seconds(5);
 constexpr const char* kNames[] = {"trace", "debug", "info", "warning", "error", ""};
 }  // namespace
 
 void StatusLine::describe(Description<StatusLine>& d) {
-  d.doc("The line that a terminal shows while a house runs.");
+  d.doc("Shows on stderr how the run goes.");
   d.on<&StatusLine::show>("publish");
 }
 
-void StatusLine::install(Kernel& kernel) {
+void StatusLine::install(Kernel& kernel, bool terminal) {
   kernel.registerClass<StatusLine>();
-  kernel.create("StatusLine", "/sys/host/status");
-  kernel.log().setSink([](Level level, std::string_view line) { fmt::print(stderr, "\r\033[K{:<7} {}\n", kNames[static_cast<int>(level)], line); });
+  auto& line = kernel.create<StatusLine>("StatusLine", "/sys/host/status");
+  line.terminal_ = terminal;
+  line.last_ = Clock::now();
+  line.next_ = line.last_ + kTerminalPeriod;
+  if (terminal)
+    kernel.log().setSink([](Level level, std::string_view text) { fmt::print(stderr, "\r\033[K{:<7} {}\n", kNames[static_cast<int>(level)], text); });
+}
+
+std::string StatusLine::text(double time, double factor) const {
+  const Leaf& root = kernel().root();
+  std::string out = fmt::format("{:.2f} s, {:.1f} x real time", time, factor);
+  if (const std::string mode = textAt(root, kGameState, "playMode"); !mode.empty())
+    out += fmt::format(", {} {}:{}", mode, integerAt(root, kGameState, "scoreLeft"), integerAt(root, kGameState, "scoreRight"));
+  if (root.find(kGameControl)) out += fmt::format(", {} agents", integerAt(root, kGameControl, "agentCount"));
+  return out;
 }
 
 void StatusLine::show(const Event& event) {
   const auto now = Clock::now();
   if (now < next_) return;
-  const double wall = std::chrono::duration<double>(now - last_).count();
-  const double factor = last_ == Clock::time_point{} ? 0 : (event.time - lastTime_) / wall;
-  next_ = now + kPeriod;
+  const double factor = (event.time - lastTime_) / std::chrono::duration<double>(now - last_).count();
+  const std::string line = text(event.time, factor);
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K{}", line);
+    std::fflush(stderr);
+  } else {
+    kernel().log().info("{}", line);
+  }
+  next_ = now + (terminal_ ? Clock::duration(kTerminalPeriod) : Clock::duration(kLogPeriod));
   last_ = now;
   lastTime_ = event.time;
-  const Leaf& root = kernel().root();
-  fmt::print(stderr, "\r\033[K{:8.2f} s  {}  {}:{}  {} agents  {:.1f} x real time", event.time, textAt(root, kGameState, "playMode"),
-             integerAt(root, kGameState, "scoreLeft"), integerAt(root, kGameState, "scoreRight"), integerAt(root, kGameControl, "agentCount"), factor);
-  std::fflush(stderr);
 }
 
 }  // namespace sparkhost

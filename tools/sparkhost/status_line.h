@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The one line that a terminal shows while a house runs.
+/// How a run goes, on stderr: one line that a terminal keeps up to date, elsewhere a line in the log now and then.
 
 #include <chrono>
 
@@ -9,21 +9,23 @@
 
 namespace sparkhost {
 
-/// Shows clock, play mode, score, agents and real-time factor on stderr, a few times a second. Has no state: what it shows never
+/// Shows clock, play mode, score, agents and real-time factor. Has no state: what it shows never
 /// influences the simulation.
 class StatusLine : public spark::Node {
   SPARK_CLASS(StatusLine, spark::Node)
  public:
   static void describe(spark::Description<StatusLine>& d);
-  /// Makes one in the kernel's tree, and the kernel's log write above it.
-  static void install(spark::Kernel& kernel);
+  /// Makes one in the kernel's tree. On a terminal the kernel's log writes above it.
+  static void install(spark::Kernel& kernel, bool terminal);
 
  private:
   using Clock = std::chrono::steady_clock;
   void show(const spark::Event& event);
+  std::string text(double time, double factor) const;
 
   Clock::time_point next_{}, last_{};
   double lastTime_ = 0;
+  bool terminal_ = false;
 };
 
 }  // namespace sparkhost

@@ -58,7 +58,7 @@ TEST_CASE("JSON is JSON on the wire") {
   p.open("drive").add(1.5).add(0).close();
   std::string out;
   language->write(p, out);
-  REQUIRE(out == "[[\"drive\",1.5,0]]");
+  REQUIRE(out == "[[\"drive\",1.5000,0]]");
 }
 
 TEST_CASE("A language that no plugin has is an error that names it") {
