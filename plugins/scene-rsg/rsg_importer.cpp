@@ -38,9 +38,14 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
 
 std::shared_ptr<const rsg::Program> RsgImporter::load(const std::string& file, Node& root) {
   auto& files = kernel().root().require<IFileServer>("/sys/server/file");
+  // One import sees one version of a file, however often it needs it.
+  const auto cached = cache_.find(file);
+  if (cached != cache_.end() && cached->second.checked == outermost_) return cached->second.program;
   const std::uint64_t stamp = files.stamp(file);
-  if (const auto cached = cache_.find(file); stamp != 0 && cached != cache_.end() && cached->second.stamp == stamp)
+  if (cached != cache_.end() && stamp != 0 && cached->second.stamp == stamp) {
+    cached->second.checked = outermost_;
     return cached->second.program;
+  }
   const std::string text = files.read(file);
   ++filesParsed_;
   std::shared_ptr<const rsg::Program> program;
@@ -50,7 +55,7 @@ std::shared_ptr<const rsg::Program> RsgImporter::load(const std::string& file, N
     if (unlinkOnUnreadable_) root.removeChildren();
     throw;
   }
-  cache_.insert_or_assign(file, Cached{stamp, program});
+  cache_.insert_or_assign(file, Cached{stamp, outermost_, program});
   return program;
 }
 
@@ -94,6 +99,7 @@ void RsgImporter::import(std::string_view file, Node& root, const List& argument
   if (frames_.empty()) {
     budget_.imports = budget_.nodes = 0;
     budget_.exhausted = false;
+    ++outermost_;
   }
   if (frames_.size() >= static_cast<std::size_t>(budget_.maxDepth))
     throw Error("'" + name + "' is imported " + std::to_string(frames_.size()) + " deep: does a file import itself? At most " +

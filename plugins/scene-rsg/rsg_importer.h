@@ -54,6 +54,7 @@ class RsgImporter : public Leaf, public ISceneImporter {
   friend class rsg::Run;
   struct Cached {
     std::uint64_t stamp;
+    std::int64_t checked;  ///< the outermost import in which the stamp was looked at
     std::shared_ptr<const rsg::Program> program;
   };
   std::shared_ptr<const rsg::Program> load(const std::string& file, Node& root);
@@ -82,7 +83,7 @@ class RsgImporter : public Leaf, public ISceneImporter {
   rsg::Budget budget_;
   double argumentLimit_ = 1e9;
   bool unlinkOnCompleteScenes_ = false, unlinkOnUnreadable_ = false;
-  std::int64_t filesParsed_ = 0, imports_ = 0, evals_ = 0, calls_ = 0;
+  std::int64_t filesParsed_ = 0, imports_ = 0, evals_ = 0, calls_ = 0, outermost_ = 0;
   std::map<std::string, Cached, std::less<>> cache_;
   std::vector<rsg::Frame> frames_;
 };

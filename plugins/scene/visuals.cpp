@@ -47,7 +47,7 @@ void Axis::describe(Description<Axis>& d) {
 
 void RenderNode::describe(Description<RenderNode>& d) {
   d.doc("Base of all visible shapes.");
-  d.property("visible", &RenderNode::isVisible, &RenderNode::show).doc("Viewers show it.");
+  d.property("visible", &RenderNode::isVisible, &RenderNode::show).state().doc("Viewers show it.");
   d.method("setVisible", &RenderNode::setVisibleValue)
       .parameters({"on"})
       .doc("1 shows, 0 hides; a text counts as number, so that 'true' hides as in the installed base.");
@@ -112,6 +112,14 @@ void StaticMesh::resetMaterials(std::vector<std::string> names) {
       for (const std::string& name : names) known->warnUnlessKnown(name, *this);
   materials_ = std::move(names);
   modified(*this);
+}
+
+void StaticMesh::saveState(StateWriter& out) const { out.write(Convert<std::vector<std::string>>::to(materials_)); }
+
+void StaticMesh::loadState(StateReader& in) {
+  const Value names = in.readValue();
+  Args args{std::span(&names, 1)};
+  materials_ = Convert<std::vector<std::string>>::from(args);
 }
 
 void StaticMesh::setMaterialName(std::size_t i, std::string name) {

@@ -91,6 +91,9 @@ class StaticMesh : public RenderNode, public IVisual {
   virtual void meshChanged();
   void setScale(Vec3f scale);
   void resetMaterials(std::vector<std::string> names);
+  /// Materials change while the simulation runs: teams dress their robots.
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
 
  private:
   void loadCall(std::string mesh, std::vector<Value> parameters);

@@ -203,6 +203,12 @@ TEST_CASE("a mesh has the materials of its file in alphabetical order, or those 
   visual.setMaterialName(7, "no");
   CHECK(visual.materials() == std::vector<std::string>{"matLeft", "white"});
   CHECK(f.server->modifiedCount() == before + 1);
+  StateWriter saved(true);
+  saveTree(mesh, saved);
+  visual.setMaterialName(1, "black");
+  StateReader restored(saved.bytes());
+  loadTree(mesh, restored);
+  CHECK(visual.materials() == std::vector<std::string>{"matLeft", "white"});
   callMethod(mesh, "load", List{"models/none.obj"});
   CHECK(visual.materials().empty());
   callMethod(*f.kernel.root().find("/sys/server/scene"), "defineMesh", List{"models/none.obj", "a", "b"});
