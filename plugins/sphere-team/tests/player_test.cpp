@@ -1,0 +1,167 @@
+// The brain alone: percepts in, actions out.
+#include "../player.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace spark;
+
+namespace {
+
+/// What a player at (x, y) would be told, without noise. The frame is the team's own.
+struct World {
+  double now = 1, x = -5, y = 0, ballX = 0, ballY = 0;
+  std::string mode = "PlayOn", announce, others;
+
+  static std::string pol(double dx, double dy) {
+    return "(pol " + std::to_string(std::hypot(dx, dy)) + " " + std::to_string(std::atan2(dy, dx) * 180 / M_PI) + " 0)";
+  }
+  std::string mark(const std::string& name, double mx, double my) const { return "(" + name + " " + pol(mx - x, my - y) + ")"; }
+  void other(const std::string& team, int unum, double px, double py) {
+    others += "(P (team " + team + ") (id " + std::to_string(unum) + ") " + pol(px - x, py - y) + ")";
+  }
+  std::string text() const {
+    return "(time (now " + std::to_string(now) + "))(GS " + announce + "(sl 2) (sr 1) (t 1) (pm " + mode + "))(See " + mark("F1L", -52, 34) +
+           mark("F2L", -52, -34) + mark("F1R", 52, 34) + mark("F2R", 52, -34) + mark("G1L", -52, 3.66) + mark("G2L", -52, -3.66) +
+           mark("G1R", 52, 3.66) + mark("G2R", 52, -3.66) + mark("B", ballX, ballY) + others + ")";
+  }
+};
+
+std::string think(SpherePlayer& player, const World& world) {
+  Predicates percepts, actions;
+  REQUIRE(readSexp(world.text(), percepts).message.empty());
+  player.think(percepts, actions);
+  std::string out;
+  writeSexp(actions, 2, out);
+  return out;
+}
+
+/// The argument `i` of the action `name`, NaN when it was not chosen.
+double argument(const std::string& actions, std::string_view name, std::size_t i) {
+  Predicates p;
+  readSexp(actions, p);
+  for (const Element e : p)
+    if (e.head() == name) return e.at(i).number();
+  return NAN;
+}
+
+/// A player who knows his side.
+SpherePlayer playing(int unum, World& world, const char* side = "left") {
+  SpherePlayer player("A", unum);
+  world.announce = "(unum " + std::to_string(unum) + ") (team " + side + ") ";
+  think(player, world);
+  world.announce.clear();
+  world.now += 0.02;
+  return player;
+}
+
+}  // namespace
+
+TEST_CASE("a player asks for its robot, then for its place in the team, and again after a while", "[sphere-team]") {
+  SpherePlayer player("A", 7);
+  player.setScene("rsg/agent/other.rsg");
+  Predicates actions;
+  player.start(actions);
+  std::string text;
+  writeSexp(actions, 2, text);
+  CHECK(text == "(scene rsg/agent/other.rsg)");
+  World w;
+  CHECK(think(player, w) == "(init (unum 7) (teamname A))");
+  w.now += 0.5;
+  CHECK(think(player, w).empty());
+  w.now += 0.6;
+  CHECK(think(player, w) == "(init (unum 7) (teamname A))");
+}
+
+TEST_CASE("a player knows the score from its own side", "[sphere-team]") {
+  World w;
+  SpherePlayer left = playing(3, w), right = playing(3, w, "right");
+  CHECK(left.ownScore() == 2);
+  CHECK(left.otherScore() == 1);
+  CHECK(right.ownScore() == 1);
+  CHECK(right.otherScore() == 2);
+  CHECK(right.side() == "right");
+}
+
+TEST_CASE("before the kick-off a player beams to its place once", "[sphere-team]") {
+  World w;
+  w.mode = "BeforeKickOff";
+  SpherePlayer player("A", 2);
+  w.announce = "(unum 2) (team left) ";
+  const std::string first = think(player, w);
+  CHECK(argument(first, "beam", 1) < -30);
+  CHECK(argument(first, "beam", 2) > 10);
+  CHECK(think(player, w).find("beam") == std::string::npos);
+}
+
+TEST_CASE("the nearest player runs to the ball, another one does not", "[sphere-team]") {
+  World w;
+  w.x = -10;
+  SpherePlayer near = playing(10, w);
+  w.other("A", 9, -30, 10);
+  const std::string running = think(near, w);
+  CHECK(argument(running, "drive", 1) > 50);
+  // at its place in the formation, with a team-mate nearer to the ball
+  w.others.clear();
+  w.x = -4.5, w.y = 0.5;
+  w.other("A", 9, -2, 0);
+  CHECK(argument(think(near, w), "drive", 1) < 10);
+}
+
+TEST_CASE("behind the ball it kicks towards the goal, in front of it it runs round", "[sphere-team]") {
+  World w;
+  w.ballX = 35, w.x = 34.66;
+  SpherePlayer player = playing(9, w);
+  const std::string shot = think(player, w);
+  CHECK(argument(shot, "kick", 2) > 5);
+  w.x = 35.5;
+  const std::string round = think(player, w);
+  CHECK(round.find("kick") == std::string::npos);
+  CHECK(argument(round, "drive", 1) < 0);
+}
+
+TEST_CASE("at the opponents' restart it keeps away from the ball", "[sphere-team]") {
+  World w;
+  w.mode = "KickIn_Right";
+  w.ballX = -20, w.ballY = 33, w.x = -22, w.y = 30;
+  SpherePlayer player = playing(5, w);
+  const std::string away = think(player, w);
+  CHECK(away.find("kick") == std::string::npos);
+  CHECK(argument(away, "drive", 2) < 0);
+}
+
+TEST_CASE("who took a restart leaves the ball to a team-mate", "[sphere-team]") {
+  World w;
+  w.mode = "KickIn_Left";
+  w.ballX = 10, w.ballY = 33, w.x = 10, w.y = 32.6;
+  SpherePlayer taker = playing(7, w);
+  w.other("A", 8, 20, 20);
+  think(taker, w);
+  w.mode = "PlayOn";
+  w.now += 0.06;
+  CHECK(think(taker, w).find("kick") == std::string::npos);
+  w.now += 4;
+  w.ballY = 32.95;
+  think(taker, w);
+  w.now += 0.06;
+  CHECK(argument(think(taker, w), "drive", 2) > -1);
+}
+
+TEST_CASE("the goalie stands between ball and goal and catches what is near", "[sphere-team]") {
+  World w;
+  w.x = -48, w.y = -10, w.ballX = -20, w.ballY = 20;
+  SpherePlayer goalie = playing(1, w);
+  const std::string home = think(goalie, w);
+  CHECK(argument(home, "drive", 1) < 0);
+  CHECK(argument(home, "drive", 2) > 50);
+  w.ballX = -47, w.ballY = -10;
+  w.now += 0.06;
+  CHECK(think(goalie, w) == "(catch )");
+}
+
+TEST_CASE("when it is over it stands still", "[sphere-team]") {
+  World w;
+  SpherePlayer player = playing(4, w);
+  w.mode = "GameOver";
+  CHECK(think(player, w) == "(drive 0.00 0.00 0.00)");
+}
