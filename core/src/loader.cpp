@@ -1,10 +1,12 @@
 #include <dlfcn.h>
+#include <elf.h>
 #include <ltdl.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <cstring>
+#include <fstream>
 #include <mutex>
 
 #include "spark/error.h"
@@ -56,6 +58,25 @@ class ClassCollector : public Registrar {
   std::vector<ClassDescription> classes;
   std::vector<std::function<void()>> actions;
 };
+
+/// "" when the file looks like a whole shared library. The dynamic linker trusts its headers: a file that was copied half would kill us.
+std::string fileProblem(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::error_code ec;
+  const std::uintmax_t size = fs::file_size(path, ec);
+  Elf64_Ehdr head{};
+  if (!in || ec) return {};  // the linker says it better
+  if (!in.read(reinterpret_cast<char*>(&head), sizeof head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 || head.e_type != ET_DYN)
+    return "it is no shared library";
+  if (head.e_ident[EI_CLASS] != ELFCLASS64) return {};
+  in.seekg(static_cast<std::streamoff>(head.e_phoff));
+  for (int i = 0; i < head.e_phnum; ++i) {
+    Elf64_Phdr part{};
+    if (!in.read(reinterpret_cast<char*>(&part), sizeof part) || part.p_offset > size || part.p_filesz > size - part.p_offset)
+      return "it is cut off after " + std::to_string(size) + " bytes";
+  }
+  return {};
+}
 
 std::string absolutePath(const fs::path& file) { return fs::absolute(file).lexically_normal().string(); }
 
@@ -120,6 +141,7 @@ void Loader::drop(ClassObject& c, bool leak) {
 Plugin& Loader::open(const fs::path& file) {
   const std::lock_guard lock(ltdlMutex());
   const std::string path = absolutePath(file);
+  if (const std::string problem = fileProblem(path); !problem.empty()) throw Error("refused plugin " + path + ": " + problem);
   void* first = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!first) {
     const char* text = dlerror();

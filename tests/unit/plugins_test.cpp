@@ -1,0 +1,232 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "spark/error.h"
+#include "spark/event.h"
+#include "spark/state.h"
+#include "test_support.h"
+
+// Plugins come and go; what is no good is refused with a sentence that names file and reason, and nothing else suffers.
+
+using namespace spark;
+using spark::test::House;
+namespace fs = std::filesystem;
+
+namespace {
+fs::path fixtures(const char* folder) { return test::pluginFolder().parent_path() / "tests" / folder; }
+fs::path bad(const std::string& name) { return fixtures("bad-plugins") / (name + ".so"); }
+fs::path good(const std::string& name) { return fixtures("fixture-plugins") / (name + ".so"); }
+
+bool isMapped(const std::string& file) {
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);)
+    if (line.ends_with(file)) return true;
+  return false;
+}
+
+std::string refusal(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "nothing was refused";
+}
+
+struct TemporaryFolder {
+  fs::path path = fs::temp_directory_path() / ("spark-plugins-" + std::to_string(::getpid()));
+  TemporaryFolder() { fs::create_directories(path); }
+  ~TemporaryFolder() { fs::remove_all(path); }
+};
+}  // namespace
+
+TEST_CASE("Each bad file of a folder is refused by name and reason, and scanning goes on") {
+  House house(false);
+  const auto problems = house.kernel.plugins().scan(fixtures("bad-plugins"));
+  const std::pair<const char*, const char*> expected[] = {
+      {"bad-name", "its name '../escaped' is none"},
+      {"missing-dependency", "libspark-gone.so.1: cannot open shared object file"},
+      {"missing-symbol", "undefined symbol: _Z30sparkFunctionThatNobodyDefinesv"},
+      {"newer-abi", "it was built for the newer plugin ABI"},
+      {"no-descriptor", "it has no symbol sparkPlugin"},
+      {"not-a-library", "it is no shared library"},
+      {"older-abi", "it was built for the older plugin ABI"},
+      {"other-headers", "its Spark headers (ffffffffffffffff) are not this host's"},
+      {"other-sanitizer", "it was built with"},
+      {"wrong-magic", "its descriptor lacks the magic word SPARKPLG"},
+  };
+  REQUIRE(problems.size() == std::size(expected));
+  for (std::size_t i = 0; i < std::size(expected); ++i) {
+    CHECK_THAT(problems[i], Catch::Contains(bad(expected[i].first).string()) && Catch::Contains(expected[i].second));
+    CHECK_THAT(house.text, Catch::Contains(problems[i]));
+  }
+  // Those that fail only when their classes are registered are listed.
+  std::vector<std::string> listed;
+  for (const auto& p : house.kernel.root().child("plugins")->asNode()->children()) listed.push_back(p->name());
+  CHECK(listed == std::vector<std::string>{"duplicate-class", "own-base", "throws-no-exception", "throws-while-registering"});
+  for (const auto& [name, reason] : expected) CHECK_FALSE(isMapped(bad(name)));
+}
+
+TEST_CASE("One file alone is refused with the same words") {
+  House house(false);
+  for (const char* name : {"bad-name", "missing-dependency", "missing-symbol", "newer-abi", "no-descriptor", "not-a-library", "older-abi", "other-headers",
+                           "other-sanitizer", "wrong-magic", "duplicate-class", "own-base", "throws-no-exception", "throws-while-registering"}) {
+    CAPTURE(name);
+    CHECK_THAT(refusal([&] { house.kernel.plugins().useFile(bad(name)); }), Catch::Contains(bad(name).string()));
+    CHECK(house.kernel.root().child("plugins")->asNode()->children().empty());
+    CHECK_FALSE(isMapped(bad(name)));
+  }
+  CHECK_THAT(refusal([&] { house.kernel.plugins().useFile("/nowhere/x.so"); }), Catch::Contains("/nowhere/x.so") && Catch::Contains("No such file"));
+}
+
+TEST_CASE("What fails while it registers leaves no class behind") {
+  House house(false);
+  house.kernel.plugins().scan(fixtures("bad-plugins"));
+  const auto failure = [&](const char* name) { return refusal([&] { house.kernel.plugins().use(name); }); };
+  CHECK_THAT(failure("throws-while-registering"), Catch::Contains("throws-while-registering.so") && Catch::Contains("the flux is low"));
+  CHECK_THAT(failure("throws-no-exception"), Catch::Contains("throws-no-exception.so") && Catch::Contains("no std::exception"));
+  CHECK_THAT(failure("duplicate-class"), Catch::Contains("class 'Node' is registered already, by the kernel"));
+  CHECK_THAT(failure("own-base"), Catch::Contains("class 'Innocent' names itself as its base"));
+  CHECK(house.kernel.findClass("Innocent") == nullptr);
+  CHECK(house.kernel.classOf("Node").plugin() == nullptr);
+  // It may be tried again, and be unloaded.
+  CHECK_THAT(failure("duplicate-class"), Catch::Contains("is registered already"));
+  CHECK(house.kernel.plugins().providerOf("Innocent") != nullptr);
+  house.kernel.plugins().unload("duplicate-class");
+  CHECK_FALSE(isMapped(bad("duplicate-class")));
+}
+
+TEST_CASE("A file that is cut off, empty or a folder is refused") {
+  House house(false);
+  const TemporaryFolder folder;
+  fs::copy_file(good("fixture-base"), folder.path / "cut.so");
+  fs::resize_file(folder.path / "cut.so", fs::file_size(good("fixture-base")) / 3);
+  std::ofstream(folder.path / "empty.so").flush();
+  fs::create_directory(folder.path / "folder.so");
+  std::ofstream(folder.path / "readme.txt") << "not looked at";
+  const auto problems = house.kernel.plugins().scan(folder.path);
+  REQUIRE(problems.size() == 3);
+  CHECK_THAT(problems[0], Catch::Contains("cut.so") && Catch::Contains("it is cut off"));
+  CHECK_THAT(problems[1], Catch::Contains("empty.so") && Catch::Contains("it is no shared library"));
+  CHECK_THAT(problems[2], Catch::Contains("folder.so"));
+  CHECK_THAT(house.kernel.plugins().scan(folder.path / "nowhere").at(0), Catch::Contains("cannot read plugin folder"));
+}
+
+TEST_CASE("Scanning lists, a config line registers") {
+  House house(false);
+  CHECK(house.kernel.plugins().scan(fixtures("fixture-plugins")).empty());
+  const Plugin& p = house.kernel.root().require<Plugin>("/plugins/fixture-base");
+  CHECK(p.version() == "1.2");
+  CHECK(p.classes() == std::vector<std::string>{"FixtureBase"});
+  CHECK_FALSE(p.registered());
+  CHECK(house.kernel.findClass("FixtureBase") == nullptr);
+  CHECK_THAT(refusal([&] { house.kernel.classOf("FixtureBase"); }), Catch::Contains("plugin 'fixture-base' provides it"));
+  CHECK(&house.kernel.plugins().use("fixture-base") == &p);
+  CHECK(&house.kernel.plugins().use("fixture-base") == &p);
+  CHECK(house.kernel.classOf("FixtureBase").plugin() == &p);
+  CHECK_THAT(refusal([&] { house.kernel.plugins().use("fixture-bace"); }), Catch::Contains("'fixture-base'") && Catch::Contains("fixture-plugins"));
+}
+
+TEST_CASE("A folder may be scanned again, and a listed file be used by its path") {
+  House house(false);
+  house.kernel.plugins().scan(fixtures("fixture-plugins"));
+  CHECK(house.kernel.plugins().scan(fixtures("fixture-plugins")).empty());
+  CHECK(house.kernel.plugins().folders().size() == 1);
+  CHECK(house.kernel.plugins().useFile(good("fixture-base")).registered());
+  const TemporaryFolder folder;
+  fs::copy_file(good("fixture-base"), folder.path / "copy.so");
+  const auto problems = house.kernel.plugins().scan(folder.path);
+  REQUIRE(problems.size() == 1);
+  CHECK_THAT(problems[0], Catch::Contains("there is a plugin 'fixture-base' already, from " + good("fixture-base").string()));
+}
+
+TEST_CASE("The order in which plugins are registered does not matter") {
+  House house(false);
+  house.kernel.plugins().scan(fixtures("fixture-plugins"));
+  house.kernel.plugins().use("fixture-derived");
+  const std::string why = refusal([&] { house.kernel.create("FixtureDerived", "/usr/x"); });
+  CHECK_THAT(why, Catch::Contains("class FixtureDerived of plugin fixture-derived needs its base class FixtureBase") && Catch::Contains("plugin \"fixture-base\""));
+  house.kernel.plugins().use("fixture-base");
+  Leaf& made = house.kernel.create("FixtureDerived", "/usr/x");
+  CHECK(made.classObject()->isA("FixtureBase"));
+  CHECK(getProperty(made, "number") == Value(1.0));
+  house.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
+  CHECK(getProperty(made, "number") == Value(2.0));
+}
+
+TEST_CASE("A missing base that no plugin provides is said so") {
+  House house(false);
+  house.kernel.plugins().useFile(good("fixture-derived"));
+  CHECK_THAT(refusal([&] { house.kernel.create("FixtureDerived", "/usr/x"); }), Catch::Contains("No scanned plugin provides it"));
+}
+
+TEST_CASE("Unloading is refused while objects live, and lists them") {
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  loader.useFile(good("fixture-base"));
+  Node& a = house.kernel.create<Node>("FixtureBase", "/usr/a");
+  a.create("FixtureBase", "b");
+  const std::string why = refusal([&] { loader.unload("fixture-base"); });
+  CHECK_THAT(why, Catch::Contains("while its objects live") && Catch::Contains("/usr/a (FixtureBase)") && Catch::Contains("/usr/a/b (FixtureBase)"));
+  house.kernel.root().child("usr")->asNode()->remove(a);
+  const auto loose = house.kernel.classOf("FixtureBase").create();
+  CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }), Catch::Contains("1 outside the tree"));
+  CHECK(house.kernel.findClass("FixtureBase") != nullptr);
+}
+
+TEST_CASE("Unloading is refused while classes of other plugins derive") {
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  loader.scan(fixtures("fixture-plugins"));
+  loader.use("fixture-derived");
+  loader.use("fixture-base");
+  CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }), Catch::Contains("FixtureDerived of plugin 'fixture-derived'"));
+  loader.unload("fixture-derived");
+  loader.unload("fixture-base");
+  CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }), Catch::Contains("there is none of that name"));
+}
+
+TEST_CASE("An unloaded plugin is gone: its classes, its node, its file from memory; and it may come again") {
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  for (int round = 0; round < 3; ++round) {
+    loader.useFile(good("fixture-base"));
+    REQUIRE(isMapped(good("fixture-base")));
+    Leaf& made = house.kernel.create("FixtureBase", "/usr/a");
+    house.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
+    StateWriter out(false);
+    saveTree(made, out);
+    made.parent()->remove(made);
+    loader.unload("fixture-base");
+    CHECK(house.kernel.findClass("FixtureBase") == nullptr);
+    CHECK(house.kernel.root().find("/plugins/fixture-base") == nullptr);
+    CHECK(house.kernel.root().find("/classes/FixtureBase") == nullptr);
+    CHECK_FALSE(isMapped(good("fixture-base")));
+    house.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
+  }
+}
+
+TEST_CASE("A kernel takes its plugins with it, and leaves another kernel's alone") {
+  House other(false);
+  other.kernel.plugins().useFile(good("fixture-derived"));
+  {
+    House house(false);
+    house.kernel.plugins().scan(fixtures("fixture-plugins"));
+    house.kernel.plugins().use("fixture-derived");
+    house.kernel.plugins().use("fixture-base");
+    house.kernel.create("FixtureDerived", "/elsewhere/x");
+    house.kernel.create("FixtureBase", "/sys/y");
+  }
+  CHECK_FALSE(isMapped(good("fixture-base")));
+  CHECK(isMapped(good("fixture-derived")));
+  CHECK(other.kernel.findClass("FixtureDerived") != nullptr);
+}
+
+TEST_CASE("The plugins' nodes belong to the loader") {
+  House house(false);
+  house.kernel.plugins().useFile(good("fixture-base"));
+  Leaf& node = *house.kernel.root().find("/plugins/fixture-base");
+  CHECK_THROWS_AS(node.parent()->remove(node), Error);
+  CHECK_THROWS_AS(node.setName("other"), Error);
+  house.kernel.plugins().unload("fixture-base");
+}
