@@ -1,0 +1,38 @@
+#pragma once
+/// \file
+/// A kernel with every built plugin registered, and the order in which plugins need each other.
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "spark/error.h"
+#include "test_support.h"
+
+namespace spark::test {
+
+/// All plugins that the scan found.
+inline std::vector<Plugin*> pluginsOf(Kernel& kernel) {
+  std::vector<Plugin*> out;
+  for (const auto& p : kernel.root().child("plugins")->asNode()->children()) out.push_back(p->as<Plugin>());
+  return out;
+}
+
+/// Every built plugin, registered.
+struct AllPlugins : House {
+  AllPlugins() {
+    for (Plugin* p : pluginsOf(kernel)) kernel.plugins().use(p->name());
+  }
+  /// The classes of one plugin.
+  std::vector<ClassObject*> classesOf(const Plugin& plugin) {
+    std::vector<ClassObject*> out;
+    for (ClassObject* c : kernel.classes())
+      if (c->plugin() == &plugin) out.push_back(c);
+    return out;
+  }
+};
+
+/// True when `type` holds numbers that a unit could make clear.
+inline bool isNumeric(const std::string& type) { return type == "number" || type == "vec3" || type == "list of number"; }
+
+}  // namespace spark::test

@@ -1,0 +1,249 @@
+#include <cmath>
+#include <set>
+
+#include "all_plugins.h"
+#include "spark/state.h"
+
+// What a plugin's author must have done, so that Lua, scene files, sparkctl, --describe and saved state work with his classes.
+
+using namespace spark;
+using spark::test::AllPlugins;
+
+namespace {
+/// Calls `check` for every class of every plugin, within a section of its own.
+template <class F>
+void forEachClass(AllPlugins& house, F check) {
+  for (Plugin* plugin : test::pluginsOf(house.kernel))
+    for (ClassObject* c : house.classesOf(*plugin)) {
+      INFO("plugin " << plugin->name() << ", class " << c->name());
+      try {
+        check(*plugin, *c);
+      } catch (const Error& e) {
+        FAIL_CHECK(e.what());
+      }
+    }
+}
+
+/// The properties that the class itself describes.
+std::vector<const Property*> ownProperties(ClassObject& c) {
+  std::vector<const Property*> inherited = c.base() ? c.base()->properties() : std::vector<const Property*>{}, out;
+  for (const Property* p : c.properties())
+    if (std::find(inherited.begin(), inherited.end(), p) == inherited.end()) out.push_back(p);
+  return out;
+}
+
+bool isSentence(const std::string& text) {
+  return text.size() >= 5 && text.back() == '.' && !(text.front() >= 'a' && text.front() <= 'z');
+}
+
+/// True when a number's doc says that it has no unit.
+bool isPureNumber(const Property& p) {
+  static const char* words[] = {"factor", "ratio", "share", "fraction", "coefficient", "exponent", "direction", "axis", "scale", "number of", "matrix",
+                                "ERP", "probability", "per cent", "score", "slip"};
+  return std::any_of(std::begin(words), std::end(words), [&](const char* w) { return p.doc.find(w) != std::string::npos; });
+}
+
+std::string outOfRange(const Property& p, const Value& v) {
+  if (v.isList()) {
+    for (const Value& e : v.toList())
+      if (std::string s = outOfRange(p, e); !s.empty()) return s;
+  } else if (v.isNumber()) {
+    const double d = v.toNumber();
+    if (p.min && !(d >= *p.min)) return v.text() + " is below " + Value(*p.min).text();
+    if (p.max && !(d <= *p.max)) return v.text() + " is above " + Value(*p.max).text();
+  } else if (v.isString() && !p.choices.empty() && std::find(p.choices.begin(), p.choices.end(), v.toString()) == p.choices.end()) {
+    return v.text() + " is none of its choices";
+  }
+  return {};
+}
+
+/// Equal but for single precision.
+bool isClose(const Value& a, const Value& b) {
+  if (a.isNumber() && b.isNumber()) {
+    const double x = a.toNumber(), y = b.toNumber();
+    return x == y || (std::isnan(x) && std::isnan(y)) || std::abs(x - y) <= 1e-5 * std::max({1.0, std::abs(x), std::abs(y)});
+  }
+  if (!a.isList() || !b.isList()) return a == b;
+  if (a.toList().size() != b.toList().size()) return false;
+  for (std::size_t i = 0; i < a.toList().size(); ++i)
+    if (!isClose(a.toList()[i], b.toList()[i])) return false;
+  return true;
+}
+
+/// Another legal value for the property, nil when none is at hand.
+Value another(const Property& p, const Value& v) {
+  if (v.isBool()) return !v.toBool();
+  if (!p.choices.empty()) return p.choices.front() == v.plain() ? p.choices.back() : p.choices.front();
+  if (!v.isNumber()) return {};
+  double d = v.toNumber() + 1;
+  if (p.max && d > *p.max) d = *p.max;
+  if (p.min && d < *p.min) d = *p.min;
+  return v.isInteger() ? Value(static_cast<std::int64_t>(d)) : Value(d);
+}
+
+/// Objects that are not linked: their setters must not need the tree.
+std::string roundTrip(Leaf& object, const Property& p) {
+  const Value before = p.get(object);
+  setProperty(object, p.name, before);
+  if (const Value after = p.get(object); !isClose(before, after)) return "set to its own value " + before.text() + " it reads " + after.text();
+  const Value other = another(p, before);
+  if (other.isNil()) return {};
+  setProperty(object, p.name, other);
+  if (const Value after = p.get(object); !isClose(other, after)) return "set to " + other.text() + " it reads " + after.text();
+  return {};
+}
+}  // namespace
+
+TEST_CASE("Every plugin registers with all others and says what it is") {
+  AllPlugins house;
+  REQUIRE(test::pluginsOf(house.kernel).size() > 10);
+  for (Plugin* p : test::pluginsOf(house.kernel)) {
+    INFO("plugin " << p->name());
+    CHECK(p->registered());
+    CHECK(p->file() == (test::pluginFolder() / (p->name() + ".so")).string());
+    CHECK_FALSE(p->version().empty());
+    CHECK(isSentence(p->doc()));
+    CHECK(house.classesOf(*p).size() == p->classes().size());
+  }
+}
+
+TEST_CASE("Every class, property and method is documented, with type and unit") {
+  AllPlugins house;
+  forEachClass(house, [](Plugin&, ClassObject& c) {
+    CHECK(isSentence(c.doc()));
+    for (const Property* p : ownProperties(c)) {
+      INFO("property " << p->name << " (" << p->doc << ")");
+      CHECK(isSentence(p->doc));
+      CHECK_FALSE(p->type.empty());
+      if (test::isNumeric(p->type) && p->unit.empty() && !isPureNumber(*p))
+        FAIL_CHECK("a number without a unit: give it .unit(\"m\"), .unit(\"1\") for a pure number, or say in its doc that it is a factor, ratio, ...");
+    }
+    for (const Method* m : c.methods()) {
+      INFO("method " << m->name << " (" << m->doc << ")");
+      CHECK(isSentence(m->doc));
+      CHECK(c.method(m->name) != nullptr);
+      for (const std::string& parameter : m->parameters) {
+        INFO("parameter " << parameter);
+        CHECK_FALSE(parameter.empty());
+      }
+    }
+  });
+}
+
+TEST_CASE("Names of properties are words that Lua and scene files can write, and describe one thing each") {
+  AllPlugins house;
+  forEachClass(house, [](Plugin&, ClassObject& c) {
+    std::set<std::string> seen;
+    for (const Property* p : ownProperties(c)) {
+      INFO("property " << p->name);
+      CHECK(std::all_of(p->name.begin(), p->name.end(), [](unsigned char ch) { return std::isalnum(ch) || ch == '_'; }));
+      CHECK(seen.insert(p->name).second);
+      CHECK(p->readOnly == !p->set);
+    }
+  });
+}
+
+TEST_CASE("Defaults lie in range") {
+  AllPlugins house;
+  forEachClass(house, [](Plugin&, ClassObject& c) {
+    if (c.isAbstract()) return;
+    for (const Property* p : c.properties()) {
+      INFO("property " << p->name);
+      CHECK(outOfRange(*p, c.defaultOf(*p)).empty());
+      if (p->min && p->max) CHECK(*p->min < *p->max);
+    }
+  });
+}
+
+TEST_CASE("What was set is read back, also before the object is linked") {
+  AllPlugins house;
+  forEachClass(house, [](Plugin&, ClassObject& c) {
+    if (c.isAbstract()) return;
+    for (const Property* p : c.properties()) {
+      if (p->readOnly || p->name == "name") continue;
+      INFO("property " << p->name);
+      const auto object = c.create();
+      try {
+        CHECK(roundTrip(*object, *p) == "");
+      } catch (const std::exception& e) {
+        FAIL_CHECK(e.what());
+      }
+    }
+  });
+}
+
+TEST_CASE("A property that is set out of range is left alone") {
+  AllPlugins house;
+  forEachClass(house, [](Plugin&, ClassObject& c) {
+    if (c.isAbstract()) return;
+    for (const Property* p : c.properties()) {
+      if (p->readOnly || !p->min || p->type == "string") continue;
+      INFO("property " << p->name);
+      const auto object = c.create();
+      const Value before = p->get(*object);
+      CHECK_THROWS_AS(setProperty(*object, p->name, *p->min - 1), Error);
+      CHECK_THROWS_AS(setProperty(*object, p->name, std::nan("")), Error);
+      CHECK(isClose(p->get(*object), before));
+    }
+  });
+}
+
+TEST_CASE("State that was saved is restored, to the same hash") {
+  AllPlugins house;
+  forEachClass(house, [](Plugin&, ClassObject& c) {
+    if (c.isAbstract()) return;
+    const auto one = c.create(), two = c.create();
+    for (const Property* p : c.properties()) {
+      if (!p->state) continue;
+      INFO("property " << p->name);
+      CHECK_FALSE(p->readOnly);
+      if (p->readOnly) continue;
+      if (const Value other = another(*p, p->get(*one)); !other.isNil()) try {
+          setProperty(*one, p->name, other);
+        } catch (const std::exception&) {
+          // Reported above: what cannot be set cannot be restored either.
+        }
+    }
+    StateWriter out(true);
+    saveTree(*one, out);
+    StateReader in(out.bytes());
+    try {
+      loadTree(*two, in);
+    } catch (const std::exception& e) {
+      FAIL_CHECK(e.what());
+    }
+    CHECK(in.atEnd());
+    CHECK(stateHash(*two) == stateHash(*one));
+  });
+}
+
+TEST_CASE("Objects come and go without a tree and leave nothing") {
+  AllPlugins house;
+  forEachClass(house, [](Plugin&, ClassObject& c) {
+    const std::size_t before = c.living();
+    if (c.isAbstract()) {
+      CHECK_THROWS_AS(c.create(), Error);
+    } else {
+      CHECK(c.create()->classObject() == &c);
+      CHECK(c.create()->name().size() > 0);
+    }
+    CHECK(c.living() == before);
+  });
+}
+
+TEST_CASE("Objects that are linked in an empty house either say what they miss or work") {
+  AllPlugins house;
+  forEachClass(house, [&](Plugin&, ClassObject& c) {
+    if (c.isAbstract()) return;
+    Node& root = house.kernel.root();
+    try {
+      Leaf& made = house.kernel.create(c.name(), "/lonely/" + c.name());
+      CHECK(made.isLinked());
+      stateHash(root);
+      made.parent()->remove(made);
+    } catch (const Error& e) {
+      CHECK(std::string(e.what()).size() > 20);
+    }
+    CHECK(c.living() == 0);
+  });
+}
