@@ -77,8 +77,8 @@ std::string Host::run() {
   const double time = numberAt(root, kSimulation, "time");
   return fmt::format(
       "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"score\":[{},{}],\"agentsSeen\":{},\"messagesDropped\":{},\"stateHash\":\"{:016x}\"}}",
-      integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0, integerAt(root, kGameState, "scoreLeft"),
-      integerAt(root, kGameState, "scoreRight"), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root), stateHash(root));
+      integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0, elementAt(root, kGameState, "score", 0),
+      elementAt(root, kGameState, "score", 1), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root), stateHash(root));
 }
 
 }  // namespace sparkhost

@@ -35,7 +35,7 @@ std::string StatusLine::text(double time, double factor) const {
   const Leaf& root = kernel().root();
   std::string out = fmt::format("{:.2f} s, {:.1f} x real time", time, factor);
   if (const std::string mode = textAt(root, kGameState, "playMode"); !mode.empty())
-    out += fmt::format(", {} {}:{}", mode, integerAt(root, kGameState, "scoreLeft"), integerAt(root, kGameState, "scoreRight"));
+    out += fmt::format(", {} {}:{}", mode, elementAt(root, kGameState, "score", 0), elementAt(root, kGameState, "score", 1));
   if (root.find(kGameControl)) out += fmt::format(", {} agents", integerAt(root, kGameControl, "agentCount"));
   return out;
 }

@@ -29,6 +29,12 @@ inline double numberAt(const spark::Leaf& root, const char* path, const char* pr
   const spark::Value v = valueAt(root, path, property);
   return v.isNumber() ? v.toNumber() : 0;
 }
+/// Element `index` of a list of numbers.
+inline std::int64_t elementAt(const spark::Leaf& root, const char* path, const char* property, std::size_t index) {
+  const spark::Value v = valueAt(root, path, property);
+  const spark::Value* e = v.isList() ? v.at(index) : nullptr;
+  return e && e->isNumber() ? static_cast<std::int64_t>(e->toNumber()) : 0;
+}
 inline std::string textAt(const spark::Leaf& root, const char* path, const char* property) {
   const spark::Value v = valueAt(root, path, property);
   return v.isNil() ? std::string() : v.plain();

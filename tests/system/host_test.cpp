@@ -1,0 +1,174 @@
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "process.h"
+#include "test_support.h"
+
+using namespace spark::test;
+using Json = nlohmann::json;
+using Catch::Contains;
+
+namespace {
+std::string program(const char* name) { return (binFolder() / name).string(); }
+std::vector<std::string> host(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), program("sparkhost"));
+  return arguments;
+}
+
+/// A config with nothing but a run loop and a control socket.
+const char* kSmall = R"(
+include "house.lua"
+files()
+simulation()
+control()
+answer = option{ name = "answer", default = 42, doc = "What to do?" }
+)";
+/// As kSmall, with agents and monitors.
+const char* kServing = R"(
+include "house.lua"
+files() scene() simulation()
+agents{} monitors{} control()
+)";
+}  // namespace
+
+TEST_CASE("--check loads and wires, steps nothing, prints nothing on stdout") {
+  TemporaryFolder folder;
+  const Finished good = runToEnd(host({"--config", folder.write("good.lua", kSmall), "--check"}));
+  REQUIRE(good.code == 0);
+  REQUIRE(good.out.empty());
+  const Finished bad = runToEnd(host({"--config", folder.write("bad.lua", std::string(kSmall) + "new('Simulatoin', '/sys/x')\n"), "--check"}));
+  REQUIRE(bad.code == 2);
+  REQUIRE_THAT(bad.errors, Contains("bad.lua:7") && Contains("'Simulation'"));
+}
+
+TEST_CASE("A config that is not there is an error that says where it was looked for") {
+  const Finished f = runToEnd(host({"--config", "no-such-config.lua"}));
+  REQUIRE(f.code == 2);
+  REQUIRE_THAT(f.errors, Contains("no-such-config.lua") && Contains("share/spark/lua"));
+}
+
+TEST_CASE("--set takes options and properties; an unknown name is an error with the nearest") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("small.lua", kSmall);
+  REQUIRE(runToEnd(host({"--config", config, "--check", "--set", "answer=43", "--set", "/sys/server/simulation.step=0.01"})).code == 0);
+  const Finished unknown = runToEnd(host({"--config", config, "--check", "--set", "anwser=43"}));
+  REQUIRE(unknown.code == 2);
+  REQUIRE_THAT(unknown.errors, Contains("anwser") && Contains("'answer'"));
+  const Finished range = runToEnd(host({"--config", config, "--check", "--set", "/sys/server/simulation.step=-3"}));
+  REQUIRE(range.code == 2);
+  REQUIRE_THAT(range.errors, Contains("step") && Contains("-3"));
+  REQUIRE(runToEnd(host({"--config", config, "--check", "--set", "answer"})).code == 2);
+}
+
+TEST_CASE("A wrong command line ends with exit code 2 and says what is wrong") {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {}, {"--config", "x.lua", "--rate", "fast"}, {"--config", "x.lua", "--agent-port", "70000"}, {"--config", "x.lua", "--dance"}, {"--config", "x.lua", "--plugin-path", "/no/such/folder"}}) {
+    const Finished f = runToEnd(host(arguments));
+    REQUIRE(f.code == 2);
+    REQUIRE(f.out.empty());
+    REQUIRE_FALSE(f.errors.empty());
+  }
+}
+
+TEST_CASE("stdout holds the ports first and the result last, and nothing else") {
+  TemporaryFolder folder;
+  Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0", "--rate", "max", "--duration", "2"}));
+  const Json ports = Json::parse(p.line());
+  REQUIRE(ports["agentPort"].get<int>() > 0);
+  REQUIRE(ports["monitorPort"].get<int>() > 0);
+  REQUIRE(ports["agentPort"] != ports["monitorPort"]);
+  const Json result = Json::parse(p.line());
+  REQUIRE(result["cycles"] == 100);
+  REQUIRE(result["simSeconds"] == 2.0);
+  REQUIRE(result["realTimeFactor"].get<double>() > 1);
+  REQUIRE(result["score"] == Json::array({0, 0}));
+  REQUIRE(result["agentsSeen"] == 0);
+  REQUIRE(result["messagesDropped"] == 0);
+  REQUIRE(result["stateHash"].get<std::string>().size() == 16);
+  REQUIRE(p.rest().empty());
+  REQUIRE(p.wait() == 0);
+}
+
+TEST_CASE("SIGINT and SIGTERM end a run with its result") {
+  TemporaryFolder folder;
+  for (const int number : {SIGINT, SIGTERM}) {
+    Process p(host({"--config", folder.write("small.lua", kSmall)}));
+    p.line();
+    p.signal(number);
+    REQUIRE(Json::parse(p.line())["cycles"].get<int>() >= 0);
+    REQUIRE(p.wait() == 0);
+  }
+}
+
+TEST_CASE("A host that waits for agents ends when it is told to") {
+  TemporaryFolder folder;
+  Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0", "--sync", "--expect", "5"}));
+  p.line();
+  p.signal(SIGTERM);
+  REQUIRE(Json::parse(p.line())["cycles"] == 0);
+  REQUIRE(p.wait() == 0);
+}
+
+TEST_CASE("A port that is taken is an error that names it") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("serving.lua", kServing);
+  Process first(host({"--config", config, "--agent-port", "0", "--monitor-port", "0"}));
+  const Json ports = Json::parse(first.line());
+  const std::string taken = std::to_string(ports["agentPort"].get<int>());
+  const Finished second = runToEnd(host({"--config", config, "--agent-port", taken, "--monitor-port", "0"}));
+  REQUIRE(second.code == 2);
+  REQUIRE_THAT(second.errors, Contains(taken));
+}
+
+TEST_CASE("--list-plugins and --describe tell what is there") {
+  const Finished list = runToEnd(host({"--list-plugins"}));
+  REQUIRE(list.code == 0);
+  REQUIRE_THAT(list.out, Contains("simulation 1.0") && Contains("ControlServer"));
+  const Finished described = runToEnd(host({"--describe", "Simulation"}));
+  REQUIRE(described.code == 0);
+  REQUIRE_THAT(described.out, Contains("number [s]") && Contains("default 0.02") && Contains("runCycles(count: integer)") && Contains("plugin: simulation"));
+  const Finished unknown = runToEnd(host({"--describe", "Simulatoin"}));
+  REQUIRE(unknown.code == 2);
+  REQUIRE_THAT(unknown.errors, Contains("'Simulation'"));
+  REQUIRE_THAT(runToEnd(host({"--version"})).out, Contains("sparkhost"));
+}
+
+TEST_CASE("A folder of broken plugins is reported, and the host starts") {
+  TemporaryFolder folder;
+  folder.write("broken/broken.so", "this is no library");
+  const Finished f = runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path", (folder.path() / "broken").string()}));
+  REQUIRE(f.code == 0);
+  REQUIRE_THAT(f.errors, Contains("broken.so"));
+}
+
+TEST_CASE("sparkctl shows the house and changes it") {
+  TemporaryFolder folder;
+  Process p(host({"--config", folder.write("small.lua", kSmall)}));
+  p.line();
+  const auto ctl = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {program("sparkctl"), "--pid", std::to_string(p.pid())});
+    return runToEnd(arguments);
+  };
+  REQUIRE_THAT(ctl({"tree", "/sys"}).out, Contains("simulation  (Simulation)") && Contains("run loop"));
+  REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out, Contains("step = 0.02 s") && Contains("Simulated time of one cycle."));
+  REQUIRE_THAT(ctl({"plugins"}).out, Contains("* control"));
+  REQUIRE(ctl({"set", "/sys/server/simulation.step", "0.01"}).code == 0);
+  REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out, Contains("0.01 s"));
+  REQUIRE(ctl({"set", "/sys/server/simulation.step", "soon"}).code == 1);
+  REQUIRE(ctl({"get", "/nowhere"}).code == 1);
+  REQUIRE(ctl({"call", "/sys/server/simulation.stop"}).code == 0);
+  REQUIRE(Json::parse(p.line())["cycles"].get<int>() > 0);
+  REQUIRE(p.wait() == 0);
+}
+
+TEST_CASE("sparkctl without a house says so") {
+  TemporaryFolder folder;
+  setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);
+  const Finished f = runToEnd({program("sparkctl"), "--pid", "1", "tree"});
+  unsetenv("XDG_RUNTIME_DIR");
+  REQUIRE(f.code == 1);
+  REQUIRE_THAT(f.errors, Contains("no house"));
+}

@@ -1,0 +1,158 @@
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <catch2/catch.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "process.h"
+#include "test_support.h"
+
+using namespace spark::test;
+using Json = nlohmann::json;
+using Catch::Contains;
+
+namespace {
+std::string program(const char* name) { return (binFolder() / name).string(); }
+
+/// A short match of two teams over TCP, in lockstep.
+struct Match {
+  std::string config = "soccer-sphere.lua";
+  int players = 3, seed = 7;
+  double seconds = 12;
+  bool blueFirst = false;
+  std::string redParser = "SexpParser", blueParser = "SexpParser";
+  std::string bluePort;   ///< name of the port node that Blue connects to; "" is the first
+  std::vector<std::string> arguments;
+
+  std::unique_ptr<Process> start(Json& ports) const {
+    std::vector<std::string> command{program("sparkhost"), "--config", config, "--seed", std::to_string(seed), "--sync", "--rate", "max", "--expect", std::to_string(2 * players),
+                                     "--duration", std::to_string(seconds), "--agent-port", "0", "--monitor-port", "0", "--log-level", "warning"};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    auto host = std::make_unique<Process>(command);
+    ports = Json::parse(host->line());
+    return host;
+  }
+  std::unique_ptr<Process> team(const char* name, const std::string& port, const std::string& parser) const {
+    std::vector<std::string> command{program("sphere-team"), "--team", name, "--port", port, "--players", std::to_string(players), "--parser", parser};
+    if (blueFirst) command.push_back("--reverse");
+    return std::make_unique<Process>(command);
+  }
+  Json play() const {
+    Json ports;
+    const auto host = start(ports);
+    const std::string port = std::to_string(ports["agentPort"].get<int>());
+    const std::string other = bluePort.empty() ? port : portOf(*host, bluePort);
+    std::unique_ptr<Process> red, blue;
+    if (blueFirst) blue = team("Blue", other, blueParser);
+    red = team("Red", port, redParser);
+    if (!blueFirst) blue = team("Blue", other, blueParser);
+    const Json result = Json::parse(host->line());
+    REQUIRE(host->wait() == 0);
+    CAPTURE(host->errors(), red->errors(), blue->errors());
+    REQUIRE(red->wait() == 0);
+    REQUIRE(blue->wait() == 0);
+    REQUIRE(result["agentsSeen"] == 2 * players);
+    REQUIRE(result["simSeconds"] == Approx(seconds));
+    return result;
+  }
+  std::string hash() const { return play()["stateHash"]; }
+
+ private:
+  static std::string portOf(Process& host, const std::string& name) {
+    const Finished f = runToEnd({program("sparkctl"), "--pid", std::to_string(host.pid()), "get", "/sys/server/net/" + name + ".port"});
+    const std::size_t at = f.out.find("= ");
+    REQUIRE(at != std::string::npos);
+    return f.out.substr(at + 2, f.out.find('\n') - at - 2);
+  }
+};
+
+/// The reference: what every match with the same seed must end in.
+const std::string& referenceHash() {
+  static const std::string hash = Match().hash();
+  return hash;
+}
+}  // namespace
+
+TEST_CASE("Two runs with one seed end in the same state, another seed does not") {
+  REQUIRE(Match().hash() == referenceHash());
+  Match other;
+  other.seed = 8;
+  REQUIRE(other.hash() != referenceHash());
+}
+
+TEST_CASE("The order in which agents connect does not matter") {
+  Match m;
+  m.blueFirst = true;
+  REQUIRE(m.hash() == referenceHash());
+}
+
+TEST_CASE("The number of host threads does not matter") {
+  Match m;
+  m.arguments = {"--set", "/sys/server/simulation.threads=4"};
+  REQUIRE(m.hash() == referenceHash());
+}
+
+TEST_CASE("The order in which plugins are loaded does not matter") {
+  TemporaryFolder folder;
+  Match m;
+  m.config = folder.write("backwards.lua", R"(
+for _, name in ipairs{ "sphere-team", "soccer", "simulation", "sensors", "scene-rsg", "scene", "physics-ode", "physics", "parser-sexp", "parser-json",
+                       "net-tcp", "monitor-sexp", "monitor-json", "monitor", "gamecontrol", "files", "effectors", "control" } do plugin(name) end
+include "soccer-sphere.lua"
+)");
+  REQUIRE(m.hash() == referenceHash());
+}
+
+TEST_CASE("Teams that speak JSON play the same match") {
+  Match m;
+  m.arguments = {"--set", "parser=JsonParser"};
+  m.redParser = m.blueParser = "JsonParser";
+  REQUIRE(m.hash() == referenceHash());
+}
+
+TEST_CASE("Two ports speak two languages at the same time") {
+  TemporaryFolder folder;
+  Match m;
+  m.config = folder.write("two-ports.lua", "include \"soccer-sphere.lua\"\nagentPort(\"json\", 0, \"JsonParser\")\n");
+  m.bluePort = "json";
+  m.blueParser = "JsonParser";
+  REQUIRE(m.hash() == referenceHash());
+}
+
+TEST_CASE("Monitors hear JSON when the config says so") {
+  for (const bool json : {true, false}) {
+    Match m;
+    m.players = 1;
+    if (json) m.arguments = {"--set", "monitor=JsonMonitor"};
+    Json ports;
+    const auto host = m.start(ports);
+    boost::asio::io_context io;
+    boost::asio::ip::tcp::socket monitor(io);
+    monitor.connect({boost::asio::ip::address_v4::loopback(), ports["monitorPort"].get<unsigned short>()});
+    const std::string port = std::to_string(ports["agentPort"].get<int>());
+    const auto red = m.team("Red", port, "SexpParser"), blue = m.team("Blue", port, "SexpParser");
+    unsigned char prefix[4];
+    boost::asio::read(monitor, boost::asio::buffer(prefix));
+    std::string message(static_cast<std::size_t>(prefix[0]) << 24 | prefix[1] << 16 | prefix[2] << 8 | prefix[3], ' ');
+    boost::asio::read(monitor, boost::asio::buffer(message));
+    CAPTURE(message.substr(0, 200));
+    REQUIRE(Json::accept(message) == json);
+    REQUIRE_THAT(message, Contains("FieldLength"));
+    REQUIRE(Json::parse(host->line())["agentsSeen"] == 2);
+  }
+}
+
+TEST_CASE("The scripted match inside the host and its goals are repeatable") {
+  const auto play = [] {
+    const Finished f = runToEnd({program("sparkhost"), "--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set", "players=4", "--rate", "max", "--duration", "20", "--seed", "3",
+                                 "--agent-port", "0", "--monitor-port", "0", "--log-level", "warning"});
+    REQUIRE(f.code == 0);
+    return Json::parse(f.out.substr(f.out.find('\n') + 1));
+  };
+  const Json a = play(), b = play();
+  REQUIRE(a["agentsSeen"] == 8);
+  REQUIRE(a["stateHash"] == b["stateHash"]);
+  REQUIRE(a["score"] == b["score"]);
+}

@@ -1,0 +1,147 @@
+#include "process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+extern char** environ;
+
+namespace spark::test {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+Process::Process(const std::vector<std::string>& command, double limit) : name_(fs::path(command.front()).filename()), limit_(limit) {
+  char errorName[] = "/tmp/spark-stderr-XXXXXX";
+  const int errors = mkostemp(errorName, O_CLOEXEC);
+  errorFile_ = errorName;
+  int pipes[2];
+  if (errors < 0 || pipe2(pipes, O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe");
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, pipes[1], STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
+  std::vector<char*> arguments;
+  for (const std::string& a : command) arguments.push_back(const_cast<char*>(a.c_str()));
+  arguments.push_back(nullptr);
+  const int code = posix_spawnp(&pid_, command.front().c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(pipes[1]);
+  close(errors);
+  out_ = pipes[0];
+  if (code != 0) {
+    ended_ = true;
+    throw std::runtime_error(fmt::format("cannot start {}: {}", command.front(), std::strerror(code)));
+  }
+}
+
+Process::~Process() {
+  if (!ended_) {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  if (out_ >= 0) close(out_);
+  fs::remove(errorFile_);
+}
+
+Clock::time_point Process::deadline() const { return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_)); }
+
+void Process::tooLong(const std::string& what) {
+  throw std::runtime_error(fmt::format("{} took longer than {} s to {}; it said:\n{}", name_, limit_, what, errors()));
+}
+
+/// Reads once; false at the end.
+bool Process::fill() {
+  struct pollfd p = {out_, POLLIN, 0};
+  const int ready = poll(&p, 1, static_cast<int>(limit_ * 1000));
+  if (ready == 0) tooLong("print a line");
+  char bytes[4096];
+  const ssize_t n = read(out_, bytes, sizeof bytes);
+  if (n > 0) buffer_.append(bytes, static_cast<std::size_t>(n));
+  return n > 0;
+}
+
+std::string Process::line() {
+  std::size_t end;
+  while ((end = buffer_.find('\n')) == std::string::npos)
+    if (!fill()) throw std::runtime_error(fmt::format("{} ended without a further line; it said:\n{}", name_, errors()));
+  std::string out = buffer_.substr(0, end);
+  buffer_.erase(0, end + 1);
+  return out;
+}
+
+std::string Process::rest() {
+  while (fill()) {
+  }
+  return std::exchange(buffer_, {});
+}
+
+int Process::wait() {
+  const auto last = deadline();
+  while (!ended_) {
+    const int got = waitpid(pid_, &status_, WNOHANG);
+    if (got == pid_) {
+      ended_ = true;
+    } else {
+      if (Clock::now() > last) tooLong("end");
+      struct pollfd p = {out_, POLLHUP, 0};  // its stdout closes when it ends
+      poll(&p, 1, 10);
+    }
+  }
+  return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+}
+
+void Process::signal(int number) { kill(pid_, number); }
+
+std::string Process::errors() const {
+  std::ifstream in(errorFile_);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void Process::waitForError(const std::string& text) {
+  const auto last = deadline();
+  while (errors().find(text) == std::string::npos) {
+    if (Clock::now() > last) tooLong("say '" + text + "'");
+    struct pollfd p = {out_, 0, 0};
+    if (poll(&p, 1, 10) > 0 && errors().find(text) == std::string::npos) throw std::runtime_error(fmt::format("{} ended without saying '{}'; it said:\n{}", name_, text, errors()));
+  }
+}
+
+Finished runToEnd(const std::vector<std::string>& command) {
+  Process p(command);
+  Finished f;
+  f.out = p.rest();
+  f.code = p.wait();
+  f.errors = p.errors();
+  return f;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  char name[] = "/tmp/spark-test-XXXXXX";
+  path_ = mkdtemp(name);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+std::string TemporaryFolder::write(const std::string& name, const std::string& text) const {
+  const fs::path file = path_ / name;
+  fs::create_directories(file.parent_path());
+  std::ofstream(file) << text;
+  return file.string();
+}
+
+}  // namespace spark::test

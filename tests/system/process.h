@@ -1,0 +1,67 @@
+#pragma once
+/// \file
+/// Programs of this build as child processes: what they print, how they end.
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace spark::test {
+
+/// A child process. Its stdout is read line by line, its stderr is kept. Killed when this object goes. Functions throw std::runtime_error,
+/// with what the program said, when it takes longer than the limit.
+class Process {
+ public:
+  /// Starts `command` (program and arguments). `limit`: for every wait [s].
+  explicit Process(const std::vector<std::string>& command, double limit = 240);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  /// The next line of stdout; throws at its end.
+  std::string line();
+  /// All that remains on stdout.
+  std::string rest();
+  /// Waits for the end; the exit code, or 128 + signal.
+  int wait();
+  void signal(int number);
+  int pid() const { return pid_; }
+  /// What it wrote to stderr so far.
+  std::string errors() const;
+  /// Waits until stderr holds `text`.
+  void waitForError(const std::string& text);
+
+ private:
+  bool fill();
+  [[noreturn]] void tooLong(const std::string& what);
+  std::chrono::steady_clock::time_point deadline() const;
+
+  std::string name_, buffer_;
+  std::filesystem::path errorFile_;
+  double limit_;
+  int pid_ = -1, out_ = -1, status_ = 0;
+  bool ended_ = false;
+};
+
+/// Runs a program to its end.
+struct Finished {
+  int code;
+  std::string out, errors;
+};
+Finished runToEnd(const std::vector<std::string>& command);
+
+/// A folder that goes with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  const std::filesystem::path& path() const { return path_; }
+  /// Writes a file below the folder (making folders) and returns its path.
+  std::string write(const std::string& name, const std::string& text) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace spark::test
