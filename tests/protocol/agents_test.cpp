@@ -348,30 +348,3 @@ TEST_CASE("The parser is swapped by exchanging one node") {
   realise(a, 1);
   REQUIRE(deeds() == Deeds{"1 he1 2.5"});
 }
-
-TEST_CASE("Percepts do not depend on the number of threads") {
-  const auto run = [](int threads) {
-    Arena a;
-    a.kernel.jobs().setThreads(threads);
-    std::vector<Client> clients;
-    for (int i = 0; i < 8; ++i) {
-      clients.push_back(a.client());
-      a.until([&] { return a.agents() == static_cast<std::size_t>(i + 1); });
-      clients.back().send("(scene robot)");
-    }
-    const auto from = a.cycles();
-    (void)from;
-    a.until([&] { return a.control->agentsSeen() == 8; });
-    a.kernel.jobs().setThreads(threads);
-    for (auto& c : clients) c.drain();
-    std::string all;
-    for (int i = 0; i < 12; ++i) a.cycle();
-    for (auto& c : clients)
-      for (int i = 0; i < 11; ++i) {
-        const std::string message = *c.receive();
-        all += message.substr(message.find("))") + 2) + "\n";  // the time depends on when they connected
-      }
-    return std::count(all.begin(), all.end(), 'v');
-  };
-  REQUIRE(run(1) == run(4));
-}

@@ -39,10 +39,11 @@ struct Player {
   std::vector<std::string> heard;
 };
 
-/// Plays 40 cycles with players in this order of connecting; returns everything that was done.
-std::vector<std::string> match(const std::vector<int>& order, Style style, std::int64_t cycles = 40) {
+/// Plays 40 cycles with players in this order of connecting; returns everything that was done, then what was heard first.
+std::vector<std::string> match(const std::vector<int>& order, Style style, int threads = 1) {
   static const std::vector<std::pair<std::string, int>> kPlayers{{"Alpha", 1}, {"Alpha", 2}, {"Beta", 1}, {"Beta", 10}, {"Beta", 3}};
   Arena a(true);
+  a.kernel.jobs().setThreads(threads);
   a.set("expect", static_cast<int>(order.size()));
   a.set("holdWait", 0.02);
   std::vector<std::unique_ptr<Player>> players;
@@ -53,9 +54,12 @@ std::vector<std::string> match(const std::vector<int>& order, Style style, std::
   }
   a.until([&] {
     for (auto& p : players) p->play();
-    return a.cycles() >= cycles;
+    return a.cycles() >= 40;
   });
-  return deeds();
+  auto all = deeds();
+  std::sort(players.begin(), players.end(), [](const auto& x, const auto& y) { return std::tie(x->team, x->unum) < std::tie(y->team, y->unum); });
+  for (const auto& p : players) all.insert(all.end(), p->heard.begin(), p->heard.begin() + 30);
+  return all;
 }
 
 }  // namespace
@@ -90,6 +94,10 @@ TEST_CASE("Expected agents are numbered by team and number, whoever came first, 
   REQUIRE(std::find(first.begin(), first.end(), "5 init Beta 10") != first.end());
   REQUIRE(match({4, 3, 2, 1, 0}, style) == first);
   REQUIRE(match({2, 4, 0, 3, 1}, style) == first);
+}
+
+TEST_CASE("What agents are told does not depend on the number of threads") {
+  REQUIRE(match({0, 1, 2, 3, 4}, Style::atOnce, 4) == match({0, 1, 2, 3, 4}, Style::atOnce, 1));
 }
 
 TEST_CASE("A client that waits for a first message gets a minimal one, the others none") {
