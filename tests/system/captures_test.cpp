@@ -1,0 +1,119 @@
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "process.h"
+#include "spark/predicates.h"
+#include "test_support.h"
+
+// The openings of recorded sessions, replayed against the default league with the original scene files: agents are answered in every cycle
+// with the same percepts, in the same order, and the host has nothing to complain about.
+
+using namespace spark;
+using namespace spark::test;
+using Json = nlohmann::json;
+namespace asio = boost::asio;
+
+namespace {
+constexpr int kCycles = 20;
+
+/// What one cycle of a recording holds, by agent.
+struct Session {
+  std::map<int, std::vector<std::pair<std::string, std::string>>> sent;
+  std::map<int, std::map<std::string, std::string>> answered;
+  std::vector<std::string> agents;
+};
+
+Session load(const std::filesystem::path& file) {
+  Session s;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    const Json row = Json::parse(line);
+    const int cycle = row["cycle"];
+    const std::string dir = row["dir"], from = dir.substr(0, dir.find('>')), to = dir.substr(dir.find('>') + 1);
+    if (cycle > kCycles) break;
+    if (from.starts_with("agent")) {
+      s.sent[cycle].emplace_back(from, row["msg"]);
+      if (std::find(s.agents.begin(), s.agents.end(), from) == s.agents.end()) s.agents.push_back(from);
+    } else if (to.starts_with("agent")) {
+      s.answered[cycle].emplace(to, row["msg"]);
+    }
+  }
+  return s;
+}
+
+/// Names of the percepts in order: "time GS GYR:torso HJ:hj1 ...". Vision is left out: it is not in every cycle.
+std::string order(const std::string& message) {
+  Predicates p;
+  readSexp(message, p);
+  std::string out;
+  for (const Element e : p) {
+    if (e.head() == "See") continue;
+    out += std::string(e.head());
+    if (const Element n = e.named("n")) out += ":" + std::string(n.at(1).text());
+    if (const Element u = e.named("unum")) out += "+unum" + std::to_string(u.at(1).integer());
+    out += " ";
+  }
+  return out;
+}
+
+/// One agent's connection. Waits without limit: ctest ends the test, and with it the host.
+struct Client {
+  asio::io_context io;
+  asio::ip::tcp::socket socket{io};
+  explicit Client(unsigned short port) { socket.connect({asio::ip::address_v4::loopback(), port}); }
+  void send(const std::string& m) {
+    std::string out(4, '\0');
+    for (int i = 0; i < 4; ++i) out[static_cast<std::size_t>(i)] = static_cast<char>(m.size() >> (24 - 8 * i));
+    asio::write(socket, asio::buffer(out + m));
+  }
+  std::string receive() {
+    unsigned char p[4];
+    asio::read(socket, asio::buffer(p));
+    std::string m(static_cast<std::size_t>(p[0]) << 24 | p[1] << 16 | p[2] << 8 | p[3], ' ');
+    asio::read(socket, asio::buffer(m));
+    return m;
+  }
+};
+
+void replay(const std::filesystem::path& reference, const std::filesystem::path& file) {
+  const Session session = load(file);
+  Process host({(binFolder() / "sparkhost").string(), "--config", "soccer.lua", "--scene-path", (reference / "scenes-reference").string(), "--sync", "--rate", "max", "--agent-port", "0",
+                "--monitor-port", "0", "--log-level", "warning"});
+  const auto port = Json::parse(host.line())["agentPort"].get<unsigned short>();
+  std::map<std::string, std::unique_ptr<Client>> clients;
+  for (const std::string& name : session.agents) clients[name] = std::make_unique<Client>(port);
+  const auto send = [&](int cycle) {
+    if (const auto at = session.sent.find(cycle); at != session.sent.end())
+      for (const auto& [name, message] : at->second) clients[name]->send(message);
+  };
+  send(0);
+  for (int cycle = 0; cycle < kCycles; ++cycle) {
+    for (const auto& [name, message] : session.answered.at(cycle)) {
+      CAPTURE(file.filename(), cycle, name);
+      REQUIRE(order(clients[name]->receive()) == order(message));
+    }
+    send(cycle + 1);
+  }
+  host.signal(15);
+  host.line();
+  REQUIRE(host.wait() == 0);
+  REQUIRE(host.errors() == "");
+}
+}  // namespace
+
+TEST_CASE("The openings of recorded sessions replay without an error") {
+  const auto reference = referenceFolder();
+  if (reference.empty()) std::exit(77);
+  for (const char* name : {"nao0-rest", "nao0-all-joints", "nao0-squat-after-beam", "nao3-legs", "four-agents", "ball-bounce-and-roll"}) {
+    const auto file = reference / "captures" / "mainline" / (std::string(name) + ".jsonl");
+    DYNAMIC_SECTION(name) { replay(reference, file); }
+  }
+}
