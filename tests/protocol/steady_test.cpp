@@ -1,0 +1,121 @@
+#include <malloc.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <new>
+
+#include "arena.h"
+
+namespace {
+/// Counts what the whole process takes from the heap while `on`.
+struct Allocations {
+  static inline bool on = false;
+  static inline int count = 0;
+};
+
+void* counted(std::size_t size) {
+  if (Allocations::on) ++Allocations::count;
+  if (void* p = std::malloc(size ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return counted(size); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+/// Takes a number and does nothing.
+class TestIdle : public Effector {
+  SPARK_CLASS(TestIdle, Effector)
+ public:
+  static void describe(Description<TestIdle>& d) { d.doc("Takes a number."); }
+  std::string predicate() const override { return "idle"; }
+  std::string act(const Element& action) override {
+    sum_ += action.at(1).number();
+    return {};
+  }
+
+ private:
+  double sum_ = 0;
+};
+
+struct Match : Arena {
+  std::vector<Client> clients;
+  Match() : Arena(true) {
+    kernel.registerClass<TestIdle>();
+    kernel.log().setLevel(Level::warning);
+    set("expect", 4);
+    for (int i = 0; i < 4; ++i) {
+      clients.push_back(client());
+      clients.back().send(fmt::format("(scene robot)(init (unum {})(teamname A))(syn)", i + 1));
+    }
+    until([&] { return agents() == 4 && control->agents()[3]->find("syn"); });
+    for (AgentAspect* agent : control->agents()) agent->create("TestIdle", "idle");
+    play(20);
+  }
+  /// Cycles with every agent answering; only the host's part is counted.
+  void play(int cycles) {
+    const auto end = this->cycles() + cycles;
+    until([&] {
+      Allocations::on = false;
+      for (auto& c : clients)
+        for (std::size_t n = c.drain().size(); n > 0; --n) c.send("(idle 1.5)(idle -0.25)(syn)");
+      for (auto& c : clients) c.arrive();
+      Allocations::on = true;
+      step();
+      Allocations::on = false;
+      return this->cycles() >= end;
+    }, false);
+  }
+};
+
+std::size_t heap() { return mallinfo2().uordblks; }
+}  // namespace
+
+TEST_CASE("A cycle of talking agents allocates nothing in steady state") {
+  Match m;
+  m.play(20);
+  Allocations::count = 0;
+  m.play(100);
+  REQUIRE(Allocations::count == 0);
+}
+
+TEST_CASE("Clients that come and go leave no memory behind") {
+  Arena a;
+  const auto visit = [&](int n) {
+    for (int i = 0; i < n; ++i) {
+      Client c = a.client();
+      c.send("(scene robot)garbage)((((");
+      c.arrive();
+      a.cycle();
+      a.cycle();
+      c.leave();
+      a.until([&] { return a.agents() == 0; });
+    }
+    a.house.text.clear();
+    a.house.text.shrink_to_fit();
+  };
+  visit(100);
+  const std::size_t before = heap();
+  visit(300);
+  REQUIRE(heap() < before + 65536);
+}
+
+TEST_CASE("A client that never reads does not make the host grow") {
+  Arena a;
+  Client deaf = a.client();
+  a.until([&] { return a.agents() == 1; });
+  deaf.send("(scene loud)");
+  a.until([&] { return a.get("messagesDropped").toInteger() > 0; });
+  const std::size_t before = heap();
+  for (int i = 0; i < 500; ++i) a.cycle();
+  REQUIRE(a.get("messagesDropped").toInteger() > 400);
+  REQUIRE(heap() < before + 65536);
+}
