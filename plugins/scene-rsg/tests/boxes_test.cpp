@@ -1,0 +1,70 @@
+// The smallest house with physics in it: lua/boxes.lua, run as a config.
+
+#include <catch2/catch.hpp>
+
+#include "api/physics.h"
+#include "spark/state.h"
+#include "test_support.h"
+
+using namespace spark;
+
+namespace {
+
+struct Boxes {
+  test::House house;
+  Kernel& kernel = house.kernel;
+  Node* scene = nullptr;
+  std::vector<IRigidBody*> bodies;
+
+  Boxes() {
+    const auto share = test::binFolder().parent_path() / "share" / "spark";
+    kernel.lua().addFolder(share / "lua");
+    kernel.lua().run("host = { share = [[" + share.string() + "]], scenePaths = {} }", "test");
+    kernel.lua().runConfig("boxes.lua");
+    scene = kernel.root().find<Node>("/usr/scene");
+    scene->collect(bodies);
+    setProperty(simulation(), "rate", "max");
+  }
+  Leaf& simulation() { return *kernel.root().find("/sys/server/simulation"); }
+  void run(double seconds) { callMethod(simulation(), "runCycles", List{static_cast<int>(seconds / 0.02)}); }
+};
+
+}  // namespace
+
+TEST_CASE("54 bodies fall into the yard and stay there") {
+  Boxes b;
+  REQUIRE(b.bodies.size() == 54);
+  int boxes = 0, spheres = 0, capsules = 0;
+  std::vector<IVisual*> visuals;
+  b.scene->collect(visuals);
+  for (const IVisual* v : visuals) {
+    spheres += v->load() == "StdUnitSphere";
+    capsules += v->load().starts_with("StdCapsule ");
+    boxes += v->load() == "StdUnitBox";
+  }
+  CHECK(boxes == 18 + 5);  // with the ground and four walls
+  CHECK(spheres == 18);
+  CHECK(capsules == 18);
+
+  b.run(8);
+  for (const IRigidBody* body : b.bodies) {
+    const engine::BodyState s = body->state();
+    INFO(s.position.transpose());
+    CHECK(s.position.z() > 0.1);
+    CHECK(s.position.z() < 2);
+    CHECK(std::abs(s.position.x()) < 6);
+    CHECK(std::abs(s.position.y()) < 6);
+    CHECK((positionOf(body->bodyTransform()->world()).cast<double>() - s.position).norm() < 1e-5);
+  }
+  CHECK(b.house.text.find("skipped") == std::string::npos);
+  CHECK(b.house.text.find("material") == std::string::npos);
+}
+
+TEST_CASE("two runs of the yard end in the same state") {
+  Boxes a, b;
+  a.run(3);
+  b.run(3);
+  CHECK(stateHash(*a.scene) == stateHash(*b.scene));
+  b.run(0.02);
+  CHECK(stateHash(*a.scene) != stateHash(*b.scene));
+}
