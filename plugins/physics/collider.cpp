@@ -1,0 +1,219 @@
+#include "collider.h"
+
+#include <algorithm>
+
+#include "colliders.h"
+
+namespace spark {
+
+using engine::Shape;
+using engine::ShapeDescription;
+
+const engine::Surface& defaultSurface() {
+  static const ContactJointHandler handler;
+  return *handler.surface();
+}
+
+void Collider::describe(Description<Collider>& d) {
+  d.doc("Geometry that touches. Its children say what happens then.");
+  d.implements<ICollider>();
+  d.implements<IFollowsTransform>();
+  d.method("setPosition", &Collider::setPosition).parameters({"position [m]"}).surplusIgnored().doc("Position in the frame of its transform or body.");
+  d.method("setLocalPosition", &Collider::setLocalPosition)
+      .parameters({"position [m]"})
+      .surplusIgnored()
+      .doc("Offset inside a TransformCollider or on a body; in the world for a static collider.");
+  d.method("setRotation", &Collider::setRotation)
+      .parameters({"matrix: 6 or 16 numbers"})
+      .doc("Rotation inside a TransformCollider or on a body; in the world for a static collider.");
+  d.method("addCollisionHandler", &Collider::addCollisionHandler).parameters({"class"}).doc("Makes a handler of that class below it.");
+  d.method("addNotCollideWithColliderName", &Collider::addNotCollideWithColliderName)
+      .parameters({"name", "on"})
+      .doc("Within its space: never collide with colliders of that name (true), or do so again (false).");
+  d.property("notCollideWith", &Collider::notCollideWith).doc("Names of colliders of its space that it does not collide with.");
+  d.abstract();
+}
+
+void Collider::onLink() {
+  PhysicsObject::onLink();
+  World& world = World::of(*this);
+  outer_ = parent()->as<TransformCollider>();
+  auto* above = ancestor<Space>();
+  space_ = above ? above->handle() : world.space();
+  // A body must stand before its colliders: what is linked later is not seen.
+  body_ = outer_ ? outer_->body_ : Ref<RigidBody>(parent()->childOf<RigidBody>());
+  if (body_ && body_->handle() == engine::Body::none) body_ = {};
+  reshape();
+}
+
+void Collider::onMoved() {
+  PhysicsObject::onMoved();
+  outer_ = parent()->as<TransformCollider>();
+  attach();
+}
+
+void Collider::onUnlink() {
+  dropGeom();
+  space_.reset();
+  PhysicsObject::onUnlink();
+}
+
+void Collider::dropGeom() {
+  if (engine() && geom_ != engine::Geom::none) engine()->destroyGeom(geom_);
+  geom_ = engine::Geom::none;
+}
+
+void Collider::reshape() {
+  if (!engine()) return;
+  const auto s = shape();
+  if (!s) return dropGeom();
+  try {
+    if (geom_ != engine::Geom::none) return engine()->setShape(geom_, *s);
+    geom_ = engine()->createGeom(space_->id(), *s, &outermost());
+  } catch (const Error& e) {
+    throw Error(where() + ": cannot take that shape", e);
+  }
+  attach();
+}
+
+Collider& Collider::outermost() {
+  Collider* top = this;
+  while (top->outer_) top = top->outer_;
+  return *top;
+}
+
+void Collider::attach(const Pose& base) {
+  if (geom_ != engine::Geom::none && engine()) {
+    if (body_) {
+      engine()->setBody(geom_, body_->handle(), offset());
+    } else {
+      engine()->setPose(geom_, physics::compose(base, offset()));
+    }
+  }
+  for (const auto& child : children())
+    if (auto* inner = child->as<Collider>(); inner && inner->outer_ == this) inner->attach(base);
+}
+
+void Collider::follow(const Matrix& world) {
+  if (!body_ && !outer_) attach(toPose(world));
+}
+
+void Collider::shift(const Vec3& by) {
+  local_.position += by;
+  attach();
+}
+
+void Collider::setPosition(const Vec3& p) {
+  local_.position = p;
+  attach();
+}
+
+void Collider::setLocalPosition(const Vec3& p) {
+  const Pose frame = physics::frameOf(*this);
+  local_.position = isStaticInWorld() ? Vec3(frame.rotation.transpose() * (p - frame.position)) : p;
+  attach();
+}
+
+void Collider::setRotation(std::vector<double> matrix) {
+  if (matrix.empty()) throw Error(where() + ": expected a matrix of 6 or 16 numbers, found none");
+  const Mat3 r = physics::poseFrom(matrix).rotation;
+  local_.rotation = isStaticInWorld() ? Mat3(physics::frameOf(*this).rotation.transpose() * r) : r;
+  attach();
+}
+
+void Collider::addCollisionHandler(std::string className) { create<CollisionHandler>(className); }
+
+void Collider::addNotCollideWithColliderName(std::string name, bool on) {
+  std::erase(notCollideWith_, name);
+  if (on) notCollideWith_.push_back(std::move(name));
+}
+
+bool Collider::mayCollideWith(const Collider& other) const {
+  if (notCollideWith_.empty() && other.notCollideWith_.empty()) return true;
+  if (space_ != other.space_) return true;
+  const auto names = [](const Collider& a, const Collider& b) { return std::find(a.notCollideWith_.begin(), a.notCollideWith_.end(), b.name()) != a.notCollideWith_.end(); };
+  return !names(*this, other) && !names(other, *this);
+}
+
+void Collider::refreshHandlers(bool defaultOnTransform) {
+  handlers_.contact = nullptr;
+  handlers_.active.clear();
+  bool any = false;
+  for (const auto& child : children()) {
+    auto* handler = child->as<CollisionHandler>();
+    if (!handler) continue;
+    any = true;
+    if (!handlers_.contact && handler->surface()) handlers_.contact = handler;
+    // The plain handler has nothing to do but to be there.
+    if (handler->classObject()->name() != ContactJointHandler::kClassName) handlers_.active.push_back(handler);
+  }
+  auto* inner = as<TransformCollider>() ? childOf<Collider>() : nullptr;
+  if (!any && inner && !defaultOnTransform) {
+    inner->refreshHandlers(defaultOnTransform);
+    handlers_ = inner->handlers_;
+    return;
+  }
+  handlers_.fallback = !any;
+  // A ray is a probe: it hears of what it meets and is never in its way.
+  if (const auto s = shape(); s && s->shape == Shape::ray) {
+    handlers_.contact = nullptr;
+    handlers_.fallback = false;
+  }
+}
+
+Vec3 Collider::toShape(const Vec3& p) const {
+  const Pose frame = physics::frameOf(*this);
+  const Vec3 world = frame.position + frame.rotation * p;
+  const Pose own = engine() && geom_ != engine::Geom::none ? engine()->pose(geom_) : physics::compose(frame, local_);
+  return own.rotation.transpose() * (world - own.position);
+}
+
+namespace {
+
+/// Half of the extent of a shape (not plane, mesh, ray) along the world's axes.
+Vec3 halfExtent(const ShapeDescription& s, const Mat3& r) {
+  const Vec3 z = r.col(2).cwiseAbs();
+  switch (s.shape) {
+    case Shape::box: return r.cwiseAbs() * (s.lengths / 2);
+    case Shape::capsule: return z * (s.length / 2) + Vec3::Constant(s.radius);
+    case Shape::cylinder: return z * (s.length / 2) + s.radius * (Vec3::Ones() - z.cwiseProduct(z)).cwiseMax(0).cwiseSqrt();
+    default: return Vec3::Constant(s.radius);
+  }
+}
+
+void widen(Vec3& low, Vec3& high, const Vec3& p) {
+  low = low.cwiseMin(p);
+  high = high.cwiseMax(p);
+}
+
+}  // namespace
+
+void Collider::bounds(Vec3& low, Vec3& high) const {
+  low = Vec3::Constant(HUGE_VAL);
+  high = -low;
+  if (const auto s = shape(); s && s->shape == Shape::plane) {
+    std::swap(low, high);
+  } else if (s && engine()) {
+    const Pose p = engine()->pose(geom_);
+    if (s->shape == Shape::ray) {
+      const Vec3 from = p.position + p.rotation * s->rayOrigin;
+      widen(low, high, from);
+      widen(low, high, from + p.rotation * s->rayDirection.normalized() * s->length);
+    } else if (s->shape == Shape::mesh) {
+      for (std::size_t i = 0; i + 2 < s->vertices.size(); i += 3) widen(low, high, p.position + p.rotation * Vec3(s->vertices[i], s->vertices[i + 1], s->vertices[i + 2]));
+    } else {
+      const Vec3 half = halfExtent(*s, p.rotation);
+      low = p.position - half;
+      high = p.position + half;
+    }
+  }
+  for (const auto& child : children())
+    if (const auto* inner = child->as<Collider>()) {
+      Vec3 l, h;
+      inner->bounds(l, h);
+      low = low.cwiseMin(l);
+      high = high.cwiseMax(h);
+    }
+}
+
+}  // namespace spark

@@ -1,0 +1,93 @@
+#pragma once
+/// \file
+/// Colliders: geometry that touches, with collision handlers as children.
+
+#include <optional>
+
+#include "rigid_body.h"
+
+namespace spark {
+
+/// Base of colliders. Belongs to the RigidBody that stands before it among its siblings; without one it is static, where its nearest
+/// transform is. A collider inside a TransformCollider is part of that.
+class Collider : public PhysicsObject, public ICollider, public IFollowsTransform {
+  SPARK_CLASS(Collider, PhysicsObject)
+ public:
+  /// What a contact needs to know of a collider; made anew when the tree's shape changed.
+  struct Handlers {
+    const CollisionHandler* contact = nullptr;  ///< the first child with a surface
+    bool fallback = false;                      ///< no handler at all: the bouncy default
+    std::vector<CollisionHandler*> active;      ///< those that want to hear of contacts
+    bool solid() const { return contact || fallback; }
+    bool listens() const { return !active.empty(); }
+  };
+
+  static void describe(Description<Collider>& d);
+  Leaf& leaf() override { return *this; }
+  IRigidBody* body() const override { return body_.get(); }
+  void bounds(Vec3& low, Vec3& high) const override;
+  void follow(const Matrix& world) override;
+
+  /// As of the last change of the tree.
+  const Handlers& handlers() const { return handlers_; }
+  /// As body() != nullptr, without a virtual call.
+  bool hasBody() const { return static_cast<bool>(body_); }
+  /// Looks at the children again. `defaultOnTransform`: a TransformCollider without a handler of its own gets the default one.
+  void refreshHandlers(bool defaultOnTransform);
+  /// False when the two are told not to collide: same space, and one names the other.
+  bool mayCollideWith(const Collider& other) const;
+  /// The shape it has; nothing for colliders that only group or are not supported.
+  virtual std::optional<engine::ShapeDescription> shape() const { return std::nullopt; }
+  /// The body's centre of mass moved: a part of a TransformCollider stays where it is.
+  void shift(const Vec3& by);
+
+ protected:
+  void onLink() override;
+  void onMoved() override;
+  void onUnlink() override;
+  /// After a change of shape. Throws Error when the engine refuses it.
+  void reshape();
+  /// Sets what the shape is made of; it stays as it was when the engine refuses the new one.
+  template <class T>
+  void change(T& member, T value) {
+    std::swap(member, value);
+    try {
+      reshape();
+    } catch (...) {
+      std::swap(member, value);
+      throw;
+    }
+  }
+  engine::IEngine* engine() const { return space_ ? space_->world()->engine() : nullptr; }
+  /// A point in the frame of the nearest transform, seen from the shape's own frame.
+  Vec3 toShape(const Vec3& p) const;
+  const std::vector<std::string>& notCollideWith() const { return notCollideWith_; }
+
+ private:
+  /// The collider that is reported in contacts: the outermost around it.
+  Collider& outermost();
+  Pose offset() const { return outer_ ? physics::compose(outer_->offset(), local_) : local_; }
+  /// Puts the geom, and those of the colliders inside, where it belongs; static ones relative to `base`.
+  void attach(const Pose& base);
+  void dropGeom();
+  void attach() { attach(body_ ? Pose{} : physics::frameOf(*this)); }
+  void setPosition(const Vec3& p);
+  void setLocalPosition(const Vec3& p);
+  void setRotation(std::vector<double> matrix);
+  void addCollisionHandler(std::string className);
+  void addNotCollideWithColliderName(std::string name, bool on);
+  bool isStaticInWorld() const { return !outer_ && !body_; }
+
+  std::shared_ptr<physics::SpaceHandle> space_;
+  engine::Geom geom_{};
+  Ref<RigidBody> body_;
+  Collider* outer_ = nullptr;  ///< the TransformCollider it is part of
+  Pose local_;                 ///< in the frame of body, transform or outer collider
+  Handlers handlers_;
+  std::vector<std::string> notCollideWith_;
+};
+
+/// The surface of colliders that have no handler: bouncy.
+const engine::Surface& defaultSurface();
+
+}  // namespace spark

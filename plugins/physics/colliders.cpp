@@ -1,0 +1,111 @@
+#include "colliders.h"
+
+namespace spark {
+
+using engine::Shape;
+using engine::ShapeDescription;
+
+void BoxCollider::describe(Description<BoxCollider>& d) {
+  d.doc("A box.");
+  d.property("boxLengths", &BoxCollider::lengths, &BoxCollider::setLengths).unit("m").min(0).doc("Its full edges.");
+  d.method("getBoxLength", &BoxCollider::length).parameters({"axis"}).doc("One edge, by axis 0, 1 or 2 [m].");
+  d.method("getPointDepth", &BoxCollider::pointDepth).parameters({"point [m]"}).doc("How deep a point in its transform's frame is inside; below 0 outside.");
+  d.method("addSCFreezeJointEffName", &BoxCollider::addFreezeJointEffector)
+      .parameters({"effector"})
+      .doc("An effector that the self-collision rule of soccer freezes when this box touches its own robot.");
+  d.property("freezeJointEffectors", &BoxCollider::freezes).doc("Names of the effectors that the self-collision rule freezes.");
+}
+
+std::optional<ShapeDescription> BoxCollider::shape() const {
+  ShapeDescription s;
+  s.shape = Shape::box;
+  s.lengths = lengths_;
+  return s;
+}
+
+double BoxCollider::length(int axis) const {
+  if (axis < 0 || axis > 2) throw Error(where() + ": expected an axis 0, 1 or 2, found " + std::to_string(axis));
+  return lengths_[axis];
+}
+
+double BoxCollider::pointDepth(const Vec3& at) const {
+  const Vec3 beyond = toShape(at).cwiseAbs() - lengths_ / 2;
+  return (beyond.array() <= 0).all() ? -beyond.maxCoeff() : -beyond.cwiseMax(0).norm();
+}
+
+void SphereCollider::describe(Description<SphereCollider>& d) {
+  d.doc("A sphere.");
+  d.property("radius", &SphereCollider::radius, &SphereCollider::setRadius).unit("m").min(0).doc("Radius.");
+  d.method("getPointDepth", &SphereCollider::pointDepth).parameters({"point [m]"}).doc("How deep a point in its transform's frame is inside; below 0 outside.");
+}
+
+std::optional<ShapeDescription> SphereCollider::shape() const {
+  ShapeDescription s;
+  s.shape = Shape::sphere;
+  s.radius = radius_;
+  return s;
+}
+
+void PlaneCollider::describe(Description<PlaneCollider>& d) {
+  d.doc("An infinite plane in the world; transforms above do not move it.");
+  d.method("setParams", &PlaneCollider::setParams)
+      .parameters({"a b c d of ax + by + cz = d, or point and normal"})
+      .doc("The plane as 4 numbers, or as a point and a normal (6 numbers).");
+  d.method("getPointDepth", &PlaneCollider::pointDepth).parameters({"point [m]"}).doc("How deep a point in its transform's frame is below the plane; below 0 above it.");
+}
+
+std::optional<ShapeDescription> PlaneCollider::shape() const {
+  ShapeDescription s;
+  s.shape = Shape::plane;
+  std::copy(plane_.begin(), plane_.end(), s.plane);
+  return s;
+}
+
+void PlaneCollider::setParams(std::vector<double> n) {
+  if (n.size() == 4) return change(plane_, {n[0], n[1], n[2], n[3]});
+  if (n.size() != 6) throw Error(where() + ": expected 4 numbers (a b c d) or 6 (point, normal), found " + std::to_string(n.size()));
+  const Vec3 point(n[0], n[1], n[2]), normal(n[3], n[4], n[5]);
+  change(plane_, {normal.x(), normal.y(), normal.z(), normal.dot(point)});
+}
+
+double PlaneCollider::pointDepth(const Vec3& at) const {
+  const Pose frame = physics::frameOf(*this);
+  const Vec3 normal(plane_[0], plane_[1], plane_[2]);
+  return (plane_[3] - normal.dot(frame.position + frame.rotation * at)) / normal.norm();
+}
+
+void RayCollider::describe(Description<RayCollider>& d) {
+  d.doc("A probe: hears of what it meets, and is in nothing's way. A contact's depth is the distance from its origin.");
+  d.method("setParams", &RayCollider::setParams).parameters({"origin [m]", "direction", "length [m]"}).doc("The ray, in the frame of its body or transform.");
+}
+
+std::optional<ShapeDescription> RayCollider::shape() const { return ray_; }
+
+void RayCollider::setParams(const Vec3& origin, const Vec3& direction, double length) {
+  ShapeDescription s = ray_;
+  s.rayOrigin = origin, s.rayDirection = direction, s.length = length;
+  change(ray_, std::move(s));
+}
+
+void TriMeshCollider::describe(Description<TriMeshCollider>& d) {
+  d.doc("Triangles; it collides once it has vertices and triangles. Static is best: two meshes find each other only roughly.");
+  d.property("vertices", &TriMeshCollider::vertices, &TriMeshCollider::setVertices).unit("m").doc("x y z of each vertex; new ones take the triangles away.");
+  d.property("triangles", &TriMeshCollider::triangles, &TriMeshCollider::setTriangles).min(0).doc("Three vertex numbers each, from 0, counter-clockwise seen from outside.");
+}
+
+std::optional<ShapeDescription> TriMeshCollider::shape() const {
+  if (mesh_.vertices.empty() || mesh_.triangles.empty()) return std::nullopt;
+  return mesh_;
+}
+
+void TriMeshCollider::setMesh(std::vector<double> vertices, std::vector<std::int64_t> triangles) {
+  for (std::int64_t t : triangles)
+    if (t < 0 || 3 * t + 2 >= static_cast<std::int64_t>(vertices.size()))
+      throw Error(where() + ": a triangle names vertex " + std::to_string(t) + ", there are " + std::to_string(vertices.size() / 3) + ". Set the vertices first");
+  ShapeDescription s = mesh_;
+  s.vertices = std::move(vertices);
+  s.triangles.assign(triangles.begin(), triangles.end());
+  change(mesh_, std::move(s));
+}
+
+}  // namespace spark

@@ -1,0 +1,172 @@
+#pragma once
+/// \file
+/// The colliders of scene files.
+
+#include "collider.h"
+
+namespace spark {
+
+/// Encapsulates the collider below it, which may stand at an offset. Contacts are reported for this one.
+class TransformCollider : public Collider {
+  SPARK_CLASS(TransformCollider, Collider)
+ public:
+  static void describe(Description<TransformCollider>& d) { d.doc("Holds a collider at an offset from its body; contacts are reported for it, so handlers are its own children."); }
+};
+
+/// Accepted for old scenes; it has no geometry.
+class ConvexCollider : public Collider {
+  SPARK_CLASS(ConvexCollider, Collider)
+ public:
+  static void describe(Description<ConvexCollider>& d) { d.doc("Base of convex colliders; has no geometry itself."); }
+};
+class ConcaveCollider : public Collider {
+  SPARK_CLASS(ConcaveCollider, Collider)
+ public:
+  static void describe(Description<ConcaveCollider>& d) { d.doc("Base of concave colliders; has no geometry itself."); }
+};
+class ConeCollider : public ConvexCollider {
+  SPARK_CLASS(ConeCollider, ConvexCollider)
+ public:
+  static void describe(Description<ConeCollider>& d) { d.doc("Accepted for old scenes; has no geometry."); }
+};
+class CompoundCollider : public Collider {
+  SPARK_CLASS(CompoundCollider, Collider)
+ public:
+  static void describe(Description<CompoundCollider>& d) { d.doc("Accepted for old scenes; has no geometry."); }
+};
+class EmptyCollider : public Collider {
+  SPARK_CLASS(EmptyCollider, Collider)
+ public:
+  static void describe(Description<EmptyCollider>& d) { d.doc("Touches nothing."); }
+};
+
+/// A box, 1 m wide unless set.
+class BoxCollider : public ConvexCollider {
+  SPARK_CLASS(BoxCollider, ConvexCollider)
+ public:
+  static void describe(Description<BoxCollider>& d);
+  std::optional<engine::ShapeDescription> shape() const override;
+
+ private:
+  Vec3 lengths() const { return lengths_; }
+  void setLengths(const Vec3& v) { change(lengths_, v); }
+  double length(int axis) const;
+  double pointDepth(const Vec3& p) const;
+  void addFreezeJointEffector(std::string name) { freezes_.push_back(std::move(name)); }
+  const std::vector<std::string>& freezes() const { return freezes_; }
+  Vec3 lengths_{1, 1, 1};
+  std::vector<std::string> freezes_;
+};
+
+/// A sphere, radius 1 m unless set.
+class SphereCollider : public ConvexCollider {
+  SPARK_CLASS(SphereCollider, ConvexCollider)
+ public:
+  static void describe(Description<SphereCollider>& d);
+  std::optional<engine::ShapeDescription> shape() const override;
+
+ private:
+  double radius() const { return radius_; }
+  void setRadius(double r) { change(radius_, r); }
+  double pointDepth(const Vec3& p) const { return radius_ - toShape(p).norm(); }
+  double radius_ = 1;
+};
+
+/// Radius and length along z, 1 m each unless set.
+template <class Self, engine::Shape S>
+class LongCollider : public ConvexCollider {
+ public:
+  std::optional<engine::ShapeDescription> shape() const override {
+    engine::ShapeDescription s;
+    s.shape = S;
+    s.radius = radius();
+    s.length = length();
+    return s;
+  }
+
+ protected:
+  static void describeLong(Description<Self>& d) {
+    d.property("radius", &Self::radius, &Self::setRadius).unit("m").min(0).doc("Radius.");
+    d.property("length", &Self::length, &Self::setLength).unit("m").min(0).doc("Length along z, without caps.");
+    d.method("setParams", &Self::setParams).parameters({"radius [m]", "length [m]"}).doc("Radius and length at once.");
+    d.method("getPointDepth", &Self::pointDepth).parameters({"point [m]"}).doc("How deep a point in its transform's frame is inside; below 0 outside.");
+  }
+  double radius() const { return size_[0]; }
+  double length() const { return size_[1]; }
+  void setRadius(double r) { setParams(r, length()); }
+  void setLength(double l) { setParams(radius(), l); }
+  void setParams(double r, double l) { change(size_, {r, l}); }
+  double pointDepth(const Vec3& at) const {
+    const Vec3 p = toShape(at);
+    const double outside = std::hypot(p.x(), p.y()) - radius(), beyond = std::abs(p.z()) - length() / 2;
+    if constexpr (S == engine::Shape::capsule) return radius() - std::hypot(outside + radius(), std::max(0.0, beyond));
+    if (outside <= 0 && beyond <= 0) return -std::max(outside, beyond);
+    return -std::hypot(std::max(0.0, outside), std::max(0.0, beyond));
+  }
+
+ private:
+  std::array<double, 2> size_{1, 1};
+};
+
+/// A cylinder with a half sphere at each end.
+class CapsuleCollider : public LongCollider<CapsuleCollider, engine::Shape::capsule> {
+  SPARK_CLASS(CapsuleCollider, ConvexCollider)
+ public:
+  static void describe(Description<CapsuleCollider>& d) {
+    d.doc("A capsule along z.");
+    describeLong(d);
+  }
+};
+
+/// A cylinder.
+class CylinderCollider : public LongCollider<CylinderCollider, engine::Shape::cylinder> {
+  SPARK_CLASS(CylinderCollider, ConvexCollider)
+ public:
+  static void describe(Description<CylinderCollider>& d) {
+    d.doc("A cylinder along z.");
+    describeLong(d);
+  }
+};
+
+/// An infinite plane in the world; transforms above do not move it.
+class PlaneCollider : public Collider {
+  SPARK_CLASS(PlaneCollider, Collider)
+ public:
+  static void describe(Description<PlaneCollider>& d);
+  std::optional<engine::ShapeDescription> shape() const override;
+
+ private:
+  void setParams(std::vector<double> numbers);
+  double pointDepth(const Vec3& p) const;
+  std::array<double, 4> plane_{0, 0, 1, 0};
+};
+
+/// A probe: hears of what it meets, and is in nothing's way.
+class RayCollider : public Collider {
+  SPARK_CLASS(RayCollider, Collider)
+ public:
+  static void describe(Description<RayCollider>& d);
+  std::optional<engine::ShapeDescription> shape() const override;
+
+ private:
+  void setParams(const Vec3& origin, const Vec3& direction, double length);
+  engine::ShapeDescription ray_{.shape = engine::Shape::ray};
+};
+
+/// Triangles.
+class TriMeshCollider : public ConcaveCollider {
+  SPARK_CLASS(TriMeshCollider, ConcaveCollider)
+ public:
+  static void describe(Description<TriMeshCollider>& d);
+  std::optional<engine::ShapeDescription> shape() const override;
+
+ private:
+  const std::vector<double>& vertices() const { return mesh_.vertices; }
+  void setVertices(std::vector<double> v) { setMesh(std::move(v), {}); }
+  std::vector<std::int64_t> triangles() const { return {mesh_.triangles.begin(), mesh_.triangles.end()}; }
+  void setTriangles(std::vector<std::int64_t> t) { setMesh(mesh_.vertices, std::move(t)); }
+  void setMesh(std::vector<double> vertices, std::vector<std::int64_t> triangles);
+  engine::ShapeDescription mesh_{.shape = engine::Shape::mesh};
+};
+
+}  // namespace spark

@@ -1,0 +1,78 @@
+#include "contact_loop.h"
+
+namespace spark::physics {
+namespace {
+
+void mix(bool& on, double& value, bool onA, double a, bool onB, double b) {
+  on = onA || onB;
+  value = onA && onB ? (a + b) / 2 : onA ? a : onB ? b : 0;
+}
+
+const engine::Surface* surfaceOf(const Collider::Handlers& h) { return h.contact ? h.contact->surface() : h.fallback ? &defaultSurface() : nullptr; }
+
+/// The contact points from `i` on that belong to one pair.
+std::size_t endOfPair(const engine::Contacts& contacts, std::size_t i) {
+  std::size_t end = i + 1;
+  while (end < contacts.size() && contacts[end].geomA == contacts[i].geomA && contacts[end].geomB == contacts[i].geomB) ++end;
+  return end;
+}
+
+}  // namespace
+
+engine::Surface combine(const engine::Surface& a, const engine::Surface& b) {
+  engine::Surface s;
+  s.mu = (a.mu + b.mu) / 2;
+  mix(s.bounceOn, s.bounce, a.bounceOn, a.bounce, b.bounceOn, b.bounce);
+  mix(s.bounceOn, s.bounceVelocity, a.bounceOn, a.bounceVelocity, b.bounceOn, b.bounceVelocity);
+  mix(s.softErpOn, s.softErp, a.softErpOn, a.softErp, b.softErpOn, b.softErp);
+  mix(s.softCfmOn, s.softCfm, a.softCfmOn, a.softCfm, b.softCfmOn, b.softCfm);
+  mix(s.slipOn, s.slip1, a.slipOn, a.slip1, b.slipOn, b.slip1);
+  mix(s.slipOn, s.slip2, a.slipOn, a.slip2, b.slipOn, b.slip2);
+  return s;
+}
+
+bool pairCounts(void* ownerA, void* ownerB) {
+  const Collider& a = *static_cast<const Collider*>(ownerA);
+  const Collider& b = *static_cast<const Collider*>(ownerB);
+  const Collider::Handlers& ha = a.handlers();
+  const Collider::Handlers& hb = b.handlers();
+  const bool solid = ha.solid() && hb.solid() && (a.hasBody() || b.hasBody());
+  return (solid || ha.listens() || hb.listens()) && a.mayCollideWith(b);
+}
+
+void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
+  const std::uint64_t version = kernel.structureVersion();
+  for (std::size_t i = 0, end; i < contacts.size(); i = end) {
+    end = endOfPair(contacts, i);
+    Collider& a = *static_cast<Collider*>(contacts[i].ownerA);
+    Collider& b = *static_cast<Collider*>(contacts[i].ownerB);
+    if (a.handlers().solid() && b.handlers().solid() && (a.hasBody() || b.hasBody())) {
+      const engine::Surface surface = combine(*surfaceOf(a.handlers()), *surfaceOf(b.handlers()));
+      for (std::size_t k = i; k < end; ++k) {
+        contacts[k].solve = true;
+        contacts[k].surface = surface;
+      }
+    }
+    if (!a.handlers().listens() && !b.handlers().listens()) continue;
+    for (std::size_t k = i; k < end; ++k) {
+      for (CollisionHandler* h : a.handlers().active) h->onCollision({a, b, contacts[k], true});
+      for (CollisionHandler* h : b.handlers().active) h->onCollision({b, a, contacts[k], false});
+    }
+    if (kernel.structureVersion() == version) continue;
+    kernel.log().error("a collision handler of {} or {} changed the tree while contacts were handled; this step has no contacts. Change it in another phase.", a.path(), b.path());
+    contacts.clear();
+    return;
+  }
+}
+
+void runSolved(engine::Contacts& contacts) {
+  for (engine::Contact& c : contacts) {
+    if (!c.feedback) continue;
+    Collider& a = *static_cast<Collider*>(c.ownerA);
+    Collider& b = *static_cast<Collider*>(c.ownerB);
+    for (CollisionHandler* h : a.handlers().active) h->onSolved({a, b, c, true});
+    for (CollisionHandler* h : b.handlers().active) h->onSolved({b, a, c, false});
+  }
+}
+
+}  // namespace spark::physics

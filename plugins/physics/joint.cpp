@@ -1,0 +1,147 @@
+#include "joint.h"
+
+#include "spark/state.h"
+
+namespace spark {
+
+using engine::JointParameter;
+using engine::JointType;
+
+namespace {
+
+constexpr int kParameters = 11;
+static_assert(static_cast<int>(JointParameter::suspensionCfm) == kParameters - 1);
+
+}  // namespace
+
+void Joint::describe(Description<Joint>& d) {
+  using J = Joint;
+  using P = JointParameter;
+  d.doc("Connects two bodies, or one with the world.");
+  d.implements<IJoint>();
+  d.abstract();
+  d.method("attach", &J::attach).parameters({"path of the first body", "path of the second"}).optional(1).doc("Paths are relative to the joint; without a second the static world is meant.");
+
+  const auto axis = [&](const char* name, auto set, auto get, const char* unit, const char* doc) {
+    const std::string value = std::string("value") + (*unit ? std::string(" [") + unit + "]" : "");
+    d.method(std::string("set") + name, set).parameters({"axis", value}).doc(doc);
+    d.method(std::string("get") + name, get).parameters({"axis"}).doc(doc);
+  };
+  axis("LowStopDeg", &J::setDeg<P::lowStop>, &J::getDeg<P::lowStop>, "deg", "Least angle.");
+  axis("HighStopDeg", &J::setDeg<P::highStop>, &J::getDeg<P::highStop>, "deg", "Greatest angle.");
+  axis("LowStopPos", &J::set<P::lowStop>, &J::get<P::lowStop>, "m or rad", "Least position.");
+  axis("HighStopPos", &J::set<P::highStop>, &J::get<P::highStop>, "m or rad", "Greatest position.");
+  axis("FudgeFactor", &J::set<P::fudgeFactor>, &J::get<P::fudgeFactor>, "", "Scales excess force at a stop when a motor pushes against it, 0..1.");
+  axis("Bounce", &J::set<P::bounce>, &J::get<P::bounce>, "", "Restitution of the stops, 0..1.");
+  axis("CFM", &J::set<P::cfm>, &J::get<P::cfm>, "", "How much the motor yields.");
+  axis("StopCFM", &J::set<P::stopCfm>, &J::get<P::stopCfm>, "", "How much the stops yield.");
+  axis("StopERP", &J::set<P::stopErp>, &J::get<P::stopErp>, "", "Part of the excess over a stop that is put right in one step.");
+  axis("SuspensionERP", &J::set<P::suspensionErp>, &J::get<P::suspensionErp>, "", "Error reduction of a wheel's suspension.");
+  axis("SuspensionCFM", &J::set<P::suspensionCfm>, &J::get<P::suspensionCfm>, "", "How much a wheel's suspension yields.");
+  axis("LinearMotorVelocity", &J::set<P::velocity>, &J::get<P::velocity>, "m/s", "Wanted speed of the motor.");
+  axis("AngularMotorVelocity", &J::setDeg<P::velocity>, &J::getDeg<P::velocity>, "deg/s", "Wanted speed of the motor.");
+  axis("MaxMotorForce", &J::set<P::maxForce>, &J::get<P::maxForce>, "N or Nm", "Greatest force of the motor; 0: no motor.");
+
+  d.property("jointMaxSpeed1", &J::maxSpeed1, &J::setMaxSpeed1).unit("rad/s").doc("Greatest speed that effectors may command on the first axis; 0: no limit.");
+  d.property("jointMaxSpeed2", &J::maxSpeed2, &J::setMaxSpeed2).unit("rad/s").doc("Greatest speed that effectors may command on the second axis; 0: no limit.");
+  d.method("enableFeedback", &J::enableFeedback).parameters({"on"}).doc("Torques are measured from now on.");
+  d.property("feedback", &J::feedback, &J::enableFeedback).doc("Torques are measured.");
+  d.property("torque", &J::feedbackTorque).unit("Nm").doc("Sum of the torques on both bodies in the last step; 0 without feedback.");
+}
+
+void Joint::onLink() {
+  PhysicsObject::onLink();
+  world_ = World::of(*this).handle();
+  if (acts()) joint_ = world_->engine()->createJoint(world_->id(), jointType());
+}
+
+void Joint::onUnlink() {
+  if (engine()) engine()->destroyJoint(joint_);
+  joint_ = engine::Joint::none;
+  world_.reset();
+  PhysicsObject::onUnlink();
+}
+
+int Joint::axes() const {
+  switch (jointType()) {
+    case JointType::hinge:
+    case JointType::slider: return 1;
+    case JointType::universal:
+    case JointType::hinge2: return 2;
+    case JointType::angularMotor: return 3;
+    default: return 0;
+  }
+}
+
+void Joint::expectAxis(int axis) const {
+  if (axis >= 0 && axis < axes()) return;
+  const std::string range = axes() == 0 ? "no axis: this joint has neither motor nor stops" : axes() == 1 ? "axis 0" : "an axis from 0 to " + std::to_string(axes() - 1);
+  throw Error(where() + ": expected " + range + ", found axis " + std::to_string(axis));
+}
+
+void Joint::setParameter(JointParameter p, int axis, double v) {
+  if (axis < 0 || axis >= axes()) return;
+  if (engine()) engine()->setParameter(joint_, p, axis, v);
+}
+
+double Joint::feedbackTorque() const {
+  if (!feedback_ || !engine()) return 0;
+  Vec3 force1, torque1, force2, torque2;
+  engine()->feedback(joint_, force1, torque1, force2, torque2);
+  return jointType() == JointType::angularMotor ? torque1.norm() : torque1.norm() + torque2.norm();
+}
+
+Ref<RigidBody> Joint::bodyAt(const std::string& path) {
+  if (path.empty()) return {};
+  Leaf* found = find(path);
+  if (auto* body = found ? found->as<RigidBody>() : nullptr; body && body->world() == world_) return Ref<RigidBody>(body);
+  kernel().log().warning("{}: expected a RigidBody at '{}', found {}; it is attached to the static world instead. Paths are relative to the joint, and the body must stand before the joint.",
+                         where(), path, found ? "a " + found->classObject()->name() : "nothing");
+  return {};
+}
+
+void Joint::attach(std::string first, std::string second) {
+  if (!engine()) return;
+  bodies_[0] = bodyAt(first);
+  bodies_[1] = bodyAt(second);
+  const auto handle = [](const Ref<RigidBody>& b) { return b ? b->handle() : engine::Body::none; };
+  try {
+    engine()->attach(joint_, handle(bodies_[0]), handle(bodies_[1]));
+  } catch (const Error& e) {
+    bodies_[0] = bodies_[1] = {};
+    throw Error(where() + ": cannot attach '" + first + "' and '" + second + "'", e);
+  }
+  attached();
+}
+
+void Joint::setAnchor(const Vec3& local) {
+  if (!engine()) return;
+  const Pose frame = physics::frameOf(*this);
+  engine()->setAnchor(joint_, frame.position + frame.rotation * local);
+}
+
+void Joint::setAxisLocal(int axis, const Vec3& direction) {
+  if (!engine()) return;
+  try {
+    engine()->setAxis(joint_, axis, physics::frameOf(*this).rotation * direction);
+  } catch (const Error& e) {
+    throw Error(where() + ": cannot set the axis", e);
+  }
+}
+
+void Joint::enableFeedback(bool on) {
+  feedback_ = on;
+  if (engine()) engine()->setFeedback(joint_, on);
+}
+
+void Joint::saveState(StateWriter& out) const {
+  for (int axis = 0; axis < axes(); ++axis)
+    for (int p = 0; p < kParameters; ++p) out.write(parameter(static_cast<JointParameter>(p), axis));
+}
+
+void Joint::loadState(StateReader& in) {
+  for (int axis = 0; axis < axes(); ++axis)
+    for (int p = 0; p < kParameters; ++p) setParameter(static_cast<JointParameter>(p), axis, in.readNumber());
+}
+
+}  // namespace spark

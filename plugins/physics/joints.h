@@ -1,0 +1,174 @@
+#pragma once
+/// \file
+/// The joints of scene files.
+
+#include "joint.h"
+
+namespace spark {
+
+/// Base of joints between two bodies.
+class Generic6DOFJoint : public Joint {
+  SPARK_CLASS(Generic6DOFJoint, Joint)
+ public:
+  static void describe(Description<Generic6DOFJoint>& d) {
+    d.doc("Base of joints between two bodies.");
+    d.abstract();
+  }
+};
+
+/// Turns about one axis.
+class HingeJoint : public Generic6DOFJoint {
+  SPARK_CLASS(HingeJoint, Generic6DOFJoint)
+ public:
+  static void describe(Description<HingeJoint>& d) {
+    d.doc("Turns about one axis.");
+    d.method("setAnchor", &HingeJoint::setAnchor).parameters({"point [m]"}).surplusIgnored().doc("Where the axis passes, in the joint's frame.");
+    d.method("setAxis", &HingeJoint::setAxis).parameters({"0, 1 or 2, or a direction"}).doc("The axis, in the joint's frame.");
+    d.method("getAnchor", &HingeJoint::anchor).doc("Where the axis passes, in the world [m].");
+    d.method("getAxis", &HingeJoint::worldAxis).doc("The axis, in the world.");
+    d.method("getAngle", &HingeJoint::degrees).doc("Angle of the first body relative to the second [deg].");
+    d.method("getAngleRate", &HingeJoint::degreesPerSecond).doc("Its rate [deg/s].");
+  }
+  engine::JointType jointType() const override { return engine::JointType::hinge; }
+
+ private:
+  void setAxis(std::vector<double> v) {
+    if (v.size() == 1 && v[0] >= 0 && v[0] < 3) return setAxisLocal(0, Vec3::Unit(static_cast<int>(v[0])));
+    if (v.size() != 3) throw Error(where() + ": expected an axis 0, 1 or 2, or a direction of 3 numbers, found " + std::to_string(v.size()) + " numbers");
+    setAxisLocal(0, {v[0], v[1], v[2]});
+  }
+  Vec3 worldAxis() const { return axisNow(0); }
+  double degrees() const { return angleDeg(0); }
+  double degreesPerSecond() const { return angleRateDeg(0); }
+};
+
+/// Turns about two axes that stay at a right angle.
+class UniversalJoint : public Generic6DOFJoint {
+  SPARK_CLASS(UniversalJoint, Generic6DOFJoint)
+ public:
+  static void describe(Description<UniversalJoint>& d) {
+    d.doc("Turns about two axes that stay at a right angle.");
+    d.method("setAnchor", &UniversalJoint::setAnchor).parameters({"point [m]"}).surplusIgnored().doc("Where the axes meet, in the joint's frame.");
+    d.method("getAnchor", &UniversalJoint::anchor).doc("Where the axes meet, in the world [m].");
+    d.method("setAxis1", &UniversalJoint::setAxis1).parameters({"direction"}).surplusIgnored().doc("The first body's axis, in the joint's frame.");
+    d.method("setAxis2", &UniversalJoint::setAxis2).parameters({"direction"}).surplusIgnored().doc("The second body's axis, in the joint's frame.");
+    d.method("getAngle", &UniversalJoint::angleDeg).parameters({"axis"}).optional(1).doc("Angle about an axis, 0 or 1 [deg].");
+    d.method("getAngleRate", &UniversalJoint::angleRateDeg).parameters({"axis"}).optional(1).doc("Its rate [deg/s].");
+  }
+  engine::JointType jointType() const override { return engine::JointType::universal; }
+
+ private:
+  void setAxis1(const Vec3& v) { setAxisLocal(0, v); }
+  void setAxis2(const Vec3& v) { setAxisLocal(1, v); }
+};
+
+/// A wheel: steers about z of the joint's frame, turns about x.
+class Hinge2Joint : public Generic6DOFJoint {
+  SPARK_CLASS(Hinge2Joint, Generic6DOFJoint)
+ public:
+  static void describe(Description<Hinge2Joint>& d) {
+    d.doc("A wheel with steering and suspension.");
+    d.method("setAnchor", &Hinge2Joint::setWheel).parameters({"point [m]"}).surplusIgnored().doc("The wheel's centre, in the joint's frame; sets the axes as well: steering about z, rolling about x.");
+    d.method("getAnchor", &Hinge2Joint::anchor).doc("The wheel's centre, in the world [m].");
+    d.method("getAngle", &Hinge2Joint::angleDeg).parameters({"axis"}).optional(1).doc("Angle about an axis: 0 steering, 1 rolling [deg].");
+    d.method("getAngleRate", &Hinge2Joint::angleRateDeg).parameters({"axis"}).optional(1).doc("Its rate [deg/s].");
+  }
+  engine::JointType jointType() const override { return engine::JointType::hinge2; }
+
+ private:
+  void setWheel(const Vec3& at) {
+    setAnchor(at);
+    setAxisLocal(0, Vec3::UnitZ());
+    setAxisLocal(1, Vec3::UnitX());
+  }
+};
+
+/// Turns freely about a point.
+class BallJoint : public Generic6DOFJoint {
+  SPARK_CLASS(BallJoint, Generic6DOFJoint)
+ public:
+  static void describe(Description<BallJoint>& d) {
+    d.doc("Turns freely about a point.");
+    d.method("setAnchor", &BallJoint::setAnchor).parameters({"point [m]"}).surplusIgnored().doc("The point, in the joint's frame.");
+    d.method("getAnchor", &BallJoint::anchor).doc("The point, in the world [m].");
+  }
+  engine::JointType jointType() const override { return engine::JointType::ball; }
+};
+
+/// Slides along z of the joint's frame, as it is when the bodies are attached.
+class SliderJoint : public Generic6DOFJoint {
+  SPARK_CLASS(SliderJoint, Generic6DOFJoint)
+ public:
+  static void describe(Description<SliderJoint>& d) {
+    d.doc("Slides along z of the joint's frame.");
+    d.method("getPosition", &SliderJoint::position).doc("How far the first body slid relative to the second [m].");
+    d.method("getPositionRate", &SliderJoint::positionRate).doc("Its rate [m/s].");
+  }
+  engine::JointType jointType() const override { return engine::JointType::slider; }
+
+ protected:
+  void attached() override { setAxisLocal(0, Vec3::UnitZ()); }
+
+ private:
+  double position() const { return angle(0); }
+  double positionRate() const { return angleRate(0); }
+};
+
+/// Holds two bodies as they stand when they are attached, or at setFixed.
+class FixedJoint : public Generic6DOFJoint {
+  SPARK_CLASS(FixedJoint, Generic6DOFJoint)
+ public:
+  static void describe(Description<FixedJoint>& d) {
+    d.doc("Holds two bodies as they stand.");
+    d.method("setFixed", &FixedJoint::attached).doc("Takes the bodies' relative pose as it is now.");
+  }
+  engine::JointType jointType() const override { return engine::JointType::fixed; }
+
+ protected:
+  void attached() override {
+    if (engine()) engine()->setFixed(handle());
+  }
+};
+
+/// Accepted for old scenes; holds nothing.
+class ConeTwistJoint : public Generic6DOFJoint {
+  SPARK_CLASS(ConeTwistJoint, Generic6DOFJoint)
+ public:
+  static void describe(Description<ConeTwistJoint>& d) { d.doc("Accepted for old scenes; holds nothing."); }
+  engine::JointType jointType() const override { return engine::JointType::fixed; }
+
+ protected:
+  bool acts() const override { return false; }
+};
+
+/// Drives the angles between two bodies; below a HingeJoint it drives the hinge's.
+class AngularMotor : public Joint {
+  SPARK_CLASS(AngularMotor, Joint)
+ public:
+  static void describe(Description<AngularMotor>& d);
+  engine::JointType jointType() const override { return engine::JointType::angularMotor; }
+
+ protected:
+  void attached() override { apply(); }
+
+ private:
+  void apply();
+  int numAxes() const { return axes_; }
+  void setNumAxes(int n);
+  void setMotorAxis(int axis, int frame, const Vec3& direction);
+  void setUserMode() { euler_ = false, apply(); }
+  void setEulerMode() { euler_ = true, apply(); }
+  std::string mode() const { return euler_ ? "euler" : "user"; }
+  void setAxisAngle(int axis, double deg);
+  double axisAngle(int axis) const;
+  double axisAngleRate(int axis) const;
+  int axisAnchor(int axis) const;
+
+  int axes_ = 0, anchors_[3] = {0, 0, 0};
+  bool euler_ = false;
+  std::string battery_;
+  double speedConstant_ = 4.3, torqueConstant_ = 4.3, resistance_ = 6.44, environment_ = 20, conductivity_ = 0.025, heatCapacity_ = 26;
+  double protectionTemperature_ = 80, protectionStiffness_ = 0.8, maxTorque_ = 0, stiffness_ = 1, temperature_ = 20;
+};
+
+}  // namespace spark

@@ -1,0 +1,154 @@
+#include "physics_server.h"
+
+#include <algorithm>
+
+#include "colliders.h"
+#include "contact_loop.h"
+
+namespace spark {
+
+void PhysicsServer::describe(Description<PhysicsServer>& d) {
+  using S = PhysicsServer;
+  d.doc("Steps the world of the active scene with the engine below it.");
+  d.implements<IPhysicsServer>();
+  d.property("jointHeating", &S::jointHeating_).doc("Motors that model heat get warm.");
+  d.property("batteryDischarge", &S::batteryDischarge_).doc("Motors draw from their batteries.");
+  d.property("defaultHandlerOnTransformCollider", &S::defaultOnTransform, &S::setDefaultOnTransform)
+      .doc("A TransformCollider without a handler of its own bounces by default, whatever its inner collider has; false: it takes the inner one's handlers.");
+  d.property("contactsPerPair", &S::contactsPerPair_).range(1, 16).doc("Contact points of two colliders at most.");
+  d.on<&PhysicsServer::physics>("physics");
+  d.on<&PhysicsServer::place>("place");
+}
+
+engine::IEngine& PhysicsServer::engine() {
+  Leaf* found = find("engine");
+  if (!found) throw Error(path() + " has no engine below it: add one, for instance new(\"OdeEngine\", \"" + path() + "/engine\")");
+  return require<engine::IEngine>("engine");
+}
+
+World* PhysicsServer::findWorld() {
+  auto* server = kernel().root().find<ISceneServer>("/sys/server/scene");
+  Node* scene = nullptr;
+  try {
+    scene = server ? &server->scene() : kernel().root().find<Node>("/usr/scene");
+  } catch (const Error&) {
+    return nullptr;  // no scene, nothing to step
+  }
+  auto* world = scene ? scene->childOf<World>() : nullptr;
+  return world && world->handle() && world->handle()->engine() ? world : nullptr;
+}
+
+engine::World PhysicsServer::world() {
+  if (World* w = findWorld()) return w->handle()->id();
+  throw Error(path() + ": the active scene has no world: make one, new(\"World\", \"/usr/scene/world\")");
+}
+
+void PhysicsServer::bodies(Node& root, std::vector<IRigidBody*>& out) {
+  if (auto* self = root.as<IRigidBody>()) out.push_back(self);
+  root.collect(out);
+}
+
+void PhysicsServer::setDefaultOnTransform(bool on) {
+  defaultOnTransform_ = on;
+  version_ = 0;
+}
+
+void PhysicsServer::collect(Node& node) {
+  for (const auto& child : node.children()) {
+    if (auto* body = child->as<RigidBody>()) {
+      if (body->transform() && body->world() == world_->handle()) bodies_.push_back({body, body->transform()->transform(), 0});
+    } else if (auto* collider = child->as<Collider>()) {
+      collider->refreshHandlers(defaultOnTransform_);
+    } else if (auto* handler = child->as<ScriptHandler>()) {
+      scripts_.push_back(Ref<ScriptHandler>(handler));
+    }
+    if (Node* inner = child->asNode()) collect(*inner);
+  }
+}
+
+bool PhysicsServer::refresh() {
+  if (version_ == kernel().structureVersion()) return world_ != nullptr;
+  version_ = kernel().structureVersion();
+  bodies_.clear();
+  scripts_.clear();
+  scene_ = kernel().root().find<ISceneServer>("/sys/server/scene");
+  world_ = findWorld();
+  if (!world_) return false;
+  collect(*world_->parent());
+  for (Placed& p : bodies_)
+    for (const Transform* t = p.above; t; t = t->transform()) ++p.depth;
+  // Outer transforms first: an inner one's local matrix needs where they are now.
+  std::stable_sort(bodies_.begin(), bodies_.end(), [](const Placed& a, const Placed& b) { return a.depth < b.depth; });
+  moving_.reserve(bodies_.size());
+  handles_.reserve(bodies_.size());
+  states_.resize(bodies_.size());
+  return true;
+}
+
+/// Colliders and transforms around a body whose origin went to its centre of mass stay where they were.
+void PhysicsServer::shiftSurroundings() {
+  if (!world_->takeRecentred()) return;
+  for (const Placed& p : bodies_) {
+    const Vec3 by = p.body->takeShift();
+    if (by.isZero(0)) continue;
+    std::vector<Transform*> transforms;
+    p.body->transform()->collect(transforms, false);
+    for (Transform* t : transforms) t->setLocalFromBody(translation(by.cast<float>()) * t->local());
+    for (const auto& sibling : p.body->parent()->children())
+      if (auto* outer = sibling->as<TransformCollider>())
+        for (const auto& child : outer->children())
+          if (auto* inner = child->as<Collider>()) inner->shift(by);
+  }
+}
+
+void PhysicsServer::physics(const Event& event) {
+  if (event.step <= 0 || !refresh()) return;
+  if (scene_) scene_->place();
+  shiftSurroundings();
+  const std::shared_ptr<physics::WorldHandle> world = world_->handle();
+  engine::IEngine& e = *world->engine();
+  contacts_.clear();
+  e.detect(world->id(), physics::pairCounts, contactsPerPair_, contacts_);
+  physics::runHandlers(contacts_, kernel());
+  e.step(world->id(), contacts_, event.step);
+  physics::runSolved(contacts_);
+  reportFaults();
+  for (std::size_t i = 0; i < scripts_.size(); ++i)
+    if (scripts_[i] && scripts_[i]->hasEvents()) scripts_[i]->emit(event);
+}
+
+void PhysicsServer::reportFaults() {
+  for (const engine::Body handle : world_->handle()->engine()->repaired(world_->handle()->id()))
+    for (const Placed& p : bodies_)
+      if (p.body->handle() == handle && p.body->countFault())
+        kernel().log().error("{}: its position or speed was no number after the step; it was put back to its last good place, at rest. Look for extreme forces, masses or joint parameters.",
+                             p.body->path());
+}
+
+void PhysicsServer::place(const Event&) {
+  if (!refresh()) return;
+  moving_.clear();
+  handles_.clear();
+  for (const Placed& p : bodies_)
+    if (p.body->takeUnplaced()) {
+      moving_.push_back(&p);
+      handles_.push_back(p.body->handle());
+    }
+  const std::span<engine::BodyState> states(states_.data(), moving_.size());
+  world_->handle()->engine()->states(handles_, states);
+
+  // Bodies of one robot share the transform above: its inverse is made once.
+  const Transform* known = nullptr;
+  Matrix inverse;
+  for (std::size_t i = 0; i < moving_.size(); ++i) {
+    const Placed& p = *moving_[i];
+    if (p.above && p.above != known) {
+      inverse = rigidInverse(p.above->worldNow());
+      known = p.above;
+    }
+    p.body->writeTransform(states[i], p.above ? &inverse : nullptr);
+  }
+  if (scene_) scene_->place();
+}
+
+}  // namespace spark

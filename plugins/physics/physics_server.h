@@ -1,0 +1,55 @@
+#pragma once
+/// \file
+/// The physics server: steps the active scene's world and brings bodies and transforms together.
+///
+///     physics  place what was moved by hand (bodies follow) -> shift what surrounds re-centred bodies
+///              -> detect -> handlers -> solve -> feedback -> faults -> script handlers
+///     place    all bodies' states in one call -> transforms, outer ones first -> world matrices
+
+#include "collider.h"
+#include "handlers.h"
+
+namespace spark {
+
+/// Steps the world of the active scene. The engine is its child `engine`.
+class PhysicsServer : public Node, public IPhysicsServer {
+  SPARK_CLASS(PhysicsServer, Node)
+ public:
+  static void describe(Description<PhysicsServer>& d);
+  engine::IEngine& engine() override;
+  engine::World world() override;
+  void bodies(Node& root, std::vector<IRigidBody*>& out) override;
+
+ private:
+  /// A body with what its placing needs.
+  struct Placed {
+    RigidBody* body;
+    Transform* above;  ///< the transform around the body's own, nullptr for none
+    int depth;         ///< transforms above the body
+  };
+  World* findWorld();
+  /// Looks at the scene again when its shape changed. False when there is nothing to step.
+  bool refresh();
+  void collect(Node& node);
+  void physics(const Event& event);
+  void place(const Event& event);
+  void shiftSurroundings();
+  void reportFaults();
+  bool defaultOnTransform() const { return defaultOnTransform_; }
+  void setDefaultOnTransform(bool on);
+
+  bool jointHeating_ = false, batteryDischarge_ = false, defaultOnTransform_ = true;
+  int contactsPerPair_ = 4;
+
+  std::uint64_t version_ = 0;
+  World* world_ = nullptr;
+  ISceneServer* scene_ = nullptr;
+  std::vector<Placed> bodies_;
+  std::vector<Ref<ScriptHandler>> scripts_;
+  engine::Contacts contacts_;
+  std::vector<const Placed*> moving_;
+  std::vector<engine::Body> handles_;
+  std::vector<engine::BodyState> states_;
+};
+
+}  // namespace spark

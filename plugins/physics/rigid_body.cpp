@@ -1,0 +1,226 @@
+#include "rigid_body.h"
+
+#include "spark/state.h"
+
+namespace spark {
+
+void RigidBody::describe(Description<RigidBody>& d) {
+  using B = RigidBody;
+  d.doc("A rigid body: moves the transform it hangs in.");
+  d.implements<IRigidBody>();
+  d.implements<IFollowsTransform>();
+  d.property("mass", &B::mass, &B::setMass).unit("kg").doc("Total mass; setting it scales the inertia as well.");
+  d.property("position", &B::position, &B::setPosition).unit("m").doc("Centre of mass in the world.");
+  d.property("velocity", &B::velocity, &B::setVelocity).unit("m/s").doc("Velocity of the centre of mass, in the world.");
+  d.property("angularVelocity", &B::angularVelocity, &B::setAngularVelocity).unit("rad/s").doc("Angular velocity, in the world.");
+  d.property("gravityOn", &B::usesGravity, &B::useGravity).doc("The world's gravity acts on it.");
+
+  const auto solid = [&](const char* shape, auto set, auto setTotal, std::vector<std::string> lengths) {
+    lengths.insert(lengths.begin(), "density [kg/m^3]");
+    d.method(std::string("set") + shape, set).parameters(lengths).doc(std::string("Mass and inertia of a solid ") + shape + " of even density.");
+    lengths.front() = "mass [kg]";
+    d.method(std::string("set") + shape + "Total", setTotal).parameters(lengths).doc(std::string("Mass and inertia of a solid ") + shape + ".");
+  };
+  const auto added = [&](const char* shape, auto add, auto addTotal, std::vector<std::string> lengths) {
+    lengths.insert(lengths.begin(), "density [kg/m^3]");
+    d.method(std::string("add") + shape, add).parameters(lengths).doc(std::string("Adds a solid ") + shape + " to what the body has, and moves its origin to the common centre.");
+    lengths.front() = "mass [kg]";
+    d.method(std::string("add") + shape + "Total", addTotal).parameters(lengths).doc(std::string("Adds a solid ") + shape + " to what the body has, and moves its origin to the common centre.");
+  };
+  solid("Box", &B::setBox, &B::setBoxTotal, {"edges [m]"});
+  solid("Sphere", &B::setSphere, &B::setSphereTotal, {"radius [m]"});
+  solid("Capsule", &B::setCapsule, &B::setCapsuleTotal, {"radius [m]", "length [m]"});
+  solid("Cylinder", &B::setCylinder, &B::setCylinderTotal, {"radius [m]", "length [m]"});
+  added("Box", &B::addBox, &B::addBoxTotal, {"edges [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
+  added("Sphere", &B::addSphere, &B::addSphereTotal, {"radius [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
+  added("Capsule", &B::addCapsule, &B::addCapsuleTotal, {"radius [m]", "length [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
+  added("Cylinder", &B::addCylinder, &B::addCylinderTotal, {"radius [m]", "length [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
+  d.method("setMassParameters", &B::setMassParameters)
+      .parameters({"mass [kg]", "centre [m]", "I11 I22 I33 [kg m^2]", "I12 I13 I23 [kg m^2]"})
+      .surplusIgnored()
+      .doc("Mass and inertia as numbers. The centre must be 0: another one is ignored, with a line in the log.");
+  d.method("translateMass", &B::translateMass).parameters({"offset [m]"}).doc("Accepted for old scenes; does nothing, as it always did.");
+
+  d.method("addForce", &B::addForceBy).parameters({"force [N]"}).doc("For the next step, at the centre of mass, in the world.");
+  d.method("addTorque", &B::addTorque).parameters({"torque [Nm]"}).doc("For the next step, in the world.");
+  d.method("enable", &B::enable).doc("Wakes the body.");
+  d.method("disable", &B::disable).doc("Puts the body to sleep.");
+  d.method("isEnabled", &B::enabled).doc("False while the body sleeps.");
+  d.method("useGravity", &B::useGravity).parameters({"on"}).doc("Whether the world's gravity acts on it.");
+}
+
+void RigidBody::onLink() {
+  Body::onLink();
+  World& world = World::of(*this);
+  worldNode_ = Ref<World>(&world);
+  world_ = world.handle();
+  body_ = engine()->createBody(world_->id());
+  const Pose pose = physics::frameOf(*this);
+  engine()->setPosition(body_, pose.position);
+  engine()->setRotation(body_, pose.rotation);
+  engine()->setMass(body_, mass_);
+  engine()->setGravityMode(body_, gravity_);
+}
+
+void RigidBody::onUnlink() {
+  if (engine() && body_ != engine::Body::none) engine()->destroyBody(body_);
+  body_ = engine::Body::none;
+  world_.reset();
+  Body::onUnlink();
+}
+
+engine::BodyState RigidBody::state() const {
+  if (engine()) return engine()->state(body_);
+  const Pose p = physics::frameOf(*this);
+  return {p.position, Vec3::Zero(), Vec3::Zero(), p.rotation};
+}
+
+void RigidBody::wake() {
+  placed_ = false;
+  if (!engine()->enabled(body_)) engine()->setEnabled(body_, true);
+}
+
+void RigidBody::setPose(const Pose& pose) {
+  if (!engine()) return;
+  engine()->setPosition(body_, pose.position);
+  engine()->setRotation(body_, pose.rotation);
+  wake();
+}
+
+void RigidBody::setVelocity(const Vec3& v) {
+  if (!engine()) return;
+  engine()->setLinearVelocity(body_, v);
+  if (!v.isZero(0)) wake();
+}
+
+void RigidBody::setAngularVelocity(const Vec3& w) {
+  if (!engine()) return;
+  engine()->setAngularVelocity(body_, w);
+  if (!w.isZero(0)) wake();
+}
+
+void RigidBody::addForce(const Vec3& f) {
+  if (!engine() || f.isZero(0)) return;
+  engine()->addForce(body_, f);
+  wake();
+}
+
+void RigidBody::addTorque(const Vec3& t) {
+  if (!engine() || t.isZero(0)) return;
+  engine()->addTorque(body_, t);
+  wake();
+}
+
+bool RigidBody::enabled() const { return engine() && engine()->enabled(body_); }
+
+void RigidBody::enable() {
+  if (engine()) engine()->setEnabled(body_, true);
+}
+
+void RigidBody::disable() {
+  if (engine()) engine()->setEnabled(body_, false);
+}
+
+void RigidBody::useGravity(bool on) {
+  gravity_ = on;
+  if (engine()) engine()->setGravityMode(body_, on);
+}
+
+void RigidBody::follow(const Matrix& world) {
+  // The transform does not know yet how far the centre of mass moved.
+  setPose(physics::compose(toPose(world), {-pendingShift_, Mat3::Identity()}));
+}
+
+void RigidBody::applyMass(const engine::Mass& mass) {
+  if (engine()) {
+    try {
+      engine()->setMass(body_, mass);
+    } catch (const Error& e) {
+      throw Error(where() + ": cannot set the mass; it stays " + std::to_string(mass_.mass) + " kg", e);
+    }
+  }
+  mass_ = mass;
+}
+
+void RigidBody::add(const engine::Mass& part, const std::vector<double>& matrix) {
+  Pose at = physics::poseFrom(matrix);
+  at.position += shift_;
+  const engine::Mass sum = physics::addMass(mass_, part, at);
+  applyMass(physics::centred(sum));
+  const Vec3 c = sum.center;
+  if (engine()) {
+    const engine::BodyState s = engine()->state(body_);
+    engine()->setPosition(body_, s.position + s.rotation * c);
+    placed_ = false;
+  }
+  shift_ -= c;
+  pendingShift_ -= c;
+  if (worldNode_) worldNode_->markRecentred();
+}
+
+Vec3 RigidBody::takeShift() { return std::exchange(pendingShift_, Vec3::Zero()); }
+
+void RigidBody::setMass(double m) {
+  engine::Mass scaled = mass_;
+  scaled.mass = m;
+  scaled.inertia *= m / mass_.mass;
+  applyMass(scaled);
+}
+
+void RigidBody::setMassParameters(double m, const Vec3& center, const Vec3& diagonal, const Vec3& products) {
+  if (!center.isZero(1e-9))
+    kernel().log().warning("{}: setMassParameters was given the centre ({}, {}, {}); a body's centre of mass is its origin, so 0 was taken. Move the transform there.",
+                           where(), center.x(), center.y(), center.z());
+  engine::Mass mass{m, Vec3::Zero(), Mat3(diagonal.asDiagonal())};
+  mass.inertia(0, 1) = mass.inertia(1, 0) = products.x();
+  mass.inertia(0, 2) = mass.inertia(2, 0) = products.y();
+  mass.inertia(1, 2) = mass.inertia(2, 1) = products.z();
+  applyMass(mass);
+}
+
+bool RigidBody::takeUnplaced() {
+  if (!engine()) return false;
+  const bool awake = engine()->enabled(body_);
+  const bool unplaced = awake || !placed_;
+  placed_ = !awake;
+  return unplaced;
+}
+
+void RigidBody::writeTransform(const engine::BodyState& s, const Matrix* aboveInverse) {
+  const Matrix world = toMatrix({s.position, s.rotation});
+  transform()->setLocalFromBody(aboveInverse ? Matrix(*aboveInverse * world) : world);
+}
+
+bool RigidBody::countFault() {
+  ++faults_;
+  return (faults_ & (faults_ - 1)) == 0;
+}
+
+void RigidBody::saveState(StateWriter& out) const {
+  out.write(mass_.mass);
+  for (int i = 0; i < 9; ++i) out.write(mass_.inertia.data()[i]);
+  for (int i = 0; i < 3; ++i) out.write(shift_[i]);
+  for (int i = 0; i < 3; ++i) out.write(pendingShift_[i]);
+  std::vector<double> numbers;
+  if (engine()) engine()->saveBody(body_, numbers);
+  out.write(static_cast<std::int64_t>(numbers.size()));
+  for (double v : numbers) out.write(v);
+}
+
+void RigidBody::loadState(StateReader& in) {
+  engine::Mass mass;
+  mass.mass = in.readNumber();
+  for (int i = 0; i < 9; ++i) mass.inertia.data()[i] = in.readNumber();
+  for (int i = 0; i < 3; ++i) shift_[i] = in.readNumber();
+  for (int i = 0; i < 3; ++i) pendingShift_[i] = in.readNumber();
+  const std::int64_t count = in.readInteger();
+  if (count < 0 || count > 1024) throw Error(where() + ": expected the saved numbers of a body, found a count of " + std::to_string(count));
+  std::vector<double> numbers(static_cast<std::size_t>(count));
+  for (double& v : numbers) v = in.readNumber();
+  applyMass(mass);
+  if (engine()) engine()->loadBody(body_, numbers);
+  placed_ = false;
+  if (worldNode_ && !pendingShift_.isZero(0)) worldNode_->markRecentred();
+}
+
+}  // namespace spark

@@ -1,0 +1,217 @@
+#include "physics_house.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// Counts what it is told.
+class CountingHandler : public ContactJointHandler {
+  SPARK_CLASS(CountingHandler, ContactJointHandler)
+ public:
+  static void describe(Description<CountingHandler>& d) { d.doc("Counts contacts, for tests."); }
+  void onCollision(const Collision& c) override {
+    ++(c.direct ? direct : symmetric);
+    c.contact.feedback = true;
+    if (breaksRules) c.self.leaf().asNode()->create("RecorderHandler");
+  }
+  void onSolved(const Collision& c) override {
+    if (c.direct) force += c.contact.forceOnA;
+  }
+  int direct = 0, symmetric = 0;
+  Vec3 force = Vec3::Zero();
+  bool breaksRules = false;
+};
+
+struct Ground : PhysicsHouse {
+  Node& ground;
+  Node& box1;
+  Ground() : ground(*scene.create("PlaneCollider", "ground").asNode()), box1(box("box", {0, 0, 0.49}, {1, 1, 1})) {}
+  Node& collider() { return *box1.find("collider")->asNode(); }
+  /// How high the box is after half a second.
+  double heightAfter(int steps = 25) {
+    step(steps);
+    return body(box1).state().position.z();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("two colliders without handlers are solid by default, and bouncy") {
+  Ground g;
+  g.box1.as<Transform>()->setLocalPos({0, 0, 3});
+  double highest = 0;
+  g.step(38);
+  for (int i = 0; i < 60; ++i) {
+    g.step();
+    highest = std::max(highest, Ground::body(g.box1).state().position.z());
+  }
+  CHECK(highest > 1.5);  // 0.8 of the speed of a fall from 2.5 m
+}
+
+TEST_CASE("a contact is solid only when both colliders have a contact joint handler or no handler at all") {
+  struct Case {
+    const char *first, *second;
+    bool solid;
+  };
+  for (const Case& c : {Case{"", "", true}, {"ContactJointHandler", "", true}, {"ContactJointHandler", "ContactJointHandler", true}, {"RecorderHandler", "", false},
+                        {"RecorderHandler", "ContactJointHandler", false}, {"", "RecorderHandler", false}}) {
+    Ground g;
+    INFO("'" << c.first << "' on '" << c.second << "'");
+    if (*c.first) g.collider().create(c.first);
+    if (*c.second) g.ground.create(c.second);
+    if (c.solid) CHECK(g.heightAfter() > 0.4);
+    else CHECK(g.heightAfter() < 0.0);
+  }
+}
+
+TEST_CASE("the first contact joint handler decides the surface, whatever stands beside it") {
+  Ground g;
+  g.collider().create("RecorderHandler");
+  Leaf& first = g.collider().create("ContactJointHandler");
+  Leaf& second = g.collider().create("ContactJointHandler");
+  Leaf& below = g.ground.create("ContactJointHandler");
+  for (Leaf* h : {&first, &below}) Ground::call(*h, "setContactBounceMode", {false});
+  Ground::call(second, "setContactBounceValue", {1.0});
+  Ground::call(first, "setContactMu", {0.0});
+  Ground::call(below, "setContactMu", {0.0});
+  Ground::body(g.box1).setVelocity({1, 0, 0});
+  g.step(25);
+  // Without friction it glides on; with the second's bounce or friction it would not.
+  CHECK(Ground::body(g.box1).state().linearVelocity.x() == Approx(1).margin(0.05));
+  CHECK(std::abs(Ground::body(g.box1).state().linearVelocity.z()) < 0.1);
+}
+
+TEST_CASE("a recorder remembers each collider once, from either side, until it is cleared") {
+  Ground g;
+  auto& upper = *g.collider().create("RecorderHandler").as<ICollisionRecorder>();
+  auto& lower = *g.ground.create("RecorderHandler").as<ICollisionRecorder>();
+  g.step(2);
+  REQUIRE(upper.colliders().size() == 1);
+  CHECK(upper.colliders()[0].get() == &g.ground);
+  REQUIRE(lower.colliders().size() == 1);
+  CHECK(lower.colliders()[0].get() == &g.collider());
+  CHECK(getProperty(*g.ground.find("RecorderHandler"), "colliders").toList().at(0).toString() == "/usr/scene/box/collider");
+  Ground::call(*g.ground.find("RecorderHandler"), "clear");
+  CHECK(lower.colliders().empty());
+  g.step();
+  CHECK(lower.colliders().size() == 1);
+  g.scene.remove(g.box1);
+  CHECK_FALSE(lower.colliders()[0]);
+  CHECK(getProperty(*g.ground.find("RecorderHandler"), "colliders").toList().empty());
+}
+
+TEST_CASE("static triggers hear of each other; static things without listeners cost nothing and do nothing") {
+  PhysicsHouse house;
+  Node& a = house.transform(house.scene, "a", {0, 0, 0});
+  Node& b = house.transform(house.scene, "b", {0.5, 0, 0});
+  auto& seen = *a.create("BoxCollider").asNode()->create("RecorderHandler").as<ICollisionRecorder>();
+  b.create("BoxCollider");
+  house.step();
+  CHECK(seen.colliders().size() == 1);
+}
+
+TEST_CASE("a handler is told direct and symmetric contacts, and afterwards the force it asked for") {
+  Ground g;
+  g.kernel.registerClass<CountingHandler>();
+  auto& upper = static_cast<CountingHandler&>(g.collider().create("CountingHandler"));
+  auto& lower = static_cast<CountingHandler&>(g.ground.create("CountingHandler"));
+  g.step();
+  CHECK(upper.direct == 4);
+  CHECK(upper.symmetric == 0);
+  CHECK(lower.direct == 0);
+  CHECK(lower.symmetric == 4);
+  CHECK(upper.force.z() > 0);
+}
+
+TEST_CASE("a handler that changes the tree in the middle of a step is named, and nothing breaks") {
+  Ground g;
+  g.kernel.registerClass<CountingHandler>();
+  static_cast<CountingHandler&>(g.collider().create("CountingHandler")).breaksRules = true;
+  g.step(2);
+  CHECK_THAT(g.text, Catch::Contains("changed the tree") && Catch::Contains("/usr/scene/box/collider"));
+}
+
+TEST_CASE("a transform collider without a handler of its own bounces by default, or takes the inner one's when switched") {
+  for (const bool fallback : {true, false}) {
+    PhysicsHouse house;
+    setProperty(*house.kernel.root().find("/sys/server/physics"), "defaultHandlerOnTransformCollider", fallback);
+    house.scene.create("PlaneCollider", "ground");
+    Node& t = house.thing("thing", {0, 0, 0.49});
+    Node& inner = *t.create("TransformCollider", "outer").asNode()->create("BoxCollider", "inner").asNode();
+    // The inner handler alone would not make it solid.
+    auto& seen = *inner.create("RecorderHandler").as<ICollisionRecorder>();
+    house.step(25);
+    INFO((fallback ? "default" : "inner"));
+    CHECK((house.body(t).state().position.z() > 0.4) == fallback);
+    CHECK(seen.colliders().empty() == fallback);
+  }
+}
+
+TEST_CASE("a transform collider reports itself") {
+  PhysicsHouse house;
+  auto& seen = *house.scene.create("PlaneCollider", "ground").asNode()->create("RecorderHandler").as<ICollisionRecorder>();
+  Node& t = house.thing("thing", {0, 0, 0.49});
+  Leaf& outer = t.create("TransformCollider", "outer");
+  outer.asNode()->create("BoxCollider", "inner");
+  house.step();
+  REQUIRE(seen.colliders().size() == 1);
+  CHECK(seen.colliders()[0].get() == &outer);
+  CHECK(outer.as<ICollider>()->body() == t.find<IRigidBody>("body"));
+}
+
+TEST_CASE("addCollisionHandler makes a handler of the named class, and only of such") {
+  Ground g;
+  Ground::call(g.ground, "addCollisionHandler", {"oxygen/ContactJointHandler"});
+  CHECK(g.ground.childOf<ContactJointHandler>() != nullptr);
+  CHECK_THROWS(Ground::call(g.ground, "addCollisionHandler", {"Transform"}));
+}
+
+TEST_CASE("a script handler emits collide at itself, after the step, with what touched where") {
+  Ground g;
+  Leaf& handler = g.collider().create("ScriptHandler");
+  std::vector<std::string> others;
+  double depth = 0;
+  Vec3 position;
+  g.kernel.events().channel("collide").add(handler, [&](Leaf&, const Event& e) {
+    others.push_back(e.data->at(std::size_t(0))->toString());
+    depth = e.data->at(std::size_t(2))->toNumber();
+    const List& p = e.data->at(std::size_t(1))->toList();
+    position = {p[0].toNumber(), p[1].toNumber(), p[2].toNumber()};
+    // A script may take away what it was told of.
+    if (Leaf* ground = g.scene.find("ground")) g.scene.remove(*ground);
+  });
+  g.step();
+  // The ground went with the first of four points.
+  CHECK(others == std::vector<std::string>{"/usr/scene/ground"});
+  CHECK(depth == Approx(0.01).margin(1e-6));
+  CHECK(std::abs(position.x()) == Approx(0.5).margin(1e-6));
+  g.step(3);
+  CHECK(others.size() == 1);
+}
+
+TEST_CASE("Lua reacts to collisions") {
+  Ground g;
+  g.kernel.lua().attachText(g.collider().create("ScriptHandler"), R"(
+    self:on("collide", function(self, event)
+      local other, position, depth = table.unpack(event.data)
+      print(self.path, "met", other, depth > 0)
+    end)
+  )", "test", true);
+  g.step();
+  CHECK_THAT(g.text, Catch::Contains("ScriptHandler") && Catch::Contains("met") && Catch::Contains("/usr/scene/ground"));
+}
+
+TEST_CASE("joined bodies do not collide") {
+  PhysicsHouse house;
+  Node& a = house.box("a", {0, 0, 5}, {1, 1, 1});
+  Node& b = house.box("b", {0.5, 0, 5}, {1, 1, 1});
+  auto& seen = *a.find("collider")->asNode()->create("RecorderHandler").as<ICollisionRecorder>();
+  Leaf& joint = b.create("HingeJoint");
+  house.call(joint, "attach", {"../body", "../../a/body"});
+  house.step();
+  CHECK(seen.colliders().empty());
+  b.remove(joint);
+  house.step();
+  CHECK(seen.colliders().size() == 1);
+}

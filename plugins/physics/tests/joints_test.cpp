@@ -1,0 +1,232 @@
+#include "physics_house.h"
+
+using namespace spark;
+using namespace spark::test;
+using engine::JointType;
+
+namespace {
+
+/// A body that hangs 1 m below a held one; the joint stands at the child, turned by 90 degrees about z.
+struct Pair : PhysicsHouse {
+  Node& child;
+  Node& parent;
+  Pair() : child(thing("child", {0, 0, 0})), parent(thing("parent", {0, 0, 1})) {
+    call(*scene.find("world"), "setGravity", {0.0, 0.0, 0.0});
+    call(child, "setLocalRotation", {0.0, 0.0, 90.0});
+    step();  // the child's body takes the turn
+    Leaf& hold = parent.create("FixedJoint", "hold");
+    call(hold, "attach", {"../body"});
+    call(hold, "setFixed");
+  }
+  Leaf& joint(const char* className) {
+    Leaf& j = child.create(className, "joint");
+    call(j, "attach", {"../body", "../../parent/body"});
+    return j;
+  }
+  IRigidBody& childBody() { return body(child); }
+};
+
+double number(Leaf& leaf, const char* method, const List& arguments = {}) { return callMethod(leaf, method, arguments).toNumber(); }
+
+}  // namespace
+
+TEST_CASE("a hinge: anchor and axis in the joint's frame, angles in degrees, motor in degrees, stops") {
+  Pair p;
+  Leaf& j = p.joint("HingeJoint");
+  p.call(j, "setAnchor", {0.0, 0.0, 0.5});
+  p.call(j, "setAxis", {0});
+  const auto vec = [&](const char* m) {
+    const Value v = p.call(j, m);
+    return Vec3(v.at(std::size_t(0))->toNumber(), v.at(std::size_t(1))->toNumber(), v.at(std::size_t(2))->toNumber());
+  };
+  CHECK(vec("getAnchor").isApprox(Vec3(0, 0, 0.5), 1e-6));
+  CHECK(vec("getAxis").isApprox(Vec3(0, 1, 0), 1e-6));  // x of a frame turned by 90 degrees
+  p.call(j, "setAxis", {0.0, 1.0, 0.0});
+  CHECK(vec("getAxis").isApprox(Vec3(-1, 0, 0), 1e-6));
+  CHECK_THROWS_WITH(p.call(j, "setAxis", {1.0, 2.0}), Catch::Contains("0, 1 or 2"));
+  p.call(j, "setLowStopDeg", {0, -20.0});
+  p.call(j, "setHighStopDeg", {0, 30.0});
+  p.call(j, "setStopERP", {0, 0.8});
+  CHECK(number(j, "getLowStopDeg", {0}) == Approx(-20));
+  CHECK(number(j, "getHighStopPos", {0}) == Approx(degToRad(30)));
+  p.call(j, "setMaxMotorForce", {0, 100.0});
+  p.call(j, "setAngularMotorVelocity", {0, 90.0});
+  p.step(10);
+  CHECK(number(j, "getAngle") == Approx(18).margin(0.5));
+  CHECK(number(j, "getAngleRate") == Approx(90).margin(1));
+  p.step(30);
+  CHECK(number(j, "getAngle") == Approx(30).margin(1));
+  auto& i = *j.as<IJoint>();
+  CHECK(i.jointType() == JointType::hinge);
+  CHECK(i.angle(0) == Approx(degToRad(number(j, "getAngle"))));
+  CHECK(i.body(0) == &p.childBody());
+  CHECK(i.body(1) == p.parent.find<IRigidBody>("body"));
+  CHECK_THROWS_WITH(p.call(j, "setMaxMotorForce", {1, 1.0}), Catch::Contains("axis 0"));
+}
+
+TEST_CASE("every setting of a joint has a getter that gives what was set") {
+  Pair p;
+  Leaf& j = p.joint("UniversalJoint");
+  for (const char* name : {"LowStopPos", "HighStopPos", "LowStopDeg", "HighStopDeg", "FudgeFactor", "Bounce", "CFM", "StopCFM", "StopERP", "LinearMotorVelocity",
+                           "AngularMotorVelocity", "MaxMotorForce"})
+    for (int axis : {0, 1}) {
+      INFO(name);
+      p.call(j, (std::string("set") + name).c_str(), {axis, 0.25 + 0.5 * axis});
+      CHECK(number(j, (std::string("get") + name).c_str(), {axis}) == Approx(0.25 + 0.5 * axis));
+    }
+  p.call(j, "setJointMaxSpeed1", {-6.5});
+  p.call(j, "setJointMaxSpeed2", {2.0});
+  CHECK(j.as<IJoint>()->maxSpeed(0) == 6.5);
+  CHECK(j.as<IJoint>()->maxSpeed(1) == 2);
+  p.call(j, "setAngularMotorVelocity", {0, 180.0});
+  CHECK(j.as<IJoint>()->parameter(engine::JointParameter::velocity, 0) == Approx(kPi));
+  j.as<IJoint>()->setParameter(engine::JointParameter::velocity, 0, 1.0);
+  CHECK(number(j, "getLinearMotorVelocity", {0}) == 1);
+}
+
+TEST_CASE("a universal joint tells both angles") {
+  Pair p;
+  Leaf& j = p.joint("UniversalJoint");
+  p.call(j, "setAnchor", {0.0, 0.0, 0.5});
+  p.call(j, "setAxis1", {1.0, 0.0, 0.0});
+  p.call(j, "setAxis2", {0.0, 1.0, 0.0});
+  for (int axis : {0, 1}) {
+    p.call(j, "setMaxMotorForce", {axis, 100.0});
+    p.call(j, "setAngularMotorVelocity", {axis, axis == 0 ? 45.0 : -30.0});
+  }
+  p.step(10);
+  CHECK(number(j, "getAngle", {0}) == Approx(9).margin(0.5));
+  CHECK(number(j, "getAngle", {1}) == Approx(-6).margin(0.5));
+  CHECK(number(j, "getAngle") == number(j, "getAngle", {0}));
+  CHECK(number(j, "getAngleRate", {1}) == Approx(-30).margin(1));
+}
+
+TEST_CASE("a wheel steers about z and rolls about x of the joint's frame once its anchor is set") {
+  Pair p;
+  // The wheel is the second body.
+  Leaf& j = p.child.create("Hinge2Joint", "joint");
+  p.call(j, "attach", {"../../parent/body", "../body"});
+  p.call(j, "setAnchor", {0.0, 0.0, 0.0});
+  p.call(j, "setMaxMotorForce", {1, 100.0});
+  p.call(j, "setAngularMotorVelocity", {1, 120.0});
+  p.call(j, "setLowStopDeg", {0, 0.0});
+  p.call(j, "setHighStopDeg", {0, 0.0});
+  p.step(50);
+  CHECK(std::abs(number(j, "getAngleRate", {1})) == Approx(120).margin(3));
+  // x of the joint's frame is y of the world.
+  CHECK(std::abs(p.childBody().state().angularVelocity.y()) == Approx(degToRad(120)).margin(0.05));
+  CHECK(std::abs(number(j, "getAngle", {0})) < 2);
+}
+
+TEST_CASE("a slider slides along z of the joint's frame as it was when attached") {
+  Pair p;
+  p.call(p.child, "setLocalRotation", {90.0, 0.0, 0.0});  // local z is world -y
+  p.step();
+  Leaf& j = p.joint("SliderJoint");
+  p.childBody().setVelocity({0, -1, 0});
+  p.step(10);
+  CHECK(number(j, "getPosition") == Approx(0.2).margin(0.01));
+  CHECK(number(j, "getPositionRate") == Approx(1).margin(0.02));
+  p.childBody().setVelocity({1, 0, 0});
+  p.step(10);
+  CHECK(std::abs(p.childBody().state().position.x()) < 0.02);
+  p.call(j, "setHighStopPos", {0, 0.3});
+  p.call(j, "setLowStopPos", {0, -0.3});
+  CHECK(number(j, "getHighStopPos", {0}) == 0.3);
+}
+
+TEST_CASE("a ball joint holds a point, a fixed joint a pose even without setFixed") {
+  Pair p;
+  Leaf& j = p.joint("BallJoint");
+  p.call(j, "setAnchor", {0.0, 0.0, 0.5});
+  p.childBody().setAngularVelocity({1, 0, 1});
+  p.step(20);
+  const auto s = p.childBody().state();
+  CHECK((s.position + s.rotation * Vec3(0, 0, 0.5) - Vec3(0, 0, 0.5)).norm() < 0.01);
+  CHECK(s.angularVelocity.norm() > 0.3);
+  p.child.remove(j);
+  const Vec3 at = p.childBody().state().position;
+  p.joint("FixedJoint");
+  p.childBody().setVelocity({1, 0, 0});
+  p.childBody().setAngularVelocity({0, 0, 1});
+  p.step(20);
+  CHECK((p.childBody().state().position - at).norm() < 0.03);
+}
+
+TEST_CASE("a path that leads nowhere is told and means the static world") {
+  Pair p;
+  Leaf& j = p.child.create("BallJoint", "joint");
+  p.call(j, "attach", {"../body", "../../nobody/body"});
+  CHECK_THAT(p.text, Catch::Contains("/usr/scene/child/joint") && Catch::Contains("../../nobody/body") && Catch::Contains("static world"));
+  CHECK(j.as<IJoint>()->body(1) == nullptr);
+  CHECK(j.as<IJoint>()->body(0) == &p.childBody());
+  CHECK_THROWS_WITH(p.call(j, "attach", {"../body", "../body"}), Catch::Contains("with itself"));
+}
+
+TEST_CASE("feedback gives the torque that a joint carries") {
+  Pair p;
+  Node& arm = p.thing("arm", {1, 0, 5});
+  Leaf& j = arm.create("HingeJoint", "joint");
+  p.call(j, "attach", {"../body"});
+  p.call(j, "setAnchor", {-1.0, 0.0, 0.0});
+  p.call(j, "setAxis", {2});
+  CHECK(j.as<IJoint>()->feedbackTorque() == 0);
+  p.call(j, "enableFeedback", {true});
+  for (int i = 0; i < 20; ++i) {
+    p.body(arm).addTorque({3, 4, 0});
+    p.step();
+  }
+  CHECK(j.as<IJoint>()->feedbackTorque() == Approx(5).epsilon(0.01));
+  CHECK(getProperty(j, "torque").toNumber() == j.as<IJoint>()->feedbackTorque());
+  p.call(j, "enableFeedback", {false});
+  CHECK(j.as<IJoint>()->feedbackTorque() == 0);
+}
+
+TEST_CASE("an angular motor drives its hinge and holds the numbers of a real motor") {
+  Pair p;
+  Leaf& hinge = p.joint("HingeJoint");
+  p.call(hinge, "setAnchor", {0.0, 0.0, 0.5});
+  p.call(hinge, "setAxis", {2});
+  Leaf& m = hinge.asNode()->create("AngularMotor", "motor");
+  p.call(m, "setNumAxes", {1});
+  p.call(m, "attach", {"../../body", "../../../parent/body"});
+  p.call(m, "setMotorAxis", {0, 1, 0.0, 0.0, 1.0});
+  CHECK(number(m, "getAxisAnchor", {0}) == 1);
+  CHECK(p.call(m, "getMode").toString() == "user");
+  p.call(m, "setMaxMotorForce", {0, 50.0});
+  p.call(m, "setAngularMotorVelocity", {0, 60.0});
+  p.step(20);
+  CHECK(number(m, "getAxisAngleRate", {0}) == Approx(60).margin(1));
+  CHECK(number(m, "getAxisAngle", {0}) == Approx(number(hinge, "getAngle")));
+  CHECK(std::abs(number(hinge, "getAngle")) == Approx(24).margin(1));
+  p.call(m, "setAxisAngle", {0, 12.0});
+  CHECK(m.as<IJoint>()->angle(0) == Approx(degToRad(12)));
+  p.call(m, "setEulerMode");
+  CHECK(p.call(m, "getMode").toString() == "euler");
+  p.call(m, "setUserMode");
+  for (const auto& [name, standard] : std::initializer_list<std::pair<const char*, double>>{
+           {"SpeedConstant", 4.3}, {"TorqueConstant", 4.3}, {"Resistance", 6.44}, {"EnvironmentTempeature", 20}, {"ThermalConductivity", 0.025}, {"HeatCapacity", 26},
+           {"ProtectionTempeature", 80}, {"ProtectionStiffness", 0.8}, {"MaxTorque", 0}}) {
+    INFO(name);
+    CHECK(number(m, (std::string("get") + name).c_str()) == standard);
+    p.call(m, (std::string("set") + name).c_str(), {0.5});
+    CHECK(number(m, (std::string("get") + name).c_str()) == 0.5);
+  }
+  p.call(m, "setBattery", {"../Battery"});
+  CHECK_THROWS(p.call(m, "setNumAxes", {4}));
+  CHECK_THROWS_WITH(p.call(m, "setMotorAxis", {0, 5, 0.0, 0.0, 1.0}), Catch::Contains("first body"));
+  auto& server = *p.kernel.root().find("/sys/server/physics");
+  p.call(server, "setJointHeating", {true});
+  p.call(server, "setBatteryDischarge", {true});
+  CHECK(getProperty(server, "jointHeating").toBool());
+}
+
+TEST_CASE("a cone twist joint is accepted and holds nothing") {
+  Pair p;
+  Leaf& j = p.joint("ConeTwistJoint");
+  p.childBody().setVelocity({0, 0, -1});
+  p.step(10);
+  CHECK(p.childBody().state().position.z() == Approx(-0.2).margin(0.01));
+  CHECK(j.as<IJoint>()->angle(0) == 0);
+  CHECK_THROWS_WITH(p.scene.create("Generic6DOFJoint"), Catch::Contains("Generic6DOFJoint"));
+}

@@ -1,0 +1,80 @@
+#pragma once
+/// \file
+/// The world of a scene and its collision spaces.
+
+#include "handles.h"
+
+namespace spark {
+
+/// Base of everything physical in a scene.
+class PhysicsObject : public SceneNode {
+  SPARK_CLASS(PhysicsObject, SceneNode)
+ public:
+  static void describe(Description<PhysicsObject>& d) {
+    d.doc("Base of everything physical in a scene.");
+    d.abstract();
+  }
+
+ protected:
+  /// A name for messages.
+  std::string where() const { return path() + " (" + classObject()->name() + ")"; }
+};
+
+/// The physical world of a scene, its child `world`: gravity and the solver's parameters.
+class World : public PhysicsObject {
+  SPARK_CLASS(World, PhysicsObject)
+ public:
+  static void describe(Description<World>& d);
+
+  /// The engine's world; made when the node is linked.
+  const std::shared_ptr<physics::WorldHandle>& handle() const { return handle_; }
+  /// The space of colliders that have none above them: the scene's first Space, else one of its own.
+  const std::shared_ptr<physics::SpaceHandle>& space();
+  const engine::WorldParameters& parameters() const { return parameters_; }
+  /// The world that a node belongs to: the child of its nearest ancestor that has one. Throws Error when there is none.
+  static World& of(const Leaf& node);
+
+  /// A body's centre of mass moved: transforms and colliders around it follow in the next physics phase.
+  void markRecentred() { recentred_ = true; }
+  bool takeRecentred() { return std::exchange(recentred_, false); }
+
+ protected:
+  void onLink() override;
+
+ private:
+  Vec3 gravity() const { return parameters_.gravity; }
+  void setGravity(const Vec3& g);
+  double erp() const { return parameters_.erp; }
+  void setErp(double v) { parameters_.erp = v, apply(); }
+  double cfm() const { return parameters_.cfm; }
+  void setCfm(double v) { parameters_.cfm = v, apply(); }
+  bool autoDisable() const { return parameters_.autoDisable; }
+  void setAutoDisable(bool on) { parameters_.autoDisable = on, apply(); }
+  double surfaceLayer() const { return parameters_.contactSurfaceLayer; }
+  void setSurfaceLayer(double v) { parameters_.contactSurfaceLayer = v, apply(); }
+  void apply();
+
+  engine::WorldParameters parameters_;
+  std::shared_ptr<physics::WorldHandle> handle_;
+  std::shared_ptr<physics::SpaceHandle> ownSpace_;
+  bool recentred_ = false;
+};
+
+/// A collision space: colliders below it are in it.
+class Space : public PhysicsObject {
+  SPARK_CLASS(Space, PhysicsObject)
+ public:
+  static void describe(Description<Space>& d);
+  const std::shared_ptr<physics::SpaceHandle>& handle() const { return handle_; }
+
+ protected:
+  void onLink() override;
+
+ private:
+  void disableInnerCollision(bool off);
+  bool innerOff() const { return innerOff_; }
+  std::shared_ptr<physics::SpaceHandle> handle_;
+  bool innerOff_ = false;
+};
+
+}  // namespace spark
