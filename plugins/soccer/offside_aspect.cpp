@@ -33,7 +33,7 @@ void OffsideAspect::touch(soccer::Pitch& pitch) {
   const bool offends = last.side == markedSide_ && marked_[last.unum];
   marked_.fill(false);
   if (!offends) return mark(pitch, last.side, last.unum);
-  spot_ = pitch.freeBallPosition(ball_->lastValid());
+  spot_ = Vec3(ball_->lastValid().x(), ball_->lastValid().y(), pitch.settings().ballRadius);
   kernel().log().info("soccer: offside, {} {}", soccer::sideName(last.side), last.unum);
   game_->setMode(forSide(PlayMode::offsideLeft, last.side));
 }

@@ -40,7 +40,7 @@ struct MatchHouse : House {
     kernel.registerClass<Puppet>();
     kernel.create("FileServer", "/sys/server/file");
     Leaf& files = kernel.create("DirectoryFileSystem", "/sys/server/file/scenes");
-    setProperty(files, "folder", SPARK_SCENES);
+    setProperty(files, "path", SPARK_SCENES);
     setProperty(files, "prefix", "rsg");
     kernel.create("SceneServer", "/sys/server/scene");
     kernel.create("RsgImporter", "/sys/server/scene/rsg");
@@ -120,7 +120,7 @@ struct MatchHouse : House {
   /// The agent stands at the ball, on its -x side, touching it.
   void touch(int agent) {
     const Vec3 b = ball().state().position;
-    place(bodyOf(agent), b.x() - 0.32, b.y(), 0.22);
+    place(bodyOf(agent), b.x() - 0.3, b.y(), 0.22);
     run(1);
   }
   std::string mode() { return get("/sys/server/gamecontrol/GameStateAspect", "playMode").toString(); }
