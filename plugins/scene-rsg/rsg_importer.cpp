@@ -29,7 +29,7 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
   d.property("maxDepth", &I::maxDepth, &I::setMaxDepth).range(1, 256).doc("Imports within imports.");
   d.property("maxImports", &I::maxImports, &I::setMaxImports).min(1).doc("Files that one import may import in all.");
   d.property("maxNodes", &I::maxNodes, &I::setMaxNodes).min(1).doc("Nodes that one import may make in all.");
-  d.property("argumentLimit", &I::argumentLimit_).min(0).doc("Largest number that an import from outside may pass.");
+  d.property("argumentLimit", &I::argumentLimit_).unit("1").min(0).doc("Largest number that an import from outside may pass.");
   d.property("filesParsed", &I::filesParsed_).readOnly().doc("Files read and compiled so far; a second robot of a kind adds none.");
   d.property("imports", &I::imports_).readOnly().doc("Files imported so far.");
   d.property("evals", &I::evals_).readOnly().doc("Expressions evaluated so far.");

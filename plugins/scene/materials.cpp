@@ -8,7 +8,7 @@ void MaterialSolid::describe(Description<MaterialSolid>& d) {
   d.property("diffuse", &MaterialSolid::diffuse_).doc("Colour in direct light.");
   d.property("specular", &MaterialSolid::specular_).doc("Colour of its highlights.");
   d.property("emission", &MaterialSolid::emission_).doc("Colour it shines in by itself.");
-  d.property("shininess", &MaterialSolid::shininess_).range(0, 128).doc("Sharpness of its highlights.");
+  d.property("shininess", &MaterialSolid::shininess_).unit("1").range(0, 128).doc("Sharpness of its highlights.");
   d.property("depthCheck", &MaterialSolid::depthCheck_).doc("Hidden by what is in front of it.");
 }
 

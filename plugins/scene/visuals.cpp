@@ -75,14 +75,14 @@ void StaticMesh::describe(Description<StaticMesh>& d) {
   d.method("load", &StaticMesh::loadCall)
       .parameters({"mesh", "parameters"})
       .doc("Takes another mesh: 'models/x.obj', or a standard one with parameters.");
-  d.property("scale", &StaticMesh::scale_).readOnly().doc("Scale of what is shown.");
+  d.property("scale", &StaticMesh::scale_).unit("1").readOnly().doc("Scale of what is shown.");
   d.method("setScale", &StaticMesh::setScale).parameters({"scale"}).doc("Scales what is shown.");
   d.property("materials", &StaticMesh::materials_).readOnly().doc("Material of each face group, in the mesh's alphabetical order.");
   d.method("resetMaterials", &StaticMesh::resetMaterials).parameters({"materials"}).doc("Replaces all materials.");
   d.property("castShadows", &StaticMesh::castShadows_).doc("Viewers let it cast shadows.");
   d.property("useExternalMesh", &StaticMesh::useExternalMesh_).doc("Viewers show the external mesh instead.");
   d.property("externalMeshName", &StaticMesh::externalMesh_).doc("The external mesh.");
-  d.property("externalMeshScale", &StaticMesh::externalScale_).doc("Its scale.");
+  d.property("externalMeshScale", &StaticMesh::externalScale_).unit("1").doc("Its scale.");
 }
 
 void StaticMesh::loadCall(std::string mesh, std::vector<Value> parameters) {
