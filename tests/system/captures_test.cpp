@@ -1,7 +1,4 @@
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/read.hpp>
-#include <boost/asio/write.hpp>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -9,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "client.h"
 #include "process.h"
 #include "spark/predicates.h"
 #include "test_support.h"
@@ -19,7 +17,6 @@
 using namespace spark;
 using namespace spark::test;
 using Json = nlohmann::json;
-namespace asio = boost::asio;
 
 namespace {
 constexpr int kCycles = 20;
@@ -63,25 +60,6 @@ std::string order(const std::string& message) {
   }
   return out;
 }
-
-/// One agent's connection. Waits without limit: ctest ends the test, and with it the host.
-struct Client {
-  asio::io_context io;
-  asio::ip::tcp::socket socket{io};
-  explicit Client(unsigned short port) { socket.connect({asio::ip::address_v4::loopback(), port}); }
-  void send(const std::string& m) {
-    std::string out(4, '\0');
-    for (int i = 0; i < 4; ++i) out[static_cast<std::size_t>(i)] = static_cast<char>(m.size() >> (24 - 8 * i));
-    asio::write(socket, asio::buffer(out + m));
-  }
-  std::string receive() {
-    unsigned char p[4];
-    asio::read(socket, asio::buffer(p));
-    std::string m(static_cast<std::size_t>(p[0]) << 24 | p[1] << 16 | p[2] << 8 | p[3], ' ');
-    asio::read(socket, asio::buffer(m));
-    return m;
-  }
-};
 
 void replay(const std::filesystem::path& reference, const std::filesystem::path& file) {
   const Session session = load(file);

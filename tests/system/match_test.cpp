@@ -1,11 +1,8 @@
-#include <boost/asio/connect.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/read.hpp>
 #include <catch2/catch.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "client.h"
 #include "process.h"
 #include "test_support.h"
 
@@ -128,15 +125,10 @@ TEST_CASE("Monitors hear JSON when the config says so") {
     if (json) m.arguments = {"--set", "monitor=JsonMonitor"};
     Json ports;
     const auto host = m.start(ports);
-    boost::asio::io_context io;
-    boost::asio::ip::tcp::socket monitor(io);
-    monitor.connect({boost::asio::ip::address_v4::loopback(), ports["monitorPort"].get<unsigned short>()});
+    Client monitor(ports["monitorPort"].get<unsigned short>());
     const std::string port = std::to_string(ports["agentPort"].get<int>());
     const auto red = m.team("Red", port, "SexpParser"), blue = m.team("Blue", port, "SexpParser");
-    unsigned char prefix[4];
-    boost::asio::read(monitor, boost::asio::buffer(prefix));
-    std::string message(static_cast<std::size_t>(prefix[0]) << 24 | prefix[1] << 16 | prefix[2] << 8 | prefix[3], ' ');
-    boost::asio::read(monitor, boost::asio::buffer(message));
+    const std::string message = monitor.receive();
     CAPTURE(message.substr(0, 200));
     REQUIRE(Json::accept(message) == json);
     REQUIRE_THAT(message, Contains("FieldLength"));

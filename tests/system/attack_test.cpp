@@ -1,0 +1,200 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "client.h"
+#include "process.h"
+#include "spark/predicates.h"
+#include "test_support.h"
+
+// Bad input against a host with a match going on. After every attack a player who did nothing wrong is still told of a clock that runs, the
+// host has said what was wrong, and in the end its memory has not grown.
+
+using namespace spark;
+using namespace spark::test;
+using Json = nlohmann::json;
+
+namespace {
+/// A player of his own who only watches.
+class Witness {
+ public:
+  Witness(unsigned short port, const std::string& team, int number) : client_(port) {
+    client_.send("(scene rsg/agent/sphere.rsg)(syn)");
+    client_.receive();
+    client_.send("(init (unum " + std::to_string(number) + ")(teamname " + team + "))(syn)");
+  }
+  /// Waits until the clock has gone on for a few cycles after now.
+  void mustSeeTimePass() {
+    while (client_.pending()) client_.receive();  // what was sent before now proves nothing
+    const double begin = time();
+    for (double now = begin; now < begin + 0.1;) now = time();
+  }
+  Client& client() { return client_; }
+  /// Side or number that the host gave, once it did; reads messages until then, at most `messages`.
+  bool hasTeam(int messages) {
+    for (int i = 0; i < messages; ++i)
+      if (client_.receive().find("(team ") != std::string::npos) return true;
+    return false;
+  }
+
+ private:
+  double time() {
+    Predicates p;
+    readSexp(client_.receive(), p);
+    for (const Element e : p)
+      if (e.head() == "time") return e.named("now").at(1).number();
+    throw std::runtime_error("a message without time");
+  }
+  Client client_;
+};
+
+struct Arena {
+  Process host;
+  unsigned short agentPort = 0, monitorPort = 0;
+  std::unique_ptr<Witness> witness;
+
+  explicit Arena(std::vector<std::string> more = {}) : host(command(std::move(more))) {
+    const Json ports = Json::parse(host.line());
+    agentPort = ports["agentPort"];
+    monitorPort = ports["monitorPort"];
+    witness = std::make_unique<Witness>(agentPort, "Calm", 1);
+    witness->mustSeeTimePass();
+  }
+  static std::vector<std::string> command(std::vector<std::string> more) {
+    std::vector<std::string> c{(binFolder() / "sparkhost").string(), "--config", "soccer-sphere.lua", "--agent-port", "0", "--monitor-port", "0"};
+    c.insert(c.end(), more.begin(), more.end());
+    return c;
+  }
+  /// Resident memory of the host [MiB].
+  double memory() {
+    std::ifstream in("/proc/" + std::to_string(host.pid()) + "/statm");
+    double total = 0, resident = 0;
+    in >> total >> resident;
+    return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
+  }
+  void mustEndWell() {
+    witness->mustSeeTimePass();
+    host.signal(15);
+    REQUIRE(Json::parse(host.line())["cycles"].get<int>() > 0);
+    REQUIRE(host.wait() == 0);
+  }
+};
+}  // namespace
+
+TEST_CASE("Bytes that are no message close that connection, and nothing else") {
+  Arena a;
+  const std::vector<std::pair<std::string, std::string>> attacks{
+      {"GET / HTTP/1.1\r\n\r\n", "announces a message of"},
+      {Client::prefix(0x80000000u) + "x", "2147483648"},
+      {Client::prefix(0xffffffffu) + "x", "4294967295"},
+      {Client::prefix(200000) + std::string(200000, '('), "200000"},
+  };
+  for (const auto& [bytes, complaint] : attacks) {
+    Client bad(a.agentPort);
+    bad.sendRaw(bytes);
+    bad.waitForClose();
+    a.host.waitForError(complaint);
+    a.witness->mustSeeTimePass();
+  }
+  a.mustEndWell();
+}
+
+TEST_CASE("Half a message is waited for, but not for ever; leaving in the middle is noticed") {
+  Arena a({"--set", "/sys/server/net/agents.messageTimeout=0.5"});
+  {
+    Client gone(a.agentPort);
+    gone.sendRaw(Client::prefix(100) + "(scene ");
+  }
+  a.host.waitForError("left in the middle of a message");
+  Client silent(a.agentPort);
+  silent.sendRaw(Client::prefix(100) + "(scene ");
+  a.witness->mustSeeTimePass();
+  silent.waitForClose();
+  a.host.waitForError("did not finish it within");
+  a.mustEndWell();
+}
+
+TEST_CASE("Messages of length 0 are legal and ignored") {
+  Arena a;
+  for (int i = 0; i < 100; ++i) a.witness->client().sendRaw(Client::prefix(0));
+  a.mustEndWell();
+}
+
+TEST_CASE("Deep nesting, unknown effectors, NaN and infinity harm nobody") {
+  Arena a;
+  for (const std::string& message : {std::string(60000, '('), std::string(30000, '(') + std::string(30000, ')'), std::string("(fly 1 2 3)(drive nan inf -inf)(drive 1e999 -1e999 nan)(kick nan nan)"),
+                                     std::string("(beam nan inf 0)(pantilt nan nan)(say \"\x01\xff\")(say ;)"), std::string(")))((("), std::string(1, '\0')}) {
+    Witness other(a.agentPort, "Strange", 0);
+    other.client().send(message);
+    other.client().send("(syn)");
+    other.mustSeeTimePass();
+    a.witness->mustSeeTimePass();
+  }
+  a.host.waitForError("fly");
+  REQUIRE(a.host.errors().find(" nan ") == std::string::npos);
+  a.mustEndWell();
+}
+
+TEST_CASE("Scenes that are missing, folders, absolute or climbing are refused by name") {
+  Arena a;
+  for (const char* scene : {"rsg/agent/none.rsg", "rsg/agent", "/etc/passwd", "rsg/../../../../etc/passwd", "../secret.rsg"}) {
+    Client other(a.agentPort);
+    other.send("(scene " + std::string(scene) + ")(syn)");
+    a.host.waitForError(scene);
+    a.witness->mustSeeTimePass();
+  }
+  REQUIRE(a.host.errors().find("root:") == std::string::npos);
+  a.mustEndWell();
+}
+
+TEST_CASE("A 23rd player gets no place") {
+  Arena a;
+  std::vector<std::unique_ptr<Witness>> players;
+  for (int number = 2; number <= 11; ++number) players.push_back(std::make_unique<Witness>(a.agentPort, "Calm", number));
+  for (int number = 1; number <= 11; ++number) players.push_back(std::make_unique<Witness>(a.agentPort, "Other", number));
+  for (const auto& p : players) REQUIRE(p->hasTeam(50));
+  for (const char* team : {"Calm", "Other", "Third"}) {
+    Witness late(a.agentPort, team, 0);
+    REQUIRE_FALSE(late.hasTeam(25));
+  }
+  a.mustEndWell();
+}
+
+TEST_CASE("Clients that come in crowds, or come and go, leave no trace") {
+  Arena a;
+  const auto crowd = [&] {
+    std::vector<std::unique_ptr<Client>> clients;
+    for (int i = 0; i < 30; ++i) clients.push_back(std::make_unique<Client>(a.agentPort));
+    for (const auto& c : clients) c->send("(scene rsg/agent/sphere.rsg)(syn)");
+    for (const auto& c : clients) c->receive();
+    clients.clear();
+    a.witness->mustSeeTimePass();
+  };
+  const auto visitors = [&] {
+    for (int i = 0; i < 200; ++i) Client(a.agentPort).sendRaw(i % 2 ? "" : Client::prefix(3) + "(s");
+    a.witness->mustSeeTimePass();
+  };
+  crowd();
+  visitors();
+  const double before = a.memory();
+  for (int i = 0; i < 3; ++i) crowd(), visitors();
+  a.witness->mustSeeTimePass();
+  CAPTURE(before, a.memory());
+  REQUIRE(a.memory() < before + 8);
+  a.mustEndWell();
+}
+
+TEST_CASE("A monitor that never reads is closed and costs a bounded amount") {
+  Arena a({"--rate", "max", "--set", "/sys/server/monitor.stallTimeout=1"});
+  std::vector<std::unique_ptr<Client>> monitors;
+  for (int i = 0; i < 5; ++i) monitors.push_back(std::make_unique<Client>(a.monitorPort));
+  a.witness->mustSeeTimePass();
+  const double before = a.memory();
+  a.host.waitForError("closed");
+  CAPTURE(before, a.memory());
+  REQUIRE(a.memory() < before + 16);
+  a.mustEndWell();
+}
