@@ -36,7 +36,7 @@ class Witness {
   /// Side or number that the host gave, once it did; reads messages until then, at most `messages`.
   bool hasTeam(int messages) {
     for (int i = 0; i < messages; ++i)
-      if (client_.receive().find("(team ") != std::string::npos) return true;
+      if (client_.receive().find("(unum ") != std::string::npos) return true;
     return false;
   }
 
@@ -56,7 +56,7 @@ struct Arena {
   unsigned short agentPort = 0, monitorPort = 0;
   std::unique_ptr<Witness> witness;
 
-  explicit Arena(std::vector<std::string> more = {}) : host(command(std::move(more))) {
+  explicit Arena(std::vector<std::string> more = {}) : host(command(std::move(more)), 20) {
     const Json ports = Json::parse(host.line());
     agentPort = ports["agentPort"];
     monitorPort = ports["monitorPort"];
@@ -140,10 +140,12 @@ TEST_CASE("Deep nesting, unknown effectors, NaN and infinity harm nobody") {
 
 TEST_CASE("Scenes that are missing, folders, absolute or climbing are refused by name") {
   Arena a;
-  for (const char* scene : {"rsg/agent/none.rsg", "rsg/agent", "/etc/passwd", "rsg/../../../../etc/passwd", "../secret.rsg"}) {
+  const std::vector<std::pair<std::string, std::string>> scenes{
+      {"rsg/agent/none.rsg", "no resource 'rsg/agent/none.rsg'"}, {"rsg/agent", "found a folder"}, {"/etc/passwd", "it is absolute"}, {"rsg/../../../../etc/passwd", "'..'"}};
+  for (const auto& [scene, complaint] : scenes) {
     Client other(a.agentPort);
-    other.send("(scene " + std::string(scene) + ")(syn)");
-    a.host.waitForError(scene);
+    other.send("(scene " + scene + ")(syn)");
+    a.host.waitForError(complaint);
     a.witness->mustSeeTimePass();
   }
   REQUIRE(a.host.errors().find("root:") == std::string::npos);

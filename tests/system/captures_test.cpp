@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "client.h"
 #include "process.h"
@@ -46,18 +47,28 @@ Session load(const std::filesystem::path& file) {
   return s;
 }
 
-/// Names of the percepts in order: "time GS GYR:torso HJ:hj1 ...". Vision is left out: it is not in every cycle.
+/// Names of the percepts in order: "time GS GYR:torso HJ:hj1 ...". Vision is left out: it is not in every cycle. So is the foot's pressure:
+/// it is there while the foot touches something, and robots that are made inside each other burst apart in another way each time.
 std::string order(const std::string& message) {
   Predicates p;
   readSexp(message, p);
   std::string out;
   for (const Element e : p) {
-    if (e.head() == "See") continue;
+    if (e.head() == "See" || e.head() == "FRP") continue;
     out += std::string(e.head());
     if (const Element n = e.named("n")) out += ":" + std::string(n.at(1).text());
     if (const Element u = e.named("unum")) out += "+unum" + std::to_string(u.at(1).integer());
     out += " ";
   }
+  return out;
+}
+
+/// What the host complained of, without the line that a (syn) before the robot exists earns: the original writes it, too.
+std::string complaints(const Process& host) {
+  std::istringstream lines(host.errors());
+  std::string out;
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("no effector registered for predicate syn") == std::string::npos) out += line + "\n";
   return out;
 }
 
@@ -83,7 +94,7 @@ void replay(const std::filesystem::path& reference, const std::filesystem::path&
   host.signal(15);
   host.line();
   REQUIRE(host.wait() == 0);
-  REQUIRE(host.errors() == "");
+  REQUIRE(complaints(host) == "");
 }
 }  // namespace
 
