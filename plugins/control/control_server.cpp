@@ -63,8 +63,10 @@ void ControlServer::accept() {
   Protocol::socket socket(io_);
   acceptor_->accept(socket, ec);
   if (ec) return;
-  if (sameUser(socket.native_handle())) clients_.push_back(std::make_unique<control::ControlClient>(std::move(socket)));
-  else kernel().log().warning("a program of another user tried to open {} and was turned away", socket_);
+  if (sameUser(socket.native_handle()))
+    clients_.push_back(std::make_unique<control::ControlClient>(std::move(socket)));
+  else
+    kernel().log().warning("a program of another user tried to open {} and was turned away", socket_);
 }
 
 void ControlServer::poll() {

@@ -16,12 +16,18 @@ constexpr int kMaxNodes = 100000;  // of one tree answer
 
 Json toJson(const Value& v) {
   switch (v.type()) {
-    case Value::Type::nil: return nullptr;
-    case Value::Type::boolean: return v.toBool();
-    case Value::Type::integer: return v.toInteger();
-    case Value::Type::number: return std::isfinite(v.toNumber()) ? Json(v.toNumber()) : Json(v.text());
-    case Value::Type::string: return v.toString();
-    case Value::Type::list: break;
+    case Value::Type::nil:
+      return nullptr;
+    case Value::Type::boolean:
+      return v.toBool();
+    case Value::Type::integer:
+      return v.toInteger();
+    case Value::Type::number:
+      return std::isfinite(v.toNumber()) ? Json(v.toNumber()) : Json(v.text());
+    case Value::Type::string:
+      return v.toString();
+    case Value::Type::list:
+      break;
   }
   Json out = Json::array();
   for (const Value& e : v.toList()) out.push_back(toJson(e));
@@ -85,7 +91,8 @@ Json tree(Kernel& kernel, const Json& request) {
 Json get(Kernel& kernel, const Json& request) {
   Leaf& leaf = nodeOf(kernel, request);
   Json properties = Json::array();
-  if (request.contains("property")) properties.push_back(describe(leaf, propertyOf(leaf, textOf(request, "property"))));
+  if (request.contains("property"))
+    properties.push_back(describe(leaf, propertyOf(leaf, textOf(request, "property"))));
   else
     for (const Property* p : leaf.classObject()->properties()) properties.push_back(describe(leaf, *p));
   return {{"ok", true}, {"path", leaf.path()}, {"class", leaf.classObject()->name()}, {"properties", properties}};
@@ -123,7 +130,12 @@ Json plugins(Kernel& kernel) {
   std::sort(all.begin(), all.end(), [](Plugin* a, Plugin* b) { return a->name() < b->name(); });
   Json list = Json::array();
   for (const Plugin* p : all)
-    list.push_back({{"name", p->name()}, {"version", p->version()}, {"doc", p->doc()}, {"file", p->file()}, {"registered", p->registered()}, {"classes", p->classes()}});
+    list.push_back({{"name", p->name()},
+                    {"version", p->version()},
+                    {"doc", p->doc()},
+                    {"file", p->file()},
+                    {"registered", p->registered()},
+                    {"classes", p->classes()}});
   return {{"ok", true}, {"plugins", list}};
 }
 

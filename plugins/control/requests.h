@@ -29,8 +29,8 @@ struct Watch {
   bool started = false;
 };
 
-/// The answer to one line, without the line feed. Bad requests give an error answer; nothing is thrown. `self`: the server's own node, which
-/// requests must not saw off. When the request is a watch, `watch` is filled in and the answer is its first line.
+/// The answer to one line, without the line feed. Bad requests give an error answer; nothing is thrown. `self`: the server's own node,
+/// which requests must not saw off. When the request is a watch, `watch` is filled in and the answer is its first line.
 std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch);
 
 /// The next line of a watch, "" when the value is as before. An error answer when the property is gone (`done` is set).

@@ -18,7 +18,8 @@ namespace asio = boost::asio;
 
 namespace {
 fs::path folderName() {
-  if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime && fs::is_directory(runtime)) return fs::path(runtime) / "spark";
+  if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime && fs::is_directory(runtime))
+    return fs::path(runtime) / "spark";
   return fmt::format("/tmp/spark-{}", geteuid());
 }
 
@@ -37,9 +38,12 @@ fs::path socketFolder() {
   if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
     throw Error(fmt::format("cannot make {} for the control socket: {}", folder.string(), std::strerror(errno)));
   struct stat s = {};
-  if (lstat(folder.c_str(), &s) != 0 || !S_ISDIR(s.st_mode)) throw Error(folder.string() + ", where the control socket belongs, is no folder. Remove it.");
-  if (s.st_uid != geteuid()) throw Error(folder.string() + ", where the control socket belongs, is another user's. Set XDG_RUNTIME_DIR to a folder of your own.");
-  if ((s.st_mode & 077) != 0) throw Error(folder.string() + ", where the control socket belongs, is open to other users. Say chmod 700 " + folder.string() + ".");
+  if (lstat(folder.c_str(), &s) != 0 || !S_ISDIR(s.st_mode))
+    throw Error(folder.string() + ", where the control socket belongs, is no folder. Remove it.");
+  if (s.st_uid != geteuid())
+    throw Error(folder.string() + ", where the control socket belongs, is another user's. Set XDG_RUNTIME_DIR to a folder of your own.");
+  if ((s.st_mode & 077) != 0)
+    throw Error(folder.string() + ", where the control socket belongs, is open to other users. Say chmod 700 " + folder.string() + ".");
   return folder;
 }
 

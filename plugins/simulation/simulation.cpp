@@ -40,7 +40,9 @@ void Simulation::describe(Description<Simulation>& d) {
   d.property("rate", &Simulation::rate_).choices({"real", "max"}).doc("real: paced to wall time; max: as fast as it goes.");
   d.property("sync", &Simulation::sync_).doc("Lockstep: a cycle starts when every agent has answered.");
   d.property("duration", &Simulation::duration_).unit("s").min(0).doc("Simulated time after which run() ends; 0: never.");
-  d.property("threads", &Simulation::threads, &Simulation::setThreads).range(1, 64).doc("Host threads for sensing and encoding. Results do not depend on it.");
+  d.property("threads", &Simulation::threads, &Simulation::setThreads)
+      .range(1, 64)
+      .doc("Host threads for sensing and encoding. Results do not depend on it.");
   d.property("cycle", &Simulation::cycle).doc("Number of the current cycle, from 1; 0 before the first.");
   d.property("time", &Simulation::time).unit("s").doc("Simulated time since the start.");
   d.property("phaseMicros", &Simulation::phaseMicros).doc("Mean wall time per cycle of each phase since resetTimers() [microseconds].");
@@ -136,8 +138,10 @@ bool Simulation::gatesOpen() {
 void Simulation::waitForInput(double seconds) {
   resolve();
   const double slice = std::min(seconds, kSlice);
-  if (waiter_) waiter_->wait(slice);
-  else std::this_thread::sleep_for(std::chrono::duration<double>(slice));
+  if (waiter_)
+    waiter_->wait(slice);
+  else
+    std::this_thread::sleep_for(std::chrono::duration<double>(slice));
   if (sources_.size() > 1) poll();
 }
 
@@ -194,4 +198,5 @@ void Simulation::executeCycle() {
 
 }  // namespace spark
 
-SPARK_PLUGIN("simulation", "1.0", "The run loop: names the phases and drives them in real time, in lockstep, or as fast as possible.", spark::Simulation)
+SPARK_PLUGIN("simulation", "1.0", "The run loop: names the phases and drives them in real time, in lockstep, or as fast as possible.",
+             spark::Simulation)

@@ -71,7 +71,8 @@ class Simulation : public Node, public ISimulation {
   IInputSource* waiter_ = nullptr;  ///< the source to wait on, nullptr: sleep
   std::uint64_t resolvedAt_ = 0;
 
-  Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr, *sense_ = nullptr, *publish_ = nullptr;
+  Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr, *sense_ = nullptr,
+          *publish_ = nullptr;
   Clock::time_point due_{};  ///< when the next cycle may start in real time
   simulation::Timers timers_;
 };

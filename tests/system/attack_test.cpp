@@ -64,7 +64,8 @@ struct Arena {
     witness->mustSeeTimePass();
   }
   static std::vector<std::string> command(std::vector<std::string> more) {
-    std::vector<std::string> c{(binFolder() / "sparkhost").string(), "--config", "soccer-sphere.lua", "--agent-port", "0", "--monitor-port", "0"};
+    std::vector<std::string> c{
+        (binFolder() / "sparkhost").string(), "--config", "soccer-sphere.lua", "--agent-port", "0", "--monitor-port", "0"};
     c.insert(c.end(), more.begin(), more.end());
     return c;
   }
@@ -125,8 +126,10 @@ TEST_CASE("Messages of length 0 are legal and ignored") {
 
 TEST_CASE("Deep nesting, unknown effectors, NaN and infinity harm nobody") {
   Arena a;
-  for (const std::string& message : {std::string(60000, '('), std::string(30000, '(') + std::string(30000, ')'), std::string("(fly 1 2 3)(drive nan inf -inf)(drive 1e999 -1e999 nan)(kick nan nan)"),
-                                     std::string("(beam nan inf 0)(pantilt nan nan)(say \"\x01\xff\")(say ;)"), std::string(")))((("), std::string(1, '\0')}) {
+  for (const std::string& message :
+       {std::string(60000, '('), std::string(30000, '(') + std::string(30000, ')'),
+        std::string("(fly 1 2 3)(drive nan inf -inf)(drive 1e999 -1e999 nan)(kick nan nan)"),
+        std::string("(beam nan inf 0)(pantilt nan nan)(say \"\x01\xff\")(say ;)"), std::string(")))((("), std::string(1, '\0')}) {
     Witness other(a.agentPort, "Strange", 0);
     other.client().send(message);
     other.client().send("(syn)");
@@ -140,8 +143,10 @@ TEST_CASE("Deep nesting, unknown effectors, NaN and infinity harm nobody") {
 
 TEST_CASE("Scenes that are missing, folders, absolute or climbing are refused by name") {
   Arena a;
-  const std::vector<std::pair<std::string, std::string>> scenes{
-      {"rsg/agent/none.rsg", "no resource 'rsg/agent/none.rsg'"}, {"rsg/agent", "found a folder"}, {"/etc/passwd", "it is absolute"}, {"rsg/../../../../etc/passwd", "'..'"}};
+  const std::vector<std::pair<std::string, std::string>> scenes{{"rsg/agent/none.rsg", "no resource 'rsg/agent/none.rsg'"},
+                                                                {"rsg/agent", "found a folder"},
+                                                                {"/etc/passwd", "it is absolute"},
+                                                                {"rsg/../../../../etc/passwd", "'..'"}};
   for (const auto& [scene, complaint] : scenes) {
     Client other(a.agentPort);
     other.send("(scene " + scene + ")(syn)");

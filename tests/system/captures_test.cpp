@@ -74,8 +74,8 @@ std::string complaints(const Process& host) {
 
 void replay(const std::filesystem::path& reference, const std::filesystem::path& file) {
   const Session session = load(file);
-  Process host({(binFolder() / "sparkhost").string(), "--config", "soccer.lua", "--scene-path", (reference / "scenes-reference").string(), "--sync", "--rate", "max", "--agent-port", "0",
-                "--monitor-port", "0", "--log-level", "warning"});
+  Process host({(binFolder() / "sparkhost").string(), "--config", "soccer.lua", "--scene-path", (reference / "scenes-reference").string(),
+                "--sync", "--rate", "max", "--agent-port", "0", "--monitor-port", "0", "--log-level", "warning"});
   const auto port = Json::parse(host.line())["agentPort"].get<unsigned short>();
   std::map<std::string, std::unique_ptr<Client>> clients;
   for (const std::string& name : session.agents) clients[name] = std::make_unique<Client>(port);

@@ -5,8 +5,8 @@
 #include "process.h"
 #include "test_support.h"
 
-// What a plugin author does: installs Spark, builds a plugin with the installed headers and find_package(Spark), drops it into a folder. The
-// installed tree is moved in between, because it may be.
+// What a plugin author does: installs Spark, builds a plugin with the installed headers and find_package(Spark), drops it into a folder.
+// The installed tree is moved in between, because it may be.
 
 using namespace spark::test;
 using Catch::Contains;
@@ -23,12 +23,14 @@ Finished must(const std::vector<std::string>& command) {
 
 TEST_CASE("A plugin built outside of the tree is found, described and used") {
   TemporaryFolder folder;
-  const fs::path build = binFolder().parent_path(), first = folder.path() / "first", prefix = folder.path() / "moved", work = folder.path() / "work";
+  const fs::path build = binFolder().parent_path(), first = folder.path() / "first", prefix = folder.path() / "moved",
+                 work = folder.path() / "work";
   must({"cmake", "--install", build.string(), "--prefix", first.string()});
   fs::rename(first, prefix);
 
   fs::copy(SPARK_FIXTURES "/drop-in", work, fs::copy_options::recursive);
-  must({"cmake", "-S", work.string(), "-B", (work / "build").string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DCMAKE_BUILD_TYPE=Debug"});
+  must({"cmake", "-S", work.string(), "-B", (work / "build").string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(),
+        "-DCMAKE_BUILD_TYPE=Debug"});
   must({"cmake", "--build", (work / "build").string()});
   const fs::path plugins = folder.path() / "plugins";
   fs::create_directory(plugins);
@@ -37,9 +39,11 @@ TEST_CASE("A plugin built outside of the tree is found, described and used") {
   const std::string host = (prefix / "bin" / "sparkhost").string();
   REQUIRE_THAT(must({host, "--list-plugins", "--plugin-path", plugins.string()}).out, Contains("metronome 0.1") && Contains("Metronome"));
   const Finished described = must({host, "--describe", "Metronome", "--plugin-path", plugins.string()});
-  REQUIRE_THAT(described.out, Contains("beats") && Contains("integer") && Contains("Cycles between two beats.") && Contains("handles: rule"));
+  REQUIRE_THAT(described.out,
+               Contains("beats") && Contains("integer") && Contains("Cycles between two beats.") && Contains("handles: rule"));
 
-  const Finished run = must({host, "--config", (work / "metronome.lua").string(), "--plugin-path", plugins.string(), "--rate", "max", "--duration", "1"});
+  const Finished run =
+      must({host, "--config", (work / "metronome.lua").string(), "--plugin-path", plugins.string(), "--rate", "max", "--duration", "1"});
   REQUIRE_THAT(run.errors, Contains("beat 5") && !Contains("beat 6"));
   REQUIRE_THAT(run.out, Contains("\"cycles\":50"));
   REQUIRE_THAT(runToEnd({host, "--config", (work / "metronome.lua").string()}).errors, Contains("there is no plugin 'metronome'"));

@@ -39,7 +39,8 @@ TEST_CASE("--check loads and wires, steps nothing, prints nothing on stdout") {
   const Finished good = runToEnd(host({"--config", folder.write("good.lua", kSmall), "--check"}));
   REQUIRE(good.code == 0);
   REQUIRE(good.out.empty());
-  const Finished bad = runToEnd(host({"--config", folder.write("bad.lua", std::string(kSmall) + "new('Simulatoin', '/sys/x')\n"), "--check"}));
+  const Finished bad =
+      runToEnd(host({"--config", folder.write("bad.lua", std::string(kSmall) + "new('Simulatoin', '/sys/x')\n"), "--check"}));
   REQUIRE(bad.code == 2);
   REQUIRE_THAT(bad.errors, Contains("bad.lua:7") && Contains("'Simulation'"));
 }
@@ -64,8 +65,12 @@ TEST_CASE("--set takes options and properties; an unknown name is an error with 
 }
 
 TEST_CASE("A wrong command line ends with exit code 2 and says what is wrong") {
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-           {}, {"--config", "x.lua", "--rate", "fast"}, {"--config", "x.lua", "--agent-port", "70000"}, {"--config", "x.lua", "--dance"}, {"--config", "x.lua", "--plugin-path", "/no/such/folder"}}) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{},
+                                             {"--config", "x.lua", "--rate", "fast"},
+                                             {"--config", "x.lua", "--agent-port", "70000"},
+                                             {"--config", "x.lua", "--dance"},
+                                             {"--config", "x.lua", "--plugin-path", "/no/such/folder"}}) {
     const Finished f = runToEnd(host(arguments));
     REQUIRE(f.code == 2);
     REQUIRE(f.out.empty());
@@ -75,7 +80,8 @@ TEST_CASE("A wrong command line ends with exit code 2 and says what is wrong") {
 
 TEST_CASE("stdout holds the ports first and the result last, and nothing else") {
   TemporaryFolder folder;
-  Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0", "--rate", "max", "--duration", "2"}));
+  Process p(host(
+      {"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0", "--rate", "max", "--duration", "2"}));
   const Json ports = Json::parse(p.line());
   REQUIRE(ports["agentPort"].get<int>() > 0);
   REQUIRE(ports["monitorPort"].get<int>() > 0);
@@ -105,7 +111,8 @@ TEST_CASE("SIGINT and SIGTERM end a run with its result") {
 
 TEST_CASE("A host that waits for agents ends when it is told to") {
   TemporaryFolder folder;
-  Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0", "--sync", "--expect", "5"}));
+  Process p(
+      host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0", "--sync", "--expect", "5"}));
   p.line();
   p.signal(SIGTERM);
   REQUIRE(Json::parse(p.line())["cycles"] == 0);
@@ -129,7 +136,8 @@ TEST_CASE("--list-plugins and --describe tell what is there") {
   REQUIRE_THAT(list.out, Contains("simulation 1.0") && Contains("ControlServer"));
   const Finished described = runToEnd(host({"--describe", "Simulation"}));
   REQUIRE(described.code == 0);
-  REQUIRE_THAT(described.out, Contains("number [s]") && Contains("default 0.02") && Contains("runCycles(count: integer)") && Contains("plugin: simulation"));
+  REQUIRE_THAT(described.out, Contains("number [s]") && Contains("default 0.02") && Contains("runCycles(count: integer)") &&
+                                  Contains("plugin: simulation"));
   const Finished unknown = runToEnd(host({"--describe", "Simulatoin"}));
   REQUIRE(unknown.code == 2);
   REQUIRE_THAT(unknown.errors, Contains("'Simulation'"));
@@ -139,7 +147,8 @@ TEST_CASE("--list-plugins and --describe tell what is there") {
 TEST_CASE("A folder of broken plugins is reported, and the host starts") {
   TemporaryFolder folder;
   folder.write("broken/broken.so", "this is no library");
-  const Finished f = runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path", (folder.path() / "broken").string()}));
+  const Finished f =
+      runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path", (folder.path() / "broken").string()}));
   REQUIRE(f.code == 0);
   REQUIRE_THAT(f.errors, Contains("broken.so"));
 }

@@ -20,19 +20,36 @@ struct Match {
   double seconds = 12;
   bool blueFirst = false;
   std::string redParser = "SexpParser", blueParser = "SexpParser";
-  std::string bluePort;   ///< name of the port node that Blue connects to; "" is the first
+  std::string bluePort;  ///< name of the port node that Blue connects to; "" is the first
   std::vector<std::string> arguments;
 
   std::unique_ptr<Process> start(Json& ports) const {
-    std::vector<std::string> command{program("sparkhost"), "--config", config, "--seed", std::to_string(seed), "--sync", "--rate", "max", "--expect", std::to_string(2 * players),
-                                     "--duration", std::to_string(seconds), "--agent-port", "0", "--monitor-port", "0", "--log-level", "warning"};
+    std::vector<std::string> command{program("sparkhost"),
+                                     "--config",
+                                     config,
+                                     "--seed",
+                                     std::to_string(seed),
+                                     "--sync",
+                                     "--rate",
+                                     "max",
+                                     "--expect",
+                                     std::to_string(2 * players),
+                                     "--duration",
+                                     std::to_string(seconds),
+                                     "--agent-port",
+                                     "0",
+                                     "--monitor-port",
+                                     "0",
+                                     "--log-level",
+                                     "warning"};
     command.insert(command.end(), arguments.begin(), arguments.end());
     auto host = std::make_unique<Process>(command);
     ports = Json::parse(host->line());
     return host;
   }
   std::unique_ptr<Process> team(const char* name, const std::string& port, const std::string& parser) const {
-    std::vector<std::string> command{program("sphere-team"), "--team", name, "--port", port, "--players", std::to_string(players), "--parser", parser};
+    std::vector<std::string> command{program("sphere-team"),  "--team",   name,  "--port", port, "--players",
+                                     std::to_string(players), "--parser", parser};
     if (blueFirst) command.push_back("--reverse");
     return std::make_unique<Process>(command);
   }
@@ -138,8 +155,9 @@ TEST_CASE("Monitors hear JSON when the config says so") {
 
 TEST_CASE("The scripted match inside the host and its goals are repeatable") {
   const auto play = [] {
-    const Finished f = runToEnd({program("sparkhost"), "--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set", "players=4", "--rate", "max", "--duration", "20", "--seed", "3",
-                                 "--agent-port", "0", "--monitor-port", "0", "--log-level", "warning"});
+    const Finished f =
+        runToEnd({program("sparkhost"), "--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set", "players=4", "--rate", "max",
+                  "--duration", "20", "--seed", "3", "--agent-port", "0", "--monitor-port", "0", "--log-level", "warning"});
     REQUIRE(f.code == 0);
     return Json::parse(f.out.substr(f.out.find('\n') + 1));
   };

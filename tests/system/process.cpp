@@ -53,7 +53,9 @@ Process::~Process() {
   fs::remove(errorFile_);
 }
 
-Clock::time_point Process::deadline() const { return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_)); }
+Clock::time_point Process::deadline() const {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_));
+}
 
 void Process::tooLong(const std::string& what) {
   throw std::runtime_error(fmt::format("{} took longer than {} s to {}; it said:\n{}", name_, limit_, what, errors()));
@@ -114,7 +116,8 @@ void Process::waitForError(const std::string& text) {
   while (errors().find(text) == std::string::npos) {
     if (Clock::now() > last) tooLong("say '" + text + "'");
     struct pollfd p = {out_, 0, 0};
-    if (poll(&p, 1, 10) > 0 && errors().find(text) == std::string::npos) throw std::runtime_error(fmt::format("{} ended without saying '{}'; it said:\n{}", name_, text, errors()));
+    if (poll(&p, 1, 10) > 0 && errors().find(text) == std::string::npos)
+      throw std::runtime_error(fmt::format("{} ended without saying '{}'; it said:\n{}", name_, text, errors()));
   }
 }
 

@@ -29,7 +29,8 @@ void AgentConnection::connect(const std::string& host, int port, double patience
     const auto found = resolver.resolve(host, std::to_string(port), ec);
     if (!ec) asio::connect(socket_, found, ec);
     if (!ec) break;
-    if (std::chrono::steady_clock::now() >= deadline) throw Error(fmt::format("cannot reach a server at {}:{}: {}", host, port, ec.message()));
+    if (std::chrono::steady_clock::now() >= deadline)
+      throw Error(fmt::format("cannot reach a server at {}:{}: {}", host, port, ec.message()));
     std::this_thread::sleep_for(kRetry);
   }
   socket_.set_option(tcp::no_delay(true));

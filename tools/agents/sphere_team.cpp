@@ -30,7 +30,8 @@ struct Options {
 /// A player and his connection.
 class Participant {
  public:
-  Participant(asio::io_context& io, Language& language, const Options& options, int unum) : player_(options.team, unum), connection_(io, language) {
+  Participant(asio::io_context& io, Language& language, const Options& options, int unum)
+      : player_(options.team, unum), connection_(io, language) {
     player_.setScene(options.robot);
     connection_.connect(options.host, options.port, options.patience);
   }
@@ -65,7 +66,8 @@ bool play(const Options& options) {
   asio::io_context io(1);
   const auto language = spark::agent::makeLanguage(options.parser, pluginFolders());
   std::vector<std::unique_ptr<Participant>> team;
-  for (int i = 1; i <= options.players; ++i) team.push_back(std::make_unique<Participant>(io, *language, options, options.reverse ? options.players + 1 - i : i));
+  for (int i = 1; i <= options.players; ++i)
+    team.push_back(std::make_unique<Participant>(io, *language, options, options.reverse ? options.players + 1 - i : i));
   for (const auto& p : team) p->start();
   io.run();
   bool all = true;
@@ -75,7 +77,8 @@ bool play(const Options& options) {
     all = false;
   }
   const SpherePlayer& first = team.front()->player();
-  if (!options.quiet) fmt::print(stderr, "{} ({}): {}:{} after {:.2f} s\n", options.team, first.side(), first.ownScore(), first.otherScore(), first.time());
+  if (!options.quiet)
+    fmt::print(stderr, "{} ({}): {}:{} after {:.2f} s\n", options.team, first.side(), first.ownScore(), first.otherScore(), first.time());
   return all;
 }
 }  // namespace
@@ -87,7 +90,8 @@ int main(int argc, char** argv) {
   app.add_option("--port", options.port, "Its agent port")->check(CLI::Range(1, 65535))->capture_default_str();
   app.add_option("--team", options.team, "Name of the team")->capture_default_str();
   app.add_option("--players", options.players, "Players, number 1 keeps the goal")->check(CLI::Range(1, 11))->capture_default_str();
-  app.add_option("--parser", options.parser, "Class of the server's parser: SexpParser, JsonParser, or one of a plugin")->capture_default_str();
+  app.add_option("--parser", options.parser, "Class of the server's parser: SexpParser, JsonParser, or one of a plugin")
+      ->capture_default_str();
   app.add_option("--robot", options.robot, "Scene file of the robot")->capture_default_str();
   app.add_option("--patience", options.patience, "Wait so long for a server [s]")->check(CLI::NonNegativeNumber)->capture_default_str();
   app.add_flag("--reverse", options.reverse, "Connect the last player first");

@@ -21,7 +21,8 @@ struct Target {
 Target split(const std::string& text, bool memberNeeded) {
   const std::size_t slash = text.rfind('/');
   const std::size_t dot = text.rfind('.');
-  if (dot != std::string::npos && (slash == std::string::npos || dot > slash) && dot + 1 < text.size()) return {text.substr(0, dot), text.substr(dot + 1)};
+  if (dot != std::string::npos && (slash == std::string::npos || dot > slash) && dot + 1 < text.size())
+    return {text.substr(0, dot), text.substr(dot + 1)};
   if (memberNeeded) throw std::runtime_error("expected PATH.NAME, such as /sys/server/simulation.step, found '" + text + "'");
   return {text, ""};
 }
@@ -31,7 +32,9 @@ std::string choose(const std::string& socket, int pid) {
   if (!socket.empty()) return socket;
   std::vector<std::string> all = houses();
   if (pid > 0) std::erase_if(all, [&](const std::string& s) { return s.find(fmt::format("/{}.sock", pid)) == std::string::npos; });
-  if (all.empty()) throw std::runtime_error(pid > 0 ? fmt::format("process {} has no house with a control socket", pid) : "no house is running that has a control socket (plugin \"control\")");
+  if (all.empty())
+    throw std::runtime_error(pid > 0 ? fmt::format("process {} has no house with a control socket", pid)
+                                     : "no house is running that has a control socket (plugin \"control\")");
   if (all.size() == 1) return all.front();
   throw std::runtime_error(fmt::format("several houses are running; say which with --socket:\n  {}", fmt::join(all, "\n  ")));
 }
@@ -52,12 +55,14 @@ void get(House& house, const std::string& what) {
 
 void set(House& house, const std::string& what, const std::string& value) {
   const Target t = split(what, true);
-  for (const Json& p : house.ask({{"do", "set"}, {"path", t.path}, {"property", t.member}, {"value", value}})["properties"]) print(propertyText(p));
+  for (const Json& p : house.ask({{"do", "set"}, {"path", t.path}, {"property", t.member}, {"value", value}})["properties"])
+    print(propertyText(p));
 }
 
 void call(House& house, const std::string& what, const std::vector<std::string>& arguments) {
   const Target t = split(what, true);
-  const std::string result = house.ask({{"do", "call"}, {"path", t.path}, {"method", t.member}, {"arguments", arguments}}).value("text", "");
+  const std::string result =
+      house.ask({{"do", "call"}, {"path", t.path}, {"method", t.member}, {"arguments", arguments}}).value("text", "");
   if (!result.empty()) print(result + "\n");
 }
 

@@ -34,8 +34,10 @@ std::string propertyLine(ClassObject& owner, const Property& p) {
   std::string type = p.type;
   if (!p.unit.empty() && type.find('[') == std::string::npos) type += " [" + p.unit + "]";
   type += range(p);
-  if (p.readOnly) type += ", read only";
-  else if (!owner.isAbstract()) type += ", default " + owner.defaultOf(p).text();
+  if (p.readOnly)
+    type += ", read only";
+  else if (!owner.isAbstract())
+    type += ", default " + owner.defaultOf(p).text();
   if (p.state) type += ", state";
   return fmt::format("    {:<22} {}\n{:27}{}\n", p.name, type, "", p.doc);
 }
@@ -85,7 +87,8 @@ std::string pluginList(Kernel& kernel) {
   std::sort(plugins.begin(), plugins.end(), [](Plugin* a, Plugin* b) { return a->name() < b->name(); });
   std::string out;
   for (Plugin* p : plugins)
-    out += fmt::format("{} {}\n    {}\n    {}\n    classes: {}\n", p->name(), p->version(), p->doc(), p->file(), fmt::join(p->classes(), ", "));
+    out += fmt::format("{} {}\n    {}\n    {}\n    classes: {}\n", p->name(), p->version(), p->doc(), p->file(),
+                       fmt::join(p->classes(), ", "));
   return out;
 }
 
@@ -99,13 +102,15 @@ std::string classDescription(Kernel& kernel, std::string_view className) {
       if (i.id.name != at->name()) interfaces += fmt::format("{}{} {}", interfaces.empty() ? "" : ", ", i.id.name, i.id.version);
   }
   std::string out = fmt::format("{}{}\n  {}\n", chain, c.isAbstract() ? " (abstract)" : "", c.doc());
-  out += fmt::format("  plugin: {}\n", c.plugin() ? c.plugin()->name() + " " + c.plugin()->version() + ", " + c.plugin()->file() : "the kernel");
+  out += fmt::format("  plugin: {}\n",
+                     c.plugin() ? c.plugin()->name() + " " + c.plugin()->version() + ", " + c.plugin()->file() : "the kernel");
   if (!interfaces.empty()) out += fmt::format("  interfaces: {}\n", interfaces);
   std::string phases;
   for (const Hook* h : c.hooks()) phases += (phases.empty() ? "" : ", ") + h->channel;
   if (!phases.empty()) out += fmt::format("  handles: {}\n", phases);
   out += sections<Property>(c, "properties", &ClassObject::properties, [&](const Property& p) { return propertyLine(c, p); });
-  out += sections<Method>(c, "methods", &ClassObject::methods, [&](const Method& m) { return isAccessor(c, m.name) ? std::string() : methodLine(m); });
+  out += sections<Method>(c, "methods", &ClassObject::methods,
+                          [&](const Method& m) { return isAccessor(c, m.name) ? std::string() : methodLine(m); });
   return out + "\n  Every property x also has the methods getX and, unless it is read only, setX.\n";
 }
 

@@ -16,7 +16,9 @@ namespace fs = std::filesystem;
 namespace {
 std::string quoted(const std::string& text) {
   std::string out = "\"";
-  for (const char c : text) out += (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) ? fmt::format("\\{:03}", static_cast<unsigned char>(c)) : std::string(1, c);
+  for (const char c : text)
+    out += (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) ? fmt::format("\\{:03}", static_cast<unsigned char>(c))
+                                                                           : std::string(1, c);
   return out + "\"";
 }
 
@@ -34,7 +36,8 @@ std::int64_t messagesDropped(const Leaf& root) {
 }
 }  // namespace
 
-Host::Host(const Options& options) : options_(options), bin_(fs::canonical("/proc/self/exe").parent_path()), share_(bin_.parent_path() / "share" / "spark") {
+Host::Host(const Options& options)
+    : options_(options), bin_(fs::canonical("/proc/self/exe").parent_path()), share_(bin_.parent_path() / "share" / "spark") {
   kernel_.log().setLevel(levelFromName(options.logLevel));
   if (options.seed) kernel_.setSeed(*options.seed);
   scanPlugins();
@@ -62,10 +65,12 @@ void Host::build() {
 
 std::string Host::open() {
   if (!kernel_.root().find(kSimulation))
-    throw Error(fmt::format("config '{}' has no run loop: expected a node {}. Add simulation() of house.lua.", options_.config, kSimulation));
+    throw Error(
+        fmt::format("config '{}' has no run loop: expected a node {}. Add simulation() of house.lua.", options_.config, kSimulation));
   if (Leaf* net = kernel_.root().find(kNet)) callMethod(*net, "listen", {});
   const Node& root = kernel_.root();
-  return fmt::format("{{\"agentPort\":{},\"monitorPort\":{}}}", portText(root, "/sys/server/net/agents"), portText(root, "/sys/server/net/monitors"));
+  return fmt::format("{{\"agentPort\":{},\"monitorPort\":{}}}", portText(root, "/sys/server/net/agents"),
+                     portText(root, "/sys/server/net/monitors"));
 }
 
 std::string Host::run() {
@@ -76,7 +81,8 @@ std::string Host::run() {
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double time = numberAt(root, kSimulation, "time");
   return fmt::format(
-      "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"score\":[{},{}],\"agentsSeen\":{},\"messagesDropped\":{},\"stateHash\":\"{:016x}\"}}",
+      "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"score\":[{},{}],\"agentsSeen\":{},\"messagesDropped\":{},"
+      "\"stateHash\":\"{:016x}\"}}",
       integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0, elementAt(root, kGameState, "score", 0),
       elementAt(root, kGameState, "score", 1), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root), stateHash(root));
 }

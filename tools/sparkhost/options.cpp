@@ -29,17 +29,35 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   bool sync = false;
   app.set_version_flag("--version", "sparkhost " SPARK_VERSION);
   app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")->type_name("FILE");
-  app.add_option("--set", sets, "Overrides an option of the config, a Soccer.* variable or /path.property")->type_name("K=V")->allow_extra_args(false);
+  app.add_option("--set", sets, "Overrides an option of the config, a Soccer.* variable or /path.property")
+      ->type_name("K=V")
+      ->allow_extra_args(false);
   app.add_option("--seed", out.seed, "Seed of all random streams (default 1)")->type_name("N");
   app.add_option("--rate", rate, "real: paced to wall time (default); max: as fast as it goes")->check(CLI::IsMember({"real", "max"}));
   app.add_flag("--sync", sync, "Lockstep: a cycle starts when every agent has answered with (syn)");
-  app.add_option("--expect", expect, "Hold the clock until N agents have named robot and team")->type_name("N")->check(CLI::NonNegativeNumber);
-  app.add_option("--duration", duration, "End after that much simulated time [s]; 0 never")->type_name("SECONDS")->check(CLI::NonNegativeNumber);
-  app.add_option("--agent-port", agentPort, "TCP port of agents (default 3100); 0 picks a free one")->type_name("P")->check(CLI::Range(0, 65535));
-  app.add_option("--monitor-port", monitorPort, "TCP port of monitors (default 3200); 0 picks a free one")->type_name("P")->check(CLI::Range(0, 65535));
-  app.add_option("--plugin-path", out.pluginPaths, "Folder with plugins, before Spark's own")->type_name("DIR")->allow_extra_args(false)->check(CLI::ExistingDirectory);
-  app.add_option("--scene-path", out.scenePaths, "Folder that holds rsg/..., before Spark's own scenes")->type_name("DIR")->allow_extra_args(false)->check(CLI::ExistingDirectory);
-  app.add_option("--log-level", out.logLevel, "What stderr shows")->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))->capture_default_str();
+  app.add_option("--expect", expect, "Hold the clock until N agents have named robot and team")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--duration", duration, "End after that much simulated time [s]; 0 never")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--agent-port", agentPort, "TCP port of agents (default 3100); 0 picks a free one")
+      ->type_name("P")
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--monitor-port", monitorPort, "TCP port of monitors (default 3200); 0 picks a free one")
+      ->type_name("P")
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--plugin-path", out.pluginPaths, "Folder with plugins, before Spark's own")
+      ->type_name("DIR")
+      ->allow_extra_args(false)
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--scene-path", out.scenePaths, "Folder that holds rsg/..., before Spark's own scenes")
+      ->type_name("DIR")
+      ->allow_extra_args(false)
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--log-level", out.logLevel, "What stderr shows")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
   app.add_flag("--check", out.check, "Load, wire and import, but step nothing: exit code 0, or 2 and the error");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
   app.add_option("--describe", out.describe, "Print what a class says about itself, and end")->type_name("CLASS")->excludes("--config");

@@ -19,7 +19,7 @@ struct Options {
   std::optional<std::uint64_t> seed;
   std::vector<std::string> pluginPaths, scenePaths;  ///< absolute, existing folders
   std::string logLevel = "info";
-  std::string describe;      ///< class name, "" for none
+  std::string describe;  ///< class name, "" for none
   bool check = false, listPlugins = false;
 };
 

@@ -28,7 +28,8 @@ void StatusLine::install(Kernel& kernel, bool terminal) {
   line.last_ = Clock::now();
   line.next_ = line.last_ + kTerminalPeriod;
   if (terminal)
-    kernel.log().setSink([](Level level, std::string_view text) { fmt::print(stderr, "\r\033[K{:<7} {}\n", kNames[static_cast<int>(level)], text); });
+    kernel.log().setSink(
+        [](Level level, std::string_view text) { fmt::print(stderr, "\r\033[K{:<7} {}\n", kNames[static_cast<int>(level)], text); });
 }
 
 std::string StatusLine::text(double time, double factor) const {

@@ -181,7 +181,8 @@ TEST_CASE("Plugins are listed with what they provide") {
 TEST_CASE("Bad requests get an error and harm nobody") {
   Fixture f;
   f.connect();
-  for (const char* line : {"garbage", "[]", "{}", R"({"do":"dance"})", R"({"do":"get"})", R"({"do":"get","path":"/nowhere"})", R"({"do":"get","path":7})", "\xff\xfe"}) {
+  for (const char* line : {"garbage", "[]", "{}", R"({"do":"dance"})", R"({"do":"get"})", R"({"do":"get","path":"/nowhere"})",
+                           R"({"do":"get","path":7})", "\xff\xfe"}) {
     f.send(line);
     f.cycle();
     CAPTURE(line);

@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-
 #include <chrono>
 #include <deque>
 #include <string>
@@ -80,7 +79,8 @@ TEST_CASE("Time is the sum of executed steps, and phases after the solver see th
   double act = -1, sense = -1, step = 0;
   std::int64_t cycle = 0;
   f.house.kernel.events().channel("act").add(f.house.kernel.root(), [&](Leaf&, const Event& e) { act = e.time; });
-  f.house.kernel.events().channel("sense").add(f.house.kernel.root(), [&](Leaf&, const Event& e) { sense = e.time, step = e.step, cycle = e.cycle; });
+  f.house.kernel.events().channel("sense").add(f.house.kernel.root(),
+                                               [&](Leaf&, const Event& e) { sense = e.time, step = e.step, cycle = e.cycle; });
   REQUIRE(f.loop->cycle() == 0);
   f.runCycles(1);
   REQUIRE(act == 0);

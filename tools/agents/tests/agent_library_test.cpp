@@ -48,7 +48,8 @@ TEST_CASE("Both languages carry the same predicates") {
   for (const char* parser : {"SexpParser", "JsonParser"}) {
     const auto language = makeLanguage(parser, {test::pluginFolder()});
     CAPTURE(parser);
-    REQUIRE(roundTrip(*language, "(init (unum 7)(teamname Red))(syn)") == roundTrip(*makeLanguage("SexpParser", {}), "(init (unum 7)(teamname Red))(syn)"));
+    REQUIRE(roundTrip(*language, "(init (unum 7)(teamname Red))(syn)") ==
+            roundTrip(*makeLanguage("SexpParser", {}), "(init (unum 7)(teamname Red))(syn)"));
   }
 }
 
@@ -110,7 +111,8 @@ TEST_CASE("A peer that speaks another protocol ends the connection") {
   });
   agent.connect("127.0.0.1", server.port());
   std::string why;
-  agent.start({}, [](const Predicates&, Predicates&) {}, [&](const std::string& reason) { why = reason; });
+  agent.start(
+      {}, [](const Predicates&, Predicates&) {}, [&](const std::string& reason) { why = reason; });
   io.run();
   peer.join();
   REQUIRE(why.find("another protocol") != std::string::npos);
