@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// The same problem without a host: plain ODE calls on the bodies, joints and geoms that a house made.
+///
+/// Taken over once from the engine: ids of world, spaces, bodies, joints; who collides with whom; the surface of each pair of materials,
+/// combined beforehand. Then a cycle is what an ODE programmer would write: forces, motors, dSpaceCollide with a near callback that makes
+/// contact joints, dWorldStep, dJointGroupEmpty. ODE's own auto-disable is on where the house's is.
+
+#include <ode/ode.h>
+
+#include <memory>
+#include <vector>
+
+#include "house.h"
+
+namespace spark::ode {
+struct GeomData;
+}
+
+namespace spark::bench {
+
+/// A house's physics, stepped by hand. The house must not be stepped any more.
+class RawWorld {
+ public:
+  explicit RawWorld(House& house);
+  ~RawWorld();
+  void run(std::int64_t cycles);
+  /// Bodies, joints, and contact joints of the last cycle.
+  int bodies() const { return bodies_; }
+  int joints() const { return joints_; }
+  int contacts() const { return contacts_; }
+
+ private:
+  struct Geom {
+    std::size_t surface = 0;
+    bool solid = false;
+    std::vector<const Geom*> never;  ///< told not to collide with these
+  };
+  struct Drag {
+    dBodyID body;
+    double linear, angular;
+  };
+  struct Motor {
+    dJointID joint;
+    int axis;
+    bool universal;
+    std::size_t index;
+  };
+  struct Driver {
+    dBodyID body;
+    std::size_t index;
+    double factor;
+  };
+  void takeGeoms(const std::vector<std::unique_ptr<ode::GeomData>>& geoms);
+  void takeDrags(Kernel& kernel);
+  void takeMotors(House& house);
+  void takeDrivers(House& house);
+  void act();
+  void near(dGeomID a, dGeomID b);
+  static void nearCallback(void* self, dGeomID a, dGeomID b);
+
+  dWorldID world_;
+  dSpaceID root_;
+  std::vector<dSpaceID> spaces_;
+  dJointGroupID group_;
+  std::vector<std::unique_ptr<Geom>> geoms_;
+  std::vector<dSurfaceParameters> surfaces_;  ///< by surface of a times count plus surface of b
+  std::size_t surfaceCount_ = 0;
+  std::vector<Drag> drags_;
+  std::vector<Motor> motors_;
+  std::vector<Driver> drivers_;
+  std::int64_t cycle_ = 0;
+  int perPair_ = 4, bodies_ = 0, joints_ = 0, contacts_ = 0;
+  double step_ = 0.02;
+};
+
+}  // namespace spark::bench
