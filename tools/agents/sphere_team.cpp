@@ -38,7 +38,6 @@ class Participant {
   void start() {
     Predicates first;
     player_.start(first);
-    first.open("syn").close();
     connection_.start(
         first,
         [this](const Predicates& percepts, Predicates& actions) {
