@@ -20,7 +20,7 @@ std::size_t width(const std::string& s) {
 std::string nodeLine(const std::string& indent, const std::string& name, const Json& node) {
   std::string left = indent + name;
   if (text(node, "class") == "Node") return left + "\n";  // a mere folder
-  left += "  (" + text(node, "class") + ")";
+  if (text(node, "class") != name) left += "  (" + text(node, "class") + ")";
   if (const std::string doc = text(node, "doc"); !doc.empty()) {
     const std::size_t w = width(left);
     left += std::string(w < kDocColumn ? kDocColumn - w : 2, ' ') + doc;
