@@ -153,7 +153,7 @@ TEST_CASE("Monitors hear JSON when the config says so") {
   }
 }
 
-TEST_CASE("The scripted match inside the host and its goals are repeatable") {
+TEST_CASE("A match of behaviours inside the host is repeatable, goals and all") {
   const auto play = [] {
     const Finished f =
         runToEnd({program("sparkhost"), "--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set", "players=4", "--rate", "max",
