@@ -23,7 +23,7 @@ void World::describe(Description<World>& d) {
   d.doc("The physical world of a scene: gravity and the solver's parameters.");
   d.property("gravity", &World::gravity, &World::setGravity).unit("m/s^2").state().doc("Acceleration of all bodies.");
   d.property("ERP", &World::erp, &World::setErp).range(0, 1).state().doc("Part of a joint's error that is put right in one step.");
-  d.property("CFM", &World::cfm, &World::setCfm).min(0).state().doc("How much all constraints yield.");
+  d.property("CFM", &World::cfm, &World::setCfm).min(0).state().doc("Constraint force mixing: how much all constraints yield.");
   d.property("autoDisableFlag", &World::autoDisable, &World::setAutoDisable).state().doc("Bodies at rest fall asleep.");
   d.property("contactSurfaceLayer", &World::surfaceLayer, &World::setSurfaceLayer).unit("m").min(0).state().doc("Depth to which contacts are let sink.");
 }

@@ -17,7 +17,7 @@ class KickEffector : public Effector {
     d.property("forceFactor", &K::forceFactor_).unit("N").min(0).doc("Force per power.");
     d.property("torqueFactor", &K::torqueFactor_).unit("m").min(0).doc("Torque per horizontal force, times 2 pi.");
     d.property("steps", &K::steps_).min(1).doc("So many steps a kick lasts.");
-    d.property("maxPower", &K::maxPower_).min(1).doc("Greatest power.");
+    d.property("maxPower", &K::maxPower_).unit("1").min(1).doc("Greatest power.");
     d.method("setAngleRange", &K::setAngleRange).parameters({"least [deg]", "greatest [deg]"}).doc("Range of elevations.");
     d.method("setNoiseParams", &K::setNoise)
         .parameters({"force [power]", "theta [rad]", "phi at the ends [deg]", "phi in the middle [deg]"})

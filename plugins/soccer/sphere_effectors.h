@@ -15,7 +15,7 @@ class DriveEffector : public Effector {
     using E = DriveEffector;
     d.doc("Drives the sphere: (drive x y z), length up to maxPower, until the next command; acts on the ground only.");
     d.property("forceFactor", &E::forceFactor_).unit("N").min(0).doc("Force per power.");
-    d.property("maxPower", &E::maxPower_).min(0).doc("Greatest power: longer commands are shortened.");
+    d.property("maxPower", &E::maxPower_).unit("1").min(0).doc("Greatest power: longer commands are shortened.");
     d.property("sigma", &E::sigma_).min(0).doc("Relative standard deviation of each component.");
     d.property("consumption", &E::consumption_).unit("%/(N s)").min(0).doc("Battery used per force and second.");
     d.property("force", &E::force_).unit("N").readOnly().state().doc("The force in the team's view of the field.");
