@@ -18,6 +18,7 @@ Body OdeEngine::createBody(engine::World world) {
   const Body handle{reinterpret_cast<std::uintptr_t>(b.get())};
   w.bodies.push_back(std::move(b));
   w.repaired.reserve(w.bodies.size());
+  w.sleepers.reserve(w.bodies.size());
   return handle;
 }
 

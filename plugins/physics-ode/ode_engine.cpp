@@ -150,7 +150,7 @@ void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
   for (engine::Contact& c : contacts)
     if (c.solve) addContactJoint(w, c);
   if (w.autoDisable) sleep(w, dt);
-  dWorldStep(w.id, dt);
+  solve(w, contacts, dt);
 
   std::size_t next = 0;
   for (engine::Contact& c : contacts) {

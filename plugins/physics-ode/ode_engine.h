@@ -8,11 +8,13 @@
 ///  - Pair order: ODE's hash space reports pairs in an order that depends on history. Pairs are collected, sorted by the age of their
 ///    geoms, then collided: same tree, same state, same contacts.
 ///  - Spaces: each space collides its own geoms once per step, and never twice.
+///  - Knots: the direct solver's time grows with the cube of an island's constraints, and thirty robots that appear in one place would
+///    take minutes. Islands of more than `directRows` rows are solved by ODE's iterative solver (see ode_islands.cpp).
 ///  - Faults: a body whose state is no number after a step is put back to its last good pose, at rest. Numbers that are no numbers do
 ///    not get in.
 ///
 ///     detect:  hash spaces -> close pairs -> filters -> sort -> narrow phase -> contacts
-///     step:    contacts -> joints -> auto-disable -> dWorldStep -> feedback, faults
+///     step:    contacts -> joints -> auto-disable -> dWorldStep (knots: dWorldQuickStep) -> feedback, faults
 
 #include <ode/ode.h>
 
@@ -42,6 +44,8 @@ struct BodyData {
   int stepsLeft;                 ///< idle steps until it sleeps
   double timeLeft = 0;           ///< idle time until it sleeps [s]
   GoodPose good;
+  BodyData* island = nullptr;    ///< while islands are counted: the next body towards the island's first
+  int rows = 0;                  ///< at an island's first body: constraint rows of the island
 };
 
 struct SpaceData {
@@ -95,7 +99,12 @@ struct WorldData {
   std::vector<Pair> pairs;
   std::vector<dJointFeedback> feedback;
   std::vector<engine::Body> repaired;
+  std::vector<BodyData*> sleepers;  ///< bodies kept out of a solver's run
 };
+
+/// Constraint rows that a contact and a joint add at most.
+inline constexpr int kContactRows = 3;
+int rowsOf(engine::JointType type);
 
 inline WorldData* data(engine::World h) { return reinterpret_cast<WorldData*>(h); }
 inline SpaceData* data(engine::Space h) { return reinterpret_cast<SpaceData*>(h); }
@@ -153,6 +162,8 @@ class OdeEngine : public Leaf, public engine::IEngine {
     d.doc("Rigid bodies by the Open Dynamics Engine (direct solver).");
     d.implements<engine::IEngine>();
     d.property("version", &OdeEngine::version).doc("The library's configuration.");
+    d.property("directRows", &OdeEngine::directRows_).min(0).doc("Islands of more constraint rows (three a contact) are solved iteratively: not exactly, but in time.");
+    d.property("approximateSteps", &OdeEngine::approximateSteps).doc("How many steps had such an island.");
     d.property("messages", &OdeEngine::messages).doc("How often ODE complained about something.");
   }
 
@@ -217,18 +228,22 @@ class OdeEngine : public Leaf, public engine::IEngine {
  private:
   std::string version() const { return dGetConfiguration(); }
   std::int64_t messages() const { return messages_; }
+  std::int64_t approximateSteps() const { return approximateSteps_; }
   void makeShape(ode::GeomData& g);
   void place(ode::GeomData& g);
   void addContactJoint(ode::WorldData& w, engine::Contact& c);
   void sleep(ode::WorldData& w, double dt);
   void repair(ode::WorldData& w);
+  /// Steps the world, islands that are too large for the direct solver by the iterative one.
+  void solve(ode::WorldData& w, const engine::Contacts& contacts, double dt);
   /// Logs what ODE said since the last call: the first time, the second, the fourth ...
   void report();
 
   ode::ProcessUse use_;
   std::vector<std::unique_ptr<ode::WorldData>> worlds_;
   std::string said_;
-  std::int64_t messages_ = 0;
+  std::int64_t messages_ = 0, approximateSteps_ = 0;
+  int directRows_ = 1200;
 };
 
 }  // namespace spark

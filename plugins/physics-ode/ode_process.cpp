@@ -60,4 +60,9 @@ std::mutex& meshMutex() {
   return mutex;
 }
 
+std::mutex& quickMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 }  // namespace spark::ode

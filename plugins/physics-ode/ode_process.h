@@ -32,4 +32,7 @@ class Listening {
 /// Triangle meshes use caches that Debian's ODE has once per process: pairs with a mesh are collided under this lock.
 std::mutex& meshMutex();
 
+/// The iterative solver shuffles with a random seed that ODE has once per process: it is set and used under this lock.
+std::mutex& quickMutex();
+
 }  // namespace spark::ode

@@ -1,0 +1,70 @@
+#include "engine_fixture.h"
+
+using namespace spark;
+using namespace spark::test;
+using engine::Body;
+
+namespace {
+
+/// A knot of boxes in one place, and a box that rests far away.
+struct Knot : EngineHouse {
+  std::vector<Body> bodies;
+  Body calm;
+  Leaf& leaf;
+  explicit Knot(int n) : leaf(*kernel.root().find("/sys/server/physics/engine")) {
+    setGravity(9.81, true);
+    geom(plane(0, 0, 1, 0));
+    for (int i = 0; i < n; ++i) {
+      bodies.push_back(body({0.001 * i, 0.0015 * (i * 7 % 11), 0.3 + 0.0007 * (i * 5 % 13)}));
+      ode.setMass(bodies.back(), {1, Vec3::Zero(), Mat3::Identity() * 0.03});
+      geom(box(0.4, 0.4, 0.4), bodies.back());
+    }
+    calm = body({50, 0, 0.1995});
+    geom(box(0.4, 0.4, 0.4), calm);
+  }
+  std::vector<double> saved() const {
+    std::vector<double> out;
+    for (const Body b : bodies) ode.saveBody(b, out);
+    ode.saveBody(calm, out);
+    return out;
+  }
+};
+
+std::int64_t approximate(const Knot& k) { return getProperty(k.leaf, "approximateSteps").toInteger(); }
+
+}  // namespace
+
+TEST_CASE("a knot that the direct solver cannot untie in time is untied approximately, said once, and the same twice") {
+  Knot a(40), b(40);
+  for (int i = 0; i < 20; ++i) a.step(), b.step();
+  CHECK(approximate(a) > 0);
+  CHECK(a.saved() == b.saved());
+  CHECK_THAT(a.text, Catch::Contains("directRows"));
+  CHECK(a.text.find("directRows") == a.text.rfind("directRows"));
+  double farthest = 0;
+  for (const Body body : a.bodies) farthest = std::max(farthest, a.position(body).norm());
+  CHECK(farthest > 0.6);
+  CHECK(farthest < 50);
+}
+
+TEST_CASE("a knot does not touch what is not in it") {
+  Knot a(40), alone(0);
+  for (int i = 0; i < 30; ++i) a.step(), alone.step();
+  REQUIRE(approximate(a) > 0);
+  CHECK(approximate(alone) == 0);
+  std::vector<double> beside, single;
+  a.ode.saveBody(a.calm, beside);
+  alone.ode.saveBody(alone.calm, single);
+  CHECK(beside == single);
+  CHECK_FALSE(a.ode.enabled(a.calm));
+}
+
+TEST_CASE("small islands are left to the direct solver, however many there are") {
+  EngineHouse house;
+  house.setGravity(9.81, true);
+  house.geom(plane(0, 0, 1, 0));
+  for (int i = 0; i < 200; ++i) house.geom(box(1, 1, 1), house.body({3.0 * i, 0, 0.4995}));
+  house.step();
+  CHECK(house.contacts.size() == 800);
+  CHECK(getProperty(*house.kernel.root().find("/sys/server/physics/engine"), "approximateSteps").toInteger() == 0);
+}
