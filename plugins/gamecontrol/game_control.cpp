@@ -61,7 +61,10 @@ void GameControl::received(IConnection& connection, std::string_view message) {
   if (!p || p->leaving()) return;
   resolveParsers();
   const std::string why = p->receive(message, static_cast<std::size_t>(maxPending_), kernel().log(), cycle_);
-  if (why.empty()) return;
+  if (why.empty()) {
+    if (holding()) gamecontrol::Hold::note(*p);
+    return;
+  }
   connection.close(why);
   p->leave();
 }
@@ -152,7 +155,7 @@ void GameControl::removeLeaving() {
     }
   }
   participants_.erase(stays, participants_.end());
-  listAgents();
+  agentsChanged();
 }
 
 void GameControl::joinBehaviors() {
@@ -196,17 +199,25 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
     participants_.pop_back();
     return false;
   }
-  listAgents();
+  agentsChanged();
   note(fmt::format("{} joins.", p.label()));
   for (const auto& child : children())
     if (auto* rule = child->as<ControlAspect>()) rule->agentConnected(*aspect);
   return true;
 }
 
-void GameControl::listAgents() {
+/// Anybody may remove an aspect at any time: it must not be found here until the next act notices.
+const std::vector<AgentAspect*>& GameControl::agents() const {
+  if (agentsAt_ == kernel().structureVersion()) return agents_;
+  agentsAt_ = kernel().structureVersion();
   agents_.clear();
   for (const auto& p : participants_)
-    if (AgentAspect* a = p->aspect()) agents_.push_back(a);
+    if (AgentAspect* a = p->aspect(); a && a->isLinked()) agents_.push_back(a);
+  return agents_;
+}
+
+void GameControl::agentsChanged() {
+  agentsAt_ = 0;
   if (auto* server = kernel().root().find<ISceneServer>("/sys/server/scene")) server->markModified();
 }
 
@@ -234,7 +245,7 @@ void GameControl::saveState(StateWriter& out) const {
   out.write(static_cast<std::int64_t>(participants_.size()));
   for (const auto& p : participants_) {
     out.write(p->number());
-    out.write(p->counter());
+    p->save(out);
   }
 }
 
@@ -247,7 +258,7 @@ void GameControl::loadState(StateReader& in) {
   for (const auto& p : participants_) {
     if (const auto number = in.readInteger(); number != p->number())
       throw Error(fmt::format("{}: the state has agent {} where agent {} is.", path(), number, p->number()));
-    p->setCounter(in.readInteger());
+    p->load(in);
   }
 }
 

@@ -18,7 +18,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
  public:
   static void describe(Description<GameControl>& d);
 
-  const std::vector<AgentAspect*>& agents() const override { return agents_; }
+  const std::vector<AgentAspect*>& agents() const override;
   void removeAgent(AgentAspect& agent, bool close) override;
   int agentsSeen() const override { return agentsSeen_; }
 
@@ -50,15 +50,16 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   bool answered(Participant& p, Clock::time_point now);
   bool holding() const { return expect_ > 0 && !released_; }
   Participant* participantOf(const IConnection& connection) const;
-  void listAgents();
+  void agentsChanged();
   void note(const std::string& line);
-  int agentCount() const { return static_cast<int>(agents_.size()); }
+  int agentCount() const { return static_cast<int>(agents().size()); }
   std::int64_t messagesDropped() const { return messagesDropped_; }
 
   std::vector<std::unique_ptr<Participant>> participants_;  ///< in order of number
   std::vector<std::unique_ptr<Participant>> newcomers_;     ///< in order of arrival
   std::vector<std::uint64_t> refusedBehaviors_;             ///< ids of those that could not be made an agent; not tried again
-  std::vector<AgentAspect*> agents_;
+  mutable std::vector<AgentAspect*> agents_;                ///< of participants_; asked in the simulation's thread only
+  mutable std::uint64_t agentsAt_ = 0;
   gamecontrol::Hold hold_;
   gamecontrol::LineBudget budget_{40};
 

@@ -10,13 +10,14 @@ namespace {
 
 constexpr std::string_view kScene = "scene", kInit = "init", kSync = "syn";
 
-bool sent(const Participant& p, std::string_view predicate) {
-  for (const Element e : p.pending())
-    if (e.head() == predicate) return true;
+bool holds(const Predicates& predicates, std::string_view wanted) {
+  for (const Element e : predicates)
+    if (e.head() == wanted) return true;
   return false;
 }
 
-bool complete(const Participant& p) { return !p.leaving() && sent(p, kScene) && sent(p, kInit) && sent(p, kSync); }
+bool sent(const Participant& p, std::string_view predicate) { return holds(p.pending(), predicate); }
+bool complete(const Participant& p) { return !p.leaving() && p.saidAll() && sent(p, kScene); }
 
 /// Team name and number from the first init.
 std::tuple<std::string_view, std::int64_t> whoIs(const Participant& p) {
@@ -29,6 +30,10 @@ std::tuple<std::string_view, std::int64_t> whoIs(const Participant& p) {
 }
 
 }  // namespace
+
+void Hold::note(Participant& p) {
+  if (holds(p.lastMessage(), kSync) && sent(p, kInit)) p.setSaidAll();
+}
 
 bool Hold::over(const List& newcomers, int expect, double patience, Log& log) {
   const auto now = Clock::now();

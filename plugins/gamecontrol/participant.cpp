@@ -9,6 +9,7 @@ namespace {
 constexpr std::uint32_t kMaxPendingTokens = 1 << 17;
 // What a client sent may stand in a line, but not at any length.
 constexpr std::size_t kLongestLine = 300;
+constexpr const char* kNoException = "something that is no std::exception";
 }  // namespace
 
 Participant::Participant(IConnection& connection)
@@ -116,6 +117,8 @@ void Participant::realise(Log& log, std::int64_t cycle) {
         if (const std::string why = e->act(action); !why.empty()) warn(log, cycle, why);
       } catch (const std::exception& fault) {
         warn(log, cycle, fmt::format("{} ({}) threw: {}", e->path(), e->classObject()->name(), fault.what()));
+      } catch (...) {
+        warn(log, cycle, fmt::format("{} ({}) threw {}", e->path(), e->classObject()->name(), kNoException));
       }
     } else {
       warn(log, cycle, fmt::format("no effector registered for predicate {}.", head));
@@ -134,7 +137,6 @@ void Participant::promote() {
 void Participant::sense(const Event& event) {
   ++counter_;
   percepts_.clear();
-  message_.clear();
   for (std::size_t i = 0; i < perceptors_.size(); ++i) {
     Perceptor* p = perceptors_[i].get();
     if (!p || counter_ % std::max(1, p->interval()) != 0) continue;
@@ -145,9 +147,39 @@ void Participant::sense(const Event& event) {
       percepts_.truncate(before);
       faulty_ = i;
       fault_ = fault.what();
+    } catch (...) {  // a thread's end is the host's
+      percepts_.truncate(before);
+      faulty_ = i;
+      fault_ = kNoException;
     }
   }
+  encode();
+}
+
+void Participant::encode() {
+  message_.clear();
   if (!percepts_.empty() && connection_ && parser()) parser()->write(percepts_, message_);
+}
+
+void Participant::save(StateWriter& out) const {
+  out.write(counter_);
+  out.write(Value(toList(percepts_)));
+  if (!inside_) return;
+  out.write(Value(toList(pending_)));
+  out.write(Value(toList(later_)));
+}
+
+void Participant::load(StateReader& in) {
+  const auto read = [&in](Predicates& to) {
+    to.clear();
+    append(in.readValue().toList(), to);
+  };
+  counter_ = in.readInteger();
+  read(percepts_);
+  encode();
+  if (!inside_) return;
+  read(pending_);
+  read(later_);
 }
 
 void Participant::reportFault(Log& log) {

@@ -17,6 +17,7 @@
 
 #include "api/agents.h"
 #include "gamecontrol/line_budget.h"
+#include "spark/state.h"
 
 namespace spark::gamecontrol {
 
@@ -72,10 +73,17 @@ class Participant {
   Clock::time_point lastHeard() const { return lastHeard_; }
   /// Cycles it took part in.
   std::int64_t counter() const { return counter_; }
-  void setCounter(std::int64_t n) { counter_ = n; }
+  /// What is under way inside the host: percepts that were not sent yet, what a behaviour wants to do next. Messages on the wire are not.
+  void save(StateWriter& out) const;
+  void load(StateReader& in);
 
   /// What was received and not realised yet.
   const Predicates& pending() const { return pending_; }
+  /// The last message that could be read; valid until the next one comes.
+  const Predicates& lastMessage() const { return arrived_; }
+  /// During the hold: it said who it is and waits for the clock.
+  bool saidAll() const { return saidAll_; }
+  void setSaidAll() { saidAll_ = true; }
   /// Keeps all but the predicate `first` back until the first percepts were sent: what it sent during the hold then comes in time.
   void holdBack(std::string_view first);
   /// True for agents that were held until all expected ones were there.
@@ -92,6 +100,7 @@ class Participant {
   };
   Effector* effector(std::string_view predicate) const;
   void keep(const Predicates& arrived);
+  void encode();
   void warn(Log& log, std::int64_t cycle, std::string_view text);
 
   std::string label_;
@@ -102,7 +111,8 @@ class Participant {
   Ref<Leaf> parserLeaf_;
   IParser* parser_ = nullptr;
   const bool inside_;
-  bool leaving_ = false, skipCycle_ = true, greeted_ = false, synced_ = false, heardFrom_ = false, hadRobot_ = false, expected_ = false, holdingBack_ = false;
+  bool leaving_ = false, skipCycle_ = true, greeted_ = false, synced_ = false, heardFrom_ = false, hadRobot_ = false, expected_ = false, holdingBack_ = false,
+       saidAll_ = false;
   const Clock::time_point connectedAt_ = Clock::now();
   Clock::time_point lastHeard_ = connectedAt_;
 

@@ -19,6 +19,7 @@ class SceneEffector : public Effector {
 
   std::string act(const Element& action) override {
     if (loaded_) return "(scene ...): it has a robot already; a second one is refused.";
+    if (failures_ >= kMostFailures) return "(scene ...): no robot could be built too often; connect again to try once more.";
     const Element file = action.at(1);
     if (!file || !file.isText() || file.text().empty()) return "(scene <file> <arguments>...): expected a file name after scene.";
     if (file.text().size() > kLongestName) return "(scene <file> ...): the file's name is too long.";
@@ -57,14 +58,17 @@ class SceneEffector : public Effector {
       loaded_ = true;
       server.markModified();
     } catch (const std::exception& e) {
+      ++failures_;
       while (root.children().size() > before) root.remove(*root.children().back());
       kernel().log().error("Agent {} gets no robot: {}", root.number(), e.what());
     }
   }
 
+  static constexpr int kMostFailures = 10;
   std::string file_;
   List arguments_;
   bool loaded_ = false;
+  int failures_ = 0;
 };
 
 }  // namespace spark

@@ -32,6 +32,7 @@ class TestFault : public Perceptor {
   static void describe(Description<TestFault>& d) { d.doc("Throws."); }
   void sense(Predicates& out, const Event&) override {
     out.open("half");
+    if (name() == "odd") throw 42;
     throw Error("the sensor is broken");
   }
 };
@@ -41,7 +42,11 @@ class TestBomb : public Effector {
   SPARK_CLASS(TestBomb, Effector)
  public:
   static void describe(Description<TestBomb>& d) { d.doc("Throws."); }
-  std::string act(const Element&) override { throw Error("the motor is broken"); }
+  std::string predicate() const override { return name(); }
+  std::string act(const Element&) override {
+    if (name() == "odd") throw 42;
+    throw Error("the motor is broken");
+  }
 };
 
 /// Notes who comes and goes.
@@ -253,6 +258,36 @@ TEST_CASE("A perceptor or effector that throws is named, its agent and the host 
   REQUIRE(a.logged("/usr/scene/AgentAspect1/fault (TestFault) threw and is asked no more: the sensor is broken"));
   REQUIRE(a.logged("/usr/scene/AgentAspect1/bomb (TestBomb) threw: the motor is broken"));
   REQUIRE(c.receive()->find("half") == std::string::npos);
+}
+
+TEST_CASE("What a perceptor or effector throws need not be an exception, nor come in the simulation's thread") {
+  Arena a;
+  a.kernel.jobs().setThreads(3);
+  a.kernel.registerClass<TestFault>();
+  a.kernel.registerClass<TestBomb>();
+  std::vector<Client> clients;
+  for (int i = 0; i < 4; ++i) clients.push_back(robot(a));
+  for (AgentAspect* agent : a.control->agents()) {
+    agent->create("TestFault", "odd");
+    agent->create("TestBomb", "odd");
+  }
+  a.cycle();
+  for (Client& c : clients) c.send("(odd)(he1 1)");
+  realise(a, 4);
+  REQUIRE(a.logged("/usr/scene/AgentAspect4/odd (TestFault) threw and is asked no more: something that is no std::exception"));
+  REQUIRE(a.logged("(TestBomb) threw something that is no std::exception"));
+}
+
+TEST_CASE("An aspect that somebody else removes is no agent from that moment on") {
+  Arena a;
+  Client one = robot(a), two = robot(a);
+  AgentAspect* first = a.control->agents()[0];
+  first->parent()->remove(*first);
+  REQUIRE(a.agents() == 1);
+  REQUIRE(a.control->agents()[0]->number() == 2);
+  a.cycle();
+  REQUIRE(a.agents() == 1);
+  REQUIRE(one.closed());
 }
 
 TEST_CASE("Long texts of a client do not fill the log") {

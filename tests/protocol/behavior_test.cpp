@@ -42,6 +42,38 @@ TEST_CASE("A behaviour drives an agent with the latency of a connection") {
   REQUIRE(deeds() == std::vector<std::string>{"1 he1 1", "1 he1 2"});
 }
 
+TEST_CASE("What a behaviour is about to do and to hear is state") {
+  std::string saved;
+  {
+    Arena a;
+    a.kernel.registerClass<TestBehavior>();
+    a.kernel.create("TestBehavior", "/usr/agent/b");
+    for (int i = 0; i < 4; ++i) a.cycle();  // it has just thought of (he1 1)
+    StateWriter out(true);
+    saveTree(*a.kernel.root().find("/sys/server/gamecontrol"), out);
+    saved = out.bytes();
+  }
+  Arena a;
+  a.kernel.registerClass<TestBehavior>();
+  auto& b = a.kernel.create<TestBehavior>("TestBehavior", "/usr/agent/b");
+  b.heard = 7;
+  for (int i = 0; i < 5; ++i) a.cycle();
+  Leaf& control = *a.kernel.root().find("/sys/server/gamecontrol");
+  const auto before = stateHash(control);
+  StateReader in(saved);
+  loadTree(control, in);
+  REQUIRE(stateHash(control) != before);
+  StateWriter again(true);
+  saveTree(control, again);
+  REQUIRE(again.bytes() == saved);
+  deeds().clear();
+  b.first = 0;
+  b.heard = 0;
+  a.cycle();
+  REQUIRE(deeds() == std::vector<std::string>{"1 he1 1"});
+  REQUIRE(b.first == Approx(4 * 0.02));
+}
+
 TEST_CASE("Without percept delay a behaviour acts one cycle earlier") {
   Arena a;
   a.set("perceptDelay", 0);

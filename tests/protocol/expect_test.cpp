@@ -84,6 +84,22 @@ TEST_CASE("The clock stands until the expected agents are there, in any mode") {
   REQUIRE(a.logged("2 of 2 expected agents are ready."));
 }
 
+TEST_CASE("An expected agent is waited for until its (syn) after init is there, not still on its way") {
+  Arena a(true);
+  a.set("expect", 1);
+  Client c = a.client();
+  c.send("(scene robot)(syn)");
+  c.send(init("A", 1));
+  c.arrive();
+  for (int i = 0; i < 100; ++i) {
+    a.net->poll();
+    REQUIRE_FALSE(a.gate->ready(true));
+  }
+  SECTION("in a message of its own") { c.send("(syn)"); }
+  SECTION("before another init in one message") { c.send("(syn)" + init("A", 1)); }
+  a.until([&] { return a.gate->ready(true); }, false);
+}
+
 TEST_CASE("Expected agents are numbered by team and number, whoever came first, and play the same match") {
   const Style style = GENERATE(Style::atOnce, Style::inTurn);
   const auto first = match({0, 1, 2, 3, 4}, style);
