@@ -24,6 +24,11 @@ constexpr double kReach = 0.35;        ///< m between the centres of player and 
 constexpr double kTopSpeed = 9.5;      ///< m/s
 constexpr double kPowerPerSpeed = 10;  ///< drive power that keeps 1 m/s
 constexpr double kSpeedPerKick = 1.7;  ///< m/s of the ball per kick power
+constexpr double kInertia = 0.17;      ///< s until a sphere has most of the speed it is driven to
+constexpr double kLatency = 0.04;      ///< s from sensing to acting
+constexpr double kShotSpeed = 38;      ///< m/s
+constexpr double kKeeperSpeed = 5;     ///< m/s along the goal line
+constexpr double kShotRange = 42;      ///< m, on a field of 104 m
 constexpr double kTakerRest = 3;       ///< s for which the taker of a restart leaves the ball to others
 
 /// Places at kick-off in parts of the half field, by number.
@@ -68,9 +73,11 @@ void SpherePlayer::think(const Predicates& percepts, Predicates& actions) {
 // ---- what it knows ----
 
 void SpherePlayer::read(const Predicates& percepts) {
+  const double before = now_;
   for (const Element e : percepts) {
     if (e.head() == "time") {
       if (const Element now = e.named("now")) now_ = now.at(1).number();
+      velocity_ = driven_ + (velocity_ - driven_) * std::exp(-std::clamp(now_ - before, 0.0, 1.0) / kInertia);
     } else if (e.head() == "GS") {
       readGameState(e);
     } else if (e.head() == "See") {
@@ -124,11 +131,11 @@ void SpherePlayer::readVision(const Element& see) {
                  v = pol.at(3).number() * (std::numbers::pi / 180);
     const Point way{d * std::cos(v) * std::cos(h), d * std::cos(v) * std::sin(h)};
     if (e.head() == "B") {
-      const Point place = self_ + way;
+      // from the way to the ball, which is exact when it is near, and the own speed
       const double dt = now_ - ballTime_;
-      if (seesBall_ && dt > 0) ballVelocity_ = ballVelocity_ * 0.5 + (place - ball_) * (0.5 / dt);
-      if (ballVelocity_.length() > 40) ballVelocity_ = {};
-      ball_ = place, toBall_ = way, ballTime_ = now_, seesBall_ = true;
+      if (seesBall_ && dt > 0) ballVelocity_ = ballVelocity_ * 0.4 + (velocity_ + (way - toBall_) * (1 / dt)) * 0.6;
+      if (ballVelocity_.length() > 45) ballVelocity_ = {};
+      ball_ = self_ + way, toBall_ = way, ballTime_ = now_, seesBall_ = true;
     } else if (e.head() == "P") {
       const Element team = e.named("team"), id = e.named("id");
       if (team && id) others_.push_back({team.at(1).text() == team_, static_cast<int>(id.at(1).integer()), self_ + way});
@@ -156,7 +163,10 @@ void SpherePlayer::readField(const Element& see) {
   double length = 0, width = 0, goal = 0;
   for (const Point& c : corner) length += std::abs(c.x - mean.x) / 4, width += std::abs(c.y - mean.y) / 4;
   for (int i = 0; i < posts; ++i) goal += std::abs(post[i].y - mean.y) / posts;
-  self_ = Point{} - mean;
+  // flags are far: the own speed steadies the place, unless it jumped
+  const Point seen = Point{} - mean, expected = self_ + velocity_ * (now_ - fieldTime_);
+  self_ = seesField_ && (seen - expected).length() < 1 ? expected + (seen - expected) * 0.3 : seen;
+  fieldTime_ = now_;
   halfLength_ = length, halfWidth_ = width;
   if (posts == 4) goalHalfWidth_ = goal;
   seesField_ = true;
@@ -237,15 +247,16 @@ bool SpherePlayer::goesToBall() const {
 
 void SpherePlayer::play(Predicates& actions) {
   if (unum_ == 1 && !ours("goal_kick")) return keepGoal(actions);
-  if (!theirs() && goesToBall()) return attack(actions);
-  runTo(formation(), kTopSpeed, actions);
+  const bool inPlay = std::abs(ball_.x) < halfLength_ + 0.3 && std::abs(ball_.y) < halfWidth_ + 0.3;
+  if (!theirs() && inPlay && goesToBall()) return attack(actions);
+  runTo(unum_ == 1 ? Point{1 - halfLength_, 0} : formation(), kTopSpeed, actions);
 }
 
 void SpherePlayer::keepGoal(Predicates& actions) {
   const Point goal{-halfLength_, 0};
   const bool inArea = ball_.x < -halfLength_ + 16 * halfLength_ / 52 && std::abs(ball_.y) < goalHalfWidth_ + 16 * halfWidth_ / 34;
   if (inArea && playMode_ == "PlayOn") {
-    if (toBall_.length() < 1.8 && now_ > caughtAt_ + 2) {
+    if (toBall_.length() < 1.3 && now_ > caughtAt_ + 2) {
       caughtAt_ = now_;
       actions.open("catch").close();
       return;
@@ -260,46 +271,109 @@ void SpherePlayer::keepGoal(Predicates& actions) {
     if (t > 0 && t < 3) post.y = ball_.y + ballVelocity_.y * t;
   }
   post.y = std::clamp(post.y, -goalHalfWidth_, goalHalfWidth_);
-  runTo(post, kTopSpeed, actions);
+  runTo(post, kKeeperSpeed, actions);
 }
 
+/// Opponents near the way of a ball from here to there, 0..1: 1 is a free way.
+double SpherePlayer::wayIsFree(Point from, Point to) const {
+  const Point way = to - from;
+  const double length = way.length();
+  double free = 1;
+  for (const Other& o : others_) {
+    if (o.mate) continue;
+    const double along = std::clamp((o.place - from).dot(way.unit()), 0.0, length);
+    const double beside = (from + way.unit() * along - o.place).length();
+    // the farther the ball has to roll, the more time he has
+    free = std::min(free, beside / (1 + 0.25 * along));
+  }
+  return std::clamp(free, 0.0, 1.0);
+}
+
+/// The best of shooting, passing and playing the ball ahead; what needs a turn is worth less.
 void SpherePlayer::attack(Predicates& actions) {
-  const double toGoal = (Point{halfLength_, 0} - ball_).length(), scale = halfLength_ / 52;
-  if (ours("KickOff")) return kickTowards({6 * scale, (unum_ % 2 ? 9 : -9) * scale}, 8, 0, actions);
-  if (ours("goal_kick")) return kickTowards({0, ball_.y > 0 ? halfWidth_ * 0.6 : -halfWidth_ * 0.6}, 28, 20, actions);
-  if (ball_.x < -0.5 * halfLength_) return kickTowards({0.2 * halfLength_, 1.2 * ball_.y}, 20, 15, actions);
-  // a shot goes to the corner that is farther from the keeper, otherwise the ball is played ahead
-  double keeper = 0;
+  const double scale = halfLength_ / 52, keeper = keeperY();
+  Kick best{{halfLength_, 0.5 * ball_.y}, 10, 0, 0};
+  double bestWorth = -1e9;
+  const auto offer = [&](Kick kick, double worth) {
+    const Point wanted = kickWay(kick.target, kick.speed);
+    worth -= std::acos(std::clamp(wanted.dot(toBall_.unit()), -1.0, 1.0));
+    if (worth > bestWorth) bestWorth = worth, best = kick;
+  };
+  offer(best, 1.5 * wayIsFree(ball_, ball_ + (best.target - ball_).unit() * 12));
+  const Point corner{halfLength_ + 1, (keeper > 0 ? -0.8 : 0.8) * goalHalfWidth_};
+  // the wider the goal looks from here, the better the shot
+  const double ahead = std::max(0.1, halfLength_ - ball_.x);
+  const double looks = std::atan2(goalHalfWidth_ - ball_.y, ahead) - std::atan2(-goalHalfWidth_ - ball_.y, ahead);
+  if (ahead < kShotRange * scale) offer({corner, kShotSpeed, 0, 0}, 16 * looks - 0.5);
+  // where the ball would go if it were kicked right now: no turn needed
+  const Point now = (toBall_ + (ballVelocity_ - velocity_) * (now_ - ballTime_ + kLatency)).unit();
+  const Point flies = now * kShotSpeed + ballVelocity_;
+  const double hits = flies.x > 4 ? ball_.y + flies.y / flies.x * ahead : 1e9;
+  if (ahead < kShotRange * scale && std::abs(hits) < 0.9 * goalHalfWidth_) offer({ball_ + flies * ahead, kShotSpeed, 0, 0}, 16 * looks);
+  const Point goal{halfLength_ - ball_.x, -0.7 * ball_.y};
+  const double off = std::acos(std::clamp(now.dot(goal.unit()), -1.0, 1.0));
+  if (off < 0.6) offer({ball_ + now * 10, 9, 0, 0}, 1.5 * wayIsFree(ball_, ball_ + now * 10) - 1.5 * off);
+  if (ball_.x < -0.5 * halfLength_) offer({{0.1 * halfLength_, ball_.y > 0 ? halfWidth_ : -halfWidth_}, 20, 20, 0}, 1.2);
+  for (const Other& o : others_) {
+    if (!o.mate || o.unum == 1) continue;
+    const Point lead = o.place + Point{2.5, 0};
+    const double distance = (lead - ball_).length();
+    if (distance < 6 || distance > 35 * scale || o.place.x > offsideLine() || lead.x < std::min(ball_.x - 4, 0.5 * halfLength_)) continue;
+    offer({lead, 6 + 0.4 * distance, 0, o.unum}, std::min((lead.x - ball_.x) / (6 * scale), 3.0) + 2 * wayIsFree(ball_, lead) - 1.5);
+  }
+  if (ours("goal_kick")) best = {{0, ball_.y > 0 ? halfWidth_ * 0.6 : -halfWidth_ * 0.6}, 28, 20, 0};
+  kickTowards(best.target, best.speed, best.elevationDeg, actions);
+}
+
+/// The direction of the push that makes the ball, which moves already, go to the target.
+SpherePlayer::Point SpherePlayer::kickWay(Point target, double speed) const {
+  return ((target - ball_).unit() * speed - ballVelocity_).unit();
+}
+
+/// Where the other side's goalie stands across the goal.
+double SpherePlayer::keeperY() const {
   for (const Other& o : others_)
-    if (!o.mate && o.unum == 1) keeper = o.place.y;
-  const Point corner{halfLength_ + 1, (keeper > 0 ? -0.75 : 0.75) * goalHalfWidth_};
-  if (toGoal < 28 * scale) return kickTowards(corner, 26, 0, actions);
-  kickTowards({halfLength_, 0}, 11, 0, actions);
+    if (!o.mate && o.unum == 1) return o.place.y;
+  return 0;
 }
 
 /// Runs behind the ball as seen from the target, and kicks when it lies right.
 void SpherePlayer::kickTowards(Point target, double speed, double elevationDeg, Predicates& actions) {
-  const Point wanted = (target - ball_).unit(), side{-wanted.y, wanted.x};
-  const Point rel = toBall_ + ballVelocity_ * (now_ - ballTime_);
-  const double along = rel.dot(wanted), across = rel.dot(side);
-  const double aim = std::atan2(std::abs(across), along);
-  if (rel.length() < kReach + 0.25 && aim < 0.45)
-    actions.open("kick").add(elevationDeg).add(std::clamp(speed / kSpeedPerKick, 1.0, 100.0)).close();
-  Point spot = ball_ + ballVelocity_ * 0.1;
-  if (along < 0.25 && std::abs(across) < 1.2) {
-    // in front of the ball: round it
-    spot = spot - wanted * 1.2 - side * ((across > 0 ? 1 : -1) * 1.2);
-  } else if (aim > 0.3) {
-    spot = spot - wanted * std::min(1.0, 0.36 + 0.5 * std::abs(across));
+  const Point wanted = kickWay(target, speed), side{-wanted.y, wanted.x};
+  const Point rel = toBall_ + (ballVelocity_ - velocity_) * (now_ - ballTime_ + kLatency);
+  const double distance = rel.length(), along = rel.dot(wanted), across = rel.dot(side), aim = std::atan2(std::abs(across), along);
+  // with an opponent at the ball any kick that does not go back is better than none; a restart has time to be exact
+  const bool play = playMode_ == "PlayOn";
+  const bool pressed =
+      play && std::any_of(others_.begin(), others_.end(), [this](const Other& o) { return !o.mate && (o.place - ball_).length() < 1.5; });
+  const double tolerance = pressed ? (rel.unit().x > 0.2 ? 1.2 : 0.6) : play ? 0.15 : 0.12 + 0.05 * std::max(0.0, now_ - modeSince_ - 3);
+  const bool backwards = play && ball_.x < 0.3 * halfLength_ && rel.unit().x < -0.3;
+  if (distance < kReach + 0.25 && aim < tolerance && !backwards)
+    actions.open("kick").add(elevationDeg).add(std::clamp(std::min(speed, aim < 0.3 ? speed : 12) / kSpeedPerKick, 1.0, 100.0)).close();
+  // where it meets the ball; from the wrong side it goes round, without touching
+  Point spot = self_ + rel + ballVelocity_ * std::min(0.1 + distance / kTopSpeed, 1.5);
+  double pace = 2.5 + 5 * std::max(0.0, distance - kReach) + ballVelocity_.length();
+  if (aim >= tolerance) {
+    if (along < 0.2 && std::abs(across) < 1)
+      spot = spot - wanted * 0.8 - side * ((across > 0 ? 1 : -1) * 0.8);
+    else
+      spot = spot - wanted * std::min(1.0, 0.5 + 0.3 * std::abs(across));
+  } else if (!play) {
+    pace = std::min(pace, 2.5);
   }
-  const double near = rel.length() - kReach;
-  runTo(spot, std::clamp(2.0 + 4.0 * near + std::max(0.0, ballVelocity_.dot(wanted)), 2.0, kTopSpeed), actions);
+  runTo(spot, std::min(kTopSpeed, pace), actions);
 }
 
-void SpherePlayer::runTo(Point target, double speed, Predicates& actions) const {
+void SpherePlayer::runTo(Point target, double speed, Predicates& actions) {
+  target.x = std::clamp(target.x, -halfLength_ - 0.3, halfLength_ + 0.3);
+  target.y = std::clamp(target.y, -halfWidth_ - 1, halfWidth_ + 1);
+  // from behind a goal the way leads round it
+  if (std::abs(self_.x) > halfLength_ + 0.5 && std::abs(self_.y) < goalHalfWidth_ + 0.8)
+    target = {self_.x, (self_.y < 0 ? -1 : 1) * (goalHalfWidth_ + 1.5)};
   const Point way = target - self_;
-  const double v = std::min(speed, 4 * way.length());
-  const Point power = way.unit() * (v * kPowerPerSpeed);
+  const double v = std::min(speed, 5 * way.length());
+  driven_ = way.unit() * v;
+  const Point power = driven_ * kPowerPerSpeed;
   actions.open("drive").add(power.x).add(power.y).add(0.0).close();
 }
 

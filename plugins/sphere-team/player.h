@@ -51,6 +51,13 @@ class SpherePlayer {
     Point place;
   };
 
+  /// What to do with the ball; `to`: the team-mate for whom it is meant, 0: nobody.
+  struct Kick {
+    Point target;
+    double speed = 0, elevationDeg = 0;
+    int to = 0;
+  };
+
   void read(const Predicates& percepts);
   void readGameState(const Element& gs);
   void readVision(const Element& see);
@@ -62,22 +69,26 @@ class SpherePlayer {
   void keepGoal(Predicates& actions);
   void attack(Predicates& actions);
   void kickTowards(Point target, double speed, double elevationDeg, Predicates& actions);
-  void runTo(Point target, double speed, Predicates& actions) const;
+  void runTo(Point target, double speed, Predicates& actions);
   bool goesToBall() const;
   bool ours(std::string_view kind) const;
   bool theirs() const;
   Point formation() const;
   Point ballSoon(double seconds) const { return ball_ + ballVelocity_ * seconds; }
   double offsideLine() const;
+  double wayIsFree(Point from, Point to) const;
+  double keeperY() const;
+  Point kickWay(Point target, double speed) const;
 
   std::string team_, scene_ = "rsg/agent/sphere.rsg", side_, playMode_ = "BeforeKickOff";
   int unum_, left_ = 0, right_ = 0;
   bool seesField_ = false, seesBall_ = false, placed_ = false;
-  double now_ = 0, joinedAt_ = -1, ballTime_ = 0, modeSince_ = 0, caughtAt_ = -10;
+  double now_ = 0, joinedAt_ = -1, ballTime_ = 0, fieldTime_ = 0, modeSince_ = 0, caughtAt_ = -10;
   double halfLength_ = 52, halfWidth_ = 34, goalHalfWidth_ = 3.66;
   Point self_, ball_, toBall_, ballVelocity_;
-  int taker_ = 0;           ///< number of the team-mate (or self) who took our last restart
-  double takerUntil_ = -1;  ///< s: he leaves the ball to others until then
+  Point driven_, velocity_;  ///< the speed it was last driven to, and what it has by now
+  int taker_ = 0;            ///< number of the team-mate (or self) who took our last restart
+  double takerUntil_ = -1;   ///< s: he leaves the ball to others until then
   std::vector<Other> others_;
 };
 

@@ -140,11 +140,10 @@ TEST_CASE("who took a restart leaves the ball to a team-mate", "[sphere-team]") 
   w.mode = "PlayOn";
   w.now += 0.06;
   CHECK(think(taker, w).find("kick") == std::string::npos);
+  // and may go for it again later
   w.now += 4;
-  w.ballY = 32.95;
-  think(taker, w);
-  w.now += 0.06;
-  CHECK(argument(think(taker, w), "drive", 2) > -1);
+  w.y = 30;
+  CHECK(argument(think(taker, w), "drive", 2) > 10);
 }
 
 TEST_CASE("the goalie stands between ball and goal and catches what is near", "[sphere-team]") {
@@ -153,7 +152,7 @@ TEST_CASE("the goalie stands between ball and goal and catches what is near", "[
   SpherePlayer goalie = playing(1, w);
   const std::string home = think(goalie, w);
   CHECK(argument(home, "drive", 1) < 0);
-  CHECK(argument(home, "drive", 2) > 50);
+  CHECK(argument(home, "drive", 2) > 30);
   w.ballX = -47, w.ballY = -10;
   w.now += 0.06;
   CHECK(think(goalie, w) == "(catch )");
