@@ -68,6 +68,14 @@ class FPSController : public BodyController {
     body.addForce(push * acceleration_);
   }
 
+ protected:
+  void saveState(StateWriter& out) const override {
+    for (int i = 0; i < 3; ++i) out.write(turned_[i]);
+  }
+  void loadState(StateReader& in) override {
+    for (int i = 0; i < 3; ++i) turned_[i] = in.readNumber();
+  }
+
  private:
   double acceleration_ = 30, horizontal_ = 0, vertical_ = 0, forward_ = 0, sideward_ = 0, upward_ = 0;
   Vec3 turned_ = Vec3::Zero();  ///< the angles that the body has

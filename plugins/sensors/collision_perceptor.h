@@ -1,21 +1,24 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "api/agents.h"
 #include "api/physics.h"
 
 namespace spark {
 
-/// `(collision floor Ball)`: names of the colliders that touched since it last sensed; says nothing when there were none. A PerceptorHandler
-/// feeds it.
+/// `(collision floor Ball)`: names of the colliders that touched since it last sensed, each once; says nothing when there were none. A
+/// PerceptorHandler feeds it.
 class CollisionPerceptor : public Perceptor {
   SPARK_CLASS(CollisionPerceptor, Perceptor)
  public:
   static void describe(Description<CollisionPerceptor>& d) { d.doc("Senses what touched its transform's colliders: (collision names...)."); }
 
-  /// The physics phase: this collider touched. The points of one collider come in a row.
+  /// The physics phase: this collider touched.
   void touched(const Leaf& collider) {
-    if (collider.id() == last_) return;
-    last_ = collider.id();
+    if (std::find(ids_.begin(), ids_.end(), collider.id()) != ids_.end()) return;
+    ids_.push_back(collider.id());
     names_.add(collider.name());
   }
 
@@ -31,12 +34,18 @@ class CollisionPerceptor : public Perceptor {
   bool wasTouched() const { return !names_.empty(); }
   void forget() {
     names_.clear();
-    last_ = 0;
+    ids_.clear();
+  }
+  /// What it has not told yet. Numbers of objects are another kernel's: a restored sensor may name a collider twice.
+  void saveState(StateWriter& out) const override { out.write(Value(toList(names_))); }
+  void loadState(StateReader& in) override {
+    forget();
+    append(in.readValue().toList(), names_);
   }
 
  private:
   Predicates names_;
-  std::uint64_t last_ = 0;
+  std::vector<std::uint64_t> ids_;
 };
 
 }  // namespace spark

@@ -19,6 +19,9 @@ struct Heap : PhysicsHouse {
       if (i % 3) call(c.create("ContactJointHandler"), "setContactBounceMode", {false});
       call(t.find("body")->asNode()->create("DragController"), "setLinearDrag", {0.05});
     }
+    Node& walker = thing("walker", {-5, 0, 3});
+    call(walker.find("body")->asNode()->create("FPSController"), "setHAngle", {30.0});
+    body(walker).setAngularVelocity({0, 0, 1});
     Leaf& hinge = thing("pendulum", {5, 0, 5}).create("HingeJoint", "hinge");
     call(hinge, "attach", {"../body"});
     call(hinge, "setAnchor", {0.0, 0.0, 1.0});
@@ -68,6 +71,7 @@ TEST_CASE("from a saved state a house goes on bit for bit, whatever it did befor
   a.step(200);
   const auto end = a.hash();
   Heap b;
+  b.call(*b.scene.find("walker/body/FPSController"), "setHAngle", {-40.0});
   b.call(*b.scene.find("pendulum/hinge"), "setAngularMotorVelocity", {0, -70.0});
   b.step(17);
   b.load(middle);

@@ -174,7 +174,10 @@ TEST_CASE("collision sensors say what touched since they last sensed") {
     handler.onCollision({shell, ball, contact, true});
     handler.onCollision({shell, ball, contact, true});
     handler.onCollision({shell, wall, contact, false});
+    handler.onCollision({shell, ball, contact, true});
+    const auto hash = stateHash(sensor);
     CHECK(robot.sense(sensor) == "(collision ball wall)");
+    CHECK(stateHash(sensor) != hash);
     CHECK(robot.sense(sensor).empty());
   }
   SECTION("touch") {
