@@ -1,6 +1,10 @@
 -- Soccer as in 2004: two teams of spheres on a field of 104 x 68 m.
 --
---     sparkhost --config soccer-sphere.lua
+--     sparkhost --config soccer-sphere.lua                            -- waits for teams from the network
+--     sparkhost --config soccer-sphere.lua --set "team=Red Blue"      -- plays by itself; --set changes any option below
+--
+-- Three words do it all: plugin "x" loads classes, new("Class", "/path") makes a node, node.x = v sets a property. The functions of the
+-- included files say just these, for one server and its helpers each.
 include "house.lua"
 include "materials.lua"
 include "soccer-house.lua"
@@ -12,15 +16,15 @@ local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
 
 -- the rooms
-files()
-scene()
-materials()
-physics()
-simulation()
-agents{ parser = parser }
-monitors{ encoder = encoder }
-control()
-plugin "sensors"
+files()                                 -- /sys/server/file: the folder scenes/ is known as rsg/
+scene()                                 -- /sys/server/scene, and an empty scene at /usr/scene
+materials()                             -- /sys/server/material: names for viewers
+physics()                               -- /sys/server/physics with an engine; a world and a space in the scene
+simulation()                            -- /sys/server/simulation: the run loop
+agents{ parser = parser }               -- /sys/server/gamecontrol with a parser, and a TCP port
+monitors{ encoder = encoder }           -- /sys/server/monitor with an encoder, and a TCP port
+control()                               -- /sys/server/control: the socket of sparkctl
+plugin "sensors"                        -- classes that robots' scene files name
 plugin "effectors"
 
 -- the match
@@ -33,9 +37,9 @@ soccerVariables {
   MaxRobotTypeCount = 11, MinRobotTypesCount = 1, MaxSumTwoRobotTypes = 22,   -- all spheres are of one type
   MaxPlayersInsideOwnArea = 11,
 }
-soccerRules()
+soccerRules()                           -- control aspects below /sys/server/gamecontrol; one more:
 if offside then new("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect") end
-soccerMonitor()
+soccerMonitor()                         -- what monitors are told of it
 get("/usr/scene"):importScene("rsg/soccer/field.rsg")
 
 -- teams inside the host, if any; others come over the network

@@ -15,6 +15,7 @@ class GyroRatePerceptor : public Perceptor {
   }
 
   void sense(Predicates& out, const Event&) override {
+    // Looked up anew only after the tree changed; transform() is the nearest one above.
     IRigidBody* body = body_.get(kernel(), [this] { return transform() ? transform()->childOf<IRigidBody>() : nullptr; });
     if (!body) return;
 
