@@ -13,6 +13,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 constexpr int kMaxNodes = 100000;  // of one tree answer
+constexpr int kMaxDepth = 64;      // of lists in a value
 
 Json toJson(const Value& v) {
   switch (v.type()) {
@@ -34,14 +35,15 @@ Json toJson(const Value& v) {
   return out;
 }
 
-Value fromJson(const Json& j) {
+Value fromJson(const Json& j, int depth = 0) {
+  if (depth > kMaxDepth) throw Error("expected lists nested at most " + std::to_string(kMaxDepth) + " deep");
   if (j.is_boolean()) return j.get<bool>();
   if (j.is_number_integer()) return j.get<std::int64_t>();
   if (j.is_number()) return j.get<double>();
   if (j.is_string()) return Value::fromText(j.get<std::string>());
   if (!j.is_array()) return {};
   List out;
-  for (const Json& e : j) out.push_back(fromJson(e));
+  for (const Json& e : j) out.push_back(fromJson(e, depth + 1));
   return out;
 }
 

@@ -188,6 +188,10 @@ TEST_CASE("Bad requests get an error and harm nobody") {
     CAPTURE(line);
     REQUIRE(f.receive()["ok"] == false);
   }
+  const std::string deep = std::string(30000, '[') + std::string(30000, ']');
+  f.send(R"({"do":"set","path":"/sys/server/simulation","property":"duration","value":)" + deep + "}");
+  for (int i = 0; i < 20; ++i) f.cycle();  // a part of it in each
+  REQUIRE(f.receive()["error"].get<std::string>().find("nested at most") != std::string::npos);
   REQUIRE(f.ask({{"do", "plugins"}})["ok"] == true);
 }
 
