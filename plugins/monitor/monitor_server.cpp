@@ -7,8 +7,10 @@
 namespace spark {
 
 namespace {
-/// Commands that may wait for the next due cycle, in tokens; the rest is dropped.
-constexpr std::uint32_t kMostWaiting = 1u << 18;
+/// Commands that may wait for the next due cycle, in tokens; messages beyond are dropped.
+constexpr std::uint32_t kMostWaiting = 1u << 15;
+/// Cycles between two lines about dropped messages.
+constexpr std::int64_t kComplainEvery = 250;
 }  // namespace
 
 void MonitorServer::describe(Description<MonitorServer>& d) {
@@ -39,15 +41,24 @@ void MonitorServer::connected(IConnection& connection) {
 }
 
 void MonitorServer::received(IConnection& connection, std::string_view message) {
-  if (commands_.size() > kMostWaiting) {
-    kernel().log().warning("{}: {} sends more commands than can wait for the next cycle; a message is dropped", path(), connection.peer());
-    return;
-  }
+  if (commands_.size() >= kMostWaiting) return dropMessage(connection);
+  const std::uint32_t before = commands_.size();
   auto* parser = connection.port().childOf<IParser>();
   if (!parser) parser = childOf<IParser>();
   const ReadResult result = parser ? parser->parse(message, commands_) : readSexp(message, commands_);
   if (!result.message.empty())
     kernel().log().debug("{}: from {}: {}:{}: {}; what came before it counts", path(), connection.peer(), result.line, result.column, result.message);
+  if (commands_.size() <= kMostWaiting) return;
+  commands_.truncate(before);
+  dropMessage(connection);
+}
+
+void MonitorServer::dropMessage(IConnection& connection) {
+  ++dropped_;
+  if (toldDroppedAt_ && cycle_ - *toldDroppedAt_ < kComplainEvery) return;
+  toldDroppedAt_ = cycle_;
+  kernel().log().warning("{}: {} sends more commands than can wait for the next cycle; {} messages were dropped", path(), connection.peer(), dropped_);
+  dropped_ = 0;
 }
 
 void MonitorServer::disconnected(IConnection& connection) {

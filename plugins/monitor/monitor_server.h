@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "api/agents.h"
@@ -45,6 +46,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   void sendTo(const std::vector<MonitorClient*>& clients);
   IMonitorEncoder* encoderFor(const MonitorClient& client) const;
   void execute(const Element& command);
+  void dropMessage(IConnection& connection);
 
   int interval_ = 2;
   double stallTimeout_ = 10, precision_ = 0.005;
@@ -56,6 +58,8 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   std::vector<MonitorClient*> ready_;
   std::vector<IMonitorEncoder*> encoders_;
   Predicates commands_;
+  std::int64_t dropped_ = 0;  ///< messages since the last line about it
+  std::optional<std::int64_t> toldDroppedAt_;
 
   std::uint64_t helpersAt_ = 0;
   IMonitorEncoder* encoder_ = nullptr;
