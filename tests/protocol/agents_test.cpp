@@ -193,6 +193,21 @@ TEST_CASE("Scenes that cannot be loaded leave the agent empty and say why") {
   a.until([&] { return !(got = c.drain()).empty(); });
 }
 
+TEST_CASE("An agent that names bad scenes in every cycle is refused in the end, and does not fill the log") {
+  Arena a;
+  Client c = a.client();
+  a.until([&] { return a.agents() == 1; });
+  for (int i = 0; i < 100; ++i) {
+    c.send("(scene missing)");
+    c.arrive();
+    a.cycle();
+  }
+  int lines = 0;
+  for (auto at = a.house.text.find("gets no robot"); at != std::string::npos; at = a.house.text.find("gets no robot", at + 1)) ++lines;
+  REQUIRE(lines == 10);
+  REQUIRE(a.logged("no robot could be built too often"));
+}
+
 TEST_CASE("A second robot is refused") {
   Arena a;
   Client c = robot(a);
