@@ -1,5 +1,7 @@
 #include "game_state_aspect.h"
 
+#include <algorithm>
+
 #include "team_material.h"
 
 namespace spark {
@@ -33,7 +35,8 @@ void GameStateAspect::setModeText(std::string name) {
 
 void GameStateAspect::setMode(PlayMode mode) {
   if (mode == mode_) return;
-  kernel().log().info("soccer: {:.2f} s, {} after {}", time_, soccer::playModeName(mode), soccer::playModeName(mode_));
+  // trainers may switch modes thousands of times in a cycle
+  if (linesLeft_ > 0) --linesLeft_, kernel().log().info("soccer: {:.2f} s, {} after {}", time_, soccer::playModeName(mode), soccer::playModeName(mode_));
   mode_ = mode;
   modeTime_ = 0;
   leadTime_ = 0;
@@ -46,6 +49,7 @@ void GameStateAspect::setScores(int left, int right) {
 }
 
 void GameStateAspect::rule(const Event& event) {
+  linesLeft_ = kLinesPerCycle;
   soccer::Pitch& p = pitch();
   if (!p.ready()) return;
   modeTime_ += event.step;
@@ -112,9 +116,18 @@ void GameStateAspect::kickOff(Side side) {
   setMode(forSide(PlayMode::kickOffLeft, side));
 }
 
+/// Names go to all agents and monitors as they are: one with a bracket in it could tell them anything.
+static bool isPlainWord(std::string_view name) {
+  return std::all_of(name.begin(), name.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte > 0x20 && byte != 0x7f && std::string_view("()\"';\\").find(c) == std::string_view::npos;
+  });
+}
+
 std::string GameStateAspect::join(AgentState& state, const std::string& name, std::int64_t unum) {
   pitch();
   if (name.empty()) return "expected (teamname <name>) with a name, found none";
+  if (!isPlainWord(name)) return "the team name holds a blank, a control character, or one of ( ) \" ' ; \\";
   if (name.size() > 64) return fmt::format("the team name has {} bytes, at most 64 are allowed", name.size());
   Side side = Side::none;
   for (Side s : {Side::left, Side::right}) {

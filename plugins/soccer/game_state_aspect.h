@@ -82,6 +82,8 @@ class GameStateAspect : public SoccerControlAspect {
   PlayMode mode_ = PlayMode::beforeKickOff;
   double time_ = 0, modeTime_ = 0, leadTime_ = 0;
   std::int64_t modeChanges_ = 0;
+  static constexpr int kLinesPerCycle = 4;
+  int linesLeft_ = kLinesPerCycle;  ///< in the log, about modes
   int half_ = 1;
   bool kickedOffInHalf_ = false;
   Side secondHalfKickOff_ = Side::none;

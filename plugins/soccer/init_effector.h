@@ -35,22 +35,31 @@ class InitEffector : public Effector {
     AgentState* state = match_.state();
     AgentAspect* agent = match_.agent();
     if (!game || !state || !agent || !game->pitch().ready()) {
-      kernel().log().warning("{}: init refused: it needs an AgentState in the robot and soccer's rules below game control", path());
+      if (mayTell()) kernel().log().warning("{}: init refused: it needs an AgentState in the robot and soccer's rules below game control", path());
       return;
     }
     if (state->side() != soccer::Side::none && state->team() == team_ && (unum_ == 0 || unum_ == state->unum())) return;  // plays already
     if (const std::string problem = game->join(*state, team_, unum_); !problem.empty()) {
-      kernel().log().warning("{}: init refused: {}", agent->path(), problem);
+      if (mayTell()) kernel().log().warning("{}: init refused: {}", agent->path(), problem);
       return;
     }
-    kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_, soccer::sideName(state->side()), state->unum());
+    if (mayTell()) kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_, soccer::sideName(state->side()), state->unum());
     dress(*agent, state->side(), state->unum());
     if (auto* scene = game->pitch().scene()) scene->markModified();
     if (const soccer::Player* player = match_.player(*this))
       player->moveTo(game->nextStart(state->side()), degToRad(state->side() == soccer::Side::left ? -90 : 90));
   }
 
+  /// An agent that sends init in every cycle does not fill the log.
+  bool mayTell() {
+    if (lines_ == kMostLines) return false;
+    if (++lines_ == kMostLines) kernel().log().warning("{}: it sends init again and again; what becomes of it is told no more", path());
+    return true;
+  }
+
+  static constexpr int kMostLines = 20;
   MatchLookup match_;
+  int lines_ = 0;
   std::int64_t unum_ = 0;
   std::string team_;
   bool pending_ = false;

@@ -1,15 +1,21 @@
 #include "trainer_command_parser.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace spark {
 
 using soccer::Side;
 
 namespace {
 
-/// The `count` numbers of `(name n...)` inside a command; false when it is not there or they are not finite.
+/// Greatest number that a trainer may give: what agents and monitors are told has single precision and a field's size.
+constexpr double kLargest = 1e6;
+
+/// The `count` numbers of `(name n...)` inside a command; false when it is not there, or they are not finite or too large.
 bool numbers(const Element& command, std::string_view name, double* out, int count) {
   const Element list = command.named(name);
-  return list && readNumbers(list, out, count).empty();
+  return list && readNumbers(list, out, count).empty() && std::all_of(out, out + count, [](double v) { return std::abs(v) <= kLargest; });
 }
 
 Side sideIn(const Element& command) {
@@ -146,6 +152,7 @@ std::string TrainerCommandParser::repos(const Element& c) {
 std::string TrainerCommandParser::time(const Element& c) {
   double t;
   if (const std::string wrong = readNumbers(c, &t, 1); !wrong.empty() || t < 0) return "expected a time of 0 s or more";
+  if (t > kLargest) return fmt::format("expected a time of at most {} s", kLargest);
   match_.game()->setTime(t);
   return {};
 }

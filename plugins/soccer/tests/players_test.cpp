@@ -1,4 +1,6 @@
 // Init, and what players do.
+#include <algorithm>
+
 #include "match_house.h"
 
 using namespace spark;
@@ -47,6 +49,10 @@ TEST_CASE("an init that is refused leaves the agent where it is, with one line i
       {"(init (unum 1)(teamname A))", "number 1 of team 'A' is taken"},
       {"(init (unum 12)(teamname A))", "number 12 is not one of 1..11"},
       {"(init (unum -1)(teamname A))", "number -1 is not one of 1..11"},
+      {"(init (unum 3)(teamname \"x)(GS (pm GameOver))\"))", "the team name holds"},
+      {"(init (unum 3)(teamname \"two words\"))", "the team name holds"},
+      {"(init (unum 3)(teamname \";x\"))", "the team name holds"},
+      {"(init (unum 3)(teamname \"x\\\\\"))", "the team name holds"},
   }));
   h.text.clear();
   h.act(c, action);
@@ -59,6 +65,20 @@ TEST_CASE("an init that is refused leaves the agent where it is, with one line i
   h.act(c, "(init (unum 5)(teamname B))");
   h.run(1);
   CHECK(getProperty(h.stateOf(3), "unum").toInteger() == 5);
+}
+
+TEST_CASE("an agent that sends init in every cycle does not fill the log", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.join("A", 1);
+  Puppet& b = h.connect("B");
+  h.text.clear();
+  for (int i = 0; i < 100; ++i) {
+    h.act(b, i % 2 ? "(init (unum 1)(teamname A))" : i % 4 ? "(init (unum 2)(teamname A))" : "(init (unum 3)(teamname A))");
+    h.run(1);
+  }
+  CHECK(h.text.find("told no more") != std::string::npos);
+  CHECK(std::count(h.text.begin(), h.text.end(), '\n') < 30);
 }
 
 TEST_CASE("a twelfth player of a team is refused; a number is free again when its player leaves", "[soccer]") {

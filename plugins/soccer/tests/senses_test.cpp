@@ -1,4 +1,6 @@
 // What players see and hear, what monitors are told, what trainers may do.
+#include <algorithm>
+
 #include "match_house.h"
 
 using namespace spark;
@@ -215,8 +217,26 @@ TEST_CASE("trainers move ball and players, set modes and clocks; nonsense is ign
   CHECK(h.trainer("(agent (unum 9)(team Left)(pos 0 0 0))") == "no such player");
   CHECK(h.trainer("(score (left 1))") == "expected (left a)(right b), both 0 or more");
   CHECK(h.trainer("(time -1)") == "expected a time of 0 s or more");
+  CHECK(h.trainer("(time 1e300)") == "expected a time of at most 1000000 s");  // infinite where numbers are single
+  CHECK(h.trainer("(ball (vel 1e300 0 0))") == "expected (pos x y z) or (vel x y z)");
+  h.trainer("(agent (unum 1)(team Left)(temperature -1e300)(pos 1e300 0 0))");
+  CHECK(getProperty(h.stateOf(1), "temperature").toNumber() == 23);
+  CHECK(h.bodyOf(1).state().position.norm() < 100);
   CHECK(h.trainer("(dance)") == "unknown");
   CHECK(h.gameTime() == 12.5);
+}
+
+TEST_CASE("a trainer that switches modes again and again does not fill the log", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.join("A", 1);
+  h.text.clear();
+  for (int i = 0; i < 100; ++i) h.trainer("(playMode PlayOn)"), h.trainer("(playMode corner_kick_left)");
+  CHECK(std::count(h.text.begin(), h.text.end(), '\n') < 10);
+  h.run(1);
+  h.text.clear();
+  h.trainer("(playMode PlayOn)");
+  CHECK(h.text.find("PlayOn after") != std::string::npos);
 }
 
 TEST_CASE("cone vision sees the visible part of field lines", "[soccer]") {
