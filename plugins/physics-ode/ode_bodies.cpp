@@ -11,6 +11,11 @@ Body OdeEngine::createBody(engine::World world) {
   WorldData& w = *data(world);
   auto b = std::make_unique<BodyData>();
   b->id = dBodyCreate(w.id);
+  b->position = dBodyGetPosition(b->id);
+  b->quaternion = dBodyGetQuaternion(b->id);
+  b->rotation = dBodyGetRotation(b->id);
+  b->velocity = dBodyGetLinearVel(b->id);
+  b->spin = dBodyGetAngularVel(b->id);
   b->world = &w;
   b->stepsLeft = kIdleSteps;
   b->good = {{0, 0, 0}, {1, 0, 0, 0}};
@@ -56,8 +61,8 @@ void OdeEngine::setMass(Body body, const engine::Mass& mass) {
 }
 
 engine::BodyState OdeEngine::state(Body body) const {
-  const dBodyID b = data(body)->id;
-  return {toVec(dBodyGetPosition(b)), toVec(dBodyGetLinearVel(b)), toVec(dBodyGetAngularVel(b)), toMat(dBodyGetRotation(b))};
+  const BodyData& b = *data(body);
+  return {toVec(b.position), toVec(b.velocity), toVec(b.spin), toMat(b.rotation)};
 }
 
 void OdeEngine::states(std::span<const Body> bodies, std::span<engine::BodyState> out) const {

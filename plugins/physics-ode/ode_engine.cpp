@@ -55,7 +55,7 @@ Space OdeEngine::createSpace(World world, Space parent) {
   WorldData& w = *data(world);
   auto s = std::make_unique<SpaceData>();
   s->world = &w;
-  s->id = dHashSpaceCreate(parent == Space::none ? w.root : data(parent)->id);
+  s->id = dSweepAndPruneSpaceCreate(parent == Space::none ? w.root : data(parent)->id, dSAP_AXES_XYZ);
   dSpaceSetCleanup(s->id, 0);
   const Space handle{reinterpret_cast<std::uintptr_t>(s.get())};
   w.spaces.push_back(std::move(s));
@@ -70,32 +70,65 @@ void OdeEngine::destroySpace(Space space) {
 
 void OdeEngine::setInnerCollision(Space space, bool on) { data(space)->inner = on; }
 
-void OdeEngine::addContactJoint(WorldData& w, engine::Contact& c) {
-  const GeomData& a = *data(c.geomA);
-  const GeomData& b = *data(c.geomB);
-  if (!a.body && !b.body) return;
-  const engine::Surface& s = c.surface;
+namespace {
+
+void setSurface(dSurfaceParameters& to, const engine::Surface& s) {
+  to.mode = (s.bounceOn ? dContactBounce : 0) | (s.softErpOn ? dContactSoftERP : 0) | (s.softCfmOn ? dContactSoftCFM : 0) |
+            (s.slipOn ? dContactSlip1 | dContactSlip2 : 0);
+  to.mu = s.mu;
+  to.bounce = s.bounce;
+  to.bounce_vel = s.bounceVelocity;
+  to.soft_erp = s.softErp;
+  to.soft_cfm = s.softCfm;
+  to.slip1 = s.slip1;
+  to.slip2 = s.slip2;
+}
+
+/// Notes that a body has a contact; `rows` with the static world.
+void touch(WorldData& w, BodyData& b, int rows) {
+  if (b.touchedAt != w.steps) b.staticRows = 0;
+  b.touchedAt = w.steps;
+  b.staticRows += rows;
+  w.mostStaticRows = std::max(w.mostStaticRows, b.staticRows);
+}
+
+}  // namespace
+
+void OdeEngine::addContactJoints(WorldData& w, engine::Contacts& contacts) {
   dContact contact{};
-  contact.surface.mode = (s.bounceOn ? dContactBounce : 0) | (s.softErpOn ? dContactSoftERP : 0) | (s.softCfmOn ? dContactSoftCFM : 0) |
-                         (s.slipOn ? dContactSlip1 | dContactSlip2 : 0);
-  contact.surface.mu = s.mu;
-  contact.surface.bounce = s.bounce;
-  contact.surface.bounce_vel = s.bounceVelocity;
-  contact.surface.soft_erp = s.softErp;
-  contact.surface.soft_cfm = s.softCfm;
-  contact.surface.slip1 = s.slip1;
-  contact.surface.slip2 = s.slip2;
-  for (int i = 0; i < 3; ++i) contact.geom.pos[i] = c.position[i], contact.geom.normal[i] = c.normal[i];
-  contact.geom.depth = c.depth;
-  contact.geom.g1 = a.id;
-  contact.geom.g2 = b.id;
-  const dJointID joint = dJointCreateContact(w.id, w.contactJoints, &contact);
-  dJointAttach(joint, a.body ? a.body->id : nullptr, b.body ? b.body->id : nullptr);
-  if (a.body) a.body->touchedAt = w.steps;
-  if (b.body) b.body->touchedAt = w.steps;
-  if (c.feedback) {
-    w.feedback.push_back({});
-    dJointSetFeedback(joint, &w.feedback.back());
+  w.unitingRows = w.mostStaticRows = 0;
+  for (const engine::Contact& c : contacts) {
+    if (!c.solve) continue;
+    const GeomData& a = *data(c.geomA);
+    const GeomData& b = *data(c.geomB);
+    if (!a.body && !b.body) continue;
+    setSurface(contact.surface, c.surface);
+    for (int i = 0; i < 3; ++i) contact.geom.pos[i] = c.position[i], contact.geom.normal[i] = c.normal[i];
+    contact.geom.depth = c.depth;
+    contact.geom.g1 = a.id;
+    contact.geom.g2 = b.id;
+    const dJointID joint = dJointCreateContact(w.id, w.contactJoints, &contact);
+    dJointAttach(joint, a.body ? a.body->id : nullptr, b.body ? b.body->id : nullptr);
+    const bool both = a.body && b.body;
+    if (both) w.unitingRows += kContactRows;
+    if (a.body) touch(w, *a.body, both ? 0 : kContactRows);
+    if (b.body) touch(w, *b.body, both ? 0 : kContactRows);
+    if (c.feedback) {
+      w.feedback.push_back({});
+      dJointSetFeedback(joint, &w.feedback.back());
+    }
+  }
+}
+
+void OdeEngine::readFeedback(WorldData& w, engine::Contacts& contacts) {
+  if (w.feedback.empty()) return;
+  std::size_t next = 0;
+  for (engine::Contact& c : contacts) {
+    const BodyData* a = data(c.geomA)->body;
+    if (!c.solve || !c.feedback || (!a && !data(c.geomB)->body)) continue;
+    const Vec3 onFirst = toVec(w.feedback[next++].f1);
+    // A joint whose first body is the world is turned round by ODE.
+    c.forceOnA = a ? onFirst : Vec3(-onFirst);
   }
 }
 
@@ -104,9 +137,7 @@ void OdeEngine::sleep(WorldData& w, double dt) {
     BodyData& b = *body;
     // Nothing sleeps in mid-air.
     if ((b.joints == 0 && b.touchedAt != w.steps) || !dBodyIsEnabled(b.id)) continue;
-    const dReal* v = dBodyGetLinearVel(b.id);
-    const dReal* r = dBodyGetAngularVel(b.id);
-    if (dCalcVectorDot3(v, v) > kIdleSpeedSquared || dCalcVectorDot3(r, r) > kIdleSpeedSquared) {
+    if (dCalcVectorDot3(b.velocity, b.velocity) > kIdleSpeedSquared || dCalcVectorDot3(b.spin, b.spin) > kIdleSpeedSquared) {
       b.stepsLeft = kIdleSteps;
       b.timeLeft = 0;
       continue;
@@ -125,11 +156,9 @@ void OdeEngine::repair(WorldData& w) {
   for (const auto& body : w.bodies) {
     BodyData& b = *body;
     if (!dBodyIsEnabled(b.id)) continue;
-    const dReal* p = dBodyGetPosition(b.id);
-    const dReal* q = dBodyGetQuaternion(b.id);
-    if (sane(p, 3) && sane(q, 4) && sane(dBodyGetLinearVel(b.id), 3) && sane(dBodyGetAngularVel(b.id), 3)) {
-      std::copy(p, p + 3, b.good.position);
-      std::copy(q, q + 4, b.good.quaternion);
+    if (sane(b.position, 3) && sane(b.quaternion, 4) && sane(b.velocity, 3) && sane(b.spin, 3)) {
+      std::copy(b.position, b.position + 3, b.good.position);
+      std::copy(b.quaternion, b.quaternion + 4, b.good.quaternion);
       continue;
     }
     dBodySetPosition(b.id, b.good.position[0], b.good.position[1], b.good.position[2]);
@@ -147,19 +176,10 @@ void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
   w.feedback.clear();
   // ODE keeps pointers into it: it must not grow below.
   if (w.feedback.capacity() < contacts.size()) w.feedback.reserve(contacts.size() * 2);
-  for (engine::Contact& c : contacts)
-    if (c.solve) addContactJoint(w, c);
+  addContactJoints(w, contacts);
   if (w.autoDisable) sleep(w, dt);
   solve(w, contacts, dt);
-
-  std::size_t next = 0;
-  for (engine::Contact& c : contacts) {
-    const BodyData* a = data(c.geomA)->body;
-    if (!c.solve || !c.feedback || (!a && !data(c.geomB)->body)) continue;
-    const Vec3 onFirst = toVec(w.feedback[next++].f1);
-    // A joint whose first body is the world is turned round by ODE.
-    c.forceOnA = a ? onFirst : Vec3(-onFirst);
-  }
+  readFeedback(w, contacts);
   dJointGroupEmpty(w.contactJoints);
   repair(w);
   if (!said_.empty()) report();

@@ -5,7 +5,7 @@
 /// What is ours and not ODE's, and why:
 ///  - Auto-disable: ODE's rule with ODE's thresholds, but its counters live here, where they can be saved. A restored world goes on
 ///    bit for bit.
-///  - Pair order: ODE's hash space reports pairs in an order that depends on history. Pairs are collected, sorted by the age of their
+///  - Pair order: ODE's spaces report pairs in an order that depends on history. Pairs are collected, sorted by the age of their
 ///    geoms, then collided: same tree, same state, same contacts.
 ///  - Spaces: each space collides its own geoms once per step, and never twice.
 ///  - Knots: the direct solver's time grows with the cube of an island's constraints, and thirty robots that appear in one place would
@@ -13,7 +13,7 @@
 ///  - Faults: a body whose state is no number after a step is put back to its last good pose, at rest. Numbers that are no numbers do
 ///    not get in.
 ///
-///     detect:  hash spaces -> close pairs -> filters -> sort -> narrow phase -> contacts
+///     detect:  sweep and prune -> close pairs -> filters -> sort -> narrow phase -> contacts
 ///     step:    contacts -> joints -> auto-disable -> dWorldStep (knots: dWorldQuickStep) -> feedback, faults
 
 #include <ode/ode.h>
@@ -38,9 +38,12 @@ struct GoodPose {
 
 struct BodyData {
   dBodyID id;
+  /// Where ODE keeps this body's state; valid as long as the body.
+  const dReal *position, *quaternion, *rotation, *velocity, *spin;
   WorldData* world;
   int joints = 0;                ///< joints attached, contacts not counted
   std::uint64_t touchedAt = 0;   ///< number of the step in which it last had a contact joint
+  int staticRows = 0;            ///< rows of its contacts with the static world in that step
   int stepsLeft;                 ///< idle steps until it sleeps
   double timeLeft = 0;           ///< idle time until it sleeps [s]
   GoodPose good;
@@ -99,6 +102,7 @@ struct WorldData {
   std::vector<Pair> pairs;
   std::vector<dJointFeedback> feedback;
   std::vector<engine::Body> repaired;
+  int unitingRows = 0, mostStaticRows = 0;  ///< this step's rows of contacts between bodies; most with the static world on one body
   std::vector<BodyData*> sleepers;  ///< bodies kept out of a solver's run
 };
 
@@ -231,7 +235,8 @@ class OdeEngine : public Leaf, public engine::IEngine {
   std::int64_t approximateSteps() const { return approximateSteps_; }
   void makeShape(ode::GeomData& g);
   void place(ode::GeomData& g);
-  void addContactJoint(ode::WorldData& w, engine::Contact& c);
+  void addContactJoints(ode::WorldData& w, engine::Contacts& contacts);
+  void readFeedback(ode::WorldData& w, engine::Contacts& contacts);
   void sleep(ode::WorldData& w, double dt);
   void repair(ode::WorldData& w);
   /// Steps the world, islands that are too large for the direct solver by the iterative one.

@@ -1,7 +1,7 @@
 #include "ode_engine.h"
 
 // An island is what joints and solved contacts hold together; the static world holds nothing together. When all constraints of a world
-// are few nothing is counted. Else islands are found by union of bodies, and if one is too large the world is stepped twice: first
+// are few, or cannot hold many together, nothing is counted. Else islands are found by union of bodies, and if one is too large the world is stepped twice: first
 // without the bodies of large islands, by the direct solver, then with only them, by the iterative one. A body that is out is one that
 // sleeps, as ODE knows it; islands do not touch each other, so nobody is woken.
 
@@ -58,9 +58,11 @@ void wake(WorldData& w) {
 }  // namespace
 
 void OdeEngine::solve(WorldData& w, const engine::Contacts& contacts, double dt) {
-  const std::size_t most = kContactRows * contacts.size() + 6 * w.joints.size();
+  // An island of n bodies has at least n - 1 constraints between them, which bounds both.
+  const std::int64_t uniting = w.unitingRows + 6 * static_cast<std::int64_t>(w.joints.size());
+  const std::int64_t bound = uniting + (1 + uniting / kContactRows) * w.mostStaticRows;
   int largest = 0;
-  if (most > static_cast<std::size_t>(directRows_)) {
+  if (bound > directRows_) {
     findIslands(w, contacts);
     for (const auto& b : w.bodies)
       if (dBodyIsEnabled(b->id)) largest = std::max(largest, firstOf(b.get())->rows);

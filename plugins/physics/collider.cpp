@@ -136,6 +136,13 @@ bool Collider::mayCollideWith(const Collider& other) const {
 }
 
 void Collider::refreshHandlers(bool defaultOnTransform) {
+  findHandlers(defaultOnTransform);
+  solid_ = handlers_.contact || handlers_.fallback;
+  listens_ = !handlers_.active.empty();
+  hasBody_ = static_cast<bool>(body_);
+}
+
+void Collider::findHandlers(bool defaultOnTransform) {
   handlers_.contact = nullptr;
   handlers_.active.clear();
   bool any = false;

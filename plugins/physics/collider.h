@@ -18,8 +18,6 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
     const CollisionHandler* contact = nullptr;  ///< the first child with a surface
     bool fallback = false;                      ///< no handler at all: the bouncy default
     std::vector<CollisionHandler*> active;      ///< those that want to hear of contacts
-    bool solid() const { return contact || fallback; }
-    bool listens() const { return !active.empty(); }
   };
 
   static void describe(Description<Collider>& d);
@@ -30,8 +28,10 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
 
   /// As of the last change of the tree.
   const Handlers& handlers() const { return handlers_; }
-  /// As body() != nullptr, without a virtual call.
-  bool hasBody() const { return static_cast<bool>(body_); }
+  /// As of the last change of the tree: the answers for each close pair of a step.
+  bool solid() const { return solid_; }
+  bool listens() const { return listens_; }
+  bool hasBody() const { return hasBody_; }
   /// Looks at the children again. `defaultOnTransform`: a TransformCollider without a handler of its own gets the default one.
   void refreshHandlers(bool defaultOnTransform);
   /// False when the two are told not to collide: same space, and one names the other.
@@ -70,6 +70,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   /// Puts the geom, and those of the colliders inside, where it belongs; static ones relative to `base`.
   void attach(const Pose& base);
   void dropGeom();
+  void findHandlers(bool defaultOnTransform);
   void attach() { attach(body_ ? Pose{} : physics::frameOf(*this)); }
   void setPosition(const Vec3& p);
   void setLocalPosition(const Vec3& p);
@@ -83,6 +84,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   Ref<RigidBody> body_;
   Collider* outer_ = nullptr;  ///< the TransformCollider it is part of
   Pose local_;                 ///< in the frame of body, transform or outer collider
+  bool solid_ = false, listens_ = false, hasBody_ = false;
   Handlers handlers_;
   std::vector<std::string> notCollideWith_;
 };

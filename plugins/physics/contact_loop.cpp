@@ -34,10 +34,8 @@ engine::Surface combine(const engine::Surface& a, const engine::Surface& b) {
 bool pairCounts(void* ownerA, void* ownerB) {
   const Collider& a = *static_cast<const Collider*>(ownerA);
   const Collider& b = *static_cast<const Collider*>(ownerB);
-  const Collider::Handlers& ha = a.handlers();
-  const Collider::Handlers& hb = b.handlers();
-  const bool solid = ha.solid() && hb.solid() && (a.hasBody() || b.hasBody());
-  return (solid || ha.listens() || hb.listens()) && a.mayCollideWith(b);
+  const bool solid = a.solid() && b.solid() && (a.hasBody() || b.hasBody());
+  return (solid || a.listens() || b.listens()) && a.mayCollideWith(b);
 }
 
 void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
@@ -46,14 +44,14 @@ void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
     end = endOfPair(contacts, i);
     Collider& a = *static_cast<Collider*>(contacts[i].ownerA);
     Collider& b = *static_cast<Collider*>(contacts[i].ownerB);
-    if (a.handlers().solid() && b.handlers().solid() && (a.hasBody() || b.hasBody())) {
+    if (a.solid() && b.solid() && (a.hasBody() || b.hasBody())) {
       const engine::Surface surface = combine(*surfaceOf(a.handlers()), *surfaceOf(b.handlers()));
       for (std::size_t k = i; k < end; ++k) {
         contacts[k].solve = true;
         contacts[k].surface = surface;
       }
     }
-    if (!a.handlers().listens() && !b.handlers().listens()) continue;
+    if (!a.listens() && !b.listens()) continue;
     for (std::size_t k = i; k < end; ++k) {
       for (CollisionHandler* h : a.handlers().active) h->onCollision({a, b, contacts[k], true});
       for (CollisionHandler* h : b.handlers().active) h->onCollision({b, a, contacts[k], false});
