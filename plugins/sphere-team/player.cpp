@@ -27,8 +27,8 @@ constexpr double kSpeedPerKick = 1.7;  ///< m/s of the ball per kick power
 constexpr double kInertia = 0.17;      ///< s until a sphere has most of the speed it is driven to
 constexpr double kLatency = 0.04;      ///< s from sensing to acting
 constexpr double kShotSpeed = 38;      ///< m/s
-constexpr double kKeeperSpeed = 5;     ///< m/s along the goal line
-constexpr double kShotRange = 42;      ///< m, on a field of 104 m
+constexpr double kKeeperSpeed = 3.5;   ///< m/s along the goal line
+constexpr double kShotRange = 28;      ///< m, on a field of 104 m
 constexpr double kTakerRest = 3;       ///< s for which the taker of a restart leaves the ball to others
 
 /// Places at kick-off in parts of the half field, by number.
@@ -256,7 +256,7 @@ void SpherePlayer::keepGoal(Predicates& actions) {
   const Point goal{-halfLength_, 0};
   const bool inArea = ball_.x < -halfLength_ + 16 * halfLength_ / 52 && std::abs(ball_.y) < goalHalfWidth_ + 16 * halfWidth_ / 34;
   if (inArea && playMode_ == "PlayOn") {
-    if (toBall_.length() < 1.3 && now_ > caughtAt_ + 2) {
+    if (toBall_.length() < 0.9 && now_ > caughtAt_ + 2) {
       caughtAt_ = now_;
       actions.open("catch").close();
       return;
@@ -349,10 +349,10 @@ void SpherePlayer::kickTowards(Point target, double speed, double elevationDeg, 
   const double tolerance = pressed ? (rel.unit().x > 0.2 ? 1.2 : 0.6) : play ? 0.15 : 0.12 + 0.05 * std::max(0.0, now_ - modeSince_ - 3);
   const bool backwards = play && ball_.x < 0.3 * halfLength_ && rel.unit().x < -0.3;
   if (distance < kReach + 0.25 && aim < tolerance && !backwards)
-    actions.open("kick").add(elevationDeg).add(std::clamp(std::min(speed, aim < 0.3 ? speed : 12) / kSpeedPerKick, 1.0, 100.0)).close();
+    actions.open("kick").add(elevationDeg).add(std::clamp(std::min(speed, aim < 0.15 ? speed : 12) / kSpeedPerKick, 1.0, 100.0)).close();
   // where it meets the ball; from the wrong side it goes round, without touching
   Point spot = self_ + rel + ballVelocity_ * std::min(0.1 + distance / kTopSpeed, 1.5);
-  double pace = 2.5 + 5 * std::max(0.0, distance - kReach) + ballVelocity_.length();
+  double pace = 1.5 + 5 * std::max(0.0, distance - kReach) + std::max(0.0, ballVelocity_.dot(rel.unit()));
   if (aim >= tolerance) {
     if (along < 0.2 && std::abs(across) < 1)
       spot = spot - wanted * 0.8 - side * ((across > 0 ? 1 : -1) * 0.8);
