@@ -16,7 +16,7 @@ class IParser {
   virtual ~IParser() = default;
   /// Appends what the message holds. What was complete before an error stays. Never throws on bad bytes.
   virtual ReadResult parse(std::string_view message, Predicates& out) = 0;
-  /// Appends the message for `predicates`.
+  /// Appends the message for `predicates`. Called by several threads at once in the sense phase.
   virtual void write(const Predicates& predicates, std::string& out) = 0;
 };
 
@@ -119,7 +119,7 @@ class IGameControl {
   virtual ~IGameControl() = default;
   /// The agents in order of number. Valid until an agent comes or goes.
   virtual const std::vector<AgentAspect*>& agents() const = 0;
-  /// Removes the agent; its connection is closed when `close`. At the end of the cycle.
+  /// Removes the agent at the start of the next act phase; its connection is closed when `close`.
   virtual void removeAgent(AgentAspect& agent, bool close) = 0;
   /// Number of agents that ever had a robot.
   virtual int agentsSeen() const = 0;

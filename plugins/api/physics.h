@@ -9,6 +9,7 @@
 
 namespace spark {
 
+/// A body: what RigidBody offers. Found by `childOf<IRigidBody>()` of its transform, or as ancestor of controllers.
 class IRigidBody {
  public:
   SPARK_INTERFACE(IRigidBody, 1);
@@ -16,19 +17,27 @@ class IRigidBody {
   virtual Leaf& leaf() = 0;
   /// The engine's state now: after physics the new one.
   virtual engine::BodyState state() const = 0;
+  /// kg.
   virtual double mass() const = 0;
   /// Immediately; the transform follows at the next place phase.
   virtual void setPose(const Pose& pose) = 0;
+  /// m/s of the centre of mass, at once. Not zero: wakes the body.
   virtual void setVelocity(const Vec3& v) = 0;
+  /// rad/s, at once. Not zero: wakes the body.
   virtual void setAngularVelocity(const Vec3& w) = 0;
+  /// N at the centre of mass, for the next step only, added to what others add. Not zero: wakes the body.
   virtual void addForce(const Vec3& f) = 0;
+  /// Nm, likewise.
   virtual void addTorque(const Vec3& t) = 0;
+  /// False while it sleeps: nothing moved it for a while, and the solver leaves it out.
   virtual bool enabled() const = 0;
+  /// Wakes it.
   virtual void enable() = 0;
   /// The transform that the body moves: its nearest.
   virtual Transform* bodyTransform() const = 0;
 };
 
+/// A joint: what HingeJoint and the others offer to sensors and effectors.
 class IJoint {
  public:
   SPARK_INTERFACE(IJoint, 1);
@@ -47,6 +56,7 @@ class IJoint {
   virtual double feedbackTorque() const = 0;
 };
 
+/// Geometry that touches.
 class ICollider {
  public:
   SPARK_INTERFACE(ICollider, 1);

@@ -143,6 +143,7 @@ class Transform : public SceneNode {
     for (int i = 0; i < 16; ++i) local_.data()[i] = static_cast<float>(in.readNumber());
     moved_ = in.readBool();
     dirty_ = true;
+    world_ = transform() ? Matrix(transform()->world_ * local_) : local_;  // parents are loaded first; prepare reads it before place
   }
 
  private:
