@@ -52,7 +52,8 @@ void OdeEngine::setMass(Body body, const engine::Mass& mass) {
   if (!finite || mass.mass <= 0) throw Error("expected a mass above 0 kg and finite numbers, found " + std::to_string(mass.mass) + " kg");
   if (mass.center.norm() > 1e-9) throw Error("expected a centre of mass at the body's origin; move the body there first");
   if (Eigen::LLT<Mat3>(mass.inertia).info() != Eigen::Success || !mass.inertia.isApprox(mass.inertia.transpose(), 1e-9))
-    throw Error("expected a symmetric, positive definite inertia: no real body has the one given. Check its diagonal and products of inertia");
+    throw Error(
+        "expected a symmetric, positive definite inertia: no real body has the one given. Check its diagonal and products of inertia");
   dMass m;
   dMassSetZero(&m);
   m.mass = mass.mass;
@@ -141,7 +142,8 @@ void OdeEngine::saveBody(Body body, std::vector<double>& out) const {
 }
 
 void OdeEngine::loadBody(Body body, std::span<const double> in) {
-  if (in.size() != kSaved) throw Error("expected " + std::to_string(kSaved) + " numbers of a body's saved state, found " + std::to_string(in.size()));
+  if (in.size() != kSaved)
+    throw Error("expected " + std::to_string(kSaved) + " numbers of a body's saved state, found " + std::to_string(in.size()));
   BodyData& b = *data(body);
   const double* p = in.data();
   // ODE's own setters normalise again, which may change the last bit: the state is written where ODE keeps it.
@@ -152,8 +154,10 @@ void OdeEngine::loadBody(Body body, std::span<const double> in) {
   dBodySetAngularVel(b.id, p[22], p[23], p[24]);
   dBodySetForce(b.id, p[25], p[26], p[27]);
   dBodySetTorque(b.id, p[28], p[29], p[30]);
-  if (p[31] != 0) dBodyEnable(b.id);
-  else dBodyDisable(b.id);
+  if (p[31] != 0)
+    dBodyEnable(b.id);
+  else
+    dBodyDisable(b.id);
   dBodySetGravityMode(b.id, p[32] != 0);
   b.stepsLeft = static_cast<int>(p[33]);
   b.timeLeft = p[34];

@@ -34,14 +34,17 @@ void near(void* world, dGeomID o1, dGeomID o2) {
   auto* a = static_cast<GeomData*>(dGeomGetData(o1));
   auto* b = static_cast<GeomData*>(dGeomGetData(o2));
   if (meaningless(*a, *b)) return;
-  if (a->body && b->body && a->body->joints > 0 && b->body->joints > 0 && dAreConnectedExcluding(a->body->id, b->body->id, dJointTypeContact)) return;
+  if (a->body && b->body && a->body->joints > 0 && b->body->joints > 0 &&
+      dAreConnectedExcluding(a->body->id, b->body->id, dJointTypeContact))
+    return;
   if (!comesFirst(*a, *b)) std::swap(a, b);
   if (w.filter && !w.filter(a->owner, b->owner)) return;
   w.pairs.push_back({a, b});
 }
 
 int collide(const Pair& pair, int most, dContactGeom* found) {
-  if (pair.a->shape.shape != Shape::mesh && pair.b->shape.shape != Shape::mesh) return dCollide(pair.a->id, pair.b->id, most, found, sizeof(dContactGeom));
+  if (pair.a->shape.shape != Shape::mesh && pair.b->shape.shape != Shape::mesh)
+    return dCollide(pair.a->id, pair.b->id, most, found, sizeof(dContactGeom));
   const std::lock_guard lock(meshMutex());
   return dCollide(pair.a->id, pair.b->id, most, found, sizeof(dContactGeom));
 }

@@ -189,7 +189,8 @@ std::span<const Body> OdeEngine::repaired(World world) const { return data(world
 
 void OdeEngine::report() {
   ++messages_;
-  if ((messages_ & (messages_ - 1)) == 0) kernel().log().warning("{}: ODE says: {} (message {} of this kind of trouble)", path(), said_, messages_);
+  if ((messages_ & (messages_ - 1)) == 0)
+    kernel().log().warning("{}: ODE says: {} (message {} of this kind of trouble)", path(), said_, messages_);
   said_.clear();
 }
 

@@ -41,14 +41,14 @@ struct BodyData {
   /// Where ODE keeps this body's state; valid as long as the body.
   const dReal *position, *quaternion, *rotation, *velocity, *spin;
   WorldData* world;
-  int joints = 0;                ///< joints attached, contacts not counted
-  std::uint64_t touchedAt = 0;   ///< number of the step in which it last had a contact joint
-  int staticRows = 0;            ///< rows of its contacts with the static world in that step
-  int stepsLeft;                 ///< idle steps until it sleeps
-  double timeLeft = 0;           ///< idle time until it sleeps [s]
+  int joints = 0;               ///< joints attached, contacts not counted
+  std::uint64_t touchedAt = 0;  ///< number of the step in which it last had a contact joint
+  int staticRows = 0;           ///< rows of its contacts with the static world in that step
+  int stepsLeft;                ///< idle steps until it sleeps
+  double timeLeft = 0;          ///< idle time until it sleeps [s]
   GoodPose good;
-  BodyData* island = nullptr;    ///< while islands are counted: the next body towards the island's first
-  int rows = 0;                  ///< at an island's first body: constraint rows of the island
+  BodyData* island = nullptr;  ///< while islands are counted: the next body towards the island's first
+  int rows = 0;                ///< at an island's first body: constraint rows of the island
 };
 
 struct SpaceData {
@@ -63,10 +63,10 @@ struct GeomData {
   dSpaceID space;
   engine::ShapeDescription shape;  ///< keeps the numbers of a mesh alive
   void* owner;
-  std::uint64_t age;               ///< counts up in order of creation
+  std::uint64_t age;  ///< counts up in order of creation
   BodyData* body = nullptr;
-  Pose base;                       ///< the shape's own frame: a ray's direction, else identity
-  Pose offset;                     ///< in the body's frame, or in the world without a body
+  Pose base;    ///< the shape's own frame: a ray's direction, else identity
+  Pose offset;  ///< in the body's frame, or in the world without a body
   dTriMeshDataID mesh = nullptr;
 };
 
@@ -103,7 +103,7 @@ struct WorldData {
   std::vector<dJointFeedback> feedback;
   std::vector<engine::Body> repaired;
   int unitingRows = 0, mostStaticRows = 0;  ///< this step's rows of contacts between bodies; most with the static world on one body
-  std::vector<BodyData*> sleepers;  ///< bodies kept out of a solver's run
+  std::vector<BodyData*> sleepers;          ///< bodies kept out of a solver's run
 };
 
 /// Constraint rows that a contact and a joint add at most.
@@ -166,7 +166,9 @@ class OdeEngine : public Leaf, public engine::IEngine {
     d.doc("Rigid bodies by the Open Dynamics Engine (direct solver).");
     d.implements<engine::IEngine>();
     d.property("version", &OdeEngine::version).doc("The library's configuration.");
-    d.property("directRows", &OdeEngine::directRows_).min(0).doc("Islands of more constraint rows (three a contact) are solved iteratively: not exactly, but in time.");
+    d.property("directRows", &OdeEngine::directRows_)
+        .min(0)
+        .doc("Islands of more constraint rows (three a contact) are solved iteratively: not exactly, but in time.");
     d.property("approximateSteps", &OdeEngine::approximateSteps).doc("How many steps had such an island.");
     d.property("messages", &OdeEngine::messages).doc("How often ODE complained about something.");
   }

@@ -20,7 +20,8 @@ void expectLength(double v, const char* what) {
 void checkMesh(const ShapeDescription& s) {
   const std::size_t points = s.vertices.size() / 3;
   if (points == 0 || s.vertices.size() % 3 || s.triangles.empty() || s.triangles.size() % 3)
-    throw Error(fmt::format("expected three numbers a vertex and three indices a triangle, found {} and {}", s.vertices.size(), s.triangles.size()));
+    throw Error(fmt::format("expected three numbers a vertex and three indices a triangle, found {} and {}", s.vertices.size(),
+                            s.triangles.size()));
   for (double v : s.vertices)
     if (!std::isfinite(v)) throw Error("a vertex of the mesh is not finite");
   for (std::uint32_t i : s.triangles)
@@ -32,7 +33,9 @@ void check(const ShapeDescription& s) {
     case Shape::box:
       for (int i = 0; i < 3; ++i) expectLength(s.lengths[i], "an edge of a box");
       break;
-    case Shape::sphere: expectLength(s.radius, "a sphere's radius"); break;
+    case Shape::sphere:
+      expectLength(s.radius, "a sphere's radius");
+      break;
     case Shape::capsule:
     case Shape::cylinder:
       expectLength(s.radius, "a radius");
@@ -44,9 +47,12 @@ void check(const ShapeDescription& s) {
       break;
     case Shape::ray:
       expectLength(s.length, "a ray's length");
-      if (!(s.rayDirection.norm() > 1e-12) || !s.rayDirection.allFinite() || !s.rayOrigin.allFinite()) throw Error("expected a ray with a direction longer than 0 m and finite numbers");
+      if (!(s.rayDirection.norm() > 1e-12) || !s.rayDirection.allFinite() || !s.rayOrigin.allFinite())
+        throw Error("expected a ray with a direction longer than 0 m and finite numbers");
       break;
-    case Shape::mesh: checkMesh(s); break;
+    case Shape::mesh:
+      checkMesh(s);
+      break;
   }
 }
 
@@ -66,10 +72,18 @@ void OdeEngine::makeShape(GeomData& g) {
   const ShapeDescription& s = g.shape;
   g.base = Pose{};
   switch (s.shape) {
-    case Shape::box: g.id = dCreateBox(g.space, s.lengths.x(), s.lengths.y(), s.lengths.z()); break;
-    case Shape::sphere: g.id = dCreateSphere(g.space, s.radius); break;
-    case Shape::capsule: g.id = dCreateCapsule(g.space, s.radius, s.length); break;
-    case Shape::cylinder: g.id = dCreateCylinder(g.space, s.radius, s.length); break;
+    case Shape::box:
+      g.id = dCreateBox(g.space, s.lengths.x(), s.lengths.y(), s.lengths.z());
+      break;
+    case Shape::sphere:
+      g.id = dCreateSphere(g.space, s.radius);
+      break;
+    case Shape::capsule:
+      g.id = dCreateCapsule(g.space, s.radius, s.length);
+      break;
+    case Shape::cylinder:
+      g.id = dCreateCylinder(g.space, s.radius, s.length);
+      break;
     case Shape::plane: {
       const double n = std::hypot(s.plane[0], s.plane[1], s.plane[2]);
       g.id = dCreatePlane(g.space, s.plane[0] / n, s.plane[1] / n, s.plane[2] / n, s.plane[3] / n);
@@ -81,8 +95,8 @@ void OdeEngine::makeShape(GeomData& g) {
       break;
     case Shape::mesh:
       g.mesh = dGeomTriMeshDataCreate();
-      dGeomTriMeshDataBuildDouble(g.mesh, s.vertices.data(), 3 * sizeof(double), static_cast<int>(s.vertices.size() / 3), s.triangles.data(),
-                                  static_cast<int>(s.triangles.size()), 3 * sizeof(std::uint32_t));
+      dGeomTriMeshDataBuildDouble(g.mesh, s.vertices.data(), 3 * sizeof(double), static_cast<int>(s.vertices.size() / 3),
+                                  s.triangles.data(), static_cast<int>(s.triangles.size()), 3 * sizeof(std::uint32_t));
       g.id = dCreateTriMesh(g.space, g.mesh, nullptr, nullptr, nullptr);
       break;
   }
@@ -168,8 +182,10 @@ Pose OdeEngine::pose(Geom geom) const {
 }
 
 void OdeEngine::setCollides(Geom geom, bool on) {
-  if (on) dGeomEnable(data(geom)->id);
-  else dGeomDisable(data(geom)->id);
+  if (on)
+    dGeomEnable(data(geom)->id);
+  else
+    dGeomDisable(data(geom)->id);
 }
 
 }  // namespace spark

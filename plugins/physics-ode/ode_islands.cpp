@@ -1,9 +1,9 @@
 #include "ode_engine.h"
 
 // An island is what joints and solved contacts hold together; the static world holds nothing together. When all constraints of a world
-// are few, or cannot hold many together, nothing is counted. Else islands are found by union of bodies, and if one is too large the world is stepped twice: first
-// without the bodies of large islands, by the direct solver, then with only them, by the iterative one. A body that is out is one that
-// sleeps, as ODE knows it; islands do not touch each other, so nobody is woken.
+// are few, or cannot hold many together, nothing is counted. Else islands are found by union of bodies, and if one is too large the world
+// is stepped twice: first without the bodies of large islands, by the direct solver, then with only them, by the iterative one. A body that
+// is out is one that sleeps, as ODE knows it; islands do not touch each other, so nobody is woken.
 
 namespace spark {
 
@@ -12,8 +12,10 @@ using namespace ode;
 int ode::rowsOf(engine::JointType type) {
   switch (type) {
     case engine::JointType::ball:
-    case engine::JointType::angularMotor: return 3;
-    default: return 6;
+    case engine::JointType::angularMotor:
+      return 3;
+    default:
+      return 6;
   }
 }
 
@@ -72,8 +74,11 @@ void OdeEngine::solve(WorldData& w, const engine::Contacts& contacts, double dt)
     return;
   }
   if (++approximateSteps_ == 1)
-    kernel().log().warning("{}: {} constraint rows hang together, more than the {} that the direct solver is given (directRows): such islands are solved approximately. "
-                           "Do robots stand in each other?", path(), largest, directRows_);
+    kernel().log().warning(
+        "{}: {} constraint rows hang together, more than the {} that the direct solver is given (directRows): such islands are solved "
+        "approximately. "
+        "Do robots stand in each other?",
+        path(), largest, directRows_);
   exclude(w, directRows_, true);
   dWorldStep(w.id, dt);
   wake(w);

@@ -13,16 +13,20 @@ namespace {
 int axesOf(JointType type) {
   switch (type) {
     case JointType::hinge:
-    case JointType::slider: return 1;
+    case JointType::slider:
+      return 1;
     case JointType::universal:
-    case JointType::hinge2: return 2;
-    case JointType::angularMotor: return 3;
-    default: return 0;
+    case JointType::hinge2:
+      return 2;
+    case JointType::angularMotor:
+      return 3;
+    default:
+      return 0;
   }
 }
 
 int odeParameter(JointParameter p, int axis) {
-  static constexpr int kNames[] = {dParamLoStop, dParamHiStop, dParamVel,     dParamFMax,          dParamFudgeFactor,  dParamBounce,
+  static constexpr int kNames[] = {dParamLoStop, dParamHiStop,  dParamVel,     dParamFMax,          dParamFudgeFactor,  dParamBounce,
                                    dParamCFM,    dParamStopERP, dParamStopCFM, dParamSuspensionERP, dParamSuspensionCFM};
   return kNames[static_cast<int>(p)] + dParamGroup * axis;
 }
@@ -46,13 +50,27 @@ Joint OdeEngine::createJoint(engine::World world, JointType type) {
   j->world = &w;
   j->type = type;
   switch (type) {
-    case JointType::ball: j->id = dJointCreateBall(w.id, nullptr); break;
-    case JointType::hinge: j->id = dJointCreateHinge(w.id, nullptr); break;
-    case JointType::hinge2: j->id = dJointCreateHinge2(w.id, nullptr); break;
-    case JointType::slider: j->id = dJointCreateSlider(w.id, nullptr); break;
-    case JointType::universal: j->id = dJointCreateUniversal(w.id, nullptr); break;
-    case JointType::fixed: j->id = dJointCreateFixed(w.id, nullptr); break;
-    case JointType::angularMotor: j->id = dJointCreateAMotor(w.id, nullptr); break;
+    case JointType::ball:
+      j->id = dJointCreateBall(w.id, nullptr);
+      break;
+    case JointType::hinge:
+      j->id = dJointCreateHinge(w.id, nullptr);
+      break;
+    case JointType::hinge2:
+      j->id = dJointCreateHinge2(w.id, nullptr);
+      break;
+    case JointType::slider:
+      j->id = dJointCreateSlider(w.id, nullptr);
+      break;
+    case JointType::universal:
+      j->id = dJointCreateUniversal(w.id, nullptr);
+      break;
+    case JointType::fixed:
+      j->id = dJointCreateFixed(w.id, nullptr);
+      break;
+    case JointType::angularMotor:
+      j->id = dJointCreateAMotor(w.id, nullptr);
+      break;
   }
   const Joint handle{reinterpret_cast<std::uintptr_t>(j.get())};
   w.joints.push_back(std::move(j));
@@ -85,11 +103,20 @@ void OdeEngine::setAnchor(Joint joint, const Vec3& p) {
   JointData& j = *data(joint);
   if (!j.attached() || !sane(p)) return;
   switch (j.type) {
-    case JointType::ball: dJointSetBallAnchor(j.id, p.x(), p.y(), p.z()); break;
-    case JointType::hinge: dJointSetHingeAnchor(j.id, p.x(), p.y(), p.z()); break;
-    case JointType::hinge2: dJointSetHinge2Anchor(j.id, p.x(), p.y(), p.z()); break;
-    case JointType::universal: dJointSetUniversalAnchor(j.id, p.x(), p.y(), p.z()); break;
-    default: break;
+    case JointType::ball:
+      dJointSetBallAnchor(j.id, p.x(), p.y(), p.z());
+      break;
+    case JointType::hinge:
+      dJointSetHingeAnchor(j.id, p.x(), p.y(), p.z());
+      break;
+    case JointType::hinge2:
+      dJointSetHinge2Anchor(j.id, p.x(), p.y(), p.z());
+      break;
+    case JointType::universal:
+      dJointSetUniversalAnchor(j.id, p.x(), p.y(), p.z());
+      break;
+    default:
+      break;
   }
 }
 
@@ -100,18 +127,27 @@ void OdeEngine::setAxis(Joint joint, int axis, const Vec3& v, int frame) {
   if (!sane(v) || v.norm() < 1e-9) throw Error("expected an axis longer than 0");
   const dReal direction[4] = {v.x(), v.y(), v.z(), 0};
   switch (j.type) {
-    case JointType::hinge: dJointSetHingeAxis(j.id, v.x(), v.y(), v.z()); break;
-    case JointType::slider: dJointSetSliderAxis(j.id, v.x(), v.y(), v.z()); break;
-    case JointType::universal:
-      if (axis == 0) dJointSetUniversalAxis1(j.id, v.x(), v.y(), v.z());
-      else dJointSetUniversalAxis2(j.id, v.x(), v.y(), v.z());
+    case JointType::hinge:
+      dJointSetHingeAxis(j.id, v.x(), v.y(), v.z());
       break;
-    case JointType::hinge2: dJointSetHinge2Axes(j.id, axis == 0 ? direction : nullptr, axis == 1 ? direction : nullptr); break;
+    case JointType::slider:
+      dJointSetSliderAxis(j.id, v.x(), v.y(), v.z());
+      break;
+    case JointType::universal:
+      if (axis == 0)
+        dJointSetUniversalAxis1(j.id, v.x(), v.y(), v.z());
+      else
+        dJointSetUniversalAxis2(j.id, v.x(), v.y(), v.z());
+      break;
+    case JointType::hinge2:
+      dJointSetHinge2Axes(j.id, axis == 0 ? direction : nullptr, axis == 1 ? direction : nullptr);
+      break;
     case JointType::angularMotor:
       if ((frame == 1 && !j.a) || (frame == 2 && !j.b) || frame < 0 || frame > 2) frame = 0;  // the world is that body
       if (axis < dJointGetAMotorNumAxes(j.id)) dJointSetAMotorAxis(j.id, axis, frame, v.x(), v.y(), v.z());
       break;
-    default: break;
+    default:
+      break;
   }
 }
 
@@ -140,11 +176,20 @@ Vec3 OdeEngine::anchor(Joint joint) const {
   dVector3 v{};
   if (!j.attached()) return Vec3::Zero();
   switch (j.type) {
-    case JointType::ball: dJointGetBallAnchor(j.id, v); break;
-    case JointType::hinge: dJointGetHingeAnchor(j.id, v); break;
-    case JointType::hinge2: dJointGetHinge2Anchor(j.id, v); break;
-    case JointType::universal: dJointGetUniversalAnchor(j.id, v); break;
-    default: break;
+    case JointType::ball:
+      dJointGetBallAnchor(j.id, v);
+      break;
+    case JointType::hinge:
+      dJointGetHingeAnchor(j.id, v);
+      break;
+    case JointType::hinge2:
+      dJointGetHinge2Anchor(j.id, v);
+      break;
+    case JointType::universal:
+      dJointGetUniversalAnchor(j.id, v);
+      break;
+    default:
+      break;
   }
   return toVec(v);
 }
@@ -154,11 +199,20 @@ Vec3 OdeEngine::axis(Joint joint, int axis) const {
   dVector3 v{};
   if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return Vec3::Zero();
   switch (j.type) {
-    case JointType::hinge: dJointGetHingeAxis(j.id, v); break;
-    case JointType::slider: dJointGetSliderAxis(j.id, v); break;
-    case JointType::universal: axis == 0 ? dJointGetUniversalAxis1(j.id, v) : dJointGetUniversalAxis2(j.id, v); break;
-    case JointType::hinge2: axis == 0 ? dJointGetHinge2Axis1(j.id, v) : dJointGetHinge2Axis2(j.id, v); break;
-    default: return motorAxis(j, axis);
+    case JointType::hinge:
+      dJointGetHingeAxis(j.id, v);
+      break;
+    case JointType::slider:
+      dJointGetSliderAxis(j.id, v);
+      break;
+    case JointType::universal:
+      axis == 0 ? dJointGetUniversalAxis1(j.id, v) : dJointGetUniversalAxis2(j.id, v);
+      break;
+    case JointType::hinge2:
+      axis == 0 ? dJointGetHinge2Axis1(j.id, v) : dJointGetHinge2Axis2(j.id, v);
+      break;
+    default:
+      return motorAxis(j, axis);
   }
   return toVec(v);
 }
@@ -168,11 +222,21 @@ void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double v) 
   if (axis < 0 || axis >= axesOf(j.type) || std::isnan(v)) return;
   const int name = odeParameter(p, axis);
   switch (j.type) {
-    case JointType::hinge: dJointSetHingeParam(j.id, name, v); break;
-    case JointType::slider: dJointSetSliderParam(j.id, name, v); break;
-    case JointType::universal: dJointSetUniversalParam(j.id, name, v); break;
-    case JointType::hinge2: dJointSetHinge2Param(j.id, name, v); break;
-    default: dJointSetAMotorParam(j.id, name, v); break;
+    case JointType::hinge:
+      dJointSetHingeParam(j.id, name, v);
+      break;
+    case JointType::slider:
+      dJointSetSliderParam(j.id, name, v);
+      break;
+    case JointType::universal:
+      dJointSetUniversalParam(j.id, name, v);
+      break;
+    case JointType::hinge2:
+      dJointSetHinge2Param(j.id, name, v);
+      break;
+    default:
+      dJointSetAMotorParam(j.id, name, v);
+      break;
   }
 }
 
@@ -181,11 +245,16 @@ double OdeEngine::parameter(Joint joint, JointParameter p, int axis) const {
   if (axis < 0 || axis >= axesOf(j.type)) return 0;
   const int name = odeParameter(p, axis);
   switch (j.type) {
-    case JointType::hinge: return dJointGetHingeParam(j.id, name);
-    case JointType::slider: return dJointGetSliderParam(j.id, name);
-    case JointType::universal: return dJointGetUniversalParam(j.id, name);
-    case JointType::hinge2: return dJointGetHinge2Param(j.id, name);
-    default: return dJointGetAMotorParam(j.id, name);
+    case JointType::hinge:
+      return dJointGetHingeParam(j.id, name);
+    case JointType::slider:
+      return dJointGetSliderParam(j.id, name);
+    case JointType::universal:
+      return dJointGetUniversalParam(j.id, name);
+    case JointType::hinge2:
+      return dJointGetHinge2Param(j.id, name);
+    default:
+      return dJointGetAMotorParam(j.id, name);
   }
 }
 
@@ -193,11 +262,16 @@ double OdeEngine::angle(Joint joint, int axis) const {
   const JointData& j = *data(joint);
   if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return 0;
   switch (j.type) {
-    case JointType::hinge: return dJointGetHingeAngle(j.id);
-    case JointType::slider: return dJointGetSliderPosition(j.id);
-    case JointType::universal: return axis == 0 ? dJointGetUniversalAngle1(j.id) : dJointGetUniversalAngle2(j.id);
-    case JointType::hinge2: return axis == 0 ? dJointGetHinge2Angle1(j.id) : dJointGetHinge2Angle2(j.id);
-    default: return axis < dJointGetAMotorNumAxes(j.id) ? dJointGetAMotorAngle(j.id, axis) : 0;
+    case JointType::hinge:
+      return dJointGetHingeAngle(j.id);
+    case JointType::slider:
+      return dJointGetSliderPosition(j.id);
+    case JointType::universal:
+      return axis == 0 ? dJointGetUniversalAngle1(j.id) : dJointGetUniversalAngle2(j.id);
+    case JointType::hinge2:
+      return axis == 0 ? dJointGetHinge2Angle1(j.id) : dJointGetHinge2Angle2(j.id);
+    default:
+      return axis < dJointGetAMotorNumAxes(j.id) ? dJointGetAMotorAngle(j.id, axis) : 0;
   }
 }
 
@@ -205,11 +279,16 @@ double OdeEngine::angleRate(Joint joint, int axis) const {
   const JointData& j = *data(joint);
   if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return 0;
   switch (j.type) {
-    case JointType::hinge: return dJointGetHingeAngleRate(j.id);
-    case JointType::slider: return dJointGetSliderPositionRate(j.id);
-    case JointType::universal: return axis == 0 ? dJointGetUniversalAngle1Rate(j.id) : dJointGetUniversalAngle2Rate(j.id);
-    case JointType::hinge2: return axis == 0 ? dJointGetHinge2Angle1Rate(j.id) : dJointGetHinge2Angle2Rate(j.id);
-    default: break;
+    case JointType::hinge:
+      return dJointGetHingeAngleRate(j.id);
+    case JointType::slider:
+      return dJointGetSliderPositionRate(j.id);
+    case JointType::universal:
+      return axis == 0 ? dJointGetUniversalAngle1Rate(j.id) : dJointGetUniversalAngle2Rate(j.id);
+    case JointType::hinge2:
+      return axis == 0 ? dJointGetHinge2Angle1Rate(j.id) : dJointGetHinge2Angle2Rate(j.id);
+    default:
+      break;
   }
   if (axis >= dJointGetAMotorNumAxes(j.id)) return 0;
   return motorAxis(j, axis).dot(angularVelocity(j.a) - angularVelocity(j.b));

@@ -4,13 +4,19 @@ namespace spark {
 
 void AngularMotor::describe(Description<AngularMotor>& d) {
   using M = AngularMotor;
-  d.doc("Drives the angles between two bodies; below a HingeJoint it drives the hinge's. What a real motor has (battery, heat) is held as properties.");
+  d.doc(
+      "Drives the angles between two bodies; below a HingeJoint it drives the hinge's. What a real motor has (battery, heat) is held as "
+      "properties.");
   d.property("numAxes", &M::numAxes, &M::setNumAxes).range(0, 3).doc("How many axes it drives.");
-  d.method("setMotorAxis", &M::setMotorAxis).parameters({"axis", "0 world, 1 first body, 2 second body", "direction"}).doc("An axis, its direction given in the world, and what it turns with.");
+  d.method("setMotorAxis", &M::setMotorAxis)
+      .parameters({"axis", "0 world, 1 first body, 2 second body", "direction"})
+      .doc("An axis, its direction given in the world, and what it turns with.");
   d.method("setUserMode", &M::setUserMode).doc("Axes and angles are as set.");
   d.method("setEulerMode", &M::setEulerMode).doc("Three Euler angles, computed.");
   d.method("getMode", &M::mode).doc("user or euler.");
-  d.method("setAxisAngle", &M::setAxisAngle).parameters({"axis", "angle [deg]"}).doc("The angle about an axis, which user mode cannot measure.");
+  d.method("setAxisAngle", &M::setAxisAngle)
+      .parameters({"axis", "angle [deg]"})
+      .doc("The angle about an axis, which user mode cannot measure.");
   d.method("getAxisAngle", &M::axisAngle).parameters({"axis"}).doc("The angle about an axis; below a hinge, the hinge's [deg].");
   d.method("getAxisAngleRate", &M::axisAngleRate).parameters({"axis"}).doc("Its rate [deg/s].");
   d.method("getAxisAnchor", &M::axisAnchor).parameters({"axis"}).doc("What an axis turns with: 0 world, 1 first body, 2 second body.");
@@ -22,7 +28,9 @@ void AngularMotor::describe(Description<AngularMotor>& d) {
   d.property("environmentTempeature", &M::environment_).unit("C").doc("Temperature around it (the scene files' own spelling).");
   d.property("thermalConductivity", &M::conductivity_).unit("W/K").min(0).doc("Heat it gives away per degree.");
   d.property("heatCapacity", &M::heatCapacity_).unit("J/K").min(0).doc("Heat it takes per degree.");
-  d.property("protectionTempeature", &M::protectionTemperature_).unit("C").doc("Above it the motor protects itself (the scene files' own spelling).");
+  d.property("protectionTempeature", &M::protectionTemperature_)
+      .unit("C")
+      .doc("Above it the motor protects itself (the scene files' own spelling).");
   d.property("protectionStiffness", &M::protectionStiffness_).range(0, 1).doc("Greatest stiffness of a motor that protects itself.");
   d.property("maxTorque", &M::maxTorque_).unit("Nm").min(0).doc("Torque at stiffness 1.");
   d.property("stiffness", &M::stiffness_).range(0, 1).state().doc("Part of the greatest torque it may use.");
@@ -40,7 +48,8 @@ void AngularMotor::setNumAxes(int n) {
 
 void AngularMotor::setMotorAxis(int axis, int frame, const Vec3& direction) {
   expectAxis(axis);
-  if (frame < 0 || frame > 2) throw Error(where() + ": expected 0 (world), 1 (first body) or 2 (second body), found " + std::to_string(frame));
+  if (frame < 0 || frame > 2)
+    throw Error(where() + ": expected 0 (world), 1 (first body) or 2 (second body), found " + std::to_string(frame));
   anchors_[axis] = frame;
   if (engine()) engine()->setAxis(handle(), axis, direction, frame);
 }

@@ -18,7 +18,10 @@ void Collider::describe(Description<Collider>& d) {
   d.doc("Geometry that touches. Its children say what happens then.");
   d.implements<ICollider>();
   d.implements<IFollowsTransform>();
-  d.method("setPosition", &Collider::setPosition).parameters({"position [m]"}).surplusIgnored().doc("Position in the frame of its transform or body.");
+  d.method("setPosition", &Collider::setPosition)
+      .parameters({"position [m]"})
+      .surplusIgnored()
+      .doc("Position in the frame of its transform or body.");
   d.method("setLocalPosition", &Collider::setLocalPosition)
       .parameters({"position [m]"})
       .surplusIgnored()
@@ -131,7 +134,9 @@ void Collider::addNotCollideWithColliderName(std::string name, bool on) {
 bool Collider::mayCollideWith(const Collider& other) const {
   if (notCollideWith_.empty() && other.notCollideWith_.empty()) return true;
   if (space_ != other.space_) return true;
-  const auto names = [](const Collider& a, const Collider& b) { return std::find(a.notCollideWith_.begin(), a.notCollideWith_.end(), b.name()) != a.notCollideWith_.end(); };
+  const auto names = [](const Collider& a, const Collider& b) {
+    return std::find(a.notCollideWith_.begin(), a.notCollideWith_.end(), b.name()) != a.notCollideWith_.end();
+  };
   return !names(*this, other) && !names(other, *this);
 }
 
@@ -181,10 +186,14 @@ namespace {
 Vec3 halfExtent(const ShapeDescription& s, const Mat3& r) {
   const Vec3 z = r.col(2).cwiseAbs();
   switch (s.shape) {
-    case Shape::box: return r.cwiseAbs() * (s.lengths / 2);
-    case Shape::capsule: return z * (s.length / 2) + Vec3::Constant(s.radius);
-    case Shape::cylinder: return z * (s.length / 2) + s.radius * (Vec3::Ones() - z.cwiseProduct(z)).cwiseMax(0).cwiseSqrt();
-    default: return Vec3::Constant(s.radius);
+    case Shape::box:
+      return r.cwiseAbs() * (s.lengths / 2);
+    case Shape::capsule:
+      return z * (s.length / 2) + Vec3::Constant(s.radius);
+    case Shape::cylinder:
+      return z * (s.length / 2) + s.radius * (Vec3::Ones() - z.cwiseProduct(z)).cwiseMax(0).cwiseSqrt();
+    default:
+      return Vec3::Constant(s.radius);
   }
 }
 
@@ -207,7 +216,8 @@ void Collider::bounds(Vec3& low, Vec3& high) const {
       widen(low, high, from);
       widen(low, high, from + p.rotation * s->rayDirection.normalized() * s->length);
     } else if (s->shape == Shape::mesh) {
-      for (std::size_t i = 0; i + 2 < s->vertices.size(); i += 3) widen(low, high, p.position + p.rotation * Vec3(s->vertices[i], s->vertices[i + 1], s->vertices[i + 2]));
+      for (std::size_t i = 0; i + 2 < s->vertices.size(); i += 3)
+        widen(low, high, p.position + p.rotation * Vec3(s->vertices[i], s->vertices[i + 1], s->vertices[i + 2]));
     } else {
       const Vec3 half = halfExtent(*s, p.rotation);
       low = p.position - half;

@@ -9,7 +9,9 @@ void BoxCollider::describe(Description<BoxCollider>& d) {
   d.doc("A box.");
   d.property("boxLengths", &BoxCollider::lengths, &BoxCollider::setLengths).unit("m").min(0).doc("Its full edges.");
   d.method("getBoxLength", &BoxCollider::length).parameters({"axis"}).doc("One edge, by axis 0, 1 or 2 [m].");
-  d.method("getPointDepth", &BoxCollider::pointDepth).parameters({"point [m]"}).doc("How deep a point in its transform's frame is inside; below 0 outside.");
+  d.method("getPointDepth", &BoxCollider::pointDepth)
+      .parameters({"point [m]"})
+      .doc("How deep a point in its transform's frame is inside; below 0 outside.");
   d.method("addSCFreezeJointEffName", &BoxCollider::addFreezeJointEffector)
       .parameters({"effector"})
       .doc("An effector that the self-collision rule of soccer freezes when this box touches its own robot.");
@@ -36,7 +38,9 @@ double BoxCollider::pointDepth(const Vec3& at) const {
 void SphereCollider::describe(Description<SphereCollider>& d) {
   d.doc("A sphere.");
   d.property("radius", &SphereCollider::radius, &SphereCollider::setRadius).unit("m").min(0).doc("Radius.");
-  d.method("getPointDepth", &SphereCollider::pointDepth).parameters({"point [m]"}).doc("How deep a point in its transform's frame is inside; below 0 outside.");
+  d.method("getPointDepth", &SphereCollider::pointDepth)
+      .parameters({"point [m]"})
+      .doc("How deep a point in its transform's frame is inside; below 0 outside.");
 }
 
 std::optional<ShapeDescription> SphereCollider::shape() const {
@@ -51,7 +55,9 @@ void PlaneCollider::describe(Description<PlaneCollider>& d) {
   d.method("setParams", &PlaneCollider::setParams)
       .parameters({"a b c d of ax + by + cz = d, or point and normal"})
       .doc("The plane as 4 numbers, or as a point and a normal (6 numbers).");
-  d.method("getPointDepth", &PlaneCollider::pointDepth).parameters({"point [m]"}).doc("How deep a point in its transform's frame is below the plane; below 0 above it.");
+  d.method("getPointDepth", &PlaneCollider::pointDepth)
+      .parameters({"point [m]"})
+      .doc("How deep a point in its transform's frame is below the plane; below 0 above it.");
 }
 
 std::optional<ShapeDescription> PlaneCollider::shape() const {
@@ -76,7 +82,9 @@ double PlaneCollider::pointDepth(const Vec3& at) const {
 
 void RayCollider::describe(Description<RayCollider>& d) {
   d.doc("A probe: hears of what it meets, and is in nothing's way. A contact's depth is the distance from its origin.");
-  d.method("setParams", &RayCollider::setParams).parameters({"origin [m]", "direction", "length [m]"}).doc("The ray, in the frame of its body or transform.");
+  d.method("setParams", &RayCollider::setParams)
+      .parameters({"origin [m]", "direction", "length [m]"})
+      .doc("The ray, in the frame of its body or transform.");
 }
 
 std::optional<ShapeDescription> RayCollider::shape() const { return ray_; }
@@ -89,8 +97,12 @@ void RayCollider::setParams(const Vec3& origin, const Vec3& direction, double le
 
 void TriMeshCollider::describe(Description<TriMeshCollider>& d) {
   d.doc("Triangles; it collides once it has vertices and triangles. Static is best: two meshes find each other only roughly.");
-  d.property("vertices", &TriMeshCollider::vertices, &TriMeshCollider::setVertices).unit("m").doc("x y z of each vertex; new ones take the triangles away.");
-  d.property("triangles", &TriMeshCollider::triangles, &TriMeshCollider::setTriangles).min(0).doc("Three vertex numbers each, from 0, counter-clockwise seen from outside.");
+  d.property("vertices", &TriMeshCollider::vertices, &TriMeshCollider::setVertices)
+      .unit("m")
+      .doc("x y z of each vertex; new ones take the triangles away.");
+  d.property("triangles", &TriMeshCollider::triangles, &TriMeshCollider::setTriangles)
+      .min(0)
+      .doc("Three vertex numbers each, from 0, counter-clockwise seen from outside.");
 }
 
 std::optional<ShapeDescription> TriMeshCollider::shape() const {
@@ -101,7 +113,8 @@ std::optional<ShapeDescription> TriMeshCollider::shape() const {
 void TriMeshCollider::setMesh(std::vector<double> vertices, std::vector<std::int64_t> triangles) {
   for (std::int64_t t : triangles)
     if (t < 0 || 3 * t + 2 >= static_cast<std::int64_t>(vertices.size()))
-      throw Error(where() + ": a triangle names vertex " + std::to_string(t) + ", there are " + std::to_string(vertices.size() / 3) + ". Set the vertices first");
+      throw Error(where() + ": a triangle names vertex " + std::to_string(t) + ", there are " + std::to_string(vertices.size() / 3) +
+                  ". Set the vertices first");
   ShapeDescription s = mesh_;
   s.vertices = std::move(vertices);
   s.triangles.assign(triangles.begin(), triangles.end());

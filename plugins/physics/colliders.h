@@ -10,7 +10,9 @@ namespace spark {
 class TransformCollider : public Collider {
   SPARK_CLASS(TransformCollider, Collider)
  public:
-  static void describe(Description<TransformCollider>& d) { d.doc("Holds a collider at an offset from its body; contacts are reported for it, so handlers are its own children."); }
+  static void describe(Description<TransformCollider>& d) {
+    d.doc("Holds a collider at an offset from its body; contacts are reported for it, so handlers are its own children.");
+  }
 };
 
 /// Accepted for old scenes; it has no geometry.
@@ -89,7 +91,9 @@ class LongCollider : public ConvexCollider {
     d.property("radius", &Self::radius, &Self::setRadius).unit("m").min(0).doc("Radius.");
     d.property("length", &Self::length, &Self::setLength).unit("m").min(0).doc("Length along z, without caps.");
     d.method("setParams", &Self::setParams).parameters({"radius [m]", "length [m]"}).doc("Radius and length at once.");
-    d.method("getPointDepth", &Self::pointDepth).parameters({"point [m]"}).doc("How deep a point in its transform's frame is inside; below 0 outside.");
+    d.method("getPointDepth", &Self::pointDepth)
+        .parameters({"point [m]"})
+        .doc("How deep a point in its transform's frame is inside; below 0 outside.");
   }
   double radius() const { return size_[0]; }
   double length() const { return size_[1]; }

@@ -8,7 +8,9 @@ void mix(bool& on, double& value, bool onA, double a, bool onB, double b) {
   value = onA && onB ? (a + b) / 2 : onA ? a : onB ? b : 0;
 }
 
-const engine::Surface* surfaceOf(const Collider::Handlers& h) { return h.contact ? h.contact->surface() : h.fallback ? &defaultSurface() : nullptr; }
+const engine::Surface* surfaceOf(const Collider::Handlers& h) {
+  return h.contact ? h.contact->surface() : h.fallback ? &defaultSurface() : nullptr;
+}
 
 /// The contact points from `i` on that belong to one pair.
 std::size_t endOfPair(const engine::Contacts& contacts, std::size_t i) {
@@ -57,7 +59,10 @@ void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
       for (CollisionHandler* h : b.handlers().active) h->onCollision({b, a, contacts[k], false});
     }
     if (kernel.structureVersion() == version) continue;
-    kernel.log().error("a collision handler of {} or {} changed the tree while contacts were handled; this step has no contacts. Change it in another phase.", a.path(), b.path());
+    kernel.log().error(
+        "a collision handler of {} or {} changed the tree while contacts were handled; this step has no contacts. Change it in another "
+        "phase.",
+        a.path(), b.path());
     contacts.clear();
     return;
   }

@@ -38,7 +38,9 @@ class SpaceHandle {
  public:
   /// `parent` empty: a top-level space.
   SpaceHandle(std::shared_ptr<WorldHandle> world, std::shared_ptr<SpaceHandle> parent)
-      : world_(std::move(world)), parent_(std::move(parent)), id_(world_->engine()->createSpace(world_->id(), parent_ ? parent_->id() : engine::Space::none)) {}
+      : world_(std::move(world)),
+        parent_(std::move(parent)),
+        id_(world_->engine()->createSpace(world_->id(), parent_ ? parent_->id() : engine::Space::none)) {}
   ~SpaceHandle() {
     if (auto* e = world_->engine()) e->destroySpace(id_);
   }

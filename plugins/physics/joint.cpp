@@ -20,7 +20,10 @@ void Joint::describe(Description<Joint>& d) {
   d.doc("Connects two bodies, or one with the world.");
   d.implements<IJoint>();
   d.abstract();
-  d.method("attach", &J::attach).parameters({"path of the first body", "path of the second"}).optional(1).doc("Paths are relative to the joint; without a second the static world is meant.");
+  d.method("attach", &J::attach)
+      .parameters({"path of the first body", "path of the second"})
+      .optional(1)
+      .doc("Paths are relative to the joint; without a second the static world is meant.");
 
   const auto axis = [&](const char* name, auto set, auto get, const char* unit, const char* doc) {
     const std::string value = std::string("value") + (*unit ? std::string(" [") + unit + "]" : "");
@@ -31,7 +34,8 @@ void Joint::describe(Description<Joint>& d) {
   axis("HighStopDeg", &J::setDeg<P::highStop>, &J::getDeg<P::highStop>, "deg", "Greatest angle.");
   axis("LowStopPos", &J::set<P::lowStop>, &J::get<P::lowStop>, "m or rad", "Least position.");
   axis("HighStopPos", &J::set<P::highStop>, &J::get<P::highStop>, "m or rad", "Greatest position.");
-  axis("FudgeFactor", &J::set<P::fudgeFactor>, &J::get<P::fudgeFactor>, "", "Scales excess force at a stop when a motor pushes against it, 0..1.");
+  axis("FudgeFactor", &J::set<P::fudgeFactor>, &J::get<P::fudgeFactor>, "",
+       "Scales excess force at a stop when a motor pushes against it, 0..1.");
   axis("Bounce", &J::set<P::bounce>, &J::get<P::bounce>, "", "Restitution of the stops, 0..1.");
   axis("CFM", &J::set<P::cfm>, &J::get<P::cfm>, "", "How much the motor yields.");
   axis("StopCFM", &J::set<P::stopCfm>, &J::get<P::stopCfm>, "", "How much the stops yield.");
@@ -42,8 +46,12 @@ void Joint::describe(Description<Joint>& d) {
   axis("AngularMotorVelocity", &J::setDeg<P::velocity>, &J::getDeg<P::velocity>, "deg/s", "Wanted speed of the motor.");
   axis("MaxMotorForce", &J::set<P::maxForce>, &J::get<P::maxForce>, "N or Nm", "Greatest force of the motor; 0: no motor.");
 
-  d.property("jointMaxSpeed1", &J::maxSpeed1, &J::setMaxSpeed1).unit("rad/s").doc("Greatest speed that effectors may command on the first axis; 0: no limit.");
-  d.property("jointMaxSpeed2", &J::maxSpeed2, &J::setMaxSpeed2).unit("rad/s").doc("Greatest speed that effectors may command on the second axis; 0: no limit.");
+  d.property("jointMaxSpeed1", &J::maxSpeed1, &J::setMaxSpeed1)
+      .unit("rad/s")
+      .doc("Greatest speed that effectors may command on the first axis; 0: no limit.");
+  d.property("jointMaxSpeed2", &J::maxSpeed2, &J::setMaxSpeed2)
+      .unit("rad/s")
+      .doc("Greatest speed that effectors may command on the second axis; 0: no limit.");
   d.method("enableFeedback", &J::enableFeedback).parameters({"on"}).doc("Torques are measured from now on.");
   d.property("feedback", &J::feedback, &J::enableFeedback).doc("Torques are measured.");
   d.property("torque", &J::feedbackTorque).unit("Nm").doc("Sum of the torques on both bodies in the last step; 0 without feedback.");
@@ -65,17 +73,23 @@ void Joint::onUnlink() {
 int Joint::axes() const {
   switch (jointType()) {
     case JointType::hinge:
-    case JointType::slider: return 1;
+    case JointType::slider:
+      return 1;
     case JointType::universal:
-    case JointType::hinge2: return 2;
-    case JointType::angularMotor: return 3;
-    default: return 0;
+    case JointType::hinge2:
+      return 2;
+    case JointType::angularMotor:
+      return 3;
+    default:
+      return 0;
   }
 }
 
 void Joint::expectAxis(int axis) const {
   if (axis >= 0 && axis < axes()) return;
-  const std::string range = axes() == 0 ? "no axis: this joint has neither motor nor stops" : axes() == 1 ? "axis 0" : "an axis from 0 to " + std::to_string(axes() - 1);
+  const std::string range = axes() == 0   ? "no axis: this joint has neither motor nor stops"
+                            : axes() == 1 ? "axis 0"
+                                          : "an axis from 0 to " + std::to_string(axes() - 1);
   throw Error(where() + ": expected " + range + ", found axis " + std::to_string(axis));
 }
 
@@ -95,8 +109,10 @@ Ref<RigidBody> Joint::bodyAt(const std::string& path) {
   if (path.empty()) return {};
   Leaf* found = find(path);
   if (auto* body = found ? found->as<RigidBody>() : nullptr; body && body->world() == world_) return Ref<RigidBody>(body);
-  kernel().log().warning("{}: expected a RigidBody at '{}', found {}; it is attached to the static world instead. Paths are relative to the joint, and the body must stand before the joint.",
-                         where(), path, found ? "a " + found->classObject()->name() : "nothing");
+  kernel().log().warning(
+      "{}: expected a RigidBody at '{}', found {}; it is attached to the static world instead. Paths are relative to the joint, and the "
+      "body must stand before the joint.",
+      where(), path, found ? "a " + found->classObject()->name() : "nothing");
   return {};
 }
 

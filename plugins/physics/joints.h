@@ -22,7 +22,10 @@ class HingeJoint : public Generic6DOFJoint {
  public:
   static void describe(Description<HingeJoint>& d) {
     d.doc("Turns about one axis.");
-    d.method("setAnchor", &HingeJoint::setAnchor).parameters({"point [m]"}).surplusIgnored().doc("Where the axis passes, in the joint's frame.");
+    d.method("setAnchor", &HingeJoint::setAnchor)
+        .parameters({"point [m]"})
+        .surplusIgnored()
+        .doc("Where the axis passes, in the joint's frame.");
     d.method("setAxis", &HingeJoint::setAxis).parameters({"0, 1 or 2, or a direction"}).doc("The axis, in the joint's frame.");
     d.method("getAnchor", &HingeJoint::anchor).doc("Where the axis passes, in the world [m].");
     d.method("getAxis", &HingeJoint::worldAxis).doc("The axis, in the world.");
@@ -34,7 +37,8 @@ class HingeJoint : public Generic6DOFJoint {
  private:
   void setAxis(std::vector<double> v) {
     if (v.size() == 1 && v[0] >= 0 && v[0] < 3) return setAxisLocal(0, Vec3::Unit(static_cast<int>(v[0])));
-    if (v.size() != 3) throw Error(where() + ": expected an axis 0, 1 or 2, or a direction of 3 numbers, found " + std::to_string(v.size()) + " numbers");
+    if (v.size() != 3)
+      throw Error(where() + ": expected an axis 0, 1 or 2, or a direction of 3 numbers, found " + std::to_string(v.size()) + " numbers");
     setAxisLocal(0, {v[0], v[1], v[2]});
   }
   Vec3 worldAxis() const { return axisNow(0); }
@@ -48,10 +52,19 @@ class UniversalJoint : public Generic6DOFJoint {
  public:
   static void describe(Description<UniversalJoint>& d) {
     d.doc("Turns about two axes that stay at a right angle.");
-    d.method("setAnchor", &UniversalJoint::setAnchor).parameters({"point [m]"}).surplusIgnored().doc("Where the axes meet, in the joint's frame.");
+    d.method("setAnchor", &UniversalJoint::setAnchor)
+        .parameters({"point [m]"})
+        .surplusIgnored()
+        .doc("Where the axes meet, in the joint's frame.");
     d.method("getAnchor", &UniversalJoint::anchor).doc("Where the axes meet, in the world [m].");
-    d.method("setAxis1", &UniversalJoint::setAxis1).parameters({"direction"}).surplusIgnored().doc("The first body's axis, in the joint's frame.");
-    d.method("setAxis2", &UniversalJoint::setAxis2).parameters({"direction"}).surplusIgnored().doc("The second body's axis, in the joint's frame.");
+    d.method("setAxis1", &UniversalJoint::setAxis1)
+        .parameters({"direction"})
+        .surplusIgnored()
+        .doc("The first body's axis, in the joint's frame.");
+    d.method("setAxis2", &UniversalJoint::setAxis2)
+        .parameters({"direction"})
+        .surplusIgnored()
+        .doc("The second body's axis, in the joint's frame.");
     d.method("getAngle", &UniversalJoint::angleDeg).parameters({"axis"}).optional(1).doc("Angle about an axis, 0 or 1 [deg].");
     d.method("getAngleRate", &UniversalJoint::angleRateDeg).parameters({"axis"}).optional(1).doc("Its rate [deg/s].");
   }
@@ -68,7 +81,10 @@ class Hinge2Joint : public Generic6DOFJoint {
  public:
   static void describe(Description<Hinge2Joint>& d) {
     d.doc("A wheel with steering and suspension.");
-    d.method("setAnchor", &Hinge2Joint::setWheel).parameters({"point [m]"}).surplusIgnored().doc("The wheel's centre, in the joint's frame; sets the axes as well: steering about z, rolling about x.");
+    d.method("setAnchor", &Hinge2Joint::setWheel)
+        .parameters({"point [m]"})
+        .surplusIgnored()
+        .doc("The wheel's centre, in the joint's frame; sets the axes as well: steering about z, rolling about x.");
     d.method("getAnchor", &Hinge2Joint::anchor).doc("The wheel's centre, in the world [m].");
     d.method("getAngle", &Hinge2Joint::angleDeg).parameters({"axis"}).optional(1).doc("Angle about an axis: 0 steering, 1 rolling [deg].");
     d.method("getAngleRate", &Hinge2Joint::angleRateDeg).parameters({"axis"}).optional(1).doc("Its rate [deg/s].");

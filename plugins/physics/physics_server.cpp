@@ -14,7 +14,9 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
   d.property("jointHeating", &S::jointHeating_).doc("Motors that model heat get warm.");
   d.property("batteryDischarge", &S::batteryDischarge_).doc("Motors draw from their batteries.");
   d.property("defaultHandlerOnTransformCollider", &S::defaultOnTransform, &S::setDefaultOnTransform)
-      .doc("A TransformCollider without a handler of its own bounces by default, whatever its inner collider has; false: it takes the inner one's handlers.");
+      .doc(
+          "A TransformCollider without a handler of its own bounces by default, whatever its inner collider has; false: it takes the inner "
+          "one's handlers.");
   d.property("contactsPerPair", &S::contactsPerPair_).range(1, 16).doc("Contact points of two colliders at most.");
   d.on<&PhysicsServer::physics>("physics");
   d.on<&PhysicsServer::place>("place");
@@ -121,8 +123,10 @@ void PhysicsServer::reportFaults() {
   for (const engine::Body handle : world_->handle()->engine()->repaired(world_->handle()->id()))
     for (const Placed& p : bodies_)
       if (p.body->handle() == handle && p.body->countFault())
-        kernel().log().error("{}: its position or speed was no number after the step; it was put back to its last good place, at rest. Look for extreme forces, masses or joint parameters.",
-                             p.body->path());
+        kernel().log().error(
+            "{}: its position or speed was no number after the step; it was put back to its last good place, at rest. Look for extreme "
+            "forces, masses or joint parameters.",
+            p.body->path());
 }
 
 void PhysicsServer::place(const Event&) {

@@ -17,15 +17,23 @@ void RigidBody::describe(Description<RigidBody>& d) {
 
   const auto solid = [&](const char* shape, auto set, auto setTotal, std::vector<std::string> lengths) {
     lengths.insert(lengths.begin(), "density [kg/m^3]");
-    d.method(std::string("set") + shape, set).parameters(lengths).doc(std::string("Mass and inertia of a solid ") + shape + " of even density.");
+    d.method(std::string("set") + shape, set)
+        .parameters(lengths)
+        .doc(std::string("Mass and inertia of a solid ") + shape + " of even density.");
     lengths.front() = "mass [kg]";
-    d.method(std::string("set") + shape + "Total", setTotal).parameters(lengths).doc(std::string("Mass and inertia of a solid ") + shape + ".");
+    d.method(std::string("set") + shape + "Total", setTotal)
+        .parameters(lengths)
+        .doc(std::string("Mass and inertia of a solid ") + shape + ".");
   };
   const auto added = [&](const char* shape, auto add, auto addTotal, std::vector<std::string> lengths) {
     lengths.insert(lengths.begin(), "density [kg/m^3]");
-    d.method(std::string("add") + shape, add).parameters(lengths).doc(std::string("Adds a solid ") + shape + " to what the body has, and moves its origin to the common centre.");
+    d.method(std::string("add") + shape, add)
+        .parameters(lengths)
+        .doc(std::string("Adds a solid ") + shape + " to what the body has, and moves its origin to the common centre.");
     lengths.front() = "mass [kg]";
-    d.method(std::string("add") + shape + "Total", addTotal).parameters(lengths).doc(std::string("Adds a solid ") + shape + " to what the body has, and moves its origin to the common centre.");
+    d.method(std::string("add") + shape + "Total", addTotal)
+        .parameters(lengths)
+        .doc(std::string("Adds a solid ") + shape + " to what the body has, and moves its origin to the common centre.");
   };
   solid("Box", &B::setBox, &B::setBoxTotal, {"edges [m]"});
   solid("Sphere", &B::setSphere, &B::setSphereTotal, {"radius [m]"});
@@ -33,8 +41,10 @@ void RigidBody::describe(Description<RigidBody>& d) {
   solid("Cylinder", &B::setCylinder, &B::setCylinderTotal, {"radius [m]", "length [m]"});
   added("Box", &B::addBox, &B::addBoxTotal, {"edges [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
   added("Sphere", &B::addSphere, &B::addSphereTotal, {"radius [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
-  added("Capsule", &B::addCapsule, &B::addCapsuleTotal, {"radius [m]", "length [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
-  added("Cylinder", &B::addCylinder, &B::addCylinderTotal, {"radius [m]", "length [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
+  added("Capsule", &B::addCapsule, &B::addCapsuleTotal,
+        {"radius [m]", "length [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
+  added("Cylinder", &B::addCylinder, &B::addCylinderTotal,
+        {"radius [m]", "length [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
   d.method("setMassParameters", &B::setMassParameters)
       .parameters({"mass [kg]", "centre [m]", "I11 I22 I33 [kg m^2]", "I12 I13 I23 [kg m^2]"})
       .surplusIgnored()
@@ -169,8 +179,10 @@ void RigidBody::setMass(double m) {
 
 void RigidBody::setMassParameters(double m, const Vec3& center, const Vec3& diagonal, const Vec3& products) {
   if (!center.isZero(1e-9))
-    kernel().log().warning("{}: setMassParameters was given the centre ({}, {}, {}); a body's centre of mass is its origin, so 0 was taken. Move the transform there.",
-                           where(), center.x(), center.y(), center.z());
+    kernel().log().warning(
+        "{}: setMassParameters was given the centre ({}, {}, {}); a body's centre of mass is its origin, so 0 was taken. Move the "
+        "transform there.",
+        where(), center.x(), center.y(), center.z());
   engine::Mass mass{m, Vec3::Zero(), Mat3(diagonal.asDiagonal())};
   mass.inertia(0, 1) = mass.inertia(1, 0) = products.x();
   mass.inertia(0, 2) = mass.inertia(2, 0) = products.y();

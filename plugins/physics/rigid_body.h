@@ -74,9 +74,13 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   void addBoxTotal(double m, const Vec3& e, std::vector<double> at) { add(physics::boxMass(m, e), at); }
   void addSphere(double density, double r, std::vector<double> at) { add(physics::sphereMass(density * physics::sphereVolume(r), r), at); }
   void addSphereTotal(double m, double r, std::vector<double> at) { add(physics::sphereMass(m, r), at); }
-  void addCapsule(double density, double r, double l, std::vector<double> at) { add(physics::capsuleMass(density * physics::capsuleVolume(r, l), r, l), at); }
+  void addCapsule(double density, double r, double l, std::vector<double> at) {
+    add(physics::capsuleMass(density * physics::capsuleVolume(r, l), r, l), at);
+  }
   void addCapsuleTotal(double m, double r, double l) { add(physics::capsuleMass(m, r, l), {}); }
-  void addCylinder(double density, double r, double l, std::vector<double> at) { add(physics::cylinderMass(density * physics::cylinderVolume(r, l), r, l), at); }
+  void addCylinder(double density, double r, double l, std::vector<double> at) {
+    add(physics::cylinderMass(density * physics::cylinderVolume(r, l), r, l), at);
+  }
   void addCylinderTotal(double m, double r, double l, std::vector<double> at) { add(physics::cylinderMass(m, r, l), at); }
   void setMass(double m);
   void setMassParameters(double m, const Vec3& center, const Vec3& diagonal, const Vec3& products);

@@ -11,7 +11,8 @@ Pose physics::poseFrom(const std::vector<double>& n) {
     p.position = {n[0], n[1], n[2]};
     return p;
   }
-  if (n.size() != 16) throw Error("expected a matrix as 6 numbers (position, rotation in degrees) or 16 (column-major), found " + std::to_string(n.size()));
+  if (n.size() != 16)
+    throw Error("expected a matrix as 6 numbers (position, rotation in degrees) or 16 (column-major), found " + std::to_string(n.size()));
   Pose p;
   p.position = {n[12], n[13], n[14]};
   for (int column = 0; column < 3; ++column)
@@ -25,13 +26,18 @@ void World::describe(Description<World>& d) {
   d.property("ERP", &World::erp, &World::setErp).range(0, 1).state().doc("Part of a joint's error that is put right in one step.");
   d.property("CFM", &World::cfm, &World::setCfm).min(0).state().doc("Constraint force mixing: how much all constraints yield.");
   d.property("autoDisableFlag", &World::autoDisable, &World::setAutoDisable).state().doc("Bodies at rest fall asleep.");
-  d.property("contactSurfaceLayer", &World::surfaceLayer, &World::setSurfaceLayer).unit("m").min(0).state().doc("Depth to which contacts are let sink.");
+  d.property("contactSurfaceLayer", &World::surfaceLayer, &World::setSurfaceLayer)
+      .unit("m")
+      .min(0)
+      .state()
+      .doc("Depth to which contacts are let sink.");
 }
 
 World& World::of(const Leaf& node) {
   for (Node* up = node.parent(); up; up = up->parent())
     if (auto* world = up->childOf<World>(); world && world->handle()) return *world;
-  throw Error(node.path() + ": expected a World in its scene, found none. Make one before importing bodies: new(\"World\", \"/usr/scene/world\")");
+  throw Error(node.path() +
+              ": expected a World in its scene, found none. Make one before importing bodies: new(\"World\", \"/usr/scene/world\")");
 }
 
 void World::onLink() {
@@ -65,16 +71,22 @@ void World::apply() {
 
 void Space::describe(Description<Space>& d) {
   d.doc("A collision space: colliders below it are in it.");
-  d.method("disableInnerCollision", &Space::disableInnerCollision).parameters({"off"}).doc("true: colliders directly in this space never collide with each other.");
-  d.property("innerCollisionDisabled", &Space::innerOff, &Space::disableInnerCollision).doc("True when colliders directly in this space never collide with each other.");
+  d.method("disableInnerCollision", &Space::disableInnerCollision)
+      .parameters({"off"})
+      .doc("true: colliders directly in this space never collide with each other.");
+  d.property("innerCollisionDisabled", &Space::innerOff, &Space::disableInnerCollision)
+      .doc("True when colliders directly in this space never collide with each other.");
 }
 
 void Space::onLink() {
   PhysicsObject::onLink();
   World& world = World::of(*this);
-  if (auto* above = ancestor<Space>()) handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), above->handle());
-  else if (world.parent()->childOf<Space>() == this) handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), nullptr);
-  else handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), world.space());
+  if (auto* above = ancestor<Space>())
+    handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), above->handle());
+  else if (world.parent()->childOf<Space>() == this)
+    handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), nullptr);
+  else
+    handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), world.space());
   disableInnerCollision(innerOff_);
 }
 

@@ -21,7 +21,8 @@ struct Heap : EngineHouse {
       const Body b = body({0.13 * (i % 3), 0.17 * (i % 2), 0.6 + 0.55 * i});
       ode.setRotation(b, Mat3(Eigen::AngleAxisd(0.3 * i, Vec3(1, 2, 3).normalized())));
       ode.setMass(b, {1.0, Vec3::Zero(), Mat3::Identity() * 0.05});
-      const engine::ShapeDescription shapes[] = {box(0.5, 0.4, 0.3), round(Shape::sphere, 0.25), round(Shape::capsule, 0.15, 0.3), round(Shape::cylinder, 0.2, 0.3)};
+      const engine::ShapeDescription shapes[] = {box(0.5, 0.4, 0.3), round(Shape::sphere, 0.25), round(Shape::capsule, 0.15, 0.3),
+                                                 round(Shape::cylinder, 0.2, 0.3)};
       geom(shapes[i % 4], b);
       bodies.push_back(b);
     }

@@ -183,7 +183,9 @@ TEST_CASE("a space collides its own geoms once, or not at all, and its geoms wit
   EngineHouse house;
   house.setGravity(0);
   const auto inner = house.ode.createSpace(house.world, house.space);
-  const auto put = [&](engine::Space space, const Vec3& at) { house.ode.setBody(house.ode.createGeom(space, box(1, 1, 1), nullptr), house.body(at), {}); };
+  const auto put = [&](engine::Space space, const Vec3& at) {
+    house.ode.setBody(house.ode.createGeom(space, box(1, 1, 1), nullptr), house.body(at), {});
+  };
   put(inner, {0, 0, 0});
   put(inner, {0.5, 0, 0});
   // Two things outside that both touch the inner space: its own pair must still come once.
@@ -201,7 +203,8 @@ TEST_CASE("the filter refuses pairs and is given the owners") {
   EngineHouse house;
   house.setGravity(0);
   int first = 1, second = 2, third = 3;
-  for (int* owner : {&first, &second, &third}) house.ode.setBody(house.ode.createGeom(house.space, box(1, 1, 1), owner), house.body({0, 0, *owner * 0.1}), {});
+  for (int* owner : {&first, &second, &third})
+    house.ode.setBody(house.ode.createGeom(house.space, box(1, 1, 1), owner), house.body({0, 0, *owner * 0.1}), {});
   const auto odd = [](void* a, void* b) { return *static_cast<int*>(a) % 2 == 1 && *static_cast<int*>(b) % 2 == 1; };
   house.ode.detect(house.world, odd, 1, house.contacts);
   REQUIRE(house.contacts.size() == 1);

@@ -93,13 +93,18 @@ TEST_CASE("a motor is as strong as its maximal force") {
 
 TEST_CASE("every parameter of every axis reads back what was set") {
   Two two;
-  for (const auto& [type, axes] : {std::pair{JointType::hinge, 1}, {JointType::slider, 1}, {JointType::universal, 2}, {JointType::hinge2, 2}, {JointType::angularMotor, 3}}) {
+  for (const auto& [type, axes] : {std::pair{JointType::hinge, 1},
+                                   {JointType::slider, 1},
+                                   {JointType::universal, 2},
+                                   {JointType::hinge2, 2},
+                                   {JointType::angularMotor, 3}}) {
     const Joint j = two.ode.createJoint(two.world, type);
     two.ode.attach(j, two.child, two.parent);
     if (type == JointType::angularMotor) two.ode.setAngularMotor(j, 3, false);
     for (int axis = 0; axis < axes; ++axis)
-      for (const auto p : {JointParameter::lowStop, JointParameter::highStop, JointParameter::velocity, JointParameter::maxForce, JointParameter::fudgeFactor,
-                           JointParameter::bounce, JointParameter::cfm, JointParameter::stopErp, JointParameter::stopCfm}) {
+      for (const auto p :
+           {JointParameter::lowStop, JointParameter::highStop, JointParameter::velocity, JointParameter::maxForce,
+            JointParameter::fudgeFactor, JointParameter::bounce, JointParameter::cfm, JointParameter::stopErp, JointParameter::stopCfm}) {
         const double v = 0.01 * (static_cast<int>(p) + 1) + 0.1 * axis;
         INFO("type " << int(type) << " axis " << axis << " parameter " << int(p));
         two.ode.setParameter(j, p, axis, v);
@@ -210,8 +215,10 @@ TEST_CASE("feedback tells what a joint carries, whichever body comes first") {
     const Body b = two.body({5, 0, 0});
     two.ode.setMass(b, {2.0, Vec3::Zero(), Mat3::Identity()});
     const Joint j = two.ode.createJoint(two.world, JointType::fixed);
-    if (worldFirst) two.ode.attach(j, Body::none, b);
-    else two.ode.attach(j, b, Body::none);
+    if (worldFirst)
+      two.ode.attach(j, Body::none, b);
+    else
+      two.ode.attach(j, b, Body::none);
     two.ode.setFixed(j);
     Vec3 f1, t1, f2, t2;
     two.step();
@@ -226,7 +233,8 @@ TEST_CASE("feedback tells what a joint carries, whichever body comes first") {
 
 TEST_CASE("a joint whose body died does nothing and asks nothing") {
   Two two;
-  for (const auto type : {JointType::ball, JointType::hinge, JointType::hinge2, JointType::slider, JointType::universal, JointType::fixed, JointType::angularMotor}) {
+  for (const auto type : {JointType::ball, JointType::hinge, JointType::hinge2, JointType::slider, JointType::universal, JointType::fixed,
+                          JointType::angularMotor}) {
     const Body gone = two.body({0, 0, 0});
     const Joint j = two.ode.createJoint(two.world, type);
     CHECK(two.ode.angle(j, 0) == 0);

@@ -171,7 +171,8 @@ TEST_CASE("the world's parameters are in effect, and read back") {
   Leaf& world = *house.scene.find("world");
   Node& t = house.thing("thing", {0, 0, 10});
   house.call(world, "setGravity", {1.0, 0.0, 0.0});
-  for (const auto& [set, get, value] : {std::tuple{"setERP", "getERP", 0.3}, {"setCFM", "getCFM", 1e-4}, {"setContactSurfaceLayer", "getContactSurfaceLayer", 0.002}}) {
+  for (const auto& [set, get, value] :
+       {std::tuple{"setERP", "getERP", 0.3}, {"setCFM", "getCFM", 1e-4}, {"setContactSurfaceLayer", "getContactSurfaceLayer", 0.002}}) {
     house.call(world, set, {value});
     CHECK(house.call(world, get).toNumber() == value);
   }
@@ -237,7 +238,8 @@ TEST_CASE("without a world, bodies are refused with a sentence; without an engin
 }
 
 TEST_CASE("the tree may be torn down in any order") {
-  for (const char* first : {"/usr/scene/world", "/usr/scene/space", "/sys/server/physics/engine", "/sys/server/physics", "/usr/scene/box", "/usr/scene/box/body"}) {
+  for (const char* first : {"/usr/scene/world", "/usr/scene/space", "/sys/server/physics/engine", "/sys/server/physics", "/usr/scene/box",
+                            "/usr/scene/box/body"}) {
     PhysicsHouse house;
     INFO(first);
     Node& t = house.box("box", {0, 0, 0.4}, {1, 1, 1});

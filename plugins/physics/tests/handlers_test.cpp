@@ -54,14 +54,20 @@ TEST_CASE("a contact is solid only when both colliders have a contact joint hand
     const char *first, *second;
     bool solid;
   };
-  for (const Case& c : {Case{"", "", true}, {"ContactJointHandler", "", true}, {"ContactJointHandler", "ContactJointHandler", true}, {"RecorderHandler", "", false},
-                        {"RecorderHandler", "ContactJointHandler", false}, {"", "RecorderHandler", false}}) {
+  for (const Case& c : {Case{"", "", true},
+                        {"ContactJointHandler", "", true},
+                        {"ContactJointHandler", "ContactJointHandler", true},
+                        {"RecorderHandler", "", false},
+                        {"RecorderHandler", "ContactJointHandler", false},
+                        {"", "RecorderHandler", false}}) {
     Ground g;
     INFO("'" << c.first << "' on '" << c.second << "'");
     if (*c.first) g.collider().create(c.first);
     if (*c.second) g.ground.create(c.second);
-    if (c.solid) CHECK(g.heightAfter() > 0.4);
-    else CHECK(g.heightAfter() < 0.0);
+    if (c.solid)
+      CHECK(g.heightAfter() > 0.4);
+    else
+      CHECK(g.heightAfter() < 0.0);
   }
 }
 
@@ -197,7 +203,8 @@ TEST_CASE("Lua reacts to collisions") {
       local other, position, depth = table.unpack(event.data)
       print(self.path, "met", other, depth > 0)
     end)
-  )", "test", true);
+  )",
+                            "test", true);
   g.step();
   CHECK_THAT(g.text, Catch::Contains("ScriptHandler") && Catch::Contains("met") && Catch::Contains("/usr/scene/ground"));
 }

@@ -67,8 +67,8 @@ TEST_CASE("a hinge: anchor and axis in the joint's frame, angles in degrees, mot
 TEST_CASE("every setting of a joint has a getter that gives what was set") {
   Pair p;
   Leaf& j = p.joint("UniversalJoint");
-  for (const char* name : {"LowStopPos", "HighStopPos", "LowStopDeg", "HighStopDeg", "FudgeFactor", "Bounce", "CFM", "StopCFM", "StopERP", "LinearMotorVelocity",
-                           "AngularMotorVelocity", "MaxMotorForce"})
+  for (const char* name : {"LowStopPos", "HighStopPos", "LowStopDeg", "HighStopDeg", "FudgeFactor", "Bounce", "CFM", "StopCFM", "StopERP",
+                           "LinearMotorVelocity", "AngularMotorVelocity", "MaxMotorForce"})
     for (int axis : {0, 1}) {
       INFO(name);
       p.call(j, (std::string("set") + name).c_str(), {axis, 0.25 + 0.5 * axis});
@@ -204,9 +204,15 @@ TEST_CASE("an angular motor drives its hinge and holds the numbers of a real mot
   p.call(m, "setEulerMode");
   CHECK(p.call(m, "getMode").toString() == "euler");
   p.call(m, "setUserMode");
-  for (const auto& [name, standard] : std::initializer_list<std::pair<const char*, double>>{
-           {"SpeedConstant", 4.3}, {"TorqueConstant", 4.3}, {"Resistance", 6.44}, {"EnvironmentTempeature", 20}, {"ThermalConductivity", 0.025}, {"HeatCapacity", 26},
-           {"ProtectionTempeature", 80}, {"ProtectionStiffness", 0.8}, {"MaxTorque", 0}}) {
+  for (const auto& [name, standard] : std::initializer_list<std::pair<const char*, double>>{{"SpeedConstant", 4.3},
+                                                                                            {"TorqueConstant", 4.3},
+                                                                                            {"Resistance", 6.44},
+                                                                                            {"EnvironmentTempeature", 20},
+                                                                                            {"ThermalConductivity", 0.025},
+                                                                                            {"HeatCapacity", 26},
+                                                                                            {"ProtectionTempeature", 80},
+                                                                                            {"ProtectionStiffness", 0.8},
+                                                                                            {"MaxTorque", 0}}) {
     INFO(name);
     CHECK(number(m, (std::string("get") + name).c_str()) == standard);
     p.call(m, (std::string("set") + name).c_str(), {0.5});

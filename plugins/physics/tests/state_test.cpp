@@ -14,8 +14,10 @@ struct Heap : PhysicsHouse {
       Node& t = thing("thing" + std::to_string(i), {0.11 * (i % 3), 0.13 * (i % 2), 0.5 + 0.6 * i});
       call(*t.find("body"), "setBoxTotal", {1.0, 0.5, 0.4, 0.3});
       Node& c = *t.create(i % 2 ? "SphereCollider" : "BoxCollider", "collider").asNode();
-      if (i % 2) call(c, "setRadius", {0.25});
-      else call(c, "setBoxLengths", {0.5, 0.4, 0.3});
+      if (i % 2)
+        call(c, "setRadius", {0.25});
+      else
+        call(c, "setBoxLengths", {0.5, 0.4, 0.3});
       if (i % 3) call(c.create("ContactJointHandler"), "setContactBounceMode", {false});
       call(t.find("body")->asNode()->create("DragController"), "setLinearDrag", {0.05});
     }
