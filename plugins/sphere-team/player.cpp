@@ -215,7 +215,7 @@ SpherePlayer::Point SpherePlayer::formation() const {
   const Place home = kFormation[static_cast<std::size_t>(unum_)];
   Point p{home.x * halfLength_, home.y * halfWidth_};
   // the team moves with the ball, forwards more than defenders
-  const double follow = unum_ >= 9 ? 0.75 : unum_ >= 6 ? 0.6 : 0.45;
+  const double follow = unum_ >= 9 ? 0.95 : unum_ >= 6 ? 0.6 : 0.45;
   p.x += follow * ball_.x + (unum_ >= 9 ? 8 : 0) * halfLength_ / 52;
   p.y = 0.7 * p.y + 0.3 * ball_.y;
   p.x = std::min(p.x, offsideLine() - 1);
