@@ -26,12 +26,17 @@ class BenchBrain : public Behavior {
 
   std::size_t index = 0;            ///< number among the agents, from 0
   std::string scene;                ///< its robot
+  int type = -1;                    ///< the robot file's argument; below 0: none
   double place[2] = {0, 0};         ///< where it goes before kick-off [m]
   std::vector<std::string> motors;  ///< predicates to drive; empty: stand still
   bool drives = false;              ///< a sphere that is to drive
   std::int64_t cycle = 0;           ///< counts from when it began to move
 
-  void start(Predicates& actions) override { actions.open("scene").add(scene).close(); }
+  void start(Predicates& actions) override {
+    actions.open("scene").add(scene);
+    if (type >= 0) actions.add(type);
+    actions.close();
+  }
   void think(const Predicates&, Predicates& actions) override {
     ++thoughts_;
     if (thoughts_ == 1) {

@@ -73,19 +73,21 @@ void House::build() {
   setProperty(*simulation_, "rate", "max");
 }
 
-/// One after another: robots appear at one place, and two in one place are a knot that takes the solver minutes.
+/// One after another: robots appear at one place, and several in one place are a knot for the solver.
 void House::addAgents() {
   kernel_.registerClass<BenchBrain>();
   if (!kernel_.root().find("/usr/agent")) kernel_.create("Node", "/usr/agent");
-  const double spacing = case_.needsReference ? 2 : 6;
+  const double scale = case_.needsReference ? 1 : 4;
   for (int i = 0; i < case_.agents; ++i) {
     auto made = kernel_.classOf("BenchBrain").create();
     auto& brain = static_cast<BenchBrain&>(*made);
     brain.setName(fmt::format("brain{}", i));
     brain.index = static_cast<std::size_t>(i);
-    brain.scene = case_.needsReference ? "rsg/agent/nao/nao.rsg" : "rsg/agent/sphere.rsg";
-    brain.place[0] = -spacing * (1 + i % 4 + 0.5 * (i % 2));
-    brain.place[1] = spacing * (i % 11 / 4 - 1) + 0.7 * (i % 3);
+    brain.type = case_.needsReference ? i % 4 : -1;  // a team may have only so many of one type
+    brain.scene = case_.needsReference ? "rsg/agent/nao/nao_hetero.rsg" : "rsg/agent/sphere.rsg";
+    const int column = i % 11 % 4, row = i % 11 / 4;
+    brain.place[0] = -scale * (2 + 2.4 * column);
+    brain.place[1] = scale * (4 * (row - 1) + 0.3 * column);
     brains_.push_back(&brain);
     kernel_.root().require<Node>("/usr/agent").add(std::move(made));
     run(8);

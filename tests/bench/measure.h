@@ -6,7 +6,7 @@
 
 namespace spark::bench {
 
-/// What one case gave; times are medians over blocks [µs per cycle].
+/// What one case gave; times are medians over blocks [µs of CPU time per cycle], of phases of wall time.
 struct Result {
   int bodies = 0, joints = 0, agents = 0;
   double contacts = 0;             ///< contact joints per cycle on the raw side

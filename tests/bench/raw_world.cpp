@@ -153,6 +153,7 @@ void RawWorld::act() {
     const double v = motorSpeed(m.index, cycle_);
     if (m.universal) dJointSetUniversalParam(m.joint, dParamVel + dParamGroup * m.axis, v);
     else dJointSetHingeParam(m.joint, dParamVel, v);
+    if (const dBodyID b = dJointGetBody(m.joint, 0); b && !dBodyIsEnabled(b)) dBodyEnable(b);
   }
   for (const Driver& d : drivers_) {
     dBodyEnable(d.body);
