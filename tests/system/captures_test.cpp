@@ -57,10 +57,18 @@ std::string order(const std::string& message) {
     if (e.head() == "See" || e.head() == "FRP") continue;
     out += std::string(e.head());
     if (const Element n = e.named("n")) out += ":" + std::string(n.at(1).text());
-    if (const Element u = e.named("unum")) out += "+unum" + std::to_string(u.at(1).integer());
     out += " ";
   }
   return out;
+}
+
+/// The number that the host gave the agent in this message, 0 when it says none.
+std::int64_t numberGiven(const std::string& message) {
+  Predicates p;
+  readSexp(message, p);
+  for (const Element e : p)
+    if (const Element u = e.named("unum"); u && e.head() == "GS") return u.at(1).integer();
+  return 0;
 }
 
 /// What the host complained of, without the line that a (syn) before the robot exists earns: the original writes it, too.
@@ -83,14 +91,23 @@ void replay(const std::filesystem::path& reference, const std::filesystem::path&
     if (const auto at = session.sent.find(cycle); at != session.sent.end())
       for (const auto& [name, message] : at->second) clients[name]->send(message);
   };
+  // In its first cycles an agent is not waited for, so its number may come a message earlier or later than recorded, but once it comes.
+  std::map<std::string, std::vector<std::int64_t>> given, recorded;
+  const auto note = [](auto& numbers, const std::string& message) {
+    if (const std::int64_t n = numberGiven(message)) numbers.push_back(n);
+  };
   send(0);
   for (int cycle = 0; cycle < kCycles; ++cycle) {
     for (const auto& [name, message] : session.answered.at(cycle)) {
       CAPTURE(file.filename(), cycle, name);
-      REQUIRE(order(clients[name]->receive()) == order(message));
+      const std::string answer = clients[name]->receive();
+      REQUIRE(order(answer) == order(message));
+      note(given[name], answer);
+      note(recorded[name], message);
     }
     send(cycle + 1);
   }
+  REQUIRE(given == recorded);
   host.signal(15);
   host.line();
   REQUIRE(host.wait() == 0);
