@@ -17,6 +17,9 @@ World OdeEngine::createWorld() {
   const Listening listening(said_);
   auto w = std::make_unique<WorldData>();
   w->id = dWorldCreate();
+  // ODE's default is one for the whole process: worlds of several threads would meet in it.
+  w->threading = dThreadingAllocateSelfThreadedImplementation();
+  dWorldSetStepThreadingImplementation(w->id, dThreadingImplementationGetFunctions(w->threading), w->threading);
   w->root = dHashSpaceCreate(nullptr);
   dSpaceSetCleanup(w->root, 0);
   w->contactJoints = dJointGroupCreate(0);
@@ -36,7 +39,9 @@ void OdeEngine::destroyWorld(World world) {
   // Inner spaces are younger than those around them.
   while (!w.spaces.empty()) destroySpace(Space{reinterpret_cast<std::uintptr_t>(w.spaces.back().get())});
   dSpaceDestroy(w.root);
+  dWorldSetStepThreadingImplementation(w.id, nullptr, nullptr);
   dWorldDestroy(w.id);
+  dThreadingFreeImplementation(w.threading);
   forget(worlds_, &w);
 }
 

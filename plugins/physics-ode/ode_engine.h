@@ -90,6 +90,7 @@ struct Pair {
 
 struct WorldData {
   dWorldID id;
+  dThreadingImplementationID threading;  ///< its own, run by the thread that steps
   dSpaceID root;
   dJointGroupID contactJoints;
   bool autoDisable = true;

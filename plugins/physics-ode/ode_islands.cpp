@@ -74,7 +74,7 @@ void OdeEngine::solve(WorldData& w, const engine::Contacts& contacts, double dt)
     return;
   }
   if (++approximateSteps_ == 1)
-    kernel().log().warning(
+    kernel().log().info(
         "{}: {} constraint rows hang together, more than the {} that the direct solver is given (directRows): such islands are solved "
         "approximately. "
         "Do robots stand in each other?",
