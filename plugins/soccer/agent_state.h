@@ -19,6 +19,7 @@ class AgentState : public ObjectState {
   SPARK_CLASS(AgentState, ObjectState)
  public:
   static constexpr double kFullBattery = 100;                      ///< %
+  static constexpr double kNeverMoved = -1e6;                      ///< s
   static constexpr int kHearCost = 2, kHearMax = 2, kHearInc = 1;  ///< protocol section 3.8
 
   /// A message on its way from the act phase to the sense phase of the same cycle.
@@ -65,6 +66,10 @@ class AgentState : public ObjectState {
   double temperature() const { return temperature_; }
   void setTemperature(double celsius) { temperature_ = celsius; }
 
+  /// s of the simulated clock when the referee moved the player last; before the start when he never did.
+  double movedAt() const { return movedAt_; }
+  void setMovedAt(double time) { movedAt_ = time; }
+
   double pan() const { return pan_; }
   double tilt() const { return tilt_; }
   void look(double panDeg, double tiltDeg) { pan_ = panDeg, tilt_ = tiltDeg; }
@@ -99,6 +104,7 @@ class AgentState : public ObjectState {
     out.write(std::string_view(team_));
     out.write(announce_);
     out.write(selected_);
+    out.write(movedAt_);
     for (int c : capacity_) out.write(c);
     for (const Heard* h : {&own_, &heard_[0], &heard_[1]}) {
       out.write(h->waiting);
@@ -113,6 +119,7 @@ class AgentState : public ObjectState {
     team_ = in.readString();
     announce_ = in.readBool();
     selected_ = in.readBool();
+    movedAt_ = in.readNumber();
     for (int& c : capacity_) c = static_cast<int>(in.readInteger());
     for (Heard* h : {&own_, &heard_[0], &heard_[1]}) {
       h->waiting = in.readBool();
@@ -140,6 +147,7 @@ class AgentState : public ObjectState {
   int unum_ = 0, robotType_ = 0;
   std::string team_;
   bool announce_ = false, selected_ = false;
+  double movedAt_ = kNeverMoved;
   double battery_ = kFullBattery, temperature_ = 23, pan_ = 0, tilt_ = 0;
   std::array<int, 2> capacity_{kHearMax, kHearMax};
   Heard own_;

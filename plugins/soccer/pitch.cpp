@@ -1,6 +1,5 @@
 #include "pitch.h"
 
-#include <array>
 #include <cmath>
 
 namespace spark::soccer {
@@ -62,6 +61,7 @@ void Pitch::refresh(Kernel& kernel) {
   Node& root = kernel.root();
   settings_ = root.find<SoccerSettings>("/sys/variables/Soccer");
   gameControl_ = root.find<IGameControl>("/sys/server/gamecontrol");
+  simulation_ = root.find<ISimulation>("/sys/server/simulation");
   scene_ = root.find<ISceneServer>("/sys/server/scene");
   ball_ = nullptr;
   ballRecorder_ = leftGoal_ = rightGoal_ = nullptr;
@@ -180,12 +180,24 @@ void Pitch::clearArea(Side side, const Area& area, double distance, RandomStream
   });
 }
 
-void Pitch::repel(Side side, const Vec3& centre, double distance, RandomStream& random) const {
+void Pitch::clearOpponentHalf(Side side, double circle, double distance, RandomStream& random) const {
+  shuffled(side, random, [&](const Player& p) {
+    const Bounds b = p.bounds();
+    if (!opponentHalf(side).touches(b)) return;
+    const double farX = std::max(std::abs(b.low.x()), std::abs(b.high.x())), farY = std::max(std::abs(b.low.y()), std::abs(b.high.y()));
+    if (std::hypot(farX, farY) < circle) return;
+    Vec3 target = p.position();
+    target.x() = -direction(side) * distance;
+    moveSafely(p, target, true);
+  });
+}
+
+void Pitch::repel(Side side, const Vec3& centre, double within, double distance, RandomStream& random) const {
   shuffled(side, random, [&](const Player& p) {
     Vec3 away = p.position() - centre;
     away.z() = 0;
     const double now = away.norm();
-    if (now >= distance) return;
+    if (now >= within) return;
     // who stands on the very spot goes towards his own end
     const Vec3 outward = now > 1e-6 ? Vec3(away / now) : Vec3(-direction(side), 0, 0);
     const Vec3 target = centre + outward * distance;
@@ -193,48 +205,19 @@ void Pitch::repel(Side side, const Vec3& centre, double distance, RandomStream& 
   });
 }
 
-bool Pitch::isSafe(const Player& player, double x, double y, bool avoidBall) const {
-  const SoccerSettings& s = *settings_;
-  const Area own = penaltyArea(player.side());
-  if (own.contains(x, y, s.agentRadius)) {
-    int inside = 0;
-    for (const Player& p : players_)
-      if (&p != &player && p.side() == player.side() && own.contains(p.position().x(), p.position().y())) ++inside;
-    if (inside >= s.maxPlayersInsideOwnArea) return false;
-  }
-  if (std::abs(x) > s.fieldLength / 2 && std::abs(y) < s.goalWidth / 2 + s.agentRadius) return false;
-  const Vec3 ball = ballPosition();
-  if (avoidBall && std::hypot(x - ball.x(), y - ball.y()) < std::max(2 * s.agentRadius, s.passModeMinOppBallDist)) return false;
-  const Vec3 here(x, y, s.agentRadius);
-  for (const Player& p : players_)
-    if (&p != &player && p.bounds().touchesSphere(here, s.agentRadius)) return false;
-  return true;
+void Pitch::moveSafely(const Player& player, const Vec3& target, bool avoidBall) const {
+  hold(player, safePlace_.find(*this, player, target, avoidBall));
 }
 
-void Pitch::moveSafely(const Player& player, const Vec3& target, bool avoidBall) const {
-  if (isSafe(player, target.x(), target.y(), avoidBall)) return player.moveTo(target);
-  // a grid of steps of one radius, away from the centre line and from the middle, nearest to the player first
-  struct Candidate {
-    double x, y, distance;
-    int number;
-  };
-  constexpr int kSide = 10;
-  std::array<Candidate, kSide * kSide> candidates;
-  const Vec3 from = player.position();
-  const double stepX = -direction(player.side()) * settings_->agentRadius;
-  const double stepY = (from.y() < 0 ? -1 : 1) * settings_->agentRadius;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const double x = target.x() + stepX * (i % kSide), y = target.y() + stepY * (i / kSide);
-    candidates[i] = {x, y, std::hypot(x - from.x(), y - from.y()), i};
-  }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.distance != b.distance ? a.distance < b.distance : a.number < b.number;
-  });
-  const int attempts = std::min(settings_->maxNumSafeRepositionAttempts, kSide * kSide);
-  for (int i = 0; i < attempts; ++i)
-    if (isSafe(player, candidates[i].x, candidates[i].y, avoidBall))
-      return player.moveTo(Vec3(candidates[i].x, candidates[i].y, target.z()));
+void Pitch::hold(const Player& player, const Vec3& target) const {
   player.moveTo(target);
+  player.state->setMovedAt(now());
+}
+
+void Pitch::putOutside(const Player& player, double z) const {
+  const double x = -direction(player.side()) * 0.6 * (7 - player.state->unum());
+  const double y = (settings_->fieldWidth / 2 + 0.5) * (ballPosition().y() < 0 ? 1 : -1);
+  moveSafely(player, Vec3(x, y, z), true);
 }
 
 }  // namespace spark::soccer

@@ -6,7 +6,9 @@
 
 #include "agent_state.h"
 #include "api/agents.h"
+#include "api/phases.h"
 #include "api/physics.h"
+#include "safe_place.h"
 #include "soccer_settings.h"
 #include "spark/random.h"
 
@@ -85,20 +87,40 @@ class Pitch {
   /// Outside of both penalty areas: an inner point comes to the area's front corner on its side; y stays on the field.
   Vec3 freeBallPosition(const Vec3& wanted) const;
 
-  // Clearing (protocol section 6.6). Players are taken in an order that `random` shuffles.
+  /// s: the simulated clock now.
+  double now() const { return simulation_ ? simulation_->time() : 0; }
+
+  // What the referee does to players (protocol section 6.6). Orientations stay, velocities are taken away, and the time is noted: rules
+  // that spare who was just moved ask movedWithin(player, 1.0). Bodies are moved at once, transforms follow at the next place phase.
+  /// Moves to `target` or the first safe place near it. `avoidBall`: not beside the ball either.
+  void moveSafely(const Player& player, const Vec3& target, bool avoidBall) const;
+  /// Moves to `target` whoever stands there, as for a player who is held in the air.
+  void hold(const Player& player, const Vec3& target) const;
+  /// Beside the field on the side away from the ball, as after a foul; z [m].
+  void putOutside(const Player& player, double z) const;
+  /// The referee moved the player less than so many seconds ago.
+  bool movedWithin(const Player& player, double seconds) const { return now() - player.state->movedAt() < seconds; }
+
+  // Clearing. Players are taken in an order that `random` shuffles.
+  /// Calls each(side) for both sides, in an order that a coin decides.
+  template <class F>
+  void bothSides(RandomStream& random, F each) const {
+    const Side first = random.below(2) == 0 ? Side::left : Side::right;
+    each(first);
+    each(opponent(first));
+  }
   /// Moves away who touches the sphere: `distance` towards his own end, or in y where that would be behind his goal line.
   void clearSphere(Side side, const Vec3& centre, double radius, double distance, RandomStream& random) const;
   /// As clearSphere for one player.
   void clearSphere(const Player& player, const Vec3& centre, double radius, double distance) const;
   /// Moves out of a rectangle, `distance` beyond its edge on the team's own side.
   void clearArea(Side side, const Area& area, double distance, RandomStream& random) const;
-  /// Pushes radially to `distance` from the centre.
-  void repel(Side side, const Vec3& centre, double distance, RandomStream& random) const;
-  /// Moves to the first safe place near `target`.
-  void moveSafely(const Player& player, const Vec3& target, bool avoidBall) const;
+  /// Out of the opponents' half, to `distance` on the own side, unless all of him is within `circle` of the centre (0: no circle).
+  void clearOpponentHalf(Side side, double circle, double distance, RandomStream& random) const;
+  /// Pushes who is nearer than `within` radially to `distance` from the centre.
+  void repel(Side side, const Vec3& centre, double within, double distance, RandomStream& random) const;
 
  private:
-  bool isSafe(const Player& player, double x, double y, bool avoidBall) const;
   template <class F>
   void shuffled(Side side, RandomStream& random, F each) const;
 
@@ -106,10 +128,12 @@ class Pitch {
   SoccerSettings* settings_ = nullptr;
   ISceneServer* scene_ = nullptr;
   IGameControl* gameControl_ = nullptr;
+  ISimulation* simulation_ = nullptr;
   IRigidBody* ball_ = nullptr;
   ICollisionRecorder *ballRecorder_ = nullptr, *leftGoal_ = nullptr, *rightGoal_ = nullptr;
   std::vector<Player> players_;
   mutable std::vector<const Player*> order_;
+  mutable SafePlace safePlace_;
 };
 
 }  // namespace spark::soccer

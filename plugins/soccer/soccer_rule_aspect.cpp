@@ -188,7 +188,7 @@ void SoccerRuleAspect::taken(bool indirect) {
 void SoccerRuleAspect::repelOnce(Side side, const Vec3& from) {
   if (repelled_) return;
   repelled_ = true;
-  pitch_->repel(side, from, pitch_->settings().kickRepelDist, game_->random());
+  pitch_->repel(side, from, pitch_->settings().kickRepelDist, pitch_->settings().kickRepelDist, game_->random());
 }
 
 bool SoccerRuleAspect::dropBallIfLate(const Vec3& where) {
@@ -222,7 +222,7 @@ void SoccerRuleAspect::goalPause(Side scorer) {
 void SoccerRuleAspect::passMode(Side side) {
   const SoccerSettings& s = pitch_->settings();
   if (game_->modeTime() >= s.passModeDuration || ball_->newTouch()) return game_->setMode(PlayMode::playOn);
-  pitch_->repel(opponent(side), ball_->position(), s.passModeMinOppBallDist * 1.1, game_->random());
+  pitch_->repel(opponent(side), ball_->position(), s.passModeMinOppBallDist, 1.1 * s.passModeMinOppBallDist, game_->random());
   playOn();
 }
 
@@ -306,15 +306,6 @@ void SoccerRuleAspect::ballOut() {
     const double y = s.fieldWidth / 2 - s.ballRadius;
     award(forSide(PlayMode::kickInLeft, opponent(last)), Vec3(ball_->lastValid().x(), p.y() < 0 ? -y : y, s.ballRadius));
   }
-}
-
-void SoccerRuleAspect::putOutside(const soccer::Player& player, double z) {
-  GameStateAspect* game = beside(game_, gameVersion_);
-  if (!game || !game->pitch().ready()) return;
-  const SoccerSettings& s = game->pitch().settings();
-  const double x = -direction(player.side()) * 0.6 * (7 - player.state->unum());
-  const double y = (s.fieldWidth / 2 + 0.5) * (game->pitch().ballPosition().y() < 0 ? 1 : -1);
-  game->pitch().moveSafely(player, Vec3(x, y, z), true);
 }
 
 void SoccerRuleAspect::reportFoul(int type, std::string team, int unum) {

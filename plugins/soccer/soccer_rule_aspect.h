@@ -35,8 +35,6 @@ class SoccerRuleAspect : public SoccerControlAspect {
   void dropBall(const Vec3& where);
   /// A restart at `where`.
   void award(PlayMode mode, const Vec3& where);
-  /// Puts a player beside the field, on the side away from the ball; z [m].
-  void putOutside(const soccer::Player& player, double z);
   /// Tells monitors of a foul; `team` is left, right or none.
   void reportFoul(int type, std::string team, int unum);
   /// The last fouls, oldest first.

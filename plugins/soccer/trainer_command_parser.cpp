@@ -145,7 +145,7 @@ std::string TrainerCommandParser::kill(const Element& c) {
 std::string TrainerCommandParser::repos(const Element& c) {
   const Player* p = c.named("unum") ? named(c) : selected();
   if (!p || !p->torso || p->side() == Side::none) return kNoSuchPlayer;
-  if (match_.referee()) match_.referee()->putOutside(*p, 1.0);
+  match_.game()->pitch().putOutside(*p, 1.0);
   return {};
 }
 
