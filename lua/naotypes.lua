@@ -3,7 +3,7 @@ local function naoType(t)
   return {
     Hip1RelTorso_X = t.hip or 0.055, Hip1RelTorso_Z = -0.115, ThighRelHip2_Z = t.thigh or -0.04, AnkleRelShank_Z = t.ankle or -0.055,
     lj5_max_abs_speed = t.speed5 or 6.1395, lj6_max_abs_speed = t.speed6 or 6.1395, ElbowRelUpperArm_Y = t.elbow or 0.07,
-    UseToe = t.toe and "true" or "false", ToeLength = t.toe,
+    UseToe = t.toe and "true" or "false", ToeLength = t.toe or 0,
   }
 end
 

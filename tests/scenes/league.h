@@ -1,0 +1,45 @@
+#pragma once
+/// \file
+/// A league's house without network and rules, from the same scripts as the configs.
+
+#include "api/agents.h"
+#include "test_support.h"
+
+namespace spark::test {
+
+/// Spark's scenes; with `scenes`, a folder with rsg/... that is asked before them.
+struct League {
+  House house;
+  Kernel& kernel = house.kernel;
+
+  explicit League(const std::filesystem::path& scenes = {}, const std::string& variables = "") {
+    kernel.lua().addFolder(std::filesystem::path(SPARK_SOURCES) / "lua");
+    std::string text = "host = { share = [[" SPARK_SOURCES "]], scenePaths = {";
+    if (!scenes.empty()) text += "[[" + scenes.string() + "]]";
+    text += R"(} }
+include "house.lua"
+include "materials.lua"
+include "naotypes.lua"
+include "soccer-house.lua"
+files() scene() materials() physics()
+simulation().rate = "max"
+plugin "gamecontrol"
+plugin "sensors"
+plugin "effectors"
+naoVariables()
+soccerVariables{)" +
+            variables + "}";
+    kernel.lua().run(text, "league");
+  }
+  Node& scene() { return kernel.root().require<Node>("/usr/scene"); }
+  Node& agent(const std::string& name = "AgentAspect1") { return scene().create<Node>("AgentAspect", name); }
+  /// Imports without a complaint.
+  void import(const std::string& file, Node& root, const List& arguments = {}) {
+    house.text.clear();
+    kernel.root().require<ISceneServer>("/sys/server/scene").importScene(file, root, arguments);
+    if (!house.text.empty()) throw Error(file + " was imported, but: " + house.text);
+  }
+  void run(int cycles) { callMethod(kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles}); }
+};
+
+}  // namespace spark::test

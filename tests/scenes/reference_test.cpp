@@ -1,0 +1,83 @@
+// Spark's own scenes against those of the installed base, where these are present: the same in every bit, and they stay so when they move.
+
+#include <catch2/catch.hpp>
+#include <iostream>
+
+#include "facts.h"
+#include "league.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+std::filesystem::path reference() {
+  const auto folder = referenceFolder() / "scenes-reference";
+  if (std::filesystem::is_directory(folder)) return folder;
+  std::cout << "skipped: SPARK_REFERENCE_DIR has no scenes-reference\n";
+  std::exit(77);
+}
+
+/// Line by line: the first that differs says what.
+void checkEqual(const std::vector<std::string>& own, const std::vector<std::string>& wanted) {
+  for (std::size_t i = 0; i < std::min(own.size(), wanted.size()); ++i)
+    if (own[i] != wanted[i]) {
+      CHECK(own[i] == wanted[i]);
+      return;
+    }
+  CHECK(own.size() == wanted.size());
+}
+
+/// All joints get a speed that changes from joint to joint and from second to second [rad/s].
+void drive(Node& robot, int cycle) {
+  std::vector<IJoint*> joints;
+  robot.collect(joints);
+  REQUIRE(joints.size() >= 22);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    joints[i]->setParameter(engine::JointParameter::velocity, 0, 1.2 * std::sin(0.02 * cycle * (3.0 + 0.4 * double(i)) + 0.4 * double(i)));
+}
+
+struct Robot {
+  League league;
+  Node& agent;
+  Robot(const std::filesystem::path& scenes, int type) : league(scenes), agent(league.agent()) {
+    league.import("rsg/soccer/field.rsg", league.scene());
+    league.import("rsg/agent/nao/nao_hetero.rsg", agent, {type});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Spark's Nao is the installed base's in every bit, in all five types") {
+  const auto folder = reference();
+  for (int type = 0; type < 5; ++type) {
+    INFO("type " << type);
+    Robot own({}, type), wanted(folder, type);
+    checkEqual(nodeFacts(own.agent), nodeFacts(wanted.agent));
+    checkEqual(creationOrder(own.agent), creationOrder(wanted.agent));
+  }
+}
+
+TEST_CASE("nao.rsg is type 0") {
+  League own, wanted(reference());
+  Node& a = own.agent();
+  Node& b = wanted.agent();
+  own.import("rsg/agent/nao/nao.rsg", a);
+  wanted.import("rsg/agent/nao/nao.rsg", b);
+  checkEqual(nodeFacts(a), nodeFacts(b));
+}
+
+TEST_CASE("Spark's Nao and the installed base's fall, lie and struggle alike to the last bit") {
+  const auto folder = reference();
+  for (int type = 0; type < 5; ++type) {
+    INFO("type " << type);
+    Robot own({}, type), wanted(folder, type);
+    for (int cycle = 0; cycle < 200; cycle += 10) {
+      for (Robot* r : {&own, &wanted}) {
+        drive(r->agent, cycle);
+        r->league.run(10);
+      }
+      checkEqual(motion(own.agent), motion(wanted.agent));
+    }
+  }
+}
