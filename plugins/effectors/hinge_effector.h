@@ -1,15 +1,18 @@
 #pragma once
 
+#include "api/robot_parts.h"
 #include "joint_command.h"
 
 namespace spark {
 
 /// `(he1 1.5)`: speed of the hinge above it, rad/s, at once and until the next command.
-class HingeEffector : public Effector {
+class HingeEffector : public Effector, public IFreezable {
   SPARK_CLASS(HingeEffector, Effector)
  public:
   static void describe(Description<HingeEffector>& d) {
     d.doc("Drives the hinge joint above it: (name speed) in rad/s, within the joint's greatest speed.");
+    d.implements<IFreezable>();
+    d.property("frozen", &HingeEffector::frozen_).state().doc("Commands set speed 0: the rule of self-collisions has frozen it.");
     d.property("ignoreCommandAtStop", &HingeEffector::ignoreCommandAtStop_)
         .doc("At or beyond a stop commands are ignored and the speed stays, as the installed base does against exploding feet.");
   }
@@ -18,9 +21,11 @@ class HingeEffector : public Effector {
     double speed = 0;
     if (std::string wrong = readNumber(action, 0, speed); !wrong.empty()) return wrong;
     if (ignoreCommandAtStop_ && atStop()) return {};
-    drive(*joint_, 0, clampSpeed(*joint_, 0, speed));
+    drive(*joint_, 0, frozen_ ? 0 : clampSpeed(*joint_, 0, speed));
     return {};
   }
+  Leaf& leaf() override { return *this; }
+  void freeze(bool on) override { frozen_ = on; }
 
  protected:
   void onLink() override {
@@ -38,7 +43,7 @@ class HingeEffector : public Effector {
     return angle <= joint_->parameter(engine::JointParameter::lowStop, 0) || angle >= joint_->parameter(engine::JointParameter::highStop, 0);
   }
   IJoint* joint_ = nullptr;
-  bool ignoreCommandAtStop_ = true;
+  bool ignoreCommandAtStop_ = true, frozen_ = false;
 };
 
 }  // namespace spark

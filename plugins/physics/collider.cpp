@@ -173,10 +173,14 @@ void Collider::findHandlers(bool defaultOnTransform) {
   }
 }
 
+Pose Collider::geomPose() const {
+  return engine() && geom_ != engine::Geom::none ? engine()->pose(geom_) : physics::compose(physics::frameOf(*this), local_);
+}
+
 Vec3 Collider::toShape(const Vec3& p) const {
   const Pose frame = physics::frameOf(*this);
   const Vec3 world = frame.position + frame.rotation * p;
-  const Pose own = engine() && geom_ != engine::Geom::none ? engine()->pose(geom_) : physics::compose(frame, local_);
+  const Pose own = geomPose();
   return own.rotation.transpose() * (world - own.position);
 }
 

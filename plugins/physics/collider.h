@@ -59,6 +59,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
     }
   }
   engine::IEngine* engine() const { return space_ ? space_->world()->engine() : nullptr; }
+  /// Of the shape in the world.
+  Pose geomPose() const;
   /// A point in the frame of the nearest transform, seen from the shape's own frame.
   Vec3 toShape(const Vec3& p) const;
   const std::vector<std::string>& notCollideWith() const { return notCollideWith_; }

@@ -1,5 +1,7 @@
 #include "colliders.h"
 
+#include <algorithm>
+
 namespace spark {
 
 using engine::Shape;
@@ -7,7 +9,8 @@ using engine::ShapeDescription;
 
 void BoxCollider::describe(Description<BoxCollider>& d) {
   d.doc("A box.");
-  d.property("boxLengths", &BoxCollider::lengths, &BoxCollider::setLengths).unit("m").min(0).doc("Its full edges.");
+  d.implements<IRobotBox>();
+  d.property("boxLengths", &BoxCollider::boxLengths, &BoxCollider::setLengths).unit("m").min(0).doc("Its full edges.");
   d.method("getBoxLength", &BoxCollider::length).parameters({"axis"}).doc("One edge, by axis 0, 1 or 2 [m].");
   d.method("getPointDepth", &BoxCollider::pointDepth)
       .parameters({"point [m]"})
@@ -15,7 +18,7 @@ void BoxCollider::describe(Description<BoxCollider>& d) {
   d.method("addSCFreezeJointEffName", &BoxCollider::addFreezeJointEffector)
       .parameters({"effector"})
       .doc("An effector that the self-collision rule of soccer freezes when this box touches its own robot.");
-  d.property("freezeJointEffectors", &BoxCollider::freezes).doc("Names of the effectors that the self-collision rule freezes.");
+  d.property("freezeJointEffectors", &BoxCollider::freezeJointEffectors).doc("Names of the effectors that the self-collision rule freezes.");
 }
 
 std::optional<ShapeDescription> BoxCollider::shape() const {
@@ -23,6 +26,10 @@ std::optional<ShapeDescription> BoxCollider::shape() const {
   s.shape = Shape::box;
   s.lengths = lengths_;
   return s;
+}
+
+bool BoxCollider::ignores(const std::string& collider) const {
+  return std::find(notCollideWith().begin(), notCollideWith().end(), collider) != notCollideWith().end();
 }
 
 double BoxCollider::length(int axis) const {

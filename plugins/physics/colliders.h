@@ -2,6 +2,7 @@
 /// \file
 /// The colliders of scene files.
 
+#include "api/robot_parts.h"
 #include "collider.h"
 
 namespace spark {
@@ -43,19 +44,23 @@ class EmptyCollider : public Collider {
 };
 
 /// A box, 1 m wide unless set.
-class BoxCollider : public ConvexCollider {
+class BoxCollider : public ConvexCollider, public IRobotBox {
   SPARK_CLASS(BoxCollider, ConvexCollider)
  public:
   static void describe(Description<BoxCollider>& d);
   std::optional<engine::ShapeDescription> shape() const override;
 
+  Leaf& leaf() override { return *this; }
+  Pose pose() const override { return geomPose(); }
+  Vec3 boxLengths() const override { return lengths_; }
+  bool ignores(const std::string& collider) const override;
+  const std::vector<std::string>& freezeJointEffectors() const override { return freezes_; }
+
  private:
-  Vec3 lengths() const { return lengths_; }
   void setLengths(const Vec3& v) { change(lengths_, v); }
   double length(int axis) const;
   double pointDepth(const Vec3& p) const;
   void addFreezeJointEffector(std::string name) { freezes_.push_back(std::move(name)); }
-  const std::vector<std::string>& freezes() const { return freezes_; }
   Vec3 lengths_{1, 1, 1};
   std::vector<std::string> freezes_;
 };

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "api/robot_parts.h"
 #include "fake_physics.h"
 #include "test_support.h"
 
@@ -84,6 +85,23 @@ TEST_CASE("at or beyond a stop commands are ignored unless that is switched off"
   robot.joint->angles[0] = 0.999;
   robot.act(he1, "(he1 4)");
   CHECK(robot.joint->velocity(0) == 4);
+}
+
+TEST_CASE("a frozen hinge goes on until a command comes, which sets speed 0") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
+  robot.act(he1, "(he1 2)");
+  auto* freezable = he1.as<IFreezable>();
+  REQUIRE(freezable);
+  freezable->freeze(true);
+  CHECK(getProperty(he1, "frozen") == Value(true));
+  CHECK(robot.joint->velocity(0) == 2);
+  CHECK(robot.act(he1, "(he1 3)").empty());
+  CHECK(robot.joint->velocity(0) == 0);
+  freezable->freeze(false);
+  CHECK(robot.joint->velocity(0) == 0);
+  robot.act(he1, "(he1 3)");
+  CHECK(robot.joint->velocity(0) == 3);
 }
 
 TEST_CASE("only a speed that is not zero wakes the body") {
