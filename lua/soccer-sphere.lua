@@ -40,7 +40,7 @@ soccerVariables {
 soccerRules()                           -- control aspects below /sys/server/gamecontrol; one more:
 if offside then new("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect") end
 soccerMonitor()                         -- what monitors are told of it
-get("/usr/scene"):importScene("rsg/soccer/field.rsg")
+get("/usr/scene"):importScene("rsg/soccer/field_2004.rsg")
 
 -- teams inside the host, if any; others come over the network
 if robots ~= "" then plugin "sphere-team" end

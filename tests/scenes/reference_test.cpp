@@ -81,3 +81,17 @@ TEST_CASE("Spark's Nao and the installed base's fall, lie and struggle alike to 
     }
   }
 }
+
+TEST_CASE("Spark's field for humanoids is the installed base's in every bit") {
+  League own, wanted(reference());
+  own.import("rsg/soccer/field.rsg", own.scene());
+  wanted.importLoosely("rsg/agent/nao/soccer.rsg", wanted.scene());
+  // Known differences: two names, and what may limit the ball's speed (it does not here).
+  wanted.scene().require<Leaf>("Transform[4]").setName("sky");
+  wanted.scene().require<Leaf>("Transform[3]").setName("ground");
+  Leaf& limit = own.scene().require<Leaf>("Ball/physics/VelocityController");
+  CHECK(getProperty(limit, "maxVelocity") == Value(0.0));
+  limit.parent()->remove(limit);
+  checkEqual(nodeFacts(own.scene()), nodeFacts(wanted.scene()));
+  checkEqual(creationOrder(own.scene()), creationOrder(wanted.scene()));
+}
