@@ -3,6 +3,7 @@
 --     soccerVariables{ FieldLength = 104, ... }   -- before the field is imported
 --     soccerRules()                               -- after agents()
 --     soccerMonitor()                             -- after monitors()
+--     soccerCompat("F")                           -- last: what agents are told as another version of the installed base tells it
 
 --- The variables Soccer.*, with other values where a league has them.
 function soccerVariables(values)
@@ -24,4 +25,38 @@ function soccerMonitor()
   for _, class in ipairs { "GameStateItem", "SoccerRuleItem", "TrainerCommandParser" } do
     new(class, "/sys/server/monitor/" .. class)
   end
+end
+
+-- In what versions of the installed base differ, by the node that has the property. M, the mainline server 0.7.3, is what every property
+-- is by itself.
+local versions = {
+  M = {},
+  -- the SPL's server
+  F = {
+    ["/sys/server/gamecontrol/parser"] = { decimals = 3 },
+    ["/sys/server/gamecontrol"]        = { sync = true },
+    ["/sys/variables/Soccer"]          = {
+      ExtraGameState = true, FieldLinesSeen = false, BeamWithinFieldWidth = false, PenaltyWidthBeyondGoal = false, ConstantTemperature = false,
+    },
+  },
+  -- later servers of the 3D league, as far as their clients show it
+  L = {
+    ["/sys/variables/Soccer"] = { VisionInterval = 2 },
+  },
+}
+
+--- Sets the properties in which a version (M, F or L) differs. Each may be set by itself too, and what --set says wins.
+function soccerCompat(version)
+  for path, values in pairs(versions[version]) do
+    local node = get(path)
+    for name, value in pairs(values) do
+      if name ~= "decimals" or node.class == "SexpParser" then node[name] = value end   -- other languages write numbers their own way
+    end
+  end
+end
+
+--- The option that names the version; a config hands it to soccerCompat().
+function compatOption()
+  return option{ name = "compat", default = "M", choices = { "M", "F", "L" },
+                 doc = "Version of the installed base: M mainline 0.7.3, F the SPL's, L later than 0.7.3." }
 end

@@ -9,6 +9,7 @@ include "soccer-house.lua"
 local field   = option{ name = "scene", default = "rsg/soccer/field.rsg", doc = "The field's scene file." }
 local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of the language that agents speak." }
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
+local compat  = compatOption()
 
 -- the rooms
 files()
@@ -27,4 +28,5 @@ naoVariables()
 soccerVariables()
 soccerRules()
 soccerMonitor()
+soccerCompat(compat)
 get("/usr/scene"):importScene(field)

@@ -326,6 +326,10 @@ void writeSexp(const Predicates& predicates, int decimals, std::string& out) {
 
 void appendFixed(std::string& out, double v, int decimals, bool asFloat) {
   char buffer[400];
+  if (std::isnan(v)) {  // its sign, which to_chars would print, means nothing, and clients do not read it
+    out += "nan";
+    return;
+  }
   if (asFloat) v = static_cast<float>(v);
   const auto r = std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::fixed, std::clamp(decimals, 0, 60));
   out.append(buffer, r.ptr);

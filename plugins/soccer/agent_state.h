@@ -148,7 +148,7 @@ class AgentState : public ObjectState {
   std::string team_;
   bool announce_ = false, selected_ = false;
   double movedAt_ = kNeverMoved;
-  double battery_ = kFullBattery, temperature_ = 23, pan_ = 0, tilt_ = 0;
+  double battery_ = kFullBattery, temperature_ = 20, pan_ = 0, tilt_ = 0;
   std::array<int, 2> capacity_{kHearMax, kHearMax};
   Heard own_;
   std::array<Heard, 2> heard_;

@@ -25,6 +25,7 @@ class BeamEffector : public Effector {
   }
 
  private:
+  static constexpr double kFarthest = 1000;  ///< m from the centre, along each axis
   void prepare(const Event&) {
     if (!std::exchange(pending_, false)) return;
     const soccer::Player* player = match_.player(*this);
@@ -33,7 +34,9 @@ class BeamEffector : public Effector {
     double x = x_ + s.beamNoiseXY * random_.uniform(-1, 1), y = y_ + s.beamNoiseXY * random_.uniform(-1, 1);
     const double angle = angle_ + s.beamNoiseAngle * random_.uniform(-1, 1);
     if (!s.startAnyFieldPosition) x = std::clamp(x, -s.fieldLength / 2, 0.0);
-    y = std::clamp(y, -s.fieldWidth / 2, s.fieldWidth / 2);
+    if (s.beamWithinFieldWidth) y = std::clamp(y, -s.fieldWidth / 2, s.fieldWidth / 2);
+    // where leagues set no limit, the engine's numbers still have one
+    x = std::clamp(x, -kFarthest, kFarthest), y = std::clamp(y, -kFarthest, kFarthest);
     const bool left = player->side() == soccer::Side::left;
     const double d = direction(player->side());
     player->moveTo(Vec3(d * x, d * y, s.agentRadius), degToRad(left ? angle - 90 : angle + 90));
@@ -49,11 +52,10 @@ class BeamEffector : public Effector {
 class SayEffector : public Effector {
   SPARK_CLASS(SayEffector, Effector)
  public:
-  static constexpr std::size_t kMaxLength = 20;
   static constexpr double kRange = 50;  ///< m
 
   static void describe(Description<SayEffector>& d) {
-    d.doc("Says something: (say message), at most 20 printable characters, heard within 50 m.");
+    d.doc("Says something: (say message), at most Soccer.SayMsgSize printable characters, heard within 50 m.");
   }
   std::string predicate() const override { return "say"; }
   std::string act(const Element& action) override {
@@ -64,7 +66,7 @@ class SayEffector : public Effector {
     for (const unsigned char c : text)
       if (c < 0x21 || c > 0x7e || c == '(' || c == ')') return fmt::format("byte {} is not allowed in a message", int(c));
     const soccer::Player* speaker = match_.player(*this);
-    if (!speaker || text.size() > kMaxLength) return {};
+    if (!speaker || text.size() > static_cast<std::size_t>(match_.settings()->sayMsgSize)) return {};
     speaker->state->hearSelf(text);
     const Vec3 mouth = speaker->position();
     for (const soccer::Player& hearer : match_.game()->pitch().players()) {

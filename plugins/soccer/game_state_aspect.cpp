@@ -96,6 +96,12 @@ void GameStateAspect::swapSides() {
   if (auto* scene = pitch_.scene()) scene->markModified();
 }
 
+Side GameStateAspect::halfKickOff() const {
+  if (half_ == 2) return secondHalfKickOff_ == Side::none ? Side::right : secondHalfKickOff_;
+  if (secondHalfKickOff_ == Side::none) return Side::left;
+  return pitch_.settings().changeSidesInSecondHalf ? secondHalfKickOff_ : soccer::opponent(secondHalfKickOff_);
+}
+
 void GameStateAspect::kickOff(Side side) {
   soccer::Pitch& p = pitch();
   if (!p.ready()) return;

@@ -44,6 +44,10 @@ class GameStateAspect : public SoccerControlAspect {
   void addGoal(Side side) { ++team(side).score; }
   void setScores(int left, int right);
   const std::string& teamName(Side side) const { return team(side).name; }
+  /// A player of the side has that number (1..kTeamSize).
+  bool isTaken(Side side, int unum) const { return team(side).taken[unum]; }
+  /// Who kicks this half off, as far as it is decided: left, unless a coin said otherwise, then the other.
+  Side halfKickOff() const;
 
   /// Kick-off for a side; none: who is due, or a coin decides. The ball goes to the centre.
   void kickOff(Side side);

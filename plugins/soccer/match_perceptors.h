@@ -26,10 +26,23 @@ class GameStatePerceptor : public Perceptor {
     }
     out.pair("t", game->time());
     out.pair("pm", playModeName(game->mode()));
+    if (match_.settings()->extraGameState) tellMore(out, *game);
     out.close();
   }
 
  private:
+  /// `(k left) (ti ((1 penalty_none 0.000)) ())`: a player without a penalty has minus the time of play left, as in the installed base.
+  static void tellMore(Predicates& out, const GameStateAspect& game) {
+    out.pair("k", sideName(game.halfKickOff()));
+    out.open("ti");
+    for (const soccer::Side side : {soccer::Side::left, soccer::Side::right}) {
+      out.open();
+      for (int unum = 1; unum <= GameStateAspect::kTeamSize; ++unum)
+        if (game.isTaken(side, unum)) out.open().add(unum).add("penalty_none").add(0.0 - game.time()).close();
+      out.close();
+    }
+    out.close();
+  }
   MatchLookup match_;
 };
 
@@ -78,11 +91,12 @@ class AgentStatePerceptor : public Perceptor {
     out.open("AgentState");
     out.open("pan_tilt").add(static_cast<int>(std::lround(s->pan()))).add(static_cast<int>(std::lround(s->tilt()))).close();
     out.pair("battery", s->battery());
-    out.pair("temp", s->temperature());
+    out.pair("temp", match_.settings() && match_.settings()->constantTemperature ? kTemperature : s->temperature());
     out.close();
   }
 
  private:
+  static constexpr double kTemperature = 23;  ///< degC: what the installed base's mainline says
   MatchLookup match_;
 };
 

@@ -124,7 +124,7 @@ void Pitch::placeBall(const Vec3& position) const {
 
 Area Pitch::penaltyArea(Side side) const {
   const double half = settings_->fieldLength / 2, front = half - settings_->penaltyLength;
-  const double width = (settings_->penaltyWidth + settings_->goalWidth) / 2;
+  const double width = (settings_->penaltyWidth + (settings_->penaltyWidthBeyondGoal ? settings_->goalWidth : 0)) / 2;
   return side == Side::left ? Area{-half, -width, -front, width} : Area{front, -width, half, width};
 }
 

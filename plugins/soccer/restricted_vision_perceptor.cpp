@@ -39,12 +39,13 @@ bool clip(Vec3f& begin, Vec3f& end, float halfX, float halfZ) {
 void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>& d) {
   using V = RestrictedVisionPerceptor;
   d.doc("Sees within a cone: flags, goals, ball, parts of players, lines.");
+  d.on<&V::prepare>(phase::kPrepare);
   d.property("staticSenseAxis", &V::staticAxis_)
       .doc("Angles from the field's x axis as the team sees it, less pan and tilt; else in the head's frame.");
   d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
   d.property("senseMyOrien", &V::senseMyOrien_).doc("Tells its own heading too.");
   d.property("senseBallPos", &V::senseBallPos_).doc("Tells the ball's position too.");
-  d.property("senseLine", &V::senseLine_).doc("Sees field lines.");
+  d.property("senseLine", &V::senseLine_).doc("Sees field lines, where Soccer.FieldLinesSeen lets it.");
   d.property("senseLineName", &V::senseLineName_).doc("Accepted; lines have no names.");
   d.property("viewCones", &V::cones).unit("deg").doc("Full horizontal and vertical cone.");
   d.property("noise", &V::noisy).doc("Noise is on.");
@@ -88,7 +89,7 @@ bool RestrictedVisionPerceptor::look(const SceneNode& object, soccer::Polar& out
   out = direction(toView(way) + noise_.calibration());
   if (!inCone(out)) return false;
   // after the cone: values slightly outside can appear
-  if (noise_.on) noise_.apply(out);
+  noise_.apply(out);
   return true;
 }
 
@@ -107,7 +108,7 @@ bool RestrictedVisionPerceptor::lookAtLine(const Line& line, soccer::Polar& begi
     if (staticAxis_ || !clip(a, b, halfX, halfZ)) return false;
   }
   begin = direction(a), end = direction(b);
-  if (noise_.on) noise_.apply(begin), noise_.apply(end);
+  noise_.apply(begin), noise_.apply(end);
   return true;
 }
 
@@ -135,6 +136,8 @@ void RestrictedVisionPerceptor::seeRobot(const soccer::VisibleObjects::Robot& ro
 
 void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {
   objects_.refresh(*this);
+  const SoccerSettings* league = objects_.settings();
+  noise_.allowed = !league || league->visionNoise;
   soccer::Polar polar;
   out.open(predicateName_);
   for (const ObjectState* o : objects_.field()) {
@@ -151,15 +154,24 @@ void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {
     out.pair("myorien", normalizeDeg(side() == soccer::Side::right ? heading - 180 : heading));
   }
   if (const ObjectState* ball = objects_.ball(); ball && senseBallPos_) writePoint(out, "ballpos", soccer::seenBy(side(), placeOf(*ball)));
+  if (senseLine_ && (!league || league->fieldLinesSeen)) seeLines(out);
+  out.close();
+}
+
+void RestrictedVisionPerceptor::seeLines(Predicates& out) {
+  soccer::Polar polar, end;
   for (const Line* line : objects_.lines()) {
-    soccer::Polar end;
-    if (!senseLine_ || !lookAtLine(*line, polar, end)) continue;
+    if (!lookAtLine(*line, polar, end)) continue;
     out.open("L");
     writePolar(out, polar);
     writePolar(out, end);
     out.close();
   }
-  out.close();
+}
+
+void RestrictedVisionPerceptor::prepare(const Event&) {
+  objects_.refresh(*this);
+  if (const SoccerSettings* league = objects_.settings(); league && league->visionInterval > 0) interval_ = league->visionInterval;
 }
 
 }  // namespace spark

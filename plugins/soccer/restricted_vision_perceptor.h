@@ -23,6 +23,8 @@ class RestrictedVisionPerceptor : public Perceptor {
   void loadState(StateReader& in) override { noise_.load(in); }
 
  private:
+  /// The league may look more or less often than the robot's scene file says.
+  void prepare(const Event&);
   void setViewCones(int horizontal, int vertical) { cone_ = {horizontal, vertical}; }
   void setPanRange(int low, int high) { pan_ = {std::min(low, high), std::max(low, high)}; }
   void setTiltRange(int low, int high) { tilt_ = {std::min(low, high), std::max(low, high)}; }
@@ -38,6 +40,7 @@ class RestrictedVisionPerceptor : public Perceptor {
   bool inCone(const soccer::Polar& p) const;
   bool look(const SceneNode& object, soccer::Polar& out);
   bool lookAtLine(const Line& line, soccer::Polar& begin, soccer::Polar& end);
+  void seeLines(Predicates& out);
   void seeRobot(const soccer::VisibleObjects::Robot& robot, Predicates& out);
 
   soccer::VisibleObjects objects_;

@@ -19,6 +19,8 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
       .unit("m")
       .min(0)
       .doc("Width of the penalty areas beyond the goal's width, both sides together.");
+  d.property("PenaltyWidthBeyondGoal", &S::penaltyWidthBeyondGoal)
+      .doc("Rules add the goal's width to PenaltyWidth, as field files do; false: rules take PenaltyWidth alone.");
   d.property("BorderSize", &S::borderSize).unit("m").min(0).doc("Border around the field; told to monitors.");
 
   d.property("BallRadius", &S::ballRadius).unit("m").min(0.001).doc("Radius of the ball.");
@@ -65,6 +67,17 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("LabelMessages", &S::labelMessages).doc("Heard messages carry the speaker's team.");
   d.property("BeamNoiseXY", &S::beamNoiseXY).unit("m").min(0).doc("Half width of the uniform noise of beam positions.");
   d.property("BeamNoiseAngle", &S::beamNoiseAngle).unit("deg").min(0).doc("Half width of the uniform noise of beam angles.");
+  d.property("BeamWithinFieldWidth", &S::beamWithinFieldWidth).doc("Beams end between the touch lines.");
+  d.property("SayMsgSize", &S::sayMsgSize).unit("bytes").range(1, 512).doc("Longer messages of players are not heard.");
+  d.property("ExtraGameState", &S::extraGameState)
+      .doc("GS also tells who kicks the half off and every player's penalty: (k left) (ti ((1 penalty_none 0.00)) ()).");
+  d.property("ConstantTemperature", &S::constantTemperature).doc("Agents are told 23 degC, whatever their temperature is.");
+  d.property("VisionInterval", &S::visionInterval)
+      .unit("cycles")
+      .range(0, 1000)
+      .doc("Cycles between two looks through a RestrictedVisionPerceptor; 0: as the robot's scene file says.");
+  d.property("VisionNoise", &S::visionNoise).doc("False: what robots see has no noise, whatever their scene files say.");
+  d.property("FieldLinesSeen", &S::fieldLinesSeen).doc("Robots whose vision senses lines see the field's.");
 
   d.property("PassModeMaxBallSpeed", &S::passModeMaxBallSpeed).unit("m/s").min(0).doc("Pass mode: the ball must not be faster.");
   d.property("PassModeMaxBallDist", &S::passModeMaxBallDist).unit("m").min(0).doc("Pass mode: the player must be as near to the ball.");

@@ -20,6 +20,7 @@ class SoccerSettings : public Node, public IVariables {
   // Field [m]
   double fieldLength = 30, fieldWidth = 20, fieldHeight = 40, goalWidth = 2.1, goalDepth = 0.6, goalHeight = 0.8;
   double penaltyLength = 1.8, penaltyWidth = 3.9, borderSize = 0;
+  bool penaltyWidthBeyondGoal = true;
   // Ball and agents
   double ballRadius = 0.042, ballMass = 0.026, ballLinearDrag = 0.01, ballAngularDrag = 0.00005, ballMaxSpeed = 0;
   double agentRadius = 0.4, agentMass = 75, agentMaxSpeed = 10, agentLinearDrag = 0.1;
@@ -31,8 +32,12 @@ class SoccerSettings : public Node, public IVariables {
   bool penaltyShootout = false, startAnyFieldPosition = false, automaticQuit = false, useOffside = false;
   int maxNumSafeRepositionAttempts = 100;
   // What agents are told, and noise
-  bool reportScore = true, labelMessages = true;
+  bool reportScore = true, labelMessages = true, extraGameState = false, constantTemperature = true;
   double beamNoiseXY = 0.05, beamNoiseAngle = 10;
+  bool beamWithinFieldWidth = true;
+  int sayMsgSize = 20;
+  bool visionNoise = true, fieldLinesSeen = true;
+  int visionInterval = 0;
   // Pass mode
   double passModeMaxBallSpeed = 0.05, passModeMaxBallDist = 0.5, passModeMinOppBallDist = 1, passModeDuration = 4;
   double passModeScoreWaitTime = 10, passModeRetryWaitTime = 3;

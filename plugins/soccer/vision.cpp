@@ -23,6 +23,7 @@ void VisibleObjects::refresh(const SceneNode& eye) {
   auto* aspect = eye.ancestor<AgentAspect>();
   agent_ = aspect ? &aspect->outermost() : nullptr;
   state_ = nullptr;
+  settings_ = kernel.root().find<SoccerSettings>("/sys/variables/Soccer");
   Node* scene = kernel.root().find<Node>("/usr/scene");
   if (!scene) return;
   scene->collect(lines_);

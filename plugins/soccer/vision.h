@@ -7,6 +7,7 @@
 
 #include "agent_state.h"
 #include "api/agents.h"
+#include "soccer_settings.h"
 #include "spark/random.h"
 
 namespace spark::soccer {
@@ -27,19 +28,22 @@ void writePolar(Predicates& out, const Polar& p);
 class VisionNoise {
  public:
   explicit VisionNoise(const Leaf& eye) : random(eye, "vision") {}
-  bool on = true;
+  bool on = true;       ///< as the robot's scene file says
+  bool allowed = true;  ///< as the league says
   RandomStream random;
+  bool active() const { return on && allowed; }
   /// The installed base's setNoiseParams: distance [%], phi (vertical) [deg], theta (horizontal) [deg], calibration error [m].
   void set(double distance, double phi, double theta, double error) {
     sigmaDistance_ = distance, sigmaPhi_ = phi, sigmaTheta_ = theta, error_ = error;
   }
   /// Once for each eye; zero while noise is off.
   const Vec3f& calibration() {
-    if (on && !std::exchange(calibrated_, true))
+    if (active() && !std::exchange(calibrated_, true))
       for (int i = 0; i < 3; ++i) calibration_[i] = static_cast<float>(random.uniform(-error_, error_));
-    return on ? calibration_ : kNone;
+    return active() ? calibration_ : kNone;
   }
   void apply(Polar& p) {
+    if (!active()) return;
     p.distance += random.normal(0, sigmaDistance_) * p.distance / 100;
     p.horizontal += random.normal(0, sigmaTheta_);
     p.vertical += random.normal(0, sigmaPhi_);
@@ -81,6 +85,8 @@ class VisibleObjects {
   AgentState* state() const { return state_; }
   /// The ball's mark, nullptr where there is no ball.
   const ObjectState* ball() const;
+  /// The league's settings, nullptr where there are none.
+  const SoccerSettings* settings() const { return settings_; }
 
  private:
   std::uint64_t version_ = 0;
@@ -89,6 +95,7 @@ class VisibleObjects {
   std::vector<Line*> lines_;
   AgentAspect* agent_ = nullptr;
   AgentState* state_ = nullptr;
+  const SoccerSettings* settings_ = nullptr;
 };
 
 /// World position of a mark.

@@ -19,12 +19,13 @@ bool VisionPerceptor::look(const SceneNode& object, soccer::Polar& out) {
   out = soccer::polarOf(relative + noise_.calibration());
   // robots look along their own y axis
   if (!staticAxis_) out.horizontal = normalizeDeg(out.horizontal - 90);
-  if (noise_.on && randomNoise_) noise_.apply(out);
+  if (randomNoise_) noise_.apply(out);
   return true;
 }
 
 void VisionPerceptor::sense(Predicates& out, const Event&) {
   objects_.refresh(*this);
+  noise_.allowed = !objects_.settings() || objects_.settings()->visionNoise;
   soccer::Polar polar;
   out.open(predicateName_);
   for (const ObjectState* o : objects_.field()) {

@@ -1,0 +1,135 @@
+// What differs between versions of the installed base, property by property.
+#include <algorithm>
+
+#include "match_house.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+int count(const std::string& text, const std::string& what) {
+  int n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+/// Gives the agent cone vision instead of its own.
+Leaf& giveEye(MatchHouse& h, int agent, int interval) {
+  Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect" + std::to_string(agent) + "/body");
+  body.remove(*body.child("VisionPerceptor"));
+  Leaf& eye = body.create("RestrictedVisionPerceptor", "eye");
+  setProperty(eye, "interval", interval);
+  setProperty(eye, "senseLine", true);
+  return eye;
+}
+
+}  // namespace
+
+TEST_CASE("GS tells who kicks off and all players' penalties where the league wants it", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 7);
+  h.join("B", 3), h.join("A", 2);
+  h.run(2);
+  CHECK(a.heard.find(" (pm BeforeKickOff))") != std::string::npos);
+  h.set("ExtraGameState", true);
+  h.run(2);
+  CHECK(a.heard.find(" (pm BeforeKickOff) (k left) (ti ((2 penalty_none 0.00) (7 penalty_none 0.00)) ((3 penalty_none 0.00))))") != std::string::npos);
+  h.setMode("PlayOn");
+  h.run(50);
+  CHECK(a.heard.find("(t 0.98) (pm PlayOn) (k left) (ti ((2 penalty_none -0.98)") != std::string::npos);
+  h.trainer("(kill (unum 3)(team Right))");
+  h.trainer("(kickOff Right)");
+  h.run(3);
+  CHECK(a.heard.find("(k left)") != std::string::npos);
+  CHECK(a.heard.find(") ()))") != std::string::npos);
+}
+
+TEST_CASE("messages of players are as long as the league lets them be", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet &a = h.join("A", 1), &mate = h.join("A", 2);
+  const std::string word(21, 'x');
+  h.act(a, "(say " + word + ")");
+  h.run(2);
+  CHECK(mate.all.find(word) == std::string::npos);
+  h.set("SayMsgSize", 21);
+  h.act(a, "(say " + word + ")");
+  h.run(2);
+  CHECK(mate.all.find(word) != std::string::npos);
+}
+
+TEST_CASE("without the league's clamp beams leave the touch lines, but not the world", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  h.set("BeamWithinFieldWidth", false);
+  h.act(a, "(beam -3 50 0)");
+  h.run(1);
+  CHECK(h.bodyOf(1).state().position.y() == Approx(50).margin(0.01));
+  h.act(a, "(beam 1e30 1e30 1e30)");
+  h.run(1);
+  CHECK(h.bodyOf(1).state().position.norm() == Approx(1000).margin(0.1));
+  CHECK(h.bodyOf(1).state().rotation.allFinite());
+}
+
+TEST_CASE("penalty areas are as wide for the rules as the league says", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.set("MaxPlayersInsideOwnArea", 0);
+  h.join("A", 1);
+  h.set("PenaltyWidth", 3.9);
+  h.set("GoalWidth", 2.1);
+  // a free kick inside an area is taken from the area's front corner
+  h.setMode("PlayOn");
+  const auto dropAt = [&h](double x, double y) {
+    callMethod(h.at("/sys/server/gamecontrol/SoccerRuleAspect"), "dropBall", std::vector<Value>{x, y, 0.111});
+    return h.ball().state().position;
+  };
+  CHECK(dropAt(-45, 2.5).y() == Approx(3.0).margin(1e-6));
+  h.set("PenaltyWidthBeyondGoal", false);
+  CHECK(dropAt(-45, 2.5).y() == Approx(2.5).margin(1e-6));
+  CHECK(dropAt(-45, 1.5).y() == Approx(1.95).margin(1e-6));
+}
+
+TEST_CASE("agents are told their temperature only where the league does not keep it constant", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  h.trainer("(agent (unum 1)(team Left)(temperature 31))");
+  h.run(11);
+  CHECK(a.all.find("(temp 23.00)") != std::string::npos);
+  CHECK(a.all.find("(temp 31.00)") == std::string::npos);
+  h.set("ConstantTemperature", false);
+  h.run(12);
+  CHECK(a.all.find("(temp 31.00)") != std::string::npos);
+}
+
+TEST_CASE("the league says how often robots look, whether they see lines, and whether there is noise", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  h.setMode("PlayOn");
+  giveEye(h, 1, 3);
+  h.placeAgent(1, 0, 20);
+  h.placeBall(10, 20);
+  h.run(3);
+  const auto look = [&](int cycles) {
+    h.run(1);
+    a.all.clear();
+    h.run(cycles);
+    return a.all;
+  };
+  CHECK(count(look(12), "(See ") == 4);
+  CHECK(a.all.find("(L (pol") != std::string::npos);
+  CHECK(count(a.all, "(B (pol 10.00 0.00 ") == 0);  // a calibration error at least
+  h.set("VisionInterval", 2);
+  CHECK(count(look(12), "(See ") == 6);
+  h.set("FieldLinesSeen", false);
+  h.set("VisionNoise", false);
+  look(12);
+  INFO(a.heard);
+  CHECK(a.all.find("(L (pol") == std::string::npos);
+  CHECK(count(a.all, "(B (pol 10.00 0.00 ") + count(a.all, "(B (pol 10.00 -0.00 ") == 6);
+}
