@@ -13,10 +13,18 @@ function soccerVariables(values)
   return soccer
 end
 
---- Rules are control aspects below game control and run in this order. Offside is another one: new("OffsideAspect", ...).
-function soccerRules()
+--- Rules are control aspects below game control and run in this order; the referee makes the rules of play below itself. `rules` sets their
+--- properties, or switches one off: soccerRules{ PassModeRule = false, GoalRule = { enabled = true } }. Offside is another aspect:
+--- new("OffsideAspect", ...).
+function soccerRules(rules)
   for _, class in ipairs { "GameStateAspect", "BallStateAspect", "SoccerRuleAspect" } do
     new(class, "/sys/server/gamecontrol/" .. class)
+  end
+  for name, values in pairs(rules or {}) do
+    local path = "/sys/server/gamecontrol/SoccerRuleAspect/" .. name
+    local rule = get(path) or error("soccerRules: there is no rule " .. path)
+    if values == false then values = { enabled = false } end
+    for property, value in pairs(values) do rule[property] = value end
   end
 end
 

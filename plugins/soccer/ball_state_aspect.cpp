@@ -20,7 +20,8 @@ void BallStateAspect::rule(const Event&) {
   if (!pitch.ready() || !pitch.ball()) return;
   const SoccerSettings& s = pitch.settings();
   position_ = pitch.ballPosition();
-  findTouch(*game);
+  if (std::exchange(swapsSeen_, game->sideSwaps()) != game->sideSwaps()) last_.side = soccer::opponent(last_.side);
+  findTouch(pitch);
   const double slack = s.ballRadius + 0.001;
   onField_ = std::abs(position_.x()) < s.fieldLength / 2 + slack && std::abs(position_.y()) < s.fieldWidth / 2 + slack;
   if (onField_) lastValid_ = position_;
@@ -30,19 +31,23 @@ void BallStateAspect::rule(const Event&) {
     if (auto* r = pitch.goalRecorder(side)) r->clear();
 }
 
-void BallStateAspect::findTouch(GameStateAspect& game) {
-  const soccer::Pitch& pitch = game.pitch();
-  const soccer::Player* toucher = kicker_ ? pitch.playerOfAgent(kicker_) : nullptr;
-  kicker_ = 0;
+/// One who touches the ball; the first of them is the toucher.
+void BallStateAspect::note(const soccer::Player* toucher, const soccer::Player*& first) {
+  if (!toucher || toucher->side() == Side::none) return;
+  if (!first) first = toucher;
+  touchedBy_[toucher->side() == Side::right] = true;
+}
+
+void BallStateAspect::findTouch(const soccer::Pitch& pitch) {
+  const soccer::Player* toucher = nullptr;
+  touchedBy_.fill(false);
+  if (kicker_ != 0) note(pitch.playerOfAgent(std::exchange(kicker_, 0)), toucher);
   if (auto* recorder = pitch.ballRecorder())
-    for (const Ref<Leaf>& collider : recorder->colliders()) {
-      if (toucher) break;
-      toucher = pitch.playerOf(collider.get());
-    }
-  touched_ = toucher && toucher->side() != Side::none;
+    for (const Ref<Leaf>& collider : recorder->colliders()) note(pitch.playerOf(collider.get()), toucher);
+  touched_ = toucher != nullptr;
   if (!touched_) return;
-  fresh_ = toucher->agent->number() != last_.agent || game.time() - last_.time >= kContactGap;
-  last_ = {toucher->agent->number(), toucher->side(), toucher->state->unum(), game.time()};
+  fresh_ = toucher->agent->number() != last_.agent || pitch.now() - last_.time >= kContactGap;
+  last_ = {toucher->agent->number(), toucher->side(), toucher->state->unum(), pitch.now()};
 }
 
 void BallStateAspect::findGoal(const soccer::Pitch& pitch) {
@@ -69,7 +74,8 @@ void BallStateAspect::saveState(StateWriter& out) const {
   out.write(static_cast<int>(last_.side));
   out.write(last_.unum);
   out.write(last_.time);
-  for (bool b : {touched_, fresh_, onField_}) out.write(b);
+  for (bool b : {touched_, fresh_, onField_, touchedBy_[0], touchedBy_[1]}) out.write(b);
+  out.write(swapsSeen_);
   out.write(static_cast<int>(inGoal_));
   for (const Vec3* v : {&position_, &lastValid_})
     for (int i = 0; i < 3; ++i) out.write((*v)[i]);
@@ -81,7 +87,8 @@ void BallStateAspect::loadState(StateReader& in) {
   last_.side = static_cast<Side>(in.readInteger());
   last_.unum = static_cast<int>(in.readInteger());
   last_.time = in.readNumber();
-  for (bool* b : {&touched_, &fresh_, &onField_}) *b = in.readBool();
+  for (bool* b : {&touched_, &fresh_, &onField_, &touchedBy_[0], &touchedBy_[1]}) *b = in.readBool();
+  swapsSeen_ = in.readInteger();
   inGoal_ = static_cast<Side>(in.readInteger());
   for (Vec3* v : {&position_, &lastValid_})
     for (int i = 0; i < 3; ++i) (*v)[i] = in.readNumber();

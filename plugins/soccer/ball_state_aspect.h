@@ -18,7 +18,7 @@ class BallStateAspect : public SoccerControlAspect {
     int agent = 0;  ///< the agent's number, 0: none yet
     Side side = Side::none;
     int unum = 0;
-    double time = 0;  ///< s of play, of the last contact
+    double time = 0;  ///< s of the simulated clock, of the last contact
   };
 
   static void describe(Description<BallStateAspect>& d);
@@ -30,6 +30,8 @@ class BallStateAspect : public SoccerControlAspect {
   }
   /// Somebody touches the ball in this cycle.
   bool touched() const { return touched_; }
+  /// A player of that team touches the ball in this cycle, first or not.
+  bool touchedBy(Side side) const { return side != Side::none && touchedBy_[side == Side::right]; }
   /// That touch is a new one: not the continued contact of the same agent.
   bool newTouch() const { return touched_ && fresh_; }
   /// The last touch of the match; `agent` 0 when nobody ever touched it.
@@ -47,7 +49,8 @@ class BallStateAspect : public SoccerControlAspect {
   void loadState(StateReader& in) override;
 
  private:
-  void findTouch(GameStateAspect& game);
+  void findTouch(const soccer::Pitch& pitch);
+  void note(const soccer::Player* toucher, const soccer::Player*& first);
   void findGoal(const soccer::Pitch& pitch);
   std::string lastTeam() const { return soccer::sideName(last_.side); }
   int lastUnum() const { return last_.unum; }
@@ -56,6 +59,8 @@ class BallStateAspect : public SoccerControlAspect {
   std::uint64_t version_ = 0;
   int kicker_ = 0;
   bool touched_ = false, fresh_ = false, onField_ = true;
+  std::array<bool, 2> touchedBy_{};  ///< left, right
+  std::int64_t swapsSeen_ = 0;
   Touch last_;
   Side inGoal_ = Side::none;
   Vec3 position_ = Vec3::Zero(), lastValid_ = Vec3::Zero();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Beam, say and pass: what players of all leagues do.
+/// Beam and say: what players of all leagues do.
 
 #include "match_lookup.h"
 
@@ -80,15 +80,6 @@ class SayEffector : public Effector {
 
  private:
   MatchLookup match_;
-};
-
-/// `(pass)`: accepted. Pass mode itself is a play mode that trainers may set.
-class PassEffector : public Effector {
-  SPARK_CLASS(PassEffector, Effector)
- public:
-  static void describe(Description<PassEffector>& d) { d.doc("Accepts (pass); no rule grants pass mode to agents yet."); }
-  std::string predicate() const override { return "pass"; }
-  std::string act(const Element&) override { return {}; }
 };
 
 }  // namespace spark

@@ -9,6 +9,10 @@ namespace spark {
 using soccer::PlayMode;
 using soccer::Side;
 
+namespace {
+constexpr double kQuitAfter = 10;  // s after the match
+}
+
 void GameStateAspect::describe(Description<GameStateAspect>& d) {
   using G = GameStateAspect;
   d.doc("Clock, half, play mode, score, teams and their numbers.");
@@ -38,8 +42,8 @@ void GameStateAspect::setMode(PlayMode mode) {
   // trainers may switch modes thousands of times in a cycle
   if (linesLeft_ > 0) --linesLeft_, kernel().log().info("soccer: {:.2f} s, {} after {}", time_, soccer::playModeName(mode), soccer::playModeName(mode_));
   mode_ = mode;
-  modeTime_ = 0;
-  leadTime_ = 0;
+  modeStart_ = time_;
+  standing_ = 0;
   ++modeChanges_;
 }
 
@@ -52,41 +56,34 @@ void GameStateAspect::rule(const Event& event) {
   linesLeft_ = kLinesPerCycle;
   soccer::Pitch& p = pitch();
   if (!p.ready()) return;
-  modeTime_ += event.step;
-  if (mode_ == PlayMode::beforeKickOff) {
-    if (p.players().empty()) return;
-    leadTime_ += event.step;
-    if (p.settings().automaticKickOff && leadTime_ >= p.settings().waitBeforeKickOff) kickOff(Side::none);
-    return;
-  }
-  if (mode_ != PlayMode::gameOver) time_ += event.step;
-  if (advanceHalf()) return;
-  if (mode_ == PlayMode::gameOver && p.settings().automaticQuit && modeTime_ >= 10) kernel().requestStop();
+  advanceHalf();
+  advanceClock(event.step);
+  if (mode_ == PlayMode::beforeKickOff && p.settings().automaticKickOff && modeReached(p.settings().waitBeforeKickOff)) kickOff(Side::none);
+  if (mode_ == PlayMode::gameOver && p.settings().automaticQuit && modeReached(kQuitAfter)) kernel().requestStop();
 }
 
-/// True when the half or the match ended now.
-bool GameStateAspect::advanceHalf() {
+void GameStateAspect::advanceClock(double step) {
+  if (clockRuns())
+    time_ += step;
+  else if (mode_ == PlayMode::gameOver || !pitch_.gameControl()->agents().empty())
+    standing_ += step;
+}
+
+/// Ends a half or the match when its time is over. The end is imposed again in every cycle.
+void GameStateAspect::advanceHalf() {
   const SoccerSettings& s = pitch_.settings();
-  if (half_ == 1 && time_ >= s.ruleHalfTime) {
-    if (s.singleHalfTime) {
-      setMode(PlayMode::gameOver);
-      return true;
-    }
-    half_ = 2;
-    kickedOffInHalf_ = false;
-    setMode(PlayMode::beforeKickOff);
-    if (s.changeSidesInSecondHalf) swapSides();
-    for (const soccer::Player& p : pitch_.players()) p.state->setBattery(AgentState::kFullBattery);
-    return true;
-  }
-  if (half_ == 2 && time_ >= 2 * s.ruleHalfTime) {
-    setMode(PlayMode::gameOver);
-    return true;
-  }
-  return false;
+  const bool last = half_ == 2 || s.singleHalfTime;
+  if (time_ < s.ruleHalfTime * (half_ == 2 ? 2 : 1) - kRounding) return;
+  if (last) return setMode(PlayMode::gameOver);
+  half_ = 2;
+  kickedOffInHalf_ = false;
+  setMode(PlayMode::beforeKickOff);
+  if (s.changeSidesInSecondHalf) swapSides();
+  for (const soccer::Player& p : pitch_.players()) p.state->setBattery(AgentState::kFullBattery);
 }
 
 void GameStateAspect::swapSides() {
+  ++sideSwaps_;
   std::swap(teams_[0], teams_[1]);
   for (const soccer::Player& p : pitch_.players()) {
     if (p.side() == Side::none) continue;
@@ -97,29 +94,26 @@ void GameStateAspect::swapSides() {
 }
 
 Side GameStateAspect::halfKickOff() const {
-  if (half_ == 2) return secondHalfKickOff_ == Side::none ? Side::right : secondHalfKickOff_;
-  if (secondHalfKickOff_ == Side::none) return Side::left;
-  return pitch_.settings().changeSidesInSecondHalf ? secondHalfKickOff_ : soccer::opponent(secondHalfKickOff_);
+  const Side first = firstKickOff_ == Side::none ? Side::left : firstKickOff_;
+  // when they have changed ends, the other team stands on the first one's side
+  return half_ == 1 || pitch_.settings().changeSidesInSecondHalf ? first : soccer::opponent(first);
 }
 
 void GameStateAspect::kickOff(Side side) {
   soccer::Pitch& p = pitch();
   if (!p.ready()) return;
-  const auto coin = [this] { return random_.below(2) == 0 ? Side::left : Side::right; };
-  if (side == Side::none) {
-    const SoccerSettings& s = p.settings();
-    if (kickedOffInHalf_) {
-      side = coin();
-    } else if (half_ == 1) {
-      side = s.coinTossForKickOff ? coin() : Side::left;
-      secondHalfKickOff_ = s.changeSidesInSecondHalf ? side : soccer::opponent(side);
-    } else {
-      side = secondHalfKickOff_ == Side::none ? Side::right : secondHalfKickOff_;
-    }
-  }
+  if (side == Side::none) side = dueSide();
   kickedOffInHalf_ = true;
   p.placeBall(p.centre());
   setMode(forSide(PlayMode::kickOffLeft, side));
+}
+
+/// Who kicks off when nobody is named: the first time in a half whose turn it is, later a coin decides.
+Side GameStateAspect::dueSide() {
+  const auto coin = [this] { return random_.below(2) == 0 ? Side::left : Side::right; };
+  if (kickedOffInHalf_) return coin();
+  if (firstKickOff_ == Side::none) firstKickOff_ = pitch_.settings().coinTossForKickOff ? coin() : Side::left;
+  return halfKickOff();
 }
 
 /// Names go to all agents and monitors as they are: one with a bracket in it could tell them anything.
@@ -198,11 +192,12 @@ void GameStateAspect::agentLeaving(AgentAspect& agent) {
 
 void GameStateAspect::saveState(StateWriter& out) const {
   out.write(static_cast<int>(mode_));
-  for (double v : {time_, modeTime_, leadTime_}) out.write(v);
+  for (double v : {time_, modeStart_, standing_}) out.write(v);
   out.write(modeChanges_);
+  out.write(sideSwaps_);
   out.write(half_);
   out.write(kickedOffInHalf_);
-  out.write(static_cast<int>(secondHalfKickOff_));
+  out.write(static_cast<int>(firstKickOff_));
   for (const Team& t : teams_) {
     out.write(std::string_view(t.name));
     out.write(t.score);
@@ -213,11 +208,12 @@ void GameStateAspect::saveState(StateWriter& out) const {
 
 void GameStateAspect::loadState(StateReader& in) {
   mode_ = static_cast<PlayMode>(in.readInteger());
-  for (double* v : {&time_, &modeTime_, &leadTime_}) *v = in.readNumber();
+  for (double* v : {&time_, &modeStart_, &standing_}) *v = in.readNumber();
   modeChanges_ = in.readInteger();
+  sideSwaps_ = in.readInteger();
   half_ = static_cast<int>(in.readInteger());
   kickedOffInHalf_ = in.readBool();
-  secondHalfKickOff_ = static_cast<Side>(in.readInteger());
+  firstKickOff_ = static_cast<Side>(in.readInteger());
   for (Team& t : teams_) {
     t.name = in.readString();
     t.score = static_cast<int>(in.readInteger());

@@ -29,14 +29,22 @@ class GameStateAspect : public SoccerControlAspect {
   PlayMode mode() const { return mode_; }
   /// Sets the mode; nothing happens when it is the mode already.
   void setMode(PlayMode mode);
-  /// s since the last real change; 0 in the cycle of the change.
-  double modeTime() const { return modeTime_; }
+  /// s since the last real change, 0 in the cycle of the change. On the clock of play, where it runs: a trainer who sets the clock ahead
+  /// ends pauses too; set back, the mode begins anew.
+  double modeTime() const { return clockRuns() ? time_ - modeStart_ : standing_; }
+  /// The mode has lasted `seconds`, but for rounding.
+  bool modeReached(double seconds) const { return modeTime() > seconds - kRounding; }
   /// Counts real changes of the mode.
   std::int64_t modeChanges() const { return modeChanges_; }
   /// s of play: stands before the kick-off and after the match.
   double time() const { return time_; }
-  void setTime(double seconds) { time_ = std::max(0.0, seconds); }
+  void setTime(double seconds) {
+    time_ = std::max(0.0, seconds);
+    modeStart_ = std::min(modeStart_, time_);
+  }
   int half() const { return half_; }
+  /// Counts the times that teams swapped sides.
+  std::int64_t sideSwaps() const { return sideSwaps_; }
   /// No fouls are judged, beams are allowed.
   bool paused() const { return mode_ == PlayMode::beforeKickOff || mode_ == PlayMode::goalLeft || mode_ == PlayMode::goalRight; }
 
@@ -69,7 +77,12 @@ class GameStateAspect : public SoccerControlAspect {
   };
   Team& team(Side s) { return teams_[s == Side::right]; }
   const Team& team(Side s) const { return teams_[s == Side::right]; }
-  bool advanceHalf();
+  static constexpr double kRounding = 1e-6;  ///< s; sums of steps are not exact
+  /// Time of play passes.
+  bool clockRuns() const { return mode_ != PlayMode::beforeKickOff && mode_ != PlayMode::gameOver; }
+  void advanceHalf();
+  void advanceClock(double step);
+  Side dueSide();
   void swapSides();
   std::string robotTypeProblem(Side side, const AgentState& joining) const;
 
@@ -84,13 +97,14 @@ class GameStateAspect : public SoccerControlAspect {
   soccer::Pitch pitch_;
   RandomStream random_{*this, "referee"};
   PlayMode mode_ = PlayMode::beforeKickOff;
-  double time_ = 0, modeTime_ = 0, leadTime_ = 0;
-  std::int64_t modeChanges_ = 0;
+  double time_ = 0, modeStart_ = 0;  ///< s of play
+  double standing_ = 0;              ///< s that the clock of play has stood: before the kick-off with agents there, after the match
+  std::int64_t modeChanges_ = 0, sideSwaps_ = 0;
   static constexpr int kLinesPerCycle = 4;
   int linesLeft_ = kLinesPerCycle;  ///< in the log, about modes
   int half_ = 1;
   bool kickedOffInHalf_ = false;
-  Side secondHalfKickOff_ = Side::none;
+  Side firstKickOff_ = Side::none;  ///< predetermined for the first half; none: not determined yet
   std::array<Team, 2> teams_;
 };
 

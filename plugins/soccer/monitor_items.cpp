@@ -1,5 +1,7 @@
 #include "monitor_items.h"
 
+#include "pass_mode_rule.h"
+
 namespace spark {
 
 using soccer::Side;
@@ -40,9 +42,18 @@ void GameStateItem::contribute(Environment& env) {
   env.put(EnvPolicy::change, "score_left", game->score(Side::left));
   env.put(EnvPolicy::change, "score_right", game->score(Side::right));
   env.put(EnvPolicy::change, "play_mode", static_cast<int>(game->mode()));
+  scoreWaits(env, *game);
   // newer monitors draw the lines of any field with these
   env.put(EnvPolicy::full, "PenaltyAreaLength", match_.settings()->penaltyLength);
   env.put(EnvPolicy::full, "PenaltyAreaWidth", match_.settings()->penaltyWidth + match_.settings()->goalWidth);
+}
+
+/// s until goals of a team count again after its pass mode.
+void GameStateItem::scoreWaits(Environment& env, const GameStateAspect& game) {
+  const PassModeRule* pass = match_.referee() ? match_.referee()->passMode() : nullptr;
+  if (!pass || game.mode() != soccer::PlayMode::playOn) return;
+  if (const double left = pass->scoreWait(Side::left); left > 0) env.put(EnvPolicy::always, "pass_mode_score_wait_left", left);
+  if (const double right = pass->scoreWait(Side::right); right > 0) env.put(EnvPolicy::always, "pass_mode_score_wait_right", right);
 }
 
 void SoccerRuleItem::contribute(Environment& env) {

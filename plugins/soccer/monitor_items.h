@@ -19,6 +19,7 @@ class GameStateItem : public Node, public IMonitorItem {
 
  private:
   void field(Environment& env, const SoccerSettings& s) const;
+  void scoreWaits(Environment& env, const GameStateAspect& game);
   MatchLookup match_;
 };
 

@@ -134,7 +134,7 @@ Area Pitch::opponentHalf(Side side) const {
 }
 
 Vec3 Pitch::freeBallPosition(const Vec3& wanted) const {
-  Vec3 p(wanted.x(), wanted.y(), settings_->ballRadius);
+  Vec3 p = wanted;
   for (Side s : {Side::left, Side::right}) {
     const Area a = penaltyArea(s);
     if (!a.contains(p.x(), p.y())) continue;
@@ -190,6 +190,13 @@ void Pitch::clearOpponentHalf(Side side, double circle, double distance, RandomS
     target.x() = -direction(side) * distance;
     moveSafely(p, target, true);
   });
+}
+
+void Pitch::clearForKickOff(Side side, RandomStream& random) const {
+  const SoccerSettings& s = *settings_;
+  clearOpponentHalf(opponent(side), 0, s.freeKickMoveDist, random);
+  clearSphere(opponent(side), centre(), s.freeKickDistance, s.freeKickMoveDist, random);
+  clearOpponentHalf(side, s.freeKickDistance, s.freeKickMoveDist, random);
 }
 
 void Pitch::repel(Side side, const Vec3& centre, double within, double distance, RandomStream& random) const {

@@ -84,7 +84,7 @@ class Pitch {
   Area penaltyArea(Side side) const;
   /// Everything on the other side of the centre line, seen from `side`.
   Area opponentHalf(Side side) const;
-  /// Outside of both penalty areas: an inner point comes to the area's front corner on its side; y stays on the field.
+  /// Outside of both penalty areas: an inner point comes to the area's front corner on its side; y stays on the field, z as it is.
   Vec3 freeBallPosition(const Vec3& wanted) const;
 
   /// s: the simulated clock now.
@@ -117,6 +117,8 @@ class Pitch {
   void clearArea(Side side, const Area& area, double distance, RandomStream& random) const;
   /// Out of the opponents' half, to `distance` on the own side, unless all of him is within `circle` of the centre (0: no circle).
   void clearOpponentHalf(Side side, double circle, double distance, RandomStream& random) const;
+  /// To where they may stand at a kick-off of `side`.
+  void clearForKickOff(Side side, RandomStream& random) const;
   /// Pushes who is nearer than `within` radially to `distance` from the centre.
   void repel(Side side, const Vec3& centre, double within, double distance, RandomStream& random) const;
 

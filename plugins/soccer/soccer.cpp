@@ -1,10 +1,14 @@
 #include "agent_collision_handler.h"
 #include "field_effectors.h"
+#include "goal_rules.h"
 #include "init_effector.h"
 #include "kick_effector.h"
+#include "kick_off_rules.h"
 #include "match_perceptors.h"
 #include "monitor_items.h"
 #include "offside_aspect.h"
+#include "pass_effector.h"
+#include "restart_rules.h"
 #include "spark/plugin.h"
 #include "sphere_effectors.h"
 #include "trainer_command_parser.h"
@@ -17,6 +21,10 @@ SPARK_PLUGIN("soccer", "1.0", "Soccer: field, rules, and what players sense and 
              // rules
              spark::SoccerControlAspect, spark::GameStateAspect, spark::BallStateAspect, spark::SoccerRuleAspect, spark::OffsideAspect,
              spark::SPLState, spark::SPLRule,
+             // the referee's rules of play
+             spark::SoccerRule, spark::BeforeKickOffRule, spark::KickOffRule, spark::SetPieceRule, spark::RestartRule, spark::GoalKickRule,
+             spark::PassModeRule, spark::DoubleTouchRule, spark::GoalRule, spark::PenaltyShootoutRule, spark::BallOutRule,
+             spark::DropBallRule,
              // what players sense
              spark::GameStatePerceptor, spark::HearPerceptor, spark::AgentStatePerceptor, spark::GameTimePerceptor, spark::VisionPerceptor,
              spark::RestrictedVisionPerceptor,

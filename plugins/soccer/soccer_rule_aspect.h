@@ -3,17 +3,28 @@
 #include <span>
 #include <vector>
 
-#include "ball_state_aspect.h"
+#include "last_kick.h"
 
 namespace spark {
 
-/// The referee: restarts, goals, the ball leaving the field, clearing of players. Runs after ball state.
+class PassModeRule;
+
+/// The referee: what the rules of play share. It stands after ball state and makes the rules below itself, each a control aspect of its
+/// own that the config may set or switch off (soccer_rule.h). Their order is the order of judging:
 ///
-///     BeforeKickOff -> KickOff_X -> PlayOn -> Goal_X -> KickOff_(other)
-///                          |          | ^
-///                          +- 15 s ---+ +-- KickIn_X, corner_kick_X, goal_kick_X, free_kick_X, direct_free_kick_X (touch or 15 s)
+///     SoccerRuleAspect         the mode of this cycle, where a restart is, who took it
+///       BeforeKickOffRule      the ball is held, teams stay in their halves
+///       KickOffRule            KickOff_X                                                               -> PlayOn
+///       RestartRule            KickIn_X, corner_kick_X, free_kick_X, direct_free_kick_X                -> PlayOn
+///       GoalKickRule           goal_kick_X                                                             -> PlayOn
+///       PassModeRule           pass_X, and what pass mode costs                                        -> PlayOn
+///       DoubleTouchRule        PlayOn, pass_X                                                          -> free_kick_X
+///       GoalRule               PlayOn, pass_X -> Goal_X, goal_kick_X, corner_kick_X; Goal_X            -> KickOff_X
+///       PenaltyShootoutRule    with Soccer.PenaltyShootout: the goalie left his area                   -> Goal_Left
+///       BallOutRule            PlayOn, pass_X                                         -> goal_kick_X, corner_kick_X, KickIn_X
+///       DropBallRule           a restart that nobody takes                                             -> PlayOn
 ///
-/// In a restart nothing happens for the pause; then the ball is pinned to the kick position and opponents are kept away until the touch.
+/// A mode that began in this cycle is judged from the next cycle on; one that a trainer set, in the same cycle.
 class SoccerRuleAspect : public SoccerControlAspect {
   SPARK_CLASS(SoccerRuleAspect, SoccerControlAspect)
  public:
@@ -31,55 +42,73 @@ class SoccerRuleAspect : public SoccerControlAspect {
   static void describe(Description<SoccerRuleAspect>& d);
   void rule(const Event& event) override;
 
-  /// The ball lies free at `where` (outside of penalty areas), both teams are cleared from it, play goes on.
-  void dropBall(const Vec3& where);
+  // For the rules of this cycle.
+  /// False: there is no field, or another aspect is missing. Nothing below may be called then.
+  bool ready() const { return ready_; }
+  GameStateAspect& game() const { return *game_; }
+  BallStateAspect& ball() const { return *ball_; }
+  soccer::Pitch& pitch() const { return game_->pitch(); }
+  const SoccerSettings& settings() const { return pitch().settings(); }
+  /// nullptr when there is no such rule.
+  PassModeRule* passMode();
+  /// The mode that this cycle began with.
+  PlayMode mode() const { return mode_; }
+  /// No rule has ended that mode yet.
+  bool holds() const { return game_->mode() == mode_; }
+  /// PlayOn or pass mode, and no rule has stopped it in this cycle.
+  bool playing() const { return isPlay(mode_) && isPlay(game_->mode()); }
+  /// With two agents at most, or in a shoot-out, a kick-off or free kick is not restricted.
+  bool restricted() const { return pitch().players().size() > 2 && !settings().penaltyShootout; }
+
+  // Restarts.
   /// A restart at `where`.
   void award(PlayMode mode, const Vec3& where);
+  void awardGoalKick(Side side) { award(forSide(PlayMode::goalKickLeft, side), goalKickPosition(side)); }
+  void awardCorner(Side side) { award(forSide(PlayMode::cornerKickLeft, side), cornerPosition(opponent(side))); }
+  void awardFreeKick(Side side) { award(forSide(PlayMode::freeKickLeft, side), freeKickPosition()); }
+  /// Where the current or last restart is taken.
+  const Vec3& kickPosition() const { return kickPosition_; }
+  /// The restart is taken by who touches the ball now; play goes on.
+  void taken(bool indirect);
+  soccer::LastKick& lastKick() { return lastKick_; }
+  /// The team that kicked off and has not earned the right to score yet; none: no restriction.
+  Side kickOffSide() const { return kickOffSide_; }
+  void setKickOffSide(Side side) { kickOffSide_ = side; }
+  /// The ball lies free at `where` (outside of penalty areas), both teams are cleared from it, play goes on.
+  void dropBall(const Vec3& where);
+
+  // Fouls.
   /// Tells monitors of a foul; `team` is left, right or none.
   void reportFoul(int type, std::string team, int unum);
   /// The last fouls, oldest first.
   std::span<const Foul> fouls() const { return fouls_; }
 
  protected:
+  void onLink() override;
   void saveState(StateWriter& out) const override;
   void loadState(StateReader& in) override;
 
  private:
+  static bool isPlay(PlayMode m) { return m == PlayMode::playOn || m == PlayMode::passLeft || m == PlayMode::passRight; }
+  bool findMatch();
   void enterMode();
-  void beforeKickOff();
-  void kickOff(Side side);
-  void clearForKickOff(Side side);
-  void restart(Side side);
-  void goalKick(Side side);
-  void passMode(Side side);
-  void goalPause(Side scorer);
-  void playOn();
-  bool doubleTouch();
-  void earnRightToScore();
-  bool goal();
-  void countGoal(Side goalOf);
-  void ballOut();
-  bool dropBallIfLate(const Vec3& where);
-  void taken(bool indirect);
-  void repelOnce(Side side, const Vec3& from);
-  bool restricted() const;
   Vec3 positionFor(PlayMode mode) const;
+  Vec3 freeKickPosition() const;
   Vec3 goalKickPosition(Side side) const;
   Vec3 cornerPosition(Side defending) const;
+  Vec3 kickInPosition() const;
 
   GameStateAspect* game_ = nullptr;
   BallStateAspect* ball_ = nullptr;
-  soccer::Pitch* pitch_ = nullptr;  ///< of this cycle
-  std::uint64_t gameVersion_ = 0, ballVersion_ = 0;
+  PassModeRule* passMode_ = nullptr;
+  std::uint64_t gameVersion_ = 0, ballVersion_ = 0, passVersion_ = 0;
+  bool ready_ = false;
 
-  std::int64_t modeSeen_ = 0;
+  PlayMode mode_ = PlayMode::beforeKickOff;
+  std::int64_t modeSeen_ = 0, positionGivenAt_ = -1;  ///< counts of mode changes
   Vec3 kickPosition_ = Vec3::Zero();
-  bool positionGiven_ = false, repelled_ = false;
-  int taker_ = 0;               ///< agent that took the restart and that nobody else has touched the ball after; 0: none
-  double takerContact_ = 0;     ///< s of play
-  bool takerTouching_ = false;  ///< his contact of the restart itself still counts
-  bool indirect_ = false;
-  Side kickOffSide_ = Side::none;  ///< has not earned the right to score; none: no restriction
+  soccer::LastKick lastKick_;
+  Side kickOffSide_ = Side::none;
   std::vector<Foul> fouls_;
   std::int64_t foulCount_ = 0;
 };

@@ -55,7 +55,7 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("CoinTossForKickOff", &S::coinTossForKickOff).doc("A coin decides the first kick-off; else the left team has it.");
   d.property("SingleHalfTime", &S::singleHalfTime).doc("The match has one half.");
   d.property("ChangeSidesInSecondHalf", &S::changeSidesInSecondHalf).doc("Teams swap sides at half time.");
-  d.property("PenaltyShootout", &S::penaltyShootout).doc("Penalty shoot-out: kick-off restrictions are off.");
+  d.property("PenaltyShootout", &S::penaltyShootout).doc("Penalty shoot-out: kick-off restrictions are off, the right team stays in its penalty area, a goal ends it.");
   d.property("StartAnyFieldPosition", &S::startAnyFieldPosition).doc("Beams and starts anywhere on the field.");
   d.property("AutomaticQuit", &S::automaticQuit).doc("The host ends 10 s after the match.");
   d.property("UseOffside", &S::useOffside).doc("Without effect, as in the installed base: offside is a control aspect (OffsideAspect).");

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "match_lookup.h"
+#include "pass_mode_rule.h"
+
+namespace spark {
+
+/// `(pass)`: asks for pass mode; granted when the ball rests at the player's feet and no opponent is near (protocol section 2.5).
+class PassEffector : public Effector {
+  SPARK_CLASS(PassEffector, Effector)
+ public:
+  static void describe(Description<PassEffector>& d) {
+    d.doc("Asks for pass mode: (pass).");
+    d.on<&PassEffector::prepare>(phase::kPrepare);
+  }
+  std::string predicate() const override { return "pass"; }
+  std::string act(const Element&) override {
+    pending_ = true;
+    return {};
+  }
+
+ private:
+  void prepare(const Event&) {
+    if (!std::exchange(pending_, false)) return;
+    const soccer::Player* player = match_.player(*this);
+    PassModeRule* rule = player && match_.referee() ? match_.referee()->passMode() : nullptr;
+    if (rule) rule->request(*player);
+  }
+
+  MatchLookup match_;
+  bool pending_ = false;
+};
+
+}  // namespace spark

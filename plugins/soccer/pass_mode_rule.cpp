@@ -1,0 +1,119 @@
+#include "pass_mode_rule.h"
+
+namespace spark {
+
+using soccer::opponent;
+
+namespace {
+constexpr double kUnknown = -1;  // m
+
+double groundDistance(const Vec3& a, const Vec3& b) { return std::hypot(a.x() - b.x(), a.y() - b.y()); }
+}  // namespace
+
+void PassModeRule::describe(Description<PassModeRule>& d) {
+  using P = PassModeRule;
+  d.doc("Pass mode: a team may pass a resting ball undisturbed, and may not score for a while afterwards.");
+  d.property("scoreWaitLeft", &P::waitLeft).unit("s").doc("Goals of the left team do not count so long.");
+  d.property("scoreWaitRight", &P::waitRight).unit("s").doc("Goals of the right team do not count so long.");
+}
+
+void PassModeRule::judge(const Event&) {
+  if (modeSeen_ != game().modeChanges()) begin();
+  if (in(PlayMode::passLeft)) passing();
+  if (referee().playing())
+    for (Side s : {Side::left, Side::right}) earnRightToScore(s);
+  noteDistances();
+}
+
+/// A mode began: set pieces end all bans, pass mode for one team ends the other's.
+void PassModeRule::begin() {
+  modeSeen_ = game().modeChanges();
+  if (!referee().playing()) return forget();
+  if (in(PlayMode::passLeft)) team(opponent(side())).cleared = true;
+}
+
+void PassModeRule::forget() {
+  for (Team& t : teams_) t.lastActive = kNever, t.cleared = true;
+}
+
+void PassModeRule::passing() {
+  const SoccerSettings& s = settings();
+  if (ball().touched() || game().modeReached(s.passModeDuration)) return game().setMode(PlayMode::playOn);
+  pitch().repel(opponent(side()), ball().position(), s.passModeMinOppBallDist, 1.1 * s.passModeMinOppBallDist, random());
+  Team& t = team(side());
+  t.lastActive = pitch().now();
+  t.spot = ball().position();
+  t.cleared = t.ballAway = t.twoTouched = false;
+  t.toucher = 0;
+}
+
+void PassModeRule::earnRightToScore(Side side) {
+  Team& t = team(side);
+  if (t.cleared) return;
+  // a touch counts where the ball was before it
+  t.ballAway |= (ball().position() - t.spot).norm() >= settings().passModeMinOppBallDist;
+  if (!ball().touched() || ball().last().side != side) return;
+  if (t.toucher == 0) t.toucher = ball().last().unum;
+  t.twoTouched |= t.toucher != ball().last().unum;
+  t.cleared = t.twoTouched && t.ballAway;
+}
+
+double PassModeRule::scoreWait(Side side) const {
+  const Team& t = team(side);
+  if (t.cleared || !enabled() || !isLinked() || !referee().ready()) return 0;
+  return std::max(0.0, settings().passModeScoreWaitTime - (pitch().now() - t.lastActive));
+}
+
+void PassModeRule::request(const soccer::Player& player) {
+  if (!enabled() || !referee().ready() || !mayPass(player)) return;
+  game().setMode(forSide(PlayMode::passLeft, player.side()));
+}
+
+bool PassModeRule::mayPass(const soccer::Player& player) const {
+  const SoccerSettings& s = settings();
+  const Side mine = player.side();
+  if (game().mode() != PlayMode::playOn || pitch().now() - team(mine).lastActive < s.passModeRetryWaitTime) return false;
+  if (ball().touchedBy(mine) || pitch().ball()->state().linearVelocity.norm() > s.passModeMaxBallSpeed) return false;
+  const Vec3 spot = pitch().ballPosition();
+  const auto distances = [&](const soccer::Player& p) {
+    return std::pair(groundDistance(p.position(), spot), team(p.side()).ballDistance[p.state->unum()]);
+  };
+  const auto [now, before] = distances(player);
+  if (now > s.passModeMaxBallDist || before < 0 || before > s.passModeMaxBallDist) return false;
+  for (const soccer::Player& p : pitch().players()) {
+    if (p.side() != opponent(mine) || !p.torso) continue;
+    const auto [theirs, theirsBefore] = distances(p);
+    if (theirs < s.passModeMinOppBallDist || (theirsBefore >= 0 && theirsBefore < s.passModeMinOppBallDist)) return false;
+  }
+  return true;
+}
+
+void PassModeRule::noteDistances() {
+  for (Team& t : teams_) t.ballDistance.fill(kUnknown);
+  for (const soccer::Player& p : pitch().players())
+    if (p.side() != Side::none && p.torso) team(p.side()).ballDistance[p.state->unum()] = groundDistance(p.position(), ball().position());
+}
+
+void PassModeRule::saveState(StateWriter& out) const {
+  out.write(modeSeen_);
+  for (const Team& t : teams_) {
+    out.write(t.lastActive);
+    for (bool b : {t.cleared, t.ballAway, t.twoTouched}) out.write(b);
+    out.write(t.toucher);
+    for (int i = 0; i < 3; ++i) out.write(t.spot[i]);
+    for (double d : t.ballDistance) out.write(d);
+  }
+}
+
+void PassModeRule::loadState(StateReader& in) {
+  modeSeen_ = in.readInteger();
+  for (Team& t : teams_) {
+    t.lastActive = in.readNumber();
+    for (bool* b : {&t.cleared, &t.ballAway, &t.twoTouched}) *b = in.readBool();
+    t.toucher = static_cast<int>(in.readInteger());
+    for (int i = 0; i < 3; ++i) t.spot[i] = in.readNumber();
+    for (double& d : t.ballDistance) d = in.readNumber();
+  }
+}
+
+}  // namespace spark

@@ -1,0 +1,56 @@
+#include "restart_rules.h"
+
+namespace spark {
+
+using soccer::opponent;
+
+void SetPieceRule::repelOnce() {
+  if (repelledIn_ == game().modeChanges()) return;
+  repelledIn_ = game().modeChanges();
+  const double distance = settings().kickRepelDist;
+  pitch().repel(side(), referee().kickPosition(), distance, distance, random());
+}
+
+void RestartRule::judge(const Event&) {
+  const bool indirect = in(PlayMode::kickInLeft) || in(PlayMode::freeKickLeft);
+  if (!indirect && !in(PlayMode::cornerKickLeft) && !in(PlayMode::directFreeKickLeft)) return;
+  if (!open()) return;
+  const Vec3& where = referee().kickPosition();
+  pitch().clearSphere(opponent(side()), where, settings().freeKickDistance, settings().freeKickMoveDist, random());
+  repelOnce();
+  if (kicked())
+    referee().taken(indirect);
+  else
+    pitch().placeBall(where);
+}
+
+void GoalKickRule::judge(const Event&) {
+  if (!in(PlayMode::goalKickLeft) || !open()) return;
+  const soccer::Area area = pitch().penaltyArea(side());
+  pitch().clearArea(opponent(side()), area, settings().freeKickMoveDist, random());
+  repelOnce();
+  if (kickedIn_ != game().modeChanges()) {
+    if (!kicked()) return pitch().placeBall(referee().kickPosition());
+    kickedIn_ = game().modeChanges();
+    referee().lastKick().taken(ball().last(), false);
+  }
+  if (!area.contains(ball().position().x(), ball().position().y()) || !ball().onField()) game().setMode(PlayMode::playOn);
+}
+
+void GoalKickRule::saveState(StateWriter& out) const {
+  SetPieceRule::saveState(out);
+  out.write(kickedIn_);
+}
+
+void GoalKickRule::loadState(StateReader& in) {
+  SetPieceRule::loadState(in);
+  kickedIn_ = in.readInteger();
+}
+
+void DropBallRule::judge(const Event&) {
+  for (const PlayMode restart : {PlayMode::kickOffLeft, PlayMode::kickInLeft, PlayMode::cornerKickLeft, PlayMode::goalKickLeft,
+                                 PlayMode::freeKickLeft, PlayMode::directFreeKickLeft})
+    if (in(restart) && game().modeReached(settings().ruleDropBallTime)) return referee().dropBall(referee().kickPosition());
+}
+
+}  // namespace spark

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "soccer_rule_aspect.h"
+
+namespace spark {
+
+/// Base of the rules of play. A rule stands below the referee (SoccerRuleAspect), or beside and after it, and judges once a cycle, in
+/// tree order. It acts on the referee's `mode()`, and asks `holds()` or `playing()` whether a rule before it has ended that mode already.
+class SoccerRule : public ControlAspect {
+  SPARK_CLASS(SoccerRule, ControlAspect)
+ public:
+  using Side = soccer::Side;
+  using PlayMode = soccer::PlayMode;
+
+  static void describe(Description<SoccerRule>& d) {
+    d.doc("Base of the rules of play.");
+    d.property("enabled", &SoccerRule::enabled_).doc("The rule is judged.");
+    d.abstract();
+  }
+  void rule(const Event& event) final {
+    if (enabled_ && findReferee() && referee_->ready()) judge(event);
+  }
+  bool enabled() const { return enabled_; }
+
+ protected:
+  /// Everything below may be called.
+  virtual void judge(const Event& event) = 0;
+
+  SoccerRuleAspect& referee() const { return *referee_; }
+  GameStateAspect& game() const { return referee_->game(); }
+  BallStateAspect& ball() const { return referee_->ball(); }
+  soccer::Pitch& pitch() const { return referee_->pitch(); }
+  const SoccerSettings& settings() const { return referee_->settings(); }
+  RandomStream& random() const { return game().random(); }
+  PlayMode mode() const { return referee_->mode(); }
+  /// The team that the mode names.
+  Side side() const { return sideOf(mode()); }
+  /// mode() is that kind of mode, for either side (`left`: its left variant), and still holds.
+  bool in(PlayMode left) const { return (mode() == left || mode() == forSide(left, Side::right)) && referee_->holds(); }
+
+  void onLink() override {
+    ControlAspect::onLink();
+    if (!findReferee())
+      kernel().log().warning("{} judges nothing: expected a SoccerRuleAspect above or beside it, found none. Create one before it.", path());
+  }
+
+ private:
+  bool findReferee() {
+    if (version_ == kernel().structureVersion()) return referee_ != nullptr;
+    version_ = kernel().structureVersion();
+    referee_ = ancestor<SoccerRuleAspect>();
+    if (!referee_) referee_ = parent()->childOf<SoccerRuleAspect>();
+    return referee_ != nullptr;
+  }
+
+  bool enabled_ = true;
+  SoccerRuleAspect* referee_ = nullptr;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace spark
