@@ -1,0 +1,100 @@
+#pragma once
+/// \file
+/// A TCP client of a server in the same process and thread: what either side sent is known to have arrived, so nothing waits or guesses.
+
+#include <arpa/inet.h>
+#include <linux/sockios.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "spark/error.h"
+
+namespace spark::test {
+
+/// One connection. After connecting, the server must be polled until accepted() says so.
+class LoopbackClient {
+ public:
+  explicit LoopbackClient(int port) : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in to = address(static_cast<std::uint16_t>(port));
+    if (::connect(fd_, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) throw Error(std::string("connect: ") + std::strerror(errno));
+    const int on = 1;
+    ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  }
+  LoopbackClient(LoopbackClient&& other) noexcept
+      : fd_(std::exchange(other.fd_, -1)), peer_(other.peer_), in_(std::move(other.in_)), ended_(other.ended_) {}
+  ~LoopbackClient() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+
+  /// Finds the server's end among this process's sockets; false while the server has not accepted.
+  bool accepted() {
+    sockaddr_in self{}, other{};
+    socklen_t n = sizeof self;
+    ::getsockname(fd_, reinterpret_cast<sockaddr*>(&self), &n);
+    for (int fd = 3; fd < 1024 && peer_ < 0; ++fd) {
+      n = sizeof other;
+      if (fd != fd_ && ::getpeername(fd, reinterpret_cast<sockaddr*>(&other), &n) == 0 && other.sin_family == AF_INET &&
+          other.sin_port == self.sin_port)
+        peer_ = fd;
+    }
+    return peer_ >= 0;
+  }
+  /// Sends a message behind its length, and returns when it is where the server's next read finds it.
+  void send(std::string_view message) {
+    const auto n = htonl(static_cast<std::uint32_t>(message.size()));
+    const std::string bytes = std::string(reinterpret_cast<const char*>(&n), 4) + std::string(message);
+    if (::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(bytes.size())) throw Error("send: the server has closed");
+    while (waiting(fd_) > 0) {
+    }
+  }
+  /// All messages that the server has sent and that were not taken yet. The server must have nothing left to write.
+  std::vector<std::string> take() {
+    while (waiting(peer_) > 0) {
+    }
+    char buffer[65536];
+    for (ssize_t n; (n = ::recv(fd_, buffer, sizeof buffer, MSG_DONTWAIT)) >= 0;) {
+      if (n == 0) {
+        ended_ = true;
+        break;
+      }
+      in_.append(buffer, static_cast<std::size_t>(n));
+    }
+    std::vector<std::string> out;
+    for (std::uint32_t n = 0; in_.size() >= 4; out.push_back(in_.substr(4, n)), in_.erase(0, 4 + n)) {
+      std::memcpy(&n, in_.data(), 4);
+      n = ntohl(n);
+      if (in_.size() < 4 + n) break;
+    }
+    return out;
+  }
+  /// The server has closed the connection (seen by take()).
+  bool ended() const { return ended_; }
+
+ private:
+  static sockaddr_in address(std::uint16_t port) {
+    sockaddr_in a{};
+    a.sin_family = AF_INET;
+    a.sin_port = htons(port);
+    a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    return a;
+  }
+  /// Bytes that this end has sent and the other end's kernel does not hold yet.
+  static int waiting(int fd) {
+    int n = 0;
+    return ::ioctl(fd, SIOCOUTQ, &n) == 0 ? n : 0;
+  }
+  int fd_, peer_ = -1;
+  std::string in_;
+  bool ended_ = false;
+};
+
+}  // namespace spark::test
