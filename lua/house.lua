@@ -72,21 +72,22 @@ local function languages()
   plugin "parser-json"
 end
 
+--- A port for agents; a second one may speak another language: the port's own parser wins over game control's.
+function agentPort(name, port, parser)
+  local node = tcpPort(name, port, "/sys/server/gamecontrol")
+  node.makeRoom = true                         -- agents speak first: who does not may lose his place to others
+  if parser then new(parser, "/sys/server/net/" .. name .. "/parser") end
+  return node
+end
+
 --- Game control and the port through which agents come. `parser`: class of the language they speak.
 function agents(t)
   languages()
   plugin "gamecontrol"
   local server = new("GameControl", "/sys/server/gamecontrol")
   new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
-  tcpPort("agents", t.port or 3100, "/sys/server/gamecontrol")
+  agentPort("agents", t.port or 3100)
   return server
-end
-
---- One more port for agents that speak another language than the first. The port's own parser wins over game control's.
-function agentPort(name, port, parser)
-  local node = tcpPort(name, port, "/sys/server/gamecontrol")
-  if parser then new(parser, "/sys/server/net/" .. name .. "/parser") end
-  return node
 end
 
 --- Monitor server and the port through which monitors come. `encoder`: class of the language it speaks.

@@ -15,9 +15,9 @@ end
 
 --- Rules are control aspects below game control and run in this order; the referee makes the rules of play below itself. `rules` sets their
 --- properties, or switches one off: soccerRules{ PassModeRule = false, GoalRule = { enabled = true } }. Offside is another aspect:
---- new("OffsideAspect", ...).
+--- new("OffsideAspect", ...). TeamlessAspect: robots that are created at one spot touch the ground only, until they have a team.
 function soccerRules(rules)
-  for _, class in ipairs { "GameStateAspect", "BallStateAspect", "SoccerRuleAspect" } do
+  for _, class in ipairs { "TeamlessAspect", "GameStateAspect", "BallStateAspect", "SoccerRuleAspect" } do
     new(class, "/sys/server/gamecontrol/" .. class)
   end
   for name, values in pairs(rules or {}) do

@@ -2,23 +2,39 @@
 
 #include <algorithm>
 
+#include "gamecontrol/scene_effector.h"
 #include "spark/error.h"
 #include "spark/state.h"
 
 namespace spark {
 
+namespace {
+/// So many messages to an agent that has not sent (syn) yet leave no faster than joinPace, others waiting or not.
+constexpr std::int64_t kPacedMessages = 50;
+
+double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
+}  // namespace
+
 void GameControl::describe(Description<GameControl>& d) {
   d.doc("Makes agents of connections and behaviours, dispatches their actions, asks their perceptors.");
   d.property("createEffector", &GameControl::createEffector_).doc("Class of the effector with which an agent asks for its robot.");
   d.property("expect", &GameControl::expect_).range(0, 64).doc("Holds the clock at cycle 0 until so many agents have sent scene, init and syn; they are numbered by team and number.");
-  d.property("maxAgents", &GameControl::maxAgents_).range(0, 1000).doc("Further connections are closed.");
+  d.property("maxAgents", &GameControl::maxAgents_).range(0, 1000).doc("Further agents are closed; clients that never said anything do not count.");
   d.property("maxPending", &GameControl::maxPending_).unit("bytes").range(1024, 1 << 28).doc("A client that sends more within one cycle is closed.");
   d.property("perceptDelay", &GameControl::perceptDelay_).range(0, 1).doc("Cycles between sensing and sending; the installed base has 1.");
   d.property("sync", &GameControl::sync_).doc("Waits for the agents' (syn) although the run loop is not in lockstep.");
-  d.property("grace", &GameControl::grace_).unit("cycles").min(0).doc("Lockstep: so long after connecting an agent is waited for no longer than graceWait.");
-  d.property("graceWait", &GameControl::graceWait_).unit("s").min(0).doc("See grace; wall clock.");
+  d.property("robotFolder", &GameControl::robotFolder_).doc("Agents' robots are scene files below this folder, e.g. rsg/agent/; empty: anywhere.");
   d.property("holdWait", &GameControl::holdWait_).unit("s").min(0).doc("Expected agents that named a robot and are silent for so long get a first message (wall clock).");
   d.property("syncTimeout", &GameControl::syncTimeout_).unit("s").min(0).doc("Lockstep: an agent that does not answer for so long is closed (wall clock); 0: never.");
+  d.property("joinWait", &GameControl::joinWait_)
+      .unit("s")
+      .min(0)
+      .doc("Lockstep: while another agent joins, one that has not answered yet is waited for no longer than this (wall clock).");
+  d.property("joinPace", &GameControl::joinPace_)
+      .unit("s")
+      .min(0)
+      .doc("Lockstep: cycles take at least so long while an agent that is new, or all there are, have not sent (syn) yet (wall clock).");
+  d.property("idleLimit", &GameControl::idleLimit_).unit("s").min(0).doc("A client that has no robot after so long is closed (wall clock); 0: never.");
   d.property("agentCount", &GameControl::agentCount).doc("Agents now.");
   d.property("agentsSeen", &GameControl::agentsSeen).doc("Agents that ever had a robot.");
   d.property("messagesDropped", &GameControl::messagesDropped).doc("Percepts not sent because the client had not taken earlier ones.");
@@ -49,9 +65,13 @@ GameControl::Participant* GameControl::participantOf(const IConnection& connecti
   return nullptr;
 }
 
+bool GameControl::full() const {
+  const auto counts = [](const auto& p) { return p->heardFrom(); };
+  return std::count_if(participants_.begin(), participants_.end(), counts) + std::count_if(newcomers_.begin(), newcomers_.end(), counts) >= maxAgents_;
+}
+
 void GameControl::connected(IConnection& connection) {
-  if (participants_.size() + newcomers_.size() >= static_cast<std::size_t>(maxAgents_))
-    return connection.close(fmt::format("there are {} agents already (maxAgents)", maxAgents_));
+  if (full()) return connection.close(fmt::format("there are {} agents already (maxAgents)", maxAgents_));
   newcomers_.push_back(std::make_unique<Participant>(connection));
   newcomers_.back()->resolveParser(*this);
 }
@@ -60,7 +80,8 @@ void GameControl::received(IConnection& connection, std::string_view message) {
   Participant* p = participantOf(connection);
   if (!p || p->leaving()) return;
   resolveParsers();
-  const std::string why = p->receive(message, static_cast<std::size_t>(maxPending_), kernel().log(), cycle_);
+  const std::string why = !p->heardFrom() && full() ? fmt::format("there are {} agents already (maxAgents)", maxAgents_)
+                                                    : p->receive(message, static_cast<std::size_t>(maxPending_), kernel().log(), cycle_);
   if (why.empty()) {
     if (holding()) gamecontrol::Hold::note(*p);
     return;
@@ -89,33 +110,56 @@ bool GameControl::ready(bool lockstep) {
   if (holding()) return hold_.over(newcomers_, expect_, holdWait_, kernel().log());
   if (!lockstep && !sync_) return true;
   const auto now = Clock::now();
-  if (!waiting_) waitingSince_ = now;
-  waiting_ = true;
+  if (!std::exchange(waiting_, true)) waitingSince_ = now;
+  const auto joins = [](const auto& p) { return p->joining(); };
+  const bool somebodyJoins =
+      std::any_of(participants_.begin(), participants_.end(), joins) || std::any_of(newcomers_.begin(), newcomers_.end(), joins);
   bool all = true;
-  for (const auto& p : participants_) all &= answered(*p, now);
-  return all;
+  for (const auto& p : participants_) all &= answered(*p, now, somebodyJoins);
+  return all && !tooSoon(now);
 }
 
-/// Who is waited for in lockstep: agents that can answer and were sent something, for ever (until syncTimeout); new ones a moment, so
-/// that their robot and their first answers come in the cycle in which a client that is quick enough expects them. Agents without a
-/// sync effector are not waited for: an idle connection must not stop the others.
-bool GameControl::answered(Participant& p, Clock::time_point now) {
-  if (p.leaving() || p.inside()) return true;
-  const auto since = [now](Clock::time_point t) { return std::chrono::duration<double>(now - t).count(); };
-  const bool fresh = p.counter() < grace_;
-  if (!p.mustSync()) return !fresh || p.heardFrom() || since(p.connectedAt()) >= graceWait_;
-  if (p.synced()) return true;
-  const double waited = since(waitingSince_);
-  if (fresh && !p.expected()) return waited >= graceWait_;
+/// Who is waited for in lockstep: agents that sent (syn) once and were sent percepts since, until syncTimeout. All others only watch: an
+/// idle connection, or a client that says (syn) when all of its team have joined, must not stop the match. One program may lead many agents
+/// and read the first percepts of each before it answers for any: an agent that has not answered yet does not hold up for long one that
+/// is about to get its first.
+bool GameControl::answered(Participant& p, Clock::time_point now, bool somebodyJoins) {
+  if (p.leaving() || !p.mustSync() || p.synced()) return true;
+  const double waited = seconds(now - waitingSince_);
+  if (somebodyJoins && !p.hasAnswered() && !p.expected() && waited >= joinWait_) return true;
   if (syncTimeout_ <= 0 || waited <= syncTimeout_) return false;
   p.connection()->close(fmt::format("{} did not answer for {} s, all others wait", p.label(), syncTimeout_));
   p.leave();
   return true;
 }
 
+/// Some clients read until nothing is there before they go on: a match that runs as fast as it can would never let those join.
+bool GameControl::tooSoon(Clock::time_point now) const {
+  if (seconds(now - actedAt_) >= joinPace_) return false;
+  bool watched = false, led = false;
+  for (const auto& p : participants_) {
+    if (p->leaving()) continue;
+    if (p->watches() && p->sent() <= kPacedMessages) return true;
+    watched |= p->watches();
+    led |= p->mustSync();
+  }
+  return watched && !led;
+}
+
+void GameControl::closeIdle() {
+  if (idleLimit_ <= 0) return;
+  for (const auto& p : participants_) {
+    if (p->hasRobot() || p->leaving() || p->inside() || seconds(actedAt_ - p->joinedAt()) <= idleLimit_) continue;
+    p->connection()->close(fmt::format("it has no robot after {} s", idleLimit_));
+    p->leave();
+  }
+}
+
 void GameControl::act(const Event& event) {
   cycle_ = event.cycle;
   waiting_ = false;
+  actedAt_ = Clock::now();
+  closeIdle();
   removeLeaving();
   joinBehaviors();
   joinNewcomers();
@@ -190,7 +234,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
     Node& scene = server ? server->scene() : kernel().root().require<Node>("/usr/scene");
     aspect = &scene.create<AgentAspect>("AgentAspect", fmt::format("AgentAspect{}", number));
     aspect->setNumber(number);
-    aspect->create(createEffector_, "_CreateEffector");
+    if (auto* scene = aspect->create(createEffector_, "_CreateEffector").as<SceneEffector>()) scene->setFolder(robotFolder_);
     p.join(number, *aspect);
   } catch (const std::exception& e) {
     kernel().log().error("{} cannot be made: {}", p.label(), e.what());

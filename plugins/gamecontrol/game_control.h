@@ -47,7 +47,10 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   void resolveParsers();
   void resolveRobots();
   void deliver();
-  bool answered(Participant& p, Clock::time_point now);
+  bool answered(Participant& p, Clock::time_point now, bool somebodyJoins);
+  bool tooSoon(Clock::time_point now) const;
+  bool full() const;
+  void closeIdle();
   bool holding() const { return expect_ > 0 && !released_; }
   Participant* participantOf(const IConnection& connection) const;
   void agentsChanged();
@@ -63,16 +66,16 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   gamecontrol::Hold hold_;
   gamecontrol::LineBudget budget_{40};
 
-  std::string createEffector_ = "SceneEffector";
-  int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, grace_ = 5;
+  std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
+  int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1;
   bool sync_ = false, released_ = false;
-  double graceWait_ = 1, holdWait_ = 0.5, syncTimeout_ = 60;
+  double holdWait_ = 0.5, syncTimeout_ = 30, joinWait_ = 0.25, joinPace_ = 0.01, idleLimit_ = 60;
 
   int nextNumber_ = 1, agentsSeen_ = 0;
   std::int64_t messagesDropped_ = 0, cycle_ = 0;
   std::uint64_t parsersAt_ = 0, robotsAt_ = 0, behaviorsAt_ = 0;
   bool waiting_ = false;
-  Clock::time_point waitingSince_{};
+  Clock::time_point waitingSince_{}, actedAt_{};
 };
 
 }  // namespace spark

@@ -9,6 +9,8 @@ namespace {
 constexpr std::uint32_t kMaxPendingTokens = 1 << 17;
 // What a client sent may stand in a line, but not at any length.
 constexpr std::size_t kLongestLine = 300;
+// What a sync predicate is called as long as no robot says otherwise.
+constexpr std::string_view kSync = "syn";
 constexpr const char* kNoException = "something that is no std::exception";
 }  // namespace
 
@@ -20,6 +22,7 @@ Participant::Participant(Behavior& behavior) : label_(fmt::format("agent of {}",
 void Participant::join(int number, AgentAspect& aspect) {
   number_ = number;
   aspect_ = &aspect;
+  joinedAt_ = Clock::now();
   label_ = fmt::format("agent {} ({})", number, inside_ ? behavior()->path() : connection_->peer());
   if (inside_) behavior()->start(pending_);
 }
@@ -54,11 +57,14 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
   const ReadResult result = parser()->parse(message, arrived_);
   if (!result.message.empty())
     warn(log, cycle, fmt::format("{} at {}:{}; the rest of that message is ignored.", result.message, result.line, result.column));
-  if (!syncPredicate_.empty())
-    for (const Element e : arrived_) synced_ |= e.head() == syncPredicate_;
+  for (const Element e : arrived_) synced_ |= isSync(e.head());
+  pledged_ |= synced_;
+  answered_ |= synced_ && sent_ > 0;
   keep(arrived_);
   return {};
 }
+
+bool Participant::isSync(std::string_view predicate) const { return predicate == (hadRobot_ ? std::string_view(syncPredicate_) : kSync) && !predicate.empty(); }
 
 void Participant::keep(const Predicates& arrived) {
   for (const Element e : arrived)
@@ -120,7 +126,7 @@ void Participant::realise(Log& log, std::int64_t cycle) {
       } catch (...) {
         warn(log, cycle, fmt::format("{} ({}) threw {}", e->path(), e->classObject()->name(), kNoException));
       }
-    } else {
+    } else if (hadRobot_ || head != kSync) {
       warn(log, cycle, fmt::format("no effector registered for predicate {}.", head));
     }
   }
@@ -135,7 +141,7 @@ void Participant::promote() {
 }
 
 void Participant::sense(const Event& event) {
-  ++counter_;
+  if (inside_ || heardFrom_ || counter_ == 0) ++counter_;
   percepts_.clear();
   for (std::size_t i = 0; i < perceptors_.size(); ++i) {
     Perceptor* p = perceptors_[i].get();

@@ -9,7 +9,11 @@
 ///     cycle k+2    end of act: effectors and perceptors are looked up; sense: first percepts
 ///     cycle k+3    act: percepts sent, after this cycle's inputs were taken; what answers them acts in k+4
 ///
-/// Effectors that a message addresses before they were looked up are "not registered": the action is lost with a warning.
+/// Effectors that a message addresses before they were looked up are "not registered": the action is lost with a warning. Only `(syn)` counts
+/// at once: who sends it takes part in lockstep from then on.
+///
+/// A client is idle until its first message: the cycles until then are not counted, so that what comes in every third cycle does not
+/// depend on how long it hesitated.
 
 #include <chrono>
 #include <string>
@@ -64,15 +68,21 @@ class Participant {
   /// Sends or hands over what was sensed last. False when the message was dropped because an earlier one has not left.
   bool deliver(Log& log, std::int64_t cycle);
 
-  /// Lockstep: it has to answer percepts with a sync predicate.
-  bool mustSync() const { return !syncPredicate_.empty() && sent_ > 0; }
+  /// Lockstep: it can answer percepts with a sync predicate, was sent some, and has sent that predicate before.
+  bool mustSync() const { return canSync() && pledged_; }
+  /// As mustSync, but it never sent a sync predicate: it is told what every cycle brings and not waited for.
+  bool watches() const { return canSync() && !pledged_; }
   bool synced() const { return synced_; }
+  /// It has answered percepts with a sync predicate.
+  bool hasAnswered() const { return answered_; }
+  /// It was heard from, and its first percepts may be on their way.
+  bool joining() const { return heardFrom_ && sent_ == 0 && counter_ <= kCyclesToFirstPercepts; }
   bool heardFrom() const { return heardFrom_; }
   bool hasRobot() const { return hadRobot_; }
-  Clock::time_point connectedAt() const { return connectedAt_; }
+  /// Messages with percepts that it was sent.
+  std::int64_t sent() const { return sent_; }
+  Clock::time_point joinedAt() const { return joinedAt_; }
   Clock::time_point lastHeard() const { return lastHeard_; }
-  /// Cycles it took part in.
-  std::int64_t counter() const { return counter_; }
   /// What is under way inside the host: percepts that were not sent yet, what a behaviour wants to do next. Messages on the wire are not.
   void save(StateWriter& out) const;
   void load(StateReader& in);
@@ -94,10 +104,13 @@ class Participant {
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  static constexpr std::int64_t kCyclesToFirstPercepts = 3;
   struct Slot {
     std::string predicate;
     Ref<Effector> effector;
   };
+  bool canSync() const { return !syncPredicate_.empty() && sent_ > 0; }
+  bool isSync(std::string_view predicate) const;
   Effector* effector(std::string_view predicate) const;
   void keep(const Predicates& arrived);
   void encode();
@@ -111,10 +124,10 @@ class Participant {
   Ref<Leaf> parserLeaf_;
   IParser* parser_ = nullptr;
   const bool inside_;
-  bool leaving_ = false, skipCycle_ = true, greeted_ = false, synced_ = false, heardFrom_ = false, hadRobot_ = false, expected_ = false, holdingBack_ = false,
+  bool leaving_ = false, skipCycle_ = true, greeted_ = false, heardFrom_ = false, hadRobot_ = false, expected_ = false, holdingBack_ = false,
        saidAll_ = false;
-  const Clock::time_point connectedAt_ = Clock::now();
-  Clock::time_point lastHeard_ = connectedAt_;
+  bool pledged_ = false, synced_ = false, answered_ = false;  ///< sent a sync predicate: ever, since the last cycle, after percepts
+  Clock::time_point joinedAt_ = Clock::now(), lastHeard_ = joinedAt_;
 
   Predicates pending_, arrived_, percepts_;
   Predicates later_;  ///< held back, or thought of and not due yet

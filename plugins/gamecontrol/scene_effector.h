@@ -13,9 +13,12 @@ class SceneEffector : public Effector {
  public:
   static void describe(Description<SceneEffector>& d) {
     d.doc("(scene file arguments...): loads the agent's robot, once.");
+    d.property("folder", &SceneEffector::folder_).doc("Robots are files below this folder; empty: anywhere.");
     d.on<&SceneEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "scene"; }
+  /// From now on only files below this folder are loaded; "": any.
+  void setFolder(std::string folder) { folder_ = std::move(folder); }
 
   std::string act(const Element& action) override {
     if (loaded_) return "(scene ...): it has a robot already; a second one is refused.";
@@ -23,6 +26,7 @@ class SceneEffector : public Effector {
     const Element file = action.at(1);
     if (!file || !file.isText() || file.text().empty()) return "(scene <file> <arguments>...): expected a file name after scene.";
     if (file.text().size() > kLongestName) return "(scene <file> ...): the file's name is too long.";
+    if (!allowed(file.text())) return fmt::format("(scene {}): robots are files below {}; others are refused.", file.text(), folder_);
     file_ = file.text();
     arguments_.clear();
     for (auto it = ++++action.begin(); it != action.end(); ++it) arguments_.push_back(value(*it));
@@ -31,6 +35,12 @@ class SceneEffector : public Effector {
 
  private:
   static constexpr std::size_t kLongestName = 512;
+
+  /// Absolute names, folders, and names with `..` in them get through: the file server refuses those, and says better why.
+  bool allowed(std::string_view file) const {
+    const bool climbs = ("/" + std::string(file) + "/").find("/../") != std::string::npos;
+    return file.starts_with(folder_) || folder_ == std::string(file) + "/" || file.starts_with("/") || climbs;
+  }
 
   static Value value(const Element& e) {
     switch (e.token().kind) {
@@ -65,7 +75,7 @@ class SceneEffector : public Effector {
   }
 
   static constexpr int kMostFailures = 10;
-  std::string file_;
+  std::string folder_, file_;
   List arguments_;
   bool loaded_ = false;
   int failures_ = 0;

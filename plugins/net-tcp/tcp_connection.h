@@ -43,6 +43,9 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   /// Received and not cut into messages yet.
   const std::string& input() const { return input_; }
   void consume(std::size_t bytes);
+  /// It has sent a whole message.
+  bool spoken() const { return spoken_; }
+  void markSpoken() { spoken_ = true; }
   /// Notes that the input ends in a part of a message (or not), for partialSeconds().
   void markPartial(bool partial);
   /// Seconds since the unfinished message began; 0 when there is none.
@@ -61,7 +64,7 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   std::size_t written_ = 0;
   HandlerMemory readMemory_, writeMemory_;
   Clock::time_point stalledSince_{}, partialSince_{};
-  bool readable_ = true, closing_ = false, partial_ = false, watchingWrite_ = false;
+  bool readable_ = true, closing_ = false, partial_ = false, watchingWrite_ = false, spoken_ = false;
 };
 
 }  // namespace spark::net

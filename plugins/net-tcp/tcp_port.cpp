@@ -1,5 +1,6 @@
 #include "net-tcp/tcp_port.h"
 
+#include <algorithm>
 #include <boost/asio/ip/address.hpp>
 
 #include "net-tcp/net_server.h"
@@ -27,6 +28,7 @@ void TcpPort::describe(Description<TcpPort>& d) {
   d.property("consumer", &TcpPort::consumer, &TcpPort::setConsumer).doc("Path of the node that gets connections and messages.");
   d.property("maxMessage", &TcpPort::maxMessage_).unit("bytes").range(1, 1 << 30).doc("A client that announces a longer message is closed.");
   d.property("maxConnections", &TcpPort::maxConnections_).range(1, 65536).doc("Further clients are closed at once.");
+  d.property("makeRoom", &TcpPort::makeRoom_).doc("When there are maxConnections clients, a new one takes the place of the oldest that never sent a message.");
   d.property("messageTimeout", &TcpPort::messageTimeout_).unit("s").min(0.001).doc("A client that takes longer to finish a message it began is closed (wall clock).");
   d.property("sendBuffer", &TcpPort::sendBuffer_).unit("bytes").range(4096, 1 << 28).doc("What the system may hold back for a client that does not read.");
   d.property("connections", &TcpPort::connectionCount).doc("Clients now.");
@@ -166,7 +168,7 @@ void TcpPort::take(tcp::socket socket) {
   auto connection = std::make_shared<TcpConnection>(std::move(socket), static_cast<std::uint64_t>(connectionsSeen_ + 1), *this);
   if (!consumer_ || !consumerLeaf_) {
     connection->close(fmt::format("nothing at '{}' takes connections", consumerPath_));
-  } else if (connectionCount() >= maxConnections_) {
+  } else if (full()) {
     connection->close(fmt::format("{} clients are connected already (maxConnections)", maxConnections_));
   } else {
     ++connectionsSeen_;
@@ -174,6 +176,16 @@ void TcpPort::take(tcp::socket socket) {
     connections_.push_back(connection);
     consumer_->connected(*connection);
   }
+}
+
+/// Clients that are closing give their place away already.
+bool TcpPort::full() {
+  const auto stays = [](const Connection& c) { return !c->closing(); };
+  if (std::count_if(connections_.begin(), connections_.end(), stays) < maxConnections_) return false;
+  const auto silent = std::find_if(connections_.begin(), connections_.end(), [](const Connection& c) { return !c->closing() && !c->spoken(); });
+  if (!makeRoom_ || silent == connections_.end()) return true;
+  (*silent)->close("it said nothing, and its place is needed");
+  return false;
 }
 
 bool TcpPort::serve(TcpConnection& connection) {
@@ -204,6 +216,7 @@ bool TcpPort::cut(TcpConnection& connection) {
     if (frame.status == IFraming::Frame::Status::bad) connection.close("it " + frame.why);
     if (frame.status != IFraming::Frame::Status::message) break;
     at += frame.consumed;
+    connection.markSpoken();
     if (!frame.message.empty()) consumer_->received(connection, frame.message);
   }
   if (at > 0) connection.markPartial(false);

@@ -52,6 +52,7 @@ class TcpPort : public Node {
   bool serve(net::TcpConnection& connection);
   bool cut(net::TcpConnection& connection);
   bool reap();
+  bool full();
   void closeSilent();
   std::int64_t messagesDropped() const { return messagesDropped_; }
   std::int64_t connectionsSeen() const { return connectionsSeen_; }
@@ -71,6 +72,7 @@ class TcpPort : public Node {
 
   int port_ = 0;
   std::string address_ = "0.0.0.0", consumerPath_ = "/sys/server/gamecontrol";
+  bool makeRoom_ = false;
   int maxMessage_ = 65536, maxConnections_ = 64, sendBuffer_ = 262144;
   double messageTimeout_ = 30;
   std::int64_t messagesDropped_ = 0, connectionsSeen_ = 0;

@@ -132,6 +132,8 @@ void Collider::addNotCollideWithColliderName(std::string name, bool on) {
 }
 
 bool Collider::mayCollideWith(const Collider& other) const {
+  const auto detached = [](const CollisionGroup* group) { return group && group->detached(); };
+  if (group_ != other.group_ && hasBody_ && other.hasBody_ && (detached(group_) || detached(other.group_))) return false;
   if (notCollideWith_.empty() && other.notCollideWith_.empty()) return true;
   if (space_ != other.space_) return true;
   const auto names = [](const Collider& a, const Collider& b) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "collision_group.h"
 #include "rigid_body.h"
 
 namespace spark {
@@ -34,8 +35,10 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   bool hasBody() const { return hasBody_; }
   /// Looks at the children again. `defaultOnTransform`: a TransformCollider without a handler of its own gets the default one.
   void refreshHandlers(bool defaultOnTransform);
-  /// False when the two are told not to collide: same space, and one names the other.
+  /// False when the two are told not to collide: same space, and one names the other; or one is in a detached group.
   bool mayCollideWith(const Collider& other) const;
+  /// The innermost group around it; nullptr: none. As of the last change of the tree.
+  void setGroup(const CollisionGroup* group) { group_ = group; }
   /// The shape it has; nothing for colliders that only group or are not supported.
   virtual std::optional<engine::ShapeDescription> shape() const { return std::nullopt; }
   /// The body's centre of mass moved: a part of a TransformCollider stays where it is.
@@ -84,6 +87,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   std::shared_ptr<physics::SpaceHandle> space_;
   engine::Geom geom_{};
   Ref<RigidBody> body_;
+  const CollisionGroup* group_ = nullptr;
   Collider* outer_ = nullptr;  ///< the TransformCollider it is part of
   Pose local_;                 ///< in the frame of body, transform or outer collider
   bool solid_ = false, listens_ = false, hasBody_ = false;

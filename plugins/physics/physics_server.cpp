@@ -55,16 +55,18 @@ void PhysicsServer::setDefaultOnTransform(bool on) {
   version_ = 0;
 }
 
-void PhysicsServer::collect(Node& node) {
+void PhysicsServer::collect(Node& node, const CollisionGroup* group) {
+  if (const auto* inner = node.childOf<CollisionGroup>()) group = inner;
   for (const auto& child : node.children()) {
     if (auto* body = child->as<RigidBody>()) {
       if (body->transform() && body->world() == world_->handle()) bodies_.push_back({body, body->transform()->transform(), 0});
     } else if (auto* collider = child->as<Collider>()) {
       collider->refreshHandlers(defaultOnTransform_);
+      collider->setGroup(group);
     } else if (auto* handler = child->as<ScriptHandler>()) {
       scripts_.push_back(Ref<ScriptHandler>(handler));
     }
-    if (Node* inner = child->asNode()) collect(*inner);
+    if (Node* inner = child->asNode()) collect(*inner, group);
   }
 }
 
@@ -76,7 +78,7 @@ bool PhysicsServer::refresh() {
   scene_ = kernel().root().find<ISceneServer>("/sys/server/scene");
   world_ = findWorld();
   if (!world_) return false;
-  collect(*world_->parent());
+  collect(*world_->parent(), nullptr);
   for (Placed& p : bodies_)
     for (const Transform* t = p.above; t; t = t->transform()) ++p.depth;
   // Outer transforms first: an inner one's local matrix needs where they are now.

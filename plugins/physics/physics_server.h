@@ -30,7 +30,7 @@ class PhysicsServer : public Node, public IPhysicsServer {
   World* findWorld();
   /// Looks at the scene again when its shape changed. False when there is nothing to step.
   bool refresh();
-  void collect(Node& node);
+  void collect(Node& node, const CollisionGroup* group);
   void physics(const Event& event);
   void place(const Event& event);
   void shiftSurroundings();

@@ -8,7 +8,7 @@
 
 SPARK_PLUGIN("physics", "1.0",
              "Bodies, colliders, joints, controllers and collision handlers as scene nodes; the engine is another plugin.",
-             spark::PhysicsServer, spark::PhysicsObject, spark::World, spark::Space, spark::Body, spark::RigidBody, spark::BodyController,
+             spark::PhysicsServer, spark::PhysicsObject, spark::World, spark::Space, spark::CollisionGroup, spark::Body, spark::RigidBody, spark::BodyController,
              spark::DragController, spark::VelocityController, spark::FPSController, spark::Battery, spark::Collider,
              spark::TransformCollider, spark::ConvexCollider, spark::ConcaveCollider, spark::ConeCollider, spark::CompoundCollider,
              spark::EmptyCollider, spark::BoxCollider, spark::SphereCollider, spark::CapsuleCollider, spark::CylinderCollider,

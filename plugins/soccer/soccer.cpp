@@ -11,6 +11,7 @@
 #include "restart_rules.h"
 #include "spark/plugin.h"
 #include "sphere_effectors.h"
+#include "teamless_aspect.h"
 #include "trainer_command_parser.h"
 #include "vision_perceptor.h"
 
@@ -20,7 +21,7 @@ SPARK_PLUGIN("soccer", "1.0", "Soccer: field, rules, and what players sense and 
              spark::AgentState, spark::AgentCollisionHandler,
              // rules
              spark::SoccerControlAspect, spark::GameStateAspect, spark::BallStateAspect, spark::SoccerRuleAspect, spark::OffsideAspect,
-             spark::SPLState, spark::SPLRule,
+             spark::SPLState, spark::SPLRule, spark::TeamlessAspect,
              // the referee's rules of play
              spark::SoccerRule, spark::BeforeKickOffRule, spark::KickOffRule, spark::SetPieceRule, spark::RestartRule, spark::GoalKickRule,
              spark::PassModeRule, spark::DoubleTouchRule, spark::GoalRule, spark::PenaltyShootoutRule, spark::BallOutRule,

@@ -187,6 +187,7 @@ class Arena {
     kernel.create("TestScenes", "/sys/server/scene");
     kernel.create("Node", "/usr/scene");
     Leaf& server = kernel.create("GameControl", "/sys/server/gamecontrol");
+    setProperty(server, "robotFolder", "");
     gate = server.as<IInputGate>();
     control = server.as<IGameControl>();
     kernel.create("SexpParser", "/sys/server/gamecontrol/parser");

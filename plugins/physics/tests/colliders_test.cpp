@@ -235,3 +235,75 @@ TEST_CASE("a ray hears of what it meets and pushes nothing") {
   CHECK(seen.colliders().size() == 1);
   CHECK(house.body(carrier).state().position.isApprox(Vec3(0, 0, 3), 1e-9));
 }
+
+namespace {
+/// A node with a group, and `n` unit boxes that fall, one inside the other, made in it.
+struct Crowd {
+  Crowd(PhysicsHouse& house, const std::string& name, int n) : node(house.transform(house.scene, name, {0, 0, 0})) {
+    group = &node.create("CollisionGroup", "group");
+    for (int i = 0; i < n; ++i) {
+      Node& t = house.transform(node, "box" + std::to_string(i), {0, 0, 0.6});
+      t.create("RigidBody", "body");
+      make(t, "box");
+      boxes.push_back(&t);
+    }
+  }
+  Node& node;
+  Leaf* group;
+  std::vector<Node*> boxes;
+};
+}  // namespace
+
+TEST_CASE("a detached group touches itself and what does not move, nothing else") {
+  PhysicsHouse house;
+  Node& ground = house.transform(house.scene, "ground", {0, 0, 0});
+  house.call(ground.create("PlaneCollider", "collider"), "setParams", {0.0, 0.0, 1.0, 0.0});
+  Crowd a(house, "a", 1), b(house, "b", 2);
+  std::vector<ICollisionRecorder*> seen;
+  for (Node* box : {a.boxes[0], b.boxes[0], b.boxes[1]}) {
+    seen.push_back(&record(*box));
+    box->find("collider")->asNode()->create("ContactJointHandler");
+  }
+  const auto touched = [&](std::size_t i) {
+    std::vector<std::string> names;
+    for (const auto& c : seen[i]->colliders()) names.push_back(c->parent()->name());
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  for (Node* box : {a.boxes[0], b.boxes[0], b.boxes[1]}) box->as<Transform>()->setLocalPos({0, 0, 0.49f});
+
+  SECTION("attached: everybody touches everybody") {
+    house.step();
+    CHECK(touched(0) == Names{"box0", "box1", "ground"});
+    CHECK(touched(1) == Names{"box0", "box1", "ground"});
+  }
+  SECTION("one detached: the other goes without it, too") {
+    setProperty(*b.group, "detached", true);
+    house.step();
+    CHECK(touched(0) == Names{"ground"});
+    CHECK(touched(1) == Names{"box1", "ground"});
+    CHECK(touched(2) == Names{"box0", "ground"});
+    for (auto* s : seen) s->clear();
+    setProperty(*b.group, "detached", false);
+    for (Node* box : {a.boxes[0], b.boxes[0], b.boxes[1]}) house.body(*box).setPose({{0, 0, 0.49}, Mat3::Identity()});
+    house.step();
+    CHECK(touched(0) == Names{"box0", "box1", "ground"});
+  }
+}
+
+TEST_CASE("a detached group alone on the ground moves as it would without one, to the bit") {
+  const auto fall = [](bool grouped) {
+    PhysicsHouse house;
+    Node& ground = house.transform(house.scene, "ground", {0, 0, 0});
+    house.call(ground.create("PlaneCollider", "collider"), "setParams", {0.0, 0.0, 1.0, 0.0});
+    Crowd c(house, "c", 2);
+    if (grouped) setProperty(*c.group, "detached", true);
+    else c.node.remove(*c.group);
+    house.step(100);
+    const engine::BodyState s = house.body(*c.boxes[1]).state();
+    return std::vector<double>{s.position.x(), s.position.y(), s.position.z(), s.rotation(0, 1), s.rotation(1, 2), s.linearVelocity.z()};
+  };
+  CHECK(fall(true) == fall(false));
+}

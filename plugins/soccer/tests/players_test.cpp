@@ -244,3 +244,27 @@ TEST_CASE("pan and tilt stay within their ranges and are told", "[soccer]") {
   h.run(12);
   CHECK(a.all.find("(AgentState (pan_tilt 90 20) (battery 100.00) (temp 23.00))") != std::string::npos);
 }
+
+TEST_CASE("robots without a team are in nobody's way, and get solid with their team", "[soccer]") {
+  const bool detached = GENERATE(true, false);
+  MatchHouse h;
+  setProperty(h.kernel.create("TeamlessAspect", "/sys/server/gamecontrol/TeamlessAspect"), "enabled", detached);
+  h.importField();
+  h.connect("x");
+  Puppet& y = h.connect("y");
+  h.placeAgent(1, -5, 5);
+  h.placeAgent(2, -4.9, 5);
+  h.run(10);
+  CHECK((std::abs(h.bodyOf(2).state().position.x() + 4.9) < 0.01) == detached);
+  h.act(y, "(init (unum 1)(teamname A))");
+  h.run(1);
+  h.touch(1);
+  CHECK(h.get("/sys/server/gamecontrol/BallStateAspect", "lastUnum").toInteger() == 0);
+  h.placeAgent(1, -20, 5);
+  h.touch(2);
+  CHECK(h.get("/sys/server/gamecontrol/BallStateAspect", "lastUnum").toInteger() == 1);
+  h.placeAgent(1, -5, 5);
+  h.placeAgent(2, -4.9, 5);
+  h.run(10);
+  CHECK((std::abs(h.bodyOf(2).state().position.x() + 4.9) < 0.01) == detached);
+}

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "soccer_control_aspect.h"
+
+namespace spark {
+
+/// Robots without a team touch the ground only: they are created at one spot, inside of each other, and would burst apart.
+class TeamlessAspect : public SoccerControlAspect {
+  SPARK_CLASS(TeamlessAspect, SoccerControlAspect)
+ public:
+  static void describe(Description<TeamlessAspect>& d) {
+    d.doc("Robots without a team touch only what does not move.");
+    d.property("enabled", &TeamlessAspect::enabled_).doc("false: they touch everything.");
+  }
+  void agentConnected(AgentAspect& agent) override { detach(agent.create(kGroup, kGroup), enabled_); }
+  void rule(const Event&) override {
+    if (std::exchange(version_, kernel().structureVersion()) != kernel().structureVersion()) lookUp();
+    for (Robot& r : robots_)
+      if (const bool wanted = enabled_ && isTeamless(r); wanted != r.detached) detach(*r.group, r.detached = wanted);
+  }
+
+ protected:
+  void loadState(StateReader&) override { version_ = 0; }
+
+ private:
+  static constexpr const char *kGroup = "CollisionGroup", *kDetached = "detached";
+  struct Robot {
+    const AgentState* state;  ///< nullptr: no robot, or one that cannot be in a team
+    Leaf* group;
+    bool detached;
+  };
+  static bool isTeamless(const Robot& r) { return !r.state || r.state->side() == soccer::Side::none; }
+  static void detach(Leaf& group, bool on) { setProperty(group, kDetached, on); }
+  void lookUp() {
+    robots_.clear();
+    const auto* control = parent()->as<IGameControl>();
+    if (!control) return;
+    for (AgentAspect* agent : control->agents()) {
+      std::vector<AgentState*> states;
+      agent->collect(states);
+      if (Leaf* group = agent->find(kGroup))
+        robots_.push_back({states.empty() ? nullptr : states.front(), group, getProperty(*group, kDetached).toBool()});
+    }
+  }
+
+  bool enabled_ = true;
+  std::uint64_t version_ = 0;
+  std::vector<Robot> robots_;  ///< as of the last change of the tree
+};
+
+}  // namespace spark

@@ -1,0 +1,334 @@
+#include <catch2/catch.hpp>
+
+#include "arena.h"
+
+// How agents come into a match that goes on, in lockstep: who is waited for from when on, and who cannot stop the others.
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// Connects and cycles until the agent is there.
+Client connect(Arena& a) {
+  const auto before = a.agents();
+  Client c = a.client();
+  a.until([&] { return a.agents() > before; });
+  return c;
+}
+/// Waits for messages of `c`; counts those that come until some cycles in a row could not start.
+std::size_t messagesUntilBlocked(Arena& a, Client& c) {
+  std::size_t n = 0;
+  for (int blocked = 0; blocked < 200;) {
+    blocked = a.step() ? 0 : blocked + 1;
+    n += c.drain().size();
+  }
+  return n;
+}
+/// Cycles until `c` has a message, `answering` answering theirs meanwhile; returns how many it has.
+std::size_t firstMessages(Arena& a, Client& c, const std::vector<Client*>& answering = {}) {
+  std::size_t n = 0;
+  a.until([&] {
+    for (Client* other : answering)
+      if (!other->drain().empty()) other->send("(syn)");
+    return (n = c.drain().size()) > 0;
+  });
+  return n;
+}
+/// A client as the FC Portugal code base writes it: (scene ...) alone, a message, (init ...), three times (syn) and a message; then a
+/// (syn) for every message.
+class Portugal {
+ public:
+  Portugal(Arena& a, int unum) : client_(a.client()), unum_(unum) { client_.send("(scene robot)"); }
+  /// Reads what is there; answers as far as it has got.
+  void play() {
+    const auto messages = client_.drain();
+    heard_ += messages.size();
+    if (messages.empty()) return;
+    if (!named_) client_.send(fmt::format("(init (unum {})(teamname Porto))", unum_));
+    named_ = true;
+    client_.send("(syn)");
+  }
+  std::size_t heard() const { return heard_; }
+
+ private:
+  Client client_;
+  const int unum_;
+  bool named_ = false;
+  std::size_t heard_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("(scene ...)(syn): the first percepts go out without a further (syn), the second do not") {
+  Arena a(true);
+  Client c = connect(a);
+  c.send("(scene robot)(syn)");
+  c.arrive();
+  REQUIRE(messagesUntilBlocked(a, c) == 1);
+  SECTION("an answer without (syn) is none") { c.send("(init (unum 1)(teamname A))"); }
+  c.arrive();
+  REQUIRE(messagesUntilBlocked(a, c) == 0);
+  c.send("(syn)");
+  c.arrive();
+  REQUIRE(messagesUntilBlocked(a, c) == 1);
+}
+
+TEST_CASE("A (syn) of its own before (scene ...) counts as well") {
+  Arena a(true);
+  Client c = connect(a);
+  c.send("(syn)");
+  c.arrive();
+  for (int i = 0; i < 20; ++i) REQUIRE(a.step());
+  c.send("(scene robot)");
+  c.arrive();
+  REQUIRE(messagesUntilBlocked(a, c) == 1);
+}
+
+TEST_CASE("What a client that sends (syn) beside (scene ...) answers first acts in the very next cycle") {
+  Arena a(true);
+  Client c = connect(a);
+  c.send("(scene robot)(syn)");
+  c.arrive();
+  messagesUntilBlocked(a, c);
+  const auto before = a.cycles();
+  c.send("(init (unum 1)(teamname A))(syn)");
+  a.until([&] { return !deeds().empty(); });
+  REQUIRE(a.cycles() == before + 1);
+}
+
+TEST_CASE("A client that has never sent (syn) is not waited for and is told what every cycle brings") {
+  Arena a(true);
+  a.set("joinPace", 0);
+  Client player = connect(a);
+  player.send("(scene robot)(syn)");
+  messagesUntilBlocked(a, player);
+  Client watcher = a.client();
+  watcher.send("(scene robot)");
+  std::size_t told = firstMessages(a, watcher, {&player});
+  watcher.send("(init (unum 2)(teamname A))");
+  watcher.arrive();
+  player.drain();
+  for (int i = 0; i < 20; ++i) {
+    player.send("(syn)");
+    player.arrive();
+    told += messagesUntilBlocked(a, watcher);
+    player.drain();
+  }
+  REQUIRE(told == 21);
+  REQUIRE(deeds() == std::vector<std::string>{"2 init A 2"});
+  SECTION("from its first (syn) on it is waited for") {
+    watcher.send("(syn)");
+    watcher.arrive();
+    REQUIRE(messagesUntilBlocked(a, watcher) == 0);
+    player.send("(syn)");
+    player.arrive();
+    REQUIRE(messagesUntilBlocked(a, watcher) == 1);
+    player.send("(syn)");
+    player.arrive();
+    REQUIRE(messagesUntilBlocked(a, watcher) == 0);
+    watcher.send("(syn)");
+    watcher.arrive();
+    REQUIRE(messagesUntilBlocked(a, watcher) == 1);
+  }
+}
+
+TEST_CASE("Clients that answer only when nothing more comes join also alone: cycles are paced until somebody sends (syn)") {
+  Arena a(true);
+  a.set("joinPace", 3600.0);
+  Client c = connect(a);
+  c.send("(scene robot)");
+  c.arrive();
+  REQUIRE(messagesUntilBlocked(a, c) == 1);
+  c.send("(init (unum 1)(teamname A))");
+  c.arrive();
+  REQUIRE(messagesUntilBlocked(a, c) == 0);
+  a.set("joinPace", 0);
+  REQUIRE(a.step());
+  a.set("joinPace", 3600.0);
+  c.send("(syn)");
+  c.arrive();
+  REQUIRE(a.step());
+}
+
+TEST_CASE("A newcomer that never sends (syn) slows a match for its first messages only") {
+  Arena a(true);
+  a.set("joinPace", 0.001);
+  Client player = connect(a), watcher = connect(a);
+  player.send("(scene robot)(syn)");
+  watcher.send("(scene robot)");
+  std::size_t told = 0;
+  const auto play = [&] {
+    told += watcher.drain().size();
+    if (!player.drain().empty()) player.send("(syn)");
+  };
+  a.until([&] { return play(), told >= 51; });
+  a.set("joinPace", 3600.0);
+  a.until([&] { return play(), told >= 60; });
+}
+
+TEST_CASE("Eleven clients that send scene and init without (syn) and wait join a match in lockstep, whoever plays in it") {
+  Arena a(true);
+  a.set("joinPace", 0.0005);
+  Client host = connect(a);
+  host.send("(scene robot)(syn)");
+  std::vector<std::unique_ptr<Portugal>> team;
+  const auto play = [&] {
+    if (!host.drain().empty()) host.send("(syn)");
+    for (auto& p : team) p->play();
+  };
+  for (int unum = 1; unum <= 11; ++unum) {
+    team.push_back(std::make_unique<Portugal>(a, unum));
+    a.until([&] { return play(), team.back()->heard() >= 4; });
+  }
+  REQUIRE(a.agents() == 12);
+  const auto from = a.cycles();
+  a.until([&] { return play(), a.cycles() >= from + 50; });
+  REQUIRE(a.get("messagesDropped").toInteger() == 0);
+  std::vector<std::string> inits;
+  for (const auto& deed : deeds())
+    if (deed.find("init") != deed.npos) inits.push_back(deed);
+  REQUIRE(inits.size() == 11);
+}
+
+TEST_CASE("One program leads eleven agents and reads the first percepts of each before it answers for any") {
+  Arena a(true);
+  a.set("joinWait", 0.001);
+  std::vector<Client> team;
+  for (int unum = 1; unum <= 11; ++unum) {
+    team.push_back(a.client());
+    team.back().send("(scene robot)(syn)");
+    team.back().arrive();
+    a.step();  // so that they do not come in one cycle
+  }
+  std::vector<std::size_t> told(team.size(), 0);
+  const auto readOneOfEach = [&] {
+    a.until([&] {
+      for (std::size_t i = 0; i < team.size(); ++i) told[i] += team[i].drain().size();
+      return *std::min_element(told.begin(), told.end()) > 0;
+    });
+    for (std::size_t& n : told) --n;
+  };
+  for (int round = 0; round < 20; ++round) {
+    readOneOfEach();
+    for (Client& c : team) c.send("(syn)");
+  }
+  REQUIRE(a.agents() == 11);
+}
+
+TEST_CASE("An agent that has answered before is waited for though others join") {
+  Arena a(true);
+  a.set("joinWait", 0);
+  Client player = connect(a);
+  player.send("(scene robot)(syn)");
+  player.arrive();
+  messagesUntilBlocked(a, player);
+  player.send("(syn)");
+  player.arrive();
+  messagesUntilBlocked(a, player);
+  Client other = a.client();
+  other.send("(scene robot)(syn)");
+  other.arrive();
+  REQUIRE(messagesUntilBlocked(a, player) == 0);
+}
+
+TEST_CASE("Who cannot answer is not waited for") {
+  Arena a(true);
+  Client c = connect(a);
+  SECTION("an idle connection") {}
+  SECTION("a robot without a sync effector") {
+    c.send("(scene mute)(syn)");
+    firstMessages(a, c);
+    c.send("(syn)");
+  }
+  SECTION("a robot that cannot be built") { c.send("(scene missing)(syn)"); }
+  SECTION("nonsense") { c.send("(syn)(syn)(fly)"); }
+  c.arrive();
+  for (int i = 0; i < 40; ++i) REQUIRE(a.step());
+}
+
+TEST_CASE("A perceptor's turn does not depend on how long the client hesitated before it named its robot") {
+  Arena a(true);
+  const int hesitation = GENERATE(0, 1, 2, 3, 4, 5);
+  Client c = connect(a);
+  for (int i = 0; i < hesitation; ++i) REQUIRE(a.step());
+  c.send("(scene robot)(syn)");
+  std::string seen;
+  a.until([&] {
+    for (const auto& m : c.drain()) {
+      seen += m.find("vision") == m.npos ? '.' : 'V';
+      c.send("(syn)");
+    }
+    return seen.size() >= 7;
+  });
+  REQUIRE(seen.substr(0, 7) == "V..V..V");
+}
+
+TEST_CASE("Clients without a robot are closed after idleLimit, others not") {
+  Arena a(true);
+  Client player = connect(a), silent = connect(a), chatty = connect(a);
+  player.send("(scene robot)(syn)");
+  firstMessages(a, player);
+  player.send("(syn)");
+  a.set("idleLimit", 0.02);
+  a.until([&] {
+    if (!player.drain().empty()) player.send("(syn)");
+    chatty.send("(hello)");
+    return a.agents() == 1;
+  });
+  REQUIRE(silent.closed());
+  REQUIRE(chatty.closed());
+  REQUIRE(a.logged("it has no robot after 0.02 s"));
+  REQUIRE(a.control->agents()[0]->number() == 1);
+}
+
+TEST_CASE("Idle connections take nobody's place") {
+  Arena a;
+  a.set("maxAgents", 2);
+  std::vector<Client> idle;
+  for (int i = 0; i < 10; ++i) idle.push_back(connect(a));
+  Client one = connect(a), two = connect(a);
+  one.send("(scene robot)");
+  firstMessages(a, one);
+  two.send("(scene robot)");
+  firstMessages(a, two);
+  idle.front().send("(scene robot)");
+  REQUIRE(idle.front().closed());
+  REQUIRE(a.logged("there are 2 agents already (maxAgents)"));
+}
+
+TEST_CASE("On a full port the oldest client that never said anything makes room, one that spoke does not") {
+  Arena a;
+  setProperty(a.port(), "maxConnections", 3);
+  setProperty(a.port(), "makeRoom", true);
+  Client spoke = connect(a);
+  spoke.send("(scene robot)");
+  firstMessages(a, spoke);
+  std::vector<Client> idle;
+  for (int i = 0; i < 6; ++i) {
+    idle.push_back(a.client());
+    a.until([&] { return getProperty(a.port(), "connectionsSeen").toInteger() == 2 + i; });
+  }
+  for (int i = 0; i < 4; ++i) REQUIRE(idle[static_cast<std::size_t>(i)].closed());
+  a.until([&] { return a.agents() == 3; });
+  Client late = a.client();
+  late.send("(scene robot)");
+  firstMessages(a, late);
+  spoke.drain();
+  REQUIRE(firstMessages(a, spoke) > 0);
+  REQUIRE(a.logged("it said nothing, and its place is needed"));
+}
+
+TEST_CASE("Robots are files below robotFolder") {
+  Arena a;
+  a.set("robotFolder", "rsg/agent/");
+  Client c = connect(a);
+  c.send("(scene rsg/soccer/field.rsg)(scene robot)(scene ./rsg/agent/x)");
+  c.arrive();
+  a.cycle();
+  a.cycle();
+  REQUIRE(a.logged("(scene rsg/soccer/field.rsg): robots are files below rsg/agent/; others are refused."));
+  REQUIRE(a.logged("(scene robot): robots are files below"));
+  REQUIRE(a.logged("(scene ./rsg/agent/x): robots are files below"));
+  REQUIRE(a.control->agents()[0]->children().size() == 1);
+}
