@@ -97,7 +97,7 @@ function monitors(t)
   plugin "monitor-json"
   local server = new("MonitorServer", "/sys/server/monitor")
   new(t.encoder or "SexpMonitor", "/sys/server/monitor/encoder")
-  tcpPort("monitors", t.port or 3200, "/sys/server/monitor")
+  tcpPort("monitors", t.port or 3200, "/sys/server/monitor").maxConnections = 128
   return server
 end
 

@@ -28,11 +28,13 @@ function soccerRules(rules)
   end
 end
 
---- What monitors are told of the match, and what trainers may do to it.
+--- What monitors are told of the match, what trainers may do to it, and a log of it where one is wanted.
 function soccerMonitor()
   for _, class in ipairs { "GameStateItem", "SoccerRuleItem", "TrainerCommandParser" } do
     new(class, "/sys/server/monitor/" .. class)
   end
+  local file = option{ name = "monitorLog", default = "", doc = "File into which the match is logged for monitors; logplayer.lua plays it." }
+  if file ~= "" then new("MonitorLog", "/sys/server/monitor/log").file = file end
 end
 
 -- In what versions of the installed base differ, by the node that has the property. M, the mainline server 0.7.3, is what every property

@@ -40,6 +40,7 @@ soccerVariables {
 soccerRules()                           -- control aspects below /sys/server/gamecontrol; one more:
 if offside then new("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect") end
 soccerMonitor()                         -- what monitors are told of it
+get("/sys/server/monitor/GameStateItem").areas = true
 get("/usr/scene"):importScene("rsg/soccer/field_2004.rsg")
 
 -- teams inside the host, if any; others come over the network

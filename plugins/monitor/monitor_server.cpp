@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "log_player.h"
+#include "monitor_log.h"
 #include "spark/plugin.h"
 
 namespace spark {
@@ -28,15 +30,15 @@ void MonitorServer::describe(Description<MonitorServer>& d) {
 }
 
 void MonitorServer::requestFullState() {
-  for (auto& client : clients_) client->requestFull();
+  for (auto& client : clients_) client->view.requestFull();
 }
 
 // ---- connections (the simulation's thread, between cycles) ----
 
 void MonitorServer::connected(IConnection& connection) {
   lookUpHelpers();
-  if (!nodes_.fresh(kernel()) || frame_.shape == 0) makeFrame();
-  clients_.push_back(std::make_unique<MonitorClient>(connection, frame_));
+  if (newest_.frame.shape == 0 || (!source_ && !nodes_.fresh(kernel()))) makeFrame(last_);
+  clients_.push_back(std::make_unique<MonitorClient>(connection, newest_));
   sendTo({clients_.back().get()});
 }
 
@@ -55,8 +57,8 @@ void MonitorServer::received(IConnection& connection, std::string_view message) 
 
 void MonitorServer::dropMessage(IConnection& connection) {
   ++dropped_;
-  if (toldDroppedAt_ && cycle_ - *toldDroppedAt_ < kComplainEvery) return;
-  toldDroppedAt_ = cycle_;
+  if (toldDroppedAt_ && last_.cycle - *toldDroppedAt_ < kComplainEvery) return;
+  toldDroppedAt_ = last_.cycle;
   kernel().log().warning("{}: {} sends more commands than can wait for the next cycle; {} messages were dropped", path(), connection.peer(), dropped_);
   dropped_ = 0;
 }
@@ -68,8 +70,9 @@ void MonitorServer::disconnected(IConnection& connection) {
 // ---- commands ----
 
 void MonitorServer::act(const Event& event) {
-  if (!due(event) || commands_.empty()) return;
+  if (!due(event)) return;
   lookUpHelpers();
+  atAct_ = version();
   for (const Element command : commands_) execute(command);
   commands_.clear();
 }
@@ -101,41 +104,64 @@ void MonitorServer::lookUpHelpers() {
   if (helpersAt_ == kernel().structureVersion()) return;
   items_.clear();
   trainers_.clear();
+  takers_.clear();
   encoder_ = childOf<IMonitorEncoder>();
+  source_ = childOf<IFrameSource>();
+  scene_ = kernel().root().find<ISceneServer>("/sys/server/scene");
   for (const auto& child : children()) {
     if (auto* item = child->as<IMonitorItem>()) items_.push_back(item);
     if (auto* trainer = child->as<ITrainer>()) trainers_.push_back(trainer);
+    if (auto* taker = child->as<IFrameTaker>()) takers_.push_back(taker);
   }
   helpersAt_ = kernel().structureVersion();
 }
 
-void MonitorServer::makeFrame() {
-  if (nodes_.refresh(kernel()) || frame_.shape == 0) ++frame_.shape;
-  frame_.cycle = cycle_;
-  nodes_.copyTo(frame_.nodes);
+MonitorServer::Version MonitorServer::version() const {
+  return {kernel().structureVersion(), scene_ ? scene_->modifiedCount() : 0};
+}
 
-  // The environment: every message needs at least one entry, so without an item that says the time it is said here.
-  Environment& env = frame_.env;
-  env.predicates.clear();
-  env.entries.clear();
-  for (IMonitorItem* item : items_) item->contribute(env);
+void MonitorServer::makeFrame(const Event& event) {
+  MonitorFrame& frame = newest_.frame;
+  frame.cycle = event.cycle;
+  ++newest_.serial;
+  frame.env.predicates.clear();
+  frame.env.entries.clear();
+  if (source_)
+    changed_ = source_->fill(frame, newest_.ids, event, !clients_.empty());
+  else
+    fillFromScene();
+  if (changed_ || frame.shape == 0) ++frame.shape;
+  // Every message needs at least one entry, so without one that says the time it is said here.
+  const auto& entries = frame.env.entries;
   const auto isAlways = [](const Environment::Entry& e) { return e.policy == EnvPolicy::always; };
-  if (std::none_of(env.entries.begin(), env.entries.end(), isAlways)) env.put(EnvPolicy::always, "time", time_);
+  if (std::none_of(entries.begin(), entries.end(), isAlways)) frame.env.put(EnvPolicy::always, "time", event.time);
 
-  keys_.clear();
-  for (const auto& entry : env.entries) {
-    keys_.push_back(entry.policy == EnvPolicy::change ? keyOf(env.predicates, entry.token) : EntryKey{});
-    if (entry.policy == EnvPolicy::once)
-      for (auto& client : clients_) client->addEvent(Element(env.predicates, entry.token));
+  newest_.precision = static_cast<float>(precision_);
+  newest_.keys.clear();
+  for (const auto& entry : entries) {
+    newest_.keys.push_back(entry.policy == EnvPolicy::change ? keyOf(frame.env.predicates, entry.token) : EntryKey{});
+    if (entry.policy != EnvPolicy::once) continue;
+    const Element once(frame.env.predicates, entry.token);
+    for (auto& client : clients_) client->view.addEvent(once);
+    for (IFrameTaker* taker : takers_) taker->event(once);
   }
 }
 
+void MonitorServer::fillFromScene() {
+  changed_ = nodes_.refresh(kernel());
+  nodes_.copyTo(newest_.frame.nodes);
+  newest_.ids = nodes_.ids();
+  for (IMonitorItem* item : items_) item->contribute(newest_.frame.env);
+}
+
 void MonitorServer::publish(const Event& event) {
-  time_ = event.time;
-  cycle_ = event.cycle;
+  last_ = {{}, event.time, event.step, event.cycle, nullptr};
   if (!due(event)) return;
   lookUpHelpers();
-  makeFrame();
+  makeFrame(event);
+  for (IFrameTaker* taker : takers_) taker->take(newest_, encoder_, event);
+  leftOut_ = changed_ && !source_ && !leftOut_ && version() != atAct_;
+  if (leftOut_) return;
   ready_.clear();
   for (auto& client : clients_) {
     if (client->connection().stalledSeconds() > stallTimeout_)
@@ -160,16 +186,26 @@ void MonitorServer::sendTo(const std::vector<MonitorClient*>& clients) {
     toldNoEncoder_ = true;
     return;
   }
-  const auto encode = [this, &clients](std::size_t i) {
-    clients[i]->encode(*encoders_[i], nodes_.ids(), keys_, static_cast<float>(precision_));
-  };
-  if (clients.size() > 1)
-    kernel().jobs().run(clients.size(), encode);
-  else if (!clients.empty())
+  // Clients that were sent the same all along get the same: one of them is encoded.
+  leaders_.clear();
+  encoding_.clear();
+  for (std::size_t i = 0; i < clients.size(); ++i) {
+    const auto same = [&](std::size_t k) { return encoders_[k] == encoders_[i] && clients[k]->view.isLike(clients[i]->view); };
+    const auto leader = std::find_if(encoding_.begin(), encoding_.end(), same);
+    leaders_.push_back(leader == encoding_.end() ? i : *leader);
+    if (leaders_.back() == i) encoding_.push_back(i);
+  }
+  const auto encode = [this, &clients](std::size_t k) { clients[encoding_[k]]->encode(*encoders_[encoding_[k]]); };
+  if (encoding_.size() > 1)
+    kernel().jobs().run(encoding_.size(), encode);
+  else if (!encoding_.empty())
     encode(0);
-  for (MonitorClient* client : clients) client->send();
+  for (std::size_t i = 0; i < clients.size(); ++i)
+    if (leaders_[i] != i) clients[i]->view.become(clients[leaders_[i]]->view);
+  for (std::size_t i = 0; i < clients.size(); ++i) clients[i]->send(clients[leaders_[i]]->message());
 }
 
 }  // namespace spark
 
-SPARK_PLUGIN("monitor", "1.0", "The monitor server: frames of the scene for monitors, commands from trainers.", spark::MonitorServer)
+SPARK_PLUGIN("monitor", "1.0", "The monitor server: frames of the scene for monitors, commands from trainers; logs and their player.", spark::MonitorServer,
+             spark::MonitorLog, spark::LogPlayer)

@@ -8,6 +8,7 @@
 #include "api/monitor.h"
 #include "api/net.h"
 #include "api/phases.h"
+#include "frame_source.h"
 #include "monitor_client.h"
 #include "visible_nodes.h"
 
@@ -16,20 +17,22 @@ namespace spark {
 /// Makes frames of the scene and sends each client what it lacks; takes trainer commands.
 ///
 ///     items ─┐ contribute (time 1.2)(play_mode 3)...
-///     scene ─┴► frame, every `interval` cycles in the publish phase
+///     scene ─┴► frame, every `interval` cycles in the publish phase (or a frame source makes it)
 ///                 ├─► client: what changed since *its* last message ─► encoder ─► connection, when idle
-///                 └─► client ...
+///                 ├─► client ...
+///                 └─► log: another viewer, in the host
 ///     clients ─► commands, read when they arrive ─► act phase of the next cycle that is due ─► built in, then trainers in order
 ///
 /// A frame is due in the cycles whose number is a multiple of `interval`. In such a cycle commands act first and count for the step that
-/// follows; game control must stand before the monitor server in the tree for agents to act before trainers.
+/// follows; game control must stand before the monitor server in the tree for agents to act before trainers. As in the installed base a
+/// frame of a scene that changed after the act phase of its own cycle is left out, the next one is full; two are never left out in a row.
 class MonitorServer : public Node, public IMonitorServer, public IConnectionConsumer {
   SPARK_CLASS(MonitorServer, Node)
  public:
   static void describe(Description<MonitorServer>& d);
 
   void requestFullState() override;
-  const MonitorFrame& frame() const override { return frame_; }
+  const MonitorFrame& frame() const override { return newest_.frame; }
 
   void connected(IConnection& connection) override;
   void received(IConnection& connection, std::string_view message) override;
@@ -42,31 +45,45 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   int clientCount() const { return static_cast<int>(clients_.size()); }
 
   void lookUpHelpers();
-  void makeFrame();
+  void makeFrame(const Event& event);
+  void fillFromScene();
   void sendTo(const std::vector<MonitorClient*>& clients);
   IMonitorEncoder* encoderFor(const MonitorClient& client) const;
   void execute(const Element& command);
   void dropMessage(IConnection& connection);
 
+  /// Of tree and scene.
+  struct Version {
+    std::uint64_t structure = 0, modified = 0;
+    bool operator==(const Version&) const = default;
+  };
+  Version version() const;
+
   int interval_ = 2;
   double stallTimeout_ = 10, precision_ = 0.005;
 
-  MonitorFrame frame_;
-  std::vector<EntryKey> keys_;  ///< of frame_.env.entries
+  NewestFrame newest_;
   VisibleNodes nodes_;
+  Version atAct_;         ///< in the act phase of the last due cycle
+  bool changed_ = false;  ///< the newest frame has another shape than the one before
+  bool leftOut_ = false;  ///< the last frame that was due was not sent
   std::vector<std::unique_ptr<MonitorClient>> clients_;  ///< in order of arrival
   std::vector<MonitorClient*> ready_;
-  std::vector<IMonitorEncoder*> encoders_;
+  std::vector<IMonitorEncoder*> encoders_;  ///< of the clients that are sent to
+  std::vector<std::size_t> leaders_;        ///< for each of these, the first that is like it
+  std::vector<std::size_t> encoding_;       ///< those that are encoded
   Predicates commands_;
   std::int64_t dropped_ = 0;  ///< messages since the last line about it
   std::optional<std::int64_t> toldDroppedAt_;
 
   std::uint64_t helpersAt_ = 0;
   IMonitorEncoder* encoder_ = nullptr;
+  IFrameSource* source_ = nullptr;
+  const ISceneServer* scene_ = nullptr;
+  std::vector<IFrameTaker*> takers_;
   std::vector<IMonitorItem*> items_;
   std::vector<ITrainer*> trainers_;
-  double time_ = 0;
-  std::int64_t cycle_ = 0;
+  Event last_;  ///< of the last publish phase
   bool toldNoEncoder_ = false;
 };
 

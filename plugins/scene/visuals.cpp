@@ -47,19 +47,13 @@ void Axis::describe(Description<Axis>& d) {
 
 void RenderNode::describe(Description<RenderNode>& d) {
   d.doc("Base of all visible shapes.");
-  d.property("visible", &RenderNode::isVisible, &RenderNode::show).state().doc("Viewers show it.");
+  d.property("visible", &RenderNode::visible_).state().doc("Viewers show it.");
   d.method("setVisible", &RenderNode::setVisibleValue)
       .parameters({"on"})
       .doc("1 shows, 0 hides; a text counts as number, so that 'true' hides as in the installed base.");
   d.property("transparent", &RenderNode::isTransparent).doc("Drawn with its material's opacity.");
   d.method("setTransparent", &RenderNode::setTransparent).doc("Makes it transparent, for good.");
   d.abstract();
-}
-
-void RenderNode::show(bool on) {
-  if (visible_ == on) return;
-  visible_ = on;
-  modified(*this);
 }
 
 void RenderNode::setVisibleValue(Value v) {

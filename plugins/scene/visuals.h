@@ -60,7 +60,8 @@ class RenderNode : public SceneNode {
  public:
   static void describe(Description<RenderNode>& d);
   bool isVisible() const { return visible_; }
-  void show(bool on);
+  /// Viewers are told of it without a full message.
+  void show(bool on) { visible_ = on; }
   bool isTransparent() const { return transparent_; }
 
  private:

@@ -43,7 +43,7 @@ void GameStateItem::contribute(Environment& env) {
   env.put(EnvPolicy::change, "score_right", game->score(Side::right));
   env.put(EnvPolicy::change, "play_mode", static_cast<int>(game->mode()));
   scoreWaits(env, *game);
-  // newer monitors draw the lines of any field with these
+  if (!areas_) return;
   env.put(EnvPolicy::full, "PenaltyAreaLength", match_.settings()->penaltyLength);
   env.put(EnvPolicy::full, "PenaltyAreaWidth", match_.settings()->penaltyWidth + match_.settings()->goalWidth);
 }

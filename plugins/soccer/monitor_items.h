@@ -13,6 +13,7 @@ class GameStateItem : public Node, public IMonitorItem {
  public:
   static void describe(Description<GameStateItem>& d) {
     d.doc("Tells monitors field, time, teams, half, score and play mode.");
+    d.property("areas", &GameStateItem::areas_).doc("Tells the size of the penalty areas, too: newer monitors draw the lines of any field with it.");
     d.implements<IMonitorItem>();
   }
   void contribute(Environment& env) override;
@@ -21,6 +22,7 @@ class GameStateItem : public Node, public IMonitorItem {
   void field(Environment& env, const SoccerSettings& s) const;
   void scoreWaits(Environment& env, const GameStateAspect& game);
   MatchLookup match_;
+  bool areas_ = false;
 };
 
 /// Fouls. Below the monitor server, after GameStateItem.

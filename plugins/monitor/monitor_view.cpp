@@ -1,4 +1,4 @@
-#include "monitor_client.h"
+#include "monitor_view.h"
 
 #include <bit>
 
@@ -6,8 +6,11 @@
 
 namespace spark {
 
+namespace {
+std::uint64_t mix(std::uint64_t h, std::uint64_t v) { return (h ^ v) * 0x9e3779b97f4a7c15ull + (h >> 29); }
+}  // namespace
+
 EntryKey keyOf(const Predicates& predicates, std::uint32_t token) {
-  const auto mix = [](std::uint64_t h, std::uint64_t v) { return (h ^ v) * 0x9e3779b97f4a7c15ull + (h >> 29); };
   const auto& tokens = predicates.tokens();
   EntryKey key{hashBytes(Element(predicates, token).head()), 1};
   for (std::uint32_t i = token; i < tokens[token].end; ++i) {
@@ -23,18 +26,24 @@ EntryKey keyOf(const Predicates& predicates, std::uint32_t token) {
   return key;
 }
 
-void MonitorClient::encode(IMonitorEncoder& encoder, const std::vector<std::uint64_t>& ids, const std::vector<EntryKey>& keys, float precision) {
-  update_.full = needsFull_ || shape_ != update_.frame.shape;
-  pickNodes(ids, precision);
-  pickEntries(keys);
-  shape_ = update_.frame.shape;
-  needsFull_ = false;
-  message_.clear();
-  encoder.encode(update_, message_);
+void MonitorView::addEvent(const Element& event) {
+  const std::uint32_t at = update_.events.size();
+  update_.events.append(event);
+  events_ = mix(events_, keyOf(update_.events, at).content);
 }
 
-void MonitorClient::pickNodes(const std::vector<std::uint64_t>& ids, float precision) {
-  const auto& nodes = update_.frame.nodes;
+void MonitorView::encode(IMonitorEncoder& encoder, std::string& out) {
+  update_.full = willBeFull();
+  pickNodes();
+  pickEntries();
+  shape_ = newest_.frame.shape;
+  needsFull_ = false;
+  history_ = mix(update_.full ? newestId_ : history_, newest_.serial);
+  encoder.encode(update_, out);
+}
+
+void MonitorView::pickNodes() {
+  const auto& nodes = newest_.frame.nodes;
   if (update_.full) {
     sent_.resize(nodes.size());
     visible_.resize(nodes.size());
@@ -44,27 +53,28 @@ void MonitorClient::pickNodes(const std::vector<std::uint64_t>& ids, float preci
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     bool differs = false;
     if (nodes[i].kind == FrameNode::Kind::transform) {
-      differs = !((nodes[i].local - sent_[i]).cwiseAbs().maxCoeff() <= precision);
+      differs = !((nodes[i].local - sent_[i]).cwiseAbs().maxCoeff() <= newest_.precision);
       if (differs || update_.full) sent_[i] = nodes[i].local;
     } else {
       // The first diff after a mesh came repeats its visibility: the installed base's monitors have always been sent that.
-      differs = nodes[i].kind != FrameNode::Kind::light && (ids[i] > newestId_ || visible_[i] != nodes[i].visible);
+      differs = nodes[i].kind != FrameNode::Kind::light && (newest_.ids[i] > newestId_ || visible_[i] != nodes[i].visible);
       visible_[i] = nodes[i].visible;
-      newest = std::max(newest, ids[i]);
+      newest = std::max(newest, newest_.ids[i]);
     }
     update_.changed[i] = differs && !update_.full;
   }
   if (!update_.full) newestId_ = newest;
 }
 
-void MonitorClient::pickEntries(const std::vector<EntryKey>& keys) {
-  const auto& entries = update_.frame.env.entries;
+void MonitorView::pickEntries() {
+  const auto& entries = newest_.frame.env.entries;
   update_.env.clear();
+  if (update_.full) told_.clear();
   for (std::size_t i = 0; i < entries.size(); ++i) {
     bool wanted = update_.full;
     switch (entries[i].policy) {
       case EnvPolicy::full: break;
-      case EnvPolicy::change: wanted |= changed(keys[i]); break;
+      case EnvPolicy::change: wanted |= changed(newest_.keys[i]); break;
       case EnvPolicy::always: wanted = true; break;
       case EnvPolicy::once: wanted = false; break;  // waits among the events
     }
@@ -72,7 +82,7 @@ void MonitorClient::pickEntries(const std::vector<EntryKey>& keys) {
   }
 }
 
-bool MonitorClient::changed(const EntryKey& key) {
+bool MonitorView::changed(const EntryKey& key) {
   for (EntryKey& told : told_) {
     if (told.name != key.name) continue;
     const bool differs = told.content != key.content;
@@ -83,17 +93,25 @@ bool MonitorClient::changed(const EntryKey& key) {
   return true;
 }
 
-void MonitorClient::send() {
-  if (connection_.send(message_))
-    update_.events.clear();
-  else
-    requestFull();  // it was not taken: nothing is known of what the client has
+void MonitorView::delivered() {
+  update_.events.clear();
+  events_ = 0;
 }
 
-void MonitorClient::close(std::string_view reason) {
-  if (closing_) return;
-  closing_ = true;
-  connection_.close(reason);
+bool MonitorView::isLike(const MonitorView& other) const {
+  const bool full = willBeFull();
+  return full == other.willBeFull() && events_ == other.events_ && newestId_ == other.newestId_ && (full || history_ == other.history_);
+}
+
+void MonitorView::become(const MonitorView& other) {
+  sent_ = other.sent_;
+  visible_ = other.visible_;
+  told_ = other.told_;
+  shape_ = other.shape_;
+  newestId_ = other.newestId_;
+  history_ = other.history_;
+  needsFull_ = other.needsFull_;
+  update_.full = other.update_.full;
 }
 
 }  // namespace spark

@@ -1,0 +1,20 @@
+-- Plays a recorded game to all monitors that connect.
+--
+--     sparkhost --config logplayer.lua --set file=game.log
+--
+-- Monitors may send (p) pause, (f) and (b) one record forward or back, (l) the other direction, (speed 2), (record 150).
+include "house.lua"
+
+local file    = option{ name = "file", default = "sparkmonitor.log", doc = "The log: what --set monitorLog=... of a soccer house, or rcssserver3d, wrote." }
+local speed   = option{ name = "speed", default = 1.0, doc = "How fast it plays; 1: as it was recorded." }
+local wait    = option{ name = "wait", default = true, doc = "Begins when the first monitor is there." }
+local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
+
+simulation()
+local server = monitors{ encoder = encoder }
+server.precision = 0                    -- the log says what moved
+control()
+
+local player = new("LogPlayer", "/sys/server/monitor/player")
+player.speed, player.waitForMonitor = speed, wait
+player.file = file

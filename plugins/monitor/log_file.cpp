@@ -1,0 +1,83 @@
+#include "log_file.h"
+
+#include <filesystem>
+#include <string_view>
+
+#include "spark/error.h"
+
+namespace spark {
+
+namespace {
+/// Bytes of draw commands at the start of a line: `[1, 0, ...][...]`.
+std::size_t drawCommands(std::string_view line) {
+  std::size_t at = 0;
+  while (at < line.size() && line[at] == '[') {
+    const std::size_t end = line.find(']', at);
+    if (end == std::string_view::npos) return line.size();
+    at = end + 1;
+    while (at < line.size() && (line[at] == ' ' || line[at] == ',')) ++at;
+  }
+  return at;
+}
+}  // namespace
+
+LogFile::LogFile(const std::string& path) : in_(path, std::ios::binary) {
+  if (std::filesystem::is_directory(path)) throw Error("The log '" + path + "' is a folder; expected a file of monitor messages.");
+  if (!in_) throw Error("The log '" + path + "' cannot be read. Check its name; it is looked up in the working folder.");
+  std::string line, chunk(1u << 16, ' ');
+  std::uint64_t start = 0, at = 0;  // of the line, of the chunk
+  bool tooLong = false;
+  const auto endLine = [&](std::uint64_t end) {
+    if (tooLong)
+      ++leftOut_;
+    else
+      addLine(start, line);
+    line.clear();
+    tooLong = false;
+    start = end + 1;
+  };
+  while (in_.read(chunk.data(), static_cast<std::streamsize>(chunk.size())), in_.gcount() > 0) {
+    std::string_view rest(chunk.data(), static_cast<std::size_t>(in_.gcount()));
+    while (!rest.empty()) {
+      const std::size_t end = rest.find('\n');
+      const std::string_view part = rest.substr(0, end);
+      tooLong |= line.size() + part.size() > kLongest;
+      if (!tooLong) line.append(part);
+      at += part.size();
+      if (end == std::string_view::npos) break;
+      endLine(at++);
+      rest.remove_prefix(end + 1);
+    }
+  }
+  if (at > start) endLine(at);
+  in_.clear();
+  if (records_.empty()) throw Error("The log '" + path + "' holds no record; expected lines like ((time 0)...)(RSG 0 1)(...).");
+}
+
+void LogFile::addLine(std::uint64_t offset, std::string_view line) {
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  const std::size_t skip = drawCommands(line);
+  line.remove_prefix(skip);
+  if (line.empty() && skip == 0) return;
+  if (line.empty() || line.front() != '(' || records_.size() >= kMost) {
+    ++leftOut_;
+    return;
+  }
+  records_.push_back({offset + skip, static_cast<std::uint32_t>(line.size()), line.find(")(RSG ") != std::string_view::npos});
+}
+
+const std::string& LogFile::read(std::size_t i) {
+  const Record& record = records_.at(i);
+  line_.resize(record.size);
+  in_.clear();
+  in_.seekg(static_cast<std::streamoff>(record.offset));
+  if (!in_.read(line_.data(), record.size)) line_.clear();
+  return line_;
+}
+
+std::size_t LogFile::fullBefore(std::size_t i) const {
+  while (i > 0 && !records_.at(i).full) --i;
+  return i;
+}
+
+}  // namespace spark

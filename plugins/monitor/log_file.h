@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace spark {
+
+/// A recorded game: one monitor message a line. Lines that can be none are left out, and so are draw commands (`[...]`) in front of a
+/// message, which some recorders write.
+class LogFile {
+ public:
+  static constexpr std::size_t kLongest = 8u << 20;   ///< bytes of a line; longer ones are left out
+  static constexpr std::size_t kMost = 1u << 20;      ///< records; 58 hours at 0.2 s
+
+  /// Reads through the file. Throws Error: it cannot be read, or holds no record.
+  explicit LogFile(const std::string& path);
+
+  std::size_t size() const { return records_.size(); }
+  /// Lines that are no records.
+  std::size_t leftOut() const { return leftOut_; }
+  /// The text of record i; "" when the file has changed meanwhile.
+  const std::string& read(std::size_t i);
+  /// The last full record that is not behind i; 0 when there is none.
+  std::size_t fullBefore(std::size_t i) const;
+
+ private:
+  struct Record {
+    std::uint64_t offset = 0;
+    std::uint32_t size = 0;
+    bool full = false;
+  };
+  void addLine(std::uint64_t offset, std::string_view line);
+  std::ifstream in_;
+  std::vector<Record> records_;
+  std::size_t leftOut_ = 0;
+  std::string line_;
+};
+
+}  // namespace spark

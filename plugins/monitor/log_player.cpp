@@ -1,0 +1,124 @@
+#include "log_player.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spark/state.h"
+
+namespace spark {
+
+namespace {
+constexpr double kFastest = 100;
+constexpr double kTolerance = 1e-6;       ///< of a record; the sum of steps is not exact
+constexpr std::int64_t kMostLines = 10;  ///< about damaged records
+}  // namespace
+
+void LogPlayer::describe(Description<LogPlayer>& d) {
+  using P = LogPlayer;
+  d.doc("Plays a recorded game to monitors. Commands: (p) pause, (f) forward, (b) back, (l) other direction, (speed x), (record n).");
+  d.property("file", &P::file, &P::setFile).doc("The log: one monitor message a line. Opened when it is set.");
+  d.property("recordTime", &P::recordTime_).unit("s").range(0.001, 60).doc("Time between two records.");
+  d.property("speed", &P::speed_).range(0, kFastest).state().doc("1: as it was recorded; 2: twice as fast.");
+  d.property("paused", &P::paused_).state().doc("Stands still; (p) switches it.");
+  d.property("backward", &P::backward_).state().doc("Plays backwards; (l) switches it.");
+  d.property("waitForMonitor", &P::waitForMonitor_).doc("Does not begin before the first monitor is there.");
+  d.property("record", &P::record, &P::setRecord).min(0).doc("The record that is shown, from 0. Setting it goes there; without a file it is where the next one begins.");
+  d.property("records", &P::records).doc("How many there are.");
+  d.property("damaged", &P::damaged_).readOnly().doc("Records that could not be played and were passed over.");
+  d.implements<IFrameSource>();
+  d.implements<ITrainer>();
+}
+
+void LogPlayer::setFile(std::string path) {
+  log_.reset();
+  scene_.clear();
+  due_ = 0;
+  started_ = false;
+  damaged_ = 0;
+  path_ = std::move(path);
+  if (path_.empty()) return;
+  log_ = std::make_unique<LogFile>(path_);
+  goTo(std::min(at_, log_->size() - 1));
+}
+
+void LogPlayer::take(std::size_t record) {
+  const std::string wrong = scene_.take(log_->read(record));
+  at_ = record;
+  if (wrong.empty()) return;
+  if (++damaged_ <= kMostLines) kernel().log().warning("{}: record {} of '{}' is passed over: {}", path(), record, path_, wrong);
+}
+
+void LogPlayer::setRecord(std::int64_t record) {
+  due_ = 0;
+  at_ = static_cast<std::size_t>(record);
+  if (log_) goTo(std::min(at_, log_->size() - 1));
+}
+
+/// By way of the last full record. Events of the way are not told.
+void LogPlayer::goTo(std::size_t target) {
+  tellEvents_ = false;
+  for (std::size_t i = log_->fullBefore(target); i <= target; ++i) take(i);
+}
+
+bool LogPlayer::step(bool back) {
+  if (!log_ || (back ? at_ == 0 : at_ + 1 >= log_->size())) return false;
+  if (back) {
+    goTo(at_ - 1);
+  } else {
+    take(at_ + 1);
+    tellEvents_ = true;
+  }
+  return true;
+}
+
+bool LogPlayer::fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const Event& event, bool watched) {
+  if (!started_) lastTime_ = event.time;
+  started_ |= watched || !waitForMonitor_;
+  const double passed = std::exchange(lastTime_, event.time), now = event.time;
+  if (started_ && !paused_ && now > passed) {
+    due_ += speed_ * (now - passed) / recordTime_;
+    bool moves = true;
+    for (; due_ >= 1 - kTolerance && moves; due_ -= 1) moves = step(backward_);
+    if (!moves) due_ = 0;
+  }
+  scene_.copyTo(frame, ids, std::exchange(tellEvents_, false));
+  return std::exchange(shown_, scene_.shape()) != scene_.shape();
+}
+
+bool LogPlayer::command(const Element& command, std::string& why) {
+  const std::string_view name = command.head();
+  const auto argument = [&]() -> double {
+    const Element e = command.at(1);
+    const double v = e && !e.isList() ? e.number() : NAN;
+    if (!std::isfinite(v) || v < 0) why = "expected a number of 0 or more";
+    return v;
+  };
+  if (name == "p")
+    paused_ = !paused_;
+  else if (name == "l")
+    backward_ = !backward_;
+  else if (name == "f" || name == "b")
+    step(name == "b");
+  else if (name == "speed") {
+    if (const double v = argument(); why.empty()) speed_ = std::min(v, kFastest);
+  } else if (name == "record") {
+    if (const double v = argument(); why.empty()) setRecord(static_cast<std::int64_t>(std::min(v, 1e9)));
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void LogPlayer::saveState(StateWriter& out) const {
+  out.write(record());
+  out.write(due_);
+  out.write(started_);
+}
+
+void LogPlayer::loadState(StateReader& in) {
+  setRecord(std::max<std::int64_t>(in.readInteger(), 0));
+  due_ = in.readNumber();
+  started_ = in.readBool();
+}
+
+}  // namespace spark

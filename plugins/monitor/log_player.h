@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+
+#include "frame_source.h"
+#include "log_file.h"
+#include "recorded_scene.h"
+#include "spark/describe.h"
+#include "spark/node.h"
+
+namespace spark {
+
+/// Plays a recorded game to all monitors of the server above it. Each gets what it lacks, as in a live game, so monitors come and go, and
+/// the game can be stopped, stepped and played backwards while they watch.
+///
+/// Trainer commands, named after the keys of the old log player: `(p)` pause or go on, `(f)` and `(b)` one record forward or back,
+/// `(l)` the other direction, `(speed 2)`, `(record 150)`.
+class LogPlayer : public Node, public IFrameSource, public ITrainer {
+  SPARK_CLASS(LogPlayer, Node)
+ public:
+  static void describe(Description<LogPlayer>& d);
+
+  bool fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const Event& event, bool watched) override;
+  bool command(const Element& command, std::string& why) override;
+
+ protected:
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
+
+ private:
+  std::string file() const { return path_; }
+  /// Opens it. Throws Error when it cannot be played.
+  void setFile(std::string path);
+  std::int64_t record() const { return static_cast<std::int64_t>(at_); }
+  std::int64_t records() const { return log_ ? static_cast<std::int64_t>(log_->size()) : 0; }
+  /// Shows a record; one beyond the end is the last.
+  void setRecord(std::int64_t record);
+  /// One record on or back; false at the end.
+  bool step(bool back);
+  void goTo(std::size_t target);
+  void take(std::size_t record);
+
+  std::string path_;
+  double recordTime_ = 0.2, speed_ = 1;
+  bool paused_ = false, backward_ = false, waitForMonitor_ = true;
+
+  std::unique_ptr<LogFile> log_;
+  RecordedScene scene_{*this};
+  std::size_t at_ = 0;
+  double due_ = 0;        ///< part of a record that has passed
+  double lastTime_ = 0;
+  bool started_ = false;  ///< a monitor came
+  bool tellEvents_ = false;
+  std::uint64_t shown_ = 0;
+  std::int64_t damaged_ = 0;
+};
+
+}  // namespace spark

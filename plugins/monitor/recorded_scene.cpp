@@ -1,0 +1,225 @@
+#include "recorded_scene.h"
+
+#include <algorithm>
+
+namespace spark {
+
+namespace {
+
+/// A match of 22 robots has some 15,000 tokens.
+constexpr ReadLimits kLimits{64, 1u << 18};
+
+/// True when the text can be sent on as an atom.
+bool isPlain(std::string_view text) {
+  return !text.empty() && std::none_of(text.begin(), text.end(), [](unsigned char c) {
+    return c <= ' ' || c == 127 || c == '(' || c == ')' || c == '"' || c == '\'' || c == ';' || c == '\\';
+  });
+}
+
+/// All atoms behind a list's head, with blanks between them.
+std::string restOf(const Element& list) {
+  std::string out;
+  for (std::size_t i = 1; i < list.size(); ++i) out.append(i > 1 ? " " : "").append(list.at(i).text());
+  return out;
+}
+
+/// The first `count` numbers behind a list's head; what is missing stays.
+void readNumbers(const Element& list, float* out, int count) {
+  int i = -1;
+  for (const Element e : list) {
+    if (i >= 0 && i < count) out[i] = static_cast<float>(e.number());
+    ++i;
+  }
+}
+
+Color readColor(const Element& list) {
+  float v[4] = {0, 0, 0, 1};
+  readNumbers(list, v, 4);
+  return {v[0], v[1], v[2], v[3]};
+}
+
+bool isNode(const Element& e) { return e.isList() && e.head() == "nd"; }
+
+bool sameColor(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b && a.a == b.a; }
+
+}  // namespace
+
+bool RecordedScene::Visual::looksLike(const Visual& o) const {
+  return what == o.what && mesh == o.mesh && size == o.size && glass == o.glass && names == o.names &&
+         std::equal(colors.begin(), colors.end(), o.colors.begin(), sameColor);
+}
+
+void RecordedScene::clear() {
+  nodes_.clear();
+  visuals_.clear();
+  ids_.clear();
+  entries_.clear();
+  events_.clear();
+  known_ = false;
+  ++shape_;
+}
+
+std::string RecordedScene::take(std::string_view message) {
+  parsed_.clear();
+  if (const ReadResult result = readSexp(message, parsed_, kLimits); !result.message.empty()) return result.message;
+  for (const Token& t : parsed_.tokens())
+    if (t.kind == Token::Kind::text && !isPlain(parsed_.textOf(t))) return "expected plain words and numbers, found quoted text";
+  Element parts[3];
+  std::size_t count = 0;
+  for (const Element e : parsed_) {
+    if (count < 3) parts[count] = e;
+    ++count;
+  }
+  if (count != 3 || !parts[0].isList() || !parts[2].isList()) return "expected three lists";
+  const bool full = parts[1].head() == "RSG";
+  if (!full && parts[1].head() != "RDS") return "expected (RSG 0 1) or (RDS 0 1)";
+  if (full) {
+    newNodes_.clear();
+    newVisuals_.clear();
+    if (std::string wrong = readNodes(parts[2], 0); !wrong.empty()) return wrong;
+    if (!known_ || !sameShape(newNodes_, newVisuals_)) {
+      ++shape_;
+      ids_.resize(newNodes_.size());
+      for (std::uint64_t& id : ids_) id = ++lastId_;
+    }
+    std::swap(nodes_, newNodes_);
+    std::swap(visuals_, newVisuals_);
+    known_ = true;
+  } else {
+    if (!known_) return "expected a full message first, found a diff";
+    std::size_t next = 0;
+    if (std::string wrong = checkDiff(parts[2], 0, next); !wrong.empty()) return wrong;
+    if (next != nodes_.size()) return "expected the nodes of the last full message, found fewer";
+    next = 0;
+    patch(parts[2], next);
+  }
+  readEnvironment(parts[0], full);
+  return {};
+}
+
+std::string RecordedScene::readNodes(const Element& list, int depth) {
+  for (const Element e : list)
+    if (isNode(e))
+      if (std::string wrong = readNode(e, depth); !wrong.empty()) return wrong;
+  return {};
+}
+
+std::string RecordedScene::readNode(const Element& element, int depth) {
+  const Element type = element.at(1);
+  const std::string_view name = type ? type.text() : std::string_view();
+  FrameNode node;
+  node.depth = depth;
+  std::unique_ptr<Visual> visual;
+  if (name != "TRF") {
+    visual = std::make_unique<Visual>(owner_);
+    if (name == "Light")
+      visual->what = IVisual::Kind::light, node.kind = FrameNode::Kind::light;
+    else if (name == "StaticMesh")
+      visual->what = IVisual::Kind::mesh, node.kind = FrameNode::Kind::mesh;
+    else if (name == "SMN")
+      visual->what = IVisual::Kind::singleMaterial, node.kind = FrameNode::Kind::singleMaterial;
+    else
+      return "expected a node of type TRF, Light, StaticMesh or SMN, found '" + std::string(name.substr(0, 40)) + "'";
+  }
+  for (const Element e : element) {
+    if (!e.isList()) continue;
+    const std::string_view head = e.head();
+    if (!visual) {
+      if (head == "SLT") readNumbers(e, node.local.data(), 16);
+      continue;
+    }
+    if (head == "setVisible") visual->shown = e.at(1) && e.at(1).number() == 1;
+    if (head == "setTransparent") visual->glass = true;
+    if (head == "load") visual->mesh = restOf(e);
+    if (head == "sSc") readNumbers(e, visual->size.data(), 3);
+    if (head == "sMat" && e.at(1)) visual->names = {std::string(e.at(1).text())};
+    if (head == "setDiffuse") visual->colors[0] = readColor(e);
+    if (head == "setAmbient") visual->colors[1] = readColor(e);
+    if (head == "setSpecular") visual->colors[2] = readColor(e);
+    if (head != "resetMaterials") continue;
+    visual->names.clear();
+    for (std::size_t i = 1; i < e.size(); ++i) visual->names.emplace_back(e.at(i).text());
+  }
+  if (visual && node.kind != FrameNode::Kind::light && visual->mesh.empty()) return "expected a mesh's name (load ...), found none";
+  newNodes_.push_back(node);
+  newVisuals_.push_back(std::move(visual));
+  return readNodes(element, depth + 1);
+}
+
+std::string RecordedScene::checkDiff(const Element& list, int depth, std::size_t& next) const {
+  for (const Element e : list) {
+    if (!isNode(e)) continue;
+    if (next >= nodes_.size() || nodes_[next].depth != depth) return "expected the nodes of the last full message, found others";
+    ++next;
+    if (std::string wrong = checkDiff(e, depth + 1, next); !wrong.empty()) return wrong;
+  }
+  return {};
+}
+
+void RecordedScene::patch(const Element& list, std::size_t& next) {
+  for (const Element e : list) {
+    if (!isNode(e)) continue;
+    FrameNode& node = nodes_[next];
+    Visual* visual = visuals_[next].get();
+    ++next;
+    for (const Element item : e) {
+      if (!item.isList()) continue;
+      if (!visual && item.head() == "SLT") readNumbers(item, node.local.data(), 16);
+      if (visual && item.head() == "setVisible") visual->shown = item.at(1) && item.at(1).number() == 1;
+    }
+    patch(e, next);
+  }
+}
+
+void RecordedScene::readEnvironment(const Element& list, bool full) {
+  events_.clear();
+  if (full) entries_.clear();
+  for (Entry& entry : entries_) entry.current = false;
+  for (const Element e : list) {
+    if (e.head().empty()) continue;
+    if (e.head() == "foul" || e.head() == "messages") {
+      events_.append(e);
+      continue;
+    }
+    auto at = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) { return known.name == e.head(); });
+    if (at == entries_.end()) at = entries_.insert(at, Entry{std::string(e.head()), {}, false});
+    at->value.clear();
+    at->value.append(e);
+    at->current = true;
+  }
+}
+
+bool RecordedScene::sameShape(const std::vector<FrameNode>& nodes, const Visuals& visuals) const {
+  if (nodes.size() != nodes_.size()) return false;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i].kind != nodes_[i].kind || nodes[i].depth != nodes_[i].depth) return false;
+    if (visuals[i] && !visuals[i]->looksLike(*visuals_[i])) return false;
+  }
+  return true;
+}
+
+void RecordedScene::copyTo(MonitorFrame& frame, std::vector<std::uint64_t>& ids, bool tellEvents) const {
+  frame.nodes.resize(nodes_.size());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    FrameNode& node = frame.nodes[i] = nodes_[i];
+    node.visual = visuals_[i].get();
+    if (!node.visual) continue;
+    node.visible = node.visual->visible();
+    node.transparent = node.visual->transparent();
+  }
+  ids = ids_;
+  Environment& env = frame.env;
+  const auto add = [&env](EnvPolicy policy, const Element& e) {
+    env.entries.push_back({policy, env.predicates.size()});
+    env.predicates.append(e);
+  };
+  for (const Entry& entry : entries_) {
+    const bool passing = entry.name.starts_with("pass_mode_score_wait");  // there while it lasts
+    if (passing && !entry.current) continue;
+    add(passing || entry.name == "time" ? EnvPolicy::always : EnvPolicy::change, *entry.value.begin());
+  }
+  if (tellEvents)
+    for (const Element e : events_) add(EnvPolicy::once, e);
+}
+
+}  // namespace spark

@@ -1,0 +1,261 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "stage.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// A file that goes with the object.
+struct TemporaryFile {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("spark-log-{}-{}", ::getpid(), next()++);
+  TemporaryFile() = default;
+  explicit TemporaryFile(const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+  ~TemporaryFile() { std::filesystem::remove(path); }
+  static int& next() {
+    static int n = 0;
+    return n;
+  }
+  std::vector<std::string> lines() const {
+    std::ifstream in(path, std::ios::binary);
+    std::vector<std::string> out;
+    for (std::string line; std::getline(in, line);) out.push_back(line);
+    return out;
+  }
+};
+
+bool isFull(const std::string& record) { return record.find(")(RSG 0 1)(") != std::string::npos; }
+
+/// A stage with a log.
+struct Recorded : Stage {
+  TemporaryFile file;
+  Leaf& log;
+  Recorded() : log(node().create("MonitorLog", "log")) { setProperty(log, "file", file.path.string()); }
+};
+
+/// A monitor server that plays a log.
+struct Player : House {
+  explicit Player(const std::filesystem::path& file) {
+    kernel.plugins().use("monitor");
+    kernel.plugins().use("monitor-sexp");
+    port = &kernel.create<Node>("Node", "/sys/server/net/monitors");
+    consumer = &kernel.create<IConnectionConsumer>("MonitorServer", "/sys/server/monitor");
+    setProperty(*kernel.root().find("/sys/server/monitor"), "precision", 0.0);
+    kernel.create("SexpMonitor", "/sys/server/monitor/encoder");
+    player = &kernel.create("LogPlayer", "/sys/server/monitor/player");
+    setProperty(*player, "file", file.string());
+  }
+  FakeConnection& connect() {
+    connections.push_back(std::make_unique<FakeConnection>(*port, connections.size() + 1));
+    consumer->connected(*connections.back());
+    return *connections.back();
+  }
+  void cycle() {
+    ++cycles;
+    const Event event{"", 0.02 * cycles, 0.02, cycles, nullptr};
+    kernel.events().channel("act").emit(event);
+    kernel.events().channel("publish").emit(event);
+  }
+  /// So many records' time.
+  void records(int n) {
+    for (int i = 0; i < 10 * n; ++i) cycle();
+  }
+  void command(FakeConnection& from, const char* text) {
+    consumer->received(from, text);
+    cycle(), cycle();
+  }
+  std::int64_t at() { return getProperty(*player, "record").toInteger(); }
+  Node* port;
+  IConnectionConsumer* consumer;
+  Leaf* player;
+  std::vector<std::unique_ptr<FakeConnection>> connections;
+  std::int64_t cycles = 0;
+};
+
+/// A small log: three records full, diff, diff, the mesh 1, 2, 3 m up.
+const char* const kFull = "((FieldLength 30)(time 0)(score_left 0))(RSG 0 1)((nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1)"
+                          "(nd StaticMesh (setVisible 1) (load models/a.obj) (sSc 1 1 1)(resetMaterials x y))))";
+const char* const kSecond = "((time 0.2)(foul 1 2 1 7))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 2 1)(nd StaticMesh (setVisible 0))))";
+const char* const kThird = "((time 0.4)(score_left 1))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 3 1)(nd StaticMesh (setVisible 1))))";
+
+std::string join(std::initializer_list<std::string> lines) {
+  std::string out;
+  for (const std::string& line : lines) out += line + "\n";
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a log has a record every 0.2 s, the first one full, and a full one when the last is older than 3 s or the scene changed") {
+  Recorded stage;
+  for (int i = 0; i < 1000; ++i) {
+    if (i == 600) stage.scene.markModified();
+    stage.cycle();
+  }
+  const auto lines = stage.file.lines();
+  REQUIRE(lines.size() == 100);
+  CHECK(getProperty(stage.log, "records") == Value(100));
+  std::vector<int> fulls;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (isFull(lines[i])) fulls.push_back(static_cast<int>(i));
+  CHECK(fulls == std::vector<int>{0, 16, 32, 48, 60, 76, 92});
+  Replica replica;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    replica.take(lines[i]);
+    CHECK(replica.time == Approx(0.04 + 0.2 * i));  // 0.04 s: the first frame
+  }
+}
+
+TEST_CASE("a log is complete whatever monitors were sent: its own diffs, every event once") {
+  Recorded stage;
+  FakeConnection& monitor = stage.connect();
+  Replica live, logged;
+  live.take(monitor.read());
+  for (int i = 0; i < 502; ++i) {  // the last one is recorded
+    if (i % 37 == 0) stage.item->waiting = 2;
+    stage.item->score = i / 50;
+    stage.head->shown = (i / 20) % 2;
+    stage.cycle();
+    if (!monitor.idle()) live.take(monitor.read());
+  }
+  for (const std::string& line : stage.file.lines()) logged.take(line);
+  CHECK(same(logged, newcomer(stage), 0.005001));
+  CHECK(logged.events == live.events);
+  CHECK(logged.events.size() > 20);
+}
+
+TEST_CASE("a log that cannot be written says so once, and the server goes on") {
+  Stage stage;
+  Leaf& log = stage.node().create("MonitorLog", "log");
+  setProperty(log, "file", "/nonexistent/folder/x.log");
+  FakeConnection& monitor = stage.connect();
+  monitor.read();
+  for (int i = 0; i < 100; ++i) stage.cycle();
+  CHECK(!monitor.idle());
+  const auto first = stage.text.find("the log '/nonexistent/folder/x.log' cannot be opened for writing (No such file or directory)");
+  REQUIRE(first != std::string::npos);
+  CHECK(stage.text.find("the log '/nonexistent", first + 1) == std::string::npos);
+}
+
+TEST_CASE("a recorded game plays: a monitor sees every record as it was logged, and late ones join") {
+  Recorded stage;
+  for (int i = 0; i < 400; ++i) {
+    if (i % 60 == 30) stage.item->waiting = 1;
+    if (i == 200) stage.parts[1]->create("FakeVisual", "hat");
+    stage.item->score = i / 50;
+    stage.head->shown = (i / 20) % 2;
+    stage.cycle();
+  }
+  const auto lines = stage.file.lines();
+  Player player(stage.file.path);
+  CHECK(getProperty(*player.player, "records") == Value(static_cast<std::int64_t>(lines.size())));
+  for (int i = 0; i < 50; ++i) player.cycle();
+  CHECK(player.at() == 0);  // nobody watches
+  FakeConnection& monitor = player.connect();
+  Replica seen, logged;
+  seen.take(monitor.read());
+  logged.take(lines[0]);
+  CHECK(same(seen, logged, 0));
+  player.cycle(), player.cycle();  // the monitor is noticed
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    for (int k = 0; k < 10; ++k) {
+      player.cycle();
+      if (!monitor.idle()) seen.take(monitor.read());
+    }
+    logged.take(lines[i]);
+    CAPTURE(i);
+    REQUIRE(same(seen, logged, 0));
+    REQUIRE(seen.time == logged.time);
+    REQUIRE(seen.events == logged.events);
+  }
+  CHECK(seen.events.size() > 3);
+  CHECK(seen.fulls == 2);  // the first, and the hat
+  player.records(5);
+  CHECK(player.at() == static_cast<std::int64_t>(lines.size()) - 1);  // it stands at its end
+  Replica late;
+  late.take(player.connect().read());
+  CHECK(same(late, logged, 0));
+  CHECK(late.lastEnv == std::vector<std::string>{"FieldLength", "time", "score"});
+}
+
+TEST_CASE("a player is stopped, stepped, turned, hurried and sent elsewhere") {
+  std::string text = join({kFull});
+  for (int i = 1; i < 60; ++i) {
+    std::string line = i % 15 == 0 ? kFull : i % 2 ? kSecond : kThird;
+    line.replace(line.find("(time"), line.find(')', line.find("(time")) - line.find("(time"), fmt::format("(time {:g}", 0.2 * i));
+    text += line + "\n";
+  }
+  const TemporaryFile file(text);
+  Player player(file.path);
+  FakeConnection& monitor = player.connect();
+  const auto height = [&] {
+    Replica now;
+    FakeConnection& newcomer = player.connect();
+    now.take(newcomer.read());
+    player.consumer->disconnected(newcomer);
+    REQUIRE(now.nodes.size() == 2);
+    return now.nodes[0].matrix[14];
+  };
+  player.command(monitor, "(p)");
+  const std::int64_t stopped = player.at();
+  player.records(5);
+  CHECK(player.at() == stopped);
+  player.command(monitor, "(record 20)");
+  CHECK(player.at() == 20);
+  CHECK(height() == 3);
+  player.command(monitor, "(f)");
+  CHECK(player.at() == 21);
+  CHECK(height() == 2);
+  player.command(monitor, "(b)(b)(b)(b)(b)(b)");
+  CHECK(player.at() == 15);
+  CHECK(height() == 1);
+  player.command(monitor, "(speed 5)(p)");
+  player.records(2);
+  CHECK(player.at() == 26);
+  player.command(monitor, "(l)(speed 1)");
+  const std::int64_t turned = player.at();
+  player.records(4);
+  CHECK(player.at() == turned - 4);
+  player.records(100);
+  CHECK(player.at() == 0);
+  CHECK(height() == 1);
+  for (const char* wild : {"(speed nan)", "(speed -1)", "(speed)", "(record)", "(record 1e30)", "(record (a))", "(nosuch 1)", "(speed inf)", "garbage"})
+    player.command(monitor, wild);
+  CHECK(player.at() <= 59);
+  CHECK(getProperty(*player.player, "speed") == Value(1.0));
+}
+
+TEST_CASE("damaged lines of a log are passed over, draw commands are skipped") {
+  const std::string cut(kSecond, 60), huge(9u << 20, 'x'), deep(200, '(');
+  const TemporaryFile file(join({"[1, 0, 3, 4][2, 1]", "", kSecond, std::string("[1, 0]") + kFull, cut, "garbage", "(())", deep, "(" + huge,
+                                 "((time 0.1))(RDS 0 1)((nd)(nd))", "((time 0.1))(RSG 0 1)((nd BN))", "((time 0.1))(RSG 0 1)((nd StaticMesh (setVisible 1)))",
+                                 "((time 0.1))(RSG 0 1)((nd SMN (load \"a) (b\")))", std::string("((time \0 0.1))(RDS 0 1)((nd(nd)))", 31), kSecond,
+                                 "[1, 0][2]" + std::string(kThird)}) +
+                           std::string(kThird).substr(0, 70));
+  Player player(file.path);
+  FakeConnection& monitor = player.connect();
+  Replica seen;
+  for (int i = 0; i < 200; ++i) {
+    if (!monitor.idle()) seen.take(monitor.read());
+    player.cycle();
+  }
+  if (!monitor.idle()) seen.take(monitor.read());
+  REQUIRE(seen.nodes.size() == 2);
+  CHECK(seen.nodes[0].matrix[14] == 3);
+  CHECK(seen.events == std::vector<std::string>{"1"});
+  CHECK(getProperty(*player.player, "damaged").toInteger() >= 8);
+  CHECK(player.text.find("is passed over: ") != std::string::npos);
+}
+
+TEST_CASE("what is no log is refused with a sentence") {
+  const TemporaryFile empty(""), garbage("hello\nworld\n");
+  for (const std::string& name : {std::string("/nonexistent.log"), std::string("/tmp"), empty.path.string(), garbage.path.string()}) {
+    INFO(name);
+    CHECK_THROWS_WITH(Player(name), Catch::Contains("The log '"));
+  }
+}

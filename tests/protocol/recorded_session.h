@@ -1,0 +1,136 @@
+#pragma once
+/// \file
+/// A recorded lockstep session, and a house in which it is played again in process: same cycles, same messages, no network, no timing.
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "api/agents.h"
+#include "fake_scene.h"
+#include "spark/state.h"
+#include "test_support.h"
+
+namespace spark::test {
+
+/// What stands in a recording (`captures/*/*.jsonl`).
+struct Recording {
+  std::vector<std::string> agents;                                              ///< their names, in order of connection
+  std::map<int, std::vector<std::pair<std::size_t, std::string>>> sent;         ///< by cycle: agent's index, message
+  std::map<int, std::vector<std::string>> commands;                             ///< by cycle: what the monitor sent
+  std::vector<std::string> frames;                                              ///< what the monitor got, from its first message on
+  int start = 0;                                                                ///< the first answer tells of so many steps
+  int cycles = 0;                                                               ///< messages that the first agent got
+
+  explicit Recording(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    if (!in) throw Error("there is no recording " + file.string());
+    for (std::string line; std::getline(in, line);) {
+      const auto row = nlohmann::json::parse(line);
+      read(row["cycle"], row["dir"], row["msg"]);
+    }
+  }
+
+ private:
+  void read(int cycle, const std::string& dir, const std::string& message) {
+    const std::size_t arrow = dir.find('>');
+    const std::string from = dir.substr(0, arrow), to = dir.substr(arrow + 1);
+    if (from == "monitor") commands[cycle].push_back(message);
+    if (from.starts_with("agent")) sent[cycle].emplace_back(indexOf(from), message);
+    if (to == "monitor") frames.push_back(message);
+    if (!to.starts_with("agent") || indexOf(to) != 0) return;
+    if (cycle == 0) start = static_cast<int>(std::lround(std::stod(message.substr(message.find("(now ") + 5)) / 0.02));
+    cycles = cycle + 1;
+  }
+  std::size_t indexOf(const std::string& name) {
+    for (std::size_t i = 0; i < agents.size(); ++i)
+      if (agents[i] == name) return i;
+    agents.push_back(name);
+    return agents.size() - 1;
+  }
+};
+
+/// The league's house without its network: agents and monitors are fake connections.
+class League : public House {
+ public:
+  /// `field`: its scene file. `scenes`: a folder that holds rsg/..., asked first; empty: the project's own.
+  explicit League(const std::string& field, const std::filesystem::path& scenes = {}) {
+    const auto share = pluginFolder().parent_path() / "share" / "spark";
+    kernel.lua().addFolder(share / "lua");
+    const std::string paths = scenes.empty() ? "" : "'" + scenes.string() + "'";
+    kernel.lua().run(fmt::format("host = {{ share = '{}', scenePaths = {{ {} }} }}", share.string(), paths), "test");
+    for (const char* port : {"agents", "monitors"}) kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+    if (!field.empty()) kernel.lua().addOverride("scene", field);
+    for (const char* noise : {"Soccer.BeamNoiseXY", "Soccer.BeamNoiseAngle"}) kernel.lua().addOverride(noise, 0);
+    kernel.lua().runConfig("soccer.lua");
+    setProperty(at("/sys/server/simulation"), "rate", "max");
+  }
+  Leaf& at(std::string_view path) { return kernel.root().require<Leaf>(path); }
+  void run(int cycles = 1) { callMethod(at("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles}); }
+  FakeConnection& connect(const char* server, const char* port) {
+    connections_.push_back(std::make_unique<FakeConnection>(kernel.root().require<Node>(port), connections_.size() + 1));
+    kernel.root().require<IConnectionConsumer>(server).connected(*connections_.back());
+    return *connections_.back();
+  }
+  FakeConnection& connectAgent() { return connect("/sys/server/gamecontrol", "/sys/server/net/agents"); }
+  FakeConnection& connectMonitor() { return connect("/sys/server/monitor", "/sys/server/net/monitors"); }
+  void fromAgent(FakeConnection& agent, std::string_view message) {
+    kernel.root().require<IConnectionConsumer>("/sys/server/gamecontrol").received(agent, message);
+  }
+  void fromMonitor(FakeConnection& monitor, std::string_view message) {
+    kernel.root().require<IConnectionConsumer>("/sys/server/monitor").received(monitor, message);
+  }
+
+ private:
+  std::vector<std::unique_ptr<FakeConnection>> connections_;
+};
+
+/// Plays a recording in a league: whatever an agent is answered, it sends what it sent then.
+class Replay {
+ public:
+  Replay(League& league, const Recording& recording) : league_(league), recording_(recording) {}
+
+  std::vector<std::string> frames;  ///< what the monitor gets
+
+  /// `cycles`: so many answers of the first agent.
+  void play(int cycles) {
+    const bool early = recording_.frames.front().find("(nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1)))") == std::string::npos;
+    league_.run(recording_.start - 3);
+    if (early) watch();
+    for (std::size_t i = 0; i < recording_.agents.size(); ++i) agents_.push_back(&league_.connectAgent());
+    send(0);
+    if (!early) league_.run(), watch();
+    while (cycle_ < cycles) step();
+  }
+
+ private:
+  void watch() {
+    monitor_ = &league_.connectMonitor();
+    frames.push_back(monitor_->read());
+  }
+  void step() {
+    league_.run();
+    if (std::string frame = monitor_->read(); !frame.empty()) frames.push_back(std::move(frame));
+    bool answered = false;
+    for (FakeConnection* agent : agents_) answered |= !agent->read().empty() && agent == agents_.front();
+    if (answered) send(++cycle_);
+  }
+  void send(int cycle) {
+    if (const auto c = recording_.commands.find(cycle); c != recording_.commands.end())
+      for (const std::string& command : c->second) league_.fromMonitor(*monitor_, command);
+    if (const auto s = recording_.sent.find(cycle); s != recording_.sent.end())
+      for (const auto& [agent, message] : s->second) league_.fromAgent(*agents_[agent], message);
+  }
+
+  League& league_;
+  const Recording& recording_;
+  std::vector<FakeConnection*> agents_;
+  FakeConnection* monitor_ = nullptr;
+  int cycle_ = 0;
+};
+
+}  // namespace spark::test
