@@ -5,8 +5,8 @@
 
 namespace spark {
 
-/// `(init (unum 7)(teamname A))`: takes the agent into a team. Refused quietly for the agent, with one line in the log: it then stays
-/// where it is, without a team.
+/// `(init (unum 7)(teamname A))`: takes the agent into a team and puts it at the team's next start position. Refused quietly for the agent,
+/// with one line in the log: without a team it then falls down in the middle of the field, as it always did (protocol section 1.6).
 class InitEffector : public Effector {
   SPARK_CLASS(InitEffector, Effector)
  public:
@@ -38,16 +38,29 @@ class InitEffector : public Effector {
       if (mayTell()) kernel().log().warning("{}: init refused: it needs an AgentState in the robot and soccer's rules below game control", path());
       return;
     }
-    if (state->side() != soccer::Side::none && state->team() == team_ && (unum_ == 0 || unum_ == state->unum())) return;  // plays already
-    if (const std::string problem = game->join(*state, team_, unum_); !problem.empty()) {
+    const bool first = state->side() == soccer::Side::none;
+    if (const std::string problem = refusal(*game, *state); !problem.empty()) {
       if (mayTell()) kernel().log().warning("{}: init refused: {}", agent->path(), problem);
-      return;
+    } else {
+      if (mayTell()) kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_, soccer::sideName(state->side()), state->unum());
+      dress(*agent, state->side(), state->unum());
+      if (auto* scene = game->pitch().scene()) scene->markModified();
     }
-    if (mayTell()) kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_, soccer::sideName(state->side()), state->unum());
-    dress(*agent, state->side(), state->unum());
-    if (auto* scene = game->pitch().scene()) scene->markModified();
-    if (const soccer::Player* player = match_.player(*this))
-      player->moveTo(game->nextStart(state->side()), degToRad(state->side() == soccer::Side::left ? -90 : 90));
+    // init again is no way to jump about during play
+    if (first || game->paused()) place(*game, state->side());
+  }
+
+  /// Takes the agent into the team; returns "" or why it cannot be.
+  std::string refusal(GameStateAspect& game, AgentState& state) const {
+    if (state.side() != soccer::Side::none && state.team() == team_ && (unum_ == 0 || unum_ == state.unum())) return "it plays already";
+    return game.join(state, team_, unum_);
+  }
+
+  void place(GameStateAspect& game, soccer::Side side) {
+    const soccer::Player* player = game.pitch().playerOf(this);
+    if (!player) return;
+    if (side == soccer::Side::none) return player->moveTo(Vec3(0, 0, kRefusedHeight), 0);
+    player->moveTo(game.nextStart(side), degToRad(side == soccer::Side::left ? -90 : 90));
   }
 
   /// An agent that sends init in every cycle does not fill the log.
@@ -58,6 +71,7 @@ class InitEffector : public Effector {
   }
 
   static constexpr int kMostLines = 20;
+  static constexpr double kRefusedHeight = 10;  ///< m
   MatchLookup match_;
   int lines_ = 0;
   std::int64_t unum_ = 0;

@@ -137,8 +137,7 @@ std::string TrainerCommandParser::select(const Element& c) {
 std::string TrainerCommandParser::kill(const Element& c) {
   const Player* p = c.named("unum") ? named(c) : selected();
   if (!p) return kNoSuchPlayer;
-  // the connection stays open, as clients expect
-  match_.game()->pitch().gameControl()->removeAgent(*p->agent, false);
+  match_.game()->pitch().gameControl()->removeAgent(*p->agent, true);
   return {};
 }
 

@@ -37,12 +37,11 @@ TEST_CASE("number 0, none or a word is the lowest free one", "[soccer]") {
   }
 }
 
-TEST_CASE("an init that is refused leaves the agent where it is, with one line in the log", "[soccer]") {
+TEST_CASE("an init that is refused drops the agent in the middle, with one line in the log", "[soccer]") {
   MatchHouse h;
   h.importField();
   h.join("A", 1), h.join("B", 1);
   Puppet& c = h.connect("C");
-  const Vec3 before = h.bodyOf(3).state().position;
   const auto [action, reason] = GENERATE(table<std::string, std::string>({
       {"(init (unum 3))", "expected (teamname <name>)"},
       {"(init (unum 3)(teamname C))", "there are two teams already"},
@@ -59,7 +58,7 @@ TEST_CASE("an init that is refused leaves the agent where it is, with one line i
   h.run(2);
   CHECK(h.text.find(reason) != std::string::npos);
   CHECK(getProperty(h.stateOf(3), "side").toString() == "none");
-  CHECK((h.bodyOf(3).state().position - before).norm() < 0.05);
+  CHECK((h.bodyOf(3).state().position - Vec3(0, 0, 10)).norm() < 0.05);
   CHECK(c.heard.find("unum") == std::string::npos);
   // and can still be mended
   h.act(c, "(init (unum 5)(teamname B))");
@@ -95,6 +94,20 @@ TEST_CASE("a twelfth player of a team is refused; a number is free again when it
   h.act(late, "(init (teamname A))");
   h.run(1);
   CHECK(getProperty(h.stateOf(12), "unum").toInteger() == 4);
+}
+
+TEST_CASE("init again moves to the next start position before kick-offs, and not during play", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  const bool before = GENERATE(true, false);
+  if (!before) h.setMode("PlayOn");
+  const std::string again = GENERATE("(init (unum 1)(teamname A))", "(init (teamname A))", "(init (unum 12)(teamname A))", "(init (unum 3)(teamname A))");
+  const Vec3 old = h.bodyOf(1).state().position;
+  h.act(a, again);
+  h.run(1);
+  CHECK((h.bodyOf(1).state().position - old).norm() == Approx(before ? 3 * 0.22 : 0).margin(0.01));
+  CHECK(getProperty(h.stateOf(1), "unum").toInteger() == (again.find("3") == again.npos ? 1 : 3));
 }
 
 TEST_CASE("a second init with another number gives the first one back", "[soccer]") {

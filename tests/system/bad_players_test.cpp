@@ -1,0 +1,246 @@
+#include "attack.h"
+
+// Players, and trainers, that do not keep to the order or the measure of things (protocol sections 1.6, 1.7, 2.2 and 4.5).
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// An agent without a team yet: its robot stands.
+struct Robot : Client {
+  explicit Robot(const Arena& a, const std::string& file = "rsg/agent/sphere.rsg") : Client(a.agentPort) {
+    send("(scene " + file + ")(syn)");
+    receive();
+  }
+};
+std::string init(const std::string& team, const std::string& unum) { return "(init (unum " + unum + ")(teamname " + team + "))(syn)"; }
+
+/// Messages in which an accepted init would long have been answered.
+constexpr int kSome = 25;
+
+/// The number that the host tells in one of the next messages; 0: none.
+std::int64_t numberIn(Client& c, int messages) {
+  for (int i = 0; i < messages; ++i) {
+    Predicates p;
+    readSexp(c.receive(), p);
+    for (const Element e : p)
+      if (const Element unum = e.named("unum"); unum && e.head() == "GS") return unum.at(1).integer();
+  }
+  return 0;
+}
+/// Sends init; the number that the host gives, 0 when it refuses.
+std::int64_t ask(Client& c, const std::string& team, const std::string& unum) {
+  while (c.pending()) c.receive();
+  c.send(init(team, unum));
+  return numberIn(c, kSome);
+}
+
+/// A monitor that gives commands and knows when they have acted.
+class Trainer {
+ public:
+  explicit Trainer(const Arena& a) : client_(a.monitorPort) {}
+  /// Returns when the commands have acted and a frame shows it; the frames until then must hold no strange number.
+  void command(const std::string& commands) {
+    const std::string mark = "(score_left " + std::to_string(++mark_) + ")";
+    client_.send(commands);
+    client_.send("(score (left " + std::to_string(mark_) + ")(right 0))");
+    for (std::string frame; frame.find(mark) == frame.npos;) {
+      frame = client_.receive();
+      CHECK(frame.find("nan") == frame.npos);
+      CHECK(frame.find("inf") == frame.npos);
+    }
+  }
+
+ private:
+  Client client_;
+  int mark_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("init before scene, or beside it, is lost and takes no number") {
+  Arena a;
+  Client c(a.agentPort);
+  SECTION("in a message of its own") {
+    c.send("(init (unum 3)(teamname Calm))");
+    c.send("(scene rsg/agent/sphere.rsg)(syn)");
+  }
+  SECTION("in the same message") { c.send("(init (unum 3)(teamname Calm))(scene rsg/agent/sphere.rsg)(syn)(init (unum 3)(teamname Calm))"); }
+  REQUIRE(numberIn(c, kSome) == 0);
+  Robot other(a);
+  REQUIRE(ask(other, "Calm", "3") == 3);
+  REQUIRE(ask(c, "Calm", "4") == 4);
+  a.mustEndWell();
+}
+
+TEST_CASE("A number that was taken is refused, whoever asks, and one that was given back is not") {
+  Arena a;
+  Robot one(a), two(a);
+  REQUIRE(ask(one, "Calm", "5") == 5);
+  REQUIRE(ask(two, "Calm", "5") == 0);
+  REQUIRE(ask(one, "Calm", "5") == 0);  // init twice, the same data
+  REQUIRE(ask(one, "Calm", "6") == 0);  // told once only, but it has 6 now
+  REQUIRE(ask(two, "Calm", "6") == 0);
+  REQUIRE(ask(two, "Calm", "5") == 5);
+  {
+    Robot gone(a);
+    REQUIRE(ask(gone, "Calm", "11") == 11);
+  }
+  a.host.waitForError("leaves");
+  Robot heir(a);
+  REQUIRE(ask(heir, "Calm", "11") == 11);
+  a.mustEndWell();
+}
+
+TEST_CASE("Third teams and numbers that do not exist are refused, number 0, none and words are the lowest free one") {
+  Arena a;
+  Robot other(a);
+  REQUIRE(ask(other, "Other", "1") == 1);
+  Robot c(a);
+  for (const auto& [team, unum] : {std::pair{"Third", "1"}, {"Calm", "12"}, {"Calm", "-1"}, {"Calm", "99999999999999999999"}, {"\"\"", "2"}})
+    REQUIRE(ask(c, team, unum) == 0);
+  c.send("(init)(init (unum))(init (unum 2))(init (teamname))(init (unum 2)(teamname (Calm)))(init (unum (2))(teamname))(syn)");
+  REQUIRE(numberIn(c, kSome) == 0);
+  REQUIRE(ask(c, "Calm", "0") == 2);
+  Robot word(a), none(a);
+  REQUIRE(ask(word, "Calm", "nan") == 3);
+  none.send("(init (teamname Calm))(syn)");
+  REQUIRE(numberIn(none, kSome) == 4);
+  a.mustEndWell();
+}
+
+TEST_CASE("A robot of a type of which the team has enough is refused and takes no number") {
+  Arena a({}, "soccer.lua");
+  const std::string heterogeneous = "rsg/agent/nao/nao_hetero.rsg ";
+  std::vector<std::unique_ptr<Robot>> team;
+  for (int unum = 2; unum <= 7; ++unum) {
+    team.push_back(std::make_unique<Robot>(a, heterogeneous + "0"));
+    REQUIRE(ask(*team.back(), "Calm", std::to_string(unum)) == unum);
+  }
+  // the witness is the seventh of type 0
+  Robot eighth(a, heterogeneous + "0");
+  REQUIRE(ask(eighth, "Calm", "8") == 0);
+  a.host.waitForError("robots of type 0 already");
+  Robot other(a, heterogeneous + "1");
+  REQUIRE(ask(other, "Calm", "8") == 8);
+  REQUIRE(ask(eighth, "Else", "1") == 1);
+  a.mustEndWell();
+}
+
+TEST_CASE("Who is killed loses robot, number and connection, and may go on sending") {
+  Arena a;
+  Robot c(a);
+  REQUIRE(ask(c, "Calm", "7") == 7);
+  Trainer trainer(a);
+  trainer.command("(kill (unum 7)(team Left))");
+  c.waitForClose();
+  for (int i = 0; i < 100; ++i) c.send("(drive 1 2 3)(say hello)(syn)");
+  a.witness->mustSeeTimePass();
+  Robot heir(a);
+  REQUIRE(ask(heir, "Calm", "7") == 7);
+  trainer.command("(kill)(kill (unum 9)(team Left))(kill (unum 7))(kill (unum 7)(team Middle))");
+  trainer.command("(select (unum 7)(team Left))(kill)(kill)");
+  heir.waitForClose();
+  a.mustEndWell();
+}
+
+TEST_CASE("Trainers' commands with missing and wild arguments end nothing and show nobody a strange number") {
+  Arena a({"--set", "/sys/server/monitor.interval=1"});
+  Trainer trainer(a);
+  for (const char* name : {"playMode", "kickOff", "ball", "agent", "kill", "repos", "select", "time", "score", "nonsense", "init", "getAck"})
+    for (const char* arguments : {"", " nan", " ()", " (unum)", " (unum x)(team)", " (pos)", " (unum 99)(team Left)", " (left)(right)", " (((("})
+      trainer.command("(" + std::string(name) + arguments + ")");
+  trainer.command("(agent (unum 1)(team Left)(pos)(move)(battery)(temperature))(ball (pos 1)(vel))");
+  for (const char* x : {"nan", "-nan", "inf", "-inf", "1e30", "-1e30", "1e308", "1e999", "x", "9e5", "-9e5"}) {
+    const std::string n = x, three = " " + n + " " + n + " " + n;
+    for (const std::string& command :
+         {"(ball (pos" + three + "))", "(ball (vel" + three + "))", "(ball (pos" + three + ")(vel" + three + "))",
+          "(agent (unum 1)(team Left)(pos" + three + "))", "(agent (unum 1)(team Left)(move" + three + " " + n + "))",
+          "(agent (unum 1)(team Left)(move 0 0 1 " + n + "))", "(agent (unum 1)(team Left)(rot" + three + "))",
+          "(agent (unum 1)(team Left)(battery " + n + "))", "(agent (unum 1)(team Left)(temperature " + n + "))",
+          "(agent (unum " + n + ")(team Left)(pos 0 0 1))", "(select (unum " + n + ")(team Left))", "(score (left " + n + ")(right 0))"}) {
+      trainer.command(command);
+      trainer.command("(playMode PlayOn)(dropBall)(repos (unum 1)(team Left))(playMode BeforeKickOff)");
+    }
+    trainer.command("(time " + n + ")(time 0)");
+  }
+  REQUIRE(a.host.errors().find("was no number") == std::string::npos);
+  a.mustEndWell();
+}
+
+TEST_CASE("Beams to nowhere stay on the field") {
+  Arena a;
+  Trainer trainer(a);
+  for (const char* beam : {"(beam 1e30 1e30 1e30)", "(beam -1e30 -1e30 -1e30)", "(beam nan nan nan)", "(beam inf -inf inf)", "(beam 1e999 0 1e308)",
+                           "(beam)", "(beam 1)", "(beam x y z)", "(beam (1) (2) (3))"}) {
+    a.witness->client().send(beam);
+    a.witness->mustSeeTimePass();
+    trainer.command("");
+  }
+  REQUIRE(a.host.errors().find("was no number") == std::string::npos);
+  a.mustEndWell();
+}
+
+TEST_CASE("A thousand commands in one message, and a second robot, are nothing special") {
+  Arena a;
+  Robot c(a);
+  REQUIRE(ask(c, "Calm", "2") == 2);
+  std::string thousand;
+  for (int i = 0; i < 1000; ++i) thousand += "(drive " + std::to_string(i % 7) + " 0 0)";
+  c.send(thousand + "(scene rsg/agent/sphere.rsg)(syn)");
+  a.host.waitForError("a second one is refused");
+  c.receive();
+  a.mustEndWell();
+}
+
+TEST_CASE("An agent that falls silent in lockstep is closed when patience ends, the others play on") {
+  Arena a({"--sync", "--rate", "max", "--set", "/sys/server/gamecontrol.syncTimeout=0.5"});
+  Client& player = a.witness->client();
+  Client silent(a.agentPort);
+  silent.send("(scene rsg/agent/sphere.rsg)(syn)");
+  while (a.host.errors().find("did not answer for 0.5 s, all others wait") == std::string::npos) {
+    if (!player.pending()) continue;
+    player.receive();
+    player.send("(syn)");
+  }
+  silent.waitForClose();
+  a.mustEndWell();
+}
+
+TEST_CASE("An agent in lockstep that answers and never reads stops nobody") {
+  Arena a({"--sync", "--rate", "max", "--set", "/sys/server/net/agents.sendBuffer=4096"});
+  Client& player = a.witness->client();
+  Client deaf(a.agentPort);
+  deaf.send("(scene rsg/agent/sphere.rsg)(syn)");
+  for (int i = 0; i < 1000; ++i) {
+    player.receive();
+    player.send("(syn)");
+    deaf.send("(syn)");
+  }
+  a.host.signal(15);
+  REQUIRE(nlohmann::json::parse(a.host.line())["cycles"].get<int>() > 900);
+  REQUIRE(a.host.wait() == 0);
+}
+
+TEST_CASE("Two hundred connections that say nothing keep nobody out") {
+  Arena a;
+  std::vector<std::unique_ptr<Client>> idle;
+  for (int i = 0; i < 200; ++i) idle.push_back(std::make_unique<Client>(a.agentPort));
+  Robot c(a);
+  REQUIRE(ask(c, "Calm", "2") == 2);
+  for (int i = 0; i < 70; ++i) idle.push_back(std::make_unique<Client>(a.agentPort));
+  REQUIRE(ask(c, "Calm", "2") == 0);  // still there, and has its number
+  a.host.waitForError("it said nothing, and its place is needed");
+  a.mustEndWell();
+}
+
+TEST_CASE("Clients that never get a robot are closed in the end") {
+  Arena a({"--set", "/sys/server/gamecontrol.idleLimit=0.3"});
+  Client silent(a.agentPort), chatty(a.agentPort);
+  chatty.send("(hello)(scene rsg/agent/none.rsg)");
+  silent.waitForClose();
+  chatty.waitForClose();
+  a.host.waitForError("it has no robot after 0.3 s");
+  a.mustEndWell();
+}
