@@ -66,7 +66,7 @@ function soccerCompat(version)
 end
 
 --- The option that names the version; a config hands it to soccerCompat().
-function compatOption()
-  return option{ name = "compat", default = "M", choices = { "M", "F", "L" },
+function compatOption(default)
+  return option{ name = "compat", default = default or "M", choices = { "M", "F", "L" },
                  doc = "Version of the installed base: M mainline 0.7.3, F the SPL's, L later than 0.7.3." }
 end

@@ -1,6 +1,11 @@
 -- Soccer of the 3D league: 30 x 20 m, humanoids. Robots are scene files that agents name; --scene-path says where others than Spark's are.
 --
---     sparkhost --config soccer.lua --scene-path <folder with rsg/agent/nao/...>
+--     sparkhost --config soccer.lua
+--
+-- Another league sets `league` and includes this file: `league.variables` are the Soccer.* in which it differs, `league.compat` is the
+-- version that it follows unless --set says otherwise.
+local league = league or {}
+
 include "house.lua"
 include "materials.lua"
 include "naotypes.lua"
@@ -9,7 +14,7 @@ include "soccer-house.lua"
 local field   = option{ name = "scene", default = "rsg/soccer/field.rsg", doc = "The field's scene file." }
 local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of the language that agents speak." }
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
-local compat  = compatOption()
+local compat  = compatOption(league.compat)
 
 -- the rooms
 files()
@@ -25,7 +30,7 @@ plugin "effectors"
 
 -- the match
 naoVariables()
-soccerVariables()
+soccerVariables(league.variables)
 soccerRules()
 soccerMonitor()
 soccerCompat(compat)

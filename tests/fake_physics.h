@@ -42,6 +42,7 @@ class FakeJoint : public SceneNode, public IJoint {
     d.property("stiffness", &FakeJoint::stiffness);
     d.property("temperature", &FakeJoint::temperature);
     d.property("current", &FakeJoint::current);
+    d.property("disabled", &FakeJoint::disabled);
   }
   Leaf& leaf() override { return *this; }
   engine::JointType jointType() const override { return type; }
@@ -63,6 +64,7 @@ class FakeJoint : public SceneNode, public IJoint {
   std::array<double, 3> angles{}, rates{}, maxSpeeds{};
   std::map<std::pair<engine::JointParameter, int>, double> parameters;
   double torque = 0, stiffness = 1, temperature = 23, current = 0;
+  bool disabled = false;
 };
 
 /// A collider without a shape.

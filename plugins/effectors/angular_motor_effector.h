@@ -4,17 +4,24 @@
 
 namespace spark {
 
-/// `(he1 1.5)`: speed of the angular motor above it, rad/s, at once and until the next command.
+/// `(he1 1.5)`: speed of the angular motor above it, rad/s, at once and until the next command. A motor that is disabled (too hot, without
+/// energy) stands still instead.
 class AngularMotorEffector : public Effector {
   SPARK_CLASS(AngularMotorEffector, Effector)
  public:
   static void describe(Description<AngularMotorEffector>& d) {
-    d.doc("Drives the angular motor above it: (name speed) in rad/s, within the greatest speed of the motor or of the hinge that holds it.");
+    d.doc(
+        "Drives the angular motor above it: (name speed) in rad/s, within the greatest speed of the motor or of the hinge that holds it; a "
+        "disabled motor stands still.");
   }
   std::string act(const Element& action) override {
     if (!motor_) return "there is no AngularMotor above it";
     double speed = 0;
     if (std::string wrong = readNumber(action, 0, speed); !wrong.empty()) return wrong;
+    if (disabled_ && disabled_->get(motor_->leaf()).toBool()) {
+      drive(*motor_, 0, 0);
+      return {};
+    }
     speed = clampSpeed(*motor_, 0, speed);
     drive(*motor_, 0, hinge_ ? clampSpeed(*hinge_, 0, speed) : speed);
     return {};
@@ -34,9 +41,11 @@ class AngularMotorEffector : public Effector {
   void lookUp() {
     motor_ = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
     hinge_ = motor_ ? motor_->leaf().ancestor<IJoint>() : nullptr;
+    disabled_ = motor_ ? motor_->leaf().classObject()->property("disabled") : nullptr;
   }
   IJoint* motor_ = nullptr;
   IJoint* hinge_ = nullptr;
+  const Property* disabled_ = nullptr;  ///< of motors that model one
 };
 
 }  // namespace spark

@@ -1,12 +1,17 @@
-#include "joints.h"
+#include "angular_motor.h"
+
+#include <cmath>
+
+#include "physics_server.h"
+#include "spark/state.h"
 
 namespace spark {
 
 void AngularMotor::describe(Description<AngularMotor>& d) {
   using M = AngularMotor;
   d.doc(
-      "Drives the angles between two bodies; below a HingeJoint it drives the hinge's. What a real motor has (battery, heat) is held as "
-      "properties.");
+      "Drives the angles between two bodies; below a HingeJoint it drives the hinge's. With a maxTorque it is a modelled motor: current, "
+      "heat and battery follow from its torque, and limit it.");
   d.property("numAxes", &M::numAxes, &M::setNumAxes).range(0, 3).doc("How many axes it drives.");
   d.method("setMotorAxis", &M::setMotorAxis)
       .parameters({"axis", "0 world, 1 first body, 2 second body", "direction"})
@@ -32,9 +37,60 @@ void AngularMotor::describe(Description<AngularMotor>& d) {
       .unit("C")
       .doc("Above it the motor protects itself (the scene files' own spelling).");
   d.property("protectionStiffness", &M::protectionStiffness_).range(0, 1).doc("Greatest stiffness of a motor that protects itself.");
-  d.property("maxTorque", &M::maxTorque_).unit("Nm").min(0).doc("Torque at stiffness 1.");
+  d.property("maxTorque", &M::maxTorque_)
+      .unit("Nm")
+      .min(0)
+      .doc("Torque at stiffness 1; 0: no model, the force is what setMaxMotorForce says.");
   d.property("stiffness", &M::stiffness_).range(0, 1).state().doc("Part of the greatest torque it may use.");
   d.property("temperature", &M::temperature_).unit("C").state().doc("Temperature of the winding.");
+  d.property("current", &M::current_).unit("A").readOnly().doc("Current in the last step.");
+  d.property("disabled", &M::disabled).doc("It takes no commands: its battery is empty or it is too hot.");
+  d.on<&M::prepare>("prepare");
+  d.on<&M::measure>("place");
+}
+
+const AngularMotor::Surroundings& AngularMotor::surroundings() const {
+  Surroundings& s = surroundings_;
+  if (s.version == kernel().structureVersion()) return s;
+  s.version = kernel().structureVersion();
+  s.hinge = ancestor<HingeJoint>();
+  s.battery = battery_.empty() ? nullptr : find<Battery>(battery_);
+  s.server = kernel().root().find<PhysicsServer>("/sys/server/physics");
+  return s;
+}
+
+bool AngularMotor::disabled() const {
+  if (maxTorque_ <= 0) return false;
+  const Battery* battery = surroundings().battery;
+  return tooHot() || (battery && battery->empty());
+}
+
+void AngularMotor::prepare(const Event&) {
+  if (!modelled()) return;
+  const Battery* battery = surroundings().battery;
+  const double stiffness = battery && battery->empty() ? 0.0 : tooHot() ? std::min(stiffness_, protectionStiffness_) : stiffness_;
+  setParameter(engine::JointParameter::maxForce, 0, stiffness * maxTorque_);
+}
+
+void AngularMotor::measure(const Event& event) {
+  if (!modelled()) return;
+  const Surroundings& s = surroundings();
+  current_ = torqueConstant_ != 0 ? feedbackTorque() / torqueConstant_ : 0;
+  const double heat = current_ * current_ * resistance_;  // W
+  const double speed = std::abs(s.hinge ? s.hinge->angleRate(0) : angleRate(0));
+  if (s.battery && s.server && s.server->batteryDischarge()) s.battery->drain((speedConstant_ * speed * current_ + heat) * event.step);
+  if (s.server && s.server->jointHeating() && heatCapacity_ > 0)
+    temperature_ += (heat - conductivity_ * (temperature_ - environment_)) * event.step / heatCapacity_;
+}
+
+void AngularMotor::saveState(StateWriter& out) const {
+  Joint::saveState(out);
+  out.write(current_);
+}
+
+void AngularMotor::loadState(StateReader& in) {
+  Joint::loadState(in);
+  current_ = in.readNumber();
 }
 
 void AngularMotor::apply() {

@@ -2,6 +2,8 @@
 /// \file
 /// What acts on a body before each step, and a store of energy.
 
+#include <algorithm>
+
 #include "world.h"
 
 namespace spark {
@@ -90,6 +92,9 @@ class Battery : public PhysicsObject {
     d.property("capacity", &Battery::capacity_).unit("J").min(0).doc("What it holds when full.");
     d.property("power", &Battery::power_).unit("J").min(0).state().doc("What it holds now.");
   }
+  bool empty() const { return power_ <= 0; }
+  /// Takes energy [J], as far as it goes.
+  void drain(double energy) { power_ = std::max(0.0, power_ - energy); }
 
  private:
   double capacity_ = 0, power_ = 0;

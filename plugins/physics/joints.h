@@ -157,34 +157,4 @@ class ConeTwistJoint : public Generic6DOFJoint {
   bool acts() const override { return false; }
 };
 
-/// Drives the angles between two bodies; below a HingeJoint it drives the hinge's.
-class AngularMotor : public Joint {
-  SPARK_CLASS(AngularMotor, Joint)
- public:
-  static void describe(Description<AngularMotor>& d);
-  engine::JointType jointType() const override { return engine::JointType::angularMotor; }
-
- protected:
-  void attached() override { apply(); }
-
- private:
-  void apply();
-  int numAxes() const { return axes_; }
-  void setNumAxes(int n);
-  void setMotorAxis(int axis, int frame, const Vec3& direction);
-  void setUserMode() { euler_ = false, apply(); }
-  void setEulerMode() { euler_ = true, apply(); }
-  std::string mode() const { return euler_ ? "euler" : "user"; }
-  void setAxisAngle(int axis, double deg);
-  double axisAngle(int axis) const;
-  double axisAngleRate(int axis) const;
-  int axisAnchor(int axis) const;
-
-  int axes_ = 0, anchors_[3] = {0, 0, 0};
-  bool euler_ = false;
-  std::string battery_;
-  double speedConstant_ = 4.3, torqueConstant_ = 4.3, resistance_ = 6.44, environment_ = 20, conductivity_ = 0.025, heatCapacity_ = 26;
-  double protectionTemperature_ = 80, protectionStiffness_ = 0.8, maxTorque_ = 0, stiffness_ = 1, temperature_ = 20;
-};
-
 }  // namespace spark

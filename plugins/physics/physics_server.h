@@ -19,6 +19,10 @@ class PhysicsServer : public Node, public IPhysicsServer {
   engine::IEngine& engine() override;
   engine::World world() override;
   void bodies(Node& root, std::vector<IRigidBody*>& out) override;
+  /// Motors that model heat get warm.
+  bool jointHeating() const { return jointHeating_; }
+  /// Motors draw from their batteries.
+  bool batteryDischarge() const { return batteryDischarge_; }
 
  private:
   /// A body with what its placing needs.

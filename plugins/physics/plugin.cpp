@@ -1,9 +1,9 @@
 #include "spark/plugin.h"
 
+#include "angular_motor.h"
 #include "colliders.h"
 #include "controllers.h"
 #include "handlers.h"
-#include "joints.h"
 #include "physics_server.h"
 
 SPARK_PLUGIN("physics", "1.0",

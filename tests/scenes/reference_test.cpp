@@ -86,12 +86,15 @@ TEST_CASE("Spark's field for humanoids is the installed base's in every bit") {
   League own, wanted(reference());
   own.import("rsg/soccer/field.rsg", own.scene());
   wanted.importLoosely("rsg/agent/nao/soccer.rsg", wanted.scene());
-  // Known differences: two names, and what may limit the ball's speed (it does not here).
+  // Known differences: two names, what may limit the ball's speed (it does not here), and goal marks that sonars hear too.
   wanted.scene().require<Leaf>("Transform[4]").setName("sky");
   wanted.scene().require<Leaf>("Transform[3]").setName("ground");
   Leaf& limit = own.scene().require<Leaf>("Ball/physics/VelocityController");
   CHECK(getProperty(limit, "maxVelocity") == Value(0.0));
   limit.parent()->remove(limit);
-  checkEqual(nodeFacts(own.scene()), nodeFacts(wanted.scene()));
+  auto facts = nodeFacts(own.scene());
+  for (std::string& line : facts)
+    for (auto at = line.find("GoalPost"); at != line.npos; at = line.find("GoalPost")) line.replace(at, 8, "ObjectState");
+  checkEqual(facts, nodeFacts(wanted.scene()));
   checkEqual(creationOrder(own.scene()), creationOrder(wanted.scene()));
 }

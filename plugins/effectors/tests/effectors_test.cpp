@@ -138,6 +138,9 @@ TEST_CASE("the other joints have their own units and limits") {
     auto& stiffness = motor.create<Effector>("StiffnessEffector", "he1s");
     CHECK(robot.act(effector, "(he1 50)").empty());
     CHECK(motor.velocity(0) == 2);
+    motor.disabled = true;
+    CHECK(robot.act(effector, "(he1 1)").empty());
+    CHECK(motor.velocity(0) == 0);
     CHECK(robot.act(stiffness, "(he1s 1.5)").empty());
     CHECK(motor.stiffness == 1);
     CHECK(robot.act(stiffness, "(he1s 0.25)").empty());

@@ -227,6 +227,55 @@ TEST_CASE("an angular motor drives its hinge and holds the numbers of a real mot
   CHECK(getProperty(server, "jointHeating").toBool());
 }
 
+TEST_CASE("a modelled motor gets warm, drains its battery, and is weaker or disabled for it") {
+  Pair p;
+  Leaf& hinge = p.joint("HingeJoint");
+  p.call(hinge, "setAnchor", {0.0, 0.0, 0.0});
+  p.call(hinge, "setAxis", {2});
+  Leaf& battery = p.scene.create("Battery", "battery");
+  p.call(battery, "setPower", {1000.0});
+  Leaf& m = hinge.asNode()->create("AngularMotor", "motor");
+  p.call(m, "setNumAxes", {1});
+  p.call(m, "attach", {"../../body", "../../../parent/body"});
+  p.call(m, "setMotorAxis", {0, 1, 0.0, 0.0, 1.0});
+  p.call(m, "enableFeedback", {true});
+  p.call(m, "setBattery", {"/usr/scene/battery"});
+  p.call(m, "setMaxTorque", {2.0});
+  p.call(m, "setTorqueConstant", {2.0});
+  p.call(m, "setAngularMotorVelocity", {0, 20000.0});  // more than it can reach: it pulls with all it has
+  const auto strength = [&] { return number(m, "getMaxMotorForce", {0}); };
+  const auto value = [](const Leaf& leaf, const char* name) { return getProperty(leaf, name).toNumber(); };
+
+  p.step();
+  CHECK(strength() == 2);
+  CHECK(value(m, "current") == Approx(1).epsilon(1e-3));
+  CHECK(value(m, "temperature") == 20);  // nothing is modelled yet
+  CHECK(value(battery, "power") == 1000);
+
+  auto& server = *p.kernel.root().find("/sys/server/physics");
+  p.call(server, "setJointHeating", {true});
+  p.call(server, "setBatteryDischarge", {true});
+  p.step();
+  const double i = value(m, "current"), rate = std::abs(degToRad(number(hinge, "getAngleRate")));
+  CHECK(value(m, "temperature") == Approx(20 + i * i * 6.44 * 0.02 / 26));
+  CHECK(value(battery, "power") == Approx(1000 - (4.3 * rate * i + i * i * 6.44) * 0.02));
+
+  p.call(m, "setTemperature", {81.0});
+  CHECK(getProperty(m, "disabled") == Value(true));
+  p.step();
+  CHECK(strength() == Approx(1.6));
+  p.call(m, "setStiffness", {0.5});
+  p.step();
+  CHECK(strength() == 1);
+  p.call(m, "setTemperature", {30.0});
+  CHECK(getProperty(m, "disabled") == Value(false));
+  p.call(battery, "setPower", {0.0});
+  CHECK(getProperty(m, "disabled") == Value(true));
+  p.step();
+  CHECK(strength() == 0);
+  CHECK(value(battery, "power") == 0);
+}
+
 TEST_CASE("a cone twist joint is accepted and holds nothing") {
   Pair p;
   Leaf& j = p.joint("ConeTwistJoint");

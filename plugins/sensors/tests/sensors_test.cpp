@@ -8,6 +8,18 @@ using namespace spark::test;
 
 namespace {
 
+/// What sonars hear, by the names that soccer gives it.
+class GoalPost : public SceneNode {
+  SPARK_CLASS(GoalPost, SceneNode)
+ public:
+  static void describe(Description<GoalPost>&) {}
+};
+class AgentState : public SceneNode {
+  SPARK_CLASS(AgentState, SceneNode)
+ public:
+  static void describe(Description<AgentState>&) {}
+};
+
 /// A robot of one transform `/usr/robot` with a body, to which tests add sensors.
 struct Robot : House {
   Robot() {
@@ -206,15 +218,45 @@ TEST_CASE("the battery's sensor is named as its node") {
 
 TEST_CASE("sensors that are only accepted keep their settings and are silent") {
   Robot robot;
-  for (const char* name : {"SonarPerceptor", "ImagePerceptor", "HMDPPerceptor"}) CHECK(robot.sense(robot.transform->create(name, name)).empty());
-  Leaf& sonar = *robot.transform->find("SonarPerceptor");
-  callMethod(sonar, "setRange", std::vector<Value>{0.5, 4.0});
-  callMethod(sonar, "addNoise", std::vector<Value>{true});
-  CHECK(getProperty(sonar, "maxRange") == Value(4.0));
-  CHECK(getProperty(sonar, "noise") == Value(true));
+  for (const char* name : {"ImagePerceptor", "HMDPPerceptor"}) CHECK(robot.sense(robot.transform->create(name, name)).empty());
   Leaf& image = *robot.transform->find("ImagePerceptor");
   callMethod(image, "setResolution", std::vector<Value>{640, 480});
   callMethod(image, "setFOV", std::vector<Value>{45.0});
   CHECK(getProperty(image, "width") == Value(640));
   CHECK(getProperty(image, "fov") == Value(45.0));
+}
+
+TEST_CASE("a sonar hears other robots and goal posts in its cone, the nearest first") {
+  Robot robot;
+  robot.kernel.registerClass<GoalPost>();
+  robot.kernel.registerClass<AgentState>();
+  const auto put = [&](const char* aspect, const char* name, const Vec3f& at, const char* mark) -> Node& {
+    auto& place = robot.kernel.create<Transform>(aspect, std::string("/usr/") + name);
+    place.setLocalPos(at);
+    place.create(mark, "mark");
+    return place;
+  };
+  auto& self = robot.kernel.create<Transform>("AgentAspect", "/usr/self");
+  self.create("AgentState", "AgentState");
+  auto& chest = self.create<Transform>("Transform", "chest");
+  chest.setLocalPos({0, 0, 0.4f});
+  Leaf& sonar = chest.create("SonarPerceptor", "Left");
+  setProperty(sonar, "maxEchoes", 4);
+  CHECK(robot.sense(sonar) == "(US Left (5.00 5.00 5.00 5.00))");
+  put("Transform", "post", {0, 3, 0.8f}, "GoalPost");
+  put("AgentAspect", "near", {1, 2, 0}, "AgentState");
+  put("AgentAspect", "touching", {0, 0.1f, 0}, "AgentState");
+  put("Transform", "beside", {2, 2, 0}, "GoalPost");
+  put("Transform", "behind", {0, -1, 0}, "GoalPost");
+  put("Transform", "far", {0, 5.1f, 0}, "GoalPost");
+  CHECK(robot.sense(sonar) == "(US Left (0.25 2.24 3.00 5.00))");
+  chest.setLocalRotationDeg(0, 0, 180);
+  CHECK(robot.sense(sonar) == "(US Left (1.00 5.00 5.00 5.00))");
+  callMethod(sonar, "setRange", std::vector<Value>{0.5, 0.9});
+  CHECK(robot.sense(sonar) == "(US Left (0.90 0.90 0.90 0.90))");
+  callMethod(sonar, "setRange", std::vector<Value>{0.5, 4.0});
+  callMethod(sonar, "addNoise", std::vector<Value>{true});
+  std::string all;
+  for (int i = 0; i < 20; ++i) all += robot.sense(sonar);
+  CHECK_THAT(all, Catch::Contains("(US Left (0.99 ") && Catch::Contains("(US Left (1.01 "));
 }
