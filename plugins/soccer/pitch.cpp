@@ -41,12 +41,18 @@ void Player::moveTo(const Vec3& target) const {
 }
 
 void Player::moveTo(const Vec3& target, double yaw) const {
-  if (!torso) return;
-  const engine::BodyState reference = torso->state();
   const double c = std::cos(yaw), s = std::sin(yaw);
   Mat3 upright;
   upright << c, -s, 0, s, c, 0, 0, 0, 1;
-  const Mat3 turn = upright * reference.rotation.transpose();
+  place(target, upright);
+}
+
+void Player::turnTo(const Mat3& orientation) const { place(position(), orientation); }
+
+void Player::place(const Vec3& target, const Mat3& orientation) const {
+  if (!torso) return;
+  const engine::BodyState reference = torso->state();
+  const Mat3 turn = orientation * reference.rotation.transpose();
   for (IRigidBody* b : bodies) {
     const engine::BodyState old = b->state();
     b->setPose({target + turn * (old.position - reference.position), turn * old.rotation});

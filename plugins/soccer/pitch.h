@@ -50,6 +50,12 @@ struct Player {
   void moveTo(const Vec3& target) const;
   /// As moveTo, and the torso is put upright with this yaw [rad] (protocol section 2.3).
   void moveTo(const Vec3& target, double yaw) const;
+  /// Turns all bodies about the torso, which gets this orientation; velocities are taken away.
+  void turnTo(const Mat3& orientation) const;
+
+ private:
+  /// Moves and turns all bodies as one, so that the torso gets this pose.
+  void place(const Vec3& target, const Mat3& orientation) const;
 };
 
 /// Owned by game state, valid for its kernel. refresh() at the start of whatever runs in the simulation's thread.

@@ -1,7 +1,8 @@
 #include "trainer_command_parser.h"
 
-#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <optional>
 
 namespace spark {
 
@@ -12,11 +13,43 @@ namespace {
 /// Greatest number that a trainer may give: what agents and monitors are told has single precision and a field's size.
 constexpr double kLargest = 1e6;
 
-/// The `count` numbers of `(name n...)` inside a command; false when it is not there, or they are not finite or too large.
-bool numbers(const Element& command, std::string_view name, double* out, int count) {
-  const Element list = command.named(name);
-  return list && readNumbers(list, out, count).empty() && std::all_of(out, out + count, [](double v) { return std::abs(v) <= kLargest; });
+/// A number and nothing else, not too large. Nothing for all that may be found in its place.
+std::optional<double> numberIn(const Element& e) {
+  if (!e || e.isList()) return {};
+  double v = e.number();
+  if (e.isText()) {
+    std::string_view text = e.text();
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+  }
+  if (!(std::abs(v) <= kLargest)) return {};
+  return v;
 }
+
+/// As numberIn, without a fraction.
+std::optional<int> integerIn(const Element& e) {
+  const auto v = numberIn(e);
+  if (!v || *v != std::trunc(*v)) return {};
+  return static_cast<int>(*v);
+}
+
+/// The `count` numbers behind a list's name; false when one is missing or none.
+bool numbers(const Element& list, double* out, int count) {
+  if (!list) return false;
+  for (int i = 0; i < count; ++i) {
+    const auto v = numberIn(list.at(static_cast<std::size_t>(i) + 1));
+    if (!v) return false;
+    out[i] = *v;
+  }
+  return true;
+}
+
+/// The numbers of `(name n...)` inside a command.
+bool numbers(const Element& command, std::string_view name, double* out, int count) { return numbers(command.named(name), out, count); }
+
+/// A command without arguments, about whom the trainer selected.
+bool isBare(const Element& command) { return command.size() == 1; }
 
 Side sideIn(const Element& command) {
   const Element team = command.named("team");
@@ -83,8 +116,8 @@ std::string TrainerCommandParser::ball(const Element& c) {
 
 const soccer::Player* TrainerCommandParser::named(const Element& c) {
   const Element unum = c.named("unum");
-  if (!unum) return nullptr;
-  return match_.game()->pitch().player(sideIn(c), static_cast<int>(unum.at(1).integer()));
+  const auto number = unum ? integerIn(unum.at(1)) : std::nullopt;
+  return number ? match_.game()->pitch().player(sideIn(c), *number) : nullptr;
 }
 
 const soccer::Player* TrainerCommandParser::selected() {
@@ -95,7 +128,7 @@ const soccer::Player* TrainerCommandParser::selected() {
 
 std::string TrainerCommandParser::agent(const Element& c) {
   const soccer::Pitch& pitch = match_.game()->pitch();
-  if (!c.named("unum") && !c.named("team")) {
+  if (isBare(c)) {
     const double distance = pitch.settings().freeKickMoveDist;
     for (const Player& p : pitch.players()) {
       if (!p.state->selected() || !p.torso) continue;
@@ -112,19 +145,26 @@ std::string TrainerCommandParser::agent(const Element& c) {
   const Player* p = named(c);
   if (!p || !p->torso) return kNoSuchPlayer;
   double v[4];
-  if (numbers(c, "move", v, 4)) p->moveTo(Vec3(v[0], v[1], v[2]), degToRad(v[3]));
-  if (numbers(c, "pos", v, 3)) p->moveTo(Vec3(v[0], v[1], v[2]));
-  if (numbers(c, "battery", v, 1)) p->state->setBattery(v[0]);
-  if (numbers(c, "temperature", v, 1)) p->state->setTemperature(v[0]);
-  return {};
+  bool done = false;
+  const auto given = [&](std::string_view name, int count) {
+    const bool yes = numbers(c, name, v, count);
+    done |= yes;
+    return yes;
+  };
+  if (given("move", 4)) p->moveTo(Vec3(v[0], v[1], v[2]), degToRad(v[3]));
+  if (given("pos", 3)) p->moveTo(Vec3(v[0], v[1], v[2]));
+  if (given("rot", 3)) p->turnTo(rotationDeg(float(v[0]), float(v[1]), float(v[2])).block<3, 3>(0, 0).cast<double>());
+  if (given("battery", 1)) p->state->setBattery(v[0]);
+  if (given("temperature", 1)) p->state->setTemperature(v[0]);
+  return done ? std::string() : "expected (pos x y z), (move x y z deg), (rot x y z), (battery v) or (temperature v)";
 }
 
 std::string TrainerCommandParser::select(const Element& c) {
   const auto& players = match_.game()->pitch().players();
   const Element unum = c.named("unum");
   const Player* wanted = named(c);
-  if (unum && !wanted && unum.at(1).integer() != -1) return kNoSuchPlayer;
-  if (!unum && !players.empty()) {
+  if (!isBare(c) && !wanted && !(unum && integerIn(unum.at(1)) == -1)) return kNoSuchPlayer;
+  if (isBare(c) && !players.empty()) {
     // the next in the list after the one that is selected, and round again
     const Player* now = selected();
     wanted = now && now != &players.back() ? now + 1 : &players.front();
@@ -135,14 +175,15 @@ std::string TrainerCommandParser::select(const Element& c) {
 }
 
 std::string TrainerCommandParser::kill(const Element& c) {
-  const Player* p = c.named("unum") ? named(c) : selected();
+  const Player* p = isBare(c) ? selected() : named(c);
   if (!p) return kNoSuchPlayer;
+  // with its connection: the installed base leaves it open and sends the last message again for ever
   match_.game()->pitch().gameControl()->removeAgent(*p->agent, true);
   return {};
 }
 
 std::string TrainerCommandParser::repos(const Element& c) {
-  const Player* p = c.named("unum") ? named(c) : selected();
+  const Player* p = isBare(c) ? selected() : named(c);
   if (!p || !p->torso || p->side() == Side::none) return kNoSuchPlayer;
   match_.game()->pitch().putOutside(*p, 1.0);
   return {};
@@ -150,17 +191,16 @@ std::string TrainerCommandParser::repos(const Element& c) {
 
 std::string TrainerCommandParser::time(const Element& c) {
   double t;
-  if (const std::string wrong = readNumbers(c, &t, 1); !wrong.empty() || t < 0) return "expected a time of 0 s or more";
-  if (t > kLargest) return fmt::format("expected a time of at most {} s", kLargest);
+  if (!numbers(c, &t, 1) || t < 0) return fmt::format("expected a time of 0 to {} s", kLargest);
   match_.game()->setTime(t);
   return {};
 }
 
 std::string TrainerCommandParser::score(const Element& c) {
   const Element left = c.named("left"), right = c.named("right");
-  if (!left || !right || left.at(1).integer() < 0 || right.at(1).integer() < 0) return "expected (left a)(right b), both 0 or more";
-  const auto goals = [](const Element& e) { return static_cast<int>(std::min<std::int64_t>(e.at(1).integer(), 1000000)); };
-  match_.game()->setScores(goals(left), goals(right));
+  const auto goals = left && right ? std::pair(integerIn(left.at(1)), integerIn(right.at(1))) : std::pair<std::optional<int>, std::optional<int>>();
+  if (!goals.first || !goals.second || *goals.first < 0 || *goals.second < 0) return "expected (left a)(right b), both 0 or more";
+  match_.game()->setScores(*goals.first, *goals.second);
   return {};
 }
 

@@ -216,8 +216,8 @@ TEST_CASE("trainers move ball and players, set modes and clocks; nonsense is ign
   CHECK(h.trainer("(ball (pos 1 nan 0))") == "expected (pos x y z) or (vel x y z)");
   CHECK(h.trainer("(agent (unum 9)(team Left)(pos 0 0 0))") == "no such player");
   CHECK(h.trainer("(score (left 1))") == "expected (left a)(right b), both 0 or more");
-  CHECK(h.trainer("(time -1)") == "expected a time of 0 s or more");
-  CHECK(h.trainer("(time 1e300)") == "expected a time of at most 1000000 s");  // infinite where numbers are single
+  CHECK(h.trainer("(time -1)") == "expected a time of 0 to 1000000 s");
+  CHECK(h.trainer("(time 1e300)") == "expected a time of 0 to 1000000 s");  // infinite where numbers are single
   CHECK(h.trainer("(ball (vel 1e300 0 0))") == "expected (pos x y z) or (vel x y z)");
   h.trainer("(agent (unum 1)(team Left)(temperature -1e300)(pos 1e300 0 0))");
   CHECK(getProperty(h.stateOf(1), "temperature").toNumber() == 20);
