@@ -11,8 +11,8 @@
 #include "spark/predicates.h"
 #include "test_support.h"
 
-// The openings of recorded sessions, replayed against the default league with the original scene files: agents are answered in every cycle
-// with the same percepts, in the same order, and the host has nothing to complain about.
+// The openings of recorded sessions, replayed against the default league with its own robots and with the original scene files: agents are
+// answered in every cycle with the same percepts, in the same order, and the host has nothing to complain about.
 
 using namespace spark;
 using namespace spark::test;
@@ -70,10 +70,23 @@ std::int64_t numberGiven(const std::string& message) {
   return 0;
 }
 
-void replay(const std::filesystem::path& reference, const std::filesystem::path& file) {
+/// `scenes`: a folder with scene files that are asked before the league's own; empty for none.
+void replay(const std::filesystem::path& file, const std::filesystem::path& scenes) {
   const Session session = load(file);
-  Process host({(binFolder() / "sparkhost").string(), "--config", "soccer.lua", "--scene-path", (reference / "scenes-reference").string(),
-                "--sync", "--rate", "max", "--agent-port", "0", "--monitor-port", "0", "--log-level", "warning"});
+  std::vector<std::string> command{(binFolder() / "sparkhost").string(),
+                                   "--config",
+                                   "soccer.lua",
+                                   "--sync",
+                                   "--rate",
+                                   "max",
+                                   "--agent-port",
+                                   "0",
+                                   "--monitor-port",
+                                   "0",
+                                   "--log-level",
+                                   "warning"};
+  if (!scenes.empty()) command.insert(command.end(), {"--scene-path", scenes.string()});
+  Process host(command);
   const auto port = Json::parse(host.line())["agentPort"].get<unsigned short>();
   std::map<std::string, std::unique_ptr<Client>> clients;
   for (const std::string& name : session.agents) clients[name] = std::make_unique<Client>(port);
@@ -110,6 +123,7 @@ TEST_CASE("The openings of recorded sessions replay without an error") {
   if (reference.empty()) std::exit(77);
   for (const char* name : {"nao0-rest", "nao0-all-joints", "nao0-squat-after-beam", "nao3-legs", "four-agents", "ball-bounce-and-roll"}) {
     const auto file = reference / "captures" / "mainline" / (std::string(name) + ".jsonl");
-    DYNAMIC_SECTION(name) { replay(reference, file); }
+    DYNAMIC_SECTION(name) { replay(file, {}); }
+    DYNAMIC_SECTION(name << " with the original robots") { replay(file, reference / "scenes-reference"); }
   }
 }
