@@ -172,7 +172,7 @@ void checkJoint(const Part& p, IJoint& joint, Node& robot) {
   CHECK(joint.maxSpeed(0) == p.speed);
   const std::pair<P, double> kCommon[] = {{P::maxForce, 10},      {P::cfm, 1e-8}, {P::stopCfm, 1e-8}, {P::stopErp, 0.8},
                                           {P::fudgeFactor, 1e-5}, {P::bounce, 1}, {P::velocity, 0}};
-  for (const auto& [parameter, value] : kCommon) CHECK(joint.parameter(parameter, 0) == value);
+  for (const auto& [parameter, value] : kCommon) CHECK(joint.parameter(parameter, 0) == Approx(value));
   CHECK(joint.leaf().find(p.perceptor)->classObject()->name() == "HingePerceptor");
   CHECK(joint.leaf().find(p.effector)->classObject()->name() == "HingeEffector");
 }

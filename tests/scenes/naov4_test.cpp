@@ -168,7 +168,7 @@ TEST_CASE("the Nao V4 has the hinges and motors of its page, in their order") {
     using P = engine::JointParameter;
     CHECK(hinge.parameter(P::lowStop, 0) == Approx(degToRad(j.min)));
     CHECK(hinge.parameter(P::highStop, 0) == Approx(degToRad(j.max)));
-    CHECK(hinge.parameter(P::maxForce, 0) == 0.1);
+    CHECK(hinge.parameter(P::maxForce, 0) == Approx(0.1));
     CHECK(motor.jointType() == engine::JointType::angularMotor);
     checkMotor(j, motor);
   }
@@ -201,8 +201,8 @@ TEST_CASE("the Nao V4's motors hold it, turn at the commanded speed within their
   }
   robot.league.run(10);
   CHECK(robot.hinge("neck").angle(0) == Approx(0.2).margin(0.03));
-  CHECK(robot.motor("head").parameter(engine::JointParameter::velocity, 0) == 7.19426);
-  CHECK(robot.motor("rthigh").parameter(engine::JointParameter::maxForce, 0) == 0);
-  CHECK(robot.motor("lthigh").parameter(engine::JointParameter::maxForce, 0) == 7.8);
+  CHECK(robot.motor("head").parameter(engine::JointParameter::velocity, 0) == Approx(7.19426));
+  CHECK(robot.motor("rthigh").parameter(engine::JointParameter::maxForce, 0) == Approx(0));
+  CHECK(robot.motor("lthigh").parameter(engine::JointParameter::maxForce, 0) == Approx(7.8));
   CHECK(std::abs(robot.hinge("lthigh").angle(0)) < 0.02);
 }
