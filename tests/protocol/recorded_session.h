@@ -10,10 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "api/agents.h"
-#include "fake_scene.h"
-#include "spark/state.h"
-#include "test_support.h"
+#include "league.h"
 
 namespace spark::test {
 
@@ -52,41 +49,6 @@ struct Recording {
     agents.push_back(name);
     return agents.size() - 1;
   }
-};
-
-/// The league's house without its network: agents and monitors are fake connections.
-class League : public House {
- public:
-  /// `field`: its scene file. `scenes`: a folder that holds rsg/..., asked first; empty: the project's own.
-  explicit League(const std::string& field, const std::filesystem::path& scenes = {}) {
-    const auto share = pluginFolder().parent_path() / "share" / "spark";
-    kernel.lua().addFolder(share / "lua");
-    const std::string paths = scenes.empty() ? "" : "'" + scenes.string() + "'";
-    kernel.lua().run(fmt::format("host = {{ share = '{}', scenePaths = {{ {} }} }}", share.string(), paths), "test");
-    for (const char* port : {"agents", "monitors"}) kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
-    if (!field.empty()) kernel.lua().addOverride("scene", field);
-    for (const char* noise : {"Soccer.BeamNoiseXY", "Soccer.BeamNoiseAngle"}) kernel.lua().addOverride(noise, 0);
-    kernel.lua().runConfig("soccer.lua");
-    setProperty(at("/sys/server/simulation"), "rate", "max");
-  }
-  Leaf& at(std::string_view path) { return kernel.root().require<Leaf>(path); }
-  void run(int cycles = 1) { callMethod(at("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles}); }
-  FakeConnection& connect(const char* server, const char* port) {
-    connections_.push_back(std::make_unique<FakeConnection>(kernel.root().require<Node>(port), connections_.size() + 1));
-    kernel.root().require<IConnectionConsumer>(server).connected(*connections_.back());
-    return *connections_.back();
-  }
-  FakeConnection& connectAgent() { return connect("/sys/server/gamecontrol", "/sys/server/net/agents"); }
-  FakeConnection& connectMonitor() { return connect("/sys/server/monitor", "/sys/server/net/monitors"); }
-  void fromAgent(FakeConnection& agent, std::string_view message) {
-    kernel.root().require<IConnectionConsumer>("/sys/server/gamecontrol").received(agent, message);
-  }
-  void fromMonitor(FakeConnection& monitor, std::string_view message) {
-    kernel.root().require<IConnectionConsumer>("/sys/server/monitor").received(monitor, message);
-  }
-
- private:
-  std::vector<std::unique_ptr<FakeConnection>> connections_;
 };
 
 /// Plays a recording in a league: whatever an agent is answered, it sends what it sent then.

@@ -1,0 +1,92 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "league.h"
+#include "roboviz.h"
+
+// A match is recorded by one house and played by another: a monitor of the second sees what the first one logged.
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+struct TemporaryFile {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("spark-match-{}.log", ::getpid());
+  ~TemporaryFile() { std::filesystem::remove(path); }
+};
+
+/// The house of logplayer.lua without its network.
+struct Cinema : House {
+  explicit Cinema(const std::filesystem::path& log) {
+    const auto share = pluginFolder().parent_path() / "share" / "spark";
+    kernel.lua().addFolder(share / "lua");
+    kernel.lua().addOverride("file", log.string());
+    kernel.lua().addOverride("/sys/server/net/monitors.port", 0);
+    kernel.lua().runConfig("logplayer.lua");
+    setProperty(kernel.root().require<Leaf>("/sys/server/simulation"), "rate", "max");
+    connection.emplace(kernel.root().require<Node>("/sys/server/net/monitors"), 1);
+    kernel.root().require<IConnectionConsumer>("/sys/server/monitor").connected(*connection);
+  }
+  void run(int cycles) { callMethod(kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles}); }
+  std::int64_t get(const char* property) { return getProperty(kernel.root().require<Leaf>("/sys/server/monitor/player"), property).toInteger(); }
+  std::optional<FakeConnection> connection;
+};
+
+/// A short match of spheres, logged.
+std::vector<std::string> record(const std::filesystem::path& log) {
+  House house;
+  house.kernel.lua().addFolder(pluginFolder().parent_path() / "share" / "spark" / "lua");
+  house.kernel.lua().run(fmt::format("host = {{ share = '{}', scenePaths = {{}} }}", (pluginFolder().parent_path() / "share" / "spark").string()), "test");
+  for (const char* port : {"agents", "monitors"}) house.kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+  house.kernel.lua().addOverride("team", "Red Blue");
+  house.kernel.lua().addOverride("players", 3);
+  house.kernel.lua().addOverride("monitorLog", log.string());
+  house.kernel.lua().addOverride("/sys/server/simulation.rate", "max");
+  house.kernel.lua().runConfig("soccer-sphere.lua");
+  callMethod(house.kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{1002});
+  std::ifstream in(log);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+bool sameNodes(const std::vector<StrictMonitor::Node>& a, const std::vector<StrictMonitor::Node>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) {
+           return x.type == y.type && x.matrix == y.matrix && x.mesh == y.mesh && x.materials == y.materials && x.visible == y.visible &&
+                  sameNodes(x.children, y.children);
+         });
+}
+
+}  // namespace
+
+TEST_CASE("a match that was logged plays to a monitor, record for record, with nothing lost") {
+  const TemporaryFile file;
+  const std::vector<std::string> lines = record(file.path);
+  REQUIRE(lines.size() == 101);
+  Cinema cinema(file.path);
+  REQUIRE(cinema.get("records") == 101);
+  StrictMonitor logged, seen;
+  cinema.run(2);  // the monitor is noticed
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    CAPTURE(i);
+    logged.read(lines[i]);
+    if (i > 0)
+      for (int k = 0; k < 10; ++k) {
+        if (const std::string message = cinema.connection->read(); !message.empty()) seen.read(message);
+        cinema.run(1);
+      }
+    if (const std::string message = cinema.connection->read(); !message.empty()) seen.read(message);
+    REQUIRE(cinema.get("record") == static_cast<std::int64_t>(i));
+    REQUIRE(sameNodes(seen.scene, logged.scene));
+    REQUIRE(seen.env == logged.env);
+    REQUIRE(seen.fouls == logged.fouls);
+  }
+  CHECK(logged.player(true, 1) == nullptr);  // spheres have no shirts
+  CHECK(logged.mesh("soccerball.obj") != nullptr);
+  CHECK(logged.fulls > 6);
+  CHECK(cinema.get("damaged") == 0);
+  CHECK(std::stod(seen.env["time"]) > 10);
+}
