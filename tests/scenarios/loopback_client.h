@@ -10,6 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -52,22 +53,15 @@ class LoopbackClient {
   void send(std::string_view message) {
     const auto n = htonl(static_cast<std::uint32_t>(message.size()));
     const std::string bytes = std::string(reinterpret_cast<const char*>(&n), 4) + std::string(message);
+    const int before = count(peer_, FIONREAD);
     if (::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(bytes.size())) throw Error("send: the server has closed");
-    while (waiting(fd_) > 0) {
+    while (count(peer_, FIONREAD) < before + static_cast<int>(bytes.size())) {
     }
   }
   /// All messages that the server has sent and that were not taken yet. The server must have nothing left to write.
   std::vector<std::string> take() {
-    while (waiting(peer_) > 0) {
-    }
-    char buffer[65536];
-    for (ssize_t n; (n = ::recv(fd_, buffer, sizeof buffer, MSG_DONTWAIT)) >= 0;) {
-      if (n == 0) {
-        ended_ = true;
-        break;
-      }
-      in_.append(buffer, static_cast<std::size_t>(n));
-    }
+    do readAll();
+    while (!ended_ && count(peer_, SIOCOUTQ) > 0);  // on its way: read again
     std::vector<std::string> out;
     for (std::uint32_t n = 0; in_.size() >= 4; out.push_back(in_.substr(4, n)), in_.erase(0, 4 + n)) {
       std::memcpy(&n, in_.data(), 4);
@@ -87,10 +81,19 @@ class LoopbackClient {
     a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     return a;
   }
-  /// Bytes that this end has sent and the other end's kernel does not hold yet.
-  static int waiting(int fd) {
+  /// FIONREAD: bytes that this end may read; SIOCOUTQ: bytes that it has sent and the other end has not acknowledged.
+  static int count(int fd, unsigned long what) {
     int n = 0;
-    return ::ioctl(fd, SIOCOUTQ, &n) == 0 ? n : 0;
+    return ::ioctl(fd, what, &n) == 0 ? n : 0;
+  }
+  void readAll() {
+    char buffer[65536];
+    ssize_t n;
+    while ((n = ::recv(fd_, buffer, sizeof buffer, MSG_DONTWAIT)) > 0) in_.append(buffer, static_cast<std::size_t>(n));
+    ended_ |= n == 0 || (errno != EAGAIN && errno != EWOULDBLOCK);
+    // bytes that were read are acknowledged at once, not when it suits
+    const int on = 1;
+    ::setsockopt(fd_, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
   }
   int fd_, peer_ = -1;
   std::string in_;
