@@ -5,7 +5,8 @@ namespace spark {
 using soccer::opponent;
 
 namespace {
-constexpr double kUnknown = -1;  // m
+constexpr double kUnknown = -1;    // m
+constexpr double kRounding = 1e-6;  // s; sums of steps are not exact
 
 double groundDistance(const Vec3& a, const Vec3& b) { return std::hypot(a.x() - b.x(), a.y() - b.y()); }
 }  // namespace
@@ -61,7 +62,8 @@ void PassModeRule::earnRightToScore(Side side) {
 double PassModeRule::scoreWait(Side side) const {
   const Team& t = team(side);
   if (t.cleared || !enabled() || !isLinked() || !referee().ready()) return 0;
-  return std::max(0.0, settings().passModeScoreWaitTime - (pitch().now() - t.lastActive));
+  const double left = settings().passModeScoreWaitTime - (pitch().now() - t.lastActive);
+  return left > kRounding ? left : 0;
 }
 
 void PassModeRule::request(const soccer::Player& player) {
@@ -72,7 +74,7 @@ void PassModeRule::request(const soccer::Player& player) {
 bool PassModeRule::mayPass(const soccer::Player& player) const {
   const SoccerSettings& s = settings();
   const Side mine = player.side();
-  if (game().mode() != PlayMode::playOn || pitch().now() - team(mine).lastActive < s.passModeRetryWaitTime) return false;
+  if (game().mode() != PlayMode::playOn || pitch().now() - team(mine).lastActive < s.passModeRetryWaitTime - kRounding) return false;
   if (ball().touchedBy(mine) || pitch().ball()->state().linearVelocity.norm() > s.passModeMaxBallSpeed) return false;
   const Vec3 spot = pitch().ballPosition();
   const auto distances = [&](const soccer::Player& p) {

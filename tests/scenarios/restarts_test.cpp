@@ -13,7 +13,7 @@ TEST_CASE("Over the touch line: a kick-in for the others, where the ball was las
   Match m;
   const bool left = GENERATE(true, false);
   const double y = GENERATE(1.0, -1.0);
-  m.touchThen(left ? m.b1 : m.a1, Match::ballTo(3, 10.0 * y, 0.042, 0, 3 * y));
+  m.touchThen(left ? m.b1 : m.a1, Match::ballTo(3, 9.9 * y, 0.042, 0, 3 * y));
   const double took = m.until(left ? "KickIn_Left" : "KickIn_Right", 1);
   CHECK(took >= 0);
   CHECK(std::abs(m.ball().y()) > 10.042);
@@ -26,16 +26,16 @@ TEST_CASE("Over the touch line: a kick-in for the others, where the ball was las
 
 TEST_CASE("A kick-in: the pause, opponents, the kicking team, the touch") {
   Match m;
-  m.touchThen(m.a1, Match::ballTo(3, 10.1));
-  REQUIRE(m.until("KickIn_Right", 0.1) >= 0);
-  m.trainer(Match::put(m.a1, 3, 9) + Match::put(m.a2, 3, 7.9) + Match::put(m.b2, 3.2, 9.8));
+  m.touchThen(m.a1, Match::ballTo(3, 9.9, 0.042, 0, 3));
+  REQUIRE(m.until("KickIn_Right", 0.2) >= 0);
+  m.trainer(Match::put(m.a1, 3, 9) + Match::put(m.a2, 3, 7.7) + Match::put(m.b2, 3.2, 9.8));
   m.run(48);  // 49 since the award
   m.checkAt(m.a1, 3, 9);
   m.checkAt(m.b2, 3.2, 9.8);
   m.run(2);
   CHECK(m.mode() == "KickIn_Right");
   m.checkAt(m.a1, 0.5, 9);    // 2.5 m towards his own end
-  m.checkAt(m.a2, 3, 7.9);    // just outside
+  m.checkAt(m.a2, 3, 7.7);    // just outside
   CHECK(Match::distance(m.at(m.b2), Vec3(3, kLine, 0)) == Approx(0.5).margin(0.01));
   m.trainer(Match::put(m.b2, 3.25, 9.8));  // pushed only once
   m.run(2);
@@ -48,7 +48,7 @@ TEST_CASE("A kick-in: the pause, opponents, the kicking team, the touch") {
 TEST_CASE("A touch takes a restart from 0.03 s after the pause on") {
   Match m;
   m.trainer("(playMode free_kick_left)");
-  m.run(50);  // mode time 1.02 s is the next cycle
+  m.run(49);  // the next cycle is 1.02 s after the award
   m.touch(m.a1);
   CHECK(m.mode() == "free_kick_left");
   m.run(1);

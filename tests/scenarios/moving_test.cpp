@@ -1,0 +1,81 @@
+// Where the referee puts players.
+#include "match.h"
+
+using namespace spark;
+using namespace spark::test;
+
+TEST_CASE("Nobody is put onto another player") {
+  Match m;
+  m.trainer("(kickOff Left)" + Match::put(m.b1, 2.5, 1) + Match::put(m.b2, 1, 1));
+  m.run(1);
+  m.checkAt(m.b1, 2.5, 1);
+  const Vec3 b2 = m.at(m.b2);
+  CHECK(Match::distance(b2, m.at(m.b1)) > 0.5);
+  // of the places a step of 0.4 m further out or further from the middle the nearest to him
+  m.checkAt(m.b2, 2.5, 1.8);
+}
+
+TEST_CASE("Nobody is put as the fourth into his own penalty area") {
+  Match m;
+  Player& a3 = m.join("A", 3);
+  Player& a4 = m.join("A", 4);
+  m.trainer(Match::ballTo(-11.5, 0));
+  m.run(1);
+  m.trainer("(playMode free_kick_right)" + Match::put(m.a1, -14.6, 2.5) + Match::put(m.a2, -14.6, -2.5) + Match::put(a3, -14.6, 1.5) +
+            Match::put(a4, -11, 0.5));
+  m.run(53);
+  const Vec3 p = m.at(a4);
+  CHECK(Match::distance(p, m.ball()) > 2);
+  CHECK_FALSE((p.x() > -15.4 && p.x() < -12.8 && std::abs(p.y()) < 3.4));
+  // with room in the area he is put there
+  m.trainer(Match::put(m.a1, -8, 7) + Match::put(a4, -11, 0.5));
+  m.run(2);
+  m.checkAt(a4, -14, 0.5);
+}
+
+TEST_CASE("Who would be put behind his goal line is put towards the middle") {
+  Match m;
+  m.trainer("(playMode corner_kick_right)" + Match::put(m.a1, -14.5, 5));
+  m.run(52);
+  m.checkAt(m.a1, -14.5, (20 + 2.1) / 4 - 0.042 - 2.5);
+}
+
+TEST_CASE("Nobody is put beside the ball, but by the push off it") {
+  Match m;
+  // the target of the clearing before the kick-off is where the ball is held
+  m.trainer("(playMode BeforeKickOff)");
+  m.trainer("(kickOff Left)" + Match::put(m.a1, 6, 0) + Match::ballTo(-2.5, 0.2));
+  m.run(1);
+  CHECK(Match::distance(m.at(m.a1), Vec3(-2.5, 0.2, 0)) >= 0.99);
+}
+
+TEST_CASE("A trainer puts a player outside: by number, on the side away from the ball") {
+  Match m;
+  m.trainer(Match::ballTo(0, -3));
+  m.run(1);
+  m.trainer("(repos (unum 2)(team Left))(repos (unum 1)(team Right))");
+  m.run(1);
+  m.checkAt(m.a2, -0.6 * (7 - 2), 10.5, 0.02);
+  m.checkAt(m.b1, 0.6 * (7 - 1), 10.5, 0.02);
+  CHECK(m.at(m.a2).z() == Approx(1.0).margin(0.02));
+  m.trainer(Match::ballTo(0, 3));
+  m.run(1);
+  m.trainer("(repos (unum 2)(team Left))");
+  m.run(1);
+  m.checkAt(m.a2, -3, -10.5, 0.02);
+}
+
+TEST_CASE("A team takes at most 7 robots of a type, 9 of any two, and three types") {
+  Stadium s;
+  SECTION("an eighth of a type is refused") {
+    for (int n = 1; n <= 7; ++n) CHECK(s.join("A", n, 0.6, 0).side == Side::left);
+    CHECK(s.join("A", 8, 0.6, 0).side == Side::none);
+    CHECK(s.join("A", 8, 0.6, 1).side == Side::left);  // the number is free
+  }
+  SECTION("a tenth of two types is refused") {
+    for (int n = 1; n <= 9; ++n) CHECK(s.join("A", n, 0.6, n % 2).side == Side::left);
+    CHECK(s.join("A", 10, 0.6, 0).side == Side::none);
+    CHECK(s.join("A", 10, 0.6, 2).side == Side::left);
+    CHECK(s.join("B", 10, 0.6, 0).side == Side::right);  // another team
+  }
+}
