@@ -293,3 +293,22 @@ TEST_CASE("what the Nao's limbs may touch without a foul, and what is frozen whe
                            "rfoot rFootCollider {\"rShankCollider\"} ", "rtoe rToeCollider {\"rFootCollider\"} "})
     CHECK_THAT(found, Catch::Contains(line + leg + "\n"));
 }
+
+TEST_CASE("a type that does not exist makes nothing") {
+  League league;
+  for (const List& arguments : {List{5}, List{-1}, List{"1.5"}, List{"Nao"}, List{}}) {
+    INFO(Value(arguments).text());
+    Node& robot = league.agent("AgentAspect" + std::to_string(league.scene().children().size()));
+    CHECK_THROWS_AS(league.import("rsg/agent/nao/nao_hetero.rsg", robot, arguments), Error);
+    CHECK(robot.children().empty());
+  }
+}
+
+TEST_CASE("a robot cannot look like one type and count as another") {
+  League league;
+  Node& robot = league.agent();
+  league.import("rsg/agent/nao/nao_hetero.rsg", robot, {"0+3"});
+  CHECK(getProperty(robot.require<Leaf>("spacenao/body/AgentState"), "robotType") == Value(3));
+  CHECK(robot.require<IRigidBody>("spacenao/rhip1/sphereBody").state().position.x() == Approx(0.0729541));
+  CHECK_THAT(meshesOf(robot), Catch::Contains("models/naobody3.obj"));
+}
