@@ -65,6 +65,34 @@ TEST_CASE("A trainer puts a player outside: by number, on the side away from the
   m.checkAt(m.a2, -3, -10.5, 0.02);
 }
 
+TEST_CASE("With no attempts a player is put where the rule says, whoever stands there") {
+  Match m{{{"Soccer.MaxNumSafeRepositionAttempts", 0}}};
+  m.trainer("(kickOff Left)" + Match::put(m.b1, 2.5, 1.35) + Match::put(m.b2, 1, 1));
+  m.run(1);
+  m.checkAt(m.b2, 2.5, 1);
+}
+
+TEST_CASE("A humanoid is moved as a whole and stands") {
+  Stadium s;
+  Player& a = s.join("A", 1, "rsg/agent/nao/nao.rsg");
+  Player& b = s.join("B", 2, "rsg/agent/nao/nao_hetero.rsg 4");
+  s.trainer("(agent (unum 2)(team Right)(move 3 1 0.4 90))");
+  s.seconds(1);
+  const double z = s.at(b).z();
+  CHECK(z > 0.33);
+  s.trainer("(kickOff Left)(agent (unum 2)(team Right)(pos 1.2 -0.5 " + std::to_string(z) + "))");
+  s.run(1);
+  CHECK(s.at(b).x() == Approx(2.5).margin(0.01));
+  CHECK(s.at(b).y() == Approx(-0.5).margin(0.01));
+  s.seconds(1);
+  CHECK(s.mode() == "KickOff_Left");
+  CHECK(s.at(b).z() == Approx(z).margin(0.02));
+  CHECK(s.at(b).x() == Approx(2.5).margin(0.05));
+  s.trainer("(agent (unum 1)(team Left)(pos -0.1 0.055 0.38))");
+  CHECK(s.until("PlayOn", 1) >= 0);  // his feet reach the ball
+  CHECK(a.gs("sl") == "0");
+}
+
 TEST_CASE("A team takes at most 7 robots of a type, 9 of any two, and three types") {
   Stadium s;
   SECTION("an eighth of a type is refused") {

@@ -66,8 +66,12 @@ class Stadium : House {
   }
   /// A player of team A or B, waiting beside the field line until somebody moves it. `height` of the robot [m].
   Player& join(const std::string& team, int unum, double height = 0.6, int type = -1) {
+    return join(team, unum, "rsg/agent/scenario.rsg " + std::to_string(height) + " " + std::to_string(type < 0 ? unum % 3 : type));
+  }
+  /// A player with another robot: its scene file and arguments.
+  Player& join(const std::string& team, int unum, const std::string& robot) {
     Player& p = connect();
-    p.client.send("(scene rsg/agent/scenario.rsg " + std::to_string(height) + " " + std::to_string(type < 0 ? unum % 3 : type) + ")");
+    p.client.send("(scene " + robot + ")");
     run(3);
     p.client.send("(init (unum " + std::to_string(unum) + ")(teamname " + team + "))");
     run(3);

@@ -259,11 +259,28 @@ TEST_CASE("with one half the match is over after it", "[soccer]") {
 
 TEST_CASE("the match is state: a saved one goes on alike", "[soccer]") {
   Match h;
-  h.lastTouchThenBallAt(1, 10, 35);
-  Node& rules = h.kernel.root().require<Node>("/sys/server/gamecontrol");
+  SECTION("in the pause of a kick-in") { h.lastTouchThenBallAt(1, 10, 35); }
+  SECTION("after a kick-off, before the right to score") {
+    h.trainer("(kickOff Left)");
+    h.run(3);
+    h.touch(1);
+    h.aside();
+    h.placeBall(52.5, 0);
+  }
+  SECTION("in pass mode") {
+    h.setMode("pass_left");
+    h.run(5);
+  }
+  Node& root = h.kernel.root();
   StateWriter saved(true);
-  for (const auto& rule : rules.children()) saveTree(*rule, saved);
-  const std::uint64_t then = stateHash(rules);
-  h.run(7);
-  CHECK(stateHash(rules) != then);
+  saveTree(root, saved);
+  const std::uint64_t then = stateHash(root);
+  h.run(80);
+  const std::uint64_t later = stateHash(root);
+  CHECK(later != then);
+  StateReader in(saved.bytes());
+  loadTree(root, in);
+  CHECK(stateHash(root) == then);
+  h.run(80);
+  CHECK(stateHash(root) == later);
 }
