@@ -259,3 +259,22 @@ TEST_CASE("Offside is a mode for trainers: nothing happens in it") {
   m.trainer("(playMode nosuchmode)(playMode)(playMode goal_left)");
   CHECK(m.mode() == mode);
 }
+
+TEST_CASE("A rule that the config switches off is not judged, the others are") {
+  const std::string rules = "/sys/server/gamecontrol/SoccerRuleAspect/";
+  const std::string off = GENERATE("DoubleTouchRule", "BallOutRule", "DropBallRule");
+  INFO(off);
+  Match m{{{rules + off + ".enabled", false}}};
+  m.trainer("(playMode KickOff_Left)");
+  m.seconds(16);
+  CHECK(m.mode() == (off == "DropBallRule" ? "KickOff_Left" : "PlayOn"));
+  m.trainer("(playMode KickIn_Left)");
+  m.run(55);
+  m.touchThen(m.a1, Match::ballTo(3, 2));
+  m.run(6);
+  m.touch(m.a1);
+  CHECK(m.mode() == (off == "DoubleTouchRule" ? "PlayOn" : "free_kick_right"));
+  m.trainer("(playMode PlayOn)" + m.apart() + Match::ballTo(3, 11));
+  m.run(1);
+  CHECK(m.mode() == (off == "BallOutRule" ? "PlayOn" : "KickIn_Right"));
+}
