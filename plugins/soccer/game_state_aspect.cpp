@@ -128,7 +128,9 @@ std::string GameStateAspect::join(AgentState& state, const std::string& name, st
   pitch();
   if (name.empty()) return "expected (teamname <name>) with a name, found none";
   if (!isPlainWord(name)) return "the team name holds a blank, a control character, or one of ( ) \" ' ; \\";
-  if (name.size() > 64) return fmt::format("the team name has {} bytes, at most 64 are allowed", name.size());
+  // it stands up to 22 times in what a robot sees, and clients read at most 8 KiB
+  constexpr std::size_t kLongestName = 32;
+  if (name.size() > kLongestName) return fmt::format("the team name has {} bytes, at most {} are allowed", name.size(), kLongestName);
   Side side = Side::none;
   for (Side s : {Side::left, Side::right}) {
     if (side == Side::none && (team(s).name == name || team(s).name.empty())) side = s;

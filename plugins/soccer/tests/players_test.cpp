@@ -51,6 +51,7 @@ TEST_CASE("an init that is refused drops the agent in the middle, with one line 
       {"(init (unum 3)(teamname \"x)(GS (pm GameOver))\"))", "the team name holds"},
       {"(init (unum 3)(teamname \"two words\"))", "the team name holds"},
       {"(init (unum 3)(teamname \";x\"))", "the team name holds"},
+      {"(init (unum 3)(teamname 123456789012345678901234567890123))", "33 bytes, at most 32 are allowed"},
       {"(init (unum 3)(teamname \"x\\\\\"))", "the team name holds"},
   }));
   h.text.clear();
