@@ -37,20 +37,23 @@ function soccerMonitor()
   if file ~= "" then new("MonitorLog", "/sys/server/monitor/log").file = file end
 end
 
--- In what versions of the installed base differ, by the node that has the property. M, the mainline server 0.7.3, is what every property
--- is by itself.
+-- In what versions of the installed base differ, by the node that has the property. What is not named here is by itself as in M, the
+-- mainline server 0.7.3.
 local versions = {
-  M = {},
+  M = {
+    ["/sys/server/gamecontrol"] = { agentStep = 0.02 },
+  },
   -- the SPL's server
   F = {
     ["/sys/server/gamecontrol/parser"] = { decimals = 3 },
-    ["/sys/server/gamecontrol"]        = { sync = true },
+    ["/sys/server/gamecontrol"]        = { agentStep = 0.01, sync = true },
     ["/sys/variables/Soccer"]          = {
       ExtraGameState = true, FieldLinesSeen = false, BeamWithinFieldWidth = false, PenaltyWidthBeyondGoal = false, ConstantTemperature = false,
     },
   },
   -- later servers of the 3D league, as far as their clients show it
   L = {
+    ["/sys/server/gamecontrol"] = { agentStep = 0.02 },
     ["/sys/variables/Soccer"] = { VisionInterval = 2 },
   },
 }

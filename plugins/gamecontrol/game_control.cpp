@@ -1,6 +1,7 @@
 #include "gamecontrol/game_control.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "gamecontrol/scene_effector.h"
 #include "spark/error.h"
@@ -22,6 +23,10 @@ void GameControl::describe(Description<GameControl>& d) {
   d.property("maxAgents", &GameControl::maxAgents_).range(0, 1000).doc("Further agents are closed; clients that never said anything do not count.");
   d.property("maxPending", &GameControl::maxPending_).unit("bytes").range(1024, 1 << 28).doc("A client that sends more within one cycle is closed.");
   d.property("perceptDelay", &GameControl::perceptDelay_).range(0, 1).doc("Cycles between sensing and sending; the installed base has 1.");
+  d.property("agentStep", &GameControl::agentStep_)
+      .unit("s")
+      .min(0)
+      .doc("Simulated time between two turns of the agents, in which they act and sense; no more than one turn a cycle.");
   d.property("sync", &GameControl::sync_).doc("Waits for the agents' (syn) although the run loop is not in lockstep.");
   d.property("robotFolder", &GameControl::robotFolder_).doc("Agents' robots are scene files below this folder, e.g. rsg/agent/; empty: anywhere.");
   d.property("holdWait", &GameControl::holdWait_).unit("s").min(0).doc("Expected agents that named a robot and are silent for so long get a first message (wall clock).");
@@ -108,7 +113,7 @@ void GameControl::removeAgent(AgentAspect& agent, bool close) {
 bool GameControl::ready(bool lockstep) {
   resolveParsers();
   if (holding()) return hold_.over(newcomers_, expect_, holdWait_, kernel().log());
-  if (!lockstep && !sync_) return true;
+  if ((!lockstep && !sync_) || cyclesToTurn_ > 0) return true;
   const auto now = Clock::now();
   if (!std::exchange(waiting_, true)) waitingSince_ = now;
   const auto joins = [](const auto& p) { return p->joining(); };
@@ -164,16 +169,27 @@ void GameControl::act(const Event& event) {
   joinBehaviors();
   joinNewcomers();
   resolveParsers();
+  isTurn_ = cyclesToTurn_ == 0;
+  if (isTurn_) takeTurn(event);
+  else --cyclesToTurn_;
+  resolveRobots();
+}
+
+void GameControl::takeTurn(const Event& event) {
+  // the installed base takes a turn that is due in less than 5 ms
+  constexpr double kEarly = 0.005;
+  const double cycles = event.step > 0 ? std::ceil((agentStep_ - kEarly) / event.step - 1e-9) : 1;
+  cyclesToTurn_ = static_cast<int>(std::clamp(cycles, 1.0, 1e6)) - 1;
   if (perceptDelay_ > 0) deliver();
   else
     for (const auto& p : participants_) p->promote();
   for (const auto& p : participants_) p->realise(kernel().log(), cycle_);
   if (perceptDelay_ > 0)
     for (const auto& p : participants_) p->promote();
-  resolveRobots();
 }
 
 void GameControl::sense(const Event& event) {
+  if (!isTurn_) return;
   kernel().jobs().run(participants_.size(), [this, &event](std::size_t i) { participants_[i]->sense(event); });
   for (const auto& p : participants_) p->reportFault(kernel().log());
   if (perceptDelay_ == 0) deliver();
@@ -286,6 +302,7 @@ void GameControl::resolveRobots() {
 void GameControl::saveState(StateWriter& out) const {
   out.write(nextNumber_);
   out.write(agentsSeen_);
+  out.write(cyclesToTurn_);
   out.write(static_cast<std::int64_t>(participants_.size()));
   for (const auto& p : participants_) {
     out.write(p->number());
@@ -296,6 +313,7 @@ void GameControl::saveState(StateWriter& out) const {
 void GameControl::loadState(StateReader& in) {
   nextNumber_ = static_cast<int>(in.readInteger());
   agentsSeen_ = static_cast<int>(in.readInteger());
+  cyclesToTurn_ = static_cast<int>(in.readInteger());
   const auto n = in.readInteger();
   if (n != static_cast<std::int64_t>(participants_.size()))
     throw Error(fmt::format("{}: the state has {} agents, here are {}. Connect the same agents first.", path(), n, participants_.size()));

@@ -38,6 +38,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   using Clock = gamecontrol::Clock;
 
   void act(const Event& event);
+  void takeTurn(const Event& event);
   void sense(const Event& event);
 
   void removeLeaving();
@@ -69,10 +70,12 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1;
   bool sync_ = false, released_ = false;
-  double holdWait_ = 0.5, syncTimeout_ = 30, joinWait_ = 0.25, joinPace_ = 0.01, idleLimit_ = 60;
+  double agentStep_ = 0, holdWait_ = 0.5, syncTimeout_ = 30, joinWait_ = 0.25, joinPace_ = 0.01, idleLimit_ = 60;
 
   int nextNumber_ = 1, agentsSeen_ = 0;
   std::int64_t messagesDropped_ = 0, cycle_ = 0;
+  int cyclesToTurn_ = 0;   ///< between the next cycle and the agents' next turn
+  bool isTurn_ = true;     ///< they have it in this cycle
   std::uint64_t parsersAt_ = 0, robotsAt_ = 0, behaviorsAt_ = 0;
   bool waiting_ = false;
   Clock::time_point waitingSince_{}, actedAt_{};

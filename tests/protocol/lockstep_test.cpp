@@ -110,3 +110,28 @@ TEST_CASE("Out of lockstep nobody is waited for, unless game control is told to"
   a.set("sync", true);
   REQUIRE_FALSE(a.gate->ready(false));
 }
+
+TEST_CASE("With a longer step agents act and sense in some cycles only, and the clock waits for them only there") {
+  Arena a(true);
+  a.set("agentStep", 0.06);
+  Client c = robot(a);
+  c.send("(syn)");
+  c.arrive();
+  cyclesUntilBlocked(a);
+  // the clock waits: each answer lets three cycles pass and brings one message
+  for (int i = 0; i < 4; ++i) {
+    c.drain();
+    c.send("(syn)");
+    c.arrive();
+    REQUIRE(cyclesUntilBlocked(a) == 3);
+    REQUIRE(c.receive().has_value());
+    REQUIRE(c.drain().empty());
+  }
+  a.set("agentStep", 0.024);  // due in less than 5 ms is due
+  c.send("(syn)");
+  c.arrive();
+  cyclesUntilBlocked(a);
+  c.send("(syn)");
+  c.arrive();
+  REQUIRE(cyclesUntilBlocked(a) == 1);
+}
