@@ -330,7 +330,10 @@ void appendFixed(std::string& out, double v, int decimals, bool asFloat) {
     out += "nan";
     return;
   }
-  if (asFloat) v = static_cast<float>(v);
+  // A clock in single precision stands still for some cycles after a few days, and clients end at two equal messages.
+  constexpr double kLateClock = 65536, kEndOfClocks = 1e9;
+  const bool clock = v >= kLateClock && v < kEndOfClocks;
+  if (asFloat && !clock) v = static_cast<float>(v);
   const auto r = std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::fixed, std::clamp(decimals, 0, 60));
   out.append(buffer, r.ptr);
 }

@@ -206,6 +206,8 @@ TEST_CASE("Fixed numbers look as C prints them") {
   CHECK(text(0.1, 9, false) == "0.100000000");
   CHECK(text(std::nan(""), 2) == "nan");
   CHECK(text(-std::nan(""), 2) == "nan");
+  CHECK(text(300000.02, 2) == "300000.02");  // not 300000.03, as of 300000.04
+  CHECK(text(300000.04, 2) == "300000.04");
   CHECK(text(-std::numeric_limits<double>::infinity(), 2) == "-inf");
   CHECK(text(1e308, 2) == "inf");
   CHECK(text(1e308, 1000, false).size() == 309 + 1 + 60);
