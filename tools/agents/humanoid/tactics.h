@@ -1,0 +1,48 @@
+#pragma once
+/// \file
+/// What a player decides to do, from what he knows. No memory but what is handed in: the same situation gives the same decision.
+
+#include <string>
+
+#include "localisation.h"
+
+namespace humanoid {
+
+/// What matters for a decision. Places on the field as the team sees it (opponents' goal at +x) [m].
+struct Situation {
+  std::string playMode, side;  ///< side: "left", "right"
+  int unum = 1;
+  Lying lying = Lying::no;
+  double tilt = 0;                                           ///< rad, of the torso
+  bool located = false, ballKnown = false, nearest = false;  ///< nearest: no team-mate says that he is nearer to the ball
+  Vec2 place = Vec2::Zero(), ball = Vec2::Zero();
+  double heading = 0;  ///< rad
+};
+
+enum class Task { takePlace, fall, getUp, search, stand, walk, kick };
+
+/// What to do next.
+struct Decision {
+  Task task = Task::stand;
+  Vec2 target = Vec2::Zero();  ///< walk: where to, on the field; takePlace: where to be beamed
+  double facing = 0;           ///< walk: heading at the target [rad]
+  bool rightFoot = true;       ///< kick
+};
+
+Decision decide(const Situation& s);
+/// Where number 1..11 stands at kick-off.
+Vec2 kickOffPlace(int unum);
+/// Where number 1..11 waits when others are nearer to the ball.
+Vec2 waitingPlace(int unum, const Vec2& ball);
+/// True for modes in which players may be beamed and nobody plays.
+bool pausedMode(std::string_view playMode);
+/// True when only the other team may touch the ball. `side`: of the own team.
+bool theirBall(std::string_view playMode, std::string_view side);
+/// How to walk to a point. `target`: from the robot, x to its right, y forward [m]; `facing`: turn to make at the target [rad]. Unlimited:
+/// the gait cuts it.
+struct Steering {
+  double forward, right, turn;
+};
+Steering steer(const Vec2& target, double facing);
+
+}  // namespace humanoid

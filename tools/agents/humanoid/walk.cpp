@@ -1,0 +1,73 @@
+#include "walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace humanoid {
+
+namespace {
+/// `from` moved towards `to` by at most `by`.
+double towards(double from, double to, double by) { return from + std::clamp(to - from, -by, by); }
+
+constexpr double kStartTime = 0.6;  // s until the first steps have their full height
+
+struct Leg {
+  double lift, way;  ///< 0..1 of the foot's height, -1..1 of its way
+};
+
+/// `phase` of the leg: it swings in the first half and stands in the second.
+Leg legAt(double phase, double pause) {
+  const double t = phase - std::floor(phase);
+  if (t >= 0.5) return {0, 1 - 4 * (t - 0.5)};
+  const double s = std::clamp((2 * t - pause) / (1 - 2 * pause), 0.0, 1.0);
+  return {0.5 - 0.5 * std::cos(2 * kPi * s), -std::cos(kPi * s)};
+}
+}  // namespace
+
+void Walk::start() {
+  phase_ = strength_ = 0;
+  now_ = {};
+}
+
+bool Walk::mayStop() const {
+  const double toStep = std::abs(phase_ - 0.5) < 0.25 ? std::abs(phase_ - 0.5) : std::min(phase_, 1 - phase_);
+  return toStep < 0.06 && std::abs(now_.forward) < 0.02 && std::abs(now_.right) < 0.02 && std::abs(now_.turn) < 0.1;
+}
+
+void Walk::stand(Pose& pose) const {
+  for (const bool right : {true, false}) placeFoot(build_, right, footOf(right, 0, 0, Vec2::Zero()), pose);
+}
+
+/// `shift`: of both feet against the torso, m.
+Foot Walk::footOf(bool right, double lift, double way, const Vec2& shift) const {
+  const double side = right ? 1 : -1, step = gait_.period / 4;
+  const Vec3 place(side * gait_.spread + now_.right * step * way + shift.x(), gait_.forward + now_.forward * step * way + shift.y(),
+                   -gait_.height * legLength(build_) + gait_.lift * strength_ * lift);
+  const double c = std::cos(gait_.lean), s = std::sin(gait_.lean);
+  Foot foot;
+  foot.place = Vec3(place.x(), c * place.y() - s * place.z(), s * place.y() + c * place.z());
+  foot.pitch = gait_.lean;
+  foot.yaw = now_.turn * step * way - side * std::abs(now_.turn) * step;  // hips turn feet outwards only
+  return foot;
+}
+
+void Walk::step(const Velocity& wanted, const Percepts& percepts, const Posture& posture, Pose& pose) {
+  const double gain = gait_.change * kCycle;
+  now_.forward = towards(now_.forward, std::clamp(wanted.forward, -0.6 * gait_.maxForward, gait_.maxForward), gain * gait_.maxForward);
+  now_.right = towards(now_.right, std::clamp(wanted.right, -gait_.maxSide, gait_.maxSide), gain * gait_.maxSide);
+  now_.turn = towards(now_.turn, std::clamp(wanted.turn, -gait_.maxTurn, gait_.maxTurn), 2 * gain * gait_.maxTurn);
+  strength_ = std::min(1.0, strength_ + kCycle / kStartTime);
+
+  const double forward = posture.forward() - gait_.lean, right = posture.right();
+  Vec2 shift(gait_.tiltRight * right + gait_.rateRight * percepts.gyro.y(),
+             gait_.tiltForward * forward - gait_.rateForward * percepts.gyro.x());
+  shift.x() += strength_ * gait_.sway * std::sin(2 * kPi * phase_ + gait_.swayLead);
+  for (const bool isRight : {true, false}) {
+    const Leg leg = legAt(isRight ? phase_ : phase_ + 0.5, gait_.pause);
+    placeFoot(build_, isRight, footOf(isRight, leg.lift, leg.way, shift), pose);
+  }
+  phase_ += kCycle / gait_.period;
+  if (phase_ >= 1) phase_ -= 1;
+}
+
+}  // namespace humanoid
