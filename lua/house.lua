@@ -38,12 +38,14 @@ function scene()
   return server
 end
 
---- Physics server, its engine, and a world with a space in the active scene.
-function physics(engine)
+--- Physics server, its engine, and a world with a space in the active scene. `engine`: its class; `properties`: of the engine, set before the
+--- world is made.
+function physics(engine, properties)
   plugin "physics"
   plugin "physics-ode"
   local server = new("PhysicsServer", "/sys/server/physics")
-  new(engine or "OdeEngine", "/sys/server/physics/engine")
+  local solver = new(engine or "OdeEngine", "/sys/server/physics/engine")
+  for name, value in pairs(properties or {}) do solver[name] = value end
   new("World", "/usr/scene/world")
   new("Space", "/usr/scene/space")
   return server

@@ -16,11 +16,13 @@ local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
 local compat  = compatOption(league.compat)
 
+local exact   = option{ name = "exactReplay", default = true, doc = "Physics repeats recorded sessions of the installed base to the last digit." }
+
 -- the rooms
 files()
 scene()
 materials()
-physics()
+physics("OdeEngine", { exactReplay = exact })
 simulation()
 agents{ parser = parser }
 monitors{ encoder = encoder }

@@ -176,7 +176,10 @@ std::uint64_t Convert<std::uint64_t>::from(Args& args) {
   return integerFrom<std::uint64_t>(args);
 }
 Value Convert<std::uint64_t>::to(const std::uint64_t& v) { return v; }
-double Convert<double>::from(Args& args) { return numberFrom(args); }
+double Convert<double>::from(Args& args) {
+  const double v = numberFrom(args);
+  return args.loose ? static_cast<float>(v) : v;
+}
 Value Convert<double>::to(const double& v) { return v; }
 float Convert<float>::from(Args& args) { return static_cast<float>(numberFrom(args)); }
 Value Convert<float>::to(const float& v) { return static_cast<double>(v); }

@@ -63,16 +63,18 @@ void OdeEngine::setMass(Body body, const engine::Mass& mass) {
 
 engine::BodyState OdeEngine::state(Body body) const {
   const BodyData& b = *data(body);
-  return {toVec(b.position), toVec(b.velocity), toVec(b.spin), toMat(b.rotation)};
+  const WorldData& w = *b.world;
+  return {crossing(w, toVec(b.position)), crossing(w, toVec(b.velocity)), crossing(w, toVec(b.spin)), crossing(w, toMat(b.rotation))};
 }
 
 void OdeEngine::states(std::span<const Body> bodies, std::span<engine::BodyState> out) const {
   for (std::size_t i = 0; i < bodies.size(); ++i) out[i] = OdeEngine::state(bodies[i]);
 }
 
-void OdeEngine::setPosition(Body body, const Vec3& p) {
-  if (!sane(p)) return;
+void OdeEngine::setPosition(Body body, const Vec3& wanted) {
+  if (!sane(wanted)) return;
   BodyData& b = *data(body);
+  const Vec3 p = crossing(*b.world, wanted);
   dBodySetPosition(b.id, p.x(), p.y(), p.z());
   std::copy(p.data(), p.data() + 3, b.good.position);
 }
@@ -81,25 +83,37 @@ void OdeEngine::setRotation(Body body, const Mat3& r) {
   if (!sane(r.data(), 9) || std::abs(r.determinant()) < 1e-6) return;
   BodyData& b = *data(body);
   dMatrix3 m;
-  toOde(r, m);
+  toOde(crossing(*b.world, r), m);
   dBodySetRotation(b.id, m);
   std::copy(dBodyGetQuaternion(b.id), dBodyGetQuaternion(b.id) + 4, b.good.quaternion);
 }
 
-void OdeEngine::setLinearVelocity(Body body, const Vec3& v) {
-  if (sane(v)) dBodySetLinearVel(data(body)->id, v.x(), v.y(), v.z());
+void OdeEngine::setLinearVelocity(Body body, const Vec3& wanted) {
+  if (!sane(wanted)) return;
+  const BodyData& b = *data(body);
+  const Vec3 v = crossing(*b.world, wanted);
+  dBodySetLinearVel(b.id, v.x(), v.y(), v.z());
 }
 
-void OdeEngine::setAngularVelocity(Body body, const Vec3& w) {
-  if (sane(w)) dBodySetAngularVel(data(body)->id, w.x(), w.y(), w.z());
+void OdeEngine::setAngularVelocity(Body body, const Vec3& wanted) {
+  if (!sane(wanted)) return;
+  const BodyData& b = *data(body);
+  const Vec3 w = crossing(*b.world, wanted);
+  dBodySetAngularVel(b.id, w.x(), w.y(), w.z());
 }
 
-void OdeEngine::addForce(Body body, const Vec3& f) {
-  if (f.allFinite()) dBodyAddForce(data(body)->id, f.x(), f.y(), f.z());
+void OdeEngine::addForce(Body body, const Vec3& wanted) {
+  if (!wanted.allFinite()) return;
+  const BodyData& b = *data(body);
+  const Vec3 f = crossing(*b.world, wanted);
+  dBodyAddForce(b.id, f.x(), f.y(), f.z());
 }
 
-void OdeEngine::addTorque(Body body, const Vec3& t) {
-  if (t.allFinite()) dBodyAddTorque(data(body)->id, t.x(), t.y(), t.z());
+void OdeEngine::addTorque(Body body, const Vec3& wanted) {
+  if (!wanted.allFinite()) return;
+  const BodyData& b = *data(body);
+  const Vec3 t = crossing(*b.world, wanted);
+  dBodyAddTorque(b.id, t.x(), t.y(), t.z());
 }
 
 Vec3 OdeEngine::force(Body body) const { return toVec(dBodyGetForce(data(body)->id)); }

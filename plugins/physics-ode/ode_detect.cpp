@@ -24,20 +24,32 @@ bool meaningless(const GeomData& a, const GeomData& b) {
   return s == b.shape.shape && (s == Shape::plane || s == Shape::ray);
 }
 
+void near(void* world, dGeomID o1, dGeomID o2);
+
+/// Exact replay: a space's own geoms are collided when it first meets something.
+void collideInside(WorldData& w, dGeomID o) {
+  if (!dGeomIsSpace(o)) return;
+  SpaceData& s = *static_cast<SpaceData*>(dGeomGetData(o));
+  if (!s.inner || s.collidedAt == w.steps + 1) return;
+  s.collidedAt = w.steps + 1;
+  dSpaceCollide(s.id, &w, near);
+}
+
 /// ODE's callback for two geoms, or spaces, whose bounds overlap.
 void near(void* world, dGeomID o1, dGeomID o2) {
+  WorldData& w = *static_cast<WorldData*>(world);
   if (dGeomIsSpace(o1) || dGeomIsSpace(o2)) {
     dSpaceCollide2(o1, o2, world, near);
+    if (w.exactReplay) collideInside(w, o1), collideInside(w, o2);
     return;
   }
-  WorldData& w = *static_cast<WorldData*>(world);
   auto* a = static_cast<GeomData*>(dGeomGetData(o1));
   auto* b = static_cast<GeomData*>(dGeomGetData(o2));
   if (meaningless(*a, *b)) return;
   if (a->body && b->body && a->body->joints > 0 && b->body->joints > 0 &&
       dAreConnectedExcluding(a->body->id, b->body->id, dJointTypeContact))
     return;
-  if (!comesFirst(*a, *b)) std::swap(a, b);
+  if (!w.exactReplay && !comesFirst(*a, *b)) std::swap(a, b);
   if (w.filter && !w.filter(a->owner, b->owner)) return;
   w.pairs.push_back({a, b});
 }
@@ -56,10 +68,15 @@ void OdeEngine::detect(engine::World world, engine::PairFilter filter, int perPa
   const Listening listening(said_);
   w.filter = filter;
   w.pairs.clear();
-  if (dSpaceGetNumGeoms(w.root) > 1) dSpaceCollide(w.root, &w, near);
-  for (const auto& space : w.spaces)
-    if (space->inner) dSpaceCollide(space->id, &w, near);
-  std::sort(w.pairs.begin(), w.pairs.end());
+  if (w.exactReplay) {
+    for (const auto& space : w.spaces)
+      if (space->top) dSpaceCollide(space->id, &w, near);
+  } else {
+    if (dSpaceGetNumGeoms(w.root) > 1) dSpaceCollide(w.root, &w, near);
+    for (const auto& space : w.spaces)
+      if (space->inner) dSpaceCollide(space->id, &w, near);
+    std::sort(w.pairs.begin(), w.pairs.end());
+  }
 
   dContactGeom found[kMostPerPair];
   const int most = std::clamp(perPair, 1, kMostPerPair);

@@ -23,6 +23,7 @@ World OdeEngine::createWorld() {
   w->root = dHashSpaceCreate(nullptr);
   dSpaceSetCleanup(w->root, 0);
   w->contactJoints = dJointGroupCreate(0);
+  w->exactReplay = exactReplay_;
   const World handle{reinterpret_cast<std::uintptr_t>(w.get())};
   worlds_.push_back(std::move(w));
   setWorldParameters(handle, {});
@@ -48,10 +49,11 @@ void OdeEngine::destroyWorld(World world) {
 void OdeEngine::setWorldParameters(World world, const engine::WorldParameters& p) {
   WorldData& w = *data(world);
   if (!sane(p.gravity)) throw Error("expected a finite gravity for the world");
-  dWorldSetGravity(w.id, p.gravity.x(), p.gravity.y(), p.gravity.z());
+  const Vec3 gravity = crossing(w, p.gravity);
+  dWorldSetGravity(w.id, gravity.x(), gravity.y(), gravity.z());
   dWorldSetERP(w.id, p.erp);
-  dWorldSetCFM(w.id, p.cfm);
-  dWorldSetContactSurfaceLayer(w.id, p.contactSurfaceLayer);
+  dWorldSetCFM(w.id, crossing(w, p.cfm));
+  dWorldSetContactSurfaceLayer(w.id, crossing(w, p.contactSurfaceLayer));
   dWorldSetAutoDisableFlag(w.id, 0);
   w.autoDisable = p.autoDisable;
 }
@@ -60,8 +62,11 @@ Space OdeEngine::createSpace(World world, Space parent) {
   WorldData& w = *data(world);
   auto s = std::make_unique<SpaceData>();
   s->world = &w;
-  s->id = dSweepAndPruneSpaceCreate(parent == Space::none ? w.root : data(parent)->id, dSAP_AXES_XYZ);
+  s->top = w.exactReplay && parent == Space::none;
+  const dSpaceID around = s->top ? nullptr : parent == Space::none ? w.root : data(parent)->id;
+  s->id = w.exactReplay ? dHashSpaceCreate(around) : dSweepAndPruneSpaceCreate(around, dSAP_AXES_XYZ);
   dSpaceSetCleanup(s->id, 0);
+  dGeomSetData(reinterpret_cast<dGeomID>(s->id), s.get());
   const Space handle{reinterpret_cast<std::uintptr_t>(s.get())};
   w.spaces.push_back(std::move(s));
   return handle;
@@ -183,7 +188,7 @@ void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
   if (w.feedback.capacity() < contacts.size()) w.feedback.reserve(contacts.size() * 2);
   addContactJoints(w, contacts);
   if (w.autoDisable) sleep(w, dt);
-  solve(w, contacts, dt);
+  solve(w, contacts, crossing(w, dt));
   readFeedback(w, contacts);
   dJointGroupEmpty(w.contactJoints);
   repair(w);

@@ -6,7 +6,7 @@
 ///  - Auto-disable: ODE's rule with ODE's thresholds, but its counters live here, where they can be saved. A restored world goes on
 ///    bit for bit.
 ///  - Pair order: ODE's spaces report pairs in an order that depends on history. Pairs are collected, sorted by the age of their
-///    geoms, then collided: same tree, same state, same contacts.
+///    geoms, then collided: same tree, same state, same contacts. (Not with `exactReplay`: see there.)
 ///  - Spaces: each space collides its own geoms once per step, and never twice.
 ///  - Knots: the direct solver's time grows with the cube of an island's constraints, and thirty robots that appear in one place would
 ///    take minutes. Islands of more than `directRows` rows are solved by ODE's iterative solver (see ode_islands.cpp).
@@ -55,6 +55,8 @@ struct SpaceData {
   dSpaceID id;
   WorldData* world;
   bool inner = true;
+  bool top = false;             ///< exact replay: has no space around it
+  std::uint64_t collidedAt = 0;  ///< exact replay: number of the step in which its geoms were last collided with each other
 };
 
 struct GeomData {
@@ -94,6 +96,7 @@ struct WorldData {
   dSpaceID root;
   dJointGroupID contactJoints;
   bool autoDisable = true;
+  bool exactReplay = false;  ///< as the engine said when the world was made
   std::uint64_t steps = 0, nextAge = 1;
   std::vector<std::unique_ptr<BodyData>> bodies;
   std::vector<std::unique_ptr<SpaceData>> spaces;
@@ -110,6 +113,14 @@ struct WorldData {
 /// Constraint rows that a contact and a joint add at most.
 inline constexpr int kContactRows = 3;
 int rowsOf(engine::JointType type);
+
+inline double single(double v) { return static_cast<float>(v); }
+inline Vec3 single(const Vec3& v) { return v.cast<float>().cast<double>(); }
+inline Mat3 single(const Mat3& m) { return m.cast<float>().cast<double>(); }
+/// A number as the world takes and gives it: rounded to single precision when recorded sessions are to repeat.
+inline double crossing(const WorldData& w, double v) { return w.exactReplay ? single(v) : v; }
+inline Vec3 crossing(const WorldData& w, const Vec3& v) { return w.exactReplay ? single(v) : v; }
+inline Mat3 crossing(const WorldData& w, const Mat3& m) { return w.exactReplay ? single(m) : m; }
 
 inline WorldData* data(engine::World h) { return reinterpret_cast<WorldData*>(h); }
 inline SpaceData* data(engine::Space h) { return reinterpret_cast<SpaceData*>(h); }
@@ -170,6 +181,9 @@ class OdeEngine : public Leaf, public engine::IEngine {
     d.property("directRows", &OdeEngine::directRows_)
         .min(0)
         .doc("Islands of more constraint rows (three a contact) are solved iteratively: not exactly, but in time.");
+    d.property("exactReplay", &OdeEngine::exactReplay_)
+        .doc("Worlds made from now on repeat recorded sessions of the installed base to the last digit: numbers cross the engine's interface in "
+             "single precision, and contacts are solved in the order in which ODE's hash spaces report them.");
     d.property("approximateSteps", &OdeEngine::approximateSteps).doc("How many steps had such an island.");
     d.property("messages", &OdeEngine::messages).doc("How often ODE complained about something.");
   }
@@ -252,6 +266,7 @@ class OdeEngine : public Leaf, public engine::IEngine {
   std::string said_;
   std::int64_t messages_ = 0, approximateSteps_ = 0;
   int directRows_ = 1200;
+  bool exactReplay_ = false;
 };
 
 }  // namespace spark

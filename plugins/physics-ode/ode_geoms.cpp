@@ -121,6 +121,30 @@ void OdeEngine::place(GeomData& g) {
   }
 }
 
+namespace {
+
+/// Gives ODE's geom other measures where it keeps its kind, so that it keeps its place in its space. False: it must be made anew.
+bool reshape(GeomData& g, const ShapeDescription& s) {
+  if (s.shape != g.shape.shape) return false;
+  switch (s.shape) {
+    case Shape::box:
+      dGeomBoxSetLengths(g.id, s.lengths.x(), s.lengths.y(), s.lengths.z());
+      break;
+    case Shape::sphere:
+      dGeomSphereSetRadius(g.id, s.radius);
+      break;
+    case Shape::capsule:
+      dGeomCapsuleSetParams(g.id, s.radius, s.length);
+      break;
+    default:
+      return false;
+  }
+  g.shape = s;
+  return true;
+}
+
+}  // namespace
+
 Geom OdeEngine::createGeom(engine::Space space, const ShapeDescription& shape, void* owner) {
   check(shape);
   const Listening listening(said_);
@@ -149,6 +173,7 @@ void OdeEngine::setShape(Geom geom, const ShapeDescription& shape) {
   check(shape);
   const Listening listening(said_);
   GeomData& g = *data(geom);
+  if (reshape(g, shape)) return;
   const bool collides = dGeomIsEnabled(g.id);
   dGeomDestroy(g.id);
   if (g.mesh) dGeomTriMeshDataDestroy(g.mesh);

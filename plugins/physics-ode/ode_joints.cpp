@@ -98,10 +98,11 @@ void OdeEngine::attach(Joint joint, engine::Body a, engine::Body b) {
   dJointAttach(j.id, j.a ? j.a->id : nullptr, j.b ? j.b->id : nullptr);
 }
 
-void OdeEngine::setAnchor(Joint joint, const Vec3& p) {
+void OdeEngine::setAnchor(Joint joint, const Vec3& wanted) {
   const Listening listening(said_);
   JointData& j = *data(joint);
-  if (!j.attached() || !sane(p)) return;
+  if (!j.attached() || !sane(wanted)) return;
+  const Vec3 p = crossing(*j.world, wanted);
   switch (j.type) {
     case JointType::ball:
       dJointSetBallAnchor(j.id, p.x(), p.y(), p.z());
@@ -120,10 +121,11 @@ void OdeEngine::setAnchor(Joint joint, const Vec3& p) {
   }
 }
 
-void OdeEngine::setAxis(Joint joint, int axis, const Vec3& v, int frame) {
+void OdeEngine::setAxis(Joint joint, int axis, const Vec3& wanted, int frame) {
   const Listening listening(said_);
   JointData& j = *data(joint);
   if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return;
+  const Vec3 v = crossing(*j.world, wanted);
   if (!sane(v) || v.norm() < 1e-9) throw Error("expected an axis longer than 0");
   const dReal direction[4] = {v.x(), v.y(), v.z(), 0};
   switch (j.type) {
@@ -217,9 +219,10 @@ Vec3 OdeEngine::axis(Joint joint, int axis) const {
   return toVec(v);
 }
 
-void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double v) {
+void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double wanted) {
   JointData& j = *data(joint);
-  if (axis < 0 || axis >= axesOf(j.type) || std::isnan(v)) return;
+  if (axis < 0 || axis >= axesOf(j.type) || std::isnan(wanted)) return;
+  const double v = crossing(*j.world, wanted);
   const int name = odeParameter(p, axis);
   switch (j.type) {
     case JointType::hinge:

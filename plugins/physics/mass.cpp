@@ -10,9 +10,11 @@ Mat3 pointInertia(double mass, const Vec3& p) { return mass * (p.squaredNorm() *
 
 }  // namespace
 
+// The order of operations is ODE's (dMassSet...Total), so that masses agree to the last bit.
+
 engine::Mass boxMass(double m, const Vec3& e) {
-  const Vec3 s = e.cwiseProduct(e) * (m / 12);
-  return diagonal(m, s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
+  const Vec3 s = e.cwiseProduct(e);
+  return diagonal(m, m / 12 * (s.y() + s.z()), m / 12 * (s.x() + s.z()), m / 12 * (s.x() + s.y()));
 }
 
 engine::Mass sphereMass(double m, double r) {
@@ -21,15 +23,15 @@ engine::Mass sphereMass(double m, double r) {
 }
 
 engine::Mass capsuleMass(double m, double r, double l) {
-  const double density = m / capsuleVolume(r, l);
-  const double tube = density * cylinderVolume(r, l), caps = density * sphereVolume(r);
-  const double across = tube * (0.25 * r * r + l * l / 12) + caps * (0.4 * r * r + 0.375 * r * l + 0.25 * l * l);
-  return diagonal(m, across, across, (0.5 * tube + 0.4 * caps) * r * r);
+  const double tube = cylinderVolume(r, l), caps = sphereVolume(r), density = m / (tube + caps);
+  const double across = tube * (0.25 * r * r + 1.0 / 12.0 * l * l) + caps * (0.4 * r * r + 0.375 * r * l + 0.25 * l * l);
+  const double along = (tube * 0.5 + caps * 0.4) * r * r;
+  return diagonal(m, across * density, across * density, along * density);
 }
 
 engine::Mass cylinderMass(double m, double r, double l) {
-  const double across = m * (0.25 * r * r + l * l / 12);
-  return diagonal(m, across, across, 0.5 * m * r * r);
+  const double across = m * (0.25 * (r * r) + 1.0 / 12.0 * l * l);
+  return diagonal(m, across, across, m * 0.5 * (r * r));
 }
 
 double boxVolume(const Vec3& e) { return e.prod(); }
