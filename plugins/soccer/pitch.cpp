@@ -30,21 +30,46 @@ Bounds Player::bounds() const {
   return all;
 }
 
+namespace {
+
+// Moves are computed as the installed base computes them, in single precision and from left to right: where a robot stands decides every
+// digit of what happens to it later.
+
+Eigen::Matrix3f product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
+  Eigen::Matrix3f out;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      out(row, column) = (a(row, 0) * b(0, column) + a(row, 1) * b(1, column)) + a(row, 2) * b(2, column);
+  return out;
+}
+
+Vec3f turned(const Eigen::Matrix3f& a, const Vec3f& v) {
+  Vec3f out;
+  for (int row = 0; row < 3; ++row) out[row] = (a(row, 0) * v[0] + a(row, 1) * v[1]) + a(row, 2) * v[2];
+  return out;
+}
+
+void put(IRigidBody& body, const Vec3f& position, const Mat3& rotation) {
+  body.setPose({position.cast<double>(), rotation});
+  body.setVelocity(Vec3::Zero());
+  body.setAngularVelocity(Vec3::Zero());
+}
+
+}  // namespace
+
 void Player::moveTo(const Vec3& target) const {
-  const Vec3 shift = target - position();
+  const Vec3f from = position().cast<float>(), to = target.cast<float>();
   for (IRigidBody* b : bodies) {
     const engine::BodyState s = b->state();
-    b->setPose({s.position + shift, s.rotation});
-    b->setVelocity(Vec3::Zero());
-    b->setAngularVelocity(Vec3::Zero());
+    put(*b, to + (s.position.cast<float>() - from), s.rotation);
   }
 }
 
 void Player::moveTo(const Vec3& target, double yaw) const {
-  const double c = std::cos(yaw), s = std::sin(yaw);
-  Mat3 upright;
+  const float angle = static_cast<float>(yaw), c = std::cos(angle), s = std::sin(angle);
+  Eigen::Matrix3f upright;
   upright << c, -s, 0, s, c, 0, 0, 0, 1;
-  place(target, upright);
+  place(target, upright.cast<double>());
 }
 
 void Player::turnTo(const Mat3& orientation) const { place(position(), orientation); }
@@ -52,12 +77,11 @@ void Player::turnTo(const Mat3& orientation) const { place(position(), orientati
 void Player::place(const Vec3& target, const Mat3& orientation) const {
   if (!torso) return;
   const engine::BodyState reference = torso->state();
-  const Mat3 turn = orientation * reference.rotation.transpose();
+  const Vec3f from = reference.position.cast<float>(), to = target.cast<float>();
+  const Eigen::Matrix3f turn = product(orientation.cast<float>(), reference.rotation.cast<float>().transpose());
   for (IRigidBody* b : bodies) {
     const engine::BodyState old = b->state();
-    b->setPose({target + turn * (old.position - reference.position), turn * old.rotation});
-    b->setVelocity(Vec3::Zero());
-    b->setAngularVelocity(Vec3::Zero());
+    put(*b, to + turned(turn, old.position.cast<float>() - from), product(turn, old.rotation.cast<float>()).cast<double>());
   }
 }
 
