@@ -82,16 +82,16 @@ void OdeEngine::setInnerCollision(Space space, bool on) { data(space)->inner = o
 
 namespace {
 
-void setSurface(dSurfaceParameters& to, const engine::Surface& s) {
+void setSurface(dSurfaceParameters& to, const engine::Surface& s, const WorldData& w) {
   to.mode = (s.bounceOn ? dContactBounce : 0) | (s.softErpOn ? dContactSoftERP : 0) | (s.softCfmOn ? dContactSoftCFM : 0) |
             (s.slipOn ? dContactSlip1 | dContactSlip2 : 0);
-  to.mu = s.mu;
-  to.bounce = s.bounce;
-  to.bounce_vel = s.bounceVelocity;
-  to.soft_erp = s.softErp;
-  to.soft_cfm = s.softCfm;
-  to.slip1 = s.slip1;
-  to.slip2 = s.slip2;
+  to.mu = crossing(w, s.mu);
+  to.bounce = crossing(w, s.bounce);
+  to.bounce_vel = crossing(w, s.bounceVelocity);
+  to.soft_erp = crossing(w, s.softErp);
+  to.soft_cfm = crossing(w, s.softCfm);
+  to.slip1 = crossing(w, s.slip1);
+  to.slip2 = crossing(w, s.slip2);
 }
 
 /// Notes that a body has a contact; `rows` with the static world.
@@ -112,7 +112,7 @@ void OdeEngine::addContactJoints(WorldData& w, engine::Contacts& contacts) {
     const GeomData& a = *data(c.geomA);
     const GeomData& b = *data(c.geomB);
     if (!a.body && !b.body) continue;
-    setSurface(contact.surface, c.surface);
+    setSurface(contact.surface, c.surface, w);
     for (int i = 0; i < 3; ++i) contact.geom.pos[i] = c.position[i], contact.geom.normal[i] = c.normal[i];
     contact.geom.depth = c.depth;
     contact.geom.g1 = a.id;

@@ -114,9 +114,17 @@ struct WorldData {
 inline constexpr int kContactRows = 3;
 int rowsOf(engine::JointType type);
 
-inline double single(double v) { return static_cast<float>(v); }
-inline Vec3 single(const Vec3& v) { return v.cast<float>().cast<double>(); }
-inline Mat3 single(const Mat3& m) { return m.cast<float>().cast<double>(); }
+/// Rounded to single precision. Through memory: g++ 12 vectorises pairs of conversions there and back to nothing.
+inline double single(double v) {
+  const volatile float rounded = static_cast<float>(v);
+  return rounded;
+}
+inline Vec3 single(const Vec3& v) { return {single(v.x()), single(v.y()), single(v.z())}; }
+inline Mat3 single(const Mat3& m) {
+  Mat3 out;
+  for (int i = 0; i < 9; ++i) out.data()[i] = single(m.data()[i]);
+  return out;
+}
 /// A number as the world takes and gives it: rounded to single precision when recorded sessions are to repeat.
 inline double crossing(const WorldData& w, double v) { return w.exactReplay ? single(v) : v; }
 inline Vec3 crossing(const WorldData& w, const Vec3& v) { return w.exactReplay ? single(v) : v; }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cached_lookup.h"
+#include "local_frame.h"
 #include "api/agents.h"
 #include "api/physics.h"
 
@@ -32,7 +33,7 @@ class Accelerometer : public Perceptor {
     if (!body() || event.step <= 0) return;
     const Vec3f velocity = body()->state().linearVelocity.cast<float>();
     const Vec3f felt = (velocity - lastVelocity_) / static_cast<float>(event.step) - gravity_;
-    acceleration_ = transform()->world().block<3, 3>(0, 0).transpose() * felt;
+    acceleration_ = intoFrame(transform()->world(), felt);
     lastVelocity_ = velocity;
   }
   IRigidBody* body() {

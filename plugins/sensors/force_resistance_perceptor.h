@@ -2,6 +2,7 @@
 
 #include "api/agents.h"
 #include "api/physics.h"
+#include "local_frame.h"
 
 namespace spark {
 
@@ -33,10 +34,9 @@ class ForceResistancePerceptor : public Perceptor {
     if (weight_ > 0) point_ = weightedPoint_ / weight_, force_ = sum_;
 
     const Matrix local = transform() ? transform()->local() : Matrix(Matrix::Identity());
-    const Eigen::Matrix3f inverse = local.block<3, 3>(0, 0).transpose();
     out.open("FRP").pair("n", name());
-    put(out, "c", inverse * (point_ - positionOf(local)));
-    put(out, "f", inverse * force_);
+    put(out, "c", intoFrame(local, point_) - intoFrame(local, positionOf(local)));
+    put(out, "f", intoFrame(local, force_));
     out.close();
   }
 

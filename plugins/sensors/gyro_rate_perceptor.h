@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cached_lookup.h"
+#include "local_frame.h"
 #include "api/agents.h"
 #include "api/physics.h"
 
@@ -20,7 +21,7 @@ class GyroRatePerceptor : public Perceptor {
     if (!body) return;
 
     const Vec3f world = body->state().angularVelocity.cast<float>();
-    const Vec3f local = transform()->world().block<3, 3>(0, 0).transpose() * world;
+    const Vec3f local = intoFrame(transform()->world(), world);
 
     out.open("GYR").pair("n", name()).open("rt");
     for (const float rate : local) out.add(radToDeg(rate));
