@@ -147,6 +147,7 @@ int Pitch::count(Side side) const {
 
 void Pitch::placeBall(const Vec3& position) const {
   if (!ball_) return;
+  ball_->enable();  // also when it is awake: where it is put it has not been idle yet
   ball_->setPose({position, ball_->state().rotation});
   ball_->setVelocity(Vec3::Zero());
   ball_->setAngularVelocity(Vec3::Zero());

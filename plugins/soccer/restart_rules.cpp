@@ -48,7 +48,9 @@ void GoalKickRule::loadState(StateReader& in) {
 }
 
 void DropBallRule::judge(const Event&) {
-  for (const PlayMode restart : {PlayMode::kickOffLeft, PlayMode::kickInLeft, PlayMode::cornerKickLeft, PlayMode::goalKickLeft,
+  // At a kick-off nobody holds the ball: it is dropped where it lies, at its height.
+  if (in(PlayMode::kickOffLeft) && game().modeReached(settings().ruleDropBallTime)) return referee().dropBall(pitch().ballPosition());
+  for (const PlayMode restart : {PlayMode::kickInLeft, PlayMode::cornerKickLeft, PlayMode::goalKickLeft,
                                  PlayMode::freeKickLeft, PlayMode::directFreeKickLeft})
     if (in(restart) && game().modeReached(settings().ruleDropBallTime)) return referee().dropBall(referee().kickPosition());
 }
