@@ -69,7 +69,9 @@ void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
 }
 
 void runSolved(engine::Contacts& contacts) {
-  for (engine::Contact& c : contacts) {
+  // The last first: sensors sum forces in single precision, and the installed base's digits come from that order.
+  for (std::size_t i = contacts.size(); i-- > 0;) {
+    engine::Contact& c = contacts[i];
     if (!c.feedback) continue;
     Collider& a = *static_cast<Collider*>(c.ownerA);
     Collider& b = *static_cast<Collider*>(c.ownerB);
