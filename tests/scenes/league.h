@@ -21,7 +21,7 @@ include "house.lua"
 include "materials.lua"
 include "naotypes.lua"
 include "soccer-house.lua"
-files() scene() materials() physics()
+files() scene() materials() physics("OdeEngine", { exactReplay = true })
 simulation().rate = "max"
 plugin "gamecontrol"
 plugin "sensors"

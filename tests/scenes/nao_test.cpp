@@ -169,7 +169,7 @@ void checkJoint(const Part& p, IJoint& joint, Node& robot) {
   CHECK((vectorOf(joint.leaf(), "getAxis") - p.axis.normalized()).norm() < 1e-6);
   CHECK(joint.parameter(P::lowStop, 0) == Approx(degToRad(p.min)));
   CHECK(joint.parameter(P::highStop, 0) == Approx(degToRad(p.max)));
-  CHECK(joint.maxSpeed(0) == p.speed);
+  CHECK(joint.maxSpeed(0) == Approx(p.speed));
   const std::pair<P, double> kCommon[] = {{P::maxForce, 10},      {P::cfm, 1e-8}, {P::stopCfm, 1e-8}, {P::stopErp, 0.8},
                                           {P::fudgeFactor, 1e-5}, {P::bounce, 1}, {P::velocity, 0}};
   for (const auto& [parameter, value] : kCommon) CHECK(joint.parameter(parameter, 0) == Approx(value));
@@ -216,7 +216,7 @@ TEST_CASE("the Nao's bodies and joints are those of its type, in their order") {
       const Part& p = parts[i];
       INFO(p.name);
       CHECK(&bodies[i]->leaf() == robot.find("spacenao/" + p.name + "/" + p.body));
-      CHECK(bodies[i]->mass() == p.mass);
+      CHECK(bodies[i]->mass() == Approx(p.mass));
       CHECK((bodies[i]->state().position - p.position).norm() < 2e-7);
       CHECK(bodies[i]->state().rotation == Mat3::Identity());
       mass += bodies[i]->mass();

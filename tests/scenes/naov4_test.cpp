@@ -92,15 +92,15 @@ Vec3 vectorOf(Leaf& joint, const char* method) {
 
 void checkMotor(const Joint& j, IJoint& motor) {
   const auto number = [&](const char* property) { return getProperty(motor.leaf(), property).toNumber(); };
-  CHECK(motor.maxSpeed(0) == j.speed);
-  CHECK(number("maxTorque") == j.torque);
-  CHECK(number("speedConstant") == j.speedConstant);
-  CHECK(number("torqueConstant") == j.torqueConstant);
-  CHECK(number("resistance") == j.resistance);
-  CHECK(number("environmentTempeature") == j.environment);
+  CHECK(motor.maxSpeed(0) == Approx(j.speed));
+  CHECK(number("maxTorque") == Approx(j.torque));
+  CHECK(number("speedConstant") == Approx(j.speedConstant));
+  CHECK(number("torqueConstant") == Approx(j.torqueConstant));
+  CHECK(number("resistance") == Approx(j.resistance));
+  CHECK(number("environmentTempeature") == Approx(j.environment));
   const bool geared = j.torque >= 10;
-  CHECK(number("thermalConductivity") == (geared ? 0.0158 : 0.0198));
-  CHECK(number("heatCapacity") == (geared ? 27.2 : 43.6));
+  CHECK(number("thermalConductivity") == Approx(geared ? 0.0158 : 0.0198));
+  CHECK(number("heatCapacity") == Approx(geared ? 27.2 : 43.6));
   CHECK(getProperty(motor.leaf(), "feedback") == Value(true));
   CHECK(motor.leaf().find(getProperty(motor.leaf(), "battery").toString())->name() == "Battery");
   CHECK(motor.leaf().find(j.perceptor)->classObject()->name() == "AngularMotorPerceptor");
@@ -138,7 +138,7 @@ TEST_CASE("the Nao V4 has the bodies of its page") {
     INFO(name);
     const auto check = [&](const std::string& part, const Vec3& p) {
       const auto& body = robot.agent.require<IRigidBody>("spacenao/" + part + "/body");
-      CHECK(body.mass() == m);
+      CHECK(body.mass() == Approx(m));
       CHECK((body.state().position - p).norm() < 2e-7);
       mass += m;
     };
