@@ -17,7 +17,9 @@ namespace spark::test {
 class League : public House {
  public:
   /// `field`: its scene file; empty: the config's. `scenes`: a folder that holds rsg/..., asked first; empty: the project's own.
-  explicit League(const std::string& field = {}, const std::filesystem::path& scenes = {}) {
+  /// `settings`: as --set gives them.
+  explicit League(const std::string& field = {}, const std::filesystem::path& scenes = {},
+                  const std::vector<std::pair<std::string, Value>>& settings = {}) {
     const auto share = pluginFolder().parent_path() / "share" / "spark";
     kernel.lua().addFolder(share / "lua");
     const std::string paths = scenes.empty() ? "" : "'" + scenes.string() + "'";
@@ -25,6 +27,7 @@ class League : public House {
     for (const char* port : {"agents", "monitors"}) kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
     if (!field.empty()) kernel.lua().addOverride("scene", field);
     for (const char* noise : {"Soccer.BeamNoiseXY", "Soccer.BeamNoiseAngle"}) kernel.lua().addOverride(noise, 0);
+    for (const auto& [key, value] : settings) kernel.lua().addOverride(key, value);
     kernel.lua().runConfig("soccer.lua");
     setProperty(at("/sys/server/simulation"), "rate", "max");
   }

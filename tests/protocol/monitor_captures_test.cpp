@@ -41,6 +41,60 @@ int count(const std::string& text, const std::string& what) {
   return n;
 }
 
+/// The lines of a file.
+std::vector<std::string> linesOf(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> out;
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
+/// What eight messages say that a command did: changes of the environment but for time, full messages, markers.
+struct Effects {
+  std::string env;
+  int fulls = 0, marks = 0;
+  std::string moved;  ///< the message in which a whole robot moved first
+
+  void add(const std::string& message) {
+    if (isFull(message)) {
+      ++fulls;
+      return;
+    }
+    const std::size_t end = message.find(')') + 1;  // of (time t)
+    env += message.substr(end, message.find(")(RDS") - end);
+    marks += count(message, "(setVisible ");
+    if (moved.empty() && count(message, "(SLT") > 15) moved = message.substr(message.find("(SLT"));
+  }
+};
+
+/// Two robots of the SPL's server at rest, and a trainer.
+struct Rehearsal {
+  League league{"", {}, {{"compat", "F"}, {"/sys/server/gamecontrol.sync", false}}};
+  FakeConnection& monitor = league.connectMonitor();
+  std::vector<FakeConnection*> agents;
+
+  Rehearsal() {
+    monitor.read();
+    join("RefA", 1, "(beam -1.5 0.47 0)");
+    join("RefB", 2, "(beam -1.5 1 0)");
+    for (int i = 0; i < 120; ++i) next();
+  }
+  void join(const char* team, int unum, const char* beam) {
+    agents.push_back(&league.connectAgent());
+    league.fromAgent(*agents.back(), "(scene rsg/agent/nao/nao.rsg)(syn)");
+    for (int i = 0; i < 3; ++i) next();
+    league.fromAgent(*agents.back(), fmt::format("(init (unum {})(teamname {}))(syn)", unum, team));
+    for (int i = 0; i < 3; ++i) next();
+    league.fromAgent(*agents.back(), beam);
+  }
+  /// The next message, "" when one is left out.
+  std::string next() {
+    league.run(2);
+    for (FakeConnection* a : agents) a->read();
+    return monitor.read();
+  }
+};
+
 void skipWithoutReference() {
   if (referenceFolder().empty()) std::exit(77);
 }
@@ -100,4 +154,41 @@ TEST_CASE("four robots of two teams: the full messages of connecting, loading, j
   CHECK(count(mark, "(nd(nd SMN (setVisible 1)))") == count(markRecorded, "(nd(nd SMN (setVisible 1)))"));
   CHECK(count(mark, "(setVisible ") == 1);
   CHECK(FrameText(from(session.recording.frames, isFull)).shape == FrameText(from(session.frames, isFull)).shape);
+}
+
+TEST_CASE("each command of the recorded trainer has the recorded effect within eight messages") {
+  skipWithoutReference();
+  const auto folder = referenceFolder() / "captures" / "spl";
+  const auto recorded = linesOf(folder / "monitor-trainer-commands.txt");
+  Rehearsal rehearsal;
+  int commands = 0;
+  for (const std::string& line : linesOf(folder / "monitor-trainer-commands.sent.txt")) {
+    const std::size_t blank = line.find(' '), at = std::stoul(line);
+    const std::string command = line.substr(blank + 1);
+    INFO(at << " " << command);
+    // A coin decided for the right then.
+    rehearsal.league.fromMonitor(rehearsal.monitor, command == "(kickOff None)" ? "(kickOff Right)" : command);
+    if (command == "(killsim)") {
+      rehearsal.league.run(2);
+      CHECK(rehearsal.league.kernel.stopRequested());
+      break;
+    }
+    Effects expected, found;
+    for (std::size_t i = 0; i < 8; ++i) {
+      if (at + i < recorded.size()) expected.add(recorded[at + i]);
+      if (const std::string message = rehearsal.next(); !message.empty()) found.add(message);
+    }
+    CHECK(found.env == expected.env);
+    CHECK(found.fulls == expected.fulls);
+    CHECK(found.marks == expected.marks);
+    ++commands;
+    if (expected.moved.empty()) continue;
+    const FrameText there(expected.moved), here(found.moved);
+    REQUIRE(here.numbers.size() > 16);
+    // The torso. At a kick-off its height says only how it came to rest; when it is turned, its posture decides whether it is cleared
+    // from the circle.
+    const bool kickOff = command.starts_with("(kickOff"), turned = command.find("(move") != std::string::npos || command.find("(rot") != std::string::npos;
+    for (std::size_t i = turned ? 13 : 12; i < (kickOff ? 14u : 15u); ++i) CHECK(here.numbers[i] == Approx(there.numbers[i]).margin(0.06));
+  }
+  CHECK(commands == 34);
 }
