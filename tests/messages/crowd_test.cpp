@@ -61,6 +61,7 @@ TEST_CASE("Of twenty-two robots in view of each other none is told anything twic
   CAPTURE(compat);
   LockstepHost host({"compat=" + compat, "Soccer.BeamNoiseXY=0", "Soccer.BeamNoiseAngle=0"});
   std::vector<std::unique_ptr<Player>> players;
+  host.halt(true);  // all join in one cycle: here each is read in turn
   for (const char side : {'a', 'b'})
     for (int unum = 1; unum <= kTeam; ++unum) {
       players.push_back(std::make_unique<Player>(host.agentPort));
@@ -68,12 +69,18 @@ TEST_CASE("Of twenty-two robots in view of each other none is told anything twic
       players.back()->unum = unum;
       players.back()->client.send("(scene rsg/agent/nao/nao_hetero.rsg " + std::to_string(kTypes[unum - 1]) + ")(syn)");
     }
+  host.halt(false);
   std::size_t longest = 0;
   int mostRobots = 0, mostLines = 0;
   for (int cycle = 0; cycle < kCycles; ++cycle) {
     for (const auto& p : players) {
-      const std::string message = p->client.receive();
       CAPTURE(p->team, p->unum, cycle);
+      std::string message;
+      try {
+        message = p->client.receive();
+      } catch (const boost::system::system_error&) {
+        FAIL("the host closed the connection; it said:\n" << host.end());
+      }
       REQUIRE(message != p->last);
       REQUIRE(message.size() <= kBuffer);
       REQUIRE(numberFault(message) == "");
