@@ -94,10 +94,12 @@ void replay(const std::filesystem::path& file, const std::filesystem::path& scen
     if (const auto at = session.sent.find(cycle); at != session.sent.end())
       for (const auto& [name, message] : at->second) clients[name]->send(message);
   };
-  // All are waited for from the message on that names their robot: their number comes in the message in which it was recorded.
+  // An agent is waited for from the message on that names its robot: its number comes in the message in which it was recorded. Of several
+  // agents one may come a cycle before another, and be told more while that one joins.
+  const bool alone = session.agents.size() == 1;
   std::map<std::string, std::vector<std::pair<int, std::int64_t>>> given, recorded;
-  const auto note = [](auto& numbers, int cycle, const std::string& message) {
-    if (const std::int64_t n = numberGiven(message)) numbers.emplace_back(cycle, n);
+  const auto note = [alone](auto& numbers, int cycle, const std::string& message) {
+    if (const std::int64_t n = numberGiven(message)) numbers.emplace_back(alone ? cycle : 0, n);
   };
   send(0);
   for (int cycle = 0; cycle < kCycles; ++cycle) {
