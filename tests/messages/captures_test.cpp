@@ -17,7 +17,7 @@ namespace {
 
 struct Session {
   const char* name;
-  int looks;                 ///< at least so many messages with See are compared by value
+  int looks;                 ///< at least so many messages with See are compared by value, on any processor
   bool ballIsMoved = false;  ///< by a trainer, whose commands act a monitor's period sooner or later: where it is, is left open
 };
 /// Those of one agent. Its pose is known while all of its other senses agree with the recording, and unless it was beamed with noise.
@@ -284,7 +284,7 @@ TEST_CASE("A player's recorded session replays with messages of the recorded sha
       CHECK(complaints(errors) == "");
       CHECK(looks.fault == "");
       CHECK(looks.compared >= session.looks);
-      CHECK(looks.unmatched * 25 <= looks.items);
+      CHECK(looks.unmatched * 15 <= looks.items);
       all = looks.spread;
       WARN(version.folder << "/" << session.name << ": " << told << " messages, " << looks.compared << " looks with " << looks.items
                           << " items compared, " << looks.unmatched << " at the edge of the view seen by one only, " << forcesMissing
