@@ -2,6 +2,7 @@
 --
 --     soccerVariables{ FieldLength = 104, ... }   -- before the field is imported
 --     soccerRules()                               -- after agents()
+--     soccerFouls()                               -- after soccerRules(): the automatic referee of humanoids
 --     soccerMonitor()                             -- after monitors()
 --     soccerCompat("F")                           -- last: what agents are told as another version of the installed base tells it
 
@@ -25,6 +26,15 @@ function soccerRules(rules)
     local rule = get(path) or error("soccerRules: there is no rule " .. path)
     if values == false then values = { enabled = false } end
     for property, value in pairs(values) do rule[property] = value end
+  end
+end
+
+--- The automatic referee of humanoids: each foul is a control aspect of its own, judged in this order after the rules of play. Leave one
+--- out, or say --set /sys/server/gamecontrol/ChargingFoulAspect.enabled=false.
+function soccerFouls()
+  for _, class in ipairs { "PlayerContactAspect", "IncapableFoulAspect", "CrowdingFoulAspect", "IllegalDefenceAspect", "TouchingFoulAspect",
+                           "ChargingFoulAspect", "BallHoldingAspect", "SelfCollisionAspect", "PenaltyAspect" } do
+    new(class, "/sys/server/gamecontrol/" .. class)
   end
 end
 
@@ -54,7 +64,7 @@ local versions = {
   -- later servers of the 3D league, as far as their clients show it
   L = {
     ["/sys/server/gamecontrol"] = { agentStep = 0.02 },
-    ["/sys/variables/Soccer"] = { VisionInterval = 2 },
+    ["/sys/variables/Soccer"] = { VisionInterval = 2, UseBallHolding = true },
   },
 }
 

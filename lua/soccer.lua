@@ -34,6 +34,7 @@ plugin "effectors"
 naoVariables()
 soccerVariables(league.variables)
 soccerRules()
+soccerFouls()
 soccerMonitor()
 soccerCompat(compat)
 get("/usr/scene"):importScene(field)

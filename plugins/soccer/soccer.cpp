@@ -1,6 +1,11 @@
 #include "agent_collision_handler.h"
+#include "ball_holding_aspect.h"
+#include "charging_foul_aspect.h"
+#include "crowding_foul_aspect.h"
 #include "field_effectors.h"
 #include "goal_rules.h"
+#include "illegal_defence_aspect.h"
+#include "incapable_foul_aspect.h"
 #include "init_effector.h"
 #include "kick_effector.h"
 #include "kick_off_rules.h"
@@ -9,9 +14,11 @@
 #include "offside_aspect.h"
 #include "pass_effector.h"
 #include "restart_rules.h"
+#include "self_collision_aspect.h"
 #include "spark/plugin.h"
 #include "sphere_effectors.h"
 #include "teamless_aspect.h"
+#include "touching_foul_aspect.h"
 #include "trainer_command_parser.h"
 #include "vision_perceptor.h"
 
@@ -26,6 +33,9 @@ SPARK_PLUGIN("soccer", "1.0", "Soccer: field, rules, and what players sense and 
              spark::SoccerRule, spark::BeforeKickOffRule, spark::KickOffRule, spark::SetPieceRule, spark::RestartRule, spark::GoalKickRule,
              spark::PassModeRule, spark::DoubleTouchRule, spark::GoalRule, spark::PenaltyShootoutRule, spark::BallOutRule,
              spark::DropBallRule,
+             // fouls
+             spark::PlayerContactAspect, spark::FoulAspect, spark::IncapableFoulAspect, spark::CrowdingFoulAspect, spark::IllegalDefenceAspect,
+             spark::TouchingFoulAspect, spark::ChargingFoulAspect, spark::BallHoldingAspect, spark::SelfCollisionAspect, spark::PenaltyAspect,
              // what players sense
              spark::GameStatePerceptor, spark::HearPerceptor, spark::AgentStatePerceptor, spark::GameTimePerceptor, spark::VisionPerceptor,
              spark::RestrictedVisionPerceptor,

@@ -18,13 +18,19 @@ class SoccerRule : public ControlAspect {
     d.abstract();
   }
   void rule(const Event& event) final {
-    if (enabled_ && findReferee() && referee_->ready()) judge(event);
+    if (!findReferee() || !referee_->ready()) return;
+    if (enabled_)
+      judge(event);
+    else
+      rest();
   }
   bool enabled() const { return enabled_; }
 
  protected:
   /// Everything below may be called.
   virtual void judge(const Event& event) = 0;
+  /// Instead of judge() while the rule is switched off.
+  virtual void rest() {}
 
   SoccerRuleAspect& referee() const { return *referee_; }
   GameStateAspect& game() const { return referee_->game(); }

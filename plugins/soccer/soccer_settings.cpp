@@ -151,6 +151,19 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("WriteSelfCollisionsToFile", &S::writeSelfCollisionsToFile).doc("Self-collisions are recorded in a file.");
   d.property("SelfCollisionRecordFilename", &S::selfCollisionRecordFilename).doc("That file.");
 
+  d.property("UseBallHolding", &S::useBallHolding).doc("Holding the ball is a foul, as in later servers.");
+  d.property("BallHoldRadius", &S::ballHoldRadius).unit("m").min(0).doc("Ball holding: who has the ball so near holds it.");
+  d.property("BallHoldOppDist", &S::ballHoldOppDist)
+      .unit("m")
+      .min(0)
+      .doc("Ball holding: it counts while an opponent is so near to the ball; 0: always.");
+  d.property("BallHoldMaxTime", &S::ballHoldMaxTime).unit("s").min(0).doc("Ball holding: a player may hold the ball so long.");
+  d.property("BallHoldGoalieMaxTime", &S::goalieBallHoldMaxTime)
+      .unit("s")
+      .min(0)
+      .doc("Ball holding: a goalie in the own penalty area may hold the ball so long.");
+  d.property("BallHoldResetTime", &S::ballHoldResetTime).unit("s").min(0).doc("Ball holding: so long without the ball ends a hold.");
+
   d.property("Keepaway", &S::keepaway).doc("Keep-away instead of soccer.");
   d.property("KeepawayCenterX", &S::keepawayCenterX).unit("m").doc("Centre of the keep-away field.");
   d.property("KeepawayCenterY", &S::keepawayCenterY).unit("m").doc("Centre of the keep-away field.");

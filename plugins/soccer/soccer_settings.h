@@ -54,6 +54,8 @@ class SoccerSettings : public Node, public IVariables {
          selfCollisionBeamCooldownTime = 10;
   bool printSelfCollisions = true, foulOnSelfCollisions = true, selfCollisionBeamPenalty = false, writeSelfCollisionsToFile = false;
   std::string selfCollisionRecordFilename = "SelfCollisions.txt";
+  bool useBallHolding = false;
+  double ballHoldRadius = 0.12, ballHoldOppDist = 0.75, ballHoldMaxTime = 5, goalieBallHoldMaxTime = 10, ballHoldResetTime = 1;
   // Keep-away
   bool keepaway = false;
   double keepawayCenterX = 0, keepawayCenterY = 0, keepawayLength = 20, keepawayWidth = 20;

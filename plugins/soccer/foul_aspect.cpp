@@ -1,0 +1,29 @@
+#include "foul_aspect.h"
+
+namespace spark {
+
+void FoulAspect::judge(const Event& event) {
+  if (version_ != kernel().structureVersion()) {
+    version_ = kernel().structureVersion();
+    penalties_ = parent()->childOf<PenaltyAspect>();
+    contacts_ = parent()->childOf<PlayerContactAspect>();
+  }
+  if (!penalties_) return;
+  penalties_->follow(pitch());
+  if (game().paused())
+    reset();
+  else
+    judgePlay(event);
+}
+
+bool FoulAspect::isDown(const soccer::Player& player) const {
+  const Vec3 p = player.position();
+  return p.z() < kStandingHeight && std::abs(p.y()) < settings().fieldWidth / 2 + 0.1;
+}
+
+bool FoulAspect::inOwnArea(const soccer::Player& player) const {
+  const Vec3 p = player.position();
+  return pitch().penaltyArea(player.side()).contains(p.x(), p.y());
+}
+
+}  // namespace spark

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "pitch.h"
+
+namespace spark::soccer {
+
+/// One record for each player of the pitch, by his index there. A player keeps his record while he stays, a new one starts with T().
+/// T has save(StateWriter&) const and load(StateReader&).
+template <class T>
+class PlayerRecords {
+ public:
+  /// Makes the records fit the players. To be called before they are used; costs a comparison while the tree's shape is the same.
+  void follow(const Pitch& pitch, std::uint64_t structureVersion) {
+    if (version_ == structureVersion) return;
+    version_ = structureVersion;
+    std::vector<int> numbers;
+    std::vector<T> records;
+    for (const Player& p : pitch.players()) {
+      numbers.push_back(p.agent->number());
+      const auto known = std::find(numbers_.begin(), numbers_.end(), numbers.back());
+      records.push_back(known == numbers_.end() ? T() : std::move(records_[known - numbers_.begin()]));
+    }
+    numbers_ = std::move(numbers);
+    records_ = std::move(records);
+  }
+  /// Back to T() for all.
+  void reset() {
+    for (T& r : records_) r = T();
+  }
+  std::size_t size() const { return records_.size(); }
+  T& operator[](std::size_t player) { return records_[player]; }
+  const T& operator[](std::size_t player) const { return records_[player]; }
+  auto begin() { return records_.begin(); }
+  auto end() { return records_.end(); }
+
+  void save(StateWriter& out) const {
+    out.write(static_cast<std::int64_t>(numbers_.size()));
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      out.write(numbers_[i]);
+      records_[i].save(out);
+    }
+  }
+  void load(StateReader& in) {
+    const auto count = static_cast<std::size_t>(in.readInteger());
+    numbers_.assign(count, 0);
+    records_.assign(count, T());
+    for (std::size_t i = 0; i < count; ++i) {
+      numbers_[i] = static_cast<int>(in.readInteger());
+      records_[i].load(in);
+    }
+    version_ = 0;
+  }
+
+ private:
+  std::uint64_t version_ = 0;
+  std::vector<int> numbers_;  ///< of the agents
+  std::vector<T> records_;
+};
+
+}  // namespace spark::soccer

@@ -1,0 +1,182 @@
+#include "self_collision_aspect.h"
+
+#include <fstream>
+
+#include "box_overlap.h"
+
+namespace spark {
+
+namespace {
+
+/// Directly joined, so that they touch by construction.
+bool areJointed(const std::vector<IJoint*>& joints, const IRigidBody* a, const IRigidBody* b) {
+  return a && b && std::any_of(joints.begin(), joints.end(), [&](const IJoint* j) {
+           return (j->body(0) == a && j->body(1) == b) || (j->body(0) == b && j->body(1) == a);
+         });
+}
+
+/// How a part is called: after the transform that carries it.
+const std::string& partName(IRobotBox& box) {
+  const auto* part = box.leaf().ancestor<Transform>();
+  return part ? part->name() : box.leaf().name();
+}
+
+}  // namespace
+
+void SelfCollisionAspect::judgePlay(const Event& event) {
+  lookUp();
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    thaw(robots_[i], event.time);
+    if (isJudged(i)) judgeRobot(i, event.time);
+  }
+}
+
+void SelfCollisionAspect::reset() {
+  lookUp();
+  for (Robot& robot : robots_) {
+    for (Joint& j : robot.joints) {
+      if (j.frozen) j.effector->freeze(false);
+      j.frozen = false;
+      j.since = kLongAgo;
+    }
+    robot.sentOff = kLongAgo;
+  }
+}
+
+void SelfCollisionAspect::lookUp() {
+  if (version_ == kernel().structureVersion()) return;
+  version_ = kernel().structureVersion();
+  std::vector<Robot> now;
+  for (const soccer::Player& p : players()) {
+    now.push_back(dissect(p));
+    const auto before = std::find_if(robots_.begin(), robots_.end(), [&](const Robot& r) { return r.agent == now.back().agent; });
+    if (before != robots_.end()) keepClocks(*before, now.back());
+  }
+  robots_ = std::move(now);
+}
+
+SelfCollisionAspect::Robot SelfCollisionAspect::dissect(const soccer::Player& player) const {
+  Robot robot;
+  robot.agent = player.agent->number();
+  std::vector<IFreezable*> effectors;
+  player.agent->collect(effectors);
+  for (IFreezable* e : effectors) robot.joints.push_back({e});
+  std::vector<IRobotBox*> boxes;
+  player.agent->collect(boxes);
+  for (IRobotBox* box : boxes) {
+    Box& b = robot.boxes.emplace_back(Box{box, {}, box->boxLengths() / 2, {}});
+    for (std::size_t k = 0; k < effectors.size(); ++k)
+      if (const auto& names = box->freezeJointEffectors(); std::find(names.begin(), names.end(), effectors[k]->leaf().name()) != names.end())
+        b.limb.push_back(static_cast<int>(k));
+  }
+  std::vector<IJoint*> joints;
+  player.agent->collect(joints);
+  for (std::size_t a = 0; a < boxes.size(); ++a)
+    for (std::size_t b = a + 1; b < boxes.size(); ++b) {
+      if (boxes[a]->ignores(boxes[b]->leaf().name()) || boxes[b]->ignores(boxes[a]->leaf().name())) continue;
+      const auto *colliderA = boxes[a]->leaf().as<ICollider>(), *colliderB = boxes[b]->leaf().as<ICollider>();
+      if (colliderA && colliderB && (colliderA->body() == colliderB->body() || areJointed(joints, colliderA->body(), colliderB->body())))
+        continue;
+      robot.pairs.push_back({static_cast<int>(a), static_cast<int>(b), robot.boxes[a].half.norm() + robot.boxes[b].half.norm()});
+    }
+  return robot;
+}
+
+/// What is added to a robot comes after its older joints.
+void SelfCollisionAspect::keepClocks(const Robot& from, Robot& to) {
+  to.sentOff = from.sentOff;
+  for (std::size_t k = 0; k < std::min(from.joints.size(), to.joints.size()); ++k) {
+    to.joints[k].frozen = from.joints[k].frozen;
+    to.joints[k].since = from.joints[k].since;
+  }
+}
+
+void SelfCollisionAspect::thaw(Robot& robot, double now) {
+  for (Joint& j : robot.joints) {
+    if (!j.frozen || now - j.since < settings().selfCollisionJointFrozenTime - 1e-9) continue;
+    j.effector->freeze(false);
+    j.frozen = false;
+  }
+}
+
+void SelfCollisionAspect::judgeRobot(std::size_t player, double now) {
+  const SoccerSettings& s = settings();
+  Robot& robot = robots_[player];
+  for (Box& b : robot.boxes) b.pose = b.box->pose();
+  bool foul = false;
+  for (const Pair& pair : robot.pairs) {
+    if (!overlap(robot, pair)) continue;
+    const Box &a = robot.boxes[pair.a], &b = robot.boxes[pair.b];
+    if (s.selfCollisionBeamPenalty) {
+      if (now - robot.sentOff < s.selfCollisionBeamCooldownTime - 1e-9) return;
+      robot.sentOff = now;
+      tell(players()[player], a, b, now);
+      if (s.foulOnSelfCollisions) sendOff(player, Foul::selfCollision);
+      return;
+    }
+    const bool frozeA = freeze(robot, a, now), frozeB = freeze(robot, b, now);
+    if (!frozeA && !frozeB) continue;
+    tell(players()[player], a, b, now);
+    foul = true;
+  }
+  if (foul && s.foulOnSelfCollisions) penalties().report(players()[player], Foul::selfCollision);
+}
+
+bool SelfCollisionAspect::overlap(const Robot& robot, const Pair& pair) const {
+  const Box &a = robot.boxes[pair.a], &b = robot.boxes[pair.b];
+  const double tolerance = settings().selfCollisionsTolerance, reach = pair.reach - tolerance;
+  if (reach <= 0 || (a.pose.position - b.pose.position).squaredNorm() >= reach * reach) return false;
+  return soccer::overlapBeyond(tolerance, a.pose, a.half, b.pose, b.half);
+}
+
+/// True when a joint of the limb was neither frozen nor spared. Without FoulOnSelfCollisions only its clock starts.
+bool SelfCollisionAspect::freeze(Robot& robot, const Box& box, double now) {
+  const SoccerSettings& s = settings();
+  const double spared = s.selfCollisionJointFrozenTime + s.selfCollisionJointThawTime;
+  bool any = false;
+  for (int k : box.limb) {
+    Joint& joint = robot.joints[k];
+    if (now - joint.since < spared - 1e-9) continue;
+    joint.since = now;
+    joint.frozen = s.foulOnSelfCollisions;
+    if (joint.frozen) joint.effector->freeze(true);
+    any = true;
+  }
+  return any;
+}
+
+void SelfCollisionAspect::tell(const soccer::Player& player, const Box& a, const Box& b, double now) {
+  const SoccerSettings& s = settings();
+  if (!s.printSelfCollisions && !s.writeSelfCollisionsToFile) return;
+  const std::string line =
+      fmt::format("{} {}: {} and {}", soccer::sideName(player.side()), player.state->unum(), partName(*a.box), partName(*b.box));
+  if (s.printSelfCollisions) kernel().log().info("soccer: self-collision, {}", line);
+  if (s.writeSelfCollisionsToFile) std::ofstream(s.selfCollisionRecordFilename, std::ios::app) << fmt::format("{:.2f} {}\n", now, line);
+}
+
+void SelfCollisionAspect::saveState(StateWriter& out) const {
+  out.write(static_cast<std::int64_t>(robots_.size()));
+  for (const Robot& r : robots_) {
+    out.write(r.agent);
+    out.write(r.sentOff);
+    out.write(static_cast<std::int64_t>(r.joints.size()));
+    for (const Joint& j : r.joints) out.write(j.frozen), out.write(j.since);
+  }
+}
+
+void SelfCollisionAspect::loadState(StateReader& in) {
+  robots_.clear();
+  for (std::int64_t n = in.readInteger(); n > 0; --n) {
+    Robot& r = robots_.emplace_back();
+    r.agent = static_cast<int>(in.readInteger());
+    r.sentOff = in.readNumber();
+    for (std::int64_t k = in.readInteger(); k > 0; --k) {
+      Joint& j = r.joints.emplace_back(Joint{nullptr});
+      j.frozen = in.readBool();
+      j.since = in.readNumber();
+    }
+  }
+  version_ = 0;
+}
+
+}  // namespace spark
