@@ -34,7 +34,7 @@ void GameControl::describe(Description<GameControl>& d) {
   d.property("joinWait", &GameControl::joinWait_)
       .unit("s")
       .min(0)
-      .doc("Lockstep: while another agent joins, one that has not answered yet is waited for no longer than this (wall clock).");
+      .doc("Lockstep: until an agent that joins has its first percepts, others are waited for no longer than this in a cycle (wall clock).");
   d.property("joinPace", &GameControl::joinPace_)
       .unit("s")
       .min(0)
@@ -126,12 +126,11 @@ bool GameControl::ready(bool lockstep) {
 
 /// Who is waited for in lockstep: agents that sent (syn) once and were sent percepts since, until syncTimeout. All others only watch: an
 /// idle connection, or a client that says (syn) when all of its team have joined, must not stop the match. One program may lead many agents
-/// and read the first percepts of each before it answers for any: an agent that has not answered yet does not hold up for long one that
-/// is about to get its first.
+/// and read each in turn: while one is about to get its first percepts, the others are not waited for so long.
 bool GameControl::answered(Participant& p, Clock::time_point now, bool somebodyJoins) {
   if (p.leaving() || !p.mustSync() || p.synced()) return true;
   const double waited = seconds(now - waitingSince_);
-  if (somebodyJoins && !p.hasAnswered() && !p.expected() && waited >= joinWait_) return true;
+  if (somebodyJoins && !p.expected() && waited >= joinWait_) return true;
   if (syncTimeout_ <= 0 || waited <= syncTimeout_) return false;
   p.connection()->close(fmt::format("{} did not answer for {} s, all others wait", p.label(), syncTimeout_));
   p.leave();

@@ -70,7 +70,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1;
   bool sync_ = false, released_ = false;
-  double agentStep_ = 0, holdWait_ = 0.5, syncTimeout_ = 30, joinWait_ = 0.25, joinPace_ = 0.01, idleLimit_ = 60;
+  double agentStep_ = 0, holdWait_ = 0.5, syncTimeout_ = 30, joinWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
 
   int nextNumber_ = 1, agentsSeen_ = 0;
   std::int64_t messagesDropped_ = 0, cycle_ = 0;

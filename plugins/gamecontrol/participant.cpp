@@ -59,7 +59,6 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
     warn(log, cycle, fmt::format("{} at {}:{}; the rest of that message is ignored.", result.message, result.line, result.column));
   for (const Element e : arrived_) synced_ |= isSync(e.head());
   pledged_ |= synced_;
-  answered_ |= synced_ && sent_ > 0;
   keep(arrived_);
   return {};
 }

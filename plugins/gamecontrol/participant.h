@@ -73,8 +73,6 @@ class Participant {
   /// As mustSync, but it never sent a sync predicate: it is told what every cycle brings and not waited for.
   bool watches() const { return canSync() && !pledged_; }
   bool synced() const { return synced_; }
-  /// It has answered percepts with a sync predicate.
-  bool hasAnswered() const { return answered_; }
   /// It was heard from, and its first percepts may be on their way.
   bool joining() const { return heardFrom_ && sent_ == 0 && counter_ <= kCyclesToFirstPercepts; }
   bool heardFrom() const { return heardFrom_; }
@@ -126,7 +124,7 @@ class Participant {
   const bool inside_;
   bool leaving_ = false, skipCycle_ = true, greeted_ = false, heardFrom_ = false, hadRobot_ = false, expected_ = false, holdingBack_ = false,
        saidAll_ = false;
-  bool pledged_ = false, synced_ = false, answered_ = false;  ///< sent a sync predicate: ever, since the last cycle, after percepts
+  bool pledged_ = false, synced_ = false;  ///< sent a sync predicate: ever, since the last cycle
   Clock::time_point joinedAt_ = Clock::now(), lastHeard_ = joinedAt_;
 
   Predicates pending_, arrived_, percepts_;

@@ -191,7 +191,8 @@ TEST_CASE("Eleven clients that send scene and init without (syn) and wait join a
   REQUIRE(inits.size() == 11);
 }
 
-TEST_CASE("One program leads eleven agents and reads the first percepts of each before it answers for any") {
+TEST_CASE("One program leads eleven agents, reads each in turn, and answers at once or when it has read all") {
+  const bool atOnce = GENERATE(true, false);
   Arena a(true);
   a.set("joinWait", 0.001);
   std::vector<Client> team;
@@ -202,33 +203,35 @@ TEST_CASE("One program leads eleven agents and reads the first percepts of each 
     a.step();  // so that they do not come in one cycle
   }
   std::vector<std::size_t> told(team.size(), 0);
-  const auto readOneOfEach = [&] {
-    a.until([&] {
-      for (std::size_t i = 0; i < team.size(); ++i) told[i] += team[i].drain().size();
-      return *std::min_element(told.begin(), told.end()) > 0;
-    });
-    for (std::size_t& n : told) --n;
-  };
   for (int round = 0; round < 20; ++round) {
-    readOneOfEach();
-    for (Client& c : team) c.send("(syn)");
+    for (std::size_t i = 0; i < team.size(); ++i) {
+      a.until([&] { return (told[i] += team[i].drain().size()) > 0; });
+      --told[i];
+      if (atOnce) team[i].send("(syn)");
+    }
+    if (!atOnce)
+      for (Client& c : team) c.send("(syn)");
   }
   REQUIRE(a.agents() == 11);
 }
 
-TEST_CASE("An agent that has answered before is waited for though others join") {
+TEST_CASE("An agent is waited for though another joins; for joinWait only until that one has its first percepts") {
   Arena a(true);
-  a.set("joinWait", 0);
+  a.set("joinWait", 3600.0);
   Client player = connect(a);
   player.send("(scene robot)(syn)");
-  player.arrive();
-  messagesUntilBlocked(a, player);
-  player.send("(syn)");
   player.arrive();
   messagesUntilBlocked(a, player);
   Client other = a.client();
   other.send("(scene robot)(syn)");
   other.arrive();
+  REQUIRE(messagesUntilBlocked(a, player) == 0);
+  a.set("joinWait", 0);
+  a.until([&] { return !other.drain().empty(); });
+  a.set("syncTimeout", 0);
+  other.send("(syn)");
+  other.arrive();
+  player.drain();
   REQUIRE(messagesUntilBlocked(a, player) == 0);
 }
 
