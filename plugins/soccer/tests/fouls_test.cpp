@@ -1,4 +1,9 @@
 // The automatic referee: when each foul is called, against whom, and what comes of it.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
 #include "../box_overlap.h"
 #include "match_house.h"
 
@@ -132,6 +137,13 @@ TEST_CASE("pauses and switches reset the clocks of the ground", "[fouls]") {
   CHECK(h.fouls().empty());
   h.run(1);
   CHECK(h.countFouls() == 1);
+}
+
+TEST_CASE("fouls are judged after the end of the match too", "[fouls]") {
+  FoulMatch h({"IncapableFoulAspect"}, 2, 0, 0.1);
+  h.setMode("GameOver");
+  h.run(751);
+  CHECK(h.fouls() == Fouls{"1 4 1 2"});
 }
 
 TEST_CASE("a goal sets free who is held", "[fouls]") {
@@ -526,6 +538,19 @@ TEST_CASE("self-collisions may be penalised by a beam, or not at all", "[fouls]"
     CHECK(h.fouls().empty());
     h.run(1);
     CHECK(h.countFouls() == 1);
+  }
+  SECTION("and be written to a file, once each") {
+    const auto file = std::filesystem::temp_directory_path() / fmt::format("spark-self-collisions-{}.txt", getpid());
+    std::filesystem::remove(file);
+    h.set("SelfCollisionRecordFilename", file.string());
+    h.set("WriteSelfCollisionsToFile", true);
+    h.run(10);
+    std::ifstream in(file);
+    std::string line, more;
+    std::getline(in, line);
+    CHECK(line.ends_with(" left 2: larm and rarm"));
+    CHECK_FALSE(std::getline(in, more));
+    std::filesystem::remove(file);
   }
   SECTION("not at all") {
     h.set("FoulOnSelfCollisions", false);
