@@ -9,7 +9,7 @@
 namespace spark {
 
 namespace {
-/// Commands that may wait for the next due cycle, in tokens; messages beyond are dropped.
+/// Commands that may wait for their cycle, in tokens; messages beyond are dropped.
 constexpr std::uint32_t kMostWaiting = 1u << 15;
 /// Cycles between two lines about dropped messages.
 constexpr std::int64_t kComplainEvery = 250;
@@ -18,7 +18,7 @@ constexpr std::int64_t kComplainEvery = 250;
 void MonitorServer::describe(Description<MonitorServer>& d) {
   using M = MonitorServer;
   d.doc("Sends frames of the scene to monitors and takes trainer commands. Children: an encoder, items, trainers.");
-  d.property("interval", &M::interval_).unit("cycles").min(1).doc("A frame is made, and commands are executed, in every n-th cycle.");
+  d.property("interval", &M::interval_).unit("cycles").min(1).doc("A frame is made in every n-th cycle; commands are executed in the cycles after these.");
   d.property("stallTimeout", &M::stallTimeout_).unit("s").min(0).doc("A client that takes nothing for so long (wall time) is closed.");
   d.property("precision", &M::precision_).min(0).doc("A matrix is sent again when one of its elements changed by more (metres, or unit vectors).");
   d.property("clients", &M::clientCount).doc("Number of connected monitors.");
@@ -70,9 +70,9 @@ void MonitorServer::disconnected(IConnection& connection) {
 // ---- commands ----
 
 void MonitorServer::act(const Event& event) {
-  if (!due(event)) return;
   lookUpHelpers();
-  atAct_ = version();
+  if (due(event)) atAct_ = version();
+  if (!takesCommands(event)) return;
   for (const Element command : commands_) execute(command);
   commands_.clear();
 }

@@ -21,10 +21,10 @@ namespace spark {
 ///                 ├─► client: what changed since *its* last message ─► encoder ─► connection, when idle
 ///                 ├─► client ...
 ///                 └─► log: another viewer, in the host
-///     clients ─► commands, read when they arrive ─► act phase of the next cycle that is due ─► built in, then trainers in order
+///     clients ─► commands, read when they arrive ─► act phase of the cycle after a due one ─► built in, then trainers in order
 ///
-/// A frame is due in the cycles whose number is a multiple of `interval`. In such a cycle commands act first and count for the step that
-/// follows; game control must stand before the monitor server in the tree for agents to act before trainers. As in the installed base a
+/// A frame is due in the cycles whose number is a multiple of `interval`. Commands act in the cycle after, so that a frame shows what
+/// `interval` steps made of them; game control must stand before the monitor server in the tree for agents to act before trainers. As in the installed base a
 /// frame of a scene that changed after the act phase of its own cycle is left out, the next one is full; two are never left out in a row.
 class MonitorServer : public Node, public IMonitorServer, public IConnectionConsumer {
   SPARK_CLASS(MonitorServer, Node)
@@ -42,6 +42,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   void act(const Event& event);
   void publish(const Event& event);
   bool due(const Event& event) const { return event.cycle % interval_ == 0; }
+  bool takesCommands(const Event& event) const { return event.cycle % interval_ == 1 % interval_; }
   int clientCount() const { return static_cast<int>(clients_.size()); }
 
   void lookUpHelpers();
