@@ -16,7 +16,7 @@
 //
 // All waiting is inside a source's wait(), so that input is taken as it comes, and in slices, so that a stop request and sources that can
 // only be polled are seen soon. Waiting never shows in the state: the simulated clock stands still meanwhile. In real time, what a cycle
-// takes longer than its step is dropped: the simulation gets slower, it never catches up with double steps.
+// takes longer than its step is dropped, and counted: the simulation gets slower, it never catches up with double steps.
 //
 // Unlike the original, the first cycle has a step like every other: nobody can see the difference (an agent's robot exists from the end
 // of a cycle's act phase at the earliest), and cycles * step is the time.
@@ -46,6 +46,11 @@ void Simulation::describe(Description<Simulation>& d) {
   d.property("cycle", &Simulation::cycle).doc("Number of the current cycle, from 1; 0 before the first.");
   d.property("time", &Simulation::time).unit("s").doc("Simulated time since the start.");
   d.property("phaseMicros", &Simulation::phaseMicros).doc("Mean wall time per cycle of each phase since resetTimers() [microseconds].");
+  d.property("lostTime", &Simulation::lostTime_)
+      .unit("s")
+      .readOnly()
+      .doc("Wall time by which cycles began too late in real time, because those before took longer than a step. It is not made up for.");
+  d.property("lateCycles", &Simulation::lateCycles_).readOnly().doc("Cycles that began too late in real time.");
   d.method("run", &Simulation::run).doc("Runs until duration is reached or something asks to stop.");
   d.method("runCycles", &Simulation::runCycles).parameters({"count"}).doc("Runs that many cycles.");
   d.method("stop", &Simulation::stop).doc("Ends run() after the current cycle.");
@@ -151,7 +156,11 @@ void Simulation::waitForClock() {
     if (left <= 0) break;
     waitForInput(left);
   }
-  if (secondsUntil(due_) < -kJitter) due_ = Clock::now();
+  const double late = -secondsUntil(due_);
+  if (late > kJitter) {
+    due_ = Clock::now();
+    if (rate_ == "real") lostTime_ += late, ++lateCycles_;
+  }
   due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step_));
 }
 
@@ -165,7 +174,10 @@ bool Simulation::collectInput() {
     waited = true;
   }
   if (stopping()) return false;
-  if (waited) poll();
+  if (waited) {
+    poll();
+    due_ = std::max(due_, Clock::now());  // the clock stood still for agents: that is not lost
+  }
   timers_.add(Part::input, waited ? Clock::duration::zero() : Clock::now() - mark);
   return !stopping();
 }

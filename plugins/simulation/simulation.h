@@ -74,6 +74,8 @@ class Simulation : public Node, public ISimulation {
   Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr, *sense_ = nullptr,
           *publish_ = nullptr;
   Clock::time_point due_{};  ///< when the next cycle may start in real time
+  double lostTime_ = 0;      ///< s of wall time; says how the host does, not how the world is: no state
+  std::int64_t lateCycles_ = 0;
   simulation::Timers timers_;
 };
 

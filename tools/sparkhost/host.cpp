@@ -81,9 +81,11 @@ std::string Host::run() {
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double time = numberAt(root, kSimulation, "time");
   return fmt::format(
-      "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"score\":[{},{}],\"agentsSeen\":{},\"messagesDropped\":{},"
-      "\"stateHash\":\"{:016x}\"}}",
-      integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0, elementAt(root, kGameState, "score", 0),
+      "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"lostSeconds\":{:.3f},\"lateCycles\":{},\"playMode\":\"{}\","
+      "\"score\":[{},{}],"
+      "\"agentsSeen\":{},\"messagesDropped\":{},\"stateHash\":\"{:016x}\"}}",
+      integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0, numberAt(root, kSimulation, "lostTime"),
+      integerAt(root, kSimulation, "lateCycles"), textAt(root, kGameState, "playMode"), elementAt(root, kGameState, "score", 0),
       elementAt(root, kGameState, "score", 1), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root), stateHash(root));
 }
 

@@ -14,6 +14,13 @@ namespace {
 constexpr auto kTerminalPeriod = std::chrono::milliseconds(250);
 constexpr auto kLogPeriod = std::chrono::seconds(5);
 constexpr const char* kNames[] = {"trace", "debug", "info", "warning", "error", ""};
+
+/// Whether real time has been kept since the start.
+std::string lossText(const Leaf& root) {
+  const std::int64_t late = integerAt(root, kSimulation, "lateCycles");
+  if (late == 0) return ", on time";
+  return fmt::format(", lost {:.2f} s in {} late cycles", numberAt(root, kSimulation, "lostTime"), late);
+}
 }  // namespace
 
 void StatusLine::describe(Description<StatusLine>& d) {
@@ -35,6 +42,7 @@ void StatusLine::install(Kernel& kernel, bool terminal) {
 std::string StatusLine::text(double time, double factor) const {
   const Leaf& root = kernel().root();
   std::string out = fmt::format("{:.2f} s, {:.1f} x real time", time, factor);
+  if (textAt(root, kSimulation, "rate") == "real") out += lossText(root);
   if (const std::string mode = textAt(root, kGameState, "playMode"); !mode.empty())
     out += fmt::format(", {} {}:{}", mode, elementAt(root, kGameState, "score", 0), elementAt(root, kGameState, "score", 1));
   if (root.find(kGameControl)) out += fmt::format(", {} agents", integerAt(root, kGameControl, "agentCount"));

@@ -9,7 +9,7 @@
 
 namespace sparkhost {
 
-/// Shows clock, play mode, score, agents and real-time factor. Has no state: what it shows never
+/// Shows clock, real-time factor, what was lost against real time, play mode, score and agents. Has no state: what it shows never
 /// influences the simulation.
 class StatusLine : public spark::Node {
   SPARK_CLASS(StatusLine, spark::Node)

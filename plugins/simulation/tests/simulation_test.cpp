@@ -48,6 +48,21 @@ class Polled : public Node, public IInputSource {
   int polls = 0, waits = 0;
 };
 
+/// A gate that opens a second after it was first asked.
+class ClosedForASecond : public Node, public IInputGate {
+  SPARK_CLASS(ClosedForASecond, Node)
+ public:
+  static void describe(Description<ClosedForASecond>& d) { d.implements<IInputGate>(); }
+  bool ready(bool) override {
+    const auto now = std::chrono::steady_clock::now();
+    if (opensAt_ == std::chrono::steady_clock::time_point()) opensAt_ = now + std::chrono::seconds(1);
+    return now >= opensAt_;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point opensAt_{};
+};
+
 struct Fixture {
   test::House house;
   Leaf* simulation = nullptr;
@@ -55,6 +70,7 @@ struct Fixture {
   Fixture() {
     house.kernel.registerClass<Batches>();
     house.kernel.registerClass<Polled>();
+    house.kernel.registerClass<ClosedForASecond>();
     house.kernel.plugins().use("simulation");
     simulation = &house.kernel.create("Simulation", "/sys/server/simulation");
     loop = simulation->as<ISimulation>();
@@ -150,6 +166,35 @@ TEST_CASE("In real time the clock never runs faster than wall time") {
   f.runCycles(6);
   const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   REQUIRE(spent >= 5 * 0.02);
+}
+
+TEST_CASE("What cycles take longer than real time allows is told, as fast as possible nothing is") {
+  for (const char* rate : {"real", "max"}) {
+    Fixture f;
+    setProperty(*f.simulation, "rate", rate);
+    f.house.kernel.events().channel("physics").add(f.house.kernel.root(), [](Leaf&, const Event&) {
+      const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(45);
+      while (std::chrono::steady_clock::now() < end) {
+      }
+    });
+    f.runCycles(3);
+    const double lost = getProperty(*f.simulation, "lostTime").toNumber();
+    const std::int64_t late = getProperty(*f.simulation, "lateCycles").toInteger();
+    if (rate == std::string("real")) {
+      REQUIRE(lost >= 2 * 0.025 - 1e-9);
+      REQUIRE((late == 2 || late == 3));
+    } else {
+      REQUIRE((lost == 0 && late == 0));
+    }
+  }
+}
+
+TEST_CASE("Waiting for agents is no lost time") {
+  Fixture f;
+  setProperty(*f.simulation, "rate", "real");
+  f.house.kernel.create<ClosedForASecond>("ClosedForASecond", "/sys/server/gate");
+  f.runCycles(3);
+  REQUIRE(getProperty(*f.simulation, "lostTime").toNumber() < 0.5);
 }
 
 TEST_CASE("Input is taken while real time passes") {
