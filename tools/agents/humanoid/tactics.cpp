@@ -110,8 +110,8 @@ bool theirBall(std::string_view playMode, std::string_view side) {
 Steering steer(const Vec2& target, double facing) {
   const double distance = target.norm(), bearing = std::atan2(-target.x(), target.y());  // to the left
   if (distance < 0.5) return {1.2 * target.y(), 1.2 * target.x(), 1.2 * facing};
-  const double turn = std::abs(bearing) > radians(150) && distance < 0.8 ? 0 : 1.5 * bearing;
-  return {std::abs(bearing) > radians(60) ? 0 : std::cos(bearing) * std::min(distance, 1.0), 0, turn};
+  if (std::abs(bearing) > radians(150) && distance < 0.8) return {-distance, 0, 0};
+  return {std::abs(bearing) > radians(60) ? 0 : std::cos(bearing) * std::min(distance, 1.0), 0, 1.5 * bearing};
 }
 
 }  // namespace humanoid

@@ -270,6 +270,15 @@ TEST_CASE("Others keep a distance, the goalie keeps the goal, and nobody goes ne
   REQUIRE((decide(s).target - s.ball).norm() < 0.5);
 }
 
+TEST_CASE("Whoever is not there yet moves") {
+  for (double bearing = -3.1; bearing <= 3.1; bearing += 0.1)
+    for (const double distance : {0.2, 0.49, 0.51, 0.79, 0.81, 5.0}) {
+      const Steering s = steer(Vec2(-std::sin(bearing), std::cos(bearing)) * distance, 0);
+      CAPTURE(bearing, distance);
+      REQUIRE((std::abs(s.forward) > 0.1 || std::abs(s.right) > 0.1 || std::abs(s.turn) > 0.1));
+    }
+}
+
 TEST_CASE("Play modes: whose ball it is") {
   REQUIRE(theirBall("KickOff_Left", "right"));
   REQUIRE_FALSE(theirBall("KickOff_Left", "left"));
