@@ -10,6 +10,7 @@ namespace {
 struct Frame {
   double seconds, shift, forward, up, pitch;
 };
+constexpr double kWider = 0.4;   // part of what hips are wider by that the torso shifts more
 constexpr double kHipX = 0.055;  // m, of the build that the frames are for
 constexpr std::array<Frame, 7> kSwing{{{0, 0, 0, 0, 0},
                                        {0.40, 0.065, 0, 0, 0},
@@ -33,7 +34,7 @@ void Kick::step(Pose& pose) {
   const double t = std::min(1.0, time_ / b.seconds), share = 0.5 - 0.5 * std::cos(kPi * t);
   const auto between = [share](double from, double to) { return from + (to - from) * share; };
   const double side = right_ ? 1 : -1;
-  const double shift = side * between(a.shift, b.shift) * build_.hipX / kHipX;
+  const double shift = side * between(a.shift, b.shift) * (1 + kWider * (build_.hipX / kHipX - 1));
   for (const bool right : {true, false}) {
     Foot foot;
     foot.place = Vec3((right ? 1 : -1) * gait_.spread + shift, gait_.forward, -gait_.height * legLength(build_));

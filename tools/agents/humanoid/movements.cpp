@@ -31,9 +31,9 @@ Keyframe frame(double seconds, const Arm& rightArm, const Arm& leftArm, const Le
 // The right arm pushes against the ground behind the back while the right leg swings across. Found by a search in simulation.
 const Movement& rollOver() {
   static const Movement movement{
-      frame(0.53, {-15, -95, -99, 10}, {120, 1, -65, 18}, {-7, -30, 100, -110}, {-16, -2, -25, -126}),
-      frame(0.31, {-59, -95, -120, 31}, {120, -38, -44, -1}, {1, -27, 45, 1}, {1, 13, -25, -56}),
-      frame(0.53, {40, 1, -3, 90}, {116, -6, -40, -1}, {1, 25, -10, -60}, {1, 25, -25, -69}),
+      frame(0.62, {-33.4, -94.1, -100.1, 17.6}, {120, 1, -3.2, 0.2}, {-12.6, -12.9, 100, -130}, {-3.2, -10.1, -25, -79.9}),
+      frame(0.30, {-42.8, -95, -120, 24.1}, {120, -27.5, -55.4, 10.4}, {1, -24.9, 58.6, 1}, {1, 25, -25, -32.1}),
+      frame(0.55, {14.7, 1, -22.2, 76.4}, {120, -57.2, -16.3, -1}, {1, 25, 0.5, -8.9}, {1, 25, -15.4, -49.5}),
       frame(0.5, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}),
   };
   return movement;

@@ -26,11 +26,11 @@ const std::array<JointFacts, kJoints> kJointFacts{{
 
 const Build& buildOf(int type) {
   constexpr double usual = 6.1395;  // rad/s
-  static const std::array<Build, kRobotTypes> builds{{{0.055, 0.12, 0.1, usual, usual, false},
-                                                      {0.055, 0.1383, 0.1183, usual, usual, false},
-                                                      {0.055, 0.12, 0.1, 8.80667, 3.47234, false},
-                                                      {0.072954, 0.1479, 0.1278, usual, usual, false},
-                                                      {0.055, 0.12, 0.1, usual, usual, true}}};
+  static const std::array<Build, kRobotTypes> builds{{{0.055, 0.12, 0.1, usual, usual, false, 0},
+                                                      {0.055, 0.1383, 0.1183, usual, usual, false, radians(20)},
+                                                      {0.055, 0.12, 0.1, 8.80667, 3.47234, false, 0},
+                                                      {0.072954, 0.1479, 0.1278, usual, usual, false, radians(20)},
+                                                      {0.055, 0.12, 0.1, usual, usual, true, 0}}};
   return builds.at(static_cast<std::size_t>(type));
 }
 
@@ -40,6 +40,6 @@ double topSpeed(const Build& build, Joint j) {
   return 6.1395;
 }
 
-int robotType(int unum) { return (unum - 1) % kRobotTypes; }
+int robotType(int unum) { return unum % 3 * 2; }
 
 }  // namespace humanoid

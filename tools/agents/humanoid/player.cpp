@@ -22,11 +22,11 @@ constexpr double kBeamTime = 1.0;                          // s in which he is b
 constexpr double kAskEvery = 1;                            // s between two inits that were not answered
 constexpr int kSaySlots = 22;                              // cycles in which each of eleven speaks once
 
-void armsDown(Pose& pose) {
+void armsDown(const Build& build, Pose& pose) {
   pose[Joint::rShoulderPitch] = pose[Joint::lShoulderPitch] = radians(-100);
-  for (const Joint j :
-       {Joint::rShoulderYaw, Joint::rArmRoll, Joint::rElbow, Joint::lShoulderYaw, Joint::lArmRoll, Joint::lElbow, Joint::rToe, Joint::lToe})
-    pose[j] = 0;
+  pose[Joint::rShoulderYaw] = -build.armsOut;
+  pose[Joint::lShoulderYaw] = build.armsOut;
+  for (const Joint j : {Joint::rArmRoll, Joint::rElbow, Joint::lArmRoll, Joint::lElbow, Joint::rToe, Joint::lToe}) pose[j] = 0;
 }
 }  // namespace
 
@@ -167,7 +167,7 @@ void HumanoidPlayer::getUp() {
   kick_.stop();
   if (posture_.lying() == Lying::onSide) return movement_.start(tipForward(), pose_);
   Pose stance = pose_;
-  armsDown(stance);
+  armsDown(build_, stance);
   walk_.stand(stance);
   double off = 0;
   for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i) {
@@ -187,14 +187,14 @@ void HumanoidPlayer::walk(const Velocity& velocity) {
   if (!walking_ && !wanted) return standStill();
   if (!walking_) walk_.start();
   walking_ = true;
-  armsDown(pose_);
+  armsDown(build_, pose_);
   walk_.step(velocity, percepts_, posture_, pose_);
   if (!wanted && walk_.mayStop()) walking_ = false;
 }
 
 void HumanoidPlayer::standStill() {
   walking_ = false;
-  armsDown(pose_);
+  armsDown(build_, pose_);
   walk_.stand(pose_);
 }
 

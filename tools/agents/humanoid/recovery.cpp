@@ -31,6 +31,8 @@ void Recovery::enter(Phase phase, const Pose& pose) {
     case Phase::prepare:
       to_ = Pose{};
       bothArms(to_, tuning_.pikeArms);
+      to_[Joint::rShoulderYaw] = radians(-tuning_.armsOut);
+      to_[Joint::lShoulderYaw] = -to_[Joint::rShoulderYaw];
       to_[Joint::rElbow] = radians(tuning_.elbow);
       to_[Joint::lElbow] = -to_[Joint::rElbow];
       break;

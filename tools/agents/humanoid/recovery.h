@@ -12,6 +12,7 @@ struct RecoveryTuning {
   double pike = 0.3, fold = 0.35, rise = 1.0;          ///< s for folding the hips, the knees, for stretching
   double pikeHip = 100, pikeKnee = 0, pikeAnkle = 75;  ///< when the rest begins to fold
   double pikeArms = 0, elbow = 0;                      ///< shoulder pitch until then; elbows until it stands
+  double armsOut = 0;                                  ///< shoulder yaw, away from the body, until it stands
   double foldArms = -5;                                ///< shoulder pitch while the knees fold
   double backAnkle = 55, backArms = -20;               ///< in the squat, while it still leans too far forward
   double frontArms = 50;                               ///< in the squat, while it leans too far back
