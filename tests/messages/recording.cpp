@@ -31,7 +31,8 @@ Recording readRecording(const std::filesystem::path& file) {
     const Json row = Json::parse(line);
     const std::string dir = row["dir"];
     const std::size_t arrow = dir.find('>');
-    if (arrow == std::string::npos) continue;  // the ball's place
+    if (dir == "ball") r.ball.push_back(row["msg"]);
+    if (arrow == std::string::npos) continue;
     const std::string from = dir.substr(0, arrow), to = dir.substr(arrow + 1);
     const int cycle = row["cycle"];
     if (from.starts_with("agent")) {
@@ -39,6 +40,8 @@ Recording readRecording(const std::filesystem::path& file) {
       if (std::find(r.agents.begin(), r.agents.end(), from) == r.agents.end()) r.agents.push_back(from);
     } else if (from == "monitor") {
       r.commands[cycle].push_back(row["msg"]);
+    } else if (to == "monitor") {
+      r.frames.push_back(row["msg"]);
     } else if (to.starts_with("agent")) {
       r.answered[to].emplace(cycle, row["msg"]);
       r.cycles = std::max(r.cycles, cycle + 1);

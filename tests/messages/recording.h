@@ -22,6 +22,8 @@ struct Recording {
   std::map<int, std::vector<Said>> sent;                       ///< agents' messages, by cycle
   std::map<int, std::vector<std::string>> commands;            ///< trainers' messages, by cycle
   std::map<std::string, std::map<int, std::string>> answered;  ///< by agent and cycle
+  std::vector<std::string> frames;                             ///< what the monitor got
+  std::vector<std::string> ball;                               ///< where the recording says the ball was, "x y z" [m]
   int cycles = 0;
 
   /// What the agent was answered, "" when nothing was recorded.
