@@ -96,7 +96,8 @@ struct Outcome {
 };
 
 Outcome replaySession(const std::string& name, const Recording& recording) {
-  std::vector<std::string> settings{"Soccer.BeamNoiseXY=0", "Soccer.BeamNoiseAngle=0"};
+  // A frame each cycle: which half of them was recorded depends on when the agent came.
+  std::vector<std::string> settings{"Soccer.BeamNoiseXY=0", "Soccer.BeamNoiseAngle=0", "/sys/server/monitor.interval=1"};
   if (name.starts_with("spl/")) settings.push_back("/sys/server/gamecontrol/parser.decimals=3");
   LockstepHost host(settings);
   Client monitor(host.monitorPort), agent(host.agentPort);
@@ -118,7 +119,7 @@ Outcome replaySession(const std::string& name, const Recording& recording) {
     const std::string answer = agent.receive();
     out.sensors.compare(cycle, recording.answer(recording.agents.front(), cycle), answer);
     while (monitor.pending()) out.ball.feed(monitor.receive());
-    if (!recording.ball.empty() && cycle % 2 == 0) monitor.send("(reqfullstate)");  // diffs leave out small ways
+    if (!recording.ball.empty()) monitor.send("(reqfullstate)");  // diffs leave out small ways
     send(cycle + 1);
   }
   host.end();
