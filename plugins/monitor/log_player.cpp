@@ -33,6 +33,7 @@ void LogPlayer::setFile(std::string path) {
   log_.reset();
   scene_.clear();
   due_ = 0;
+  wanted_.reset();
   started_ = false;
   damaged_ = 0;
   path_ = std::move(path);
@@ -50,6 +51,7 @@ void LogPlayer::take(std::size_t record) {
 
 void LogPlayer::setRecord(std::int64_t record) {
   due_ = 0;
+  wanted_.reset();
   at_ = static_cast<std::size_t>(record);
   if (log_) goTo(std::min(at_, log_->size() - 1));
 }
@@ -60,15 +62,37 @@ void LogPlayer::goTo(std::size_t target) {
   for (std::size_t i = log_->fullBefore(target); i <= target; ++i) take(i);
 }
 
-bool LogPlayer::step(bool back) {
-  if (!log_ || (back ? at_ == 0 : at_ + 1 >= log_->size())) return false;
-  if (back) {
-    goTo(at_ - 1);
-  } else {
-    take(at_ + 1);
-    tellEvents_ = true;
-  }
+bool LogPlayer::step() {
+  if (!log_ || at_ + 1 >= log_->size()) return false;
+  take(at_ + 1);
+  tellEvents_ = true;
   return true;
+}
+
+/// Commands say where to go; the way is gone once a frame, however many there were.
+void LogPlayer::aim(std::int64_t record) {
+  if (log_) wanted_ = std::clamp<std::int64_t>(record, 0, static_cast<std::int64_t>(log_->size()) - 1);
+}
+
+void LogPlayer::goWhereAimed() {
+  if (!wanted_) return;
+  const auto target = static_cast<std::size_t>(*std::exchange(wanted_, std::nullopt));
+  if (target == at_ + 1)
+    step();
+  else if (target != at_)
+    goTo(target);
+}
+
+/// So many records at once; false at the log's end.
+bool LogPlayer::advance(std::size_t records) {
+  bool moves = true;
+  if (backward_) {
+    moves = log_ && at_ >= records;
+    if (log_ && at_ > 0) goTo(at_ - std::min(at_, records));
+  } else {
+    for (; records > 0 && moves; --records) moves = step();
+  }
+  return moves;
 }
 
 bool LogPlayer::fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const Event& event, bool watched) {
@@ -77,10 +101,9 @@ bool LogPlayer::fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const
   const double passed = std::exchange(lastTime_, event.time), now = event.time;
   if (started_ && !paused_ && now > passed) {
     due_ += speed_ * (now - passed) / recordTime_;
-    bool moves = true;
-    for (; due_ >= 1 - kTolerance && moves; due_ -= 1) moves = step(backward_);
-    if (!moves) due_ = 0;
+    if (const double whole = std::floor(due_ + kTolerance); whole >= 1) due_ = advance(static_cast<std::size_t>(whole)) ? due_ - whole : 0;
   }
+  goWhereAimed();
   scene_.copyTo(frame, ids, std::exchange(tellEvents_, false));
   return std::exchange(shown_, scene_.shape()) != scene_.shape();
 }
@@ -98,11 +121,11 @@ bool LogPlayer::command(const Element& command, std::string& why) {
   else if (name == "l")
     backward_ = !backward_;
   else if (name == "f" || name == "b")
-    step(name == "b");
+    aim(wanted_.value_or(static_cast<std::int64_t>(at_)) + (name == "b" ? -1 : 1));
   else if (name == "speed") {
     if (const double v = argument(); why.empty()) speed_ = std::min(v, kFastest);
   } else if (name == "record") {
-    if (const double v = argument(); why.empty()) setRecord(static_cast<std::int64_t>(std::min(v, 1e9)));
+    if (const double v = argument(); why.empty()) due_ = 0, aim(static_cast<std::int64_t>(std::min(v, 1e9)));
   } else {
     return false;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "frame_source.h"
 #include "log_file.h"
@@ -31,12 +32,15 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
   std::string file() const { return path_; }
   /// Opens it. Throws Error when it cannot be played.
   void setFile(std::string path);
-  std::int64_t record() const { return static_cast<std::int64_t>(at_); }
+  std::int64_t record() const { return wanted_.value_or(static_cast<std::int64_t>(at_)); }
   std::int64_t records() const { return log_ ? static_cast<std::int64_t>(log_->size()) : 0; }
   /// Shows a record; one beyond the end is the last.
   void setRecord(std::int64_t record);
-  /// One record on or back; false at the end.
-  bool step(bool back);
+  void aim(std::int64_t record);
+  void goWhereAimed();
+  bool advance(std::size_t records);
+  /// One record on; false at the end.
+  bool step();
   void goTo(std::size_t target);
   void take(std::size_t record);
 
@@ -47,6 +51,7 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
   std::unique_ptr<LogFile> log_;
   RecordedScene scene_{*this};
   std::size_t at_ = 0;
+  std::optional<std::int64_t> wanted_;  ///< where commands want to be with the next frame
   double due_ = 0;        ///< part of a record that has passed
   double lastTime_ = 0;
   bool started_ = false;  ///< a monitor came

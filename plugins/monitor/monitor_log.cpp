@@ -18,6 +18,7 @@ void MonitorLog::describe(Description<MonitorLog>& d) {
 }
 
 void MonitorLog::event(const Element& event) {
+  if (failed_) return;
   if (view_)
     view_->addEvent(event);
   else

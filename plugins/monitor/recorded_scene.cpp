@@ -1,10 +1,15 @@
 #include "recorded_scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace spark {
 
 namespace {
+
+// What no monitor sends more of; the rest of such a record is left out.
+constexpr std::size_t kMostText = 512, kMostMaterials = 64, kMostEntries = 256;
 
 /// A match of 22 robots has some 15,000 tokens.
 constexpr ReadLimits kLimits{64, 1u << 18};
@@ -19,15 +24,18 @@ bool isPlain(std::string_view text) {
 /// All atoms behind a list's head, with blanks between them.
 std::string restOf(const Element& list) {
   std::string out;
-  for (std::size_t i = 1; i < list.size(); ++i) out.append(i > 1 ? " " : "").append(list.at(i).text());
+  bool head = true;
+  for (const Element e : list) {
+    if (!std::exchange(head, false) && out.size() + e.text().size() < kMostText) out.append(out.empty() ? "" : " ").append(e.text());
+  }
   return out;
 }
 
-/// The first `count` numbers behind a list's head; what is missing stays.
+/// The first `count` numbers behind a list's head; what is missing or no finite number stays.
 void readNumbers(const Element& list, float* out, int count) {
   int i = -1;
   for (const Element e : list) {
-    if (i >= 0 && i < count) out[i] = static_cast<float>(e.number());
+    if (const auto v = static_cast<float>(e.number()); i >= 0 && i < count && std::isfinite(v)) out[i] = v;
     ++i;
   }
 }
@@ -138,7 +146,10 @@ std::string RecordedScene::readNode(const Element& element, int depth) {
     if (head == "setSpecular") visual->colors[2] = readColor(e);
     if (head != "resetMaterials") continue;
     visual->names.clear();
-    for (std::size_t i = 1; i < e.size(); ++i) visual->names.emplace_back(e.at(i).text());
+    bool first = true;
+    for (const Element name : e) {
+      if (!std::exchange(first, false) && visual->names.size() < kMostMaterials) visual->names.emplace_back(name.text().substr(0, kMostText));
+    }
   }
   if (visual && node.kind != FrameNode::Kind::light && visual->mesh.empty()) return "expected a mesh's name (load ...), found none";
   newNodes_.push_back(node);
@@ -182,6 +193,7 @@ void RecordedScene::readEnvironment(const Element& list, bool full) {
       continue;
     }
     auto at = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) { return known.name == e.head(); });
+    if (at == entries_.end() && entries_.size() >= kMostEntries) continue;
     if (at == entries_.end()) at = entries_.insert(at, Entry{std::string(e.head()), {}, false});
     at->value.clear();
     at->value.append(e);

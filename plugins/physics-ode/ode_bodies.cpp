@@ -1,4 +1,5 @@
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 #include "ode_engine.h"
 
@@ -79,8 +80,27 @@ void OdeEngine::setPosition(Body body, const Vec3& wanted) {
   std::copy(p.data(), p.data() + 3, b.good.position);
 }
 
-void OdeEngine::setRotation(Body body, const Mat3& r) {
-  if (!sane(r.data(), 9) || std::abs(r.determinant()) < 1e-6) return;
+namespace {
+
+/// Rounding of single precision stays below; what is worse is made right-angled before it grows: who turns a robot by what its own rotation
+/// says, again and again within one step, doubles the error each time.
+constexpr double kRightAngled = 1e-5;
+
+/// The rotation nearest to `m` by its first two rows.
+Mat3 rightAngled(const Mat3& m) {
+  if ((m * m.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() <= kRightAngled) return m;
+  Mat3 out;
+  out.row(0) = m.row(0).normalized();
+  out.row(1) = (m.row(1) - m.row(1).dot(out.row(0)) * out.row(0)).normalized();
+  out.row(2) = out.row(0).cross(out.row(1));
+  return out;
+}
+
+}  // namespace
+
+void OdeEngine::setRotation(Body body, const Mat3& wanted) {
+  if (!sane(wanted.data(), 9) || std::abs(wanted.determinant()) < 1e-6) return;
+  const Mat3 r = rightAngled(wanted);
   BodyData& b = *data(body);
   dMatrix3 m;
   toOde(crossing(*b.world, r), m);

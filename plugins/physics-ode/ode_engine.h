@@ -149,11 +149,12 @@ inline void toOde(const Mat3& m, dReal* r) {
     r[4 * row + 3] = 0;
   }
 }
-/// Finite and within reach of the broad phase: farther than 1e9 (m, m/s, rad/s) is nowhere.
+/// Finite and within reach of the broad phase: farther than 1e8 (m, m/s, rad/s) is nowhere: ODE ends the process
+/// when a hash space meets coordinates that do not fit its cells.
 inline bool sane(const dReal* v, int n) {
   dReal most = 0;
   for (int i = 0; i < n; ++i) most += std::abs(v[i]);
-  return most < 1e9;
+  return most < 1e8;
 }
 inline bool sane(const Vec3& v) { return sane(v.data(), 3); }
 inline Pose compose(const Pose& outer, const Pose& inner) {

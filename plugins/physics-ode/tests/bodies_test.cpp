@@ -1,5 +1,7 @@
 #include "engine_fixture.h"
 
+#include <Eigen/Geometry>
+
 using namespace spark;
 using namespace spark::test;
 using engine::Body;
@@ -125,4 +127,44 @@ TEST_CASE("the plugin stays while an engine lives, and goes afterwards") {
   engine.parent()->remove(engine);
   house.kernel.plugins().unload("physics-ode");
   CHECK(house.kernel.findClass("OdeEngine") == nullptr);
+}
+
+TEST_CASE("a body that is turned by its own rotation again and again keeps right angles") {
+  EngineHouse house;
+  house.setGravity(0);
+  const Body b = house.body({0, 0, 0});
+  Mat3 tilted = Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  tilted(1, 2) += 1e-7;  // as single precision leaves it
+  house.ode.setRotation(b, tilted);
+  for (int i = 0; i < 300; ++i) {
+    const Mat3 r = house.ode.state(b).rotation;
+    house.ode.setRotation(b, tilted * r.transpose() * r);
+  }
+  const Mat3 r = house.ode.state(b).rotation;
+  CHECK((r * r.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-4);
+  CHECK((r - tilted).cwiseAbs().maxCoeff() < 1e-3);
+}
+
+TEST_CASE("a body that flies away is put back before the space's cells end") {
+  for (const bool exact : {false, true}) {
+    CAPTURE(exact);
+    EngineHouse house;
+    setProperty(*house.kernel.root().find("/sys/server/physics/engine"), "exactReplay", exact);
+    const engine::World world = house.ode.createWorld();
+    const engine::Space space = house.ode.createSpace(world, engine::Space::none);
+    for (int i = 0; i < 2; ++i) {
+      const Body b = house.ode.createBody(world);
+      const engine::Geom g = house.ode.createGeom(space, round(engine::Shape::sphere, 0.01), nullptr);
+      house.ode.setBody(g, b, {});
+      house.ode.setPosition(b, {1.0 * i, 0, 0});
+      house.ode.setLinearVelocity(b, {9e7, 0, 0});
+    }
+    for (int i = 0; i < 200; ++i) {
+      house.contacts.clear();
+      house.ode.detect(world, nullptr, 4, house.contacts);
+      house.ode.step(world, house.contacts, 0.02);
+    }
+    CHECK(house.ode.state(house.ode.createBody(world)).position.isZero(0));  // it still lives
+    house.ode.destroyWorld(world);
+  }
 }
