@@ -168,3 +168,27 @@ TEST_CASE("a body that flies away is put back before the space's cells end") {
     house.ode.destroyWorld(world);
   }
 }
+
+TEST_CASE("exact replay rounds every component of what crosses the engine, and nothing else does") {
+  const Vec3 v(0.1, 0.2, 0.3), rounded = v.cast<float>().eval().cast<double>();
+  REQUIRE(rounded != v);
+  for (const bool exact : {false, true}) {
+    CAPTURE(exact);
+    EngineHouse house;
+    setProperty(*house.kernel.root().find("/sys/server/physics/engine"), "exactReplay", exact);
+    const engine::World world = house.ode.createWorld();
+    const Body b = house.ode.createBody(world);
+    house.ode.addForce(b, v);
+    house.ode.addTorque(b, v);
+    const Vec3& wanted = exact ? rounded : v;
+    for (int i = 0; i < 3; ++i) {
+      CHECK(house.ode.force(b)[i] == wanted[i]);
+      CHECK(house.ode.torque(b)[i] == wanted[i]);
+    }
+    const engine::Joint hinge = house.ode.createJoint(world, engine::JointType::hinge);
+    house.ode.attach(hinge, b, Body::none);
+    house.ode.setAnchor(hinge, v);  // the body stands at 0: the anchor comes back as it was taken
+    for (int i = 0; i < 3; ++i) CHECK(house.ode.anchor(hinge)[i] == wanted[i]);
+    house.ode.destroyWorld(world);
+  }
+}
