@@ -43,10 +43,10 @@ const engine::Surface* surfaceOf(const Collider& c) {
 ode::WorldData& worldOf(Kernel& kernel) { return *ode::data(kernel.root().require<IPhysicsServer>("/sys/server/physics").world()); }
 
 dBodyID bodyOf(const IRigidBody& body, const ode::WorldData& w) {
-  // Bodies do not tell their ids; no two stand at the same place.
+  // Bodies do not tell their ids; no two stand at the same place, and numbers cross the engine's interface in single precision at least.
   const Vec3 p = body.state().position;
   for (const auto& b : w.bodies)
-    if (const dReal* q = dBodyGetPosition(b->id); q[0] == p.x() && q[1] == p.y() && q[2] == p.z()) return b->id;
+    if (const dReal* q = dBodyGetPosition(b->id); (Vec3(q[0], q[1], q[2]) - p).cwiseAbs().maxCoeff() <= 4e-6) return b->id;
   throw Error("a body of the house is not in the engine");
 }
 }  // namespace
@@ -119,7 +119,7 @@ void RawWorld::takeMotors(House& house) {
       IJoint* joint = e->parent()->as<IJoint>();
       if (!joint) continue;
       // The engine's joint is the one in which a number that nobody else has turns up.
-      constexpr double kMark = 0.12345678;
+      constexpr double kMark = 0.123046875;  // the same in single precision
       const double before = joint->parameter(engine::JointParameter::velocity, 0);
       joint->setParameter(engine::JointParameter::velocity, 0, kMark);
       for (const auto& j : w.joints) {
