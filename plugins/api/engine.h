@@ -48,7 +48,8 @@ enum class JointParameter { lowStop, highStop, velocity, maxForce, fudgeFactor, 
 /// Contact surface after combination (scene-language section 3.3). A flag says that the value counts.
 struct Surface {
   bool bounceOn = false, softErpOn = false, softCfmOn = false, slipOn = false;
-  double mu = HUGE_VAL;            ///< friction coefficient, infinite by default
+  bool pyramid = false;            ///< mu is a coefficient: friction is bounded by mu times the normal force that acts without friction
+  double mu = HUGE_VAL;            ///< bound of friction along each tangent [N], or its coefficient; infinite by default
   double bounce = 0, bounceVelocity = 0;  ///< restitution 0..1; least speed [m/s]
   double softErp = 0, softCfm = 0, slip1 = 0, slip2 = 0;
 };

@@ -44,8 +44,11 @@ struct SolverJoint {
   JointType type = JointType::hinge;
   SolverBody* a = nullptr;
   SolverBody* b = nullptr;
-  Vec3 anchorA = Vec3::Zero(), anchorB = Vec3::Zero();  ///< in a, in b. fixed and slider: anchorA is where b's centre is in a (the world's place of a without b)
-  std::array<Vec3, 3> axisA, axisB;  ///< in a, in b. Hinge and slider: [0] of both. Universal and hinge2: axisA[0] in a, axisB[1] in b. Angular motor: axisA[i] in what `frame[i]` says
+  bool reversed = false;  ///< was given only a second body, which stands first here: a slider without b and an Euler motor count the other way round
+  /// The points that meet, in a and in b. fixed: b's centre as it was set in a, and 0; without b 0 and a's place. slider: anchorB alone
+  /// counts: a's centre as it was set in b, or a's place without b.
+  Vec3 anchorA = Vec3::Zero(), anchorB = Vec3::Zero();
+  std::array<Vec3, 3> axisA, axisB;  ///< in a, in b. Hinge and slider: [0] of both. Universal and hinge2: axisA[0] in a, axisB[1] in b. Angular motor: axisA[i] in what `frame[i]` says (Euler: [0] and [2] in the body to which they belong)
   std::array<double, 4> relativeA{1, 0, 0, 0}, relativeB{1, 0, 0, 0};  ///< rotations between the bodies when the joint was set (w x y z); universal has one for each axis
   Vec3 v1 = Vec3::Zero(), v2 = Vec3::Zero(), w1 = Vec3::Zero(), w2 = Vec3::Zero();  ///< hinge2: reference directions for its angles
   double c0 = 0, s0 = 0;                          ///< hinge2: cosine and sine between its axes
@@ -78,7 +81,7 @@ struct SolverStep {
   WorldParameters parameters;
   double dt = 0;                         ///< s
   std::uint64_t structure = 0;           ///< another number when bodies or joints came, went or were attached anew
-  int mostRows = 0;                      ///< islands with more constraint rows than this may be left to the engine
+  int mostRows = 0;                      ///< islands with more rows between bodies that no tree of joints holds together (contacts, loops) may be left to the engine
 };
 
 /// Steps worlds. Used by one thread at a time; may use the kernel's jobs; the result does not depend on how many threads these have.

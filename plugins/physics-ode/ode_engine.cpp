@@ -84,7 +84,7 @@ namespace {
 
 void setSurface(dSurfaceParameters& to, const engine::Surface& s, const WorldData& w) {
   to.mode = (s.bounceOn ? dContactBounce : 0) | (s.softErpOn ? dContactSoftERP : 0) | (s.softCfmOn ? dContactSoftCFM : 0) |
-            (s.slipOn ? dContactSlip1 | dContactSlip2 : 0);
+            (s.slipOn ? dContactSlip1 | dContactSlip2 : 0) | (s.pyramid ? dContactApprox1 : 0);
   to.mu = crossing(w, s.mu);
   to.bounce = crossing(w, s.bounce);
   to.bounce_vel = crossing(w, s.bounceVelocity);
