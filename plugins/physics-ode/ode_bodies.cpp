@@ -25,6 +25,7 @@ Body OdeEngine::createBody(engine::World world) {
   w.bodies.push_back(std::move(b));
   w.repaired.reserve(w.bodies.size());
   w.sleepers.reserve(w.bodies.size());
+  w.toVisit.reserve(w.bodies.size());
   return handle;
 }
 

@@ -17,9 +17,8 @@ World OdeEngine::createWorld() {
   const Listening listening(said_);
   auto w = std::make_unique<WorldData>();
   w->id = dWorldCreate();
-  // ODE's default is one for the whole process: worlds of several threads would meet in it.
-  w->threading = dThreadingAllocateSelfThreadedImplementation();
-  dWorldSetStepThreadingImplementation(w->id, dThreadingImplementationGetFunctions(w->threading), w->threading);
+  w->threads = std::make_unique<IslandThreads>(kernel().jobs());
+  w->threads->serve(w->id);
   w->root = dHashSpaceCreate(nullptr);
   dSpaceSetCleanup(w->root, 0);
   w->contactJoints = dJointGroupCreate(0);
@@ -42,7 +41,6 @@ void OdeEngine::destroyWorld(World world) {
   dSpaceDestroy(w.root);
   dWorldSetStepThreadingImplementation(w.id, nullptr, nullptr);
   dWorldDestroy(w.id);
-  dThreadingFreeImplementation(w.threading);
   forget(worlds_, &w);
 }
 

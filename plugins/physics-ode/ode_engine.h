@@ -23,6 +23,7 @@
 
 #include "api/engine.h"
 #include "ode_process.h"
+#include "ode_threads.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
 
@@ -47,6 +48,7 @@ struct BodyData {
   int stepsLeft;                ///< idle steps until it sleeps
   double timeLeft = 0;          ///< idle time until it sleeps [s]
   GoodPose good;
+  std::uint64_t foundAt = 0;   ///< number of the step in which it was last found to be part of an awake island
   BodyData* island = nullptr;  ///< while islands are counted: the next body towards the island's first
   int rows = 0;                ///< at an island's first body: constraint rows of the island
 };
@@ -92,7 +94,7 @@ struct Pair {
 
 struct WorldData {
   dWorldID id;
-  dThreadingImplementationID threading;  ///< its own, run by the thread that steps
+  std::unique_ptr<IslandThreads> threads;
   dSpaceID root;
   dJointGroupID contactJoints;
   bool autoDisable = true;
@@ -108,6 +110,7 @@ struct WorldData {
   std::vector<engine::Body> repaired;
   int unitingRows = 0, mostStaticRows = 0;  ///< this step's rows of contacts between bodies; most with the static world on one body
   std::vector<BodyData*> sleepers;          ///< bodies kept out of a solver's run
+  std::vector<BodyData*> toVisit;           ///< while an island is walked through
 };
 
 /// Constraint rows that a contact and a joint add at most.
@@ -267,6 +270,8 @@ class OdeEngine : public Leaf, public engine::IEngine {
   void repair(ode::WorldData& w);
   /// Steps the world, islands that are too large for the direct solver by the iterative one.
   void solve(ode::WorldData& w, const engine::Contacts& contacts, double dt);
+  /// dWorldStep, the islands in the kernel's threads.
+  void solveDirectly(ode::WorldData& w, double dt);
   /// Logs what ODE said since the last call: the first time, the second, the fourth ...
   void report();
 

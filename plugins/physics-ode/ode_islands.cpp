@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "ode_engine.h"
 
 // An island is what joints and solved contacts hold together; the static world holds nothing together. When all constraints of a world
@@ -57,7 +59,46 @@ void wake(WorldData& w) {
   for (BodyData* b : w.sleepers) dBodyEnable(b->id);
 }
 
+/// Adds what hangs on a body and was not found in this step.
+void visitNeighbours(WorldData& w, const BodyData& b) {
+  for (int i = 0; const dJointID joint = dBodyGetJoint(b.id, i); ++i)
+    for (int side = 0; side < 2; ++side) {
+      const dBodyID other = dJointGetBody(joint, side);
+      auto* found = other ? static_cast<BodyData*>(dBodyGetData(other)) : nullptr;
+      if (!found || found->foundAt == w.steps) continue;
+      found->foundAt = w.steps;
+      w.toVisit.push_back(found);
+    }
+}
+
+/// Says that the geoms of all bodies that dWorldStep is going to move have moved, in the order in which it moves them in one thread: a geom
+/// that is known to have moved stays where it is in its space. Islands are walked through as ODE does it, the youngest body first.
+void moveGeomsInOrder(WorldData& w) {
+  for (auto youngest = w.bodies.rbegin(); youngest != w.bodies.rend(); ++youngest) {
+    if ((*youngest)->foundAt == w.steps || !dBodyIsEnabled((*youngest)->id)) continue;
+    (*youngest)->foundAt = w.steps;
+    w.toVisit.assign(1, youngest->get());
+    while (!w.toVisit.empty()) {
+      const BodyData& b = *w.toVisit.back();
+      w.toVisit.pop_back();
+      dBodySetPosition(b.id, b.position[0], b.position[1], b.position[2]);
+      visitNeighbours(w, b);
+    }
+  }
+}
+
+/// Awake bodies that are worth more than one thread.
+constexpr std::ptrdiff_t kWorthThreads = 40;
+
 }  // namespace
+
+void OdeEngine::solveDirectly(WorldData& w, double dt) {
+  const auto awake = std::count_if(w.bodies.begin(), w.bodies.end(), [](const auto& b) { return dBodyIsEnabled(b->id); });
+  w.threads->setParallel(awake >= kWorthThreads);
+  if (w.threads->parallel() && w.exactReplay) moveGeomsInOrder(w);
+  dWorldStep(w.id, dt);
+  w.threads->hear(said_);
+}
 
 void OdeEngine::solve(WorldData& w, const engine::Contacts& contacts, double dt) {
   // An island of n bodies has at least n - 1 constraints between them, which bounds both.
@@ -69,10 +110,7 @@ void OdeEngine::solve(WorldData& w, const engine::Contacts& contacts, double dt)
     for (const auto& b : w.bodies)
       if (dBodyIsEnabled(b->id)) largest = std::max(largest, firstOf(b.get())->rows);
   }
-  if (largest <= directRows_) {
-    dWorldStep(w.id, dt);
-    return;
-  }
+  if (largest <= directRows_) return solveDirectly(w, dt);
   if (++approximateSteps_ == 1)
     kernel().log().info(
         "{}: {} constraint rows hang together, more than the {} that the direct solver is given (directRows): such islands are solved "
@@ -80,13 +118,15 @@ void OdeEngine::solve(WorldData& w, const engine::Contacts& contacts, double dt)
         "Do robots stand in each other?",
         path(), largest, directRows_);
   exclude(w, directRows_, true);
-  dWorldStep(w.id, dt);
+  solveDirectly(w, dt);
   wake(w);
   exclude(w, directRows_, false);
   {
     const std::lock_guard lock(quickMutex());
     dRandSetSeed(1);
+    w.threads->setAlone(true);
     dWorldQuickStep(w.id, dt);
+    w.threads->setAlone(false);
   }
   wake(w);
 }

@@ -42,7 +42,7 @@ void Simulation::describe(Description<Simulation>& d) {
   d.property("duration", &Simulation::duration_).unit("s").min(0).doc("Simulated time after which run() ends; 0: never.");
   d.property("threads", &Simulation::threads, &Simulation::setThreads)
       .range(1, 64)
-      .doc("Host threads for sensing and encoding. Results do not depend on it.");
+      .doc("Host threads for physics, sensing and encoding. Results do not depend on it.");
   d.property("cycle", &Simulation::cycle).doc("Number of the current cycle, from 1; 0 before the first.");
   d.property("time", &Simulation::time).unit("s").doc("Simulated time since the start.");
   d.property("phaseMicros", &Simulation::phaseMicros).doc("Mean wall time per cycle of each phase since resetTimers() [microseconds].");

@@ -1,0 +1,125 @@
+#include "ode_threads.h"
+
+#include <memory>
+
+#include "ode_process.h"
+
+namespace spark::ode {
+
+thread_local IslandThreads::Lane* IslandThreads::current = nullptr;
+
+void IslandThreads::serve(dWorldID world) {
+  dWorldSetStepThreadingImplementation(world, &functions(), reinterpret_cast<dThreadingImplementationID>(this));
+}
+
+void IslandThreads::hear(std::string& text) {
+  for (Lane& lane : lanes_) {
+    if (!lane.said.empty()) text = lane.said;
+    lane.said.clear();
+  }
+}
+
+IslandThreads::Call& IslandThreads::post(Call* then, int* fault, std::size_t waitsFor, dThreadedCallFunction* function, void* context,
+                                         dcallindex_t index) {
+  Lane& lane = current ? *current : outside_;
+  if (lane.free.empty()) lane.free.push_back(&lane.memory.emplace_back());
+  Call& call = *lane.free.back();
+  lane.free.pop_back();
+  call.home = &lane;
+  call.function = function;
+  call.context = context;
+  call.index = index;
+  call.then = then;
+  call.fault = fault;
+  call.waitsFor = static_cast<std::ptrdiff_t>(waitsFor);
+  call.started = false;
+  lane.posted.push_back(&call);
+  return call;
+}
+
+void IslandThreads::runAll() {
+  if (parallel_) runStarts();
+  runPosted(outside_);
+}
+
+void IslandThreads::runStarts() {
+  starts_.clear();
+  for (Call* call : outside_.posted)
+    if (call->waitsFor == 0) starts_.push_back(call);
+  std::erase_if(outside_.posted, [](const Call* call) { return call->waitsFor == 0; });
+  while (lanes_.size() < starts_.size()) lanes_.emplace_back();
+  jobs_.run(starts_.size(), [this](std::size_t i) {
+    Lane& lane = lanes_[i];
+    const Listening listening(lane.said);
+    current = &lane;
+    run(lane, *starts_[i]);
+    runPosted(lane);
+    current = nullptr;
+  });
+  // Who posted a call keeps its memory.
+  outside_.free.insert(outside_.free.end(), starts_.begin(), starts_.end());
+}
+
+void IslandThreads::runPosted(Lane& lane) {
+  while (true) {
+    auto call = lane.posted.end();
+    do {
+      if (call == lane.posted.begin()) return;
+      --call;
+    } while ((*call)->waitsFor != 0);
+    Call& ready = **call;
+    lane.posted.erase(call);
+    run(lane, ready);
+  }
+}
+
+void IslandThreads::run(Lane& lane, Call& call) {
+  call.started = true;
+  call.waitsFor = 1;
+  if (!call.function(call.context, call.index, reinterpret_cast<dCallReleaseeID>(&call))) failed_ = true;
+  done(lane, &call);
+}
+
+void IslandThreads::done(Lane& lane, Call* call) {
+  while (call && call->waitsFor.fetch_sub(1) == 1 && call->started) {
+    if (call->fault) *call->fault = failed_.exchange(false);
+    Call* const then = call->then;
+    if (call->home == &lane) lane.free.push_back(call);
+    call = then;
+  }
+}
+
+const dThreadingFunctionsInfo& IslandThreads::functions() {
+  using Id = dThreadingImplementationID;
+  static const auto mutexes = [](dMutexGroupID group) { return reinterpret_cast<std::mutex*>(group); };
+  static const dThreadingFunctionsInfo info{
+      sizeof(dThreadingFunctionsInfo),
+      [](Id, dmutexindex_t n, const char* const*) { return reinterpret_cast<dMutexGroupID>(new std::mutex[n]); },
+      [](Id, dMutexGroupID group) { delete[] mutexes(group); },
+      [](Id id, dMutexGroupID group, dmutexindex_t i) {
+        if (of(id).parallel_) mutexes(group)[i].lock();
+      },
+      [](Id id, dMutexGroupID group, dmutexindex_t i) {
+        if (of(id).parallel_) mutexes(group)[i].unlock();
+      },
+      // A world waits for one call at a time, and whoever waits runs it: there is nothing to keep.
+      [](Id id) { return reinterpret_cast<dCallWaitID>(id); },
+      [](Id, dCallWaitID) {},
+      [](Id, dCallWaitID) {},
+      [](Id id, int* fault, dCallReleaseeID* out, ddependencycount_t waitsFor, dCallReleaseeID then, dCallWaitID,
+         dThreadedCallFunction* function, void* context, dcallindex_t index, const char*) {
+        Call& call = of(id).post(reinterpret_cast<Call*>(then), fault, waitsFor, function, context, index);
+        if (out) *out = reinterpret_cast<dCallReleaseeID>(&call);
+      },
+      [](Id, dCallReleaseeID call, ddependencychange_t change) { reinterpret_cast<Call*>(call)->waitsFor += change; },
+      [](Id id, int* done, dCallWaitID, const dThreadedWaitTime*, const char*) {
+        of(id).runAll();
+        if (done) *done = 1;
+      },
+      [](Id id) { return of(id).threads(); },
+      [](Id, ddependencycount_t) { return 1; },
+  };
+  return info;
+}
+
+}  // namespace spark::ode

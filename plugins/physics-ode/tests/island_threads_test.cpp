@@ -1,0 +1,136 @@
+#include <Eigen/Geometry>
+
+#include "engine_fixture.h"
+
+using namespace spark;
+using namespace spark::test;
+using engine::Body;
+using engine::Joint;
+using engine::JointParameter;
+using engine::JointType;
+
+namespace {
+
+/// Dolls of a trunk and four motorised limbs of two parts, each in a space of its own, that fall on a ground and on each other; between
+/// them balls, in the space around. All of it is the same each time.
+struct Crowd : EngineHouse {
+  std::vector<Body> bodies;
+  std::vector<Joint> motors;
+  int steps = 0;
+
+  Crowd(bool exactReplay, int threads, int dolls = 22) : Crowd(prepared(exactReplay, threads), dolls) {}
+
+  /// A step with other motor speeds than before.
+  void next() {
+    ++steps;
+    for (std::size_t i = 0; i < motors.size(); ++i)
+      ode.setParameter(motors[i], JointParameter::velocity, 0, 2 * std::sin(0.1 * steps + 0.7 * static_cast<double>(i)));
+    engine::Surface s;
+    s.softErpOn = s.slipOn = true;
+    s.softErp = 0.4;
+    s.slip1 = s.slip2 = 0.005;
+    step(0.02, s);
+  }
+  /// Everything that another step could differ by: bodies, and contacts in their order.
+  std::vector<double> all() const {
+    std::vector<double> out;
+    for (const Body b : bodies) ode.saveBody(b, out);
+    for (const engine::Contact& c : contacts) out.insert(out.end(), {c.position.x(), c.position.y(), c.position.z(), c.depth});
+    return out;
+  }
+
+ private:
+  struct Prepared {
+    bool exactReplay;
+    int threads;
+  };
+  static Prepared prepared(bool exactReplay, int threads) { return {exactReplay, threads}; }
+
+  Crowd(Prepared p, int dolls) {
+    setProperty(dynamic_cast<Leaf&>(ode), "exactReplay", p.exactReplay);
+    ode.destroySpace(space);
+    ode.destroyWorld(world);
+    world = ode.createWorld();
+    space = ode.createSpace(world, engine::Space::none);
+    kernel.jobs().setThreads(p.threads);
+    setGravity(9.81, true);
+    geom(plane(0, 0, 1, 0));
+    for (int i = 0; i < dolls; ++i) addDoll(Vec3(0.9 * (i % 5), 0.7 * (i / 5), 0.8 + 0.11 * (i % 7)));
+    for (int i = 0; i < 6; ++i) geom(round(engine::Shape::sphere, 0.12), add({0.8 * i, 0.3, 0.5}, 0.4));
+  }
+  Body add(const Vec3& at, double mass) {
+    const Body b = body(at);
+    ode.setMass(b, {mass, Vec3::Zero(), Mat3::Identity() * mass * 0.01});
+    bodies.push_back(b);
+    return b;
+  }
+  Body addPart(engine::Space inner, const Vec3& at, const Vec3& edges) {
+    const Body b = add(at, 0.5);
+    ode.setBody(ode.createGeom(inner, box(edges.x(), edges.y(), edges.z()), nullptr), b, {});
+    return b;
+  }
+  void addDoll(const Vec3& at) {
+    const engine::Space inner = ode.createSpace(world, space);
+    const Body trunk = addPart(inner, at, {0.3, 0.2, 0.3});
+    for (int limb = 0; limb < 4; ++limb) {
+      const Vec3 root = at + Vec3(limb % 2 ? 0.2 : -0.2, 0, limb / 2 ? 0.1 : -0.25);
+      Body above = trunk;
+      for (int part = 0; part < 2; ++part) {
+        const Vec3 middle = root - Vec3(0, 0, 0.22 * part);
+        const Body below = addPart(inner, middle, {0.08, 0.08, 0.2});
+        hinge(above, below, middle + Vec3(0, 0, 0.11), part ? Vec3::UnitX() : Vec3::UnitY());
+        above = below;
+      }
+    }
+  }
+  void hinge(Body above, Body below, const Vec3& anchor, const Vec3& axis) {
+    const Joint j = ode.createJoint(world, JointType::hinge);
+    ode.attach(j, above, below);
+    ode.setAnchor(j, anchor);
+    ode.setAxis(j, 0, axis, 0);
+    ode.setParameter(j, JointParameter::lowStop, 0, -1);
+    ode.setParameter(j, JointParameter::highStop, 0, 1);
+    ode.setParameter(j, JointParameter::maxForce, 0, 8);
+    motors.push_back(j);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("islands in several threads move as in one, bit for bit, with the same contacts in the same order") {
+  const bool exactReplay = GENERATE(true, false);
+  Crowd one(exactReplay, 1), two(exactReplay, 2), four(exactReplay, 4);
+  std::size_t mostContacts = 0;
+  for (int i = 0; i < 150; ++i) {
+    one.next();
+    two.next();
+    four.next();
+    REQUIRE(one.all() == two.all());
+    REQUIRE(one.all() == four.all());
+    mostContacts = std::max(mostContacts, one.contacts.size());
+  }
+  CHECK(mostContacts > 60);
+}
+
+TEST_CASE("the number of threads may change while a world runs") {
+  Crowd one(true, 1), changing(true, 1);
+  for (const int threads : {1, 3, 2, 1, 2}) {
+    changing.kernel.jobs().setThreads(threads);
+    for (int i = 0; i < 10; ++i) {
+      one.next();
+      changing.next();
+    }
+    REQUIRE(one.all() == changing.all());
+  }
+}
+
+TEST_CASE("knots are solved as in one thread, whatever the others do") {
+  Crowd one(true, 1), two(true, 2);
+  for (Crowd* c : {&one, &two}) setProperty(dynamic_cast<Leaf&>(c->ode), "directRows", 60);
+  for (int i = 0; i < 60; ++i) {
+    one.next();
+    two.next();
+  }
+  CHECK(getProperty(dynamic_cast<Leaf&>(one.ode), "approximateSteps").toInteger() > 0);
+  CHECK(one.all() == two.all());
+}
