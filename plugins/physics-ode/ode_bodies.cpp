@@ -1,5 +1,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "ode_engine.h"
 
@@ -12,11 +13,14 @@ Body OdeEngine::createBody(engine::World world) {
   WorldData& w = *data(world);
   auto b = std::make_unique<BodyData>();
   b->id = dBodyCreate(w.id);
-  b->position = dBodyGetPosition(b->id);
-  b->quaternion = dBodyGetQuaternion(b->id);
-  b->rotation = dBodyGetRotation(b->id);
-  b->velocity = dBodyGetLinearVel(b->id);
-  b->spin = dBodyGetAngularVel(b->id);
+  b->position = const_cast<dReal*>(dBodyGetPosition(b->id));
+  b->quaternion = const_cast<dReal*>(dBodyGetQuaternion(b->id));
+  b->rotation = const_cast<dReal*>(dBodyGetRotation(b->id));
+  b->velocity = const_cast<dReal*>(dBodyGetLinearVel(b->id));
+  b->spin = const_cast<dReal*>(dBodyGetAngularVel(b->id));
+  b->force = const_cast<dReal*>(dBodyGetForce(b->id));
+  b->torque = const_cast<dReal*>(dBodyGetTorque(b->id));
+  b->left = !solver_;
   b->world = &w;
   b->stepsLeft = kIdleSteps;
   b->good = {{0, 0, 0}, {1, 0, 0, 0}};
@@ -26,6 +30,8 @@ Body OdeEngine::createBody(engine::World world) {
   w.repaired.reserve(w.bodies.size());
   w.sleepers.reserve(w.bodies.size());
   w.toVisit.reserve(w.bodies.size());
+  w.solved.reserve(w.bodies.size());
+  w.structure = ++structures_;
   return handle;
 }
 
@@ -41,10 +47,11 @@ void OdeEngine::destroyBody(Body body) {
   for (const auto& j : w.joints) {
     if (j->a != b && j->b != b) continue;
     dJointAttach(j->id, nullptr, nullptr);
-    if (j->a && j->a != b) --j->a->joints;
-    if (j->b && j->b != b) --j->b->joints;
+    if (j->a && j->a != b) --data(j->a)->joints;
+    if (j->b && j->b != b) --data(j->b)->joints;
     j->a = j->b = nullptr;
   }
+  w.structure = ++structures_;
   dBodyDestroy(b->id);
   forget(w.bodies, b);
 }
@@ -60,7 +67,11 @@ void OdeEngine::setMass(Body body, const engine::Mass& mass) {
   dMassSetZero(&m);
   m.mass = mass.mass;
   toOde(mass.inertia, m.I);
-  dBodySetMass(data(body)->id, &m);
+  BodyData& b = *data(body);
+  dBodySetMass(b.id, &m);
+  b.mass = mass.mass;
+  b.inertia = mass.inertia;
+  b.inverseInertia = mass.inertia.inverse();
 }
 
 engine::BodyState OdeEngine::state(Body body) const {
@@ -150,14 +161,19 @@ void OdeEngine::setTorque(Body body, const Vec3& t) {
 
 void OdeEngine::setEnabled(Body body, bool on) {
   BodyData& b = *data(body);
-  if (!on) return dBodyDisable(b.id);
-  dBodyEnable(b.id);
+  setAwake(b, on);
+  if (!on) return;
   b.stepsLeft = kIdleSteps;
   b.timeLeft = 0;
 }
 
-bool OdeEngine::enabled(Body body) const { return dBodyIsEnabled(data(body)->id) != 0; }
-void OdeEngine::setGravityMode(Body body, bool on) { dBodySetGravityMode(data(body)->id, on); }
+bool OdeEngine::enabled(Body body) const { return data(body)->awake; }
+
+void OdeEngine::setGravityMode(Body body, bool on) {
+  BodyData& b = *data(body);
+  dBodySetGravityMode(b.id, on);
+  b.gravity = on;
+}
 
 // Position, quaternion, rotation, velocities, accumulated force and torque, then what decides about sleep and gravity.
 constexpr std::size_t kSaved = 3 + 4 + 12 + 3 + 3 + 3 + 3 + 4;
@@ -172,7 +188,7 @@ void OdeEngine::saveBody(Body body, std::vector<double>& out) const {
   put(dBodyGetAngularVel(b.id), 3);
   put(dBodyGetForce(b.id), 3);
   put(dBodyGetTorque(b.id), 3);
-  const double rest[] = {double(dBodyIsEnabled(b.id)), double(dBodyGetGravityMode(b.id)), double(b.stepsLeft), b.timeLeft};
+  const double rest[] = {double(b.awake), double(b.gravity), double(b.stepsLeft), b.timeLeft};
   put(rest, 4);
 }
 
@@ -189,11 +205,8 @@ void OdeEngine::loadBody(Body body, std::span<const double> in) {
   dBodySetAngularVel(b.id, p[22], p[23], p[24]);
   dBodySetForce(b.id, p[25], p[26], p[27]);
   dBodySetTorque(b.id, p[28], p[29], p[30]);
-  if (p[31] != 0)
-    dBodyEnable(b.id);
-  else
-    dBodyDisable(b.id);
-  dBodySetGravityMode(b.id, p[32] != 0);
+  setAwake(b, p[31] != 0);
+  OdeEngine::setGravityMode(body, p[32] != 0);
   b.stepsLeft = static_cast<int>(p[33]);
   b.timeLeft = p[34];
   std::copy(p, p + 3, b.good.position);

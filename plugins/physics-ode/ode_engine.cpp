@@ -32,6 +32,7 @@ World OdeEngine::createWorld() {
 void OdeEngine::destroyWorld(World world) {
   const Listening listening(said_);
   WorldData& w = *data(world);
+  if (auto* solver = childOf<engine::ISolver>()) solver->forget(world);
   dJointGroupDestroy(w.contactJoints);
   while (!w.joints.empty()) destroyJoint(engine::Joint{reinterpret_cast<std::uintptr_t>(w.joints.back().get())});
   while (!w.geoms.empty()) destroyGeom(engine::Geom{reinterpret_cast<std::uintptr_t>(w.geoms.back().get())});
@@ -53,7 +54,8 @@ void OdeEngine::setWorldParameters(World world, const engine::WorldParameters& p
   dWorldSetCFM(w.id, crossing(w, p.cfm));
   dWorldSetContactSurfaceLayer(w.id, crossing(w, p.contactSurfaceLayer));
   dWorldSetAutoDisableFlag(w.id, 0);
-  w.autoDisable = p.autoDisable;
+  w.parameters = {gravity, p.erp, crossing(w, p.cfm), p.autoDisable, crossing(w, p.contactSurfaceLayer)};
+  for (const auto& j : w.joints) frames::worldChanged(*j);
 }
 
 Space OdeEngine::createSpace(World world, Space parent) {
@@ -102,25 +104,50 @@ void touch(WorldData& w, BodyData& b, int rows) {
 
 }  // namespace
 
-void OdeEngine::addContactJoints(WorldData& w, engine::Contacts& contacts) {
-  dContact contact{};
+void OdeEngine::pairUp(WorldData& w, const engine::Contacts& contacts) {
+  w.contactPairs.clear();
   w.unitingRows = w.mostStaticRows = 0;
   for (const engine::Contact& c : contacts) {
+    engine::SolverPair& pair = w.contactPairs.emplace_back();
     if (!c.solve) continue;
-    const GeomData& a = *data(c.geomA);
-    const GeomData& b = *data(c.geomB);
-    if (!a.body && !b.body) continue;
-    setSurface(contact.surface, c.surface, w);
-    for (int i = 0; i < 3; ++i) contact.geom.pos[i] = c.position[i], contact.geom.normal[i] = c.normal[i];
-    contact.geom.depth = c.depth;
-    contact.geom.g1 = a.id;
-    contact.geom.g2 = b.id;
-    const dJointID joint = dJointCreateContact(w.id, w.contactJoints, &contact);
-    dJointAttach(joint, a.body ? a.body->id : nullptr, b.body ? b.body->id : nullptr);
-    const bool both = a.body && b.body;
+    BodyData* a = data(c.geomA)->body;
+    BodyData* b = data(c.geomB)->body;
+    pair.reversed = !a;
+    pair.a = a ? a : b;
+    pair.b = a ? b : nullptr;
+    const bool both = a && b;
     if (both) w.unitingRows += kContactRows;
-    if (a.body) touch(w, *a.body, both ? 0 : kContactRows);
-    if (b.body) touch(w, *b.body, both ? 0 : kContactRows);
+    if (a) touch(w, *a, both ? 0 : kContactRows);
+    if (b) touch(w, *b, both ? 0 : kContactRows);
+  }
+}
+
+namespace {
+
+bool isLeft(const engine::SolverPair& pair) { return pair.a && (pair.a->left || (pair.b && pair.b->left)); }
+
+}  // namespace
+
+void OdeEngine::addContactJoints(WorldData& w, const engine::Contacts& contacts) {
+  w.feedback.clear();
+  // ODE keeps pointers into it: it must not grow below.
+  if (w.feedback.capacity() < contacts.size()) w.feedback.reserve(contacts.size() * 2);
+  dContact contact{};
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const engine::SolverPair& pair = w.contactPairs[i];
+    if (!isLeft(pair)) continue;
+    const engine::Contact& c = contacts[i];
+    setSurface(contact.surface, c.surface, w);
+    for (int k = 0; k < 3; ++k) contact.geom.pos[k] = c.position[k], contact.geom.normal[k] = c.normal[k];
+    contact.geom.depth = c.depth;
+    contact.geom.g1 = data(c.geomA)->id;
+    contact.geom.g2 = data(c.geomB)->id;
+    const dJointID joint = dJointCreateContact(w.id, w.contactJoints, &contact);
+    const dBodyID a = data(pair.a)->id;
+    if (pair.reversed)
+      dJointAttach(joint, nullptr, a);
+    else
+      dJointAttach(joint, a, pair.b ? data(pair.b)->id : nullptr);
     if (c.feedback) {
       w.feedback.push_back({});
       dJointSetFeedback(joint, &w.feedback.back());
@@ -131,20 +158,32 @@ void OdeEngine::addContactJoints(WorldData& w, engine::Contacts& contacts) {
 void OdeEngine::readFeedback(WorldData& w, engine::Contacts& contacts) {
   if (w.feedback.empty()) return;
   std::size_t next = 0;
-  for (engine::Contact& c : contacts) {
-    const BodyData* a = data(c.geomA)->body;
-    if (!c.solve || !c.feedback || (!a && !data(c.geomB)->body)) continue;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    engine::Contact& c = contacts[i];
+    const engine::SolverPair& pair = w.contactPairs[i];
+    if (!c.feedback || !isLeft(pair)) continue;
     const Vec3 onFirst = toVec(w.feedback[next++].f1);
     // A joint whose first body is the world is turned round by ODE.
-    c.forceOnA = a ? onFirst : Vec3(-onFirst);
+    c.forceOnA = pair.reversed ? Vec3(-onFirst) : onFirst;
   }
+}
+
+void OdeEngine::stepByOde(WorldData& w, engine::Contacts& contacts, double dt) {
+  addContactJoints(w, contacts);
+  // Islands do not touch each other: nothing wakes what had its step.
+  for (BodyData* b : w.solved) dBodyDisable(b->id);
+  solve(w, dt);
+  for (BodyData* b : w.solved) dBodyEnable(b->id);
+  readFeedback(w, contacts);
+  dJointGroupEmpty(w.contactJoints);
+  for (const auto& b : w.bodies) b->awake = dBodyIsEnabled(b->id) != 0;
 }
 
 void OdeEngine::sleep(WorldData& w, double dt) {
   for (const auto& body : w.bodies) {
     BodyData& b = *body;
     // Nothing sleeps in mid-air.
-    if ((b.joints == 0 && b.touchedAt != w.steps) || !dBodyIsEnabled(b.id)) continue;
+    if ((b.joints == 0 && b.touchedAt != w.steps) || !b.awake) continue;
     if (dCalcVectorDot3(b.velocity, b.velocity) > kIdleSpeedSquared || dCalcVectorDot3(b.spin, b.spin) > kIdleSpeedSquared) {
       b.stepsLeft = kIdleSteps;
       b.timeLeft = 0;
@@ -153,7 +192,7 @@ void OdeEngine::sleep(WorldData& w, double dt) {
     --b.stepsLeft;
     b.timeLeft -= dt;
     if (b.stepsLeft > 0 || b.timeLeft > 0) continue;
-    dBodyDisable(b.id);
+    setAwake(b, false);
     dBodySetLinearVel(b.id, 0, 0, 0);
     dBodySetAngularVel(b.id, 0, 0, 0);
   }
@@ -163,7 +202,7 @@ void OdeEngine::repair(WorldData& w) {
   w.repaired.clear();
   for (const auto& body : w.bodies) {
     BodyData& b = *body;
-    if (!dBodyIsEnabled(b.id)) continue;
+    if (!b.awake) continue;
     if (sane(b.position, 3) && sane(b.quaternion, 4) && sane(b.velocity, 3) && sane(b.spin, 3)) {
       std::copy(b.position, b.position + 3, b.good.position);
       std::copy(b.quaternion, b.quaternion + 4, b.good.quaternion);
@@ -181,14 +220,10 @@ void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
   WorldData& w = *data(world);
   const Listening listening(said_);
   ++w.steps;
-  w.feedback.clear();
-  // ODE keeps pointers into it: it must not grow below.
-  if (w.feedback.capacity() < contacts.size()) w.feedback.reserve(contacts.size() * 2);
-  addContactJoints(w, contacts);
-  if (w.autoDisable) sleep(w, dt);
-  solve(w, contacts, crossing(w, dt));
-  readFeedback(w, contacts);
-  dJointGroupEmpty(w.contactJoints);
+  pairUp(w, contacts);
+  if (w.parameters.autoDisable) sleep(w, dt);
+  engine::ISolver* const inPlace = solver();
+  if (!inPlace || stepBySolver(w, *inPlace, contacts, crossing(w, dt)) > 0) stepByOde(w, contacts, crossing(w, dt));
   repair(w);
   if (!said_.empty()) report();
 }

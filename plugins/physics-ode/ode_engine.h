@@ -10,11 +10,14 @@
 ///  - Spaces: each space collides its own geoms once per step, and never twice.
 ///  - Knots: the direct solver's time grows with the cube of an island's constraints, and thirty robots that appear in one place would
 ///    take minutes. Islands of more than `directRows` rows are solved by ODE's iterative solver (see ode_islands.cpp).
+///  - Solver: a child that offers engine::ISolver steps the islands that it knows how to step; ODE keeps bodies, joints and geoms, finds
+///    contacts, and steps the islands that are left, all of them where there is no such child (see ode_solver.cpp).
 ///  - Faults: a body whose state is no number after a step is put back to its last good pose, at rest. Numbers that are no numbers do
 ///    not get in.
 ///
 ///     detect:  sweep and prune -> close pairs -> filters -> sort -> narrow phase -> contacts
-///     step:    contacts -> joints -> auto-disable -> dWorldStep (knots: dWorldQuickStep) -> feedback, faults
+///     step:    contacts -> pairs of bodies -> auto-disable -> solver -> what is left: contact joints, dWorldStep (knots: dWorldQuickStep),
+///              feedback -> faults
 
 #include <ode/ode.h>
 
@@ -22,6 +25,7 @@
 #include <vector>
 
 #include "api/engine.h"
+#include "api/solver.h"
 #include "ode_process.h"
 #include "ode_threads.h"
 #include "spark/describe.h"
@@ -37,13 +41,12 @@ struct GoodPose {
   dReal position[3], quaternion[4];
 };
 
-struct BodyData {
+/// What a solver sees of a body leads into ODE's memory. `awake` is what ODE says, `left` is true where no solver steps.
+struct BodyData : engine::SolverBody {
   dBodyID id;
-  /// Where ODE keeps this body's state; valid as long as the body.
-  const dReal *position, *quaternion, *rotation, *velocity, *spin;
   WorldData* world;
   int joints = 0;               ///< joints attached, contacts not counted
-  std::uint64_t touchedAt = 0;  ///< number of the step in which it last had a contact joint
+  std::uint64_t touchedAt = 0;  ///< number of the step in which it last had a contact
   int staticRows = 0;           ///< rows of its contacts with the static world in that step
   int stepsLeft;                ///< idle steps until it sleeps
   double timeLeft = 0;          ///< idle time until it sleeps [s]
@@ -74,15 +77,12 @@ struct GeomData {
   dTriMeshDataID mesh = nullptr;
 };
 
-struct JointData {
+/// What a solver sees of a joint says the same as ODE's own; see ode_frames.cpp. With `reversed`, `a` is the body that was given second.
+struct JointData : engine::SolverJoint {
   dJointID id;
-  engine::JointType type;
   WorldData* world;
-  BodyData* a = nullptr;
-  BodyData* b = nullptr;
-  bool wantsFeedback = false;
   dJointFeedback feedback{};
-  bool attached() const { return a || b; }
+  bool attached() const { return a != nullptr; }
 };
 
 /// Two geoms whose bounds overlap.
@@ -97,8 +97,8 @@ struct WorldData {
   std::unique_ptr<IslandThreads> threads;
   dSpaceID root;
   dJointGroupID contactJoints;
-  bool autoDisable = true;
-  bool exactReplay = false;  ///< as the engine said when the world was made
+  engine::WorldParameters parameters;  ///< as ODE was told
+  bool exactReplay = false;            ///< as the engine said when the world was made
   std::uint64_t steps = 0, nextAge = 1;
   std::vector<std::unique_ptr<BodyData>> bodies;
   std::vector<std::unique_ptr<SpaceData>> spaces;
@@ -106,12 +106,30 @@ struct WorldData {
   std::vector<std::unique_ptr<JointData>> joints;
   engine::PairFilter filter = nullptr;
   std::vector<Pair> pairs;
+  std::vector<engine::SolverPair> contactPairs;  ///< one for each contact of the step
   std::vector<dJointFeedback> feedback;
   std::vector<engine::Body> repaired;
   int unitingRows = 0, mostStaticRows = 0;  ///< this step's rows of contacts between bodies; most with the static world on one body
-  std::vector<BodyData*> sleepers;          ///< bodies kept out of a solver's run
+  std::vector<BodyData*> sleepers;          ///< bodies of islands kept out of a run of one of ODE's solvers
   std::vector<BodyData*> toVisit;           ///< while an island is walked through
+  std::vector<BodyData*> solved;            ///< bodies that are kept out of ODE's step: they had theirs
+  std::uint64_t structure = 0;              ///< another number when bodies or joints came, went or were attached anew
+  std::uint64_t listedAt = 0;               ///< the structure of the lists below
+  std::vector<engine::SolverBody*> solverBodies;
+  std::vector<engine::SolverJoint*> solverJoints;
 };
+
+/// Bring what a solver sees of a joint up to what ODE's own was told in the same moment; numbers as they crossed the engine's interface.
+namespace frames {
+void created(JointData& j);
+void attached(JointData& j);
+void anchored(JointData& j, const Vec3& world);
+void turned(JointData& j, int axis, const Vec3& world, int frame);
+void motorChosen(JointData& j, int axes, bool euler);
+void fixed(JointData& j);
+/// After the world's parameters changed, which some rows of most joints follow.
+void worldChanged(JointData& j);
+}  // namespace frames
 
 /// Constraint rows that a contact and a joint add at most.
 inline constexpr int kContactRows = 3;
@@ -138,6 +156,7 @@ inline SpaceData* data(engine::Space h) { return reinterpret_cast<SpaceData*>(h)
 inline BodyData* data(engine::Body h) { return reinterpret_cast<BodyData*>(h); }
 inline GeomData* data(engine::Geom h) { return reinterpret_cast<GeomData*>(h); }
 inline JointData* data(engine::Joint h) { return reinterpret_cast<JointData*>(h); }
+inline BodyData* data(engine::SolverBody* b) { return static_cast<BodyData*>(b); }
 
 inline Vec3 toVec(const dReal* v) { return {v[0], v[1], v[2]}; }
 /// ODE's rotations are three rows of four.
@@ -169,6 +188,12 @@ inline constexpr dReal kIdleSpeedSquared = 0.01 * 0.01;
 /// Contact points found for one pair at most, whatever is asked for.
 inline constexpr int kMostPerPair = 16;
 
+/// Puts a body to sleep or wakes it, here and in ODE.
+inline void setAwake(BodyData& b, bool on) {
+  on ? dBodyEnable(b.id) : dBodyDisable(b.id);
+  b.awake = on;
+}
+
 /// Removes the element that points to `p`, keeping the others' order.
 template <class T>
 void forget(std::vector<std::unique_ptr<T>>& list, T* p) {
@@ -182,12 +207,12 @@ void forget(std::vector<std::unique_ptr<T>>& list, T* p) {
 }  // namespace ode
 
 /// ODE as engine of the physics server.
-class OdeEngine : public Leaf, public engine::IEngine {
-  SPARK_CLASS(OdeEngine, Leaf)
+class OdeEngine : public Node, public engine::IEngine {
+  SPARK_CLASS(OdeEngine, Node)
  public:
   ~OdeEngine() override;
   static void describe(Description<OdeEngine>& d) {
-    d.doc("Rigid bodies by the Open Dynamics Engine (direct solver).");
+    d.doc("Rigid bodies by the Open Dynamics Engine (direct solver). A child that offers ISolver steps what it can in ODE's stead.");
     d.implements<engine::IEngine>();
     d.property("version", &OdeEngine::version).doc("The library's configuration.");
     d.property("directRows", &OdeEngine::directRows_)
@@ -264,14 +289,22 @@ class OdeEngine : public Leaf, public engine::IEngine {
   std::int64_t approximateSteps() const { return approximateSteps_; }
   void makeShape(ode::GeomData& g);
   void place(ode::GeomData& g);
-  void addContactJoints(ode::WorldData& w, engine::Contacts& contacts);
-  void readFeedback(ode::WorldData& w, engine::Contacts& contacts);
+  /// Finds the bodies of each contact.
+  void pairUp(ode::WorldData& w, const engine::Contacts& contacts);
   void sleep(ode::WorldData& w, double dt);
-  void repair(ode::WorldData& w);
+  /// The child that offers a solver, as of the last change of the tree; nullptr: none, and all bodies are left to ODE.
+  engine::ISolver* solver();
+  /// Steps what the solver knows how to step. Returns how many bodies are left.
+  std::size_t stepBySolver(ode::WorldData& w, engine::ISolver& solver, engine::Contacts& contacts, double dt);
+  /// Steps all bodies that are left.
+  void stepByOde(ode::WorldData& w, engine::Contacts& contacts, double dt);
+  void addContactJoints(ode::WorldData& w, const engine::Contacts& contacts);
+  void readFeedback(ode::WorldData& w, engine::Contacts& contacts);
   /// Steps the world, islands that are too large for the direct solver by the iterative one.
-  void solve(ode::WorldData& w, const engine::Contacts& contacts, double dt);
+  void solve(ode::WorldData& w, double dt);
   /// dWorldStep, the islands in the kernel's threads.
   void solveDirectly(ode::WorldData& w, double dt);
+  void repair(ode::WorldData& w);
   /// Logs what ODE said since the last call: the first time, the second, the fourth ...
   void report();
 
@@ -279,6 +312,9 @@ class OdeEngine : public Leaf, public engine::IEngine {
   std::vector<std::unique_ptr<ode::WorldData>> worlds_;
   std::string said_;
   std::int64_t messages_ = 0, approximateSteps_ = 0;
+  engine::ISolver* solver_ = nullptr;
+  std::uint64_t treeVersion_ = 0;  ///< the tree's structure in which solver_ was found
+  std::uint64_t structures_ = 0;   ///< numbers given to structures of worlds so far
   int directRows_ = 1200;
   bool exactReplay_ = false;
 };

@@ -38,11 +38,10 @@ void unite(BodyData* a, BodyData* b, int rows) {
   a->rows += b->rows;
 }
 
-void findIslands(WorldData& w, const engine::Contacts& contacts) {
+void findIslands(WorldData& w) {
   for (const auto& b : w.bodies) b->island = b.get(), b->rows = 0;
-  for (const auto& j : w.joints) unite(j->a, j->b, rowsOf(j->type));
-  for (const engine::Contact& c : contacts)
-    if (c.solve) unite(data(c.geomA)->body, data(c.geomB)->body, kContactRows);
+  for (const auto& j : w.joints) unite(data(j->a), data(j->b), rowsOf(j->type));
+  for (const engine::SolverPair& p : w.contactPairs) unite(data(p.a), data(p.b), kContactRows);
 }
 
 /// Puts the awake bodies of large (or of all other) islands to sleep; they stand in w.sleepers.
@@ -100,13 +99,13 @@ void OdeEngine::solveDirectly(WorldData& w, double dt) {
   w.threads->hear(said_);
 }
 
-void OdeEngine::solve(WorldData& w, const engine::Contacts& contacts, double dt) {
+void OdeEngine::solve(WorldData& w, double dt) {
   // An island of n bodies has at least n - 1 constraints between them, which bounds both.
   const std::int64_t uniting = w.unitingRows + 6 * static_cast<std::int64_t>(w.joints.size());
   const std::int64_t bound = uniting + (1 + uniting / kContactRows) * w.mostStaticRows;
   int largest = 0;
   if (bound > directRows_) {
-    findIslands(w, contacts);
+    findIslands(w);
     for (const auto& b : w.bodies)
       if (dBodyIsEnabled(b->id)) largest = std::max(largest, firstOf(b.get())->rows);
   }

@@ -32,7 +32,36 @@ int odeParameter(JointParameter p, int axis) {
 }
 static_assert(static_cast<int>(JointParameter::stopErp) == 7 && static_cast<int>(JointParameter::suspensionCfm) == 10);
 
-Vec3 angularVelocity(const BodyData* b) { return b ? toVec(dBodyGetAngularVel(b->id)) : Vec3(Vec3::Zero()); }
+Vec3 angularVelocity(const engine::SolverBody* b) { return b ? toVec(b->spin) : Vec3(Vec3::Zero()); }
+
+/// Where a solver sees a parameter.
+double& told(JointData& j, JointParameter p, int axis) {
+  engine::SolverAxis& a = j.axes[axis];
+  switch (p) {
+    case JointParameter::lowStop:
+      return a.lowStop;
+    case JointParameter::highStop:
+      return a.highStop;
+    case JointParameter::velocity:
+      return a.velocity;
+    case JointParameter::maxForce:
+      return a.maxForce;
+    case JointParameter::fudgeFactor:
+      return a.fudgeFactor;
+    case JointParameter::bounce:
+      return a.bounce;
+    case JointParameter::cfm:
+      return a.cfm;
+    case JointParameter::stopErp:
+      return a.stopErp;
+    case JointParameter::stopCfm:
+      return a.stopCfm;
+    case JointParameter::suspensionErp:
+      return j.suspensionErp;
+    default:
+      return j.suspensionCfm;
+  }
+}
 
 /// The axis of an angular motor, in the world.
 Vec3 motorAxis(const JointData& j, int axis) {
@@ -72,6 +101,8 @@ Joint OdeEngine::createJoint(engine::World world, JointType type) {
       j->id = dJointCreateAMotor(w.id, nullptr);
       break;
   }
+  frames::created(*j);
+  w.structure = ++structures_;
   const Joint handle{reinterpret_cast<std::uintptr_t>(j.get())};
   w.joints.push_back(std::move(j));
   return handle;
@@ -79,8 +110,9 @@ Joint OdeEngine::createJoint(engine::World world, JointType type) {
 
 void OdeEngine::destroyJoint(Joint joint) {
   JointData* j = data(joint);
-  if (j->a) --j->a->joints;
-  if (j->b) --j->b->joints;
+  if (j->a) --data(j->a)->joints;
+  if (j->b) --data(j->b)->joints;
+  j->world->structure = ++structures_;
   dJointDestroy(j->id);
   forget(j->world->joints, j);
 }
@@ -89,13 +121,18 @@ void OdeEngine::attach(Joint joint, engine::Body a, engine::Body b) {
   if (a == b && a != engine::Body::none) throw Error("a joint cannot connect a body with itself: name two bodies, or one and the world");
   const Listening listening(said_);
   JointData& j = *data(joint);
-  if (j.a) --j.a->joints;
-  if (j.b) --j.b->joints;
-  j.a = data(a);
-  j.b = data(b);
-  if (j.a) ++j.a->joints;
-  if (j.b) ++j.b->joints;
-  dJointAttach(j.id, j.a ? j.a->id : nullptr, j.b ? j.b->id : nullptr);
+  if (j.a) --data(j.a)->joints;
+  if (j.b) --data(j.b)->joints;
+  BodyData* const first = data(a);
+  BodyData* const second = data(b);
+  if (first) ++first->joints;
+  if (second) ++second->joints;
+  dJointAttach(j.id, first ? first->id : nullptr, second ? second->id : nullptr);
+  j.reversed = !first && second;
+  j.a = first ? first : second;
+  j.b = first ? second : nullptr;
+  j.world->structure = ++structures_;
+  frames::attached(j);
 }
 
 void OdeEngine::setAnchor(Joint joint, const Vec3& wanted) {
@@ -117,8 +154,9 @@ void OdeEngine::setAnchor(Joint joint, const Vec3& wanted) {
       dJointSetUniversalAnchor(j.id, p.x(), p.y(), p.z());
       break;
     default:
-      break;
+      return;
   }
+  frames::anchored(j, p);
 }
 
 void OdeEngine::setAxis(Joint joint, int axis, const Vec3& wanted, int frame) {
@@ -145,12 +183,14 @@ void OdeEngine::setAxis(Joint joint, int axis, const Vec3& wanted, int frame) {
       dJointSetHinge2Axes(j.id, axis == 0 ? direction : nullptr, axis == 1 ? direction : nullptr);
       break;
     case JointType::angularMotor:
-      if ((frame == 1 && !j.a) || (frame == 2 && !j.b) || frame < 0 || frame > 2) frame = 0;  // the world is that body
-      if (axis < dJointGetAMotorNumAxes(j.id)) dJointSetAMotorAxis(j.id, axis, frame, v.x(), v.y(), v.z());
+      if ((frame == 1 && j.reversed) || (frame == 2 && !j.b && !j.reversed) || frame < 0 || frame > 2) frame = 0;  // the world is that body
+      if (axis >= j.motorAxes) return;
+      dJointSetAMotorAxis(j.id, axis, frame, v.x(), v.y(), v.z());
       break;
     default:
-      break;
+      return;
   }
+  frames::turned(j, axis, v, frame);
 }
 
 void OdeEngine::setAngularMotor(Joint joint, int axes, bool euler) {
@@ -160,17 +200,22 @@ void OdeEngine::setAngularMotor(Joint joint, int axes, bool euler) {
   if (axes < 0 || axes > 3) throw Error("expected 0 to 3 axes of an angular motor, found " + std::to_string(axes));
   dJointSetAMotorMode(j.id, euler ? dAMotorEuler : dAMotorUser);
   if (!euler) dJointSetAMotorNumAxes(j.id, axes);
+  frames::motorChosen(j, axes, euler);
 }
 
 void OdeEngine::setMotorAngle(Joint joint, int axis, double angle) {
   JointData& j = *data(joint);
-  if (j.type == JointType::angularMotor && axis >= 0 && axis < 3 && std::isfinite(angle)) dJointSetAMotorAngle(j.id, axis, angle);
+  if (j.type != JointType::angularMotor || j.euler || axis < 0 || axis >= 3 || !std::isfinite(angle)) return;
+  dJointSetAMotorAngle(j.id, axis, angle);
+  j.angle[axis] = angle;
 }
 
 void OdeEngine::setFixed(Joint joint) {
   const Listening listening(said_);
   JointData& j = *data(joint);
-  if (j.type == JointType::fixed && j.attached()) dJointSetFixed(j.id);
+  if (j.type != JointType::fixed || !j.attached()) return;
+  dJointSetFixed(j.id);
+  frames::fixed(j);
 }
 
 Vec3 OdeEngine::anchor(Joint joint) const {
@@ -241,6 +286,8 @@ void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double wan
       dJointSetAMotorParam(j.id, name, v);
       break;
   }
+  // ODE does not take every number.
+  told(j, p, axis) = OdeEngine::parameter(joint, p, axis);
 }
 
 double OdeEngine::parameter(Joint joint, JointParameter p, int axis) const {
@@ -274,7 +321,7 @@ double OdeEngine::angle(Joint joint, int axis) const {
     case JointType::hinge2:
       return axis == 0 ? dJointGetHinge2Angle1(j.id) : dJointGetHinge2Angle2(j.id);
     default:
-      return axis < dJointGetAMotorNumAxes(j.id) ? dJointGetAMotorAngle(j.id, axis) : 0;
+      return axis < j.motorAxes ? dJointGetAMotorAngle(j.id, axis) : 0;
   }
 }
 
@@ -293,8 +340,9 @@ double OdeEngine::angleRate(Joint joint, int axis) const {
     default:
       break;
   }
-  if (axis >= dJointGetAMotorNumAxes(j.id)) return 0;
-  return motorAxis(j, axis).dot(angularVelocity(j.a) - angularVelocity(j.b));
+  if (axis >= j.motorAxes) return 0;
+  const double rate = motorAxis(j, axis).dot(angularVelocity(j.a) - angularVelocity(j.b));
+  return j.reversed ? -rate : rate;
 }
 
 void OdeEngine::setFeedback(Joint joint, bool on) {
@@ -308,7 +356,7 @@ void OdeEngine::feedback(Joint joint, Vec3& force1, Vec3& torque1, Vec3& force2,
   const JointData& j = *data(joint);
   force1 = toVec(j.feedback.f1), torque1 = toVec(j.feedback.t1);
   force2 = toVec(j.feedback.f2), torque2 = toVec(j.feedback.t2);
-  if (j.a || !j.b) return;
+  if (!j.reversed) return;
   // Attached to the world first, the joint is turned round by ODE.
   std::swap(force1, force2);
   std::swap(torque1, torque2);

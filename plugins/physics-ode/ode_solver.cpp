@@ -1,0 +1,75 @@
+#include "ode_engine.h"
+
+// A solver below the engine works on the engine's own memory: bodies and joints say what ODE says (see ode_bodies.cpp, ode_frames.cpp), and
+// what it integrates stands where ODE keeps it. So ODE goes on with any body as if it had stepped it. What a solver leaves, ODE steps.
+
+namespace spark {
+
+using namespace ode;
+
+engine::ISolver* OdeEngine::solver() {
+  if (treeVersion_ == kernel().structureVersion()) return solver_;
+  treeVersion_ = kernel().structureVersion();
+  solver_ = childOf<engine::ISolver>();
+  for (const auto& w : worlds_) {
+    w->solved.clear();
+    for (const auto& b : w->bodies) b->left = !solver_;
+  }
+  return solver_;
+}
+
+namespace {
+
+void listAll(WorldData& w) {
+  if (w.listedAt == w.structure) return;
+  w.listedAt = w.structure;
+  w.solverBodies.clear();
+  w.solverJoints.clear();
+  for (const auto& b : w.bodies) {
+    b->index = static_cast<std::uint32_t>(w.solverBodies.size());
+    w.solverBodies.push_back(b.get());
+  }
+  for (const auto& j : w.joints) w.solverJoints.push_back(j.get());
+}
+
+/// Lets ODE know what the solver did: who is awake, and that geoms moved.
+void tellOde(WorldData& w) {
+  w.solved.clear();
+  for (const auto& b : w.bodies) {
+    if (!b->awake || b->left) continue;
+    w.solved.push_back(b.get());
+    dBodyEnable(b->id);
+    dBodySetPosition(b->id, b->position[0], b->position[1], b->position[2]);
+  }
+}
+
+void copyFeedback(const engine::SolverJoint& from, dJointFeedback& to) {
+  for (int i = 0; i < 3; ++i) {
+    to.f1[i] = from.forceA[i];
+    to.t1[i] = from.torqueA[i];
+    to.f2[i] = from.forceB[i];
+    to.t2[i] = from.torqueB[i];
+  }
+}
+
+}  // namespace
+
+std::size_t OdeEngine::stepBySolver(WorldData& w, engine::ISolver& solver, engine::Contacts& contacts, double dt) {
+  listAll(w);
+  engine::SolverStep step{.id = engine::World{reinterpret_cast<std::uintptr_t>(&w)},
+                          .bodies = w.solverBodies,
+                          .joints = w.solverJoints,
+                          .contacts = contacts,
+                          .pairs = w.contactPairs,
+                          .parameters = w.parameters,
+                          .dt = dt,
+                          .structure = w.structure,
+                          .mostRows = directRows_};
+  const std::size_t left = solver.step(step);
+  tellOde(w);
+  for (const auto& j : w.joints)
+    if (j->wantsFeedback && j->a && j->a->awake && !j->a->left) copyFeedback(*j, j->feedback);
+  return left;
+}
+
+}  // namespace spark
