@@ -58,7 +58,7 @@ RawWorld::RawWorld(House& house) {
   for (const auto& s : w.spaces)
     if (s->inner) spaces_.push_back(s->id);
   group_ = dJointGroupCreate(0);
-  for (const auto& b : w.bodies) dBodySetAutoDisableFlag(b->id, w.autoDisable ? 1 : 0);
+  for (const auto& b : w.bodies) dBodySetAutoDisableFlag(b->id, w.parameters.autoDisable ? 1 : 0);
   bodies_ = static_cast<int>(w.bodies.size());
   joints_ = static_cast<int>(w.joints.size());
   perPair_ = static_cast<int>(getProperty(house.kernel().root().require<Leaf>("/sys/server/physics"), "contactsPerPair").toInteger());
