@@ -10,7 +10,7 @@
 -- so that a config can set properties or swap a helper. Nothing here is magic: a config may write the same lines itself.
 --
 -- `host` is what the program that runs the config says about itself: host.share (the folder with lua/ and scenes/, "" when there is
--- none) and host.scenePaths (folders from --scene-path). Programs that embed the kernel may leave it out.
+-- none), host.scenePaths (folders from --scene-path) and host.alone (true in a batch). Programs that embed the kernel may leave it out.
 host = host or { share = "", scenePaths = {} }
 
 --- File server. A folder given by --scene-path holds rsg/...; it is asked before the scenes that come with Spark.
@@ -103,8 +103,17 @@ function monitors(t)
   return server
 end
 
---- The socket through which sparkctl looks at the running house; only the host's own user can open it.
+--- The socket through which sparkctl looks at the running house; only the host's own user can open it. A house of a batch has none.
 function control()
+  if host.alone then return end
   plugin "control"
   return new("ControlServer", "/sys/server/control")
+end
+
+--- What a run is about, in numbers: Result.falls = 3. sparkbatch makes a column of each. `values`: what they are at first.
+function results(values)
+  plugin "scene"
+  local group = new("Variables", "/sys/variables/Result")
+  for name, value in pairs(values or {}) do group:set(name, value) end
+  return group
 end

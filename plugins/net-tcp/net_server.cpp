@@ -20,6 +20,7 @@ NetServer::NetServer() = default;
 void NetServer::describe(Description<NetServer>& d) {
   d.doc("Network server: ports below it bring input to the run loop.");
   d.implements<IInputSource>();
+  d.property("open", &NetServer::open_).doc("False: no port is opened, nobody comes in.");
   d.method("listen", &NetServer::listen).doc("Opens all ports below; otherwise the first poll does.");
 }
 
@@ -31,6 +32,7 @@ void NetServer::resolve() {
 }
 
 void NetServer::listen() {
+  if (!open_) return;
   resolve();
   for (TcpPort* port : ports_) port->listen();
 }
@@ -38,6 +40,7 @@ void NetServer::listen() {
 void NetServer::poll() { round(); }
 
 bool NetServer::round() {
+  if (!open_) return false;
   resolve();
   if (!std::all_of(ports_.begin(), ports_.end(), [](TcpPort* p) { return p->listening(); })) {
     try {

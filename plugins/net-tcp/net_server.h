@@ -25,7 +25,7 @@ class NetServer : public Node, public IInputSource {
   NetServer();
   static void describe(Description<NetServer>& d);
 
-  /// Opens all ports below. Throws Error.
+  /// Opens all ports below, unless the network is to stay closed. Throws Error.
   void listen();
   void poll() override;
   bool wait(double seconds) override;
@@ -42,6 +42,7 @@ class NetServer : public Node, public IInputSource {
   net::HandlerMemory timerMemory_;
   std::vector<TcpPort*> ports_;
   std::uint64_t resolvedAt_ = 0;
+  bool open_ = true;
 };
 
 }  // namespace spark

@@ -53,7 +53,7 @@ void Host::tellScripts() {
   std::string paths;
   for (const std::string& p : options_.scenePaths) paths += quoted(p) + ", ";
   const std::string share = fs::is_directory(share_) ? share_.string() : std::string();
-  kernel_.lua().run(fmt::format("host = {{ share = {}, scenePaths = {{ {} }} }}", quoted(share), paths), "sparkhost");
+  kernel_.lua().run(fmt::format("host = {{ share = {}, scenePaths = {{ {} }}, alone = {} }}", quoted(share), paths, options_.alone), "sparkhost");
 }
 
 void Host::build() {

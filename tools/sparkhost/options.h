@@ -21,6 +21,7 @@ struct Options {
   std::string logLevel = "info";
   std::string describe;  ///< class name, "" for none
   bool check = false, listPlugins = false;
+  bool alone = false;  ///< nobody looks in: no control socket
 };
 
 /// Reads the command line. When the program is to end at once (help, version, an error, which it has printed) returns the exit code

@@ -1,0 +1,72 @@
+#include "cluster.h"
+
+#include <cstdlib>
+
+#include "spark/error.h"
+#ifdef SPARK_MPI
+#include <mpi.h>
+#endif
+
+namespace sparkbatch {
+
+namespace {
+#ifdef SPARK_MPI
+class MpiCluster : public Cluster {
+ public:
+  MpiCluster() {
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+    MPI_Comm_rank(MPI_COMM_WORLD, &number_);
+    MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    MPI_Comm machine;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, number_, MPI_INFO_NULL, &machine);
+    MPI_Comm_size(machine, &neighbours_);
+    MPI_Comm_free(&machine);
+  }
+  ~MpiCluster() override { MPI_Finalize(); }
+  MpiCluster(const MpiCluster&) = delete;
+  MpiCluster& operator=(const MpiCluster&) = delete;
+
+  int number() const override { return number_; }
+  int size() const override { return size_; }
+  int neighbours() const override { return neighbours_; }
+  void send(int to, Word word, const std::string& text) override {
+    MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, to, static_cast<int>(word), MPI_COMM_WORLD);
+  }
+  std::optional<Message> receive() override {
+    int there = 0, length = 0;
+    MPI_Status status;
+    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &status);
+    if (!there) return std::nullopt;
+    MPI_Get_count(&status, MPI_CHAR, &length);
+    Message m{status.MPI_SOURCE, static_cast<Word>(status.MPI_TAG), std::string(static_cast<std::size_t>(length), ' ')};
+    MPI_Recv(m.text.data(), length, MPI_CHAR, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    return m;
+  }
+  void abort(int code) override { MPI_Abort(MPI_COMM_WORLD, code); }
+
+ private:
+  int number_ = 0, size_ = 1, neighbours_ = 1;
+};
+#endif
+}  // namespace
+
+/// Open MPI's mpirun, then Slurm's and others' through PMIx, then MPICH's.
+bool Cluster::started() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
+    if (std::getenv(name)) return true;
+  return false;
+}
+
+std::unique_ptr<Cluster> Cluster::join() {
+  if (!started()) return std::make_unique<Cluster>();
+#ifdef SPARK_MPI
+  return std::make_unique<MpiCluster>();
+#else
+  throw spark::Error(
+      "mpirun started this program, which was built without MPI: every process would run the whole batch. Install libopenmpi-dev and "
+      "openmpi-bin, configure and build again.");
+#endif
+}
+
+}  // namespace sparkbatch

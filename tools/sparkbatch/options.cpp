@@ -1,0 +1,93 @@
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+namespace sparkbatch {
+
+namespace {
+constexpr int kUsageError = 2;
+
+/// `KEY=TEXT`; throws what CLI11 prints.
+std::pair<std::string, std::string> splitSetting(const char* option, const std::string& text) {
+  const std::size_t at = text.find('=');
+  if (at == 0 || at == std::string::npos)
+    throw CLI::ValidationError(option, std::string("expected KEY=") + (std::string(option) == "--set" ? "VALUE" : "A,B,...") + ", found '" + text + "'");
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+/// `/path.property` or `NAME=/path.property`.
+Report readReport(const std::string& text) {
+  Report r;
+  const std::size_t at = text.find('=');
+  const std::string where = at == std::string::npos ? text : text.substr(at + 1);
+  r.column = text.substr(0, at);
+  const std::size_t dot = where.rfind('.');
+  if (r.column.empty() || where.empty() || where.front() != '/' || dot == std::string::npos || dot < where.rfind('/') || dot + 1 == where.size())
+    throw CLI::ValidationError("--report", "expected /path.property or NAME=/path.property, found '" + text + "'");
+  r.path = where.substr(0, dot);
+  r.property = where.substr(dot + 1);
+  return r;
+}
+
+void makeAbsolute(std::vector<std::string>& folders) {
+  for (std::string& f : folders) f = std::filesystem::absolute(f).lexically_normal().string();
+}
+
+void checkResults(const std::string& file) {
+  const std::string extension = std::filesystem::path(file).extension();
+  if (extension != ".csv" && extension != ".jsonl")
+    throw CLI::ValidationError("--results", "expected a file that ends in .csv or .jsonl (a JSON object a line), found '" + file + "'");
+}
+}  // namespace
+
+std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out) {
+  CLI::App app{"Runs many worlds of one Spark config: seeds, sweeps of settings; over threads, and over machines when mpirun starts it.", "sparkbatch"};
+  std::vector<std::string> settings, sweep, reports;
+  app.set_version_flag("--version", "sparkbatch " SPARK_VERSION);
+  app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")->type_name("FILE")->required();
+  app.add_option("--results", out.results, "The table, one row a run: .csv or .jsonl")->type_name("FILE")->required();
+  app.add_option("--runs", out.seeds, "Runs of each combination, each with a seed of its own (default 1)")->type_name("N")->check(CLI::PositiveNumber);
+  app.add_option("--seed", out.seed, "Seed of the first; the others count up (default 1)")->type_name("N");
+  app.add_option("--duration", out.duration, "A run ends after that much simulated time [s]; 0: when the config ends it")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--set", settings, "As for sparkhost, the same in every run; {run} and {seed} in V become the run's")
+      ->type_name("K=V")
+      ->allow_extra_args(false);
+  app.add_option("--sweep", sweep, "Runs every value of K, in every combination with other sweeps")->type_name("K=A,B,...")->allow_extra_args(false);
+  app.add_option("--report", reports, "A column with this property at the run's end")->type_name("[NAME=]/PATH.PROPERTY")->allow_extra_args(false);
+  app.add_option("--threads", out.threads, "Worlds at a time in this process (default: its processors)")->type_name("N")->check(CLI::Range(1, 1024));
+  app.add_flag("--resume", out.resume, "Goes on with a table that is there: only runs without a row are run");
+  app.add_flag("--retry", out.retry, "With --resume: rows with an error are dropped, and run again")->needs("--resume");
+  app.add_option("--plugin-path", out.pluginPaths, "Folder with plugins, before Spark's own")
+      ->type_name("DIR")
+      ->allow_extra_args(false)
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--scene-path", out.scenePaths, "Folder that holds rsg/..., before Spark's own scenes")
+      ->type_name("DIR")
+      ->allow_extra_args(false)
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--log-level", out.logLevel, "What worlds may write to stderr")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  app.footer("stdout: one JSON line at the end. Exit code 0: every run has a row; 1: some rows are errors; 2: nothing was run; 3: it was interrupted.");
+  try {
+    app.parse(argc, argv);
+    checkResults(out.results);
+    for (const std::string& s : settings) out.settings.push_back(splitSetting("--set", s));
+    for (const std::string& s : sweep) {
+      const auto [key, values] = splitSetting("--sweep", s);
+      out.sweep.push_back({key, splitValues(values)});
+    }
+    for (const std::string& r : reports) out.reports.push_back(readReport(r));
+  } catch (const CLI::ParseError& e) {
+    std::ostringstream nowhere;
+    return (speaks ? app.exit(e) : app.exit(e, nowhere, nowhere)) == 0 ? 0 : kUsageError;
+  }
+  makeAbsolute(out.pluginPaths);
+  makeAbsolute(out.scenePaths);
+  return std::nullopt;
+}
+
+}  // namespace sparkbatch

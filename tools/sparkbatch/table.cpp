@@ -1,0 +1,163 @@
+#include "table.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "spark/error.h"
+
+namespace sparkbatch {
+
+using spark::Error;
+namespace fs = std::filesystem;
+
+namespace {
+/// Columns that stand at the end, whatever else comes.
+const std::vector<std::string> kLast{"cpuSeconds", "wallSeconds", "error"};
+
+bool isLast(const std::string& column) { return std::find(kLast.begin(), kLast.end(), column) != kLast.end(); }
+
+std::string textOf(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+}  // namespace
+
+Table::Table(std::string file, const Json& batch, Open open) : name_(std::move(file)), format_(name_) {
+  if (open == Open::fresh && fs::exists(name_))
+    throw Error(name_ + " is there already. Go on with it with --resume, name another file with --results, or remove it.");
+  try {
+    lock(batch, open);
+    if (fs::exists(name_)) read(open == Open::retry);
+    if (columns_.empty()) addColumns(Row{{"run", 0}});
+    rewrite();
+  } catch (...) {
+    if (lock_ >= 0) close(lock_);
+    throw;
+  }
+}
+
+Table::~Table() {
+  if (file_ >= 0) close(file_);
+  if (lock_ >= 0) close(lock_);
+}
+
+/// The file beside the table is never replaced, so it can carry the lock.
+void Table::lock(const Json& batch, Open open) {
+  const std::string name = name_ + ".batch";
+  lock_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock_ < 0) fail("cannot open " + name);
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) throw Error(name_ + " is in use: another sparkbatch is writing it");
+  const std::string text = textOf(name);
+  if (open != Open::fresh && fs::exists(name_)) {
+    const Json before = Json::parse(text, nullptr, false);
+    if (!before.is_object()) throw Error(name_ + " cannot be resumed: " + name + ", which says what its batch is, is missing or damaged");
+    return compare(before, batch);
+  }
+  if (ftruncate(lock_, 0) != 0) fail("cannot write " + name);
+  write(lock_, batch.dump(2) + "\n");
+}
+
+void Table::compare(const Json& before, const Json& batch) const {
+  const auto shown = [](const Json& all, const std::string& key) {
+    return !all.contains(key) ? std::string("nothing") : all[key].is_string() ? all[key].get<std::string>() : all[key].dump();
+  };
+  const auto check = [&](const std::string& key) {
+    if (shown(before, key) == shown(batch, key)) return;
+    throw Error(fmt::format("{} is of another batch: its {} is {}, now it would be {}. Say the same as when it was begun, or name another file with --results.",
+                            name_, key, shown(before, key), shown(batch, key)));
+  };
+  for (const auto& [key, value] : batch.items()) check(key);
+  for (const auto& [key, value] : before.items()) check(key);
+}
+
+/// A last line without its end was cut off when the program died: its run has no row.
+void Table::read(bool retry) {
+  const std::string text = textOf(name_);
+  std::size_t at = 0, number = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; at = end + 1, end = text.find('\n', at)) {
+    const std::string_view line = std::string_view(text).substr(at, end - at);
+    ++number;
+    try {
+      if (format_.hasHeader() && number == 1) {
+        columns_ = format_.columns(line);
+        continue;
+      }
+      Row row = format_.row(line, columns_);
+      addColumns(row);
+      if (!retry || row.value("end", "") != "error") rows_[row["run"].get<std::int64_t>()] = std::move(row);
+    } catch (const std::exception& e) {
+      throw Error(fmt::format("{}:{} is no row of a batch's table. Repair it, or remove the line: its run is then run again.", name_, number), e);
+    }
+  }
+}
+
+/// Returns how many were new.
+std::size_t Table::addColumns(const Row& row) {
+  std::size_t added = 0;
+  for (const auto& [column, value] : row.items()) {
+    if (std::find(columns_.begin(), columns_.end(), column) != columns_.end()) continue;
+    columns_.insert(std::find_if(columns_.begin(), columns_.end(), isLast), column);
+    ++added;
+  }
+  std::stable_sort(columns_.begin(), columns_.end(), [](const std::string& a, const std::string& b) {
+    const auto place = [](const std::string& c) { return std::find(kLast.begin(), kLast.end(), c) - kLast.begin(); };
+    return isLast(a) ? isLast(b) && place(a) < place(b) : isLast(b);
+  });
+  return added;
+}
+
+void Table::add(Row row) {
+  const std::size_t added = addColumns(row);
+  const auto at = rows_.insert_or_assign(row["run"].get<std::int64_t>(), std::move(row)).first;
+  if (added > 0 && format_.hasHeader()) rewrite();
+  else write(file_, format_.line(at->second, columns_));
+}
+
+void Table::sort() {
+  columns_.clear();
+  for (const auto& [number, row] : rows_) addColumns(row);
+  rewrite();
+}
+
+void Table::rewrite() {
+  const std::string fresh = name_ + ".new";
+  std::string text = format_.header(columns_);
+  for (const auto& [number, row] : rows_) text += format_.line(row, columns_);
+  const int file = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) fail("cannot open " + fresh);
+  write(file, text);
+  const bool safe = fsync(file) == 0;
+  close(file);
+  if (!safe || std::rename(fresh.c_str(), name_.c_str()) != 0) fail("cannot write " + name_);
+  openForAppending();
+}
+
+void Table::openForAppending() {
+  if (file_ >= 0) close(file_);
+  file_ = ::open(name_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (file_ < 0) fail("cannot open " + name_);
+}
+
+void Table::write(int file, const std::string& text) const {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t n = ::write(file, text.data() + at, text.size() - at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail("cannot write " + name_);
+    at += static_cast<std::size_t>(n);
+  }
+}
+
+void Table::fail(const std::string& what) const { throw Error(what + ": " + std::strerror(errno)); }
+
+}  // namespace sparkbatch
