@@ -1,6 +1,7 @@
 -- Soccer of the 3D league: 30 x 20 m, humanoids. Robots are scene files that agents name; --scene-path says where others than Spark's are.
 --
---     sparkhost --config soccer.lua
+--     sparkhost --config soccer.lua                                   -- waits for teams from the network
+--     sparkhost --config soccer.lua --set "team=Red Blue" --set Soccer.AutomaticKickOff=true    -- plays by itself
 --
 -- Another league sets `league` and includes this file: `league.variables` are the Soccer.* in which it differs, `league.compat` is the
 -- version that it follows unless --set says otherwise.
@@ -11,6 +12,8 @@ include "materials.lua"
 include "naotypes.lua"
 include "soccer-house.lua"
 
+local robots  = option{ name = "team", default = "", doc = "A team of this name plays inside the host; \"A B\": two teams." }
+local players = option{ name = "players", default = 11, doc = "Players of each team inside the host." }
 local field   = option{ name = "scene", default = "rsg/soccer/field.rsg", doc = "The field's scene file." }
 local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of the language that agents speak." }
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
@@ -38,3 +41,12 @@ soccerFouls()
 soccerMonitor()
 soccerCompat(compat)
 get("/usr/scene"):importScene(field)
+
+-- teams inside the host, if any; others come over the network
+if robots ~= "" then plugin "humanoid-team" end
+for team in robots:gmatch("%S+") do
+  for number = 1, players do
+    local player = new("HumanoidBehavior", "/usr/agent/" .. team .. number)
+    player.team, player.unum = team, number
+  end
+end

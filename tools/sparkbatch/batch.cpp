@@ -29,7 +29,7 @@ using spark::Error;
 namespace fs = std::filesystem;
 
 namespace {
-constexpr auto kAlone = std::chrono::milliseconds(50);   // bound on the delay of a signal
+constexpr auto kAlone = std::chrono::milliseconds(50);    // bound on the delay of a signal
 constexpr auto kTogether = std::chrono::milliseconds(2);  // and of a helper's message
 constexpr int kFailed = 1, kInterrupted = 3;
 constexpr int kFailuresShown = 5;
@@ -48,8 +48,10 @@ std::string configText(const std::string& config) {
 
 /// What must be the same for all rows of a table. Not the number of seeds: more may be added.
 Json batchOf(const Options& o) {
-  Json batch{{"config", o.config}, {"config's text (hash)", fmt::format("{:016x}", spark::hashBytes(configText(o.config)))},
-             {"first seed", o.seed}, {"duration", o.duration}};
+  Json batch{{"config", o.config},
+             {"config's text (hash)", fmt::format("{:016x}", spark::hashBytes(configText(o.config)))},
+             {"first seed", o.seed},
+             {"duration", o.duration}};
   Json settings = Json::object(), sweep = Json::array(), reports = Json::array();
   for (const auto& [key, text] : o.settings) settings[key] = text;
   for (const Parameter& p : o.sweep) sweep.push_back({{"key", p.key}, {"values", p.values}});
@@ -180,9 +182,12 @@ std::string Leader::summary() const {
 void dismiss(Cluster& cluster) {
   for (int helpers = cluster.size() - 1; helpers > 0;) {
     const auto message = cluster.receive();
-    if (!message) std::this_thread::sleep_for(kTogether);
-    else if (message->word == Word::ready) cluster.send(message->from, Word::run, "");
-    else if (message->word == Word::bye) --helpers;
+    if (!message)
+      std::this_thread::sleep_for(kTogether);
+    else if (message->word == Word::ready)
+      cluster.send(message->from, Word::run, "");
+    else if (message->word == Word::bye)
+      --helpers;
   }
   for (int other = 1; other < cluster.size(); ++other) cluster.send(other, Word::home, "");
 }
@@ -197,8 +202,10 @@ void help(const Options& options, Cluster& cluster) {
     for (; !over && workers.idle() > asked; ++asked) cluster.send(0, Word::ready, "");
     while (const auto message = cluster.receive()) {
       --asked;
-      if (message->text.empty()) over = true;
-      else workers.begin(sweep.run(std::stoll(message->text)));
+      if (message->text.empty())
+        over = true;
+      else
+        workers.begin(sweep.run(std::stoll(message->text)));
     }
     for (const auto& row : workers.take(kTogether))
       if (row) cluster.send(0, Word::row, row->dump(-1, ' ', false, Json::error_handler_t::replace));

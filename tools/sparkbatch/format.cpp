@@ -22,10 +22,14 @@ std::string cell(const std::string& text) {
   std::string out;
   bool quoted = false;
   for (const char c : text) {
-    if (c == '\n') out += "\\n";
-    else if (static_cast<unsigned char>(c) < 0x20) out += ' ';
-    else if (c == '"') out += "\"\"";
-    else out += c;
+    if (c == '\n')
+      out += "\\n";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      out += ' ';
+    else if (c == '"')
+      out += "\"\"";
+    else
+      out += c;
     quoted |= c == '"' || c == ',';
   }
   return quoted ? "\"" + out + "\"" : out;
@@ -41,10 +45,14 @@ std::vector<std::string> cells(std::string_view line) {
   std::vector<std::string> out(1);
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') out.back() += line[i++];
-    else if (line[i] == '"') quoted = !quoted;
-    else if (line[i] == ',' && !quoted) out.emplace_back();
-    else out.back() += line[i];
+    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+      out.back() += line[i++];
+    else if (line[i] == '"')
+      quoted = !quoted;
+    else if (line[i] == ',' && !quoted)
+      out.emplace_back();
+    else
+      out.back() += line[i];
   }
   if (quoted) throw Error("a quote does not end");
   return out;

@@ -18,9 +18,7 @@ constexpr int kWrong = 2;
 std::atomic<Wish> wish = Wish::goOn;
 static_assert(std::atomic<Wish>::is_always_lock_free);
 
-extern "C" void onSignal(int number) {
-  wish = number == SIGINT && wish == Wish::goOn ? Wish::finish : Wish::abandon;
-}
+extern "C" void onSignal(int number) { wish = number == SIGINT && wish == Wish::goOn ? Wish::finish : Wish::abandon; }
 
 /// The first SIGINT lets what runs come to its end, the second and SIGTERM abandon it. Under mpirun signals end all processes at once, as
 /// MPI has it; what has a row stays either way.
@@ -41,9 +39,11 @@ int processors(int neighbours) {
 
 void chooseThreads(Options& options, int neighbours) {
   cpu_set_t mine;
-  if (options.threads == 0) options.threads = processors(neighbours);
+  if (options.threads == 0)
+    options.threads = processors(neighbours);
   else if (neighbours > 1 && sched_getaffinity(0, sizeof mine, &mine) == 0 && options.threads > CPU_COUNT(&mine))
-    sayLine(fmt::format("{} threads share {} processors, to which mpirun binds this process: say mpirun --bind-to none", options.threads, CPU_COUNT(&mine)));
+    sayLine(fmt::format("{} threads share {} processors, to which mpirun binds this process: say mpirun --bind-to none", options.threads,
+                        CPU_COUNT(&mine)));
 }
 
 int lead(const Options& options, Cluster& cluster) {

@@ -12,7 +12,8 @@ constexpr int kUsageError = 2;
 std::pair<std::string, std::string> splitSetting(const char* option, const std::string& text) {
   const std::size_t at = text.find('=');
   if (at == 0 || at == std::string::npos)
-    throw CLI::ValidationError(option, std::string("expected KEY=") + (std::string(option) == "--set" ? "VALUE" : "A,B,...") + ", found '" + text + "'");
+    throw CLI::ValidationError(
+        option, std::string("expected KEY=") + (std::string(option) == "--set" ? "VALUE" : "A,B,...") + ", found '" + text + "'");
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
@@ -23,7 +24,8 @@ Report readReport(const std::string& text) {
   const std::string where = at == std::string::npos ? text : text.substr(at + 1);
   r.column = text.substr(0, at);
   const std::size_t dot = where.rfind('.');
-  if (r.column.empty() || where.empty() || where.front() != '/' || dot == std::string::npos || dot < where.rfind('/') || dot + 1 == where.size())
+  if (r.column.empty() || where.empty() || where.front() != '/' || dot == std::string::npos || dot < where.rfind('/') ||
+      dot + 1 == where.size())
     throw CLI::ValidationError("--report", "expected /path.property or NAME=/path.property, found '" + text + "'");
   r.path = where.substr(0, dot);
   r.property = where.substr(dot + 1);
@@ -42,12 +44,17 @@ void checkResults(const std::string& file) {
 }  // namespace
 
 std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out) {
-  CLI::App app{"Runs many worlds of one Spark config: seeds, sweeps of settings; over threads, and over machines when mpirun starts it.", "sparkbatch"};
+  CLI::App app{"Runs many worlds of one Spark config: seeds, sweeps of settings; over threads, and over machines when mpirun starts it.",
+               "sparkbatch"};
   std::vector<std::string> settings, sweep, reports;
   app.set_version_flag("--version", "sparkbatch " SPARK_VERSION);
-  app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")->type_name("FILE")->required();
+  app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")
+      ->type_name("FILE")
+      ->required();
   app.add_option("--results", out.results, "The table, one row a run: .csv or .jsonl")->type_name("FILE")->required();
-  app.add_option("--runs", out.seeds, "Runs of each combination, each with a seed of its own (default 1)")->type_name("N")->check(CLI::PositiveNumber);
+  app.add_option("--runs", out.seeds, "Runs of each combination, each with a seed of its own (default 1)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
   app.add_option("--seed", out.seed, "Seed of the first; the others count up (default 1)")->type_name("N");
   app.add_option("--duration", out.duration, "A run ends after that much simulated time [s]; 0: when the config ends it")
       ->type_name("SECONDS")
@@ -55,9 +62,15 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
   app.add_option("--set", settings, "As for sparkhost, the same in every run; {run} and {seed} in V become the run's")
       ->type_name("K=V")
       ->allow_extra_args(false);
-  app.add_option("--sweep", sweep, "Runs every value of K, in every combination with other sweeps")->type_name("K=A,B,...")->allow_extra_args(false);
-  app.add_option("--report", reports, "A column with this property at the run's end")->type_name("[NAME=]/PATH.PROPERTY")->allow_extra_args(false);
-  app.add_option("--threads", out.threads, "Worlds at a time in this process (default: its processors)")->type_name("N")->check(CLI::Range(1, 1024));
+  app.add_option("--sweep", sweep, "Runs every value of K, in every combination with other sweeps")
+      ->type_name("K=A,B,...")
+      ->allow_extra_args(false);
+  app.add_option("--report", reports, "A column with this property at the run's end")
+      ->type_name("[NAME=]/PATH.PROPERTY")
+      ->allow_extra_args(false);
+  app.add_option("--threads", out.threads, "Worlds at a time in this process (default: its processors)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
   app.add_flag("--resume", out.resume, "Goes on with a table that is there: only runs without a row are run");
   app.add_flag("--retry", out.retry, "With --resume: rows with an error are dropped, and run again")->needs("--resume");
   app.add_option("--plugin-path", out.pluginPaths, "Folder with plugins, before Spark's own")
@@ -71,7 +84,9 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
   app.add_option("--log-level", out.logLevel, "What worlds may write to stderr")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
-  app.footer("stdout: one JSON line at the end. Exit code 0: every run has a row; 1: some rows are errors; 2: nothing was run; 3: it was interrupted.");
+  app.footer(
+      "stdout: one JSON line at the end. Exit code 0: every run has a row; 1: some rows are errors; 2: nothing was run; 3: it was "
+      "interrupted.");
   try {
     app.parse(argc, argv);
     checkResults(out.results);

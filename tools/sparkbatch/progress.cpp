@@ -30,7 +30,11 @@ std::string clockText(double seconds) {
 void sayLine(std::string_view line) { fmt::print(stderr, "{}{}\n", onTerminal() ? "\r\033[K" : "", line); }
 
 Progress::Progress(std::int64_t runs, std::int64_t there, double duration)
-    : runs_(runs), there_(there), duration_(duration), terminal_(onTerminal()), next_(begin_ + (terminal_ ? Clock::duration(0) : Clock::duration(kLinePeriod))) {}
+    : runs_(runs),
+      there_(there),
+      duration_(duration),
+      terminal_(onTerminal()),
+      next_(begin_ + (terminal_ ? Clock::duration(0) : Clock::duration(kLinePeriod))) {}
 
 double Progress::elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 

@@ -7,12 +7,18 @@ std::vector<std::string> splitValues(const std::string& text) {
   int depth = 0;
   char quote = 0;
   for (const char c : text) {
-    if (quote) quote = c == quote ? 0 : quote;
-    else if (c == '"' || c == '\'') quote = c;
-    else if (c == '{' || c == '[' || c == '(') ++depth;
-    else if (c == '}' || c == ']' || c == ')') --depth;
-    if (c == ',' && depth <= 0 && !quote) out.emplace_back();
-    else out.back() += c;
+    if (quote)
+      quote = c == quote ? 0 : quote;
+    else if (c == '"' || c == '\'')
+      quote = c;
+    else if (c == '{' || c == '[' || c == '(')
+      ++depth;
+    else if (c == '}' || c == ']' || c == ')')
+      --depth;
+    if (c == ',' && depth <= 0 && !quote)
+      out.emplace_back();
+    else
+      out.back() += c;
   }
   return out;
 }

@@ -74,8 +74,9 @@ void Table::compare(const Json& before, const Json& batch) const {
   };
   const auto check = [&](const std::string& key) {
     if (shown(before, key) == shown(batch, key)) return;
-    throw Error(fmt::format("{} is of another batch: its {} is {}, now it would be {}. Say the same as when it was begun, or name another file with --results.",
-                            name_, key, shown(before, key), shown(batch, key)));
+    throw Error(fmt::format(
+        "{} is of another batch: its {} is {}, now it would be {}. Say the same as when it was begun, or name another file with --results.",
+        name_, key, shown(before, key), shown(batch, key)));
   };
   for (const auto& [key, value] : batch.items()) check(key);
   for (const auto& [key, value] : before.items()) check(key);
@@ -95,9 +96,11 @@ void Table::read(bool retry) {
       }
       Row row = format_.row(line, columns_);
       addColumns(row);
-      if (!retry || row.value("end", "") != "error") rows_[row["run"].get<std::int64_t>()] = std::move(row);
+      const auto run = row["run"].get<std::int64_t>();
+      if (!retry || row.value("end", "") != "error") rows_.insert_or_assign(run, std::move(row));
     } catch (const std::exception& e) {
-      throw Error(fmt::format("{}:{} is no row of a batch's table. Repair it, or remove the line: its run is then run again.", name_, number), e);
+      throw Error(
+          fmt::format("{}:{} is no row of a batch's table. Repair it, or remove the line: its run is then run again.", name_, number), e);
     }
   }
 }
@@ -119,9 +122,12 @@ std::size_t Table::addColumns(const Row& row) {
 
 void Table::add(Row row) {
   const std::size_t added = addColumns(row);
-  const auto at = rows_.insert_or_assign(row["run"].get<std::int64_t>(), std::move(row)).first;
-  if (added > 0 && format_.hasHeader()) rewrite();
-  else write(file_, format_.line(at->second, columns_));
+  const auto run = row["run"].get<std::int64_t>();
+  const auto at = rows_.insert_or_assign(run, std::move(row)).first;
+  if (added > 0 && format_.hasHeader())
+    rewrite();
+  else
+    write(file_, format_.line(at->second, columns_));
 }
 
 void Table::sort() {

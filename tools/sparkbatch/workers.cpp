@@ -62,8 +62,10 @@ void Workers::loop() {
     Row row = work_(job->run, job->watch);
     lock.lock();
     std::erase(active_, job);
-    if (job->watch.abandoned()) results_.emplace_back(std::nullopt);
-    else results_.emplace_back(std::move(row));
+    if (job->watch.abandoned())
+      results_.emplace_back(std::nullopt);
+    else
+      results_.emplace_back(std::move(row));
     finished_.notify_one();
   }
 }

@@ -88,21 +88,22 @@ std::unique_ptr<Host> makeHost(const sparkhost::Options& options, const Run& run
 
 Json toJson(const Value& v) {
   switch (v.type()) {
-    case Value::Type::nil: return nullptr;
-    case Value::Type::boolean: return v.toBool();
-    case Value::Type::integer: return v.toInteger();
-    case Value::Type::number: return v.toNumber();
-    case Value::Type::string: return v.toString();
-    case Value::Type::list: break;
+    case Value::Type::nil:
+      return nullptr;
+    case Value::Type::boolean:
+      return v.toBool();
+    case Value::Type::integer:
+      return v.toInteger();
+    case Value::Type::number:
+      return v.toNumber();
+    case Value::Type::string:
+      return v.toString();
+    case Value::Type::list:
+      break;
   }
   Json list = Json::array();
   for (const Value& e : v.toList()) list.push_back(toJson(e));
   return list;
-}
-
-Leaf& simulationOf(Host& host, const Options& options) {
-  if (Leaf* simulation = host.kernel().root().find(kSimulation)) return *simulation;
-  throw Error(fmt::format("config '{}' has no run loop: expected a node {}. Add simulation() of house.lua.", options.config, kSimulation));
 }
 
 /// Half a step of tolerance, as the run loop has it.
@@ -127,7 +128,8 @@ void addResults(const Leaf& root, Row& row) {
   const Value names = valueAt(root, kResult, "names");
   if (!names.isList()) return;
   for (const Value& name : names.toList()) {
-    if (row.contains(name.plain())) throw Error(fmt::format("{0}.{1}: the table has another column {1}. Name it otherwise.", kResult, name.plain()));
+    if (row.contains(name.plain()))
+      throw Error(fmt::format("{0}.{1}: the table has another column {1}. Name it otherwise.", kResult, name.plain()));
     const std::vector<Value> argument{name};
     row[name.plain()] = toJson(callMethod(const_cast<Leaf&>(*root.find(kResult)), "get", argument));
   }
@@ -149,7 +151,6 @@ void check(const Options& options, const Run& run) {
   const sparkhost::Options asked = hostOptions(options, run);
   const auto host = makeHost(asked, run);
   host->build();
-  simulationOf(*host, options);
 }
 
 Row simulate(const Options& options, const Run& run, Watch& watch) {
@@ -161,12 +162,11 @@ Row simulate(const Options& options, const Run& run, Watch& watch) {
     const sparkhost::Options asked = hostOptions(options, run);
     const auto host = makeHost(asked, run);
     host->build();
-    Leaf& simulation = simulationOf(*host, options);
     closeNetwork(host->kernel().root());
     host->kernel().registerClass<Pulse>();
     host->kernel().create<Pulse>("Pulse", "/sys/host/pulse").watch = &watch;
-    callMethod(simulation, "run", {});
-    const Leaf& root = host->kernel().root();
+    Node& root = host->kernel().root();
+    callMethod(root.require<Leaf>(kSimulation), "run", {});
     addOutcome(root, row);
     addReports(root, options.reports, row);
     addResults(root, row);
