@@ -46,6 +46,11 @@ void Simulation::describe(Description<Simulation>& d) {
   d.property("cycle", &Simulation::cycle).doc("Number of the current cycle, from 1; 0 before the first.");
   d.property("time", &Simulation::time).unit("s").doc("Simulated time since the start.");
   d.property("phaseMicros", &Simulation::phaseMicros).doc("Mean wall time per cycle of each phase since resetTimers() [microseconds].");
+  d.property("cycleTimes", &Simulation::cycleTimes)
+      .doc("Three lists {name, cycles, p50, p90, p99, p99.9, longest} of wall time since resetTimers() [microseconds]: late, from when a cycle was due in real time to "
+           "its beginning; long, from its beginning to its end; done, from when it was due to its end.");
+  d.property("histogram", &Simulation::histogram)
+      .doc("The same in buckets, a list {from, late, long, done} for each that has any: where it begins [microseconds], and how many cycles are in it.");
   d.property("lostTime", &Simulation::lostTime_)
       .unit("s")
       .readOnly()
@@ -54,7 +59,7 @@ void Simulation::describe(Description<Simulation>& d) {
   d.method("run", &Simulation::run).doc("Runs until duration is reached or something asks to stop.");
   d.method("runCycles", &Simulation::runCycles).parameters({"count"}).doc("Runs that many cycles.");
   d.method("stop", &Simulation::stop).doc("Ends run() after the current cycle.");
-  d.method("resetTimers", &Simulation::resetTimers).doc("Starts the means of phaseMicros anew.");
+  d.method("resetTimers", &Simulation::resetTimers).doc("Starts phaseMicros, cycleTimes and histogram anew.");
 }
 
 void Simulation::onLink() {
@@ -156,6 +161,7 @@ void Simulation::waitForClock() {
     if (left <= 0) break;
     waitForInput(left);
   }
+  wanted_ = due_;
   const double late = -secondsUntil(due_);
   if (late > kJitter) {
     due_ = Clock::now();
@@ -177,6 +183,7 @@ bool Simulation::collectInput() {
   if (waited) {
     poll();
     due_ = std::max(due_, Clock::now());  // the clock stood still for agents: that is not lost
+    wanted_ = std::max(wanted_, Clock::now());
   }
   timers_.add(Part::input, waited ? Clock::duration::zero() : Clock::now() - mark);
   return !stopping();
@@ -197,6 +204,7 @@ void Simulation::emit(Part part, Channel& channel, Clock::time_point& mark) {
 void Simulation::executeCycle() {
   ++cycle_;
   auto mark = Clock::now();
+  pace_.begin(wanted_, mark, rate_ == "real");
   emit(Part::act, *act_, mark);
   emit(Part::prepare, *prepare_, mark);
   emit(Part::physics, *physics_, mark);
@@ -205,6 +213,7 @@ void Simulation::executeCycle() {
   emit(Part::rule, *rule_, mark);
   emit(Part::sense, *sense_, mark);
   emit(Part::publish, *publish_, mark);
+  pace_.end(mark);
   timers_.cycleDone();
 }
 

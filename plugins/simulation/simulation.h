@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/phases.h"
+#include "pace.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
 #include "timers.h"
@@ -42,7 +43,9 @@ class Simulation : public Node, public ISimulation {
   void setThreads(int count);
   int threads() const { return threads_; }
   Value phaseMicros() const { return timers_.means(); }
-  void resetTimers() { timers_.reset(); }
+  Value cycleTimes() const { return pace_.percentiles(); }
+  Value histogram() const { return pace_.buckets(); }
+  void resetTimers() { timers_.reset(), pace_.reset(); }
 
   template <class More>
   void loop(More more);
@@ -74,9 +77,11 @@ class Simulation : public Node, public ISimulation {
   Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr, *sense_ = nullptr,
           *publish_ = nullptr;
   Clock::time_point due_{};  ///< when the next cycle may start in real time
+  Clock::time_point wanted_{};  ///< when this one was due, or could start because agents had answered
   double lostTime_ = 0;      ///< s of wall time; says how the host does, not how the world is: no state
   std::int64_t lateCycles_ = 0;
   simulation::Timers timers_;
+  simulation::Pace pace_;
 };
 
 }  // namespace spark

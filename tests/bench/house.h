@@ -2,53 +2,52 @@
 /// \file
 /// The houses that are measured.
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "brain.h"
+#include "entrance.h"
 #include "spark/kernel.h"
+#include "worlds.h"
 
 namespace spark::bench {
 
-/// One row of the bench.
-struct Case {
-  std::string name, title;
-  int agents = 0;
-  bool moving = false;
-  bool needsReference = false;  ///< robots of the reference scenes
-  int cycles = 400;             ///< measured by default
+/// How a house is to be built.
+struct Setup {
+  World world;
+  std::string solver = "dense";
+  int threads = 1;
 };
 
-/// All rows in order.
-const std::vector<Case>& cases();
+/// Mean µs of wall time per cycle, by part of the cycle.
+using Phases = std::vector<std::pair<std::string, double>>;
 
-/// The folder with the reference scenes' rsg/, empty where they are not present.
-std::filesystem::path referenceScenes();
-
-/// A kernel that plays one case, loaded, settled, and ready to be stepped.
+/// A kernel that plays one world: loaded, settled, and ready to be stepped.
 class House {
  public:
-  /// Builds it and lets everybody take his place. Throws Error.
-  explicit House(const Case& c);
+  /// Builds it and lets everybody come in through `entrance` (which outlives it) and take his place. Throws Error.
+  House(const Setup& setup, Entrance& entrance);
+  ~House();
   Kernel& kernel() { return kernel_; }
-  const Case& kind() const { return case_; }
-  const std::vector<BenchBrain*>& brains() const { return brains_; }
+  const World& world() const { return setup_.world; }
   /// Steps the host.
   void run(std::int64_t cycles);
-  /// Mean µs per cycle of each phase since the last call.
-  std::vector<std::pair<std::string, double>> phases();
+  /// Cycles since it was ready, and agents began to move.
+  std::int64_t cycles() const { return played_ - ready_; }
+  void setThreads(int threads);
+  /// Means since the last call.
+  Phases phases();
+  /// Of the whole tree.
+  std::uint64_t hash();
 
  private:
   void build();
-  void runSoccer();
-  void addAgents();
-  void settle();
+  void admitAgents();
   Kernel kernel_;
-  Case case_;
+  Setup setup_;
+  Entrance& entrance_;
   Leaf* simulation_ = nullptr;
-  std::vector<BenchBrain*> brains_;
+  std::int64_t played_ = 0, ready_ = 0;
 };
 
 }  // namespace spark::bench

@@ -1,93 +1,107 @@
 #include <fmt/format.h>
+#include <sys/wait.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <fstream>
 
 #include "measure.h"
-#include "spark/error.h"
-#include "tcp.h"
+#include "micro.h"
+#include "realtime.h"
+#include "report.h"
+#include "validate.h"
 
-// spark-bench: what the host costs above its solver.
-//
-//   case        the house that is measured (house.cpp)
-//   raw         plain ODE calls on the bodies, joints, geoms and contacts of an equal house (raw_world.h)
-//   host        the same in process: run loop, agents, perceptors, rules, encoders
-//   ratio       host / raw, median over alternating blocks: noise of the machine hits both alike
-//   per agent   what an agent costs above raw ODE
-//
-// Over TCP agents run in threads of this program; what is counted is the CPU time of the host process.
+// sparkbench: what the host adds to the solver's own time, in the standard worlds (README.md).
 
 using namespace spark;
 using namespace spark::bench;
 
 namespace {
-void printText(const Case& c, const Result& r) {
-  fmt::print("{:<26} {:>6} {:>6} {:>8.0f} {:>10.1f} {:>10.1f} {:>7.2f} ", c.title, r.bodies, r.joints, r.contacts, r.raw, r.host, r.ratio);
-  if (r.agents > 0) fmt::print("{:>10.1f}", r.perAgent);
-  fmt::print("\n    µs per phase:");
-  for (const auto& [name, micros] : r.phases) fmt::print(" {} {:.1f}", name, micros);
-  fmt::print("\n");
-  std::fflush(stdout);
-}
-
-std::string json(const Case& c, const Result& r) {
-  std::string phases;
-  for (const auto& [name, micros] : r.phases) phases += fmt::format("{}\"{}\":{:.2f}", phases.empty() ? "" : ",", name, micros);
-  return fmt::format(
-      "{{\"case\":\"{}\",\"bodies\":{},\"joints\":{},\"agents\":{},\"contacts\":{:.0f},\"rawMicros\":{:.2f},\"hostMicros\":{:.2f},\"ratio\":{:.4f},\"perAgentMicros\":{:.2f},\"phases\":{{{}}}}}",
-      c.name, r.bodies, r.joints, r.agents, r.contacts, r.raw, r.host, r.ratio, r.perAgent, phases);
-}
-
 struct Options {
-  std::string only;
-  int cycles = 0;
-  bool json = false;
+  std::vector<std::string> only;
+  std::vector<std::string> ways{"host", "tcp"};
+  int cycles = 0, threads = 1;
+  double realtime = 0;
+  std::string solver = "dense", csv, history;
+  bool json = false, validate = false, micro = false;
 };
 
-void runCase(const Case& c, const Options& options, std::vector<std::string>& rows) {
-  if (c.needsReference && referenceScenes().empty()) {
-    if (options.json) rows.push_back(fmt::format("{{\"case\":\"{}\",\"skipped\":\"SPARK_REFERENCE_DIR names no reference scenes\"}}", c.name));
-    else fmt::print("{:<26} skipped: SPARK_REFERENCE_DIR names no reference scenes\n", c.title);
-    return;
-  }
-  const Result r = measure(c, options.cycles > 0 ? options.cycles : c.cycles);
-  if (options.json) rows.push_back(json(c, r));
-  else printText(c, r);
+std::vector<World> wanted(const Options& options) {
+  std::vector<World> out;
+  for (const World& w : worlds())
+    if (options.only.empty() || std::find(options.only.begin(), options.only.end(), w.name) != options.only.end()) out.push_back(w);
+  return out;
 }
 
-void runTcp(const Options& options, std::vector<std::string>& rows) {
-  const TcpResult r = measureTcp(22, options.cycles > 0 ? options.cycles : 1000);
-  if (options.json)
-    rows.push_back(fmt::format("{{\"case\":\"tcp\",\"agents\":{},\"cycles\":{},\"hostCpuMicros\":{:.2f},\"perAgentMicros\":{:.2f},\"wallMicros\":{:.2f}}}", r.agents, r.cycles, r.cpu, r.cpu / r.agents,
-                               r.wall));
-  else
-    fmt::print("{:<26} host CPU {:.1f} µs per cycle, {:.1f} per agent; wall {:.1f} µs per cycle with the agents' own work\n", "22 sphere agents over TCP", r.cpu, r.cpu / r.agents, r.wall);
+bool wants(const Options& o, const char* way) { return std::find(o.ways.begin(), o.ways.end(), way) != o.ways.end(); }
+
+/// All rows of a world; that of raw ODE once.
+Json measureWorld(const Setup& setup, const Options& options) {
+  const int cycles = options.cycles > 0 ? options.cycles : setup.world.cycles;
+  Json rows = Json::array();
+  for (const Way way : {Way::host, Way::tcp}) {
+    if (!wants(options, nameOf(way)) || (way == Way::tcp && setup.world.agents() == 0)) continue;
+    for (Json& r : measure(setup, way, cycles))
+      if (rows.empty() || r["way"] != "raw") rows.push_back(std::move(r));
+  }
+  return rows;
+}
+
+void readOptions(CLI::App& app, Options& o) {
+  std::vector<std::string> names;
+  for (const World& w : worlds()) names.push_back(w.name);
+  app.add_option("--only", o.only, "Worlds to measure, e.g. moving22,rest22")->delimiter(',')->check(CLI::IsMember(names));
+  app.add_option("--way", o.ways, "How: host (in process), tcp (agents over TCP in lockstep)")->delimiter(',')->check(CLI::IsMember({"host", "tcp"}));
+  app.add_option("--cycles", o.cycles, "Cycles to measure in each world")->check(CLI::Range(1, 1000000));
+  app.add_option("--threads", o.threads, "Measures with so many host threads too")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--solver", o.solver, "The host's solver; raw ODE is dWorldStep all the same")->check(CLI::IsMember({"dense", "articulated"}))->capture_default_str();
+  app.add_option("--csv", o.csv, "Writes all rows to a file")->type_name("FILE");
+  app.add_option("--history", o.history, "Appends the main figures to this machine's file in a folder, e.g. tests/bench/history")->type_name("DIR")->check(CLI::ExistingDirectory);
+  app.add_flag("--json", o.json, "Prints a JSON array of rows instead of a table");
+  app.add_flag("--validate-hash", o.validate, "Instead of measuring: hashes of the same world measured, unmeasured, again, and with several threads");
+  app.add_flag("--micro", o.micro, "Instead: small parts by themselves");
+  app.add_option("--realtime", o.realtime, "Instead: so many seconds of real time over TCP, and how late and long its cycles were")->type_name("SECONDS")->check(CLI::Range(1.0, 3600.0));
+}
+
+void print(const World& world, const Json& rows, const Options& o) {
+  if (!o.json) printRows(world, rows);
+}
+
+int run(const Options& o) {
+  if (o.micro) return runMicro(o.json), 0;
+  Json all = Json::array();
+  bool good = true;
+  if (!o.json && o.realtime <= 0 && !o.validate) printHead();
+  for (const World& world : wanted(o)) {
+    const Setup setup{world, o.solver, o.threads};
+    Json rows;
+    if (o.realtime > 0) {
+      rows = realtime(setup, o.realtime, !o.json);
+    } else if (o.validate) {
+      rows = validate(setup, o.cycles > 0 ? o.cycles : 40, !o.json);
+      for (const Json& r : rows) good = good && r["same"].get<bool>();
+    } else {
+      rows = measureWorld(setup, o);
+      print(world, rows, o);
+    }
+    all.insert(all.end(), rows.begin(), rows.end());
+  }
+  if (o.json) fmt::print("{}\n", all.dump(1));
+  if (!o.csv.empty()) writeCsv(all, o.csv);
+  if (!o.history.empty()) fmt::print(stderr, "appended to {}\n", appendHistory(all, o.history).string());
+  return good ? 0 : 1;
 }
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"What the host adds to the solver's own time."};
+  CLI::App app{"What the host adds to the solver's own time.", "sparkbench"};
   Options options;
-  std::vector<std::string> names{"tcp"};
-  for (const Case& c : cases()) names.push_back(c.name);
-  app.add_option("--only", options.only, "Measures one case alone")->check(CLI::IsMember(names));
-  app.add_option("--cycles", options.cycles, "Cycles to measure in each case")->check(CLI::Range(1, 1000000));
-  app.add_flag("--json", options.json, "Prints one JSON array instead of a table");
+  readOptions(app, options);
   CLI11_PARSE(app, argc, argv);
-  std::vector<std::string> rows;
   try {
-    if (!options.json) fmt::print("{:<26} {:>6} {:>6} {:>8} {:>10} {:>10} {:>7} {:>10}\n", "case", "bodies", "joints", "contacts", "raw µs", "host µs", "ratio", "µs/agent");
-    for (const Case& c : cases())
-      if (options.only.empty() || options.only == c.name) runCase(c, options, rows);
-    if (options.only.empty() || options.only == "tcp") runTcp(options, rows);
+    return run(options);
   } catch (const std::exception& e) {
-    fmt::print(stderr, "spark-bench: {}\n", e.what());
+    fmt::print(stderr, "sparkbench: {}\n", e.what());
     return 1;
   }
-  if (options.json) {
-    fmt::print("[");
-    for (std::size_t i = 0; i < rows.size(); ++i) fmt::print("{}{}", i ? ",\n " : "", rows[i]);
-    fmt::print("]\n");
-  }
-  return 0;
 }

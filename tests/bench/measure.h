@@ -1,23 +1,23 @@
 #pragma once
 /// \file
-/// Host against raw ODE, in pairs.
+/// Host against raw ODE, in pairs of blocks.
 
+#include "child.h"
 #include "house.h"
 
 namespace spark::bench {
 
-/// What one case gave; times are medians over blocks [µs of CPU time per cycle], of phases of wall time.
-struct Result {
-  int bodies = 0, joints = 0, agents = 0;
-  double contacts = 0;             ///< contact joints per cycle on the raw side
-  double raw = 0, host = 0;
-  double ratio = 0;                ///< median of the blocks' own ratios
-  double perAgent = 0;             ///< (host - raw) / agents
-  std::vector<std::pair<std::string, double>> phases;
-};
+/// How a host is reached.
+enum class Way { host, tcp };
+const char* nameOf(Way way);
 
-/// Measures one case. Raw and host step equal houses from equal states, in alternating blocks of a few cycles, so that what else the
-/// machine does hits both alike.
-Result measure(const Case& c, int cycles);
+/// Measures one world one way in a process of its own. Raw and host step equal houses: before each block of a few cycles the raw side is put
+/// into the host's state, and blocks alternate, so that what else the machine does hits both alike. With several threads the host's blocks
+/// alternate between one thread and these. Returns rows (README.md), that of raw ODE first. Throws Error.
+Json measure(const Setup& setup, Way way, int cycles);
+
+/// What a share (0..1) of some numbers does not exceed; 0 when there are none.
+double quantile(std::vector<double> numbers, double share);
+inline double median(std::vector<double> numbers) { return quantile(std::move(numbers), 0.5); }
 
 }  // namespace spark::bench

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <utility>
 
+#include "api/agents.h"
 #include "physics-ode/ode_engine.h"
 #include "physics/collider.h"
 #include "spark/error.h"
@@ -58,8 +60,10 @@ RawWorld::RawWorld(House& house) {
   for (const auto& s : w.spaces)
     if (s->inner) spaces_.push_back(s->id);
   group_ = dJointGroupCreate(0);
-  for (const auto& b : w.bodies) dBodySetAutoDisableFlag(b->id, w.parameters.autoDisable ? 1 : 0);
-  bodies_ = static_cast<int>(w.bodies.size());
+  for (const auto& b : w.bodies) {
+    dBodySetAutoDisableFlag(b->id, w.parameters.autoDisable ? 1 : 0);
+    bodyIds_.push_back(b->id);
+  }
   joints_ = static_cast<int>(w.joints.size());
   perPair_ = static_cast<int>(getProperty(house.kernel().root().require<Leaf>("/sys/server/physics"), "contactsPerPair").toInteger());
   step_ = getProperty(house.kernel().root().require<Leaf>("/sys/server/simulation"), "step").toNumber();
@@ -108,35 +112,39 @@ void RawWorld::takeDrags(Kernel& kernel) {
       drags_.push_back({bodyOf(*c->ancestor<IRigidBody>(), w), getProperty(*c, "linearDrag").toNumber(), getProperty(*c, "angularDrag").toNumber()});
 }
 
+/// The engine's joint is the one in which a number that nobody else has turns up.
+const ode::JointData& jointOf(IJoint& joint, const ode::WorldData& w) {
+  constexpr double kMark = 0.123046875;  // the same in single precision
+  const double before = joint.parameter(engine::JointParameter::velocity, 0);
+  joint.setParameter(engine::JointParameter::velocity, 0, kMark);
+  const auto found = std::find_if(w.joints.begin(), w.joints.end(), [](const auto& j) {
+    return (j->type == engine::JointType::hinge && dJointGetHingeParam(j->id, dParamVel) == kMark) ||
+           (j->type == engine::JointType::universal && dJointGetUniversalParam(j->id, dParamVel) == kMark);
+  });
+  if (found == w.joints.end()) throw Error(joint.leaf().path() + " is not in the engine");
+  joint.setParameter(engine::JointParameter::velocity, 0, before);
+  return **found;
+}
+
 void RawWorld::takeMotors(House& house) {
+  if (!house.world().humanoid() || house.world().motion == World::Motion::rest) return;
   const ode::WorldData& w = worldOf(house.kernel());
-  if (house.brains().empty()) return;
   for (const AgentAspect* agent : house.kernel().root().require<IGameControl>("/sys/server/gamecontrol").agents()) {
     std::vector<Effector*> effectors;
     agent->collect(effectors);
-    std::size_t index = 0;
-    for (Effector* e : effectors) {
+    for (const Effector* e : effectors) {
+      const int index = motorIndex(e->predicate());
       IJoint* joint = e->parent()->as<IJoint>();
-      if (!joint) continue;
-      // The engine's joint is the one in which a number that nobody else has turns up.
-      constexpr double kMark = 0.123046875;  // the same in single precision
-      const double before = joint->parameter(engine::JointParameter::velocity, 0);
-      joint->setParameter(engine::JointParameter::velocity, 0, kMark);
-      for (const auto& j : w.joints) {
-        const bool universal = j->type == engine::JointType::universal;
-        const bool hinge = j->type == engine::JointType::hinge;
-        if (!(hinge && dJointGetHingeParam(j->id, dParamVel) == kMark) && !(universal && dJointGetUniversalParam(j->id, dParamVel) == kMark)) continue;
-        for (int axis = 0; axis < (universal ? 2 : 1); ++axis) motors_.push_back({j->id, axis, universal, index});
-      }
-      joint->setParameter(engine::JointParameter::velocity, 0, before);
-      ++index;
+      if (index < 0 || !joint) continue;
+      const ode::JointData& data = jointOf(*joint, w);
+      const bool universal = data.type == engine::JointType::universal;
+      for (int axis = 0; axis < (universal ? 2 : 1); ++axis) motors_.push_back({data.id, axis, universal, index});
     }
   }
-  if (!house.kind().needsReference || !house.kind().moving) motors_.clear();
 }
 
 void RawWorld::takeDrivers(House& house) {
-  if (house.kind().needsReference || !house.kind().moving || house.brains().empty()) return;
+  if (house.world().kind != World::Kind::spheres) return;
   const ode::WorldData& w = worldOf(house.kernel());
   std::size_t index = 0;
   for (const AgentAspect* agent : house.kernel().root().require<IGameControl>("/sys/server/gamecontrol").agents()) {
@@ -145,6 +153,33 @@ void RawWorld::takeDrivers(House& house) {
     for (IRigidBody* b : bodies) drivers_.push_back({bodyOf(*b, w), index, index < 11 ? 60.0 : -60.0});
     ++index;
   }
+}
+
+void RawWorld::follow(House& house) {
+  const ode::WorldData& w = worldOf(house.kernel());
+  if (w.bodies.size() != bodyIds_.size()) throw Error(fmt::format("expected {} bodies as in the house's twin, found {}", bodyIds_.size(), w.bodies.size()));
+  for (std::size_t i = 0; i < bodyIds_.size(); ++i) {
+    const dBodyID from = w.bodies[i]->id, to = bodyIds_[i];
+    const dReal *p = dBodyGetPosition(from), *v = dBodyGetLinearVel(from), *r = dBodyGetAngularVel(from);
+    dBodySetPosition(to, p[0], p[1], p[2]);
+    dBodySetQuaternion(to, dBodyGetQuaternion(from));
+    dBodySetLinearVel(to, v[0], v[1], v[2]);
+    dBodySetAngularVel(to, r[0], r[1], r[2]);
+    if (dBodyIsEnabled(from) && !dBodyIsEnabled(to)) dBodyEnable(to);
+    if (!dBodyIsEnabled(from)) dBodyDisable(to);
+  }
+  cycle_ = house.cycles();
+}
+
+int RawWorld::awake() const { return static_cast<int>(std::count_if(bodyIds_.begin(), bodyIds_.end(), [](dBodyID b) { return dBodyIsEnabled(b) != 0; })); }
+
+std::pair<double, double> RawWorld::phases() {
+  const auto mean = [this](std::chrono::steady_clock::duration& sum) {
+    return timed_ ? std::chrono::duration<double, std::micro>(std::exchange(sum, {})).count() / static_cast<double>(timed_) : 0.0;
+  };
+  const std::pair<double, double> out{mean(collide_), mean(solve_)};
+  timed_ = 0;
+  return out;
 }
 
 void RawWorld::act() {
@@ -157,7 +192,7 @@ void RawWorld::act() {
   }
   for (const Driver& d : drivers_) {
     dBodyEnable(d.body);
-    dBodyAddForce(d.body, d.factor * drivePower(d.index, cycle_, 0), d.factor * drivePower(d.index, cycle_, 1), 0);
+    dBodyAddForce(d.body, d.factor * drivePower(d.agent, cycle_, 0), d.factor * drivePower(d.agent, cycle_, 1), 0);
   }
   for (const Drag& d : drags_) {
     if (!dBodyIsEnabled(d.body)) continue;
@@ -191,14 +226,20 @@ void RawWorld::near(dGeomID a, dGeomID b) {
 }
 
 void RawWorld::run(std::int64_t cycles) {
+  using Clock = std::chrono::steady_clock;
   for (std::int64_t i = 0; i < cycles; ++i) {
     act();
     contacts_ = 0;
+    const auto begin = Clock::now();
     dSpaceCollide(root_, this, nearCallback);
     for (const dSpaceID s : spaces_) dSpaceCollide(s, this, nearCallback);
+    const auto between = Clock::now();
     dWorldStep(world_, step_);
+    collide_ += between - begin;
+    solve_ += Clock::now() - between;
     dJointGroupEmpty(group_);
   }
+  timed_ += cycles;
 }
 
 }  // namespace spark::bench

@@ -8,6 +8,7 @@
 
 #include <ode/ode.h>
 
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -24,11 +25,16 @@ class RawWorld {
  public:
   explicit RawWorld(House& house);
   ~RawWorld();
+  /// Puts all bodies where an equal house has them, as fast and as awake: both go on from one state.
+  void follow(House& house);
   void run(std::int64_t cycles);
-  /// Bodies, joints, and contact joints of the last cycle.
-  int bodies() const { return bodies_; }
+  /// Bodies, those awake, joints, and contact joints of the last cycle.
+  int bodies() const { return static_cast<int>(bodyIds_.size()); }
+  int awake() const;
   int joints() const { return joints_; }
   int contacts() const { return contacts_; }
+  /// Mean wall time of collision and of the solver per cycle since the last call [us].
+  std::pair<double, double> phases();
 
  private:
   struct Geom {
@@ -44,11 +50,11 @@ class RawWorld {
     dJointID joint;
     int axis;
     bool universal;
-    std::size_t index;
+    int index;  ///< of the motor
   };
   struct Driver {
     dBodyID body;
-    std::size_t index;
+    std::size_t agent;
     double factor;
   };
   void takeGeoms(const std::vector<std::unique_ptr<ode::GeomData>>& geoms);
@@ -69,9 +75,11 @@ class RawWorld {
   std::vector<Drag> drags_;
   std::vector<Motor> motors_;
   std::vector<Driver> drivers_;
-  std::int64_t cycle_ = 0;
-  int perPair_ = 4, bodies_ = 0, joints_ = 0, contacts_ = 0;
+  std::vector<dBodyID> bodyIds_;
+  std::int64_t cycle_ = 0, timed_ = 0;
+  int perPair_ = 4, joints_ = 0, contacts_ = 0;
   double step_ = 0.02;
+  std::chrono::steady_clock::duration collide_{}, solve_{};
 };
 
 }  // namespace spark::bench

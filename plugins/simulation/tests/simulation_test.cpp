@@ -63,6 +63,17 @@ class ClosedForASecond : public Node, public IInputGate {
   std::chrono::steady_clock::time_point opensAt_{};
 };
 
+/// Takes a while in its phase, in wall time.
+class Slow : public Node {
+  SPARK_CLASS(Slow, Node)
+ public:
+  static void describe(Description<Slow>& d) { d.on<&Slow::act>(phase::kAct); }
+  void act(const Event&) {
+    for (const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(3); std::chrono::steady_clock::now() < end;) {
+    }
+  }
+};
+
 struct Fixture {
   test::House house;
   Leaf* simulation = nullptr;
@@ -70,6 +81,7 @@ struct Fixture {
   Fixture() {
     house.kernel.registerClass<Batches>();
     house.kernel.registerClass<Polled>();
+    house.kernel.registerClass<Slow>();
     house.kernel.registerClass<ClosedForASecond>();
     house.kernel.plugins().use("simulation");
     simulation = &house.kernel.create("Simulation", "/sys/server/simulation");
@@ -251,4 +263,32 @@ TEST_CASE("The number of threads follows the property") {
   setProperty(*f.simulation, "threads", 4);
   REQUIRE(f.house.kernel.jobs().threads() == 4);
   REQUIRE_THROWS_AS(setProperty(*f.simulation, "threads", 0), Error);
+}
+
+TEST_CASE("Cycles are counted by how long they took, and in real time by how late they were") {
+  Fixture f;
+  f.house.kernel.create("Slow", "/usr/slow");
+  setProperty(*f.simulation, "step", 0.001);
+  const auto row = [&f](std::size_t i) { return getProperty(*f.simulation, "cycleTimes").toList().at(i).toList(); };
+  f.runCycles(3);
+  CHECK(row(0)[0].toString() == "late");
+  CHECK(row(0)[1].toInteger() == 0);  // nothing is due as fast as it goes
+  CHECK(row(1)[1].toInteger() == 3);
+  CHECK(row(1)[2].toNumber() >= 3000);  // the median
+  CHECK(row(1)[6].toNumber() >= row(1)[5].toNumber());
+
+  setProperty(*f.simulation, "rate", "real");
+  f.runCycles(3);
+  CHECK(row(0)[1].toInteger() == 3);
+  CHECK(row(0)[6].toNumber() >= 2000);  // a cycle of 3 ms that is followed by one that was due after 1 ms
+  CHECK(row(2)[1].toInteger() == 3);
+  CHECK(row(2)[6].toNumber() >= 5000);
+  std::int64_t counted = 0;
+  const Value histogram = getProperty(*f.simulation, "histogram");
+  for (const Value& bucket : histogram.toList()) counted += bucket.at(2)->toInteger();
+  CHECK(counted == 6);
+
+  callMethod(*f.simulation, "resetTimers", {});
+  CHECK(row(1)[1].toInteger() == 0);
+  CHECK(getProperty(*f.simulation, "histogram").toList().empty());
 }
