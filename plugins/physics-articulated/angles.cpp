@@ -1,0 +1,84 @@
+#include "angles.h"
+
+namespace spark::articulated {
+
+namespace {
+
+/// Of the eighths from 0 to 1.
+constexpr double kArcs[] = {0.0,
+                            0.12435499454676143503,
+                            0.24497866312686415417,
+                            0.3587706702705722204,
+                            0.46364760900080611621,
+                            0.55859931534356243597,
+                            0.6435011087932843868,
+                            0.71882999962162450542,
+                            0.78539816339744830962};
+
+/// Of y / x in [0, 1]: the nearest eighth from the table, the rest (at most 1/16) by its series.
+double smallArc(double y, double x) {
+  const double t = y / x;
+  const int eighth = static_cast<int>(t * 8 + 0.5);
+  const double c = eighth * 0.125;
+  const double z = (y - c * x) / (x + c * y);
+  const double zz = z * z;
+  const double series = zz * (-1.0 / 3 + zz * (1.0 / 5 + zz * (-1.0 / 7 + zz * (1.0 / 9 + zz * (-1.0 / 11 + zz * (1.0 / 13))))));
+  return kArcs[eighth] + (z + z * series);
+}
+
+}  // namespace
+
+double angleOf(double y, double x) {
+  const double ax = std::abs(x), ay = std::abs(y);
+  if (!(ax + ay > 0)) return x == 0 && y == 0 ? 0 : ax + ay;
+  double angle = ay <= ax ? smallArc(ay, ax) : kPi / 2 - smallArc(ax, ay);
+  if (x < 0) angle = kPi - angle;
+  return y < 0 ? -angle : angle;
+}
+
+Turn Turn::of(const Mat3& m) {
+  const double trace = m.trace();
+  if (trace >= 0) {
+    const double s = std::sqrt(trace + 1), f = 0.5 / s;
+    return {0.5 * s, {(m(2, 1) - m(1, 2)) * f, (m(0, 2) - m(2, 0)) * f, (m(1, 0) - m(0, 1)) * f}};
+  }
+  int i = m(1, 1) > m(0, 0) ? 1 : 0;
+  if (m(2, 2) > m(i, i)) i = 2;
+  const int j = (i + 1) % 3, k = (i + 2) % 3;
+  const double s = std::sqrt(m(i, i) - m(j, j) - m(k, k) + 1), f = 0.5 / s;
+  Turn out;
+  out.w = (m(k, j) - m(j, k)) * f;
+  out.v[i] = 0.5 * s;
+  out.v[j] = (m(j, i) + m(i, j)) * f;
+  out.v[k] = (m(k, i) + m(i, k)) * f;
+  return out;
+}
+
+double hingeAngle(const Turn& turn, const Vec3& axis) {
+  // A turn and its opposite are the same rotation; the one that points along the axis counts.
+  const double half = angleOf(turn.v.norm(), turn.v.dot(axis) >= 0 ? turn.w : -turn.w);
+  const double angle = 2 * half;
+  return -(angle > kPi ? angle - 2 * kPi : angle);
+}
+
+void planeSpace(const Vec3& n, Vec3& p, Vec3& q) {
+  if (std::abs(n.z()) > std::numbers::sqrt2 / 2) {
+    const double a = n.y() * n.y() + n.z() * n.z(), k = 1 / std::sqrt(a);
+    p = {0, -n.z() * k, n.y() * k};
+    q = {a * k, -n.x() * p.z(), n.x() * p.y()};
+  } else {
+    const double a = n.x() * n.x() + n.y() * n.y(), k = 1 / std::sqrt(a);
+    p = {-n.y() * k, n.x() * k, 0};
+    q = {-n.z() * p.y(), n.z() * p.x(), a * k};
+  }
+}
+
+Mat3 crossOf(const Vec3& x, const Vec3& y) {
+  Mat3 m;
+  m.col(0) = x.normalized();
+  m.col(1) = (y - y.dot(m.col(0)) * m.col(0)).normalized();
+  m.col(2) = m.col(0).cross(m.col(1));
+  return m;
+}
+
+}  // namespace spark::articulated

@@ -1,0 +1,14 @@
+#include "articulated_solver.h"
+
+#include "spark/plugin.h"
+
+namespace spark {
+
+std::size_t ArticulatedSolver::step(engine::SolverStep& step) {
+  Jobs& jobs = kernel().jobs();
+  return stepper_.step(step, static_cast<std::size_t>(jobs.threads()), [&](std::size_t n, const auto& work) { jobs.run(n, work); });
+}
+
+}  // namespace spark
+
+SPARK_PLUGIN("physics-articulated", "1.0", "A solver for articulated bodies, to stand below an engine.", spark::ArticulatedSolver)

@@ -1,0 +1,87 @@
+#include "twins.h"
+
+using namespace spark;
+using namespace spark::test;
+using engine::JointParameter;
+using engine::JointType;
+
+namespace {
+
+/// Boxes above the ground, side by side or one above the other.
+void addBoxes(Twins& t, int count, double apart) {
+  for (int i = 0; i < count; ++i) {
+    const Vec3 lengths = {t.uniform(0.2, 0.4), t.uniform(0.2, 0.4), t.uniform(0.2, 0.4)};
+    const double mass = t.uniform(0.2, 3);
+    const Vec3 squares = lengths.cwiseProduct(lengths);
+    const Mat3 inertia = (mass / 12 * Vec3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y())).asDiagonal();
+    const std::size_t b =
+        t.body({apart * (i % 5), 0.1 * t.uniform(-1, 1), 0.25 + (apart < 0.5 ? 0.3 * i : 0.0)}, mass, inertia, t.anyRotation());
+    t.box(lengths, b);
+  }
+}
+
+/// A chain of boxes, each held to the one before by a hinge with a motor.
+void addChain(Twins& t, int length, const Vec3& at, double strength) {
+  std::size_t last = 0;
+  for (int i = 0; i < length; ++i) {
+    const Vec3 here = at + Vec3(0.22 * i, 0, 0);
+    const std::size_t b = t.body(here, 0.5, t.anyInertia(0.5, 0.2));
+    t.box({0.2, 0.1, 0.1}, b);
+    if (i > 0) {
+      const std::size_t j = i % 2 ? t.joint(JointType::hinge, static_cast<int>(last), static_cast<int>(b))
+                                  : t.joint(JointType::hinge, static_cast<int>(b), static_cast<int>(last));
+      const Vec3 axis = t.anyVector(1);
+      t.eachJoint(j, [&](engine::IEngine& e, engine::Joint joint) {
+        e.setAnchor(joint, here - Vec3(0.11, 0, 0));
+        e.setAxis(joint, 0, axis);
+      });
+      t.set(j, JointParameter::maxForce, 0, strength);
+      t.set(j, JointParameter::velocity, 0, t.uniform(-4, 4));
+      t.set(j, JointParameter::lowStop, 0, -0.6);
+      t.set(j, JointParameter::highStop, 0, 0.6);
+    }
+    last = b;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("boxes fall on the ground, bounce and slip as with ODE") {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    INFO("seed " << seed);
+    Twins t(seed);
+    t.ground();
+    addBoxes(t, 5, 1);
+    t.shake(2);
+    const double mu[] = {HUGE_VAL, 0, 0.5, 2, 50};
+    t.surface.mu = mu[seed % 5];
+    t.surface.bounceOn = seed % 2 != 0, t.surface.bounce = 0.6, t.surface.bounceVelocity = 0.3;
+    t.surface.slipOn = seed % 3 == 0, t.surface.slip1 = 1e-3, t.surface.slip2 = 2e-3;
+    t.surface.softErpOn = t.surface.softCfmOn = seed % 4 == 0, t.surface.softErp = 0.4, t.surface.softCfm = 1e-3;
+    t.surface.pyramid = seed > 6;
+    t.checkSteps(100);
+  }
+}
+
+TEST_CASE("a pile of boxes settles as with ODE") {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    INFO("seed " << seed);
+    Twins t(seed);
+    t.ground();
+    addBoxes(t, 8, 0.15);
+    t.surface.mu = seed % 3 == 0 ? HUGE_VAL : seed % 3 == 1 ? 2 : 0.7;
+    t.surface.pyramid = seed % 3 == 2;
+    t.checkSteps(120);
+  }
+}
+
+TEST_CASE("chains fall on the ground and on each other as with ODE") {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    INFO("seed " << seed);
+    Twins t(seed);
+    t.ground();
+    for (int i = 0; i < 3; ++i) addChain(t, 7, {0.1 * i, 0.05 * i, 0.4 + 0.25 * i}, seed % 2 ? 0.3 : 5);
+    t.surface.mu = seed < 4 ? HUGE_VAL : 1;
+    t.checkSteps(120);
+  }
+}
