@@ -39,16 +39,25 @@ function scene()
 end
 
 --- Physics server, its engine, and a world with a space in the active scene. `engine`: its class; `properties`: of the engine, set before the
---- world is made.
-function physics(engine, properties)
+--- world is made; `solver`: class of what steps in the engine's stead, below it ("ArticulatedSolver"); nil: the engine does it all.
+function physics(engine, properties, solver)
   plugin "physics"
   plugin "physics-ode"
   local server = new("PhysicsServer", "/sys/server/physics")
-  local solver = new(engine or "OdeEngine", "/sys/server/physics/engine")
-  for name, value in pairs(properties or {}) do solver[name] = value end
+  local node = new(engine or "OdeEngine", "/sys/server/physics/engine")
+  for name, value in pairs(properties or {}) do node[name] = value end
+  if solver == "ArticulatedSolver" then plugin "physics-articulated" end
+  if solver then new(solver, "/sys/server/physics/engine/solver") end
   new("World", "/usr/scene/world")
   new("Space", "/usr/scene/space")
   return server
+end
+
+--- The class of solver that --set solver=... names, for physics(). `default`: "dense" unless the config says otherwise.
+function solverOption(default)
+  local solver = option{ name = "solver", default = default or "dense", choices = { "dense", "articulated" },
+                         doc = "dense: the engine's own, which repeats recorded sessions; articulated: the same physics many times faster for robots." }
+  return solver == "articulated" and "ArticulatedSolver" or nil
 end
 
 --- The run loop. It drives everything below; sparkhost calls its run().

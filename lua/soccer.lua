@@ -4,7 +4,7 @@
 --     sparkhost --config soccer.lua --set "team=Red Blue" --set Soccer.AutomaticKickOff=true    -- plays by itself
 --
 -- Another league sets `league` and includes this file: `league.variables` are the Soccer.* in which it differs, `league.compat` is the
--- version that it follows unless --set says otherwise.
+-- version that it follows and `league.solver` what solves its physics unless --set says otherwise.
 local league = league or {}
 
 include "house.lua"
@@ -19,13 +19,15 @@ local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
 local compat  = compatOption(league.compat)
 
-local exact   = option{ name = "exactReplay", default = true, doc = "Physics repeats recorded sessions of the installed base to the last digit." }
+local solver  = solverOption(league.solver)
+local exact   = option{ name = "exactReplay", default = solver == nil,
+                        doc = "Physics repeats recorded sessions of the installed base to the last digit, with the dense solver." }
 
 -- the rooms
 files()
 scene()
 materials()
-physics("OdeEngine", { exactReplay = exact })
+physics("OdeEngine", { exactReplay = exact }, solver)
 simulation()
 agents{ parser = parser }
 monitors{ encoder = encoder }

@@ -1,0 +1,124 @@
+#include "shadow_solver.h"
+
+#include "../../plugins/physics-ode/ode_engine.h"
+
+namespace spark::oracle {
+
+using engine::SolverBody;
+
+void ShadowSolver::describe(Description<ShadowSolver>& d) {
+  d.doc("Compares a solver with ODE.");
+  d.implements<engine::ISolver>();
+  d.on<&ShadowSolver::placed>("place");
+}
+
+ShadowSolver& watch(Kernel& kernel, const std::string& path) {
+  kernel.registerClass<ShadowSolver>();
+  kernel.plugins().use("physics-articulated");
+  auto& shadow = kernel.create<ShadowSolver>("ShadowSolver", path + "/solver");
+  shadow.Node::create("ArticulatedSolver", "tested");
+  return shadow;
+}
+
+ShadowSolver::State ShadowSolver::stateOf(const SolverBody& b) {
+  State s;
+  std::copy_n(b.position, 3, s.position);
+  std::copy_n(b.quaternion, 4, s.quaternion);
+  std::copy_n(b.rotation, 12, s.rotation);
+  std::copy_n(b.velocity, 3, s.velocity);
+  std::copy_n(b.spin, 3, s.spin);
+  std::copy_n(b.force, 3, s.force);
+  std::copy_n(b.torque, 3, s.torque);
+  s.awake = b.awake;
+  return s;
+}
+
+void ShadowSolver::restore(const State& s, SolverBody& b) {
+  std::copy_n(s.position, 3, b.position);
+  std::copy_n(s.quaternion, 4, b.quaternion);
+  std::copy_n(s.rotation, 12, b.rotation);
+  std::copy_n(s.velocity, 3, b.velocity);
+  std::copy_n(s.spin, 3, b.spin);
+  std::copy_n(s.force, 3, b.force);
+  std::copy_n(s.torque, 3, b.torque);
+  b.awake = s.awake;
+  b.left = true;
+}
+
+std::size_t ShadowSolver::step(engine::SolverStep& step) {
+  bodies_.assign(step.bodies.begin(), step.bodies.end());
+  joints_.assign(step.joints.begin(), step.joints.end());
+  contacts_ = step.contacts;
+  pairs_ = step.pairs;
+  before_.clear();
+  for (const SolverBody* b : bodies_) before_.push_back(stateOf(*b));
+  agreement_.left += childOf<engine::ISolver>()->step(step);
+  answers_.clear();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    SolverBody& b = *bodies_[i];
+    answers_.push_back({ode::toVec(b.velocity), ode::toVec(b.spin), ode::toVec(b.position), b.awake, b.left});
+    restore(before_[i], b);
+  }
+  jointForces_.clear();
+  for (const engine::SolverJoint* j : joints_) jointForces_.push_back({j->forceA, j->torqueA, j->forceB, j->torqueB});
+  contactForces_.clear();
+  for (engine::Contact& c : contacts_) {
+    contactForces_.push_back(c.forceOnA);
+    c.forceOnA.setZero();
+  }
+  waiting_ = true;
+  return bodies_.size();
+}
+
+void ShadowSolver::forget(engine::World world) {
+  if (auto* tested = childOf<engine::ISolver>()) tested->forget(world);
+}
+
+void ShadowSolver::compare() {
+  if (!waiting_) return;
+  waiting_ = false;
+  ++agreement_.steps;
+  double speed = 0.01, spin = 0.01;
+  for (const SolverBody* b : bodies_) {
+    speed = std::max(speed, ode::toVec(b->velocity).norm());
+    spin = std::max(spin, ode::toVec(b->spin).norm());
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const SolverBody& b = *bodies_[i];
+    const Answer& a = answers_[i];
+    if (a.left) continue;
+    if (a.awake != b.awake) ++agreement_.disagreedOnSleep;
+    if (!b.awake) continue;
+    ++agreement_.compared;
+    // What is no number is the worst, and stays it.
+    const auto worse = [&](double error, double& worst) {
+      if (error <= worst || std::isnan(worst)) return;
+      worst = error;
+      agreement_.worstStep = agreement_.steps;
+    };
+    worse((a.velocity - ode::toVec(b.velocity)).norm() / speed, agreement_.speed);
+    worse((a.spin - ode::toVec(b.spin)).norm() / spin, agreement_.spin);
+    worse((a.position - ode::toVec(b.position)).norm(), agreement_.place);
+  }
+  compareForces();
+}
+
+void ShadowSolver::compareForces() {
+  std::vector<std::pair<Vec3, Vec3>> both;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const auto& j = *static_cast<const ode::JointData*>(joints_[i]);
+    if (!j.wantsFeedback || !j.a || !j.a->awake || answers_[j.a->index].left) continue;
+    const auto& [forceA, torqueA, forceB, torqueB] = jointForces_[i];
+    both.insert(both.end(), {{forceA, ode::toVec(j.feedback.f1)}, {torqueA, ode::toVec(j.feedback.t1)}});
+    if (j.b) both.insert(both.end(), {{forceB, ode::toVec(j.feedback.f2)}, {torqueB, ode::toVec(j.feedback.t2)}});
+  }
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    if (contacts_[i].feedback && pairs_[i].a && !answers_[pairs_[i].a->index].left) both.emplace_back(contactForces_[i], contacts_[i].forceOnA);
+  double greatest = 1;
+  for (const auto& [ours, odes] : both) greatest = std::max(greatest, odes.norm());
+  for (const auto& [ours, odes] : both)
+    if (const double error = (ours - odes).norm() / greatest; !(error <= agreement_.force) && !std::isnan(agreement_.force)) agreement_.force = error;
+  agreement_.feedbacks += both.size();
+}
+
+}  // namespace spark::oracle
