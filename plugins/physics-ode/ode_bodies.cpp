@@ -138,14 +138,14 @@ void OdeEngine::addForce(Body body, const Vec3& wanted) {
   if (!wanted.allFinite()) return;
   const BodyData& b = *data(body);
   const Vec3 f = crossing(*b.world, wanted);
-  dBodyAddForce(b.id, f.x(), f.y(), f.z());
+  for (int i = 0; i < 3; ++i) b.force[i] += f[i];
 }
 
 void OdeEngine::addTorque(Body body, const Vec3& wanted) {
   if (!wanted.allFinite()) return;
   const BodyData& b = *data(body);
   const Vec3 t = crossing(*b.world, wanted);
-  dBodyAddTorque(b.id, t.x(), t.y(), t.z());
+  for (int i = 0; i < 3; ++i) b.torque[i] += t[i];
 }
 
 Vec3 OdeEngine::force(Body body) const { return toVec(dBodyGetForce(data(body)->id)); }

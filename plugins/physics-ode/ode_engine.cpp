@@ -1,5 +1,7 @@
 #include "ode_engine.h"
 
+#include <algorithm>
+
 #include "spark/plugin.h"
 
 namespace spark {
@@ -64,7 +66,9 @@ Space OdeEngine::createSpace(World world, Space parent) {
   s->world = &w;
   s->top = w.exactReplay && parent == Space::none;
   const dSpaceID around = s->top ? nullptr : parent == Space::none ? w.root : data(parent)->id;
-  s->id = w.exactReplay ? dHashSpaceCreate(around) : dSweepAndPruneSpaceCreate(around, dSAP_AXES_XYZ);
+  // ODE's sweep-and-prune spaces do not know how far they reach: inside another space they would meet everything.
+  const bool sweeps = !w.exactReplay && parent == Space::none;
+  s->id = sweeps ? dSweepAndPruneSpaceCreate(around, dSAP_AXES_XYZ) : dHashSpaceCreate(around);
   dSpaceSetCleanup(s->id, 0);
   dGeomSetData(reinterpret_cast<dGeomID>(s->id), s.get());
   const Space handle{reinterpret_cast<std::uintptr_t>(s.get())};
@@ -199,7 +203,6 @@ void OdeEngine::sleep(WorldData& w, double dt) {
 }
 
 void OdeEngine::repair(WorldData& w) {
-  w.repaired.clear();
   for (const auto& body : w.bodies) {
     BodyData& b = *body;
     if (!b.awake) continue;
@@ -220,6 +223,8 @@ void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
   WorldData& w = *data(world);
   const Listening listening(said_);
   ++w.steps;
+  w.repaired.clear();
+  if (std::none_of(w.bodies.begin(), w.bodies.end(), [](const auto& b) { return b->awake; })) return;
   pairUp(w, contacts);
   if (w.parameters.autoDisable) sleep(w, dt);
   engine::ISolver* const inPlace = solver();

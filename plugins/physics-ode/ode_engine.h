@@ -140,11 +140,21 @@ inline double single(double v) {
   const volatile float rounded = static_cast<float>(v);
   return rounded;
 }
-inline Vec3 single(const Vec3& v) { return {single(v.x()), single(v.y()), single(v.z())}; }
-inline Mat3 single(const Mat3& m) {
-  Mat3 out;
-  for (int i = 0; i < 9; ++i) out.data()[i] = single(m.data()[i]);
-  return out;
+/// As single(), for many; kept from being dropped by a barrier.
+template <int N>
+void makeSingle(double* v) {
+  float rounded[N];
+  for (int i = 0; i < N; ++i) rounded[i] = static_cast<float>(v[i]);
+  __asm__ volatile("" : "+m"(rounded));
+  for (int i = 0; i < N; ++i) v[i] = rounded[i];
+}
+inline Vec3 single(Vec3 v) {
+  makeSingle<3>(v.data());
+  return v;
+}
+inline Mat3 single(Mat3 m) {
+  makeSingle<9>(m.data());
+  return m;
 }
 /// A number as the world takes and gives it: rounded to single precision when recorded sessions are to repeat.
 inline double crossing(const WorldData& w, double v) { return w.exactReplay ? single(v) : v; }

@@ -91,7 +91,7 @@ TEST_CASE("a solver that leaves everything changes nothing, bit for bit, through
     watched.step();
     REQUIRE((watched.saved() == alone.saved()));
   }
-  CHECK(solver.steps == 250);
+  CHECK((solver.steps > 50 && solver.steps < 250));  // nobody is asked while all sleep
   CHECK_FALSE(watched.ode.enabled(watched.bodies[8]));
 }
 
