@@ -1,5 +1,7 @@
 #include "pace.h"
 
+#include <fmt/format.h>
+
 namespace spark::simulation {
 
 void Pace::begin(Clock::time_point due, Clock::time_point now, bool paced) {
@@ -36,6 +38,28 @@ List Pace::buckets() const {
   for (std::size_t i = 0; i < Histogram::kBuckets; ++i)
     if (late_.inBucket(i) || long_.inBucket(i) || done_.inBucket(i))
       out.push_back(List{Value(Histogram::begin(i)), Value(late_.inBucket(i)), Value(long_.inBucket(i)), Value(done_.inBucket(i))});
+  return out;
+}
+
+std::string Pace::table() const {
+  std::string out = fmt::format("{:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "[us]", "cycles", "50 %", "90 %", "99 %", "99.9 %", "longest");
+  for (const Value& row : percentiles()) {
+    const List& r = row.toList();
+    out += fmt::format("{:>10} {:>9}", r[0].toString(), r[1].toInteger());
+    for (std::size_t i = 2; i < r.size(); ++i) out += fmt::format(" {:>9.0f}", r[i].toNumber());
+    out += '\n';
+  }
+  out += fmt::format("{:>10} {:>9} {:>9} {:>9}\n", "from [us]", "late", "long", "done");
+  constexpr std::size_t kRow = 8;
+  const auto sum = [](const Histogram& h, std::size_t from) {
+    std::int64_t n = 0;
+    for (std::size_t i = from; i < from + kRow; ++i) n += h.inBucket(i);
+    return n;
+  };
+  for (std::size_t i = 0; i < Histogram::kBuckets; i += kRow) {
+    const std::int64_t late = sum(late_, i), length = sum(long_, i), done = sum(done_, i);
+    if (late || length || done) out += fmt::format("{:>10.0f} {:>9} {:>9} {:>9}\n", Histogram::begin(i), late, length, done);
+  }
   return out;
 }
 

@@ -2,6 +2,8 @@
 /// \file
 /// How a loop keeps real time: what its cycles lost, and three histograms. Wall time: never part of the state.
 
+#include <string>
+
 #include "histogram.h"
 #include "spark/value.h"
 
@@ -20,6 +22,8 @@ class Pace {
   List percentiles() const;
   /// `{{from, late, long, done}, ...}`: cycles in each bucket that any are in, which begins at `from` [us].
   List buckets() const;
+  /// Both as a table for people, with two rows of buckets for each power of two.
+  std::string table() const;
 
  private:
   Histogram late_;  ///< from when a cycle was due to its beginning

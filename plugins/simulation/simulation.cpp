@@ -58,6 +58,7 @@ void Simulation::describe(Description<Simulation>& d) {
   d.property("lateCycles", &Simulation::lateCycles_).readOnly().doc("Cycles that began too late in real time.");
   d.method("run", &Simulation::run).doc("Runs until duration is reached or something asks to stop.");
   d.method("runCycles", &Simulation::runCycles).parameters({"count"}).doc("Runs that many cycles.");
+  d.method("paceTable", &Simulation::paceTable).doc("cycleTimes and histogram as a table for people, with wider buckets.");
   d.method("stop", &Simulation::stop).doc("Ends run() after the current cycle.");
   d.method("resetTimers", &Simulation::resetTimers).doc("Starts phaseMicros, cycleTimes and histogram anew.");
 }

@@ -44,6 +44,7 @@ class Simulation : public Node, public ISimulation {
   int threads() const { return threads_; }
   Value phaseMicros() const { return timers_.means(); }
   Value cycleTimes() const { return pace_.percentiles(); }
+  std::string paceTable() const { return pace_.table(); }
   Value histogram() const { return pace_.buckets(); }
   void resetTimers() { timers_.reset(), pace_.reset(); }
 

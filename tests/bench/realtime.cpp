@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "crowd.h"
 #include "tcp_entrance.h"
@@ -32,7 +31,7 @@ Json play(const Setup& setup, double seconds, int line) {
   house.run(kWarm);
   callMethod(loop, "resetTimers", {});
   house.run(std::llround(seconds / kStep));
-  return {{"times", toJson(getProperty(loop, "cycleTimes"))}, {"histogram", toJson(getProperty(loop, "histogram"))}, {"lateCycles", toJson(getProperty(loop, "lateCycles"))}};
+  return {{"times", toJson(getProperty(loop, "cycleTimes"))}, {"histogram", toJson(getProperty(loop, "histogram"))}, {"lateCycles", toJson(getProperty(loop, "lateCycles"))}, {"table", callMethod(loop, "paceTable", {}).toString()}};
 }
 
 /// Cycles that were done within a step, from buckets {from, late, long, done}.
@@ -43,15 +42,6 @@ std::int64_t withinStep(const Json& histogram) {
   return sum;
 }
 
-void printTable(const Json& row, const Json& played) {
-  fmt::print("{} in real time over TCP, {} cycles, {} late; us:\n{:>8} {:>9} {:>9} {:>9} {:>9} {:>9}\n", row["world"].get<std::string>(), row["cycles"].get<std::int64_t>(),
-             row["lateCycles"].get<std::int64_t>(), "", "50 %", "90 %", "99 %", "99.9 %", "longest");
-  for (const Json& t : played["times"])
-    fmt::print("{:>8} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.0f}\n", t[0].get<std::string>(), t[2].get<double>(), t[3].get<double>(), t[4].get<double>(), t[5].get<double>(), t[6].get<double>());
-  fmt::print("{:>8} {:>9} {:>9} {:>9}\n", "from us", "late", "long", "done");
-  for (const Json& b : played["histogram"]) fmt::print("{:>8.0f} {:>9} {:>9} {:>9}\n", b[0].get<double>(), b[1].dump(), b[2].dump(), b[3].dump());
-  std::fflush(stdout);
-}
 }  // namespace
 
 Json realtime(const Setup& setup, double seconds, bool print) {
@@ -63,7 +53,7 @@ Json realtime(const Setup& setup, double seconds, bool print) {
   row["lateCycles"] = played["lateCycles"];
   row["withinStep"] = withinStep(played["histogram"]);
   for (const Json& t : played["times"]) row[t[0].get<std::string>()] = {{"p50", t[2]}, {"p90", t[3]}, {"p99", t[4]}, {"p99.9", t[5]}, {"longest", t[6]}};
-  if (print) printTable(row, played);
+  if (print) fmt::print("{} in real time over TCP, {} late cycles\n{}", setup.world.title, played["lateCycles"].get<std::int64_t>(), played["table"].get<std::string>());
   return Json::array({row});
 }
 

@@ -98,6 +98,15 @@ TEST_CASE("stdout holds the ports first and the result last, and nothing else") 
   REQUIRE(p.wait() == 0);
 }
 
+TEST_CASE("--histogram tells on stderr how late and how long cycles were") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("small.lua", kSmall);
+  const Finished f = runToEnd(host({"--config", config, "--rate", "max", "--duration", "0.1", "--histogram"}));
+  REQUIRE(f.code == 0);
+  REQUIRE_THAT(f.errors, Contains("99.9 %") && Contains("long         5"));
+  REQUIRE_THAT(runToEnd(host({"--config", config, "--rate", "max", "--duration", "0.1"})).errors, !Contains("99.9 %"));
+}
+
 TEST_CASE("SIGINT and SIGTERM end a run with its result") {
   TemporaryFolder folder;
   for (const int number : {SIGINT, SIGTERM}) {

@@ -73,6 +73,11 @@ std::string Host::open() {
                      portText(root, "/sys/server/net/monitors"));
 }
 
+std::string Host::histogram() {
+  Leaf& loop = kernel_.root().require<Leaf>(kSimulation);
+  return loop.classObject()->method("paceTable") ? callMethod(loop, "paceTable", {}).plain() : fmt::format("{} has no paceTable()\n", kSimulation);
+}
+
 std::string Host::run() {
   Node& root = kernel_.root();
   const double start = numberAt(root, kSimulation, "time");

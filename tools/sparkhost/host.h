@@ -21,6 +21,8 @@ class Host {
   void build();
   /// Opens the ports and returns the first line of stdout.
   std::string open();
+  /// How late and how long cycles were, for people.
+  std::string histogram();
   /// Runs until its end and returns the last line of stdout.
   std::string run();
 

@@ -20,7 +20,7 @@ struct Options {
   std::vector<std::string> pluginPaths, scenePaths;  ///< absolute, existing folders
   std::string logLevel = "info";
   std::string describe;  ///< class name, "" for none
-  bool check = false, listPlugins = false;
+  bool check = false, listPlugins = false, histogram = false;
   bool alone = false;  ///< nobody looks in: no control socket
 };
 

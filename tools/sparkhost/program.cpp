@@ -52,12 +52,13 @@ void printDescriptions(spark::Kernel& kernel, const sparkhost::Options& options)
   if (!options.describe.empty()) fmt::print("{}", sparkhost::classDescription(kernel, options.describe));
 }
 
-void runHouse(sparkhost::Host& host, const std::string& firstLine) {
+void runHouse(sparkhost::Host& host, const std::string& firstLine, bool histogram) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   sparkhost::StatusLine::install(host.kernel(), terminal);
   printLine(firstLine);
   const std::string lastLine = host.run();
   if (terminal) fmt::print(stderr, "\n");
+  if (histogram) fmt::print(stderr, "{}", host.histogram());
   printLine(lastLine);
 }
 
@@ -75,6 +76,6 @@ int sparkhost::runProgram(int argc, char** argv) {
     host->build();
     if (!options.check) firstLine = host->open();
   });
-  if (!firstLine.empty()) orExit(1, [&] { runHouse(*host, firstLine); });
+  if (!firstLine.empty()) orExit(1, [&] { runHouse(*host, firstLine, options.histogram); });
   return 0;
 }

@@ -287,6 +287,9 @@ TEST_CASE("Cycles are counted by how long they took, and in real time by how lat
   const Value histogram = getProperty(*f.simulation, "histogram");
   for (const Value& bucket : histogram.toList()) counted += bucket.at(2)->toInteger();
   CHECK(counted == 6);
+  const std::string table = callMethod(*f.simulation, "paceTable", {}).toString();
+  CHECK(table.find("late") != std::string::npos);
+  CHECK(table.find("99.9 %") != std::string::npos);
 
   callMethod(*f.simulation, "resetTimers", {});
   CHECK(row(1)[1].toInteger() == 0);

@@ -1,0 +1,42 @@
+"""What the judges of all milestones use: running programs and tests."""
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+BIN = ROOT / "build/release/bin"
+PASS, FAIL, OPEN = "pass", "FAIL", "open"
+
+
+def say(text):
+    print(f"\n== {text}", file=sys.stderr, flush=True)
+
+
+def run(command, **options):
+    """A finished process with its output; stderr goes through unless it is wanted."""
+    return subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, text=True, **options)
+
+
+def build(preset, *targets):
+    say(f"Building {preset}")
+    subprocess.run(["cmake", "--preset", preset], cwd=ROOT, stdout=sys.stderr, check=True)
+    subprocess.run(["cmake", "--build", "--preset", preset, *(["--target", *targets] if targets else [])], cwd=ROOT, stdout=sys.stderr, check=True)
+
+
+def tests(*patterns):
+    """Runs the ctest programs of the release build whose names match; each pattern must match one."""
+    with tempfile.NamedTemporaryFile(suffix=".xml") as report:
+        say("Testing " + ", ".join(patterns))
+        subprocess.run(["ctest", "--preset", "release", "-R", "^(" + "|".join(patterns) + ")$", "--output-junit", report.name], cwd=ROOT, stdout=sys.stderr)
+        cases = list(xml.parse(report.name).getroot().iter("testcase"))
+    names = [c.get("name") for c in cases]
+    skipped = [c.get("name") for c in cases if c.find("skipped") is not None]
+    failed = [c.get("name") for c in cases if c.get("status") == "fail"]
+    missing = [p for p in patterns if not any(re.fullmatch(p, n) for n in names)]
+    measured = f"{len(names) - len(failed) - len(skipped)} of {len(names)} test programs passed"
+    for what, which in (("failed", failed), ("skipped", skipped), ("missing", missing)):
+        if which:
+            measured += f"; {what}: {', '.join(which)}"
+    return measured, FAIL if failed or missing else OPEN if skipped else PASS
