@@ -1,6 +1,7 @@
 #include "spark/class_object.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "spark/error.h"
@@ -79,6 +80,7 @@ ClassObject::ClassObject(ClassDescription description, Plugin* plugin) : descrip
     }
   }
   for (Method& m : generated) description_.methods.push_back(std::move(m));
+  fillCasts();  // class objects are queried before they are resolved
 }
 
 ClassObject::~ClassObject() { class_ = nullptr; }
@@ -112,6 +114,7 @@ void ClassObject::resolve() {
   for (const Hook& h : description_.hooks) hooks_.push_back(&h);
   for (const Property* p : properties())
     if (p->state) stateProperties_.push_back(p);
+  fillCasts();
   resolved_ = true;
 }
 
@@ -132,11 +135,18 @@ bool ClassObject::isA(std::string_view className) {
   return false;
 }
 
-void* ClassObject::cast(Leaf* leaf, const InterfaceId& id) const {
+void ClassObject::fillCasts() {
+  std::vector<Cast> all;
   for (const ClassObject* c = this; c; c = c->base_)
     for (const auto& i : c->description_.interfaces)
-      if (i.id.id == id.id) return i.cast(leaf);
-  return nullptr;
+      if (std::none_of(all.begin(), all.end(), [&](const Cast& known) { return known.id == i.id.id; })) all.push_back({i.id.id, i.cast});
+  castMask_ = std::bit_ceil(4 * all.size() + 1) - 1;
+  casts_.assign(castMask_ + 1, Cast{});
+  for (const Cast& cast : all) {
+    std::size_t i = cast.id & castMask_;
+    while (casts_[i].id) i = (i + 1) & castMask_;
+    casts_[i] = cast;
+  }
 }
 
 const Property* ClassObject::property(std::string_view name) {

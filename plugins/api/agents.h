@@ -64,6 +64,16 @@ class Perceptor : public SceneNode {
   std::string predicateName_;
 };
 
+/// Something that several perceptors look at, as eyes look at one scene: it is brought up to date once, before the first of them senses.
+/// Offered by perceptors.
+class ISharedView {
+ public:
+  SPARK_INTERFACE(ISharedView, 1);
+  virtual ~ISharedView() = default;
+  /// The sense phase, in the simulation's thread: this perceptor will be asked, and none was asked yet. `round` differs from phase to phase.
+  virtual void share(std::uint64_t round) = 0;
+};
+
 /// Acts for its agent. Registered by `gamecontrol`.
 class Effector : public SceneNode {
   SPARK_CLASS(Effector, SceneNode)

@@ -13,11 +13,12 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t v) { return (h ^ v) * 0x9e3779b
 EntryKey keyOf(const Predicates& predicates, std::uint32_t token) {
   const auto& tokens = predicates.tokens();
   EntryKey key{hashBytes(Element(predicates, token).head()), 1};
-  for (std::uint32_t i = token; i < tokens[token].end; ++i) {
+  const std::uint32_t end = token + (tokens[token].kind == Token::Kind::list ? tokens[token].size : 1);
+  for (std::uint32_t i = token; i < end; ++i) {
     const Token& t = tokens[i];
     key.content = mix(key.content, static_cast<std::uint64_t>(t.kind));
     switch (t.kind) {
-      case Token::Kind::list: key.content = mix(key.content, t.end - i); break;
+      case Token::Kind::list: key.content = mix(key.content, t.size); break;
       case Token::Kind::text: key.content = mix(key.content, hashBytes(predicates.textOf(t))); break;
       case Token::Kind::number: key.content = mix(key.content, std::bit_cast<std::uint64_t>(t.number)); break;
       case Token::Kind::integer: key.content = mix(key.content, static_cast<std::uint64_t>(t.integer)); break;

@@ -19,7 +19,7 @@ class SexpParser : public Leaf, public IParser {
   }
 
   ReadResult parse(std::string_view message, Predicates& out) override {
-    return readSexp(message, out, {static_cast<std::uint32_t>(maxDepth_), static_cast<std::uint32_t>(maxTokens_)});
+    return readSexp(message, out, {static_cast<std::uint32_t>(maxDepth_), static_cast<std::uint32_t>(maxTokens_), false});
   }
   void write(const Predicates& predicates, std::string& out) override { writeSexp(predicates, decimals_, out); }
 

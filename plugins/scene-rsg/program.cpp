@@ -33,7 +33,7 @@ std::string_view resolve(const std::array<std::pair<std::string_view, std::strin
   return word;
 }
 
-Site siteOf(const Element& e) { return {e.token().line, e.token().column}; }
+Site siteOf(const Element& e) { return {e.line(), e.column()}; }
 
 Statement failing(const Site& site, std::string sentence) {
   Statement s;
@@ -217,7 +217,7 @@ void checkHeader(std::string_view resource, const Element& header) {
   std::string found = header.isList() ? "(" : std::string(header.text());
   for (std::size_t i = 0; header.isList() && i < std::min<std::size_t>(header.size(), 4); ++i)
     found += (i ? " " : "") + (header.at(i).isList() ? "..." : std::string(header.at(i).text().substr(0, 32)));
-  throw Error(place(resource, header.token().line, header.token().column) + "expected the header (RSG 0 1) or (RDS 0 1), found " +
+  throw Error(place(resource, header.line(), header.column()) + "expected the header (RSG 0 1) or (RDS 0 1), found " +
               found.substr(0, 140) + (header.isList() ? ")" : ""));
 }
 

@@ -16,10 +16,10 @@ inline void checkElement(const Element& e, std::uint32_t end) {
   (void)e.integer();
   (void)e.text().size();
   if (!e.isList()) return;
-  if (t.end <= e.index() || t.end > end) std::abort();
+  if (t.size == 0 || t.size > end - e.index()) std::abort();
   (void)e.head();
   (void)e.named("unum");
-  for (const Element inner : e) checkElement(inner, t.end);
+  for (const Element inner : e) checkElement(inner, e.index() + t.size);
 }
 
 inline void checkTree(const Predicates& p) {

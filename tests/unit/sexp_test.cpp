@@ -104,7 +104,7 @@ TEST_CASE("Tokens know line and column, from 1") {
   Predicates p;
   REQUIRE(readSexp("(a \"b\"\n  (c)\n)", p).message.empty());
   std::vector<std::pair<int, int>> at;
-  for (const Token& t : p.tokens()) at.emplace_back(t.line, t.column);
+  for (std::uint32_t i = 0; i < p.size(); ++i) at.emplace_back(Element(p, i).line(), Element(p, i).column());
   CHECK(at == std::vector<std::pair<int, int>>{{1, 1}, {1, 2}, {1, 4}, {2, 3}, {2, 4}});
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("200,000 nested parentheses are refused in no time, and read where the
   const ReadResult r = readSexp(deep + std::string(200000, ')'), p, {300000, 300000});
   CHECK(r.message.empty());
   CHECK(p.size() == 200000);
-  CHECK(p.tokens()[0].end == 200000);
+  CHECK(p.tokens()[0].size == 200000);
 }
 
 TEST_CASE("Reading appends, and an error takes back only its own expression") {

@@ -111,12 +111,26 @@ class ClassObject : public Leaf {
   friend class Kernel;
   friend class Loader;
   friend class Node;
-  void* cast(Leaf* leaf, const InterfaceId& id) const;
+  /// The leaf as class or interface `id`, nullptr when it is none; once resolved.
+  void* cast(Leaf* leaf, const InterfaceId& id) const {
+    for (std::size_t i = id.id & castMask_; casts_[i].id; i = (i + 1) & castMask_)
+      if (casts_[i].id == id.id) return casts_[i].to(leaf);
+    return nullptr;
+  }
+  void fillCasts();
   void resolve();
   std::int64_t livingCount() const;
   std::string pluginName() const;
 
+  /// Own and inherited interfaces by id, in open addressing with room for misses: queries are what tree walks spend their time on.
+  struct Cast {
+    std::uint64_t id = 0;
+    void* (*to)(Leaf*) = nullptr;
+  };
+
   ClassDescription description_;
+  std::vector<Cast> casts_{Cast{}};
+  std::uint64_t castMask_ = 0;
   Kernel* kernel_ = nullptr;
   std::vector<const Hook*> hooks_;
   std::vector<const Property*> stateProperties_;

@@ -12,18 +12,22 @@
 
 namespace spark {
 
-/// One token of the buffer. A list's `end` is the index behind its last element.
+/// One token of the buffer. Lists hold sizes and short texts stand in the token itself, so that a list means the same wherever it is copied.
 struct Token {
   enum class Kind : std::uint8_t { list, text, number, integer };
+  static constexpr std::uint32_t kShort = 8;  ///< bytes of text that a token has room for
   Kind kind = Kind::text;
-  bool quoted = false;         ///< text only: was written in quotes
-  std::uint32_t begin = 0;     ///< text: offset into the text store
-  std::uint32_t size = 0;      ///< text: bytes
-  std::uint32_t end = 0;       ///< list: index behind the last element
-  double number = 0;           ///< number
-  std::int64_t integer = 0;    ///< integer
-  std::uint32_t line = 0, column = 0;  ///< where it was read, from 1; 0 when it was written
+  bool quoted = false;       ///< text only: was written in quotes
+  std::uint32_t size = 0;    ///< list: tokens in it, itself included; text: bytes
+  union {
+    double number;
+    std::int64_t integer = 0;
+    char letters[kShort];    ///< text of at most kShort bytes
+    std::size_t begin;       ///< longer text: offset into the text store
+    std::uint32_t outer;     ///< list that is still open: index of the open list around it
+  };
 };
+static_assert(sizeof(Token) == 16);
 
 class Predicates;
 
@@ -42,6 +46,9 @@ class Element {
   double number() const;
   /// The number truncated; out of range is clamped, NaN is 0.
   std::int64_t integer() const;
+  /// Where it was read, from 1; 0 when it was written.
+  std::uint32_t line() const;
+  std::uint32_t column() const;
 
   /// Number of elements of a list (0 for atoms). Linear.
   std::size_t size() const;
@@ -58,17 +65,24 @@ class Element {
    public:
     Iterator(const Predicates& owner, std::uint32_t index) : owner_(&owner), index_(index) {}
     Element operator*() const { return Element(*owner_, index_); }
-    Iterator& operator++();
+    Iterator& operator++() {
+      index_ = Element(*owner_, index_).behind();
+      return *this;
+    }
     bool operator!=(const Iterator& o) const { return index_ != o.index_; }
 
    private:
     const Predicates* owner_;
     std::uint32_t index_;
   };
-  Iterator begin() const;
-  Iterator end() const;
+  Iterator begin() const { return {*owner_, isList() ? index_ + 1 : index_}; }
+  Iterator end() const { return {*owner_, isList() ? behind() : index_}; }
 
  private:
+  friend class Predicates;
+  /// Index of the token behind it.
+  std::uint32_t behind() const { return index_ + (isList() ? token().size : 1); }
+  double numberInText() const;
   const Predicates* owner_ = nullptr;
   std::uint32_t index_ = 0;
 };
@@ -80,12 +94,45 @@ class Predicates {
   bool empty() const { return tokens_.empty(); }
 
   /// Writing: open a list with a name (or none), add atoms, close it. Lists left open at the end are a programming error.
-  Predicates& open(std::string_view name = {});
-  Predicates& close();
-  Predicates& add(std::string_view text, bool quoted = false);
+  Predicates& open(std::string_view name = {}) {
+    Token t;
+    t.kind = Token::Kind::list;
+    t.size = 1;
+    t.outer = open_;
+    open_ = size();
+    tokens_.push_back(t);
+    return name.empty() ? *this : add(name);
+  }
+  Predicates& close() {
+    Token& t = tokens_[open_];
+    t.size = size() - open_;
+    open_ = t.outer;
+    return *this;
+  }
+  Predicates& add(std::string_view text, bool quoted = false) {
+    Token t;
+    t.quoted = quoted;
+    t.size = static_cast<std::uint32_t>(text.size());
+    if (text.size() <= Token::kShort) text.copy(t.letters, Token::kShort);
+    else t.begin = store(text);
+    tokens_.push_back(t);
+    return *this;
+  }
   Predicates& add(const char* text) { return add(std::string_view(text)); }
-  Predicates& add(double number);
-  Predicates& add(std::int64_t integer);
+  Predicates& add(double number) {
+    Token t;
+    t.kind = Token::Kind::number;
+    t.number = number;
+    tokens_.push_back(t);
+    return *this;
+  }
+  Predicates& add(std::int64_t integer) {
+    Token t;
+    t.kind = Token::Kind::integer;
+    t.integer = integer;
+    tokens_.push_back(t);
+    return *this;
+  }
   Predicates& add(int integer) { return add(static_cast<std::int64_t>(integer)); }
   /// `(name value)`.
   template <class T>
@@ -100,16 +147,47 @@ class Predicates {
   void append(const Element& element);
 
   Element::Iterator begin() const { return {*this, 0}; }
-  Element::Iterator end() const { return {*this, static_cast<std::uint32_t>(tokens_.size())}; }
+  Element::Iterator end() const { return {*this, size()}; }
   const std::vector<Token>& tokens() const { return tokens_; }
-  std::string_view textOf(const Token& t) const { return std::string_view(text_).substr(t.begin, t.size); }
+  /// The text of a token of this buffer; it may stand in the token.
+  std::string_view textOf(const Token& t) const { return {t.size <= Token::kShort ? t.letters : text_.data() + t.begin, t.size}; }
+  std::string_view textOf(Token&&) const = delete;
   std::uint32_t size() const { return static_cast<std::uint32_t>(tokens_.size()); }
 
  private:
+  friend class Element;
+  struct Place {
+    std::uint32_t line = 0, column = 0;
+  };
+  static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
+  std::size_t store(std::string_view text);
+
   std::vector<Token> tokens_;
-  std::string text_;
-  std::vector<std::uint32_t> openLists_;
+  std::string text_;           ///< what does not stand in tokens
+  std::vector<Place> places_;  ///< of the tokens up to the last that was marked
+  std::uint32_t open_ = kNone; ///< the innermost open list
 };
+
+inline const Token& Element::token() const { return owner_->tokens_[index_]; }
+inline std::string_view Element::text() const {
+  const Token& t = token();
+  return t.kind == Token::Kind::text ? owner_->textOf(t) : std::string_view();
+}
+inline double Element::number() const {
+  const Token& t = token();
+  return t.kind == Token::Kind::number ? t.number : t.kind == Token::Kind::text ? numberInText() : t.kind == Token::Kind::integer ? static_cast<double>(t.integer) : 0;
+}
+inline Element Element::at(std::size_t i) const {
+  if (!isList()) return {};
+  const std::uint32_t end = behind();
+  Element e(*owner_, index_ + 1);
+  while (e.index_ < end && i-- > 0) e.index_ = e.behind();
+  return e.index_ < end ? e : Element();
+}
+inline std::string_view Element::head() const {
+  const Element first = at(0);
+  return first ? first.text() : std::string_view();
+}
 
 /// The top-level elements as a list of values (lists, texts, numbers), for scripts and tools; allocates.
 List toList(const Predicates& predicates);
@@ -127,6 +205,7 @@ struct ReadResult {
 struct ReadLimits {
   std::uint32_t maxDepth = 64;
   std::uint32_t maxTokens = 65536;
+  bool places = true;  ///< elements know where they were read
 };
 
 /// Reads top-level expressions of the sfsexp dialect (atoms, "..." and '...' quoting, backslash escapes, ';' comments where a token may
