@@ -45,7 +45,6 @@ class FakeSceneServer : public Node, public ISceneServer {
   void importScene(std::string_view, Node&, const List&) override {}
   void markModified() override { ++modified; }
   std::uint64_t modifiedCount() const override { return modified; }
-  void moved(Transform&) override {}
   void place() override {}
   std::uint64_t modified = 0;
 };

@@ -35,9 +35,10 @@ void Channel::sort() {
   if (!dirty_ && sortedAt_ == kernel_->structureVersion()) return;
   kernel_->updateOrder();
   const bool first = order_ == Order::parentsFirst;
-  std::stable_sort(entries_.begin(), entries_.end(), [first](const Entry& a, const Entry& b) {
+  const auto before = [first](const Entry& a, const Entry& b) {
     return first ? a.node->preOrder_ < b.node->preOrder_ : a.node->postOrder_ < b.node->postOrder_;
-  });
+  };
+  if (!std::is_sorted(entries_.begin(), entries_.end(), before)) std::stable_sort(entries_.begin(), entries_.end(), before);
   sortedAt_ = kernel_->structureVersion();
   dirty_ = false;
 }

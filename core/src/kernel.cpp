@@ -175,17 +175,26 @@ Leaf& Kernel::create(std::string_view className, std::string_view path) {
   return at->add(std::move(leaf));
 }
 
+void Kernel::changed(Node* node) {
+  ++structureVersion_;
+  for (; node; node = node->parent_) node->changedAt_ = structureVersion_;
+}
+
 void Kernel::updateOrder() {
   if (orderedAt_ == structureVersion_) return;
   orderedAt_ = structureVersion_;
-  std::uint32_t pre = 0, post = 0;
-  const auto walk = [&](auto& self, Leaf& leaf) -> void {
-    leaf.preOrder_ = pre++;
-    if (Node* node = leaf.asNode())
-      for (const auto& c : node->children()) self(self, *c);
-    leaf.postOrder_ = post++;
-  };
-  walk(walk, *root_);
+  order_.clear();
+  std::uint32_t post = 0;
+  enumerate(*root_, post);
+}
+
+void Kernel::enumerate(Leaf& leaf, std::uint32_t& post) {
+  leaf.preOrder_ = static_cast<std::uint32_t>(order_.size());
+  order_.push_back(&leaf);
+  if (Node* node = leaf.asNode())
+    for (const auto& c : node->children()) enumerate(*c, post);
+  leaf.lastBelow_ = static_cast<std::uint32_t>(order_.size() - 1);
+  leaf.postOrder_ = post++;
 }
 
 std::uint64_t Kernel::streamSeed(const Leaf& owner, std::string_view purpose) {

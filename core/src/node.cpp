@@ -50,7 +50,7 @@ void Leaf::setName(std::string name) {
   if (name.empty() && parent_) refuse("what has a parent needs a name");
   if (linked_ && Node::isFixed(*this)) refuse("classes, plugins and their folders keep their names");
   name_ = std::move(name);
-  if (linked_) kernel().changed();
+  if (linked_) kernel().changed(parent_);
 }
 
 Kernel& Leaf::kernel() const { return *class_->kernel_; }
@@ -153,6 +153,26 @@ Leaf* Node::child(std::string_view name) const {
   return nullptr;
 }
 
+void Node::walk(const InterfaceId& id, bool deep, Take take, void* list) const {
+  for (const auto& c : children_) {
+    void* match = c->query(id);
+    if (match) take(list, match);
+    if (Node* node = !match || deep ? c->asNode() : nullptr) node->walk(id, deep, take, list);
+  }
+}
+
+/// In the flat order the descendants are one range.
+void Node::collectAs(const InterfaceId& id, bool deep, Take take, void* list) const {
+  if (!linked_ || kernel().orderedAt_ != kernel().structureVersion()) return walk(id, deep, take, list);
+  const std::vector<Leaf*>& order = kernel().order_;
+  for (std::size_t i = preOrder_ + 1; i <= lastBelow_; ++i) {
+    void* match = order[i]->query(id);
+    if (!match) continue;
+    take(list, match);
+    if (!deep) i = order[i]->lastBelow_;
+  }
+}
+
 void Node::throwLacks(const Leaf& leaf, const InterfaceId& id) { Kernel::throwLacks(leaf, id); }
 
 bool Node::isFixed(const Leaf& leaf) {
@@ -233,7 +253,7 @@ void Node::link(Leaf& leaf) {
   Kernel& kernel = leaf.kernel();
   const Changing guard(leaf);
   leaf.linked_ = true;
-  kernel.changed();
+  kernel.changed(leaf.parent_);
   bool entered = false;
   try {
     leaf.onLink();
@@ -245,7 +265,7 @@ void Node::link(Leaf& leaf) {
     if (entered) leave(leaf);
     kernel.events().unhook(leaf);
     leaf.linked_ = false;
-    kernel.changed();
+    kernel.changed(leaf.parent_);
     throw;
   }
 }
@@ -266,7 +286,7 @@ void Node::unlink(Leaf& leaf) {
   Kernel& kernel = leaf.kernel();
   kernel.events().unhook(leaf);
   leaf.linked_ = false;
-  kernel.changed();
+  kernel.changed(leaf.parent_);
 }
 
 void Node::bury(Leaf& leaf) {
@@ -312,7 +332,8 @@ void Node::reparent(Leaf& child, Node& newParent) {
     from.children_.erase(from.children_.begin() + static_cast<std::ptrdiff_t>(i));
     child.parent_ = &to;
     to.children_.push_back(std::move(moving));
-    to.kernel().changed();
+    to.kernel().changed(&from);
+    to.kernel().changed(&to);
   };
   carry(*this, newParent);
   try {

@@ -27,8 +27,6 @@ class ISceneServer {
   /// Tells monitors and caches that nodes or materials changed (counted).
   virtual void markModified() = 0;
   virtual std::uint64_t modifiedCount() const = 0;
-  /// A transform was moved by hand (not by its body): its subtree is placed, and bodies below follow, before the next physics phase.
-  virtual void moved(Transform& transform) = 0;
   /// Brings world matrices up to date, top-down, and lets bodies below hand-moved transforms follow.
   virtual void place() = 0;
 };
@@ -149,9 +147,7 @@ class Transform : public SceneNode {
  private:
   void movedByHand() {
     moved_ = dirty_ = true;
-    if (!isLinked()) return;
-    world_ = worldNow();
-    if (auto* server = kernel().root().find<ISceneServer>("/sys/server/scene")) server->moved(*this);
+    if (isLinked()) world_ = worldNow();
   }
   Matrix local_ = Matrix::Identity(), world_ = Matrix::Identity();
   bool moved_ = false, dirty_ = true;

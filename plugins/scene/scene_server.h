@@ -46,7 +46,6 @@ class SceneServer : public Node, public ISceneServer {
   void importScene(std::string_view file, Node& root, const List& arguments) override;
   void markModified() override { ++modified_; }
   std::uint64_t modifiedCount() const override { return modified_; }
-  void moved(Transform&) override {}
   void place() override;
 
   /// Material lists of meshes.

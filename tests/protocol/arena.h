@@ -113,7 +113,6 @@ class TestScenes : public Node, public ISceneServer {
   }
   void markModified() override { ++modified_; }
   std::uint64_t modifiedCount() const override { return modified_; }
-  void moved(Transform&) override {}
   void place() override {}
 
  private:

@@ -320,6 +320,75 @@ TEST_CASE("Descendants of a type are collected depth first") {
   CHECK(core.top->ancestor<Thing>() == nullptr);
 }
 
+TEST_CASE("What is collected does not depend on whether the order is up to date") {
+  Core core;
+  Thing &a = core.make("a"), &b = core.make(a, "b"), &c = core.make(b, "c"), &d = core.make("d");
+  const auto collected = [](const Node& from, bool deep) {
+    std::vector<Thing*> out;
+    from.collect(out, deep);
+    return out;
+  };
+  const auto check = [&](const std::vector<Thing*>& all, const std::vector<Thing*>& shallow, const std::vector<Thing*>& belowA) {
+    CHECK(collected(*core.top, true) == all);
+    CHECK(collected(*core.top, false) == shallow);
+    CHECK(collected(a, true) == belowA);
+    std::vector<Leaf*> leaves;
+    core.top->collect(leaves);
+    CHECK(leaves == std::vector<Leaf*>(all.begin(), all.end()));
+    std::vector<Node*> nodes;
+    core.top->collect(nodes, false);
+    CHECK(nodes == std::vector<Node*>(shallow.begin(), shallow.end()));
+  };
+  check({&a, &b, &c, &d}, {&a, &d}, {&b, &c});
+  core.kernel.updateOrder();
+  check({&a, &b, &c, &d}, {&a, &d}, {&b, &c});
+  Thing& e = core.make(a, "e");
+  check({&a, &b, &c, &e, &d}, {&a, &d}, {&b, &c, &e});
+  core.kernel.updateOrder();
+  check({&a, &b, &c, &e, &d}, {&a, &d}, {&b, &c, &e});
+  a.reparent(b, d);
+  check({&a, &e, &d, &b, &c}, {&a, &d}, {&e});
+  core.kernel.updateOrder();
+  check({&a, &e, &d, &b, &c}, {&a, &d}, {&e});
+  a.remove(e);
+  check({&a, &d, &b, &c}, {&a, &d}, {});
+  core.kernel.updateOrder();
+  check({&a, &d, &b, &c}, {&a, &d}, {});
+}
+
+TEST_CASE("What is not linked is collected all the same") {
+  Core core;
+  core.kernel.updateOrder();
+  auto made = core.kernel.classOf("Thing").create();
+  Node& loose = *made->asNode();
+  Leaf& inner = loose.create("Thing", "inner");
+  std::vector<Thing*> all;
+  loose.collect(all);
+  CHECK(all == std::vector<Thing*>{inner.as<Thing>()});
+}
+
+TEST_CASE("A node knows when something changed below it") {
+  Core core;
+  Thing &a = core.make("a"), &b = core.make("b");
+  const auto changes = [&](const Node& node, const auto& act) {
+    const std::uint64_t before = node.changedAt();
+    act();
+    return node.changedAt() > before;
+  };
+  CHECK(changes(a, [&] { core.make(a, "x"); }));
+  CHECK(changes(*core.top, [&] { core.make(a, "y"); }));
+  CHECK(core.top->changedAt() == core.kernel.structureVersion());
+  CHECK_FALSE(changes(b, [&] { core.make(a, "z"); }));
+  CHECK(changes(a, [&] { a.child("z")->setName("renamed"); }));
+  CHECK_FALSE(changes(a, [&] { a.setName("other"); }));
+  CHECK(changes(*core.top, [&] { a.setName("again"); }));
+  CHECK(changes(a, [&] { a.remove(*a.child("y")); }));
+  CHECK(changes(b, [&] { a.reparent(*a.child("x"), b); }));
+  CHECK(changes(a, [&] { b.reparent(*b.child("x"), a); }));
+  CHECK(changes(b, [&] { a.reparent(*a.child("x"), b); }));
+  CHECK(changes(a, [&] { a.reparent(*a.child("renamed"), b); }));
+}
+
 TEST_CASE("Ids are never used again, and several kernels live side by side") {
   Core core, other;
   Thing& a = core.make("a");

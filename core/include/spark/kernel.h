@@ -137,7 +137,8 @@ class Kernel {
 
   /// Counts every change of the tree's shape and names: caches are valid while it stays.
   std::uint64_t structureVersion() const { return structureVersion_; }
-  /// Numbers all linked nodes in tree order if the shape changed since the last call.
+  /// Lists and numbers all linked nodes in tree order if the shape changed since the last call; every emit begins with it. Whoever changes
+  /// the tree and then collects from much of it calls it in between. The simulation's thread only.
   void updateOrder();
 
   /// Asks the host to end; safe from signal handlers and threads.
@@ -153,7 +154,9 @@ class Kernel {
   [[noreturn]] static void throwLacks(const Leaf& leaf, const InterfaceId& id);
   ClassObject& addClass(ClassDescription description, Plugin* plugin);
   std::uint64_t streamSeed(const Leaf& owner, std::string_view purpose);
-  void changed() { ++structureVersion_; }
+  /// The shape, or a name, changed at `node` or right below it.
+  void changed(Node* node);
+  void enumerate(Leaf& leaf, std::uint32_t& post);
 
   Log log_;
   Jobs jobs_;
@@ -165,6 +168,7 @@ class Kernel {
   Node* classesNode_ = nullptr;
   Node* pluginsNode_ = nullptr;
   std::uint64_t seed_ = 1, structureVersion_ = 1, orderedAt_ = 0, nextId_ = 1;
+  std::vector<Leaf*> order_;  // by preOrder_; valid while orderedAt_ is the structure's version
   int changing_ = 0;  // leaves that are being linked, moved or unlinked
   std::map<std::uint64_t, std::uint32_t> streamOrdinals_;
   std::mutex streamMutex_;

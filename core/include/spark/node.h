@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace spark {
@@ -60,9 +61,10 @@ class Ref {
  public:
   Ref() = default;
   Ref(T* object);
-  Ref(const Ref& other) : life_(other.life_), object_(other.object_) {
+  Ref(const Ref& other) noexcept : life_(other.life_), object_(other.object_) {
     if (life_) ++life_->references;
   }
+  Ref(Ref&& other) noexcept : life_(std::exchange(other.life_, nullptr)), object_(std::exchange(other.object_, nullptr)) {}
   Ref& operator=(const Ref& other) {
     if (other.life_) ++other.life_->references;
     release();
@@ -173,6 +175,7 @@ class Leaf {
   mutable detail::Life* life_ = nullptr;
   std::uint64_t id_ = 0;
   std::uint32_t preOrder_ = 0, postOrder_ = 0;
+  std::uint32_t lastBelow_ = 0;  ///< preOrder_ of the last descendant, its own without
   bool linked_ = false;
   bool hooked_ = false;    ///< some channel has an entry of it
   bool changing_ = false;  ///< is being linked, moved or unlinked: it must stay where it is
@@ -191,6 +194,9 @@ class Node : public Leaf {
 
   /// The children in order; owned by this node, valid until the tree changes.
   const std::vector<std::unique_ptr<Leaf>>& children() const { return children_; }
+  /// The kernel's structureVersion() when somebody came, went, or got another name below this node last: who looks only at what is below
+  /// looks again when this grew.
+  std::uint64_t changedAt() const { return changedAt_; }
   /// The first child of that name, nullptr when there is none. Takes `name[k]`.
   Leaf* child(std::string_view name) const;
   /// Appends and links. Throws what onLink throws; the tree is then as before.
@@ -212,14 +218,11 @@ class Node : public Leaf {
   /// Moves a child to another parent (appended) without destroying anything; onMoved runs for all that moved (between linked parents;
   /// else they are linked or unlinked). Throws what onMoved and onLink throw; the child is then back, as the last one.
   void reparent(Leaf& child, Node& newParent);
-  /// All descendants that are a T, depth first, in child order; `deep` false: do not look below a match.
+  /// All descendants that are a T, depth first, in child order; `deep` false: do not look below a match. Costs little where the kernel's
+  /// order is up to date (Kernel::updateOrder), a walk elsewhere.
   template <class T>
   void collect(std::vector<T*>& out, bool deep = true) const {
-    for (const auto& c : children_) {
-      T* match = c->as<T>();
-      if (match) out.push_back(match);
-      if ((!match || deep) && c->asNode()) c->asNode()->collect(out, deep);
-    }
+    collectAs(T::kInterface, deep, [](void* list, void* match) { static_cast<std::vector<T*>*>(list)->push_back(static_cast<T*>(match)); }, &out);
   }
   /// The first child that is a T, nullptr when there is none.
   template <class T>
@@ -238,6 +241,9 @@ class Node : public Leaf {
   Leaf& attach(std::unique_ptr<Leaf> leaf);
   void detach(Leaf& child);
   std::size_t indexOf(const Leaf& child) const;
+  using Take = void (*)(void* list, void* match);
+  void collectAs(const InterfaceId& id, bool deep, Take take, void* list) const;
+  void walk(const InterfaceId& id, bool deep, Take take, void* list) const;
   static bool isFixed(const Leaf& leaf);
   static void mustRest(const Leaf& leaf, const char* verb);
   static void linkChildren(Node& node);
@@ -248,6 +254,7 @@ class Node : public Leaf {
   static void unlink(Leaf& leaf);
   static void moved(Leaf& leaf);
   std::vector<std::unique_ptr<Leaf>> children_;
+  std::uint64_t changedAt_ = 0;
 };
 
 template <class T>
