@@ -19,7 +19,7 @@ double seconds(std::chrono::steady_clock::duration d) { return std::chrono::dura
 void GameControl::describe(Description<GameControl>& d) {
   d.doc("Makes agents of connections and behaviours, dispatches their actions, asks their perceptors.");
   d.property("createEffector", &GameControl::createEffector_).doc("Class of the effector with which an agent asks for its robot.");
-  d.property("expect", &GameControl::expect_).range(0, 64).doc("Holds the clock at cycle 0 until so many agents have sent scene, init and syn; they are numbered by team and number.");
+  d.property("expect", &GameControl::expect_).range(0, 1000).doc("Holds the clock at cycle 0 until so many agents have sent scene, init and syn; they are numbered by team and number.");
   d.property("maxAgents", &GameControl::maxAgents_).range(0, 1000).doc("Further agents are closed; clients that never said anything do not count.");
   d.property("maxPending", &GameControl::maxPending_).unit("bytes").range(1024, 1 << 28).doc("A client that sends more within one cycle is closed.");
   d.property("perceptDelay", &GameControl::perceptDelay_).range(0, 1).doc("Cycles between sensing and sending; the installed base has 1.");
@@ -63,10 +63,15 @@ void GameControl::note(const std::string& line) {
   log.info("{}", line);
 }
 
+/// Messages come in the order of participants, or nearly so: the search begins where the last one ended.
 GameControl::Participant* GameControl::participantOf(const IConnection& connection) const {
-  for (const auto* list : {&participants_, &newcomers_})
-    for (const auto& p : *list)
-      if (p->connection() == &connection) return p.get();
+  for (std::size_t n = participants_.size(), i = 0; i < n; ++i)
+    if (const auto& p = participants_[(lastHeard_ + i) % n]; p->connection() == &connection) {
+      lastHeard_ = (lastHeard_ + i) % n;
+      return p.get();
+    }
+  for (const auto& p : newcomers_)
+    if (p->connection() == &connection) return p.get();
   return nullptr;
 }
 
@@ -189,6 +194,8 @@ void GameControl::takeTurn(const Event& event) {
 
 void GameControl::sense(const Event& event) {
   if (!isTurn_) return;
+  ++round_;
+  for (const auto& p : participants_) p->share(round_);
   kernel().jobs().run(participants_.size(), [this, &event](std::size_t i) { participants_[i]->sense(event); });
   for (const auto& p : participants_) p->reportFault(kernel().log());
   if (perceptDelay_ == 0) deliver();

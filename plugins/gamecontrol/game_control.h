@@ -64,6 +64,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   std::vector<std::uint64_t> refusedBehaviors_;             ///< ids of those that could not be made an agent; not tried again
   mutable std::vector<AgentAspect*> agents_;                ///< of participants_; asked in the simulation's thread only
   mutable std::uint64_t agentsAt_ = 0;
+  mutable std::size_t lastHeard_ = 0;                       ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
   gamecontrol::LineBudget budget_{40};
 
@@ -76,6 +77,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   std::int64_t messagesDropped_ = 0, cycle_ = 0;
   int cyclesToTurn_ = 0;   ///< between the next cycle and the agents' next turn
   bool isTurn_ = true;     ///< they have it in this cycle
+  std::uint64_t round_ = 0;  ///< of sensing
   std::uint64_t parsersAt_ = 0, robotsAt_ = 0, behaviorsAt_ = 0;
   bool waiting_ = false;
   Clock::time_point waitingSince_{}, actedAt_{};

@@ -1,6 +1,7 @@
 #include "gamecontrol/participant.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace spark::gamecontrol {
 
@@ -59,7 +60,8 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
     warn(log, cycle, fmt::format("{} at {}:{}; the rest of that message is ignored.", result.message, result.line, result.column));
   for (const Element e : arrived_) synced_ |= isSync(e.head());
   pledged_ |= synced_;
-  keep(arrived_);
+  if (pending_.empty() && !holdingBack_ && number_ > 0) std::swap(pending_, arrived_);
+  else keep(arrived_);
   return {};
 }
 
@@ -79,14 +81,33 @@ void Participant::holdBack(std::string_view first) {
 }
 
 bool Participant::resolveRobot() {
-  effectors_.clear();
-  perceptors_.clear();
-  syncPredicate_.clear();
   AgentAspect* root = aspect();
-  if (!root) return false;
-  std::vector<Effector*> effectors;
-  root->collect(effectors);
-  for (Effector* e : effectors) effectors_.push_back({e->predicate(), e});
+  if (std::exchange(robotAt_, root ? root->changedAt() : 0) == robotAt_) return false;
+  perceptors_.clear();
+  shared_.clear();
+  if (!root) {
+    effectors_.clear();
+    syncPredicate_.clear();
+    return false;
+  }
+  const std::size_t effectors = resolveEffectors(*root);
+  std::vector<Perceptor*> perceptors;
+  root->collect(perceptors);
+  perceptors_.assign(perceptors.begin(), perceptors.end());
+  for (Perceptor* p : perceptors)
+    if (auto* view = p->as<ISharedView>()) shared_.push_back({p, view});
+  const bool first = !hadRobot_ && (!perceptors_.empty() || effectors > 1);
+  hadRobot_ |= first;
+  return first;
+}
+
+/// How many there are.
+std::size_t Participant::resolveEffectors(AgentAspect& root) {
+  std::vector<Effector*> found;
+  root.collect(found);
+  effectors_.clear();
+  syncPredicate_.clear();
+  for (Effector* e : found) effectors_.push_back({e->predicate(), e});
   // Of equal predicates the last in tree order counts.
   std::stable_sort(effectors_.begin(), effectors_.end(), [](const Slot& a, const Slot& b) { return a.predicate < b.predicate; });
   for (std::size_t i = 0; i + 1 < effectors_.size();)
@@ -94,17 +115,15 @@ bool Participant::resolveRobot() {
     else ++i;
   for (const Slot& s : effectors_)
     if (s.effector->as<ISyncEffector>()) syncPredicate_ = s.predicate;
-  std::vector<Perceptor*> perceptors;
-  root->collect(perceptors);
-  perceptors_.assign(perceptors.begin(), perceptors.end());
-  const bool first = !hadRobot_ && (!perceptors_.empty() || effectors.size() > 1);
-  hadRobot_ |= first;
-  return first;
+  return found.size();
 }
 
-Effector* Participant::effector(std::string_view predicate) const {
+Participant::Slot* Participant::slot(std::string_view predicate, std::size_t& guess) {
+  if (guess < effectors_.size() && effectors_[guess].predicate == predicate) return &effectors_[guess];
   const auto it = std::lower_bound(effectors_.begin(), effectors_.end(), predicate, [](const Slot& s, std::string_view p) { return s.predicate < p; });
-  return it != effectors_.end() && it->predicate == predicate ? it->effector.get() : nullptr;
+  if (it == effectors_.end() || it->predicate != predicate) return nullptr;
+  guess = static_cast<std::size_t>(it - effectors_.begin());
+  return &*it;
 }
 
 void Participant::realise(Log& log, std::int64_t cycle) {
@@ -114,17 +133,14 @@ void Participant::realise(Log& log, std::int64_t cycle) {
     skipCycle_ = false;
     return;
   }
+  std::size_t* guess = &firstSlot_;
   for (const Element action : pending_) {
     const std::string_view head = action.head();
     if (head.empty()) continue;
-    if (Effector* e = effector(head)) {
-      try {
-        if (const std::string why = e->act(action); !why.empty()) warn(log, cycle, why);
-      } catch (const std::exception& fault) {
-        warn(log, cycle, fmt::format("{} ({}) threw: {}", e->path(), e->classObject()->name(), fault.what()));
-      } catch (...) {
-        warn(log, cycle, fmt::format("{} ({}) threw {}", e->path(), e->classObject()->name(), kNoException));
-      }
+    Slot* s = slot(head, *guess);
+    if (s) guess = &s->next;
+    if (Effector* e = s ? s->effector.get() : nullptr) {
+      act(*e, action, log, cycle);
     } else if (hadRobot_ || head != kSync) {
       warn(log, cycle, fmt::format("no effector registered for predicate {}.", head));
     }
@@ -133,18 +149,34 @@ void Participant::realise(Log& log, std::int64_t cycle) {
   pendingBytes_ = 0;
 }
 
+void Participant::act(Effector& effector, const Element& action, Log& log, std::int64_t cycle) {
+  try {
+    if (const std::string why = effector.act(action); !why.empty()) warn(log, cycle, why);
+  } catch (const std::exception& fault) {
+    warn(log, cycle, fmt::format("{} ({}) threw: {}", effector.path(), effector.classObject()->name(), fault.what()));
+  } catch (...) {
+    warn(log, cycle, fmt::format("{} ({}) threw {}", effector.path(), effector.classObject()->name(), kNoException));
+  }
+}
+
 void Participant::promote() {
   if (!inside_) return;
+  if (pending_.empty()) std::swap(pending_, later_);
   for (const Element e : later_) pending_.append(e);
   later_.clear();
 }
 
+void Participant::share(std::uint64_t round) {
+  for (const Shared& s : shared_)
+    if (s.perceptor && isDue(*s.perceptor, nextCount())) s.view->share(round);
+}
+
 void Participant::sense(const Event& event) {
-  if (inside_ || heardFrom_ || counter_ == 0) ++counter_;
+  counter_ = nextCount();
   percepts_.clear();
   for (std::size_t i = 0; i < perceptors_.size(); ++i) {
     Perceptor* p = perceptors_[i].get();
-    if (!p || counter_ % std::max(1, p->interval()) != 0) continue;
+    if (!p || !isDue(*p, counter_)) continue;
     const std::uint32_t before = percepts_.size();
     try {
       p->sense(percepts_, event);

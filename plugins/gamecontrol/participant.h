@@ -15,6 +15,7 @@
 /// A client is idle until its first message: the cycles until then are not counted, so that what comes in every third cycle does not
 /// depend on how long it hesitated.
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -55,12 +56,14 @@ class Participant {
 
   /// A message came: parsed at once, realised in the next act. Returns "" or why the connection has to be closed.
   std::string receive(std::string_view message, std::size_t maxPending, Log& log, std::int64_t cycle);
-  /// Looks effectors and perceptors up again. True when it has a robot now and had none before.
+  /// Looks effectors and perceptors up again if something changed below its aspect. True when it has a robot now and had none before.
   bool resolveRobot();
   /// Realises what is pending.
   void realise(Log& log, std::int64_t cycle);
   /// What a behaviour thought of becomes pending.
   void promote();
+  /// Before the sense phase, in the simulation's thread: lets what its perceptors look at with others be brought up to date.
+  void share(std::uint64_t round);
   /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent.
   void sense(const Event& event);
   /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more.
@@ -87,7 +90,7 @@ class Participant {
 
   /// What was received and not realised yet.
   const Predicates& pending() const { return pending_; }
-  /// The last message that could be read; valid until the next one comes.
+  /// The last message that could be read; before it joined, and valid until the next one comes.
   const Predicates& lastMessage() const { return arrived_; }
   /// During the hold: it said who it is and waits for the clock.
   bool saidAll() const { return saidAll_; }
@@ -106,10 +109,20 @@ class Participant {
   struct Slot {
     std::string predicate;
     Ref<Effector> effector;
+    std::size_t next = 0;  ///< index of the one that was addressed after it last: agents say the same things in the same order
+  };
+  struct Shared {
+    Ref<Perceptor> perceptor;
+    ISharedView* view;
   };
   bool canSync() const { return !syncPredicate_.empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;
-  Effector* effector(std::string_view predicate) const;
+  std::size_t resolveEffectors(AgentAspect& root);
+  void act(Effector& effector, const Element& action, Log& log, std::int64_t cycle);
+  Slot* slot(std::string_view predicate, std::size_t& guess);
+  /// What the counter is in the next sense phase.
+  std::int64_t nextCount() const { return counter_ + (inside_ || heardFrom_ || counter_ == 0); }
+  static bool isDue(const Perceptor& p, std::int64_t count) { return count % std::max(1, p.interval()) == 0; }
   void keep(const Predicates& arrived);
   void encode();
   void warn(Log& log, std::int64_t cycle, std::string_view text);
@@ -132,10 +145,13 @@ class Participant {
   std::size_t pendingBytes_ = 0;
   std::string message_, first_;
   std::vector<Slot> effectors_;  ///< by predicate
+  std::size_t firstSlot_ = 0;    ///< the one that was addressed first last
   std::vector<Ref<Perceptor>> perceptors_;
+  std::vector<Shared> shared_;
   std::size_t faulty_ = kNone;   ///< index of a perceptor that threw
   std::string fault_;
   std::string syncPredicate_;
+  std::uint64_t robotAt_ = 0;  ///< its aspect's changedAt() at the last look
   std::int64_t counter_ = 0, sent_ = 0;
   LineBudget budget_{10};
 };

@@ -133,7 +133,7 @@ class AgentState : public ObjectState {
   std::string sideText() const { return soccer::sideName(side_); }
   /// Robots come with a visible marker.
   void prepare(const Event&) {
-    if (std::exchange(shownAt_, kernel().structureVersion()) != kernel().structureVersion()) showMarker();
+    if (std::exchange(shownAt_, changedAt()) != changedAt()) showMarker();
   }
   /// Shows or hides the visual named SelectionMarker below, where there is one.
   void showMarker() {

@@ -137,21 +137,28 @@ std::string GameStateAspect::join(AgentState& state, const std::string& name, st
   }
   if (side == Side::none)
     return fmt::format("there are two teams already, '{}' and '{}': a third, '{}', cannot play", teams_[0].name, teams_[1].name, name);
-  if (unum < 0 || unum > kTeamSize) return fmt::format("number {} is not one of 1..{}", unum, kTeamSize);
+  const int most = pitch_.settings().teamSize;
+  if (unum < 0 || unum > most) return fmt::format("number {} is not one of 1..{}", unum, most);
   Team& wanted = team(side);
   if (unum == 0)
-    for (int n = kTeamSize; n >= 1; --n)
-      if (!wanted.taken[n]) unum = n;
-  if (unum == 0) return fmt::format("team '{}' has {} players already", name, kTeamSize);
-  if (wanted.taken[unum]) return fmt::format("number {} of team '{}' is taken", unum, name);
+    for (int n = most; n >= 1; --n)
+      if (!wanted.has(n)) unum = n;
+  if (unum == 0) return fmt::format("team '{}' has {} players already", name, most);
+  if (wanted.has(static_cast<int>(unum))) return fmt::format("number {} of team '{}' is taken", unum, name);
   if (std::string problem = robotTypeProblem(side, state); !problem.empty()) return problem;
 
   if (state.side() != Side::none) team(state.side()).taken[state.unum()] = false;
   const bool first = state.side() == Side::none;
   wanted.name = name;
+  if (wanted.taken.size() <= static_cast<std::size_t>(unum)) wanted.taken.resize(most + 1);
   wanted.taken[unum] = true;
   state.assign(side, static_cast<int>(unum), name, first);
   return {};
+}
+
+int GameStateAspect::teamSize() const {
+  const auto* settings = kernel().root().find<SoccerSettings>("/sys/variables/Soccer");
+  return settings ? settings->teamSize : kTeamSize;
 }
 
 std::string GameStateAspect::robotTypeProblem(Side side, const AgentState& joining) const {
@@ -169,7 +176,7 @@ std::string GameStateAspect::robotTypeProblem(Side side, const AgentState& joini
   if (count[type] >= s.maxRobotTypeCount) return fmt::format("the team has {} robots of type {} already", count[type], type);
   if (count[type] + most + 1 > s.maxSumTwoRobotTypes)
     return fmt::format("more than {} robots of two types (type {} is one) are not allowed", s.maxSumTwoRobotTypes, type);
-  if (count[type] > 0 && kTeamSize - registered <= s.minRobotTypesCount - types)
+  if (count[type] > 0 && s.teamSize - registered <= s.minRobotTypesCount - types)
     return fmt::format("the team needs robots of {} types: type {} is there already", s.minRobotTypesCount, type);
   return {};
 }
@@ -203,7 +210,7 @@ void GameStateAspect::saveState(StateWriter& out) const {
   for (const Team& t : teams_) {
     out.write(std::string_view(t.name));
     out.write(t.score);
-    for (bool taken : t.taken) out.write(taken);
+    for (int n = 0; n <= teamSize(); ++n) out.write(t.has(n));
     out.write(t.starts);
   }
 }
@@ -219,7 +226,8 @@ void GameStateAspect::loadState(StateReader& in) {
   for (Team& t : teams_) {
     t.name = in.readString();
     t.score = static_cast<int>(in.readInteger());
-    for (bool& taken : t.taken) taken = in.readBool();
+    t.taken.assign(teamSize() + 1, 0);
+    for (char& taken : t.taken) taken = in.readBool();
     t.starts = static_cast<int>(in.readInteger());
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 #include <string>
 
 #include "soccer_control_aspect.h"
@@ -13,6 +14,7 @@ class GameStateAspect : public SoccerControlAspect {
  public:
   using Side = soccer::Side;
   using PlayMode = soccer::PlayMode;
+  /// Of a match of soccer; Soccer.TeamSize lets more come.
   static constexpr int kTeamSize = 11;
 
   static void describe(Description<GameStateAspect>& d);
@@ -52,8 +54,8 @@ class GameStateAspect : public SoccerControlAspect {
   void addGoal(Side side) { ++team(side).score; }
   void setScores(int left, int right);
   const std::string& teamName(Side side) const { return team(side).name; }
-  /// A player of the side has that number (1..kTeamSize).
-  bool isTaken(Side side, int unum) const { return team(side).taken[unum]; }
+  /// A player of the side has that number, from 1.
+  bool isTaken(Side side, int unum) const { return team(side).has(unum); }
   /// Who kicks this half off, as far as it is decided: left, unless a coin said otherwise, then the other.
   Side halfKickOff() const;
 
@@ -72,14 +74,16 @@ class GameStateAspect : public SoccerControlAspect {
   struct Team {
     std::string name;
     int score = 0;
-    std::array<bool, kTeamSize + 1> taken{};  ///< by number
-    int starts = 0;                           ///< start positions given so far
+    std::vector<char> taken = std::vector<char>(kTeamSize + 1);  ///< by number
+    int starts = 0;                                              ///< start positions given so far
+    bool has(int unum) const { return static_cast<std::size_t>(unum) < taken.size() && taken[unum]; }
   };
   Team& team(Side s) { return teams_[s == Side::right]; }
   const Team& team(Side s) const { return teams_[s == Side::right]; }
   static constexpr double kRounding = 1e-6;  ///< s; sums of steps are not exact
   /// Time of play passes.
   bool clockRuns() const { return mode_ != PlayMode::beforeKickOff && mode_ != PlayMode::gameOver; }
+  int teamSize() const;
   void advanceHalf();
   void advanceClock(double step);
   Side dueSide();

@@ -26,18 +26,18 @@ class GameStatePerceptor : public Perceptor {
     }
     out.pair("t", game->time());
     out.pair("pm", playModeName(game->mode()));
-    if (match_.settings()->extraGameState) tellMore(out, *game);
+    if (match_.settings()->extraGameState) tellMore(out, *game, match_.settings()->teamSize);
     out.close();
   }
 
  private:
   /// `(k left) (ti ((1 penalty_none 0.000)) ())`: a player without a penalty has minus the time of play left, as in the installed base.
-  static void tellMore(Predicates& out, const GameStateAspect& game) {
+  static void tellMore(Predicates& out, const GameStateAspect& game, int teamSize) {
     out.pair("k", sideName(game.halfKickOff()));
     out.open("ti");
     for (const soccer::Side side : {soccer::Side::left, soccer::Side::right}) {
       out.open();
-      for (int unum = 1; unum <= GameStateAspect::kTeamSize; ++unum)
+      for (int unum = 1; unum <= teamSize; ++unum)
         if (game.isTaken(side, unum)) out.open().add(unum).add("penalty_none").add(0.0 - game.time()).close();
       out.close();
     }

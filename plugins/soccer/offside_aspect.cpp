@@ -30,7 +30,7 @@ void OffsideAspect::rule(const Event&) {
 
 void OffsideAspect::touch(soccer::Pitch& pitch) {
   const BallStateAspect::Touch& last = ball_->last();
-  const bool offends = last.side == markedSide_ && marked_[last.unum];
+  const bool offends = last.side == markedSide_ && last.unum <= GameStateAspect::kTeamSize && marked_[last.unum];
   marked_.fill(false);
   if (!offends) return mark(pitch, last.side, last.unum);
   spot_ = Vec3(ball_->lastValid().x(), ball_->lastValid().y(), pitch.settings().ballRadius);
@@ -53,7 +53,7 @@ void OffsideAspect::mark(const soccer::Pitch& pitch, Side side, int toucher) {
   }
   const double line = std::max({0.0, towards * ball_->position().x(), second});
   for (const soccer::Player& p : pitch.players())
-    if (p.side() == side && p.state->unum() != toucher) marked_[p.state->unum()] = towards * p.position().x() > line;
+    if (p.side() == side && p.state->unum() != toucher && p.state->unum() <= GameStateAspect::kTeamSize) marked_[p.state->unum()] = towards * p.position().x() > line;
 }
 
 std::vector<int> OffsideAspect::markedUnums() const {

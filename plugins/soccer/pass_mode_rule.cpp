@@ -5,7 +5,6 @@ namespace spark {
 using soccer::opponent;
 
 namespace {
-constexpr double kUnknown = -1;    // m
 constexpr double kRounding = 1e-6;  // s; sums of steps are not exact
 
 double groundDistance(const Vec3& a, const Vec3& b) { return std::hypot(a.x() - b.x(), a.y() - b.y()); }
@@ -78,7 +77,7 @@ bool PassModeRule::mayPass(const soccer::Player& player) const {
   if (ball().touchedBy(mine) || pitch().ball()->state().linearVelocity.norm() > s.passModeMaxBallSpeed) return false;
   const Vec3 spot = pitch().ballPosition();
   const auto distances = [&](const soccer::Player& p) {
-    return std::pair(groundDistance(p.position(), spot), team(p.side()).ballDistance[p.state->unum()]);
+    return std::pair(groundDistance(p.position(), spot), team(p.side()).before(p.state->unum()));
   };
   const auto [now, before] = distances(player);
   if (now > s.passModeMaxBallDist || before < 0 || before > s.passModeMaxBallDist) return false;
@@ -91,9 +90,9 @@ bool PassModeRule::mayPass(const soccer::Player& player) const {
 }
 
 void PassModeRule::noteDistances() {
-  for (Team& t : teams_) t.ballDistance.fill(kUnknown);
+  for (Team& t : teams_) t.ballDistance.fill(Team::kUnknown);
   for (const soccer::Player& p : pitch().players())
-    if (p.side() != Side::none && p.torso) team(p.side()).ballDistance[p.state->unum()] = groundDistance(p.position(), ball().position());
+    if (p.side() != Side::none && p.torso && p.state->unum() <= GameStateAspect::kTeamSize) team(p.side()).ballDistance[p.state->unum()] = groundDistance(p.position(), ball().position());
 }
 
 void PassModeRule::saveState(StateWriter& out) const {

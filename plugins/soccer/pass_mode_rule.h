@@ -33,8 +33,10 @@ class PassModeRule : public SoccerRule {
     bool ballAway = false;       ///< the ball has been far from `spot`
     int toucher = 0;             ///< number of the first who touched the ball since
     bool twoTouched = false;
+    static constexpr double kUnknown = -1;  ///< m
     Vec3 spot = Vec3::Zero();                                                ///< where the ball was in pass mode [m]
     std::array<double, GameStateAspect::kTeamSize + 1> ballDistance{};       ///< of each player at the last judging [m]; < 0: unknown
+    double before(int unum) const { return unum <= GameStateAspect::kTeamSize ? ballDistance[unum] : kUnknown; }
   };
   Team& team(Side s) { return teams_[s == Side::right]; }
   const Team& team(Side s) const { return teams_[s == Side::right]; }

@@ -1,6 +1,8 @@
 #include "pitch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace spark::soccer {
 
@@ -85,6 +87,23 @@ void Player::place(const Vec3& target, const Mat3& orientation) const {
   }
 }
 
+namespace {
+/// A player without a state is none.
+Player playerWith(AgentAspect& agent) {
+  Player p;
+  p.agent = &agent;
+  p.changedAt = agent.changedAt();
+  p.state = firstBelow<AgentState>(agent);
+  if (!p.state) return p;
+  agent.collect(p.bodies);
+  agent.collect(p.colliders);
+  auto* inner = p.state->ancestor<AgentAspect>();
+  p.torso = inner ? firstBelow<IRigidBody>(*inner) : nullptr;
+  if (!p.torso && !p.bodies.empty()) p.torso = p.bodies.front();
+  return p;
+}
+}  // namespace
+
 void Pitch::refresh(Kernel& kernel) {
   if (version_ == kernel.structureVersion()) return;
   version_ = kernel.structureVersion();
@@ -95,7 +114,6 @@ void Pitch::refresh(Kernel& kernel) {
   scene_ = root.find<ISceneServer>("/sys/server/scene");
   ball_ = nullptr;
   ballRecorder_ = leftGoal_ = rightGoal_ = nullptr;
-  players_.clear();
   Node* field = scene_ ? root.find<Node>("/usr/scene") : nullptr;
   if (field && settings_) {
     if (Node* ball = field->find<Node>("Ball")) ball_ = firstBelow<IRigidBody>(*ball);
@@ -103,20 +121,29 @@ void Pitch::refresh(Kernel& kernel) {
     leftGoal_ = field->find<ICollisionRecorder>(settings_->leftGoalRecorder);
     rightGoal_ = field->find<ICollisionRecorder>(settings_->rightGoalRecorder);
   }
-  if (!gameControl_) return;
-  for (AgentAspect* agent : gameControl_->agents()) {
-    Player p;
-    p.agent = agent;
-    p.state = firstBelow<AgentState>(*agent);
-    if (!p.state) continue;
-    agent->collect(p.bodies);
-    agent->collect(p.colliders);
-    auto* inner = p.state->ancestor<AgentAspect>();
-    p.torso = inner ? firstBelow<IRigidBody>(*inner) : nullptr;
-    if (!p.torso && !p.bodies.empty()) p.torso = p.bodies.front();
-    players_.push_back(std::move(p));
-  }
+  kernel.updateOrder();
+  findPlayers();
+}
+
+/// Who did not change is taken over.
+void Pitch::findPlayers() {
+  std::vector<Player> now;
+  if (gameControl_)
+    for (AgentAspect* agent : gameControl_->agents()) {
+      const std::size_t before = indexOf(agent);
+      const bool same = before < players_.size() && players_[before].changedAt == agent->changedAt();
+      if (Player p = same ? std::move(players_[before]) : playerWith(*agent); p.state) now.push_back(std::move(p));
+    }
+  players_ = std::move(now);
+  byAgent_.clear();
+  for (const Player& p : players_) byAgent_.emplace_back(p.agent, byAgent_.size());
+  std::sort(byAgent_.begin(), byAgent_.end(), [](const auto& a, const auto& b) { return std::less<>()(a.first, b.first); });
   order_.reserve(players_.size());
+}
+
+std::size_t Pitch::indexOf(const Leaf* agent) const {
+  const auto it = std::lower_bound(byAgent_.begin(), byAgent_.end(), agent, [](const auto& known, const Leaf* l) { return std::less<>()(known.first, l); });
+  return it != byAgent_.end() && it->first == agent ? it->second : players_.size();
 }
 
 const Player* Pitch::player(Side side, int unum) const {
@@ -134,8 +161,7 @@ const Player* Pitch::playerOfAgent(int agentNumber) const {
 
 const Player* Pitch::playerOf(const Leaf* leaf) const {
   for (; leaf; leaf = leaf->parent())
-    for (const Player& p : players_)
-      if (p.agent == leaf) return &p;
+    if (const std::size_t i = indexOf(leaf); i < players_.size()) return &players_[i];
   return nullptr;
 }
 

@@ -37,6 +37,7 @@ struct Area {
 struct Player {
   AgentAspect* agent = nullptr;  ///< the outermost aspect
   AgentState* state = nullptr;
+  std::uint64_t changedAt = 0;   ///< the agent's, when its parts were looked up
   IRigidBody* torso = nullptr;  ///< first body of the innermost aspect; nullptr: a robot without bodies
   std::vector<IRigidBody*> bodies;
   std::vector<ICollider*> colliders;
@@ -131,6 +132,9 @@ class Pitch {
  private:
   template <class F>
   void shuffled(Side side, RandomStream& random, F each) const;
+  void findPlayers();
+  /// Index of the player of an agent, players_.size() when there is none.
+  std::size_t indexOf(const Leaf* agent) const;
 
   std::uint64_t version_ = 0;
   SoccerSettings* settings_ = nullptr;
@@ -140,6 +144,7 @@ class Pitch {
   IRigidBody* ball_ = nullptr;
   ICollisionRecorder *ballRecorder_ = nullptr, *leftGoal_ = nullptr, *rightGoal_ = nullptr;
   std::vector<Player> players_;
+  std::vector<std::pair<const Leaf*, std::size_t>> byAgent_;  ///< players by the address of their agent, to look up only
   mutable std::vector<const Player*> order_;
   mutable SafePlace safePlace_;
 };

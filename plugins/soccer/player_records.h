@@ -20,8 +20,9 @@ class PlayerRecords {
     std::vector<T> records;
     for (const Player& p : pitch.players()) {
       numbers.push_back(p.agent->number());
-      const auto known = std::find(numbers_.begin(), numbers_.end(), numbers.back());
-      records.push_back(known == numbers_.end() ? T() : std::move(records_[known - numbers_.begin()]));
+      const auto known = std::lower_bound(numbers_.begin(), numbers_.end(), numbers.back());
+      const bool isKnown = known != numbers_.end() && *known == numbers.back();
+      records.push_back(isKnown ? std::move(records_[known - numbers_.begin()]) : T());
     }
     numbers_ = std::move(numbers);
     records_ = std::move(records);
@@ -56,7 +57,7 @@ class PlayerRecords {
 
  private:
   std::uint64_t version_ = 0;
-  std::vector<int> numbers_;  ///< of the agents
+  std::vector<int> numbers_;  ///< of the agents, ascending as players are
   std::vector<T> records_;
 };
 

@@ -2,7 +2,7 @@
 
 namespace spark {
 
-using soccer::placeOf;
+using soccer::Sights;
 using soccer::writePoint;
 
 namespace {
@@ -39,7 +39,9 @@ bool clip(Vec3f& begin, Vec3f& end, float halfX, float halfZ) {
 void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>& d) {
   using V = RestrictedVisionPerceptor;
   d.doc("Sees within a cone: flags, goals, ball, parts of players, lines.");
+  d.implements<ISharedView>();
   d.on<&V::prepare>(phase::kPrepare);
+  d.property("range", &V::range_).unit("m").min(0).doc("Flags, goals, ball and players farther away are not seen, lines are; infinite by default.");
   d.property("staticSenseAxis", &V::staticAxis_)
       .doc("Angles from the field's x axis as the team sees it, less pan and tilt; else in the head's frame.");
   d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
@@ -71,7 +73,7 @@ soccer::Polar RestrictedVisionPerceptor::direction(const Vec3f& view) const {
   soccer::Polar p = soccer::polarOf(view);
   if (!staticAxis_) {
     p.horizontal = normalizeDeg(p.horizontal - 90);  // heads look along y
-  } else if (const AgentState* s = objects_.state()) {
+  } else if (const AgentState* s = outlook_.state()) {
     p.horizontal = normalizeDeg(p.horizontal - s->pan());
     p.vertical = normalizeDeg(p.vertical - s->tilt());
   }
@@ -83,36 +85,49 @@ bool RestrictedVisionPerceptor::inCone(const soccer::Polar& p) const {
   return std::abs(p.horizontal) <= cone_[0] / divisor && std::abs(p.vertical) <= cone_[1] / divisor;
 }
 
-bool RestrictedVisionPerceptor::look(const SceneNode& object, soccer::Polar& out) {
-  const Vec3f way = placeOf(object) - placeOf(*this);
-  if (way.norm() <= kTooNear) return false;
-  out = direction(toView(way) + noise_.calibration());
-  if (!inCone(out)) return false;
+/// True for most of what is outside of the cone, without an angle computed: sin(angle - half) > 0, with room for rounding. What it lets pass
+/// inCone judges.
+bool RestrictedVisionPerceptor::isPlainlyOutside(const Vec3f& view) const {
+  constexpr double kRounding = 1e-9;
+  if (staticAxis_) return false;
+  const double aside = std::abs(double(view.x())), ahead = view.y(), up = std::abs(double(view.z()));
+  if (aside * halfWidth_.cos - ahead * halfWidth_.sin > kRounding * (aside + std::abs(ahead))) return true;
+  const double level = std::sqrt(aside * aside + ahead * ahead);
+  return up * halfHeight_.cos - level * halfHeight_.sin > kRounding * (up + level);
+}
+
+/// False when it is outside of the cone.
+bool RestrictedVisionPerceptor::find(const Vec3f& view, soccer::Polar& out) const {
+  if (isPlainlyOutside(view)) return false;
+  out = direction(view);
+  return inCone(out);
+}
+
+bool RestrictedVisionPerceptor::look(const Vec3f& place, soccer::Polar& out) {
+  const Vec3f way = place - here_;
+  const float distance = way.norm();
+  if (distance <= kTooNear || distance > outlook_.range()) return false;
+  if (!find(toView(way) + noise_.calibration(), out)) return false;
   // after the cone: values slightly outside can appear
   noise_.apply(out);
   return true;
 }
 
 /// The visible part of a line. With static axes a line is seen whole or not at all.
-bool RestrictedVisionPerceptor::lookAtLine(const Line& line, soccer::Polar& begin, soccer::Polar& end) {
-  const Matrix frame = line.transform() ? line.transform()->world() : Matrix(Matrix::Identity());
-  const auto seen = [&](const Vec3f& p) {
-    const Vec3f place = frame.block<3, 3>(0, 0) * p + positionOf(frame);
-    return Vec3f(toView(place - placeOf(*this)) + noise_.calibration());
-  };
-  Vec3f a = seen(line.begin()), b = seen(line.end());
-  const auto visible = [this](const Vec3f& p) { return p.norm() > kTooNear && inCone(direction(p)); };
-  if (!visible(a) || !visible(b)) {
+bool RestrictedVisionPerceptor::lookAtLine(const Sights::Stroke& line, soccer::Polar& begin, soccer::Polar& end) {
+  Vec3f a = toView(line.begin - here_) + noise_.calibration(), b = toView(line.end - here_) + noise_.calibration();
+  const auto visible = [this](const Vec3f& p, soccer::Polar& polar) { return p.norm() > kTooNear && find(p, polar); };
+  if (!visible(a, begin) || !visible(b, end)) {
     const float halfX = std::tan(static_cast<float>(degToRad(std::min(cone_[0], 178) / 2)));
     const float halfZ = std::tan(static_cast<float>(degToRad(std::min(cone_[1], 178) / 2)));
     if (staticAxis_ || !clip(a, b, halfX, halfZ)) return false;
+    begin = direction(a), end = direction(b);
   }
-  begin = direction(a), end = direction(b);
   noise_.apply(begin), noise_.apply(end);
   return true;
 }
 
-void RestrictedVisionPerceptor::seeRobot(const soccer::VisibleObjects::Robot& robot, Predicates& out) {
+void RestrictedVisionPerceptor::seeRobot(const Sights::Robot& robot, Predicates& out) {
   if (robot.state->side() == soccer::Side::none) return;
   soccer::Polar polar;
   bool seen = false;
@@ -120,58 +135,66 @@ void RestrictedVisionPerceptor::seeRobot(const soccer::VisibleObjects::Robot& ro
     if (!std::exchange(seen, true))
       out.open(robot.state->perceptName()).pair("team", std::string_view(robot.state->team())).pair("id", robot.state->unum());
   };
-  for (const ObjectState* part : robot.parts) {
-    if (!look(*part, polar)) continue;
+  for (const Sights::Mark& part : outlook_.sights().partsOf(robot)) {
+    if (!look(part.place, polar)) continue;
     begin();
-    out.open(part->id());
+    out.open(part.object->id());
     writePolar(out, polar);
     out.close();
   }
-  if (robot.parts.empty() && robot.agent != objects_.agent() && look(*robot.state, polar)) {
+  if (robot.parts == 0 && robot.agent != outlook_.agent() && look(robot.place, polar)) {
     begin();
     writePolar(out, polar);
   }
   if (seen) out.close();
 }
 
+void RestrictedVisionPerceptor::openEye() {
+  outlook_.open(*this, range_);
+  noise_.allowed = !outlook_.settings() || outlook_.settings()->visionNoise;
+  here_ = soccer::placeOf(*this);
+  const double width = degToRad(std::min(cone_[0], 360) / 2), height = degToRad(std::min(cone_[1], 360) / 2);
+  halfWidth_ = {std::sin(width), std::cos(width)};
+  halfHeight_ = {std::sin(height), std::cos(height)};
+}
+
 void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {
-  objects_.refresh(*this);
-  const SoccerSettings* league = objects_.settings();
-  noise_.allowed = !league || league->visionNoise;
+  openEye();
+  const Sights& sights = outlook_.sights();
   soccer::Polar polar;
   out.open(predicateName_);
-  for (const ObjectState* o : objects_.field()) {
-    if (!look(*o, polar)) continue;
-    out.open(o->perceptName());
+  for (const Sights::Mark& m : sights.field()) {
+    if (!look(m.place, polar)) continue;
+    out.open(m.object->perceptName());
     writePolar(out, polar);
     out.close();
   }
-  for (const soccer::VisibleObjects::Robot& r : objects_.robots()) seeRobot(r, out);
-  if (senseMyPos_) writePoint(out, "mypos", soccer::seenBy(side(), placeOf(*this)));
+  for (const std::uint32_t i : outlook_.robotsNear(here_)) seeRobot(sights.robots()[i], out);
+  if (senseMyPos_) writePoint(out, "mypos", soccer::seenBy(side(), here_));
   if (senseMyOrien_ && transform()) {
     const Matrix& m = transform()->world();
     const double heading = radToDeg(std::atan2(m(1, 1), m(0, 1)));  // of the y axis
     out.pair("myorien", normalizeDeg(side() == soccer::Side::right ? heading - 180 : heading));
   }
-  if (const ObjectState* ball = objects_.ball(); ball && senseBallPos_) writePoint(out, "ballpos", soccer::seenBy(side(), placeOf(*ball)));
-  if (senseLine_ && (!league || league->fieldLinesSeen)) seeLines(out);
+  if (const Sights::Mark* ball = sights.ball(); ball && senseBallPos_) writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
+  if (senseLine_ && (!outlook_.settings() || outlook_.settings()->fieldLinesSeen)) seeLines(out);
   out.close();
 }
 
 void RestrictedVisionPerceptor::seeLines(Predicates& out) {
-  soccer::Polar polar, end;
-  for (const Line* line : objects_.lines()) {
-    if (!lookAtLine(*line, polar, end)) continue;
+  soccer::Polar begin, end;
+  for (const Sights::Stroke& line : outlook_.sights().lines()) {
+    if (!lookAtLine(line, begin, end)) continue;
     out.open("L");
-    writePolar(out, polar);
+    writePolar(out, begin);
     writePolar(out, end);
     out.close();
   }
 }
 
 void RestrictedVisionPerceptor::prepare(const Event&) {
-  objects_.refresh(*this);
-  if (const SoccerSettings* league = objects_.settings(); league && league->visionInterval > 0) interval_ = league->visionInterval;
+  outlook_.refresh(*this);
+  if (const SoccerSettings* league = outlook_.settings(); league && league->visionInterval > 0) interval_ = league->visionInterval;
 }
 
 }  // namespace spark

@@ -8,12 +8,13 @@ namespace spark {
 
 /// Sees within a cone, in the frame of the head or along the field's axes:
 /// `(See (G1R (pol ...)) (B (pol ...)) (P (team A) (id 3) (rlowerarm (pol ...)) ...))`.
-class RestrictedVisionPerceptor : public Perceptor {
+class RestrictedVisionPerceptor : public Perceptor, public ISharedView {
   SPARK_CLASS(RestrictedVisionPerceptor, Perceptor)
  public:
   RestrictedVisionPerceptor() { predicateName_ = "See"; }
   static void describe(Description<RestrictedVisionPerceptor>& d);
   void sense(Predicates& out, const Event& event) override;
+  void share(std::uint64_t round) override { outlook_.share(*this, round, range_); }
   /// deg, of the static axis mode.
   const std::array<int, 2>& panRange() const { return pan_; }
   const std::array<int, 2>& tiltRange() const { return tilt_; }
@@ -34,19 +35,28 @@ class RestrictedVisionPerceptor : public Perceptor {
   void setNoiseParameters(double distance, double phi, double theta, double error) { noise_.set(distance, phi, theta, error); }
   const RandomStream& randomState() const { return noise_.random; }
   void setRandomState(RandomStream r) { noise_.random = r; }
-  soccer::Side side() const { return objects_.state() ? objects_.state()->side() : soccer::Side::none; }
+  soccer::Side side() const { return outlook_.state() ? outlook_.state()->side() : soccer::Side::none; }
   Vec3f toView(const Vec3f& way) const;
   soccer::Polar direction(const Vec3f& view) const;
   bool inCone(const soccer::Polar& p) const;
-  bool look(const SceneNode& object, soccer::Polar& out);
-  bool lookAtLine(const Line& line, soccer::Polar& begin, soccer::Polar& end);
+  bool isPlainlyOutside(const Vec3f& view) const;
+  bool find(const Vec3f& view, soccer::Polar& out) const;
+  bool look(const Vec3f& place, soccer::Polar& out);
+  bool lookAtLine(const soccer::Sights::Stroke& line, soccer::Polar& begin, soccer::Polar& end);
+  void openEye();
   void seeLines(Predicates& out);
-  void seeRobot(const soccer::VisibleObjects::Robot& robot, Predicates& out);
+  void seeRobot(const soccer::Sights::Robot& robot, Predicates& out);
 
-  soccer::VisibleObjects objects_;
+  soccer::Outlook outlook_;
   soccer::VisionNoise noise_{*this};
   std::array<int, 2> cone_{90, 90}, pan_{-90, 90}, tilt_{-20, 20};
   bool staticAxis_ = true, senseMyPos_ = false, senseMyOrien_ = false, senseBallPos_ = false, senseLine_ = false, senseLineName_ = false;
+  float range_ = soccer::Sights::kUnlimited;
+  // while it looks
+  Vec3f here_ = Vec3f::Zero();                            ///< m
+  struct {
+    double sin = 0, cos = 1;
+  } halfWidth_, halfHeight_;                              ///< of the cone
 };
 
 }  // namespace spark

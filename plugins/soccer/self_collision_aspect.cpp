@@ -48,8 +48,12 @@ void SelfCollisionAspect::lookUp() {
   version_ = kernel().structureVersion();
   std::vector<Robot> now;
   for (const soccer::Player& p : players()) {
+    const auto before = std::find_if(robots_.begin(), robots_.end(), [&](const Robot& r) { return r.agent == p.agent->number(); });
+    if (before != robots_.end() && before->changedAt == p.changedAt) {
+      now.push_back(std::move(*before));
+      continue;
+    }
     now.push_back(dissect(p));
-    const auto before = std::find_if(robots_.begin(), robots_.end(), [&](const Robot& r) { return r.agent == now.back().agent; });
     if (before != robots_.end()) keepClocks(*before, now.back());
   }
   robots_ = std::move(now);
@@ -58,6 +62,7 @@ void SelfCollisionAspect::lookUp() {
 SelfCollisionAspect::Robot SelfCollisionAspect::dissect(const soccer::Player& player) const {
   Robot robot;
   robot.agent = player.agent->number();
+  robot.changedAt = player.changedAt;
   std::vector<IFreezable*> effectors;
   player.agent->collect(effectors);
   for (IFreezable* e : effectors) robot.joints.push_back({e});

@@ -39,7 +39,8 @@ class SelfCollisionAspect : public FoulAspect {
     double since = kLongAgo;  ///< s of the simulated clock: when it was frozen last
   };
   struct Robot {
-    int agent = 0;  ///< its number
+    int agent = 0;                ///< its number
+    std::uint64_t changedAt = 0;  ///< the agent's, when it was looked at
     std::vector<Box> boxes;
     std::vector<Pair> pairs;
     std::vector<Joint> joints;

@@ -32,6 +32,7 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("AgentMass", &S::agentMass).unit("kg").min(0.001).doc("Mass of a sphere agent.");
   d.property("AgentMaxSpeed", &S::agentMaxSpeed).unit("m/s").min(0).doc("Greatest speed of a sphere agent.");
   d.property("AgentLinearDrag", &S::agentLinearDrag).unit("N s/m").min(0).doc("Drag force of a sphere agent per speed.");
+  d.property("TeamSize", &S::teamSize).range(11, 1000).doc("Greatest number of a player. Pass mode and offside know 11 a team, a match of soccer has no more.");
   d.property("MaxRobotTypeCount", &S::maxRobotTypeCount).min(0).doc("At most so many robots of one type in a team.");
   d.property("MinRobotTypesCount", &S::minRobotTypesCount).min(0).doc("At least so many types in a team of 11.");
   d.property("MaxSumTwoRobotTypes", &S::maxSumTwoRobotTypes).min(0).doc("At most so many robots of any two types together.");
@@ -76,6 +77,7 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
       .unit("cycles")
       .range(0, 1000)
       .doc("Cycles between two looks through a RestrictedVisionPerceptor; 0: as the robot's scene file says.");
+  d.property("VisionRange", &S::visionRange).unit("m").min(0).doc("Objects and players farther away are not seen, by nobody; 0: as the robots' files say.");
   d.property("VisionNoise", &S::visionNoise).doc("False: what robots see has no noise, whatever their scene files say.");
   d.property("FieldLinesSeen", &S::fieldLinesSeen).doc("Robots whose vision senses lines see the field's.");
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "api/scene.h"
+#include "sights.h"
 
 namespace spark {
 
@@ -16,6 +17,8 @@ class SoccerSettings : public Node, public IVariables {
   Value variable(std::string_view name) const override;
   /// Adds or replaces a variable that no rule knows, for scene files of other leagues.
   void define(std::string name, Value value) { others_[std::move(name)] = std::move(value); }
+  /// What the eyes of the league look at.
+  soccer::Sights& sights() { return sights_; }
 
   // Field [m]
   double fieldLength = 30, fieldWidth = 20, fieldHeight = 40, goalWidth = 2.1, goalDepth = 0.6, goalHeight = 0.8;
@@ -24,7 +27,7 @@ class SoccerSettings : public Node, public IVariables {
   // Ball and agents
   double ballRadius = 0.042, ballMass = 0.026, ballLinearDrag = 0.01, ballAngularDrag = 0.00005, ballMaxSpeed = 0;
   double agentRadius = 0.4, agentMass = 75, agentMaxSpeed = 10, agentLinearDrag = 0.1;
-  int maxRobotTypeCount = 7, minRobotTypesCount = 3, maxSumTwoRobotTypes = 9;
+  int teamSize = 11, maxRobotTypeCount = 7, minRobotTypesCount = 3, maxSumTwoRobotTypes = 9;
   // Restarts
   double freeKickDistance = 2.0, freeKickMoveDist = 2.5, kickRepelDist = 0.5, goalKickDist = 1.0;
   double ruleGoalPauseTime = 3, ruleKickInPauseTime = 1, ruleDropBallTime = 15, ruleHalfTime = 300, waitBeforeKickOff = 30;
@@ -38,6 +41,7 @@ class SoccerSettings : public Node, public IVariables {
   int sayMsgSize = 20;
   bool visionNoise = true, fieldLinesSeen = true;
   int visionInterval = 0;
+  double visionRange = 0;
   // Pass mode
   double passModeMaxBallSpeed = 0.05, passModeMaxBallDist = 0.5, passModeMinOppBallDist = 1, passModeDuration = 4;
   double passModeScoreWaitTime = 10, passModeRetryWaitTime = 3;
@@ -66,6 +70,7 @@ class SoccerSettings : public Node, public IVariables {
 
  private:
   std::map<std::string, Value, std::less<>> others_;
+  soccer::Sights sights_;
 };
 
 }  // namespace spark

@@ -1,12 +1,15 @@
 #pragma once
 /// \file
-/// What both kinds of vision share: the visible objects of the scene, polar coordinates, noise.
+/// What both kinds of vision share: what they look at, polar coordinates, noise.
 
+#include <algorithm>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "agent_state.h"
 #include "api/agents.h"
+#include "sights.h"
 #include "soccer_settings.h"
 #include "spark/random.h"
 
@@ -22,7 +25,7 @@ struct Polar {
 /// Polar coordinates of a point in a frame with x forward, y to the left, z up.
 Polar polarOf(const Vec3f& relative);
 /// `(pol d h v)`.
-void writePolar(Predicates& out, const Polar& p);
+inline void writePolar(Predicates& out, const Polar& p) { out.open("pol").add(p.distance).add(p.horizontal).add(p.vertical).close(); }
 
 /// The installed base's noise: distance in proportion, angles absolute, and a constant calibration error.
 class VisionNoise {
@@ -64,42 +67,42 @@ class VisionNoise {
   Vec3f calibration_ = Vec3f::Zero();
 };
 
-/// What can be seen, collected when the shape of the tree changes.
-class VisibleObjects {
+/// What one eye looks at: the sights of the league, or its own where there is no league.
+class Outlook {
  public:
-  /// A robot: its state, and the marked parts (none: it is seen by its state alone).
-  struct Robot {
-    AgentAspect* agent = nullptr;
-    AgentState* state = nullptr;
-    std::vector<ObjectState*> parts;
-  };
+  /// Finds agent and league again when the shape of the tree changed.
   void refresh(const SceneNode& eye);
-  /// Flags, goals, ball, in scene order.
-  const std::vector<ObjectState*>& field() const { return field_; }
-  /// In scene order.
-  const std::vector<Robot>& robots() const { return robots_; }
-  const std::vector<Line*>& lines() const { return lines_; }
+  /// Before the sense phase, in the simulation's thread; `range` of the eye itself [m].
+  void share(const SceneNode& eye, std::uint64_t round, float range);
+  /// In the sense phase, before all below. Who is asked outside of it brings the sights up to date himself.
+  void open(const SceneNode& eye, float range);
+  /// How far it sees in this phase [m].
+  float range() const { return range_; }
+
+  const Sights& sights() const { return *sights_; }
+  /// The robots of which something may be within its range of `place`, in scene order; indices into sights().
+  std::span<const std::uint32_t> robotsNear(const Vec3f& place);
   /// The agent of the eye, nullptr when it belongs to none.
   AgentAspect* agent() const { return agent_; }
   /// Its state, nullptr when it has none.
   AgentState* state() const { return state_; }
-  /// The ball's mark, nullptr where there is no ball.
-  const ObjectState* ball() const;
   /// The league's settings, nullptr where there are none.
   const SoccerSettings* settings() const { return settings_; }
 
  private:
-  std::uint64_t version_ = 0;
-  std::vector<ObjectState*> field_;
-  std::vector<Robot> robots_;
-  std::vector<Line*> lines_;
+  void findState();
+  float limited(float range) const { return settings_ && settings_->visionRange > 0 ? std::min(range, static_cast<float>(settings_->visionRange)) : range; }
+  std::uint64_t version_ = 0, stateVersion_ = 0;
+  bool shared_ = false;
+  float range_ = Sights::kUnlimited;
+  std::unique_ptr<Sights> own_;
+  Sights* sights_ = nullptr;
   AgentAspect* agent_ = nullptr;
   AgentState* state_ = nullptr;
-  const SoccerSettings* settings_ = nullptr;
+  SoccerSettings* settings_ = nullptr;
+  std::vector<std::uint32_t> near_;
 };
 
-/// World position of a mark.
-inline Vec3f placeOf(const SceneNode& node) { return node.transform() ? positionOf(node.transform()->world()) : Vec3f(Vec3f::Zero()); }
 /// x and y turned as the side sees the field.
 inline Vec3f seenBy(Side side, const Vec3f& v) {
   const float d = static_cast<float>(direction(side));

@@ -2,19 +2,18 @@
 
 namespace spark {
 
-using soccer::placeOf;
-using soccer::writePoint;
+using soccer::Sights;
 
 namespace {
 constexpr float kTooNear = 0.1f;  ///< m: what is nearer is the eye's own body
 }
 
-/// False when the object is too near to be seen.
-bool VisionPerceptor::look(const SceneNode& object, soccer::Polar& out) {
-  const soccer::Side side = objects_.state() ? objects_.state()->side() : soccer::Side::none;
-  const Vec3f way = placeOf(object) - placeOf(*this);
-  if (way.norm() <= kTooNear) return false;
-  Vec3f relative = soccer::seenBy(side, way);
+/// False when the object is too near or too far to be seen.
+bool VisionPerceptor::look(const Vec3f& place, soccer::Polar& out) {
+  const Vec3f way = place - here_;
+  const float distance = way.norm();
+  if (distance <= kTooNear || distance > outlook_.range()) return false;
+  Vec3f relative = soccer::seenBy(side(), way);
   if (!staticAxis_ && transform()) relative = transform()->world().block<3, 3>(0, 0).transpose() * way;
   out = soccer::polarOf(relative + noise_.calibration());
   // robots look along their own y axis
@@ -24,24 +23,26 @@ bool VisionPerceptor::look(const SceneNode& object, soccer::Polar& out) {
 }
 
 void VisionPerceptor::sense(Predicates& out, const Event&) {
-  objects_.refresh(*this);
-  noise_.allowed = !objects_.settings() || objects_.settings()->visionNoise;
+  outlook_.open(*this, range_);
+  here_ = soccer::placeOf(*this);
+  const Sights& sights = outlook_.sights();
+  noise_.allowed = !outlook_.settings() || outlook_.settings()->visionNoise;
   soccer::Polar polar;
   out.open(predicateName_);
-  for (const ObjectState* o : objects_.field()) {
-    if (!look(*o, polar)) continue;
-    out.open(o->perceptName());
+  for (const Sights::Mark& m : sights.field()) {
+    if (!look(m.place, polar)) continue;
+    out.open(m.object->perceptName());
     writePolar(out, polar);
     out.close();
   }
-  for (const soccer::VisibleObjects::Robot& r : objects_.robots()) {
-    if (r.agent == objects_.agent() || r.state->side() == soccer::Side::none || !look(*r.state, polar)) continue;
+  for (const std::uint32_t i : outlook_.robotsNear(here_)) {
+    const Sights::Robot& r = sights.robots()[i];
+    if (r.agent == outlook_.agent() || r.state->side() == soccer::Side::none || !look(r.place, polar)) continue;
     out.open(r.state->perceptName()).pair("team", std::string_view(r.state->team())).pair("id", r.state->unum());
     writePolar(out, polar);
     out.close();
   }
-  if (senseMyPos_)
-    writePoint(out, "mypos", soccer::seenBy(objects_.state() ? objects_.state()->side() : soccer::Side::none, placeOf(*this)));
+  if (senseMyPos_) soccer::writePoint(out, "mypos", soccer::seenBy(side(), here_));
   out.close();
 }
 

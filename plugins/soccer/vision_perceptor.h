@@ -6,13 +6,15 @@ namespace spark {
 
 /// Sees everything around, by default along the field's axes as the team sees them:
 /// `(See (F1L (pol 12.1 30.4 -0.3)) ... (B (pol ...)) (P (team A) (id 1) (pol ...)))`.
-class VisionPerceptor : public Perceptor {
+class VisionPerceptor : public Perceptor, public ISharedView {
   SPARK_CLASS(VisionPerceptor, Perceptor)
  public:
   VisionPerceptor() { predicateName_ = "See"; }
   static void describe(Description<VisionPerceptor>& d) {
     using V = VisionPerceptor;
     d.doc("Sees everything around: flags, goals, ball, players.");
+    d.implements<ISharedView>();
+    d.property("range", &V::range_).unit("m").min(0).doc("What is farther away is not seen; infinite by default.");
     d.property("staticSenseAxis", &V::staticAxis_)
         .doc("Angles from the field's x axis as the team sees it; else in the frame of the transform above.");
     d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
@@ -25,6 +27,7 @@ class VisionPerceptor : public Perceptor {
     d.property("random", &V::randomState, &V::setRandomState).state().doc("Its noise.");
   }
   void sense(Predicates& out, const Event& event) override;
+  void share(std::uint64_t round) override { outlook_.share(*this, round, range_); }
 
  protected:
   void saveState(StateWriter& out) const override { noise_.save(out); }
@@ -37,11 +40,14 @@ class VisionPerceptor : public Perceptor {
   void setNoiseParameters(double distance, double phi, double theta, double error) { noise_.set(distance, phi, theta, error); }
   const RandomStream& randomState() const { return noise_.random; }
   void setRandomState(RandomStream r) { noise_.random = r; }
-  bool look(const SceneNode& object, soccer::Polar& out);
+  soccer::Side side() const { return outlook_.state() ? outlook_.state()->side() : soccer::Side::none; }
+  bool look(const Vec3f& place, soccer::Polar& out);
 
-  soccer::VisibleObjects objects_;
+  soccer::Outlook outlook_;
   soccer::VisionNoise noise_{*this};
   bool staticAxis_ = true, senseMyPos_ = false, randomNoise_ = true;
+  float range_ = soccer::Sights::kUnlimited;
+  Vec3f here_ = Vec3f::Zero();  ///< while it looks [m]
 };
 
 }  // namespace spark

@@ -1,31 +1,9 @@
 #include <malloc.h>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
+#include "allocations.h"
 #include "arena.h"
-
-namespace {
-/// Counts what the whole process takes from the heap while `on`.
-struct Allocations {
-  static inline bool on = false;
-  static inline int count = 0;
-};
-
-void* counted(std::size_t size) {
-  if (Allocations::on) ++Allocations::count;
-  if (void* p = std::malloc(size ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace spark;
 using namespace spark::test;

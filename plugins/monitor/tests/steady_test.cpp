@@ -1,29 +1,7 @@
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
+#include "allocations.h"
 #include "stage.h"
-
-namespace {
-/// Counts what the whole process takes from the heap while `on`.
-struct Allocations {
-  static inline bool on = false;
-  static inline int count = 0;
-};
-
-void* counted(std::size_t size) {
-  if (Allocations::on) ++Allocations::count;
-  if (void* p = std::malloc(size ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace spark;
 using namespace spark::test;
@@ -67,10 +45,7 @@ TEST_CASE("frames, diffs, events and full messages for several clients take noth
   };
   play(400);
   const std::size_t before = sinks[0].bytes;
-  Allocations::on = true;
-  play(1000);
-  Allocations::on = false;
-  CHECK(Allocations::count == 0);
+  CHECK(Allocations::in([&] { play(1000); }) == 0);
   CHECK(sinks[0].bytes > before + 50000);
   CHECK(sinks[2].bytes == sinks[0].bytes);
 }
