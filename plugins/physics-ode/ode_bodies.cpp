@@ -117,6 +117,7 @@ void OdeEngine::setRotation(Body body, const Mat3& wanted) {
   dMatrix3 m;
   toOde(crossing(*b.world, r), m);
   dBodySetRotation(b.id, m);
+  ++b.world->rotations;
   std::copy(dBodyGetQuaternion(b.id), dBodyGetQuaternion(b.id) + 4, b.good.quaternion);
 }
 
@@ -199,6 +200,7 @@ void OdeEngine::loadBody(Body body, std::span<const double> in) {
   const double* p = in.data();
   // ODE's own setters normalise again, which may change the last bit: the state is written where ODE keeps it.
   std::copy(p + 3, p + 7, const_cast<dReal*>(dBodyGetQuaternion(b.id)));
+  ++b.world->rotations;
   std::copy(p + 7, p + 19, const_cast<dReal*>(dBodyGetRotation(b.id)));
   dBodySetPosition(b.id, p[0], p[1], p[2]);  // also tells the geoms
   dBodySetLinearVel(b.id, p[19], p[20], p[21]);

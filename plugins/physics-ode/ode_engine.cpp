@@ -230,6 +230,7 @@ void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
   engine::ISolver* const inPlace = solver();
   if (!inPlace || stepBySolver(w, *inPlace, contacts, crossing(w, dt)) > 0) stepByOde(w, contacts, crossing(w, dt));
   repair(w);
+  ++w.rotations;
   if (!said_.empty()) report();
 }
 

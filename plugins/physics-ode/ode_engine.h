@@ -21,6 +21,7 @@
 
 #include <ode/ode.h>
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -82,6 +83,10 @@ struct JointData : engine::SolverJoint {
   dJointID id;
   WorldData* world;
   dJointFeedback feedback{};
+  /// A hinge's angle, as ODE tells it, and the state of the world's rotations for which it was asked last: effectors, the solver and sensors
+  /// want the same number. Sensors ask in several threads.
+  mutable std::atomic<double> lastAngle = 0;
+  mutable std::atomic<std::uint64_t> angleAt = 0;
   bool attached() const { return a != nullptr; }
 };
 
@@ -100,6 +105,7 @@ struct WorldData {
   engine::WorldParameters parameters;  ///< as ODE was told
   bool exactReplay = false;            ///< as the engine said when the world was made
   std::uint64_t steps = 0, nextAge = 1;
+  std::uint64_t rotations = 1;  ///< another number when a body turned or a joint was set anew
   std::vector<std::unique_ptr<BodyData>> bodies;
   std::vector<std::unique_ptr<SpaceData>> spaces;
   std::vector<std::unique_ptr<GeomData>> geoms;
@@ -130,6 +136,9 @@ void fixed(JointData& j);
 /// After the world's parameters changed, which some rows of most joints follow.
 void worldChanged(JointData& j);
 }  // namespace frames
+
+/// A hinge's angle in the caller's order of bodies [rad].
+double hingeAngle(const JointData& j);
 
 /// Constraint rows that a contact and a joint add at most.
 inline constexpr int kContactRows = 3;

@@ -124,6 +124,7 @@ void frames::worldChanged(JointData& j) {
 }
 
 void frames::attached(JointData& j) {
+  ++j.world->rotations;
   if (!j.attached()) return;
   switch (j.type) {
     case JointType::fixed:
@@ -144,12 +145,14 @@ void frames::attached(JointData& j) {
 }
 
 void frames::anchored(JointData& j, const Vec3& world) {
+  ++j.world->rotations;
   j.anchorA = pointToBody(j.a, world);
   j.anchorB = pointToBody(j.b, world);
   noteRotation(j);
 }
 
 void frames::turned(JointData& j, int axis, const Vec3& world, int frame) {
+  ++j.world->rotations;
   const Vec3 direction = world.normalized();
   // ODE does not bring an axis in the world to length 1.
   const Vec3 second = j.b ? toBody(j.b, direction) : world;

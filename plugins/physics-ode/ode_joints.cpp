@@ -70,7 +70,37 @@ Vec3 motorAxis(const JointData& j, int axis) {
   return toVec(v);
 }
 
+/// What ODE says of a parameter.
+double asked(const JointData& j, int name) {
+  switch (j.type) {
+    case JointType::hinge:
+      return dJointGetHingeParam(j.id, name);
+    case JointType::slider:
+      return dJointGetSliderParam(j.id, name);
+    case JointType::universal:
+      return dJointGetUniversalParam(j.id, name);
+    case JointType::hinge2:
+      return dJointGetHinge2Param(j.id, name);
+    default:
+      return dJointGetAMotorParam(j.id, name);
+  }
+}
+
+bool hasParameter(const JointData& j, JointParameter p, int axis) {
+  const bool ofWheel = p == JointParameter::suspensionErp || p == JointParameter::suspensionCfm;
+  return axis >= 0 && axis < axesOf(j.type) && (!ofWheel || (j.type == JointType::hinge2 && axis == 0));
+}
+
 }  // namespace
+
+double ode::hingeAngle(const JointData& j) {
+  const std::uint64_t now = j.world->rotations;
+  if (j.angleAt.load(std::memory_order_acquire) != now) {
+    j.lastAngle.store(dJointGetHingeAngle(j.id), std::memory_order_relaxed);
+    j.angleAt.store(now, std::memory_order_release);
+  }
+  return j.lastAngle.load(std::memory_order_relaxed);
+}
 
 Joint OdeEngine::createJoint(engine::World world, JointType type) {
   const Listening listening(said_);
@@ -266,7 +296,7 @@ Vec3 OdeEngine::axis(Joint joint, int axis) const {
 
 void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double wanted) {
   JointData& j = *data(joint);
-  if (axis < 0 || axis >= axesOf(j.type) || std::isnan(wanted)) return;
+  if (!hasParameter(j, p, axis) || std::isnan(wanted)) return;
   const double v = crossing(*j.world, wanted);
   const int name = odeParameter(p, axis);
   switch (j.type) {
@@ -287,25 +317,12 @@ void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double wan
       break;
   }
   // ODE does not take every number.
-  told(j, p, axis) = OdeEngine::parameter(joint, p, axis);
+  told(j, p, axis) = asked(j, name);
 }
 
 double OdeEngine::parameter(Joint joint, JointParameter p, int axis) const {
-  const JointData& j = *data(joint);
-  if (axis < 0 || axis >= axesOf(j.type)) return 0;
-  const int name = odeParameter(p, axis);
-  switch (j.type) {
-    case JointType::hinge:
-      return dJointGetHingeParam(j.id, name);
-    case JointType::slider:
-      return dJointGetSliderParam(j.id, name);
-    case JointType::universal:
-      return dJointGetUniversalParam(j.id, name);
-    case JointType::hinge2:
-      return dJointGetHinge2Param(j.id, name);
-    default:
-      return dJointGetAMotorParam(j.id, name);
-  }
+  JointData& j = *data(joint);
+  return hasParameter(j, p, axis) ? told(j, p, axis) : 0;
 }
 
 double OdeEngine::angle(Joint joint, int axis) const {
@@ -313,7 +330,7 @@ double OdeEngine::angle(Joint joint, int axis) const {
   if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return 0;
   switch (j.type) {
     case JointType::hinge:
-      return dJointGetHingeAngle(j.id);
+      return hingeAngle(j);
     case JointType::slider:
       return dJointGetSliderPosition(j.id);
     case JointType::universal:

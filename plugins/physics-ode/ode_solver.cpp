@@ -38,7 +38,7 @@ void tellOde(WorldData& w) {
   for (const auto& b : w.bodies) {
     if (!b->awake || b->left) continue;
     w.solved.push_back(b.get());
-    dBodyEnable(b->id);
+    if (!dBodyIsEnabled(b->id)) dBodyEnable(b->id);
     dBodySetPosition(b->id, b->position[0], b->position[1], b->position[2]);
   }
 }
@@ -65,6 +65,8 @@ std::size_t OdeEngine::stepBySolver(WorldData& w, engine::ISolver& solver, engin
                           .dt = dt,
                           .structure = w.structure,
                           .mostRows = directRows_};
+  for (const auto& j : w.joints)
+    if (j->type == engine::JointType::hinge && j->attached()) j->angle[0] = j->reversed ? -hingeAngle(*j) : hingeAngle(*j);
   const std::size_t left = solver.step(step);
   tellOde(w);
   for (const auto& j : w.joints)
