@@ -1,27 +1,12 @@
 #include "spark/predicates.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <string>
 
 namespace spark {
 
-double Element::numberInText() const {
-  const std::string_view s = text();
-  const char *first = s.data(), *last = first + s.size();
-  // What is a plain decimal number from end to end is the same for both; atof takes all else.
-  const std::size_t sign = s.starts_with('-') ? 1 : 0;
-  if (double v = 0; s.size() > sign && s[sign] >= '0' && s[sign] <= '9')
-    if (const auto r = std::from_chars(first, last, v); r.ec == std::errc() && r.ptr == last) return v;
-  // atof wants a terminated string; numbers are short.
-  char buffer[64];
-  if (s.size() >= sizeof buffer) return std::atof(std::string(s).c_str());
-  buffer[s.copy(buffer, s.size())] = 0;
-  return std::atof(buffer);
-}
+double Element::numberInText() const { return readNumber(text()); }
 
 std::int64_t Element::integer() const {
   if (token().kind == Token::Kind::integer) return token().integer;

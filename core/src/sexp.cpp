@@ -1,15 +1,22 @@
 #include "spark/predicates.h"
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <array>
+#include <utility>
 
 namespace spark {
 
 namespace {
 
-bool isBlank(unsigned char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-bool isAtom(unsigned char c) { return (c >= 0x2A && c <= 0x7E) || c == '!' || (c >= 0x23 && c <= 0x26) || c > 0x7F; }
+/// What a byte may be, by its value.
+enum Class : std::uint8_t { kBlank = 1, kAtom = 2, kPlain = 4 };
+constexpr auto kClasses = [] {
+  std::array<std::uint8_t, 256> out{};
+  for (const unsigned char c : {' ', '\t', '\r', '\n'}) out[c] = kBlank;
+  for (unsigned c = 0; c < out.size(); ++c)
+    if ((c >= 0x2A && c <= 0x7E) || c == '!' || (c >= 0x23 && c <= 0x26) || c > 0x7F) out[c] = c == '\\' ? kAtom : kAtom | kPlain;
+  return out;
+}();
+bool is(Class what, char c) { return kClasses[static_cast<unsigned char>(c)] & what; }
 bool isEscapable(char c) { return c == '"' || c == '\'' || c == '(' || c == ')' || c == '\\'; }
 
 /// One pass over the bytes with an explicit depth: no recursion, whatever the nesting.
@@ -20,76 +27,76 @@ class Reader {
   ReadResult read(std::size_t maxExpressions) {
     std::size_t complete = 0;
     const std::uint32_t firstToken = out_.size();
-    std::uint32_t expressionStart = firstToken, expressionLine = 1, expressionColumn = 1;
-    while (!result_.message.size()) {
+    std::uint32_t expressionStart = firstToken;
+    Place expressionPlace;
+    while (!failed_) {
       if (depth_ == 0 && maxExpressions && complete == maxExpressions) break;
       skipBlanksAndComments();
       if (at_ >= bytes_.size()) break;
-      if (depth_ == 0) expressionStart = out_.size(), expressionLine = line_, expressionColumn = column_;
-      if (bytes_[at_] != ')' && out_.size() - firstToken >= limits_.maxTokens) {
-        fail("more than " + std::to_string(limits_.maxTokens) + " tokens");
+      const char c = bytes_[at_];
+      const Place place = here();
+      if (depth_ == 0) expressionStart = out_.size(), expressionPlace = place;
+      if (c != ')' && out_.size() - firstToken >= limits_.maxTokens) {
+        fail("more than " + std::to_string(limits_.maxTokens) + " tokens", place);
         break;
       }
-      const char c = bytes_[at_];
-      const std::uint32_t line = line_, column = column_;
       if (c == '(') {
         if (depth_ == limits_.maxDepth) {
-          fail("lists nested deeper than " + std::to_string(limits_.maxDepth));
+          fail("lists nested deeper than " + std::to_string(limits_.maxDepth), place);
           break;
         }
         out_.open();
-        place(line, column);
+        mark(place);
         ++depth_;
-        step();
+        ++at_;
       } else if (c == ')') {
         if (depth_ == 0) {
-          fail("')' without '('");
+          fail("')' without '('", place);
           break;
         }
         out_.close();
         --depth_;
-        step();
+        ++at_;
       } else {
         atom();
-        if (!result_.message.empty()) break;
-        place(line, column);
+        if (failed_) break;
+        mark(place);
       }
       if (depth_ == 0) {
         ++complete;
         expressionStart = out_.size();
       }
     }
-    if (result_.message.empty() && depth_ > 0) {
-      fail("the list is not closed");
-      result_.line = expressionLine;
-      result_.column = expressionColumn;
-    }
-    if (!result_.message.empty()) out_.truncate(expressionStart);
+    if (!failed_ && depth_ > 0) fail("the list is not closed", expressionPlace);
+    if (failed_) out_.truncate(expressionStart);
     result_.consumed = at_;
-    return result_;
+    return std::move(result_);
   }
 
  private:
-  void fail(std::string message) { fail(std::move(message), line_, column_); }
-  void fail(std::string message, std::uint32_t line, std::uint32_t column) {
+  struct Place {
+    std::uint32_t line = 1, column = 1;
+  };
+  Place here() const { return {line_, static_cast<std::uint32_t>(at_ - lineStart_) + 1}; }
+  void fail(std::string message, Place place) {
+    failed_ = true;
     result_.message = std::move(message);
-    result_.line = line;
-    result_.column = column;
+    result_.line = place.line;
+    result_.column = place.column;
   }
-  void place(std::uint32_t line, std::uint32_t column) {
-    if (limits_.places) out_.mark(line, column);
+  void mark(Place place) {
+    if (limits_.places) out_.mark(place.line, place.column);
   }
+  /// Over a byte that may end a line.
   void step() {
-    if (bytes_[at_] == '\n') ++line_, column_ = 1;
-    else ++column_;
-    ++at_;
+    if (bytes_[at_++] == '\n') ++line_, lineStart_ = at_;
   }
   void skipBlanksAndComments() {
     while (at_ < bytes_.size()) {
-      if (isBlank(static_cast<unsigned char>(bytes_[at_]))) {
+      if (is(kBlank, bytes_[at_])) {
         step();
       } else if (bytes_[at_] == ';') {
-        while (at_ < bytes_.size() && bytes_[at_] != '\n') step();
+        while (at_ < bytes_.size() && bytes_[at_] != '\n') ++at_;
       } else {
         return;
       }
@@ -101,38 +108,50 @@ class Reader {
     step();
   }
   void atom() {
-    text_.clear();
-    const std::uint32_t line = line_, column = column_;
     const char c = bytes_[at_];
+    if (is(kPlain, c)) return plainAtom();
+    text_.clear();
+    const Place place = here();
     if (c == '"') {
       step();
       while (at_ < bytes_.size() && bytes_[at_] != '"') escapeOrByte();
-      if (at_ >= bytes_.size()) return fail("the string is not closed", line, column);
+      if (at_ >= bytes_.size()) return fail("the string is not closed", place);
       step();
       out_.add(text_, true);
     } else if (c == '\'') {
       step();
       if (at_ < bytes_.size() && bytes_[at_] == '(') {
-        quotedList(line, column);
+        quotedList(place);
       } else {
-        while (at_ < bytes_.size() && isAtom(static_cast<unsigned char>(bytes_[at_]))) escapeOrByte();
+        while (at_ < bytes_.size() && is(kAtom, bytes_[at_])) escapeOrByte();
         if (at_ < bytes_.size() && bytes_[at_] == '\'') step();
       }
-      if (result_.message.empty()) out_.add(text_, true);
-    } else if (isAtom(static_cast<unsigned char>(c))) {
-      while (at_ < bytes_.size() && isAtom(static_cast<unsigned char>(bytes_[at_]))) escapeOrByte();
-      out_.add(text_);
+      if (!failed_) out_.add(text_, true);
+    } else if (is(kAtom, c)) {
+      escapedAtom();
     } else {
       constexpr char kHex[] = "0123456789abcdef";
       const auto byte = static_cast<unsigned char>(c);
-      fail(std::string("byte 0x") + kHex[byte >> 4] + kHex[byte & 15] + " is no part of an atom");
+      fail(std::string("byte 0x") + kHex[byte >> 4] + kHex[byte & 15] + " is no part of an atom", place);
     }
   }
+  /// Nearly every atom: its bytes are its text.
+  void plainAtom() {
+    std::size_t end = at_ + 1;
+    while (end < bytes_.size() && is(kPlain, bytes_[end])) ++end;
+    if (end < bytes_.size() && is(kAtom, bytes_[end])) return text_.clear(), escapedAtom();
+    out_.add(bytes_.substr(at_, end - at_));
+    at_ = end;
+  }
+  void escapedAtom() {
+    while (at_ < bytes_.size() && is(kAtom, bytes_[at_])) escapeOrByte();
+    out_.add(text_);
+  }
   /// `'(...)`: kept as text.
-  void quotedList(std::uint32_t line, std::uint32_t column) {
+  void quotedList(Place place) {
     std::size_t depth = 0;
     do {
-      if (at_ >= bytes_.size()) return fail("the quoted list is not closed", line, column);
+      if (at_ >= bytes_.size()) return fail("the quoted list is not closed", place);
       if (bytes_[at_] == '(') ++depth;
       if (bytes_[at_] == ')') --depth;
       text_ += bytes_[at_];
@@ -145,31 +164,27 @@ class Reader {
   const ReadLimits& limits_;
   ReadResult result_;
   std::string text_;
-  std::size_t at_ = 0;
-  std::uint32_t line_ = 1, column_ = 1, depth_ = 0;
+  std::size_t at_ = 0, lineStart_ = 0;
+  std::uint32_t line_ = 1, depth_ = 0;
+  bool failed_ = false;
 };
 
-void writeElement(const Element& e, int decimals, bool top, std::string& out) {
+void writeElement(const Element& e, int decimals, bool top, ByteWriter& out) {
   const Token& t = e.token();
   switch (t.kind) {
-    case Token::Kind::text: out.append(e.text()); return;
-    case Token::Kind::number: appendFixed(out, t.number, decimals); return;
-    case Token::Kind::integer: {
-      char buffer[24];
-      out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, t.integer).ptr);
-      return;
-    }
+    case Token::Kind::text: return out.put(e.text());
+    case Token::Kind::number: return out.fixed(t.number, decimals);
+    case Token::Kind::integer: return out.integer(t.integer);
     case Token::Kind::list: break;
   }
-  out += '(';
+  out.put('(');
   bool first = true;
   for (const Element inner : e) {
-    if (!first) out += ' ';
-    writeElement(inner, decimals, false, out);
+    if (!first) out.put(' ');
     first = false;
+    writeElement(inner, decimals, false, out);
   }
-  if (top && e.token().size == 2) out += ' ';
-  out += ')';
+  out.put(top && t.size == 2 ? std::string_view(" )") : std::string_view(")"));
 }
 
 }  // namespace
@@ -178,22 +193,9 @@ ReadResult readSexp(std::string_view bytes, Predicates& out, const ReadLimits& l
   return Reader(bytes, out, limits).read(maxExpressions);
 }
 
-void writeSexp(const Predicates& predicates, int decimals, std::string& out) {
+void writeSexp(const Predicates& predicates, int decimals, std::string& bytes) {
+  ByteWriter out(bytes);
   for (const Element e : predicates) writeElement(e, decimals, true, out);
-}
-
-void appendFixed(std::string& out, double v, int decimals, bool asFloat) {
-  char buffer[400];
-  if (std::isnan(v)) {  // its sign, which to_chars would print, means nothing, and clients do not read it
-    out += "nan";
-    return;
-  }
-  // A clock in single precision stands still for some cycles after a few days, and clients end at two equal messages.
-  constexpr double kLateClock = 65536, kEndOfClocks = 1e9;
-  const bool clock = v >= kLateClock && v < kEndOfClocks;
-  if (asFloat && !clock) v = static_cast<float>(v);
-  const auto r = std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::fixed, std::clamp(decimals, 0, 60));
-  out.append(buffer, r.ptr);
 }
 
 }  // namespace spark

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "spark/numbers.h"
 #include "spark/plugin.h"
 
 namespace spark {
@@ -15,57 +16,54 @@ namespace spark {
 namespace {
 
 /// Six significant digits; null when not finite.
-void put(std::string& out, double v) {
-  if (!std::isfinite(v)) {
-    out.append("null");
-    return;
-  }
-  char digits[32];
-  out.append(digits, std::to_chars(digits, digits + sizeof digits, v, std::chars_format::general, 6).ptr);
+void put(ByteWriter& out, double v) {
+  if (std::isfinite(v)) out.general(v);
+  else out.put("null");
 }
 
-void put(std::string& out, std::int64_t v) {
-  char digits[24];
-  out.append(digits, std::to_chars(digits, digits + sizeof digits, v).ptr);
-}
+void put(ByteWriter& out, std::int64_t v) { out.integer(v); }
 
 /// A JSON string; bytes that are no UTF-8 (names come from clients) become U+FFFD.
-void put(std::string& out, std::string_view text) {
+void put(ByteWriter& out, std::string_view text) {
   const auto plain = [](unsigned char c) { return c >= 0x20 && c < 0x7f && c != '"' && c != '\\'; };
-  if (std::all_of(text.begin(), text.end(), plain))
-    out.append("\"").append(text).append("\"");
-  else
-    out.append(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (!std::all_of(text.begin(), text.end(), plain)) return out.put(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  out.put('"');
+  out.put(text);
+  out.put('"');
 }
 
-template <class Range>
-void putList(std::string& out, std::string_view name, const Range& numbers) {
-  put(out += '[', name);
-  for (const float v : numbers) put(out += ',', double(v));
-  out += ']';
+/// `,["SLT",1,0,0.5]`.
+void putList(ByteWriter& out, std::string_view name, std::span<const float> numbers) {
+  out.put(",[");
+  put(out, name);
+  for (const float v : numbers) {
+    out.put(',');
+    put(out, static_cast<double>(v));
+  }
+  out.put(']');
 }
 
-void putElement(std::string& out, const Element& element) {
+void putElement(ByteWriter& out, const Element& element) {
   const Token& token = element.token();
   switch (token.kind) {
-    case Token::Kind::text: put(out, element.text()); return;
-    case Token::Kind::number: put(out, token.number); return;
-    case Token::Kind::integer: put(out, token.integer); return;
+    case Token::Kind::text: return put(out, element.text());
+    case Token::Kind::number: return put(out, token.number);
+    case Token::Kind::integer: return put(out, token.integer);
     case Token::Kind::list: break;
   }
-  out += '[';
+  out.put('[');
   bool first = true;
   for (const Element inner : element) {
-    if (!first) out += ',';
+    if (!first) out.put(',');
     first = false;
     putElement(out, inner);
   }
-  out += ']';
+  out.put(']');
 }
 
 /// A mesh name with its parameters, `StdCapsule 0.1 0.2`: the words that are numbers become numbers.
-void putLoad(std::string& out, std::string_view load) {
-  out.append(",[\"load\"");
+void putLoad(ByteWriter& out, std::string_view load) {
+  out.put(",[\"load\"");
   while (!load.empty()) {
     const std::size_t size = std::min(load.find(' '), load.size());
     const std::string_view word = load.substr(0, size);
@@ -73,49 +71,56 @@ void putLoad(std::string& out, std::string_view load) {
     if (word.empty()) continue;
     double number = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    out += ',';
+    out.put(',');
     if (error == std::errc() && end == word.data() + word.size())
       put(out, number);
     else
       put(out, word);
   }
-  out += ']';
+  out.put(']');
 }
 
-void putLight(std::string& out, const IVisual& light) {
+void putLight(ByteWriter& out, const IVisual& light) {
   constexpr const char* kNames[] = {"setDiffuse", "setAmbient", "setSpecular"};
   const auto colors = light.lightColors();
-  for (int i = 0; i < 3; ++i) putList(out += ',', kNames[i], std::array{colors[i].r, colors[i].g, colors[i].b, colors[i].a});
+  for (int i = 0; i < 3; ++i) putList(out, kNames[i], std::array{colors[i].r, colors[i].g, colors[i].b, colors[i].a});
 }
 
-void putVisible(std::string& out, bool visible) { out.append(visible ? ",[\"setVisible\",1]" : ",[\"setVisible\",0]"); }
+void putVisible(ByteWriter& out, bool visible) { out.put(visible ? ",[\"setVisible\",1]" : ",[\"setVisible\",0]"); }
 
-void putMesh(std::string& out, const FrameNode& node) {
+void putMesh(ByteWriter& out, const FrameNode& node) {
   const IVisual& mesh = *node.visual;
   putVisible(out, node.visible);
-  if (node.transparent) out.append(",[\"setTransparent\"]");
+  if (node.transparent) out.put(",[\"setTransparent\"]");
   putLoad(out, mesh.load());
-  putList(out += ',', "sSc", mesh.scale());
+  const Vec3f scale = mesh.scale();
+  putList(out, "sSc", {scale.data(), 3});
   const auto& materials = mesh.materials();
   if (materials.empty()) return;
   const bool single = node.kind == FrameNode::Kind::singleMaterial;
-  out.append(single ? ",[\"sMat\"" : ",[\"resetMaterials\"");
-  for (std::size_t i = 0; i < (single ? 1 : materials.size()); ++i) put(out += ',', std::string_view(materials[i]));
-  out += ']';
+  out.put(single ? ",[\"sMat\"" : ",[\"resetMaterials\"");
+  for (std::size_t i = 0; i < (single ? 1 : materials.size()); ++i) {
+    out.put(',');
+    put(out, std::string_view(materials[i]));
+  }
+  out.put(']');
 }
 
-void putNode(std::string& out, const FrameNode& node, bool full, bool changed) {
-  out.append("[\"nd\"");
+void putNode(ByteWriter& out, const FrameNode& node, bool full, bool changed) {
+  out.put("[\"nd\"");
   switch (node.kind) {
     case FrameNode::Kind::transform:
-      if (full) out.append(",\"TRF\"");
-      if (full || changed) putList(out += ',', "SLT", std::span(node.local.data(), 16));
+      if (full) out.put(",\"TRF\"");
+      if (full || changed) putList(out, "SLT", {node.local.data(), 16});
       return;
     case FrameNode::Kind::light:
-      if (full) putLight(out.append(",\"Light\""), *node.visual);
+      if (full) {
+        out.put(",\"Light\"");
+        putLight(out, *node.visual);
+      }
       return;
-    case FrameNode::Kind::mesh: out.append(",\"StaticMesh\""); break;
-    case FrameNode::Kind::singleMaterial: out.append(",\"SMN\""); break;
+    case FrameNode::Kind::mesh: out.put(",\"StaticMesh\""); break;
+    case FrameNode::Kind::singleMaterial: out.put(",\"SMN\""); break;
   }
   if (full)
     putMesh(out, node);
@@ -125,30 +130,31 @@ void putNode(std::string& out, const FrameNode& node, bool full, bool changed) {
 
 }  // namespace
 
-void JsonMonitor::encode(const MonitorUpdate& update, std::string& out) {
+void JsonMonitor::encode(const MonitorUpdate& update, std::string& bytes) {
+  ByteWriter out(bytes);
   bool first = true;
   const auto comma = [&] {
-    if (!first) out += ',';
+    if (!first) out.put(',');
     first = false;
   };
-  out.append("[[");
+  out.put("[[");
   for (const std::uint32_t token : update.env) comma(), putElement(out, Element(update.frame.env.predicates, token));
   for (const Element event : update.events) comma(), putElement(out, event);
-  out.append(update.full ? "],[\"RSG\",0,1],[" : "],[\"RDS\",0,1],[");
+  out.put(update.full ? "],[\"RSG\",0,1],[" : "],[\"RDS\",0,1],[");
 
   int open = 0;  // nodes that are not closed yet: the ancestors of the next one, if its depth says so
   const auto closeTo = [&](int depth) {
-    for (; open > depth; --open) out += ']';
+    for (; open > depth; --open) out.put(']');
   };
   for (std::size_t i = 0; i < update.frame.nodes.size(); ++i) {
     const FrameNode& node = update.frame.nodes[i];
     closeTo(node.depth);
-    if (i > 0) out += ',';
+    if (i > 0) out.put(',');
     putNode(out, node, update.full, !update.full && update.changed[i]);
     open = node.depth + 1;
   }
   closeTo(0);
-  out.append("]]");
+  out.put("]]");
 }
 
 }  // namespace spark

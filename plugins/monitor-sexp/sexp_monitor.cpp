@@ -1,90 +1,121 @@
 #include "sexp_monitor.h"
 
 #include <array>
-#include <charconv>
+#include <bit>
+#include <cstring>
 #include <span>
 
+#include "spark/numbers.h"
 #include "spark/plugin.h"
 
 namespace spark {
 
 namespace {
 
-/// Six significant digits, as C's %g.
-void put(std::string& out, double v) {
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, v, std::chars_format::general, 6).ptr;
-  out.append(digits, end);
+/// ` 1 0 0.5`.
+void putNumbers(ByteWriter& out, std::span<const float> numbers) {
+  char* at = out.room(numbers.size() * (1 + kGeneralRoom));
+  for (const float v : numbers) {
+    *at++ = ' ';
+    at = putGeneral(at, v);
+  }
+  out.end(at);
 }
 
-template <class Range>
-void putList(std::string& out, std::string_view name, const Range& numbers) {
-  out.append("(").append(name);
-  for (const float v : numbers) put(out += ' ', v);
-  out += ')';
+void putList(ByteWriter& out, std::string_view name, std::span<const float> numbers) {
+  out.put('(');
+  out.put(name);
+  putNumbers(out, numbers);
+  out.put(')');
 }
 
-void putElement(std::string& out, const Element& element) {
+void putElement(ByteWriter& out, const Element& element) {
   const Token& token = element.token();
   switch (token.kind) {
-    case Token::Kind::text: out.append(element.text()); return;
-    case Token::Kind::number: put(out, token.number); return;
-    case Token::Kind::integer: {
-      char digits[24];
-      out.append(digits, std::to_chars(digits, digits + sizeof digits, token.integer).ptr);
-      return;
-    }
+    case Token::Kind::text: return out.put(element.text());
+    case Token::Kind::number: return out.general(token.number);
+    case Token::Kind::integer: return out.integer(token.integer);
     case Token::Kind::list: break;
   }
-  out += '(';
+  out.put('(');
   bool first = true;
   for (const Element inner : element) {
-    if (!first) out += ' ';
+    if (!first) out.put(' ');
     first = false;
     putElement(out, inner);
   }
-  out += ')';
+  out.put(')');
 }
 
-void putTransform(std::string& out, const FrameNode& node) { putList(out += ' ', "SLT", std::span(node.local.data(), 16)); }
+/// A matrix, column by column. Most parts of a robot are shifted and not turned, and no column ends in anything but 0 or 1 unless somebody
+/// shears the scene: that is known before it is written.
+void putTransform(ByteWriter& out, const Matrix& matrix) {
+  constexpr float kUpright[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  out.put(" (SLT");
+  int column = 0;
+  if (std::memcmp(matrix.data(), kUpright, sizeof kUpright) == 0) {
+    out.put(" 1 0 0 0 0 1 0 0 0 0 1 0");
+    column = 3;
+  }
+  for (; column < 4; ++column) {
+    const float* v = matrix.data() + 4 * column;
+    const bool plain = std::bit_cast<std::uint32_t>(v[3]) == std::bit_cast<std::uint32_t>(column == 3 ? 1.0f : 0.0f);
+    putNumbers(out, {v, plain ? 3u : 4u});
+    if (plain) out.put(column == 3 ? " 1" : " 0");
+  }
+  out.put(')');
+}
 
-void putLight(std::string& out, const IVisual& light) {
+void putLight(ByteWriter& out, const IVisual& light) {
   constexpr const char* kNames[] = {"setDiffuse", "setAmbient", "setSpecular"};
   const auto colors = light.lightColors();
-  for (int i = 0; i < 3; ++i) putList(out += ' ', kNames[i], std::array{colors[i].r, colors[i].g, colors[i].b, colors[i].a});
+  for (int i = 0; i < 3; ++i) {
+    out.put(' ');
+    putList(out, kNames[i], std::array{colors[i].r, colors[i].g, colors[i].b, colors[i].a});
+  }
 }
 
-void putVisible(std::string& out, bool visible) { out.append(visible ? " (setVisible 1)" : " (setVisible 0)"); }
+void putVisible(ByteWriter& out, bool visible) { out.put(visible ? " (setVisible 1)" : " (setVisible 0)"); }
 
-void putMesh(std::string& out, const FrameNode& node) {
+void putMesh(ByteWriter& out, const FrameNode& node) {
   const IVisual& mesh = *node.visual;
   putVisible(out, node.visible);
-  if (node.transparent) out.append(" (setTransparent)");
-  out.append(" (load ").append(mesh.load()).append(") ");
-  putList(out, "sSc", mesh.scale());
+  if (node.transparent) out.put(" (setTransparent)");
+  out.put(" (load ");
+  out.put(mesh.load());
+  out.put(") ");
+  const Vec3f scale = mesh.scale();
+  putList(out, "sSc", {scale.data(), 3});
   const auto& materials = mesh.materials();
   if (materials.empty()) return;
   if (node.kind == FrameNode::Kind::singleMaterial) {
-    out.append(" (sMat ").append(materials[0]).append(")");
-    return;
+    out.put(" (sMat ");
+    out.put(materials[0]);
+    return out.put(')');
   }
-  out.append("(resetMaterials");  // no blank before it: monitors have always been sent it so
-  for (const std::string& material : materials) out.append(" ").append(material);
-  out += ')';
+  out.put("(resetMaterials");  // no blank before it: monitors have always been sent it so
+  for (const std::string& material : materials) {
+    out.put(' ');
+    out.put(material);
+  }
+  out.put(')');
 }
 
-void putNode(std::string& out, const FrameNode& node, bool full, bool changed) {
-  out.append("(nd");
+void putNode(ByteWriter& out, const FrameNode& node, bool full, bool changed) {
+  out.put("(nd");
   switch (node.kind) {
     case FrameNode::Kind::transform:
-      if (full) out.append(" TRF");
-      if (full || changed) putTransform(out, node);
+      if (full) out.put(" TRF");
+      if (full || changed) putTransform(out, node.local);
       return;
     case FrameNode::Kind::light:
-      if (full) putLight(out.append(" Light"), *node.visual);
+      if (full) {
+        out.put(" Light");
+        putLight(out, *node.visual);
+      }
       return;
-    case FrameNode::Kind::mesh: out.append(" StaticMesh"); break;
-    case FrameNode::Kind::singleMaterial: out.append(" SMN"); break;
+    case FrameNode::Kind::mesh: out.put(" StaticMesh"); break;
+    case FrameNode::Kind::singleMaterial: out.put(" SMN"); break;
   }
   if (full)
     putMesh(out, node);
@@ -94,15 +125,16 @@ void putNode(std::string& out, const FrameNode& node, bool full, bool changed) {
 
 }  // namespace
 
-void SexpMonitor::encode(const MonitorUpdate& update, std::string& out) {
-  out += '(';
+void SexpMonitor::encode(const MonitorUpdate& update, std::string& bytes) {
+  ByteWriter out(bytes);
+  out.put('(');
   for (const std::uint32_t token : update.env) putElement(out, Element(update.frame.env.predicates, token));
   for (const Element event : update.events) putElement(out, event);
-  out.append(update.full ? ")(RSG 0 1)(" : ")(RDS 0 1)(");
+  out.put(update.full ? ")(RSG 0 1)(" : ")(RDS 0 1)(");
 
   int open = 0;  // nodes that are not closed yet: the ancestors of the next one, if its depth says so
   const auto closeTo = [&](int depth) {
-    for (; open > depth; --open) out += ')';
+    for (; open > depth; --open) out.put(')');
   };
   for (std::size_t i = 0; i < update.frame.nodes.size(); ++i) {
     const FrameNode& node = update.frame.nodes[i];
@@ -111,7 +143,7 @@ void SexpMonitor::encode(const MonitorUpdate& update, std::string& out) {
     open = node.depth + 1;
   }
   closeTo(0);
-  out += ')';
+  out.put(')');
 }
 
 }  // namespace spark

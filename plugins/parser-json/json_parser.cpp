@@ -5,6 +5,7 @@
 #include "api/agents.h"
 #include "parser-json/json_reader.h"
 #include "spark/describe.h"
+#include "spark/numbers.h"
 #include "spark/plugin.h"
 
 namespace spark {
@@ -17,41 +18,36 @@ bool isPlain(std::string_view text) {
   return true;
 }
 
-void writeText(std::string_view text, std::string& out) {
-  if (isPlain(text)) {
-    out.append(1, '"').append(text).append(1, '"');
-  } else {
-    out += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  }
+void writeText(std::string_view text, ByteWriter& out) {
+  if (!isPlain(text)) return out.put(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  out.put('"');
+  out.put(text);
+  out.put('"');
 }
 
-void writeNumber(double v, int decimals, std::string& out) {
-  if (!std::isfinite(decimals < 0 ? v : static_cast<float>(v))) {
-    out += "null";
-  } else if (decimals >= 0) {
-    appendFixed(out, v, decimals);
-  } else {
-    char buffer[32];
-    out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, v).ptr);
-  }
+void writeNumber(double v, int decimals, ByteWriter& out) {
+  if (!std::isfinite(decimals < 0 ? v : static_cast<float>(v))) return out.put("null");
+  if (decimals >= 0) return out.fixed(v, decimals);
+  char* to = out.room(kGeneralRoom);
+  out.end(std::to_chars(to, to + kGeneralRoom, v).ptr);
 }
 
-void writeElement(const Element& e, int decimals, std::string& out) {
+void writeElement(const Element& e, int decimals, ByteWriter& out) {
   const Token& t = e.token();
   switch (t.kind) {
-    case Token::Kind::text: writeText(e.text(), out); return;
-    case Token::Kind::number: writeNumber(t.number, decimals, out); return;
-    case Token::Kind::integer: out += std::to_string(t.integer); return;
+    case Token::Kind::text: return writeText(e.text(), out);
+    case Token::Kind::number: return writeNumber(t.number, decimals, out);
+    case Token::Kind::integer: return out.integer(t.integer);
     case Token::Kind::list: break;
   }
-  out += '[';
+  out.put('[');
   bool first = true;
   for (const Element inner : e) {
-    if (!first) out += ',';
+    if (!first) out.put(',');
     first = false;
     writeElement(inner, decimals, out);
   }
-  out += ']';
+  out.put(']');
 }
 
 }  // namespace
@@ -73,15 +69,16 @@ class JsonParser : public Leaf, public IParser {
   ReadResult parse(std::string_view message, Predicates& out) override {
     return json::read(message, out, {static_cast<std::uint32_t>(maxDepth_), static_cast<std::uint32_t>(maxTokens_)});
   }
-  void write(const Predicates& predicates, std::string& out) override {
-    out += '[';
+  void write(const Predicates& predicates, std::string& bytes) override {
+    ByteWriter out(bytes);
+    out.put('[');
     bool first = true;
     for (const Element e : predicates) {
-      if (!first) out += ',';
+      if (!first) out.put(',');
       first = false;
       writeElement(e, decimals_, out);
     }
-    out += ']';
+    out.put(']');
   }
 
  private:

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "spark/numbers.h"
 #include "spark/value.h"
 
 namespace spark {
@@ -216,7 +217,5 @@ ReadResult readSexp(std::string_view bytes, Predicates& out, const ReadLimits& l
 /// Writes all top-level elements as S-expressions as agents and monitors of the installed base expect them: `(name a b)`, one blank
 /// after the name even without arguments, `decimals` fixed decimals for numbers.
 void writeSexp(const Predicates& predicates, int decimals, std::string& out);
-/// Appends a number with fixed decimals as C prints it (single precision when `asFloat`): -0.00, nan, inf included.
-void appendFixed(std::string& out, double v, int decimals, bool asFloat = true);
 
 }  // namespace spark
