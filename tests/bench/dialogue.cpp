@@ -61,18 +61,22 @@ double drivePower(std::size_t agent, std::int64_t n, int axis) {
 }
 
 Dialogue::Dialogue(const World& world, std::size_t agent)
-    : world_(world), agent_(agent), begin_(kJoinCycles * (world.count - static_cast<std::int64_t>(agent)) + kSettleCycles) {
+    : world_(world), agent_(agent), begin_(kJoinCycles * (world.humanoid() ? world.count - static_cast<std::int64_t>(agent) : 1) + kSettleCycles) {
   if (world.motion == World::Motion::heap) begin_ += kHeapCycles;
   motions(world, agent);
 }
 
-std::string Dialogue::init() const { return fmt::format("(init (unum {})(teamname {})){}", agent_ % 11 + 1, agent_ < 11 ? "Left" : "Right", kSync); }
+/// Humanoids fill the left team first, spheres both alike.
+std::string Dialogue::init() const {
+  const std::size_t number = world_.humanoid() ? agent_ % 11 : agent_ / 2;
+  const bool left = world_.humanoid() ? agent_ < 11 : agent_ % 2 == 0;
+  return fmt::format("(init (unum {})(teamname {})){}", number + 1, left ? "Left" : "Right", kSync);
+}
 
 /// A place in the team's own half: four columns, three rows.
 std::string Dialogue::beam() const {
-  const double scale = world_.humanoid() ? 1 : 4;
   const auto column = static_cast<double>(agent_ % 11 % 4), row = static_cast<double>(agent_ % 11 / 4);
-  return fmt::format("(beam {:.2f} {:.2f} 0){}", -scale * (2 + 2.4 * column), scale * (4 * (row - 1) + 0.3 * column), kSync);
+  return fmt::format("(beam {:.2f} {:.2f} 0){}", -(2 + 2.4 * column), 4 * (row - 1) + 0.3 * column, kSync);
 }
 
 std::string_view Dialogue::say(std::int64_t received) {
@@ -80,7 +84,7 @@ std::string_view Dialogue::say(std::int64_t received) {
     text_ = world_.humanoid() ? fmt::format("(scene rsg/agent/nao/nao_hetero.rsg {}){}", agent_ % kTypes, kSync) : fmt::format("(scene rsg/agent/sphere.rsg){}", kSync);
   else if (received == 1)
     text_ = init();
-  else if (received == 4)
+  else if (received == 4 && world_.humanoid())
     text_ = beam();
   else if (world_.motion == World::Motion::rest || received < begin_)
     return kSync;

@@ -10,7 +10,7 @@
 
 namespace spark::bench {
 
-/// Agents come one after another, so many cycles apart: several robots in one place are a knot for the solver.
+/// Humanoids come one after another, so many cycles apart: several in one place are a knot for the solver. Spheres come all at once.
 inline constexpr int kJoinCycles = 8;
 /// Cycles from the last one's coming until they begin to move: they have reached their places and stand.
 inline constexpr int kSettleCycles = 50;

@@ -67,7 +67,8 @@ void House::build() {
   } else {
     for (const char* port : {"agents", "monitors"}) lua.addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
     if (setup_.solver != "dense") lua.addOverride("solver", setup_.solver);
-    lua.runConfig(setup_.world.kind == World::Kind::spheres ? "soccer-sphere.lua" : "soccer.lua");
+    if (setup_.world.kind == World::Kind::spheres) lua.addOverride("agents", setup_.world.count);
+    lua.runConfig(setup_.world.kind == World::Kind::spheres ? "crowd.lua" : "soccer.lua");
   }
   simulation_ = &kernel_.root().require<Leaf>("/sys/server/simulation");
   setProperty(*simulation_, "rate", "max");
@@ -80,7 +81,7 @@ void House::admitAgents() {
   if (count == 0) return;
   for (int i = 0; i < count; ++i) {
     entrance_.admit(setup_.world);
-    run(kJoinCycles);
+    if (setup_.world.humanoid() || i + 1 == count) run(kJoinCycles);
   }
   const int seen = kernel_.root().require<IGameControl>("/sys/server/gamecontrol").agentsSeen();
   if (seen != count) throw Error(fmt::format("{}: expected {} agents with a robot, found {}", setup_.world.name, count, seen));

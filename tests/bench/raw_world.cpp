@@ -150,7 +150,7 @@ void RawWorld::takeDrivers(House& house) {
   for (const AgentAspect* agent : house.kernel().root().require<IGameControl>("/sys/server/gamecontrol").agents()) {
     std::vector<IRigidBody*> bodies;
     agent->collect(bodies);
-    for (IRigidBody* b : bodies) drivers_.push_back({bodyOf(*b, w), index, index < 11 ? 60.0 : -60.0});
+    for (IRigidBody* b : bodies) drivers_.push_back({bodyOf(*b, w), index, index % 2 ? -60.0 : 60.0});
     ++index;
   }
 }
