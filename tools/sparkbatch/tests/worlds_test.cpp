@@ -1,0 +1,62 @@
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "workers.h"
+
+// Several houses in one process, in several threads: nothing that they share may show in what they do.
+
+using namespace sparkbatch;
+
+namespace {
+/// Two humanoids and a ball.
+Options match() {
+  Options options;
+  options.config = "soccer.lua";
+  options.settings = {{"team", "Red Blue"}, {"players", "1"}, {"Soccer.AutomaticKickOff", "true"}, {"Soccer.WaitBeforeKickOff", "0.4"}};
+  options.duration = 1.6;
+  return options;
+}
+
+/// The rows of the runs 1..n, which get their number as seed, by number and without what a clock measured.
+std::map<int, Row> simulateAll(const Options& options, int n, int threads) {
+  Workers workers(threads, [&options](const Run& run, Watch& watch) { return simulate(options, run, watch); });
+  std::map<int, Row> rows;
+  int begun = 0;
+  while (static_cast<int>(rows.size()) < n) {
+    for (; begun < n && workers.idle() > 0; ++begun) workers.begin({begun + 1, static_cast<std::uint64_t>(begun) + 1, {}});
+    for (auto& result : workers.take(std::chrono::seconds(1))) {
+      REQUIRE(result);
+      result->erase("cpuSeconds");
+      result->erase("wallSeconds");
+      rows[result->at("run").get<int>()] = *result;
+    }
+  }
+  return rows;
+}
+}  // namespace
+
+TEST_CASE("Worlds side by side in one process go as each goes alone") {
+  const Options options = match();
+  const auto together = simulateAll(options, 4, 3), alone = simulateAll(options, 4, 1);
+  for (const auto& [number, row] : together) {
+    CAPTURE(number, row.dump(), alone.at(number).dump());
+    REQUIRE(row["end"] == "duration");
+    REQUIRE(row["cycles"] == 80);
+    REQUIRE(row == alone.at(number));
+  }
+  REQUIRE(alone.at(1)["stateHash"] != alone.at(2)["stateHash"]);
+}
+
+TEST_CASE("A world that is abandoned has no row, and its thread is free again") {
+  Options options = match();
+  options.duration = 0;
+  Workers workers(2, [&options](const Run& run, Watch& watch) { return simulate(options, run, watch); });
+  workers.begin({1, 1, {}});
+  REQUIRE(workers.idle() == 1);
+  while (workers.time() == 0) REQUIRE(workers.take(std::chrono::milliseconds(5)).empty());
+  workers.abandon();
+  const auto results = workers.take(std::chrono::minutes(2));
+  REQUIRE(results.size() == 1);
+  REQUIRE_FALSE(results.front());
+  REQUIRE(workers.idle() == 2);
+}
