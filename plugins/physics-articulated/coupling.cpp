@@ -25,11 +25,11 @@ void Coupling::reserve(std::size_t rows) {
   holding_.reserve(rows);
 }
 
-void Coupling::form(const Elimination& trees, const std::vector<Row>& rows) {
+void Coupling::form(const Elimination& trees, const Rows& rows) {
   reaches_.clear();
   for (Member& m : members_) {
     m.start = static_cast<int>(reaches_.size());
-    trees.reach(rows[static_cast<std::size_t>(m.row)], reaches_);
+    trees.reach(rows[m.row], reaches_);
     m.end = static_cast<int>(reaches_.size());
   }
   const std::size_t n = members_.size();
@@ -41,7 +41,7 @@ void Coupling::form(const Elimination& trees, const std::vector<Row>& rows) {
           Elimination::touch(all + members_[i].start, all + members_[i].end, all + members_[j].start, all + members_[j].end);
 }
 
-void Coupling::factor(const std::vector<Row>& rows) {
+void Coupling::factor(const Rows& rows) {
   // What elimination leaves of a row that says what others say is rounding.
   constexpr double kRounding = 1e-13;
   const std::size_t n = members_.size(), m = holding_.size();
@@ -53,7 +53,7 @@ void Coupling::factor(const std::vector<Row>& rows) {
     // L_i D first, then L_i.
     for (std::size_t j = 0; j < i; ++j)
       li[j] = touching_[row * n + static_cast<std::size_t>(holding_[j])] - dot(li, lower_.data() + j * m, j);
-    double pivot = touching_[row * n + row] + rows[static_cast<std::size_t>(members_[row].row)].softness;
+    double pivot = touching_[row * n + row] + rows[members_[row].row].softness;
     const double least = kRounding * pivot;
     for (std::size_t j = 0; j < i; ++j) {
       const double scaled = li[j] * inverse_[j];
@@ -64,17 +64,17 @@ void Coupling::factor(const std::vector<Row>& rows) {
   }
 }
 
-void Coupling::solve(Elimination& trees, std::vector<Row>& rows, bool targets) {
+void Coupling::solve(Elimination& trees, Rows& rows, bool targets) {
   holding_.clear();
   for (std::size_t i = 0; i < members_.size(); ++i)
-    if (rows[static_cast<std::size_t>(members_[i].row)].holds()) holding_.push_back(static_cast<int>(i));
+    if (rows[members_[i].row].holds()) holding_.push_back(static_cast<int>(i));
   if (holding_.empty()) return;
   factor(rows);
   const std::size_t m = holding_.size();
   forces_.resize(m);
   for (std::size_t i = 0; i < m; ++i) {
     const Member& member = members_[static_cast<std::size_t>(holding_[i])];
-    const double target = targets ? rows[static_cast<std::size_t>(member.row)].target : 0;
+    const double target = targets ? rows[member.row].target : 0;
     forces_[i] = target - trees.touchLoads(reaches_.data() + member.start, reaches_.data() + member.end);
     forces_[i] -= dot(lower_.data() + i * m, forces_.data(), i);
   }
@@ -83,7 +83,7 @@ void Coupling::solve(Elimination& trees, std::vector<Row>& rows, bool targets) {
     for (std::size_t j = 0; j < i; ++j) forces_[j] -= lower_[i * m + j] * forces_[i];
   for (std::size_t i = 0; i < m; ++i) {
     const Member& member = members_[static_cast<std::size_t>(holding_[i])];
-    rows[static_cast<std::size_t>(member.row)].force = forces_[i];
+    rows[member.row].force = forces_[i];
     trees.push(reaches_.data() + member.start, reaches_.data() + member.end, forces_[i]);
   }
 }

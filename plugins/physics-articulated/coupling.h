@@ -19,15 +19,15 @@ class Coupling {
   void reserve(std::size_t rows);
 
   /// Finds how the rows touch each other; again after every factor() of the trees that changed something.
-  void form(const Elimination& trees, const std::vector<Row>& rows);
+  void form(const Elimination& trees, const Rows& rows);
   /// Between the trees' passes forward and backward: finds the forces of the rows that hold, and adds what they do.
-  void solve(Elimination& trees, std::vector<Row>& rows, bool targets);
+  void solve(Elimination& trees, Rows& rows, bool targets);
 
  private:
   struct Member {
     int row, start, end;  ///< its reach
   };
-  void factor(const std::vector<Row>& rows);
+  void factor(const Rows& rows);
   std::vector<Member> members_;
   std::vector<Reach> reaches_;
   std::vector<double> touching_;                  ///< row by row, all members

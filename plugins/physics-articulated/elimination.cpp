@@ -4,55 +4,79 @@ namespace spark::articulated {
 
 namespace {
 
-void gatherOwn(Node& node, const std::vector<Row>& rows) {
+void gatherOwn(Node& node, const Rows& rows) {
   Block& m = node.gathered;
-  m = {};
-  double* numbers = m.numbers();
-  for (int i = 0; i < 3; ++i) {
-    numbers[7 * i] = node.body->mass;
-    for (int j = 0; j < 3; ++j) numbers[6 * (3 + i) + 3 + j] = node.inertia(i, j);
-  }
-  for (int r = node.groundRow; r >= 0; r = rows[static_cast<std::size_t>(r)].next) {
-    const Row& row = rows[static_cast<std::size_t>(r)];
+  const double mass = node.body->mass;
+  const Mat3& j = node.inertia;
+  m.row[0] = {Pair{mass, 0}, Pair{0, 0}, Pair{0, 0}};
+  m.row[1] = {Pair{0, mass}, Pair{0, 0}, Pair{0, 0}};
+  m.row[2] = {Pair{0, 0}, Pair{mass, 0}, Pair{0, 0}};
+  m.row[3] = {Pair{0, 0}, Pair{0, j(0, 0)}, Pair{j(0, 1), j(0, 2)}};
+  m.row[4] = {Pair{0, 0}, Pair{0, j(0, 1)}, Pair{j(1, 1), j(1, 2)}};
+  m.row[5] = {Pair{0, 0}, Pair{0, j(0, 2)}, Pair{j(1, 2), j(2, 2)}};
+  for (int r = node.groundRow; r >= 0; r = rows[r].next) {
+    const Row& row = rows[r];
     if (row.holds()) addSquare(m, row.a, 1 / row.softness);
   }
 }
 
 }  // namespace
 
-void Elimination::eliminate(Node& node, const std::vector<Row>& rows) {
+namespace {
+
+constexpr Six kNothing{};
+
+/// Rows of a joint that hold, as seen by the child and by the parent; the others are left out.
+struct EdgeRows {
+  const Six* mine[6];
+  const Six* parents[6];
+  Six softness, target;
+  bool any = false;
+
+  EdgeRows(const Node& node, bool isA, const Row* rows) {
+    softness = {Pair{1, 1}, Pair{1, 1}, Pair{1, 1}};
+    target = kNothing;
+    for (int r = 0; r < 6; ++r) {
+      mine[r] = parents[r] = &kNothing;
+      if (r >= node.rowCount || !rows[r].holds()) continue;
+      any = true;
+      mine[r] = isA ? &rows[r].a : &rows[r].b;
+      parents[r] = isA ? &rows[r].b : &rows[r].a;
+      softness.set(r, rows[r].softness);
+      target.set(r, rows[r].target);
+    }
+  }
+};
+
+}  // namespace
+
+void Elimination::eliminate(Node& node, const Rows& rows) {
   Block m = node.gathered;
   node.own.take(m);
   node.held = false;
   if (node.rowCount == 0) return;
-  node.across = {};
-  node.up = {};
-  node.target = Six::zero();
-  Block w{};
-  double* across = node.across.numbers();
-  const auto self = static_cast<int>(&node - nodes.data());
-  for (int r = 0; r < 6; ++r) {
-    const Row* row = r < node.rowCount ? &rows[static_cast<std::size_t>(node.firstRow + r)] : nullptr;
-    w.row[r].set(r, row && row->holds() ? row->softness : 1);
-    if (!row || !row->holds()) continue;
-    node.held = true;
-    const bool first = row->nodeA == self;
-    const Six& mine = first ? row->a : row->b;
-    for (int i = 0; i < 6; ++i) across[6 * i + r] = mine[i];
-    node.up.row[r] = first ? row->b : row->a;
-    node.target.set(r, row->target);
-  }
-  if (!node.held) return;
+  const EdgeRows edge(node, &nodes[static_cast<std::size_t>(rows[node.firstRow].nodeA)] == &node, &rows[node.firstRow]);
+  if (!edge.any) return;
+  node.held = true;
+  node.target = edge.target;
+#pragma GCC unroll 6
+  for (int i = 0; i < 6; ++i)
+#pragma GCC unroll 3
+    for (int p = 0; p < 3; ++p) node.across.row[i].p[p] = Pair{(*edge.mine[2 * p])[i], (*edge.mine[2 * p + 1])[i]};
   node.own.forward(node.across);
+  Block w{};
+#pragma GCC unroll 6
+  for (int r = 0; r < 6; ++r) w.row[r].set(r, edge.softness[r]);
   addCongruence(w, node.across, node.own.inverse);
   node.hold.take(w);
   if (node.parent < 0) return;
+  for (int r = 0; r < 6; ++r) node.up.row[r] = *edge.parents[r];
   node.hold.forward(node.up);
   node.handed = {};
   addCongruence(node.handed, node.up, node.hold.inverse);
 }
 
-bool Elimination::factor(const std::vector<Row>& rows) {
+bool Elimination::factor(const Rows& rows) {
   bool any = false;
   for (auto i = nodes.size(); i-- > 0;) {
     Node& node = nodes[i];

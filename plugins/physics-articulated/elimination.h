@@ -83,7 +83,7 @@ class Elimination {
   }
 
   /// Eliminates the bodies that changed and those above them; returns whether there were any.
-  bool factor(const std::vector<Row>& rows);
+  bool factor(const Rows& rows);
   /// Takes the nodes' loads to z and q. `targets` false: as if all rows wanted 0.
   void forward(bool targets);
   /// From z and q to motion and the joints' forces.
@@ -105,7 +105,7 @@ class Elimination {
 
  private:
   std::vector<Node> storage_;
-  void eliminate(Node& node, const std::vector<Row>& rows);
+  void eliminate(Node& node, const Rows& rows);
 };
 
 }  // namespace spark::articulated

@@ -71,14 +71,13 @@ void Island::readBodies(WorldView& world, const IslandPlan& plan) {
 Island::Part Island::addJoint(WorldView& world, int index) {
   const engine::SolverJoint& joint = *world.step.joints[static_cast<std::size_t>(index)];
   const int a = nodeOf(world, joint.a), b = nodeOf(world, joint.b);
-  std::vector<Row>& rows = system_.rows;
-  Part part{index, static_cast<int>(rows.size()), 0};
-  rows.resize(rows.size() + kJointRows);
-  part.count = jointRows(joint, node(a).frame, b < 0 ? nullptr : &node(b).frame, scale_, rows.data() + part.first);
-  rows.resize(static_cast<std::size_t>(part.first + part.count));
+  Rows& rows = system_.rows;
+  Part part{index, rows.size(), 0};
+  part.count = jointRows(joint, node(a).frame, b < 0 ? nullptr : &node(b).frame, scale_, rows.offer(kJointRows));
+  rows.take(part.count);
   const JointMemory& memory = world.memory[static_cast<std::size_t>(index)];
   for (int i = part.first; i < part.first + part.count; ++i) {
-    Row& row = rows[static_cast<std::size_t>(i)];
+    Row& row = rows[i];
     row.nodeA = a, row.nodeB = b;
     if (!row.bounded()) continue;
     const auto axis = static_cast<std::size_t>(row.axis);
@@ -120,7 +119,7 @@ double Island::mobility(const Row& row) const { return mobility(row.a, row.nodeA
 
 /// The row has bounds that pivoting is to find.
 void Island::bound(int index) {
-  const Row& row = system_.rows[static_cast<std::size_t>(index)];
+  const Row& row = system_.rows[index];
   pivoting_.rows.push_back({index, slack_, slack_ / (mobility(row) + row.softness)});
 }
 
@@ -132,17 +131,16 @@ void Island::joinBody(Row& row, int index) {
 }
 
 void Island::readContacts(WorldView& world, const IslandPlan& plan) {
-  std::vector<Row>& rows = system_.rows;
+  Rows& rows = system_.rows;
   for (const int c : plan.contacts) {
     const engine::Contact& contact = world.step.contacts[static_cast<std::size_t>(c)];
     const engine::SolverPair& pair = world.step.pairs[static_cast<std::size_t>(c)];
     const int a = nodeOf(world, pair.a), b = nodeOf(world, pair.b);
-    Part part{c, static_cast<int>(rows.size()), 0};
-    rows.resize(rows.size() + 3);
-    part.count = contactRows(contact, pair.reversed, node(a).frame, b < 0 ? nullptr : &node(b).frame, scale_, rows.data() + part.first);
-    rows.resize(static_cast<std::size_t>(part.first + part.count));
+    Part part{c, rows.size(), 0};
+    part.count = contactRows(contact, pair.reversed, node(a).frame, b < 0 ? nullptr : &node(b).frame, scale_, rows.offer(kContactRows));
+    rows.take(part.count);
     for (int i = part.first; i < part.first + part.count; ++i) {
-      Row& row = rows[static_cast<std::size_t>(i)];
+      Row& row = rows[i];
       row.nodeA = a, row.nodeB = b;
       if (b < 0 && row.softness * kStiffest > mobility(row.a, a))
         joinBody(row, i);
@@ -168,13 +166,13 @@ void Island::readForces(const engine::SolverStep&) {
 }
 
 bool Island::settle() {
-  for (const int i : pyramid_) system_.rows[static_cast<std::size_t>(i)].state = State::off;
+  for (const int i : pyramid_) system_.rows[i].state = State::off;
   if (!pivoting_.settle(system_)) return false;
   if (pyramid_.empty()) return true;
   // Friction of this kind is bounded by the normal forces without it.
   for (const int i : pyramid_) {
-    Row& row = system_.rows[static_cast<std::size_t>(i)];
-    const double normal = std::abs(system_.rows[static_cast<std::size_t>(row.frictionOf)].force);
+    Row& row = system_.rows[i];
+    const double normal = std::abs(system_.rows[row.frictionOf].force);
     row.high = normal == 0 ? 0 : row.high * normal;
     row.low = -row.high;
     if (row.high == 0) continue;
@@ -208,7 +206,7 @@ void Island::write(WorldView& world) {
   for (const Part& part : joints_) {
     JointMemory& memory = world.memory[static_cast<std::size_t>(part.index)];
     for (int i = part.first; i < part.first + part.count; ++i) {
-      const Row& row = system_.rows[static_cast<std::size_t>(i)];
+      const Row& row = system_.rows[i];
       if (row.axis < 0) continue;
       memory.state[static_cast<std::size_t>(row.axis)] = row.state;
       memory.stop[static_cast<std::size_t>(row.axis)] = row.stop;
@@ -226,7 +224,7 @@ void Island::writeFeedback(WorldView& world) const {
   const auto sum = [&](const Part& part, Six Row::*side) {
     Six out = Six::zero();
     for (int i = part.first; i < part.first + part.count; ++i) {
-      const Row& row = system_.rows[static_cast<std::size_t>(i)];
+      const Row& row = system_.rows[i];
       out.add(row.*side, row.force);
     }
     return out;

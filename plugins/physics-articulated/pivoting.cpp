@@ -33,7 +33,7 @@ bool chance(std::uint64_t pass, std::uint64_t row) {
 void Pivoting::findBroken(const System& system) {
   broken_.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Row& row = system.rows[static_cast<std::size_t>(rows[i].row)];
+    const Row& row = system.rows[rows[i].row];
     if (wanted(system, row, rows[i]) != row.state) broken_.push_back(static_cast<int>(i));
   }
 }
@@ -44,7 +44,7 @@ void Pivoting::turn(System& system, int pass, bool half) {
     const bool last = k + 1 == broken_.size();
     if (half && !(last && !turned) && !chance(static_cast<std::uint64_t>(pass), k)) continue;
     const Bounded& limits = rows[static_cast<std::size_t>(broken_[k])];
-    Row& row = system.rows[static_cast<std::size_t>(limits.row)];
+    Row& row = system.rows[limits.row];
     row.state = wanted(system, row, limits);
     system.changed(row);
     turned = true;
@@ -72,7 +72,7 @@ bool Pivoting::solveExactly(System& system) {
   const std::size_t n = rows.size();
   if (n > static_cast<std::size_t>(mostExactRows)) return false;
   ++exactSolutions;
-  const auto at = [&](std::size_t i) -> Row& { return system.rows[static_cast<std::size_t>(rows[i].row)]; };
+  const auto at = [&](std::size_t i) -> Row& { return system.rows[rows[i].row]; };
   for (std::size_t i = 0; i < n; ++i) at(i).state = State::off, system.changed(at(i));
   system.solve();
   exact_.resize(n);

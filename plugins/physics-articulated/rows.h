@@ -10,6 +10,7 @@
 /// smaller. The force acts on the bodies along a and b. softness = cfm / dt, target = wanted velocity / dt.
 
 #include <cstdint>
+#include <vector>
 
 #include "angles.h"
 #include "api/solver.h"
@@ -39,6 +40,32 @@ struct Row {
   double bound() const { return state == State::low ? low : state == State::high ? high : 0; }
 };
 
+/// Rows of an island. Memory stays; what is begun anew is written over.
+class Rows {
+ public:
+  void clear() { count_ = 0; }
+  int size() const { return count_; }
+  /// Room for `most` more rows, of which take() keeps some.
+  Row* offer(int most) {
+    if (rows_.size() < static_cast<std::size_t>(count_ + most)) rows_.resize(static_cast<std::size_t>(count_ + most));
+    return rows_.data() + count_;
+  }
+  void take(int count) { count_ += count; }
+  void reserve(std::size_t rows) {
+    if (rows_.size() < rows) rows_.resize(rows);
+  }
+  Row& operator[](int i) { return rows_[static_cast<std::size_t>(i)]; }
+  const Row& operator[](int i) const { return rows_[static_cast<std::size_t>(i)]; }
+  Row* begin() { return rows_.data(); }
+  Row* end() { return rows_.data() + count_; }
+  const Row* begin() const { return rows_.data(); }
+  const Row* end() const { return rows_.data() + count_; }
+
+ private:
+  std::vector<Row> rows_;
+  int count_ = 0;
+};
+
 /// A body while its island is solved: its state, and the forces on it.
 struct Frame {
   Vec3 position, velocity, spin;
@@ -54,8 +81,8 @@ struct RowScale {
   double contactSurfaceLayer;  ///< m
 };
 
-/// Most rows that a joint has.
-inline constexpr int kJointRows = 6;
+/// Most rows that a joint and a contact have.
+inline constexpr int kJointRows = 6, kContactRows = 3;
 
 /// Writes a joint's rows for bodies `a` and `b` (nullptr: the world) and returns how many. Motors that press against a stop add their force
 /// to the bodies instead. Fills a, b, target, softness, bounds, axis and stop.

@@ -58,17 +58,18 @@ inline double dot(const Six& a, const Six& b) {
   return sum[0] + sum[1];
 }
 
+/// 6 x 6. Where it is symmetric, only what stands on and above the diagonal counts: in row i, the pairs from i / 2 on.
 struct Block {
   Six row[6];
-  /// Row by row.
-  double* numbers() { return reinterpret_cast<double*>(row); }
 };
 
-/// Adds f v v^T.
+/// Adds f v v^T to a symmetric block.
 inline void addSquare(Block& m, const Six& v, double f) {
   const Six scaled = v * f;
 #pragma GCC unroll 6
-  for (int i = 0; i < 6; ++i) m.row[i].add(scaled, v[i]);
+  for (int i = 0; i < 6; ++i)
+#pragma GCC unroll 3
+    for (int p = i / 2; p < 3; ++p) m.row[i].p[p] += scaled.p[p] * Pair{v[i], v[i]};
 }
 
 /// m x.
@@ -112,7 +113,7 @@ struct Factor {
       for (int i = k + 1; i < 6; ++i) {
         const double f = m.row[k][i];
 #pragma GCC unroll 3
-        for (int p = (k + 1) / 2; p < 3; ++p) m.row[i].p[p] -= c.p[p] * Pair{f, f};
+        for (int p = i / 2; p < 3; ++p) m.row[i].p[p] -= c.p[p] * Pair{f, f};
       }
     }
   }
@@ -136,13 +137,15 @@ struct Factor {
   }
 };
 
-/// m^T diag(d) m, added to `to`.
+/// m^T diag(d) m, added to a symmetric block.
 inline void addCongruence(Block& to, const Block& m, const Six& d) {
 #pragma GCC unroll 6
   for (int k = 0; k < 6; ++k) {
     const Six scaled = m.row[k] * d[k];
 #pragma GCC unroll 6
-    for (int i = 0; i < 6; ++i) to.row[i].add(scaled, m.row[k][i]);
+    for (int i = 0; i < 6; ++i)
+#pragma GCC unroll 3
+      for (int p = i / 2; p < 3; ++p) to.row[i].p[p] += scaled.p[p] * Pair{m.row[k][i], m.row[k][i]};
   }
 }
 

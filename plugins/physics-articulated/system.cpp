@@ -5,7 +5,7 @@ namespace spark::articulated {
 void System::changed(const Row& row) {
   // The body that the row is a part of. Rows of the dense system change no body.
   const auto a = static_cast<std::size_t>(row.nodeA);
-  const auto index = static_cast<int>(&row - rows.data());
+  const auto index = static_cast<int>(&row - rows.begin());
   const auto isEdgeOf = [&](const Node& node) { return index >= node.firstRow && index < node.firstRow + node.rowCount; };
   if (row.inBody || isEdgeOf(trees.nodes[a]))
     trees.nodes[a].changed = true;
@@ -25,7 +25,7 @@ void System::push(const Row& row, double force) {
 void System::readForces() {
   for (const Node& node : trees.nodes)
     for (int i = 0; i < node.rowCount; ++i) {
-      Row& row = rows[static_cast<std::size_t>(node.firstRow + i)];
+      Row& row = rows[node.firstRow + i];
       if (row.holds()) row.force = node.joined[i];
     }
   for (Row& row : rows) {

@@ -7,7 +7,7 @@
 namespace spark::articulated {
 
 struct System {
-  std::vector<Row> rows;
+  Rows rows;
   Elimination trees;
   Coupling coupling;
 

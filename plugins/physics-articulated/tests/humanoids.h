@@ -15,6 +15,7 @@ struct Humanoids {
   /// One with its feet at `feet`.
   void add(const Vec3& feet) {
     at_ = feet;
+    twins.newSpace();
     const std::size_t torso = part(-1, {0, 0, 0.37}, {0.09, 0.14, 0.16}, 1.2, {}, {});
     const std::size_t neck = part(torso, {0, 0, 0.47}, {0.03, 0.03, 0.06}, 0.05, {0, 0, 0.45}, {0, 0, 1});
     part(neck, {0, 0, 0.53}, {0.12, 0.12, 0.11}, 0.35, {0, 0, 0.48}, {0, 1, 0});
@@ -34,10 +35,10 @@ struct Humanoids {
 
   /// Motors of all joints: speed of joint number j of its robot [rad/s], and strength [Nm].
   template <class F>
-  void drive(F&& speed, double strength) {
+  void drive(Scene& scene, F&& speed, double strength) {
     for (std::size_t i = 0; i < joints.size(); ++i) {
-      twins.set(joints[i], engine::JointParameter::velocity, 0, speed(i));
-      twins.set(joints[i], engine::JointParameter::maxForce, 0, strength);
+      scene.engine.setParameter(scene.joints[joints[i]], engine::JointParameter::velocity, 0, speed(i));
+      scene.engine.setParameter(scene.joints[joints[i]], engine::JointParameter::maxForce, 0, strength);
     }
   }
 

@@ -86,6 +86,13 @@ class Twins : public House {
       s.engine.setBody(g, body < 0 ? engine::Body::none : s.bodies[static_cast<std::size_t>(body)], {});
     });
   }
+  /// Geoms from now on stand in a space of their own and do not touch each other.
+  void newSpace() {
+    each([&](Scene& s) {
+      s.space = s.engine.createSpace(s.world, engine::Space::none);
+      s.engine.setInnerCollision(s.space, false);
+    });
+  }
   void ground() {
     engine::ShapeDescription s;
     s.shape = engine::Shape::plane;
