@@ -16,6 +16,11 @@ class ArticulatedSolver : public Leaf, public engine::ISolver {
   static void describe(Description<ArticulatedSolver>& d) {
     d.doc("Solves joints and contacts along the trees that joints make of bodies; stands below an engine as its child `solver`.");
     d.implements<engine::ISolver>();
+    d.property("mostRows", &ArticulatedSolver::mostRows, &ArticulatedSolver::setMostRows)
+        .min(0)
+        .doc(
+            "Islands with more rows of contacts between bodies and of loops of joints are left to the engine: a pile of some fifty "
+            "robots.");
     d.property("islands", &ArticulatedSolver::islands).doc("Islands solved since the node was made.");
     d.property("passes", &ArticulatedSolver::passes).doc("Passes that these took to find which bounds hold; one each is the least.");
     d.property("exactSolutions", &ArticulatedSolver::exactSolutions)
@@ -26,6 +31,8 @@ class ArticulatedSolver : public Leaf, public engine::ISolver {
   void forget(engine::World world) override { stepper_.forget(world); }
 
  private:
+  int mostRows() const { return stepper_.mostRows; }
+  void setMostRows(int rows) { stepper_.mostRows = rows; }
   std::int64_t islands() const { return stepper_.islands(); }
   std::int64_t passes() const { return stepper_.passes(); }
   std::int64_t exactSolutions() const { return stepper_.exactSolutions(); }

@@ -17,7 +17,8 @@ double dot(const double* a, const double* b, std::size_t n) {
 
 }  // namespace
 
-void Coupling::reserve(std::size_t rows) {
+void Coupling::reserve(std::size_t rows, std::size_t reach) {
+  reaches_.reserve(rows * reach);
   members_.reserve(rows);
   touching_.reserve(rows * rows);
   lower_.reserve(rows * rows);

@@ -16,7 +16,8 @@ class Coupling {
   void begin() { members_.clear(); }
   void add(int row) { members_.push_back({row, 0, 0}); }
   std::size_t size() const { return members_.size(); }
-  void reserve(std::size_t rows);
+  /// Room for rows that reach that many bodies each.
+  void reserve(std::size_t rows, std::size_t reach);
 
   /// Finds how the rows touch each other; again after every factor() of the trees that changed something.
   void form(const Elimination& trees, const Rows& rows);

@@ -8,6 +8,9 @@ namespace {
 
 /// Rows stiffer than this, against how their bodies give, would drown the inertia of which they became a part.
 constexpr double kStiffest = 1e8;
+/// Rows of the dense system are this soft at least, against how their bodies give: rows that say the same twice share their force then, and
+/// velocities change less than rounding would.
+constexpr double kLeastSoftness = 1e-11;
 /// Velocities that differ by less [m/s, rad/s; or this part of the island's velocities] are the same to the pivoting.
 constexpr double kSameVelocity = 1e-11;
 
@@ -21,10 +24,11 @@ Mat3 matrix(const double* r) {
 
 }  // namespace
 
-void Island::reserve(std::size_t bodies, std::size_t rows) {
+void Island::reserve(std::size_t bodies, std::size_t rows, std::size_t coupling, std::size_t depth) {
   system_.trees.begin(bodies);
   system_.rows.reserve(rows + kJointRows);
-  pivoting_.rows.reserve(rows);
+  system_.coupling.reserve(coupling, 2 * depth);
+  pivoting_.reserve(rows);
   joints_.reserve(rows);
   contacts_.reserve(rows);
 }
@@ -59,11 +63,16 @@ void Island::readBodies(WorldView& world, const IslandPlan& plan) {
       f.rotation = matrix(body.rotation);
       f.turn = Turn::of(body.quaternion);
       f.force = vec(body.force), f.torque = vec(body.torque);
-      n.inertia.noalias() = f.rotation * body.inertia * f.rotation.transpose();
-      if (body.gravity) f.force += body.mass * world.step.parameters.gravity;
-      if (body.gyroscopic) f.torque += gyroscopicTorque(n.inertia, f.spin, world.step.dt);
-      fastest = std::max({fastest, f.velocity.cwiseAbs().maxCoeff(), f.spin.cwiseAbs().maxCoeff()});
     }
+  }
+  // Apart from gathering, which waits for memory: many bodies at a time.
+  for (Node& n : system_.trees.nodes) {
+    const engine::SolverBody& body = *n.body;
+    Frame& f = n.frame;
+    n.inertia.noalias() = f.rotation * body.inertia * f.rotation.transpose();
+    if (body.gravity) f.force += body.mass * world.step.parameters.gravity;
+    if (body.gyroscopic) f.torque += gyroscopicTorque(n.inertia, f.spin, world.step.dt);
+    fastest = std::max({fastest, f.velocity.cwiseAbs().maxCoeff(), f.spin.cwiseAbs().maxCoeff()});
   }
   slack_ = kSameVelocity * fastest * scale_.perSecond;
 }
@@ -90,8 +99,10 @@ Island::Part Island::addJoint(WorldView& world, int index) {
   return part;
 }
 
-void Island::couple(int first, int count) {
-  for (int i = 0; i < count; ++i) system_.coupling.add(first + i);
+void Island::couple(int index) {
+  Row& row = system_.rows[index];
+  row.softness = std::max(row.softness, kLeastSoftness * mobility(row));
+  system_.coupling.add(index);
 }
 
 void Island::readJoints(WorldView& world, const IslandPlan& plan) {
@@ -104,7 +115,7 @@ void Island::readJoints(WorldView& world, const IslandPlan& plan) {
     const Tree& tree = world.topology.trees[static_cast<std::size_t>(t)];
     for (int i = tree.extraStart; i < tree.extraEnd; ++i) {
       const Part part = addJoint(world, world.topology.extraJoints[static_cast<std::size_t>(i)]);
-      couple(part.first, part.count);
+      for (int r = part.first; r < part.first + part.count; ++r) couple(r);
     }
   }
 }
@@ -139,13 +150,16 @@ void Island::readContacts(WorldView& world, const IslandPlan& plan) {
     Part part{c, rows.size(), 0};
     part.count = contactRows(contact, pair.reversed, node(a).frame, b < 0 ? nullptr : &node(b).frame, scale_, rows.offer(kContactRows));
     rows.take(part.count);
+    const ContactMemory::States* before = world.contacts.before(c);
     for (int i = part.first; i < part.first + part.count; ++i) {
       Row& row = rows[i];
       row.nodeA = a, row.nodeB = b;
+      if (before) row.state = (*before)[static_cast<std::size_t>(i - part.first)];
+      if (std::isinf(row.bound())) row.state = State::holds;
       if (b < 0 && row.softness * kStiffest > mobility(row.a, a))
         joinBody(row, i);
       else
-        system_.coupling.add(i);
+        couple(i);
       if (row.frictionOf >= 0) {
         row.frictionOf += part.first;
         pyramid_.push_back(i);
@@ -212,6 +226,8 @@ void Island::write(WorldView& world) {
       memory.stop[static_cast<std::size_t>(row.axis)] = row.stop;
     }
   }
+  for (const Part& part : contacts_)
+    for (int i = 0; i < part.count; ++i) world.contacts.now(part.index)[static_cast<std::size_t>(i)] = system_.rows[part.first + i].state;
   for (Node& n : system_.trees.nodes) {
     const double dt = world.step.dt;
     integrate(*n.body, dt * n.motion.linear(), dt * n.motion.angular(), dt);

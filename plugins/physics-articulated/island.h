@@ -3,23 +3,19 @@
 /// One island from the engine's bodies and back: reads, solves, moves. An Island is used again and again, by one thread at a time, and
 /// keeps its memory.
 
+#include "memory.h"
 #include "pivoting.h"
 #include "topology.h"
 
 namespace spark::articulated {
-
-/// What a joint's motors and stops were found in, for the next step's search.
-struct JointMemory {
-  std::array<State, 3> state{State::holds, State::holds, State::holds};
-  std::array<std::int8_t, 3> stop{0, 0, 0};
-};
 
 /// What the islands of a world share during a step. Each tree and each joint belongs to one island.
 struct WorldView {
   engine::SolverStep& step;
   const Topology& topology;
   std::vector<JointMemory>& memory;  ///< by joint
-  std::vector<int>& firstNode;       ///< by tree: its first node in its island
+  ContactMemory& contacts;
+  std::vector<int>& firstNode;  ///< by tree: its first node in its island
 };
 
 /// Trees (indices in Topology::trees) and contacts (indices in SolverStep::contacts) of an island.
@@ -31,8 +27,8 @@ struct IslandPlan {
 class Island {
  public:
   explicit Island(int mostPasses) { pivoting_.mostPasses = mostPasses; }
-  /// Makes room, so that nothing need be allocated later.
-  void reserve(std::size_t bodies, std::size_t rows);
+  /// Makes room, so that nothing need be allocated later: for bodies, rows, those of them that are no part of a tree, and trees of a depth.
+  void reserve(std::size_t bodies, std::size_t rows, std::size_t coupling, std::size_t depth);
   /// Steps the island; false when it is left to the engine, and then nothing is changed.
   bool step(WorldView& world, const IslandPlan& plan);
   const Pivoting& pivoting() const { return pivoting_; }
@@ -47,7 +43,7 @@ class Island {
   void readContacts(WorldView& world, const IslandPlan& plan);
   void readForces(const engine::SolverStep& step);
   Part addJoint(WorldView& world, int joint);
-  void couple(int first, int count);
+  void couple(int index);
   void joinBody(Row& row, int index);
   double mobility(const Row& row) const;
   double mobility(const Six& along, int node) const;

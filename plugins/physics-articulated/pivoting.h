@@ -26,11 +26,15 @@ struct Bounded {
 /// where the search began, and a world that was saved and restored goes on with the same digits.
 class Pivoting {
  public:
-  int mostPasses = 60;
+  int mostPasses = 30;
   /// Rows that are solved exactly at most.
   int mostExactRows = 400;
   std::vector<Bounded> rows;
 
+  void reserve(std::size_t most) {
+    rows.reserve(most);
+    broken_.reserve(most);
+  }
   /// False: no states were found, the motions mean nothing.
   bool settle(System& system);
   /// Counted since the object was made.

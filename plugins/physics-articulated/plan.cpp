@@ -42,16 +42,21 @@ void Plan::find(const engine::SolverStep& step, const Topology& topology) {
     const Tree& tree = topology.trees[t];
     ++r.trees;
     r.bodies += tree.end - tree.start;
+    r.coupling += kJointRows * (tree.extraEnd - tree.extraStart);
     for (int i = tree.start; i < tree.end && !r.awake; ++i)
       r.awake = step.bodies[static_cast<std::size_t>(topology.branches[static_cast<std::size_t>(i)].body)]->awake;
   }
   std::size_t contacts = 0;
   for (const engine::SolverPair& pair : step.pairs)
-    if (pair.a) ++rangeOf(treeOf(*pair.a)).contacts, ++contacts;
+    if (pair.a) {
+      Range& r = rangeOf(treeOf(*pair.a));
+      ++r.contacts, ++contacts;
+      if (pair.b) r.coupling += kContactRows;
+    }
   trees_.resize(n);
   contacts_.resize(contacts);
   islands_.clear();
-  mostBodies_ = mostRows_ = 0;
+  mostBodies_ = mostRows_ = mostCoupling_ = 0;
   int firstTree = 0, firstContact = 0;
   for (std::size_t t = 0; t < n; ++t) {
     Range& r = ranges_[t];
@@ -61,7 +66,9 @@ void Plan::find(const engine::SolverStep& step, const Topology& topology) {
     if (r.awake) {
       islands_.push_back(static_cast<int>(t));
       mostBodies_ = std::max(mostBodies_, static_cast<std::size_t>(r.bodies));
-      mostRows_ = std::max(mostRows_, static_cast<std::size_t>(r.bodies) * kJointRows + static_cast<std::size_t>(r.contacts) * 3);
+      mostRows_ = std::max(mostRows_, static_cast<std::size_t>(r.bodies) * kJointRows +
+                                          static_cast<std::size_t>(r.contacts) * kContactRows + static_cast<std::size_t>(r.coupling));
+      mostCoupling_ = std::max(mostCoupling_, static_cast<std::size_t>(r.coupling));
     }
     r.trees = r.contacts = 0;
   }

@@ -15,10 +15,12 @@ class Plan {
   /// Of the largest island.
   std::size_t mostBodies() const { return mostBodies_; }
   std::size_t mostRows() const { return mostRows_; }
+  /// Of contacts between bodies, and of joints that close loops, in the island that has most.
+  std::size_t mostCoupling() const { return mostCoupling_; }
 
  private:
   struct Range {
-    int firstTree = 0, trees = 0, firstContact = 0, contacts = 0, bodies = 0;
+    int firstTree = 0, trees = 0, firstContact = 0, contacts = 0, bodies = 0, coupling = 0;
     bool awake = false;
   };
   int rootOf(int tree);
@@ -27,7 +29,7 @@ class Plan {
   std::vector<Range> ranges_;          ///< by first tree
   std::vector<int> trees_, contacts_;  ///< island by island
   std::vector<int> islands_;           ///< first trees of awake islands
-  std::size_t mostBodies_ = 0, mostRows_ = 0;
+  std::size_t mostBodies_ = 0, mostRows_ = 0, mostCoupling_ = 0;
 };
 
 }  // namespace spark::articulated

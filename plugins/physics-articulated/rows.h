@@ -10,6 +10,7 @@
 /// smaller. The force acts on the bodies along a and b. softness = cfm / dt, target = wanted velocity / dt.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "angles.h"

@@ -21,10 +21,12 @@ void Stepper::forget(engine::World world) {
   std::erase_if(worlds_, [&](const auto& kept) { return kept->id == world; });
 }
 
-void Stepper::makeRoom(const Plan& plan, std::size_t threads) {
+void Stepper::makeRoom(const Kept& kept, std::size_t threads) {
   while (islandsOfThreads_.size() < threads) islandsOfThreads_.push_back(std::make_unique<Island>(mostPasses));
   // Which island meets which thread is chance: all have room for the largest.
-  for (const auto& island : islandsOfThreads_) island->reserve(plan.mostBodies(), plan.mostRows());
+  const Plan& plan = kept.plan;
+  const std::size_t coupling = std::min(plan.mostCoupling(), static_cast<std::size_t>(mostRows));
+  for (const auto& island : islandsOfThreads_) island->reserve(plan.mostBodies(), plan.mostRows(), coupling, kept.topology.depth);
 }
 
 std::size_t Stepper::countLeft(const engine::SolverStep& step, const Kept& kept) {
@@ -49,10 +51,12 @@ std::size_t Stepper::step(engine::SolverStep& step, std::size_t threads, const S
   kept.plan.find(step, kept.topology);
   const std::size_t n = kept.plan.size();
   if (n == 0) return 0;
-  makeRoom(kept.plan, threads);
+  makeRoom(kept, threads);
+  step.mostRows = std::min(step.mostRows, mostRows);
   kept.left.assign(n, 0);
   islands_ += static_cast<std::int64_t>(n);
-  WorldView world{step, kept.topology, kept.memory, kept.firstNode};
+  kept.contacts.match(step.contacts);
+  WorldView world{step, kept.topology, kept.memory, kept.contacts, kept.firstNode};
   std::atomic<std::size_t> next{0};
   const auto work = [&](std::size_t thread) {
     Island& island = *islandsOfThreads_[thread];

@@ -14,7 +14,9 @@ using Spread = std::function<void(std::size_t n, const std::function<void(std::s
 
 class Stepper {
  public:
-  int mostPasses = 60;
+  int mostPasses = 30;
+  /// Islands with more rows that are no part of a tree are left to the engine.
+  int mostRows = 600;
 
   /// Steps the world with up to `threads` threads; the result is the same with any number. Returns how many bodies are left to the engine.
   std::size_t step(engine::SolverStep& step, std::size_t threads, const Spread& spread);
@@ -33,12 +35,13 @@ class Stepper {
     std::uint64_t structure = 0;
     Topology topology;
     std::vector<JointMemory> memory;
+    ContactMemory contacts;
     std::vector<int> firstNode;
     Plan plan;
     std::vector<char> left;  ///< by island of the step
   };
   Kept& keptOf(const engine::SolverStep& step);
-  void makeRoom(const Plan& plan, std::size_t threads);
+  void makeRoom(const Kept& kept, std::size_t threads);
   std::size_t countLeft(const engine::SolverStep& step, const Kept& kept);
   std::vector<std::unique_ptr<Kept>> worlds_;
   std::vector<std::unique_ptr<Island>> islandsOfThreads_;

@@ -75,6 +75,12 @@ void Topology::find(const engine::SolverStep& step) {
       const int joint = heldToWorldBy(step, of, body);
       if (!held || joint >= 0) grow(body, joint);
     }
+  std::vector<std::size_t> depths(branches.size(), 1);
+  depth = 0;
+  for (std::size_t i = 0; i < branches.size(); ++i) {
+    if (branches[i].parent >= 0) depths[i] = depths[static_cast<std::size_t>(branches[i].parent)] + 1;
+    depth = std::max(depth, depths[i]);
+  }
 }
 
 }  // namespace spark::articulated

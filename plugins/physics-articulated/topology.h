@@ -25,6 +25,7 @@ struct Topology {
   std::vector<Tree> trees;
   std::vector<int> extraJoints;
   std::vector<int> branchOf, treeOf;  ///< by body
+  std::size_t depth = 0;              ///< bodies from a root to the farthest leaf
 
   /// Throws away what was there and finds the trees anew. Bodies that a joint holds to the world become roots where they can.
   void find(const engine::SolverStep& step);
