@@ -172,7 +172,7 @@ void Island::readContacts(WorldView& world, const IslandPlan& plan) {
 }
 
 /// Momentum and forces, motors that press against stops included.
-void Island::readForces(const engine::SolverStep&) {
+void Island::gatherForces() {
   for (Node& n : system_.trees.nodes) {
     const Frame& f = n.frame;
     n.given = Six::of(n.body->mass * scale_.perSecond * f.velocity + f.force, n.inertia * (scale_.perSecond * f.spin) + f.torque);
@@ -210,7 +210,7 @@ bool Island::step(WorldView& world, const IslandPlan& plan) {
   readJoints(world, plan);
   readContacts(world, plan);
   if (system_.coupling.size() > static_cast<std::size_t>(step.mostRows)) return false;
-  readForces(step);
+  gatherForces();
   if (!settle()) return false;
   write(world);
   return true;

@@ -41,7 +41,7 @@ class Island {
   void readBodies(WorldView& world, const IslandPlan& plan);
   void readJoints(WorldView& world, const IslandPlan& plan);
   void readContacts(WorldView& world, const IslandPlan& plan);
-  void readForces(const engine::SolverStep& step);
+  void gatherForces();
   Part addJoint(WorldView& world, int joint);
   void couple(int index);
   void joinBody(Row& row, int index);

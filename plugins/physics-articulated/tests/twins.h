@@ -38,9 +38,14 @@ class Twins : public House {
 
   explicit Twins(unsigned seed = 1) : plain(make(kernel, "/sys/plain")), solved(make(kernel, "/sys/solved")), random(seed) {
     kernel.plugins().use("physics-articulated");
-    solver_ = &kernel.create("ArticulatedSolver", "/sys/solved/solver");
+    newSolver();
     parameters.autoDisable = false;
     apply();
+  }
+  /// A solver that remembers nothing.
+  void newSolver() {
+    if (solver_) solver_->parent()->remove(*solver_);
+    solver_ = &kernel.create("ArticulatedSolver", "/sys/solved/solver");
   }
   void apply() {
     each([&](Scene& s) { s.engine.setWorldParameters(s.world, parameters); });
@@ -176,6 +181,7 @@ class Twins : public House {
       solved.engine.loadBody(solved.bodies[i], state);
     }
   }
+  Leaf& solver() { return *solver_; }
   std::int64_t counted(const char* property) { return getProperty(*solver_, property).toInteger(); }
 
   /// Of velocities, as in Differences.
