@@ -13,7 +13,8 @@ local agentCount = option{ name = "agents", default = 100, doc = "So many agents
 local range      = option{ name = "range", default = 10.0, doc = "How far they see [m]; 0: without limit." }
 local room       = option{ name = "room", default = 64.0, doc = "Ground for each of them [m2]." }
 
-local width = math.sqrt(room * agentCount)
+local apart = 0.9 * math.sqrt(room)
+local width = math.sqrt(room * agentCount) + apart
 local team  = math.max(11, (agentCount + 1) // 2)
 
 -- the rooms
@@ -34,7 +35,7 @@ soccerVariables {
   FieldLength = width, FieldWidth = width, GoalWidth = 7.32, GoalDepth = 2, GoalHeight = 0.5, BorderSize = 10,
   AgentRadius = 0.22, AgentMass = 75, AgentMaxSpeed = 10, AgentLinearDrag = 600,
   BallRadius = 0.111, BallMass = 0.425878, BallLinearDrag = 0.1, BallAngularDrag = 0.001,
-  TeamSize = team, MaxRobotTypeCount = team, MinRobotTypesCount = 1, MaxSumTwoRobotTypes = 2 * team,
+  TeamSize = team, StartDistance = apart, MaxRobotTypeCount = team, MinRobotTypesCount = 1, MaxSumTwoRobotTypes = 2 * team,
   VisionRange = range,
 }
 for _, class in ipairs { "TeamlessAspect", "GameStateAspect", "BallStateAspect" } do new(class, "/sys/server/gamecontrol/" .. class) end

@@ -184,12 +184,13 @@ std::string GameStateAspect::robotTypeProblem(Side side, const AgentState& joini
 Vec3 GameStateAspect::nextStart(Side side) {
   const SoccerSettings& s = pitch().settings();
   const double r = s.agentRadius, first = s.fieldWidth / 2 - 2 * r;
-  const int perColumn = static_cast<int>((first + s.fieldWidth / 2) / (3 * r)) + 1;
+  const double aside = s.startDistance > 0 ? s.startDistance : 3 * r, ahead = s.startDistance > 0 ? s.startDistance : 2 * r;
+  const int perColumn = static_cast<int>((first + s.fieldWidth / 2) / aside) + 1;
   // start positions are never given back: after half the field they begin anew
-  const int columns = std::max(1, static_cast<int>((s.fieldLength / 2 - 2 * r) / (2 * r)));
+  const int columns = std::max(1, static_cast<int>((s.fieldLength / 2 - 2 * r) / ahead));
   const int n = team(side).starts++ % (perColumn * columns);
   const double x0 = -direction(side) * (s.fieldLength / 2 - 2 * r);
-  return {x0 + direction(side) * 2 * r * (n / perColumn), first - 3 * r * (n % perColumn), r};
+  return {x0 + direction(side) * ahead * (n / perColumn), first - aside * (n % perColumn), r};
 }
 
 void GameStateAspect::agentLeaving(AgentAspect& agent) {

@@ -1,5 +1,7 @@
 #include "restricted_vision_perceptor.h"
 
+#include <cstring>
+
 namespace spark {
 
 using soccer::Sights;
@@ -7,6 +9,7 @@ using soccer::writePoint;
 
 namespace {
 constexpr float kTooNear = 0.1f;  ///< m: what is nearer is the head itself
+constexpr std::size_t kMostGlances = 512;
 
 /// Cuts a segment to what a camera that looks along y sees: y >= kTooNear and a window of the given half widths at y = 1.
 /// False when nothing is left.
@@ -97,10 +100,18 @@ bool RestrictedVisionPerceptor::isPlainlyOutside(const Vec3f& view) const {
 }
 
 /// False when it is outside of the cone.
-bool RestrictedVisionPerceptor::find(const Vec3f& view, soccer::Polar& out) const {
+bool RestrictedVisionPerceptor::find(const Vec3f& view, soccer::Polar& out) {
   if (isPlainlyOutside(view)) return false;
-  out = direction(view);
-  return inCone(out);
+  // with static axes pan and tilt count too
+  if (staticAxis_ || glance_ == glances_.size()) return out = direction(view), inCone(out);
+  Glance& last = glances_[glance_++];
+  if (std::memcmp(last.view.data(), view.data(), 3 * sizeof(float)) != 0) {  // zeros have signs, and angles know them
+    last.view = view;
+    last.polar = direction(view);
+    last.seen = inCone(last.polar);
+  }
+  out = last.polar;
+  return last.seen;
 }
 
 bool RestrictedVisionPerceptor::look(const Vec3f& place, soccer::Polar& out) {
@@ -153,6 +164,8 @@ void RestrictedVisionPerceptor::openEye() {
   outlook_.open(*this, range_);
   noise_.allowed = !outlook_.settings() || outlook_.settings()->visionNoise;
   here_ = soccer::placeOf(*this);
+  glances_.resize(std::min(outlook_.sights().size(), kMostGlances));
+  glance_ = 0;
   const double width = degToRad(std::min(cone_[0], 360) / 2), height = degToRad(std::min(cone_[1], 360) / 2);
   halfWidth_ = {std::sin(width), std::cos(width)};
   halfHeight_ = {std::sin(height), std::cos(height)};

@@ -26,7 +26,10 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView {
  private:
   /// The league may look more or less often than the robot's scene file says.
   void prepare(const Event&);
-  void setViewCones(int horizontal, int vertical) { cone_ = {horizontal, vertical}; }
+  void setViewCones(int horizontal, int vertical) {
+    cone_ = {horizontal, vertical};
+    glances_.clear();
+  }
   void setPanRange(int low, int high) { pan_ = {std::min(low, high), std::max(low, high)}; }
   void setTiltRange(int low, int high) { tilt_ = {std::min(low, high), std::max(low, high)}; }
   void setNoise(bool on) { noise_.on = on; }
@@ -40,7 +43,7 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView {
   soccer::Polar direction(const Vec3f& view) const;
   bool inCone(const soccer::Polar& p) const;
   bool isPlainlyOutside(const Vec3f& view) const;
-  bool find(const Vec3f& view, soccer::Polar& out) const;
+  bool find(const Vec3f& view, soccer::Polar& out);
   bool look(const Vec3f& place, soccer::Polar& out);
   bool lookAtLine(const soccer::Sights::Stroke& line, soccer::Polar& begin, soccer::Polar& end);
   void openEye();
@@ -52,6 +55,14 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView {
   std::array<int, 2> cone_{90, 90}, pan_{-90, 90}, tilt_{-20, 20};
   bool staticAxis_ = true, senseMyPos_ = false, senseMyOrien_ = false, senseBallPos_ = false, senseLine_ = false, senseLineName_ = false;
   float range_ = soccer::Sights::kUnlimited;
+  /// What stood where in its view when it looked last: robots at rest see the same again, and angles are what seeing costs.
+  struct Glance {
+    Vec3f view = Vec3f::Constant(std::numeric_limits<float>::quiet_NaN());  ///< in the frame in which it looks [m]
+    bool seen = false;
+    soccer::Polar polar;  ///< without noise
+  };
+  std::vector<Glance> glances_;  ///< in the order of looking
+  std::size_t glance_ = 0;       ///< the next one
   // while it looks
   Vec3f here_ = Vec3f::Zero();                            ///< m
   struct {

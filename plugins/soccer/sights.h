@@ -54,6 +54,8 @@ class Sights {
   std::span<const Robot> robots() const { return robots_; }
   std::span<const Mark> partsOf(const Robot& robot) const { return std::span(parts_).subspan(robot.firstPart, robot.parts); }
   std::span<const Stroke> lines() const { return lines_; }
+  /// Number of all points that may be seen.
+  std::size_t size() const { return field_.size() + robots_.size() + parts_.size() + 2 * lines_.size(); }
   /// The ball's mark, nullptr where there is no ball.
   const Mark* ball() const;
   /// What the match knows of an agent, nullptr when it knows nothing.

@@ -33,6 +33,10 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("AgentMaxSpeed", &S::agentMaxSpeed).unit("m/s").min(0).doc("Greatest speed of a sphere agent.");
   d.property("AgentLinearDrag", &S::agentLinearDrag).unit("N s/m").min(0).doc("Drag force of a sphere agent per speed.");
   d.property("TeamSize", &S::teamSize).range(11, 1000).doc("Greatest number of a player. Pass mode and offside know 11 a team, a match of soccer has no more.");
+  d.property("StartDistance", &S::startDistance)
+      .unit("m")
+      .min(0)
+      .doc("Between neighbouring start positions of a team; 0: as in the installed base, one and a half and one diameter of an agent.");
   d.property("MaxRobotTypeCount", &S::maxRobotTypeCount).min(0).doc("At most so many robots of one type in a team.");
   d.property("MinRobotTypesCount", &S::minRobotTypesCount).min(0).doc("At least so many types in a team of 11.");
   d.property("MaxSumTwoRobotTypes", &S::maxSumTwoRobotTypes).min(0).doc("At most so many robots of any two types together.");

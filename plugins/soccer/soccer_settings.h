@@ -26,7 +26,7 @@ class SoccerSettings : public Node, public IVariables {
   bool penaltyWidthBeyondGoal = true;
   // Ball and agents
   double ballRadius = 0.042, ballMass = 0.026, ballLinearDrag = 0.01, ballAngularDrag = 0.00005, ballMaxSpeed = 0;
-  double agentRadius = 0.4, agentMass = 75, agentMaxSpeed = 10, agentLinearDrag = 0.1;
+  double startDistance = 0, agentRadius = 0.4, agentMass = 75, agentMaxSpeed = 10, agentLinearDrag = 0.1;
   int teamSize = 11, maxRobotTypeCount = 7, minRobotTypesCount = 3, maxSumTwoRobotTypes = 9;
   // Restarts
   double freeKickDistance = 2.0, freeKickMoveDist = 2.5, kickRepelDist = 0.5, goalKickDist = 1.0;

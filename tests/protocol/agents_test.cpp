@@ -128,6 +128,28 @@ TEST_CASE("Messages are realised in order of agents' numbers, predicates in orde
   REQUIRE(deeds() == Deeds{"1 he1 1", "1 he2 2", "1 he1 3", "2 he2 5", "2 he1 6", "2 he1 7"});
 }
 
+TEST_CASE("Each action finds its effector, in whatever order they come") {
+  Arena a;
+  Client c = robot(a);
+  Deeds expected;
+  const auto say = [&](std::initializer_list<const char*> motors) {
+    std::string message;
+    for (const char* m : motors) {
+      message += fmt::format("({} {})", m, expected.size());
+      expected.push_back(fmt::format("1 {} {}", m, expected.size()));
+    }
+    c.send(message);
+    c.arrive();
+    a.cycle();
+    REQUIRE(deeds() == expected);
+  };
+  say({"he1", "he2"});
+  say({"he1", "he2"});
+  say({"he2", "he1", "he1"});
+  say({"he2"});
+  say({"he1", "he2", "he1", "he2"});
+}
+
 TEST_CASE("Bad actions harm nothing but themselves") {
   Arena a;
   Client c = robot(a);

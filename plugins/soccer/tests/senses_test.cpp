@@ -73,6 +73,75 @@ TEST_CASE("vision has noise, small and different each time", "[soccer]") {
   CHECK(sigma < 0.2);
 }
 
+namespace {
+/// Whom a See names, in its order: "A3 B1 ".
+std::string seen(const std::string& percepts) {
+  Predicates p;
+  readSexp(percepts, p);
+  std::string out;
+  for (const Element e : p)
+    for (const Element object : e)
+      if (object.head() == "P") out += fmt::format("{}{} ", object.named("team").at(1).text(), object.named("id").at(1).text());
+  return out;
+}
+}  // namespace
+
+TEST_CASE("who sees no farther than his range sees all that is nearer, in scene order", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.set("VisionNoise", false);
+  struct {
+    const char* team;
+    int unum;
+    double x, y;
+  } const places[] = {{"A", 1, 0, 0}, {"B", 9, -9, 0}, {"A", 7, 40, 30}, {"B", 2, 0, 11}, {"A", 4, 5, 5}, {"B", 3, 9.5, -0.5}, {"A", 5, -40, -30}};
+  std::vector<Puppet*> puppets;
+  for (const auto& p : places) puppets.push_back(&h.join(p.team, p.unum));
+  h.setMode("PlayOn");
+  const auto look = [&] {
+    for (std::size_t i = 0; i < puppets.size(); ++i) h.placeAgent(static_cast<int>(i) + 1, places[i].x, places[i].y);
+    h.placeBall(8, 8);
+    h.run(2);
+    for (Puppet* p : puppets) p->all.clear();
+    h.run(3);
+  };
+  const auto seenBy = [&](int i) { return seen(puppets[i]->all); };
+  look();
+  CHECK(seenBy(0) == "B9 A7 B2 A4 B3 A5 ");
+  CHECK(puppets[0]->all.find("(B ") != std::string::npos);
+  // one who sees farther than the cells that the others made
+  Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect1/body");
+  setProperty(body.require<Leaf>("VisionPerceptor"), "range", 10);
+  look();
+  CHECK(seenBy(0) == "B9 A4 B3 ");
+  CHECK(puppets[0]->all.find("(B ") == std::string::npos);
+  CHECK(seenBy(4) == "A1 B9 A7 B2 B3 A5 ");
+  h.set("VisionRange", 30);
+  look();
+  CHECK(seenBy(0) == "B9 A4 B3 ");
+  CHECK(seenBy(1) == "A1 B2 A4 B3 ");
+  CHECK(seenBy(2).empty());
+  CHECK(seenBy(6).empty());
+  h.set("VisionRange", 200);
+  look();
+  CHECK(seenBy(6) == "A1 B9 A7 B2 A4 B3 ");
+}
+
+TEST_CASE("teams may be larger than in soccer", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  for (const char* limit : {"TeamSize", "MaxRobotTypeCount", "MaxSumTwoRobotTypes"}) h.set(limit, 14);
+  for (int unum : {1, 12, 14, 15}) h.join("A", unum);
+  h.join("A", 0);
+  CHECK(getProperty(h.stateOf(3), "unum").toInteger() == 14);
+  CHECK(getProperty(h.stateOf(4), "unum").toInteger() == 0);
+  CHECK(getProperty(h.stateOf(5), "unum").toInteger() == 2);
+  h.setMode("PlayOn");
+  h.touch(3);
+  h.run(3);
+  CHECK(h.get("/sys/server/gamecontrol/BallStateAspect", "lastUnum").toInteger() == 14);
+}
+
 TEST_CASE("cone vision sees what is in the cone, turned by pan", "[soccer]") {
   MatchHouse h;
   h.importField();
