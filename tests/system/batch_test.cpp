@@ -137,6 +137,7 @@ TEST_CASE("What is wrong with the command line or the first world is said before
       {batch("no-such.lua", table), "no-such.lua"},
       {batch(config, table, {"--set", "anwser=1"}), "'answer'"},
       {batch(config, table, {"--sweep", "answer"}), "KEY=A,B"},
+      {batch(config, table, {"--sweep", "answer=1,2", "--sweep", "answer=3"}), "twice"},
       {batch(config, table, {"--report", "score"}), "/path.property"},
       {batch(config, table, {"--retry"}), "--resume"},
       {batch(config, (folder.path() / "t.txt").string()), ".csv or .jsonl"},

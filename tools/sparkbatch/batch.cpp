@@ -79,15 +79,18 @@ std::int64_t countThere(const Table& table, std::int64_t runs) {
 }
 
 /// Keeps the plugins mapped: otherwise every world that ends alone would take them out of the process, and the next would load them anew.
-std::unique_ptr<sparkhost::Host> keeper(const Options& options) {
-  static sparkhost::Options asked;
-  asked.pluginPaths = options.pluginPaths;
-  asked.logLevel = options.logLevel;
-  return std::make_unique<sparkhost::Host>(asked);
-}
+struct Keeper {
+  explicit Keeper(const Options& o) {
+    asked.pluginPaths = o.pluginPaths;
+    asked.logLevel = o.logLevel;
+    host.emplace(asked);
+  }
+  sparkhost::Options asked;
+  std::optional<sparkhost::Host> host;
+};
 
 Workers::Work work(const Options& options) {
-  return [&options, plugins = std::shared_ptr(keeper(options))](const Run& run, Watch& watch) { return simulate(options, run, watch); };
+  return [&options, plugins = std::make_shared<Keeper>(options)](const Run& run, Watch& watch) { return simulate(options, run, watch); };
 }
 }  // namespace
 

@@ -93,6 +93,9 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
     for (const std::string& s : settings) out.settings.push_back(splitSetting("--set", s));
     for (const std::string& s : sweep) {
       const auto [key, values] = splitSetting("--sweep", s);
+      for (const Parameter& p : out.sweep)
+        if (p.key == key)
+          throw CLI::ValidationError("--sweep", "expected each KEY once, found '" + key + "' twice: say all of its values at once");
       out.sweep.push_back({key, splitValues(values)});
     }
     for (const std::string& r : reports) out.reports.push_back(readReport(r));

@@ -119,20 +119,22 @@ void closeNetwork(Node& root) {
   if (net && net->classObject()->property("open")) setProperty(*net, "open", false);
 }
 
+/// A further column. Throws Error when there is one of that name.
+void put(Row& row, const std::string& column, const Value& value) {
+  if (row.contains(column)) throw Error(fmt::format("cannot report {0}: the table has another column {0}. Name it otherwise.", column));
+  row[column] = toJson(value);
+}
+
 void addReports(const Leaf& root, const std::vector<Report>& reports, Row& row) {
-  for (const Report& r : reports) row[r.column] = toJson(getProperty(root.require<Leaf>(r.path), r.property));
+  for (const Report& r : reports) put(row, r.column, getProperty(root.require<Leaf>(r.path), r.property));
 }
 
 /// What the config left in the variables Result.*.
-void addResults(const Leaf& root, Row& row) {
-  const Value names = valueAt(root, kResult, "names");
-  if (!names.isList()) return;
-  for (const Value& name : names.toList()) {
-    if (row.contains(name.plain()))
-      throw Error(fmt::format("{0}.{1}: the table has another column {1}. Name it otherwise.", kResult, name.plain()));
-    const std::vector<Value> argument{name};
-    row[name.plain()] = toJson(callMethod(const_cast<Leaf&>(*root.find(kResult)), "get", argument));
-  }
+void addResults(Node& root, Row& row) {
+  Leaf* group = root.find(kResult);
+  if (!group) return;
+  const Value names = getProperty(*group, "names");
+  for (const Value& name : names.toList()) put(row, name.plain(), callMethod(*group, "get", std::span(&name, 1)));
 }
 
 void addOutcome(const Leaf& root, Row& row) {
