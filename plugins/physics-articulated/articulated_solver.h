@@ -18,9 +18,7 @@ class ArticulatedSolver : public Leaf, public engine::ISolver {
     d.implements<engine::ISolver>();
     d.property("mostRows", &ArticulatedSolver::mostRows, &ArticulatedSolver::setMostRows)
         .min(0)
-        .doc(
-            "Islands with more rows of contacts between bodies and of loops of joints are left to the engine: a pile of some fifty "
-            "robots.");
+        .doc("Islands with more rows of contacts between bodies and of loops of joints are left to the engine.");
     d.property("islands", &ArticulatedSolver::islands).doc("Islands solved since the node was made.");
     d.property("passes", &ArticulatedSolver::passes).doc("Passes that these took to find which bounds hold; one each is the least.");
     d.property("exactSolutions", &ArticulatedSolver::exactSolutions)

@@ -11,9 +11,6 @@ using engine::JointType;
 using engine::SolverAxis;
 using engine::SolverJoint;
 
-/// rad
-constexpr double kNearStop = 1e-6;
-
 struct JointWriter {
   const SolverJoint& joint;
   Frame& a;
@@ -126,11 +123,7 @@ struct JointWriter {
     addTurning(p, correction() * error.dot(p), scale.cfm);
     addTurning(q, correction() * error.dot(q), scale.cfm);
     double beyond = 0;
-    int stop = 0;
-    // The engine's angle tells whether a stop is near; how far it is, down to the last digit, is found here.
-    const SolverAxis& limits = joint.axes[0];
-    if (stopsTurn(limits) && !(joint.angle[0] > limits.lowStop + kNearStop && joint.angle[0] < limits.highStop - kNearStop))
-      stop = stopAt(limits, hingeAngle(turned(joint.relativeA), joint.axisA[0]), beyond);
+    const int stop = stopsTurn(joint.axes[0]) ? stopAt(joint.axes[0], hingeAngle(turned(joint.relativeA), joint.axisA[0]), beyond) : 0;
     addTurningAxis(0, axis, stop, beyond);
   }
 
