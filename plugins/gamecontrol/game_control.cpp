@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "gamecontrol/scene_effector.h"
 #include "spark/error.h"
@@ -194,6 +195,8 @@ void GameControl::takeTurn(const Event& event) {
 
 void GameControl::sense(const Event& event) {
   if (!isTurn_) return;
+  if (const auto now = kernel().structureVersion(); std::exchange(perceptorsAt_, now) != now)
+    for (const auto& p : participants_) p->forgetTheDead();
   ++round_;
   for (const auto& p : participants_) p->share(round_);
   kernel().jobs().run(participants_.size(), [this, &event](std::size_t i) { participants_[i]->sense(event); });

@@ -78,7 +78,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   int cyclesToTurn_ = 0;   ///< between the next cycle and the agents' next turn
   bool isTurn_ = true;     ///< they have it in this cycle
   std::uint64_t round_ = 0;  ///< of sensing
-  std::uint64_t parsersAt_ = 0, robotsAt_ = 0, behaviorsAt_ = 0;
+  std::uint64_t parsersAt_ = 0, robotsAt_ = 0, perceptorsAt_ = 0, behaviorsAt_ = 0;
   bool waiting_ = false;
   Clock::time_point waitingSince_{}, actedAt_{};
 };

@@ -82,10 +82,12 @@ void Participant::holdBack(std::string_view first) {
 
 bool Participant::resolveRobot() {
   AgentAspect* root = aspect();
-  if (std::exchange(robotAt_, root ? root->changedAt() : 0) == robotAt_) return false;
+  const std::uint64_t changedAt = root ? root->changedAt() : 0;
+  if (std::exchange(robotAt_, changedAt) == changedAt) return false;
   perceptors_.clear();
   shared_.clear();
   if (!root) {
+    asked_.clear();
     effectors_.clear();
     syncPredicate_.clear();
     return false;
@@ -96,9 +98,16 @@ bool Participant::resolveRobot() {
   perceptors_.assign(perceptors.begin(), perceptors.end());
   for (Perceptor* p : perceptors)
     if (auto* view = p->as<ISharedView>()) shared_.push_back({p, view});
+  forgetTheDead();
   const bool first = !hadRobot_ && (!perceptors_.empty() || effectors > 1);
   hadRobot_ |= first;
   return first;
+}
+
+void Participant::forgetTheDead() {
+  std::erase_if(perceptors_, [](const Ref<Perceptor>& p) { return !p; });
+  asked_.clear();
+  for (const Ref<Perceptor>& p : perceptors_) asked_.push_back(p.get());
 }
 
 /// How many there are.
@@ -174,9 +183,9 @@ void Participant::share(std::uint64_t round) {
 void Participant::sense(const Event& event) {
   counter_ = nextCount();
   percepts_.clear();
-  for (std::size_t i = 0; i < perceptors_.size(); ++i) {
-    Perceptor* p = perceptors_[i].get();
-    if (!p || !isDue(*p, counter_)) continue;
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    Perceptor* p = asked_[i];
+    if (!isDue(*p, counter_)) continue;
     const std::uint32_t before = percepts_.size();
     try {
       p->sense(percepts_, event);
@@ -224,6 +233,7 @@ void Participant::reportFault(Log& log) {
   if (const Perceptor* p = perceptors_[faulty_].get())
     log.error("{}: {} ({}) threw and is asked no more: {}", label_, p->path(), p->classObject()->name(), fault_);
   perceptors_.erase(perceptors_.begin() + static_cast<std::ptrdiff_t>(faulty_));
+  asked_.erase(asked_.begin() + static_cast<std::ptrdiff_t>(faulty_));
   faulty_ = kNone;
 }
 

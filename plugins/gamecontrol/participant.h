@@ -58,6 +58,8 @@ class Participant {
   std::string receive(std::string_view message, std::size_t maxPending, Log& log, std::int64_t cycle);
   /// Looks effectors and perceptors up again if something changed below its aspect. True when it has a robot now and had none before.
   bool resolveRobot();
+  /// The tree changed since the last look: perceptors that died are asked no more.
+  void forgetTheDead();
   /// Realises what is pending.
   void realise(Log& log, std::int64_t cycle);
   /// What a behaviour thought of becomes pending.
@@ -147,6 +149,7 @@ class Participant {
   std::vector<Slot> effectors_;  ///< by predicate
   std::size_t firstSlot_ = 0;    ///< the one that was addressed first last
   std::vector<Ref<Perceptor>> perceptors_;
+  std::vector<Perceptor*> asked_;  ///< perceptors_, as long as the tree stays: a reference costs a cache line each
   std::vector<Shared> shared_;
   std::size_t faulty_ = kNone;   ///< index of a perceptor that threw
   std::string fault_;
