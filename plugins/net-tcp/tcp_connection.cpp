@@ -104,7 +104,7 @@ TcpConnection::Read TcpConnection::read(std::string& scratch) {
   }
   if (ec) return Read::ended;
   input_.append(scratch, 0, n);
-  return Read::some;
+  return n < scratch.size() ? Read::all : Read::some;
 }
 
 void TcpConnection::consume(std::size_t bytes) { input_.erase(0, bytes); }

@@ -20,8 +20,9 @@ using Clock = std::chrono::steady_clock;
 
 class TcpConnection final : public IConnection, public std::enable_shared_from_this<TcpConnection> {
  public:
-  /// What reading brought. `ended`: the client has gone or the connection failed.
-  enum class Read { nothing, some, ended };
+  /// What reading brought. `all`: less than there was room for, so that nothing more is there. `ended`: the client has gone or the connection
+  /// failed.
+  enum class Read { nothing, some, all, ended };
 
   TcpConnection(tcp::socket socket, std::uint64_t id, Node& port);
 

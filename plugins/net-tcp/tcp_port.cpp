@@ -199,7 +199,11 @@ bool TcpPort::serve(TcpConnection& connection) {
       connection.shut();
       break;
     }
-    any |= cut(connection);
+    const bool delivered = cut(connection);
+    any |= delivered;
+    // It stays readable: until the next poll its next message is mostly there, and is read without asking the system before. Only who waits
+    // without a message is watched.
+    if (delivered && result == TcpConnection::Read::all) break;
   }
   return any;
 }
