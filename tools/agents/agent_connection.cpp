@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/asio/connect.hpp>
-#include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
 #include <thread>
@@ -18,6 +18,8 @@ using boost::system::error_code;
 
 namespace {
 constexpr std::size_t kMaxMessage = 1 << 20;  // bytes; a longer one means that this is no such server
+constexpr std::size_t kPrefix = 4;            // bytes of length before a message
+constexpr std::size_t kRoom = 16384;          // bytes that are asked for at a time
 constexpr auto kRetry = std::chrono::milliseconds(100);
 }  // namespace
 
@@ -60,29 +62,36 @@ void AgentConnection::send(const Predicates& predicates) {
 }
 
 void AgentConnection::receive() {
-  asio::async_read(socket_, asio::buffer(prefix_), [this](const error_code& ec, std::size_t) {
+  if (in_.size() - filled_ < kRoom) in_.resize(filled_ + kRoom);
+  socket_.async_read_some(asio::buffer(in_.data() + filled_, in_.size() - filled_), [this](const error_code& ec, std::size_t n) {
     if (ec) return end(ec == asio::error::eof ? "the server closed the connection" : ec.message());
-    receiveBody();
-  });
-}
-
-void AgentConnection::receiveBody() {
-  std::size_t n = 0;
-  for (const unsigned char byte : prefix_) n = n << 8 | byte;
-  if (n > kMaxMessage) return end(fmt::format("the server announced a message of {} bytes: it speaks another protocol", n));
-  body_.resize(n);
-  asio::async_read(socket_, asio::buffer(body_), [this](const error_code& ec, std::size_t) {
-    if (ec) return end(ec == asio::error::eof ? "the server closed the connection" : ec.message());
-    ++received_;
-    answer();
+    filled_ += n;
+    answerAll();
     if (socket_.is_open()) receive();
   });
 }
 
-void AgentConnection::answer() {
+/// Every whole message that is there.
+void AgentConnection::answerAll() {
+  const std::string_view all(in_.data(), filled_);
+  std::size_t at = 0;
+  while (socket_.is_open() && all.size() - at >= kPrefix) {
+    std::size_t n = 0;
+    for (const unsigned char byte : all.substr(at, kPrefix)) n = n << 8 | byte;
+    if (n > kMaxMessage) return end(fmt::format("the server announced a message of {} bytes: it speaks another protocol", n));
+    if (all.size() - at - kPrefix < n) break;
+    ++received_;
+    answer(all.substr(at + kPrefix, n));
+    at += kPrefix + n;
+  }
+  std::copy(in_.data() + at, in_.data() + filled_, in_.data());
+  filled_ -= at;
+}
+
+void AgentConnection::answer(std::string_view message) {
   percepts_.clear();
   actions_.clear();
-  language_.read(body_, percepts_);
+  if (listens_) language_.read(message, percepts_);
   onMessage_(percepts_, actions_);
   if (!actions_.empty()) send(actions_);
 }

@@ -2,11 +2,11 @@
 /// \file
 /// One agent's connection to a server: messages behind a 4-byte big-endian length, over TCP.
 
-#include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "language.h"
 #include "spark/predicates.h"
@@ -24,6 +24,8 @@ class AgentConnection {
   AgentConnection(boost::asio::io_context& io, Language& language) : socket_(io), language_(language) {}
   /// Connects, and tries again for `patience` seconds while nobody listens. Blocks. Throws spark::Error.
   void connect(const std::string& host, int port, double patience = 0);
+  /// False: messages are counted and answered, not read; `percepts` stay empty.
+  void setListens(bool on) { listens_ = on; }
   /// Sends `first` (when it is not empty) and answers messages from then on.
   void start(const Predicates& first, OnMessage onMessage, OnEnd onEnd);
   void close();
@@ -33,8 +35,8 @@ class AgentConnection {
  private:
   void send(const Predicates& predicates);
   void receive();
-  void receiveBody();
-  void answer();
+  void answerAll();
+  void answer(std::string_view message);
   void end(const std::string& why);
 
   boost::asio::ip::tcp::socket socket_;
@@ -42,9 +44,10 @@ class AgentConnection {
   OnMessage onMessage_;
   OnEnd onEnd_;
   Predicates percepts_, actions_;
-  std::array<unsigned char, 4> prefix_{};
-  std::string body_, out_;
+  std::string in_, out_;
+  std::size_t filled_ = 0;  ///< bytes of in_ that were received and not answered yet
   std::uint64_t received_ = 0;
+  bool listens_ = true;
 };
 
 }  // namespace spark::agent

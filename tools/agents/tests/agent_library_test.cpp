@@ -100,6 +100,39 @@ TEST_CASE("An agent sends its first message, answers each message, and learns of
   REQUIRE(why == "the server closed the connection");
 }
 
+TEST_CASE("Messages in pieces and several at once are answered one by one, whether they are read or not") {
+  const bool listens = GENERATE(true, false);
+  Server server;
+  std::vector<std::string> answers;
+  asio::io_context io;
+  const auto language = makeLanguage("SexpParser", {});
+  AgentConnection agent(io, *language);
+  agent.setListens(listens);
+  std::thread peer([&] {
+    server.accept();
+    const std::string two("\0\0\0\3(a)\0\0\0\3(b)", 14);
+    asio::write(server.socket, asio::buffer(two + std::string("\0\0", 2)));
+    answers = {server.receive(), server.receive()};
+    asio::write(server.socket, asio::buffer(std::string("\0\3(c", 4)));
+    asio::write(server.socket, asio::buffer(std::string(")")));
+    answers.push_back(server.receive());
+    server.socket.close();
+  });
+  agent.connect("127.0.0.1", server.port());
+  int count = 0;
+  agent.start(
+      {},
+      [&](const Predicates& percepts, Predicates& actions) {
+        actions.open(percepts.empty() ? "nothing" : (*percepts.begin()).head()).add(++count).close();
+      },
+      [](const std::string&) {});
+  io.run();
+  peer.join();
+  if (listens) CHECK(answers == std::vector<std::string>{"(a 1)", "(b 2)", "(c 3)"});
+  else CHECK(answers == std::vector<std::string>{"(nothing 1)", "(nothing 2)", "(nothing 3)"});
+  CHECK(agent.received() == 3);
+}
+
 TEST_CASE("A peer that speaks another protocol ends the connection") {
   Server server;
   asio::io_context io;
