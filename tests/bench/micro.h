@@ -9,5 +9,7 @@ void runMicro(bool json);
 
 /// What it takes to wake the kernel's threads for a few jobs, and to run many small ones.
 void registerJobs();
+/// What messages cost: percepts and monitor frames written, actions read.
+void registerBytes();
 
 }  // namespace spark::bench
