@@ -83,8 +83,8 @@ struct JointData : engine::SolverJoint {
   dJointID id;
   WorldData* world;
   dJointFeedback feedback{};
-  /// A hinge's angle, as ODE tells it, and the state of the world's rotations for which it was asked last: effectors, the solver and sensors
-  /// want the same number. Sensors ask in several threads.
+  /// A hinge's angle, as ODE tells it, and the state of the world's rotations for which it was asked last: effectors and sensors want the
+  /// same number. Sensors ask in several threads.
   mutable std::atomic<double> lastAngle = 0;
   mutable std::atomic<std::uint64_t> angleAt = 0;
   bool attached() const { return a != nullptr; }
@@ -136,9 +136,6 @@ void fixed(JointData& j);
 /// After the world's parameters changed, which some rows of most joints follow.
 void worldChanged(JointData& j);
 }  // namespace frames
-
-/// A hinge's angle in the caller's order of bodies [rad].
-double hingeAngle(const JointData& j);
 
 /// Constraint rows that a contact and a joint add at most.
 inline constexpr int kContactRows = 3;

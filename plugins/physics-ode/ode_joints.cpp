@@ -91,9 +91,8 @@ bool hasParameter(const JointData& j, JointParameter p, int axis) {
   return axis >= 0 && axis < axesOf(j.type) && (!ofWheel || (j.type == JointType::hinge2 && axis == 0));
 }
 
-}  // namespace
-
-double ode::hingeAngle(const JointData& j) {
+/// A hinge's angle in the caller's order of bodies [rad].
+double hingeAngle(const JointData& j) {
   const std::uint64_t now = j.world->rotations;
   if (j.angleAt.load(std::memory_order_acquire) != now) {
     j.lastAngle.store(dJointGetHingeAngle(j.id), std::memory_order_relaxed);
@@ -101,6 +100,8 @@ double ode::hingeAngle(const JointData& j) {
   }
   return j.lastAngle.load(std::memory_order_relaxed);
 }
+
+}  // namespace
 
 Joint OdeEngine::createJoint(engine::World world, JointType type) {
   const Listening listening(said_);

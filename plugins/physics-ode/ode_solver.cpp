@@ -65,9 +65,6 @@ std::size_t OdeEngine::stepBySolver(WorldData& w, engine::ISolver& solver, engin
                           .dt = dt,
                           .structure = w.structure,
                           .mostRows = directRows_};
-  // A hinge's angle of its first body relative to its second, which sensors and effectors ask for all the same.
-  for (const auto& j : w.joints)
-    if (j->type == engine::JointType::hinge && j->attached()) j->angle[0] = j->reversed ? -hingeAngle(*j) : hingeAngle(*j);
   const std::size_t left = solver.step(step);
   tellOde(w);
   for (const auto& j : w.joints)
