@@ -59,7 +59,7 @@ bool Pivoting::settle(System& system) {
     ++passes;
     findBroken(system);
     if (broken_.empty()) return true;
-    constexpr int kRetries = 3;
+    constexpr int kRetries = 1;
     const bool fewer = broken_.size() < fewest;
     if (fewer) fewest = broken_.size();
     retries = fewer ? kRetries : retries - 1;

@@ -19,7 +19,7 @@ struct Bounded {
 /// definite, however the search began.
 ///
 /// Block principal pivoting: solve, turn all rows over that break their conditions, solve again. Mostly there is nothing to turn, since it
-/// begins with the states of the step before. When the number of broken rows does not fall for some passes, only a (repeatable) random half
+/// begins with the states of the step before. When the number of broken rows does not fall, only a (repeatable) random half
 /// of them is turned, which breaks cycles; when passes run out, the rows with bounds are solved exactly (BoxedLcp).
 ///
 /// A row within rounding of a bound stands at it, whatever its state was before: so the outcome depends on the island alone and not on
