@@ -10,6 +10,10 @@ namespace fs = std::filesystem;
 
 namespace spark {
 
+namespace {
+constexpr std::size_t kMostRemembered = 10000;
+}
+
 void DirectoryFileSystem::describe(Description<DirectoryFileSystem>& d) {
   d.doc("A folder as file system; what links lead out of it is refused.");
   d.implements<IFileSystem>();
@@ -61,9 +65,16 @@ std::optional<std::string> DirectoryFileSystem::read(const std::string& resource
 }
 
 std::uint64_t DirectoryFileSystem::stamp(const std::string& resource) {
-  const auto file = locate(resource);
+  if (path_.empty() || !resource.starts_with(prefix_)) return 0;
+  const fs::path file = fs::path(path_) / resource.substr(prefix_.size());
   struct stat s {};
-  if (!file || ::stat(file->c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return 0;
+  if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return 0;
+  const Identity identity{s.st_dev, s.st_ino};
+  if (const auto known = inside_.find(resource); known == inside_.end() || known->second != identity) {
+    if (!locate(resource)) return 0;
+    if (inside_.size() >= kMostRemembered) inside_.clear();  // links in circles give one file many names
+    inside_.insert_or_assign(resource, identity);
+  }
   const std::int64_t parts[] = {s.st_mtim.tv_sec, s.st_mtim.tv_nsec, s.st_size, static_cast<std::int64_t>(s.st_ino)};
   return std::max<std::uint64_t>(1, hashBytes({reinterpret_cast<const char*>(parts), sizeof parts}) >> 8);
 }

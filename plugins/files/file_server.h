@@ -3,6 +3,7 @@
 /// The file server and the folder as file system.
 
 #include <filesystem>
+#include <map>
 
 #include "api/files.h"
 #include "spark/describe.h"
@@ -49,8 +50,14 @@ class DirectoryFileSystem : public Leaf, public IFileSystem {
   std::optional<std::filesystem::path> locate(const std::string& resource) const;
   void setPrefix(std::string prefix);
   const std::string& prefix() const { return prefix_; }
+  /// Where a resource was found inside: looking whether it is the same file is all that a stamp takes then.
+  struct Identity {
+    std::uint64_t device, inode;
+    bool operator==(const Identity&) const = default;
+  };
   std::string path_, prefix_;
   std::int64_t maxBytes_ = 16 << 20;
+  std::map<std::string, Identity, std::less<>> inside_;
 };
 
 }  // namespace spark

@@ -8,9 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace spark {
-struct Method;
-}
+#include "spark/class_object.h"
 
 namespace spark::rsg {
 
@@ -58,7 +56,9 @@ struct Statement {
   std::vector<Block> blocks;
   Site site;
 
-  // What the last run found out about this call; a class is told by its number, which is never used again.
+  // What the last run found out. node: its class.
+  mutable Ref<ClassObject> made;
+  // call: its method; a class is told by its number, which is never used again.
   mutable std::uint64_t classId = 0;
   mutable const Method* method = nullptr;
   mutable bool complained = false;

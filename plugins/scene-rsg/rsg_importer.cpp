@@ -1,5 +1,6 @@
 #include "rsg_importer.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -30,6 +31,7 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
   d.property("maxImports", &I::maxImports, &I::setMaxImports).min(1).doc("Files that one import may import in all.");
   d.property("maxNodes", &I::maxNodes, &I::setMaxNodes).min(1).doc("Nodes that one import may make in all.");
   d.property("argumentLimit", &I::argumentLimit_).unit("1").min(0).doc("Largest number that an import from outside may pass.");
+  d.property("keptBytes", &I::keptBytes_).unit("bytes").min(0).doc("Compiled files are kept for the next import up to so much text.");
   d.property("filesParsed", &I::filesParsed_).readOnly().doc("Files read and compiled so far; a second robot of a kind adds none.");
   d.property("imports", &I::imports_).readOnly().doc("Files imported so far.");
   d.property("evals", &I::evals_).readOnly().doc("Expressions evaluated so far.");
@@ -37,10 +39,10 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
 }
 
 std::shared_ptr<const rsg::Program> RsgImporter::load(const std::string& file, Node& root) {
-  auto& files = kernel().root().require<IFileServer>("/sys/server/file");
   // One import sees one version of a file, however often it needs it.
   const auto cached = cache_.find(file);
   if (cached != cache_.end() && cached->second.checked == outermost_) return cached->second.program;
+  auto& files = kernel().root().require<IFileServer>("/sys/server/file");
   const std::uint64_t stamp = files.stamp(file);
   if (cached != cache_.end() && stamp != 0 && cached->second.stamp == stamp) {
     cached->second.checked = outermost_;
@@ -55,8 +57,21 @@ std::shared_ptr<const rsg::Program> RsgImporter::load(const std::string& file, N
     if (unlinkOnUnreadable_) root.removeChildren();
     throw;
   }
-  cache_.insert_or_assign(file, Cached{stamp, outermost_, program});
+  keep(file, {stamp, outermost_, static_cast<std::int64_t>(text.size()), program});
   return program;
+}
+
+/// Those that were not imported for the longest go first; what the import under way has seen stays.
+void RsgImporter::keep(const std::string& file, Cached cached) {
+  if (const auto known = cache_.find(file); known != cache_.end()) kept_ -= known->second.bytes;
+  kept_ += cached.bytes;
+  cache_.insert_or_assign(file, std::move(cached));
+  while (kept_ > keptBytes_) {
+    const auto oldest = std::min_element(cache_.begin(), cache_.end(), [](const auto& a, const auto& b) { return a.second.checked < b.second.checked; });
+    if (oldest->second.checked == outermost_) return;
+    kept_ -= oldest->second.bytes;
+    cache_.erase(oldest);
+  }
 }
 
 std::vector<std::string> RsgImporter::textsOf(std::string_view file, const List& arguments) const {

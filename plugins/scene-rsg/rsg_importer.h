@@ -55,9 +55,15 @@ class RsgImporter : public Leaf, public ISceneImporter {
   struct Cached {
     std::uint64_t stamp;
     std::int64_t checked;  ///< the outermost import in which the stamp was looked at
+    std::int64_t bytes;    ///< of the text
     std::shared_ptr<const rsg::Program> program;
   };
   std::shared_ptr<const rsg::Program> load(const std::string& file, Node& root);
+  void keep(const std::string& file, Cached cached);
+  void forget() {
+    cache_.clear();
+    kept_ = 0;
+  }
   std::vector<std::string> textsOf(std::string_view file, const List& arguments) const;
   /// " (imported from a:1:2, from b:3:4)" for the frames above the innermost.
   std::string chain() const;
@@ -70,7 +76,7 @@ class RsgImporter : public Leaf, public ISceneImporter {
   template <bool rsg::Rules::*Member>
   void setRule(bool on) {
     rules_.*Member = on;
-    cache_.clear();  // some rules are about reading
+    forget();  // some rules are about reading
   }
   int maxDepth() const { return budget_.maxDepth; }
   void setMaxDepth(int n) { budget_.maxDepth = n; }
@@ -83,6 +89,7 @@ class RsgImporter : public Leaf, public ISceneImporter {
   rsg::Budget budget_;
   double argumentLimit_ = 1e9;
   bool unlinkOnCompleteScenes_ = false, unlinkOnUnreadable_ = false;
+  std::int64_t keptBytes_ = 16 << 20, kept_ = 0;
   std::int64_t filesParsed_ = 0, imports_ = 0, evals_ = 0, calls_ = 0, outermost_ = 0;
   std::map<std::string, Cached, std::less<>> cache_;
   std::vector<rsg::Frame> frames_;

@@ -86,10 +86,17 @@ void Run::step(const Statement& s, Cursor& cursor, std::size_t& passed) {
   }
 }
 
-Node& Run::makeNode(const Statement& s, Node& parent) {
+ClassObject& Run::classOf(const Statement& s) const {
+  if (s.made) return *s.made;
   ClassObject& made = importer_.kernel().classOf(s.text);
   if (!made.isA(SceneNode::kClassName))
     throw Error("expected a class of scene nodes, found " + made.name() + ", which does not derive from " + SceneNode::kClassName);
+  s.made = &made;
+  return made;
+}
+
+Node& Run::makeNode(const Statement& s, Node& parent) {
+  ClassObject& made = classOf(s);
   Budget& budget = importer_.budget_;
   if (++budget.nodes > budget.maxNodes)
     importer_.exhausted("too many nodes: one import may make at most " + std::to_string(budget.maxNodes) + " (" + importer_.path() +
@@ -135,6 +142,7 @@ void Run::choose(const Statement& s, const Cursor& cursor) {
 void Run::call(const Statement& s, Node& node) {
   ++importer_.calls_;
   List arguments;
+  arguments.reserve(s.operands.size());
   for (const Operand& o : s.operands) arguments.emplace_back(textOf(o));
   if (!s.immediate)
     queue_.push_back({&node, &s, std::move(arguments)});

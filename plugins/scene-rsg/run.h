@@ -44,6 +44,7 @@ class Run {
   /// Runs one statement; `passed` counts for the node that it may enter.
   void step(const Statement& s, Cursor& cursor, std::size_t& passed);
   Node& makeNode(const Statement& s, Node& parent);
+  ClassObject& classOf(const Statement& s) const;
   Node& nextNode(Cursor& cursor);
   Node& select(const Statement& s, Node& parent);
   void choose(const Statement& s, const Cursor& cursor);

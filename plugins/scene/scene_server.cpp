@@ -43,12 +43,12 @@ void SceneServer::createScene(std::string path) {
 }
 
 ISceneImporter& SceneServer::importerFor(const std::string& file) {
-  std::vector<ISceneImporter*> importers;
+  ISceneImporter* first = nullptr;
+  int importers = 0;
   for (const auto& child : children())
-    if (auto* importer = child->as<ISceneImporter>()) importers.push_back(importer);
-  if (importers.empty())
-    throw Error(path() + " has no importer below it: add one, for instance new(\"RsgImporter\", \"" + path() + "/rsg\")");
-  if (importers.size() == 1) return *importers.front();
+    if (auto* importer = child->as<ISceneImporter>(); importer && importers++ == 0) first = importer;
+  if (!first) throw Error(path() + " has no importer below it: add one, for instance new(\"RsgImporter\", \"" + path() + "/rsg\")");
+  if (importers == 1) return *first;
 
   auto& files = kernel().root().require<IFileServer>("/sys/server/file");
   const std::uint64_t stamp = files.stamp(file);
@@ -60,7 +60,7 @@ ISceneImporter& SceneServer::importerFor(const std::string& file) {
       known_.insert_or_assign(file, Known{stamp, Ref<Leaf>(child.get())});
       return *importer;
     }
-  throw Error("none of the " + std::to_string(importers.size()) + " importers below " + path() + " knows the format of '" + file + "'");
+  throw Error("none of the " + std::to_string(importers) + " importers below " + path() + " knows the format of '" + file + "'");
 }
 
 void SceneServer::importScene(std::string_view file, Node& root, const List& arguments) {

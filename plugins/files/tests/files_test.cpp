@@ -114,6 +114,34 @@ TEST_CASE("a link inside the folder is followed, one that leaves it is refused")
   CHECK(f.errorOf("outdir/secret").find("a link leads out") != std::string::npos);
 }
 
+TEST_CASE("a stamp changes with the file, and follows a link that leads elsewhere") {
+  Files f;
+  Folder outside;
+  outside.write("secret", "s");
+  f.folder.write("one.rsg", "1");
+  f.folder.write("two.rsg", "2");
+  const fs::path link = f.folder.path / "link";
+  fs::create_symlink(f.folder.path / "one.rsg", link);
+  const auto one = f.server->stamp("link");
+  CHECK(one != 0);
+  CHECK(f.server->stamp("link") == one);
+  f.folder.write("one.rsg", "1, but longer");
+  CHECK(f.server->stamp("link") != one);
+  const auto longer = f.server->stamp("link");
+  const auto lead = [&](const fs::path& to) {
+    fs::remove(link);
+    fs::create_symlink(to, link);
+  };
+  lead(f.folder.path / "two.rsg");
+  CHECK(f.server->stamp("link") != longer);
+  lead(outside.path / "secret");
+  CHECK_THROWS_AS(f.server->stamp("link"), Error);
+  lead(f.folder.path / "one.rsg");
+  CHECK(f.server->stamp("link") == longer);
+  fs::remove(link);
+  CHECK(f.server->stamp("link") == 0);
+}
+
 TEST_CASE("a file beyond the limit is refused") {
   Files f;
   f.folder.write("big", std::string(101, 'x'));

@@ -40,6 +40,30 @@ TEST_CASE("files that import each other many times end at the number of imports 
   CHECK(h.failure("(importScene b.rsg)").empty());
 }
 
+TEST_CASE("compiled files are kept up to a limit, those of the running import always") {
+  SceneHouse h;
+  const std::string text = "(RSG 0 1)((nd Probe))" + std::string(979, ' ');
+  for (const char* name : {"a.rsg", "b.rsg", "c.rsg"}) h.write(name, text);
+  const auto parsed = [&](const char* name) {
+    const std::int64_t before = h.count("filesParsed");
+    h.import(name);
+    return h.count("filesParsed") - before;
+  };
+  h.set("keptBytes", 2000);
+  for (const char* name : {"a.rsg", "b.rsg"}) CHECK(parsed(name) == 1);
+  for (const char* name : {"a.rsg", "b.rsg", "a.rsg"}) CHECK(parsed(name) == 0);
+  CHECK(parsed("c.rsg") == 1);
+  CHECK(parsed("a.rsg") == 0);
+  CHECK(parsed("b.rsg") == 1);
+  h.set("keptBytes", 0);
+  h.write("d.rsg", "(RSG 0 1)((importScene a.rsg)(importScene b.rsg)(importScene a.rsg)(importScene b.rsg))");
+  const std::int64_t before = h.count("filesParsed");
+  h.import("d.rsg");
+  CHECK(h.count("filesParsed") - before == 3);
+  h.write("d.rsg", "(RSG 0 1)((importScene c.rsg)(importScene c.rsg) )");
+  CHECK(parsed("d.rsg") == 2);
+}
+
 TEST_CASE("texts cannot grow without end") {
   SceneHouse h;
   std::string body = "(def $a 0123456789)";
