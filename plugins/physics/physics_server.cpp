@@ -55,18 +55,40 @@ void PhysicsServer::setDefaultOnTransform(bool on) {
   version_ = 0;
 }
 
-void PhysicsServer::collect(Node& node, const CollisionGroup* group) {
-  if (const auto* inner = node.childOf<CollisionGroup>()) group = inner;
-  for (const auto& child : node.children()) {
-    if (auto* body = child->as<RigidBody>()) {
+void PhysicsServer::collect(const Node& scene) {
+  std::vector<PhysicsObject*> objects;
+  std::vector<CollisionGroup*> groups;
+  scene.collect(objects);
+  for (PhysicsObject* object : objects) {
+    if (auto* body = object->as<RigidBody>()) {
       if (body->transform() && body->world() == world_->handle()) bodies_.push_back({body, body->transform()->transform(), 0});
-    } else if (auto* collider = child->as<Collider>()) {
+    } else if (auto* collider = object->as<Collider>()) {
       collider->refreshHandlers(defaultOnTransform_);
-      collider->setGroup(group);
-    } else if (auto* handler = child->as<ScriptHandler>()) {
-      scripts_.push_back(Ref<ScriptHandler>(handler));
+      collider->setGroup(nullptr);
+    } else if (auto* group = object->as<CollisionGroup>()) {
+      groups.push_back(group);
     }
-    if (Node* inner = child->asNode()) collect(*inner, group);
+  }
+  formGroups(scene, groups);
+  std::vector<ScriptHandler*> scripts;
+  scene.collect(scripts);
+  scripts_.assign(scripts.begin(), scripts.end());
+}
+
+/// A collider's group is the nearest: outer ones are set first. Of several in one node the first counts.
+void PhysicsServer::formGroups(const Node& scene, std::vector<CollisionGroup*>& groups) {
+  const auto depth = [&](const CollisionGroup* group) {
+    int n = 0;
+    for (const Node* up = group->parent(); up != &scene; up = up->parent()) ++n;
+    return n;
+  };
+  std::stable_sort(groups.begin(), groups.end(), [&](const auto* a, const auto* b) { return depth(a) < depth(b); });
+  std::vector<Collider*> members;
+  for (const CollisionGroup* group : groups) {
+    if (group->parent()->childOf<CollisionGroup>() != group) continue;
+    members.clear();
+    group->parent()->collect(members);
+    for (Collider* collider : members) collider->setGroup(group);
   }
 }
 
@@ -78,7 +100,7 @@ bool PhysicsServer::refresh() {
   scene_ = kernel().root().find<ISceneServer>("/sys/server/scene");
   world_ = findWorld();
   if (!world_) return false;
-  collect(*world_->parent(), nullptr);
+  collect(*world_->parent());
   for (Placed& p : bodies_)
     for (const Transform* t = p.above; t; t = t->transform()) ++p.depth;
   // Outer transforms first: an inner one's local matrix needs where they are now.

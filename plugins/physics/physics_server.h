@@ -34,7 +34,8 @@ class PhysicsServer : public Node, public IPhysicsServer {
   World* findWorld();
   /// Looks at the scene again when its shape changed. False when there is nothing to step.
   bool refresh();
-  void collect(Node& node, const CollisionGroup* group);
+  void collect(const Node& scene);
+  void formGroups(const Node& scene, std::vector<CollisionGroup*>& groups);
   void physics(const Event& event);
   void place(const Event& event);
   void shiftSurroundings();
