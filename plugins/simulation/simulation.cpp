@@ -124,6 +124,7 @@ void Simulation::resolve() {
   if (Node* server = kernel().root().find<Node>("/sys/server"))
     for (const auto& child : server->children())
       if (auto* source = child->as<IInputSource>()) sources_.push_back(source);
+  kernel().updateOrder();
   kernel().root().collect(gates_);
   for (IInputSource* s : sources_)
     if (!waiter_ && s->canWait()) waiter_ = s;
