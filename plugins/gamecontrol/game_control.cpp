@@ -23,6 +23,9 @@ void GameControl::describe(Description<GameControl>& d) {
   d.property("expect", &GameControl::expect_).range(0, 1000).doc("Holds the clock at cycle 0 until so many agents have sent scene, init and syn; they are numbered by team and number.");
   d.property("maxAgents", &GameControl::maxAgents_).range(0, 1000).doc("Further agents are closed; clients that never said anything do not count.");
   d.property("maxPending", &GameControl::maxPending_).unit("bytes").range(1024, 1 << 28).doc("A client that sends more within one cycle is closed.");
+  d.property("loadsPerCycle", &GameControl::loadsPerCycle_)
+      .min(1)
+      .doc("In real time so many robots are loaded in one cycle at most, the others in the next ones; elsewhere all at once.");
   d.property("perceptDelay", &GameControl::perceptDelay_).range(0, 1).doc("Cycles between sensing and sending; the installed base has 1.");
   d.property("agentStep", &GameControl::agentStep_)
       .unit("s")
@@ -165,10 +168,23 @@ void GameControl::closeIdle() {
   }
 }
 
+/// The clock must not stand still while a whole team comes in. Where it waits for agents, or nobody watches it, what happens in which cycle
+/// must not depend on such a limit.
+bool GameControl::mayLoad() { return loads_++ < loadsPerCycle_ || !realTime(); }
+
+bool GameControl::realTime() const {
+  auto* simulation = kernel().root().find<ISimulation>("/sys/server/simulation");
+  if (sync_ || !simulation || simulation->lockstep()) return false;
+  const Leaf& leaf = *kernel().root().find("/sys/server/simulation");
+  const Property* rate = leaf.classObject()->property("rate");
+  return rate && rate->get(leaf).plain() == "real";
+}
+
 void GameControl::act(const Event& event) {
   cycle_ = event.cycle;
   waiting_ = false;
   actedAt_ = Clock::now();
+  loads_ = 0;
   closeIdle();
   removeLeaving();
   joinBehaviors();

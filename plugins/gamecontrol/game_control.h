@@ -28,6 +28,9 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
 
   bool ready(bool lockstep) override;
 
+  /// Asked by an effector that is about to load a robot. False: not in this cycle, ask again in the next.
+  bool mayLoad();
+
  protected:
   void onUnlink() override;
   void saveState(StateWriter& out) const override;
@@ -52,6 +55,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   bool tooSoon(Clock::time_point now) const;
   bool full() const;
   void closeIdle();
+  bool realTime() const;
   bool holding() const { return expect_ > 0 && !released_; }
   Participant* participantOf(const IConnection& connection) const;
   void agentsChanged();
@@ -69,11 +73,11 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   gamecontrol::LineBudget budget_{40};
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
-  int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1;
+  int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, loadsPerCycle_ = 4;
   bool sync_ = false, released_ = false;
   double agentStep_ = 0, holdWait_ = 0.5, syncTimeout_ = 30, joinWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
 
-  int nextNumber_ = 1, agentsSeen_ = 0;
+  int nextNumber_ = 1, agentsSeen_ = 0, loads_ = 0;
   std::int64_t messagesDropped_ = 0, cycle_ = 0;
   int cyclesToTurn_ = 0;   ///< between the next cycle and the agents' next turn
   bool isTurn_ = true;     ///< they have it in this cycle

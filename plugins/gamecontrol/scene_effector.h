@@ -3,6 +3,7 @@
 /// `(scene file arguments...)`: how an agent asks for its robot.
 
 #include "api/agents.h"
+#include "gamecontrol/game_control.h"
 #include "spark/error.h"
 
 namespace spark {
@@ -56,6 +57,7 @@ class SceneEffector : public Effector {
 
   void prepare(const Event&) {
     if (file_.empty()) return;
+    if (auto* control = kernel().root().find<GameControl>("/sys/server/gamecontrol"); control && !control->mayLoad()) return;
     const std::string file = std::move(file_);
     file_.clear();
     AgentAspect* inner = agent();

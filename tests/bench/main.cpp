@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "loading.h"
 #include "measure.h"
 #include "micro.h"
 #include "realtime.h"
@@ -23,7 +24,7 @@ struct Options {
   int cycles = 0, threads = 1;
   double realtime = 0;
   std::string solver = "dense", csv, history;
-  bool json = false, validate = false, micro = false;
+  bool json = false, validate = false, micro = false, loading = false;
 };
 
 std::vector<World> wanted(const Options& options) {
@@ -59,6 +60,7 @@ void readOptions(CLI::App& app, Options& o) {
   app.add_option("--history", o.history, "Appends the main figures to this machine's file in a folder, e.g. tests/bench/history")->type_name("DIR")->check(CLI::ExistingDirectory);
   app.add_flag("--json", o.json, "Prints a JSON array of rows instead of a table");
   app.add_flag("--validate-hash", o.validate, "Instead of measuring: hashes of the same world measured, unmeasured, again, and with several threads");
+  app.add_flag("--loading", o.loading, "Instead: what a robot's coming and going costs the cycles of a match of 22");
   app.add_flag("--micro", o.micro, "Instead: small parts by themselves");
   app.add_option("--realtime", o.realtime, "Instead: so many seconds of real time over TCP, and how late and long its cycles were")->type_name("SECONDS")->check(CLI::Range(1.0, 3600.0));
 }
@@ -69,6 +71,7 @@ void print(const World& world, const Json& rows, const Options& o) {
 
 int run(const Options& o) {
   if (o.micro) return runMicro(o.json), 0;
+  if (o.loading) return runLoading(o.json), 0;
   Json all = Json::array();
   bool good = true;
   if (!o.json && o.realtime <= 0 && !o.validate) printHead();

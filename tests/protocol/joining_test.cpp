@@ -322,6 +322,57 @@ TEST_CASE("On a full port the oldest client that never said anything makes room,
   REQUIRE(a.logged("it said nothing, and its place is needed"));
 }
 
+namespace {
+/// A run loop as game control sees it.
+class TestLoop : public Node, public ISimulation {
+  SPARK_CLASS(TestLoop, Node)
+ public:
+  static void describe(Description<TestLoop>& d) {
+    d.doc("Tells its rate.");
+    d.implements<ISimulation>();
+    d.property("rate", &TestLoop::rate).doc("real or max.");
+  }
+  double time() const override { return 0; }
+  std::int64_t cycle() const override { return 0; }
+  double step() const override { return 0.02; }
+  bool lockstep() const override { return waits; }
+  std::string rate = "real";
+  bool waits = false;
+};
+
+/// How many of seven agents that ask for a robot at once have one after each cycle.
+std::vector<int> robotsByCycle(const char* rate, bool lockstep, bool sync) {
+  Arena a;
+  a.kernel.registerClass<TestLoop>();
+  auto& loop = a.kernel.create<TestLoop>("TestLoop", "/sys/server/simulation");
+  loop.rate = rate;
+  loop.waits = lockstep;
+  a.set("loadsPerCycle", 3);
+  a.set("sync", sync);
+  std::vector<Client> clients;
+  for (int i = 0; i < 7; ++i) {
+    clients.push_back(a.client());
+    clients.back().send("(scene robot)");
+    clients.back().arrive();
+  }
+  std::vector<int> robots;
+  for (int cycle = 0; cycle < 10 && (robots.empty() || robots.back() < 7); ++cycle) {
+    a.cycle();
+    int n = 0;
+    for (AgentAspect* agent : a.control->agents()) n += agent->child("clock") != nullptr;
+    if (n > 0) robots.push_back(n);
+  }
+  return robots;
+}
+}  // namespace
+
+TEST_CASE("In real time a cycle loads loadsPerCycle robots and the next ones the others; elsewhere all load at once") {
+  CHECK(robotsByCycle("real", false, false) == std::vector<int>{3, 6, 7});
+  CHECK(robotsByCycle("max", false, false) == std::vector<int>{7});
+  CHECK(robotsByCycle("real", true, false) == std::vector<int>{7});
+  CHECK(robotsByCycle("real", false, true) == std::vector<int>{7});
+}
+
 TEST_CASE("Robots are files below robotFolder") {
   Arena a;
   a.set("robotFolder", "rsg/agent/");
