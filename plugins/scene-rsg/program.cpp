@@ -169,6 +169,9 @@ Statement Compiler::call(std::string_view method, Position at, const Position& e
   s.text = method;
   s.immediate = std::find(kImmediate.begin(), kImmediate.end(), method) != kImmediate.end();
   for (; at != end; ++at) s.operands.push_back(operand(*at));
+  s.constant = std::all_of(s.operands.begin(), s.operands.end(), [](const Operand& o) { return o.kind == Operand::Kind::text; });
+  if (s.constant)
+    for (const Operand& o : s.operands) s.arguments.emplace_back(o.text);
   return s;
 }
 

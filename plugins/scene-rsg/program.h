@@ -53,6 +53,8 @@ struct Statement {
   std::string text;
   std::vector<int> slots;
   std::vector<Operand> operands;
+  bool constant = false;  ///< call: all operands are texts,
+  List arguments;         ///< these
   std::vector<Block> blocks;
   Site site;
 

@@ -141,11 +141,14 @@ void Run::choose(const Statement& s, const Cursor& cursor) {
 
 void Run::call(const Statement& s, Node& node) {
   ++importer_.calls_;
-  List arguments;
-  arguments.reserve(s.operands.size());
-  for (const Operand& o : s.operands) arguments.emplace_back(textOf(o));
+  List computed;
+  if (!s.constant) {
+    computed.reserve(s.operands.size());
+    for (const Operand& o : s.operands) computed.emplace_back(textOf(o));
+  }
+  const List& arguments = s.constant ? s.arguments : computed;
   if (!s.immediate)
-    queue_.push_back({&node, &s, std::move(arguments)});
+    queue_.push_back({&node, &s, std::move(computed)});
   else if (s.text == "importScene")
     import(s, node, arguments);
   else
@@ -190,9 +193,10 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
     callMethod(node, s.text, arguments);
     return;
   }
-  const std::string className = node.classObject()->name();
+  const ClassObject& called = *node.classObject();  // the node may go
   std::string whyNot;
-  if (!callLoosely(node, *method, arguments, whyNot)) complain(s, Level::warning, s.text + " of " + className + " is skipped: " + whyNot);
+  if (!callLoosely(node, *method, arguments, whyNot))
+    complain(s, Level::warning, s.text + " of " + called.name() + " is skipped: " + whyNot);
 }
 
 void Run::flush() {
@@ -202,7 +206,7 @@ void Run::flush() {
     try {
       located(q.call->site, [&] {
         if (q.node)
-          invoke(*q.call, *q.node, q.arguments);
+          invoke(*q.call, *q.node, q.call->constant ? q.call->arguments : q.computed);
         else
           complain(*q.call, Level::error, "the node of this call was removed before it was made");
       });

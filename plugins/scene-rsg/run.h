@@ -38,7 +38,7 @@ class Run {
   struct Queued {
     Ref<Leaf> node;
     const Statement* call;
-    List arguments;
+    List computed;  ///< its arguments, when they are not constant
   };
   void walk(const Block& block, Cursor cursor);
   /// Runs one statement; `passed` counts for the node that it may enter.
