@@ -1,8 +1,11 @@
+#include <Eigen/Geometry>
+
 #include "ode_engine.h"
 
 namespace spark {
 
 using namespace ode;
+using engine::Body;
 using engine::Joint;
 using engine::JointParameter;
 using engine::JointType;
@@ -150,6 +153,9 @@ void OdeEngine::destroyJoint(Joint joint) {
 
 void OdeEngine::attach(Joint joint, engine::Body a, engine::Body b) {
   if (a == b && a != engine::Body::none) throw Error("a joint cannot connect a body with itself: name two bodies, or one and the world");
+  // ODE ends the process for it.
+  if (data(joint)->type == JointType::hinge2 && (a == Body::none) != (b == Body::none))
+    throw Error("a wheel's joint (hinge2) needs two bodies, found one: name the chassis and the wheel");
   const Listening listening(said_);
   JointData& j = *data(joint);
   if (j.a) --data(j.a)->joints;
@@ -210,9 +216,16 @@ void OdeEngine::setAxis(Joint joint, int axis, const Vec3& wanted, int frame) {
       else
         dJointSetUniversalAxis2(j.id, v.x(), v.y(), v.z());
       break;
-    case JointType::hinge2:
-      dJointSetHinge2Axes(j.id, axis == 0 ? direction : nullptr, axis == 1 ? direction : nullptr);
+    case JointType::hinge2: {
+      // ODE ends the process for parallel axes: the other one makes room, and is mostly set next.
+      const bool parallel = v.normalized().cross(OdeEngine::axis(joint, 1 - axis)).norm() < 1e-9;
+      const Vec3 aside = v.unitOrthogonal();
+      const dReal room[4] = {aside.x(), aside.y(), aside.z(), 0};
+      const dReal* const other = parallel ? room : nullptr;
+      dJointSetHinge2Axes(j.id, axis == 0 ? direction : other, axis == 1 ? direction : other);
+      if (parallel) frames::turned(j, 1 - axis, aside, frame);
       break;
+    }
     case JointType::angularMotor:
       if ((frame == 1 && j.reversed) || (frame == 2 && !j.b && !j.reversed) || frame < 0 || frame > 2) frame = 0;  // the world is that body
       if (axis >= j.motorAxes) return;

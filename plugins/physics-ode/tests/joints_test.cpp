@@ -251,3 +251,18 @@ TEST_CASE("a joint whose body died does nothing and asks nothing") {
   }
   CHECK_THROWS_WITH(two.ode.attach(two.ode.createJoint(two.world, JointType::ball), two.child, two.child), Catch::Contains("with itself"));
 }
+
+TEST_CASE("a wheel without a chassis is refused with a sentence; an axis makes room for one parallel to it") {
+  Two two;
+  const Joint j = two.ode.createJoint(two.world, JointType::hinge2);
+  CHECK_THROWS_WITH(two.ode.attach(j, two.child, Body::none), Catch::Contains("needs two bodies"));
+  CHECK_THROWS_WITH(two.ode.attach(j, Body::none, two.child), Catch::Contains("needs two bodies"));
+  two.ode.attach(j, two.child, two.parent);
+  two.ode.setAxis(j, 0, {0, 3, 0}, 0);  // where the second axis is from the beginning
+  CHECK(two.ode.axis(j, 0).isApprox(Vec3(0, 1, 0)));
+  CHECK(std::abs(two.ode.axis(j, 1).y()) < 1e-9);
+  two.ode.setAxis(j, 1, {0, -2, 0}, 0);
+  CHECK(two.ode.axis(j, 1).isApprox(Vec3(0, -1, 0)));
+  two.ode.setAxis(j, 0, {0, 0, 1}, 0);
+  two.run(3);
+}
