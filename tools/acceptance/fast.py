@@ -11,6 +11,8 @@ from acceptance.common import BIN, FAIL, OPEN, PASS, ROOT, run, say, tests
 
 STEP = 0.02  # s of a cycle
 PAGE = ROOT / "docs/performance.md"
+HISTORY = ROOT / "tests/bench/history"
+history = False  # whether what is measured is kept
 BEGIN, END = "<!-- written by tools/accept fast --write -->", "<!-- end of what is written -->"
 
 
@@ -18,7 +20,8 @@ BEGIN, END = "<!-- written by tools/accept fast --write -->", "<!-- end of what 
 def bench(*arguments):
     """Rows of one run of sparkbench."""
     say("Measuring: sparkbench " + " ".join(arguments))
-    output = run([BIN / "sparkbench", "--json", *arguments])
+    keep = ["--history", HISTORY] if history and not {"--validate-hash", "--realtime", "--loading"} & set(arguments) else []
+    output = run([BIN / "sparkbench", "--json", *arguments, *keep])
     if not output.stdout.strip():
         raise RuntimeError("sparkbench " + " ".join(arguments) + " printed nothing")
     return json.loads(output.stdout)
