@@ -85,7 +85,7 @@ def encoding():
 
 
 def real_time():
-    tested, short = tests("protocol-steady", "monitor-steady")
+    tested, short = tests(".*steady.*")
     r = bench("--only", "moving22", "--realtime", "60")[0]
     measured = (f"allocations: {tested}; {r['cycles']} cycles: done {r['done']['p50'] / 1000:.2f} ms after they were due in the median, {r['done']['p99.9'] / 1000:.2f} at 99.9 %, "
                 f"{r['done']['longest'] / 1000:.2f} the longest; begun {r['late']['p99.9'] / 1000:.2f} ms late at 99.9 %; {r['lateCycles']} lost time")
