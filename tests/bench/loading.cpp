@@ -250,7 +250,7 @@ Loading measureLoading(int robots, int repeats) {
 }
 
 void runLoading(bool json) {
-  const Loading loading = measureLoading(22, 5);
+  const Loading loading = measureLoading(22, 9);
   if (json) fmt::print("{}\n", Json::array({rowOf(loading)}).dump(1));
   else print(loading);
 }
