@@ -10,7 +10,7 @@
 // The digits of a number up to its k-th decimal are the whole number next to v * 10^k. In double precision that product is off by less than
 // 1e-6, which matters only next to a tie. There it is worked out exactly: a double is m * 2^e with a whole m below 2^53, and m * 5^k fits 128
 // bits for k up to 27, so that dividing by the power of two that is left loses nothing, and ties go to the even digit as C wants it. Numbers
-// beyond 2^31 or below 1e-21 go the long way through std::to_chars.
+// that are larger or smaller than those of messages go the long way through std::to_chars.
 
 namespace spark {
 
@@ -57,15 +57,20 @@ constexpr auto kPairs = [] {
   return whole + (rest > half || (rest == half && whole % 2));
 }
 
-/// The same, in double precision where that cannot go wrong.
-inline std::uint64_t scaled(double v, int k) {
-  constexpr double kSure = 0x1p30, kMargin = 1e-6;  // the product's two roundings are less than the margin up to there
-  constexpr double kUnits = 0x1p52;                 // from here on doubles are whole numbers, which stand in their lower bits
-  const double product = std::abs(v) * kPowers[static_cast<std::size_t>(k)];
+/// The whole number next to `product`, which is below 2^30 and was rounded twice; false when it is too near a tie for that.
+inline bool nearest(double product, std::uint64_t& whole) {
+  constexpr double kMargin = 1e-6;
+  constexpr double kUnits = 0x1p52;  // from here on doubles are whole numbers, which stand in their lower bits
   const double rounded = product + kUnits;
-  if (product < kSure && std::abs(product - (rounded - kUnits)) < 0.5 - kMargin)
-    return std::bit_cast<std::uint64_t>(rounded) ^ std::bit_cast<std::uint64_t>(kUnits);
-  return scaledExactly(v, k);
+  whole = std::bit_cast<std::uint64_t>(rounded) ^ std::bit_cast<std::uint64_t>(kUnits);
+  return std::abs(product - (rounded - kUnits)) < 0.5 - kMargin;
+}
+
+/// As scaledExactly(), in double precision where that cannot go wrong.
+inline std::uint64_t scaled(double v, int k) {
+  const double product = std::abs(v) * kPowers[static_cast<std::size_t>(k)];
+  std::uint64_t whole = 0;
+  return product < 0x1p30 && nearest(product, whole) ? whole : scaledExactly(v, k);
 }
 
 int countDigits(std::uint64_t v) {
@@ -121,9 +126,8 @@ constexpr auto kLayouts = [] {
 /// 10^kLeastExponent and on.
 constexpr std::array kBounds{1e-22, 1e-21, 1e-20, 1e-19, 1e-18, 1e-17, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8,
                              1e-7,  1e-6,  1e-5,  1e-4,  1e-3,  1e-2,  1e-1,  1e0,   1e1,   1e2,   1e3,   1e4,   1e5,   1e6};
-/// The decimal exponent of a number from 1e-21 to 1e6.
-inline int exponentOf(double v) {
-  const int binary = static_cast<int>(std::bit_cast<std::uint64_t>(v) >> 52 & 0x7FF) - 1023;
+/// The decimal exponent of a number from 1e-21 to 1e6, of binary exponent `binary`.
+inline int exponentOf(double v, int binary) {
   const int guess = binary * 315653 >> 20;  // floor(binary * log10(2)): the exponent or one less
   return guess + (v >= kBounds[static_cast<std::size_t>(guess + 1 - kLeastExponent)]);
 }
@@ -152,14 +156,18 @@ char* putFixed(char* to, double v, int decimals, bool asFloat) {
 
 char* putGeneral(char* to, double v) {
   constexpr std::uint64_t kEnd = 1000000;  // behind the largest number of six digits
+  constexpr int kLeastBinary = -69, kMostBinary = 18;  // 1.7e-21 and on, below 524,288
   const double size = std::abs(v);
-  const bool fast = size >= 1e-21 && size < 1e6;
+  const int binary = static_cast<int>(std::bit_cast<std::uint64_t>(size) >> 52) - 1023;
+  const bool fast = binary >= kLeastBinary && binary <= kMostBinary;
   if (!fast && size != 0) return putSlowly(to, kGeneralRoom, v, std::chars_format::general, kGeneralDigits);
   *to = '-';
   to += std::signbit(v);
   if (!fast) return *to = '0', to + 1;
-  int exponent = exponentOf(size);
-  std::uint64_t digits = scaled(size, kGeneralDigits - 1 - exponent);
+  int exponent = exponentOf(size, binary);
+  std::uint64_t digits = 0;
+  const int decimals = kGeneralDigits - 1 - exponent;
+  if (!nearest(size * kPowers[static_cast<std::size_t>(decimals)], digits)) digits = scaledExactly(size, decimals);
   if (digits == kEnd) digits /= 10, ++exponent;  // rounded up to the next power of ten
   const auto high = static_cast<std::uint32_t>(digits) / 10000, low = static_cast<std::uint32_t>(digits) % 10000;
   // The first digit is the lowest byte.

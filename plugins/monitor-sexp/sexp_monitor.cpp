@@ -77,6 +77,18 @@ void putLight(ByteWriter& out, const IVisual& light) {
 
 void putVisible(ByteWriter& out, bool visible) { out.put(visible ? " (setVisible 1)" : " (setVisible 0)"); }
 
+/// Mostly thrice the same number, which is worked out once.
+void putScale(ByteWriter& out, const Vec3f& scale) {
+  char text[1 + kGeneralRoom] = " ";
+  const char* end = text;
+  out.put("(sSc");
+  for (int i = 0; i < 3; ++i) {
+    if (i == 0 || std::bit_cast<std::uint32_t>(scale[i]) != std::bit_cast<std::uint32_t>(scale[i - 1])) end = putGeneral(text + 1, scale[i]);
+    out.put({text, static_cast<std::size_t>(end - text)});
+  }
+  out.put(')');
+}
+
 void putMesh(ByteWriter& out, const FrameNode& node) {
   const IVisual& mesh = *node.visual;
   putVisible(out, node.visible);
@@ -84,8 +96,7 @@ void putMesh(ByteWriter& out, const FrameNode& node) {
   out.put(" (load ");
   out.put(mesh.load());
   out.put(") ");
-  const Vec3f scale = mesh.scale();
-  putList(out, "sSc", {scale.data(), 3});
+  putScale(out, mesh.scale());
   const auto& materials = mesh.materials();
   if (materials.empty()) return;
   if (node.kind == FrameNode::Kind::singleMaterial) {
