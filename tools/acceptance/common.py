@@ -1,4 +1,5 @@
 """What the judges of all milestones use: running programs and tests."""
+import re
 import subprocess
 import sys
 import tempfile
