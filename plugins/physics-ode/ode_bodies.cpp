@@ -138,26 +138,28 @@ void OdeEngine::setAngularVelocity(Body body, const Vec3& wanted) {
 void OdeEngine::addForce(Body body, const Vec3& wanted) {
   if (!wanted.allFinite()) return;
   const BodyData& b = *data(body);
-  const Vec3 f = crossing(*b.world, wanted);
+  const Vec3 f = crossing(*b.world, bounded(wanted));
   for (int i = 0; i < 3; ++i) b.force[i] += f[i];
 }
 
 void OdeEngine::addTorque(Body body, const Vec3& wanted) {
   if (!wanted.allFinite()) return;
   const BodyData& b = *data(body);
-  const Vec3 t = crossing(*b.world, wanted);
+  const Vec3 t = crossing(*b.world, bounded(wanted));
   for (int i = 0; i < 3; ++i) b.torque[i] += t[i];
 }
 
 Vec3 OdeEngine::force(Body body) const { return toVec(dBodyGetForce(data(body)->id)); }
 Vec3 OdeEngine::torque(Body body) const { return toVec(dBodyGetTorque(data(body)->id)); }
 
-void OdeEngine::setForce(Body body, const Vec3& f) {
-  if (f.allFinite()) dBodySetForce(data(body)->id, f.x(), f.y(), f.z());
+void OdeEngine::setForce(Body body, const Vec3& wanted) {
+  const Vec3 f = bounded(wanted);
+  if (wanted.allFinite()) dBodySetForce(data(body)->id, f.x(), f.y(), f.z());
 }
 
-void OdeEngine::setTorque(Body body, const Vec3& t) {
-  if (t.allFinite()) dBodySetTorque(data(body)->id, t.x(), t.y(), t.z());
+void OdeEngine::setTorque(Body body, const Vec3& wanted) {
+  const Vec3 t = bounded(wanted);
+  if (wanted.allFinite()) dBodySetTorque(data(body)->id, t.x(), t.y(), t.z());
 }
 
 void OdeEngine::setEnabled(Body body, bool on) {

@@ -195,6 +195,10 @@ inline bool sane(const dReal* v, int n) {
   return most < 1e8;
 }
 inline bool sane(const Vec3& v) { return sane(v.data(), 3); }
+/// Forces [N, Nm] and what joints are told end here, far beyond what any body stands: ODE ends the process when a turn overflows.
+inline constexpr double kMost = 1e30;
+inline double bounded(double v) { return std::clamp(v, -kMost, kMost); }
+inline Vec3 bounded(const Vec3& v) { return v.cwiseMax(-kMost).cwiseMin(kMost); }
 inline Pose compose(const Pose& outer, const Pose& inner) {
   return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }

@@ -311,7 +311,8 @@ Vec3 OdeEngine::axis(Joint joint, int axis) const {
 void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double wanted) {
   JointData& j = *data(joint);
   if (!hasParameter(j, p, axis) || std::isnan(wanted)) return;
-  const double v = crossing(*j.world, wanted);
+  const bool nowhere = std::isinf(wanted) && (p == JointParameter::lowStop || p == JointParameter::highStop);  // there is no such stop
+  const double v = crossing(*j.world, nowhere ? wanted : bounded(wanted));
   const int name = odeParameter(p, axis);
   switch (j.type) {
     case JointType::hinge:

@@ -196,6 +196,21 @@ TEST_CASE("SIGTERM abandons what runs") {
   REQUIRE(p.wait() == 3);
 }
 
+TEST_CASE("A config that never returns can be ended: the next signal does what it does to any program") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("stuck.lua", "log.info('begins')\nwhile true do end\n");
+  Process p(batch(config, (folder.path() / "t.csv").string(), {"--log-level", "info"}));
+  p.waitForError("begins");
+  const auto gone = [&] {
+    std::ostringstream text;
+    text << std::ifstream("/proc/" + std::to_string(p.pid()) + "/stat").rdbuf();
+    return text.str().find(") Z ") != std::string::npos;
+  };
+  // Several that come before it looks count as one.
+  while (!gone()) p.signal(SIGTERM);
+  REQUIRE(p.wait() == 128 + SIGTERM);
+}
+
 #ifdef SPARK_MPI
 TEST_CASE("Several processes give the table of one") {
   TemporaryFolder folder;

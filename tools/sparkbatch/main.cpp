@@ -18,9 +18,13 @@ constexpr int kWrong = 2;
 std::atomic<Wish> wish = Wish::goOn;
 static_assert(std::atomic<Wish>::is_always_lock_free);
 
-extern "C" void onSignal(int number) { wish = number == SIGINT && wish == Wish::goOn ? Wish::finish : Wish::abandon; }
+extern "C" void onSignal(int number) {
+  if (wish == Wish::abandon) std::signal(number, SIG_DFL), std::raise(number);
+  wish = number == SIGINT && wish == Wish::goOn ? Wish::finish : Wish::abandon;
+}
 
-/// The first SIGINT lets what runs come to its end, the second and SIGTERM abandon it. Under mpirun signals end all processes at once, as
+/// The first SIGINT lets what runs come to its end, the second and SIGTERM abandon it; one more ends the process as the system does: a
+/// config that never returns hears of nothing. Under mpirun signals end all processes at once, as
 /// MPI has it; what has a row stays either way.
 void watchSignals() {
   struct sigaction action = {};

@@ -91,6 +91,39 @@ TEST_CASE("a body that flies apart is put back to its last good pose, at rest, a
   CHECK(house.position(good) == Vec3(5, 0, 0));
 }
 
+TEST_CASE("no force is so large that it ends the process, to the last digit or not") {
+  for (const double most : {1e39, 1e155, 1e308})
+    for (const bool exact : {false, true}) {
+      INFO(most << (exact ? ", exact" : ""));
+      EngineHouse house;
+      setProperty(house.kernel.root().require<Leaf>("/sys/server/physics/engine"), "exactReplay", exact);
+      const engine::World world = house.ode.createWorld();
+      const Body a = house.ode.createBody(world), b = house.ode.createBody(world), other = house.ode.createBody(world);
+      for (const Body body : {a, b, other}) {
+        house.ode.setMass(body, {1, Vec3::Zero(), Mat3::Identity()});
+        house.ode.setGravityMode(body, false);
+      }
+      const engine::Joint joint = house.ode.createJoint(world, engine::JointType::hinge);
+      house.ode.attach(joint, a, b);
+      house.ode.setAxis(joint, 0, Vec3::UnitX());
+      engine::Contacts none;
+      const auto step = [&] {
+        house.ode.step(world, none, 0.02);
+        CHECK(house.ode.state(a).position.isZero(0));
+        CHECK(house.ode.state(a).rotation.allFinite());
+      };
+      house.ode.addTorque(a, {most, most, most});
+      house.ode.addTorque(a, {most, most, most});
+      step();
+      house.ode.setTorque(a, {most, 0, 0});
+      step();
+      house.ode.setParameter(joint, engine::JointParameter::maxForce, 0, most);
+      house.ode.setParameter(joint, engine::JointParameter::velocity, 0, most);
+      step();
+      CHECK(house.ode.state(other).position.isZero(0));
+    }
+}
+
 TEST_CASE("a body at rest on the ground falls asleep after ten steps, and not in mid-air") {
   EngineHouse house;
   house.setGravity(9.81, true);
