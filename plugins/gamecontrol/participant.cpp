@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "gamecontrol/scene_effector.h"
+
 namespace spark::gamecontrol {
 
 namespace {
@@ -135,6 +137,13 @@ Participant::Slot* Participant::slot(std::string_view predicate, std::size_t& gu
   return &*it;
 }
 
+bool Participant::loading() const {
+  return !hadRobot_ && std::any_of(effectors_.begin(), effectors_.end(), [](const Slot& s) {
+    const auto* scene = s.effector ? s.effector->as<SceneEffector>() : nullptr;
+    return scene && scene->late();
+  });
+}
+
 void Participant::realise(Log& log, std::int64_t cycle) {
   synced_ = false;
   // The cycle in which an agent connects only makes its aspect.
@@ -142,6 +151,7 @@ void Participant::realise(Log& log, std::int64_t cycle) {
     skipCycle_ = false;
     return;
   }
+  if (loading()) return;  // what it says meanwhile is for the robot
   std::size_t* guess = &firstSlot_;
   for (const Element action : pending_) {
     const std::string_view head = action.head();

@@ -119,6 +119,8 @@ class Participant {
   };
   bool canSync() const { return !syncPredicate_.empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;
+  /// It asked for its robot, which is to come in one of the next cycles.
+  bool loading() const;
   std::size_t resolveEffectors(AgentAspect& root);
   void act(Effector& effector, const Element& action, Log& log, std::int64_t cycle);
   Slot* slot(std::string_view predicate, std::size_t& guess);

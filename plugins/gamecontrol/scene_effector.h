@@ -21,6 +21,9 @@ class SceneEffector : public Effector {
   /// From now on only files below this folder are loaded; "": any.
   void setFolder(std::string folder) { folder_ = std::move(folder); }
 
+  /// Its robot was asked for and had to wait, or came in the last prepare phase after it had.
+  bool late() const { return late_; }
+
   std::string act(const Element& action) override {
     if (loaded_) return "(scene ...): it has a robot already; a second one is refused.";
     if (failures_ >= kMostFailures) return "(scene ...): no robot could be built too often; connect again to try once more.";
@@ -56,8 +59,15 @@ class SceneEffector : public Effector {
   }
 
   void prepare(const Event&) {
-    if (file_.empty()) return;
-    if (auto* control = kernel().root().find<GameControl>("/sys/server/gamecontrol"); control && !control->mayLoad()) return;
+    if (file_.empty()) {
+      late_ = false;
+      return;
+    }
+    auto* control = kernel().root().find<GameControl>("/sys/server/gamecontrol");
+    if (control && !control->mayLoad()) {
+      late_ = true;
+      return;
+    }
     const std::string file = std::move(file_);
     file_.clear();
     AgentAspect* inner = agent();
@@ -79,7 +89,7 @@ class SceneEffector : public Effector {
   static constexpr int kMostFailures = 10;
   std::string folder_, file_;
   List arguments_;
-  bool loaded_ = false;
+  bool loaded_ = false, late_ = false;
   int failures_ = 0;
 };
 

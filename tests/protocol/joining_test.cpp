@@ -373,6 +373,32 @@ TEST_CASE("In real time a cycle loads loadsPerCycle robots and the next ones the
   CHECK(robotsByCycle("real", false, true) == std::vector<int>{7});
 }
 
+TEST_CASE("What an agent says while its robot waits to be loaded is kept for the robot") {
+  for (const int loads : {1, 100}) {
+    deeds().clear();
+    Arena a;
+    a.kernel.registerClass<TestLoop>();
+    a.kernel.create("TestLoop", "/sys/server/simulation");
+    a.set("loadsPerCycle", loads);
+    std::vector<Client> clients;
+    const auto say = [&](const std::string& message) {
+      for (Client& c : clients) c.send(message), c.arrive();
+    };
+    for (int i = 0; i < 5; ++i) clients.push_back(a.client());
+    say("(scene robot)");
+    for (int cycle = 0; cycle < 3; ++cycle) a.cycle();
+    say("(init (unum 1)(teamname t))");
+    a.cycle();
+    say("(he1 7)");
+    for (int cycle = 0; cycle < 10; ++cycle) a.cycle();
+    std::vector<std::string> found = deeds(), expected;
+    for (int agent = 1; agent <= 5; ++agent)
+      for (const char* deed : {" he1 7", " init t 1"}) expected.push_back(std::to_string(agent) + deed);
+    std::sort(found.begin(), found.end());
+    CHECK(found == expected);
+  }
+}
+
 TEST_CASE("Robots are files below robotFolder") {
   Arena a;
   a.set("robotFolder", "rsg/agent/");
