@@ -21,11 +21,11 @@ void Stepper::forget(engine::World world) {
   std::erase_if(worlds_, [&](const auto& kept) { return kept->id == world; });
 }
 
-void Stepper::makeRoom(const Kept& kept, std::size_t threads) {
+void Stepper::makeRoom(const Kept& kept, std::size_t threads, int most) {
   while (islandsOfThreads_.size() < threads) islandsOfThreads_.push_back(std::make_unique<Island>(mostPasses));
   // Which island meets which thread is chance: all have room for the largest.
   const Plan& plan = kept.plan;
-  const std::size_t coupling = std::min(plan.mostCoupling(), static_cast<std::size_t>(mostRows));
+  const std::size_t coupling = std::min(plan.mostCoupling(), static_cast<std::size_t>(std::max(most, 0)));
   for (const auto& island : islandsOfThreads_) island->reserve(plan.mostBodies(), plan.mostRows(), coupling, kept.topology.depth);
 }
 
@@ -51,8 +51,8 @@ std::size_t Stepper::step(engine::SolverStep& step, std::size_t threads, const S
   kept.plan.find(step, kept.topology);
   const std::size_t n = kept.plan.size();
   if (n == 0) return 0;
-  makeRoom(kept, threads);
   step.mostRows = std::min(step.mostRows, mostRows);
+  makeRoom(kept, threads, step.mostRows);
   kept.left.assign(n, 0);
   islands_ += static_cast<std::int64_t>(n);
   kept.contacts.match(step.contacts);

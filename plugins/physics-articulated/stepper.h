@@ -41,7 +41,8 @@ class Stepper {
     std::vector<char> left;  ///< by island of the step
   };
   Kept& keptOf(const engine::SolverStep& step);
-  void makeRoom(const Kept& kept, std::size_t threads);
+  /// `most`: coupling rows of an island that is not left.
+  void makeRoom(const Kept& kept, std::size_t threads, int most);
   std::size_t countLeft(const engine::SolverStep& step, const Kept& kept);
   std::vector<std::unique_ptr<Kept>> worlds_;
   std::vector<std::unique_ptr<Island>> islandsOfThreads_;

@@ -75,6 +75,16 @@ TEST_CASE("a pile of boxes settles as with ODE") {
   }
 }
 
+TEST_CASE("no room is made for islands that the engine's own limit leaves to it") {
+  Twins t;
+  setProperty(t.kernel.root().require<Leaf>("/sys/solved/solver"), "mostRows", 1000000000);
+  t.ground();
+  for (int i = 0; i < 1000; ++i) t.box({0.2, 0.2, 0.2}, t.body({0.19 * (i % 10), 0.19 * (i / 10 % 10), 0.1 + 0.19 * (i / 100)}, 1, Mat3::Identity()));
+  t.touch(t.solved);
+  t.solved.engine.step(t.solved.world, t.solved.contacts, t.dt);
+  CHECK(t.counted("leftIslands") > 0);
+}
+
 TEST_CASE("chains fall on the ground and on each other as with ODE") {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     INFO("seed " << seed);
