@@ -111,6 +111,7 @@ class Participant {
   struct Slot {
     std::string predicate;
     Ref<Effector> effector;
+    const void* node = nullptr;  ///< the effector's memory, not to be read
     std::size_t next = 0;  ///< index of the one that was addressed after it last: agents say the same things in the same order
   };
   struct Shared {
@@ -123,6 +124,7 @@ class Participant {
   bool loading() const;
   std::size_t resolveEffectors(AgentAspect& root);
   void act(Effector& effector, const Element& action, Log& log, std::int64_t cycle);
+  std::size_t fetchNext(std::size_t index) const;
   Slot* slot(std::string_view predicate, std::size_t& guess);
   /// What the counter is in the next sense phase.
   std::int64_t nextCount() const { return counter_ + (inside_ || heardFrom_ || counter_ == 0); }

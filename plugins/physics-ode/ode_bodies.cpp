@@ -117,7 +117,7 @@ void OdeEngine::setRotation(Body body, const Mat3& wanted) {
   dMatrix3 m;
   toOde(crossing(*b.world, r), m);
   dBodySetRotation(b.id, m);
-  ++b.world->rotations;
+  if (b.joints > 0) ++b.world->rotations;
   std::copy(dBodyGetQuaternion(b.id), dBodyGetQuaternion(b.id) + 4, b.good.quaternion);
 }
 

@@ -228,9 +228,11 @@ void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
   pairUp(w, contacts);
   if (w.parameters.autoDisable) sleep(w, dt);
   engine::ISolver* const inPlace = solver();
-  if (!inPlace || stepBySolver(w, *inPlace, contacts, crossing(w, dt)) > 0) stepByOde(w, contacts, crossing(w, dt));
+  const bool byOde = !inPlace || stepBySolver(w, *inPlace, contacts, crossing(w, dt)) > 0;
+  if (byOde) stepByOde(w, contacts, crossing(w, dt));
   repair(w);
   ++w.rotations;
+  if (byOde) tellAngles(w);
   if (!said_.empty()) report();
 }
 

@@ -82,11 +82,11 @@ struct GeomData {
 struct JointData : engine::SolverJoint {
   dJointID id;
   WorldData* world;
-  dJointFeedback feedback{};
   /// A hinge's angle, as ODE tells it, and the state of the world's rotations for which it was asked last: effectors and sensors want the
   /// same number. Sensors ask in several threads.
   mutable std::atomic<double> lastAngle = 0;
   mutable std::atomic<std::uint64_t> angleAt = 0;
+  dJointFeedback feedback{};
   bool attached() const { return a != nullptr; }
 };
 
@@ -105,7 +105,8 @@ struct WorldData {
   engine::WorldParameters parameters;  ///< as ODE was told
   bool exactReplay = false;            ///< as the engine said when the world was made
   std::uint64_t steps = 0, nextAge = 1;
-  std::uint64_t rotations = 1;  ///< another number when a body turned or a joint was set anew
+  std::uint64_t rotations = 1;  ///< another number when a body with joints turned or a joint was set anew
+  std::uint64_t anglesAt = 1;   ///< the same after the last step of ODE's solver
   std::vector<std::unique_ptr<BodyData>> bodies;
   std::vector<std::unique_ptr<SpaceData>> spaces;
   std::vector<std::unique_ptr<GeomData>> geoms;
@@ -322,6 +323,8 @@ class OdeEngine : public Node, public engine::IEngine {
   void readFeedback(ode::WorldData& w, engine::Contacts& contacts);
   /// Steps the world, islands that are too large for the direct solver by the iterative one.
   void solve(ode::WorldData& w, double dt);
+  /// Tells the angles of hinges that were asked for since the last step.
+  void tellAngles(ode::WorldData& w);
   /// dWorldStep, the islands in the kernel's threads.
   void solveDirectly(ode::WorldData& w, double dt);
   void repair(ode::WorldData& w);

@@ -210,6 +210,14 @@ void widen(Vec3& low, Vec3& high, const Vec3& p) {
 
 }  // namespace
 
+const std::vector<const Collider*>& Collider::inner() const {
+  if (std::exchange(innerAt_, changedAt()) == changedAt()) return inner_;
+  inner_.clear();
+  for (const auto& child : children())
+    if (const auto* collider = child->as<Collider>()) inner_.push_back(collider);
+  return inner_;
+}
+
 void Collider::bounds(Vec3& low, Vec3& high) const {
   low = Vec3::Constant(HUGE_VAL);
   high = -low;
@@ -230,13 +238,12 @@ void Collider::bounds(Vec3& low, Vec3& high) const {
       high = p.position + half;
     }
   }
-  for (const auto& child : children())
-    if (const auto* inner = child->as<Collider>()) {
-      Vec3 l, h;
-      inner->bounds(l, h);
-      low = low.cwiseMin(l);
-      high = high.cwiseMax(h);
-    }
+  for (const Collider* part : inner()) {
+    Vec3 l, h;
+    part->bounds(l, h);
+    low = low.cwiseMin(l);
+    high = high.cwiseMax(h);
+  }
 }
 
 }  // namespace spark

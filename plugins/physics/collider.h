@@ -64,6 +64,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   engine::IEngine* engine() const { return space_ ? space_->world()->engine() : nullptr; }
   /// Of the shape in the world.
   Pose geomPose() const;
+  /// Colliders among its children, looked up again when something changed below.
+  const std::vector<const Collider*>& inner() const;
   /// A point in the frame of the nearest transform, seen from the shape's own frame.
   Vec3 toShape(const Vec3& p) const;
   const std::vector<std::string>& notCollideWith() const { return notCollideWith_; }
@@ -93,6 +95,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   bool solid_ = false, listens_ = false, hasBody_ = false;
   Handlers handlers_;
   std::vector<std::string> notCollideWith_;
+  mutable std::vector<const Collider*> inner_;
+  mutable std::uint64_t innerAt_ = 0;
 };
 
 /// The surface of colliders that have no handler: bouncy.
