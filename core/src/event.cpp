@@ -13,7 +13,7 @@ namespace spark {
 // the tree and the handlers, their own included. Afterwards settle() makes it so.
 
 namespace {
-constexpr std::size_t kAhead = 4;  // handlers
+constexpr std::size_t kAhead = 8;  // handlers
 /// The solver leaves nothing of the nodes in the caches, and a handler that looks at one flag waits for memory all the same: the next ones'
 /// nodes are under way meanwhile.
 void fetch(const Leaf* node) {

@@ -1,7 +1,9 @@
 #include "gamecontrol/game_control.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "gamecontrol/scene_effector.h"
@@ -13,6 +15,12 @@ namespace spark {
 namespace {
 /// So many messages to an agent that has not sent (syn) yet leave no faster than joinPace, others waiting or not.
 constexpr std::int64_t kPacedMessages = 50;
+
+/// The participant so many places on, or nullptr.
+template <class Participants>
+auto* next(const Participants& all, std::size_t i, std::size_t places) {
+  return i + places < all.size() ? all[i + places].get() : nullptr;
+}
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 }  // namespace
@@ -204,9 +212,11 @@ void GameControl::takeTurn(const Event& event) {
   if (perceptDelay_ > 0) deliver();
   else
     for (const auto& p : participants_) p->promote();
-  for (const auto& p : participants_) p->realise(kernel().log(), cycle_);
-  if (perceptDelay_ > 0)
-    for (const auto& p : participants_) p->promote();
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    if (auto* p = next(participants_, i, 2)) p->approachActing();
+    participants_[i]->realise(kernel().log(), cycle_);
+    if (perceptDelay_ > 0) participants_[i]->promote();
+  }
 }
 
 void GameControl::sense(const Event& event) {
@@ -214,9 +224,19 @@ void GameControl::sense(const Event& event) {
   if (const auto now = kernel().structureVersion(); std::exchange(perceptorsAt_, now) != now)
     for (const auto& p : participants_) p->forgetTheDead();
   ++round_;
-  for (const auto& p : participants_) p->share(round_);
-  kernel().jobs().run(participants_.size(), [this, &event](std::size_t i) { participants_[i]->sense(event); });
-  for (const auto& p : participants_) p->reportFault(kernel().log());
+  for (std::size_t i = 0; i < participants_.size(); ++i) {
+    if (auto* p = next(participants_, i, 2)) p->approachSharing();
+    participants_[i]->share(round_);
+  }
+  std::atomic<bool> faults = false;
+  const auto one = [&](std::size_t i) {
+    for (std::size_t ahead = Participant::kStages; ahead > 0; --ahead)
+      if (auto* p = next(participants_, i, ahead)) p->approachSensing(ahead);
+    if (!participants_[i]->sense(event)) faults = true;
+  };
+  kernel().jobs().run(participants_.size(), std::ref(one));  // a copy would take memory
+  if (faults)
+    for (const auto& p : participants_) p->reportFault(kernel().log());
   if (perceptDelay_ == 0) deliver();
 }
 

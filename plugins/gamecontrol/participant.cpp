@@ -15,13 +15,14 @@ constexpr std::size_t kLongestLine = 300;
 // What a sync predicate is called as long as no robot says otherwise.
 constexpr std::string_view kSync = "syn";
 constexpr std::size_t kAhead = 4;  // effectors or perceptors
+constexpr const char* kNoException = "something that is no std::exception";
+constexpr std::size_t kPart = 256, kPerceptor = 448, kAbove = 768, kBuffer = 256;  // bytes, as far as they are looked at in most cycles
 
 /// Nothing of a robot's parts is in the caches after the solver: those that come next are under way while others work.
-void fetch(const void* part) {
-  constexpr std::ptrdiff_t kLine = 64, kPart = 4 * kLine;  // bytes
-  for (std::ptrdiff_t at = 0; at < kPart; at += kLine) __builtin_prefetch(static_cast<const char*>(part) + at);
+void fetch(const void* begin, std::size_t bytes = kPart) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(static_cast<const char*>(begin) + at);
 }
-constexpr const char* kNoException = "something that is no std::exception";
 }  // namespace
 
 Participant::Participant(IConnection& connection)
@@ -106,7 +107,7 @@ bool Participant::resolveRobot() {
   root->collect(perceptors);
   perceptors_.assign(perceptors.begin(), perceptors.end());
   for (Perceptor* p : perceptors)
-    if (auto* view = p->as<ISharedView>()) shared_.push_back({p, view});
+    if (auto* view = p->as<ISharedView>()) shared_.push_back({p, view, p});
   forgetTheDead();
   const bool first = !hadRobot_ && (!perceptors_.empty() || effectors > 1);
   hadRobot_ |= first;
@@ -115,6 +116,7 @@ bool Participant::resolveRobot() {
 
 void Participant::forgetTheDead() {
   std::erase_if(perceptors_, [](const Ref<Perceptor>& p) { return !p; });
+  std::erase_if(shared_, [](const Shared& s) { return !s.perceptor; });
   asked_.clear();
   for (const Ref<Perceptor>& p : perceptors_) asked_.push_back(p.get());
 }
@@ -156,6 +158,15 @@ std::size_t Participant::fetchNext(std::size_t index) const {
   if (index >= effectors_.size()) return index;
   fetch(effectors_[index].node);
   return effectors_[index].next;
+}
+
+void Participant::approachSharing() const {
+  for (const Shared& s : shared_) fetch(s.alive, kPerceptor);
+}
+
+void Participant::approachActing() const {
+  if (firstSlot_ < effectors_.size()) fetch(&effectors_[firstSlot_], sizeof(Slot));
+  fetch(pending_.tokens().data(), kBuffer);
 }
 
 void Participant::realise(Log& log, std::int64_t cycle) {
@@ -204,10 +215,19 @@ void Participant::promote() {
 
 void Participant::share(std::uint64_t round) {
   for (const Shared& s : shared_)
-    if (s.perceptor && isDue(*s.perceptor, nextCount())) s.view->share(round);
+    if (isDue(*s.alive, nextCount())) s.view->share(round);
 }
 
-void Participant::sense(const Event& event) {
+void Participant::approachSensing(std::size_t distance) const {
+  if (distance >= 3) return fetch(this, sizeof *this);
+  if (distance == 2) return fetch(asked_.data(), asked_.size() * sizeof asked_[0]);
+  for (std::size_t i = 0; i < std::min(asked_.size(), 2 * kAhead); ++i) fetch(asked_[i], kPerceptor);  // sense fetches the others
+}
+
+bool Participant::sense(const Event& event) {
+  fetch(percepts_.tokens().data(), kBuffer);
+  fetch(message_.data(), kBuffer);
+  for (std::size_t i = 0; i < std::min(asked_.size(), 2 * kAhead); ++i) fetch(asked_[i]->parent(), kAbove);
   counter_ = nextCount();
   percepts_.clear();
   for (std::size_t i = 0; i < asked_.size(); ++i) {
@@ -228,6 +248,7 @@ void Participant::sense(const Event& event) {
     }
   }
   encode();
+  return faulty_ == kNone;
 }
 
 void Participant::encode() {

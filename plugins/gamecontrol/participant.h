@@ -60,14 +60,24 @@ class Participant {
   bool resolveRobot();
   /// The tree changed since the last look: perceptors that died are asked no more.
   void forgetTheDead();
+  // A crowd does not fit the caches: while others have their turn, what this one will look at in its own is on its way there. Each part leads
+  // to the next, so that the way has stages.
+  static constexpr std::size_t kStages = 3;
+  /// Before realise, when two others have theirs first.
+  void approachActing() const;
+  /// Before share, when two others have theirs first.
+  void approachSharing() const;
+  /// Before sense, when so many others have theirs first: kStages, then fewer. Runs on any thread.
+  void approachSensing(std::size_t distance) const;
+
   /// Realises what is pending.
   void realise(Log& log, std::int64_t cycle);
   /// What a behaviour thought of becomes pending.
   void promote();
   /// Before the sense phase, in the simulation's thread: lets what its perceptors look at with others be brought up to date.
   void share(std::uint64_t round);
-  /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent.
-  void sense(const Event& event);
+  /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent. False when a perceptor threw.
+  bool sense(const Event& event);
   /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more.
   void reportFault(Log& log);
   /// Sends or hands over what was sensed last. False when the message was dropped because an earlier one has not left.
@@ -117,6 +127,7 @@ class Participant {
   struct Shared {
     Ref<Perceptor> perceptor;
     ISharedView* view;
+    const Perceptor* alive;  ///< as asked_
   };
   bool canSync() const { return !syncPredicate_.empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;

@@ -40,7 +40,7 @@ void Sights::collect(Kernel& kernel) {
   for (ObjectState* o : all) {
     auto* inner = o->ancestor<AgentAspect>();
     if (!inner) {
-      if (!o->perceptName().empty()) field_.push_back({o});
+      if (!o->perceptName().empty()) field_.push_back({o, o->transform()});
       continue;
     }
     AgentAspect* agent = &inner->outermost();
@@ -48,8 +48,9 @@ void Sights::collect(Kernel& kernel) {
     Robot& robot = robots_.back();
     if (auto* state = o->as<AgentState>()) {
       robot.state = state;
+      robot.frame = state->transform();
     } else if (!o->id().empty()) {
-      parts_.push_back({o});
+      parts_.push_back({o, o->transform()});
       ++robot.parts;
     }
   }
@@ -59,9 +60,9 @@ void Sights::collect(Kernel& kernel) {
 }
 
 void Sights::place() {
-  for (Mark& m : field_) m.place = placeOf(*m.object);
-  for (Mark& m : parts_) m.place = placeOf(*m.object);
-  for (Robot& r : robots_) r.place = placeOf(*r.state);
+  for (Mark& m : field_) m.place = placeOf(m.frame);
+  for (Mark& m : parts_) m.place = placeOf(m.frame);
+  for (Robot& r : robots_) r.place = placeOf(r.frame);
   for (Stroke& s : lines_) {
     const Matrix frame = s.line->transform() ? s.line->transform()->world() : Matrix(Matrix::Identity());
     s.begin = frame.block<3, 3>(0, 0) * s.line->begin() + positionOf(frame);

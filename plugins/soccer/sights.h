@@ -27,12 +27,14 @@ class Sights {
   /// Something visible.
   struct Mark {
     const ObjectState* object;
+    const Transform* frame = nullptr;  ///< the transform above it, nullptr for none
     Vec3f place = Vec3f::Zero();  ///< in the world [m]
   };
   /// A robot: its state, and the marked parts (none: it is seen by its state alone).
   struct Robot {
     AgentAspect* agent;
     AgentState* state = nullptr;
+    const Transform* frame = nullptr;  ///< the transform above the state
     Vec3f place = Vec3f::Zero();  ///< of the state [m]
     std::uint32_t firstPart = 0, parts = 0;
   };
@@ -82,7 +84,9 @@ class Sights {
   std::vector<std::pair<Cell, std::uint32_t>> cells_;               ///< cell and robot
 };
 
+/// World position of a frame; the scene's origin for none.
+inline Vec3f placeOf(const Transform* frame) { return frame ? positionOf(frame->world()) : Vec3f(Vec3f::Zero()); }
 /// World position of a node.
-inline Vec3f placeOf(const SceneNode& node) { return node.transform() ? positionOf(node.transform()->world()) : Vec3f(Vec3f::Zero()); }
+inline Vec3f placeOf(const SceneNode& node) { return placeOf(node.transform()); }
 
 }  // namespace spark::soccer
