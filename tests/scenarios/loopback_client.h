@@ -38,15 +38,9 @@ class LoopbackClient {
 
   /// Finds the server's end among this process's sockets; false while the server has not accepted.
   bool accepted() {
-    sockaddr_in self{}, other{};
-    socklen_t n = sizeof self;
-    ::getsockname(fd_, reinterpret_cast<sockaddr*>(&self), &n);
-    for (int fd = 3; fd < 1024 && peer_ < 0; ++fd) {
-      n = sizeof other;
-      if (fd != fd_ && ::getpeername(fd, reinterpret_cast<sockaddr*>(&other), &n) == 0 && other.sin_family == AF_INET &&
-          other.sin_port == self.sin_port)
-        peer_ = fd;
-    }
+    // Clients of two servers may have the same port: both ends count.
+    for (int fd = 3; fd < 1024 && peer_ < 0; ++fd)
+      if (fd != fd_ && portOf(fd, ::getpeername) == portOf(fd_, ::getsockname) && portOf(fd, ::getsockname) == portOf(fd_, ::getpeername)) peer_ = fd;
     return peer_ >= 0;
   }
   /// Sends a message behind its length, and returns when it is where the server's next read finds it.
@@ -80,6 +74,13 @@ class LoopbackClient {
     a.sin_port = htons(port);
     a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     return a;
+  }
+  /// Port of one end in network order, as getsockname or getpeername tells it; -1 for what has none.
+  template <class Name>
+  static int portOf(int fd, Name name) {
+    sockaddr_in a{};
+    socklen_t n = sizeof a;
+    return name(fd, reinterpret_cast<sockaddr*>(&a), &n) == 0 && a.sin_family == AF_INET ? a.sin_port : -1;
   }
   /// FIONREAD: bytes that this end may read; SIOCOUTQ: bytes that it has sent and the other end has not acknowledged.
   static int count(int fd, unsigned long what) {
