@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "process.h"
+#include "temporary_folder.h"
 #include "test_support.h"
 
 // Many worlds in one process and in several, as their users run them.

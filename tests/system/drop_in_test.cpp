@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "process.h"
+#include "temporary_folder.h"
 #include "test_support.h"
 
 // What a plugin author does: installs Spark, builds a plugin with the installed headers and find_package(Spark), drops it into a folder.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "process.h"
+#include "temporary_folder.h"
 #include "test_support.h"
 
 using namespace spark::test;

@@ -4,6 +4,7 @@
 
 #include "client.h"
 #include "process.h"
+#include "temporary_folder.h"
 #include "test_support.h"
 
 using namespace spark::test;

@@ -131,21 +131,4 @@ Finished runToEnd(const std::vector<std::string>& command) {
   return f;
 }
 
-TemporaryFolder::TemporaryFolder() {
-  char name[] = "/tmp/spark-test-XXXXXX";
-  path_ = mkdtemp(name);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
-std::string TemporaryFolder::write(const std::string& name, const std::string& text) const {
-  const fs::path file = path_ / name;
-  fs::create_directories(file.parent_path());
-  std::ofstream(file) << text;
-  return file.string();
-}
-
 }  // namespace spark::test

@@ -51,17 +51,4 @@ struct Finished {
 };
 Finished runToEnd(const std::vector<std::string>& command);
 
-/// A folder that goes with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  const std::filesystem::path& path() const { return path_; }
-  /// Writes a file below the folder (making folders) and returns its path.
-  std::string write(const std::string& name, const std::string& text) const;
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace spark::test

@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "process.h"
+#include "temporary_folder.h"
 #include "test_support.h"
 
 // People copy the first example of a README: it has to be a config that runs as it stands.

@@ -10,6 +10,7 @@
 
 #include "spark/error.h"
 #include "test_support.h"
+#include "temporary_folder.h"
 
 namespace spark::test {
 
@@ -60,16 +61,14 @@ class Group : public Leaf {
 
 /// A house with these classes, an empty folder for scripts, and short ways to run them.
 struct LuaHouse : House {
-  std::filesystem::path folder;
+  const TemporaryFolder home;
+  const std::filesystem::path& folder = home.path();
   LuaHouse() : House(false) {
     kernel.registerClass<Thing>();
     kernel.registerClass<Group>();
-    std::string name = (std::filesystem::temp_directory_path() / "spark-lua-XXXXXX").string();
-    folder = mkdtemp(name.data());
     kernel.lua().addFolder(folder);
   }
-  ~LuaHouse() { std::filesystem::remove_all(folder); }
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder / name) << text; }
+  void write(const std::string& name, const std::string& text) { home.write(name, text); }
   Value run(std::string_view text) { return kernel.lua().run(text, "test"); }
   /// The text of the error that running `text` raises; "" when there is none.
   std::string failure(std::string_view text) {

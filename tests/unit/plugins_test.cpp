@@ -5,6 +5,7 @@
 #include "spark/event.h"
 #include "spark/state.h"
 #include "test_support.h"
+#include "temporary_folder.h"
 
 // Plugins come and go; what is no good is refused with a sentence that names file and reason, and nothing else suffers.
 
@@ -32,12 +33,6 @@ std::string refusal(const std::function<void()>& action) {
   }
   return "nothing was refused";
 }
-
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("spark-plugins-" + std::to_string(::getpid()));
-  TemporaryFolder() { fs::create_directories(path); }
-  ~TemporaryFolder() { fs::remove_all(path); }
-};
 }  // namespace
 
 TEST_CASE("Each bad file of a folder is refused by name and reason, and scanning goes on") {
@@ -98,18 +93,18 @@ TEST_CASE("What fails while it registers leaves no class behind") {
 
 TEST_CASE("A file that is cut off, empty or a folder is refused") {
   House house(false);
-  const TemporaryFolder folder;
-  fs::copy_file(good("fixture-base"), folder.path / "cut.so");
-  fs::resize_file(folder.path / "cut.so", fs::file_size(good("fixture-base")) / 3);
-  std::ofstream(folder.path / "empty.so").flush();
-  fs::create_directory(folder.path / "folder.so");
-  std::ofstream(folder.path / "readme.txt") << "not looked at";
-  const auto problems = house.kernel.plugins().scan(folder.path);
+  const test::TemporaryFolder folder;
+  fs::copy_file(good("fixture-base"), folder.path() / "cut.so");
+  fs::resize_file(folder.path() / "cut.so", fs::file_size(good("fixture-base")) / 3);
+  std::ofstream(folder.path() / "empty.so").flush();
+  fs::create_directory(folder.path() / "folder.so");
+  std::ofstream(folder.path() / "readme.txt") << "not looked at";
+  const auto problems = house.kernel.plugins().scan(folder.path());
   REQUIRE(problems.size() == 3);
   CHECK_THAT(problems[0], Catch::Contains("cut.so") && Catch::Contains("it is cut off"));
   CHECK_THAT(problems[1], Catch::Contains("empty.so") && Catch::Contains("it is no shared library"));
   CHECK_THAT(problems[2], Catch::Contains("folder.so"));
-  CHECK_THAT(house.kernel.plugins().scan(folder.path / "nowhere").at(0), Catch::Contains("cannot read plugin folder"));
+  CHECK_THAT(house.kernel.plugins().scan(folder.path() / "nowhere").at(0), Catch::Contains("cannot read plugin folder"));
 }
 
 TEST_CASE("Scanning lists, a config line registers") {
@@ -133,9 +128,9 @@ TEST_CASE("A folder may be scanned again, and a listed file be used by its path"
   CHECK(house.kernel.plugins().scan(fixtures("fixture-plugins")).empty());
   CHECK(house.kernel.plugins().folders().size() == 1);
   CHECK(house.kernel.plugins().useFile(good("fixture-base")).registered());
-  const TemporaryFolder folder;
-  fs::copy_file(good("fixture-base"), folder.path / "copy.so");
-  const auto problems = house.kernel.plugins().scan(folder.path);
+  const test::TemporaryFolder folder;
+  fs::copy_file(good("fixture-base"), folder.path() / "copy.so");
+  const auto problems = house.kernel.plugins().scan(folder.path());
   REQUIRE(problems.size() == 1);
   CHECK_THAT(problems[0], Catch::Contains("there is a plugin 'fixture-base' already, from " + good("fixture-base").string()));
 }

@@ -12,6 +12,7 @@
 #include "api/phases.h"
 #include "spark/error.h"
 #include "test_support.h"
+#include "temporary_folder.h"
 
 using namespace spark;
 using Json = nlohmann::json;
@@ -20,14 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 /// A folder of this test's own for the sockets.
-struct RuntimeFolder {
-  fs::path path;
-  RuntimeFolder() {
-    char name[] = "/tmp/spark-test-XXXXXX";
-    path = mkdtemp(name);
-    setenv("XDG_RUNTIME_DIR", path.c_str(), 1);
-  }
-  ~RuntimeFolder() { fs::remove_all(path); }
+struct RuntimeFolder : test::TemporaryFolder {
+  RuntimeFolder() { setenv("XDG_RUNTIME_DIR", path().c_str(), 1); }
 };
 
 struct Fixture {
@@ -76,8 +71,8 @@ TEST_CASE("Only the user can reach the control socket") {
 
 TEST_CASE("A socket folder that is open to others is not used, and the house stands without") {
   RuntimeFolder folder;
-  fs::create_directory(folder.path / "spark");
-  chmod((folder.path / "spark").c_str(), 0755);
+  fs::create_directory(folder.path() / "spark");
+  chmod((folder.path() / "spark").c_str(), 0755);
   test::House house;
   house.kernel.plugins().use("control");
   Leaf& control = house.kernel.create("ControlServer", "/sys/server/control");

@@ -5,6 +5,7 @@
 
 #include "api/files.h"
 #include "test_support.h"
+#include "temporary_folder.h"
 
 namespace fs = std::filesystem;
 using namespace spark;
@@ -12,22 +13,19 @@ using namespace spark;
 namespace {
 
 struct Archive {
-  fs::path folder, file;
+  test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "a.zip";
   test::House house;
   IFileServer* server = nullptr;
   Leaf* system = nullptr;
 
   Archive() {
-    std::string name = (fs::temp_directory_path() / "spark-zip-XXXXXX").string();
-    folder = ::mkdtemp(name.data());
-    file = folder / "a.zip";
     house.kernel.plugins().use("files");
     house.kernel.plugins().use("files-zip");
     server = &house.kernel.create<IFileServer>("FileServer", "/sys/server/file");
     system = &house.kernel.create("ZipFileSystem", "/sys/server/file/zip");
     setProperty(*system, "path", file.string());
   }
-  ~Archive() { fs::remove_all(folder); }
 
   void write(const std::vector<std::pair<std::string, std::string>>& members, bool encrypt = false) const {
     fs::remove(file);

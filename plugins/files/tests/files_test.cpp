@@ -4,34 +4,21 @@
 #include <fstream>
 
 #include "test_support.h"
+#include "temporary_folder.h"
 
 namespace fs = std::filesystem;
 using namespace spark;
 
 namespace {
 
-/// A folder that goes with the test.
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "spark-files-XXXXXX").string();
-    path = ::mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-  void write(const std::string& name, const std::string& text) const {
-    fs::create_directories((path / name).parent_path());
-    std::ofstream(path / name) << text;
-  }
-};
-
 struct Files {
   test::House house;
-  Folder folder;
+  test::TemporaryFolder folder;
   IFileServer* server = nullptr;
   Files() {
     house.kernel.plugins().use("files");
     server = &house.kernel.create<IFileServer>("FileServer", "/sys/server/file");
-    mount("one", folder.path, "");
+    mount("one", folder.path(), "");
   }
   Leaf& mount(const std::string& name, const fs::path& path, const std::string& prefix) {
     Leaf& system = house.kernel.create("DirectoryFileSystem", "/sys/server/file/" + name);
@@ -63,8 +50,8 @@ TEST_CASE("a resource is read by its name, also in a form that is not normal") {
 
 TEST_CASE("file systems are asked in order, and a prefix mounts a folder below a name") {
   Files f;
-  Folder installed;
-  f.mount("two", installed.path, "rsg");
+  test::TemporaryFolder installed;
+  f.mount("two", installed.path(), "rsg");
   installed.write("a.rsg", "installed");
   CHECK(f.server->read("rsg/a.rsg") == "installed");
   CHECK(f.errorOf("a.rsg").find("there is no resource 'a.rsg'") != std::string::npos);
@@ -76,7 +63,7 @@ TEST_CASE("file systems are asked in order, and a prefix mounts a folder below a
 
 TEST_CASE("a missing resource says where it was looked for") {
   Files f;
-  CHECK(f.errorOf("rsg/none.rsg").find(f.folder.path.string()) != std::string::npos);
+  CHECK(f.errorOf("rsg/none.rsg").find(f.folder.path().string()) != std::string::npos);
 }
 
 TEST_CASE("names that are absolute, climb out or are no names are refused") {
@@ -92,23 +79,23 @@ TEST_CASE("names that are absolute, climb out or are no names are refused") {
 
 TEST_CASE("a folder and a device are not files, and a folder does not hide a later file") {
   Files f;
-  fs::create_directories(f.folder.path / "rsg/agent");
+  fs::create_directories(f.folder.path() / "rsg/agent");
   CHECK(f.errorOf("rsg/agent").find("found a folder") != std::string::npos);
   CHECK(f.errorOf("rsg/agent/").find("found a folder") != std::string::npos);
-  Folder second;
+  test::TemporaryFolder second;
   second.write("rsg/agent", "file");
-  f.mount("two", second.path, "");
+  f.mount("two", second.path(), "");
   CHECK(f.server->read("rsg/agent") == "file");
 }
 
 TEST_CASE("a link inside the folder is followed, one that leaves it is refused") {
   Files f;
-  Folder outside;
+  test::TemporaryFolder outside;
   outside.write("secret", "s");
   f.folder.write("real", "r");
-  fs::create_symlink(f.folder.path / "real", f.folder.path / "inside");
-  fs::create_symlink(outside.path / "secret", f.folder.path / "out");
-  fs::create_directory_symlink(outside.path, f.folder.path / "outdir");
+  fs::create_symlink(f.folder.path() / "real", f.folder.path() / "inside");
+  fs::create_symlink(outside.path() / "secret", f.folder.path() / "out");
+  fs::create_directory_symlink(outside.path(), f.folder.path() / "outdir");
   CHECK(f.server->read("inside") == "r");
   CHECK(f.errorOf("out").find("a link leads out") != std::string::npos);
   CHECK(f.errorOf("outdir/secret").find("a link leads out") != std::string::npos);
@@ -116,12 +103,12 @@ TEST_CASE("a link inside the folder is followed, one that leaves it is refused")
 
 TEST_CASE("a stamp changes with the file, and follows a link that leads elsewhere") {
   Files f;
-  Folder outside;
+  test::TemporaryFolder outside;
   outside.write("secret", "s");
   f.folder.write("one.rsg", "1");
   f.folder.write("two.rsg", "2");
-  const fs::path link = f.folder.path / "link";
-  fs::create_symlink(f.folder.path / "one.rsg", link);
+  const fs::path link = f.folder.path() / "link";
+  fs::create_symlink(f.folder.path() / "one.rsg", link);
   const auto one = f.server->stamp("link");
   CHECK(one != 0);
   CHECK(f.server->stamp("link") == one);
@@ -132,11 +119,11 @@ TEST_CASE("a stamp changes with the file, and follows a link that leads elsewher
     fs::remove(link);
     fs::create_symlink(to, link);
   };
-  lead(f.folder.path / "two.rsg");
+  lead(f.folder.path() / "two.rsg");
   CHECK(f.server->stamp("link") != longer);
-  lead(outside.path / "secret");
+  lead(outside.path() / "secret");
   CHECK_THROWS_AS(f.server->stamp("link"), Error);
-  lead(f.folder.path / "one.rsg");
+  lead(f.folder.path() / "one.rsg");
   CHECK(f.server->stamp("link") == longer);
   fs::remove(link);
   CHECK(f.server->stamp("link") == 0);

@@ -8,23 +8,13 @@
 #include <sstream>
 
 #include "spark/error.h"
+#include "temporary_folder.h"
 
 using namespace sparkbatch;
 using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-/// A folder that goes with the object, with one table's file in it.
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "spark-table-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-  std::string file(const std::string& name) const { return (path / name).string(); }
-};
-
 std::string textOf(const std::string& file) {
   std::ostringstream out;
   out << std::ifstream(file).rdbuf();
@@ -49,7 +39,7 @@ std::string errorOf(F f) {
 }  // namespace
 
 TEST_CASE("A row is in the file when it was added, and in order after sort()") {
-  Folder folder;
+  const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.csv");
   Table table(file, kBatch, Table::Open::fresh);
   table.add(row(2, 0.25));
@@ -63,7 +53,7 @@ TEST_CASE("A row is in the file when it was added, and in order after sort()") {
 }
 
 TEST_CASE("A column that comes later is added; error and times stay at the end") {
-  Folder folder;
+  const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.csv");
   Table table(file, kBatch, Table::Open::fresh);
   table.add({{"run", 2}, {"end", "error"}, {"cpuSeconds", 1}, {"error", "no, \"that\"\nis wrong"}});
@@ -72,7 +62,7 @@ TEST_CASE("A column that comes later is added; error and times stay at the end")
 }
 
 TEST_CASE("Columns are in the order of their first run, whichever came first") {
-  Folder folder;
+  const spark::test::TemporaryFolder folder;
   Table table(folder.file("t.csv"), kBatch, Table::Open::fresh), other(folder.file("u.csv"), kBatch, Table::Open::fresh);
   const Row first{{"run", 1}, {"a", 1}, {"b", 2}}, second{{"run", 2}, {"b", 3}, {"a", 4}, {"c", 5}};
   table.add(first), table.add(second), table.sort();
@@ -83,7 +73,7 @@ TEST_CASE("Columns are in the order of their first run, whichever came first") {
 
 TEST_CASE("A table is taken up where it was left, without the line that was cut off") {
   for (const char* name : {"t.csv", "t.jsonl"}) {
-    Folder folder;
+    const spark::test::TemporaryFolder folder;
     const std::string file = folder.file(name);
     {
       Table table(file, kBatch, Table::Open::fresh);
@@ -97,7 +87,7 @@ TEST_CASE("A table is taken up where it was left, without the line that was cut 
     REQUIRE_FALSE(table.has(3));
     REQUIRE(textOf(file) == whole);
     table.add(row(3, 0.3)), table.sort();
-    Folder fresh;
+    const spark::test::TemporaryFolder fresh;
     Table straight(fresh.file(name), kBatch, Table::Open::fresh);
     straight.add(row(1, 0.1)), straight.add(row(3, 0.3)), straight.add(row(4, 0.2)), straight.sort();
     REQUIRE(textOf(file) == textOf(fresh.file(name)));
@@ -105,7 +95,7 @@ TEST_CASE("A table is taken up where it was left, without the line that was cut 
 }
 
 TEST_CASE("JSON lines keep what is a number and what is none") {
-  Folder folder;
+  const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.jsonl");
   Table table(file, kBatch, Table::Open::fresh);
   table.add({{"run", 1}, {"a", 1.5}, {"b", "1.5"}, {"c", {1, 2}}});
@@ -113,7 +103,7 @@ TEST_CASE("JSON lines keep what is a number and what is none") {
 }
 
 TEST_CASE("Rows with an error are run again only when that is asked for") {
-  Folder folder;
+  const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.csv");
   {
     Table table(file, kBatch, Table::Open::fresh);
@@ -126,7 +116,7 @@ TEST_CASE("Rows with an error are run again only when that is asked for") {
 }
 
 TEST_CASE("What a table cannot be taken for is refused with a sentence") {
-  Folder folder;
+  const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.csv");
   { Table(file, kBatch, Table::Open::fresh).add(row(1, 1)); }
   REQUIRE_THAT(errorOf([&] { Table(file, kBatch, Table::Open::fresh); }), Contains("--resume"));
