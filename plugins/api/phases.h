@@ -30,6 +30,8 @@ class ISimulation {
   virtual double step() const = 0;
   /// True when the clock waits for all agents of a cycle.
   virtual bool lockstep() const = 0;
+  /// True when cycles are paced to wall time: a long one is seen by everybody.
+  virtual bool paced() const = 0;
 };
 
 /// Something the clock waits for: agents that have not answered. Any node in the tree may offer it.

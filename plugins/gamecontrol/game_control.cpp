@@ -181,11 +181,8 @@ void GameControl::closeIdle() {
 bool GameControl::mayLoad() { return loads_++ < loadsPerCycle_ || !realTime(); }
 
 bool GameControl::realTime() const {
-  auto* simulation = kernel().root().find<ISimulation>("/sys/server/simulation");
-  if (sync_ || !simulation || simulation->lockstep()) return false;
-  const Leaf& leaf = *kernel().root().find("/sys/server/simulation");
-  const Property* rate = leaf.classObject()->property("rate");
-  return rate && rate->get(leaf).plain() == "real";
+  const auto* simulation = kernel().root().find<ISimulation>("/sys/server/simulation");
+  return !sync_ && simulation && simulation->paced() && !simulation->lockstep();
 }
 
 void GameControl::act(const Event& event) {

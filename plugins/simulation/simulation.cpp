@@ -158,7 +158,7 @@ void Simulation::waitForInput(double seconds) {
 }
 
 void Simulation::waitForClock() {
-  while (rate_ == "real" && !stopping()) {
+  while (paced() && !stopping()) {
     const double left = secondsUntil(due_);
     if (left <= 0) break;
     waitForInput(left);
@@ -167,7 +167,7 @@ void Simulation::waitForClock() {
   const double late = -secondsUntil(due_);
   if (late > kJitter) {
     due_ = Clock::now();
-    if (rate_ == "real") lostTime_ += late, ++lateCycles_;
+    if (paced()) lostTime_ += late, ++lateCycles_;
   }
   due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step_));
 }
@@ -206,7 +206,7 @@ void Simulation::emit(Part part, Channel& channel, Clock::time_point& mark) {
 void Simulation::executeCycle() {
   ++cycle_;
   auto mark = Clock::now();
-  pace_.begin(wanted_, mark, rate_ == "real");
+  pace_.begin(wanted_, mark, paced());
   emit(Part::act, *act_, mark);
   emit(Part::prepare, *prepare_, mark);
   emit(Part::physics, *physics_, mark);

@@ -24,6 +24,7 @@ class Simulation : public Node, public ISimulation {
   std::int64_t cycle() const override { return cycle_; }
   double step() const override { return step_; }
   bool lockstep() const override { return sync_; }
+  bool paced() const override { return rate_ == "real"; }
 
   /// Runs cycles until `duration` is reached, stop() or Kernel::requestStop().
   void run();

@@ -328,24 +328,23 @@ class TestLoop : public Node, public ISimulation {
   SPARK_CLASS(TestLoop, Node)
  public:
   static void describe(Description<TestLoop>& d) {
-    d.doc("Tells its rate.");
+    d.doc("Tells how its cycles come.");
     d.implements<ISimulation>();
-    d.property("rate", &TestLoop::rate).doc("real or max.");
   }
   double time() const override { return 0; }
   std::int64_t cycle() const override { return 0; }
   double step() const override { return 0.02; }
   bool lockstep() const override { return waits; }
-  std::string rate = "real";
-  bool waits = false;
+  bool paced() const override { return isPaced; }
+  bool isPaced = true, waits = false;
 };
 
 /// How many of seven agents that ask for a robot at once have one after each cycle.
-std::vector<int> robotsByCycle(const char* rate, bool lockstep, bool sync) {
+std::vector<int> robotsByCycle(bool paced, bool lockstep, bool sync) {
   Arena a;
   a.kernel.registerClass<TestLoop>();
   auto& loop = a.kernel.create<TestLoop>("TestLoop", "/sys/server/simulation");
-  loop.rate = rate;
+  loop.isPaced = paced;
   loop.waits = lockstep;
   a.set("loadsPerCycle", 3);
   a.set("sync", sync);
@@ -367,10 +366,10 @@ std::vector<int> robotsByCycle(const char* rate, bool lockstep, bool sync) {
 }  // namespace
 
 TEST_CASE("In real time a cycle loads loadsPerCycle robots and the next ones the others; elsewhere all load at once") {
-  CHECK(robotsByCycle("real", false, false) == std::vector<int>{3, 6, 7});
-  CHECK(robotsByCycle("max", false, false) == std::vector<int>{7});
-  CHECK(robotsByCycle("real", true, false) == std::vector<int>{7});
-  CHECK(robotsByCycle("real", false, true) == std::vector<int>{7});
+  CHECK(robotsByCycle(true, false, false) == std::vector<int>{3, 6, 7});
+  CHECK(robotsByCycle(false, false, false) == std::vector<int>{7});
+  CHECK(robotsByCycle(true, true, false) == std::vector<int>{7});
+  CHECK(robotsByCycle(true, false, true) == std::vector<int>{7});
 }
 
 TEST_CASE("What an agent says while its robot waits to be loaded is kept for the robot") {
