@@ -13,13 +13,8 @@ namespace spark {
 // the tree and the handlers, their own included. Afterwards settle() makes it so.
 
 namespace {
-constexpr std::size_t kAhead = 8;  // handlers
-/// The solver leaves nothing of the nodes in the caches, and a handler that looks at one flag waits for memory all the same: the next ones'
-/// nodes are under way meanwhile.
-void fetch(const Leaf* node) {
-  constexpr std::ptrdiff_t kLine = 64, kNode = 6 * kLine;  // bytes
-  for (std::ptrdiff_t at = 0; at < kNode; at += kLine) __builtin_prefetch(reinterpret_cast<const char*>(node) + at);
-}
+constexpr std::size_t kAhead = 8;   // handlers
+constexpr std::size_t kNode = 384;  // bytes that a handler with nothing to do looks at
 }  // namespace
 
 void Channel::run(Entry& entry, const Event& event) {
@@ -74,7 +69,7 @@ void Channel::emit(const Event& event) {
   if (depth_ == 0) sort();
   ++depth_;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (i + kAhead < entries_.size()) fetch(entries_[i + kAhead].node);
+    if (i + kAhead < entries_.size()) prefetch(entries_[i + kAhead].node, kNode);
     if (entries_[i].node) run(entries_[i], event);
   }
   --depth_;

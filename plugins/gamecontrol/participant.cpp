@@ -17,12 +17,6 @@ constexpr std::string_view kSync = "syn";
 constexpr std::size_t kAhead = 4;  // effectors or perceptors
 constexpr const char* kNoException = "something that is no std::exception";
 constexpr std::size_t kPart = 256, kPerceptor = 448, kAbove = 768, kBuffer = 256;  // bytes, as far as they are looked at in most cycles
-
-/// Nothing of a robot's parts is in the caches after the solver: those that come next are under way while others work.
-void fetch(const void* begin, std::size_t bytes = kPart) {
-  constexpr std::size_t kLine = 64;
-  for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(static_cast<const char*>(begin) + at);
-}
 }  // namespace
 
 Participant::Participant(IConnection& connection)
@@ -156,17 +150,17 @@ bool Participant::loading() const {
 /// Fetches an effector. Returns the index of the one that was addressed after it in the last message.
 std::size_t Participant::fetchNext(std::size_t index) const {
   if (index >= effectors_.size()) return index;
-  fetch(effectors_[index].node);
+  prefetch(effectors_[index].node, kPart);
   return effectors_[index].next;
 }
 
 void Participant::approachSharing() const {
-  for (const Shared& s : shared_) fetch(s.alive, kPerceptor);
+  for (const Shared& s : shared_) prefetch(s.alive, kPerceptor);
 }
 
 void Participant::approachActing() const {
-  if (firstSlot_ < effectors_.size()) fetch(&effectors_[firstSlot_], sizeof(Slot));
-  fetch(pending_.tokens().data(), kBuffer);
+  if (firstSlot_ < effectors_.size()) prefetch(&effectors_[firstSlot_], sizeof(Slot));
+  prefetch(pending_.tokens().data(), kBuffer);
 }
 
 void Participant::realise(Log& log, std::int64_t cycle) {
@@ -219,20 +213,20 @@ void Participant::share(std::uint64_t round) {
 }
 
 void Participant::approachSensing(std::size_t distance) const {
-  if (distance >= 3) return fetch(this, sizeof *this);
-  if (distance == 2) return fetch(asked_.data(), asked_.size() * sizeof asked_[0]);
-  for (std::size_t i = 0; i < std::min(asked_.size(), 2 * kAhead); ++i) fetch(asked_[i], kPerceptor);  // sense fetches the others
+  if (distance >= 3) return prefetch(this, sizeof *this);
+  if (distance == 2) return prefetch(asked_.data(), asked_.size() * sizeof asked_[0]);
+  for (std::size_t i = 0; i < std::min(asked_.size(), 2 * kAhead); ++i) prefetch(asked_[i], kPerceptor);  // sense fetches the others
 }
 
 bool Participant::sense(const Event& event) {
-  fetch(percepts_.tokens().data(), kBuffer);
-  fetch(message_.data(), kBuffer);
-  for (std::size_t i = 0; i < std::min(asked_.size(), 2 * kAhead); ++i) fetch(asked_[i]->parent(), kAbove);
+  prefetch(percepts_.tokens().data(), kBuffer);
+  prefetch(message_.data(), kBuffer);
+  for (std::size_t i = 0; i < std::min(asked_.size(), 2 * kAhead); ++i) prefetch(asked_[i]->parent(), kAbove);
   counter_ = nextCount();
   percepts_.clear();
   for (std::size_t i = 0; i < asked_.size(); ++i) {
     Perceptor* p = asked_[i];
-    if (i + kAhead < asked_.size()) fetch(asked_[i + kAhead]);
+    if (i + kAhead < asked_.size()) prefetch(asked_[i + kAhead], kPart);
     if (!isDue(*p, counter_)) continue;
     const std::uint32_t before = percepts_.size();
     try {

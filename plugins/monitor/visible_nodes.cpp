@@ -40,25 +40,9 @@ void VisibleNodes::collect(const Node& above, int depth) {
   }
 }
 
-namespace {
-/// What copyTo reads of a node is on its way.
-void fetch(const Transform* transform, const IVisual* visual) {
-  constexpr std::ptrdiff_t kLine = 64;  // bytes
-  if (transform) {
-    const auto* local = reinterpret_cast<const char*>(&transform->local());
-    __builtin_prefetch(local), __builtin_prefetch(local + kLine);
-  } else {
-    const auto* node = reinterpret_cast<const char*>(visual);
-    __builtin_prefetch(node), __builtin_prefetch(node + kLine);
-  }
-}
-}  // namespace
-
 void VisibleNodes::copyTo(std::vector<FrameNode>& out) const {
-  constexpr std::size_t kAhead = 6;  // nodes: they are fetched while others are copied
   out.resize(entries_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (i + kAhead < entries_.size()) fetch(entries_[i + kAhead].transform, entries_[i + kAhead].visual);
     const Entry& entry = entries_[i];
     FrameNode& node = out[i];
     node.depth = entry.depth;

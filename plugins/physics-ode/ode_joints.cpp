@@ -39,31 +39,12 @@ Vec3 angularVelocity(const engine::SolverBody* b) { return b ? toVec(b->spin) : 
 
 /// Where a solver sees a parameter.
 double& told(JointData& j, JointParameter p, int axis) {
-  engine::SolverAxis& a = j.axes[axis];
-  switch (p) {
-    case JointParameter::lowStop:
-      return a.lowStop;
-    case JointParameter::highStop:
-      return a.highStop;
-    case JointParameter::velocity:
-      return a.velocity;
-    case JointParameter::maxForce:
-      return a.maxForce;
-    case JointParameter::fudgeFactor:
-      return a.fudgeFactor;
-    case JointParameter::bounce:
-      return a.bounce;
-    case JointParameter::cfm:
-      return a.cfm;
-    case JointParameter::stopErp:
-      return a.stopErp;
-    case JointParameter::stopCfm:
-      return a.stopCfm;
-    case JointParameter::suspensionErp:
-      return j.suspensionErp;
-    default:
-      return j.suspensionCfm;
-  }
+  using Axis = engine::SolverAxis;
+  static constexpr double Axis::*kPlaces[] = {&Axis::lowStop, &Axis::highStop, &Axis::velocity, &Axis::maxForce, &Axis::fudgeFactor,
+                                              &Axis::bounce,  &Axis::cfm,      &Axis::stopErp,  &Axis::stopCfm};
+  if (p == JointParameter::suspensionErp) return j.suspensionErp;
+  if (p == JointParameter::suspensionCfm) return j.suspensionCfm;
+  return j.axes[axis].*kPlaces[static_cast<int>(p)];
 }
 
 /// The axis of an angular motor, in the world.
@@ -104,25 +85,20 @@ double hingeAngle(const JointData& j) {
   return j.lastAngle.load(std::memory_order_relaxed);
 }
 
-/// Memory that will be read soon; bytes.
-void fetch(const void* from, std::ptrdiff_t size) {
-  for (std::ptrdiff_t at = 0; at < size; at += 64) __builtin_prefetch(static_cast<const char*>(from) + at);
-}
-
 }  // namespace
 
 /// The solver leaves nothing of joints and bodies in the caches. Sensors come to a joint from afar and would wait for each in turn; here the
 /// next ones' memory is under way meanwhile.
 void OdeEngine::tellAngles(WorldData& w) {
   constexpr std::size_t kFar = 10, kNear = 5;
-  constexpr std::ptrdiff_t kHinge = 448;  // bytes of ODE's
+  constexpr std::size_t kHinge = 448;  // bytes of ODE's
   const std::size_t n = w.joints.size();
   for (std::size_t i = 0; i < n; ++i) {
     if (i + kFar < n) {
       const JointData& far = *w.joints[i + kFar];
-      for (const void* part : {static_cast<const void*>(&far), static_cast<const void*>(&far.axes), static_cast<const void*>(&far.id)}) fetch(part, 1);
+      for (const void* part : {static_cast<const void*>(&far), static_cast<const void*>(&far.axes), static_cast<const void*>(&far.id)}) prefetch(part, 1);
     }
-    if (i + kNear < n) fetch(w.joints[i + kNear]->id, kHinge);
+    if (i + kNear < n) prefetch(w.joints[i + kNear]->id, kHinge);
     const JointData& j = *w.joints[i];
     if (j.type == JointType::hinge && j.attached() && j.angleAt.load(std::memory_order_relaxed) >= w.anglesAt) hingeAngle(j);
   }

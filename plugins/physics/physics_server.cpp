@@ -154,12 +154,8 @@ void PhysicsServer::reportFaults() {
 }
 
 namespace {
-/// The solver leaves nothing of nodes in the caches: the next ones are under way while one is worked on.
-constexpr std::size_t kAhead = 6;  // nodes
-void fetch(const void* node) {
-  constexpr std::ptrdiff_t kLine = 64, kNode = 6 * kLine;  // bytes
-  for (std::ptrdiff_t at = 0; at < kNode; at += kLine) __builtin_prefetch(static_cast<const char*>(node) + at);
-}
+constexpr std::size_t kAhead = 6;   // nodes
+constexpr std::size_t kNode = 384;  // bytes that are looked at
 }  // namespace
 
 void PhysicsServer::place(const Event&) {
@@ -167,7 +163,7 @@ void PhysicsServer::place(const Event&) {
   moving_.clear();
   handles_.clear();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (i + kAhead < bodies_.size()) fetch(bodies_[i + kAhead].body);
+    if (i + kAhead < bodies_.size()) prefetch(bodies_[i + kAhead].body, kNode);
     const Placed& p = bodies_[i];
     if (!p.body->takeUnplaced()) continue;
     moving_.push_back(&p);
@@ -180,7 +176,7 @@ void PhysicsServer::place(const Event&) {
   const Transform* known = nullptr;
   Matrix inverse;
   for (std::size_t i = 0; i < moving_.size(); ++i) {
-    if (i + kAhead < moving_.size()) fetch(moving_[i + kAhead]->body->transform());
+    if (i + kAhead < moving_.size()) prefetch(moving_[i + kAhead]->body->transform(), kNode);
     const Placed& p = *moving_[i];
     if (p.above && p.above != known) {
       inverse = rigidInverse(p.above->worldNow());

@@ -22,14 +22,12 @@ T* firstBelow(const Node& node) {
 }  // namespace
 
 Bounds Player::bounds() const {
-  constexpr std::size_t kAhead = 3;                            // colliders
-  constexpr std::ptrdiff_t kLine = 64, kBefore = 3 * kLine, kCollider = 6 * kLine;  // bytes
+  constexpr std::size_t kAhead = 3;                     // colliders
+  constexpr std::size_t kBefore = 192, kCollider = 576;  // bytes around an interface that are looked at
   Bounds all;
   Vec3 low, high;
   for (std::size_t i = 0; i < colliders.size(); ++i) {
-    // The solver leaves nothing of them in the caches: the next ones, around their interface, are under way meanwhile.
-    if (i + kAhead < colliders.size())
-      for (std::ptrdiff_t at = -kBefore; at < kCollider; at += kLine) __builtin_prefetch(reinterpret_cast<const char*>(colliders[i + kAhead]) + at);
+    if (i + kAhead < colliders.size()) prefetch(reinterpret_cast<const char*>(colliders[i + kAhead]) - kBefore, kCollider);
     colliders[i]->bounds(low, high);
     all.low = all.low.cwiseMin(low);
     all.high = all.high.cwiseMax(high);

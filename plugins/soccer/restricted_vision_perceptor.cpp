@@ -189,7 +189,7 @@ void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {
     const double heading = radToDeg(std::atan2(m(1, 1), m(0, 1)));  // of the y axis
     out.pair("myorien", normalizeDeg(side() == soccer::Side::right ? heading - 180 : heading));
   }
-  if (const Sights::Mark* ball = sights.ball(); ball && senseBallPos_) writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
+  if (const Sights::Mark* ball = senseBallPos_ ? sights.ball() : nullptr) writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
   if (senseLine_ && (!outlook_.settings() || outlook_.settings()->fieldLinesSeen)) seeLines(out);
   out.close();
 }
