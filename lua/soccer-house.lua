@@ -4,6 +4,7 @@
 --     soccerRules()                               -- after agents()
 --     soccerFouls()                               -- after soccerRules(): the automatic referee of humanoids
 --     soccerMonitor()                             -- after monitors()
+--     soccerTeams("sphere-team", "SphereBehavior", "Red Blue", 11)   -- teams that play inside the host
 --     soccerCompat("F")                           -- last: what agents are told as another version of the installed base tells it
 
 --- The variables Soccer.*, with other values where a league has them.
@@ -45,6 +46,17 @@ function soccerMonitor()
   end
   local file = option{ name = "monitorLog", default = "", doc = "File into which the match is logged for monitors; logplayer.lua plays it." }
   if file ~= "" then new("MonitorLog", "/sys/server/monitor/log").file = file end
+end
+
+--- Players inside the host: `class` of `from`, a plugin, so many for each name in `teams` ("Red Blue"; "": none), numbered from 1.
+function soccerTeams(from, class, teams, players)
+  for team in teams:gmatch("%S+") do
+    plugin(from)
+    for number = 1, players do
+      local player = new(class, "/usr/agent/" .. team .. number)
+      player.team, player.unum = team, number
+    end
+  end
 end
 
 -- In what versions of the installed base differ, by the node that has the property. What is not named here is by itself as in M, the

@@ -43,11 +43,4 @@ soccerMonitor()                         -- what monitors are told of it
 get("/sys/server/monitor/GameStateItem").areas = true
 get("/usr/scene"):importScene("rsg/soccer/field_2004.rsg")
 
--- teams inside the host, if any; others come over the network
-if robots ~= "" then plugin "sphere-team" end
-for team in robots:gmatch("%S+") do
-  for number = 1, players do
-    local player = new("SphereBehavior", "/usr/agent/" .. team .. number)
-    player.team, player.unum = team, number
-  end
-end
+soccerTeams("sphere-team", "SphereBehavior", robots, players)   -- inside the host, if any; others come over the network

@@ -44,11 +44,4 @@ soccerMonitor()
 soccerCompat(compat)
 get("/usr/scene"):importScene(field)
 
--- teams inside the host, if any; others come over the network
-if robots ~= "" then plugin "humanoid-team" end
-for team in robots:gmatch("%S+") do
-  for number = 1, players do
-    local player = new("HumanoidBehavior", "/usr/agent/" .. team .. number)
-    player.team, player.unum = team, number
-  end
-end
+soccerTeams("humanoid-team", "HumanoidBehavior", robots, players)   -- inside the host, if any; others come over the network
