@@ -1,5 +1,6 @@
 #include "sexp_monitor.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -80,11 +81,11 @@ void putVisible(ByteWriter& out, bool visible) { out.put(visible ? " (setVisible
 /// Mostly thrice the same number, which is worked out once.
 void putScale(ByteWriter& out, const Vec3f& scale) {
   char text[1 + kGeneralRoom] = " ";
-  const char* end = text;
+  std::size_t size = 0;
   out.put("(sSc");
   for (int i = 0; i < 3; ++i) {
-    if (i == 0 || std::bit_cast<std::uint32_t>(scale[i]) != std::bit_cast<std::uint32_t>(scale[i - 1])) end = putGeneral(text + 1, scale[i]);
-    out.put({text, static_cast<std::size_t>(end - text)});
+    if (i == 0 || std::bit_cast<std::uint32_t>(scale[i]) != std::bit_cast<std::uint32_t>(scale[i - 1])) size = static_cast<std::size_t>(putGeneral(text + 1, scale[i]) - text);
+    out.put({text, std::min(size, sizeof text)});
   }
   out.put(')');
 }

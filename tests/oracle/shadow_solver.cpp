@@ -20,28 +20,29 @@ ShadowSolver& watch(Kernel& kernel, const std::string& path) {
   return shadow;
 }
 
+namespace {
+/// From a body to what is kept of it, or back.
+template <class From, class To>
+void copyState(const From& from, To& to) {
+  std::copy_n(from.position, 3, to.position);
+  std::copy_n(from.quaternion, 4, to.quaternion);
+  std::copy_n(from.rotation, 12, to.rotation);
+  std::copy_n(from.velocity, 3, to.velocity);
+  std::copy_n(from.spin, 3, to.spin);
+  std::copy_n(from.force, 3, to.force);
+  std::copy_n(from.torque, 3, to.torque);
+  to.awake = from.awake;
+}
+}  // namespace
+
 ShadowSolver::State ShadowSolver::stateOf(const SolverBody& b) {
   State s;
-  std::copy_n(b.position, 3, s.position);
-  std::copy_n(b.quaternion, 4, s.quaternion);
-  std::copy_n(b.rotation, 12, s.rotation);
-  std::copy_n(b.velocity, 3, s.velocity);
-  std::copy_n(b.spin, 3, s.spin);
-  std::copy_n(b.force, 3, s.force);
-  std::copy_n(b.torque, 3, s.torque);
-  s.awake = b.awake;
+  copyState(b, s);
   return s;
 }
 
 void ShadowSolver::restore(const State& s, SolverBody& b) {
-  std::copy_n(s.position, 3, b.position);
-  std::copy_n(s.quaternion, 4, b.quaternion);
-  std::copy_n(s.rotation, 12, b.rotation);
-  std::copy_n(s.velocity, 3, b.velocity);
-  std::copy_n(s.spin, 3, b.spin);
-  std::copy_n(s.force, 3, b.force);
-  std::copy_n(s.torque, 3, b.torque);
-  b.awake = s.awake;
+  copyState(s, b);
   b.left = true;
 }
 

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "surroundings.h"
+
 namespace sparkbatch {
 
 namespace {
@@ -73,17 +75,7 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
       ->check(CLI::Range(1, 1024));
   app.add_flag("--resume", out.resume, "Goes on with a table that is there: only runs without a row are run");
   app.add_flag("--retry", out.retry, "With --resume: rows with an error are dropped, and run again")->needs("--resume");
-  app.add_option("--plugin-path", out.pluginPaths, "Folder with plugins, before Spark's own")
-      ->type_name("DIR")
-      ->allow_extra_args(false)
-      ->check(CLI::ExistingDirectory);
-  app.add_option("--scene-path", out.scenePaths, "Folder that holds rsg/..., before Spark's own scenes")
-      ->type_name("DIR")
-      ->allow_extra_args(false)
-      ->check(CLI::ExistingDirectory);
-  app.add_option("--log-level", out.logLevel, "What worlds may write to stderr")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
-      ->capture_default_str();
+  sparkhost::addSurroundings(app, out.pluginPaths, out.scenePaths, out.logLevel, "What worlds may write to stderr");
   app.footer(
       "stdout: one JSON line at the end. Exit code 0: every run has a row; 1: some rows are errors; 2: nothing was run; 3: it was "
       "interrupted.");

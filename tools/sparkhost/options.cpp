@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "surroundings.h"
+
 namespace sparkhost {
 
 namespace {
@@ -47,17 +49,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--monitor-port", monitorPort, "TCP port of monitors (default 3200); 0 picks a free one")
       ->type_name("P")
       ->check(CLI::Range(0, 65535));
-  app.add_option("--plugin-path", out.pluginPaths, "Folder with plugins, before Spark's own")
-      ->type_name("DIR")
-      ->allow_extra_args(false)
-      ->check(CLI::ExistingDirectory);
-  app.add_option("--scene-path", out.scenePaths, "Folder that holds rsg/..., before Spark's own scenes")
-      ->type_name("DIR")
-      ->allow_extra_args(false)
-      ->check(CLI::ExistingDirectory);
-  app.add_option("--log-level", out.logLevel, "What stderr shows")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
-      ->capture_default_str();
+  addSurroundings(app, out.pluginPaths, out.scenePaths, out.logLevel, "What stderr shows");
   app.add_flag("--check", out.check, "Load, wire and import, but step nothing: exit code 0, or 2 and the error");
   app.add_flag("--histogram", out.histogram, "At the end: how late and how long cycles were, as a table on stderr");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
