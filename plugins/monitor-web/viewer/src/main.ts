@@ -1,0 +1,3 @@
+import type { World } from "./model";
+
+export type { World };
