@@ -117,6 +117,8 @@ export interface Source {
 export interface LiveSource extends Source {
   readonly kind: "live";
   readonly connected: boolean;
+  /// "lost": it was open, and is tried again and again.
+  readonly state: "connecting" | "open" | "lost";
   readonly status: Status | null;
   /// True when the host took our token.
   readonly referee: boolean;
@@ -140,6 +142,8 @@ export interface ReplaySource extends Source {
   /// Simulated seconds of the first and last record.
   readonly start: number;
   readonly end: number;
+  /// All events of the whole log, in ascending time; World.events holds those up to what is shown now.
+  readonly timeline: GameEvent[];
   playing: boolean;
   /// 0.1..10
   speed: number;
