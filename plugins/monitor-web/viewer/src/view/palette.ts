@@ -1,0 +1,88 @@
+import type { Side } from "../model";
+import type { Theme } from "./stage";
+
+/// A colour as it is written to the screen (sRGB), each 0..1.
+export type Rgb = readonly [number, number, number];
+
+export function rgb(hex: number): Rgb {
+  return [((hex >> 16) & 255) / 255, ((hex >> 8) & 255) / 255, (hex & 255) / 255];
+}
+
+/// "#rrggbb"
+export function css(colour: Rgb): string {
+  return "#" + colour.map(c => Math.round(c * 255).toString(16).padStart(2, "0")).join("");
+}
+
+/// How bright a colour looks, 0..1 (relative luminance of WCAG 2).
+export function luminance(colour: Rgb): number {
+  const [r, g, b] = colour.map(c => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r! + 0.7152 * g! + 0.0722 * b!;
+}
+
+/// Blue against orange: apart for every kind of colour blindness, and in a grey print, since one is dark and the other bright.
+const teams = { left: rgb(0x1f5fd6), right: rgb(0xffa21a), none: rgb(0x9aa3ad) };
+
+export function teamColour(side: Side | null): Rgb {
+  return side === null ? teams.none : teams[side];
+}
+
+/// What to write in on the team's colour.
+export function inkOn(colour: Rgb): Rgb {
+  return luminance(colour) > 0.3 ? rgb(0x14181d) : rgb(0xffffff);
+}
+
+/// Parts of robots that are no team's.
+export const robot = { shell: rgb(0xf2f4f5), joint: rgb(0x3a4048), sole: rgb(0x555d66), visor: rgb(0x15181c), eye: rgb(0x7fe3ff) };
+
+/// Materials of scenes, toned down from the pure colours that their names promise.
+const materials: Record<string, Rgb> = {
+  matYellow: rgb(0xf2c53d), matOrange: rgb(0xee7f33), matRed: rgb(0xd6483f), matRedGlow: rgb(0xff6a55), matMagenta: rgb(0xc44a9e),
+  matBlue: rgb(0x3c6fd1), matLightBlue: rgb(0x63b4e6), matGreen: rgb(0x4fa05a), matWhite: rgb(0xf1f2f3), matGrey: rgb(0x8b939c),
+  matDarkGrey: rgb(0x3a4048), matBall: rgb(0xf5f5f5), matTrack: rgb(0xa5714d), matGrass: rgb(0x3e8e4a), matTeam: teams.none, matNum: rgb(0xf1f2f3),
+  naowhite: robot.shell, naoblack: robot.visor, naogrey: robot.joint,
+};
+
+const others = [0x6f8fb0, 0xb08f6f, 0x7fa37a, 0xa37a9c, 0x8d86c4, 0xbba35f].map(rgb);
+
+/// The colour of a material; one of a few quiet ones for names that nobody knows, always the same for the same name.
+export function materialColour(name: string | undefined): Rgb {
+  if (name === undefined) return materials.matGrey!;
+  const known = materials[name];
+  if (known) return known;
+  if (name.startsWith("matLeft")) return teams.left;
+  if (name.startsWith("matRight")) return teams.right;
+  if (name.startsWith("matNum")) return materials.matNum!;
+  let hash = 0;
+  for (const letter of name) hash = (hash * 31 + letter.charCodeAt(0)) >>> 0;
+  return others[hash % others.length]!;
+}
+
+/// What is around the robots.
+export interface Surroundings {
+  zenith: Rgb;
+  horizon: Rgb;
+  /// The ground beyond the grass.
+  floor: Rgb;
+  floorLine: Rgb;
+  grass: Rgb;
+  /// Every second mown stripe.
+  grassAlternate: Rgb;
+  border: Rgb;
+  line: Rgb;
+  net: Rgb;
+  /// Strength of light from above, from below, and of the sun, in flat mode.
+  above: number;
+  below: number;
+  sun: number;
+}
+
+export const surroundings: Record<Theme, Surroundings> = {
+  dark: {
+    zenith: rgb(0x0d1420), horizon: rgb(0x2a3a4f), floor: rgb(0x222b35), floorLine: rgb(0x323d4a), grass: rgb(0x2c7038), grassAlternate: rgb(0x327a3f),
+    border: rgb(0x27602f), line: rgb(0xf2f5f2), net: rgb(0xdfe6ec), above: 0.62, below: 0.34, sun: 0.46,
+  },
+  light: {
+    zenith: rgb(0x77aede), horizon: rgb(0xe4eef5), floor: rgb(0xc3c9c4), floorLine: rgb(0xb0b8b3), grass: rgb(0x4a9a4e), grassAlternate: rgb(0x55a758),
+    border: rgb(0x43894a), line: rgb(0xffffff), net: rgb(0xf5f8fa), above: 0.7, below: 0.42, sun: 0.45,
+  },
+};
