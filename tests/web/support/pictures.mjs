@@ -1,0 +1,69 @@
+// Screenshots: kept as files, and as pixels that can be compared.
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { inflateSync } from "node:zlib";
+import { screenshots } from "./places.mjs";
+
+/** The pixels of a PNG as Chromium writes it: 8 bits a channel, RGB or RGBA, not interlaced. */
+export function decode(png) {
+  const parts = [];
+  let width, height, channels;
+  for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at)) {
+    const body = png.subarray(at + 8, at + 8 + png.readUInt32BE(at));
+    const kind = png.toString("latin1", at + 4, at + 8);
+    if (kind === "IHDR") {
+      [width, height, channels] = [body.readUInt32BE(0), body.readUInt32BE(4), { 2: 3, 6: 4 }[body[9]]];
+      if (body[8] !== 8 || !channels || body[12] !== 0) throw new Error("this kind of PNG is not read here");
+    } else if (kind === "IDAT") {
+      parts.push(body);
+    }
+  }
+  return { width, height, channels, data: unfilter(inflateSync(Buffer.concat(parts)), width, height, channels) };
+}
+
+/** Undoes PNG's filters: each byte is stored as the difference to a guess from its neighbours. */
+function unfilter(raw, width, height, channels) {
+  const row = width * channels;
+  const data = new Uint8Array(row * height);
+  for (let y = 0; y < height; y++) {
+    const filter = raw[y * (row + 1)];
+    for (let x = 0; x < row; x++) {
+      const left = x >= channels ? data[y * row + x - channels] : 0;
+      const up = y > 0 ? data[(y - 1) * row + x] : 0;
+      const corner = x >= channels && y > 0 ? data[(y - 1) * row + x - channels] : 0;
+      data[y * row + x] = raw[y * (row + 1) + 1 + x] + guess(filter, left, up, corner);
+    }
+  }
+  return data;
+}
+
+function guess(filter, left, up, corner) {
+  if (filter === 4) {
+    const [a, b, c] = [Math.abs(up - corner), Math.abs(left - corner), Math.abs(left + up - 2 * corner)];
+    return a <= b && a <= c ? left : b <= c ? up : corner;
+  }
+  return [0, left, up, (left + up) >> 1][filter];
+}
+
+/** How many colours there are, of 4 bits a channel. */
+export function colours({ channels, data }) {
+  const seen = new Set();
+  for (let i = 0; i < data.length; i += channels) seen.add(((data[i] >> 4) << 8) | ((data[i + 1] >> 4) << 4) | (data[i + 2] >> 4));
+  return seen.size;
+}
+
+/** The share of pixels, 0..1, that are clearly others; 1 when the sizes differ. */
+export function difference(a, b) {
+  if (a.width !== b.width || a.height !== b.height) return 1;
+  let others = 0;
+  for (let i = 0, j = 0; i < a.data.length; i += a.channels, j += b.channels)
+    if ([0, 1, 2].some((k) => Math.abs(a.data[i + k] - b.data[j + k]) > 12)) others++;
+  return others / (a.width * a.height);
+}
+
+/** Takes a picture of a page or an element of it and keeps it as web-screenshots/NAME.png. */
+export async function shoot(what, name) {
+  const png = await what.screenshot();
+  writeFileSync(join(screenshots, `${name}.png`), png);
+  return decode(png);
+}

@@ -1,0 +1,37 @@
+// Where things are: the build tree, and Chromium.
+import { accessSync, constants, existsSync, mkdirSync } from "node:fs";
+import { createRequire } from "node:module";
+import { delimiter, join } from "node:path";
+
+/** The build tree whose host and viewer are tested. */
+export const build = process.env.SPARK_BUILD ?? new URL("../../../build/release", import.meta.url).pathname;
+export const viewer = join(build, "share/spark/viewer");
+/** Pictures are kept here, for people to look at. */
+export const screenshots = join(build, "web-screenshots");
+mkdirSync(screenshots, { recursive: true });
+
+function isProgram(path) {
+  try {
+    accessSync(path, constants.X_OK);
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+/** Chromium: what the environment's CHROMIUM names, else the first one in the PATH; undefined when there is none. */
+export const chromium = [process.env.CHROMIUM, ...(process.env.PATH ?? "").split(delimiter).map((folder) => join(folder, "chromium"))].find((path) => path && isProgram(path));
+
+/** A package that the viewer is built and tested with. */
+export function viewerPackage(name) {
+  return createRequire(join(build, "viewer/package.json"))(name);
+}
+
+/** Ends the program as skipped, with the reason, where browser tests cannot run. */
+export function skipUnlessPossible() {
+  const lacks = !existsSync(join(build, "viewer/built.stamp")) ? "the viewer is not built" : !chromium ? "chromium is not installed (Debian: chromium)" : null;
+  if (lacks) {
+    console.log(`skipped: ${lacks}`);
+    process.exit(77);
+  }
+}
