@@ -1,0 +1,100 @@
+import type { Environment, GameEvent, Side, Value } from "../model";
+import type { Entry } from "../codec/record";
+
+/// Takes entries into an environment; a full message says all there is.
+export function takeEntries(environment: Environment, entries: Entry[], full: boolean): void {
+  if (full) environment.clear();
+  for (const [name, ...values] of entries) if (!kOnce.has(name)) environment.set(name, values.length === 1 ? values[0]! : values);
+}
+
+/// Entries that say what happened, not how things are.
+const kOnce = new Set(["foul", "messages"]);
+
+/// Names of modes on the wire, by their numbers, when a message does not bring its own list.
+const kModes =
+  "BeforeKickOff KickOff_Left KickOff_Right PlayOn KickIn_Left KickIn_Right corner_kick_left corner_kick_right goal_kick_left goal_kick_right offside_left offside_right GameOver Goal_Left Goal_Right free_kick_left free_kick_right direct_free_kick_left direct_free_kick_right pass_left pass_right".split(
+    " ",
+  );
+
+const kModeWords: Record<string, string> = {
+  beforekickoff: "Before kick-off",
+  kickoff: "Kick-off",
+  playon: "Play on",
+  kickin: "Kick-in",
+  cornerkick: "Corner kick",
+  goalkick: "Goal kick",
+  offside: "Offside",
+  gameover: "Game over",
+  goal: "Goal",
+  freekick: "Free kick",
+  directfreekick: "Direct free kick",
+  pass: "Pass",
+};
+
+const kFouls = ["crowding", "touching", "illegal defence", "illegal attack", "incapable", "illegal kick-off", "charging", "self collision", "ball holding", "double touching", "hand"];
+
+/// The play mode's name on the wire; "" when it is not known.
+export function modeName(environment: Environment): string {
+  const mode = environment.get("play_mode");
+  const names = environment.get("play_modes");
+  if (typeof mode === "string") return mode;
+  return typeof mode === "number" ? String((Array.isArray(names) ? names : kModes)[mode] ?? "") : "";
+}
+
+export function modeSide(name: string): Side | undefined {
+  const side = /_(left|right)$/i.exec(name)?.[1];
+  return side === undefined ? undefined : (side.toLowerCase() as Side);
+}
+
+/// A mode in words: "Corner kick for Red".
+export function modeWords(name: string, environment: Environment): string {
+  const side = modeSide(name);
+  const plain = name.replace(/_(left|right)$/i, "");
+  const words = kModeWords[plain.replace(/_/g, "").toLowerCase()] ?? plain.replace(/_/g, " ");
+  if (side === undefined) return words;
+  return `${words} ${words === "Offside" ? "of" : "for"} ${teamName(environment, side)}`;
+}
+
+/// "Red", or "left" as long as the team has no name.
+export function teamName(environment: Environment, side: Side): string {
+  const name = environment.get(`team_${side}`);
+  return name === undefined || name === "" ? side : String(name);
+}
+
+/// Tells from one environment after the other what happened in between.
+export class EventReader {
+  private score: Record<Side, number | null> = { left: null, right: null };
+  private mode: string | null = null;
+
+  /// `environment` holds these entries already; `entries` are looked at for fouls.
+  take(environment: Environment, entries: Entry[], time: number): GameEvent[] {
+    const events: GameEvent[] = [];
+    for (const entry of entries) if (entry[0] === "foul") events.push(foul(entry, environment, time));
+    for (const side of ["left", "right"] as const) {
+      const score = environment.get(`score_${side}`);
+      if (typeof score !== "number") continue;
+      const before = this.score[side];
+      this.score[side] = score;
+      if (before !== null && score > before) events.push({ time, kind: "goal", text: `Goal for ${teamName(environment, side)}`, side });
+    }
+    const mode = modeName(environment);
+    const changed = this.mode !== null && mode !== "" && mode !== this.mode;
+    if (mode !== "") this.mode = mode;
+    // A goal tells itself by the score.
+    if (changed && !/^goal_(left|right)$/i.test(mode)) events.push(withSide({ time, kind: "mode", text: modeWords(mode, environment) }, modeSide(mode)));
+    return events;
+  }
+}
+
+/// (foul index type team number); without the index in older logs.
+function foul(entry: Entry, environment: Environment, time: number): GameEvent {
+  const values = entry.slice(entry.length > 4 ? 2 : 1) as Value[];
+  const what = kFouls[Number(values[0])] ?? "unknown";
+  const side: Side | undefined = Number(values[1]) === 1 ? "left" : Number(values[1]) === 2 ? "right" : undefined;
+  const who = side === undefined ? "" : ` of ${teamName(environment, side)} ${values[2] ?? ""}`.trimEnd();
+  return withSide({ time, kind: "foul", text: `Foul: ${what}${who}` }, side);
+}
+
+function withSide(event: GameEvent, side: Side | undefined): GameEvent {
+  return side === undefined ? event : { ...event, side };
+}

@@ -1,0 +1,279 @@
+import type { Environment, GameEvent } from "../model";
+import { RecordReader } from "../codec/record";
+import { EventReader, modeName, takeEntries } from "./events";
+
+/// The index of a recorded match, one monitor message a line, and its bytes, page by page: a log may be longer than memory.
+///
+/// Only the heads of the lines are read, which takes well under a second for 100 MB. Logs do not say when their records were made: the game's
+/// clock stands still before the kick-off and after the end, and trainers set it. The log's own clock begins at 0, and goes on by what the
+/// game's clock says as long as that is likely, and by the usual time between two records otherwise.
+
+const kSlice = 4 << 20;
+const kLongestLine = 8 << 20;
+const kPage = 1 << 20;
+const kPages = 12;
+/// Between two records, unless the log says otherwise [s].
+const kUsual = 0.2;
+/// More than so many usual times is no pause between two records.
+const kLikely = 10;
+
+export interface LogRecord {
+  /// Bytes of the line in the file, draw commands included.
+  offset: number;
+  size: number;
+  full: boolean;
+  /// Bytes of draw commands in front of the message.
+  drawings: number;
+  /// The referee lets play go on: the ball moves by itself.
+  free: boolean;
+  /// By the game's clock and by the log's own [s].
+  gameTime: number;
+  clock: number;
+  /// Lines passed over just before.
+  gap: number;
+  page: number;
+}
+
+export interface LogIndex {
+  records: LogRecord[];
+  events: GameEvent[];
+  /// Lines passed over.
+  damaged: number;
+}
+
+/// Reads through the log. Rejects with words for people when it is none.
+export async function indexLog(data: Blob, name: string, progress: (share: number) => void = () => {}): Promise<LogIndex> {
+  if (data.size === 0) throw new Error(`${name} is empty. Choose a log of a monitor, such as sparkmonitor.log.`);
+  const indexer = new Indexer(name);
+  let rest = new Uint8Array(), offset = 0;
+  for (let at = 0; at < data.size; at += kSlice) {
+    const slice = new Uint8Array(await data.slice(at, at + kSlice).arrayBuffer());
+    const bytes = joined(rest, slice);
+    const used = indexer.lines(bytes, offset, at + kSlice >= data.size);
+    rest = bytes.slice(used);
+    offset += used;
+    progress(Math.min(1, (at + kSlice) / data.size));
+  }
+  return indexer.finish();
+}
+
+function joined(a: Uint8Array, b: Uint8Array): Uint8Array<ArrayBuffer> {
+  const both = new Uint8Array(a.length + b.length);
+  both.set(a);
+  both.set(b, a.length);
+  return both;
+}
+
+class Indexer {
+  private readonly reader = new RecordReader();
+  private readonly environment: Environment = new Map();
+  private readonly eventReader = new EventReader();
+  private readonly found: { event: GameEvent; record: number }[] = [];
+  private readonly records: LogRecord[] = [];
+  private damaged = 0;
+  private gap = 0;
+  private pageStart = 0;
+  private page = 0;
+  private tooLong = false;
+  private first = "";
+
+  constructor(private readonly name: string) {}
+
+  /// Takes all whole lines; returns the bytes that were used up.
+  lines(bytes: Uint8Array, offset: number, last: boolean): number {
+    let from = 0;
+    for (;;) {
+      let end = bytes.indexOf(10, from);
+      if (end < 0 && !last) break;
+      const closed = end >= 0;
+      if (!closed) end = bytes.length;
+      if (end > from) this.line(bytes, from, end, offset, closed);
+      from = closed ? end + 1 : end;
+      if (!closed) break;
+    }
+    if (bytes.length - from <= kLongestLine) return from;
+    // No end in sight: what was read of this line is thrown away, the rest will be no record either.
+    this.passOver();
+    this.tooLong = true;
+    return bytes.length;
+  }
+
+  finish(): LogIndex {
+    const { records, name } = this;
+    if (records.length === 0) throw new Error(this.noLog(name));
+    this.setClocks();
+    const events = this.found.map(({ event, record }) => ({ ...event, time: records[record]!.clock }));
+    return { records, events, damaged: this.damaged };
+  }
+
+  private noLog(name: string): string {
+    if (/^(\x1f\x8b|BZh|PK\x03\x04)/.test(this.first)) return `${name} is packed. Unpack it first; only .gz is unpacked here.`;
+    const found = this.damaged > 0 && this.environment.size > 0 ? "only messages without a whole scene" : `“${this.first.slice(0, 40).replace(/[^\x20-\x7e]/g, "·")}”`;
+    return `${name} is no log of a monitor: expected lines like ((time 0)…)(RSG 0 1)(…), found ${found}.`;
+  }
+
+  private passOver(): void {
+    ++this.damaged;
+    ++this.gap;
+  }
+
+  private line(bytes: Uint8Array, start: number, lineEnd: number, offset: number, closed: boolean): void {
+    let end = lineEnd;
+    while (end > start && bytes[end - 1]! <= 0x20) --end;
+    let from = start;
+    while (from < end && bytes[from]! <= 0x20) ++from;
+    if (from === end) return;
+    if (this.first === "") this.first = String.fromCharCode(...bytes.subarray(from, Math.min(end, from + 60)));
+    const message = skipDrawings(bytes, from, end);
+    if (message === end) return;
+    const cut = this.tooLong;
+    this.tooLong = false;
+    if (cut || end - from > kLongestLine) return this.passOver();
+    const head = this.reader.head(bytes, message, end);
+    // The scene must be known before its changes are.
+    if (!head || (!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full)) return this.passOver();
+    takeEntries(this.environment, head.environment, head.full);
+    for (const event of this.eventReader.take(this.environment, head.environment, 0)) this.found.push({ event, record: this.records.length });
+    if (offset + from - this.pageStart >= kPage || this.records.length === 0) {
+      this.pageStart = offset + from;
+      if (this.records.length > 0) ++this.page;
+    }
+    this.records.push({
+      offset: offset + from,
+      size: end - from,
+      full: head.full,
+      drawings: message - from,
+      free: /^(playon|pass)/i.test(modeName(this.environment)),
+      gameTime: Number(this.environment.get("time") ?? NaN),
+      clock: 0,
+      gap: this.gap,
+      page: this.page,
+    });
+    this.gap = 0;
+  }
+
+  private setClocks(): void {
+    const { records } = this;
+    const usual = usualStep(records);
+    for (let k = 1; k < records.length; ++k) {
+      const record = records[k]!, before = records[k - 1]!;
+      const step = record.gameTime - before.gameTime, lines = 1 + record.gap;
+      const likely = step > 0.5 * usual && step < kLikely * usual * lines;
+      record.clock = before.clock + (likely ? step : usual * lines);
+    }
+    // Sums of tenths: as people write them.
+    for (const record of records) record.clock = Math.round(record.clock * 1000) / 1000;
+  }
+}
+
+/// The time between two records that is found most often, in milliseconds.
+function usualStep(records: LogRecord[]): number {
+  const counts = new Map<number, number>();
+  let best = 0, usual = 0;
+  for (let k = 1; k < records.length; ++k) {
+    const step = Math.round(1000 * (records[k]!.gameTime - records[k - 1]!.gameTime));
+    if (!(step > 0)) continue;
+    const count = (counts.get(step) ?? 0) + 1;
+    counts.set(step, count);
+    if (count > best) [best, usual] = [count, step];
+  }
+  return usual > 0 ? usual / 1000 : kUsual;
+}
+
+/// Some recorders write draw commands in front of a message: [1, 0, ...][...]; a message in JSON begins with two brackets.
+function skipDrawings(bytes: Uint8Array, from: number, end: number): number {
+  let at = from;
+  while (at < end && bytes[at] === 0x5b && bytes[at + 1] !== 0x5b) {
+    const close = bytes.indexOf(0x5d, at);
+    if (close < 0 || close >= end) return end;
+    at = close + 1;
+    while (at < end && (bytes[at]! <= 0x20 || bytes[at] === 0x2c)) ++at;
+  }
+  return at;
+}
+
+/// Are all lists closed? The last line of a log that was cut off is not to be trusted.
+function balanced(bytes: Uint8Array, from: number, end: number): boolean {
+  let depth = 0;
+  for (let at = from; at < end; ++at) {
+    const c = bytes[at]!;
+    if (c === 0x28 || c === 0x5b) ++depth;
+    if (c === 0x29 || c === 0x5d) --depth;
+  }
+  return depth === 0;
+}
+
+/// The log's bytes, the few pages that were wanted last.
+export class LogPages {
+  /// Page -> its bytes, in the order of their last use; null while they are on their way.
+  private readonly pages = new Map<number, Uint8Array | null>();
+  private readonly firsts: number[] = [];
+  private closed = false;
+  /// Why the file cannot be read any more.
+  error: string | null = null;
+  /// Called when a page arrived, or could not.
+  onpage: (() => void) | null = null;
+
+  constructor(
+    private readonly data: Blob,
+    private readonly records: LogRecord[],
+  ) {
+    records.forEach((record, k) => (this.firsts[record.page] ??= k));
+  }
+
+  /// The page that holds the record; null: it was asked for, and is not there yet.
+  page(record: LogRecord): Uint8Array | null {
+    const bytes = this.pages.get(record.page);
+    if (bytes) {
+      this.pages.delete(record.page);
+      this.pages.set(record.page, bytes);
+      return bytes;
+    }
+    if (bytes === undefined) void this.load(record.page);
+    return null;
+  }
+
+  /// Where the page begins in the file.
+  start(page: number): number {
+    return this.records[this.firsts[page]!]!.offset;
+  }
+
+  get pageCount(): number {
+    return this.firsts.length;
+  }
+
+  /// Asks for a page that will be wanted soon.
+  foresee(page: number): void {
+    if (page >= 0 && page < this.firsts.length && !this.pages.has(page)) void this.load(page);
+  }
+
+  close(): void {
+    this.closed = true;
+    this.pages.clear();
+    this.onpage = null;
+  }
+
+  private async load(page: number): Promise<void> {
+    if (this.closed || this.error) return;
+    this.pages.set(page, null);
+    const next = this.firsts[page + 1];
+    const last = this.records[(next ?? this.records.length) - 1]!;
+    try {
+      const bytes = new Uint8Array(await this.data.slice(this.start(page), last.offset + last.size).arrayBuffer());
+      if (this.closed) return;
+      this.pages.set(page, bytes);
+      this.forget();
+    } catch (error) {
+      this.pages.delete(page);
+      this.error = `The log cannot be read any more: ${error instanceof Error ? error.message : String(error)}`;
+    }
+    this.onpage?.();
+  }
+
+  private forget(): void {
+    for (const [page, bytes] of this.pages) {
+      if (this.pages.size <= kPages) return;
+      if (bytes) this.pages.delete(page);
+    }
+  }
+}

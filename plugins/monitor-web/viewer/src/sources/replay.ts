@@ -1,0 +1,293 @@
+import type { Environment, GameEvent, ReplaySource, World } from "../model";
+import { RecordReader } from "../codec/record";
+import { Blend } from "./blend";
+import { takeEntries } from "./events";
+import { type LogIndex, LogPages, type LogRecord } from "./log";
+import { Poses } from "./poses";
+import { kNoScene, makeScene, sameNodes, type Scene } from "./scene";
+import { addShapes } from "./shapes";
+import { emptyWorld, showScene } from "./world";
+
+/// A recorded match. Time runs on the log's own clock. The world is shown between two records; they are decoded when they are wanted: from the
+/// last one that was, from the full record before, or from a snapshot on the way, whichever is nearest.
+
+/// Decoding never takes longer than this at a time [ms]: a leap over many records is made in several pictures.
+const kBudget = 10;
+/// Snapshots stand so many records apart, where no full record is so near.
+const kSnapshots = 64;
+/// A picture that comes later than this [ms] does not make time run faster.
+const kLongestPicture = 250;
+
+/// The log at one record.
+class Moment {
+  index = -1;
+  scene: Scene = kNoScene;
+  poses = new Poses();
+  environment: Environment = new Map();
+
+  copy(other: Moment): void {
+    this.index = other.index;
+    this.scene = other.scene;
+    this.poses.copy(other.poses);
+    this.environment = other.environment;
+  }
+}
+
+export class Replay implements ReplaySource {
+  readonly kind = "replay";
+  readonly world: World = emptyWorld();
+  readonly timeline: GameEvent[];
+  readonly start: number;
+  readonly end: number;
+  onchange: (() => void) | null = null;
+
+  private readonly pages: LogPages;
+  private readonly records: LogRecord[];
+  private readonly reader = new RecordReader();
+  private readonly blend = new Blend();
+  private readonly snapshots = new Map<number, Moment>();
+  /// Shown between these two; the second one is the first one's successor, or the same at the end.
+  private from = new Moment();
+  private to = new Moment();
+  /// The record that `blend` was prepared for, and the last share of the way that was written.
+  private prepared = -1;
+  private shownShare = -1;
+  private shownTime = NaN;
+  private shownEvents = 0;
+  private position: number;
+  private running = false;
+  private rate = 1;
+  private last = NaN;
+  private late = true;
+  private passedOver: number;
+  private readonly bad = new Set<number>();
+  /// `to` is no neighbour of the record that is decoded next.
+  private leaping = true;
+
+  constructor(
+    readonly name: string,
+    data: Blob,
+    index: LogIndex,
+  ) {
+    this.records = index.records;
+    this.timeline = index.events;
+    this.passedOver = index.damaged;
+    this.start = this.position = this.records[0]!.clock;
+    this.end = this.records[this.records.length - 1]!.clock;
+    this.pages = new LogPages(data, this.records);
+  }
+
+  /// Lines of the log that are damaged, as far as is known.
+  get damaged(): number {
+    return this.passedOver;
+  }
+
+  /// True while what is wanted is not shown yet.
+  get busy(): boolean {
+    return this.late && !this.pages.error;
+  }
+
+  /// Why the log cannot be read any more, or null.
+  get error(): string | null {
+    return this.pages.error;
+  }
+
+  get playing(): boolean {
+    return this.running;
+  }
+
+  set playing(on: boolean) {
+    if (on && this.position >= this.end) this.seek(this.start);
+    this.running = on;
+  }
+
+  get speed(): number {
+    return this.rate;
+  }
+
+  set speed(speed: number) {
+    if (speed > 0) this.rate = Math.min(10, Math.max(0.1, speed));
+  }
+
+  seek(time: number): void {
+    if (!Number.isNaN(time)) this.position = Math.min(this.end, Math.max(this.start, time));
+    this.late = true;
+  }
+
+  step(direction: 1 | -1): void {
+    this.running = false;
+    const here = this.recordAt(this.position);
+    const between = this.position > this.records[here]!.clock;
+    const wanted = here + (direction < 0 && between ? 0 : direction);
+    this.seek(this.records[Math.min(this.records.length - 1, Math.max(0, wanted))]!.clock);
+  }
+
+  update(now: number): void {
+    const passed = Number.isNaN(this.last) ? 0 : Math.min(kLongestPicture, Math.max(0, now - this.last));
+    this.last = now;
+    if (this.running && !this.late) {
+      this.position = Math.min(this.end, this.position + (passed / 1000) * this.rate);
+      if (this.position >= this.end) this.running = false;
+    }
+    const record = this.recordAt(this.position);
+    this.late = !this.reach(record);
+    if (!this.late) this.show(record);
+  }
+
+  close(): void {
+    this.running = false;
+    this.pages.close();
+    this.snapshots.clear();
+  }
+
+  /// Resolves when what is wanted is shown, or cannot be.
+  async settled(): Promise<void> {
+    for (;;) {
+      this.update(this.last);
+      if (!this.busy) return;
+      await new Promise((resolve) => setTimeout(resolve, 0));
+    }
+  }
+
+  private recordAt(time: number): number {
+    const { records } = this;
+    let low = 0, high = records.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (records[middle]!.clock <= time) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  /// Decodes until `from` is this record and `to` the next one. False: it goes on in the next picture.
+  private reach(record: number): boolean {
+    const next = Math.min(record + 1, this.records.length - 1);
+    if (this.from.index === record && this.to.index === next) return true;
+    const began = performance.now();
+    if (this.to.index > record || this.nearest(record) > this.to.index) this.begin(record);
+    while (this.to.index < next) {
+      if (!this.advance(record)) return false;
+      if (this.to.index < record && performance.now() - began > kBudget) return false;
+    }
+    // Both at the end, or on the only record.
+    if (this.to.index === record) this.from.copy(this.to);
+    this.prepared = -1;
+    return this.from.index === record;
+  }
+
+  /// The latest record up to this one from which decoding may begin.
+  private nearest(record: number): number {
+    for (let k = record; k > 0; --k) if ((this.records[k]!.full && !this.bad.has(k)) || this.snapshots.has(k)) return k;
+    return 0;
+  }
+
+  private begin(record: number): void {
+    const nearest = this.nearest(record);
+    const snapshot = this.snapshots.get(nearest);
+    this.prepared = -1;
+    this.from.index = -1;
+    this.leaping = !snapshot;
+    if (snapshot) this.to.copy(snapshot);
+    // The scene stays: most full records bring the same one again.
+    else this.to.index = nearest - 1;
+  }
+
+  /// Decodes the record behind `to`, which becomes `from`, on the way to the wanted one. False: its bytes are not there yet.
+  private advance(wanted: number): boolean {
+    const index = this.to.index + 1, record = this.records[index]!;
+    const page = this.pages.page(record);
+    if (!page) return false;
+    this.pages.foresee(record.page + 1);
+    const moment = this.from;
+    this.from = this.to;
+    this.to = moment;
+    moment.copy(this.from);
+    moment.index = index;
+    const sound = this.decode(page, record, moment);
+    if (!sound) this.passOver(index, moment);
+    const lost = this.leaping && !sound;
+    this.leaping = false;
+    if (lost && index > 0) this.begin(wanted);
+    if (!lost && index % kSnapshots === 0 && !record.full && !this.snapshots.has(index)) this.keep(moment);
+    return true;
+  }
+
+  private decode(page: Uint8Array, record: LogRecord, moment: Moment): boolean {
+    const at = record.offset - this.pages.start(record.page);
+    const head = this.reader.head(page, at + record.drawings, at + record.size);
+    if (!head) return false;
+    if (head.full) {
+      const scene = this.reader.nodes();
+      if (!scene) return false;
+      if (!sameNodes(moment.scene.nodes, scene.nodes)) {
+        addShapes(scene.nodes, scene.poses);
+        moment.scene = makeScene(scene.nodes);
+      }
+      moment.poses.copy(scene.poses);
+    } else if (!this.reader.patch(moment.scene.nodes, moment.poses)) {
+      return false;
+    }
+    const environment: Environment = head.full ? new Map() : new Map(moment.environment);
+    takeEntries(environment, head.environment, head.full);
+    moment.environment = environment;
+    return true;
+  }
+
+  /// A damaged record shows what was there before.
+  private passOver(index: number, moment: Moment): void {
+    if (!this.bad.has(index)) ++this.passedOver;
+    this.bad.add(index);
+    moment.copy(this.from);
+    moment.index = index;
+    this.onchange?.();
+  }
+
+  private keep(moment: Moment): void {
+    const snapshot = new Moment();
+    snapshot.copy(moment);
+    this.snapshots.set(moment.index, snapshot);
+  }
+
+  private show(record: number): void {
+    const { world, from, to, records } = this;
+    const begin = records[record]!, end = records[Math.min(record + 1, records.length - 1)]!;
+    const seconds = end.clock - begin.clock;
+    if (this.prepared !== record) {
+      showScene(world, from.scene);
+      const comparable = from.scene === to.scene ? seconds : 0;
+      this.blend.prepare(from.scene, from.poses, to.poses, comparable, begin.free && end.free, world.local);
+      this.showVisibility(from);
+      this.showEvents(begin.clock);
+      if (world.environment !== from.environment) {
+        world.environment = from.environment;
+        ++world.versions.environment;
+      }
+      this.prepared = record;
+      this.shownShare = 0;
+      ++world.versions.frame;
+    }
+    const share = seconds > 0 ? Math.min(1, Math.max(0, (this.position - begin.clock) / seconds)) : 0;
+    if (share !== this.shownShare) {
+      this.shownShare = share;
+      this.blend.write(share, world.local);
+      ++world.versions.frame;
+    }
+    world.time = this.position;
+  }
+
+  private showVisibility(moment: Moment): void {
+    const { nodes } = moment.scene;
+    for (let i = 0; i < nodes.length; ++i) if (nodes[i]!.kind === "mesh") nodes[i]!.visible = moment.poses.visible[i] === 1;
+  }
+
+  private showEvents(clock: number): void {
+    let count = this.shownTime <= clock ? this.shownEvents : 0;
+    while (count < this.timeline.length && this.timeline[count]!.time <= clock) ++count;
+    this.shownTime = clock;
+    if (count === this.shownEvents) return;
+    this.shownEvents = count;
+    this.world.events = this.timeline.slice(0, count);
+    ++this.world.versions.events;
+  }
+}

@@ -1,0 +1,114 @@
+import type { Robot, SceneNode, Side } from "../model";
+
+/// What a list of nodes means: robots, ball, and what belongs together.
+export interface Scene {
+  nodes: SceneNode[];
+  robots: Robot[];
+  ball: number;
+  /// For each node the topmost node above it (itself at the top): a robot's parts share one.
+  top: Int32Array;
+  /// Indices of the transforms, ascending.
+  transforms: Int32Array;
+}
+
+export const kNoScene: Scene = { nodes: [], robots: [], ball: -1, top: new Int32Array(), transforms: new Int32Array() };
+
+export function makeScene(nodes: SceneNode[]): Scene {
+  const top = new Int32Array(nodes.length);
+  nodes.forEach((node, i) => (top[i] = node.parent < 0 ? i : top[node.parent]!));
+  const transforms = Int32Array.from(nodes.keys()).filter((i) => nodes[i]!.kind === "transform");
+  return { nodes, robots: findRobots(nodes, top), ball: findBall(nodes), top, transforms };
+}
+
+/// Would both look alike? Visibility aside, which changes from frame to frame.
+export function sameNodes(a: SceneNode[], b: SceneNode[]): boolean {
+  return a.length === b.length && a.every((node, i) => sameNode(node, b[i]!));
+}
+
+function sameNode(a: SceneNode, b: SceneNode): boolean {
+  return (
+    a.kind === b.kind && a.parent === b.parent && a.load === b.load && a.transparent === b.transparent && a.path === b.path && sameList(a.scale, b.scale) && sameList(a.materials, b.materials)
+  );
+}
+
+function sameList<T>(a: T[] | undefined, b: T[] | undefined): boolean {
+  if (!a || !b) return a === b;
+  return a.length === b.length && a.every((value, i) => value === b[i]);
+}
+
+function findBall(nodes: SceneNode[]): number {
+  const mesh = nodes.find((n) => n.kind === "mesh" && /(^|\/)soccerball[^/]*\.obj$/.test(n.load ?? ""));
+  return mesh ? mesh.parent : -1;
+}
+
+/// Monitors know robots by materials alone: matLeft or matRight (matTeam before they joined one), with matNum3 or matLeft3 for the number.
+const kSide = /^mat(Left|Right)(\d*)$/;
+const kNumber = /^matNum(\d+)$/;
+const kBody = /(^|\/)[^/]*body[^/]*\.obj$/;
+const kHead = /(^|\/)[^/]*head[^/]*\.obj$/;
+
+interface Found {
+  side: Side | null;
+  number: number;
+  node: number;
+  torso: number;
+  head: number;
+}
+
+function findRobots(nodes: SceneNode[], top: Int32Array): Robot[] {
+  const found = new Map<number, Found>();
+  nodes.forEach((node, i) => {
+    if (node.kind !== "mesh" || !node.materials) return;
+    const team = node.materials.some((m) => m === "matTeam" || kSide.test(m));
+    const robot = found.get(top[i]!) ?? (team ? { side: null, number: 0, node: top[i]!, torso: -1, head: -1 } : undefined);
+    if (!robot) return;
+    found.set(robot.node, robot);
+    node.materials.forEach((material) => readMaterial(robot, material));
+    if (robot.torso < 0 && kBody.test(node.load ?? "")) robot.torso = bearer(nodes, node);
+    if (robot.head < 0 && kHead.test(node.load ?? "")) robot.head = bearer(nodes, node);
+  });
+  for (const robot of found.values()) if (robot.torso < 0) robot.torso = firstBearer(nodes, top, robot.node);
+  return named(nodes, [...found.values()]);
+}
+
+function readMaterial(robot: Found, material: string): void {
+  const side = kSide.exec(material), number = kNumber.exec(material);
+  if (side) robot.side = side[1] === "Left" ? "left" : "right";
+  if (side?.[2] || number) robot.number = Number(number?.[1] ?? side?.[2]);
+}
+
+/// The transform that carries a robot's part: meshes of bodies and heads hang below one that turns only them.
+export function bearer(nodes: SceneNode[], mesh: SceneNode): number {
+  const own = mesh.parent, above = own < 0 ? -1 : nodes[own]!.parent;
+  if (own < 0 || above < 0 || nodes[above]!.kind !== "transform") return own;
+  // The part's transform has other children or is no child of a mere group.
+  return nodes[above]!.parent >= 0 ? above : own;
+}
+
+/// Spheres and the like: the first transform that carries a mesh in team colours.
+function firstBearer(nodes: SceneNode[], top: Int32Array, group: number): number {
+  const mesh = nodes.find((n, i) => top[i] === group && n.kind === "mesh" && n.materials?.some((m) => m === "matTeam" || kSide.test(m)));
+  return mesh && mesh.parent >= 0 ? mesh.parent : group;
+}
+
+/// Spheres wear no numbers: they get the lowest free ones in their order.
+function named(nodes: SceneNode[], found: Found[]): Robot[] {
+  const used = new Set<string>();
+  const take = (robot: Found): string => {
+    let key = robot.side ? `${robot.side}:${robot.number}` : `?:${robot.node}`;
+    if (used.has(key)) key += `:${robot.node}`;
+    used.add(key);
+    return key;
+  };
+  const keys = new Map(found.filter((r) => r.number > 0).map((r) => [r, take(r)]));
+  for (const robot of found) {
+    if (keys.has(robot)) continue;
+    if (robot.side) for (robot.number = 1; used.has(`${robot.side}:${robot.number}`); ++robot.number);
+    keys.set(robot, take(robot));
+  }
+  return found.map((r) => {
+    const path = nodes[r.node]!.path;
+    const robot: Robot = { key: keys.get(r)!, side: r.side, number: r.number, node: r.node, torso: r.torso, head: r.head < 0 ? r.torso : r.head };
+    return path === undefined ? robot : { ...robot, path };
+  });
+}
