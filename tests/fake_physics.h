@@ -24,6 +24,7 @@ class FakeBody : public SceneNode, public IRigidBody {
   void setAngularVelocity(const Vec3& w) override { now.angularVelocity = w; }
   void addForce(const Vec3& f) override { force += f; }
   void addTorque(const Vec3&) override {}
+  void addDrag(double linear, double) override { force -= linear * now.linearVelocity; }
   bool enabled() const override { return awake; }
   void enable() override { awake = true; }
   Transform* bodyTransform() const override { return transform(); }
@@ -55,6 +56,13 @@ class FakeJoint : public SceneNode, public IJoint {
     return p == engine::JointParameter::lowStop ? -HUGE_VAL : p == engine::JointParameter::highStop ? HUGE_VAL : 0.0;
   }
   void setParameter(engine::JointParameter p, int axis, double v) override { parameters[{p, axis}] = v; }
+  void drive(int axis, double speed) override {
+    setParameter(engine::JointParameter::velocity, axis, speed);
+    if (bodies[0] && speed != 0) bodies[0]->enable();
+  }
+  bool atStop(int axis) const override {
+    return angles[axis] <= parameter(engine::JointParameter::lowStop, axis) || angles[axis] >= parameter(engine::JointParameter::highStop, axis);
+  }
   double maxSpeed(int axis) const override { return maxSpeeds[axis]; }
   double feedbackTorque() const override { return torque; }
   double velocity(int axis) const { return parameter(engine::JointParameter::velocity, axis); }

@@ -98,14 +98,16 @@ class IEngine {
   virtual void destroyBody(Body) = 0;
   virtual void setMass(Body, const Mass&) = 0;
   virtual BodyState state(Body) const = 0;
-  /// As state, for many: no call per body.
-  virtual void states(std::span<const Body>, std::span<BodyState>) const = 0;
+  /// For many, without a call per body: 1 for each that is awake, else 0; and where those stand, as state() says. `out` of others stays as it is.
+  virtual void posesOfAwake(std::span<const Body>, std::span<std::uint8_t> awake, std::span<Matrix> out) const = 0;
   virtual void setPosition(Body, const Vec3&) = 0;
   virtual void setRotation(Body, const Mat3&) = 0;
   virtual void setLinearVelocity(Body, const Vec3&) = 0;
   virtual void setAngularVelocity(Body, const Vec3&) = 0;
   virtual void addForce(Body, const Vec3&) = 0;   ///< world frame, at the centre of mass, for the next step
   virtual void addTorque(Body, const Vec3&) = 0;  ///< world frame
+  /// Adds the force -linear v and the torque -angular w of its speeds [N s/m, N m s]; nothing while it sleeps.
+  virtual void addDrag(Body, double linear, double angular) = 0;
   virtual Vec3 force(Body) const = 0;             ///< accumulated so far
   virtual Vec3 torque(Body) const = 0;
   virtual void setForce(Body, const Vec3&) = 0;
@@ -142,6 +144,10 @@ class IEngine {
   virtual Vec3 axis(Joint, int axis) const = 0;
   virtual void setParameter(Joint, JointParameter, int axis, double v) = 0;
   virtual double parameter(Joint, JointParameter, int axis) const = 0;
+  /// Sets JointParameter::velocity; the first body that attach() was given wakes when the speed is not 0.
+  virtual void drive(Joint, int axis, double speed) = 0;
+  /// The axis is at one of its stops or beyond.
+  virtual bool atStop(Joint, int axis) const = 0;
   virtual double angle(Joint, int axis) const = 0;      ///< rad; slider: m
   virtual double angleRate(Joint, int axis) const = 0;  ///< rad/s; slider: m/s
   virtual void setFeedback(Joint, bool on) = 0;

@@ -29,6 +29,8 @@ class IRigidBody {
   virtual void addForce(const Vec3& f) = 0;
   /// Nm, likewise.
   virtual void addTorque(const Vec3& t) = 0;
+  /// Force -linear v and torque -angular w for the next step, of its speeds now [N s/m, N m s]; nothing while it sleeps.
+  virtual void addDrag(double linear, double angular) = 0;
   /// False while it sleeps: nothing moved it for a while, and the solver leaves it out.
   virtual bool enabled() const = 0;
   /// Wakes it.
@@ -50,6 +52,10 @@ class IJoint {
   virtual double angleRate(int axis) const = 0;  ///< rad/s; slider m/s
   virtual double parameter(engine::JointParameter p, int axis) const = 0;
   virtual void setParameter(engine::JointParameter p, int axis, double v) = 0;
+  /// Sets the motor's speed [rad/s; slider m/s]; the child link wakes when it is to move.
+  virtual void drive(int axis, double speed) = 0;
+  /// The axis is at its least or greatest angle, or beyond.
+  virtual bool atStop(int axis) const = 0;
   /// rad/s; 0 when unlimited. Clamps effector commands only.
   virtual double maxSpeed(int axis) const = 0;
   /// Sum of the torque's magnitudes on both bodies in the last step [Nm]; 0 without feedback.

@@ -22,13 +22,13 @@ struct SolverBody {
   double* spin = nullptr;        ///< rad/s, world frame
   double* force = nullptr;       ///< N, world frame, accumulated for this step; the solver clears it
   double* torque = nullptr;      ///< Nm, world frame; the solver clears it
-  double mass = 1;               ///< kg
-  Mat3 inertia = Mat3::Identity(), inverseInertia = Mat3::Identity();  ///< kg m^2 and its inverse, body frame
   bool gravity = true;           ///< the world's gravity acts
   bool gyroscopic = true;        ///< gyroscopic torque acts, by the implicit formula
   bool awake = true;             ///< in: is stepped, and so is all that hangs on it; out: true for all bodies that were stepped
   bool left = false;             ///< out: its island was left to the engine, nothing of it is changed
   std::uint32_t index = 0;       ///< its place in SolverStep::bodies
+  double mass = 1;               ///< kg
+  Mat3 inertia = Mat3::Identity(), inverseInertia = Mat3::Identity();  ///< kg m^2 and its inverse, body frame
 };
 
 /// Motor and stops of one axis of a joint (JointParameter).
@@ -45,6 +45,7 @@ struct SolverJoint {
   SolverBody* a = nullptr;
   SolverBody* b = nullptr;
   bool reversed = false;  ///< was given only a second body, which stands first here: a slider without b and an Euler motor count the other way round
+  std::array<SolverAxis, 3> axes;
   /// The points that meet, in a and in b. fixed: b's centre as it was set in a, and 0; without b 0 and a's place. slider: anchorB alone
   /// counts: a's centre as it was set in b, or a's place without b.
   Vec3 anchorA = Vec3::Zero(), anchorB = Vec3::Zero();
@@ -52,7 +53,6 @@ struct SolverJoint {
   std::array<double, 4> relativeA{1, 0, 0, 0}, relativeB{1, 0, 0, 0};  ///< rotations between the bodies when the joint was set (w x y z); universal has one for each axis
   Vec3 v1 = Vec3::Zero(), v2 = Vec3::Zero(), w1 = Vec3::Zero(), w2 = Vec3::Zero();  ///< hinge2: reference directions for its angles
   double c0 = 0, s0 = 0;                          ///< hinge2: cosine and sine between its axes
-  std::array<SolverAxis, 3> axes;
   double erp = 0.2, cfm = 1e-5;                   ///< of rows that are neither motor nor stop
   double suspensionErp = 0, suspensionCfm = 0;    ///< hinge2
   int motorAxes = 0;                              ///< angular motor: how many

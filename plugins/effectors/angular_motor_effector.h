@@ -19,11 +19,11 @@ class AngularMotorEffector : public Effector {
     double speed = 0;
     if (std::string wrong = readNumber(action, 0, speed); !wrong.empty()) return wrong;
     if (disabled_ && disabled_->get(motor_->leaf()).toBool()) {
-      drive(*motor_, 0, 0);
+      motor_->drive(0, 0);
       return {};
     }
     speed = clampSpeed(*motor_, 0, speed);
-    drive(*motor_, 0, hinge_ ? clampSpeed(*hinge_, 0, speed) : speed);
+    motor_->drive(0, hinge_ ? clampSpeed(*hinge_, 0, speed) : speed);
     return {};
   }
 

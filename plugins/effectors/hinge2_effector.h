@@ -13,7 +13,7 @@ class Hinge2Effector : public Effector {
     if (!joint_) return "there is no Hinge2Joint above it";
     double speedDeg = 0;
     if (std::string wrong = readNumber(action, 0, speedDeg); !wrong.empty()) return wrong;
-    drive(*joint_, 1, degToRad(speedDeg));
+    joint_->drive(1, degToRad(speedDeg));
     return {};
   }
 

@@ -20,8 +20,8 @@ class HingeEffector : public Effector, public IFreezable {
     if (!joint_) return "there is no HingeJoint above it";
     double speed = 0;
     if (std::string wrong = readNumber(action, 0, speed); !wrong.empty()) return wrong;
-    if (ignoreCommandAtStop_ && atStop()) return {};
-    drive(*joint_, 0, frozen_ ? 0 : clampSpeed(*joint_, 0, speed));
+    if (ignoreCommandAtStop_ && joint_->atStop(0)) return {};
+    joint_->drive(0, frozen_ ? 0 : clampSpeed(*joint_, 0, speed));
     return {};
   }
   Leaf& leaf() override { return *this; }
@@ -38,10 +38,6 @@ class HingeEffector : public Effector, public IFreezable {
   }
 
  private:
-  bool atStop() const {
-    const double angle = joint_->angle(0);
-    return angle <= joint_->parameter(engine::JointParameter::lowStop, 0) || angle >= joint_->parameter(engine::JointParameter::highStop, 0);
-  }
   IJoint* joint_ = nullptr;
   bool ignoreCommandAtStop_ = true, frozen_ = false;
 };

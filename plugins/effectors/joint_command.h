@@ -36,10 +36,4 @@ inline double clampSpeed(const IJoint& joint, int axis, double speed) {
   return most > 0 ? std::clamp(speed, -most, most) : speed;
 }
 
-/// Sets the motor's speed [rad/s] and wakes the child link when it is to move.
-inline void drive(IJoint& joint, int axis, double speed) {
-  joint.setParameter(engine::JointParameter::velocity, axis, speed);
-  if (IRigidBody* body = joint.body(0); body && speed != 0 && !body->enabled()) body->enable();
-}
-
 }  // namespace spark

@@ -16,7 +16,7 @@ class UniversalJointEffector : public Effector {
     double speed[2] = {0, 0};
     for (int axis = 0; axis < 2; ++axis)
       if (std::string wrong = readNumber(action, axis, speed[axis]); !wrong.empty()) return wrong;
-    for (int axis = 0; axis < 2; ++axis) drive(*joint_, axis, clampSpeed(*joint_, axis, speed[axis]));
+    for (int axis = 0; axis < 2; ++axis) joint_->drive(axis, clampSpeed(*joint_, axis, speed[axis]));
     return {};
   }
 

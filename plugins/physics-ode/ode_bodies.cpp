@@ -80,8 +80,18 @@ engine::BodyState OdeEngine::state(Body body) const {
   return {crossing(w, toVec(b.position)), crossing(w, toVec(b.velocity)), crossing(w, toVec(b.spin)), crossing(w, toMat(b.rotation))};
 }
 
-void OdeEngine::states(std::span<const Body> bodies, std::span<engine::BodyState> out) const {
-  for (std::size_t i = 0; i < bodies.size(); ++i) out[i] = OdeEngine::state(bodies[i]);
+void OdeEngine::posesOfAwake(std::span<const Body> bodies, std::span<std::uint8_t> awake, std::span<Matrix> out) const {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyData& b = *data(bodies[i]);
+    awake[i] = b.awake;
+    if (!b.awake) continue;
+    const dReal *r = b.rotation, *p = b.position;
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) out[i](row, column) = static_cast<float>(r[4 * row + column]);
+      out[i](row, 3) = static_cast<float>(p[row]);
+    }
+    out[i].row(3) << 0, 0, 0, 1;
+  }
 }
 
 void OdeEngine::setPosition(Body body, const Vec3& wanted) {
@@ -147,6 +157,13 @@ void OdeEngine::addTorque(Body body, const Vec3& wanted) {
   const BodyData& b = *data(body);
   const Vec3 t = crossing(*b.world, bounded(wanted));
   for (int i = 0; i < 3; ++i) b.torque[i] += t[i];
+}
+
+void OdeEngine::addDrag(Body body, double linear, double angular) {
+  const BodyData& b = *data(body);
+  if (!b.awake) return;
+  OdeEngine::addForce(body, crossing(*b.world, toVec(b.velocity)) * -linear);
+  OdeEngine::addTorque(body, crossing(*b.world, toVec(b.spin)) * -angular);
 }
 
 Vec3 OdeEngine::force(Body body) const { return toVec(dBodyGetForce(data(body)->id)); }

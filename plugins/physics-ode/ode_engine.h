@@ -37,21 +37,27 @@ namespace ode {
 
 struct WorldData;
 
+inline constexpr std::size_t kCacheLine = 64;  // bytes
+
 /// Position and quaternion of a body, as ODE keeps them.
 struct GoodPose {
   dReal position[3], quaternion[4];
 };
 
-/// What a solver sees of a body leads into ODE's memory. `awake` is what ODE says, `left` is true where no solver steps.
-struct BodyData : engine::SolverBody {
+/// Of a body: what every step looks at. It stands before what a solver sees of it, whose first part every step looks at too.
+struct BodyBasics {
   dBodyID id;
   WorldData* world;
   int joints = 0;               ///< joints attached, contacts not counted
-  std::uint64_t touchedAt = 0;  ///< number of the step in which it last had a contact
-  int staticRows = 0;           ///< rows of its contacts with the static world in that step
   int stepsLeft;                ///< idle steps until it sleeps
   double timeLeft = 0;          ///< idle time until it sleeps [s]
+  std::uint64_t touchedAt = 0;  ///< number of the step in which it last had a contact
+};
+
+/// What a solver sees of a body leads into ODE's memory. `awake` is what ODE says, `left` is true where no solver steps.
+struct alignas(kCacheLine) BodyData : BodyBasics, engine::SolverBody {
   GoodPose good;
+  int staticRows = 0;          ///< rows of its contacts with the static world in that step
   std::uint64_t foundAt = 0;   ///< number of the step in which it was last found to be part of an awake island
   BodyData* island = nullptr;  ///< while islands are counted: the next body towards the island's first
   int rows = 0;                ///< at an island's first body: constraint rows of the island
@@ -78,14 +84,18 @@ struct GeomData {
   dTriMeshDataID mesh = nullptr;
 };
 
-/// What a solver sees of a joint says the same as ODE's own; see ode_frames.cpp. With `reversed`, `a` is the body that was given second.
-struct JointData : engine::SolverJoint {
+/// Of a joint: what every step looks at.
+struct JointBasics {
   dJointID id;
   WorldData* world;
   /// A hinge's angle, as ODE tells it, and the state of the world's rotations for which it was asked last: effectors and sensors want the
   /// same number. Sensors ask in several threads.
   mutable std::atomic<double> lastAngle = 0;
   mutable std::atomic<std::uint64_t> angleAt = 0;
+};
+
+/// What a solver sees of a joint says the same as ODE's own; see ode_frames.cpp. With `reversed`, `a` is the body that was given second.
+struct alignas(kCacheLine) JointData : JointBasics, engine::SolverJoint {
   dJointFeedback feedback{};
   bool attached() const { return a != nullptr; }
 };
@@ -258,13 +268,14 @@ class OdeEngine : public Node, public engine::IEngine {
   void destroyBody(engine::Body body) override;
   void setMass(engine::Body body, const engine::Mass& mass) override;
   engine::BodyState state(engine::Body body) const override;
-  void states(std::span<const engine::Body> bodies, std::span<engine::BodyState> out) const override;
+  void posesOfAwake(std::span<const engine::Body> bodies, std::span<std::uint8_t> awake, std::span<Matrix> out) const override;
   void setPosition(engine::Body body, const Vec3& p) override;
   void setRotation(engine::Body body, const Mat3& r) override;
   void setLinearVelocity(engine::Body body, const Vec3& v) override;
   void setAngularVelocity(engine::Body body, const Vec3& w) override;
   void addForce(engine::Body body, const Vec3& f) override;
   void addTorque(engine::Body body, const Vec3& t) override;
+  void addDrag(engine::Body body, double linear, double angular) override;
   Vec3 force(engine::Body body) const override;
   Vec3 torque(engine::Body body) const override;
   void setForce(engine::Body body, const Vec3& f) override;
@@ -295,6 +306,8 @@ class OdeEngine : public Node, public engine::IEngine {
   Vec3 axis(engine::Joint joint, int axis) const override;
   void setParameter(engine::Joint joint, engine::JointParameter p, int axis, double v) override;
   double parameter(engine::Joint joint, engine::JointParameter p, int axis) const override;
+  void drive(engine::Joint joint, int axis, double speed) override;
+  bool atStop(engine::Joint joint, int axis) const override;
   double angle(engine::Joint joint, int axis) const override;
   double angleRate(engine::Joint joint, int axis) const override;
   void setFeedback(engine::Joint joint, bool on) override;

@@ -54,6 +54,21 @@ Vec3 motorAxis(const JointData& j, int axis) {
   return toVec(v);
 }
 
+void tell(const JointData& j, int name, double v) {
+  switch (j.type) {
+    case JointType::hinge:
+      return dJointSetHingeParam(j.id, name, v);
+    case JointType::slider:
+      return dJointSetSliderParam(j.id, name, v);
+    case JointType::universal:
+      return dJointSetUniversalParam(j.id, name, v);
+    case JointType::hinge2:
+      return dJointSetHinge2Param(j.id, name, v);
+    default:
+      return dJointSetAMotorParam(j.id, name, v);
+  }
+}
+
 /// What ODE says of a parameter.
 double asked(const JointData& j, int name) {
   switch (j.type) {
@@ -95,8 +110,7 @@ void OdeEngine::tellAngles(WorldData& w) {
   const std::size_t n = w.joints.size();
   for (std::size_t i = 0; i < n; ++i) {
     if (i + kFar < n) {
-      const JointData& far = *w.joints[i + kFar];
-      for (const void* part : {static_cast<const void*>(&far), static_cast<const void*>(&far.axes), static_cast<const void*>(&far.id)}) prefetch(part, 1);
+      prefetch(w.joints[i + kFar].get(), kCacheLine);
     }
     if (i + kNear < n) prefetch(w.joints[i + kNear]->id, kHinge);
     const JointData& j = *w.joints[i];
@@ -313,25 +327,27 @@ void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double wan
   const bool nowhere = std::isinf(wanted) && (p == JointParameter::lowStop || p == JointParameter::highStop);  // there is no such stop
   const double v = crossing(*j.world, nowhere ? wanted : bounded(wanted));
   const int name = odeParameter(p, axis);
-  switch (j.type) {
-    case JointType::hinge:
-      dJointSetHingeParam(j.id, name, v);
-      break;
-    case JointType::slider:
-      dJointSetSliderParam(j.id, name, v);
-      break;
-    case JointType::universal:
-      dJointSetUniversalParam(j.id, name, v);
-      break;
-    case JointType::hinge2:
-      dJointSetHinge2Param(j.id, name, v);
-      break;
-    default:
-      dJointSetAMotorParam(j.id, name, v);
-      break;
-  }
+  tell(j, name, v);
   // ODE does not take every number.
   told(j, p, axis) = asked(j, name);
+}
+
+void OdeEngine::drive(Joint joint, int axis, double speed) {
+  JointData& j = *data(joint);
+  if (!hasParameter(j, JointParameter::velocity, axis) || std::isnan(speed)) return;
+  const double v = crossing(*j.world, bounded(speed));
+  tell(j, odeParameter(JointParameter::velocity, axis), v);
+  j.axes[static_cast<std::size_t>(axis)].velocity = v;
+  if (speed == 0 || j.reversed || !j.a || j.a->awake) return;
+  OdeEngine::setEnabled(Body{reinterpret_cast<std::uintptr_t>(data(j.a))}, true);
+}
+
+bool OdeEngine::atStop(Joint joint, int axis) const {
+  const JointData& j = *data(joint);
+  if (axis < 0 || axis >= axesOf(j.type)) return false;
+  const double angle = OdeEngine::angle(joint, axis);
+  const engine::SolverAxis& a = j.axes[static_cast<std::size_t>(axis)];
+  return angle <= a.lowStop || angle >= a.highStop;
 }
 
 double OdeEngine::parameter(Joint joint, JointParameter p, int axis) const {

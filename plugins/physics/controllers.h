@@ -18,10 +18,7 @@ class DragController : public BodyController {
     d.property("angularDrag", &DragController::angular_).unit("N m s").min(0).state().doc("Torque per angular speed.");
   }
   void control(IRigidBody& body, const Event&) override {
-    if (!body.enabled()) return;
-    const engine::BodyState s = body.state();
-    body.addForce(s.linearVelocity * -linear_);
-    body.addTorque(s.angularVelocity * -angular_);
+    body.addDrag(linear_, angular_);
   }
 
  private:

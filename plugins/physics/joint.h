@@ -19,6 +19,10 @@ class Joint : public PhysicsObject, public IJoint {
   double angleRate(int axis) const override { return engine() ? engine()->angleRate(joint_, axis) : 0; }
   double parameter(engine::JointParameter p, int axis) const override { return engine() ? engine()->parameter(joint_, p, axis) : 0; }
   void setParameter(engine::JointParameter p, int axis, double v) override;
+  void drive(int axis, double speed) override {
+    if (engine()) engine()->drive(joint_, axis, speed);
+  }
+  bool atStop(int axis) const override { return engine() && engine()->atStop(joint_, axis); }
   double maxSpeed(int axis) const override { return axis == 0 || axis == 1 ? maxSpeed_[axis] : 0; }
   double feedbackTorque() const override;
 

@@ -61,7 +61,7 @@ void PhysicsServer::collect(const Node& scene) {
   scene.collect(objects);
   for (PhysicsObject* object : objects) {
     if (auto* body = object->as<RigidBody>()) {
-      if (body->transform() && body->world() == world_->handle()) bodies_.push_back({body, body->transform()->transform(), 0});
+      if (body->transform() && body->world() == world_->handle()) bodies_.push_back({body, body->transform(), body->transform()->transform(), 0});
     } else if (auto* collider = object->as<Collider>()) {
       collider->refreshHandlers(defaultOnTransform_);
       collider->setGroup(nullptr);
@@ -105,9 +105,10 @@ bool PhysicsServer::refresh() {
     for (const Transform* t = p.above; t; t = t->transform()) ++p.depth;
   // Outer transforms first: an inner one's local matrix needs where they are now.
   std::stable_sort(bodies_.begin(), bodies_.end(), [](const Placed& a, const Placed& b) { return a.depth < b.depth; });
-  moving_.reserve(bodies_.size());
-  handles_.reserve(bodies_.size());
-  states_.resize(bodies_.size());
+  handles_.clear();
+  for (const Placed& p : bodies_) handles_.push_back(p.body->handle());
+  awake_.resize(bodies_.size());
+  poses_.resize(bodies_.size());
   return true;
 }
 
@@ -154,35 +155,30 @@ void PhysicsServer::reportFaults() {
 }
 
 namespace {
-constexpr std::size_t kAhead = 6;   // nodes
-constexpr std::size_t kNode = 384;  // bytes that are looked at
+constexpr std::size_t kAhead = 6;       // nodes
+constexpr std::size_t kTransform = 384;  // bytes that are looked at
 }  // namespace
 
 void PhysicsServer::place(const Event&) {
   if (!refresh()) return;
-  moving_.clear();
-  handles_.clear();
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (i + kAhead < bodies_.size()) prefetch(bodies_[i + kAhead].body, kNode);
-    const Placed& p = bodies_[i];
-    if (!p.body->takeUnplaced()) continue;
-    moving_.push_back(&p);
-    handles_.push_back(p.body->handle());
-  }
-  const std::span<engine::BodyState> states(states_.data(), moving_.size());
-  world_->handle()->engine()->states(handles_, states);
+  world_->handle()->engine()->posesOfAwake(handles_, awake_, poses_);
 
   // Bodies of one robot share the transform above: its inverse is made once.
   const Transform* known = nullptr;
   Matrix inverse;
-  for (std::size_t i = 0; i < moving_.size(); ++i) {
-    if (i + kAhead < moving_.size()) prefetch(moving_[i + kAhead]->body->transform(), kNode);
-    const Placed& p = *moving_[i];
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (i + kAhead < bodies_.size() && awake_[i + kAhead]) prefetch(bodies_[i + kAhead].transform, kTransform);
+    Placed& p = bodies_[i];
+    if (!awake_[i] || !p.moving) {
+      p.moving = awake_[i];
+      if (!p.body->takeUnplaced()) continue;
+      if (!awake_[i]) poses_[i] = p.body->pose();
+    }
     if (p.above && p.above != known) {
       inverse = rigidInverse(p.above->worldNow());
       known = p.above;
     }
-    p.body->writeTransform(states[i], p.above ? &inverse : nullptr);
+    p.transform->setLocalFromBody(p.above ? Matrix(inverse * poses_[i]) : poses_[i]);
   }
   if (scene_) scene_->place();
 }

@@ -4,7 +4,7 @@
 ///
 ///     physics  place what was moved by hand (bodies follow) -> shift what surrounds re-centred bodies
 ///              -> detect -> handlers -> solve -> feedback -> faults -> script handlers
-///     place    all bodies' states in one call -> transforms, outer ones first -> world matrices
+///     place    poses of what is awake in one call -> transforms, outer ones first -> world matrices
 
 #include "collider.h"
 #include "handlers.h"
@@ -28,8 +28,10 @@ class PhysicsServer : public Node, public IPhysicsServer {
   /// A body with what its placing needs.
   struct Placed {
     RigidBody* body;
-    Transform* above;  ///< the transform around the body's own, nullptr for none
-    int depth;         ///< transforms above the body
+    Transform* transform;  ///< that it moves
+    Transform* above;      ///< the transform around that, nullptr for none
+    int depth;             ///< transforms above the body
+    bool moving = false;   ///< was awake when it was placed last: what the body itself keeps for placing need not be looked at
   };
   World* findWorld();
   /// Looks at the scene again when its shape changed. False when there is nothing to step.
@@ -52,9 +54,9 @@ class PhysicsServer : public Node, public IPhysicsServer {
   std::vector<Placed> bodies_;
   std::vector<Ref<ScriptHandler>> scripts_;
   engine::Contacts contacts_;
-  std::vector<const Placed*> moving_;
-  std::vector<engine::Body> handles_;
-  std::vector<engine::BodyState> states_;
+  std::vector<engine::Body> handles_;  ///< of bodies_
+  std::vector<std::uint8_t> awake_;
+  std::vector<Matrix> poses_;
 };
 
 }  // namespace spark

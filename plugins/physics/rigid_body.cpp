@@ -121,6 +121,10 @@ void RigidBody::addTorque(const Vec3& t) {
   wake();
 }
 
+void RigidBody::addDrag(double linear, double angular) {
+  if (engine()) engine()->addDrag(body_, linear, angular);
+}
+
 bool RigidBody::enabled() const { return engine() && engine()->enabled(body_); }
 
 void RigidBody::enable() {
@@ -198,9 +202,9 @@ bool RigidBody::takeUnplaced() {
   return unplaced;
 }
 
-void RigidBody::writeTransform(const engine::BodyState& s, const Matrix* aboveInverse) {
-  const Matrix world = toMatrix({s.position, s.rotation});
-  transform()->setLocalFromBody(aboveInverse ? Matrix(*aboveInverse * world) : world);
+Matrix RigidBody::pose() const {
+  const engine::BodyState s = state();
+  return toMatrix({s.position, s.rotation});
 }
 
 bool RigidBody::countFault() {

@@ -31,6 +31,7 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   void setAngularVelocity(const Vec3& w) override;
   void addForce(const Vec3& f) override;
   void addTorque(const Vec3& t) override;
+  void addDrag(double linear, double angular) override;
   bool enabled() const override;
   void enable() override;
   Transform* bodyTransform() const override { return transform(); }
@@ -43,8 +44,8 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
 
   /// For the physics server's place: true when its transform must be written (it is awake, or was changed in its sleep).
   bool takeUnplaced();
-  /// Writes the engine's pose to the transform. `aboveInverse`: inverse world matrix of the transform around it, nullptr for none.
-  void writeTransform(const engine::BodyState& state, const Matrix* aboveInverse);
+  /// Where it stands now.
+  Matrix pose() const;
   /// How far the centre of mass moved since the last call: colliders and transforms around it move by it in its frame.
   Vec3 takeShift();
   /// Counts a repair by the engine; true for the 1st, 2nd, 4th ... of this body.

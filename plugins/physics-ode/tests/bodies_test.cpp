@@ -142,14 +142,35 @@ TEST_CASE("a body at rest on the ground falls asleep after ten steps, and not in
   CHECK(house.ode.enabled(b));
 }
 
-TEST_CASE("many states come in one call") {
+TEST_CASE("where those are that are awake comes in one call") {
   EngineHouse house;
-  std::vector<Body> bodies{house.body({1, 0, 0}), house.body({2, 0, 0})};
-  std::vector<engine::BodyState> out(2);
-  house.ode.states(bodies, out);
-  CHECK(out[0].position.x() == 1);
-  CHECK(out[1].position.x() == 2);
-  CHECK(out[1].rotation == Mat3::Identity());
+  const Mat3 turned = Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  std::vector<Body> bodies{house.body({1, 0, 0}), house.body({2, 0, 0}), house.body({3, 4, 5})};
+  house.ode.setEnabled(bodies[1], false);
+  house.ode.setRotation(bodies[2], turned);
+  std::vector<std::uint8_t> awake(3, 7);
+  std::vector<Matrix> out(3, Matrix::Zero());
+  house.ode.posesOfAwake(bodies, awake, out);
+  CHECK(awake == std::vector<std::uint8_t>{1, 0, 1});
+  CHECK(out[0] == translation({1, 0, 0}));
+  CHECK(out[1].isZero(0));
+  const engine::BodyState s = house.ode.state(bodies[2]);
+  CHECK(out[2] == toMatrix({s.position, s.rotation}));
+}
+
+TEST_CASE("drag slows what moves, and leaves what sleeps alone") {
+  EngineHouse house;
+  const Body moving = house.body({0, 0, 5}), asleep = house.body({9, 0, 5});
+  for (const Body b : {moving, asleep}) {
+    house.ode.setLinearVelocity(b, {2, 0, -1});
+    house.ode.setAngularVelocity(b, {0, 3, 0});
+  }
+  house.ode.setEnabled(asleep, false);
+  for (const Body b : {moving, asleep}) house.ode.addDrag(b, 0.5, 0.25);
+  CHECK(house.ode.force(moving) == Vec3(-1, 0, 0.5));
+  CHECK(house.ode.torque(moving) == Vec3(0, -0.75, 0));
+  CHECK(house.ode.force(asleep).isZero(0));
+  CHECK_FALSE(house.ode.enabled(asleep));
 }
 
 TEST_CASE("the plugin stays while an engine lives, and goes afterwards") {

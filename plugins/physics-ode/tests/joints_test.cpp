@@ -81,6 +81,28 @@ TEST_CASE("a hinge's motor drives it to its stop and not beyond") {
   CHECK(two.ode.angle(j, 0) == Approx(-0.3).margin(0.02));
 }
 
+TEST_CASE("to drive a joint wakes its first body unless it is to stand, and a joint tells when it is at a stop") {
+  Two two;
+  const Joint j = two.joint(JointType::hinge);
+  two.ode.setAxis(j, 0, {0, 0, 1}, 0);
+  two.ode.setParameter(j, JointParameter::lowStop, 0, -0.5);
+  two.ode.setParameter(j, JointParameter::highStop, 0, 0.5);
+  two.ode.setParameter(j, JointParameter::maxForce, 0, 1000);
+  CHECK_FALSE(two.ode.atStop(j, 0));
+  two.ode.setEnabled(two.child, false);
+  two.ode.drive(j, 0, 0);
+  CHECK_FALSE(two.ode.enabled(two.child));
+  two.ode.drive(j, 0, 2);
+  CHECK(two.ode.enabled(two.child));
+  CHECK(two.ode.parameter(j, JointParameter::velocity, 0) == 2);
+  two.run(50);
+  CHECK(two.ode.atStop(j, 0));
+  CHECK_FALSE(two.ode.atStop(j, 1));
+  two.ode.drive(j, 0, -2);
+  two.run(10);
+  CHECK_FALSE(two.ode.atStop(j, 0));
+}
+
 TEST_CASE("a motor is as strong as its maximal force") {
   Two two;
   const Joint j = two.joint(JointType::hinge);
