@@ -1,0 +1,173 @@
+"""The milestone `web`: the viewer in the browser. For the points with figures the machine should do nothing else meanwhile."""
+import json
+import os
+import re
+import statistics
+import subprocess
+import time
+from pathlib import Path
+
+from acceptance.common import BIN, FAIL, OPEN, PASS, ROOT, run, say, tests
+
+SPECTATORS = 100
+BLOCKS, BLOCK = 7, 4  # blocks with spectators, each between two without; seconds of a block
+REPORTS = ROOT / "build/check"
+SCREENSHOTS = ROOT / "build/release/web-screenshots"
+
+
+def judge(*good):
+    return PASS if all(good) else FAIL
+
+
+def worst(*verdicts):
+    return next((v for v in (FAIL, OPEN) if v in verdicts), PASS)
+
+
+# ---- watching ----
+
+def link():
+    """The line of tools/play that ends its set-up, and whether it was the last one before the match."""
+    say("Playing")
+    played = run([ROOT / "tools/play"], stderr=subprocess.PIPE)
+    lines = [l for l in played.stderr.splitlines() if l.startswith("==")]
+    found = [i for i, l in enumerate(lines) if re.search(r"http://127\.0\.0\.1:\d+/", l)]
+    good = played.returncode == 0 and found and lines[found[-1] + 1:] == ["== Result"]
+    return f"tools/play: {lines[found[-1]][3:] if found else 'no link'} (exit {played.returncode})", judge(good)
+
+
+def frame_rate():
+    say("Drawing a replay")
+    measured = json.loads(run(["node", ROOT / "tests/web/frame_rate.mjs"]).stdout)
+    return (f"{measured['framesPerSecond']:.1f} pictures/s of {measured['robots']} humanoids, {measured['quality']}, {measured['width']} x {measured['height']}, "
+            f"software WebGL on {measured['cores']} cores (aim 30)")
+
+
+def watching():
+    first, linked = link()
+    tested, shown = tests("web-.*")
+    pictures = len(list(SCREENSHOTS.glob("*.png")))
+    return f"{first}; {tested}; {pictures} screenshots in {SCREENSHOTS.relative_to(ROOT)}; {frame_rate()}", worst(linked, shown)
+
+
+# ---- spectators ----
+
+class Match:
+    """22 humanoids in real time, playing inside the host."""
+
+    def __enter__(self):
+        self.host = subprocess.Popen(
+            [BIN / "sparkhost", "--config", "soccer.lua", "--seed", "7", "--set", "team=Red Blue", "--set", "Soccer.AutomaticKickOff=true", "--agent-port", "0", "--monitor-port", "0",
+             "--web-port", "0", "--log-level", "error"], stdout=subprocess.PIPE, text=True)
+        self.port = int(re.search(r":(\d+)/", json.loads(self.host.stdout.readline())["web"])[1])
+        return self
+
+    def __exit__(self, *_):
+        self.host.terminate()
+        self.host.wait()
+
+    def used(self):
+        """Cycles so far, and seconds of processor that the simulation thread took for them."""
+        cycle = run([BIN / "sparkctl", "--pid", str(self.host.pid), "get", "/sys/server/simulation.cycle"]).stdout
+        thread = Path(f"/proc/{self.host.pid}/task/{self.host.pid}/schedstat").read_text()
+        return int(re.search(r"= (\d+)", cycle)[1]), int(thread.split()[0]) * 1e-9
+
+    def cost(self):
+        """Processor time of the simulation thread for a cycle [s], mean of a block."""
+        cycles, used = self.used()
+        time.sleep(BLOCK)
+        later, more = self.used()
+        return (more - used) / (later - cycles)
+
+    def resident(self):
+        line = next(l for l in Path(f"/proc/{self.host.pid}/status").read_text().splitlines() if l.startswith("VmRSS"))
+        return int(line.split()[1]) / 1024
+
+
+class Crowd:
+    """Spectators on loopback; all are connected and see the match within."""
+
+    def __init__(self, match, *arguments):
+        self.command = [str(c) for c in (BIN / "web-spectators", "--port", match.port, *arguments)]
+
+    def __enter__(self):
+        # lower priority: on few processors the crowd itself must not push the host aside
+        self.program = subprocess.Popen(self.command, stdout=subprocess.PIPE, text=True, preexec_fn=lambda: os.nice(10))
+        self.program.stdout.readline()
+        return self
+
+    def __exit__(self, *_):
+        self.program.terminate()
+        self.said = json.loads(self.program.communicate()[0].strip().splitlines()[-1])
+
+
+def alternating(match, *crowd):
+    """The simulation thread's cost with a crowd, over that without in the blocks before and after it: median; and what the crowds saw."""
+    ratios, said = [], []
+    before = match.cost()
+    for _ in range(BLOCKS):
+        with Crowd(match, *crowd) as present:
+            watched = match.cost()
+        after = match.cost()
+        ratios.append(2 * watched / (before + after))
+        said.append(present.said)
+        before = after
+    return statistics.median(ratios), said
+
+
+def spectators():
+    with Match() as match:
+        match.cost()  # everybody is there
+        say(f"Watching with {SPECTATORS}")
+        watched, said = alternating(match, "--count", SPECTATORS)
+        say("Watching with stalled ones")
+        small = match.resident()
+        stalled, _ = alternating(match, "--count", 0, "--stalled", 20)
+        grown = match.resident() - small
+    bytes_each = max(s["bytesPerSecond"]["max"] for s in said)
+    frames = statistics.median(s["framesPerSecond"]["median"] for s in said)
+    bad = sum(s["badFrames"] for s in said)
+    measured = (f"{SPECTATORS} spectators: {watched:.3f} x the simulation thread's CPU per cycle (median of {BLOCKS} alternating blocks), {bytes_each / 1000:.0f} kB/s each at most, "
+                f"{frames:.1f} frames/s, {bad} bad frames; 20 stalled ones: {stalled:.3f} x, {grown:+.1f} MB")
+    return measured, judge(watched <= 1.02, bytes_each <= 100e3, stalled <= 1.02, not bad)
+
+
+# ---- the rest ----
+
+def fuzzed():
+    """What the last tools/check said of this milestone's fuzzers."""
+    sources = [p.stem for p in (ROOT / "tests/fuzz").glob("*web*.cpp")]
+    failures = (REPORTS / "failures").read_text() if (REPORTS / "failures").exists() else ""
+    logs = {p.stem for p in REPORTS.glob("fuzz-*.log")}
+    names = [s if s.startswith("fuzz-") else f"fuzz-{s}" for s in (n.replace("_", "-") for n in sources)]
+    missing, failed = [n for n in names if n not in logs], [n for n in names if n in failures]
+    measured = f"fuzzers of the last tools/check: {', '.join(names) or 'none'}" + (f"; not run: {', '.join(missing)}" if missing else "") + (f"; failed: {', '.join(failed)}" if failed else "")
+    return measured, FAIL if failed or not names else OPEN if missing else PASS
+
+
+def hostile():
+    tested, held = tests(".*web.*(hostile|attack).*")
+    fuzz, clean = fuzzed()
+    return f"{tested}; {fuzz}", worst(held, clean)
+
+
+def unit_tests():
+    tested, good = tests("viewer-unit")
+    return tested + " (of tools/check too)", good
+
+
+def check():
+    summary, seconds = REPORTS / "summary", REPORTS / "seconds"
+    if not summary.exists() or not seconds.exists():
+        return "tools/check has not run here", OPEN
+    minutes = int(seconds.read_text()) / 60
+    said = summary.read_text().strip()
+    return f"the last tools/check: {minutes:.1f} min, {said}", judge(minutes <= 40, ", 0 failed" in said)
+
+
+POINTS = {
+    "1": ("the link leads to the running match; the browser tests pass", watching),
+    "2": ("100 spectators: at most 1.02 x the simulation thread's CPU, 100 kB/s each; stalled ones cost nothing", spectators),
+    "3": ("hostile input harms nobody; the readers are fuzzed", hostile),
+    "4": ("the viewer's own unit tests", unit_tests),
+    "5": ("tools/check within 40 minutes", check),
+}
