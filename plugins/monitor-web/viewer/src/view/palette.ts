@@ -20,10 +20,17 @@ export function luminance(colour: Rgb): number {
 }
 
 /// Blue against orange: apart for every kind of colour blindness, and in a grey print, since one is dark and the other bright.
-const teams = { left: rgb(0x1f5fd6), right: rgb(0xffa21a), none: rgb(0x9aa3ad) };
+export interface TeamColours {
+  left: Rgb;
+  right: Rgb;
+}
 
-export function teamColour(side: Side | null): Rgb {
-  return side === null ? teams.none : teams[side];
+export const usualTeams: TeamColours = { left: rgb(0x1f5fd6), right: rgb(0xffa21a) };
+
+const noTeam = rgb(0x9aa3ad);
+
+export function teamColour(side: Side | null, teams = usualTeams): Rgb {
+  return side === null ? noTeam : teams[side];
 }
 
 /// What to write in on the team's colour.
@@ -38,14 +45,14 @@ export const robot = { shell: rgb(0xf2f4f5), joint: rgb(0x3a4048), sole: rgb(0x5
 const materials: Record<string, Rgb> = {
   matYellow: rgb(0xf2c53d), matOrange: rgb(0xee7f33), matRed: rgb(0xd6483f), matRedGlow: rgb(0xff6a55), matMagenta: rgb(0xc44a9e),
   matBlue: rgb(0x3c6fd1), matLightBlue: rgb(0x63b4e6), matGreen: rgb(0x4fa05a), matWhite: rgb(0xf1f2f3), matGrey: rgb(0x8b939c),
-  matDarkGrey: rgb(0x3a4048), matBall: rgb(0xf5f5f5), matTrack: rgb(0xa5714d), matGrass: rgb(0x3e8e4a), matTeam: teams.none, matNum: rgb(0xf1f2f3),
+  matDarkGrey: rgb(0x3a4048), matBall: rgb(0xf5f5f5), matTrack: rgb(0xa5714d), matGrass: rgb(0x3e8e4a), matTeam: noTeam, matNum: rgb(0xf1f2f3),
   naowhite: robot.shell, naoblack: robot.visor, naogrey: robot.joint,
 };
 
 const others = [0x6f8fb0, 0xb08f6f, 0x7fa37a, 0xa37a9c, 0x8d86c4, 0xbba35f].map(rgb);
 
 /// The colour of a material; one of a few quiet ones for names that nobody knows, always the same for the same name.
-export function materialColour(name: string | undefined): Rgb {
+export function materialColour(name: string | undefined, teams = usualTeams): Rgb {
   if (name === undefined) return materials.matGrey!;
   const known = materials[name];
   if (known) return known;

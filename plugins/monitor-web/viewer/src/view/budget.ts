@@ -1,0 +1,29 @@
+/// Resolution that a slow machine can keep up with: fewer pixels when pictures take too long for a while, more when there is time to spare.
+export class Budget {
+  /// Share of the full resolution along each edge, 0.5..1.
+  share = 1;
+  private slow = 0;
+  private fast = 0;
+
+  /// Hears how long the last of a row of pictures took [ms]; true: the share is another.
+  heard(milliseconds: number): boolean {
+    // One long picture is a scene being built, or a page that was away; many are a slow machine.
+    if (milliseconds > 500) return false;
+    this.slow = milliseconds > 38 ? this.slow + 1 : Math.max(0, this.slow - 2);
+    this.fast = milliseconds < 21 ? this.fast + 1 : 0;
+    if (this.slow > 25 && this.share > 0.5) return this.change(Math.max(0.5, this.share * 0.84));
+    if (this.fast > 240 && this.share < 1) return this.change(Math.min(1, this.share / 0.84));
+    return false;
+  }
+
+  reset(): void {
+    this.share = 1;
+    this.slow = this.fast = 0;
+  }
+
+  private change(share: number): boolean {
+    this.share = share;
+    this.slow = this.fast = 0;
+    return true;
+  }
+}

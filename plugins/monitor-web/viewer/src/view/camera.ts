@@ -1,0 +1,254 @@
+import { Matrix4, Vector3 } from "three";
+import type { FieldSizes } from "./field_sizes";
+import { approach, ease, Follower } from "./motion";
+import { Orbit } from "./orbit";
+import { Pose } from "./pose";
+import type { CameraMode, CameraView } from "./stage";
+
+/// What the cameras look at.
+export interface Sights {
+  field: FieldSizes | null;
+  /// Half the edge of what there is to see without a field [m].
+  extent: number;
+  /// Null: there is none.
+  ball: Vector3 | null;
+  /// World matrix of the head to look out of; null: nobody there. Upright: it rolls (a sphere), look at the ball from above it.
+  head: { matrix: Matrix4; rolls: boolean; radius: number } | null;
+  /// Width of the picture over its height.
+  aspect: number;
+}
+
+const flight = 0.8;              // s, from one mode to another
+const angles: Record<CameraMode, number> = { orbit: 40, broadcast: 34, head: 78, top: 40 };
+const up = new Vector3(0, 0, 1);
+
+/// Held keys: what they do in a second.
+const keys: Record<string, { slide?: [number, number]; turn?: [number, number]; zoom?: number }> = {
+  KeyW: { slide: [0, 1] }, KeyS: { slide: [0, -1] }, KeyA: { slide: [-1, 0] }, KeyD: { slide: [1, 0] },
+  KeyQ: { turn: [-1, 0] }, KeyE: { turn: [1, 0] }, KeyR: { turn: [0, 0.6] }, KeyF: { turn: [0, -0.6] },
+  "+": { zoom: -1.2 }, "-": { zoom: 1.2 },
+};
+
+/// The cameras, and smooth moves between them.
+export class Camera implements CameraView {
+  readonly pose = new Pose();
+  onmode: ((mode: CameraMode) => void) | null = null;
+  /// Jumps instead of flying.
+  reducedMotion = false;
+
+  private current: CameraMode = "orbit";
+  private readonly orbit = new Orbit();
+  private readonly above = new Orbit();
+  private readonly follower = new Follower(2.6);
+  private closeness = 1;
+  private following = false;
+  private readonly headPose = new Pose();
+  private headSeen = false;
+  private readonly from = new Pose();
+  private readonly wanted = new Pose();
+  private sinceChange = flight;
+  private readonly held = new Set<string>();
+  private isHome = true;
+  private homeAspect = 0;
+
+  constructor(private readonly sights: Sights) {
+    this.goHome();
+    this.orbit.settle();
+    this.above.settle();
+    this.orbit.pose(this.pose);
+  }
+
+  get mode(): CameraMode {
+    return this.current;
+  }
+
+  set mode(mode: CameraMode) {
+    if (mode === this.current) return;
+    this.fly();
+    this.current = mode;
+    this.following = this.headSeen = false;
+    this.onmode?.(mode);
+  }
+
+  /// After another scene came: looks at all of it.
+  reset(): void {
+    this.isHome = true;
+    this.closeness = 1;
+    this.following = this.headSeen = false;
+    this.goHome();
+    this.orbit.settle();
+    this.above.settle();
+  }
+
+  home(): void {
+    this.fly();
+    this.isHome = true;
+    this.closeness = 1;
+    this.goHome();
+    if (this.current === "head") this.mode = "orbit";
+  }
+
+  lookAt(point: Vector3, distance?: number): void {
+    if (this.current !== "orbit") this.takeOver();
+    this.fly();
+    this.isHome = false;
+    this.orbit.target.copy(point);
+    if (distance !== undefined) this.orbit.distance = distance;
+  }
+
+  key(event: KeyboardEvent): boolean {
+    const name = event.key in keys ? event.key : event.code;
+    if (event.type === "keyup") return this.held.delete(name);
+    const modified = event.ctrlKey || event.metaKey || event.altKey || (event.shiftKey && name !== "+");
+    if (modified || !(name in keys)) return false;
+    this.held.add(name);
+    return true;
+  }
+
+  release(): void {
+    this.held.clear();
+  }
+
+  /// Dragged by shares of the picture's height.
+  drag(right: number, down: number): void {
+    if (this.current === "top") this.slide(right, down);
+    else this.handled().turn(-right * 3.2, down * 2.4);
+  }
+
+  /// The ground is dragged along.
+  slide(right: number, down: number): void {
+    const orbit = this.handled();
+    const metres = 2 * orbit.distance * Math.tan((this.pose.angle * Math.PI) / 360);
+    orbit.slide(-right * metres, (down * metres) / Math.max(0.35, Math.sin(orbit.elevation)));
+  }
+
+  zoom(factor: number): void {
+    if (this.current === "broadcast") this.closeness = Math.min(4, Math.max(0.15, this.closeness * factor));
+    else this.handled().zoom(factor);
+  }
+
+  /// Twisted by two fingers [rad].
+  twist(angle: number): void {
+    if (this.current !== "top") this.handled().turn(angle, 0);
+  }
+
+  /// To the next picture, `seconds` after the last; true when the view is another.
+  step(seconds: number): boolean {
+    if (this.isHome && this.sights.aspect !== this.homeAspect) this.goHome();
+    this.moveByKeys(seconds);
+    this.orbit.step(seconds);
+    this.above.step(seconds);
+    this.aim(seconds);
+    this.sinceChange += seconds;
+    const share = this.reducedMotion ? 1 : ease(this.sinceChange / flight);
+    const before = previous.copy(this.pose);
+    if (share >= 1) this.pose.copy(this.wanted);
+    else this.pose.blend(this.from, this.wanted, share);
+    return !before.near(this.pose);
+  }
+
+  private aim(seconds: number): void {
+    const { wanted } = this;
+    wanted.angle = angles[this.current];
+    const view = this.current;
+    if (view === "broadcast") this.aimAtBall(seconds);
+    else if (view === "head" && this.sights.head) this.lookOutOfHead(seconds, this.sights.head);
+    else (view === "top" ? this.above : this.orbit).pose(wanted);
+    // Tall pictures, as on phones: open wider, so that as much is seen across.
+    if (this.sights.aspect < 1) wanted.angle = Math.min(85, wanted.angle * (0.6 + 0.4 / this.sights.aspect));
+  }
+
+  /// From the side line, along with the ball.
+  private aimAtBall(seconds: number): void {
+    const { field, ball, extent } = this.sights;
+    focus.copy(ball ?? origin);
+    if (field) focus.set(limit(focus.x, field.length / 2), limit(focus.y, field.width / 2), 0);
+    // Half way to the middle: the ball leads, the game around it stays in the picture.
+    focus.set(0.94 * focus.x, 0.72 * focus.y, 0.3);
+    if (this.following) this.follower.step(seconds, focus);
+    else this.follower.jump(focus);
+    this.following = true;
+    const distance = (field ? 4.6 + 0.42 * field.width : 1.9 * extent) * this.closeness;
+    this.wanted.around(this.follower.position, -Math.PI / 2, 0.46, distance);
+  }
+
+  private lookOutOfHead(seconds: number, head: NonNullable<Sights["head"]>): void {
+    const { headPose } = this;
+    place.setFromMatrixPosition(head.matrix);
+    if (head.rolls) {
+      forward.subVectors(this.sights.ball ?? origin, place);
+      forward.z = 0;
+      if (forward.lengthSq() < 1e-6) forward.set(1, 0, 0);
+      forward.normalize();
+      place.addScaledVector(forward, -2.2 * head.radius).addScaledVector(up, 2.2 * head.radius);
+      forward.z = -0.12;
+      target.aim(forward, up);
+    } else {
+      head.matrix.extractBasis(side, forward, headUp);
+      place.addScaledVector(forward, 0.08).addScaledVector(headUp, 0.015);
+      target.aim(forward, headUp);
+    }
+    const jump = !this.headSeen || headPose.position.distanceTo(place) > 1;
+    headPose.position.lerp(place, jump ? 1 : approach(seconds, 0.04));
+    headPose.rotation.slerp(target.rotation, jump ? 1 : approach(seconds, head.rolls ? 0.25 : 0.09));
+    this.headSeen = true;
+    this.wanted.position.copy(headPose.position);
+    this.wanted.rotation.copy(headPose.rotation);
+  }
+
+  /// All of the field in the picture.
+  private goHome(): void {
+    const { field, extent, aspect } = this.sights;
+    const [x, y] = field ? [field.length / 2 + field.margin, field.width / 2 + field.margin] : [extent, extent];
+    const tangent = Math.tan((angles.orbit * Math.PI) / 360);
+    this.orbit.elevation = 0.62;
+    this.orbit.azimuth = -Math.PI / 2 - (field ? 0 : 0.5);
+    this.orbit.target.set(0, field ? -0.1 * y : 0, field ? 0 : 0.25 * extent);
+    this.orbit.distance = Math.max((0.93 * x) / (tangent * Math.max(aspect, 0.8)) + 0.6 * y, (0.75 * y) / tangent);
+    this.above.elevation = Math.PI / 2;
+    this.above.target.set(0, 0, 0);
+    this.above.distance = Math.max(x / (tangent * aspect), y / tangent) * 1.03;
+    for (const orbit of [this.orbit, this.above]) {
+      orbit.farthest = 6 * Math.max(x, y);
+      orbit.reach = 1.6 * Math.max(x, y);
+    }
+    this.homeAspect = aspect;
+  }
+
+  /// The orbit that a hand moves now; the automatic cameras give way to the free one.
+  private handled(): Orbit {
+    this.isHome = false;
+    if (this.current === "top") return this.above;
+    if (this.current !== "orbit") this.takeOver();
+    return this.orbit;
+  }
+
+  private takeOver(): void {
+    this.orbit.adopt(this.pose);
+    this.mode = "orbit";
+  }
+
+  private moveByKeys(seconds: number): void {
+    for (const name of this.held) {
+      const { slide, turn, zoom } = keys[name]!;
+      if (zoom !== undefined) this.zoom(Math.exp(zoom * seconds));
+      if (slide) {
+        const orbit = this.handled(), metres = 0.7 * orbit.distance * seconds;
+        orbit.slide(slide[0] * metres, slide[1] * metres);
+      }
+      if (turn && this.current !== "top") this.handled().turn(turn[0] * 1.4 * seconds, turn[1] * 1.4 * seconds);
+    }
+  }
+
+  private fly(): void {
+    this.from.copy(this.pose);
+    this.sinceChange = 0;
+  }
+}
+
+function limit(value: number, bound: number): number {
+  return Math.min(bound, Math.max(-bound, value));
+}
+
+const origin = new Vector3(), focus = new Vector3(), place = new Vector3(), forward = new Vector3(), headUp = new Vector3(), side = new Vector3();
+const target = new Pose(), previous = new Pose();

@@ -1,0 +1,190 @@
+import { BufferAttribute, BufferGeometry, Group, LineSegments, Mesh, MeshStandardMaterial, PlaneGeometry, type Vector2 } from "three";
+import { fieldLines, stripes, type FieldSizes } from "./field_sizes";
+import { Layer, lineMaterial, netMaterial, plainMaterial } from "./ground_materials";
+import { paintField } from "./ground_texture";
+import type { Rgb, Surroundings } from "./palette";
+import { disposeOf } from "./release";
+import type { Quality } from "./stage";
+
+/// Half the edge of the ground of scenes without a field [m].
+const plainHalf = 12;
+/// How far the ground goes on around it, with the share of the horizon's colour there.
+const rings: [number, number][] = [[25, 0.05], [120, 0.55], [900, 1]];
+
+/// Triangles with a colour for each corner.
+class Quilt {
+  private readonly positions: number[] = [];
+  private readonly colours: number[] = [];
+
+  quad(corners: [number, number, number][], colours: Rgb[]): void {
+    for (const k of [0, 1, 2, 0, 2, 3]) {
+      this.positions.push(...corners[k]!);
+      this.colours.push(...colours[k]!);
+    }
+  }
+
+  rectangle(x0: number, y0: number, x1: number, y1: number, colour: Rgb): void {
+    this.quad([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]], [colour, colour, colour, colour]);
+  }
+
+  /// The frame between a rectangle of these half edges and one that is wider by `width`.
+  frame(x: number, y: number, width: number, inner: Rgb, outer: Rgb): void {
+    const near: [number, number][] = [[-x, -y], [x, -y], [x, y], [-x, y]];
+    const far = near.map(([a, b]) => [a + Math.sign(a) * width, b + Math.sign(b) * width] as [number, number]);
+    for (let k = 0; k < 4; k++) {
+      const next = (k + 1) % 4;
+      this.quad([[...far[k]!, 0], [...far[next]!, 0], [...near[next]!, 0], [...near[k]!, 0]], [outer, outer, inner, inner]);
+    }
+  }
+
+  geometry(): BufferGeometry {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(this.positions), 3));
+    geometry.setAttribute("color", new BufferAttribute(new Float32Array(this.colours), 3));
+    return geometry;
+  }
+}
+
+export function mix(a: Rgb, b: Rgb, share: number): Rgb {
+  return [0, 1, 2].map(k => a[k]! + (b[k]! - a[k]!) * share) as unknown as Rgb;
+}
+
+/// Ground, lines, nets and sky: what never moves but with the window.
+export class Ground {
+  readonly group = new Group();
+  private readonly sky: Mesh;
+
+  constructor(field: FieldSizes | null, withGoals: boolean, quality: Quality, around: Surroundings, screen: Vector2) {
+    this.sky = layer(new Mesh(skyGeometry(around), plainMaterial()), Layer.Sky);
+    this.group.add(this.sky);
+    if (quality === "quality") this.addFine(field, around);
+    else this.addFlat(field, around, screen);
+    if (field && withGoals) this.group.add(new LineSegments(netGeometry(field), netMaterial(around.net)));
+    for (const child of this.group.children) child.frustumCulled = false;
+  }
+
+  /// Keeps the sky around the camera.
+  follow(x: number, y: number): void {
+    this.sky.position.set(x, y, 0);
+  }
+
+  dispose(): void {
+    disposeOf(this.group);
+  }
+
+  private addFlat(field: FieldSizes | null, around: Surroundings, screen: Vector2): void {
+    const quilt = new Quilt();
+    const [x, y] = field ? addGrass(quilt, field, around) : [plainHalf, plainHalf];
+    if (!field) quilt.rectangle(-x, -y, x, y, around.floor);
+    addFloor(quilt, x, y, around);
+    this.group.add(layer(new Mesh(quilt.geometry(), plainMaterial()), Layer.Ground));
+    const lines = field ? lineGeometry(fieldLines(field), field.lineWidth) : lineGeometry(gridLines(), 0.02);
+    this.group.add(layer(new Mesh(lines, lineMaterial(field ? around.line : around.floorLine, screen)), Layer.Lines));
+  }
+
+  private addFine(field: FieldSizes | null, around: Surroundings): void {
+    const [x, y] = field ? [field.length / 2 + field.margin, field.width / 2 + field.margin] : [plainHalf, plainHalf];
+    const inner = new Mesh(new PlaneGeometry(2 * x, 2 * y), new MeshStandardMaterial({ map: paintField(field, x, y, around), roughness: 0.95, envMapIntensity: 0.5 }));
+    const quilt = new Quilt();
+    addFloor(quilt, x, y, around);
+    const outer = new Mesh(quilt.geometry(), plainMaterial());
+    inner.receiveShadow = true;
+    this.group.add(layer(outer, Layer.Ground), layer(inner, Layer.Lines));
+  }
+}
+
+function layer<T extends Mesh>(mesh: T, order: Layer): T {
+  mesh.renderOrder = order;
+  return mesh;
+}
+
+function addFloor(quilt: Quilt, x: number, y: number, around: Surroundings): void {
+  let [reach, inner] = [0, around.floor];
+  for (const [width, share] of rings) {
+    const outer = mix(around.floor, around.horizon, share);
+    quilt.frame(x + reach, y + reach, width - reach, inner, outer);
+    [reach, inner] = [width, outer];
+  }
+}
+
+/// Mown in stripes across; returns half its edges.
+function addGrass(quilt: Quilt, field: FieldSizes, around: Surroundings): [number, number] {
+  const [x, y] = [field.length / 2 + field.margin, field.width / 2 + field.margin];
+  for (const { from, to, alternate } of stripes(field)) quilt.rectangle(from, -y, to, y, alternate ? around.grassAlternate : around.grass);
+  return [x, y];
+}
+
+function gridLines(): [number, number][][] {
+  const steps = Array.from({ length: 2 * plainHalf + 1 }, (_, k) => k - plainHalf);
+  return steps.flatMap(s => [[[s, -plainHalf], [s, plainHalf]], [[-plainHalf, s], [plainHalf, s]]] as [number, number][][]);
+}
+
+/// Strips along the chains, cut into pieces so that thin ones fade bit by bit with the distance.
+function lineGeometry(chains: readonly (readonly [number, number])[][], width: number): BufferGeometry {
+  const positions: number[] = [], across: number[] = [], indices: number[] = [];
+  for (const chain of chains) for (let k = 0; k + 1 < chain.length; k++) {
+    const [x0, y0] = chain[k]!, [x1, y1] = chain[k + 1]!;
+    const length = Math.hypot(x1 - x0, y1 - y0), pieces = Math.ceil(length / 2.5);
+    const [ux, uy] = [(x1 - x0) / length, (y1 - y0) / length];
+    // Straight lines reach half a width further, so that corners are full.
+    const extra = chain.length === 2 ? width / 2 : 0;
+    for (let n = 0; n <= pieces; n++) {
+      const s = n === 0 ? -extra : n === pieces ? length + extra : (n * length) / pieces;
+      for (const side of [1, -1]) {
+        positions.push(x0 + ux * s, y0 + uy * s, 0);
+        across.push((-uy * side * width) / 2, (ux * side * width) / 2);
+      }
+      if (n > 0) {
+        const v = positions.length / 3 - 4;
+        indices.push(v, v + 1, v + 3, v, v + 3, v + 2);
+      }
+    }
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(positions), 3));
+  geometry.setAttribute("across", new BufferAttribute(new Float32Array(across), 2));
+  geometry.setIndex(indices);
+  return geometry;
+}
+
+/// A dome, the colour of the horizon below and of the zenith above.
+function skyGeometry(around: Surroundings): BufferGeometry {
+  const quilt = new Quilt();
+  const radius = 800, sides = 24, heights = [-0.03, 0, 0.06, 0.16, 0.35, 0.7, 1];
+  const at = (height: number, turn: number): [number, number, number] => {
+    const flat = Math.sqrt(1 - height * height);
+    return [radius * flat * Math.cos(turn), radius * flat * Math.sin(turn), radius * height];
+  };
+  const colour = (height: number) => mix(around.horizon, around.zenith, Math.max(0, height) ** 0.55);
+  for (let row = 0; row + 1 < heights.length; row++) for (let n = 0; n < sides; n++) {
+    const [low, high] = [heights[row]!, heights[row + 1]!], [from, to] = [(2 * Math.PI * n) / sides, (2 * Math.PI * (n + 1)) / sides];
+    quilt.quad([at(low, to), at(low, from), at(high, from), at(high, to)], [colour(low), colour(low), colour(high), colour(high)]);
+  }
+  return quilt.geometry();
+}
+
+/// Meshes of both goals: back, top and sides.
+function netGeometry(f: FieldSizes): BufferGeometry {
+  const points: number[] = [];
+  const cell = Math.max(0.1, f.goalWidth / 22);
+  for (const side of [-1, 1]) {
+    const front = (side * f.length) / 2, back = front + side * f.goalDepth, [y, z] = [f.goalWidth / 2, f.goalHeight];
+    const line = (...ends: number[]) => points.push(...ends);
+    const [columns, rows, layers] = [2 * y, z, f.goalDepth].map(size => Math.max(2, Math.round(size / cell))) as [number, number, number];
+    for (let n = 0; n <= columns; n++) {
+      const at = -y + (2 * y * n) / columns;
+      line(back, at, 0, back, at, z, back, at, z, front, at, z);
+    }
+    for (let n = 0; n <= rows; n++) {
+      const at = (z * n) / rows;
+      line(back, -y, at, back, y, at, front, -y, at, back, -y, at, front, y, at, back, y, at);
+    }
+    for (let n = 1; n < layers; n++) {
+      const at = front + ((back - front) * n) / layers;
+      line(at, -y, z, at, y, z, at, -y, 0, at, -y, z, at, y, 0, at, y, z);
+    }
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(points), 3));
+  return geometry;
+}

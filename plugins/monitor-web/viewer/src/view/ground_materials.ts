@@ -1,0 +1,89 @@
+import { CustomBlending, OneMinusSrcAlphaFactor, ShaderMaterial, SrcAlphaFactor, Vector2, Vector3 } from "three";
+import type { Rgb } from "./palette";
+
+// What lies on the ground is drawn first and without a depth test, in the order of Layer: nothing flickers, and hidden ground costs no test. It must
+// come before the solids, so the translucent ones are blended though three counts them as opaque.
+
+export enum Layer {
+  Sky = -20,
+  Ground,
+  Lines,
+  Shadows,
+  Rings,
+}
+
+const flatOnGround = { depthTest: false, depthWrite: false } as const;
+const blended = { blending: CustomBlending, blendSrc: SrcAlphaFactor, blendDst: OneMinusSrcAlphaFactor } as const;
+
+/// Colours of the vertices as they are: no light, no conversion.
+export function plainMaterial(): ShaderMaterial {
+  return new ShaderMaterial({
+    ...flatOnGround,
+    vertexShader: /* glsl */ `
+      attribute vec3 color;
+      varying vec3 colour;
+      void main() { colour = color; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+    fragmentShader: /* glsl */ `
+      varying vec3 colour;
+      void main() { gl_FragColor = vec4(colour, 1.0); }`,
+  });
+}
+
+/// Lines on the ground that never get thinner than a pixel; they fade instead. `screen` = half the canvas in pixels.
+export function lineMaterial(colour: Rgb, screen: Vector2): ShaderMaterial {
+  return new ShaderMaterial({
+    ...flatOnGround, ...blended,
+    uniforms: { ink: { value: new Vector3(...colour) }, screen: { value: screen } },
+    vertexShader: /* glsl */ `
+      attribute vec2 across;
+      uniform vec2 screen;
+      varying float strength;
+      void main() {
+        vec4 middle = projectionMatrix * viewMatrix * vec4(position, 1.0);
+        vec4 edge = projectionMatrix * viewMatrix * vec4(position.xy + across, position.z, 1.0);
+        strength = 0.92;
+        if (middle.w > 0.1 && edge.w > 0.1) {
+          float pixels = length((edge.xy / edge.w - middle.xy / middle.w) * screen);
+          float wider = max(1.0, 0.62 / max(pixels, 0.01));
+          edge = middle + (edge - middle) * wider;
+          strength *= max(0.3, 1.0 / wider);
+        }
+        gl_Position = edge;
+      }`,
+    fragmentShader: /* glsl */ `
+      uniform vec3 ink;
+      varying float strength;
+      void main() { gl_FragColor = vec4(ink, strength); }`,
+  });
+}
+
+/// Spots on the ground, each an instance: `spot` = x, y, radius, strength; the mesh's x and y in units of the radius, z the share of the strength.
+export function spotMaterial(): ShaderMaterial {
+  return new ShaderMaterial({
+    ...flatOnGround, ...blended,
+    vertexShader: /* glsl */ `
+      attribute vec4 spot;
+      attribute vec3 ink;
+      varying vec4 colour;
+      void main() {
+        colour = vec4(ink, spot.w * position.z);
+        gl_Position = projectionMatrix * viewMatrix * vec4(spot.xy + position.xy * spot.z, 0.0, 1.0);
+      }`,
+    fragmentShader: /* glsl */ `
+      varying vec4 colour;
+      void main() { gl_FragColor = colour; }`,
+  });
+}
+
+/// Thin nets of goals.
+export function netMaterial(colour: Rgb): ShaderMaterial {
+  return new ShaderMaterial({
+    transparent: true, depthWrite: false,
+    uniforms: { ink: { value: new Vector3(...colour) } },
+    vertexShader: /* glsl */ `
+      void main() { gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0); }`,
+    fragmentShader: /* glsl */ `
+      uniform vec3 ink;
+      void main() { gl_FragColor = vec4(ink, 0.33); }`,
+  });
+}

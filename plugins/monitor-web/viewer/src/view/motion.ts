@@ -1,0 +1,38 @@
+import { Vector3 } from "three";
+
+// Motions that come out the same at every frame rate: each step is the exact solution over its time.
+
+/// Share of the way to go in `seconds` when the distance left falls to 1/e in `constant` seconds.
+export function approach(seconds: number, constant: number): number {
+  return 1 - Math.exp(-seconds / constant);
+}
+
+/// A point pulled to another by a spring that never overshoots.
+export class Follower {
+  readonly position = new Vector3();
+  readonly velocity = new Vector3();
+
+  /// `stiffness`: how fast it follows [1/s].
+  constructor(private readonly stiffness: number) {}
+
+  jump(to: Vector3): void {
+    this.position.copy(to);
+    this.velocity.set(0, 0, 0);
+  }
+
+  step(seconds: number, target: Vector3): void {
+    const decay = Math.exp(-this.stiffness * seconds);
+    offset.subVectors(this.position, target);
+    pull.copy(this.velocity).addScaledVector(offset, this.stiffness).multiplyScalar(seconds);
+    this.position.copy(target).addScaledVector(offset.add(pull), decay);
+    this.velocity.addScaledVector(pull, -this.stiffness).multiplyScalar(decay);
+  }
+}
+
+const offset = new Vector3(), pull = new Vector3();
+
+/// 0..1 with no jerk at either end.
+export function ease(share: number): number {
+  const s = Math.min(1, Math.max(0, share));
+  return s * s * s * (s * (6 * s - 15) + 10);
+}

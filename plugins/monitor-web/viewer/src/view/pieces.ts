@@ -1,0 +1,172 @@
+import type { Robot, SceneNode, Shape, World } from "../model";
+import { compose } from "./affine";
+import { dress, isSceneryMesh } from "./costume";
+import type { Form } from "./forms";
+import { materialColour, robot as robotColours, teamColour, usualTeams, type Rgb, type TeamColours } from "./palette";
+
+/// One solid: a form in the frame of a transform.
+export interface Piece {
+  form: Form;
+  /// The transform it moves with.
+  node: number;
+  /// The mesh that it is seen for: hidden when that is; -1: always seen.
+  mesh: number;
+  /// Rotation and position in the transform's frame, 16 numbers.
+  matrix: number[];
+  /// Half edges, and radius of the edges [m].
+  half: [number, number, number];
+  rounding: number;
+  colour: Rgb;
+}
+
+/// A number painted on a robot: a square of `size` metres in the x-z plane of `matrix`, seen from -y.
+export interface Decal {
+  node: number;
+  robot: number;
+  matrix: number[];
+  size: number;
+}
+
+/// A flat ring on the ground around a transform, seen while its mesh is.
+export interface Mark {
+  node: number;
+  mesh: number;
+  radius: number;
+}
+
+export interface Picture {
+  pieces: Piece[];
+  decals: Decal[];
+  marks: Mark[];
+  /// For each node the index of its robot in World.robots, or -1.
+  robotOf: Int32Array;
+}
+
+/// What to draw for a scene: robots in their costumes, other visible meshes as they are named. Ground, goals and ball are drawn elsewhere.
+export function makePicture(world: World, teams: TeamColours = usualTeams): Picture {
+  return new PictureMaker(world, teams).picture;
+}
+
+class PictureMaker {
+  readonly picture: Picture;
+  /// Transforms whose shapes a mesh stands for.
+  private readonly covered = new Set<number>();
+
+  constructor(private readonly world: World, private readonly teams: TeamColours) {
+    this.picture = { pieces: [], decals: [], marks: [], robotOf: findRobots(world) };
+    world.nodes.forEach((node, index) => {
+      if (node.kind === "mesh" && node.parent >= 0 && !belongsTo(world, index, world.ball)) this.addMesh(node, index);
+    });
+    world.nodes.forEach((node, index) => {
+      if (node.shapes && this.picture.robotOf[index]! >= 0 && !this.covered.has(index)) {
+        for (const shape of node.shapes) this.add(shape, index, -1, robotColours.shell);
+      }
+    });
+  }
+
+  private addMesh(mesh: SceneNode, index: number): void {
+    const [name = "", ...sizes] = (mesh.load ?? "").split(" ");
+    if (isSceneryMesh(name)) return;
+    const robot = this.world.robots[this.picture.robotOf[index]!] ?? null;
+    const standard = standardShape(name, sizes.map(Number), mesh.scale ?? [1, 1, 1]);
+    if (standard) this.addStandard(standard, mesh, index, robot);
+    else this.addModel(name, mesh, index, robot);
+  }
+
+  private addStandard(shape: Shape, mesh: SceneNode, index: number, robot: Robot | null): void {
+    this.covered.add(mesh.parent);
+    if (mesh.transparent && mesh.materials?.[0] === "matSelect") {
+      this.picture.marks.push({ node: mesh.parent, mesh: index, radius: shape.size[0]! });
+      return;
+    }
+    const isSphereOfRobot = robot && shape.kind === "sphere";
+    if (isSphereOfRobot && shape.size[0]! < 0.02) {
+      // The tiny balls between a humanoid's joints: bigger, so that its limbs hang together.
+      this.add({ ...shape, size: [0.031] }, mesh.parent, index, robotColours.joint);
+      return;
+    }
+    this.add(shape, mesh.parent, index, this.colourOf(mesh, robot));
+    if (isSphereOfRobot) this.addBelt(shape.size[0]!, mesh.parent, index);
+  }
+
+  /// What makes a sphere's rolling visible.
+  private addBelt(radius: number, node: number, mesh: number): void {
+    this.add({ kind: "cylinder", size: [1.012 * radius, 0.24 * radius], position: [0, 0, 0], rotation: [0, 0, 0, 1] }, node, mesh, robotColours.shell);
+  }
+
+  private addModel(name: string, mesh: SceneNode, index: number, robot: Robot | null): void {
+    const part = this.carrier(mesh.parent);
+    this.covered.add(part);
+    // A model of which nothing is known is at least a box.
+    const shapes = this.world.nodes[part]!.shapes ?? [standardShape("StdUnitBox", [], mesh.scale ?? [0.1, 0.1, 0.1])!];
+    const dressed = robot && dress(name, shapes, robot, mesh.materials ?? [], this.teams);
+    if (!dressed) {
+      for (const shape of shapes) this.add(shape, part, index, this.colourOf(mesh, robot));
+      return;
+    }
+    for (const { shape, colour, rounding } of dressed.parts) this.add(shape, part, index, colour, rounding);
+    for (const decal of dressed.decals) this.picture.decals.push({ ...decal, node: part, robot: this.picture.robotOf[index]! });
+  }
+
+  /// The transform whose shapes a model stands for: its own, or the nearest above that has some.
+  private carrier(at: number): number {
+    for (let n = at; n >= 0; n = this.world.nodes[n]!.parent) if (this.world.nodes[n]!.shapes?.length) return n;
+    return at;
+  }
+
+  private colourOf(mesh: SceneNode, robot: Robot | null): Rgb {
+    const name = mesh.materials?.[0];
+    return name === "matTeam" && robot ? teamColour(robot.side, this.teams) : materialColour(name, this.teams);
+  }
+
+  private add(shape: Shape, node: number, mesh: number, colour: Rgb, rounding?: number): void {
+    this.picture.pieces.push(pieceOf(shape, node, mesh, colour, rounding));
+  }
+}
+
+function findRobots(world: World): Int32Array {
+  const robotOf = new Int32Array(world.nodes.length).fill(-1);
+  world.robots.forEach((robot, index) => (robotOf[robot.node] = index));
+  world.nodes.forEach((node, index) => {
+    if (node.parent >= 0 && robotOf[index] === -1) robotOf[index] = robotOf[node.parent]!;
+  });
+  return robotOf;
+}
+
+function belongsTo(world: World, node: number, ancestor: number): boolean {
+  if (ancestor < 0) return false;
+  for (let n = node; n >= 0; n = world.nodes[n]!.parent) if (n === ancestor) return true;
+  return false;
+}
+
+/// The shape of "StdUnitBox", "StdUnitSphere", "StdUnitCylinder r l" or "StdCapsule r l"; null for others.
+export function standardShape(name: string, sizes: readonly number[], scale: readonly number[]): Shape | null {
+  const [x, y, z] = scale as [number, number, number];
+  const shape = (kind: Shape["kind"], ...size: number[]): Shape => ({ kind, size, position: [0, 0, 0], rotation: [0, 0, 0, 1] });
+  const [radius = 1, length = 1] = sizes;
+  switch (name) {
+    case "StdUnitBox": return shape("box", x, y, z);
+    case "StdUnitSphere": return shape("sphere", x);
+    case "StdUnitCylinder": return shape("cylinder", radius * x, length * z);
+    case "StdCapsule": return shape("capsule", radius * x, length * z);
+    default: return null;
+  }
+}
+
+/// A shape as a form. Boxes get edges as round as suits their size, unless told.
+export function pieceOf(shape: Shape, node: number, mesh: number, colour: Rgb, rounding?: number): Piece {
+  const matrix = new Array<number>(16);
+  compose(matrix, 0, shape.position, shape.rotation);
+  const [a = 1, b = 0, c = 0] = shape.size;
+  const common = { node, mesh, matrix, colour };
+  switch (shape.kind) {
+    case "box": return { ...common, form: "block", half: [a / 2, b / 2, c / 2], rounding: Math.min(rounding ?? softEdge(a, b, c), a / 2, b / 2, c / 2) };
+    case "sphere": return { ...common, form: "round", half: [a, a, a], rounding: a };
+    case "capsule": return { ...common, form: "round", half: [a, a, a + b / 2], rounding: a };
+    case "cylinder": return { ...common, form: "barrel", half: [a, a, b / 2], rounding: Math.min(rounding ?? softEdge(a, b), a, b / 2) };
+  }
+}
+
+function softEdge(...edges: number[]): number {
+  return Math.min(0.12 * Math.min(...edges), 0.08);
+}
