@@ -1,53 +1,9 @@
-/// What the application offers to its panels, and what it expects of the picture.
-import type { Camera, Group, Matrix4 } from "three";
+/// What the application offers to its panels.
 import type { LiveSource, ReplaySource, Source, World } from "../model";
+import type { CameraMode, Quality, Stage, Theme } from "../view/stage";
 
-export type CameraView = "free" | "broadcast" | "head" | "top";
-export type Quality = "flat" | "quality";
-export type Theme = "dark" | "light";
+export type { CameraMode, Quality, Stage, Theme };
 export type Tone = "plain" | "good" | "bad" | "goal" | "foul";
-
-/// What lies below a point of the page.
-export interface Picked {
-  /// Robot.key, or null.
-  robot: string | null;
-  /// Index in World.nodes of the transform that was hit; -1: none.
-  node: number;
-  /// Where the ray meets the ground [m]; null: above the horizon.
-  point: [number, number, number] | null;
-}
-
-/// The picture: draws a world into a container that it fills.
-export interface Stage {
-  readonly canvas: HTMLCanvasElement;
-  /// Pictures drawn since the start.
-  readonly frames: number;
-  readonly camera: Camera;
-  /// World coordinates, z up: what panels draw.
-  readonly overlay: Group;
-  view: CameraView;
-  quality: Quality;
-  labels: boolean;
-  theme: Theme;
-  /// #rrggbb
-  colours: { left: string; right: string };
-  /// No eased camera flights.
-  reducedMotion: boolean;
-  /// Robot.key of the highlighted robot.
-  selected: string | null;
-  /// Index in World.nodes of a highlighted node that is no robot; -1: none.
-  selectedNode: number;
-  setWorld(world: World): void;
-  draw(now: number): void;
-  pick(x: number, y: number): Picked;
-  worldMatrix(node: number, out: Matrix4): Matrix4;
-  resetView(): void;
-  /// Shares of the picture: 0.1 to the right, up, closer.
-  move(right: number, up: number, closer: number): void;
-  /// [rad]
-  turn(yaw: number, pitch: number): void;
-  dispose(): void;
-}
 
 /// What is selected: a robot, or any node of the tree.
 export interface Selection {

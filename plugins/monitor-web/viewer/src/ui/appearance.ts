@@ -1,0 +1,79 @@
+/// Theme, team colours and quality as chosen, told to the page and to the picture.
+import { css, inkOn, type Rgb, rgb } from "../view/palette";
+import type { CameraMode, Quality, Stage, Theme } from "./app";
+import { keepSettings, kPalettes, type Palette, type Settings } from "./settings";
+
+const rgbOf = (hex: string): Rgb => rgb(parseInt(hex.slice(1), 16));
+
+export class Appearance {
+  private readonly system = window.matchMedia("(prefers-color-scheme: light)");
+  private readonly still = window.matchMedia("(prefers-reduced-motion: reduce)");
+
+  constructor(private readonly stage: Stage, readonly settings: Settings, private readonly changed: (what: "theme" | "colours") => void) {
+    this.system.addEventListener("change", () => this.showTheme());
+    this.still.addEventListener("change", () => (stage.reducedMotion = this.still.matches));
+    stage.reducedMotion = this.still.matches;
+    stage.quality = settings.quality;
+    stage.labels = settings.labels;
+    stage.camera.mode = settings.view;
+    this.showTheme();
+    this.showColours();
+  }
+
+  get theme(): Theme {
+    const { theme } = this.settings;
+    return theme !== "system" ? theme : this.system.matches ? "light" : "dark";
+  }
+
+  get palette(): Palette {
+    return kPalettes[this.settings.palette]!;
+  }
+
+  /// Back to what the system says when that is the same.
+  switchTheme(): void {
+    const other: Theme = this.theme === "dark" ? "light" : "dark";
+    this.settings.theme = (other === "light") === this.system.matches ? "system" : other;
+    this.showTheme();
+    keepSettings(this.settings);
+  }
+
+  switchColours(): void {
+    this.settings.palette = (this.settings.palette + 1) % kPalettes.length;
+    this.showColours();
+    keepSettings(this.settings);
+  }
+
+  switchQuality(): Quality {
+    this.settings.quality = this.stage.quality = this.stage.quality === "flat" ? "quality" : "flat";
+    keepSettings(this.settings);
+    return this.settings.quality;
+  }
+
+  switchLabels(): boolean {
+    this.settings.labels = this.stage.labels = !this.stage.labels;
+    keepSettings(this.settings);
+    return this.settings.labels;
+  }
+
+  keepView(view: CameraMode): void {
+    this.settings.view = view;
+    keepSettings(this.settings);
+  }
+
+  private showTheme(): void {
+    document.documentElement.dataset.theme = this.theme;
+    this.stage.theme = this.theme;
+    this.changed("theme");
+  }
+
+  private showColours(): void {
+    const { style } = document.documentElement;
+    const [left, right] = [rgbOf(this.palette.left), rgbOf(this.palette.right)];
+    for (const [name, colour] of [["--left", left], ["--right", right]] as const) {
+      style.setProperty(name, css(colour));
+      style.setProperty(`${name}-ink`, css(inkOn(colour)));
+    }
+    this.stage.teamColours = { left, right };
+    this.changed("colours");
+  }
+}

@@ -1,0 +1,36 @@
+/// What happened so far, newest first; in a replay all of it, to go there.
+import type { GameEvent } from "../model";
+import type { App } from "./app";
+import { h, setHidden } from "./dom";
+import { clock } from "./format";
+
+const kMost = 200;
+
+export class EventsPanel {
+  private readonly list = h("div", { "data-testid": "event-list" });
+  private readonly empty = h("p", { class: "empty" }, "Nothing happened yet. Goals, fouls and play modes are listed here.");
+  private seen: readonly GameEvent[] | null = null;
+  private count = -1;
+
+  constructor(container: HTMLElement, private readonly app: App, private readonly go: (event: GameEvent) => void) {
+    container.append(this.empty, this.list);
+  }
+
+  update(): void {
+    const { replay, world } = this.app;
+    const events = replay ? replay.timeline : world.events;
+    if (events === this.seen && events.length === this.count) return;
+    this.seen = events;
+    this.count = events.length;
+    setHidden(this.empty, events.length > 0);
+    const newest = replay ? events.slice(0, kMost) : events.slice(-kMost).reverse();
+    this.list.replaceChildren(...newest.map((e) => this.row(e, replay !== null)));
+  }
+
+  private row(event: GameEvent, seekable: boolean): HTMLElement {
+    const parts = [h("span", { class: "number dim" }, clock(event.time)), h("i", { class: "swatch", "data-side": event.side }), h("span", {}, event.text)];
+    const common = { class: "entry event", "data-testid": "event-entry", "data-kind": event.kind };
+    if (!seekable) return h("div", { ...common, style: "cursor: default" }, ...parts);
+    return h("button", { ...common, type: "button", onclick: () => this.go(event) }, ...parts);
+  }
+}

@@ -1,0 +1,62 @@
+/// Logs as they come from a file or an address: unpacked, and counted while they are read.
+
+const isPacked = (head: ArrayLike<number>) => head[0] === 0x1f && head[1] === 0x8b;
+
+/// Unpacks what begins as gzip does; everything else passes as it is.
+export async function unpacked(packed: ReadableStream<Uint8Array>): Promise<ReadableStream<Uint8Array>> {
+  const reader = packed.getReader();
+  const head: Uint8Array[] = [];
+  let [size, ended] = [0, false];
+  while (size < 2 && !ended) {
+    const { value, done } = await reader.read();
+    ended = done;
+    if (value) head.push(value);
+    size += value?.length ?? 0;
+  }
+  const bytes = head.flatMap((part) => [...part.subarray(0, 2)]);
+  const whole = new ReadableStream<Uint8Array>({
+    async pull(controller) {
+      const first = head.shift();
+      if (first) return controller.enqueue(first);
+      const { value, done } = await reader.read();
+      if (done) controller.close();
+      else controller.enqueue(value);
+    },
+    cancel: (reason) => reader.cancel(reason),
+  });
+  if (!isPacked(bytes)) return whole;
+  return whole.pipeThrough(new DecompressionStream("gzip") as unknown as ReadableWritablePair<Uint8Array, Uint8Array>);
+}
+
+/// Tells how much went through: 0..1 of `total` bytes; nothing when the total is not known.
+export function counted(stream: ReadableStream<Uint8Array>, total: number, heard: (share: number) => void): ReadableStream<Uint8Array> {
+  if (!(total > 0)) return stream;
+  let passed = 0;
+  return stream.pipeThrough(
+    new TransformStream<Uint8Array, Uint8Array>({
+      transform(chunk, controller) {
+        passed += chunk.length;
+        heard(Math.min(1, passed / total));
+        controller.enqueue(chunk);
+      },
+    }),
+  );
+}
+
+const blobOf = (stream: ReadableStream<Uint8Array>) => new Response(stream).blob();
+
+/// A chosen file, unpacked; `heard` is told how far that is (0..1).
+export async function unpackedFile(file: Blob, heard: (share: number) => void): Promise<Blob> {
+  const head = new Uint8Array(await file.slice(0, 2).arrayBuffer());
+  return isPacked(head) ? blobOf(await unpacked(counted(file.stream(), file.size, heard))) : file;
+}
+
+/// A log fetched from an address; rejects with words for people.
+export async function fetchedLog(address: string, heard: (share: number) => void): Promise<Blob> {
+  const response = await fetch(address).catch(() => null);
+  if (!response) throw new Error(`${address} cannot be reached.`);
+  if (!response.ok || !response.body) throw new Error(`${address}: the server says ${response.status} ${response.statusText}`.trim() + ".");
+  // with a content encoding the length is that of other bytes than those that come here
+  const total = response.headers.has("content-encoding") ? 0 : Number(response.headers.get("content-length"));
+  return blobOf(await unpacked(counted(response.body, total, heard)));
+}

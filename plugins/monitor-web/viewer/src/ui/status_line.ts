@@ -1,0 +1,30 @@
+/// Live or replay, connected or not, how fast, watched by how many.
+import type { App } from "./app";
+import { h, setAttribute, setHidden, setText } from "./dom";
+import { count, factor, speed } from "./format";
+
+export type Connection = "connecting" | "open" | "lost" | "replay";
+
+export function connectionOf(app: App): Connection {
+  return app.live ? app.live.state : "replay";
+}
+
+export const kConnectionWords: Record<Connection, string> = { connecting: "Connecting", open: "Live", lost: "Connection lost", replay: "Replay" };
+
+export class StatusLine {
+  private readonly connection = h("span", { class: "connection", "data-testid": "connection", role: "status" });
+  private readonly factor = h("span", { class: "number dim", "data-testid": "rtf", title: "Real-time factor: simulated seconds in a second" });
+  private readonly spectators = h("span", { class: "number dim", "data-testid": "spectators" });
+  readonly element = h("div", { class: "status card" }, h("b", {}, "Spark"), this.connection, this.factor, this.spectators);
+
+  update(app: App): void {
+    const connection = connectionOf(app);
+    const status = connection === "open" ? (app.live?.status ?? null) : null;
+    setAttribute(this.connection, "data-state", connection);
+    setText(this.connection, kConnectionWords[connection]);
+    setText(this.factor, app.replay ? speed(app.replay.speed) : factor(status?.realTimeFactor));
+    setHidden(this.factor, !app.replay && !status);
+    setText(this.spectators, status ? count(status.spectators, "spectator", "spectators") : "");
+    setHidden(this.spectators, !status);
+  }
+}

@@ -1,0 +1,28 @@
+import { describe, expect, it } from "vitest";
+import { fileNameOf, streamOf, wishesOf, withoutToken } from "../../src/ui/address";
+
+describe("the address", () => {
+  it("asks for nothing when it is bare", () => {
+    expect(wishesOf("http://host:3280/")).toEqual({ file: null, at: null, paused: false, view: null, quality: null, theme: null, panel: null, token: null });
+  });
+  it("names a log, a place in it, and how to look at it", () => {
+    const wishes = wishesOf("http://h/?file=logs/final.log.gz&at=63.5&paused&view=top&quality=quality&theme=light&panel=inspect#token=abc");
+    expect(wishes).toEqual({ file: "logs/final.log.gz", at: 63.5, paused: true, view: "top", quality: "quality", theme: "light", panel: "inspect", token: "abc" });
+  });
+  it("is not believed where it makes no sense", () => {
+    expect(wishesOf("http://h/?at=soon&view=inside&quality=best&theme=pink&panel=all")).toMatchObject({ at: null, view: null, quality: null, theme: null, panel: null });
+  });
+  it("loses the token and nothing else", () => {
+    expect(withoutToken("http://h/?file=a#token=secret")).toBe("http://h/?file=a");
+    expect(withoutToken("http://h/#token=secret&other=1")).toBe("http://h/#other=1");
+  });
+  it("leads to the stream of the same host, encrypted where the page is", () => {
+    expect(streamOf("http://host:3280/?file=a#b")).toBe("ws://host:3280/stream");
+    expect(streamOf("https://host/match/")).toBe("wss://host/match/stream");
+  });
+  it("gives logs a name for people", () => {
+    expect(fileNameOf("https://h/logs/semi%20final.log?x=1")).toBe("semi final.log");
+    expect(fileNameOf("final.log")).toBe("final.log");
+    expect(fileNameOf("logs/100%.log")).toBe("100%.log");
+  });
+});

@@ -1,0 +1,23 @@
+import { describe, expect, it } from "vitest";
+import { luminance, rgb } from "../../src/view/palette";
+import { kDefaults, kPalettes, settingsFrom } from "../../src/ui/settings";
+
+describe("settings", () => {
+  it("are kept as they were", () => {
+    const settings = { theme: "light", quality: "quality", labels: false, view: "top", palette: 2 };
+    expect(settingsFrom(JSON.stringify(settings))).toEqual(settings);
+  });
+  it("begin anew where they make no sense", () => {
+    for (const text of [null, "", "[", "7", "null", '{"theme":"pink","palette":99,"labels":"yes"}']) expect(settingsFrom(text)).toEqual(kDefaults);
+  });
+});
+
+describe("team colours", () => {
+  it("differ in lightness, so that nobody needs hues to tell the teams apart", () => {
+    const light = (hex: string) => luminance(rgb(parseInt(hex.slice(1), 16))) + 0.05;
+    for (const { left, right, name } of kPalettes) {
+      const [a, b] = [light(left), light(right)];
+      expect(Math.max(a, b) / Math.min(a, b), name).toBeGreaterThan(1.8);
+    }
+  });
+});
