@@ -48,6 +48,9 @@ class FakeJoint : public SceneNode, public IJoint {
   Leaf& leaf() override { return *this; }
   engine::JointType jointType() const override { return type; }
   IRigidBody* body(int index) const override { return bodies[index]; }
+  int axes() const override { return 1; }
+  Vec3 anchor() const override { return Vec3::Zero(); }
+  Vec3 axisNow(int) const override { return Vec3::UnitZ(); }
   double angle(int axis) const override { return angles[axis]; }
   double angleRate(int axis) const override { return rates[axis]; }
   double parameter(engine::JointParameter p, int axis) const override {
@@ -83,6 +86,8 @@ class FakeCollider : public SceneNode, public ICollider {
   Leaf& leaf() override { return *this; }
   IRigidBody* body() const override { return nullptr; }
   void bounds(Vec3& low, Vec3& high) const override { low = high = Vec3::Zero(); }
+  std::optional<engine::ShapeDescription> shape() const override { return std::nullopt; }
+  Pose poseInTransform() const override { return {}; }
 };
 
 /// A battery that has lost a quarter of its energy.

@@ -2,6 +2,8 @@
 /// \file
 /// Agents: the aspect that makes a subtree an agent, its perceptors and effectors, control aspects, parsers, and game control's services.
 
+#include <array>
+
 #include "api/net.h"
 #include "api/phases.h"
 #include "api/scene.h"
@@ -74,6 +76,29 @@ class ISharedView {
   virtual void share(std::uint64_t round) = 0;
 };
 
+/// An eye, for those who show what an agent sees beside what is true. Offered by perceptors that tell polar coordinates. Used between two
+/// cycles, in the simulation's thread; it looks anew at where things are.
+class IEye {
+ public:
+  SPARK_INTERFACE(IEye, 1);
+  virtual ~IEye() = default;
+  /// Something that may be seen. Its name is made of its percept's: "B", "F1L", "P Red 3", "P Red 3 head".
+  struct Sight {
+    std::string name;
+    Vec3f place;                   ///< in the world [m]
+  };
+  /// Where it is and looks, in the world: x forward, y to the left, z up.
+  virtual Matrix view() = 0;
+  /// Full horizontal (at most 360) and vertical (at most 180) angle in which it sees [deg].
+  virtual std::array<double, 2> cone() = 0;
+  /// How far it sees [m]; infinite: no limit.
+  virtual double range() = 0;
+  /// The place in the world that polar coordinates of its percept mean.
+  virtual Vec3f placeOf(double distance, double horizontalDeg, double verticalDeg) = 0;
+  /// Appends all there is to be seen in the scene, within its cone or not, and where it truly is.
+  virtual void sights(std::vector<Sight>& out) = 0;
+};
+
 /// Acts for its agent. Registered by `gamecontrol`.
 class Effector : public SceneNode {
   SPARK_CLASS(Effector, SceneNode)
@@ -133,6 +158,12 @@ class IGameControl {
   virtual void removeAgent(AgentAspect& agent, bool close) = 0;
   /// Number of agents that ever had a robot.
   virtual int agentsSeen() const = 0;
+  /// What an agent sensed last; nullptr when that is nothing yet or it is no agent. Valid until the next sense phase, in which perceptors
+  /// that are not due say nothing.
+  virtual const Predicates* percepts(const AgentAspect& agent) const = 0;
+  /// Wall time from the agent's percepts being sent to the next message from it [s], smoothed over some 16 of them; NaN when not known: it
+  /// lives inside the host, has not answered yet, or is no agent.
+  virtual double latency(const AgentAspect& agent) const = 0;
 };
 
 /// Marks an agent as having answered in lockstep. Offered by the `syn` effector.

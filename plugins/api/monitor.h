@@ -1,11 +1,12 @@
 #pragma once
 /// \file
 /// Monitors: items contribute to a frame, the monitor server makes one immutable frame a publish phase and works out what each client
-/// lacks, encoders below it write that, trainers below it take commands.
+/// lacks, encoders below it write that, trainers below it take commands, viewers inside the host take the frames themselves.
 
 #include <vector>
 
 #include "api/scene.h"
+#include "spark/event.h"
 #include "spark/predicates.h"
 
 namespace spark {
@@ -48,6 +49,7 @@ struct FrameNode {
   Matrix local = Matrix::Identity();  ///< transforms: relative to the enclosing printed transform
   bool visible = true, transparent = false;
   IVisual* visual = nullptr;       ///< lights and meshes; valid during the publish phase
+  Transform* transform = nullptr;  ///< transforms; valid during the publish phase; nullptr in recorded scenes
 };
 
 /// One instant as monitors see it. Immutable after the publish phase.
@@ -56,6 +58,20 @@ struct MonitorFrame {
   std::uint64_t shape = 0;         ///< changes when nodes, meshes or materials changed: clients need a full message
   std::vector<FrameNode> nodes;
   Environment env;
+};
+
+/// Name and content of one entry of the environment, as hashes: to know what a viewer was told.
+struct EntryKey {
+  std::uint64_t name = 0, content = 0;
+};
+
+/// The newest frame and what is worked out once for all viewers. Owned by the monitor server.
+struct NewestFrame {
+  MonitorFrame frame;
+  std::uint64_t serial = 0;        ///< counts frames that were made
+  std::vector<std::uint64_t> ids;  ///< per node, a number that no other node ever has; later made nodes have higher ones
+  std::vector<EntryKey> keys;      ///< of frame.env.entries; only those of `change` entries count
+  float precision = 0.005f;        ///< a matrix is sent again when an element moved by more
 };
 
 /// What one client is to get.
@@ -84,6 +100,18 @@ class ITrainer {
   virtual bool command(const Element& command, std::string& why) = 0;
 };
 
+/// Child of the monitor server: a viewer inside the host (a log, the browser's), which takes frames in the publish phase.
+class IFrameTaker {
+ public:
+  SPARK_INTERFACE(IFrameTaker, 1);
+  virtual ~IFrameTaker() = default;
+  /// A `once` entry of the frame that follows; valid during the call.
+  virtual void event(const Element& event) = 0;
+  /// The newest frame, in cycles in which one is due; what it points to is valid during the call. `encoder` is the server's, nullptr when
+  /// it has none; `event` the publish phase's.
+  virtual void take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) = 0;
+};
+
 /// The monitor server, at /sys/server/monitor.
 class IMonitorServer {
  public:
@@ -93,6 +121,9 @@ class IMonitorServer {
   virtual void requestFullState() = 0;
   /// The newest frame; valid until the next publish phase.
   virtual const MonitorFrame& frame() const = 0;
+  /// Takes commands as if a monitor had sent them: S-expressions, executed in the next act phase that takes commands. `from` is said where
+  /// something is wrong with them. Returns "" or why some of it will not be executed: what could not be read, or that too much waits.
+  virtual std::string command(std::string_view from, std::string_view message) = 0;
 };
 
 }  // namespace spark

@@ -4,6 +4,9 @@
 /// Double precision, SI, radians, world frame unless a name says otherwise. Used in the simulation's thread; readers in the sense phase may
 /// be several.
 
+#include <optional>
+#include <span>
+
 #include "api/engine.h"
 #include "api/scene.h"
 
@@ -48,6 +51,12 @@ class IJoint {
   virtual engine::JointType jointType() const = 0;
   /// 0: child link, 1: parent link; nullptr is the static world.
   virtual IRigidBody* body(int index) const = 0;
+  /// Axes that have a motor and stops, 0 to 3.
+  virtual int axes() const = 0;
+  /// Where it holds its bodies together, in the world [m]; zero for joints without such a point.
+  virtual Vec3 anchor() const = 0;
+  /// Direction of an axis in the world, of length 1; zero when there is none.
+  virtual Vec3 axisNow(int axis) const = 0;
   virtual double angle(int axis) const = 0;      ///< rad; slider m
   virtual double angleRate(int axis) const = 0;  ///< rad/s; slider m/s
   virtual double parameter(engine::JointParameter p, int axis) const = 0;
@@ -72,6 +81,10 @@ class ICollider {
   virtual IRigidBody* body() const = 0;
   /// World axis-aligned bounds; infinite for planes.
   virtual void bounds(Vec3& low, Vec3& high) const = 0;
+  /// The shape it has; nothing for colliders that only group or are not supported.
+  virtual std::optional<engine::ShapeDescription> shape() const = 0;
+  /// Where that shape is in the frame of the nearest transform above, wherever that is now; planes are in the world's.
+  virtual Pose poseInTransform() const = 0;
 };
 
 /// Lists the colliders that touched the handler's own since clear(). Offered by RecorderHandler.
@@ -197,6 +210,11 @@ class IPhysicsServer {
   virtual engine::World world() = 0;
   /// All bodies of a subtree in tree order.
   virtual void bodies(Node& root, std::vector<IRigidBody*>& out) = 0;
+  /// The contacts of the last step, whether they were solved or not; owners are ICollider (see colliderOf). `forceOnA` counts where
+  /// `feedback` says so: property measureForces asks for all. Valid until the next step or change of the tree; empty since such a change.
+  virtual std::span<const engine::Contact> contacts() const = 0;
+  /// The collider that an owner of these contacts is.
+  virtual ICollider& colliderOf(void* owner) const = 0;
 };
 
 }  // namespace spark

@@ -27,6 +27,7 @@ bool sameUser(int descriptor) {
 void ControlServer::describe(Description<ControlServer>& d) {
   d.doc("The local socket of sparkctl; only the host's own user can open it.");
   d.implements<IInputSource>();
+  d.implements<IRequests>();
   d.property("socket", &ControlServer::socket).doc("The socket's file; empty when there is none.");
   d.property("clients", &ControlServer::clients).doc("Programs connected now.");
 }
@@ -77,6 +78,12 @@ void ControlServer::poll() {
   accept();
   std::erase_if(clients_, [this](const auto& client) { return !client->serve(kernel(), *this); });
 }
+
+std::string ControlServer::answer(std::string_view request, control::Watch& watch, bool mayChange) {
+  return control::answer(kernel(), *this, request, watch, mayChange);
+}
+
+std::string ControlServer::nextOf(control::Watch& watch, bool& done) { return control::nextOf(kernel(), watch, done); }
 
 }  // namespace spark
 

@@ -15,8 +15,9 @@
 
 namespace spark {
 
-/// At /sys/server/control. Works only in the run loop's poll, between two cycles: what it changes is an input like any other.
-class ControlServer : public Leaf, public IInputSource {
+/// At /sys/server/control. Works only in the run loop's poll, between two cycles: what it changes is an input like any other. Other servers
+/// that hear clients let it answer for them.
+class ControlServer : public Leaf, public IInputSource, public IRequests {
   SPARK_CLASS(ControlServer, Leaf)
  public:
   static void describe(Description<ControlServer>& d);
@@ -25,6 +26,9 @@ class ControlServer : public Leaf, public IInputSource {
   /// Does not wait: poll() is all it has.
   bool wait(double) override { return false; }
   bool canWait() const override { return false; }
+
+  std::string answer(std::string_view request, control::Watch& watch, bool mayChange) override;
+  std::string nextOf(control::Watch& watch, bool& done) override;
 
  protected:
   void onLink() override;

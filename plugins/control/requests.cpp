@@ -160,8 +160,10 @@ std::string startWatch(Kernel& kernel, const Json& request, Watch& watch) {
   return watchLine(kernel, watch);
 }
 
-std::string dispatch(Kernel& kernel, const Leaf& self, const Json& request, Watch& watch) {
+std::string dispatch(Kernel& kernel, const Leaf& self, const Json& request, Watch& watch, bool mayChange) {
   const std::string what = textOf(request, "do");
+  if (!mayChange && (what == "set" || what == "call"))
+    throw Error("'" + what + "' changes the match, which only the referee may: log in with the token that the host printed at its start");
   if (what == "tree") return dump(tree(kernel, request));
   if (what == "get") return dump(get(kernel, request));
   if (what == "set") return dump(set(kernel, request));
@@ -172,11 +174,11 @@ std::string dispatch(Kernel& kernel, const Leaf& self, const Json& request, Watc
 }
 }  // namespace
 
-std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch) {
+std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch, bool mayChange) {
   try {
     const Json request = Json::parse(line);
     if (!request.is_object()) throw Error("expected one JSON object a line");
-    return dispatch(kernel, self, request, watch);
+    return dispatch(kernel, self, request, watch, mayChange);
   } catch (const std::exception& e) {
     return failure(e);
   }

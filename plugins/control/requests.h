@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What sparkctl may ask: JSON in, JSON out, answered from the tree's own descriptions.
+/// What sparkctl and other clients may ask: JSON in, JSON out, answered from the tree's own descriptions.
 ///
 ///     {"do":"tree","path":"/sys","depth":2}         {"ok":true,"tree":{"name","class","doc","children":[...]}}
 ///     {"do":"get","path":"/x","property":"step"}    {"ok":true,"properties":[{"name","value","text","type","unit","doc",...}]}
@@ -16,22 +16,16 @@
 #include <string>
 #include <string_view>
 
+#include "api/control.h"
 #include "spark/class_object.h"
 #include "spark/kernel.h"
 
 namespace spark::control {
 
-/// What a client watches; looked up anew when the tree changed.
-struct Watch {
-  std::string path, property, unit;
-  Ref<Leaf> leaf;
-  Value last;
-  bool started = false;
-};
-
 /// The answer to one line, without the line feed. Bad requests give an error answer; nothing is thrown. `self`: the server's own node,
-/// which requests must not saw off. When the request is a watch, `watch` is filled in and the answer is its first line.
-std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch);
+/// which requests must not saw off. When the request is a watch, `watch` is filled in and the answer is its first line. `mayChange` false
+/// refuses set and call.
+std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch, bool mayChange = true);
 
 /// The next line of a watch, "" when the value is as before. An error answer when the property is gone (`done` is set).
 std::string nextOf(Kernel& kernel, Watch& watch, bool& done);

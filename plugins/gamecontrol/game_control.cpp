@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 
 #include "gamecontrol/scene_effector.h"
@@ -238,8 +239,9 @@ void GameControl::sense(const Event& event) {
 }
 
 void GameControl::deliver() {
+  const auto now = Clock::now();
   for (const auto& p : participants_)
-    if (!p->deliver(kernel().log(), cycle_)) ++messagesDropped_;
+    if (!p->deliver(kernel().log(), cycle_, now)) ++messagesDropped_;
 }
 
 void GameControl::removeLeaving() {
@@ -316,6 +318,22 @@ const std::vector<AgentAspect*>& GameControl::agents() const {
   for (const auto& p : participants_)
     if (AgentAspect* a = p->aspect(); a && a->isLinked()) agents_.push_back(a);
   return agents_;
+}
+
+const GameControl::Participant* GameControl::participantOf(const AgentAspect& agent) const {
+  for (const auto& p : participants_)
+    if (p->aspect() == &agent) return p.get();
+  return nullptr;
+}
+
+const Predicates* GameControl::percepts(const AgentAspect& agent) const {
+  const Participant* p = participantOf(agent);
+  return p && !p->percepts().empty() ? &p->percepts() : nullptr;
+}
+
+double GameControl::latency(const AgentAspect& agent) const {
+  const Participant* p = participantOf(agent);
+  return p ? p->latency() : std::numeric_limits<double>::quiet_NaN();
 }
 
 void GameControl::agentsChanged() {

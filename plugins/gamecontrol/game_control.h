@@ -21,6 +21,8 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   const std::vector<AgentAspect*>& agents() const override;
   void removeAgent(AgentAspect& agent, bool close) override;
   int agentsSeen() const override { return agentsSeen_; }
+  const Predicates* percepts(const AgentAspect& agent) const override;
+  double latency(const AgentAspect& agent) const override;
 
   void connected(IConnection& connection) override;
   void received(IConnection& connection, std::string_view message) override;
@@ -58,6 +60,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   bool realTime() const;
   bool holding() const { return expect_ > 0 && !released_; }
   Participant* participantOf(const IConnection& connection) const;
+  const Participant* participantOf(const AgentAspect& agent) const;
   void agentsChanged();
   void note(const std::string& line);
   int agentCount() const { return static_cast<int>(agents().size()); }

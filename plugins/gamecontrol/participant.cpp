@@ -1,6 +1,7 @@
 #include "gamecontrol/participant.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "gamecontrol/scene_effector.h"
@@ -15,6 +16,7 @@ constexpr std::size_t kLongestLine = 300;
 // What a sync predicate is called as long as no robot says otherwise.
 constexpr std::string_view kSync = "syn";
 constexpr std::size_t kAhead = 4;  // effectors or perceptors
+constexpr double kSmoothed = 16;   // answers
 constexpr const char* kNoException = "something that is no std::exception";
 constexpr std::size_t kPart = 256, kPerceptor = 448, kAbove = 768, kBuffer = 256;  // bytes, as far as they are looked at in most cycles
 }  // namespace
@@ -54,6 +56,7 @@ void Participant::warn(Log& log, std::int64_t cycle, std::string_view text) {
 std::string Participant::receive(std::string_view message, std::size_t maxPending, Log& log, std::int64_t cycle) {
   heardFrom_ = true;
   lastHeard_ = Clock::now();
+  noteAnswer();
   pendingBytes_ += message.size();
   if (pendingBytes_ > maxPending || pending_.size() + later_.size() > kMaxPendingTokens)
     return fmt::format("it sent more than {} bytes within one cycle", maxPending);
@@ -67,6 +70,13 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
   if (pending_.empty() && !holdingBack_ && number_ > 0) std::swap(pending_, arrived_);
   else keep(arrived_);
   return {};
+}
+
+void Participant::noteAnswer() {
+  if (askedAt_ == Clock::time_point()) return;
+  const double took = std::chrono::duration<double>(lastHeard_ - askedAt_).count();
+  latency_ = std::isnan(latency_) ? took : latency_ + (took - latency_) / kSmoothed;
+  askedAt_ = {};
 }
 
 bool Participant::isSync(std::string_view predicate) const { return predicate == (hadRobot_ ? std::string_view(syncPredicate_) : kSync) && !predicate.empty(); }
@@ -280,7 +290,7 @@ void Participant::reportFault(Log& log) {
   faulty_ = kNone;
 }
 
-bool Participant::deliver(Log& log, std::int64_t cycle) {
+bool Participant::deliver(Log& log, std::int64_t cycle, Clock::time_point now) {
   if (percepts_.empty() || leaving()) return true;
   if (inside_) {
     try {
@@ -293,6 +303,7 @@ bool Participant::deliver(Log& log, std::int64_t cycle) {
   const bool first = sent_ == 0;
   if (!connection_->send(message_)) return false;
   ++sent_;
+  if (askedAt_ == Clock::time_point()) askedAt_ = now;
   // What was held back answers the first percepts: it is realised with what comes next, before it.
   if (first && holdingBack_) {
     skipCycle_ = true;

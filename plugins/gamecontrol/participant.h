@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -80,8 +81,8 @@ class Participant {
   bool sense(const Event& event);
   /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more.
   void reportFault(Log& log);
-  /// Sends or hands over what was sensed last. False when the message was dropped because an earlier one has not left.
-  bool deliver(Log& log, std::int64_t cycle);
+  /// Sends or hands over what was sensed last, at the instant `now`. False when the message was dropped because an earlier one has not left.
+  bool deliver(Log& log, std::int64_t cycle, Clock::time_point now);
 
   /// Lockstep: it can answer percepts with a sync predicate, was sent some, and has sent that predicate before.
   bool mustSync() const { return canSync() && pledged_; }
@@ -96,6 +97,10 @@ class Participant {
   std::int64_t sent() const { return sent_; }
   Clock::time_point joinedAt() const { return joinedAt_; }
   Clock::time_point lastHeard() const { return lastHeard_; }
+  /// What it sensed last.
+  const Predicates& percepts() const { return percepts_; }
+  /// Wall time from percepts to the answer [s], smoothed; NaN when not known.
+  double latency() const { return latency_; }
   /// What is under way inside the host: percepts that were not sent yet, what a behaviour wants to do next. Messages on the wire are not.
   void save(StateWriter& out) const;
   void load(StateReader& in);
@@ -141,6 +146,7 @@ class Participant {
   std::int64_t nextCount() const { return counter_ + (inside_ || heardFrom_ || counter_ == 0); }
   static bool isDue(const Perceptor& p, std::int64_t count) { return count % std::max(1, p.interval()) == 0; }
   void keep(const Predicates& arrived);
+  void noteAnswer();
   void encode();
   void warn(Log& log, std::int64_t cycle, std::string_view text);
 
@@ -156,6 +162,8 @@ class Participant {
        saidAll_ = false;
   bool pledged_ = false, synced_ = false;  ///< sent a sync predicate: ever, since the last cycle
   Clock::time_point joinedAt_ = Clock::now(), lastHeard_ = joinedAt_;
+  Clock::time_point askedAt_{};  ///< when the first percepts were sent that it has not answered; zero: there are none
+  double latency_ = std::numeric_limits<double>::quiet_NaN();
 
   Predicates pending_, arrived_, percepts_;
   Predicates later_;  ///< held back, or thought of and not due yet

@@ -17,15 +17,4 @@ class IFrameSource {
   virtual bool fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const Event& event, bool watched) = 0;
 };
 
-/// Child of the monitor server: a viewer inside the host, which takes frames in the publish phase.
-class IFrameTaker {
- public:
-  SPARK_INTERFACE(IFrameTaker, 1);
-  virtual ~IFrameTaker() = default;
-  /// An event of the frame that follows.
-  virtual void event(const Element& event) = 0;
-  /// The newest frame; `encoder` is the server's, nullptr when it has none.
-  virtual void take(const struct NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) = 0;
-};
-
 }  // namespace spark

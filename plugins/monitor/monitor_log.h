@@ -2,7 +2,6 @@
 
 #include <fstream>
 
-#include "frame_source.h"
 #include "monitor_view.h"
 #include "spark/describe.h"
 #include "spark/node.h"

@@ -43,24 +43,33 @@ void MonitorServer::connected(IConnection& connection) {
 }
 
 void MonitorServer::received(IConnection& connection, std::string_view message) {
-  if (commands_.size() >= kMostWaiting) return dropMessage(connection);
-  const std::uint32_t before = commands_.size();
   auto* parser = connection.port().childOf<IParser>();
-  if (!parser) parser = childOf<IParser>();
-  const ReadResult result = parser ? parser->parse(message, commands_) : readSexp(message, commands_);
-  if (!result.message.empty())
-    kernel().log().debug("{}: from {}: {}:{}: {}; what came before it counts", path(), connection.peer(), result.line, result.column, result.message);
-  if (commands_.size() <= kMostWaiting) return;
-  commands_.truncate(before);
-  dropMessage(connection);
+  keepCommands(parser ? parser : childOf<IParser>(), connection.peer(), message);
 }
 
-void MonitorServer::dropMessage(IConnection& connection) {
+std::string MonitorServer::command(std::string_view from, std::string_view message) { return keepCommands(nullptr, from, message); }
+
+std::string MonitorServer::keepCommands(IParser* parser, std::string_view from, std::string_view message) {
+  if (commands_.size() >= kMostWaiting) return dropMessage(from);
+  const std::uint32_t before = commands_.size();
+  const ReadResult result = parser ? parser->parse(message, commands_) : readSexp(message, commands_);
+  if (commands_.size() > kMostWaiting) {
+    commands_.truncate(before);
+    return dropMessage(from);
+  }
+  if (result.message.empty()) return {};
+  kernel().log().debug("{}: from {}: {}:{}: {}; what came before it counts", path(), from, result.line, result.column, result.message);
+  return fmt::format("{}:{}: {}", result.line, result.column, result.message);
+}
+
+std::string MonitorServer::dropMessage(std::string_view from) {
   ++dropped_;
-  if (toldDroppedAt_ && last_.cycle - *toldDroppedAt_ < kComplainEvery) return;
-  toldDroppedAt_ = last_.cycle;
-  kernel().log().warning("{}: {} sends more commands than can wait for the next cycle; {} messages were dropped", path(), connection.peer(), dropped_);
-  dropped_ = 0;
+  if (!toldDroppedAt_ || last_.cycle - *toldDroppedAt_ >= kComplainEvery) {
+    toldDroppedAt_ = last_.cycle;
+    kernel().log().warning("{}: {} sends more commands than can wait for the next cycle; {} messages were dropped", path(), from, dropped_);
+    dropped_ = 0;
+  }
+  return "more commands wait than the next cycle can take: it was dropped";
 }
 
 void MonitorServer::disconnected(IConnection& connection) {

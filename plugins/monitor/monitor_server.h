@@ -33,6 +33,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
 
   void requestFullState() override;
   const MonitorFrame& frame() const override { return newest_.frame; }
+  std::string command(std::string_view from, std::string_view message) override;
 
   void connected(IConnection& connection) override;
   void received(IConnection& connection, std::string_view message) override;
@@ -51,7 +52,9 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   void sendTo(const std::vector<MonitorClient*>& clients);
   IMonitorEncoder* encoderFor(const MonitorClient& client) const;
   void execute(const Element& command);
-  void dropMessage(IConnection& connection);
+  /// Keeps what a parser (nullptr: S-expressions) makes of a message until it is due.
+  std::string keepCommands(IParser* parser, std::string_view from, std::string_view message);
+  std::string dropMessage(std::string_view from);
 
   /// Of tree and scene.
   struct Version {

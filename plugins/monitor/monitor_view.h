@@ -7,21 +7,8 @@
 
 namespace spark {
 
-/// Name and content of one entry of the environment, as hashes: to know what a viewer was told.
-struct EntryKey {
-  std::uint64_t name = 0, content = 0;
-};
 /// The key of an environment's list.
 EntryKey keyOf(const Predicates& predicates, std::uint32_t token);
-
-/// The newest frame and what is worked out once for all viewers.
-struct NewestFrame {
-  MonitorFrame frame;
-  std::uint64_t serial = 0;        ///< counts frames that were made
-  std::vector<std::uint64_t> ids;  ///< numbers of the nodes; later made nodes have higher ones
-  std::vector<EntryKey> keys;      ///< of frame.env.entries
-  float precision = 0.005f;        ///< a matrix is sent again when an element moved by more
-};
 
 /// What one viewer (a client, a log) was sent, and from it what it is to get next.
 ///

@@ -47,6 +47,7 @@ void VisibleNodes::copyTo(std::vector<FrameNode>& out) const {
     FrameNode& node = out[i];
     node.depth = entry.depth;
     node.visual = entry.transform ? nullptr : entry.visual;
+    node.transform = entry.transform;
     if (entry.transform) {
       node.kind = FrameNode::Kind::transform;
       node.local = entry.transform->local();

@@ -2,8 +2,6 @@
 /// \file
 /// Colliders: geometry that touches, with collision handlers as children.
 
-#include <optional>
-
 #include "collision_group.h"
 #include "rigid_body.h"
 
@@ -25,6 +23,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   Leaf& leaf() override { return *this; }
   IRigidBody* body() const override { return body_.get(); }
   void bounds(Vec3& low, Vec3& high) const override;
+  std::optional<engine::ShapeDescription> shape() const override { return std::nullopt; }
+  Pose poseInTransform() const override { return offset(); }
   void follow(const Matrix& world) override;
 
   /// As of the last change of the tree.
@@ -39,8 +39,6 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   bool mayCollideWith(const Collider& other) const;
   /// The innermost group around it; nullptr: none. As of the last change of the tree.
   void setGroup(const CollisionGroup* group) { group_ = group; }
-  /// The shape it has; nothing for colliders that only group or are not supported.
-  virtual std::optional<engine::ShapeDescription> shape() const { return std::nullopt; }
   /// The body's centre of mass moved: a part of a TransformCollider stays where it is.
   void shift(const Vec3& by);
 

@@ -68,6 +68,14 @@ void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
   }
 }
 
+void measure(engine::Contacts& contacts, std::vector<std::size_t>& added) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (!contacts[i].solve || contacts[i].feedback) continue;
+    contacts[i].feedback = true;
+    added.push_back(i);
+  }
+}
+
 void runSolved(engine::Contacts& contacts) {
   // The last first: sensors sum forces in single precision, and the installed base's digits come from that order.
   for (std::size_t i = contacts.size(); i-- > 0;) {

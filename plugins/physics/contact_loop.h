@@ -18,6 +18,8 @@ bool pairCounts(void* ownerA, void* ownerB);
 
 /// Runs the handlers, decides what is solved. Stops early (and drops all contacts) when a handler changed the tree.
 void runHandlers(engine::Contacts& contacts, Kernel& kernel);
+/// Asks for the force of every contact that is solved; appends the indices of those that no handler asked for.
+void measure(engine::Contacts& contacts, std::vector<std::size_t>& added);
 /// Tells the handlers that asked for feedback what the solver did.
 void runSolved(engine::Contacts& contacts);
 

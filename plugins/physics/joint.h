@@ -15,6 +15,9 @@ class Joint : public PhysicsObject, public IJoint {
 
   Leaf& leaf() override { return *this; }
   IRigidBody* body(int index) const override { return bodies_[index == 0 ? 0 : 1].get(); }
+  int axes() const override;
+  Vec3 anchor() const override { return engine() ? engine()->anchor(joint_) : Vec3(Vec3::Zero()); }
+  Vec3 axisNow(int axis) const override { return engine() ? engine()->axis(joint_, axis) : Vec3(Vec3::Zero()); }
   double angle(int axis) const override { return engine() ? engine()->angle(joint_, axis) : 0; }
   double angleRate(int axis) const override { return engine() ? engine()->angleRate(joint_, axis) : 0; }
   double parameter(engine::JointParameter p, int axis) const override { return engine() ? engine()->parameter(joint_, p, axis) : 0; }
@@ -39,13 +42,9 @@ class Joint : public PhysicsObject, public IJoint {
   /// The engine that has the joint; nullptr when there is none.
   engine::IEngine* engine() const { return joint_ != engine::Joint::none ? world_->engine() : nullptr; }
   engine::Joint handle() const { return joint_; }
-  /// Axes that have a motor and stops.
-  int axes() const;
   void setAnchor(const Vec3& local);
-  Vec3 anchor() const { return engine() ? engine()->anchor(joint_) : Vec3(Vec3::Zero()); }
   /// `direction` in the joint's frame.
   void setAxisLocal(int axis, const Vec3& direction);
-  Vec3 axisNow(int axis) const { return engine() ? engine()->axis(joint_, axis) : Vec3(Vec3::Zero()); }
   double angleDeg(int axis) const { return radToDeg(angle(axis)); }
   double angleRateDeg(int axis) const { return radToDeg(angleRate(axis)); }
   /// Throws Error unless the joint has that axis.

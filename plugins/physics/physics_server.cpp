@@ -17,6 +17,10 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
       .doc(
           "A TransformCollider without a handler of its own bounces by default, whatever its inner collider has; false: it takes the inner "
           "one's handlers.");
+  d.property("measureForces", &S::measureForces_)
+      .doc(
+          "Every solved contact tells its force, for those who look at contacts; the last digits of what the dense solver computes may differ "
+          "from a run without.");
   d.property("contactsPerPair", &S::contactsPerPair_).range(1, 16).doc("Contact points of two colliders at most.");
   d.on<&PhysicsServer::physics>("physics");
   d.on<&PhysicsServer::place>("place");
@@ -132,16 +136,30 @@ void PhysicsServer::physics(const Event& event) {
   if (event.step <= 0 || !refresh()) return;
   if (scene_) scene_->place();
   shiftSurroundings();
-  const std::shared_ptr<physics::WorldHandle> world = world_->handle();
-  engine::IEngine& e = *world->engine();
-  contacts_.clear();
-  e.detect(world->id(), physics::pairCounts, contactsPerPair_, contacts_);
-  physics::runHandlers(contacts_, kernel());
-  e.step(world->id(), contacts_, event.step);
-  physics::runSolved(contacts_);
+  solve(event);
   reportFaults();
   for (std::size_t i = 0; i < scripts_.size(); ++i)
     if (scripts_[i] && scripts_[i]->hasEvents()) scripts_[i]->emit(event);
+}
+
+void PhysicsServer::solve(const Event& event) {
+  const std::shared_ptr<physics::WorldHandle> world = world_->handle();
+  engine::IEngine& e = *world->engine();
+  contacts_.clear();
+  contactsAt_ = kernel().structureVersion();
+  e.detect(world->id(), physics::pairCounts, contactsPerPair_, contacts_);
+  physics::runHandlers(contacts_, kernel());
+  measured_.clear();
+  if (measureForces_) physics::measure(contacts_, measured_);
+  e.step(world->id(), contacts_, event.step);
+  for (const std::size_t i : measured_) contacts_[i].feedback = false;  // no handler asked
+  physics::runSolved(contacts_);
+  for (const std::size_t i : measured_) contacts_[i].feedback = true;
+}
+
+std::span<const engine::Contact> PhysicsServer::contacts() const {
+  if (contactsAt_ != kernel().structureVersion()) return {};  // owners may be gone
+  return contacts_;
 }
 
 void PhysicsServer::reportFaults() {

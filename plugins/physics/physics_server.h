@@ -19,6 +19,8 @@ class PhysicsServer : public Node, public IPhysicsServer {
   engine::IEngine& engine() override;
   engine::World world() override;
   void bodies(Node& root, std::vector<IRigidBody*>& out) override;
+  std::span<const engine::Contact> contacts() const override;
+  ICollider& colliderOf(void* owner) const override { return *static_cast<Collider*>(owner); }
   /// Motors that model heat get warm.
   bool jointHeating() const { return jointHeating_; }
   /// Motors draw from their batteries.
@@ -39,13 +41,14 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void collect(const Node& scene);
   void formGroups(const Node& scene, std::vector<CollisionGroup*>& groups);
   void physics(const Event& event);
+  void solve(const Event& event);
   void place(const Event& event);
   void shiftSurroundings();
   void reportFaults();
   bool defaultOnTransform() const { return defaultOnTransform_; }
   void setDefaultOnTransform(bool on);
 
-  bool jointHeating_ = false, batteryDischarge_ = false, defaultOnTransform_ = true;
+  bool jointHeating_ = false, batteryDischarge_ = false, defaultOnTransform_ = true, measureForces_ = false;
   int contactsPerPair_ = 4;
 
   std::uint64_t version_ = 0;
@@ -54,6 +57,8 @@ class PhysicsServer : public Node, public IPhysicsServer {
   std::vector<Placed> bodies_;
   std::vector<Ref<ScriptHandler>> scripts_;
   engine::Contacts contacts_;
+  std::uint64_t contactsAt_ = 0;        ///< the tree's version when they were found
+  std::vector<std::size_t> measured_;   ///< contacts whose force only measureForces asked for
   std::vector<engine::Body> handles_;  ///< of bodies_
   std::vector<std::uint8_t> awake_;
   std::vector<Matrix> poses_;

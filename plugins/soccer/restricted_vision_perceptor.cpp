@@ -43,6 +43,7 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
   using V = RestrictedVisionPerceptor;
   d.doc("Sees within a cone: flags, goals, ball, parts of players, lines.");
   d.implements<ISharedView>();
+  d.implements<IEye>();
   d.on<&V::prepare>(phase::kPrepare);
   d.property("range", &V::range_).unit("m").min(0).doc("Flags, goals, ball and players farther away are not seen, lines are; infinite by default.");
   d.property("staticSenseAxis", &V::staticAxis_)
@@ -68,7 +69,7 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
 
 /// Into the frame in which it looks: the head's, or the field's as the team sees it.
 Vec3f RestrictedVisionPerceptor::toView(const Vec3f& way) const {
-  if (staticAxis_ || !transform()) return soccer::seenBy(side(), way);
+  if (inField()) return soccer::seenBy(side(), way);
   return transform()->world().block<3, 3>(0, 0).transpose() * way;
 }
 
@@ -203,6 +204,42 @@ void RestrictedVisionPerceptor::seeLines(Predicates& out) {
     writePolar(out, end);
     out.close();
   }
+}
+
+Matrix RestrictedVisionPerceptor::view() {
+  outlook_.bring(*this, range_);
+  if (!inField()) return soccer::headView(*transform());
+  Matrix frame = soccer::fieldView(soccer::placeOf(*this), side());
+  if (const AgentState* s = outlook_.state())
+    frame = frame * rotationDeg(0, 0, static_cast<float>(s->pan())) * rotationDeg(0, static_cast<float>(-s->tilt()), 0);
+  return frame;
+}
+
+std::array<double, 2> RestrictedVisionPerceptor::cone() {
+  const auto full = [this](int cone, double most) { return std::min(most, 2.0 * (staticAxis_ ? cone : cone / 2)); };
+  return {full(cone_[0], 360), full(cone_[1], 180)};
+}
+
+double RestrictedVisionPerceptor::range() {
+  outlook_.bring(*this, range_);
+  return outlook_.range();
+}
+
+/// With static axes pan and tilt are taken from the angles, which is no rotation.
+Vec3f RestrictedVisionPerceptor::placeOf(double distance, double horizontalDeg, double verticalDeg) {
+  if (!inField()) {
+    const Matrix frame = view();
+    return positionOf(frame) + frame.block<3, 3>(0, 0) * soccer::pointOf({distance, horizontalDeg, verticalDeg});
+  }
+  outlook_.bring(*this, range_);
+  const AgentState* s = outlook_.state();
+  const double pan = s ? s->pan() : 0, tilt = s ? s->tilt() : 0;
+  return soccer::placeOf(*this) + soccer::seenBy(side(), soccer::pointOf({distance, horizontalDeg + pan, verticalDeg + tilt}));
+}
+
+void RestrictedVisionPerceptor::sights(std::vector<Sight>& out) {
+  outlook_.bring(*this, range_);
+  soccer::tellSights(outlook_.sights(), out);
 }
 
 void RestrictedVisionPerceptor::prepare(const Event&) {

@@ -8,13 +8,19 @@ namespace spark {
 
 /// Sees within a cone, in the frame of the head or along the field's axes:
 /// `(See (G1R (pol ...)) (B (pol ...)) (P (team A) (id 3) (rlowerarm (pol ...)) ...))`.
-class RestrictedVisionPerceptor : public Perceptor, public ISharedView {
+class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public IEye {
   SPARK_CLASS(RestrictedVisionPerceptor, Perceptor)
  public:
   RestrictedVisionPerceptor() { predicateName_ = "See"; }
   static void describe(Description<RestrictedVisionPerceptor>& d);
   void sense(Predicates& out, const Event& event) override;
   void share(std::uint64_t round) override { outlook_.share(*this, round, range_); }
+
+  Matrix view() override;
+  std::array<double, 2> cone() override;
+  double range() override;
+  Vec3f placeOf(double distance, double horizontalDeg, double verticalDeg) override;
+  void sights(std::vector<Sight>& out) override;
   /// deg, of the static axis mode.
   const std::array<int, 2>& panRange() const { return pan_; }
   const std::array<int, 2>& tiltRange() const { return tilt_; }
@@ -39,6 +45,7 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView {
   const RandomStream& randomState() const { return noise_.random; }
   void setRandomState(RandomStream r) { noise_.random = r; }
   soccer::Side side() const { return outlook_.state() ? outlook_.state()->side() : soccer::Side::none; }
+  bool inField() const { return staticAxis_ || !transform(); }
   Vec3f toView(const Vec3f& way) const;
   soccer::Polar direction(const Vec3f& view) const;
   bool inCone(const soccer::Polar& p) const;

@@ -7,6 +7,33 @@ Polar polarOf(const Vec3f& r) {
   return {std::sqrt(x * x + y * y + z * z), radToDeg(std::atan2(y, x)), radToDeg(std::atan2(z, std::hypot(x, y)))};
 }
 
+Vec3f pointOf(const Polar& p) {
+  const double h = degToRad(p.horizontal), v = degToRad(p.vertical);
+  return Vec3(p.distance * std::cos(v) * std::cos(h), p.distance * std::cos(v) * std::sin(h), p.distance * std::sin(v)).cast<float>();
+}
+
+void tellSights(const Sights& sights, std::vector<IEye::Sight>& out) {
+  for (const Sights::Mark& m : sights.field()) out.push_back({m.object->perceptName(), m.place});
+  for (const Sights::Robot& r : sights.robots()) {
+    const std::string name = fmt::format("{} {} {}", r.state->perceptName(), r.state->team(), r.state->unum());
+    out.push_back({name, r.place});
+    for (const Sights::Mark& part : sights.partsOf(r)) out.push_back({fmt::format("{} {}", name, part.object->id()), part.place});
+  }
+}
+
+Matrix fieldView(const Vec3f& place, Side side) {
+  Matrix m = translation(place);
+  for (int axis = 0; axis < 3; ++axis) m.block<3, 1>(0, axis) = seenBy(side, Vec3f::Unit(axis));
+  return m;
+}
+
+Matrix headView(const Transform& head) {
+  Matrix m = head.world();
+  m.col(0) = head.world().col(1);
+  m.col(1) = -head.world().col(0);
+  return m;
+}
+
 void writePoint(Predicates& out, std::string_view name, const Vec3f& p) {
   out.open(name).add(double(p.x())).add(double(p.y())).add(double(p.z())).close();
 }
@@ -38,7 +65,10 @@ void Outlook::share(const SceneNode& eye, std::uint64_t round, float range) {
 }
 
 void Outlook::open(const SceneNode& eye, float range) {
-  if (std::exchange(shared_, false)) return;
+  if (!std::exchange(shared_, false)) bring(eye, range);
+}
+
+void Outlook::bring(const SceneNode& eye, float range) {
   refresh(eye);
   range_ = limited(range);
   sights_->update(eye.kernel(), range_);

@@ -76,6 +76,8 @@ class Outlook {
   void share(const SceneNode& eye, std::uint64_t round, float range);
   /// In the sense phase, before all below. Who is asked outside of it brings the sights up to date himself.
   void open(const SceneNode& eye, float range);
+  /// As open, at any time between the phases.
+  void bring(const SceneNode& eye, float range);
   /// How far it sees in this phase [m].
   float range() const { return range_; }
 
@@ -103,11 +105,20 @@ class Outlook {
   std::vector<std::uint32_t> near_;
 };
 
+/// The point that polar coordinates mean, in the frame in which they were measured.
+Vec3f pointOf(const Polar& polar);
+/// Appends all that there is to be seen, as IEye wants it.
+void tellSights(const Sights& sights, std::vector<IEye::Sight>& out);
+
 /// x and y turned as the side sees the field.
 inline Vec3f seenBy(Side side, const Vec3f& v) {
   const float d = static_cast<float>(direction(side));
   return {d * v.x(), d * v.y(), v.z()};
 }
+/// The frame, x forward, of an eye that looks along the field as its side sees it.
+Matrix fieldView(const Vec3f& place, Side side);
+/// The frame, x forward, of an eye that looks as its head does: heads look along their y axis.
+Matrix headView(const Transform& head);
 /// `(mypos x y z)` in the side's view.
 void writePoint(Predicates& out, std::string_view name, const Vec3f& p);
 

@@ -46,4 +46,24 @@ void VisionPerceptor::sense(Predicates& out, const Event&) {
   out.close();
 }
 
+Matrix VisionPerceptor::view() {
+  outlook_.bring(*this, range_);
+  return inField() ? soccer::fieldView(soccer::placeOf(*this), side()) : soccer::headView(*transform());
+}
+
+double VisionPerceptor::range() {
+  outlook_.bring(*this, range_);
+  return outlook_.range();
+}
+
+Vec3f VisionPerceptor::placeOf(double distance, double horizontalDeg, double verticalDeg) {
+  const Matrix frame = view();
+  return positionOf(frame) + frame.block<3, 3>(0, 0) * soccer::pointOf({distance, horizontalDeg, verticalDeg});
+}
+
+void VisionPerceptor::sights(std::vector<Sight>& out) {
+  outlook_.bring(*this, range_);
+  soccer::tellSights(outlook_.sights(), out);
+}
+
 }  // namespace spark

@@ -6,7 +6,7 @@ namespace spark {
 
 /// Sees everything around, by default along the field's axes as the team sees them:
 /// `(See (F1L (pol 12.1 30.4 -0.3)) ... (B (pol ...)) (P (team A) (id 1) (pol ...)))`.
-class VisionPerceptor : public Perceptor, public ISharedView {
+class VisionPerceptor : public Perceptor, public ISharedView, public IEye {
   SPARK_CLASS(VisionPerceptor, Perceptor)
  public:
   VisionPerceptor() { predicateName_ = "See"; }
@@ -14,6 +14,7 @@ class VisionPerceptor : public Perceptor, public ISharedView {
     using V = VisionPerceptor;
     d.doc("Sees everything around: flags, goals, ball, players.");
     d.implements<ISharedView>();
+    d.implements<IEye>();
     d.property("range", &V::range_).unit("m").min(0).doc("What is farther away is not seen; infinite by default.");
     d.property("staticSenseAxis", &V::staticAxis_)
         .doc("Angles from the field's x axis as the team sees it; else in the frame of the transform above.");
@@ -29,6 +30,12 @@ class VisionPerceptor : public Perceptor, public ISharedView {
   void sense(Predicates& out, const Event& event) override;
   void share(std::uint64_t round) override { outlook_.share(*this, round, range_); }
 
+  Matrix view() override;
+  std::array<double, 2> cone() override { return {360, 180}; }
+  double range() override;
+  Vec3f placeOf(double distance, double horizontalDeg, double verticalDeg) override;
+  void sights(std::vector<Sight>& out) override;
+
  protected:
   void saveState(StateWriter& out) const override { noise_.save(out); }
   void loadState(StateReader& in) override { noise_.load(in); }
@@ -41,6 +48,7 @@ class VisionPerceptor : public Perceptor, public ISharedView {
   const RandomStream& randomState() const { return noise_.random; }
   void setRandomState(RandomStream r) { noise_.random = r; }
   soccer::Side side() const { return outlook_.state() ? outlook_.state()->side() : soccer::Side::none; }
+  bool inField() const { return staticAxis_ || !transform(); }
   bool look(const Vec3f& place, soccer::Polar& out);
 
   soccer::Outlook outlook_;

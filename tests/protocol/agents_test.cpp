@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <catch2/catch.hpp>
 
 #include "arena.h"
@@ -59,6 +62,37 @@ class TestRule : public ControlAspect {
   void agentLeaving(AgentAspect& agent) override { deeds().push_back("go " + agent.path()); }
 };
 }  // namespace
+
+TEST_CASE("What an agent sensed last, and how long it took to answer, can be asked") {
+  Arena a;
+  Client c = a.client();
+  a.until([&] { return a.agents() == 1; });
+  const AgentAspect& agent = *a.control->agents()[0];
+  REQUIRE(a.control->percepts(agent) == nullptr);
+  c.send("(scene robot)");
+  a.until([&] { return a.control->percepts(agent) != nullptr; });
+  a.until([&] { return !c.drain().empty(); });
+  std::vector<std::string> heads;
+  for (int i = 0; i < 3; ++i, a.cycle())
+    for (const Element e : *a.control->percepts(agent)) heads.emplace_back(e.head());
+  REQUIRE(std::count(heads.begin(), heads.end(), "time") == 3);
+  REQUIRE(std::count(heads.begin(), heads.end(), "vision") == 1);
+  REQUIRE(std::isnan(a.control->latency(agent)));
+  c.send("(he1 1)");
+  c.arrive();
+  realise(a, 1);
+  const double first = a.control->latency(agent);
+  REQUIRE(first > 0);
+  c.send("(he1 1)");
+  c.arrive();
+  realise(a, 2);
+  REQUIRE(a.control->latency(agent) > 0);
+  REQUIRE(a.control->latency(agent) != first);  // two answers count
+  a.kernel.root().require<Node>("/usr/scene").create("AgentAspect", "stranger");
+  const auto& stranger = a.kernel.root().require<AgentAspect>("/usr/scene/stranger");
+  REQUIRE(a.control->percepts(stranger) == nullptr);
+  REQUIRE(std::isnan(a.control->latency(stranger)));
+}
 
 TEST_CASE("A session opens as the installed base's do: silence, robot, percepts with the original's latency") {
   Arena a;

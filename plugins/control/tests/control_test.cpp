@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "api/control.h"
 #include "api/phases.h"
 #include "spark/error.h"
 #include "test_support.h"
@@ -162,6 +163,28 @@ TEST_CASE("A watch tells every change and nothing else, and ends with its node")
   box->parent()->remove(*box);
   f.cycle();
   REQUIRE(f.receive()["ok"] == false);
+}
+
+TEST_CASE("Other servers' clients are answered too; who may not change the match can look and watch, not set or call") {
+  Fixture f;
+  auto& requests = *f.control->as<IRequests>();
+  control::Watch watch;
+  const auto ask = [&](const Json& request, bool mayChange) { return Json::parse(requests.answer(request.dump(), watch, mayChange)); };
+  const Json set = {{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", 0.01}};
+  const Json call = {{"do", "call"}, {"path", "/sys/server/simulation"}, {"method", "setStep"}, {"arguments", {0.03}}};
+  for (const Json& request : {set, call}) {
+    const Json refused = ask(request, false);
+    REQUIRE(refused["ok"] == false);
+    REQUIRE(refused["error"].get<std::string>().find("only the referee may") != std::string::npos);
+  }
+  REQUIRE(getProperty(*f.simulation, "step").toNumber() == 0.02);
+  REQUIRE(ask({{"do", "watch"}, {"path", "/sys/server/simulation"}, {"property", "step"}}, false)["value"] == 0.02);
+  REQUIRE(ask(set, true)["ok"] == true);
+  bool done = false;
+  REQUIRE(Json::parse(requests.nextOf(watch, done))["value"] == 0.01);
+  REQUIRE(requests.nextOf(watch, done).empty());
+  REQUIRE_FALSE(done);
+  REQUIRE(ask({{"do", "tree"}, {"path", "/sys"}}, false)["ok"] == true);
 }
 
 TEST_CASE("Plugins are listed with what they provide") {

@@ -190,6 +190,32 @@ TEST_CASE("a parser below the server, or below the port before it, reads the com
   CHECK(stage.trainer->pushed == std::vector<std::int64_t>{5});
 }
 
+TEST_CASE("commands from inside the host act as those of monitors, and what is wrong with them is said") {
+  Stage stage;
+  FakeConnection& a = stage.connect();
+  stage.kernel.registerClass<WordParser>();
+  stage.node().create("WordParser", "parser");  // for monitors
+  CHECK(stage.server->command("the browser", "(push 1)(push 2)") == "");
+  stage.monitor->received(a, "word");
+  CHECK(stage.server->command("the browser", "(push 3) (oh") .starts_with("1:"));
+  CHECK(stage.trainer->pushed.empty());
+  stage.nextFrame();
+  CHECK(stage.trainer->pushed == std::vector<std::int64_t>{1, 2, 4, 3});
+  CHECK(stage.text.find("from the browser: 1:") != std::string::npos);
+  std::string flood;
+  for (int i = 0; i < 20000; ++i) flood += "(push 1)";
+  CHECK(stage.server->command("the browser", flood).find("dropped") != std::string::npos);
+}
+
+TEST_CASE("a frame's transforms are those of the scene") {
+  Stage stage;
+  stage.nextFrame();
+  std::vector<Transform*> transforms;
+  for (const FrameNode& node : stage.server->frame().nodes)
+    if (node.kind == FrameNode::Kind::transform) transforms.push_back(node.transform);
+  CHECK(transforms == std::vector<Transform*>{stage.parts[0], stage.parts[2], stage.parts[1]});
+}
+
 TEST_CASE("a flood of commands does not grow memory without end") {
   Stage stage;
   FakeConnection& a = stage.connect();

@@ -54,6 +54,23 @@ TEST_CASE("every pair of colliders touches, plain and inside a transform collide
       }
 }
 
+TEST_CASE("a collider says its shape and where that is below its transform, wherever the body went") {
+  PhysicsHouse house;
+  Node& t = house.thing("thing", {1, 2, 3});
+  Node& outer = *t.create("TransformCollider", "outer").asNode();
+  Leaf& inner = outer.create("SphereCollider", "inner");
+  house.call(inner, "setRadius", {0.25});
+  house.call(inner, "setLocalPosition", {0.0, 0.0, 1.0});
+  house.call(outer, "setLocalPosition", {0.5, 0.0, 0.0});
+  house.step(5);
+  const auto& sphere = *inner.as<ICollider>();
+  REQUIRE(sphere.shape());
+  CHECK(sphere.shape()->shape == engine::Shape::sphere);
+  CHECK(sphere.shape()->radius == 0.25);
+  CHECK((sphere.poseInTransform().position - Vec3(0.5, 0, 1)).norm() < 1e-9);
+  CHECK_FALSE(outer.as<ICollider>()->shape());
+}
+
 TEST_CASE("bounds are where the shape is") {
   PhysicsHouse house;
   Vec3 low, high;

@@ -12,13 +12,15 @@ class CountingHandler : public ContactJointHandler {
   static void describe(Description<CountingHandler>& d) { d.doc("Counts contacts, for tests."); }
   void onCollision(const Collision& c) override {
     ++(c.direct ? direct : symmetric);
-    c.contact.feedback = true;
+    if (asks) c.contact.feedback = true;
     if (breaksRules) c.self.leaf().asNode()->create("RecorderHandler");
   }
   void onSolved(const Collision& c) override {
+    ++solved;
     if (c.direct) force += c.contact.forceOnA;
   }
-  int direct = 0, symmetric = 0;
+  int direct = 0, symmetric = 0, solved = 0;
+  bool asks = true;
   Vec3 force = Vec3::Zero();
   bool breaksRules = false;
 };
@@ -128,6 +130,38 @@ TEST_CASE("a handler is told direct and symmetric contacts, and afterwards the f
   CHECK(lower.direct == 0);
   CHECK(lower.symmetric == 4);
   CHECK(upper.force.z() > 0);
+}
+
+TEST_CASE("contacts of the last step can be looked at, all with their force when it is measured, and handlers hear no more for that") {
+  Ground g;
+  g.kernel.registerClass<CountingHandler>();
+  auto& upper = static_cast<CountingHandler&>(g.collider().create("CountingHandler"));
+  g.ground.create("ContactJointHandler");
+  Node& other = g.box("other", {5, 0, 0.49}, {1, 1, 1});
+  auto& indifferent = static_cast<CountingHandler&>(other.find("collider")->asNode()->create("CountingHandler"));
+  indifferent.asks = false;
+  auto& server = g.kernel.root().require<IPhysicsServer>("/sys/server/physics");
+  CHECK(server.contacts().empty());
+  const auto withForce = [&] {
+    std::size_t n = 0;
+    for (const engine::Contact& c : server.contacts()) n += c.feedback && c.forceOnA.norm() > 0;
+    return n;
+  };
+  g.step();
+  REQUIRE(server.contacts().size() == 8);
+  CHECK(withForce() == 4);
+  const engine::Contact& last = server.contacts().back();
+  CHECK(last.depth == Approx(0.01).margin(1e-6));
+  std::vector<std::string> touching;
+  for (void* owner : {last.ownerA, last.ownerB}) touching.push_back(server.colliderOf(owner).leaf().path());
+  CHECK(std::count(touching.begin(), touching.end(), "/usr/scene/ground") == 1);
+  setProperty(*g.kernel.root().find("/sys/server/physics"), "measureForces", true);
+  g.step();
+  CHECK(withForce() == 8);
+  CHECK(upper.solved == 8);
+  CHECK(indifferent.solved == 0);
+  g.scene.remove(other);
+  CHECK(server.contacts().empty());
 }
 
 TEST_CASE("a handler that changes the tree in the middle of a step is named, and nothing breaks") {

@@ -190,6 +190,90 @@ TEST_CASE("cone vision in the head's frame looks along y", "[soccer]") {
   CHECK(a.heard.find("(B ") == std::string::npos);
 }
 
+namespace {
+
+/// Whether all that an eye's agent saw last is where the eye says that it truly is; how much that was.
+std::size_t checkedSights(MatchHouse& h, IEye& eye, int agent) {
+  auto& control = h.kernel.root().require<IGameControl>("/sys/server/gamecontrol");
+  const auto& aspect = h.kernel.root().require<AgentAspect>("/usr/scene/AgentAspect" + std::to_string(agent));
+  Element see;
+  for (int i = 0; i < 3 && !see; ++i) {
+    h.run(1);
+    for (const Element e : *control.percepts(aspect))
+      if (e.head() == "See") see = e;
+  }
+  std::vector<IEye::Sight> sights;
+  eye.sights(sights);
+  std::size_t checked = 0;
+  const auto check = [&](const std::string& name, const Element& polar) {
+    INFO(name);
+    const auto at = std::find_if(sights.begin(), sights.end(), [&](const IEye::Sight& s) { return s.name == name; });
+    REQUIRE(at != sights.end());
+    const Vec3f place = eye.placeOf(polar.at(1).number(), polar.at(2).number(), polar.at(3).number());
+    CHECK((place - at->place).norm() < 1e-3f);
+    // x of the view is ahead
+    const Vec3f way = rigidInverse(eye.view()).block<3, 3>(0, 0) * (at->place - positionOf(eye.view()));
+    CHECK(std::abs(radToDeg(std::atan2(way.y(), way.x()))) <= eye.cone()[0] / 2 + 0.01);
+    ++checked;
+  };
+  for (const Element e : see) {
+    if (!e.isList()) continue;
+    if (e.head() != "P") {
+      check(std::string(e.head()), e.at(1));
+      continue;
+    }
+    const std::string name = "P " + std::string(e.named("team").at(1).text()) + " " + std::to_string(e.named("id").at(1).integer());
+    for (const Element part : e)
+      if (part.isList() && part.head() == "pol") check(name, part);
+      else if (part.isList() && part.named("pol")) check(name + " " + std::string(part.head()), part.named("pol"));
+  }
+  return checked;
+}
+
+}  // namespace
+
+TEST_CASE("an eye says where in the world its percepts lie, whichever way it looks", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  h.join("A", 1), h.join("B", 2), h.join("B", 3);
+  h.setMode("PlayOn");
+  h.placeAgent(3, 9, 7);
+  h.placeBall(12, 5, 3);
+  const Value off(false);
+  const auto turn = [&](int agent, double x, double y) {
+    h.bodyOf(agent).setPose({Vec3(x, y, 2), toPose(rotationDeg(17, 5, 40)).rotation});
+  };
+  quiet(h, 1), quiet(h, 2);
+  turn(1, -8, 3), turn(2, 20, 1);
+  for (const int agent : {1, 2}) {
+    const std::string body = "/usr/scene/AgentAspect" + std::to_string(agent) + "/body";
+    auto& all = h.kernel.root().require<IEye>(body + "/VisionPerceptor");
+    CHECK(all.cone() == std::array<double, 2>{360, 180});
+    CHECK(all.range() == std::numeric_limits<double>::infinity());
+    CHECK(checkedSights(h, all, agent) == 11);
+    setProperty(h.at(body + "/VisionPerceptor"), "staticSenseAxis", false);
+    turn(agent, 3, 3);
+    CHECK(checkedSights(h, all, agent) == 11);
+
+    auto& node = h.kernel.root().require<Node>(body);
+    node.remove(h.at(body + "/VisionPerceptor"));
+    Leaf& cone = node.create("RestrictedVisionPerceptor", "eye");
+    callMethod(cone, "addNoise", std::span(&off, 1));
+    callMethod(cone, "setViewCones", std::vector<Value>{75, 60});
+    setProperty(cone, "range", 70);
+    auto& eye = h.kernel.root().require<IEye>(body + "/eye");
+    CHECK(eye.cone() == std::array<double, 2>{150, 120});
+    CHECK(eye.range() == 70);
+    setProperty(h.stateOf(agent), "pan", 30);
+    setProperty(h.stateOf(agent), "tilt", -10);
+    CHECK(checkedSights(h, eye, agent) >= 3);
+    setProperty(cone, "staticSenseAxis", false);
+    CHECK(eye.cone() == std::array<double, 2>{74, 60});
+    turn(agent, 30, -30);
+    CHECK(checkedSights(h, eye, agent) >= 2);
+  }
+}
+
 TEST_CASE("what is said every cycle is heard every other cycle, by itself always", "[soccer]") {
   MatchHouse h;
   h.importField();
