@@ -1,0 +1,33 @@
+import { Poller } from "../poller";
+
+/// The newest answer to a question that is asked while somebody wants it.
+export class Feed<T> {
+  answer: T | null = null;
+  /// What the host said instead.
+  error = "";
+  /// Counts up with each answer and error.
+  version = 0;
+  private subject: string | null = null;
+  private readonly poller: Poller<T>;
+
+  /// `ask` gets the subject that was given to tick().
+  constructor(ask: (subject: string) => Promise<T>) {
+    this.poller = new Poller<T>(() => ask(this.subject!), (answer) => this.take(answer, ""), (why) => this.take(null, why));
+  }
+
+  /// null: nobody wants it, or there is nothing to ask about. Another subject forgets the last answer.
+  tick(now: number, subject: string | null): void {
+    if (subject !== this.subject) {
+      this.subject = subject;
+      this.poller.stop();
+      this.take(null, "");
+    }
+    if (subject !== null) this.poller.tick(now);
+  }
+
+  private take(answer: T | null, error: string): void {
+    this.answer = answer;
+    this.error = error;
+    ++this.version;
+  }
+}

@@ -1,0 +1,106 @@
+import type { Group } from "three";
+import type { Robot, World } from "../../model";
+import { Texts } from "../../drawings/texts";
+import type { Listing, Overlay, Surroundings } from "./overlay";
+import { fixed, nameOf } from "./overlay";
+
+const kPeriod = 250;   // [ms] between two readings of speed and latency
+const kAbove = 0.3;    // [m] above the head
+const kSize = 12;      // [px]
+
+interface Label {
+  robot: Robot;
+  text: string;
+  place: Float32Array;
+}
+
+/// What each robot does, above its head: its speed, and how long its agent takes to answer.
+export class LabelsOverlay implements Overlay {
+  readonly id = "labels";
+  readonly title = "Agent labels";
+  readonly doc = "Above each robot: its speed, and the time from its percepts to its answer (known only for agents that connect from outside).";
+  readonly key = "shift+a";
+  readonly missing = null;
+  on = false;
+  note = "";
+  listing: Listing | null = null;
+  version = 0;
+  private readonly texts = new Texts();
+  private labels: Label[] = [];
+  private scene = -1;
+  private frame = -1;
+  private readAt = -Infinity;
+  private readTime = NaN;
+  private shown = false;
+  private readonly matrix = new Float32Array(16);
+
+  constructor(above: Group) {
+    above.add(this.texts.object);
+  }
+
+  update(now: number, around: Surroundings): void {
+    const { world, canvas } = around;
+    if (!this.on || !world) {
+      if (this.shown) this.hide(canvas);
+      return;
+    }
+    this.shown = true;
+    if (this.scene !== world.versions.scene) this.restart(world);
+    const due = now - this.readAt >= kPeriod;
+    if (due) this.read(now, around, world);
+    if (!due && this.frame === world.versions.frame) return;
+    this.frame = world.versions.frame;
+    this.place(around);
+    canvas.invalidate();
+  }
+
+  dispose(): void {
+    this.texts.dispose();
+  }
+
+  private restart(world: World): void {
+    this.scene = world.versions.scene;
+    this.labels = world.robots.map((robot) => ({ robot, text: "", place: new Float32Array([NaN, NaN, NaN]) }));
+    this.readAt = -Infinity;
+    this.readTime = NaN;
+  }
+
+  private read(now: number, { canvas, live }: Surroundings, world: World): void {
+    const seconds = world.time - this.readTime;
+    this.readAt = now;
+    if (seconds === 0) return;   // paused: what was read last stays
+    this.readTime = world.time;
+    const rows: string[][] = [];
+    for (const label of this.labels) {
+      canvas.matrixOf(label.robot.torso, this.matrix);
+      const [x, y, z] = [this.matrix[12]!, this.matrix[13]!, this.matrix[14]!];
+      const speed = Math.hypot(x - label.place[0]!, y - label.place[1]!, z - label.place[2]!) / Math.abs(seconds);
+      label.place.set([x, y, z]);
+      const latency = live?.status?.agents.find((a) => a.path === label.robot.path)?.latency;
+      const moving = Number.isFinite(speed) ? `${fixed(speed, 2)} m/s` : "";
+      label.text = latency == null ? moving : `${moving} · ${fixed(latency, 0)} ms`;
+      rows.push([nameOf(label.robot), moving || "–", latency == null ? "–" : fixed(latency, 1)]);
+    }
+    this.note = this.labels.length === 0 ? "There are no robots." : "";
+    this.listing = { head: ["robot", "speed", "answer [ms]"], rows };
+    ++this.version;
+  }
+
+  private place({ canvas }: Surroundings): void {
+    this.texts.begin();
+    for (const label of this.labels) {
+      canvas.matrixOf(label.robot.head, this.matrix);
+      this.texts.add(label.text, this.matrix[12]!, this.matrix[13]!, this.matrix[14]! + kAbove, kSize, 1, 1, 1, -2);
+    }
+    this.texts.end();
+  }
+
+  private hide(canvas: Surroundings["canvas"]): void {
+    this.shown = false;
+    this.texts.begin();
+    this.texts.end();
+    this.listing = null;
+    ++this.version;
+    canvas.invalidate();
+  }
+}

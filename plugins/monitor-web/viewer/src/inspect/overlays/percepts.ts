@@ -1,0 +1,133 @@
+import { Group } from "three";
+import { Dots } from "../../drawings/dots";
+import { viewCone } from "../../drawings/geometry";
+import { Lines } from "../../drawings/lines";
+import { Texts } from "../../drawings/texts";
+import type { Feed } from "./feed";
+import { FedOverlay, fixed, waitingForRobot, type Surroundings } from "./overlay";
+
+export interface Percepts {
+  /// When they were sensed, and when it saw what it saw [s].
+  time: number;
+  seenTime?: number;
+  percepts: unknown[];
+  /// World matrix of what it looks with: 16 numbers, column by column.
+  head?: number[];
+  cones: { path: string; matrix: number[]; horizontal: number; vertical: number; range?: number | null }[];
+  seen: { name: string; seen: [number, number, number]; true?: [number, number, number] | null }[];
+  /// Field lines as it saw them, from and to.
+  lines?: [[number, number, number], [number, number, number]][];
+}
+
+const kFar = 2.5;   // [m]; how far a cone without a range is drawn
+
+/// How far the selected robot's eyes reach.
+export class ConesOverlay extends FedOverlay<Percepts> {
+  readonly id = "cones";
+  readonly title = "Perceptor cones";
+  readonly doc = `What the selected robot's perceptors can see: openings and ranges (${kFar} m are drawn of those without a bound).`;
+  readonly key = "n";
+  readonly missing = "Recordings do not hold perceptors.";
+  private readonly lines = new Lines({ width: 1.5, opacity: 0.8 });
+
+  constructor(feed: Feed<Percepts>, above: Group) {
+    super(feed);
+    above.add(this.lines.object);
+  }
+
+  dispose(): void {
+    this.lines.dispose();
+  }
+
+  protected draw({ cones }: Percepts): void {
+    this.lines.begin();
+    this.lines.colour(1, 0.92, 0.45);
+    for (const c of cones) viewCone(c.matrix, c.horizontal, c.vertical, c.range ? Math.min(c.range, 40) : kFar, this.lines.stroke);
+    this.lines.end();
+    this.note = cones.length === 0 ? "This robot has no perceptor with a cone." : "";
+    this.listing = {
+      head: ["perceptor", "across [°]", "up [°]", "range [m]"],
+      rows: cones.map((c) => [c.path.split("/").pop()!, fixed(c.horizontal, 0), fixed(c.vertical, 0), c.range ? fixed(c.range, 1) : "∞"]),
+    };
+  }
+
+  protected clear(): void {
+    this.lines.begin();
+    this.lines.end();
+  }
+
+  protected waiting(around: Surroundings): string {
+    return waitingForRobot(around);
+  }
+}
+
+/// Where the selected robot sees things, and where they are.
+export class SeenOverlay extends FedOverlay<Percepts> {
+  readonly id = "seen";
+  readonly title = "Seen against true";
+  readonly doc = "Where the selected robot sees things and field lines (orange) and where things are (blue), joined by a red line; the list tells the errors.";
+  readonly key = "v";
+  readonly missing = "Recordings do not hold what agents sensed.";
+  /// The percepts as S-expressions, one a line.
+  told = "";
+  private readonly group = new Group();
+  private readonly lines = new Lines({ width: 2, through: true });
+  private readonly dots = new Dots(this.group, { through: true }, 1);
+  private readonly texts = new Texts();
+
+  constructor(feed: Feed<Percepts>, above: Group) {
+    super(feed);
+    this.group.add(this.lines.object, this.texts.object);
+    above.add(this.group);
+  }
+
+  dispose(): void {
+    for (const part of [this.lines, this.dots, this.texts]) part.dispose();
+    this.group.removeFromParent();
+  }
+
+  protected draw({ seen, percepts, time, seenTime, lines }: Percepts): void {
+    for (const part of [this.lines, this.dots, this.texts]) part.begin();
+    this.lines.colour(1, 0.6, 0.1);
+    for (const [from, to] of lines ?? []) this.lines.stroke(...from, ...to);
+    this.lines.colour(1, 0.35, 0.35);
+    for (const s of seen) {
+      this.dots.add(...s.seen, 0.04, 1, 0.6, 0.1);
+      this.texts.add(s.name, ...s.seen, 12, 1, 0.85, 0.6);
+      if (!s.true) continue;
+      this.dots.add(...s.true, 0.035, 0.3, 0.65, 1);
+      this.lines.stroke(...s.seen, ...s.true);
+    }
+    for (const part of [this.lines, this.dots, this.texts]) part.end();
+    const errors = seen.map(errorOf).filter((e) => e !== null);
+    const mean = errors.length > 0 ? ` Mean error ${fixed(errors.reduce((a, b) => a + b, 0) / errors.length, 3)} m.` : "";
+    this.note = `At ${fixed(seenTime ?? time, 2)} s it saw ${seen.length} things and ${lines?.length ?? 0} lines.${mean}`;
+    this.told = percepts.map(sexp).join("\n");
+    this.listing = {
+      head: ["seen", "at [m]", "error [m]"],
+      rows: seen.map((s) => [s.name, s.seen.map((v) => fixed(v, 2)).join(" "), fixed(errorOf(s), 3)]),
+    };
+  }
+
+  protected clear(): void {
+    for (const part of [this.lines, this.dots, this.texts]) part.begin();
+    for (const part of [this.lines, this.dots, this.texts]) part.end();
+    this.told = "";
+  }
+
+  protected waiting(around: Surroundings): string {
+    return waitingForRobot(around);
+  }
+}
+
+/// [m]; null when it is not known where the thing is.
+export function errorOf(s: Percepts["seen"][number]): number | null {
+  return s.true ? Math.hypot(s.seen[0] - s.true[0], s.seen[1] - s.true[1], s.seen[2] - s.true[2]) : null;
+}
+
+/// Nested lists as agents get them.
+export function sexp(value: unknown): string {
+  if (Array.isArray(value)) return `(${value.map(sexp).join(" ")})`;
+  if (typeof value === "number") return Number.isInteger(value) ? String(value) : value.toFixed(2);
+  return String(value);
+}

@@ -1,0 +1,42 @@
+/// Asks again and again while it is on, never twice at once, and not more often than every `interval` ms; after a failure it waits a second.
+/// An answer that comes after stop() is not heard.
+export class Poller<T> {
+  private running = 0;
+  private waiting = false;
+  private next = 0;
+
+  constructor(
+    private readonly ask: () => Promise<T>,
+    private readonly heard: (answer: T) => void,
+    private readonly failed: (why: string) => void,
+    private readonly interval = 100,
+  ) {}
+
+  /// To be called often, with the time of the page [ms].
+  tick(now: number): void {
+    if (this.waiting || now < this.next) return;
+    this.waiting = true;
+    this.next = now + this.interval;
+    const mine = this.running;
+    const done = (tell: () => void, pause: number) => {
+      if (mine !== this.running) return;
+      this.waiting = false;
+      this.next = Math.max(this.next, now + pause);
+      tell();
+    };
+    this.ask().then(
+      (answer) => done(() => this.heard(answer), 0),
+      (why: unknown) => done(() => this.failed(reason(why)), 1000),
+    );
+  }
+
+  stop(): void {
+    ++this.running;
+    this.waiting = false;
+    this.next = 0;
+  }
+}
+
+export function reason(why: unknown): string {
+  return why instanceof Error ? why.message : String(why);
+}
