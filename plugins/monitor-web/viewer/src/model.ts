@@ -132,6 +132,8 @@ export interface LiveSource extends Source {
   login(token: string): Promise<boolean>;
   /// Wanted pictures a second, 1..50; detail "fine" or "coarse".
   setRate(rate: number, detail: "fine" | "coarse"): void;
+  /// World.drawings is kept up to date from now on, or empty; off at first.
+  setDrawings(on: boolean): void;
   onchange: (() => void) | null;
 }
 

@@ -1,8 +1,15 @@
+import { Live } from "./live";
 import { indexLog } from "./log";
 import { Replay } from "./replay";
 
 export { modeName, modeSide, modeWords, teamName } from "./events";
+export { Live } from "./live";
 export { Replay } from "./replay";
+
+/// Watches the match at a stream's address ("ws://host:3280/stream"). Returns at once, and connects by itself, again and again.
+export function openLive(url: string): Live {
+  return new Live(url);
+}
 
 /// Opens a recorded match: a file, what was fetched, or an address. Rejects with words for people when it cannot be read or is none;
 /// `progress` hears how far that is (0..1).

@@ -1,4 +1,5 @@
 import type { Environment, GameEvent } from "../model";
+import { readPackets } from "../codec/packets";
 import { RecordReader } from "../codec/record";
 import { EventReader, modeName, takeEntries } from "./events";
 
@@ -12,6 +13,9 @@ const kSlice = 4 << 20;
 const kLongestLine = 8 << 20;
 const kPage = 1 << 20;
 const kPages = 12;
+/// Drawings are kept in memory, about so many bytes of them.
+const kMostPackets = 64 << 20;
+const kNoPackets: Uint8Array[] = [];
 /// Between two records, unless the log says otherwise [s].
 const kUsual = 0.2;
 /// More than so many usual times is no pause between two records.
@@ -22,8 +26,9 @@ export interface LogRecord {
   offset: number;
   size: number;
   full: boolean;
-  /// Bytes of draw commands in front of the message.
+  /// Bytes of draw commands in front of the message, and their packets.
   drawings: number;
+  packets: Uint8Array[];
   /// The referee lets play go on: the ball moves by itself.
   free: boolean;
   /// By the game's clock and by the log's own [s].
@@ -76,6 +81,7 @@ class Indexer {
   private page = 0;
   private tooLong = false;
   private first = "";
+  private packetBytes = 0;
 
   constructor(private readonly name: string) {}
 
@@ -143,6 +149,7 @@ class Indexer {
       size: end - from,
       full: head.full,
       drawings: message - from,
+      packets: this.packets(bytes, from, message),
       free: /^(playon|pass)/i.test(modeName(this.environment)),
       gameTime: Number(this.environment.get("time") ?? NaN),
       clock: 0,
@@ -150,6 +157,12 @@ class Indexer {
       page: this.page,
     });
     this.gap = 0;
+  }
+
+  private packets(bytes: Uint8Array, from: number, end: number): Uint8Array[] {
+    if (from === end || this.packetBytes > kMostPackets) return kNoPackets;
+    this.packetBytes += (end - from) / 4;
+    return readPackets(bytes, from, end);
   }
 
   private setClocks(): void {

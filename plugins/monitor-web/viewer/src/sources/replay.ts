@@ -1,4 +1,5 @@
 import type { Environment, GameEvent, ReplaySource, World } from "../model";
+import { DrawingBoard } from "../codec/packets";
 import { RecordReader } from "../codec/record";
 import { Blend } from "./blend";
 import { takeEntries } from "./events";
@@ -54,6 +55,9 @@ export class Replay implements ReplaySource {
   private shownShare = -1;
   private shownTime = NaN;
   private shownEvents = 0;
+  private readonly board = new DrawingBoard();
+  /// The first record whose drawings are not on the board.
+  private drawn = 0;
   private position: number;
   private running = false;
   private rate = 1;
@@ -259,6 +263,7 @@ export class Replay implements ReplaySource {
       this.blend.prepare(from.scene, from.poses, to.poses, comparable, begin.free && end.free, world.local);
       this.showVisibility(from);
       this.showEvents(begin.clock);
+      this.showDrawings(record);
       if (world.environment !== from.environment) {
         world.environment = from.environment;
         ++world.versions.environment;
@@ -279,6 +284,21 @@ export class Replay implements ReplaySource {
   private showVisibility(moment: Moment): void {
     const { nodes } = moment.scene;
     for (let i = 0; i < nodes.length; ++i) if (nodes[i]!.kind === "mesh") nodes[i]!.visible = moment.poses.visible[i] === 1;
+  }
+
+  /// Draws what was drawn since; from the beginning when the way goes back.
+  private showDrawings(record: number): void {
+    const { board, records, world } = this;
+    let changed = false;
+    if (record + 1 < this.drawn) {
+      changed = board.shown.size > 0;
+      board.clear();
+      this.drawn = 0;
+    }
+    for (; this.drawn <= record; ++this.drawn) for (const packet of records[this.drawn]!.packets) changed = board.take(packet) || changed;
+    if (!changed) return;
+    world.drawings = new Map(board.shown);
+    ++world.versions.drawings;
   }
 
   private showEvents(clock: number): void {

@@ -1,0 +1,140 @@
+/// The binary frames of the stream: quantised places of a scene's transforms, whole or as differences to the frame before.
+///
+///   u8 kind (1 key, 2 delta), u8 position bits, u8 rotation bits, u8 0, u32 shape, u32 serial, f64 time [s], little endian; then runs:
+///   varint skip, varint count (0 ends), count times: u8 mask (x y z of the position, x y z w of the rotation), for each set bit a zigzag
+///   varint. A value is a whole number of steps of 2^-bits. At the end varint n, n times: varint node, u8 visible.
+
+import type { Poses } from "../sources/poses";
+
+const kKey = 1, kDelta = 2, kHeader = 20;
+const kMostBits = 24;
+const kPerTransform = 7;
+const kLargest = 2 ** 31;
+
+export type Decoded =
+  /// `poses` are those of the frame now.
+  | "shown"
+  /// It builds on a frame that is missing, or belongs to another scene: the next key will do.
+  | "waits"
+  /// It is no frame. The poses are spoilt until the next key.
+  | "broken";
+
+export class FrameDecoder {
+  /// Of the last frame that was shown [s].
+  time = 0;
+
+  private steps = new Int32Array(0);
+  private transforms: Int32Array = new Int32Array(0);
+  private shape = -1;
+  private serial = -1;
+  /// Steps belong to this many bits.
+  private bits = 0;
+  private bytes: Uint8Array = new Uint8Array(0);
+  private at = 0;
+  private good = true;
+
+  /// Frames of this shape follow; `transforms` are the indices of its transforms, ascending.
+  setScene(shape: number, transforms: Int32Array): void {
+    this.shape = shape;
+    this.transforms = transforms;
+    this.steps = new Int32Array(kPerTransform * transforms.length);
+    this.serial = -1;
+  }
+
+  /// Decodes a frame into `poses`, which must be what the last call left there.
+  decode(bytes: Uint8Array, poses: Poses): Decoded {
+    if (bytes.length < kHeader + 3) return "broken";
+    const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    const kind = view.getUint8(0), position = view.getUint8(1), rotation = view.getUint8(2);
+    const shape = view.getUint32(4, true), serial = view.getUint32(8, true), time = view.getFloat64(12, true);
+    if ((kind !== kKey && kind !== kDelta) || position > kMostBits || rotation > kMostBits || bytes[3] !== 0 || !Number.isFinite(time)) return "broken";
+    if (shape !== this.shape) return "waits";
+    const bits = position << 8 | rotation;
+    if (kind === kDelta && (this.serial < 0 || serial !== (this.serial + 1) >>> 0 || bits !== this.bits)) {
+      this.serial = -1;
+      return "waits";
+    }
+    if (kind === kKey) this.steps.fill(0);
+    this.bytes = bytes;
+    this.at = kHeader;
+    this.good = true;
+    this.serial = -1;
+    this.readTransforms();
+    if (this.good) this.readVisibility(poses);
+    if (!this.good || this.at !== bytes.length) return "broken";
+    this.serial = serial;
+    this.bits = bits;
+    this.time = time;
+    this.place(poses, 2 ** -position, 2 ** -rotation);
+    return "shown";
+  }
+
+  private readTransforms(): void {
+    const count = this.transforms.length;
+    for (let next = 0; ; ) {
+      const skip = this.varint(), run = this.varint();
+      if (run === 0 || !this.good) return;
+      if (skip + run > count - next) {
+        this.good = false;
+        return;
+      }
+      next += skip;
+      for (const end = next + run; next < end && this.good; ++next) this.readTransform(kPerTransform * next);
+    }
+  }
+
+  private readTransform(first: number): void {
+    const mask = this.byte();
+    if (mask >= 1 << kPerTransform) this.good = false;
+    for (let k = 0; k < kPerTransform && this.good; ++k) {
+      if ((mask >> k & 1) === 0) continue;
+      const zigzag = this.varint();
+      const value = this.steps[first + k]! + (zigzag % 2 === 0 ? zigzag / 2 : -(zigzag + 1) / 2);
+      if (value < -kLargest || value >= kLargest) this.good = false;
+      this.steps[first + k] = value;
+    }
+  }
+
+  private readVisibility(poses: Poses): void {
+    for (let left = this.varint(); left > 0 && this.good; --left) {
+      const node = this.varint(), visible = this.byte();
+      if (node >= poses.count || visible > 1) this.good = false;
+      else poses.visible[node] = visible;
+    }
+  }
+
+  private place(poses: Poses, metres: number, units: number): void {
+    const { steps, transforms } = this, { position, rotation } = poses;
+    for (let k = 0, s = 0; k < transforms.length; ++k, s += kPerTransform) {
+      const i = transforms[k]!;
+      position[3 * i] = steps[s]! * metres;
+      position[3 * i + 1] = steps[s + 1]! * metres;
+      position[3 * i + 2] = steps[s + 2]! * metres;
+      const x = steps[s + 3]! * units, y = steps[s + 4]! * units, z = steps[s + 5]! * units, w = steps[s + 6]! * units;
+      const length = Math.sqrt(x * x + y * y + z * z + w * w);
+      const turned = length > 0;
+      rotation[4 * i] = turned ? x / length : 0;
+      rotation[4 * i + 1] = turned ? y / length : 0;
+      rotation[4 * i + 2] = turned ? z / length : 0;
+      rotation[4 * i + 3] = turned ? w / length : 1;
+    }
+  }
+
+  private byte(): number {
+    if (this.at < this.bytes.length) return this.bytes[this.at++]!;
+    this.good = false;
+    return 0;
+  }
+
+  /// At most 2^49: no frame has larger numbers.
+  private varint(): number {
+    let value = 0;
+    for (let scale = 1, k = 0; k < 7; ++k, scale *= 128) {
+      const byte = this.byte();
+      value += (byte & 0x7f) * scale;
+      if (byte < 0x80) return value;
+    }
+    this.good = false;
+    return 0;
+  }
+}

@@ -1,0 +1,278 @@
+import type { Drawing, GameEvent, LiveSource, Robot, Status, World } from "../model";
+import type { Entry } from "../codec/record";
+import { FrameDecoder } from "../codec/frames";
+import { Connection, type Connect, connectSocket } from "./connection";
+import { EventReader, modeName, takeEntries, teamName } from "./events";
+import { FrameRing } from "./frame_ring";
+import { LiveClock } from "./live_clock";
+import { Poses } from "./poses";
+import { Questions } from "./questions";
+import { kNoScene, makeScene, sameNodes, type Scene } from "./scene";
+import { isRecord, readScene } from "./scene_message";
+import { emptyWorld, showScene } from "./world";
+
+/// The running match. Frames are shown a little later than they come, smoothly; the rest when it comes. What makes no sense ends the
+/// connection, and the next one begins with a whole scene: nothing that a host sends is an error of the viewer.
+
+const kMostEvents = 1000;
+
+export class Live implements LiveSource {
+  readonly kind = "live";
+  readonly world: World = emptyWorld();
+  status: Status | null = null;
+  referee = false;
+  onchange: (() => void) | null = null;
+
+  private readonly connection: Connection;
+  private readonly questions: Questions;
+  private readonly decoder = new FrameDecoder();
+  private readonly ring = new FrameRing();
+  private readonly clock = new LiveClock();
+  private events = new EventReader();
+  private scene: Scene = kNoScene;
+  /// As decoded last; frames are differences to it.
+  private poses = new Poses();
+  private free = false;
+  private token: string | null = null;
+  private logins: ((ok: boolean) => void)[] = [];
+  private view: { rate: number; detail: string } | null = null;
+  private drawings = false;
+
+  constructor(url: string, connect: Connect = connectSocket) {
+    this.connection = new Connection(url, connect);
+    this.questions = new Questions(this.connection);
+    this.connection.onopen = () => this.opened();
+    this.connection.onlost = () => this.lost();
+    this.connection.ontext = (text) => this.text(text);
+    this.connection.onbinary = (bytes) => this.frame(bytes);
+    this.connection.open();
+  }
+
+  get state(): "connecting" | "open" | "lost" {
+    return this.connection.state;
+  }
+
+  get connected(): boolean {
+    return this.connection.state === "open";
+  }
+
+  update(now: number): void {
+    if (this.ring.empty) return;
+    const { world } = this;
+    const time = this.clock.at(now);
+    const shown = this.ring.show(time, this.scene, world.local);
+    if (!shown) return;
+    world.time = time;
+    for (let i = 0; i < world.nodes.length; ++i) if (world.nodes[i]!.kind === "mesh") world.nodes[i]!.visible = shown.visible[i] === 1;
+    ++world.versions.frame;
+  }
+
+  close(): void {
+    this.connection.close();
+    this.questions.lost();
+    this.loggedIn(false);
+  }
+
+  ask<T = unknown>(request: Record<string, unknown>): Promise<T> {
+    return this.questions.ask(request) as Promise<T>;
+  }
+
+  watch(path: string, property: string, heard: (value: unknown, time: number) => void, failed: (why: string) => void): () => void {
+    return this.questions.watch({ path, property, heard, failed });
+  }
+
+  async command(text: string): Promise<void> {
+    await this.questions.ask({ do: "command", text });
+  }
+
+  login(token: string): Promise<boolean> {
+    this.token = token;
+    return new Promise((resolve) => {
+      this.logins.push(resolve);
+      // Without a connection the token waits for it.
+      this.connection.send({ do: "login", token });
+    });
+  }
+
+  setRate(rate: number, detail: "fine" | "coarse"): void {
+    this.view = { rate: Math.min(50, Math.max(1, rate)), detail };
+    this.connection.send({ do: "view", ...this.view });
+  }
+
+  setDrawings(on: boolean): void {
+    this.drawings = on;
+    this.connection.send({ do: "drawings", on });
+    if (on || this.world.drawings.size === 0) return;
+    this.world.drawings.clear();
+    ++this.world.versions.drawings;
+  }
+
+  private opened(): void {
+    if (this.view) this.connection.send({ do: "view", ...this.view });
+    if (this.drawings) this.connection.send({ do: "drawings", on: true });
+    if (this.token !== null) this.connection.send({ do: "login", token: this.token });
+    this.questions.opened();
+    this.onchange?.();
+  }
+
+  private lost(): void {
+    this.referee = false;
+    this.status = null;
+    this.decoder.setScene(-1, this.scene.transforms);
+    this.questions.lost();
+    this.onchange?.();
+  }
+
+  private text(text: string): void {
+    let message: unknown;
+    try {
+      message = JSON.parse(text);
+    } catch {
+      return this.connection.again();
+    }
+    if (!isRecord(message) || !this.take(message)) this.connection.again();
+  }
+
+  /// False when the message makes no sense. Types that are not known are of a newer host.
+  private take(message: Record<string, unknown>): boolean {
+    switch (message.type) {
+      case "scene":
+        return this.takeScene(message);
+      case "environment":
+        return this.takeEnvironment(message);
+      case "event":
+        return this.takeEvent(message);
+      case "status":
+        return this.takeStatus(message);
+      case "drawings":
+        return this.takeDrawings(message);
+      case "answer":
+      case "watched":
+        this.questions.answered(message);
+        return true;
+      case "referee":
+        this.loggedIn(message.ok === true);
+        return true;
+      default:
+        return typeof message.type === "string";
+    }
+  }
+
+  private takeScene(message: Record<string, unknown>): boolean {
+    const read = readScene(message);
+    if (!read) return false;
+    // After a loss most often the same scene comes again.
+    if (!sameNodes(this.scene.nodes, read.nodes) || this.scene === kNoScene) this.scene = makeScene(read.nodes);
+    this.poses = read.poses;
+    this.decoder.setScene(read.shape, this.scene.transforms);
+    this.ring.begin(read.poses);
+    this.nameRobots();
+    showScene(this.world, this.scene);
+    for (const i of this.scene.transforms) read.poses.getMatrix(i, this.world.local, 16 * i);
+    for (let i = 0; i < read.nodes.length; ++i) if (read.nodes[i]!.kind === "mesh") this.scene.nodes[i]!.visible = read.poses.visible[i] === 1;
+    ++this.world.versions.frame;
+    return true;
+  }
+
+  private frame(bytes: Uint8Array): void {
+    const decoded = this.decoder.decode(bytes, this.poses);
+    if (decoded === "broken") return this.connection.again();
+    if (decoded !== "shown") return;
+    this.connection.proven();
+    this.clock.arrived(this.decoder.time, performance.now());
+    this.ring.take(this.decoder.time, this.poses, this.free);
+  }
+
+  private takeEnvironment(message: Record<string, unknown>): boolean {
+    const { world } = this;
+    if (!Array.isArray(message.entries) || !message.entries.every(isEntry)) return false;
+    const entries = message.entries as Entry[];
+    const time = Number(message.time) || 0;
+    // The host began anew.
+    if (message.full === true && time < world.time - 1) this.forget();
+    takeEntries(world.environment, entries, message.full === true);
+    ++world.versions.environment;
+    this.addEvents(this.events.take(world.environment, entries, time));
+    this.free = /^(playon|pass)/i.test(modeName(world.environment));
+    if (entries.some(([name]) => name === "team_left" || name === "team_right")) this.nameRobots();
+    return true;
+  }
+
+  private takeEvent(message: Record<string, unknown>): boolean {
+    if (!isEntry(message.entry)) return false;
+    this.addEvents(new EventReader().take(this.world.environment, [message.entry], Number(message.time) || 0));
+    return true;
+  }
+
+  private takeStatus(message: Record<string, unknown>): boolean {
+    const { agents } = message;
+    if (!Array.isArray(agents) || !agents.every(isRecord)) return false;
+    this.status = {
+      realTimeFactor: Number(message.realTimeFactor ?? NaN),
+      cycle: Number(message.cycle ?? 0),
+      spectators: Number(message.spectators ?? 0),
+      agents: agents.map((a) => ({ path: String(a.path), team: String(a.team ?? ""), number: Number(a.number ?? 0), latency: typeof a.latency === "number" ? a.latency : null })),
+    };
+    this.nameRobots();
+    this.onchange?.();
+    return true;
+  }
+
+  private takeDrawings(message: Record<string, unknown>): boolean {
+    if (!isRecord(message.sets)) return false;
+    for (const [name, set] of Object.entries(message.sets)) {
+      if (set === null) this.world.drawings.delete(name);
+      else if (Array.isArray(set)) this.world.drawings.set(name, set as Drawing[]);
+      else return false;
+    }
+    ++this.world.versions.drawings;
+    return true;
+  }
+
+  private addEvents(events: GameEvent[]): void {
+    if (events.length === 0) return;
+    this.world.events = [...this.world.events, ...events].slice(-kMostEvents);
+    ++this.world.versions.events;
+  }
+
+  private forget(): void {
+    this.events = new EventReader();
+    this.clock.reset();
+    this.world.events = [];
+    ++this.world.versions.events;
+  }
+
+  private loggedIn(ok: boolean): void {
+    const changed = this.referee !== ok;
+    this.referee = ok;
+    if (!ok) this.token = null;
+    const { logins } = this;
+    this.logins = [];
+    logins.forEach((resolve) => resolve(ok));
+    if (changed) this.onchange?.();
+  }
+
+  /// Who wears no number is known to the host all the same.
+  private nameRobots(): void {
+    const agents = new Map(this.status?.agents.map((a) => [a.path, a]));
+    const teams = { left: teamName(this.world.environment, "left"), right: teamName(this.world.environment, "right") };
+    let changed = false;
+    const robots = this.scene.robots.map((robot): Robot => {
+      const agent = agents.get(robot.path ?? "");
+      if (!agent || !(agent.number > 0)) return robot;
+      const side = agent.team === teams.left ? "left" : agent.team === teams.right ? "right" : robot.side;
+      if (side === null || (side === robot.side && agent.number === robot.number)) return robot;
+      changed = true;
+      return { ...robot, side, number: agent.number, key: `${side}:${agent.number}` };
+    });
+    if (!changed || new Set(robots.map((r) => r.key)).size < robots.length) return;
+    this.scene.robots = robots;
+    if (this.world.nodes !== this.scene.nodes) return;
+    this.world.robots = robots;
+    ++this.world.versions.scene;
+  }
+}
+
+function isEntry(from: unknown): from is Entry {
+  return Array.isArray(from) && typeof from[0] === "string";
+}

@@ -1,0 +1,73 @@
+import type { SceneNode, Shape } from "../model";
+import { Poses } from "./poses";
+
+/// Reads the stream's scene message: what is wrong in it makes it null.
+
+const kMostNodes = 100_000;
+const kKinds = new Set(["transform", "light", "mesh"]);
+const kShapes = new Map([
+  ["box", 3],
+  ["sphere", 1],
+  ["capsule", 2],
+  ["cylinder", 2],
+]);
+
+export interface SceneMessage {
+  shape: number;
+  nodes: SceneNode[];
+  poses: Poses;
+}
+
+export function readScene(message: Record<string, unknown>): SceneMessage | null {
+  const { shape, nodes, local } = message;
+  if (typeof shape !== "number" || !Array.isArray(nodes) || !Array.isArray(local) || nodes.length > kMostNodes) return null;
+  const read: SceneNode[] = [];
+  for (const node of nodes) {
+    const one = readNode(node, read);
+    if (!one) return null;
+    read.push(one);
+  }
+  const poses = new Poses(read.length);
+  let at = 0;
+  for (let i = 0; i < read.length; ++i) {
+    poses.visible[i] = read[i]!.kind !== "mesh" || read[i]!.visible !== false ? 1 : 0;
+    if (read[i]!.kind !== "transform") continue;
+    if (!isNumbers(local.slice(at, at + 16), 16)) return null;
+    poses.setMatrix(i, local.slice(at, at + 16));
+    at += 16;
+  }
+  return at === local.length ? { shape, nodes: read, poses } : null;
+}
+
+function readNode(from: unknown, before: SceneNode[]): SceneNode | null {
+  if (!isRecord(from)) return null;
+  const { parent, kind } = from;
+  if (!Number.isInteger(parent) || (parent as number) < -1 || (parent as number) >= before.length || !kKinds.has(kind as string)) return null;
+  const node: SceneNode = { parent: parent as number, kind: kind as SceneNode["kind"] };
+  if (typeof from.path === "string") node.path = from.path;
+  if (Array.isArray(from.shapes)) {
+    if (!from.shapes.every(isShape)) return null;
+    node.shapes = from.shapes;
+  }
+  if (node.kind !== "mesh") return node;
+  node.load = typeof from.load === "string" ? from.load : "";
+  node.visible = from.visible !== false;
+  if (isNumbers(from.scale, 3)) node.scale = from.scale as [number, number, number];
+  if (Array.isArray(from.materials)) node.materials = from.materials.map(String);
+  if (from.transparent === true) node.transparent = true;
+  return node;
+}
+
+function isShape(from: unknown): from is Shape {
+  if (!isRecord(from)) return false;
+  const sizes = kShapes.get(from.kind as string);
+  return sizes !== undefined && isNumbers(from.size, sizes) && isNumbers(from.position, 3) && isNumbers(from.rotation, 4);
+}
+
+export function isRecord(from: unknown): from is Record<string, unknown> {
+  return typeof from === "object" && from !== null && !Array.isArray(from);
+}
+
+function isNumbers(from: unknown, count: number): from is number[] {
+  return Array.isArray(from) && from.length === count && from.every((n) => typeof n === "number" && Number.isFinite(n));
+}
