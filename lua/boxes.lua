@@ -12,5 +12,6 @@ scene()
 materials()
 physics()
 simulation()
+web()
 
 get("/usr/scene"):importScene(sceneFile, half)

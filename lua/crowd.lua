@@ -26,6 +26,7 @@ simulation()
 agents{}.maxAgents = agentCount
 get("/sys/server/net/agents").maxConnections = agentCount
 monitors{}
+web()
 control()
 plugin "sensors"
 plugin "effectors"

@@ -4,6 +4,7 @@
 --     files() scene() physics() simulation()      -- in this order
 --     agents{ port = 3100 }
 --     monitors{ port = 3200 }
+--     web()
 --     control()
 --
 -- and adds what makes it special. Each function loads the plugins it needs, builds one server with its helpers, and returns the server,
@@ -109,6 +110,26 @@ function monitors(t)
   local server = new("MonitorServer", "/sys/server/monitor")
   new(t.encoder or "SexpMonitor", "/sys/server/monitor/encoder")
   tcpPort("monitors", t.port or 3200, "/sys/server/monitor").maxConnections = 128
+  return server
+end
+
+--- The page on which browsers show the match: `--set web=false` leaves it out, `--set webPort=0` takes a free port, `--set webLogs=FOLDER` lets
+--- the viewer play recorded games. After monitors(); without, it makes a monitor server that has no port. A house of a batch has none.
+function web()
+  local wanted = option{ name = "web", default = true, doc = "The match can be watched in a browser." }
+  local port   = option{ name = "webPort", default = 3280, doc = "Its port; 0: a free one." }
+  local address = option{ name = "webAddress", default = "127.0.0.1", doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
+  local token  = option{ name = "webToken", default = "", doc = "What makes a viewer a referee, at least 16 characters; empty: made up and printed." }
+  local logs   = option{ name = "webLogs", default = "", doc = "Folder of recorded games that viewers may play; empty: none." }
+  if host.alone or not wanted then return end
+  plugin "monitor-web"
+  plugin "monitor"
+  if not get("/sys/server/monitor") then new("MonitorServer", "/sys/server/monitor") end
+  local server = new("WebServer", "/sys/server/web")
+  if host.share ~= "" then server.viewer = host.share .. "/viewer" end
+  server.address, server.port, server.logs = address, port, logs
+  server:setToken(token)
+  new("WebMonitor", "/sys/server/monitor/web")
   return server
 end
 

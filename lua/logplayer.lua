@@ -13,6 +13,7 @@ local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class 
 simulation()
 local server = monitors{ encoder = encoder }
 server.precision = 0                    -- the log says what moved
+web()
 control()
 
 local player = new("LogPlayer", "/sys/server/monitor/player")

@@ -23,6 +23,7 @@ physics(nil, nil, solverOption())         -- /sys/server/physics with an engine;
 simulation()                            -- /sys/server/simulation: the run loop
 agents{ parser = parser }               -- /sys/server/gamecontrol with a parser, and a TCP port
 monitors{ encoder = encoder }           -- /sys/server/monitor with an encoder, and a TCP port
+web()                                   -- /sys/server/web: the page on which browsers show the match
 control()                               -- /sys/server/control: the socket of sparkctl
 plugin "sensors"                        -- classes that robots' scene files name
 plugin "effectors"

@@ -31,6 +31,7 @@ physics("OdeEngine", { exactReplay = exact }, solver)
 simulation()
 agents{ parser = parser }
 monitors{ encoder = encoder }
+web()
 control()
 plugin "sensors"
 plugin "effectors"

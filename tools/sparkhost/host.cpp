@@ -28,6 +28,13 @@ std::string portText(const Leaf& root, const char* path) {
   return v.isNil() ? "null" : v.plain();
 }
 
+/// The link for browsers as JSON: null where a house has none.
+std::string webText(const Leaf& root) {
+  Leaf* web = root.find(kWeb);
+  const std::string link = web ? callMethod(*web, "link", {}).plain() : std::string();
+  return link.empty() ? "null" : '"' + link + '"';
+}
+
 std::int64_t messagesDropped(const Leaf& root) {
   std::int64_t sum = 0;
   if (const Node* net = root.find<Node>(kNet))
@@ -67,10 +74,11 @@ std::string Host::open() {
   if (!kernel_.root().find(kSimulation))
     throw Error(
         fmt::format("config '{}' has no run loop: expected a node {}. Add simulation() of house.lua.", options_.config, kSimulation));
-  if (Leaf* net = kernel_.root().find(kNet)) callMethod(*net, "listen", {});
   const Node& root = kernel_.root();
-  return fmt::format("{{\"agentPort\":{},\"monitorPort\":{}}}", portText(root, "/sys/server/net/agents"),
-                     portText(root, "/sys/server/net/monitors"));
+  for (const char* path : {kNet, kWeb})
+    if (Leaf* server = root.find(path)) callMethod(*server, "listen", {});
+  return fmt::format("{{\"agentPort\":{},\"monitorPort\":{},\"web\":{}}}", portText(root, "/sys/server/net/agents"),
+                     portText(root, "/sys/server/net/monitors"), webText(root));
 }
 
 std::string Host::histogram() {

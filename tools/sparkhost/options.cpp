@@ -27,7 +27,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   std::vector<std::string> sets;
   std::optional<std::string> rate;
   std::optional<double> duration;
-  std::optional<int> expect, agentPort, monitorPort;
+  std::optional<int> expect, agentPort, monitorPort, webPort;
   bool sync = false;
   app.set_version_flag("--version", "sparkhost " SPARK_VERSION);
   app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")->type_name("FILE");
@@ -49,12 +49,15 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--monitor-port", monitorPort, "TCP port of monitors (default 3200); 0 picks a free one")
       ->type_name("P")
       ->check(CLI::Range(0, 65535));
+  app.add_option("--web-port", webPort, "TCP port of the page for browsers (default 3280); 0 picks a free one")
+      ->type_name("P")
+      ->check(CLI::Range(0, 65535));
   addSurroundings(app, out.pluginPaths, out.scenePaths, out.logLevel, "What stderr shows");
   app.add_flag("--check", out.check, "Load, wire and import, but step nothing: exit code 0, or 2 and the error");
   app.add_flag("--histogram", out.histogram, "At the end: how late and how long cycles were, as a table on stderr");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
   app.add_option("--describe", out.describe, "Print what a class says about itself, and end")->type_name("CLASS")->excludes("--config");
-  app.footer("stdout: a first JSON line with the ports, a last one with the result; all else is on stderr.");
+  app.footer("stdout: a first JSON line with the ports and the page for browsers, a last one with the result; all else is on stderr.");
   try {
     app.parse(argc, argv);
     for (const std::string& s : sets) out.overrides.push_back(splitOverride(s));
@@ -69,6 +72,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   if (expect) put("/sys/server/gamecontrol.expect", *expect);
   if (agentPort) put("/sys/server/net/agents.port", *agentPort);
   if (monitorPort) put("/sys/server/net/monitors.port", *monitorPort);
+  if (webPort) put("/sys/server/web.port", *webPort);
   makeAbsolute(out.pluginPaths);
   makeAbsolute(out.scenePaths);
   return std::nullopt;

@@ -1,0 +1,81 @@
+#include "scene_capture.h"
+
+#include <Eigen/Geometry>
+
+#include "api/physics.h"
+
+namespace spark::web {
+
+namespace {
+
+/// Shapes that a viewer can draw: planes are the ground, rays are nothing to see, meshes come as meshes.
+std::optional<SceneShape> shapeOf(const engine::ShapeDescription& s) {
+  switch (s.shape) {
+    case engine::Shape::box: return SceneShape{SceneShape::Kind::box, {s.lengths.x(), s.lengths.y(), s.lengths.z()}};
+    case engine::Shape::sphere: return SceneShape{SceneShape::Kind::sphere, {s.radius}};
+    case engine::Shape::capsule: return SceneShape{SceneShape::Kind::capsule, {s.radius, s.length}};
+    case engine::Shape::cylinder: return SceneShape{SceneShape::Kind::cylinder, {s.radius, s.length}};
+    default: return std::nullopt;
+  }
+}
+
+/// Colliders below `above` that no other transform stands between.
+void collectShapes(const Node& above, std::vector<SceneShape>& out) {
+  for (const auto& child : above.children()) {
+    if (child->as<Transform>() || !child->asNode()) continue;
+    if (const auto* collider = child->as<ICollider>())
+      if (const auto description = collider->shape())
+        if (auto shape = shapeOf(*description)) {
+          const Pose pose = collider->poseInTransform();
+          const Eigen::Quaterniond q(pose.rotation);
+          shape->position = pose.position;
+          shape->rotation = {q.x(), q.y(), q.z(), q.w()};
+          out.push_back(std::move(*shape));
+        }
+    collectShapes(*child->asNode(), out);
+  }
+}
+
+NodeDescription describeNode(const FrameNode& node) {
+  NodeDescription out;
+  out.kind = node.kind;
+  out.transparent = node.transparent;
+  out.visible = node.visible;
+  if (node.transform) {
+    out.path = node.transform->path();
+    collectShapes(*node.transform, out.shapes);
+  }
+  if (node.visual && node.kind != FrameNode::Kind::light) {
+    out.load = node.visual->load();
+    out.scale = node.visual->scale();
+    out.materials = node.visual->materials();
+  }
+  return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame) {
+  auto scene = std::make_shared<SceneDescription>();
+  std::vector<int> above;  // by depth: the last node
+  for (const FrameNode& node : frame.nodes) {
+    const auto depth = static_cast<std::size_t>(node.depth);
+    above.resize(depth + 1, -1);
+    scene->nodes.push_back(describeNode(node));
+    scene->nodes.back().parent = depth > 0 ? above[depth - 1] : -1;
+    above[depth] = static_cast<int>(scene->nodes.size()) - 1;
+  }
+  return scene;
+}
+
+void copyNodes(const MonitorFrame& frame, Snapshot& out) {
+  out.transforms.clear();
+  out.visible.resize(frame.nodes.size());
+  for (std::size_t i = 0; i < frame.nodes.size(); ++i) {
+    const FrameNode& node = frame.nodes[i];
+    if (node.kind == FrameNode::Kind::transform) out.transforms.push_back(node.local);
+    out.visible[i] = node.visible;
+  }
+}
+
+}  // namespace spark::web

@@ -1,0 +1,106 @@
+#pragma once
+/// \file
+/// Reads the binary frames as a viewer does, written from the description in README.md.
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+#include <string_view>
+
+#include "../stream_encoder.h"
+
+namespace spark::web::test {
+
+/// A viewer's picture of the transforms. Throws std::runtime_error for a frame that does not fit.
+class FrameReader {
+ public:
+  explicit FrameReader(std::size_t transforms) : quantised(transforms) {}
+
+  void take(std::string_view frame) {
+    bytes_ = frame;
+    const auto kind = raw<std::uint8_t>();
+    positionBits = raw<std::uint8_t>();
+    rotationBits = raw<std::uint8_t>();
+    must(raw<std::uint8_t>() == 0, "a zero");
+    shape = raw<std::uint32_t>();
+    const auto number = raw<std::uint32_t>();
+    must(kind == 1 || (kind == 2 && number == serial + 1), "a key, or the delta to the last frame");
+    serial = number;
+    time = raw<double>();
+    if (kind == 1) {
+      visible.clear();
+      for (auto& q : quantised) q = {};
+    }
+    readTransforms();
+    for (auto n = varint(); n > 0; --n) {
+      const auto node = varint();
+      visible[node] = raw<std::uint8_t>() != 0;
+    }
+    must(bytes_.empty(), "the end");
+  }
+
+  /// True when transform `i` is what the matrix says, within a quantum.
+  bool isNear(std::size_t i, const Matrix& m) const {
+    const auto& q = quantised[i];
+    const double perMetre = std::ldexp(1, positionBits), perUnit = std::ldexp(1, rotationBits);
+    const double x = q[3] / perUnit, y = q[4] / perUnit, z = q[5] / perUnit, w = q[6] / perUnit;
+    const double s = 2 / (x * x + y * y + z * z + w * w);
+    const double r[3][3] = {{1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)},
+                            {s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)},
+                            {s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)}};
+    for (int row = 0; row < 3; ++row) {
+      if (std::abs(q[row] / perMetre - m(row, 3)) > 1 / perMetre) return false;
+      for (int column = 0; column < 3; ++column)
+        if (std::abs(r[row][column] - m(row, column)) > 4 / perUnit) return false;
+    }
+    return true;
+  }
+
+  std::vector<std::array<std::int64_t, 7>> quantised;
+  std::map<std::uint64_t, bool> visible;  ///< as told with the last key and since
+  std::uint32_t shape = 0, serial = 0;
+  int positionBits = 0, rotationBits = 0;
+  double time = 0;
+
+ private:
+  static void must(bool holds, const char* what) {
+    if (!holds) throw std::runtime_error(std::string("expected ") + what);
+  }
+  template <class T>
+  T raw() {
+    must(bytes_.size() >= sizeof(T), "more bytes");
+    T value;
+    std::memcpy(&value, bytes_.data(), sizeof value);
+    bytes_.remove_prefix(sizeof value);
+    return value;
+  }
+  std::uint64_t varint() {
+    std::uint64_t value = 0;
+    for (int shift = 0;; shift += 7) {
+      const auto byte = raw<std::uint8_t>();
+      value |= std::uint64_t{byte & 0x7fu} << shift;
+      if (byte < 0x80) return value;
+    }
+  }
+  std::int64_t zigzag() {
+    const auto v = varint();
+    return static_cast<std::int64_t>(v >> 1) ^ -static_cast<std::int64_t>(v & 1);
+  }
+  void readTransforms() {
+    for (std::size_t at = 0;;) {
+      at += varint();
+      auto count = varint();
+      if (count == 0) return;
+      for (; count > 0; --count, ++at) {
+        must(at < quantised.size(), "a transform of the scene");
+        const auto mask = raw<std::uint8_t>();
+        for (int k = 0; k < 7; ++k)
+          if (mask >> k & 1) quantised[at][k] += zigzag();
+      }
+    }
+  }
+  std::string_view bytes_;
+};
+
+}  // namespace spark::web::test

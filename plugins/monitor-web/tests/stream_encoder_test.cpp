@@ -1,0 +1,155 @@
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "frame_reader.h"
+
+using namespace spark;
+using namespace spark::web;
+using spark::web::test::FrameReader;
+
+namespace {
+/// A matrix somewhere, turned by degrees.
+Matrix at(float x, float y, float z, float a = 0, float b = 0, float c = 0) {
+  Matrix m = rotationDeg(a, b, c);
+  m.block<3, 1>(0, 3) = Vec3f(x, y, z);
+  return m;
+}
+
+struct Scene {
+  std::vector<Matrix> transforms;
+  std::vector<std::uint8_t> visible;
+  std::vector<std::uint32_t> flickers;
+  std::uint32_t shape = 1;
+  double time = 0;
+  Instant instant() const { return {shape, time, transforms, visible, flickers}; }
+};
+}  // namespace
+
+TEST_CASE("A key tells every transform to its quantum") {
+  Scene scene{{at(1, -2, 3), at(0.1234f, 0, 0, 10, 20, 30), at(-40, 25, 0.5f, 0, 0, 179)}, {1, 0, 1}, {1}, 7, 12.5};
+  for (const Precision precision : {kFine, kCoarse}) {
+    StreamEncoder encoder(precision);
+    encoder.advance(scene.instant());
+    CHECK_FALSE(encoder.hasDelta());
+    FrameReader reader(3);
+    reader.take(encoder.key());
+    CHECK(reader.shape == 7);
+    CHECK(reader.serial == 1);
+    CHECK(reader.time == 12.5);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(reader.isNear(i, scene.transforms[i]));
+    CHECK(reader.visible == std::map<std::uint64_t, bool>{{1, false}});
+  }
+}
+
+TEST_CASE("Deltas add up to what the next key tells") {
+  Scene scene{std::vector<Matrix>(40, Matrix::Identity()), std::vector<std::uint8_t>(50, 1), {}};
+  StreamEncoder encoder(kFine);
+  FrameReader follower(40);
+  for (int k = 0; k < 100; ++k) {
+    scene.time = 0.04 * k;
+    for (std::size_t i = 0; i < 40; i += 1 + k % 5)
+      scene.transforms[i] = at(0.01f * k * i, std::sin(0.1f * k), -2, 5.f * k, 3.f * i, 0.3f * k * i);
+    encoder.advance(scene.instant());
+    follower.take(k == 0 ? encoder.key() : encoder.delta());
+    FrameReader newcomer(40);
+    newcomer.take(encoder.key());
+    REQUIRE(newcomer.quantised == follower.quantised);
+    for (std::size_t i = 0; i < 40; ++i) REQUIRE(newcomer.isNear(i, scene.transforms[i]));
+  }
+  CHECK(follower.serial == 100);
+}
+
+TEST_CASE("What stands still costs nothing, and neither does trembling below the quantum") {
+  Scene scene{std::vector<Matrix>(600, at(1, 2, 3, 10, 20, 30)), std::vector<std::uint8_t>(600, 1), {}};
+  StreamEncoder encoder(kFine);
+  encoder.advance(scene.instant());
+  const std::size_t empty = 20 + 2 + 1;
+  encoder.advance(scene.instant());
+  CHECK(encoder.delta().size() == empty);
+  for (int k = 0; k < 20; ++k) {
+    for (Matrix& m : scene.transforms) m(0, 3) = 1 + (k % 2 ? 0.0002f : -0.0002f);
+    encoder.advance(scene.instant());
+    CHECK(encoder.delta().size() == empty);
+  }
+  scene.transforms[300](0, 3) = 1.05f;
+  encoder.advance(scene.instant());
+  CHECK(encoder.delta().size() == empty + 2 + 1 + 1 + 1);  // skip 300 (two bytes), one transform: mask and one number
+}
+
+TEST_CASE("A rotation keeps its sign from frame to frame, so that turning on and on never jumps") {
+  Scene scene{{Matrix::Identity()}, {1}, {}};
+  StreamEncoder encoder(kFine);
+  encoder.advance(scene.instant());
+  for (int degrees = 0; degrees < 1080; degrees += 5) {
+    scene.transforms[0] = at(0, 0, 0, 0, 0, static_cast<float>(degrees));
+    encoder.advance(scene.instant());
+    CHECK(encoder.delta().size() <= 20 + 2 + 1 + 2 * 2 + 3);
+  }
+}
+
+TEST_CASE("Visibility is told when it changes, and with every key") {
+  Scene scene{{Matrix::Identity()}, {1, 1, 1}, {}};
+  StreamEncoder encoder(kFine);
+  encoder.advance(scene.instant());
+  FrameReader follower(1);
+  follower.take(encoder.key());
+  CHECK(follower.visible.empty());
+  scene.visible[2] = 0;
+  scene.flickers = {2};
+  encoder.advance(scene.instant());
+  follower.take(encoder.delta());
+  CHECK(follower.visible == std::map<std::uint64_t, bool>{{2, false}});
+  encoder.advance(scene.instant());
+  CHECK(encoder.delta().size() == 23);
+  scene.visible[2] = 1;
+  encoder.advance(scene.instant());
+  FrameReader newcomer(1);
+  newcomer.take(encoder.key());
+  CHECK(newcomer.visible == std::map<std::uint64_t, bool>{{2, true}});
+}
+
+TEST_CASE("Another shape begins anew") {
+  Scene scene{{Matrix::Identity(), at(1, 0, 0)}, {1, 1}, {}};
+  StreamEncoder encoder(kFine);
+  encoder.advance(scene.instant());
+  encoder.advance(scene.instant());
+  CHECK(encoder.hasDelta());
+  scene.shape = 2;
+  scene.transforms.push_back(at(0, 5, 0));
+  scene.visible.push_back(1);
+  encoder.advance(scene.instant());
+  CHECK_FALSE(encoder.hasDelta());
+  FrameReader reader(3);
+  reader.take(encoder.key());
+  CHECK(reader.shape == 2);
+  CHECK(reader.serial == 3);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(reader.isNear(i, scene.transforms[i]));
+}
+
+TEST_CASE("Matrices that are no rotations, or no numbers, give frames that can be read") {
+  const float nan = std::nanf("");
+  Scene scene{{Matrix::Zero(), Matrix::Constant(nan), at(1e30f, -1e30f, 0), Matrix(at(1, 2, 3) * 5)}, {1, 1, 1, 1}, {}};
+  StreamEncoder encoder(kFine);
+  for (int k = 0; k < 3; ++k) {
+    encoder.advance(scene.instant());
+    FrameReader reader(4);
+    reader.take(encoder.key());
+    for (const auto& q : reader.quantised) CHECK(std::abs(q[6]) <= 1 << 11);
+    std::swap(scene.transforms[0], scene.transforms[3]);
+  }
+}
+
+TEST_CASE("Numbers are written in seven bits a byte, the lowest first") {
+  const auto bytes = [](auto put, auto value) {
+    std::string out;
+    put(out, value);
+    return out;
+  };
+  CHECK(bytes(putVarint, 0u) == std::string(1, '\0'));
+  CHECK(bytes(putVarint, 127u) == "\x7f");
+  CHECK(bytes(putVarint, 300u) == "\xac\x02");
+  CHECK(bytes(putSigned, -1) == "\x01");
+  CHECK(bytes(putSigned, 1) == "\x02");
+  CHECK(bytes(putSigned, -64) == "\x7f");
+  CHECK(bytes(putSigned, 64) == "\x80\x01");
+}

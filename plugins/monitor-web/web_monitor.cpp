@@ -1,0 +1,71 @@
+#include "web_monitor.h"
+
+#include "scene_capture.h"
+#include "spark/kernel.h"
+#include "web_server.h"
+
+namespace spark {
+
+namespace {
+constexpr std::uint32_t kMostEvents = 1u << 14;  // tokens of events that wait
+}
+
+void WebMonitor::describe(Description<WebMonitor>& d) {
+  d.doc("Hands frames of the scene to the web server, /sys/server/web, while browsers watch.");
+  d.implements<IFrameTaker>();
+}
+
+web::Exchange* WebMonitor::exchange() {
+  if (lookedAt_ != kernel().structureVersion()) {
+    auto* server = kernel().root().find<WebServer>("/sys/server/web");
+    exchange_ = server ? &server->exchange() : nullptr;
+    lookedAt_ = kernel().structureVersion();
+  }
+  return exchange_;
+}
+
+void WebMonitor::event(const Element& event) {
+  if (!exchange() || !exchange_->watched.load(std::memory_order_relaxed) || events_.size() > kMostEvents) return;
+  events_.append(event);
+  ++eventCount_;
+}
+
+void WebMonitor::take(const NewestFrame& newest, IMonitorEncoder*, const Event& event) {
+  newest_ = &newest;
+  time_ = event.time;
+  takenAt_ = kernel().structureVersion();
+  if (!exchange()) return;
+  eventTimes_.resize(eventCount_, event.time);
+  if (!exchange_->watched.load(std::memory_order_relaxed)) {
+    events_.clear();
+    eventTimes_.clear();
+    eventCount_ = 0;
+  }
+  takeAgain();
+}
+
+void WebMonitor::takeAgain() {
+  if (!newest_ || !exchange_ || !exchange_->wanted.load(std::memory_order_relaxed)) return;
+  if (takenAt_ != kernel().structureVersion() || newest_->frame.shape == 0) return;  // what it points to may be gone
+  web::Snapshot* snapshot = exchange_->wanted.exchange(nullptr, std::memory_order_acquire);
+  if (!snapshot) return;
+  fill(*newest_, time_, *snapshot);
+  exchange_->ready.store(snapshot, std::memory_order_release);
+  exchange_->wake();
+}
+
+void WebMonitor::fill(const NewestFrame& newest, double time, web::Snapshot& out) {
+  out.shape = newest.frame.shape;
+  out.time = time;
+  web::copyNodes(newest.frame, out);
+  out.environment = newest.frame.env;
+  out.keys = newest.keys;
+  std::swap(out.events, events_);
+  std::swap(out.eventTimes, eventTimes_);
+  events_.clear();
+  eventTimes_.clear();
+  eventCount_ = 0;
+  if (out.shape != out.knownShape && out.describe) out.scene = web::describeScene(newest.frame);
+}
+
+}  // namespace spark

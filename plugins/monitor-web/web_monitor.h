@@ -1,0 +1,39 @@
+#pragma once
+/// \file
+/// The viewer inside the host that all browsers look through.
+
+#include "exchange.h"
+#include "spark/describe.h"
+
+namespace spark {
+
+/// Below the monitor server. When somebody watches and wants a frame, copies the newest one for the web server's thread; otherwise it costs a
+/// look at a pointer. Has no state: who watches does not change the simulation.
+class WebMonitor : public Node, public IFrameTaker {
+  SPARK_CLASS(WebMonitor, Node)
+ public:
+  static void describe(Description<WebMonitor>& d);
+
+  void event(const Element& event) override;
+  void take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) override;
+
+  /// The frame taken last is handed over again if somebody waits for one and no cycle comes. Between cycles.
+  void takeAgain();
+  /// Nobody is served any more.
+  void detach() { exchange_ = nullptr; }
+
+ private:
+  web::Exchange* exchange();
+  void fill(const NewestFrame& newest, double time, web::Snapshot& out);
+
+  web::Exchange* exchange_ = nullptr;
+  std::uint64_t lookedAt_ = 0;   ///< structure version when it was looked for
+  Predicates events_;            ///< since the last snapshot
+  std::vector<double> eventTimes_;
+  std::size_t eventCount_ = 0;
+  const NewestFrame* newest_ = nullptr;  ///< the monitor server's
+  double time_ = 0;                      ///< s, of it
+  std::uint64_t takenAt_ = 0;            ///< structure version when it was taken
+};
+
+}  // namespace spark
