@@ -35,10 +35,7 @@ export class DrawingsLayer {
   private readonly agentTexts = new Texts();
   private agents: { text: AgentText; robot: Robot }[] = [];
   private world: World | null = null;
-  private drawings = -1;
-  private scene = -1;
-  private switched = -1;
-  private seen = true;
+  private drawn = "";
   private frame = -1;
   private readonly matrix = new Float32Array(16);
 
@@ -49,18 +46,15 @@ export class DrawingsLayer {
 
   setWorld(world: World | null): void {
     this.world = world;
-    this.drawings = -1;
+    this.drawn = "";
   }
 
   update(): void {
     const world = this.world;
     if (!world) return;
-    const { drawings, scene } = world.versions;
-    if (drawings !== this.drawings || scene !== this.scene || this.switches.version !== this.switched || this.visible !== this.seen) {
-      this.drawings = drawings;
-      this.scene = scene;
-      this.switched = this.switches.version;
-      this.seen = this.visible;
+    const wanted = `${world.versions.drawings} ${world.versions.scene} ${this.switches.version} ${this.visible}`;
+    if (wanted !== this.drawn) {
+      this.drawn = wanted;
       this.build(world);
       this.canvas.invalidate();
     }

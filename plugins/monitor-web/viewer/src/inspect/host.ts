@@ -7,10 +7,6 @@ export class Host implements Inspectable {
 
   constructor(private readonly live: LiveSource) {}
 
-  get ready(): boolean {
-    return this.live.connected;
-  }
-
   get editable(): boolean {
     return this.live.referee;
   }

@@ -38,8 +38,7 @@ export class OverlaySet {
   }
 
   private isOn(id: string): boolean {
-    for (const overlay of this.overlays) if (overlay.id === id) return overlay.on;
-    return false;
+    return this.overlays.some((o) => o.id === id && o.on);
   }
 
   private ask<T>(request: Record<string, unknown>): Promise<T> {

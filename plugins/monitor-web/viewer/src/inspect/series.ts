@@ -22,9 +22,8 @@ export class Series {
     return this.values[(this.first + i) % this.capacity]!;
   }
 
-  /// A second value for the same instant replaces the first. Time that goes back (a new match, a log sought back) drops what comes after; an unknown time nothing.
+  /// A second value for the same instant replaces the first. Time that goes back (a new match, a log sought back) drops what comes after.
   push(time: number, value: number): void {
-    if (!Number.isFinite(time)) return;
     while (this.count > 0 && this.time(this.count - 1) >= time) --this.count;
     if (this.count === this.capacity) {
       this.first = (this.first + 1) % this.capacity;

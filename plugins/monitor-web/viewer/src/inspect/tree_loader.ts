@@ -29,7 +29,7 @@ export class TreeLoader {
 
   /// To be called when the model may want something.
   pump(): void {
-    if (this.busy || this.closed || !this.source.ready) return;
+    if (this.busy || this.closed) return;
     const path = this.next();
     if (path === null) return;
     this.busy = true;

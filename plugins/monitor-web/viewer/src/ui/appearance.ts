@@ -1,7 +1,7 @@
 /// Theme, team colours and quality as chosen, told to the page and to the picture.
 import { css, inkOn, type Rgb, rgb } from "../view/palette";
 import type { CameraMode, Quality, Stage, Theme } from "./app";
-import { keepSettings, kPalettes, type Palette, type Settings } from "./settings";
+import { keepSettings, kPalettes, type Palette, paletteFor, type Settings } from "./settings";
 
 const rgbOf = (hex: string): Rgb => rgb(parseInt(hex.slice(1), 16));
 
@@ -9,8 +9,10 @@ export class Appearance {
   private readonly system = window.matchMedia("(prefers-color-scheme: light)");
   private readonly still = window.matchMedia("(prefers-reduced-motion: reduce)");
 
+  private teams: [string, string] = ["", ""];
+
   constructor(private readonly stage: Stage, readonly settings: Settings, private readonly changed: (what: "theme" | "colours") => void) {
-    this.system.addEventListener("change", () => this.showTheme());
+    this.system.addEventListener("change", () => this.themeChanged());
     this.still.addEventListener("change", () => (stage.reducedMotion = this.still.matches));
     stage.reducedMotion = this.still.matches;
     stage.quality = settings.quality;
@@ -26,20 +28,27 @@ export class Appearance {
   }
 
   get palette(): Palette {
-    return kPalettes[this.settings.palette]!;
+    return paletteFor(this.settings.palette, ...this.teams);
+  }
+
+  /// Now and then: colours follow the teams' names.
+  setTeams(left: string, right: string): void {
+    if (this.teams[0] === left && this.teams[1] === right) return;
+    this.teams = [left, right];
+    this.coloursChanged();
   }
 
   /// Back to what the system says when that is the same.
   switchTheme(): void {
     const other: Theme = this.theme === "dark" ? "light" : "dark";
     this.settings.theme = (other === "light") === this.system.matches ? "system" : other;
-    this.showTheme();
+    this.themeChanged();
     keepSettings(this.settings);
   }
 
   switchColours(): void {
     this.settings.palette = (this.settings.palette + 1) % kPalettes.length;
-    this.showColours();
+    this.coloursChanged();
     keepSettings(this.settings);
   }
 
@@ -60,10 +69,19 @@ export class Appearance {
     keepSettings(this.settings);
   }
 
+  private themeChanged(): void {
+    this.showTheme();
+    this.changed("theme");
+  }
+
+  private coloursChanged(): void {
+    this.showColours();
+    this.changed("colours");
+  }
+
   private showTheme(): void {
     document.documentElement.dataset.theme = this.theme;
     this.stage.theme = this.theme;
-    this.changed("theme");
   }
 
   private showColours(): void {
@@ -74,6 +92,5 @@ export class Appearance {
       style.setProperty(`${name}-ink`, css(inkOn(colour)));
     }
     this.stage.teamColours = { left, right };
-    this.changed("colours");
   }
 }

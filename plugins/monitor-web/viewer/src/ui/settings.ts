@@ -3,17 +3,31 @@ import type { CameraMode, Quality, Theme } from "./app";
 
 export interface Palette {
   name: string;
+  /// #rrggbb
   left: string;
   right: string;
 }
 
-/// Pairs that people with any kind of colour vision can tell apart: they differ in lightness and in blue against yellow.
+/// Pairs that people with any kind of colour vision can tell apart: they differ in lightness, or in blue against yellow.
+/// The first one gives way to the teams' own names: Red is not to play in blue.
 export const kPalettes: readonly Palette[] = [
   { name: "Blue and orange", left: "#1f5fd6", right: "#ffa21a" },
+  { name: "Blue and red", left: "#1f5fd6", right: "#f4593b" },
   { name: "Sky and vermilion", left: "#62bdf0", right: "#d9560b" },
   { name: "Violet and gold", left: "#8a6cf0", right: "#edc22e" },
   { name: "Green and pink", left: "#0b7a5b", right: "#f2a9d2" },
 ];
+
+/// The chosen pair; or, while that is the first one, the pair whose colours are the teams' names, the right way round.
+export function paletteFor(chosen: number, leftTeam: string, rightTeam: string): Palette {
+  const names = [leftTeam, rightTeam].map((team) => team.toLowerCase());
+  for (const palette of chosen === 0 ? kPalettes : []) {
+    const words = palette.name.toLowerCase().split(" and ");
+    if (words[0] === names[0] && words[1] === names[1]) return palette;
+    if (words[0] === names[1] && words[1] === names[0]) return { name: `${leftTeam} and ${rightTeam}`, left: palette.right, right: palette.left };
+  }
+  return kPalettes[chosen]!;
+}
 
 export interface Settings {
   theme: Theme | "system";

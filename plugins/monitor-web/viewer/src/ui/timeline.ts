@@ -46,7 +46,7 @@ export class Timeline {
       this.play,
       this.button("step-forward", "One record forward", ".", "forward", () => this.step(1)),
     );
-    const live = h("button", { type: "button", class: "button", "data-testid": "back-to-live", "aria-label": "Back to the live match", title: "Back to the live match", onclick: backToLive }, icon("live"), "Live");
+    const live = h("button", { type: "button", class: "button", "data-testid": "back-to-live", "aria-label": "Back to the live match", title: "Back to the live match", onclick: backToLive }, icon("live"), h("span", { class: "words" }, "Live"));
     this.element = h(
       "section",
       { class: "timeline card", "data-testid": "timeline", "aria-label": "Replay", hidden: true },

@@ -51,7 +51,7 @@ export class Tools {
 
   constructor(actions: ToolActions) {
     this.cameras = new Map(kCameras.map(({ mode, name, key }) => [mode, tool(`camera-${mode}`, name, key, mode, () => actions.camera(mode))]));
-    this.quality = tool("quality", "Shadows and materials", "g", "quality", actions.quality);
+    this.quality = tool("quality", "Shadows", "g", "quality", actions.quality);
     this.labels = tool("labels", "Labels", "l", "labels", actions.labels);
     this.colours = tool("colours", "Team colours", "c", "colours", actions.colours);
     this.theme = tool("theme", "Dark or light", "m", "dark", actions.theme);

@@ -1,0 +1,83 @@
+/// What tests and curious people may ask of the page: `spark.state()` in the browser's console.
+import { Vector3 } from "three";
+import { modeName } from "../sources";
+import type { Application } from "./application";
+import { numberOf } from "./format";
+import { placeOf, type Point } from "./places";
+import { type Connection, connectionOf } from "./status_line";
+
+/// Fresh plain data on every call.
+export interface Report {
+  source: "live" | "replay";
+  connection: Connection;
+  referee: boolean;
+  /// Robot.key of each.
+  robots: string[];
+  selected: string | null;
+  /// Path of what is selected, where it is known.
+  path: string | null;
+  ball: Point | null;
+  time: number;
+  /// Of the replay; 0 and 0 in a live match.
+  start: number;
+  end: number;
+  playing: boolean;
+  speed: number;
+  /// Pictures drawn since the page was opened.
+  frames: number;
+  camera: string;
+  quality: string;
+  score: [number, number];
+  /// As on the wire.
+  playMode: string;
+  events: number;
+}
+
+export interface Spark {
+  app: Application;
+  state(): Report;
+  /// Where a robot's torso is in the page; null behind the camera.
+  where(key: string): { x: number; y: number } | null;
+}
+
+export function reportOf(app: Application): Report {
+  const { world, replay } = app;
+  return {
+    source: app.source.kind,
+    connection: connectionOf(app),
+    referee: app.live?.referee ?? false,
+    robots: world.robots.map((r) => r.key),
+    selected: app.selection?.robot ?? null,
+    path: app.selection?.path ?? null,
+    ball: world.ball >= 0 ? placeOf(world, world.ball) : null,
+    time: world.time,
+    start: replay?.start ?? 0,
+    end: replay?.end ?? 0,
+    playing: replay?.playing ?? false,
+    speed: replay?.speed ?? 1,
+    frames: app.frames,
+    camera: app.stage.camera.mode,
+    quality: app.stage.quality,
+    score: [numberOf(world.environment, "score_left", 0), numberOf(world.environment, "score_right", 0)],
+    playMode: modeName(world.environment),
+    events: world.events.length,
+  };
+}
+
+function whereIs(app: Application, key: string): { x: number; y: number } | null {
+  const robot = app.world.robots.find((r) => r.key === key);
+  const out = { x: 0, y: 0 };
+  if (!robot || !app.stage.project(new Vector3(...placeOf(app.world, robot.torso)), out)) return null;
+  const box = app.stage.canvas.getBoundingClientRect();
+  return { x: box.left + out.x, y: box.top + out.y };
+}
+
+declare global {
+  interface Window {
+    spark: Spark;
+  }
+}
+
+export function offer(app: Application): void {
+  window.spark = { app, state: () => reportOf(app), where: (key) => whereIs(app, key) };
+}
