@@ -109,7 +109,7 @@ function flatBall(around: Surroundings): ShaderMaterial {
         place = normal;
         vec3 n = normalize(mat3(modelMatrix) * normal);
         lit = min(1.0, 0.15 + mix(light.x, light.y, 0.5 + 0.5 * n.z) + light.z * max(dot(n, sun), 0.0));
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
       }`,
     fragmentShader: /* glsl */ `
       varying vec3 place;
@@ -148,7 +148,7 @@ function ribbonMaterial(): ShaderMaterial {
     vertexShader: /* glsl */ `
       attribute float strength;
       varying float alpha;
-      void main() { alpha = 0.6 * strength; gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0); }`,
+      void main() { alpha = 0.6 * strength; gl_Position = projectionMatrix * (viewMatrix * vec4(position, 1.0)); }`,
     fragmentShader: /* glsl */ `
       varying float alpha;
       void main() { gl_FragColor = vec4(1.0, 0.97, 0.75, alpha); }`,

@@ -149,13 +149,11 @@ export class Camera implements CameraView {
 
   private aim(seconds: number): void {
     const { wanted } = this;
-    wanted.angle = angles[this.current];
+    wanted.angle = angleOf(this.current, this.sights.aspect);
     const view = this.current;
     if (view === "broadcast") this.aimAtBall(seconds);
     else if (view === "head" && this.sights.head) this.lookOutOfHead(seconds, this.sights.head);
     else (view === "top" ? this.above : this.orbit).pose(wanted);
-    // Tall pictures, as on phones: open wider, so that as much is seen across.
-    if (this.sights.aspect < 1) wanted.angle = Math.min(85, wanted.angle * (0.6 + 0.4 / this.sights.aspect));
   }
 
   /// From the side line, along with the ball.
@@ -168,8 +166,8 @@ export class Camera implements CameraView {
     if (this.following) this.follower.step(seconds, focus);
     else this.follower.jump(focus);
     this.following = true;
-    const distance = (field ? 4.6 + 0.42 * field.width : 1.9 * extent) * this.closeness;
-    this.wanted.around(this.follower.position, -Math.PI / 2, 0.46, distance);
+    const distance = (field ? 4.2 + 0.42 * field.width : 1.9 * extent) * this.closeness;
+    this.wanted.around(this.follower.position, -Math.PI / 2, 0.4, distance);
   }
 
   private lookOutOfHead(seconds: number, head: NonNullable<Sights["head"]>): void {
@@ -196,21 +194,26 @@ export class Camera implements CameraView {
     this.wanted.rotation.copy(headPose.rotation);
   }
 
-  /// All of the field in the picture.
+  /// All of the field in the picture: from the side line, in tall pictures from behind the left goal.
   private goHome(): void {
     const { field, extent, aspect } = this.sights;
-    const [x, y] = field ? [field.length / 2 + field.margin, field.width / 2 + field.margin] : [extent, extent];
-    const tangent = Math.tan((angles.orbit * Math.PI) / 360);
-    this.orbit.elevation = 0.62;
-    this.orbit.azimuth = -Math.PI / 2 - (field ? 0 : 0.5);
-    this.orbit.target.set(0, field ? -0.1 * y : 0, field ? 0 : 0.25 * extent);
-    this.orbit.distance = Math.max((0.93 * x) / (tangent * Math.max(aspect, 0.8)) + 0.6 * y, (0.75 * y) / tangent);
-    this.above.elevation = Math.PI / 2;
-    this.above.target.set(0, 0, 0);
-    this.above.distance = Math.max(x / (tangent * aspect), y / tangent) * 1.03;
-    for (const orbit of [this.orbit, this.above]) {
-      orbit.farthest = 6 * Math.max(x, y);
-      orbit.reach = 1.6 * Math.max(x, y);
+    const isTall = aspect < 0.8;
+    const half = field ? [field.length / 2 + field.margin, field.width / 2 + field.margin] : [extent, extent];
+    const [across, along] = (isTall ? half.reverse() : half) as [number, number];
+    const tangent = Math.tan((angleOf("orbit", aspect) * Math.PI) / 360);
+    const { orbit, above } = this;
+    orbit.elevation = isTall ? 0.7 : 0.54;
+    orbit.azimuth = above.azimuth = isTall ? -Math.PI : -Math.PI / 2;
+    if (!field) orbit.azimuth -= 0.5;
+    orbit.target.set(0, 0, field ? 0 : 0.25 * extent);
+    const nearSide = (along - (field?.margin ?? 0)) * Math.cos(orbit.elevation);
+    orbit.distance = Math.max((0.97 * across) / (tangent * aspect) + nearSide, along / tangent);
+    above.elevation = Math.PI / 2;
+    above.target.set(0, 0, 0);
+    above.distance = Math.max(across / (tangent * aspect), along / tangent) * 1.03;
+    for (const each of [orbit, above]) {
+      each.farthest = 6 * Math.max(across, along);
+      each.reach = 1.6 * Math.max(across, along);
     }
     this.homeAspect = aspect;
   }
@@ -244,6 +247,11 @@ export class Camera implements CameraView {
     this.from.copy(this.pose);
     this.sinceChange = 0;
   }
+}
+
+/// Tall pictures, as on phones, open wider, so that as much is seen across.
+function angleOf(mode: CameraMode, aspect: number): number {
+  return aspect < 1 ? Math.min(85, angles[mode] * (0.6 + 0.4 / aspect)) : angles[mode];
 }
 
 function limit(value: number, bound: number): number {

@@ -115,10 +115,3 @@ export function barrel(sides: number): InstancedBufferGeometry {
   }
   return mould.geometry();
 }
-
-/// The forms, coarse for flat mode or fine.
-export function makeForm(form: Form, fine: boolean): InstancedBufferGeometry {
-  if (form === "block") return roundedBox(fine ? 4 : 2);
-  if (form === "round") return roundedBox(fine ? 7 : 3);
-  return barrel(fine ? 32 : 14);
-}

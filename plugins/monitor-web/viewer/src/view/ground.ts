@@ -1,4 +1,4 @@
-import { BufferAttribute, BufferGeometry, Group, LineSegments, Mesh, MeshStandardMaterial, PlaneGeometry, type Vector2 } from "three";
+import { BufferAttribute, BufferGeometry, Group, LineSegments, Mesh, MeshStandardMaterial, PlaneGeometry, type Vector3 } from "three";
 import { fieldLines, stripes, type FieldSizes } from "./field_sizes";
 import { Layer, lineMaterial, netMaterial, plainMaterial } from "./ground_materials";
 import { paintField } from "./ground_texture";
@@ -8,8 +8,8 @@ import type { Quality } from "./stage";
 
 /// Half the edge of the ground of scenes without a field [m].
 const plainHalf = 12;
-/// How far the ground goes on around it, with the share of the horizon's colour there.
-const rings: [number, number][] = [[25, 0.05], [120, 0.55], [900, 1]];
+/// How far the ground goes on around it [m].
+const farGround = 900;
 
 /// Triangles with a colour for each corner.
 class Quilt {
@@ -54,7 +54,7 @@ export class Ground {
   readonly group = new Group();
   private readonly sky: Mesh;
 
-  constructor(field: FieldSizes | null, withGoals: boolean, quality: Quality, around: Surroundings, screen: Vector2) {
+  constructor(field: FieldSizes | null, withGoals: boolean, quality: Quality, around: Surroundings, screen: Vector3) {
     this.sky = layer(new Mesh(skyGeometry(around), plainMaterial()), Layer.Sky);
     this.group.add(this.sky);
     if (quality === "quality") this.addFine(field, around);
@@ -72,7 +72,7 @@ export class Ground {
     disposeOf(this.group);
   }
 
-  private addFlat(field: FieldSizes | null, around: Surroundings, screen: Vector2): void {
+  private addFlat(field: FieldSizes | null, around: Surroundings, screen: Vector3): void {
     const quilt = new Quilt();
     const [x, y] = field ? addGrass(quilt, field, around) : [plainHalf, plainHalf];
     if (!field) quilt.rectangle(-x, -y, x, y, around.floor);
@@ -98,12 +98,16 @@ function layer<T extends Mesh>(mesh: T, order: Layer): T {
   return mesh;
 }
 
+/// Light near the grass, darker outside, and the horizon's colour at the end.
 function addFloor(quilt: Quilt, x: number, y: number, around: Surroundings): void {
-  let [reach, inner] = [0, around.floor];
-  for (const [width, share] of rings) {
-    const outer = mix(around.floor, around.horizon, share);
-    quilt.frame(x + reach, y + reach, width - reach, inner, outer);
-    [reach, inner] = [width, outer];
+  const size = Math.min(x, y);
+  const steps: [number, Rgb][] = [
+    [0, around.floor], [0.25 * size, mix(around.floor, around.floorFar, 0.25)], [1.5 * size, around.floorFar],
+    [12 * size, mix(around.floorFar, around.horizon, 0.6)], [farGround, around.horizon],
+  ];
+  for (let k = 0; k + 1 < steps.length; k++) {
+    const [from, inner] = steps[k]!, [to, outer] = steps[k + 1]!;
+    quilt.frame(x + from, y + from, to - from, inner, outer);
   }
 }
 
@@ -122,29 +126,34 @@ function gridLines(): [number, number][][] {
 /// Strips along the chains, cut into pieces so that thin ones fade bit by bit with the distance.
 function lineGeometry(chains: readonly (readonly [number, number])[][], width: number): BufferGeometry {
   const positions: number[] = [], across: number[] = [], indices: number[] = [];
-  for (const chain of chains) for (let k = 0; k + 1 < chain.length; k++) {
-    const [x0, y0] = chain[k]!, [x1, y1] = chain[k + 1]!;
-    const length = Math.hypot(x1 - x0, y1 - y0), pieces = Math.ceil(length / 2.5);
-    const [ux, uy] = [(x1 - x0) / length, (y1 - y0) / length];
-    // Straight lines reach half a width further, so that corners are full.
-    const extra = chain.length === 2 ? width / 2 : 0;
-    for (let n = 0; n <= pieces; n++) {
-      const s = n === 0 ? -extra : n === pieces ? length + extra : (n * length) / pieces;
-      for (const side of [1, -1]) {
-        positions.push(x0 + ux * s, y0 + uy * s, 0);
-        across.push((-uy * side * width) / 2, (ux * side * width) / 2);
+  for (const chain of chains) {
+    const points = chain.length === 2 ? straight(chain[0]!, chain[1]!, width / 2) : chain;
+    const isClosed = chain.length > 2;
+    points.forEach(([x, y], k) => {
+      const before = points[k - 1] ?? (isClosed ? points.at(-2)! : points[0]!), after = points[k + 1] ?? (isClosed ? points[1]! : points.at(-1)!);
+      const length = Math.hypot(after[0] - before[0], after[1] - before[1]);
+      for (const side of [width / 2, -width / 2]) {
+        positions.push(x, y, 0);
+        across.push((-side * (after[1] - before[1])) / length, (side * (after[0] - before[0])) / length);
       }
-      if (n > 0) {
-        const v = positions.length / 3 - 4;
-        indices.push(v, v + 1, v + 3, v, v + 3, v + 2);
-      }
-    }
+      const v = positions.length / 3 - 4;
+      if (k > 0) indices.push(v, v + 1, v + 3, v, v + 3, v + 2);
+    });
   }
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(new Float32Array(positions), 3));
   geometry.setAttribute("across", new BufferAttribute(new Float32Array(across), 2));
   geometry.setIndex(indices);
   return geometry;
+}
+
+/// Points of a straight line, which goes on beyond its ends so that corners are full.
+function straight(from: readonly [number, number], to: readonly [number, number], extra: number): [number, number][] {
+  const length = Math.hypot(to[0] - from[0], to[1] - from[1]), pieces = Math.ceil(length / 2.5);
+  return Array.from({ length: pieces + 1 }, (_, k) => {
+    const s = k === 0 ? -extra / length : k === pieces ? 1 + extra / length : k / pieces;
+    return [from[0] + (to[0] - from[0]) * s, from[1] + (to[1] - from[1]) * s];
+  });
 }
 
 /// A dome, the colour of the horizon below and of the zenith above.

@@ -1,4 +1,4 @@
-import { CustomBlending, OneMinusSrcAlphaFactor, ShaderMaterial, SrcAlphaFactor, Vector2, Vector3 } from "three";
+import { CustomBlending, OneMinusSrcAlphaFactor, ShaderMaterial, SrcAlphaFactor, Vector3 } from "three";
 import type { Rgb } from "./palette";
 
 // What lies on the ground is drawn first and without a depth test, in the order of Layer: nothing flickers, and hidden ground costs no test. It must
@@ -22,7 +22,7 @@ export function plainMaterial(): ShaderMaterial {
     vertexShader: /* glsl */ `
       attribute vec3 color;
       varying vec3 colour;
-      void main() { colour = color; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+      void main() { colour = color; gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0)); }`,
     fragmentShader: /* glsl */ `
       varying vec3 colour;
       void main() { gl_FragColor = vec4(colour, 1.0); }`,
@@ -30,23 +30,27 @@ export function plainMaterial(): ShaderMaterial {
 }
 
 /// Lines on the ground that never get thinner than a pixel; they fade instead. `screen` = half the canvas in pixels.
-export function lineMaterial(colour: Rgb, screen: Vector2): ShaderMaterial {
+export function lineMaterial(colour: Rgb, screen: Vector3): ShaderMaterial {
   return new ShaderMaterial({
     ...flatOnGround, ...blended,
     uniforms: { ink: { value: new Vector3(...colour) }, screen: { value: screen } },
     vertexShader: /* glsl */ `
       attribute vec2 across;
-      uniform vec2 screen;
+      uniform vec3 screen;
       varying float strength;
       void main() {
-        vec4 middle = projectionMatrix * viewMatrix * vec4(position, 1.0);
-        vec4 edge = projectionMatrix * viewMatrix * vec4(position.xy + across, position.z, 1.0);
+        vec4 middle = projectionMatrix * (viewMatrix * vec4(position, 1.0));
+        vec4 edge = projectionMatrix * (viewMatrix * vec4(position.xy + across, position.z, 1.0));
+        vec4 next = projectionMatrix * (viewMatrix * vec4(position.x + across.y, position.y - across.x, position.z, 1.0));
         strength = 0.92;
-        if (middle.w > 0.1 && edge.w > 0.1) {
-          float pixels = length((edge.xy / edge.w - middle.xy / middle.w) * screen);
-          float wider = max(1.0, 0.62 / max(pixels, 0.01));
-          edge = middle + (edge - middle) * wider;
-          strength *= max(0.3, 1.0 / wider);
+        if (min(middle.w, min(edge.w, next.w)) > 0.1) {
+          vec2 start = middle.xy / middle.w * screen.xy;
+          vec2 along = normalize(next.xy / next.w * screen.xy - start);
+          vec2 aside = vec2(-along.y, along.x);
+          float pixels = dot(edge.xy / edge.w * screen.xy - start, aside);
+          float missing = max(0.0, 0.62 - abs(pixels)) * (pixels < 0.0 ? -1.0 : 1.0);
+          edge.xy += aside * missing / screen.xy * edge.w;
+          strength *= max(0.3, min(1.0, abs(pixels) / 0.62));
         }
         gl_Position = edge;
       }`,
@@ -67,7 +71,7 @@ export function spotMaterial(): ShaderMaterial {
       varying vec4 colour;
       void main() {
         colour = vec4(ink, spot.w * position.z);
-        gl_Position = projectionMatrix * viewMatrix * vec4(spot.xy + position.xy * spot.z, 0.0, 1.0);
+        gl_Position = projectionMatrix * (viewMatrix * vec4(spot.xy + position.xy * spot.z, 0.0, 1.0));
       }`,
     fragmentShader: /* glsl */ `
       varying vec4 colour;
@@ -81,7 +85,7 @@ export function netMaterial(colour: Rgb): ShaderMaterial {
     transparent: true, depthWrite: false,
     uniforms: { ink: { value: new Vector3(...colour) } },
     vertexShader: /* glsl */ `
-      void main() { gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0); }`,
+      void main() { gl_Position = projectionMatrix * (viewMatrix * vec4(position, 1.0)); }`,
     fragmentShader: /* glsl */ `
       uniform vec3 ink;
       void main() { gl_FragColor = vec4(ink, 0.33); }`,

@@ -1,4 +1,4 @@
-import { BufferAttribute, CanvasTexture, DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedBufferGeometry, InstancedMesh, LinearFilter, LinearMipmapLinearFilter, Mesh, PlaneGeometry, ShaderMaterial, type Texture, type Vector2 } from "three";
+import { BufferAttribute, CanvasTexture, DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedBufferGeometry, InstancedMesh, LinearFilter, LinearMipmapLinearFilter, Mesh, PlaneGeometry, ShaderMaterial, type Texture, type Vector3 } from "three";
 import type { Robot } from "../model";
 import { multiply } from "./affine";
 import { css, inkOn, teamColour, type TeamColours } from "./palette";
@@ -15,7 +15,7 @@ export class Labels {
   private readonly numbers: InstancedMesh | null;
   private readonly locals: Float32Array;
 
-  constructor(private readonly robots: readonly Robot[], private readonly decals: readonly Decal[], teams: TeamColours, screen: Vector2) {
+  constructor(private readonly robots: readonly Robot[], private readonly decals: readonly Decal[], teams: TeamColours, screen: Vector3) {
     const columns = Math.max(1, Math.ceil(Math.sqrt(robots.length)));
     this.texture = paintAtlas(robots, teams, columns);
     this.anchors = new InstancedBufferAttribute(new Float32Array(4 * robots.length), 4).setUsage(DynamicDrawUsage) as InstancedBufferAttribute;
@@ -132,21 +132,20 @@ function paintNumber(paint: CanvasRenderingContext2D, x: number, y: number, text
 }
 
 /// A sign as wide as 0.3 m would be, but legible: between these heights in pixels.
-function headMaterial(atlas: Texture, screen: Vector2): ShaderMaterial {
+function headMaterial(atlas: Texture, screen: Vector3): ShaderMaterial {
   return new ShaderMaterial({
     transparent: true, premultipliedAlpha: true, depthWrite: false,
     uniforms: { atlas: { value: atlas }, screen: { value: screen } },
     vertexShader: /* glsl */ `
       attribute vec4 anchor;
       attribute vec4 cell;
-      uniform vec2 screen;
+      uniform vec3 screen;
       varying vec2 place;
       void main() {
-        vec4 clip = projectionMatrix * viewMatrix * vec4(anchor.xyz, 1.0);
-        float unit = screen.y / 360.0;
-        float half_ = clamp(0.075 * projectionMatrix[1][1] * screen.y / clip.w, 8.5 * unit, 17.0 * unit);
+        vec4 clip = projectionMatrix * (viewMatrix * vec4(anchor.xyz, 1.0));
+        float half_ = clamp(0.075 * projectionMatrix[1][1] * screen.y / clip.w, 8.5 * screen.z, 17.0 * screen.z);
         place = cell.xy + (0.5 + 0.5 * position.xy) * cell.zw;
-        clip.xy += (position.xy + vec2(0.0, 1.0)) * vec2(half_ * ${(cellWidth / cellHeight).toFixed(3)}, half_) / screen * clip.w;
+        clip.xy += (position.xy + vec2(0.0, 1.0)) * vec2(half_ * ${(cellWidth / cellHeight).toFixed(3)}, half_) / screen.xy * clip.w;
         clip.z -= 0.002 * clip.w;
         gl_Position = clip;
       }`,
@@ -168,7 +167,7 @@ function numberMaterial(atlas: Texture): ShaderMaterial {
       varying vec2 place;
       void main() {
         place = cell.xy + uv * cell.zw;
-        gl_Position = projectionMatrix * viewMatrix * instanceMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * (viewMatrix * (instanceMatrix * vec4(position, 1.0)));
       }`,
     fragmentShader: /* glsl */ `
       uniform sampler2D atlas;

@@ -70,11 +70,14 @@ export interface Surroundings {
   horizon: Rgb;
   /// The ground beyond the grass.
   floor: Rgb;
+  /// The same further away, where less light falls.
+  floorFar: Rgb;
   floorLine: Rgb;
   grass: Rgb;
   /// Every second mown stripe.
   grassAlternate: Rgb;
-  border: Rgb;
+  /// Walls around the ground.
+  wall: Rgb;
   line: Rgb;
   net: Rgb;
   /// Strength of light from above, from below, and of the sun, in flat mode.
@@ -85,11 +88,11 @@ export interface Surroundings {
 
 export const surroundings: Record<Theme, Surroundings> = {
   dark: {
-    zenith: rgb(0x0d1420), horizon: rgb(0x2a3a4f), floor: rgb(0x222b35), floorLine: rgb(0x323d4a), grass: rgb(0x2c7038), grassAlternate: rgb(0x327a3f),
-    border: rgb(0x27602f), line: rgb(0xf2f5f2), net: rgb(0xdfe6ec), above: 0.62, below: 0.34, sun: 0.46,
+    zenith: rgb(0x0a101b), horizon: rgb(0x24344a), floor: rgb(0x34404e), floorFar: rgb(0x151b23), floorLine: rgb(0x465466), grass: rgb(0x2c7038), grassAlternate: rgb(0x327a3f),
+    wall: rgb(0x3d4d63), line: rgb(0xf2f5f2), net: rgb(0xdfe6ec), above: 0.62, below: 0.34, sun: 0.46,
   },
   light: {
-    zenith: rgb(0x77aede), horizon: rgb(0xe4eef5), floor: rgb(0xc3c9c4), floorLine: rgb(0xb0b8b3), grass: rgb(0x4a9a4e), grassAlternate: rgb(0x55a758),
-    border: rgb(0x43894a), line: rgb(0xffffff), net: rgb(0xf5f8fa), above: 0.7, below: 0.42, sun: 0.45,
+    zenith: rgb(0x77aede), horizon: rgb(0xe4eef5), floor: rgb(0xc9cfca), floorFar: rgb(0xb3bab6), floorLine: rgb(0xb0b8b3), grass: rgb(0x4a9a4e), grassAlternate: rgb(0x55a758),
+    wall: rgb(0xa4b4bf), line: rgb(0xffffff), net: rgb(0xf5f8fa), above: 0.7, below: 0.42, sun: 0.45,
   },
 };

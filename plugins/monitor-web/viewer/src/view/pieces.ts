@@ -16,7 +16,8 @@ export interface Piece {
   /// Half edges, and radius of the edges [m].
   half: [number, number, number];
   rounding: number;
-  colour: Rgb;
+  /// Null: as walls look in the surroundings.
+  colour: Rgb | null;
 }
 
 /// A number painted on a robot: a square of `size` metres in the x-z plane of `matrix`, seen from -y.
@@ -41,6 +42,9 @@ export interface Picture {
   /// For each node the index of its robot in World.robots, or -1.
   robotOf: Int32Array;
 }
+
+/// Grey boxes longer than this are walls [m].
+const wallLength = 5;
 
 /// What to draw for a scene: robots in their costumes, other visible meshes as they are named. Ground, goals and ball are drawn elsewhere.
 export function makePicture(world: World, teams: TeamColours = usualTeams): Picture {
@@ -85,7 +89,8 @@ class PictureMaker {
       this.add({ ...shape, size: [0.031] }, mesh.parent, index, robotColours.joint);
       return;
     }
-    this.add(shape, mesh.parent, index, this.colourOf(mesh, robot));
+    const isWall = !robot && mesh.materials?.[0] === "matGrey" && shape.kind === "box" && Math.max(...shape.size) > wallLength;
+    this.add(shape, mesh.parent, index, isWall ? null : this.colourOf(mesh, robot));
     if (isSphereOfRobot) this.addBelt(shape.size[0]!, mesh.parent, index);
   }
 
@@ -119,7 +124,7 @@ class PictureMaker {
     return name === "matTeam" && robot ? teamColour(robot.side, this.teams) : materialColour(name, this.teams);
   }
 
-  private add(shape: Shape, node: number, mesh: number, colour: Rgb, rounding?: number): void {
+  private add(shape: Shape, node: number, mesh: number, colour: Rgb | null, rounding?: number): void {
     this.picture.pieces.push(pieceOf(shape, node, mesh, colour, rounding));
   }
 }
@@ -154,7 +159,7 @@ export function standardShape(name: string, sizes: readonly number[], scale: rea
 }
 
 /// A shape as a form. Boxes get edges as round as suits their size, unless told.
-export function pieceOf(shape: Shape, node: number, mesh: number, colour: Rgb, rounding?: number): Piece {
+export function pieceOf(shape: Shape, node: number, mesh: number, colour: Rgb | null, rounding?: number): Piece {
   const matrix = new Array<number>(16);
   compose(matrix, 0, shape.position, shape.rotation);
   const [a = 1, b = 0, c = 0] = shape.size;

@@ -1,4 +1,4 @@
-import { Group, Matrix4, type PerspectiveCamera, type Vector2, Vector3 } from "three";
+import { Group, Matrix4, type PerspectiveCamera, Vector3 } from "three";
 import type { World } from "../model";
 import { Ball } from "./ball";
 import { type FieldSizes, fieldSizes } from "./field_sizes";
@@ -46,7 +46,7 @@ export class Scenery {
   private readonly hidden: Uint8Array;
   private selected = -1;
 
-  constructor(private readonly world: World, private readonly looks: Looks, screen: Vector2) {
+  constructor(private readonly world: World, private readonly looks: Looks, screen: Vector3) {
     const around = surroundings[looks.theme];
     this.matrices.rebuild(world.nodes);
     this.matrices.update(world.local);
@@ -95,6 +95,7 @@ export class Scenery {
   /// For every picture. `pixel` = metres of one at a distance of one metre.
   updateView(eye: PerspectiveCamera, pixel: number, withTrail: boolean): void {
     this.ground.follow(eye.position.x, eye.position.y);
+    this.solids.arrange(eye, pixel);
     this.ball.fit(eye.position, pixel, this.world.time, withTrail);
   }
 
@@ -104,7 +105,9 @@ export class Scenery {
     const { nodes } = this.world;
     const below = new Uint8Array(nodes.length);
     nodes.forEach((each, index) => (below[index] = index === node || (each.parent >= 0 && below[each.parent]) ? 1 : 0));
-    this.solids.highlight(index => below[index] === 1);
+    // A robot keeps its colours: the ring marks it.
+    const isRobot = this.world.robots.some(robot => robot.node === node);
+    this.solids.highlight(index => !isRobot && below[index] === 1);
     this.layRings();
   }
 

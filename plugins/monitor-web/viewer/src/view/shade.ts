@@ -2,7 +2,7 @@ import { type Material, MeshDepthMaterial, MeshStandardMaterial, ShaderMaterial,
 import type { Surroundings } from "./palette";
 
 /// Towards the sun: high, from the side of the broadcast camera, a little from the left.
-export const towardsSun = new Vector3(-0.42, -0.5, 0.76).normalize();
+export const towardsSun = new Vector3(-0.6, -0.32, 0.74).normalize();
 
 /// How forms stretch, in every shader that draws them.
 const stretch = "corner * (size.xyz - size.w) + normal * size.w";
@@ -26,7 +26,7 @@ export function flatSolidMaterial(around: Surroundings): ShaderMaterial {
         vec3 n = mat3(instanceMatrix) * normal;
         float lit = mix(light.x, light.y, 0.5 + 0.5 * n.z) + light.z * max(dot(n, sun), 0.0);
         colour = mix(tint.rgb * lit, vec3(1.0), 0.3 * tint.a);
-        gl_Position = projectionMatrix * viewMatrix * world;
+        gl_Position = projectionMatrix * (viewMatrix * world);
       }`,
     fragmentShader: /* glsl */ `
       varying vec3 colour;

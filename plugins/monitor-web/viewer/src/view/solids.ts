@@ -1,102 +1,147 @@
-import { DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, type Material } from "three";
+import { DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, type Material, type PerspectiveCamera } from "three";
 import { multiply } from "./affine";
-import { type Form, makeForm } from "./forms";
+import type { Form } from "./forms";
+import { Frustum } from "./frustum";
+import { levelFor, levels, tooSmall } from "./levels";
 import type { Surroundings } from "./palette";
 import type { Piece } from "./pieces";
 import { hitBox } from "./ray";
 import { fineSolidMaterial, flatSolidMaterial, solidDepthMaterial } from "./shade";
 import type { Quality } from "./stage";
 
-/// All pieces of one form: one draw call.
+/// One form in one detail: a draw call, with those pieces that are shown so.
 class Batch {
   readonly mesh: InstancedMesh;
-  private readonly locals: Float32Array;
+  private readonly sizes: InstancedBufferAttribute;
+  private readonly tints: InstancedBufferAttribute;
 
-  constructor(form: Form, readonly pieces: readonly Piece[], quality: Quality, material: Material) {
-    const geometry = makeForm(form, quality === "quality");
-    geometry.setAttribute("size", new InstancedBufferAttribute(Float32Array.from(pieces.flatMap(p => [...p.half, p.rounding])), 4));
-    geometry.setAttribute("tint", new InstancedBufferAttribute(Float32Array.from(pieces.flatMap(p => [...p.colour, 0])), 4));
-    this.locals = Float32Array.from(pieces.flatMap(p => p.matrix));
-    this.mesh = new InstancedMesh(geometry, material, pieces.length);
-    this.mesh.instanceMatrix.setUsage(DynamicDrawUsage);
-    this.mesh.frustumCulled = false;
-    this.mesh.matrixAutoUpdate = false;
-    this.mesh.castShadow = this.mesh.receiveShadow = quality === "quality";
-    if (quality === "quality") this.mesh.customDepthMaterial = solidDepthMaterial();
+  constructor(form: Form, level: number, capacity: number, material: Material, depth: Material | null) {
+    const geometry = levels[form][level]!.make();
+    this.sizes = new InstancedBufferAttribute(new Float32Array(4 * capacity), 4);
+    this.tints = new InstancedBufferAttribute(new Float32Array(4 * capacity), 4);
+    this.mesh = new InstancedMesh(geometry, material, capacity);
+    for (const attribute of [this.sizes, this.tints, this.mesh.instanceMatrix]) attribute.setUsage(DynamicDrawUsage);
+    geometry.setAttribute("size", this.sizes);
+    geometry.setAttribute("tint", this.tints);
+    this.mesh.frustumCulled = this.mesh.matrixAutoUpdate = false;
+    this.mesh.castShadow = this.mesh.receiveShadow = depth !== null;
+    if (depth) this.mesh.customDepthMaterial = depth;
   }
 
-  update(worlds: Float32Array, hidden: Uint8Array): void {
-    const matrices = this.mesh.instanceMatrix.array as Float32Array;
-    this.pieces.forEach((piece, index) => {
-      if (piece.mesh >= 0 && hidden[piece.mesh]) matrices.fill(0, 16 * index, 16 * index + 16);
-      else multiply(matrices, 16 * index, worlds, 16 * piece.node, this.locals, 16 * index);
-    });
-    this.mesh.instanceMatrix.needsUpdate = true;
+  begin(): void {
+    this.mesh.count = 0;
   }
 
-  /// Pieces that a ray meets: tells the node and the distance of each.
-  hit(origin: [number, number, number], direction: [number, number, number], pixel: number, found: (node: number, distance: number) => void): void {
-    const matrices = this.mesh.instanceMatrix.array as Float32Array;
-    this.pieces.forEach((piece, index) => {
-      const o = 16 * index;
-      if (matrices[o + 15] === 0) return;
-      const away = Math.hypot(matrices[o + 12]! - origin[0], matrices[o + 13]! - origin[1], matrices[o + 14]! - origin[2]);
-      const distance = hitBox(origin, direction, matrices, o, piece.half, 3 * pixel * away);
-      if (distance < Infinity) found(piece.node, distance);
-    });
+  add(matrices: Float32Array, sizes: Float32Array, tints: Float32Array, piece: number): void {
+    const n = this.mesh.count++;
+    const matrix = this.mesh.instanceMatrix.array, size = this.sizes.array, tint = this.tints.array;
+    for (let k = 0; k < 16; k++) matrix[16 * n + k] = matrices[16 * piece + k]!;
+    for (let k = 0; k < 4; k++) {
+      size[4 * n + k] = sizes[4 * piece + k]!;
+      tint[4 * n + k] = tints[4 * piece + k]!;
+    }
   }
 
-  highlight(isMarked: (node: number) => boolean): void {
-    const tint = this.mesh.geometry.getAttribute("tint");
-    this.pieces.forEach((piece, index) => tint.setW(index, isMarked(piece.node) ? 1 : 0));
-    tint.needsUpdate = true;
+  end(): void {
+    const { count, instanceMatrix } = this.mesh;
+    this.mesh.visible = count > 0;
+    for (const [attribute, width] of [[instanceMatrix, 16], [this.sizes, 4], [this.tints, 4]] as const) {
+      attribute.clearUpdateRanges();
+      attribute.addUpdateRange(0, width * count);
+      attribute.needsUpdate = count > 0;
+    }
   }
 
   dispose(): void {
     this.mesh.geometry.dispose();
-    this.mesh.customDepthMaterial?.dispose();
     this.mesh.dispose();
   }
 }
 
-/// Everything solid: a batch for each form.
+/// Everything solid. Each piece is drawn in the detail that its size in the picture deserves, and not at all where nobody sees it.
 export class Solids {
   readonly group = new Group();
-  private readonly batches: Batch[];
+  private readonly batches: Record<Form, Batch[]>;
   private readonly material: Material;
+  private readonly depth: Material | null;
+  private readonly locals: Float32Array;
+  private readonly matrices: Float32Array;
+  private readonly sizes: Float32Array;
+  private readonly tints: Float32Array;
+  private readonly radii: Float32Array;
+  private readonly frustum = new Frustum();
 
-  constructor(pieces: readonly Piece[], quality: Quality, around: Surroundings) {
+  constructor(private readonly pieces: readonly Piece[], private readonly quality: Quality, around: Surroundings) {
     this.material = quality === "quality" ? fineSolidMaterial() : flatSolidMaterial(around);
-    this.batches = (["block", "round", "barrel"] as const)
-      .map(form => ({ form, members: pieces.filter(piece => piece.form === form) }))
-      .filter(({ members }) => members.length > 0)
-      .map(({ form, members }) => new Batch(form, members, quality, this.material));
-    for (const { mesh } of this.batches) this.group.add(mesh);
+    this.depth = quality === "quality" ? solidDepthMaterial() : null;
+    this.locals = Float32Array.from(pieces.flatMap(piece => piece.matrix));
+    this.matrices = new Float32Array(this.locals.length);
+    this.sizes = Float32Array.from(pieces.flatMap(piece => [...piece.half, piece.rounding]));
+    this.tints = Float32Array.from(pieces.flatMap(piece => [...(piece.colour ?? around.wall), 0]));
+    this.radii = Float32Array.from(pieces, ({ form, half }) => (form === "round" ? Math.max(...half) : Math.hypot(...half)));
+    this.batches = { block: this.makeBatches("block"), round: this.makeBatches("round"), barrel: this.makeBatches("barrel") };
   }
 
   /// For another frame; `hidden` has a 1 for each node that is not to be seen.
   update(worlds: Float32Array, hidden: Uint8Array): void {
-    for (const batch of this.batches) batch.update(worlds, hidden);
+    for (let n = 0; n < this.pieces.length; n++) {
+      const piece = this.pieces[n]!;
+      if (piece.mesh >= 0 && hidden[piece.mesh]) this.matrices.fill(0, 16 * n, 16 * n + 16);
+      else multiply(this.matrices, 16 * n, worlds, 16 * piece.node, this.locals, 16 * n);
+    }
+  }
+
+  /// For every picture. `pixel` = metres of one at a distance of one metre.
+  arrange(eye: PerspectiveCamera, pixel: number): void {
+    const { matrices, batches } = this;
+    const isFlat = this.quality === "flat";
+    this.frustum.set(eye);
+    for (const form in batches) for (const batch of batches[form as Form]) batch.begin();
+    for (let n = 0; n < this.pieces.length; n++) {
+      const o = 16 * n, radius = this.radii[n]!;
+      if (matrices[o + 15] === 0) continue;
+      let depth = this.frustum.depth(matrices[o + 12]!, matrices[o + 13]!, matrices[o + 14]!, radius);
+      if (depth < 0) {
+        // What is not seen may cast a shadow that is.
+        if (isFlat) continue;
+        depth = 20;
+      }
+      const pixels = radius / (pixel * depth);
+      if (pixels < tooSmall) continue;
+      const { form } = this.pieces[n]!;
+      batches[form][levelFor(form, pixels)]!.add(matrices, this.sizes, this.tints, n);
+    }
+    for (const form in batches) for (const batch of batches[form as Form]) batch.end();
   }
 
   /// Lights up the pieces of these transforms.
   highlight(isMarked: (node: number) => boolean): void {
-    for (const batch of this.batches) batch.highlight(isMarked);
+    this.pieces.forEach((piece, n) => (this.tints[4 * n + 3] = isMarked(piece.node) ? 1 : 0));
   }
 
   /// The piece nearest along a ray: its node and how far; null: none. `pixel` = metres of one at a distance of one metre: a few of them do not matter.
   hit(origin: [number, number, number], direction: [number, number, number], pixel: number): { node: number; distance: number } | null {
     let nearest: { node: number; distance: number } | null = null;
-    for (const batch of this.batches) {
-      batch.hit(origin, direction, pixel, (node, distance) => {
-        if (!nearest || distance < nearest.distance) nearest = { node, distance };
-      });
-    }
+    this.pieces.forEach(({ node, half }, n) => {
+      const o = 16 * n;
+      if (this.matrices[o + 15] === 0) return;
+      const away = Math.hypot(this.matrices[o + 12]! - origin[0], this.matrices[o + 13]! - origin[1], this.matrices[o + 14]! - origin[2]);
+      const distance = hitBox(origin, direction, this.matrices, o, half, 3 * pixel * away);
+      if (distance < (nearest?.distance ?? Infinity)) nearest = { node, distance };
+    });
     return nearest;
   }
 
   dispose(): void {
-    for (const batch of this.batches) batch.dispose();
+    for (const batch of Object.values(this.batches).flat()) batch.dispose();
     this.material.dispose();
+    this.depth?.dispose();
+  }
+
+  private makeBatches(form: Form): Batch[] {
+    const capacity = this.pieces.filter(piece => piece.form === form).length;
+    const batches = levels[form].map((_, level) => new Batch(form, level, capacity, this.material, this.depth));
+    for (const { mesh } of batches) this.group.add(mesh);
+    return batches;
   }
 }

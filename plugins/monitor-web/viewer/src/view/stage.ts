@@ -1,4 +1,4 @@
-import { Group, Matrix4, NeutralToneMapping, PCFSoftShadowMap, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import { Group, Matrix4, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import type { Robot, Source } from "../model";
 import { Budget } from "./budget";
 import { Camera, type Sights } from "./camera";
@@ -56,8 +56,8 @@ export class Stage {
   private readonly rig = new Camera(this.sights);
   private readonly budget = new Budget();
   private readonly observer: ResizeObserver;
-  /// Half the canvas in pixels.
-  private readonly screen = new Vector2(1, 1);
+  /// Half the canvas in pixels, and pixels of a length on screen that is 1 on an ordinary one.
+  private readonly screen = new Vector3(1, 1, 1);
   private renderer: WebGLRenderer;
   private controls: Controls;
   private sunlight: Sunlight | null = null;
@@ -172,7 +172,7 @@ export class Stage {
     this.source?.update(now);
     this.followWorld();
     this.lookAround();
-    const moved = this.rig.step(Math.min(0.25, Math.max(0, passed / 1000)));
+    const moved = this.rig.step(Math.min(1, Math.max(0, passed / 1000)));
     if (!moved && !this.dirty) return (this.drewLast = false);
     if (this.drewLast) this.times.add(passed);
     if (this.adaptive && this.drewLast && this.budget.heard(passed)) this.resize();
@@ -189,10 +189,9 @@ export class Stage {
   /// Follows the container's size; called by itself when that changes.
   resize(): void {
     const [width, height] = [Math.max(1, this.container.clientWidth), Math.max(1, this.container.clientHeight)];
-    const finest = this.looks.quality === "flat" ? 1 : 2;
-    this.renderer.setPixelRatio(Math.min(finest, window.devicePixelRatio || 1) * this.budget.share);
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1) * this.budget.share);
     this.renderer.setSize(width, height, false);
-    this.screen.set(this.canvas.width / 2, this.canvas.height / 2);
+    this.screen.set(this.canvas.width / 2, this.canvas.height / 2, Math.max(this.renderer.getPixelRatio(), this.canvas.height / 1080));
     this.sights.aspect = this.eye.aspect = width / height;
     this.invalidate();
   }
@@ -349,7 +348,7 @@ export class Stage {
     const renderer = new WebGLRenderer({ antialias: fine, alpha: false, stencil: false, powerPreference: "high-performance" });
     renderer.setClearColor(css(surroundings[this.looks.theme].horizon));
     renderer.shadowMap.enabled = fine;
-    renderer.shadowMap.type = PCFSoftShadowMap;
+    renderer.shadowMap.type = PCFShadowMap;
     renderer.toneMapping = NeutralToneMapping;
     renderer.domElement.style.cssText = "display:block;width:100%;height:100%;touch-action:none";
     renderer.domElement.setAttribute("aria-hidden", "true");

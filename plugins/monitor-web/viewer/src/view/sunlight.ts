@@ -11,17 +11,17 @@ export class Sunlight {
 
   constructor(renderer: WebGLRenderer, scene: Scene, theme: Theme) {
     const dark = theme === "dark";
-    this.sun = new DirectionalLight(dark ? 0xdfe9ff : 0xfff4e0, dark ? 2.1 : 2.6);
+    this.sun = new DirectionalLight(dark ? 0xdfe9ff : 0xfff4e0, dark ? 3.0 : 3.4);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.012;
-    this.group.add(this.sun, this.sun.target, new HemisphereLight(0xdbe8ff, 0x6f8f6f, dark ? 0.5 : 0.7));
+    this.group.add(this.sun, this.sun.target, new HemisphereLight(0xdbe8ff, 0x6f8f6f, dark ? 0.3 : 0.4));
     const generator = new PMREMGenerator(renderer);
     this.mirrored = generator.fromScene(new RoomEnvironment(), 0.04).texture;
     generator.dispose();
     scene.environment = this.mirrored;
-    scene.environmentIntensity = dark ? 0.35 : 0.5;
+    scene.environmentIntensity = dark ? 0.22 : 0.3;
   }
 
   /// Shadows for what is within `reach` metres around a point.

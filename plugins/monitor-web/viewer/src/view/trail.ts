@@ -17,8 +17,9 @@ export class Trail {
       const passed = time - this.times[last]!;
       const moved = Math.hypot(x - this.points[3 * last]!, y - this.points[3 * last + 1]!, z - this.points[3 * last + 2]!);
       if (passed < 0 || passed > 1 || moved > 0.5 + 60 * passed) this.count = 0;
-      else if (passed < this.seconds / this.capacity) return;
     }
+    // The newest point goes along with the thing until it is far enough in time from the one before.
+    if (this.count > 1 && time - this.times[this.count - 2]! < this.seconds / this.capacity) this.count--;
     this.forget(time);
     if (this.count === this.capacity) this.drop(1);
     this.points.set([x, y, z], 3 * this.count);

@@ -1,0 +1,25 @@
+import { type InstancedBufferGeometry } from "three";
+import { barrel, type Form, roundedBox } from "./forms";
+
+/// A form in the detail that suits pieces up to so many pixels (half their longest diagonal).
+interface Level {
+  upTo: number;
+  make(): InstancedBufferGeometry;
+}
+
+const level = (upTo: number, make: () => InstancedBufferGeometry): Level => ({ upTo, make });
+
+/// From coarse to fine. A ball of few pixels may well be an octahedron.
+export const levels: Record<Form, Level[]> = {
+  block: [level(16, () => roundedBox(1)), level(70, () => roundedBox(2)), level(Infinity, () => roundedBox(4))],
+  round: [level(5, () => roundedBox(1)), level(14, () => roundedBox(2)), level(70, () => roundedBox(4)), level(Infinity, () => roundedBox(8))],
+  barrel: [level(10, () => barrel(7)), level(60, () => barrel(14)), level(Infinity, () => barrel(32))],
+};
+
+/// Smaller ones are not drawn [pixels].
+export const tooSmall = 0.9;
+
+/// Which level of a form suits a piece of so many pixels.
+export function levelFor(form: Form, pixels: number): number {
+  return levels[form].findIndex(({ upTo }) => pixels < upTo);
+}
