@@ -82,6 +82,8 @@ class Indexer {
   private tooLong = false;
   private first = "";
   private packetBytes = 0;
+  /// There was the head of a message at least.
+  private partial = false;
 
   constructor(private readonly name: string) {}
 
@@ -114,7 +116,7 @@ class Indexer {
 
   private noLog(name: string): string {
     if (/^(\x1f\x8b|BZh|PK\x03\x04)/.test(this.first)) return `${name} is packed. Unpack it first; only .gz is unpacked here.`;
-    const found = this.damaged > 0 && this.environment.size > 0 ? "only messages without a whole scene" : `“${this.first.slice(0, 40).replace(/[^\x20-\x7e]/g, "·")}”`;
+    const found = this.partial ? "only messages without a whole scene" : `“${this.first.trim().slice(0, 40).replace(/[^\x20-\x7e]/g, "·")}”`;
     return `${name} is no log of a monitor: expected lines like ((time 0)…)(RSG 0 1)(…), found ${found}.`;
   }
 
@@ -124,12 +126,12 @@ class Indexer {
   }
 
   private line(bytes: Uint8Array, start: number, lineEnd: number, offset: number, closed: boolean): void {
+    if (this.first === "") this.first = String.fromCharCode(...bytes.subarray(start, Math.min(lineEnd, start + 60)));
     let end = lineEnd;
     while (end > start && bytes[end - 1]! <= 0x20) --end;
     let from = start;
     while (from < end && bytes[from]! <= 0x20) ++from;
     if (from === end) return;
-    if (this.first === "") this.first = String.fromCharCode(...bytes.subarray(from, Math.min(end, from + 60)));
     const message = skipDrawings(bytes, from, end);
     if (message === end) return;
     const cut = this.tooLong;
@@ -137,7 +139,9 @@ class Indexer {
     if (cut || end - from > kLongestLine) return this.passOver();
     const head = this.reader.head(bytes, message, end);
     // The scene must be known before its changes are.
-    if (!head || (!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full)) return this.passOver();
+    if (!head) return this.passOver();
+    this.partial = true;
+    if ((!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full)) return this.passOver();
     takeEntries(this.environment, head.environment, head.full);
     for (const event of this.eventReader.take(this.environment, head.environment, 0)) this.found.push({ event, record: this.records.length });
     if (offset + from - this.pageStart >= kPage || this.records.length === 0) {

@@ -1,8 +1,8 @@
 import { expect, test } from "vitest";
-import { FrameDecoder } from "../src/codec/frames";
-import { Poses } from "../src/sources/poses";
-import { type Frame, writeFrame } from "./frame_writer";
-import { Random } from "./random";
+import { FrameDecoder } from "../../src/codec/frames";
+import { Poses } from "../../src/sources/poses";
+import { type Frame, writeFrame } from "../helpers/frame_writer";
+import { Random } from "../helpers/random";
 
 const kBits: [number, number] = [10, 10];
 

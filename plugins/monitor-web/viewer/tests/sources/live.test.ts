@@ -1,9 +1,9 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from "vitest";
-import { Live } from "../src/sources";
-import { FakeHost } from "./fake_host";
-import { writeFrame } from "./frame_writer";
-import { kIdentity } from "./logs";
-import { Random } from "./random";
+import { Live } from "../../src/sources";
+import { FakeHost } from "../helpers/fake_host";
+import { writeFrame } from "../helpers/frame_writer";
+import { kIdentity } from "../helpers/logs";
+import { Random } from "../helpers/random";
 
 const kScene = {
   type: "scene",

@@ -1,4 +1,4 @@
-import type { Socket } from "../src/sources/connection";
+import type { Socket } from "../../src/sources/connection";
 
 /// A host at the other end of a WebSocket that is none.
 export class FakeHost {

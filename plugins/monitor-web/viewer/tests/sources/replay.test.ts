@@ -1,6 +1,6 @@
 import { describe, expect, test } from "vitest";
-import { openReplay, type Replay } from "../src/sources";
-import { at, changes, json, kModes, log, scene, sexp } from "./logs";
+import { openReplay, type Replay } from "../../src/sources";
+import { at, changes, json, kModes, log, scene, sexp } from "../helpers/logs";
 
 const start = (time: number, mode = 3) => [["time", time], kModes, ["team_left", "Red"], ["score_left", 0], ["score_right", 0], ["play_mode", mode]];
 

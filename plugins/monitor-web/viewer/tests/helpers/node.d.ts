@@ -1,0 +1,7 @@
+/// What tests use of Node.js.
+declare module "node:fs" {
+  export function existsSync(path: string): boolean;
+  export function readFileSync(path: string, encoding: "utf8"): string;
+  export function readdirSync(path: string): string[];
+}
+declare const process: { env: Record<string, string | undefined> };

@@ -1,0 +1,40 @@
+/// Sessions recorded with the installed base, where they are at hand.
+import { existsSync, readdirSync, readFileSync } from "node:fs";
+import { describe, expect, test } from "vitest";
+import { openReplay, type Replay } from "../../src/sources";
+
+const captures = `${process.env.SPARK_REFERENCE_DIR ?? ""}/captures`;
+const builds = existsSync(captures) ? readdirSync(captures).filter((name) => !name.includes(".")) : [];
+const sessions = builds.flatMap((build) => readdirSync(`${captures}/${build}`).filter((f) => f.endsWith(".jsonl")).map((f) => `${build}/${f}`));
+
+function messages(session: string): string[] {
+  const lines = readFileSync(`${captures}/${session}`, "utf8").split("\n").filter(Boolean);
+  return lines.map((line) => JSON.parse(line) as { dir: string; msg: string }).filter((m) => m.dir === "server>monitor").map((m) => m.msg);
+}
+
+async function at(replay: Replay, time: number): Promise<Replay> {
+  replay.seek(time);
+  await replay.settled();
+  return replay;
+}
+
+describe.skipIf(sessions.length === 0)("what a monitor of the installed base was sent", () => {
+  test.each(sessions)("%s plays as a log", async (session) => {
+    const sent = messages(session);
+    const replay = await openReplay(new Blob([sent.join("\n")]), session);
+    let robots = 0;
+    for (let k = 0; k < 20; ++k) {
+      await at(replay, replay.start + ((replay.end - replay.start) * k) / 19);
+      robots = Math.max(robots, replay.world.robots.length);
+      expect(replay.world.ball).toBeGreaterThan(0);
+      expect(replay.world.local.every(Number.isFinite)).toBe(true);
+    }
+    expect(replay.damaged).toBe(0);
+    // Who loaded a robot is seen; one that was killed at the end, too, before.
+    expect(robots).toBe(session.includes("four-agents") ? 4 : 1);
+    for (const robot of replay.world.robots) {
+      expect(replay.world.nodes[robot.torso]!.shapes).toEqual([expect.objectContaining({ kind: "box" })]);
+      expect(replay.world.nodes[robot.head]!.shapes).toEqual([expect.objectContaining({ kind: "sphere" })]);
+    }
+  });
+});
