@@ -35,7 +35,10 @@ export class DrawingsLayer {
   private readonly agentTexts = new Texts();
   private agents: { text: AgentText; robot: Robot }[] = [];
   private world: World | null = null;
-  private drawn = "";
+  private drawings = -1;
+  private scene = -1;
+  private switched = -1;
+  private seen = true;
   private frame = -1;
   private readonly matrix = new Float32Array(16);
 
@@ -46,15 +49,18 @@ export class DrawingsLayer {
 
   setWorld(world: World | null): void {
     this.world = world;
-    this.drawn = "";
+    this.drawings = -1;
   }
 
   update(): void {
     const world = this.world;
     if (!world) return;
-    const wanted = `${world.versions.drawings} ${world.versions.scene} ${this.switches.version} ${this.visible}`;
-    if (wanted !== this.drawn) {
-      this.drawn = wanted;
+    const { drawings, scene } = world.versions;
+    if (drawings !== this.drawings || scene !== this.scene || this.switches.version !== this.switched || this.visible !== this.seen) {
+      this.drawings = drawings;
+      this.scene = scene;
+      this.switched = this.switches.version;
+      this.seen = this.visible;
       this.build(world);
       this.canvas.invalidate();
     }

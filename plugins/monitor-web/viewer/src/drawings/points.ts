@@ -1,4 +1,5 @@
-import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Points as ThreePoints, ShaderMaterial } from "three";
+import { BufferAttribute, BufferGeometry, Points as ThreePoints, ShaderMaterial } from "three";
+import { grownAttribute } from "./buffers";
 import { toLinear } from "./geometry";
 
 const kVertex = `
@@ -71,16 +72,8 @@ export class Points {
   private grow(): void {
     if (this.room > 0) this.geometry.dispose();
     this.room = Math.max(64, 2 * this.room);
-    this.places = this.attribute("position", 3, this.places);
-    this.tints = this.attribute("tint", 4, this.tints);
-    this.sizes = this.attribute("size", 1, this.sizes);
-  }
-
-  private attribute(name: string, size: number, before: BufferAttribute | undefined): BufferAttribute {
-    const array = new Float32Array(size * this.room);
-    if (before) array.set(before.array as Float32Array);
-    const attribute = new BufferAttribute(array, size).setUsage(DynamicDrawUsage);
-    this.geometry.setAttribute(name, attribute);
-    return attribute;
+    this.places = grownAttribute(this.geometry, "position", 3, this.room, this.places);
+    this.tints = grownAttribute(this.geometry, "tint", 4, this.room, this.tints);
+    this.sizes = grownAttribute(this.geometry, "size", 1, this.room, this.sizes);
   }
 }

@@ -1,4 +1,5 @@
-import { BufferAttribute, DynamicDrawUsage, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, ShaderMaterial, Vector2, Vector4 } from "three";
+import { BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, ShaderMaterial, Vector2, Vector4 } from "three";
+import { grownAttribute } from "./buffers";
 import { toLinear } from "./geometry";
 import { Glyphs, kCells } from "./glyphs";
 
@@ -123,17 +124,9 @@ export class Texts {
   private grow(): void {
     if (this.room > 0) this.geometry.dispose();
     this.room = Math.max(256, 2 * this.room);
-    this.anchors = this.attribute("anchor", 3, this.anchors);
-    this.cells = this.attribute("cell", 3, this.cells);
-    this.shifts = this.attribute("shift", 2, this.shifts);
-    this.tints = this.attribute("tint", 3, this.tints);
-  }
-
-  private attribute(name: string, size: number, before: InstancedBufferAttribute | undefined): InstancedBufferAttribute {
-    const array = new Float32Array(size * this.room);
-    if (before) array.set(before.array as Float32Array);
-    const attribute = new InstancedBufferAttribute(array, size).setUsage(DynamicDrawUsage) as InstancedBufferAttribute;
-    this.geometry.setAttribute(name, attribute);
-    return attribute;
+    this.anchors = grownAttribute(this.geometry, "anchor", 3, this.room, this.anchors, true);
+    this.cells = grownAttribute(this.geometry, "cell", 3, this.room, this.cells, true);
+    this.shifts = grownAttribute(this.geometry, "shift", 2, this.room, this.shifts, true);
+    this.tints = grownAttribute(this.geometry, "tint", 3, this.room, this.tints, true);
   }
 }

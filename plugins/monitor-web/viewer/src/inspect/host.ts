@@ -7,6 +7,10 @@ export class Host implements Inspectable {
 
   constructor(private readonly live: LiveSource) {}
 
+  get ready(): boolean {
+    return this.live.connected;
+  }
+
   get editable(): boolean {
     return this.live.referee;
   }

@@ -1,5 +1,4 @@
 import "./inspect.css";
-import type { Robot } from "../model";
 import { DrawingsLayer } from "../drawings/layer";
 import { DrawingsPanel } from "../drawings/panel";
 import { SetSwitches } from "../drawings/switches";
@@ -9,7 +8,7 @@ import { Host } from "./host";
 import type { Inspectable, PropertyInfo } from "./inspectable";
 import { NodePaths } from "./node_paths";
 import { OverlaySet } from "./overlay_set";
-import type { Overlay } from "./overlays/overlay";
+import type { Overlay, Surroundings } from "./overlays/overlay";
 import { OverlaysView } from "./overlays_view";
 import { kMostPlotted, PlotList } from "./plot_list";
 import { PlotView } from "./plot_view";
@@ -43,8 +42,11 @@ class Inspector implements Panel {
   private paths: NodePaths | null = null;
   private plots: PlotList | null = null;
   private scene = -1;
+  private ready = false;
+  private readonly around: Surroundings;
 
   constructor(container: HTMLElement, private readonly app: App) {
+    this.around = aroundOf(app);
     this.overlays = new OverlaySet(app.stage.overlay);
     this.overlaysView = new OverlaysView(this.overlays.overlays, (overlay, on) => this.switchOverlay(overlay, on));
     this.drawings = new DrawingsLayer(app.stage, this.switches);
@@ -67,13 +69,13 @@ class Inspector implements Panel {
   }
 
   update(now: number): void {
-    const { app } = this;
-    this.overlays.update(now, { canvas: app.stage, world: app.world, live: app.live, robot: this.robot() });
+    this.overlays.update(now, this.around);
     this.drawings.update();
     if (!this.pace.due(now)) return;
     this.inspectable?.update();
     this.followScene(now);
-    if (app.inspecting) this.updatePage();
+    this.followHost();
+    if (this.app.inspecting) this.updatePage();
   }
 
   close(): void {
@@ -112,7 +114,9 @@ class Inspector implements Panel {
     this.tree.setSource(this.inspectable);
     this.properties.setSource(this.inspectable);
     this.drawings.setWorld(world);
+    live?.setDrawings(this.drawings.visible);
     this.scene = world.versions.scene;
+    this.ready = this.inspectable!.ready;
     this.wake();
     this.showSelection();
   }
@@ -125,14 +129,19 @@ class Inspector implements Panel {
     this.tree.refresh();
   }
 
+  /// The host is there again: what could not be answered is asked anew.
+  private followHost(): void {
+    const ready = this.inspectable?.ready ?? false;
+    if (ready === this.ready) return;
+    this.ready = ready;
+    if (!ready) return;
+    this.tree.refresh();
+    this.showSelection(true);
+  }
+
   private wake(): void {
     this.properties?.setAwake(this.app.inspecting && this.tabs?.chosen === "tree");
     if (this.tabs && this.app.inspecting && this.inspectable) this.updatePage();
-  }
-
-  private robot(): Robot | null {
-    const key = this.app.selection?.robot ?? null;
-    return key === null ? null : this.app.world.robots.find((r) => r.key === key) ?? null;
   }
 
   /// Somebody chose a node of the tree.
@@ -140,11 +149,11 @@ class Inspector implements Panel {
     this.app.select({ robot: this.paths!.robotAt(path), node: this.paths!.nodeAt(path), path });
   }
 
-  private showSelection(): void {
+  private showSelection(again = false): void {
     const selection = this.app.selection;
     const path = selection && (selection.path ?? this.paths!.ofRobot(selection.robot) ?? this.paths!.pathOf(selection.node) ?? null);
     this.tree.select(path);
-    this.properties.show(path);
+    this.properties.show(path, again);
   }
 
   private togglePlot(path: string, info: PropertyInfo): void {
@@ -162,6 +171,25 @@ class Inspector implements Panel {
 
   private switchDrawings(on: boolean, tell = false): void {
     this.drawings.visible = on;
+    this.app.live?.setDrawings(on);
     if (tell) this.app.toast(`Drawings ${on ? "shown" : "hidden"}`);
   }
+}
+
+/// Read anew with each picture, without anything being made for it.
+function aroundOf(app: App): Surroundings {
+  return {
+    canvas: app.stage,
+    get world() {
+      return app.world;
+    },
+    get live() {
+      return app.live;
+    },
+    get robot() {
+      const key = app.selection?.robot;
+      if (key != null) for (const robot of app.world.robots) if (robot.key === key) return robot;
+      return null;
+    },
+  };
 }

@@ -30,6 +30,8 @@ export interface NodeInfo {
 }
 
 export interface Inspectable {
+  /// False while nobody would answer.
+  readonly ready: boolean;
   /// The node that is shown first, opened with all above it.
   readonly first: string;
   tree(path: string, depth: number): Promise<TreeAnswer>;

@@ -38,7 +38,8 @@ export class OverlaySet {
   }
 
   private isOn(id: string): boolean {
-    return this.overlays.some((o) => o.id === id && o.on);
+    for (const overlay of this.overlays) if (overlay.id === id) return overlay.on;
+    return false;
   }
 
   private ask<T>(request: Record<string, unknown>): Promise<T> {

@@ -16,6 +16,7 @@ interface Watcher {
 /// A recorded match: its scene and its state as a tree. Recordings hold no properties of the host's objects; what is shown here is what
 /// the picture itself is made of.
 export class Recording implements Inspectable {
+  readonly ready = true;
   readonly first = kScene;
   readonly editable = false;
   private readonly watchers = new Set<Watcher>();

@@ -22,8 +22,9 @@ export class Series {
     return this.values[(this.first + i) % this.capacity]!;
   }
 
-  /// A second value for the same instant replaces the first. Time that goes back (a new match, a log sought back) drops what comes after.
+  /// A second value for the same instant replaces the first. Time that goes back (a new match, a log sought back) drops what comes after; an unknown time nothing.
   push(time: number, value: number): void {
+    if (!Number.isFinite(time)) return;
     while (this.count > 0 && this.time(this.count - 1) >= time) --this.count;
     if (this.count === this.capacity) {
       this.first = (this.first + 1) % this.capacity;

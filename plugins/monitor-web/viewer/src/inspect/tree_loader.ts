@@ -29,7 +29,7 @@ export class TreeLoader {
 
   /// To be called when the model may want something.
   pump(): void {
-    if (this.busy || this.closed) return;
+    if (this.busy || this.closed || !this.source.ready) return;
     const path = this.next();
     if (path === null) return;
     this.busy = true;
@@ -61,7 +61,7 @@ export class TreeLoader {
     if (this.goal !== null) {
       const path = this.model.reveal(this.goal);
       if (path !== null) return path;
-      this.goal = null;
+      if (this.model.node(this.goal)) this.goal = null;
     }
     for (let path = this.stale.shift(); path !== undefined; path = this.stale.shift()) if (this.model.node(path)) return path;
     return this.model.wanted();

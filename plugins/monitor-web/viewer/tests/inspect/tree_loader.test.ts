@@ -5,6 +5,7 @@ import { TreeModel } from "../../src/inspect/tree_model";
 
 /// A host whose answers come when the test says so.
 class Slow {
+  ready = true;
   asked: string[] = [];
   private waiting: { give: (answer: TreeAnswer) => void; refuse: (why: Error) => void }[] = [];
   tree(path: string): Promise<TreeAnswer> {
@@ -51,6 +52,17 @@ it("asks again for what is open, and says what the host refuses", async () => {
   await host.refuse();
   expect(loader.error).toBe("no such node");
   expect(host.asked).toEqual(["/", "/", "/sys"]);
+});
+
+it("waits until somebody would answer", () => {
+  const host = new Slow();
+  host.ready = false;
+  const loader = new TreeLoader(host as unknown as Inspectable, new TreeModel());
+  loader.pump();
+  expect(host.asked).toEqual([]);
+  host.ready = true;
+  loader.pump();
+  expect(host.asked).toEqual(["/"]);
 });
 
 it("takes no answer after it was closed", async () => {
