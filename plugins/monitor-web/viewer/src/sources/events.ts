@@ -90,7 +90,7 @@ export class EventReader {
 function foul(entry: Entry, environment: Environment, time: number): GameEvent {
   const values = entry.slice(entry.length > 4 ? 2 : 1) as Value[];
   const what = kFouls[Number(values[0])] ?? "unknown";
-  const side: Side | undefined = Number(values[1]) === 1 ? "left" : Number(values[1]) === 2 ? "right" : undefined;
+  const side: Side | undefined = values[1] === 1 || values[1] === "left" ? "left" : values[1] === 2 || values[1] === "right" ? "right" : undefined;
   const who = side === undefined ? "" : ` of ${teamName(environment, side)} ${values[2] ?? ""}`.trimEnd();
   return withSide({ time, kind: "foul", text: `Foul: ${what}${who}` }, side);
 }

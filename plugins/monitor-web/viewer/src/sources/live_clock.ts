@@ -1,9 +1,11 @@
 /// Which instant of a running match to show. Frames arrive unevenly, and simulated time runs at any speed: the clock follows the straight line
-/// through the last arrivals, and shows a little less than the newest, by one interval and what the arrivals are uneven.
+/// through the last arrivals, and shows what was so long ago as the longest of the last pauses between two frames.
 
 const kArrivals = 32;
 /// Limits of the delay [ms].
-const kShortest = 20, kLongest = 400;
+const kShortest = 20, kLongest = 1200;
+/// What is left of the longest pause after each arrival: half of it after a second.
+const kFading = 0.97;
 /// How fast a wrong clock is put right [ms].
 const kSettling = 250;
 /// A clock that is wrong by more wall time than this is set anew [ms].
@@ -13,8 +15,8 @@ export class LiveClock {
   private readonly walls = new Float64Array(kArrivals);
   private readonly times = new Float64Array(kArrivals);
   private count = 0;
-  private interval = 40;
-  private jitter = 5;
+  /// The longest pause between two frames, fading [ms].
+  private pause = 40;
   private shown = NaN;
   private last = NaN;
   private rate = 0.001;
@@ -34,10 +36,7 @@ export class LiveClock {
       const passed = now - this.walls[newest]!;
       // Time went back, or stood still for long: what was is no guide.
       if (time < this.times[newest]! || passed > 2000) this.reset();
-      else {
-        this.interval += 0.1 * (Math.min(passed, 1000) - this.interval);
-        this.jitter += 0.1 * (Math.abs(passed - this.interval) - this.jitter);
-      }
+      else this.pause = Math.max(passed, kFading * this.pause);
     }
     this.walls[this.count % kArrivals] = now;
     this.times[this.count % kArrivals] = time;
@@ -49,7 +48,7 @@ export class LiveClock {
   at(now: number): number {
     if (this.count === 0) return NaN;
     const newest = this.times[(this.count - 1) % kArrivals]!;
-    const delay = Math.min(kLongest, Math.max(kShortest, this.interval + 2 * this.jitter));
+    const delay = Math.min(kLongest, Math.max(kShortest, 1.1 * this.pause));
     const wanted = Math.min(newest, this.line + this.rate * (now - delay - this.walls[(this.count - 1) % kArrivals]!));
     const passed = now - this.last;
     this.last = now;

@@ -9,7 +9,7 @@ import { EventReader, modeName, takeEntries } from "./events";
 /// clock stands still before the kick-off and after the end, and trainers set it. The log's own clock begins at 0, and goes on by what the
 /// game's clock says as long as that is likely, and by the usual time between two records otherwise.
 
-const kSlice = 4 << 20;
+const kSlice = 1 << 20;
 const kLongestLine = 8 << 20;
 const kPage = 1 << 20;
 const kPages = 12;
