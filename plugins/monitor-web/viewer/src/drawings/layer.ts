@@ -19,7 +19,8 @@ export interface Canvas {
 const kMostWidths = 12;   // of lines, with their transparencies: each is a call of its own
 const kGround = 0.012;    // [m]; circles lie a little above the lines of the field
 const kTextSize = 13;     // [px]
-const kAboveHead = 0.3;   // [m]
+const kAboveHead = 0.2;   // [m]
+const kAboveNumber = 2.2; // lines
 
 type AgentText = Extract<Drawing, { kind: "agentText" }>;
 
@@ -109,7 +110,7 @@ export class DrawingsLayer {
     for (const { text, robot } of this.agents) {
       this.canvas.matrixOf(robot.head, this.matrix);
       const [r, g, b] = text.colour;
-      this.agentTexts.add(text.text, this.matrix[12]!, this.matrix[13]!, this.matrix[14]! + kAboveHead, kTextSize, r, g, b, 1);
+      this.agentTexts.add(text.text, this.matrix[12]!, this.matrix[13]!, this.matrix[14]! + kAboveHead, kTextSize, r, g, b, kAboveNumber);
     }
     this.agentTexts.end();
   }

@@ -27,7 +27,7 @@ const kTreePeriod = 1000;     // [ms] between two refreshes of the tree while th
 
 class Inspector implements Panel {
   private readonly tabs: Tabs;
-  private readonly tree = new TreeView((path) => this.choose(path));
+  private readonly tree = new TreeView((path) => this.choose(path), (path) => this.paths?.titleOf(path) ?? "");
   private readonly properties = new PropertyView({ has: (path, name) => this.plots?.has(path, name) ?? false, toggle: (path, info) => this.togglePlot(path, info) });
   private readonly plotView = new PlotView();
   private readonly overlays: OverlaySet;

@@ -39,6 +39,12 @@ export class NodePaths {
     return robot && (robot.path ?? this.pathOf(robot.node));
   }
 
+  /// "left 3" where a robot begins; empty elsewhere, and where the path says so itself.
+  titleOf(path: string): string {
+    const robot = this.world.robots.find((r) => r.path === path);
+    return robot?.side ? `${robot.side} ${robot.number}` : "";
+  }
+
   private refresh(): void {
     if (this.version === this.world.versions.scene) return;
     this.version = this.world.versions.scene;

@@ -65,7 +65,8 @@ class OverlayItem {
 export class OverlaysView {
   readonly element: HTMLElement;
   private readonly items: OverlayItem[];
-  private readonly missing = h("p", { class: "insp-note", hidden: true, "data-testid": "overlays-missing" });
+  private readonly missing = h("p", { class: "insp-note", hidden: true, "data-testid": "overlays-missing" },
+    "A recording holds what monitors are told: bodies and the state of the game, but no contacts, joints, perceptors or percepts. Those can be seen while a match runs.");
 
   constructor(overlays: readonly Overlay[], switched: (overlay: Overlay, on: boolean) => void) {
     this.items = overlays.map((o) => new OverlayItem(o, switched));
@@ -73,9 +74,7 @@ export class OverlaysView {
   }
 
   update(replay: boolean): void {
-    const missing = this.items.map((i) => i.overlay.missing).filter((m) => m !== null);
-    setText(this.missing, replay ? missing.join(" ") : "");
-    setHidden(this.missing, !replay || missing.length === 0);
+    setHidden(this.missing, !replay);
     for (const item of this.items) item.update(replay && item.overlay.missing !== null);
   }
 }

@@ -119,7 +119,7 @@ export class PlotView {
     if (this.list.isPaused && !first && now === this.now) return;
     this.now = now;
     const to = this.list.until(now);
-    for (const chart of this.shown) chart.update(to - Number(this.span.value), to);
+    for (const chart of this.shown) chart.update(Math.max(0, to - Number(this.span.value)), to);
   }
 
   close(): void {

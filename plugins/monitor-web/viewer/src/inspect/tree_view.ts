@@ -32,7 +32,8 @@ export class TreeView {
   /// A row to be brought into view as soon as it is there.
   private sought: string | null = null;
 
-  constructor(private readonly chosen: (path: string) => void) {
+  /// `titled`: what people call a node, if they have a word for it.
+  constructor(private readonly chosen: (path: string) => void, private readonly titled: (path: string) => string) {
     const again = h("button", { type: "button", class: "insp-icon", title: "Ask the host again", "aria-label": "Refresh the tree", onclick: () => this.loader?.refresh() }, "↻");
     this.element = h("section", { class: "insp-objects" }, h("div", { class: "insp-bar" }, this.filter, again), this.tree, this.note);
   }
@@ -132,7 +133,7 @@ export class TreeView {
   private fill(row: Row, node: TreeNode, focused: boolean, showsChildren: boolean): void {
     const { element } = row;
     setText(row.name, node.name);
-    setText(row.kind, node.class === node.name.replace(/\[\d+\]$/, "") ? "" : node.class);
+    setText(row.kind, this.titled(node.path) || (node.class === node.name.replace(/\[\d+\]$/, "") ? "" : node.class));
     setAttribute(element, "title", node.doc ? `${node.class}: ${node.doc}` : node.class);
     setAttribute(element, "aria-level", String(node.depth + 1));
     setAttribute(element, "aria-posinset", String(node.index + 1));

@@ -5,8 +5,8 @@ import type { Listing, Overlay, Surroundings } from "./overlay";
 import { fixed, nameOf } from "./overlay";
 
 const kPeriod = 250;   // [ms] between two readings of speed and latency
-const kAbove = 0.3;    // [m] above the head
 const kSize = 12;      // [px]
+const kBelow = -2;     // lines below the feet: numbers stand above the heads
 
 interface Label {
   robot: Robot;
@@ -14,11 +14,11 @@ interface Label {
   place: Float32Array;
 }
 
-/// What each robot does, above its head: its speed, and how long its agent takes to answer.
+/// What each robot does, below its feet: its speed, and how long its agent takes to answer.
 export class LabelsOverlay implements Overlay {
   readonly id = "labels";
   readonly title = "Agent labels";
-  readonly doc = "Above each robot: its speed, and the time from its percepts to its answer (known only for agents that connect from outside).";
+  readonly doc = "Below each robot: its speed, and the time from its percepts to its answer (known only for agents that connect from outside).";
   readonly key = "shift+a";
   readonly missing = null;
   on = false;
@@ -89,8 +89,8 @@ export class LabelsOverlay implements Overlay {
   private place({ canvas }: Surroundings): void {
     this.texts.begin();
     for (const label of this.labels) {
-      canvas.matrixOf(label.robot.head, this.matrix);
-      this.texts.add(label.text, this.matrix[12]!, this.matrix[13]!, this.matrix[14]! + kAbove, kSize, 1, 1, 1, -2);
+      canvas.matrixOf(label.robot.torso, this.matrix);
+      this.texts.add(label.text, this.matrix[12]!, this.matrix[13]!, 0, kSize, 1, 1, 1, kBelow);
     }
     this.texts.end();
   }
