@@ -31,6 +31,8 @@ const kModeWords: Record<string, string> = {
   pass: "Pass",
 };
 
+/// A foul of the same player within so many seconds is the same one.
+const kSameFoul = 1;
 const kFouls = ["crowding", "touching", "illegal defence", "illegal attack", "incapable", "illegal kick-off", "charging", "self collision", "ball holding", "double touching", "hand"];
 
 /// The play mode's name on the wire; "" when it is not known.
@@ -65,11 +67,13 @@ export function teamName(environment: Environment, side: Side): string {
 export class EventReader {
   private score: Record<Side, number | null> = { left: null, right: null };
   private mode: string | null = null;
+  /// When a foul's words were heard last: while a player is held, his foul comes again and again.
+  private readonly fouls = new Map<string, number>();
 
-  /// `environment` holds these entries already; `entries` are looked at for fouls.
+  /// `environment` holds these entries already; `entries` are looked at for fouls. `time` [s] on any clock, the same for all calls.
   take(environment: Environment, entries: Entry[], time: number): GameEvent[] {
     const events: GameEvent[] = [];
-    for (const entry of entries) if (entry[0] === "foul") events.push(foul(entry, environment, time));
+    for (const entry of entries) if (entry[0] === "foul") this.takeFoul(foul(entry, environment, time), events);
     for (const side of ["left", "right"] as const) {
       const score = environment.get(`score_${side}`);
       if (typeof score !== "number") continue;
@@ -83,6 +87,12 @@ export class EventReader {
     // A goal tells itself by the score.
     if (changed && !/^goal_(left|right)$/i.test(mode)) events.push(withSide({ time, kind: "mode", text: modeWords(mode, environment) }, modeSide(mode)));
     return events;
+  }
+
+  private takeFoul(event: GameEvent, events: GameEvent[]): void {
+    const before = this.fouls.get(event.text);
+    this.fouls.set(event.text, event.time);
+    if (before === undefined || Math.abs(event.time - before) > kSameFoul) events.push(event);
   }
 }
 

@@ -200,7 +200,7 @@ export class Live implements LiveSource {
 
   private takeEvent(message: Record<string, unknown>): boolean {
     if (!isEntry(message.entry)) return false;
-    this.addEvents(new EventReader().take(this.world.environment, [message.entry], Number(message.time) || 0));
+    this.addEvents(this.events.take(this.world.environment, [message.entry], Number(message.time) || 0));
     return true;
   }
 

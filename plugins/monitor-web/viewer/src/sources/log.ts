@@ -143,7 +143,8 @@ class Indexer {
     this.partial = true;
     if ((!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full)) return this.passOver();
     takeEntries(this.environment, head.environment, head.full);
-    for (const event of this.eventReader.take(this.environment, head.environment, 0)) this.found.push({ event, record: this.records.length });
+    const gameTime = Number(this.environment.get("time") ?? NaN);
+    for (const event of this.eventReader.take(this.environment, head.environment, gameTime || 0)) this.found.push({ event, record: this.records.length });
     if (offset + from - this.pageStart >= kPage || this.records.length === 0) {
       this.pageStart = offset + from;
       if (this.records.length > 0) ++this.page;
@@ -155,7 +156,7 @@ class Indexer {
       drawings: message - from,
       packets: this.packets(bytes, from, message),
       free: /^(playon|pass)/i.test(modeName(this.environment)),
-      gameTime: Number(this.environment.get("time") ?? NaN),
+      gameTime,
       clock: 0,
       gap: this.gap,
       page: this.page,

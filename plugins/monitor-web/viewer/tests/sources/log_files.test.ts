@@ -132,6 +132,16 @@ describe("drawings", () => {
   });
 });
 
+test("a foul that comes again while its player is held is one", async () => {
+  const foul = (index: number, number: number): List => ["foul", index, 4, 1, number];
+  const replay = await open(whole(0), moved(0.2, 1, [foul(1, 3), foul(2, 3)]), moved(0.4, 1, [foul(3, 3), foul(4, 5)]), moved(0.6, 1, [foul(5, 3)]), moved(3, 1, [foul(6, 3)]));
+  expect(replay.timeline.map((e) => [e.text, e.time])).toEqual([
+    ["Foul: incapable of Red 3", 0.2],
+    ["Foul: incapable of Red 5", 0.4],
+    ["Foul: incapable of Red 3", 0.8],
+  ]);
+});
+
 test("texts and numbers may look alike", async () => {
   const replay = await open(sexp(true, [["time", 0], ["team_left", "007"], ["half", "1e0"], ["odd", "1-2"], ["messages", "(x (side 1))"]], scene(0, 0)));
   expect([...replay.world.environment]).toEqual([["time", 0], ["team_left", "007"], ["half", 1], ["odd", "1-2"]]);
