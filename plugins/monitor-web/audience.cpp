@@ -178,7 +178,7 @@ void Audience::whenStatus(Clock::time_point now, std::function<void(const std::s
 }
 
 void Audience::broadcast(std::string text) {
-  const Message message{std::make_shared<const std::string>(std::move(text)), false};
+  const Message message{Message::Kind::text, std::make_shared<const std::string>(std::move(text))};
   for (const auto& [id, viewer] : viewers_) viewer->send(message);
 }
 
@@ -211,7 +211,7 @@ void Audience::tellEnvironment(Clock::time_point now) {
   const bool always = now >= alwaysDue_;
   if (always) alwaysDue_ = now + kAlwaysApart;
   if (std::string changed = diary_.take(snapshot_, always); !changed.empty()) {
-    const Message message{std::make_shared<const std::string>(std::move(changed)), false};
+    const Message message{Message::Kind::text, std::make_shared<const std::string>(std::move(changed))};
     for (const auto& [id, viewer] : viewers_)
       if (viewer->shape != 0) viewer->send(message);  // others get it all with their scene
   }
@@ -231,7 +231,7 @@ void Audience::sendLane(std::size_t index, Clock::time_point now) {
 }
 
 void Audience::sendFrame(Viewer& viewer, Lane& lane) {
-  if (!viewer.idle()) {  // it has not taken the last one
+  if (viewer.lags()) {  // it has not taken the last one
     viewer.needsKey = true;
     return;
   }
@@ -240,11 +240,11 @@ void Audience::sendFrame(Viewer& viewer, Lane& lane) {
   auto& bytes = key ? lane.key : lane.delta;
   if (!bytes) bytes = std::make_shared<const std::string>(key ? lane.encoder.key() : lane.encoder.delta());
   viewer.needsKey = false;
-  viewer.send({bytes, true});
+  viewer.send({Message::Kind::frame, bytes});
 }
 
 void Audience::sendScene(Viewer& viewer) {
-  viewer.send({scene_, false});
+  viewer.send({Message::Kind::scene, scene_});
   if (viewer.shape == 0) viewer.sendText(fullEnvironmentMessage(snapshot_));
   viewer.shape = shape_;
   viewer.needsKey = true;

@@ -67,7 +67,7 @@ class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketVi
   }
 
   void transmit(const Message& message) override {
-    socket_.binary(message.binary);
+    socket_.binary(message.binary());
     socket_.async_write(boost::asio::buffer(*message.bytes), [self = shared_from_this(), bytes = message.bytes](error_code ec, std::size_t) {
       if (ec)
         beast::get_lowest_layer(self->socket_).close();  // reading ends as well

@@ -6,6 +6,7 @@ void Viewer::send(Message message) {
   if (closing_) return;
   waiting_ += message.bytes->size();
   if (waiting_ > kMostWaiting) return close("too much waits for you to read it");
+  large_ += message.kind != Message::Kind::text;
   queue_.push_back(std::move(message));
   if (queue_.size() > 1) return;
   leavingSince_ = Clock::now();
@@ -14,6 +15,7 @@ void Viewer::send(Message message) {
 
 void Viewer::sent() {
   waiting_ -= queue_.front().bytes->size();
+  large_ -= queue_.front().kind != Message::Kind::text;
   queue_.pop_front();
   if (closing_) return;
   if (!queue_.empty()) {

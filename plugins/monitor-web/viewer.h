@@ -17,8 +17,9 @@ using Clock = std::chrono::steady_clock;
 
 /// A message on its way; viewers that get the same share it.
 struct Message {
+  enum class Kind { text, scene, frame } kind = Kind::text;
   std::shared_ptr<const std::string> bytes;
-  bool binary = false;
+  bool binary() const { return kind == Kind::frame; }
 };
 
 /// Bytes that may wait for a viewer; one that lets more pile up is closed.
@@ -26,7 +27,7 @@ inline constexpr std::size_t kMostWaiting = 16u << 20;
 /// Questions of a viewer that may wait for the simulation's thread; until there are fewer, nothing more is read from it.
 inline constexpr std::size_t kMostAsked = 16;
 
-/// A viewer behind some transport. Messages leave one after the other; frames do not queue: while one waits no other is taken.
+/// A viewer behind some transport. Messages leave one after the other.
 class Viewer {
  public:
   Viewer(std::uint64_t id, std::string peer) : id_(id), peer_(std::move(peer)) {}
@@ -39,9 +40,11 @@ class Viewer {
 
   /// Puts a message behind those that wait. A viewer that does not take them is closed.
   void send(Message message);
-  void sendText(std::string text) { send({std::make_shared<const std::string>(std::move(text)), false}); }
-  /// True when nothing waits: it keeps up.
+  void sendText(std::string text) { send({Message::Kind::text, std::make_shared<const std::string>(std::move(text))}); }
+  /// True when nothing waits.
   bool idle() const { return queue_.empty(); }
+  /// True while a frame or scene waits: it gets no other until that has left.
+  bool lags() const { return large_ > 0; }
   /// Since when the message that is leaving has been leaving; `now` when none is.
   Clock::time_point leavingSince(Clock::time_point now) const { return queue_.empty() ? now : leavingSince_; }
   /// Ends it, with a reason of at most 120 bytes that it is told.
@@ -75,6 +78,7 @@ class Viewer {
   const std::string peer_;
   std::deque<Message> queue_;       ///< the first is leaving
   std::size_t waiting_ = 0;         ///< bytes
+  int large_ = 0;                   ///< scenes and frames that wait
   Clock::time_point leavingSince_{};
   bool closing_ = false;
 };
