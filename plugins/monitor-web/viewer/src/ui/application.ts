@@ -67,7 +67,7 @@ export class Application implements App {
     open: () => this.openings.choose(),
     help: () => this.help.toggle(),
   });
-  private readonly surface = h("div", { class: "stage", tabindex: "0", role: "img", "data-testid": "stage", "aria-label": "The field" });
+  private readonly surface = h("div", { class: "stage", tabindex: "0", role: "application", "data-testid": "stage", "aria-label": "The field" });
   private readonly area = h("main", { class: "area" }, this.surface);
   private readonly heard = new Map<AppEvent, Set<() => void>>();
   private readonly numbers = new Pace(kNumbers);
@@ -209,6 +209,7 @@ export class Application implements App {
     this.tellEvents();
     this.followScene();
     this.followReferee();
+    this.refereePanel.follow(now);
     this.frameRate.update(now);
     if (this.lists.due(now)) this.refreshPanel();
   }
@@ -314,7 +315,7 @@ export class Application implements App {
     const { world, chosen } = this;
     if (world.versions.scene === this.sceneSeen) return;
     this.sceneSeen = world.versions.scene;
-    this.surface.setAttribute("aria-label", `The field with ${world.robots.length} robots`);
+    this.surface.setAttribute("aria-label", `The field with ${world.robots.length} robots; press ? for the keys`);
     if (!chosen) return;
     const robot = world.robots.find((r) => r.key === chosen.robot);
     if (robot) this.selectRobot(robot);

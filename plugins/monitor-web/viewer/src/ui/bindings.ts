@@ -48,7 +48,9 @@ function panels(app: Application): Binding[] {
 
 /// Of one thing after the other.
 function letGo(app: Application): void {
+  const focused = document.activeElement;
   if (app.picker.picking) app.picker.finish(null);
+  else if (focused instanceof HTMLInputElement || focused instanceof HTMLSelectElement) focused.blur();
   else if (app.selection) app.select(null);
   else app.side.show(null);
 }

@@ -9,8 +9,8 @@ const kMost = 200;
 export class EventsPanel {
   private readonly list = h("div", { "data-testid": "event-list" });
   private readonly empty = h("p", { class: "empty" }, "Nothing happened yet. Goals, fouls and play modes are listed here.");
-  private seen: readonly GameEvent[] | null = null;
-  private count = -1;
+  private seen: unknown = null;
+  private version = -1;
 
   constructor(container: HTMLElement, private readonly app: App, private readonly go: (event: GameEvent) => void) {
     container.append(this.empty, this.list);
@@ -19,9 +19,11 @@ export class EventsPanel {
   update(): void {
     const { replay, world } = this.app;
     const events = replay ? replay.timeline : world.events;
-    if (events === this.seen && events.length === this.count) return;
-    this.seen = events;
-    this.count = events.length;
+    // a replay's list is whole from the start
+    const version = replay ? 0 : world.versions.events;
+    if (this.seen === world && this.version === version) return;
+    this.seen = world;
+    this.version = version;
     setHidden(this.empty, events.length > 0);
     const newest = replay ? events.slice(0, kMost) : events.slice(-kMost).reverse();
     this.list.replaceChildren(...newest.map((e) => this.row(e, replay !== null)));

@@ -15,6 +15,7 @@ export class Help {
       h("header", {}, h("h2", { id: "help-title" }, "Keys"), close),
       this.columns,
     );
+    this.element.addEventListener("keydown", (event) => event.key === "?" && this.element.close());
     // a click beside the window closes it
     this.element.addEventListener("click", (event) => event.target === this.element && this.element.close());
   }

@@ -57,9 +57,11 @@ export interface Binding {
   hidden?: boolean;
 }
 
-/// Keys that a focused control needs itself.
+/// Keys that a focused control, or a window over the page, needs itself.
 export function belongsToControl(combo: string, target: Element | null): boolean {
-  if (!target || combo === "esc") return false;
+  if (!target) return false;
+  if (target.closest("dialog")) return true;
+  if (combo === "esc") return false;
   if (target.closest("input:not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable=true]")) return true;
   const pressed = combo === "space" || combo === "enter";
   return pressed && target.closest("button, a, summary, input, [role=option], [role=treeitem], [role=tab]") !== null;

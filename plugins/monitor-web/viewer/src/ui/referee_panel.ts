@@ -15,7 +15,10 @@ export interface RefereeActions {
   pick(what: string): Promise<Point | null>;
 }
 
+/// A second press within this time removes [ms].
 const kArmedFor = 3000;
+/// A match that did not follow until then does not follow [ms].
+const kPatience = 2500;
 
 function numberField(testid: string, text: string, value = ""): { label: HTMLElement; name: HTMLElement; input: HTMLInputElement } {
   const name = h("span", {}, text);
@@ -45,6 +48,7 @@ export class RefereePanel {
   private readonly score = { left: numberField("score-left-field", "Left"), right: numberField("score-right-field", "Right") };
   private readonly time = h("input", { class: "field number", type: "text", autocomplete: "off", "data-testid": "time-field", placeholder: "m:ss" });
   private readonly raw = h("input", { class: "field", type: "text", autocomplete: "off", spellcheck: "false", "data-testid": "command-field", "aria-label": "Trainer's command", placeholder: "(playMode PlayOn)" });
+  private awaited: { what: string; done: () => boolean; until: number | null } | null = null;
   private shownModes = "";
   private shownPlayers = "";
   private shownScore = "";
@@ -92,11 +96,11 @@ export class RefereePanel {
   }
 
   kickOff(side: Side): void {
-    void this.send(`Kick-off for ${teamTitle(this.app.world.environment, side)}`, () => trainer.kickOff(side));
+    void this.send(`Kick-off for ${teamTitle(this.app.world.environment, side)}`, () => trainer.kickOff(side), () => this.modeIs(side === "left" ? "KickOff_Left" : "KickOff_Right", "PlayOn"));
   }
 
   dropBall(): void {
-    void this.send("Drop ball", trainer.dropBall);
+    void this.send("Drop ball", trainer.dropBall, () => this.modeIs("PlayOn"));
   }
 
   private async tryLogin(event: SubmitEvent): Promise<void> {
@@ -111,17 +115,35 @@ export class RefereePanel {
     this.update();
   }
 
-  /// Sends what `build` writes, and says how that went; `what` in words.
-  private async send(what: string, build: () => string): Promise<void> {
+  /// Ten times a second: looks whether the match did what it was told.
+  follow(now: number): void {
+    const { awaited } = this;
+    if (!awaited) return;
+    awaited.until ??= now + kPatience;
+    const done = awaited.done();
+    if (!done && now < awaited.until) return;
+    this.awaited = null;
+    this.say(done ? `${awaited.what}: done.` : `${awaited.what}: sent, but the match did not follow.`, done);
+  }
+
+  /// Sends what `build` writes, and says how that went; `what` in words. The host takes a command without saying what became of it:
+  /// where `done` can tell by the match, it is awaited.
+  private async send(what: string, build: () => string, done?: () => boolean): Promise<void> {
+    this.awaited = null;
     try {
       const text = build();
       this.say(`${what} ...`, null);
       await this.app.live?.command(text);
-      this.say(`${what}: done.`, true);
+      if (done) this.awaited = { what, done, until: null };
+      else this.say(`${what}: sent.`, true);
     } catch (error) {
       const why = error instanceof Error ? error.message : String(error);
       this.say(error instanceof trainer.Incomplete ? why : `${what}: refused, ${why}`, false);
     }
+  }
+
+  private modeIs(...names: string[]): boolean {
+    return names.includes(modeName(this.app.world.environment));
   }
 
   private say(text: string, ok: boolean | null): void {
@@ -146,7 +168,7 @@ export class RefereePanel {
   private modeSection(): HTMLElement {
     const set = () => {
       const name = this.modes.value;
-      void this.send(modeWords(name, this.app.world.environment), () => trainer.playMode(name));
+      void this.send(modeWords(name, this.app.world.environment), () => trainer.playMode(name), () => this.modeIs(name));
     };
     return this.section("Play mode", h("div", { class: "line" }, this.modes, this.button("mode-set", "Set", set)));
   }
@@ -200,7 +222,9 @@ export class RefereePanel {
 
   private scoreSection(): HTMLElement {
     const { left, right } = this.score;
-    const set = () => void this.send("Score", () => trainer.score(trainer.typed(left.input.value, "left score"), trainer.typed(right.input.value, "right score")));
+    const goals = () => [trainer.typed(left.input.value, "left score"), trainer.typed(right.input.value, "right score")] as const;
+    const shown = (side: Side) => numberOf(this.app.world.environment, `score_${side}`, 0);
+    const set = () => void this.send("Score", () => trainer.score(...goals()), () => goals()[0] === shown("left") && goals()[1] === shown("right"));
     const setTime = () => void this.send("Game time", () => trainer.time(this.time.value));
     return this.section(
       "Score and time",
