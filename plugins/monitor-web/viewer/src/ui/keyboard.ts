@@ -57,11 +57,9 @@ export interface Binding {
   hidden?: boolean;
 }
 
-/// Keys that a focused control, or a window over the page, needs itself.
+/// Keys that a focused control needs itself.
 export function belongsToControl(combo: string, target: Element | null): boolean {
-  if (!target) return false;
-  if (target.closest("dialog")) return true;
-  if (combo === "esc") return false;
+  if (!target || combo === "esc") return false;
   if (target.closest("input:not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable=true]")) return true;
   const pressed = combo === "space" || combo === "enter";
   return pressed && target.closest("button, a, summary, input, [role=option], [role=treeitem], [role=tab]") !== null;
@@ -107,6 +105,8 @@ export class Keyboard {
   listen(target: Window, camera: CameraKeys): void {
     target.addEventListener("keydown", (event) => {
       const combo = comboOf(event);
+      // a window over the page has the keyboard to itself
+      if (document.querySelector("dialog[open]")) return;
       if (event.defaultPrevented || event.isComposing || belongsToControl(combo, event.target as Element | null)) return;
       if (this.run(combo) || (isPlain(event) && camera.key(event))) event.preventDefault();
     });

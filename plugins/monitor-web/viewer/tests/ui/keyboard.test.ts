@@ -57,9 +57,6 @@ describe("keys that a control needs itself", () => {
     expect(belongsToControl("x", control("input:not"))).toBe(true);
     expect(belongsToControl("esc", control("input:not"))).toBe(false);
   });
-  it("are all while a window lies over the page", () => {
-    expect(belongsToControl("esc", control("dialog"))).toBe(true);
-  });
   it("are space and enter on buttons", () => {
     expect([belongsToControl("space", control("button")), belongsToControl("x", control("button"))]).toEqual([true, false]);
     expect(belongsToControl("space", control())).toBe(false);
