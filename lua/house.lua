@@ -5,7 +5,7 @@
 --     agents{ port = 3100 }
 --     monitors{ port = 3200 }
 --     web()
---     control()
+--     control() drawing()
 --
 -- and adds what makes it special. Each function loads the plugins it needs, builds one server with its helpers, and returns the server,
 -- so that a config can set properties or swap a helper. Nothing here is magic: a config may write the same lines itself.
@@ -138,6 +138,18 @@ function control()
   if host.alone then return end
   plugin "control"
   return new("ControlServer", "/sys/server/control")
+end
+
+--- What agents draw for those who watch: --set drawings=32769 opens the UDP port of the installed base's viewer, --set
+--- forwardDrawings=host:port hands everything on to another one. A house of a batch keeps none, but robots may have the effector.
+function drawing()
+  local port = option{ name = "drawings", default = -1, doc = "UDP port at which agents' drawings come in, e.g. 32769; -1: none, 0: any free one." }
+  local forward = option{ name = "forwardDrawings", default = "", doc = "host:port of another viewer that gets agents' drawings too." }
+  plugin "drawing"
+  if host.alone then return end
+  local server = new("DrawingServer", "/sys/server/drawing")
+  server.port, server.forward = port, forward
+  return server
 end
 
 --- What a run is about, in numbers: Result.falls = 3. sparkbatch makes a column of each. `values`: what they are at first.

@@ -25,6 +25,7 @@ agents{ parser = parser }               -- /sys/server/gamecontrol with a parser
 monitors{ encoder = encoder }           -- /sys/server/monitor with an encoder, and a TCP port
 web()                                   -- /sys/server/web: the page on which browsers show the match
 control()                               -- /sys/server/control: the socket of sparkctl
+drawing()                               -- /sys/server/drawing: what agents draw for those who watch
 plugin "sensors"                        -- classes that robots' scene files name
 plugin "effectors"
 

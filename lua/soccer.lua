@@ -33,6 +33,7 @@ agents{ parser = parser }
 monitors{ encoder = encoder }
 web()
 control()
+drawing()
 plugin "sensors"
 plugin "effectors"
 

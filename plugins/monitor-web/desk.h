@@ -10,6 +10,7 @@
 #include "api/control.h"
 #include "api/drawing.h"
 #include "exchange.h"
+#include "inspection.h"
 #include "status_report.h"
 #include "spark/kernel.h"
 
@@ -53,6 +54,7 @@ class Desk {
   Kernel& kernel_;
   Exchange& exchange_;
   StatusReport report_;
+  Inspection inspection_;
   std::deque<Question> requests_;
   std::vector<std::unique_ptr<Watched>> watches_;
   std::size_t nextWatch_ = 0;

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace spark {
 
@@ -49,12 +50,24 @@ void MonitorLog::take(const NewestFrame& newest, IMonitorEncoder* encoder, const
   record_.clear();
   view_->encode(*encoder, record_);
   if (view_->wasFull()) lastFull_ = event.time;
+  recordDrawings();
   write();
+}
+
+/// A full record says all that is drawn, others what changed. Records in other languages have no place for it.
+void MonitorLog::recordDrawings() {
+  drawn_.clear();
+  if (std::exchange(drawingsAt_, kernel().structureVersion()) != kernel().structureVersion())
+    drawings_ = kernel().root().find<IDrawings>("/sys/server/drawing");
+  if (!drawings_ || !record_.starts_with('(')) return;
+  drawings_->record(view_->wasFull() ? 0 : drawnVersion_, drawn_);
+  drawnVersion_ = drawings_->version();
 }
 
 void MonitorLog::write() {
   record_ += '\n';
   errno = 0;
+  out_.write(drawn_.data(), static_cast<std::streamsize>(drawn_.size()));
   out_.write(record_.data(), static_cast<std::streamsize>(record_.size()));
   out_.flush();
   if (!out_) return fail("cannot be written to");

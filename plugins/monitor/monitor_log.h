@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "api/drawing.h"
 #include "monitor_view.h"
 #include "spark/describe.h"
 #include "spark/node.h"
@@ -9,7 +10,8 @@
 namespace spark {
 
 /// Writes what a monitor would be sent into a file, one message a line: the installed base's `sparkmonitor.log`. Child of the monitor
-/// server; a viewer of its own, so the log is complete whatever the monitors were sent.
+/// server; a viewer of its own, so the log is complete whatever the monitors were sent. What agents drew stands in front of a record, as the
+/// installed base's viewer writes it.
 class MonitorLog : public Node, public IFrameTaker {
   SPARK_CLASS(MonitorLog, Node)
  public:
@@ -20,6 +22,7 @@ class MonitorLog : public Node, public IFrameTaker {
 
  private:
   bool ready(const NewestFrame& newest);
+  void recordDrawings();
   void write();
   void fail(std::string_view what);
 
@@ -29,7 +32,10 @@ class MonitorLog : public Node, public IFrameTaker {
   std::optional<MonitorView> view_;
   Predicates early_;  ///< events of the time before the first frame came
   std::ofstream out_;
-  std::string record_;
+  std::string record_, drawn_;
+  const IDrawings* drawings_ = nullptr;
+  std::uint64_t drawingsAt_ = 0;  ///< the tree's version when they were looked up
+  std::uint64_t drawnVersion_ = 0;
   std::int64_t next_ = 0, records_ = 0;
   double lastFull_ = 0;
   bool failed_ = false;

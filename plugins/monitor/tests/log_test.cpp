@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "api/drawing.h"
 #include "stage.h"
 
 using namespace spark;
@@ -30,6 +31,20 @@ struct TemporaryFile {
 };
 
 bool isFull(const std::string& record) { return record.find(")(RSG 0 1)(") != std::string::npos; }
+
+/// Drawings of which only the changes are told.
+class TestDrawings : public Node, public IDrawings {
+  SPARK_CLASS(TestDrawings, Node)
+ public:
+  static void describe(Description<TestDrawings>& d) { d.implements<IDrawings>(); }
+  std::uint64_t version() const override { return changes; }
+  std::span<const Set> sets() const override { return {}; }
+  void draw(std::span<const std::byte>) override {}
+  void record(std::uint64_t since, std::string& out) const override {
+    if (since != changes) out += fmt::format("[{}, {}]", since, changes);
+  }
+  std::uint64_t changes = 0;
+};
 
 /// A stage with a log.
 struct Recorded : Stage {
@@ -127,6 +142,31 @@ TEST_CASE("a log is complete whatever monitors were sent: its own diffs, every e
   CHECK(same(logged, newcomer(stage), 0.005001));
   CHECK(logged.events == live.events);
   CHECK(logged.events.size() > 20);
+}
+
+TEST_CASE("what agents drew stands in front of a record: all of it before a full one, else what changed") {
+  Recorded stage;
+  stage.kernel.registerClass<TestDrawings>();
+  auto& drawings = stage.kernel.create<TestDrawings>("TestDrawings", "/sys/server/drawing");
+  for (int i = 0; i < 400; ++i) {
+    if (i == 100 || i == 101 || i == 150) ++drawings.changes;
+    if (i == 300) stage.kernel.root().require<Node>("/sys/server").remove(drawings);
+    stage.cycle();
+  }
+  const auto lines = stage.file.lines();
+  std::vector<std::pair<std::size_t, std::string>> drawn;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (lines[i].front() == '[') drawn.emplace_back(i, lines[i].substr(0, lines[i].find('(')));
+  REQUIRE(drawn.size() == 3);
+  CHECK(drawn[0] == std::pair<std::size_t, std::string>(10, "[0, 2]"));   // from none to two
+  CHECK(drawn[1] == std::pair<std::size_t, std::string>(15, "[2, 3]"));
+  CHECK(drawn[2] == std::pair<std::size_t, std::string>(16, "[0, 3]"));   // the full one
+  CHECK(isFull(lines[16]));
+
+  // The player takes the records and leaves the drawings.
+  Player player(stage.file.path);
+  CHECK(getProperty(*player.player, "records") == Value(static_cast<std::int64_t>(lines.size())));
+  CHECK(getProperty(*player.player, "damaged") == Value(0));
 }
 
 TEST_CASE("a log that cannot be written says so once, and the server goes on") {

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "api/agents.h"
+#include "draw_list.h"
+#include "draw_packet.h"
+#include "drawing_server.h"
+
+namespace spark {
+
+/// `(draw (set Red.3.plan) (line (from 0 0 0) (to 1 2 0)) (text (at 1 2 0.5) (say "there")))`: shows these shapes, in the world's frame,
+/// under that name, instead of what was there. Without a drawing server it does nothing.
+class DrawEffector : public Effector {
+  SPARK_CLASS(DrawEffector, Effector)
+ public:
+  static void describe(Description<DrawEffector>& d) {
+    d.doc("Draws for those who watch: (draw (set name) shapes ...) replaces what was drawn under that name; without shapes it is taken away.");
+    d.property("defaultSet", &DrawEffector::defaultSet_).doc("Name of the set that a message does not name; empty: agent and its number.");
+  }
+  std::string predicate() const override { return "draw"; }
+
+  std::string act(const Element& action) override {
+    DrawingServer* server = this->server();
+    if (!server) return {};
+    std::vector<Drawing> shapes;
+    for (const Element e : action) {
+      if (!e.isList() || e.head() == "set") continue;
+      if (std::string wrong = drawing::readShape(e, shapes.emplace_back()); !wrong.empty()) return "(draw): " + wrong + ".";
+    }
+    server->show(setOf(action), std::move(shapes));
+    return {};
+  }
+
+ private:
+  std::string setOf(const Element& action) const {
+    if (const Element set = action.named("set")) return drawing::cleanText(set.at(1).text(), drawing::PacketReader::kLongestName);
+    if (!defaultSet_.empty()) return defaultSet_;
+    AgentAspect* aspect = agent();
+    return fmt::format("agent{}", aspect ? aspect->outermost().number() : 0);
+  }
+  DrawingServer* server() {
+    if (std::exchange(serverAt_, kernel().structureVersion()) != kernel().structureVersion())
+      server_ = kernel().root().find<DrawingServer>("/sys/server/drawing");
+    return server_;
+  }
+
+  std::string defaultSet_;
+  DrawingServer* server_ = nullptr;
+  std::uint64_t serverAt_ = 0;
+};
+
+}  // namespace spark

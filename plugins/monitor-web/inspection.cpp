@@ -1,0 +1,278 @@
+#include "inspection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/physics.h"
+#include "spark/error.h"
+
+namespace spark::web {
+
+using Json = nlohmann::json;
+
+namespace {
+using namespace std::chrono_literals;
+
+// What one answer holds at most.
+constexpr std::size_t kMostContacts = 1024, kMostJoints = 256, kMostSeen = 512, kMostLines = 256, kMostTokens = 8192;
+/// Agents that are watched at the same time: who asks for another one takes the place of the one that was asked for longest ago.
+constexpr std::size_t kMostWatched = 4;
+constexpr auto kForgetAfter = 5s;
+/// No agent's sight is kept more often: a match that runs as fast as it can is not slowed down.
+constexpr auto kKeepEvery = 40ms;
+
+/// Short, and exact enough to be drawn.
+double rounded(double v) { return std::round(v * 1e4) / 1e4; }
+
+template <class Vector>
+Json json(const Vector& v) {
+  return {rounded(v.x()), rounded(v.y()), rounded(v.z())};
+}
+
+Json json(const Matrix& m) {
+  Json out = Json::array();
+  for (int i = 0; i < 16; ++i) out.push_back(rounded(double(m.data()[i])));
+  return out;
+}
+
+/// As the S-expression: words are text, what reads as a number is one.
+Json json(const Element& e) {
+  if (!e.isList()) {
+    const Token& token = e.token();
+    if (token.kind == Token::Kind::integer) return e.integer();
+    if (token.kind == Token::Kind::number) return std::isfinite(token.number) ? Json(rounded(token.number)) : Json(nullptr);
+    return std::string(e.text());
+  }
+  Json out = Json::array();
+  for (const Element part : e) out.push_back(json(part));
+  return out;
+}
+
+const std::string& pathIn(const Json& request) {
+  const auto at = request.find("path");
+  if (at == request.end() || !at->is_string()) throw Error("the request lacks a text \"path\"");
+  return at->get_ref<const std::string&>();
+}
+
+const char* nameOf(engine::JointType type) {
+  switch (type) {
+    case engine::JointType::ball: return "ball";
+    case engine::JointType::hinge: return "hinge";
+    case engine::JointType::hinge2: return "hinge2";
+    case engine::JointType::slider: return "slider";
+    case engine::JointType::universal: return "universal";
+    case engine::JointType::fixed: return "fixed";
+    case engine::JointType::angularMotor: return "motor";
+  }
+  return "";
+}
+
+bool measuresTorque(const Leaf& joint) {
+  const Property* feedback = joint.classObject()->property("feedback");
+  return feedback && feedback->get(joint) == Value(true);
+}
+
+Json describe(IJoint& joint) {
+  const bool slides = joint.jointType() == engine::JointType::slider;
+  const auto unit = [slides](double v) { return rounded(slides ? v : radToDeg(v)); };
+  Json out{{"path", joint.leaf().path()}, {"type", nameOf(joint.jointType())}, {"anchor", json(joint.anchor())}};
+  Json &axes = out["axes"] = Json::array(), &angles = out["angles"] = Json::array(), &rates = out["rates"] = Json::array();
+  for (int axis = 0; axis < joint.axes(); ++axis) {
+    axes.push_back(json(joint.axisNow(axis)));
+    angles.push_back(unit(joint.angle(axis)));
+    rates.push_back(unit(joint.angleRate(axis)));
+  }
+  if (measuresTorque(joint.leaf())) out["torque"] = rounded(joint.feedbackTorque());
+  if (joint.axes() == 0) return out;
+  const double low = joint.parameter(engine::JointParameter::lowStop, 0), high = joint.parameter(engine::JointParameter::highStop, 0);
+  if (std::isfinite(low)) out["low"] = unit(low);
+  if (std::isfinite(high)) out["high"] = unit(high);
+  return out;
+}
+
+Json describe(IEye& eye, const Leaf& leaf) {
+  const auto [horizontal, vertical] = eye.cone();
+  Json out{{"path", leaf.path()}, {"matrix", json(eye.view())}, {"horizontal", horizontal}, {"vertical", vertical}};
+  if (const double range = eye.range(); std::isfinite(range)) out["range"] = range;
+  return out;
+}
+
+/// What an eye's percept says, in the world.
+class Sighted {
+ public:
+  explicit Sighted(IEye& eye) : eye_(eye) { eye.sights(truth_); }
+
+  /// `(See (B (pol d h v)) (P (team Red) (id 3) (head (pol d h v))) (L (pol d h v) (pol d h v)))`.
+  void read(const Element& see) {
+    for (const Element e : see) {
+      if (e.head() == "P") readPlayer(e);
+      else if (e.head() == "L") addLine(e.at(1), e.at(2));
+      else if (e.named("pol")) add(std::string(e.head()), e.named("pol"));
+    }
+  }
+  Json seen = Json::array(), lines = Json::array();
+
+ private:
+  void readPlayer(const Element& player) {
+    const Element team = player.named("team"), id = player.named("id");
+    const std::string name = fmt::format("P {} {}", team ? team.at(1).text() : "", id ? id.at(1).integer() : 0);
+    if (const Element whole = player.named("pol")) add(name, whole);
+    for (const Element part : player)
+      if (const Element polar = part.named("pol")) add(fmt::format("{} {}", name, part.head()), polar);
+  }
+  bool place(const Element& polar, Vec3f& out) const {
+    if (!polar || polar.head() != "pol" || polar.size() < 4) return false;
+    out = eye_.placeOf(polar.at(1).number(), polar.at(2).number(), polar.at(3).number());
+    return out.allFinite();
+  }
+  void add(const std::string& name, const Element& polar) {
+    Vec3f where;
+    if (seen.size() >= kMostSeen || !place(polar, where)) return;
+    Json one{{"name", name}, {"seen", json(where)}};
+    const auto at = std::find_if(truth_.begin(), truth_.end(), [&](const IEye::Sight& s) { return s.name == name; });
+    if (at != truth_.end()) one["true"] = json(at->place);
+    seen.push_back(std::move(one));
+  }
+  void addLine(const Element& from, const Element& to) {
+    Vec3f a, b;
+    if (lines.size() < kMostLines && place(from, a) && place(to, b)) lines.push_back({json(a), json(b)});
+  }
+
+  IEye& eye_;
+  std::vector<IEye::Sight> truth_;
+};
+
+struct Eye {
+  Perceptor* perceptor;
+  IEye* eye;
+};
+
+std::vector<Eye> eyesOf(AgentAspect& agent) {
+  std::vector<Perceptor*> all;
+  agent.collect(all);
+  std::vector<Eye> eyes;
+  for (Perceptor* p : all)
+    if (auto* eye = p->as<IEye>()) eyes.push_back({p, eye});
+  return eyes;
+}
+
+/// The agent that a node belongs to, nullptr for none.
+AgentAspect* agentOf(Leaf& leaf) {
+  AgentAspect* found = nullptr;
+  for (Leaf* up = &leaf; up; up = up->parent())
+    if (auto* aspect = up->as<AgentAspect>()) found = aspect;
+  return found;
+}
+
+}  // namespace
+
+bool Inspection::knows(std::string_view what) { return what == "contacts" || what == "joints" || what == "percepts"; }
+
+std::string Inspection::answer(const Json& request) {
+  Json out;
+  try {
+    const std::string what = request.value("do", "");
+    if (what == "contacts") out = contacts();
+    else if (what == "joints") out = joints(request);
+    else if (what == "percepts") out = percepts(request);
+    else throw Error("expected contacts, joints or percepts, found '" + what + "'");
+    out["ok"] = true;
+  } catch (const std::exception& e) {
+    out = {{"ok", false}, {"error", e.what()}};
+  }
+  return out.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+double Inspection::time() const {
+  const auto* simulation = kernel_.root().find<ISimulation>("/sys/server/simulation");
+  return simulation ? simulation->time() : 0;
+}
+
+Json Inspection::contacts() const {
+  auto& physics = kernel_.root().require<IPhysicsServer>("/sys/server/physics");
+  Json list = Json::array();
+  for (const engine::Contact& c : physics.contacts()) {
+    if (list.size() >= kMostContacts) break;
+    ICollider &a = physics.colliderOf(c.ownerA), &b = physics.colliderOf(c.ownerB);
+    if (!a.body() && !b.body()) continue;  // nothing that could move
+    list.push_back({{"position", json(c.position)}, {"normal", json(c.normal)}, {"depth", rounded(c.depth)}, {"solved", c.solve}});
+    Json& one = list.back();
+    if (c.solve && c.feedback) one["force"] = json(c.forceOnA);
+    one["a"] = a.leaf().path();
+    one["b"] = b.leaf().path();
+  }
+  return {{"contacts", std::move(list)}};
+}
+
+Json Inspection::joints(const Json& request) const {
+  Leaf& leaf = kernel_.root().require<Leaf>(pathIn(request));
+  AgentAspect* agent = agentOf(leaf);
+  Node* robot = agent ? agent : leaf.asNode();
+  std::vector<IJoint*> joints;
+  if (robot) robot->collect(joints);
+  if (joints.size() > kMostJoints) joints.resize(kMostJoints);
+  Json list = Json::array();
+  for (IJoint* joint : joints) list.push_back(describe(*joint));
+  return {{"joints", std::move(list)}};
+}
+
+Json Inspection::percepts(const Json& request) {
+  const std::string& path = pathIn(request);
+  AgentAspect* agent = agentOf(kernel_.root().require<Leaf>(path));
+  if (!agent) throw Error(path + " is no agent's: expected an agent, as below /usr/scene, or a node of one");
+  const auto now = Clock::now();
+  Watched& watch = watched(*agent);
+  watch.askedAt = now;
+  if (watch.kept.is_null()) keepWhatItSees(watch, now);
+
+  Json out{{"time", rounded(time())}, {"percepts", Json::array()}, {"seen", Json::array()}, {"lines", Json::array()}, {"cones", Json::array()}};
+  auto& control = kernel_.root().require<IGameControl>("/sys/server/gamecontrol");
+  bool sees = false;
+  if (const Predicates* all = control.percepts(*agent); all && all->size() <= kMostTokens)
+    for (const Element e : *all) {
+      sees |= !watch.see.is_null() && e.isList() && watch.see[0] == e.head();
+      out["percepts"].push_back(json(e));
+    }
+  if (!watch.kept.is_null()) out.update(watch.kept);
+  if (!sees && !watch.see.is_null()) out["percepts"].push_back(watch.see);
+  for (const Eye& e : eyesOf(*agent)) {
+    if (!out.contains("head")) out["head"] = json(e.eye->view());
+    out["cones"].push_back(describe(*e.eye, *e.perceptor));
+  }
+  return out;
+}
+
+Inspection::Watched& Inspection::watched(AgentAspect& agent) {
+  const auto known = std::find_if(watched_.begin(), watched_.end(), [&](const Watched& w) { return w.agent.get() == &agent; });
+  if (known != watched_.end()) return *known;
+  if (watched_.size() >= kMostWatched)
+    watched_.erase(std::min_element(watched_.begin(), watched_.end(), [](const Watched& a, const Watched& b) { return a.askedAt < b.askedAt; }));
+  return watched_.emplace_back(Watched{Ref<AgentAspect>(&agent), {}, {}, nullptr, nullptr});
+}
+
+void Inspection::look() {
+  const auto* simulation = kernel_.root().find<ISimulation>("/sys/server/simulation");
+  if (!simulation || std::exchange(lookedAt_, simulation->cycle()) == simulation->cycle()) return;
+  const auto now = Clock::now();
+  std::erase_if(watched_, [&](const Watched& w) { return !w.agent || now - w.askedAt > kForgetAfter; });
+  for (Watched& w : watched_)
+    if (now - w.keptAt >= kKeepEvery) keepWhatItSees(w, now);
+}
+
+void Inspection::keepWhatItSees(Watched& watch, Clock::time_point now) const {
+  auto* control = kernel_.root().find<IGameControl>("/sys/server/gamecontrol");
+  const Predicates* all = control ? control->percepts(*watch.agent) : nullptr;
+  if (!all || all->size() > kMostTokens) return;
+  for (const Eye& e : eyesOf(*watch.agent))
+    for (const Element see : *all) {
+      if (see.head() != e.perceptor->predicateName()) continue;
+      Sighted sighted(*e.eye);
+      sighted.read(see);
+      watch.keptAt = now;
+      watch.see = json(see);
+      watch.kept = {{"seenTime", rounded(time())}, {"seen", std::move(sighted.seen)}, {"lines", std::move(sighted.lines)}};
+      return;
+    }
+}
+
+}  // namespace spark::web
