@@ -49,7 +49,8 @@ export class Camera implements CameraView {
   private sinceChange = flight;
   private readonly held = new Set<string>();
   private isHome = true;
-  private homeAspect = 0;
+  /// What the first view was made for.
+  private readonly homeFor = { aspect: 0, extent: 0, field: null as FieldSizes | null };
 
   constructor(private readonly sights: Sights) {
     this.goHome();
@@ -134,7 +135,7 @@ export class Camera implements CameraView {
 
   /// To the next picture, `seconds` after the last; true when the view is another.
   step(seconds: number): boolean {
-    if (this.isHome && this.sights.aspect !== this.homeAspect) this.goHome();
+    if (this.isHome && this.isElsewhere()) this.goHome();
     this.moveByKeys(seconds);
     this.orbit.step(seconds);
     this.above.step(seconds);
@@ -215,7 +216,13 @@ export class Camera implements CameraView {
       each.farthest = 6 * Math.max(across, along);
       each.reach = 1.6 * Math.max(across, along);
     }
-    this.homeAspect = aspect;
+    Object.assign(this.homeFor, { aspect, extent, field });
+  }
+
+  private isElsewhere(): boolean {
+    const { sights, homeFor } = this;
+    const isOtherPlace = sights.field ? sights.field !== homeFor.field : sights.extent !== homeFor.extent;
+    return isOtherPlace || sights.aspect !== homeFor.aspect;
   }
 
   /// The orbit that a hand moves now; the automatic cameras give way to the free one.

@@ -1,8 +1,9 @@
-import { CustomBlending, OneMinusSrcAlphaFactor, ShaderMaterial, SrcAlphaFactor, Vector3 } from "three";
+import { CustomBlending, OneFactor, OneMinusSrcAlphaFactor, ShaderMaterial, SrcAlphaFactor, Vector3, ZeroFactor } from "three";
 import type { Rgb } from "./palette";
 
-// What lies on the ground is drawn first and without a depth test, in the order of Layer: nothing flickers, and hidden ground costs no test. It must
-// come before the solids, so the translucent ones are blended though three counts them as opaque.
+// The ground and its lines are drawn first and without a depth test, in the order of Layer: nothing flickers, and hidden ground costs no test. They
+// must come before the solids, so lines are blended though three counts them as opaque. Shadows and rings come after the solids: they also lie on
+// flat boxes that scenes have for a ground.
 
 export enum Layer {
   Sky = -20,
@@ -13,7 +14,10 @@ export enum Layer {
 }
 
 const flatOnGround = { depthTest: false, depthWrite: false } as const;
-const blended = { blending: CustomBlending, blendSrc: SrcAlphaFactor, blendDst: OneMinusSrcAlphaFactor } as const;
+// The canvas stays opaque: its alpha is left alone.
+const blended = {
+  blending: CustomBlending, blendSrc: SrcAlphaFactor, blendDst: OneMinusSrcAlphaFactor, blendSrcAlpha: ZeroFactor, blendDstAlpha: OneFactor,
+} as const;
 
 /// Colours of the vertices as they are: no light, no conversion.
 export function plainMaterial(): ShaderMaterial {
@@ -64,14 +68,14 @@ export function lineMaterial(colour: Rgb, screen: Vector3): ShaderMaterial {
 /// Spots on the ground, each an instance: `spot` = x, y, radius, strength; the mesh's x and y in units of the radius, z the share of the strength.
 export function spotMaterial(): ShaderMaterial {
   return new ShaderMaterial({
-    ...flatOnGround, ...blended,
+    transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4,
     vertexShader: /* glsl */ `
       attribute vec4 spot;
       attribute vec3 ink;
       varying vec4 colour;
       void main() {
         colour = vec4(ink, spot.w * position.z);
-        gl_Position = projectionMatrix * (viewMatrix * vec4(spot.xy + position.xy * spot.z, 0.0, 1.0));
+        gl_Position = projectionMatrix * (viewMatrix * vec4(spot.xy + position.xy * spot.z, 0.003, 1.0));
       }`,
     fragmentShader: /* glsl */ `
       varying vec4 colour;

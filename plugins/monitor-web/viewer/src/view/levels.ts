@@ -12,7 +12,7 @@ const level = (upTo: number, make: () => InstancedBufferGeometry): Level => ({ u
 /// From coarse to fine. A ball of few pixels may well be an octahedron.
 export const levels: Record<Form, Level[]> = {
   block: [level(16, () => roundedBox(1)), level(70, () => roundedBox(2)), level(Infinity, () => roundedBox(4))],
-  round: [level(5, () => roundedBox(1)), level(14, () => roundedBox(2)), level(70, () => roundedBox(4)), level(Infinity, () => roundedBox(8))],
+  round: [level(4, () => roundedBox(1)), level(8, () => roundedBox(2)), level(20, () => roundedBox(3)), level(80, () => roundedBox(5)), level(Infinity, () => roundedBox(8))],
   barrel: [level(10, () => barrel(7)), level(60, () => barrel(14)), level(Infinity, () => barrel(32))],
 };
 

@@ -185,7 +185,7 @@ export class Scenery {
       const isLimb = robot && robot.head !== robot.torso;
       const isFoot = isLimb && piece.form === "block" && piece.half[2] < 0.35 * piece.half[0] && piece.half[1] > 1.5 * piece.half[0];
       if (isLimb && piece.node !== robot.torso && !isFoot) continue;
-      if (radius > 1.5) continue;
+      if (Math.max(...piece.half) > 2) continue;
       const size = isFoot ? 0.085 : isLimb ? 0.19 : radius;
       if (!(blobs.get(piece.node)?.radius ?? 0 > size)) blobs.set(piece.node, { node: piece.node, radius: size });
     }
