@@ -13,9 +13,12 @@ local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class 
 simulation()
 local server = monitors{ encoder = encoder }
 server.precision = 0                    -- the log says what moved
-web()
+local page = web()
 control()
+drawing()                               -- the log's drawings are shown on the page
 
 local player = new("LogPlayer", "/sys/server/monitor/player")
 player.speed, player.waitForMonitor = speed, wait
 player.file = file
+-- Who watches in a browser is no monitor of the server: the first one lets the game begin too.
+if page then page:on("act", function(self) if self.viewers > 0 then player.waitForMonitor = false end end) end

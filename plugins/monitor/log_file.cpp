@@ -63,17 +63,21 @@ void LogFile::addLine(std::uint64_t offset, std::string_view line) {
     ++leftOut_;
     return;
   }
-  records_.push_back({offset + skip, static_cast<std::uint32_t>(line.size()), line.find(")(RSG ") != std::string_view::npos});
+  const bool full = line.find(")(RSG ") != std::string_view::npos;
+  records_.push_back({offset + skip, static_cast<std::uint32_t>(line.size()), static_cast<std::uint32_t>(skip), full});
 }
 
-const std::string& LogFile::read(std::size_t i) {
-  const Record& record = records_.at(i);
-  line_.resize(record.size);
+const std::string& LogFile::read(std::uint64_t offset, std::size_t size) {
+  line_.resize(size);
   in_.clear();
-  in_.seekg(static_cast<std::streamoff>(record.offset));
-  if (!in_.read(line_.data(), record.size)) line_.clear();
+  in_.seekg(static_cast<std::streamoff>(offset));
+  if (!in_.read(line_.data(), static_cast<std::streamsize>(size))) line_.clear();
   return line_;
 }
+
+const std::string& LogFile::read(std::size_t i) { return read(records_.at(i).offset, records_.at(i).size); }
+
+const std::string& LogFile::readDrawings(std::size_t i) { return read(records_.at(i).offset - records_.at(i).drawn, records_.at(i).drawn); }
 
 std::size_t LogFile::fullBefore(std::size_t i) const {
   while (i > 0 && !records_.at(i).full) --i;

@@ -7,8 +7,7 @@
 
 namespace spark {
 
-/// A recorded game: one monitor message a line. Lines that can be none are left out, and so are draw commands (`[...]`) in front of a
-/// message, which some recorders write.
+/// A recorded game: one monitor message a line, with what was drawn in front of it, `[1, 0, -3]...`. Lines that can be none are left out.
 class LogFile {
  public:
   static constexpr std::size_t kLongest = 8u << 20;   ///< bytes of a line; longer ones are left out
@@ -22,16 +21,19 @@ class LogFile {
   std::size_t leftOut() const { return leftOut_; }
   /// The text of record i; "" when the file has changed meanwhile.
   const std::string& read(std::size_t i);
+  /// What stands in front of the text of record i, as it was written.
+  const std::string& readDrawings(std::size_t i);
   /// The last full record that is not behind i; 0 when there is none.
   std::size_t fullBefore(std::size_t i) const;
 
  private:
   struct Record {
-    std::uint64_t offset = 0;
-    std::uint32_t size = 0;
+    std::uint64_t offset = 0;  ///< of its text
+    std::uint32_t size = 0, drawn = 0;  ///< bytes of its text, and of the draw commands in front of it
     bool full = false;
   };
   void addLine(std::uint64_t offset, std::string_view line);
+  const std::string& read(std::uint64_t offset, std::size_t size);
   std::ifstream in_;
   std::vector<Record> records_;
   std::size_t leftOut_ = 0;

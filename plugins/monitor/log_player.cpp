@@ -1,6 +1,7 @@
 #include "log_player.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "spark/state.h"
@@ -43,10 +44,36 @@ void LogPlayer::setFile(std::string path) {
 }
 
 void LogPlayer::take(std::size_t record) {
+  draw(record);
   const std::string wrong = scene_.take(log_->read(record));
   at_ = record;
   if (wrong.empty()) return;
   if (++damaged_ <= kMostLines) kernel().log().warning("{}: record {} of '{}' is passed over: {}", path(), record, path_, wrong);
+}
+
+/// Packets as bytes with their sign: `[0, 0, 97, 0][2, 2, -128]`.
+void LogPlayer::draw(std::size_t record) {
+  const std::string& text = log_->readDrawings(record);
+  auto* drawings = text.empty() ? nullptr : kernel().root().find<IDrawings>("/sys/server/drawing");
+  if (!drawings) return;
+  std::vector<std::byte> packet;
+  int value = 0;
+  for (const char *at = text.data(), *end = at + text.size(); at < end;) {
+    const auto [behind, wrong] = std::from_chars(at, end, value);
+    if (wrong == std::errc()) packet.push_back(static_cast<std::byte>(value));
+    else if (*at == ']') drawings->draw(packet), packet.clear();
+    at = std::max(behind, at + 1);
+  }
+}
+
+/// As a log's full records do; agents' texts each.
+void LogPlayer::takeDrawingsAway() {
+  auto* drawings = kernel().root().find<IDrawings>("/sys/server/drawing");
+  if (!drawings || drawings->version() == 0) return;
+  constexpr std::byte kNone{0}, kText{2};
+  std::vector<std::byte> packet(6, kNone);  // two swaps of everything
+  for (int agent = 0; agent < 256; ++agent) packet.insert(packet.end(), {kText, kText, static_cast<std::byte>(agent)});
+  drawings->draw(packet);
 }
 
 void LogPlayer::setRecord(std::int64_t record) {
@@ -59,6 +86,7 @@ void LogPlayer::setRecord(std::int64_t record) {
 /// By way of the last full record. Events of the way are not told.
 void LogPlayer::goTo(std::size_t target) {
   tellEvents_ = false;
+  takeDrawingsAway();
   for (std::size_t i = log_->fullBefore(target); i <= target; ++i) take(i);
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "api/drawing.h"
 #include "frame_source.h"
 #include "log_file.h"
 #include "recorded_scene.h"
@@ -15,7 +16,7 @@ namespace spark {
 /// the game can be stopped, stepped and played backwards while they watch.
 ///
 /// Trainer commands, named after the keys of the old log player: `(p)` pause or go on, `(f)` and `(b)` one record forward or back,
-/// `(l)` the other direction, `(speed 2)`, `(record 150)`.
+/// `(l)` the other direction, `(speed 2)`, `(record 150)`. What was drawn goes to the house's drawings, if it has any.
 class LogPlayer : public Node, public IFrameSource, public ITrainer {
   SPARK_CLASS(LogPlayer, Node)
  public:
@@ -43,6 +44,8 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
   bool step();
   void goTo(std::size_t target);
   void take(std::size_t record);
+  void draw(std::size_t record);
+  void takeDrawingsAway();
 
   std::string path_;
   double recordTime_ = 0.2, speed_ = 1;

@@ -39,11 +39,15 @@ class TestDrawings : public Node, public IDrawings {
   static void describe(Description<TestDrawings>& d) { d.implements<IDrawings>(); }
   std::uint64_t version() const override { return changes; }
   std::span<const Set> sets() const override { return {}; }
-  void draw(std::span<const std::byte>) override {}
+  void draw(std::span<const std::byte> packet) override {
+    auto& bytes = drawn.emplace_back();
+    for (std::byte b : packet) bytes.push_back(static_cast<int>(b));
+  }
   void record(std::uint64_t since, std::string& out) const override {
     if (since != changes) out += fmt::format("[{}, {}]", since, changes);
   }
   std::uint64_t changes = 0;
+  std::vector<std::vector<int>> drawn;
 };
 
 /// A stage with a log.
@@ -163,10 +167,39 @@ TEST_CASE("what agents drew stands in front of a record: all of it before a full
   CHECK(drawn[2] == std::pair<std::size_t, std::string>(16, "[0, 3]"));   // the full one
   CHECK(isFull(lines[16]));
 
-  // The player takes the records and leaves the drawings.
+  // The player takes the records, drawings or not.
   Player player(stage.file.path);
   CHECK(getProperty(*player.player, "records") == Value(static_cast<std::int64_t>(lines.size())));
   CHECK(getProperty(*player.player, "damaged") == Value(0));
+}
+
+TEST_CASE("what was drawn in a recorded game is drawn again, and taken away when the game is seen from elsewhere") {
+  Recorded stage;
+  for (int i = 0; i < 100; ++i) stage.cycle();
+  std::string text;
+  auto lines = stage.file.lines();
+  lines[2].insert(0, "[1, -128][127, 0]");
+  lines[5].insert(0, "[3]");
+  lines[6].insert(0, "[junk, 4, 5");
+  for (const std::string& line : lines) text += line + "\n";
+  TemporaryFile edited(text);
+  Player player(edited.path);
+  player.kernel.registerClass<TestDrawings>();
+  auto& drawings = player.kernel.create<TestDrawings>("TestDrawings", "/sys/server/drawing");
+  const auto go = [&](std::int64_t record) {
+    drawings.drawn.clear();
+    setProperty(*player.player, "record", record);
+    return drawings.drawn;
+  };
+  using Packets = std::vector<std::vector<int>>;
+  CHECK(go(1).empty());
+  CHECK(go(4) == Packets{{1, 128}, {127, 0}});
+  drawings.changes = 1;  // now something is shown
+  const Packets again = go(5);
+  REQUIRE(again.size() == 4);
+  CHECK(again[0].size() == 6 + 3 * 256);
+  CHECK(again[3] == std::vector<int>{3});
+  CHECK(go(0).size() == 1);
 }
 
 TEST_CASE("a log that cannot be written says so once, and the server goes on") {
