@@ -16,6 +16,8 @@ const kPages = 12;
 /// Drawings are kept in memory, about so many bytes of them.
 const kMostPackets = 64 << 20;
 const kNoPackets: Uint8Array[] = [];
+/// Bytes of a packet that swaps all sets twice, 0 0 \0 0 0 \0: nothing is left then.
+const kAllSwapped = 6;
 /// Between two records, unless the log says otherwise [s].
 const kUsual = 0.2;
 /// More than so many usual times is no pause between two records.
@@ -29,6 +31,8 @@ export interface LogRecord {
   /// Bytes of draw commands in front of the message, and their packets.
   drawings: number;
   packets: Uint8Array[];
+  /// They bring all there is: they begin with an end of all that was.
+  redrawn: boolean;
   /// The referee lets play go on: the ball moves by itself.
   free: boolean;
   /// By the game's clock and by the log's own [s].
@@ -149,12 +153,14 @@ class Indexer {
       this.pageStart = offset + from;
       if (this.records.length > 0) ++this.page;
     }
+    const packets = this.packets(bytes, from, message);
     this.records.push({
       offset: offset + from,
       size: end - from,
       full: head.full,
       drawings: message - from,
-      packets: this.packets(bytes, from, message),
+      packets,
+      redrawn: packets.length > 0 && packets[0]!.length === kAllSwapped && packets[0]!.every((b) => b === 0),
       free: /^(playon|pass)/i.test(modeName(this.environment)),
       gameTime,
       clock: 0,

@@ -286,14 +286,17 @@ export class Replay implements ReplaySource {
     for (let i = 0; i < nodes.length; ++i) if (nodes[i]!.kind === "mesh") nodes[i]!.visible = moment.poses.visible[i] === 1;
   }
 
-  /// Draws what was drawn since; from the beginning when the way goes back.
+  /// Draws what was drawn since; anew when the way goes back, or when a record on the way brings all there is.
   private showDrawings(record: number): void {
     const { board, records, world } = this;
+    const back = record + 1 < this.drawn;
+    let begin = record;
+    while (begin > (back ? 0 : this.drawn) && !records[begin]!.redrawn) --begin;
     let changed = false;
-    if (record + 1 < this.drawn) {
+    if (back || records[begin]!.redrawn) {
       changed = board.shown.size > 0;
       board.clear();
-      this.drawn = 0;
+      this.drawn = begin;
     }
     for (; this.drawn <= record; ++this.drawn) for (const packet of records[this.drawn]!.packets) changed = board.take(packet) || changed;
     if (!changed) return;

@@ -125,6 +125,14 @@ describe("drawings", () => {
     expect(replay.damaged).toBe(0);
   });
 
+  test("that all come again with a whole scene need none from before", async () => {
+    const clear = packet(0, 0, 0, 0, 0, 0), text = packet(2, 1, 2, 0, 0, 255, "x", 0);
+    const replay = await open(text + point + swap + whole(0), moved(0.2, 1), clear + point + point + swap + whole(0.4), moved(0.6, 1));
+    const shown = async (time: number) => [...(await seek(replay, time)).world.drawings].map(([name, set]) => [name, set.length]);
+    const before = [["agents", 1], ["a.b", 1]], after = [["a.b", 2]];
+    expect([await shown(0.2), await shown(0.6), await shown(0), await shown(0.4), await shown(0.2)]).toEqual([before, after, before, after, before]);
+  });
+
   test("may be damaged", async () => {
     const replay = await open(`[1, 2, 3]${swap}[x][300]${whole(0)}`, `[0,0${moved(0.2, 1)}`, moved(0.4, 1));
     expect(replay.world.drawings.size).toBe(0);
