@@ -47,6 +47,13 @@ export function withoutToken(address: string): string {
   return url.href.replace(/#$/, "");
 }
 
+/// The address of the live match: without the log and the place in it.
+export function withoutLog(address: string): string {
+  const url = new URL(address);
+  for (const name of ["file", "at", "paused"]) url.searchParams.delete(name);
+  return url.href;
+}
+
 /// Where the page's own host sends its stream.
 export function streamOf(address: string): string {
   const url = new URL("stream", address);

@@ -1,7 +1,7 @@
 /// The whole page: puts the picture, the panels and what is shown together, and runs the one loop.
 import { mountInspector } from "../inspect";
 import type { LiveSource, ReplaySource, Robot, Source, World } from "../model";
-import { withoutToken, wishesOf, type Wishes } from "./address";
+import { withoutLog, withoutToken, wishesOf, type Wishes } from "./address";
 import { Stage } from "../view/stage";
 import type { App, AppEvent, CameraMode, Panel, Selection, Theme, Tone } from "./app";
 import { Appearance } from "./appearance";
@@ -25,6 +25,7 @@ import { loadSettings } from "./settings";
 import { Showing } from "./showing";
 import { Side } from "./side";
 import { connectionOf, kConnectionWords, StatusLine } from "./status_line";
+import { tellWish } from "./stream_wish";
 import { Timeline } from "./timeline";
 import { passed } from "./timeline_maths";
 import { Toasts } from "./toasts";
@@ -225,6 +226,7 @@ export class Application implements App {
   private begin(wishes: Wishes): void {
     this.showing.onchange = () => this.sourceChanged();
     this.takeToken(wishes);
+    document.addEventListener("visibilitychange", () => tellWish(this.live));
     window.addEventListener("hashchange", () => this.takeToken(wishesOf(location.href)));
     this.side.show(wishes.panel === "none" ? null : wishes.panel);
     if (wishes.file) void this.showing.openLog(wishes.file, wishes);
@@ -255,6 +257,9 @@ export class Application implements App {
     this.eventTime = NaN;
     this.picker.finish(null);
     this.stage.setSource(this.source);
+    tellWish(this.live);
+    // so that reloading shows it again
+    if (this.live) history.replaceState(null, "", withoutLog(location.href));
     this.timeline.setReplay(this.replay);
     this.select(null);
     this.emit("source");
@@ -280,7 +285,8 @@ export class Application implements App {
     const sheet = this.side.panel("view");
     sheet.classList.add("padded");
     const place = () => {
-      (narrow.matches ? sheet : this.area).append(this.tools.element);
+      if (narrow.matches) sheet.append(this.tools.element);
+      else this.surface.after(this.tools.element);
       if (!narrow.matches && this.side.open === "view") this.side.show(null);
     };
     narrow.addEventListener("change", place);

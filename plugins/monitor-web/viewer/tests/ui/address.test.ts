@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { fileNameOf, streamOf, wishesOf, withoutToken } from "../../src/ui/address";
+import { fileNameOf, streamOf, wishesOf, withoutLog, withoutToken } from "../../src/ui/address";
 
 describe("the address", () => {
   it("asks for nothing when it is bare", () => {
@@ -15,6 +15,10 @@ describe("the address", () => {
   it("loses the token and nothing else", () => {
     expect(withoutToken("http://h/?file=a#token=secret")).toBe("http://h/?file=a");
     expect(withoutToken("http://h/#token=secret&other=1")).toBe("http://h/#other=1");
+  });
+  it("of the live match names no log", () => {
+    expect(withoutLog("http://h/?file=a.log&at=3&paused&view=top")).toBe("http://h/?view=top");
+    expect(withoutLog("http://h/")).toBe("http://h/");
   });
   it("leads to the stream of the same host, encrypted where the page is", () => {
     expect(streamOf("http://host:3280/?file=a#b")).toBe("ws://host:3280/stream");

@@ -1,0 +1,21 @@
+/// How often, and how finely, this page wants to hear from the host.
+import type { LiveSource } from "../model";
+
+export interface StreamWish {
+  /// Frames a second.
+  rate: number;
+  detail: "fine" | "coarse";
+}
+
+/// A page that nobody sees stays connected with next to nothing; who saves data gets less.
+export function streamWish(hidden: boolean, savesData: boolean): StreamWish {
+  if (hidden) return { rate: 1, detail: "coarse" };
+  return savesData ? { rate: 10, detail: "coarse" } : { rate: 25, detail: "fine" };
+}
+
+/// Tells the host what is wanted now.
+export function tellWish(live: LiveSource | null): void {
+  const line = (navigator as Navigator & { connection?: { saveData?: boolean } }).connection;
+  const { rate, detail } = streamWish(document.hidden, line?.saveData ?? false);
+  live?.setRate(rate, detail);
+}
