@@ -13,8 +13,9 @@ namespace spark {
 // the tree and the handlers, their own included. Afterwards settle() makes it so.
 
 namespace {
-constexpr std::size_t kAhead = 8;   // handlers
-constexpr std::size_t kNode = 384;  // bytes that a handler with nothing to do looks at
+constexpr std::size_t kFar = 12, kNear = 6;  // handlers
+constexpr std::size_t kNode = 384;          // bytes that a handler with nothing to do looks at
+constexpr std::size_t kParent = 320;        // and of the node above it, which many act on
 }  // namespace
 
 void Channel::run(Entry& entry, const Event& event) {
@@ -69,7 +70,8 @@ void Channel::emit(const Event& event) {
   if (depth_ == 0) sort();
   ++depth_;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (i + kAhead < entries_.size()) prefetch(entries_[i + kAhead].node, kNode);
+    if (i + kFar < entries_.size()) prefetch(entries_[i + kFar].node, kNode);
+    if (const Leaf* next = i + kNear < entries_.size() ? entries_[i + kNear].node : nullptr) prefetch(next->parent(), kParent);
     if (entries_[i].node) run(entries_[i], event);
   }
   --depth_;

@@ -132,12 +132,29 @@ inline int exponentOf(double v, int binary) {
   return guess + (v >= kBounds[static_cast<std::size_t>(guess + 1 - kLeastExponent)]);
 }
 
+/// Writes digits below 1,000,000, the last `Decimals` of them behind the point; no branch, since nobody knows how many there are before it.
+template <int Decimals>
+char* putShort(char* to, std::uint32_t digits) {
+  static_assert(Decimals == 2 || Decimals == 3);
+  constexpr std::uint32_t kUnit = Decimals == 2 ? 100 : 1000, kToFour = Decimals == 2 ? 100 : 10;
+  const auto four = [](std::uint32_t v) { return static_cast<std::uint32_t>(pair(v / 100) | pair(v % 100) << 16); };
+  const std::uint32_t whole = four(digits / kUnit), part = four(digits % kUnit * kToFour);
+  const int zeros = std::min(3, std::countr_zero(whole ^ 0x30303030) / 8);  // not written
+  const std::uint32_t first = whole >> 8 * zeros;
+  std::memcpy(to, &first, sizeof first);
+  to += 4 - zeros;
+  *to = '.';
+  std::memcpy(to + 1, &part, sizeof part);
+  return to + 1 + Decimals;
+}
+
 }  // namespace
 
 char* putFixed(char* to, double v, int decimals, bool asFloat) {
   // A clock in single precision stands still for some cycles after a few days, and clients end at two equal messages.
   constexpr double kLateClock = 65536, kEndOfClocks = 1e9;
   constexpr int kFastDecimals = 9;
+  constexpr std::uint64_t kShortEnd = 1000000;
   if (std::isnan(v)) return static_cast<char*>(std::memcpy(to, "nan", 3)) + 3;  // its sign means nothing, and clients do not read it
   const bool clock = v >= kLateClock && v < kEndOfClocks;
   if (asFloat && !clock) v = static_cast<float>(v);
@@ -145,6 +162,8 @@ char* putFixed(char* to, double v, int decimals, bool asFloat) {
     return putSlowly(to, kFixedRoom, v, std::chars_format::fixed, std::clamp(decimals, 0, 60));
   if (std::signbit(v)) *to++ = '-';
   std::uint64_t digits = scaled(v, decimals);
+  if (digits < kShortEnd && decimals == 2) return putShort<2>(to, static_cast<std::uint32_t>(digits));
+  if (digits < kShortEnd && decimals == 3) return putShort<3>(to, static_cast<std::uint32_t>(digits));
   const int whole = std::max(countDigits(digits) - decimals, 1);
   if (decimals > 0) {
     putDigits(to + whole + 1 + decimals, digits, decimals);

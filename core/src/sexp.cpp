@@ -169,22 +169,43 @@ class Reader {
   bool failed_ = false;
 };
 
-void writeElement(const Element& e, int decimals, bool top, ByteWriter& out) {
-  const Token& t = e.token();
-  switch (t.kind) {
-    case Token::Kind::text: return out.put(e.text());
-    case Token::Kind::number: return out.fixed(t.number, decimals);
-    case Token::Kind::integer: return out.integer(t.integer);
-    case Token::Kind::list: break;
+/// More than any token takes, and what stands before and behind it.
+constexpr std::size_t kTokenRoom = kFixedRoom + 16;
+
+/// Writes the elements of tokens [t, end), a blank between them. `at` has room for a token, and so has what is returned: the place to write
+/// stays in a register, where a writer's own would be stored and loaded again for each byte.
+char* writeElements(const Predicates& from, const Token* t, const Token* end, int decimals, ByteWriter& out, char* at) {
+  const auto more = [&out](char* to) { return out.end(to), out.room(kTokenRoom); };
+  while (t < end) {
+    const Token* const next = t + (t->kind == Token::Kind::list ? t->size : 1);
+    switch (t->kind) {
+      case Token::Kind::text:
+        if (t->size <= Token::kShort) {
+          std::memcpy(at, t->letters, Token::kShort);
+          at += t->size;
+        } else {
+          out.end(at);
+          out.put(from.textOf(*t));
+          at = out.room(kTokenRoom);
+        }
+        break;
+      case Token::Kind::number: at = putFixed(at, t->number, decimals); break;
+      case Token::Kind::integer:
+        out.end(at);
+        out.integer(t->integer);
+        at = out.room(kTokenRoom);
+        break;
+      case Token::Kind::list:
+        *at++ = '(';
+        at = writeElements(from, t + 1, next, decimals, out, at);
+        *at++ = ')';
+        break;
+    }
+    t = next;
+    if (t < end) *at++ = ' ';
+    at = more(at);
   }
-  out.put('(');
-  bool first = true;
-  for (const Element inner : e) {
-    if (!first) out.put(' ');
-    first = false;
-    writeElement(inner, decimals, false, out);
-  }
-  out.put(top && t.size == 2 ? std::string_view(" )") : std::string_view(")"));
+  return at;
 }
 
 }  // namespace
@@ -195,7 +216,22 @@ ReadResult readSexp(std::string_view bytes, Predicates& out, const ReadLimits& l
 
 void writeSexp(const Predicates& predicates, int decimals, std::string& bytes) {
   ByteWriter out(bytes);
-  for (const Element e : predicates) writeElement(e, decimals, true, out);
+  char* at = out.room(kTokenRoom);
+  const Token* const end = predicates.tokens().data() + predicates.size();
+  for (const Token* t = predicates.tokens().data(); t < end;) {
+    const bool list = t->kind == Token::Kind::list;
+    const Token* const next = t + (list ? t->size : 1);
+    if (list && t->size == 2) {
+      *at++ = '(';
+      at = writeElements(predicates, t + 1, next, decimals, out, at);
+      std::memcpy(at, " )", 2);
+      at += 2;
+    } else {
+      at = writeElements(predicates, t, next, decimals, out, at);
+    }
+    t = next;
+  }
+  out.end(at);
 }
 
 }  // namespace spark

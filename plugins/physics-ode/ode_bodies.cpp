@@ -9,6 +9,11 @@ namespace spark {
 using namespace ode;
 using engine::Body;
 
+namespace {
+constexpr std::ptrdiff_t kAhead = 4;   // bodies
+constexpr std::size_t kMotion = 128;  // bytes of ODE's from a body's velocity to its torque
+}  // namespace
+
 Body OdeEngine::createBody(engine::World world) {
   WorldData& w = *data(world);
   auto b = std::make_unique<BodyData>();
@@ -27,6 +32,11 @@ Body OdeEngine::createBody(engine::World world) {
   dBodySetData(b->id, b.get());
   const Body handle{reinterpret_cast<std::uintptr_t>(b.get())};
   w.bodies.push_back(std::move(b));
+  if (w.bodies.size() > kAhead) {
+    BodyData& before = **(w.bodies.rbegin() + kAhead);
+    before.ahead = w.bodies.back().get();
+    before.odeAhead = w.bodies.back()->velocity;
+  }
   w.repaired.reserve(w.bodies.size());
   w.sleepers.reserve(w.bodies.size());
   w.toVisit.reserve(w.bodies.size());
@@ -161,6 +171,8 @@ void OdeEngine::addTorque(Body body, const Vec3& wanted) {
 
 void OdeEngine::addDrag(Body body, double linear, double angular) {
   const BodyData& b = *data(body);
+  prefetch(b.ahead, 2 * kCacheLine);
+  prefetch(b.odeAhead, kMotion);
   if (!b.awake) return;
   OdeEngine::addForce(body, crossing(*b.world, toVec(b.velocity)) * -linear);
   OdeEngine::addTorque(body, crossing(*b.world, toVec(b.spin)) * -angular);

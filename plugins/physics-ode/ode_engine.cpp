@@ -110,7 +110,7 @@ void touch(WorldData& w, BodyData& b, int rows) {
 
 void OdeEngine::pairUp(WorldData& w, const engine::Contacts& contacts) {
   w.contactPairs.clear();
-  w.unitingRows = w.mostStaticRows = 0;
+  w.unitingRows = w.staticRows = w.mostStaticRows = 0;
   for (const engine::Contact& c : contacts) {
     engine::SolverPair& pair = w.contactPairs.emplace_back();
     if (!c.solve) continue;
@@ -120,7 +120,7 @@ void OdeEngine::pairUp(WorldData& w, const engine::Contacts& contacts) {
     pair.a = a ? a : b;
     pair.b = a ? b : nullptr;
     const bool both = a && b;
-    if (both) w.unitingRows += kContactRows;
+    (both ? w.unitingRows : w.staticRows) += kContactRows;
     if (a) touch(w, *a, both ? 0 : kContactRows);
     if (b) touch(w, *b, both ? 0 : kContactRows);
   }
@@ -180,7 +180,6 @@ void OdeEngine::stepByOde(WorldData& w, engine::Contacts& contacts, double dt) {
   for (BodyData* b : w.solved) dBodyEnable(b->id);
   readFeedback(w, contacts);
   dJointGroupEmpty(w.contactJoints);
-  for (const auto& b : w.bodies) b->awake = dBodyIsEnabled(b->id) != 0;
 }
 
 void OdeEngine::sleep(WorldData& w, double dt) {
@@ -202,9 +201,17 @@ void OdeEngine::sleep(WorldData& w, double dt) {
   }
 }
 
-void OdeEngine::repair(WorldData& w) {
-  for (const auto& body : w.bodies) {
-    BodyData& b = *body;
+/// ODE's solver leaves nothing of bodies in the caches: the next ones' memory is under way meanwhile.
+void OdeEngine::lookAfterStep(WorldData& w, bool byOde) {
+  constexpr std::size_t kFar = 8, kNear = 4;
+  constexpr std::size_t kLooked = 224;  // bytes of ODE's from a body's position to its spin
+  const std::size_t n = w.bodies.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i + kFar < n) prefetch(w.bodies[i + kFar].get(), sizeof(BodyData));
+    if (i + kNear < n) prefetch(w.bodies[i + kNear]->position, kLooked);
+    BodyData& b = *w.bodies[i];
+    // Nobody falls asleep in ODE's step, but it wakes what hangs on something awake.
+    if (!b.awake && byOde) b.awake = dBodyIsEnabled(b.id) != 0;
     if (!b.awake) continue;
     if (sane(b.position, 3) && sane(b.quaternion, 4) && sane(b.velocity, 3) && sane(b.spin, 3)) {
       std::copy(b.position, b.position + 3, b.good.position);
@@ -230,7 +237,7 @@ void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
   engine::ISolver* const inPlace = solver();
   const bool byOde = !inPlace || stepBySolver(w, *inPlace, contacts, crossing(w, dt)) > 0;
   if (byOde) stepByOde(w, contacts, crossing(w, dt));
-  repair(w);
+  lookAfterStep(w, byOde);
   ++w.rotations;
   if (byOde) tellAngles(w);
   if (!said_.empty()) report();

@@ -52,6 +52,8 @@ struct BodyBasics {
   int stepsLeft;                ///< idle steps until it sleeps
   double timeLeft = 0;          ///< idle time until it sleeps [s]
   std::uint64_t touchedAt = 0;  ///< number of the step in which it last had a contact
+  /// Memory of the body that was made some after this one: who comes to this one comes to that one soon. To be prefetched only, it may be gone.
+  const void *ahead = nullptr, *odeAhead = nullptr;
 };
 
 /// What a solver sees of a body leads into ODE's memory. `awake` is what ODE says, `left` is true where no solver steps.
@@ -126,7 +128,9 @@ struct WorldData {
   std::vector<engine::SolverPair> contactPairs;  ///< one for each contact of the step
   std::vector<dJointFeedback> feedback;
   std::vector<engine::Body> repaired;
-  int unitingRows = 0, mostStaticRows = 0;  ///< this step's rows of contacts between bodies; most with the static world on one body
+  int unitingRows = 0, staticRows = 0, mostStaticRows = 0;  ///< this step's rows of contacts between bodies; with the static world; most of those on one body
+  int heldRows = 0, heldBodies = 0;         ///< most rows, and most bodies, that joints alone hold together
+  std::uint64_t heldAt = 0;                 ///< the structure for which they were counted
   std::vector<BodyData*> sleepers;          ///< bodies of islands kept out of a run of one of ODE's solvers
   std::vector<BodyData*> toVisit;           ///< while an island is walked through
   std::vector<BodyData*> solved;            ///< bodies that are kept out of ODE's step: they had theirs
@@ -340,7 +344,8 @@ class OdeEngine : public Node, public engine::IEngine {
   void tellAngles(ode::WorldData& w);
   /// dWorldStep, the islands in the kernel's threads.
   void solveDirectly(ode::WorldData& w, double dt);
-  void repair(ode::WorldData& w);
+  /// Notes who is awake, and puts back who is nowhere.
+  void lookAfterStep(ode::WorldData& w, bool byOde);
   /// Logs what ODE said since the last call: the first time, the second, the fourth ...
   void report();
 

@@ -1,9 +1,10 @@
 #include <algorithm>
+#include <utility>
 
 #include "ode_engine.h"
 
-// An island is what joints and solved contacts hold together; the static world holds nothing together. When all constraints of a world
-// are few, or cannot hold many together, nothing is counted. Else islands are found by union of bodies, and if one is too large the world
+// An island is what joints and solved contacts hold together; the static world holds nothing together. When the contacts of a step cannot
+// bring too many constraints together, nothing is counted. Else islands are found by union of bodies, and if one is too large the world
 // is stepped twice: first without the bodies of large islands, by the direct solver, then with only them, by the iterative one. A body that
 // is out is one that sleeps, as ODE knows it; islands do not touch each other, so nobody is woken.
 
@@ -38,10 +39,31 @@ void unite(BodyData* a, BodyData* b, int rows) {
   a->rows += b->rows;
 }
 
-void findIslands(WorldData& w) {
+void findHeld(WorldData& w) {
   for (const auto& b : w.bodies) b->island = b.get(), b->rows = 0;
   for (const auto& j : w.joints) unite(data(j->a), data(j->b), rowsOf(j->type));
+}
+
+void findIslands(WorldData& w) {
+  findHeld(w);
   for (const engine::SolverPair& p : w.contactPairs) unite(data(p.a), data(p.b), kContactRows);
+}
+
+/// Most rows and most bodies that joints alone hold together.
+void countHeld(WorldData& w) {
+  if (w.heldAt == w.structure) return;
+  w.heldAt = w.structure;
+  w.heldRows = w.heldBodies = 0;
+  findHeld(w);
+  for (const auto& b : w.bodies) w.heldRows = std::max(w.heldRows, std::exchange(b->rows, 0));
+  for (const auto& b : w.bodies) w.heldBodies = std::max(w.heldBodies, ++firstOf(b.get())->rows);
+}
+
+/// No island has more rows: so many contacts between bodies bring together one more of what joints hold.
+std::int64_t boundOfRows(WorldData& w) {
+  countHeld(w);
+  const std::int64_t parts = 1 + w.unitingRows / kContactRows;
+  return w.unitingRows + parts * w.heldRows + std::min<std::int64_t>(w.staticRows, parts * w.heldBodies * w.mostStaticRows);
 }
 
 /// Puts the awake bodies of large (or of all other) islands to sleep; they stand in w.sleepers.
@@ -100,11 +122,8 @@ void OdeEngine::solveDirectly(WorldData& w, double dt) {
 }
 
 void OdeEngine::solve(WorldData& w, double dt) {
-  // An island of n bodies has at least n - 1 constraints between them, which bounds both.
-  const std::int64_t uniting = w.unitingRows + 6 * static_cast<std::int64_t>(w.joints.size());
-  const std::int64_t bound = uniting + (1 + uniting / kContactRows) * w.mostStaticRows;
   int largest = 0;
-  if (bound > directRows_) {
+  if (boundOfRows(w) > directRows_) {
     findIslands(w);
     for (const auto& b : w.bodies)
       if (dBodyIsEnabled(b->id)) largest = std::max(largest, firstOf(b.get())->rows);

@@ -130,9 +130,7 @@ bool RestrictedVisionPerceptor::lookAtLine(const Sights::Stroke& line, soccer::P
   Vec3f a = toView(line.begin - here_) + noise_.calibration(), b = toView(line.end - here_) + noise_.calibration();
   const auto visible = [this](const Vec3f& p, soccer::Polar& polar) { return p.norm() > kTooNear && find(p, polar); };
   if (!visible(a, begin) || !visible(b, end)) {
-    const float halfX = std::tan(static_cast<float>(degToRad(std::min(cone_[0], 178) / 2)));
-    const float halfZ = std::tan(static_cast<float>(degToRad(std::min(cone_[1], 178) / 2)));
-    if (staticAxis_ || !clip(a, b, halfX, halfZ)) return false;
+    if (staticAxis_ || !clip(a, b, window_[0], window_[1])) return false;
     begin = direction(a), end = direction(b);
   }
   noise_.apply(begin), noise_.apply(end);
@@ -170,6 +168,7 @@ void RestrictedVisionPerceptor::openEye() {
   const double width = degToRad(std::min(cone_[0], 360) / 2), height = degToRad(std::min(cone_[1], 360) / 2);
   halfWidth_ = {std::sin(width), std::cos(width)};
   halfHeight_ = {std::sin(height), std::cos(height)};
+  for (std::size_t i = 0; i < 2; ++i) window_[i] = std::tan(static_cast<float>(degToRad(std::min(cone_[i], 178) / 2)));
 }
 
 void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {

@@ -75,6 +75,7 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   struct {
     double sin = 0, cos = 1;
   } halfWidth_, halfHeight_;                              ///< of the cone
+  std::array<float, 2> window_{1, 1};                     ///< half width and height of what it sees, 1 m ahead
 };
 
 }  // namespace spark
