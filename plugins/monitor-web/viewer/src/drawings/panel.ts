@@ -31,7 +31,7 @@ export class DrawingsPanel {
     this.drawn = wanted;
     this.all.checked = on;
     const rows = setRows(world.drawings.keys());
-    setText(this.note, rows.length > 0 ? "" : replay ? "This recording holds no drawings up to here." : "No agent has drawn anything. The host listens for drawings only when its config has drawings{ port = … }.");
+    setText(this.note, rows.length > 0 ? "" : replay ? "This recording holds no drawings up to here." : "No agent has drawn anything. Agents draw with the drawing effector, or over UDP where the host opens a port for it (--set drawings=32769).");
     setHidden(this.note, rows.length > 0);
     this.show(rows, world);
   }

@@ -28,6 +28,7 @@ const kDeep = 0.01;        // [m]; deeper ones look the same
 const kNormal = 0.1;       // [m]
 const kLongest = 0.6;      // [m] of an arrow before the scale changes
 const kShortest = 0.1;
+const kCut = 1;            // [m]; arrows are never longer
 const kMostRows = 40;
 const kFelt: [number, number, number] = [0.6, 0.63, 0.67];
 
@@ -57,8 +58,9 @@ export class ContactsOverlay extends FedOverlay<Contacts> {
 
   protected draw({ contacts }: Contacts, around: Surroundings): void {
     this.begin();
-    let greatest = 0;
-    for (const c of contacts) if (c.force) greatest = Math.max(greatest, Math.hypot(...c.force));
+    const robot = around.robot?.path;
+    const listed = robot ? contacts.filter((c) => isWithin(c.a, robot) || isWithin(c.b, robot)) : contacts;
+    const greatest = listed.reduce((most, c) => (c.force ? Math.max(most, Math.hypot(...c.force)) : most), 0);
     this.scale = forceScale(this.scale, greatest);
     this.normals.colour(0.95, 0.97, 1);
     this.forces.colour(1, 0.45, 0.1);
@@ -68,10 +70,10 @@ export class ContactsOverlay extends FedOverlay<Contacts> {
       this.dots.add(x, y, z, 0.014, r, g, b);
       if (c.solved === false) continue;
       arrow(x, y, z, c.normal[0] * kNormal, c.normal[1] * kNormal, c.normal[2] * kNormal, 0.02, this.normals.stroke);
-      if (c.force) arrow(x, y, z, c.force[0] * this.scale, c.force[1] * this.scale, c.force[2] * this.scale, 0.04, this.forces.stroke);
+      if (c.force) this.drawForce(x, y, z, c.force);
     }
     this.end();
-    this.tell(contacts, around, greatest);
+    this.tell(contacts, listed, around, greatest);
   }
 
   protected clear(): void {
@@ -91,11 +93,15 @@ export class ContactsOverlay extends FedOverlay<Contacts> {
     for (const part of [this.normals, this.forces, this.dots]) part.end();
   }
 
-  private tell(contacts: readonly Contact[], around: Surroundings, greatest: number): void {
-    const robot = around.robot?.path;
-    const listed = robot ? contacts.filter((c) => isWithin(c.a, robot) || isWithin(c.b, robot)) : contacts;
+  /// Those of others than the selected robot may be off the scale.
+  private drawForce(x: number, y: number, z: number, [fx, fy, fz]: [number, number, number]): void {
+    const scale = Math.min(this.scale, kCut / Math.hypot(fx, fy, fz));
+    arrow(x, y, z, fx * scale, fy * scale, fz * scale, 0.04, this.forces.stroke);
+  }
+
+  private tell(contacts: readonly Contact[], listed: readonly Contact[], around: Surroundings, greatest: number): void {
     const measured = contacts.some((c) => c.force);
-    const count = `${contacts.length} contacts${robot ? `, ${listed.length} of the selected robot` : ""}.`;
+    const count = `${contacts.length} contacts${around.robot ? `, ${listed.length} of the selected robot` : ""}.`;
     const forces = measured ? ` Longest arrow: ${fixed(greatest, 1)} N (1 m is ${fixed(1 / this.scale, 0)} N).` : contacts.length > 0 ? " Forces are not measured: switch on measureForces of /sys/server/physics." : "";
     this.note = count + forces;
     const robots = around.world?.robots ?? [];
