@@ -39,7 +39,7 @@ export class Camera implements CameraView {
   private current: CameraMode = "orbit";
   private readonly orbit = new Orbit();
   private readonly above = new Orbit();
-  private readonly follower = new Follower(2.6);
+  private readonly follower = new Follower(4.2);
   private closeness = 1;
   private following = false;
   private readonly headPose = new Pose();
@@ -163,7 +163,7 @@ export class Camera implements CameraView {
     focus.copy(ball ?? origin);
     if (field) focus.set(limit(focus.x, field.length / 2), limit(focus.y, field.width / 2), 0);
     // Half way to the middle: the ball leads, the game around it stays in the picture.
-    focus.set(0.94 * focus.x, 0.72 * focus.y, 0.3);
+    focus.set(0.97 * focus.x, 0.72 * focus.y, 0.3);
     if (this.following) this.follower.step(seconds, focus);
     else this.follower.jump(focus);
     this.following = true;

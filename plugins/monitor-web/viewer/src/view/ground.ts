@@ -1,4 +1,4 @@
-import { BufferAttribute, BufferGeometry, Group, LineSegments, Mesh, MeshStandardMaterial, PlaneGeometry, type Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, Group, LineSegments, Mesh, MeshLambertMaterial, PlaneGeometry, type Vector3 } from "three";
 import { fieldLines, stripes, type FieldSizes } from "./field_sizes";
 import { Layer, lineMaterial, netMaterial, plainMaterial } from "./ground_materials";
 import { paintField } from "./ground_texture";
@@ -84,7 +84,7 @@ export class Ground {
 
   private addFine(field: FieldSizes | null, around: Surroundings): void {
     const [x, y] = field ? [field.length / 2 + field.margin, field.width / 2 + field.margin] : [plainHalf, plainHalf];
-    const inner = new Mesh(new PlaneGeometry(2 * x, 2 * y), new MeshStandardMaterial({ map: paintField(field, x, y, around), roughness: 0.95, envMapIntensity: 0.5 }));
+    const inner = new Mesh(new PlaneGeometry(2 * x, 2 * y), new MeshLambertMaterial({ map: paintField(field, x, y, around) }));
     const quilt = new Quilt();
     addFloor(quilt, x, y, around);
     const outer = new Mesh(quilt.geometry(), plainMaterial());

@@ -3,7 +3,7 @@ import { fieldLines, stripes, type FieldSizes } from "./field_sizes";
 import { css, type Surroundings } from "./palette";
 
 /// Pixels of the longer edge.
-const resolution = 3072;
+const resolution = 2048;
 
 /// The ground for quality mode: grass with stripes, blades and lines, or a floor with a grid, between -x..x and -y..y [m].
 export function paintField(field: FieldSizes | null, x: number, y: number, around: Surroundings): CanvasTexture {
@@ -20,7 +20,7 @@ export function paintField(field: FieldSizes | null, x: number, y: number, aroun
   if (field) paintLines(paint, field, around);
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
-  texture.anisotropy = 8;
+  texture.anisotropy = 4;
   return texture;
 }
 

@@ -33,9 +33,9 @@ export function teamColour(side: Side | null, teams = usualTeams): Rgb {
   return side === null ? noTeam : teams[side];
 }
 
-/// What to write in on the team's colour.
+/// What to write in on a colour: black or white, whichever stands out more.
 export function inkOn(colour: Rgb): Rgb {
-  return luminance(colour) > 0.3 ? rgb(0x14181d) : rgb(0xffffff);
+  return luminance(colour) > 0.18 ? rgb(0x14181d) : rgb(0xffffff);
 }
 
 /// Parts of robots that are no team's.

@@ -49,7 +49,10 @@ export function fineSolidMaterial(): MeshStandardMaterial {
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", "#include <common>\nvarying vec4 vTint;")
       .replace("#include <color_fragment>", "diffuseColor.rgb = vTint.rgb;")
-      .replace("#include <emissivemap_fragment>", "totalEmissiveRadiance += 0.35 * vTint.a * (vTint.rgb + 0.3);");
+      .replace("#include <emissivemap_fragment>", `
+        // Smooth shells mirror the sky at their rims.
+        float rim = 1.0 - clamp(dot(normal, normalize(vViewPosition)), 0.0, 1.0);
+        totalEmissiveRadiance += vec3(0.55, 0.65, 0.8) * 0.3 * rim * rim * rim * rim + 0.35 * vTint.a * (vTint.rgb + 0.3);`);
   };
   return material;
 }

@@ -249,7 +249,7 @@ export class Stage {
     if (isFirst || JSON.stringify(before) !== JSON.stringify(this.scenery.field)) this.rig.reset();
     this.scenery.select(this.selectedNode());
     if (this.looks.quality === "quality") {
-      this.sunlight = new Sunlight(this.renderer, this.scene, this.looks.theme);
+      this.sunlight = new Sunlight(this.looks.theme);
       this.scene.add(this.sunlight.group);
     }
   }
@@ -259,7 +259,6 @@ export class Stage {
     if (this.sunlight) this.scene.remove(this.sunlight.group);
     this.sunlight?.dispose();
     this.sunlight = null;
-    this.scene.environment = null;
     if (this.scenery) this.scene.remove(this.scenery.group);
     this.scenery?.dispose();
     this.scenery = null;

@@ -1,27 +1,20 @@
-import { DirectionalLight, Group, HemisphereLight, PMREMGenerator, type Scene, type Texture, type Vector3, type WebGLRenderer } from "three";
-import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
+import { DirectionalLight, Group, HemisphereLight, type Vector3 } from "three";
 import { towardsSun } from "./shade";
 import type { Theme } from "./stage";
 
-/// Light of quality mode: a sun with shadows, the sky, and a room to be mirrored.
+/// Light of quality mode: a sun with shadows, and the sky.
 export class Sunlight {
   readonly group = new Group();
   private readonly sun: DirectionalLight;
-  private readonly mirrored: Texture;
 
-  constructor(renderer: WebGLRenderer, scene: Scene, theme: Theme) {
-    const dark = theme === "dark";
-    this.sun = new DirectionalLight(dark ? 0xdfe9ff : 0xfff4e0, dark ? 3.0 : 3.4);
+  constructor(theme: Theme) {
+    const isDark = theme === "dark";
+    this.sun = new DirectionalLight(isDark ? 0xe6edff : 0xfff4e0, isDark ? 3.3 : 3.6);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.012;
-    this.group.add(this.sun, this.sun.target, new HemisphereLight(0xdbe8ff, 0x6f8f6f, dark ? 0.3 : 0.4));
-    const generator = new PMREMGenerator(renderer);
-    this.mirrored = generator.fromScene(new RoomEnvironment(), 0.04).texture;
-    generator.dispose();
-    scene.environment = this.mirrored;
-    scene.environmentIntensity = dark ? 0.22 : 0.3;
+    this.group.add(this.sun, this.sun.target, new HemisphereLight(0xdbe8ff, 0x8fa78f, isDark ? 1.8 : 2.1));
   }
 
   /// Shadows for what is within `reach` metres around a point.
@@ -40,7 +33,6 @@ export class Sunlight {
   }
 
   dispose(): void {
-    this.mirrored.dispose();
     this.sun.dispose();
   }
 }
