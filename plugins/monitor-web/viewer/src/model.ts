@@ -146,6 +146,10 @@ export interface ReplaySource extends Source {
   readonly end: number;
   /// All events of the whole log, in ascending time; World.events holds those up to what is shown now.
   readonly timeline: GameEvent[];
+  /// Lines of the log that are damaged and were passed over, as far as is known by now.
+  readonly damaged: number;
+  /// Why the log cannot be read any more (its file was changed or removed), or null.
+  readonly error: string | null;
   playing: boolean;
   /// 0.1..10
   speed: number;

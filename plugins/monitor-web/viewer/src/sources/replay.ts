@@ -17,7 +17,7 @@ const kBudget = 10;
 /// Snapshots stand so many records apart, where no full record is so near.
 const kSnapshots = 64;
 /// A picture that comes later than this [ms] does not make time run faster.
-const kLongestPicture = 250;
+const kLongestPicture = 1000;
 
 /// The log at one record.
 class Moment {
@@ -40,7 +40,6 @@ export class Replay implements ReplaySource {
   readonly timeline: GameEvent[];
   readonly start: number;
   readonly end: number;
-  onchange: (() => void) | null = null;
 
   private readonly pages: LogPages;
   private readonly records: LogRecord[];
@@ -81,7 +80,6 @@ export class Replay implements ReplaySource {
     this.pages = new LogPages(data, this.records);
   }
 
-  /// Lines of the log that are damaged, as far as is known.
   get damaged(): number {
     return this.passedOver;
   }
@@ -91,7 +89,6 @@ export class Replay implements ReplaySource {
     return this.late && !this.pages.error;
   }
 
-  /// Why the log cannot be read any more, or null.
   get error(): string | null {
     return this.pages.error;
   }
@@ -244,7 +241,6 @@ export class Replay implements ReplaySource {
     this.bad.add(index);
     moment.copy(this.from);
     moment.index = index;
-    this.onchange?.();
   }
 
   private keep(moment: Moment): void {

@@ -140,6 +140,19 @@ describe("drawings", () => {
   });
 });
 
+test("a file that is taken away is said, and what was shown stays", async () => {
+  const filler: List = ["messages", "x".repeat(400_000)];
+  const lines = Array.from({ length: 12 }, (_, k) => (k === 0 ? whole(0) : moved(k / 5, k, [filler])));
+  const file = log(...lines);
+  const replay = await openReplay(file, "x.log");
+  file.slice = () => {
+    throw new Error("gone");
+  };
+  await seek(replay, 2.2);
+  expect(replay.error).toMatch(/cannot be read any more: gone/);
+  expect([replay.busy, ballX(replay)]).toEqual([false, 0]);
+});
+
 test("a foul that comes again while its player is held is one", async () => {
   const foul = (index: number, number: number): List => ["foul", index, 4, 1, number];
   const replay = await open(whole(0), moved(0.2, 1, [foul(1, 3), foul(2, 3)]), moved(0.4, 1, [foul(3, 3), foul(4, 5)]), moved(0.6, 1, [foul(5, 3)]), moved(3, 1, [foul(6, 3)]));
