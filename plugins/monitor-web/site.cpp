@@ -36,7 +36,7 @@ std::string lower(std::string_view text) {
 
 /// The name of `host` without its port, in lower case; brackets of an IPv6 address are taken off.
 std::string nameOf(std::string_view host) {
-  if (host.starts_with('[')) return lower(host.substr(1, host.find(']') - 1));
+  if (host.starts_with('[')) return host.find(']') == host.npos ? std::string() : lower(host.substr(1, host.find(']') - 1));
   return lower(host.substr(0, host.find(':')));
 }
 

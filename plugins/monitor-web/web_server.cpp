@@ -12,6 +12,7 @@ namespace spark {
 
 namespace {
 constexpr std::size_t kShortestToken = 16;
+constexpr auto kStandsStill = std::chrono::milliseconds(300);
 }
 
 WebServer::WebServer() = default;
@@ -104,7 +105,20 @@ void WebServer::open() {
 void WebServer::poll() {
   if (!tried_) listen();
   if (!service_) return;
+  if (exchange_.wanted.load(std::memory_order_relaxed)) handOverAgain();
   desk_->work({share_, inspection_ == "everybody", refereeChanges_}, service_->viewers());
+}
+
+/// While the clock stands still, as it does for agents that are waited for, no publish phase comes: who begins to watch sees what there is.
+void WebServer::handOverAgain() {
+  const auto* clock = kernel().root().find<ISimulation>("/sys/server/simulation");
+  const auto now = std::chrono::steady_clock::now();
+  if (!clock || std::exchange(cycle_, clock->cycle()) != clock->cycle()) {
+    cycleAt_ = now;
+  } else if (now - cycleAt_ > kStandsStill) {
+    cycleAt_ = now;
+    if (auto* monitor = kernel().root().find<WebMonitor>("/sys/server/monitor/web")) monitor->takeAgain();
+  }
 }
 
 void WebServer::onUnlink() {

@@ -2,6 +2,7 @@
 /// \file
 /// The web server as a node: its settings, and its part in the simulation's thread.
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -49,6 +50,7 @@ class WebServer : public Node, public IInputSource {
   std::string link() const;
   std::string refereeLink() const;
   void open();
+  void handOverAgain();
   void mustNotListen(const char* what) const;
 
   std::string address_ = "127.0.0.1", viewerFolder_, viewerLacks_, logs_, inspection_ = "everybody";
@@ -62,6 +64,8 @@ class WebServer : public Node, public IInputSource {
   std::unique_ptr<web::Service> service_;
   std::unique_ptr<web::Desk> desk_;
   bool tried_ = false;
+  std::int64_t cycle_ = -1;                            ///< when one was seen last
+  std::chrono::steady_clock::time_point cycleAt_{};
 };
 
 }  // namespace spark

@@ -1,0 +1,120 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "../messages.h"
+#include "../referee.h"
+#include "../site.h"
+#include "../viewer_message.h"
+#include "spark/error.h"
+#include "temporary_folder.h"
+
+// What outside bytes mean, and how texts are written.
+
+using namespace spark;
+using namespace spark::web;
+using What = ViewerMessage::What;
+using Catch::Contains;
+
+TEST_CASE("What viewers say is understood, or refused with what was expected") {
+  CHECK(readViewerMessage(R"({"do":"view","rate":1000})").rate == kFastest);
+  CHECK(readViewerMessage(R"({"do":"view","rate":-5})").rate == kSlowest);
+  CHECK_FALSE(readViewerMessage(R"({"do":"view","rate":10})").fine.has_value());
+  CHECK(readViewerMessage(R"({"do":"view","detail":"coarse"})").fine == false);
+  CHECK(readViewerMessage(R"({"do":"drawings","on":false})").on == false);
+  CHECK(readViewerMessage(R"({"do":"login","token":"x"})").text == "x");
+  CHECK(readViewerMessage(R"({"do":"unwatch","id":8})").what == What::unwatch);
+  const ViewerMessage watch = readViewerMessage(R"({"do":"watch","id":-3,"path":"/x","property":"p"})");
+  CHECK((watch.what == What::request && watch.id == -3));
+  for (const char* bad : {"", "x", "7", "[]", "{}", R"({"do":1})", R"({"do":"view","rate":"x"})", R"({"do":"view","detail":"rough"})", R"({"do":"login"})", R"({"do":"get"})",
+                          R"({"do":"get","id":1.5})", R"({"do":"drawings"})", R"({"do":"command","id":1})", "{\"do\":\"get\",\"id\":1,\"x\":\"\xff\"}"}) {
+    INFO(bad);
+    CHECK_THROWS_AS(readViewerMessage(bad), Error);
+  }
+  const auto nested = [](int depth) { return R"({"do":"get","id":1,"x":)" + std::string(depth, '[') + std::string(depth, ']') + "}"; };
+  CHECK_NOTHROW(readViewerMessage(nested(30)));
+  CHECK_THROWS_WITH(readViewerMessage(nested(40)), Contains("32 deep"));
+}
+
+TEST_CASE("A token is 128 bits, another one each time, and only itself") {
+  const std::string token = makeToken();
+  CHECK(token.size() == 32);
+  CHECK(token.find_first_not_of("0123456789abcdef") == token.npos);
+  CHECK(makeToken() != token);
+  CHECK(isToken(token, token));
+  CHECK_FALSE(isToken(token, token + token));
+  CHECK_FALSE(isToken(token, token.substr(1)));
+  CHECK_FALSE(isToken(token, ""));
+  CHECK_FALSE(isToken("", ""));
+}
+
+TEST_CASE("Texts that are no UTF-8, and numbers that are none, give JSON all the same") {
+  std::string out = "[";
+  putQuoted(out, "plain"), out += ',';
+  putQuoted(out, "quote\" back\\ \n \xff \xe2\x82\xac </script>"), out += ',';
+  putNumber(out, std::nan("")), out += ',';
+  putNumber(out, HUGE_VAL), out += ',';
+  putNumber(out, 0.1), out += ']';
+  const auto read = nlohmann::json::parse(out);
+  CHECK(read[0] == "plain");
+  CHECK(read[1] == "quote\" back\\ \n \xef\xbf\xbd \xe2\x82\xac </script>");
+  CHECK(read[2] == 0);
+  CHECK(read[4] == 0.1);
+  Predicates p;
+  readSexp("(team_left nan)(time 1.5)(foul 1 left (x 2e3))(name inf -)", p);
+  std::string elements;
+  for (const Element e : p) putElement(elements, e);
+  CHECK(elements == R"(["team_left","nan"]["time",1.5]["foul",1,"left",["x",2000]]["name","inf","-"])");
+}
+
+TEST_CASE("Paths below a folder are plain names") {
+  using Names = std::vector<std::string>;
+  CHECK(plainComponents("a.log") == Names{"a.log"});
+  CHECK(plainComponents("assets/index-1.js") == Names{"assets", "index-1.js"});
+  CHECK(plainComponents("Red%20vs%20Blue.log") == Names{"Red vs Blue.log"});
+  CHECK(plainComponents("%41%e2%82%ac") == Names{"A\xe2\x82\xac"});
+  for (const char* bad : {"", "/", "a/", "/a", "a//b", ".", "..", "../a", "a/..", ".a", "%2e%2e", "%2e", "a%2fb", "a\\b", "a%5cb", "a%00b", "a%0a", "%", "%4", "%4g", "a/b/c/d/e"}) {
+    INFO(bad);
+    CHECK(plainComponents(bad).empty());
+  }
+}
+
+TEST_CASE("Files are served with their type, by names that are there; without a viewer a plain page is") {
+  spark::test::TemporaryFolder folder;
+  folder.write("index.html", "<p>viewer");
+  folder.write("secret", "root:");
+  std::filesystem::create_directory(folder.path() / "assets");
+  folder.write("assets/index-1.js", "1");
+  std::filesystem::create_directory(folder.path() / "logs");
+  folder.write("logs/game.log", "((time 0))");
+  const auto request = [](std::string_view target) { return Request{"GET", target, "localhost", "", false, false}; };
+  const Site site({folder.path(), "", folder.path() / "logs", {}});
+  CHECK(site.answer(request("/")).file == folder.path() / "index.html");
+  CHECK(site.answer(request("/?file=/logs/game.log")).type == "text/html; charset=utf-8");
+  CHECK(site.answer(request("/assets/index-1.js")).type == "text/javascript; charset=utf-8");
+  CHECK(site.answer(request("/assets/index-1.js")).keep);
+  CHECK_FALSE(site.answer(request("/")).keep);
+  CHECK(site.answer(request("/logs/game.log")).file == folder.path() / "logs/game.log");
+  for (const char* missing : {"/logs/", "/logs", "/logs/..", "/logs/../secret", "/none", "/assets", "/assets/"}) {
+    INFO(missing);
+    CHECK(site.answer(request(missing)).status == 404);
+  }
+  CHECK(site.answer(request("/status.json")).isStatus);
+  const Site plain({"", "Node.js <18>", "", {}});
+  CHECK_THAT(plain.answer(request("/")).text, Contains("missing is Node.js &lt;18>") && Contains("plain.js"));
+  CHECK(plain.answer(request("/logs/game.log")).status == 404);
+  CHECK(plain.answer(request("/assets/index-1.js")).status == 404);
+}
+
+TEST_CASE("Names that nobody else can point here are ours; pages of this server may watch") {
+  const Site site({"", "", "", {"Match.Example"}});
+  for (const char* ours : {"127.0.0.1", "127.0.0.1:80", "[::1]:80", "[fe80::1]", "10.1.2.3:5", "localhost", "LocalHost:9", "a.localhost", "match.example:443"}) CHECK(site.isOurs(ours));
+  for (const char* strange : {"", ":80", "evil.example", "127.0.0.1.evil.example", "127.0.0.1x", "notlocalhost", "[::1", "[]", "xmatch.example", "localhost."}) {
+    INFO(strange);
+    CHECK_FALSE(site.isOurs(strange));
+  }
+  CHECK(Site({"", "", "", {"*"}}).isOurs("any.example"));
+  CHECK(isSameOrigin("http://localhost:80", "localhost:80"));
+  CHECK(isSameOrigin("https://MATCH.example", "match.example"));
+  for (const char* origin : {"http://localhost", "http://localhost:81", "null", "ftp://localhost:80", "localhost:80", "http://localhost:80/", "http://x.localhost:80"})
+    CHECK_FALSE(isSameOrigin(origin, "localhost:80"));
+}

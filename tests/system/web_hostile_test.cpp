@@ -1,0 +1,236 @@
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "attack.h"
+#include "web_client.h"
+
+// Bad input at the web port of a host with a match going on. After every attack a player who did nothing wrong is still told of a clock that
+// runs, and somebody who watches still gets frames.
+
+using namespace spark::test;
+using Catch::Contains;
+
+namespace {
+
+/// An arena with somebody in the stands.
+struct Stadium : Arena {
+  explicit Stadium(std::vector<std::string> more = {}) : Arena(std::move(more)), fan(webPort) {
+    REQUIRE(fan.watch() == 101);
+    fan.binary();
+  }
+  /// The player and the fan notice nothing.
+  void mustGoOn() {
+    witness->mustSeeTimePass();
+    while (fan.pending()) fan.next();
+    fan.binary();
+    fan.binary();
+  }
+  WebClient client() const { return WebClient(webPort); }
+  WebClient fan;
+};
+
+std::string local(const Stadium& s) { return "Host: 127.0.0.1:" + std::to_string(s.webPort) + "\r\n"; }
+}  // namespace
+
+TEST_CASE("No path leads out of the folders that are served") {
+  Stadium s({"--set", "webLogs=/usr/share/common-licenses"});
+  const WebClient::Answer license = s.client().get("/logs/GPL-3");
+  const bool hasLicense = license.status == 200;  // a file that every Debian has, to see that this folder is served
+  CHECK((!hasLicense || license.body.find("GNU") != std::string::npos));
+  for (const char* target :
+       {"/../../../../etc/passwd", "/logs/../../../etc/passwd", "/logs/..%2f..%2f..%2fetc%2fpasswd", "/logs/%2e%2e/%2e%2e/%2e%2e/etc/passwd", "/logs//etc/passwd",
+        "/logs/..\\..\\etc\\passwd", "/logs/.hidden", "/logs/", "/logs/.", "/assets/../../lua/house.lua", "/%2e%2e/lua/house.lua", "/logs/GPL-3%00.txt", "/logs/%", "/logs/%4",
+        "/./index.html", "//etc/passwd", "/logs/a/b/c/d/e/f", "/index.html/"}) {
+    INFO(target);
+    const WebClient::Answer answer = s.client().get(target);
+    CHECK(answer.status == 404);
+    CHECK_THAT(answer.body, !Contains("root:") && !Contains("function"));
+  }
+  for (const char* target : {"http://127.0.0.1/", "index.html", "*", "\\..\\x"}) CHECK(s.client().get(target).status == 400);
+  s.mustGoOn();
+  s.mustEndWell();
+}
+
+TEST_CASE("Heads that are too long, bodies, unknown methods and bytes that are no request are refused, and the connection is closed") {
+  Stadium s;
+  const std::vector<std::pair<std::string, int>> requests{
+      {"GET /" + std::string(20000, 'a') + " HTTP/1.1\r\n" + local(s) + "\r\n", 431},
+      {"GET / HTTP/1.1\r\n" + local(s) + "X: " + std::string(20000, 'a') + "\r\n\r\n", 431},
+      {"GET / HTTP/1.1\r\n" + local(s) + "Content-Length: 5\r\n\r\nhello", 413},
+      {"GET / HTTP/1.1\r\n" + local(s) + "Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n", 413},
+      {"POST /status.json HTTP/1.1\r\n" + local(s) + "\r\n", 405},
+      {"(scene rsg/agent/sphere.rsg)\r\n\r\n", 400},
+      {std::string("\x16\x03\x01\x02\0\x01\0\x01\xfc\x03\x03", 11) + "\r\n\r\n", 400},
+      {"GET / HTTP/1.1\r\n" + local(s) + "Content-Length: 99999999999999999999\r\n\r\n", 400},
+  };
+  for (const auto& [request, status] : requests) {
+    INFO(request.substr(0, 60));
+    WebClient client(s.webPort);
+    client.sendRaw(request);
+    CHECK_THAT(client.waitForClose(), Catch::StartsWith("HTTP/1.1 " + std::to_string(status)));
+  }
+  s.mustGoOn();
+  s.mustEndWell();
+}
+
+TEST_CASE("Who is slow to ask, or says nothing, is closed") {
+  Stadium s({"--set", "/sys/server/web.requestTimeout=0.5"});
+  WebClient silent(s.webPort), slow(s.webPort);
+  slow.sendRaw("GET / HTTP/1.1\r\nHost: ");
+  slow.sendRaw("localhost\r\nX-A: b\r\n");
+  slow.waitForClose();
+  silent.waitForClose();
+  s.mustGoOn();
+  s.mustEndWell();
+}
+
+TEST_CASE("A name that is not ours, and a page from elsewhere, are turned away; a forwarded port is not") {
+  Stadium s({"--set", "/sys/server/web.hosts={\"match.example\"}"});
+  const auto page = [&](const std::string& host) { return s.client().get("/", "Host: " + host + "\r\n").status; };
+  for (const char* ours : {"localhost", "LOCALHOST:8080", "127.0.0.1:1", "[::1]:3280", "192.168.0.7:3280", "x.localhost", "match.example:80"}) CHECK(page(ours) == 200);
+  for (const char* strange : {"evil.example", "evil.example:3280", "127.0.0.1.evil.example", "localhost.evil.example", "[evil]", "", ":3280"}) CHECK(page(strange) == 421);
+  CHECK(s.client().get("/", "X: y\r\n").status == 421);
+  CHECK(s.client().get("/", "Host: localhost\r\nHost: localhost\r\n").status == 421);
+
+  const auto stream = [&](const std::string& host, const std::string& origin) {
+    return s.client().get("/stream", WebClient::upgrade("Host: " + host + "\r\nOrigin: " + origin + "\r\n")).status;
+  };
+  CHECK(stream("localhost:8080", "http://localhost:8080") == 101);
+  CHECK(stream("match.example", "https://match.example") == 101);
+  for (const char* origin : {"http://evil.example", "http://localhost", "http://localhost:8081", "null", "", "http://localhost:8080.evil.example", "file://localhost:8080"})
+    CHECK(stream("localhost:8080", origin) == (*origin ? 403 : 101));
+  CHECK(stream("evil.example", "http://evil.example") == 421);
+  CHECK(s.client().get("/stream").status == 426);
+  s.mustGoOn();
+  s.mustEndWell();
+}
+
+TEST_CASE("Frames that break the WebSocket's rules, and messages that are too long, end their connection") {
+  Stadium s;
+  const std::string invalid("\xff\xfe", 2);
+  std::string huge = WebClient::frame("x");
+  huge.replace(1, 1, std::string("\xff\x7f\xff\xff\xff\xff\xff\xff\xff", 9));
+  const std::vector<std::pair<const char*, std::string>> attacks{
+      {"no mask", WebClient::frame("{}", 1, false)},     {"reserved bits", std::string("\xf1") + WebClient::frame("{}").substr(1)},
+      {"unknown kind", WebClient::frame("{}", 3)},       {"unknown control", WebClient::frame("{}", 0xb)},
+      {"no UTF-8", WebClient::frame(invalid)},           {"too long", WebClient::frame(std::string(20000, ' '))},
+      {"announced", huge},                               {"long ping", WebClient::frame(std::string(200, 'x'), 9)},
+      {"rest of nothing", WebClient::frame("{}", 0)},    {"ping in pieces", WebClient::frame("x", 9, true, false)},
+      {"binary", WebClient::frame("{}", 2)},             {"HTTP", "GET / HTTP/1.1\r\n\r\n"},
+      {"in too many pieces", WebClient::frame(std::string(10000, ' '), 1, true, false) + WebClient::frame(std::string(10000, ' '), 0)},
+  };
+  for (const auto& [what, bytes] : attacks) {
+    INFO(what);
+    WebClient bad(s.webPort);
+    REQUIRE(bad.watch() == 101);
+    bad.sendRaw(bytes);
+    bad.waitForClose();
+  }
+  s.mustGoOn();
+  s.mustEndWell();
+}
+
+TEST_CASE("Messages that are nothing are answered with what was expected; too many of them end it") {
+  Stadium s;
+  for (const std::string& message :
+       {std::string("hello"), std::string("[]"), std::string("{}"), std::string("{\"do\":7}"), std::string("{\"do\":\"get\"}"), std::string(16000, '['),
+        std::string("{\"do\":\"view\",\"rate\":\"many\"}"), std::string("{\"do\":\"fly\",\"id\":1}"), std::string("{\"do\":\"get\",\"id\":1,\"path\":7}"),
+        std::string("{\"do\":\"get\",\"id\":1,\"path\":\"/nowhere\"}")}) {
+    INFO(message.substr(0, 60));
+    WebClient client(s.webPort);
+    REQUIRE(client.watch() == 101);
+    client.say(message);
+    CHECK_THAT(client.textWith("\"answer\""), Contains("\"ok\":false"));
+  }
+  for (const int opcode : {1, 9}) {
+    WebClient flood(s.webPort);
+    REQUIRE(flood.watch() == 101);
+    std::string many;
+    for (int i = 0; i < 2000; ++i) many += WebClient::frame("{\"do\":\"view\"}", opcode);
+    flood.sendRaw(many);
+    flood.waitForClose();
+    s.host.waitForError("too many messages");
+  }
+  s.mustGoOn();
+  s.mustEndWell();
+}
+
+TEST_CASE("Only the token makes a referee, and it cannot be guessed or read") {
+  const std::string token = "a-token-of-the-test";
+  Stadium s({"--set", "webToken=" + token});
+  WebClient spectator(s.webPort);
+  REQUIRE(spectator.watch() == 101);
+  const auto refused = [&](const std::string& message) {
+    spectator.say(message);
+    CHECK_THAT(spectator.textWith("\"answer\""), Contains("\"ok\":false") && Contains("referee"));
+  };
+  refused(R"~({"do":"command","id":1,"text":"(kickOff Left)"})~");
+  refused(R"({"do":"set","id":2,"path":"/sys/server/simulation","property":"step","value":1})");
+  refused(R"({"do":"call","id":3,"path":"/sys/server/web","method":"refereeLink"})");
+  spectator.say(R"({"do":"get","id":4,"path":"/sys/server/web"})");
+  CHECK_THAT(spectator.textWith("\"id\":4"), !Contains(token));
+
+  WebClient guesser(s.webPort);
+  REQUIRE(guesser.watch() == 101);
+  for (int i = 0; i < 4; ++i) {
+    guesser.say(R"({"do":"login","token":")" + token.substr(0, 17 + i % 2) + "\"}");
+    CHECK_THAT(guesser.textWith("\"referee\""), Contains("\"ok\":false"));
+  }
+  guesser.say(R"({"do":"login","token":""})");
+  guesser.waitForClose();
+  s.host.waitForError("wrong referee's token");
+
+  WebClient referee(s.webPort);
+  REQUIRE(referee.watch() == 101);
+  referee.say(R"({"do":"login","token":")" + token + "\"}");
+  CHECK_THAT(referee.textWith("\"referee\""), Contains("\"ok\":true"));
+  referee.say(R"~({"do":"command","id":5,"text":"(playMode corner_kick_left)"})~");
+  CHECK_THAT(referee.textWith("\"id\":5"), Contains("\"ok\":true"));
+  spectator.textWith("[\"play_mode\",");
+  s.mustGoOn();
+  s.mustEndWell();
+}
+
+TEST_CASE("Who does not read costs a bounded amount and is closed after a while") {
+  Stadium s({"--set", "/sys/server/web.stallTimeout=1", "--rate", "max"});
+  std::vector<std::unique_ptr<WebClient>> deaf;
+  for (int i = 0; i < 20; ++i) {
+    deaf.push_back(std::make_unique<WebClient>(s.webPort));
+    REQUIRE(deaf.back()->watch() == 101);
+    // What the host sends by itself would take long to fill what the system holds back.
+    deaf.back()->sendRaw(WebClient::frame(R"({"do":"tree","id":1,"path":"/"})") + WebClient::frame(R"({"do":"tree","id":2,"path":"/"})") + WebClient::frame(R"({"do":"tree","id":3,"path":"/"})") +
+                         WebClient::frame(R"({"do":"tree","id":4,"path":"/"})") + WebClient::frame(R"({"do":"tree","id":5,"path":"/"})") + WebClient::frame(R"({"do":"tree","id":6,"path":"/"})"));
+  }
+  s.host.waitForError("you do not read what you are sent");
+  CHECK(s.memory() < 400);
+  s.mustGoOn();
+  for (auto& client : deaf) client->waitForClose();
+  s.mustGoOn();
+  s.mustEndWell();
+}
+
+TEST_CASE("Ten thousand connections take no place from those who watch, and a new one is still answered") {
+  Stadium s;
+  rlimit limit{};
+  REQUIRE(getrlimit(RLIMIT_NOFILE, &limit) == 0);
+  limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, 11000);
+  REQUIRE(setrlimit(RLIMIT_NOFILE, &limit) == 0);
+  const std::size_t atOnce = std::min<std::size_t>(10000, limit.rlim_cur - 100);
+
+  boost::asio::io_context io;
+  std::vector<boost::asio::ip::tcp::socket> crowd;
+  for (int i = 0; i < 10000; ++i) {
+    if (crowd.size() == atOnce) crowd.clear();
+    crowd.emplace_back(io).connect({boost::asio::ip::address_v4::loopback(), s.webPort});
+    if (i % 1000 == 999) s.mustGoOn();
+  }
+  CHECK(s.client().get("/status.json").status == 200);
+  WebClient viewer(s.webPort);
+  REQUIRE(viewer.watch() == 101);
+  viewer.binary();
+  s.mustGoOn();
+  viewer.say(R"({"do":"get","id":1,"path":"/sys/server/web"})");
+  CHECK_THAT(viewer.textWith("\"id\":1"), Contains("\"viewers\",\"value\":2"));
+  s.mustEndWell();
+}
