@@ -18,7 +18,13 @@ namespace spark::test {
 /// unless they say otherwise.
 class WebClient {
  public:
-  explicit WebClient(unsigned short port) : port_(port) { socket_.connect({boost::asio::ip::address_v4::loopback(), port}); }
+  /// `receiveBuffer`: bytes that the system takes for it while it does not read; 0: as many as usual.
+  explicit WebClient(unsigned short port, int receiveBuffer = 0) : port_(port) {
+    const boost::asio::ip::tcp::endpoint server(boost::asio::ip::address_v4::loopback(), port);
+    socket_.open(server.protocol());
+    if (receiveBuffer > 0) socket_.set_option(boost::asio::socket_base::receive_buffer_size(receiveBuffer));
+    socket_.connect(server);
+  }
 
   /// Sends bytes as they are. A server that has closed the connection meanwhile is no error.
   void sendRaw(std::string_view bytes) {

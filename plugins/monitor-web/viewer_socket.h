@@ -13,7 +13,7 @@ namespace spark::web {
 template <class Stream>
 void configureSocket(boost::beast::websocket::stream<Stream>& socket) {
   boost::beast::websocket::stream_base::timeout times;
-  times.handshake_timeout = std::chrono::seconds(10);
+  times.handshake_timeout = std::chrono::seconds(1);  // also for the other's part of a close
   times.idle_timeout = std::chrono::seconds(40);
   times.keep_alive_pings = true;
   socket.set_option(times);
