@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { compose, multiply, toLocal } from "../src/view/affine";
 import { fieldLines, fieldSizes, stripes } from "../src/view/field_sizes";
 import { barrel, roundedBox } from "../src/view/forms";
-import { goalPieces, hasNetGoals } from "../src/view/goals";
+import { goalPieces, hasNetGoals, isInGoal } from "../src/view/goals";
 import { levelFor, levels } from "../src/view/levels";
 import { luminance, materialColour, surroundings, teamColour, usualTeams } from "../src/view/palette";
 import { makePicture, pieceOf, standardShape } from "../src/view/pieces";
@@ -139,6 +139,7 @@ describe("the field", () => {
 
   it("has posts outside the mouths of its goals", () => {
     const field = fieldSizes(new Map(environment))!;
+    expect([isInGoal(field, 15.2, 1), isInGoal(field, -15.2, -1), isInGoal(field, 14, 0), isInGoal(field, 15.2, 3), isInGoal(field, 25, 0)]).toEqual([true, true, false, false, false]);
     for (const { matrix, half } of goalPieces(field, 0)) {
       const isPost = half[2] > 0.3 && Math.abs(matrix[10]!) > 0.9 && Math.abs(Math.abs(matrix[12]!) - 15) < 0.2;
       if (isPost) expect(Math.abs(matrix[13]!) - half[0]).toBeGreaterThanOrEqual(1.05 - 1e-9);

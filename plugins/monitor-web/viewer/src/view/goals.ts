@@ -8,6 +8,12 @@ export function hasNetGoals(world: World): boolean {
   return world.nodes.some(node => node.load?.includes("soccergoal"));
 }
 
+/// True for a place inside a goal [m].
+export function isInGoal(f: FieldSizes, x: number, y: number): boolean {
+  const behind = Math.abs(x) - f.length / 2;
+  return behind > -0.1 && behind < f.goalDepth + 0.2 && Math.abs(y) < f.goalWidth / 2 + 0.2;
+}
+
 /// Posts, bars and the frames that hold the nets; `fixed` = the node that never moves.
 export function goalPieces(f: FieldSizes, fixed: number): Piece[] {
   const radius = Math.max(0.025, 0.022 * f.goalHeight), thin = 0.4 * radius;

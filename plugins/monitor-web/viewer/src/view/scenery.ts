@@ -2,10 +2,10 @@ import { Group, Matrix4, type PerspectiveCamera, Vector3 } from "three";
 import type { World } from "../model";
 import { Ball } from "./ball";
 import { type FieldSizes, fieldSizes } from "./field_sizes";
-import { goalPieces, hasNetGoals } from "./goals";
+import { goalPieces, hasNetGoals, isInGoal } from "./goals";
 import { Ground } from "./ground";
 import { Labels } from "./labels";
-import { type Rgb, rgb, surroundings, type TeamColours } from "./palette";
+import { type Rgb, rgb, robot as robotColours, surroundings, type TeamColours } from "./palette";
 import { makePicture, type Picture } from "./pieces";
 import { Solids } from "./solids";
 import { Spots } from "./spots";
@@ -55,6 +55,7 @@ export class Scenery {
     this.robotOf = this.picture.robotOf;
     this.hidden = new Uint8Array(world.nodes.length);
     const netGoals = this.field !== null && hasNetGoals(world);
+    if (this.field) this.bleachGoals(this.field);
     const goals = this.field && netGoals ? goalPieces(this.field, world.nodes.length) : [];
     this.ground = new Ground(this.field, netGoals, looks.quality, around, screen);
     this.solids = new Solids([...this.picture.pieces, ...goals], looks.quality, around);
@@ -137,18 +138,30 @@ export class Scenery {
     for (const part of [this.ground, this.solids, this.ball, this.labels, this.shadows, this.rings]) part?.dispose();
   }
 
+  /// Goals of plates come in yellow and blue, which would look like teams' colours.
+  private bleachGoals(field: FieldSizes): void {
+    const { values } = this.matrices;
+    for (const piece of this.picture.pieces) {
+      const o = 16 * piece.node + 12;
+      const isPlate = piece.form === "block" && this.robotOf[piece.node]! < 0;
+      if (isPlate && isInGoal(field, values[o]!, values[o + 1]!)) piece.colour = robotColours.shell;
+    }
+  }
+
   private layShadows(): void {
     if (!this.shadows) return;
-    const strength = this.looks.theme === "dark" ? 0.5 : 0.42;
-    const lay = (node: number, radius: number, size: number) => {
-      const o = 16 * node + 12, z = this.matrices.values[o + 2]!;
-      const height = Math.max(0, z - radius);
-      this.shadows!.add(this.matrices.values[o]!, this.matrices.values[o + 1]!, size * (1 + 0.3 * height), strength / (1 + 1.2 * height), black);
-    };
     this.shadows.begin();
-    for (const { node, radius } of this.blobs) lay(node, radius, 1.45 * radius);
-    if (this.world.ball >= 0) lay(this.world.ball, this.ball.radius, 1.5 * this.ball.radius);
+    for (const { node, radius } of this.blobs) this.layShadow(this.shadows, node, radius);
+    if (this.world.ball >= 0) this.layShadow(this.shadows, this.world.ball, this.ball.radius);
     this.shadows.show();
+  }
+
+  /// The higher a thing is, the wider and weaker its shadow.
+  private layShadow(shadows: Spots, node: number, radius: number): void {
+    const { values } = this.matrices, o = 16 * node + 12;
+    const height = Math.max(0, values[o + 2]! - radius);
+    const strength = this.looks.theme === "dark" ? 0.5 : 0.42;
+    shadows.add(values[o]!, values[o + 1]!, 1.45 * radius * (1 + 0.3 * height), strength / (1 + 1.2 * height), black);
   }
 
   private layRings(): void {

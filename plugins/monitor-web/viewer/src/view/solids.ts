@@ -43,18 +43,23 @@ class Batch {
   }
 
   end(): void {
-    const { count, instanceMatrix } = this.mesh;
-    this.mesh.visible = count > 0;
-    for (const [attribute, width] of [[instanceMatrix, 16], [this.sizes, 4], [this.tints, 4]] as const) {
-      attribute.clearUpdateRanges();
-      attribute.addUpdateRange(0, width * count);
-      attribute.needsUpdate = count > 0;
-    }
+    this.mesh.visible = this.mesh.count > 0;
+    if (!this.mesh.visible) return;
+    this.upload(this.mesh.instanceMatrix);
+    this.upload(this.sizes);
+    this.upload(this.tints);
   }
 
   dispose(): void {
     this.mesh.geometry.dispose();
     this.mesh.dispose();
+  }
+
+  /// Only what is used of it.
+  private upload(attribute: InstancedBufferAttribute): void {
+    attribute.clearUpdateRanges();
+    attribute.addUpdateRange(0, attribute.itemSize * this.mesh.count);
+    attribute.needsUpdate = true;
   }
 }
 

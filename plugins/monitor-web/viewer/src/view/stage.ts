@@ -229,11 +229,14 @@ export class Stage {
     const world = this.source?.world;
     if (!world) return;
     const { versions } = world;
-    const isOtherField = this.scenery && versions.environment !== this.seen.environment && !this.scenery.fits(world);
-    if (!this.scenery || versions.scene !== this.seen.scene || isOtherField) this.build(world);
-    else if (versions.frame !== this.seen.frame) this.scenery.updateFrame();
-    else return;
-    Object.assign(this.seen, { scene: versions.scene, frame: versions.frame, environment: versions.environment });
+    const isOtherField = this.scenery !== null && versions.environment !== this.seen.environment && !this.scenery.fits(world);
+    this.seen.environment = versions.environment;
+    const isOtherScene = !this.scenery || versions.scene !== this.seen.scene || isOtherField;
+    if (!isOtherScene && versions.frame === this.seen.frame) return;
+    if (isOtherScene) this.build(world);
+    else this.scenery!.updateFrame();
+    this.seen.scene = versions.scene;
+    this.seen.frame = versions.frame;
     this.invalidate();
   }
 
@@ -351,6 +354,7 @@ export class Stage {
     renderer.toneMapping = NeutralToneMapping;
     renderer.domElement.style.cssText = "display:block;width:100%;height:100%;touch-action:none";
     renderer.domElement.setAttribute("aria-hidden", "true");
+    renderer.domElement.addEventListener("webglcontextrestored", () => this.strike());
     this.container.append(renderer.domElement);
     return renderer;
   }
