@@ -56,8 +56,8 @@ class Match:
 
     def __enter__(self):
         self.host = subprocess.Popen(
-            [BIN / "sparkhost", "--config", "soccer.lua", "--seed", "7", "--set", "team=Red Blue", "--set", "Soccer.AutomaticKickOff=true", "--agent-port", "0", "--monitor-port", "0",
-             "--web-port", "0", "--log-level", "error"], stdout=subprocess.PIPE, text=True)
+            [BIN / "sparkhost", "--config", "soccer.lua", "--seed", "7", "--set", "team=Red Blue", "--set", "Soccer.AutomaticKickOff=true", "--set", "Soccer.WaitBeforeKickOff=1",
+             "--agent-port", "0", "--monitor-port", "0", "--web-port", "0", "--log-level", "error"], stdout=subprocess.PIPE, text=True)
         self.port = int(re.search(r":(\d+)/", json.loads(self.host.stdout.readline())["web"])[1])
         return self
 
@@ -116,7 +116,7 @@ def alternating(match, *crowd):
 
 def spectators():
     with Match() as match:
-        match.cost()  # everybody is there
+        match.cost()  # until it is kicked off
         say(f"Watching with {SPECTATORS}")
         watched, said = alternating(match, "--count", SPECTATORS)
         say("Watching with stalled ones")

@@ -1,37 +1,29 @@
-// One Chromium for a test program, without a screen or a graphics card, and pages in it.
+// Chromium without a screen or a graphics card.
 import assert from "node:assert/strict";
-import { after } from "node:test";
 import { chromium, skipUnlessPossible, viewerPackage } from "./places.mjs";
 
 skipUnlessPossible();
 
 const software = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"];
 const sandbox = process.getuid?.() === 0 ? ["--no-sandbox"] : [];
-let running;
-
-function browser() {
-  running ??= viewerPackage("playwright-core").chromium.launch({ executablePath: chromium, args: [...software, ...sandbox] });
-  return running;
-}
-
-after(async () => (await running)?.close());
 
 /** Milliseconds that a condition may take; generous, since machines are busy. */
 export const patience = 60000;
 
 /**
- * A page of its own, closed after the test. Whatever it reports as an error fails the test.
+ * A page in a browser of its own, closed after the test. Whatever it reports as an error fails the test.
  * Options are those of playwright's contexts (viewport, hasTouch, colorScheme, ...).
  */
 export async function openPage(t, url, options = {}) {
-  const context = await (await browser()).newContext({ viewport: { width: 1280, height: 720 }, reducedMotion: "reduce", ...options });
+  const browser = await viewerPackage("playwright-core").chromium.launch({ executablePath: chromium, args: [...software, ...sandbox] });
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, reducedMotion: "reduce", ...options });
   const page = await context.newPage();
   page.setDefaultTimeout(patience);
   const errors = [];
   page.on("pageerror", (error) => errors.push(error.stack ?? String(error)));
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
   t.after(async () => {
-    await context.close();
+    await browser.close();
     assert.deepEqual(errors, [], "the page reported errors");
   });
   await page.goto(url);

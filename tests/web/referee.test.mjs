@@ -1,0 +1,69 @@
+// The referee's console: for who has the token, and nobody else.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { part, until } from "./support/app.mjs";
+import { openPage } from "./support/browser.mjs";
+import { sphereMatch, startHost } from "./support/host.mjs";
+import { shoot } from "./support/pictures.mjs";
+
+const token = "whistle-of-the-tests";
+const ruled = [...sphereMatch, "--set", `webToken=${token}`, "--set", "Soccer.AutomaticKickOff=false"];
+
+test("without the token there is no console, and the host refuses commands", async (t) => {
+  const host = await startHost(t, ...ruled);
+  const page = await openPage(t, `${host.url}?panel=referee`);
+  await until(page, "the match", (s) => s.connection === "open" && !s.referee);
+  assert.equal(await part(page, "referee-console").isVisible(), false);
+  await part(page, "token-field").fill("guess");
+  await part(page, "token-submit").click();
+  await page.locator('[data-testid="token-field"][aria-invalid="true"]').waitFor();
+  await until(page, "that it is no referee", (s) => !s.referee);
+
+  const answer = await page.evaluate(
+    () =>
+      new Promise((heard) => {
+        const socket = new WebSocket(new URL("stream", location.href.replace(/^http/, "ws")));
+        socket.onopen = () => socket.send(JSON.stringify({ do: "command", id: 1, text: "(score 5 5)" }));
+        socket.onmessage = ({ data }) => {
+          const message = typeof data === "string" ? JSON.parse(data) : {};
+          if (message.type === "answer") heard(message);
+        };
+      }),
+  );
+  assert.equal(answer.ok, false);
+  assert.match(answer.error, /referee|token/i);
+  const later = await until(page, "that time goes on", (s) => s.time > 1);
+  assert.deepEqual(later.score, [0, 0]);
+});
+
+test("with the token's link the referee kicks off, sets the score and moves the ball", async (t) => {
+  const host = await startHost(t, ...ruled);
+  const page = await openPage(t, `${host.url}?panel=referee#token=${token}`);
+  await until(page, "the referee", (s) => s.referee);
+  assert.ok(!page.url().includes(token), "the token stays in the address");
+
+  await part(page, "kickoff-left").click();
+  await until(page, "the kick-off", (s) => s.playMode === "KickOff_Left");
+  await part(page, "score-left-field").fill("2");
+  await part(page, "score-right-field").fill("1");
+  await part(page, "score-set").click();
+  await until(page, "the score", (s) => s.score[0] === 2 && s.score[1] === 1);
+  await part(page, "mode-select").selectOption("PlayOn");
+  await part(page, "mode-set").click();
+  await until(page, "that play is on", (s) => s.playMode === "PlayOn");
+  await part(page, "ball-x").fill("20");
+  await part(page, "ball-y").fill("10");
+  await part(page, "ball-z").fill("0");
+  await part(page, "ball-move").click();
+  await until(page, "the ball there", (s) => Math.hypot(s.ball[0] - 20, s.ball[1] - 10) < 5);
+  await shoot(page, "referee");
+});
+
+test("the token typed in opens the console", async (t) => {
+  const host = await startHost(t, ...ruled);
+  const page = await openPage(t, `${host.url}?panel=referee`);
+  await part(page, "token-field").fill(token);
+  await part(page, "token-submit").click();
+  await until(page, "the referee", (s) => s.referee);
+  await part(page, "referee-console").waitFor();
+});

@@ -1,0 +1,64 @@
+// A recorded match: opened from a file or an address, paused, sought in, stepped through.
+import assert from "node:assert/strict";
+import { dirname } from "node:path";
+import { test } from "node:test";
+import { drawn, part, state, until } from "./support/app.mjs";
+import { openPage } from "./support/browser.mjs";
+import { goalSeed, recordMatch, sphereMatch, startHost } from "./support/host.mjs";
+import { colours, difference, shoot } from "./support/pictures.mjs";
+
+const seconds = 40;
+
+/** A host that has the recorded match among its logs. */
+async function serveMatch(t) {
+  const file = await recordMatch(t, seconds, ...sphereMatch, ...goalSeed);
+  const host = await startHost(t, ...sphereMatch, "--set", `webLogs=${dirname(file)}`);
+  return { file, url: host.url };
+}
+
+test("a log of an address is shown, sought in and played", async (t) => {
+  const { url } = await serveMatch(t);
+  const page = await openPage(t, `${url}?file=logs/match.log&paused&view=top`);
+  const opened = await until(page, "the log with all robots", (s) => s.source === "replay" && s.robots.length === 22);
+  assert.ok(opened.start < 1 && opened.end > seconds - 2, `from ${opened.start} to ${opened.end} s`);
+  assert.equal(opened.playing, false);
+
+  const goals = part(page, "timeline").locator('[data-testid="timeline-mark"][data-kind="goal"]');
+  assert.ok((await goals.count()) >= 1, "no goal on the timeline");
+  const goal = Number(await goals.first().getAttribute("data-time"));
+  assert.deepEqual((await state(page)).score, [0, 0]);
+  await drawn(page);
+  const first = await shoot(part(page, "stage"), "replay-start");
+  assert.ok(colours(first) >= 8, "the picture is empty");
+
+  await goals.first().click();
+  const there = await until(page, "the goal's instant", (s, time) => Math.abs(s.time - time) < 1, goal);
+  assert.equal(there.playing, false);
+  await part(page, "step-forward").click();
+  await until(page, "the next record", (s, time) => s.time > time && s.score[0] + s.score[1] === 1, there.time);
+  await drawn(page);
+  const second = await shoot(part(page, "stage"), "replay-goal");
+  assert.ok(difference(first, second) > 0.001, "the picture is the same 10 s later");
+
+  await part(page, "speed").selectOption("10");
+  await part(page, "play-pause").click();
+  await until(page, "that it plays", (s, time) => s.playing && s.time > time + 5, goal);
+  await part(page, "play-pause").click();
+  const paused = await until(page, "that it stands", (s) => !s.playing);
+  await drawn(page);
+  assert.equal((await state(page)).time, paused.time);
+});
+
+test("a log that is opened by hand is played, by keys too", async (t) => {
+  const { file, url } = await serveMatch(t);
+  const page = await openPage(t, `${url}?file=logs/match.log`);
+  await until(page, "the log", (s) => s.source === "replay" && s.playing);
+  await page.keyboard.press("Home");
+  await page.keyboard.press("Space");
+  await until(page, "that it stands", (s) => !s.playing);
+
+  await part(page, "file-input").setInputFiles(file);
+  const opened = await until(page, "the file, playing from its start", (s) => s.source === "replay" && s.playing && s.robots.length === 22);
+  await page.keyboard.press("End");
+  await until(page, "its end", (s, end) => s.time > end - 1, opened.end);
+});

@@ -1,0 +1,53 @@
+// A running sparkhost on free ports, as its users start it.
+import { execFile, spawn } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { promisify } from "node:util";
+import { build } from "./places.mjs";
+
+const program = (name) => join(build, "bin", name);
+
+/** Two teams that play inside the host, in lockstep: the same match each time. */
+export const sphereMatch = ["--sync", "--config", "soccer-sphere.lua", "--set", "team=Red Blue"];
+export const humanoidMatch = ["--sync", "--config", "soccer.lua", "--set", "team=Red Blue", "--set", "Soccer.AutomaticKickOff=true", "--set", "Soccer.WaitBeforeKickOff=2"];
+/** With this seed the sphere match's first goal falls after some 14 s. */
+export const goalSeed = ["--seed", "26"];
+
+/** A folder that is gone after the test. */
+export function temporaryFolder(t) {
+  const folder = mkdtempSync(join(tmpdir(), "spark-web-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  return folder;
+}
+
+/** Starts a host that ends with the test. `url` is the spectators' link, `refereeUrl` the one with the token. */
+export async function startHost(t, ...options) {
+  const log = [];
+  const child = spawn(program("sparkhost"), [...options, "--agent-port", "0", "--monitor-port", "0", "--web-port", "0"], { stdio: ["ignore", "pipe", "pipe"] });
+  createInterface({ input: child.stderr }).on("line", (line) => log.push(line));
+  const lines = createInterface({ input: child.stdout });
+  const ended = new Promise((done) => child.once("exit", done));
+  t.after(async () => {
+    child.kill();
+    await ended;
+  });
+  const first = await Promise.race([new Promise((heard) => lines.once("line", heard)), ended]);
+  if (typeof first !== "string") throw new Error(`sparkhost ended at once:\n${log.join("\n")}`);
+  const said = JSON.parse(first);
+  return { url: said.web, refereeUrl: said.referee, said, log, ended, ctl: (...words) => ctl(child.pid, words) };
+}
+
+/** What sparkctl says of a host. */
+async function ctl(pid, words) {
+  return (await promisify(execFile)(program("sparkctl"), ["--pid", String(pid), ...words])).stdout.trim();
+}
+
+/** Plays a match as fast as it goes and returns its log's path. */
+export async function recordMatch(t, seconds, ...options) {
+  const file = join(temporaryFolder(t), "match.log");
+  const host = await startHost(t, ...options, "--rate", "max", "--duration", String(seconds), "--set", `monitorLog=${file}`);
+  await host.ended;
+  return file;
+}
