@@ -153,6 +153,28 @@ TEST_CASE("an agent's effector shows its shapes at once, in place of those befor
   CHECK(artist.server->version() == version);
 }
 
+TEST_CASE("a config's drawing() opens a port only when it is named, and a house of a batch just knows the effector") {
+  const auto furnish = [](House& house, const char* host, std::initializer_list<std::pair<const char*, Value>> settings) {
+    Lua& lua = house.kernel.lua();
+    lua.addFolder(SPARK_SOURCES "/lua");
+    for (const auto& [name, value] : settings) lua.addOverride(name, value);
+    lua.run(std::string("host = { share = '', scenePaths = {}") + host + " } include 'house.lua' drawing()", "test");
+    return house.kernel.root().find("/sys/server/drawing");
+  };
+  House quiet, open, alone;
+  Leaf* server = furnish(quiet, "", {});
+  REQUIRE(server);
+  server->as<IInputSource>()->poll();
+  CHECK(getProperty(*server, "port") == Value(-1));
+  server = furnish(open, "", {{"drawings", 0}, {"forwardDrawings", "127.0.0.1:9"}});
+  REQUIRE(server);
+  server->as<IInputSource>()->poll();
+  CHECK(getProperty(*server, "port").toInteger() > 0);
+  CHECK(getProperty(*server, "forward").toString() == "127.0.0.1:9");
+  CHECK(furnish(alone, ", alone = true", {}) == nullptr);
+  CHECK(alone.kernel.findClass("DrawEffector") != nullptr);
+}
+
 TEST_CASE("an agent may draw where nobody keeps drawings") {
   Artist artist;
   artist.kernel.root().require<Node>("/sys/server").remove(*artist.node);

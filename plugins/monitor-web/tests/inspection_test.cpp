@@ -12,13 +12,13 @@ namespace {
 
 /// The house of lua/soccer.lua with a humanoid in it, without a network.
 struct League : House {
-  League() : inspection(kernel) {
+  explicit League(bool noise = false) : inspection(kernel) {
     Lua& lua = kernel.lua();
     lua.addFolder(SPARK_SOURCES "/lua");
     lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = {}, alone = true }", "league");
     lua.addOverride("/sys/server/simulation.rate", "max");
     lua.addOverride("/sys/server/net.open", false);
-    lua.addOverride("Soccer.VisionNoise", false);
+    lua.addOverride("Soccer.VisionNoise", noise);
     lua.runConfig("soccer.lua");
     kernel.registerClass<Puppet>();
     player = &kernel.create<Puppet>("Puppet", "/usr/agent/player");
@@ -195,6 +195,23 @@ TEST_CASE("spheres see all around; who has not sensed has nothing to show") {
   CHECK(nothing["ok"] == true);
   for (const char* list : {"percepts", "seen", "lines", "cones"}) CHECK(nothing[list].empty());
   CHECK_FALSE(nothing.contains("head"));
+}
+
+TEST_CASE("a match goes the same way whether anybody inspects it or not") {
+  const auto play = [](bool inspect) {
+    League league(true);
+    league.act("(he1 1)(lle3 2)(rle4 -1)");
+    for (int i = 0; i < 30; ++i) {
+      if (inspect) {
+        league.inspection.look();
+        for (const char* what : {"contacts", "joints", "percepts"})
+          CHECK(league.ask({{"do", what}, {"path", "/usr/scene/AgentAspect1"}})["ok"] == true);
+      }
+      league.run(1);
+    }
+    return stateHash(league.kernel.root());
+  };
+  CHECK(play(true) == play(false));
 }
 
 TEST_CASE("inspection outlives what it looks at") {
