@@ -8,8 +8,8 @@ export class Budget {
   /// Hears how long the last of a row of pictures took [ms]; true: the share is another.
   heard(milliseconds: number): boolean {
     // One long picture is a scene being built, or a page that was away; many are a slow machine.
-    if (milliseconds > 500) return false;
-    this.slow = milliseconds > 38 ? this.slow + 1 : Math.max(0, this.slow - 2);
+    if (milliseconds > 3000) return false;
+    this.slow = milliseconds > 38 ? this.slow + Math.min(6, milliseconds / 38) : Math.max(0, this.slow - 2);
     this.fast = milliseconds < 21 ? this.fast + 1 : 0;
     if (this.slow > 25 && this.share > 0.5) return this.change(Math.max(0.5, this.share * 0.84));
     if (this.fast > 240 && this.share < 1) return this.change(Math.min(1, this.share / 0.84));

@@ -159,15 +159,15 @@ export class Camera implements CameraView {
 
   /// From the side line, along with the ball.
   private aimAtBall(seconds: number): void {
-    const { field, ball, extent } = this.sights;
+    const { field, ball, extent, aspect } = this.sights;
+    const distance = (field ? 4.2 + 0.42 * field.width : 1.9 * extent) * this.closeness;
     focus.copy(ball ?? origin);
-    if (field) focus.set(limit(focus.x, field.length / 2), limit(focus.y, field.width / 2), 0);
-    // Half way to the middle: the ball leads, the game around it stays in the picture.
-    focus.set(0.97 * focus.x, 0.72 * focus.y, 0.3);
+    // Not quite to the edges: the ball leads, but the game around it stays in the picture.
+    if (field) focus.set(limit(focus.x, field.length / 2 - 0.12 * aspect * distance), limit(focus.y, field.width / 2), 0);
+    focus.set(focus.x, 0.72 * focus.y, 0.3);
     if (this.following) this.follower.step(seconds, focus);
     else this.follower.jump(focus);
     this.following = true;
-    const distance = (field ? 4.2 + 0.42 * field.width : 1.9 * extent) * this.closeness;
     this.wanted.around(this.follower.position, -Math.PI / 2, 0.4, distance);
   }
 
@@ -262,7 +262,8 @@ function angleOf(mode: CameraMode, aspect: number): number {
 }
 
 function limit(value: number, bound: number): number {
-  return Math.min(bound, Math.max(-bound, value));
+  const most = Math.max(0, bound);
+  return Math.min(most, Math.max(-most, value));
 }
 
 const origin = new Vector3(), focus = new Vector3(), place = new Vector3(), forward = new Vector3(), headUp = new Vector3(), side = new Vector3();
