@@ -3,6 +3,7 @@ import type { Drawing, Robot, World } from "../model";
 import { Areas } from "./areas";
 import { Dots } from "./dots";
 import { circle, circleSegments } from "./geometry";
+import { Following } from "./following";
 import { Lines } from "./lines";
 import { Points } from "./points";
 import type { SetSwitches } from "./switches";
@@ -40,7 +41,7 @@ export class DrawingsLayer {
   private scene = -1;
   private switched = -1;
   private seen = true;
-  private frame = -1;
+  private readonly following = new Following();
   private readonly matrix = new Float32Array(16);
 
   constructor(private readonly canvas: Canvas, private readonly switches: SetSwitches) {
@@ -56,8 +57,9 @@ export class DrawingsLayer {
   update(): void {
     const world = this.world;
     if (!world) return;
-    const { drawings, scene } = world.versions;
-    if (drawings !== this.drawings || scene !== this.scene || this.switches.version !== this.switched || this.visible !== this.seen) {
+    const { drawings, scene, frame } = world.versions;
+    const isOther = drawings !== this.drawings || scene !== this.scene || this.switches.version !== this.switched || this.visible !== this.seen;
+    if (isOther) {
       this.drawings = drawings;
       this.scene = scene;
       this.switched = this.switches.version;
@@ -65,8 +67,7 @@ export class DrawingsLayer {
       this.build(world);
       this.canvas.invalidate();
     }
-    if (this.agents.length > 0 && this.frame !== world.versions.frame) this.placeAgentTexts();
-    this.frame = world.versions.frame;
+    if (this.following.due(frame, isOther) && this.agents.length > 0) this.placeAgentTexts();
   }
 
   dispose(): void {
@@ -82,7 +83,7 @@ export class DrawingsLayer {
       for (const [name, set] of world.drawings) if (this.switches.isOn(name)) for (const d of set) this.add(d, world);
     }
     for (const part of [...this.lines.values(), ...this.spheres.values(), this.areas, this.points, this.texts]) part.end();
-    this.placeAgentTexts();
+    if (this.agents.length === 0) this.placeAgentTexts();
   }
 
   private add(d: Drawing, world: World): void {
@@ -113,6 +114,7 @@ export class DrawingsLayer {
       this.agentTexts.add(text.text, this.matrix[12]!, this.matrix[13]!, this.matrix[14]! + kAboveHead, kTextSize, r, g, b, kAboveNumber);
     }
     this.agentTexts.end();
+    this.canvas.invalidate();
   }
 
   private linesOf(thickness: number, alpha: number): Lines {

@@ -4,7 +4,7 @@ import type { LiveSource, Robot, World } from "../../src/model";
 import { OverlaySet } from "../../src/inspect/overlay_set";
 import { forceScale, shortName } from "../../src/inspect/overlays/contacts";
 import { jointName } from "../../src/inspect/overlays/joints";
-import { errorOf, sexp } from "../../src/inspect/overlays/percepts";
+import { errorOf, sexp, signsOf } from "../../src/inspect/overlays/percepts";
 import type { Surroundings } from "../../src/inspect/overlays/overlay";
 
 describe("arrows of forces", () => {
@@ -30,6 +30,10 @@ describe("names", () => {
 describe("percepts", () => {
   it("are told as agents get them", () => {
     expect(sexp(["See", ["B", ["pol", 3.751, -25, 0.5]]])).toBe("(See (B (pol 3.75 -25 0.50)))");
+  });
+
+  it("name each player once, at the head if it is seen", () => {
+    expect(signsOf(["B", "P Red 6 lfoot", "P Red 6 head", "P FC Bla u 11 rfoot", "P FC Bla u 11 lfoot"])).toEqual(["B", "", "Red 6", "FC Bla u 11", ""]);
   });
 
   it("have an error where the truth is known", () => {

@@ -1,5 +1,6 @@
 import type { Group } from "three";
 import type { Robot, World } from "../../model";
+import { Following } from "../../drawings/following";
 import { Texts } from "../../drawings/texts";
 import type { Listing, Overlay, Surroundings } from "./overlay";
 import { fixed, nameOf } from "./overlay";
@@ -27,8 +28,9 @@ export class LabelsOverlay implements Overlay {
   version = 0;
   private readonly texts = new Texts();
   private labels: Label[] = [];
+  private world: World | null = null;
   private scene = -1;
-  private frame = -1;
+  private readonly following = new Following();
   private readAt = -Infinity;
   private readTime = NaN;
   private shown = false;
@@ -45,11 +47,9 @@ export class LabelsOverlay implements Overlay {
       return;
     }
     this.shown = true;
-    if (this.scene !== world.versions.scene) this.restart(world);
-    const due = now - this.readAt >= kPeriod;
-    if (due) this.read(now, around, world);
-    if (!due && this.frame === world.versions.frame) return;
-    this.frame = world.versions.frame;
+    if (this.world !== world || this.scene !== world.versions.scene) this.restart(world);
+    const isOther = now - this.readAt >= kPeriod && this.read(now, around, world);
+    if (!this.following.due(world.versions.frame, isOther)) return;
     this.place(around);
     canvas.invalidate();
   }
@@ -59,16 +59,18 @@ export class LabelsOverlay implements Overlay {
   }
 
   private restart(world: World): void {
+    this.world = world;
     this.scene = world.versions.scene;
     this.labels = world.robots.map((robot) => ({ robot, text: "", place: new Float32Array([NaN, NaN, NaN]) }));
     this.readAt = -Infinity;
     this.readTime = NaN;
   }
 
-  private read(now: number, { canvas, live }: Surroundings, world: World): void {
+  /// False while time stands still: what was read last stays.
+  private read(now: number, { canvas, live }: Surroundings, world: World): boolean {
     const seconds = world.time - this.readTime;
     this.readAt = now;
-    if (seconds === 0) return;   // paused: what was read last stays
+    if (seconds === 0) return false;
     this.readTime = world.time;
     const rows: string[][] = [];
     for (const label of this.labels) {
@@ -84,6 +86,7 @@ export class LabelsOverlay implements Overlay {
     this.note = this.labels.length === 0 ? "There are no robots." : "";
     this.listing = { head: ["robot", "speed", "answer [ms]"], rows };
     ++this.version;
+    return true;
   }
 
   private place({ canvas }: Surroundings): void {

@@ -91,9 +91,10 @@ export class SeenOverlay extends FedOverlay<Percepts> {
     this.lines.colour(1, 0.6, 0.1);
     for (const [from, to] of lines ?? []) this.lines.stroke(...from, ...to);
     this.lines.colour(1, 0.35, 0.35);
-    for (const s of seen) {
+    const signs = signsOf(seen.map((s) => s.name));
+    for (const [i, s] of seen.entries()) {
       this.dots.add(...s.seen, 0.04, 1, 0.6, 0.1);
-      this.texts.add(s.name, ...s.seen, 12, 1, 0.85, 0.6);
+      this.texts.add(signs[i]!, ...s.seen, 12, 1, 0.85, 0.6);
       if (!s.true) continue;
       this.dots.add(...s.true, 0.035, 0.3, 0.65, 1);
       this.lines.stroke(...s.seen, ...s.true);
@@ -123,6 +124,20 @@ export class SeenOverlay extends FedOverlay<Percepts> {
 /// [m]; null when it is not known where the thing is.
 export function errorOf(s: Percepts["seen"][number]): number | null {
   return s.true ? Math.hypot(s.seen[0] - s.true[0], s.seen[1] - s.true[1], s.seen[2] - s.true[2]) : null;
+}
+
+/// What is written at each thing: of a player's parts ("P Red 6 lfoot") one has his name, the head if it is among them.
+export function signsOf(names: readonly string[]): string[] {
+  const player = (name: string) => /^P (.+) (\S+)$/.exec(name);
+  const bearers = new Map<string, string>();
+  for (const name of names) {
+    const [, who, part] = player(name) ?? [];
+    if (who !== undefined && (part === "head" || !bearers.has(who))) bearers.set(who, name);
+  }
+  return names.map((name) => {
+    const who = player(name)?.[1];
+    return who === undefined ? name : bearers.get(who) === name ? who : "";
+  });
 }
 
 /// Nested lists as agents get them.
