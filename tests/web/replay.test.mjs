@@ -1,5 +1,6 @@
 // A recorded match: opened from a file or an address, paused, sought in, stepped through.
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { dirname } from "node:path";
 import { test } from "node:test";
 import { drawn, part, state, until } from "./support/app.mjs";
@@ -14,6 +15,16 @@ async function serveMatch(t) {
   const file = await recordMatch(t, seconds, ...sphereMatch, ...goalSeed);
   const host = await startHost(t, ...sphereMatch, "--set", `webLogs=${dirname(file)}`);
   return { file, url: host.url };
+}
+
+/** Drops a file onto the page, as from a file manager. */
+async function drop(page, file) {
+  const dataTransfer = await page.evaluateHandle((text) => {
+    const data = new DataTransfer();
+    data.items.add(new File([text], "match.log"));
+    return data;
+  }, await readFile(file, "utf8"));
+  for (const event of ["dragenter", "dragover", "drop"]) await page.dispatchEvent("body", event, { dataTransfer });
 }
 
 test("a log of an address is shown, sought in and played", async (t) => {
@@ -49,16 +60,19 @@ test("a log of an address is shown, sought in and played", async (t) => {
   assert.equal((await state(page)).time, paused.time);
 });
 
-test("a log that is opened by hand is played, by keys too", async (t) => {
+test("a log that is dropped onto a live match is played, by keys too, and so is one that is chosen", async (t) => {
   const { file, url } = await serveMatch(t);
-  const page = await openPage(t, `${url}?file=logs/match.log`);
+  const page = await openPage(t, url);
+  await until(page, "the live match", (s) => s.source === "live" && s.robots.length === 22);
+  await drop(page, file);
   await until(page, "the log", (s) => s.source === "replay" && s.playing);
-  await page.keyboard.press("Home");
   await page.keyboard.press("Space");
   await until(page, "that it stands", (s) => !s.playing);
+  await page.keyboard.press("End");
+  await until(page, "its end", (s) => s.time > s.end - 1);
 
   await part(page, "file-input").setInputFiles(file);
-  const opened = await until(page, "the file, playing from its start", (s) => s.source === "replay" && s.playing && s.robots.length === 22);
-  await page.keyboard.press("End");
-  await until(page, "its end", (s, end) => s.time > end - 1, opened.end);
+  await until(page, "the file, playing from its start", (s) => s.source === "replay" && s.playing && s.time < s.end - 5 && s.robots.length === 22);
+  await part(page, "back-to-live").click();
+  await until(page, "the live match again", (s) => s.source === "live" && s.connection === "open" && s.robots.length === 22);
 });
