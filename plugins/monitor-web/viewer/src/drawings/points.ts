@@ -31,13 +31,14 @@ export class Points {
   private room = 0;
   private count = 0;
 
-  constructor() {
+  /// `through`: seen through what stands before them.
+  constructor(through = false) {
     const material = new ShaderMaterial({
-      vertexShader: kVertex, fragmentShader: kFragment, transparent: true, depthWrite: false, toneMapped: false, uniforms: { pixels: { value: 1 } },
+      vertexShader: kVertex, fragmentShader: kFragment, transparent: true, depthTest: !through, depthWrite: false, toneMapped: false, uniforms: { pixels: { value: 1 } },
     });
     this.object = new ThreePoints(this.geometry, material);
     this.object.frustumCulled = false;
-    this.object.renderOrder = 12;
+    this.object.renderOrder = through ? 22 : 12;
     this.object.onBeforeRender = (renderer) => {
       material.uniforms.pixels!.value = renderer.getPixelRatio();
     };

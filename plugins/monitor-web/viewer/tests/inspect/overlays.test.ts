@@ -34,6 +34,7 @@ describe("percepts", () => {
 
   it("name each player once, at the head if it is seen", () => {
     expect(signsOf(["B", "P Red 6 lfoot", "P Red 6 head", "P FC Bla u 11 rfoot", "P FC Bla u 11 lfoot"])).toEqual(["B", "", "Red 6", "FC Bla u 11", ""]);
+    expect(signsOf(["P Blue 1", "P Blue 2", "P B 04 7"])).toEqual(["Blue 1", "Blue 2", "B 04 7"]);
   });
 
   it("have an error where the truth is known", () => {

@@ -1,7 +1,7 @@
 import { Group } from "three";
-import { Dots } from "../../drawings/dots";
 import { viewCone } from "../../drawings/geometry";
 import { Lines } from "../../drawings/lines";
+import { Points } from "../../drawings/points";
 import { Texts } from "../../drawings/texts";
 import type { Feed } from "./feed";
 import { FedOverlay, fixed, waitingForRobot, type Surroundings } from "./overlay";
@@ -19,7 +19,10 @@ export interface Percepts {
   lines?: [[number, number, number], [number, number, number]][];
 }
 
-const kFar = 2.5;   // [m]; how far a cone without a range is drawn
+const kSeen = 9;     // [px]
+const kTrue = 7;
+const kBelow = -2;   // lines; players' numbers stand above
+const kFar = 2.5;    // [m]; how far a cone without a range is drawn
 
 /// How far the selected robot's eyes reach.
 export class ConesOverlay extends FedOverlay<Percepts> {
@@ -72,37 +75,37 @@ export class SeenOverlay extends FedOverlay<Percepts> {
   told = "";
   private readonly group = new Group();
   private readonly lines = new Lines({ width: 2, through: true });
-  private readonly dots = new Dots(this.group, { through: true }, 1);
+  private readonly points = new Points(true);
   private readonly texts = new Texts();
 
   constructor(feed: Feed<Percepts>, above: Group) {
     super(feed);
-    this.group.add(this.lines.object, this.texts.object);
+    this.group.add(this.lines.object, this.points.object, this.texts.object);
     above.add(this.group);
   }
 
   dispose(): void {
-    for (const part of [this.lines, this.dots, this.texts]) part.dispose();
+    for (const part of [this.lines, this.points, this.texts]) part.dispose();
     this.group.removeFromParent();
   }
 
-  protected draw({ seen, percepts, time, seenTime, lines }: Percepts): void {
-    for (const part of [this.lines, this.dots, this.texts]) part.begin();
+  protected draw({ seen, percepts, seenTime, lines }: Percepts): void {
+    for (const part of [this.lines, this.points, this.texts]) part.begin();
     this.lines.colour(1, 0.6, 0.1);
     for (const [from, to] of lines ?? []) this.lines.stroke(...from, ...to);
     this.lines.colour(1, 0.35, 0.35);
     const signs = signsOf(seen.map((s) => s.name));
     for (const [i, s] of seen.entries()) {
-      this.dots.add(...s.seen, 0.04, 1, 0.6, 0.1);
-      this.texts.add(signs[i]!, ...s.seen, 12, 1, 0.85, 0.6);
+      this.points.add(...s.seen, kSeen, 1, 0.6, 0.1, 1);
+      this.texts.add(signs[i]!, ...s.seen, 12, 1, 0.85, 0.6, signs[i] === s.name ? 0 : kBelow);
       if (!s.true) continue;
-      this.dots.add(...s.true, 0.035, 0.3, 0.65, 1);
+      this.points.add(...s.true, kTrue, 0.3, 0.65, 1, 1);
       this.lines.stroke(...s.seen, ...s.true);
     }
-    for (const part of [this.lines, this.dots, this.texts]) part.end();
+    for (const part of [this.lines, this.points, this.texts]) part.end();
     const errors = seen.map(errorOf).filter((e) => e !== null);
     const mean = errors.length > 0 ? ` Mean error ${fixed(errors.reduce((a, b) => a + b, 0) / errors.length, 3)} m.` : "";
-    this.note = `At ${fixed(seenTime ?? time, 2)} s it saw ${seen.length} things and ${lines?.length ?? 0} lines.${mean}`;
+    this.note = seenTime === undefined ? "It has seen nothing since it is asked." : `At ${fixed(seenTime, 2)} s it saw ${seen.length} things and ${lines?.length ?? 0} lines.${mean}`;
     this.told = percepts.map(sexp).join("\n");
     this.listing = {
       head: ["seen", "at [m]", "error [m]"],
@@ -111,8 +114,8 @@ export class SeenOverlay extends FedOverlay<Percepts> {
   }
 
   protected clear(): void {
-    for (const part of [this.lines, this.dots, this.texts]) part.begin();
-    for (const part of [this.lines, this.dots, this.texts]) part.end();
+    for (const part of [this.lines, this.points, this.texts]) part.begin();
+    for (const part of [this.lines, this.points, this.texts]) part.end();
     this.told = "";
   }
 
@@ -128,7 +131,7 @@ export function errorOf(s: Percepts["seen"][number]): number | null {
 
 /// What is written at each thing: of a player's parts ("P Red 6 lfoot") one has his name, the head if it is among them.
 export function signsOf(names: readonly string[]): string[] {
-  const player = (name: string) => /^P (.+) (\S+)$/.exec(name);
+  const player = (name: string) => /^P (.+ \d+)(?: (\D\S*))?$/.exec(name);
   const bearers = new Map<string, string>();
   for (const name of names) {
     const [, who, part] = player(name) ?? [];
