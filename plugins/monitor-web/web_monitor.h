@@ -19,8 +19,6 @@ class WebMonitor : public Node, public IFrameTaker {
 
   /// The frame taken last is handed over again if somebody waits for one and no cycle comes. Between cycles.
   void takeAgain();
-  /// Nobody is served any more.
-  void detach() { exchange_ = nullptr; }
 
  private:
   web::Exchange* exchange();

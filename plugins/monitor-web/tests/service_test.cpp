@@ -1,0 +1,175 @@
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "api/monitor.h"
+#include "api/phases.h"
+#include "fake_scene.h"
+#include "frame_reader.h"
+#include "test_support.h"
+#include "web_client.h"
+
+// The server as a whole: a house whose clock runs in one thread, the server's own thread, and viewers in this one.
+
+using namespace spark;
+using namespace spark::test;
+using web::test::FrameReader;
+using Json = nlohmann::json;
+using Catch::Contains;
+
+namespace {
+
+/// Tells a time and takes `(push n)`.
+class Match : public Node, public IMonitorItem, public ITrainer {
+  SPARK_CLASS(Match, Node)
+ public:
+  static void describe(Description<Match>& d) {
+    d.implements<IMonitorItem>();
+    d.implements<ITrainer>();
+  }
+  void contribute(Environment& env) override {
+    env.put(EnvPolicy::full, "FieldLength", 30.0);
+    env.put(EnvPolicy::change, "score_left", score);
+    if (std::exchange(goal, false)) env.open(EnvPolicy::once, "goal").add(score).close();
+  }
+  bool command(const Element& command, std::string&) override {
+    if (command.head() != "push") return false;
+    score += static_cast<int>(command.at(1).integer());
+    goal = true;
+    return true;
+  }
+  int score = 0;
+  bool goal = false;
+};
+
+/// A house with a moving robot, whose cycles run in a thread of their own until it is stopped.
+struct Running : House {
+  Running() {
+    makeFakeScene(kernel);
+    kernel.registerClass<Match>();
+    kernel.plugins().use("monitor");
+    kernel.plugins().use("monitor-web");
+    auto& root = kernel.root().require<Node>("/usr/scene");
+    robot = &root.create<Transform>("Transform", "robot");
+    robot->create<Transform>("Transform", "head").create<FakeVisual>("FakeVisual", "mesh").names = {"matLeft", "naowhite"};
+    kernel.create<Node>("MonitorServer", "/sys/server/monitor").create("Match", "match");
+    Leaf& server = kernel.create<Leaf>("WebServer", "/sys/server/web");
+    setProperty(server, "port", std::int64_t{0});
+    const Value token("token-of-this-test");
+    callMethod(server, "setToken", {&token, 1});
+    kernel.create<Leaf>("WebMonitor", "/sys/server/monitor/web");
+    callMethod(server, "listen", {});
+    port = static_cast<unsigned short>(getProperty(server, "port").toInteger());
+    REQUIRE(port != 0);
+    loop = std::thread([this] { run(); });
+  }
+  ~Running() { stop(); }
+  void stop() {
+    stopped = true;
+    if (loop.joinable()) loop.join();
+  }
+  void run() {
+    auto& input = kernel.root().require<IInputSource>("/sys/server/web");
+    for (std::int64_t cycle = 1; !stopped; ++cycle) {
+      const Event event{"", 0.02 * static_cast<double>(cycle), 0.02, cycle, nullptr};
+      input.poll();
+      kernel.events().channel(phase::kAct).emit(event);
+      robot->setLocalPos({0.001f * static_cast<float>(cycle % 1000), 0, 0});
+      if (const int wanted = cycle == 1 ? 0 : parts.exchange(0); wanted > 0) robot->create("Transform", "part");
+      kernel.events().channel(phase::kPublish).emit(event);
+      std::this_thread::yield();
+    }
+  }
+  Transform* robot;
+  unsigned short port = 0;
+  std::atomic<bool> stopped{false};
+  std::atomic<int> parts{0};
+  std::thread loop;
+};
+
+Json jsonWith(WebClient& client, std::string_view part) { return Json::parse(client.textWith(part)); }
+}  // namespace
+
+TEST_CASE("Viewers see the scene move, ask, and a referee changes it") {
+  Running house;
+  WebClient viewer(house.port), referee(house.port);
+  REQUIRE(viewer.watch() == 101);
+  REQUIRE(referee.watch() == 101);
+  CHECK(jsonWith(viewer, "\"hello\"")["protocol"] == 1);
+  const Json scene = jsonWith(viewer, "\"scene\"");
+  REQUIRE(scene["nodes"].size() == 3);
+  CHECK(scene["nodes"][0]["path"] == "/usr/scene/robot");
+  CHECK(scene["nodes"][1]["parent"] == 0);
+  CHECK(scene["nodes"][2] == Json::parse(R"({"parent":1,"kind":"mesh","load":"models/thing.obj","scale":[1,1,1],"materials":["matLeft","naowhite"],"visible":true})"));
+  CHECK(scene["local"].size() == 32);
+  CHECK_THAT(viewer.textWith("\"full\":true"), Contains("[\"FieldLength\",30]") && Contains("[\"score_left\",0]"));
+
+  FrameReader reader(2);
+  double last = 0;
+  for (int i = 0; i < 10; ++i) {
+    reader.take(viewer.binary());
+    CHECK(reader.time > last);
+    last = reader.time;
+    CHECK(reader.isNear(1, Matrix::Identity()));
+  }
+
+  viewer.say(R"~({"do":"command","id":1,"text":"(push 3)"})~");
+  CHECK(jsonWith(viewer, "\"id\":1")["ok"] == false);
+  referee.say(R"({"do":"login","token":"token-of-this-test"})");
+  CHECK(jsonWith(referee, "\"referee\"")["ok"] == true);
+  referee.say(R"~({"do":"command","id":2,"text":"(push 3)"})~");
+  CHECK(jsonWith(referee, "\"id\":2")["ok"] == true);
+  CHECK(jsonWith(viewer, "\"event\"")["entry"] == Json::parse(R"(["goal",3])"));
+  const Json status = jsonWith(viewer, "\"status\"");
+  CHECK(status["agents"].empty());
+  viewer.say(R"({"do":"get","id":4,"path":"/usr"})");
+  CHECK_THAT(viewer.textWith("\"id\":4"), Contains("no control server"));
+}
+
+TEST_CASE("A scene that changes is sent anew, before its first frame") {
+  Running house;
+  WebClient viewer(house.port);
+  REQUIRE(viewer.watch() == 101);
+  viewer.binary();
+  for (std::size_t parts = 1; parts <= 3; ++parts) {
+    house.parts = 1;
+    Json scene;
+    do scene = jsonWith(viewer, "\"scene\"");
+    while (scene["nodes"].size() < 3 + parts);
+    FrameReader reader(2 + parts);
+    reader.take(viewer.binary());
+    CHECK(reader.shape == scene["shape"]);
+  }
+}
+
+TEST_CASE("Pages are answered while the match runs") {
+  Running house;
+  WebClient client(house.port);
+  const auto page = client.get("/");
+  CHECK(page.status == 200);
+  CHECK_THAT(page.head, Contains("Content-Security-Policy: default-src 'self'") && Contains("nosniff"));
+  CHECK_THAT(page.body, Contains("The viewer was not built"));
+  CHECK(client.get("/plain.js").status == 200);  // on the same connection
+  CHECK(client.get("/", "", "HEAD").head.find("Content-Length: 0") == std::string::npos);
+  CHECK(client.get("/none").status == 404);
+  const Json status = Json::parse(client.get("/status.json").body);
+  CHECK(status["type"] == "status");
+  CHECK(status["spectators"] == 0);
+}
+
+TEST_CASE("The server goes while people watch; they are told nothing more, and another one may come") {
+  Running house;
+  WebClient viewer(house.port);
+  REQUIRE(viewer.watch() == 101);
+  viewer.binary();
+  house.stop();
+  auto& servers = house.kernel.root().require<Node>("/sys/server");
+  servers.remove(*servers.child("web"));
+  viewer.waitForClose();
+  house.kernel.events().channel(phase::kPublish).emit({"", 1, 0.02, 1000, nullptr});
+  Leaf& next = house.kernel.create<Leaf>("WebServer", "/sys/server/web");
+  setProperty(next, "port", std::int64_t{0});
+  callMethod(next, "listen", {});
+  CHECK(WebClient(static_cast<unsigned short>(getProperty(next, "port").toInteger())).get("/").status == 200);
+}
