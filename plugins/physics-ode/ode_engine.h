@@ -73,16 +73,16 @@ struct SpaceData {
   std::uint64_t collidedAt = 0;  ///< exact replay: number of the step in which its geoms were last collided with each other
 };
 
-struct GeomData {
+struct alignas(kCacheLine) GeomData {
   dGeomID id;
-  WorldData* world;
-  dSpaceID space;
-  engine::ShapeDescription shape;  ///< keeps the numbers of a mesh alive
+  BodyData* body = nullptr;
   void* owner;
   std::uint64_t age;  ///< counts up in order of creation
-  BodyData* body = nullptr;
-  Pose base;    ///< the shape's own frame: a ray's direction, else identity
-  Pose offset;  ///< in the body's frame, or in the world without a body
+  Pose offset;        ///< in the body's frame, or in the world without a body
+  engine::ShapeDescription shape;  ///< keeps the numbers of a mesh alive
+  Pose base;          ///< the shape's own frame: a ray's direction, else identity
+  WorldData* world;
+  dSpaceID space;
   dTriMeshDataID mesh = nullptr;
 };
 

@@ -203,7 +203,7 @@ void OdeEngine::setPose(Geom geom, const Pose& pose) {
 Pose OdeEngine::pose(Geom geom) const {
   const GeomData& g = *data(geom);
   if (!g.body) return g.offset;
-  return compose({toVec(dBodyGetPosition(g.body->id)), toMat(dBodyGetRotation(g.body->id))}, g.offset);
+  return compose({toVec(g.body->position), toMat(g.body->rotation)}, g.offset);
 }
 
 void OdeEngine::setCollides(Geom geom, bool on) {

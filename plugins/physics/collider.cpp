@@ -188,24 +188,23 @@ Vec3 Collider::toShape(const Vec3& p) const {
 
 namespace {
 
-/// Half of the extent of a shape (not plane, mesh, ray) along the world's axes.
-Vec3 halfExtent(const ShapeDescription& s, const Mat3& r) {
-  const Vec3 z = r.col(2).cwiseAbs();
-  switch (s.shape) {
-    case Shape::box:
-      return r.cwiseAbs() * (s.lengths / 2);
-    case Shape::capsule:
-      return z * (s.length / 2) + Vec3::Constant(s.radius);
-    case Shape::cylinder:
-      return z * (s.length / 2) + s.radius * (Vec3::Ones() - z.cwiseProduct(z)).cwiseMax(0).cwiseSqrt();
-    default:
-      return Vec3::Constant(s.radius);
-  }
-}
-
 void widen(Vec3& low, Vec3& high, const Vec3& p) {
   low = low.cwiseMin(p);
   high = high.cwiseMax(p);
+}
+
+/// Of a plane, a ray or a mesh.
+void boundsOf(const ShapeDescription& s, const Pose& p, Vec3& low, Vec3& high) {
+  if (s.shape == Shape::plane) {
+    std::swap(low, high);
+  } else if (s.shape == Shape::ray) {
+    const Vec3 from = p.position + p.rotation * s.rayOrigin;
+    widen(low, high, from);
+    widen(low, high, from + p.rotation * s.rayDirection.normalized() * s.length);
+  } else {
+    for (std::size_t i = 0; i + 2 < s.vertices.size(); i += 3)
+      widen(low, high, p.position + p.rotation * Vec3(s.vertices[i], s.vertices[i + 1], s.vertices[i + 2]));
+  }
 }
 
 }  // namespace
@@ -221,21 +220,13 @@ const std::vector<const Collider*>& Collider::inner() const {
 void Collider::bounds(Vec3& low, Vec3& high) const {
   low = Vec3::Constant(HUGE_VAL);
   high = -low;
-  if (const auto s = shape(); s && s->shape == Shape::plane) {
-    std::swap(low, high);
-  } else if (s && engine()) {
+  if (engine() && geom_ != engine::Geom::none) {
     const Pose p = engine()->pose(geom_);
-    if (s->shape == Shape::ray) {
-      const Vec3 from = p.position + p.rotation * s->rayOrigin;
-      widen(low, high, from);
-      widen(low, high, from + p.rotation * s->rayDirection.normalized() * s->length);
-    } else if (s->shape == Shape::mesh) {
-      for (std::size_t i = 0; i + 2 < s->vertices.size(); i += 3)
-        widen(low, high, p.position + p.rotation * Vec3(s->vertices[i], s->vertices[i + 1], s->vertices[i + 2]));
-    } else {
-      const Vec3 half = halfExtent(*s, p.rotation);
-      low = p.position - half;
-      high = p.position + half;
+    if (const auto half = halfExtent(p.rotation)) {
+      low = p.position - *half;
+      high = p.position + *half;
+    } else if (const auto s = shape()) {
+      boundsOf(*s, p, low, high);
     }
   }
   for (const Collider* part : inner()) {

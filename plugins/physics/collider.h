@@ -24,6 +24,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   IRigidBody* body() const override { return body_.get(); }
   void bounds(Vec3& low, Vec3& high) const override;
   std::optional<engine::ShapeDescription> shape() const override { return std::nullopt; }
+  /// Half of the shape's extent along the world's axes when it is turned so [m]; nothing for shapes that are not alike on both sides.
+  virtual std::optional<Vec3> halfExtent(const Mat3&) const { return std::nullopt; }
   Pose poseInTransform() const override { return offset(); }
   void follow(const Matrix& world) override;
 

@@ -49,6 +49,7 @@ class BoxCollider : public ConvexCollider, public IRobotBox {
  public:
   static void describe(Description<BoxCollider>& d);
   std::optional<engine::ShapeDescription> shape() const override;
+  std::optional<Vec3> halfExtent(const Mat3& turned) const override { return Vec3(turned.cwiseAbs() * (lengths_ / 2)); }
 
   Leaf& leaf() override { return *this; }
   Pose pose() const override { return geomPose(); }
@@ -71,6 +72,7 @@ class SphereCollider : public ConvexCollider {
  public:
   static void describe(Description<SphereCollider>& d);
   std::optional<engine::ShapeDescription> shape() const override;
+  std::optional<Vec3> halfExtent(const Mat3&) const override { return Vec3(Vec3::Constant(radius_)); }
 
  private:
   double radius() const { return radius_; }
@@ -89,6 +91,11 @@ class LongCollider : public ConvexCollider {
     s.radius = radius();
     s.length = length();
     return s;
+  }
+  std::optional<Vec3> halfExtent(const Mat3& turned) const override {
+    const Vec3 z = turned.col(2).cwiseAbs();
+    if constexpr (S == engine::Shape::capsule) return Vec3(z * (length() / 2) + Vec3::Constant(radius()));
+    else return Vec3(z * (length() / 2) + radius() * (Vec3::Ones() - z.cwiseProduct(z)).cwiseMax(0).cwiseSqrt());
   }
 
  protected:

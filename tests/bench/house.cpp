@@ -66,6 +66,7 @@ void House::build() {
     lua.run(kBoxes, "boxes");
   } else {
     for (const char* port : {"agents", "monitors"}) lua.addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+    lua.addOverride("webPort", 0);
     if (setup_.solver != "dense") lua.addOverride("solver", setup_.solver);
     if (setup_.world.kind == World::Kind::spheres) lua.addOverride("agents", setup_.world.count);
     lua.runConfig(setup_.world.kind == World::Kind::spheres ? "crowd.lua" : "soccer.lua");

@@ -64,6 +64,7 @@ class Match {
     kernel_.lua().addFolder(share / "lua");
     kernel_.lua().run(fmt::format("host = {{ share = \"{}\", scenePaths = {{}} }}", share.string()), "bench");
     for (const char* port : {"agents", "monitors"}) kernel_.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+    kernel_.lua().addOverride("webPort", 0);
     kernel_.lua().addOverride("monitorLog", "/dev/null");
     kernel_.lua().runConfig("soccer.lua");
     simulation_ = &kernel_.root().require<Leaf>("/sys/server/simulation");
