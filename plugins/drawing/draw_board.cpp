@@ -39,7 +39,7 @@ class Recorder {
   std::string packet_;
 };
 
-int byteOf(const Drawing& text) { return text.number - 1 + (text.right ? 128 : 0); }
+std::size_t byteOf(const Drawing& text) { return static_cast<std::size_t>(text.number - 1 + (text.right ? 128 : 0)); }
 }  // namespace
 
 std::size_t DrawBoard::weight(const std::vector<Drawing>& shapes) {
@@ -111,19 +111,33 @@ std::size_t DrawBoard::show(std::string_view set, std::vector<Drawing> shapes) {
 void DrawBoard::setAgentText(const Drawing& text) {
   const std::size_t i = indexOf(kAgents);
   if (i == shown_.size()) return;
-  std::vector<Drawing> texts = shown_[i].shapes;
-  std::erase_if(texts, [&](const Drawing& d) { return byteOf(d) == byteOf(text); });
-  if (!text.text.empty()) texts.push_back(text);
-  if (texts.empty() && shown_[i].shapes.empty()) return;
-  labelled_.set(static_cast<std::size_t>(byteOf(text)));
-  points_ += weight(texts);
-  replace(i, std::move(texts));
+  std::vector<Drawing>& texts = shown_[i].shapes;
+  std::uint16_t& place = place_[byteOf(text)];
+  if (text.text.empty()) {
+    if (place == 0) return;
+    if (place < texts.size()) {  // the last one takes its place
+      place_[byteOf(texts.back())] = place;
+      texts[place - 1u] = std::move(texts.back());
+    }
+    texts.pop_back();
+    place = 0;
+    --points_;
+  } else if (place > 0) {
+    texts[place - 1u] = text;
+  } else {
+    texts.push_back(text);
+    place = static_cast<std::uint16_t>(texts.size());
+    ++points_;
+  }
+  labelled_.set(byteOf(text));
+  shown_[i].version = ++version_;
 }
 
 void DrawBoard::clear() {
   for (auto& shapes : next_) points_ -= weight(shapes), shapes.clear();
   for (std::size_t i = 0; i < shown_.size(); ++i)
     if (!shown_[i].shapes.empty()) replace(i, {});
+  place_ = {};
 }
 
 /// A swap concerns all sets whose names begin so. In order of name these follow at once: what a swap took from them is drawn again.
@@ -156,8 +170,7 @@ void DrawBoard::record(std::uint64_t since, std::string& out) const {
     none.kind = Drawing::Kind::agentText;
     none.right = i >= 128;
     none.number = static_cast<int>(i % 128) + 1;
-    const auto text = std::find_if(agents->shapes.begin(), agents->shapes.end(), [&](const Drawing& d) { return byteOf(d) == byteOf(none); });
-    write(writeDrawing, text == agents->shapes.end() ? none : *text, "");
+    write(writeDrawing, place_[i] == 0 ? none : agents->shapes[place_[i] - 1u], "");
   }
 }
 

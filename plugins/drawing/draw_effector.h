@@ -24,6 +24,7 @@ class DrawEffector : public Effector {
     std::vector<Drawing> shapes;
     for (const Element e : action) {
       if (!e.isList() || e.head() == "set") continue;
+      if (shapes.size() == drawing::DrawBoard::kMostShapes) return fmt::format("(draw): expected at most {} shapes.", shapes.size());
       if (std::string wrong = drawing::readShape(e, shapes.emplace_back()); !wrong.empty()) return "(draw): " + wrong + ".";
     }
     server->show(setOf(action), std::move(shapes));

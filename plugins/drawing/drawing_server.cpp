@@ -4,12 +4,13 @@
 
 #include <array>
 #include <boost/asio/buffer.hpp>
+#include <chrono>
 
 #include "draw_packet.h"
 #include "spark/error.h"
 
-// The port is open to whoever can reach it, so nothing that comes through it may harm the match: a poll takes so many packets and no more
-// (what comes faster the system drops), packets are read with care, and what there can be to be shown is limited.
+// The port is open to whoever can reach it, so nothing that comes through it may harm the match: a poll takes so many packets, for so
+// long, and no more (what comes faster the system drops), packets are read with care, and what there can be to be shown is limited.
 
 namespace spark {
 
@@ -18,6 +19,7 @@ using boost::system::error_code;
 
 namespace {
 constexpr int kPacketsPerPoll = 64;
+constexpr std::chrono::microseconds kTimePerPoll(500);
 constexpr std::size_t kLongestPacket = 2048;  // bytes; the installed base's viewer takes 512
 constexpr std::size_t kLongestForwarded = 512;
 }  // namespace
@@ -105,7 +107,8 @@ void DrawingServer::poll() {
   if (!opened_) open();
   if (!in_) return;
   std::array<char, kLongestPacket> bytes;
-  for (int i = 0; i < kPacketsPerPoll; ++i) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < kPacketsPerPoll && std::chrono::steady_clock::now() - begin < kTimePerPoll; ++i) {
     Udp::endpoint from;
     error_code ec;
     const std::size_t n = in_->receive_from(asio::buffer(bytes), from, 0, ec);
