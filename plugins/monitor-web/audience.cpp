@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 // Few rates, so that there are few lanes.
-constexpr std::array<double, 6> kRates{1, 2, 5, 10, 25, 50};
+constexpr std::array<double, 7> kRates{1, 2, 5, 10, 20, 25, 50};
 constexpr double kAllowance = 400, kAllowanceRate = 200;  // messages a viewer may send at once, and a second
 constexpr auto kSceneApart = milliseconds(250);           // while a scene keeps changing it is described so often at most
 

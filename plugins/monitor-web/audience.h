@@ -26,7 +26,7 @@ namespace spark::web {
 struct AudienceSettings {
   std::string token;         ///< of the referee
   double step = 0.02;        ///< s, of a cycle
-  double rate = 25;          ///< frames a second, unless a viewer asks for another
+  double rate = 20;          ///< frames a second, unless a viewer asks for another
   double stallTimeout = 10;  ///< s; a viewer that takes nothing for so long is closed
 };
 
