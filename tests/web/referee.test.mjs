@@ -9,6 +9,20 @@ import { shoot } from "./support/pictures.mjs";
 const token = "whistle-of-the-tests";
 const ruled = [...sphereMatch, "--set", `webToken=${token}`, "--set", "Soccer.AutomaticKickOff=false"];
 
+/** The host's answer to a request on a connection of its own; runs in the page. */
+function ask(request) {
+  return new Promise((heard) => {
+    const socket = new WebSocket(new URL("stream", location.href.replace(/^http/, "ws")));
+    socket.onopen = () => socket.send(JSON.stringify({ ...request, id: 1 }));
+    socket.onmessage = ({ data }) => {
+      const message = typeof data === "string" ? JSON.parse(data) : {};
+      if (message.type !== "answer") return;
+      socket.close();
+      heard(message);
+    };
+  });
+}
+
 test("without the token there is no console, and the host refuses commands", async (t) => {
   const host = await startHost(t, ...ruled);
   const page = await openPage(t, `${host.url}?panel=referee`);
@@ -19,19 +33,15 @@ test("without the token there is no console, and the host refuses commands", asy
   await page.locator('[data-testid="token-field"][aria-invalid="true"]').waitFor();
   await until(page, "that it is no referee", (s) => !s.referee);
 
-  const answer = await page.evaluate(
-    () =>
-      new Promise((heard) => {
-        const socket = new WebSocket(new URL("stream", location.href.replace(/^http/, "ws")));
-        socket.onopen = () => socket.send(JSON.stringify({ do: "command", id: 1, text: "(score 5 5)" }));
-        socket.onmessage = ({ data }) => {
-          const message = typeof data === "string" ? JSON.parse(data) : {};
-          if (message.type === "answer") heard(message);
-        };
-      }),
-  );
-  assert.equal(answer.ok, false);
-  assert.match(answer.error, /referee|token/i);
+  for (const request of [
+    { do: "command", text: "(score 5 5)" },
+    { do: "set", path: "/sys/server/gamecontrol/GameStateAspect", property: "score", value: "{5, 5}" },
+    { do: "call", path: "/sys/server/gamecontrol/GameStateAspect", method: "setScores", arguments: [5, 5] },
+  ]) {
+    const answer = await page.evaluate(ask, request);
+    assert.equal(answer.ok, false, request.do);
+    assert.match(answer.error, /referee|token/i);
+  }
   const later = await until(page, "that time goes on", (s) => s.time > 1);
   assert.deepEqual(later.score, [0, 0]);
 });

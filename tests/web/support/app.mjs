@@ -32,8 +32,11 @@ export async function untilText(page, id, holds, argument) {
   return page.evaluate(shown);
 }
 
-/** Waits until what is shown now has been drawn: pictures of a match that stands still are drawn once only. */
+/** Waits until what is shown now has been drawn, with all its pixels: pictures of a match that stands still are drawn once only. */
 export async function drawn(page) {
   await until(page, "the first picture", (s) => s.frames > 0);
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
+  await page.evaluate(() => {
+    window.spark.app.stage.adaptive = false;
+    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))));
+  });
 }
