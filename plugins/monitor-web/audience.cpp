@@ -72,7 +72,7 @@ void Audience::arrived(const std::shared_ptr<Viewer>& viewer, Clock::time_point 
   exchange_.watched.store(true, std::memory_order_relaxed);
   viewer->sendText(helloMessage(settings_.step, settings_.rate));
   if (!status_.empty()) viewer->sendText(status_);
-  statusDue_ = now;
+  if (now - statusAt_ > seconds(1)) statusDue_ = now;
 }
 
 void Audience::left(Viewer& viewer) {

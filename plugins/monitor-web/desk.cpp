@@ -13,7 +13,7 @@ namespace {
 using std::chrono::duration;
 using std::chrono::milliseconds;
 
-constexpr double kMostSaved = 0.05;               // s; what is not used up is kept up to here
+constexpr double kMostSaved = 0.002;              // s; what is not used up is kept up to here: no cycle waits much longer
 constexpr std::size_t kMostWatches = 1024, kMostWatchesEach = 64;
 constexpr auto kWatchApart = milliseconds(100);   // a watched property is looked at so often at most
 constexpr auto kDrawingsApart = milliseconds(100);
