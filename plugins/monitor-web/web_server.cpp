@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "desk.h"
 #include "referee.h"
 #include "service.h"
@@ -15,7 +17,7 @@ constexpr std::size_t kShortestToken = 16;
 constexpr auto kStandsStill = std::chrono::milliseconds(300);
 }
 
-WebServer::WebServer() = default;
+WebServer::WebServer() : viewerLacks_(SPARK_VIEWER_LACKS) {}
 WebServer::~WebServer() = default;
 
 void WebServer::describe(Description<WebServer>& d) {
@@ -80,6 +82,9 @@ void WebServer::listen() {
   try {
     open();
     kernel().log().info("Web: {} (referee: {})", link(), refereeLink());
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(std::filesystem::path(viewerFolder_) / "index.html", none))
+      kernel().log().info("Web: the viewer was not built{}{}; a plain page with the live numbers stands in for it.", viewerLacks_.empty() ? "" : ", missing is ", viewerLacks_);
   } catch (const std::exception& e) {
     kernel().log().warning("Nobody can watch in a browser: {}", e.what());
   }
