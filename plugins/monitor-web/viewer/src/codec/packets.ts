@@ -13,6 +13,8 @@ import type { Colour, Drawing } from "../model";
 const kNumber = 6;
 /// Limits of what agents may draw; what is more is left out.
 const kMostShapes = 20_000, kMostSets = 2000;
+/// Bytes; recorders write some 500.
+const kLongestPacket = 8192;
 
 /// The set that holds texts at agents, which know no swap.
 export const kAgentTexts = "agents";
@@ -162,7 +164,7 @@ export function readPackets(line: Uint8Array, from: number, end: number): Uint8A
     const open = line.indexOf(0x5b, at), close = line.indexOf(0x5d, at);
     if (open < 0 || close < open || close >= end) break;
     const numbers = decoder.decode(line.subarray(open + 1, close)).split(",").map(Number);
-    if (numbers.every((n) => Number.isInteger(n) && n >= -128 && n <= 255)) packets.push(Uint8Array.from(numbers, (n) => n & 255));
+    if (numbers.length <= kLongestPacket && numbers.every((n) => Number.isInteger(n) && n >= -128 && n <= 255)) packets.push(Uint8Array.from(numbers, (n) => n & 255));
     at = close + 1;
   }
   return packets;

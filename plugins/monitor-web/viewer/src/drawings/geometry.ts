@@ -75,10 +75,14 @@ export function viewCone(matrix: readonly number[], horizontal: number, vertical
   for (const h of [-half, half]) for (const v of [-up, up]) line(eye, at(h, v));
 }
 
+/// Cutting off ears takes the cube of the corners: polygons with more are taken to be convex.
+const kMostEars = 64;
+
 /// Triangles of a flat polygon, convex or not: indices into its points. Points that lie in one line give nothing.
 export function triangulate(points: readonly Vec3[]): number[] {
   const n = normal(points);
   if (!n) return [];
+  if (points.length > kMostEars) return points.slice(2).flatMap((_, i) => [0, i + 1, i + 2]);
   // Seen along the greatest part of the normal, counter-clockwise.
   const axis = Math.abs(n[0]) > Math.abs(n[1]) ? (Math.abs(n[0]) > Math.abs(n[2]) ? 0 : 2) : Math.abs(n[1]) > Math.abs(n[2]) ? 1 : 2;
   const [u, v] = [(axis + 1) % 3, (axis + 2) % 3] as [0 | 1 | 2, 0 | 1 | 2];

@@ -22,6 +22,8 @@ export class Recording implements Inspectable {
   private readonly watchers = new Set<Watcher>();
   private paths: string[] = [];
   private indices = new Map<string, number>();
+  /// By the node above, -1 at the top.
+  private brothers = new Map<number, number[]>();
   private version = -1;
 
   constructor(private readonly world: World) {}
@@ -75,7 +77,12 @@ export class Recording implements Inspectable {
     this.version = this.world.versions.scene;
     const robots = new Map(this.world.robots.map((r) => [r.node, r]));
     const brothers = new Map<number, number[]>();
-    this.world.nodes.forEach((n, i) => brothers.set(n.parent, [...(brothers.get(n.parent) ?? []), i]));
+    this.world.nodes.forEach((n, i) => {
+      const known = brothers.get(n.parent);
+      if (known) known.push(i);
+      else brothers.set(n.parent, [i]);
+    });
+    this.brothers = brothers;
     this.paths = new Array<string>(this.world.nodes.length).fill("");
     this.indices.clear();
     const name = (above: string, nodes: readonly number[]) => {
@@ -99,7 +106,7 @@ export class Recording implements Inspectable {
 
   private childrenOf(path: string): string[] {
     const above = path === kScene ? -1 : this.indexOf(path);
-    return this.paths.filter((_, i) => this.world.nodes[i]!.parent === above);
+    return (this.brothers.get(above) ?? []).map((i) => this.paths[i]!);
   }
 
   private indexOf(path: string): number {

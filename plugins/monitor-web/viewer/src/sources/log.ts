@@ -22,6 +22,10 @@ const kAllSwapped = 6;
 const kUsual = 0.2;
 /// More than so many usual times is no pause between two records.
 const kLikely = 10;
+/// No monitor waits longer between two records [ms].
+const kLongestStep = 60_000;
+/// More records and events than a season has; what is more is left out.
+const kMostRecords = 4_000_000, kMostEvents = 20_000;
 
 export interface LogRecord {
   /// Bytes of the line in the file, draw commands included.
@@ -145,10 +149,10 @@ class Indexer {
     // The scene must be known before its changes are.
     if (!head) return this.passOver();
     this.partial = true;
-    if ((!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full)) return this.passOver();
+    if ((!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full) || this.records.length >= kMostRecords) return this.passOver();
     takeEntries(this.environment, head.environment, head.full);
     const gameTime = Number(this.environment.get("time") ?? NaN);
-    for (const event of this.eventReader.take(this.environment, head.environment, gameTime || 0)) this.found.push({ event, record: this.records.length });
+    for (const event of this.eventReader.take(this.environment, head.environment, gameTime || 0)) if (this.found.length < kMostEvents) this.found.push({ event, record: this.records.length });
     if (offset + from - this.pageStart >= kPage || this.records.length === 0) {
       this.pageStart = offset + from;
       if (this.records.length > 0) ++this.page;
@@ -196,7 +200,7 @@ function usualStep(records: LogRecord[]): number {
   let best = 0, usual = 0;
   for (let k = 1; k < records.length; ++k) {
     const step = Math.round(1000 * (records[k]!.gameTime - records[k - 1]!.gameTime));
-    if (!(step > 0)) continue;
+    if (!(step > 0 && step <= kLongestStep)) continue;
     const count = (counts.get(step) ?? 0) + 1;
     counts.set(step, count);
     if (count > best) [best, usual] = [count, step];

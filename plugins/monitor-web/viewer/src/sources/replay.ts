@@ -57,6 +57,8 @@ export class Replay implements ReplaySource {
   private readonly board = new DrawingBoard();
   /// The first record whose drawings are not on the board.
   private drawn = 0;
+  /// Packets of that record that are on it already.
+  private taken = 0;
   private position: number;
   private running = false;
   private rate = 1;
@@ -132,7 +134,9 @@ export class Replay implements ReplaySource {
     }
     const record = this.recordAt(this.position);
     this.late = !this.reach(record);
-    if (!this.late) this.show(record);
+    if (this.late) return;
+    this.show(record);
+    this.late = this.drawn <= record;
   }
 
   close(): void {
@@ -259,7 +263,6 @@ export class Replay implements ReplaySource {
       this.blend.prepare(from.scene, from.poses, to.poses, comparable, begin.free && end.free, world.local);
       this.showVisibility(from);
       this.showEvents(begin.clock);
-      this.showDrawings(record);
       if (world.environment !== from.environment) {
         world.environment = from.environment;
         ++world.versions.environment;
@@ -268,6 +271,7 @@ export class Replay implements ReplaySource {
       this.shownShare = 0;
       ++world.versions.frame;
     }
+    if (this.drawn !== record + 1) this.showDrawings(record);
     const share = seconds > 0 ? Math.min(1, Math.max(0, (this.position - begin.clock) / seconds)) : 0;
     if (share !== this.shownShare) {
       this.shownShare = share;
@@ -289,12 +293,19 @@ export class Replay implements ReplaySource {
     let begin = record;
     while (begin > (back ? 0 : this.drawn) && !records[begin]!.redrawn) --begin;
     let changed = false;
-    if (back || records[begin]!.redrawn) {
+    const within = begin === this.drawn && this.taken > 0;
+    if (back || (records[begin]!.redrawn && !within)) {
       changed = board.shown.size > 0;
       board.clear();
       this.drawn = begin;
+      this.taken = 0;
     }
-    for (; this.drawn <= record; ++this.drawn) for (const packet of records[this.drawn]!.packets) changed = board.take(packet) || changed;
+    const began = performance.now();
+    while (this.drawn <= record && performance.now() - began < kBudget) {
+      const packet = records[this.drawn]!.packets[this.taken++];
+      if (packet) changed = board.take(packet) || changed;
+      else [this.drawn, this.taken] = [this.drawn + 1, 0];
+    }
     if (!changed) return;
     world.drawings = new Map(board.shown);
     ++world.versions.drawings;

@@ -45,6 +45,8 @@ function findBall(nodes: SceneNode[]): number {
 const kSide = /^mat(Left|Right)(\d*)$/;
 const kNumber = /^matNum(\d+)$/;
 const kBody = /(^|\/)[^/]*body[^/]*\.obj$/;
+/// More robots than any field holds: what else looks like one is not numbered, selected or labelled.
+const kMostRobots = 2048;
 const kHead = /(^|\/)[^/]*head[^/]*\.obj$/;
 
 interface Found {
@@ -61,13 +63,13 @@ function findRobots(nodes: SceneNode[], top: Int32Array): Robot[] {
     if (node.kind !== "mesh" || !node.materials) return;
     const team = node.materials.some((m) => m === "matTeam" || kSide.test(m));
     const robot = found.get(top[i]!) ?? (team ? { side: null, number: 0, node: top[i]!, torso: -1, head: -1 } : undefined);
-    if (!robot) return;
+    if (!robot || (found.size >= kMostRobots && !found.has(robot.node))) return;
     found.set(robot.node, robot);
     node.materials.forEach((material) => readMaterial(robot, material));
     if (robot.torso < 0 && kBody.test(node.load ?? "")) robot.torso = bearer(nodes, node);
     if (robot.head < 0 && kHead.test(node.load ?? "")) robot.head = bearer(nodes, node);
   });
-  for (const robot of found.values()) if (robot.torso < 0) robot.torso = firstBearer(nodes, top, robot.node);
+  findBearers(nodes, top, found);
   return named(nodes, [...found.values()]);
 }
 
@@ -85,10 +87,13 @@ export function bearer(nodes: SceneNode[], mesh: SceneNode): number {
   return nodes[above]!.parent >= 0 ? above : own;
 }
 
-/// Spheres and the like: the first transform that carries a mesh in team colours.
-function firstBearer(nodes: SceneNode[], top: Int32Array, group: number): number {
-  const mesh = nodes.find((n, i) => top[i] === group && n.kind === "mesh" && n.materials?.some((m) => m === "matTeam" || kSide.test(m)));
-  return mesh && mesh.parent >= 0 ? mesh.parent : group;
+/// Spheres and the like have no torso: the first transform that carries a mesh in team colours is it.
+function findBearers(nodes: SceneNode[], top: Int32Array, found: Map<number, Found>): void {
+  const first = new Map<number, number>();
+  nodes.forEach((n, i) => {
+    if (n.kind === "mesh" && !first.has(top[i]!) && n.materials?.some((m) => m === "matTeam" || kSide.test(m))) first.set(top[i]!, n.parent);
+  });
+  for (const robot of found.values()) if (robot.torso < 0) robot.torso = Math.max(first.get(robot.node) ?? -1, -1) >= 0 ? first.get(robot.node)! : robot.node;
 }
 
 /// Spheres wear no numbers: they get the lowest free ones in their order.

@@ -25,7 +25,7 @@ export async function unpacked(packed: ReadableStream<Uint8Array>): Promise<Read
     cancel: (reason) => reader.cancel(reason),
   });
   if (!isPacked(bytes)) return whole;
-  return whole.pipeThrough(new DecompressionStream("gzip") as unknown as ReadableWritablePair<Uint8Array, Uint8Array>);
+  return limited(whole.pipeThrough(new DecompressionStream("gzip") as unknown as ReadableWritablePair<Uint8Array, Uint8Array>), kMostUnpacked);
 }
 
 /// Tells how much went through: 0..1 of `total` bytes; nothing when the total is not known.
@@ -38,6 +38,23 @@ export function counted(stream: ReadableStream<Uint8Array>, total: number, heard
         passed += chunk.length;
         heard(Math.min(1, passed / total));
         controller.enqueue(chunk);
+      },
+    }),
+  );
+}
+
+/// Unpacked bytes that are taken: what claims to be more was made to fill the disk.
+const kMostUnpacked = 8 * 2 ** 30;
+
+/// Fails when more than `most` bytes come.
+export function limited(stream: ReadableStream<Uint8Array>, most: number): ReadableStream<Uint8Array> {
+  let passed = 0;
+  return stream.pipeThrough(
+    new TransformStream<Uint8Array, Uint8Array>({
+      transform(chunk, controller) {
+        passed += chunk.length;
+        if (passed > most) controller.error(new Error(`The log is too long: unpacked it has more than ${(most / 2 ** 30).toFixed(0)} GB.`));
+        else controller.enqueue(chunk);
       },
     }),
   );

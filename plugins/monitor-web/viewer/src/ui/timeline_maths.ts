@@ -41,9 +41,10 @@ export function marksOf(events: readonly GameEvent[], start: number, end: number
 
 const kSteps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600];
 
-/// Round times for the scale: at most `most` of them.
+/// Round times for the scale: at most `most` of them, and one.
 export function ticksOf(start: number, end: number, most: number): number[] {
-  const step = kSteps.find((s) => (end - start) / s <= most) ?? 7200;
+  const longest = 7200 * Math.max(1, Math.ceil((end - start) / Math.max(1, most) / 7200));
+  const step = kSteps.find((s) => (end - start) / s <= most) ?? longest;
   const ticks: number[] = [];
   for (let t = Math.ceil(start / step) * step; t <= end; t += step) ticks.push(t);
   return ticks;

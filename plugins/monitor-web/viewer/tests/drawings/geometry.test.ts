@@ -120,3 +120,12 @@ describe("colours of depth", () => {
     expect(rampColour(NaN)).toEqual(rampColour(0));
   });
 });
+
+describe("a polygon of very many corners", () => {
+  it("is taken to be convex, so that it costs no time", () => {
+    const corners = Array.from({ length: 255 }, (_, i): [number, number, number] => [Math.cos((2 * Math.PI * i) / 255), Math.sin((2 * Math.PI * i) / 255), 0]);
+    const triangles = triangulate(corners);
+    expect(triangles).toHaveLength(3 * 253);
+    expect(triangles.slice(-3)).toEqual([0, 253, 254]);
+  });
+});

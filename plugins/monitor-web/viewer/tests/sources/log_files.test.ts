@@ -36,6 +36,26 @@ describe("lines that make no sense", () => {
     expect((await openReplay(new Blob([`${whole(0)}\r\n\r\n${moved(0.2, 1)}`]))).end).toBe(0.2);
   });
 
+  test("clocks that leap for ever do not make the log that long", async () => {
+    const replay = await open(whole(0), moved(1e15, 1), moved(2e15, 2), moved(3e306, 3));
+    expect(replay.end).toBeCloseTo(0.6, 5);
+  });
+
+  test("no number of events, robots or drawings holds up the page", async () => {
+    const fouls = Array.from({ length: 400 }, (_, k): List => ["foul", 1, 2, `team${k}`, k]);
+    const many = await open(whole(0), ...Array.from({ length: 60 }, (_, k) => moved(k + 1, 0, fouls.map((f) => [...f.slice(0, 4), 1000 * k + Number(f[4])]))));
+    expect(many.timeline.length).toBeLessThanOrEqual(20_000);
+
+    const crowd = Array.from({ length: 20_000 }, () => "(nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1)(nd StaticMesh (load StdUnitBox)(sMat matLeft)))").join("");
+    expect((await open(`((time 0))(RSG 0 1)(${crowd})`)).world.robots).toHaveLength(2048);
+
+    const swaps = `[${"0, 0, 0, ".repeat(2000)}0]`.repeat(40);
+    const sets = Array.from({ length: 300 }, (_, k) => `[1, 2, ${"49, ".repeat(24)}255, 255, 255, ${97 + (k % 20)}, ${97 + Math.floor(k / 20)}, 0]`).join("");
+    const drawn = await open(whole(0), sets + swaps + moved(0.2, 1), moved(0.4, 2));
+    await seek(drawn, 0.4);
+    expect(drawn.busy).toBe(false);
+  });
+
   test("the match begins with the first whole scene", async () => {
     const replay = await open(moved(0, 1), whole(0.2).replace("models/soccerball.obj", ""), moved(0.4, 2), whole(0.6, 7), moved(0.8, 8));
     expect([replay.start, replay.end, replay.damaged]).toEqual([0.4, 0.6, 3]);

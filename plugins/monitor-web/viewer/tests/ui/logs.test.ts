@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { counted, unpacked, unpackedFile } from "../../src/ui/logs";
+import { counted, limited, unpacked, unpackedFile } from "../../src/ui/logs";
 
 const text = "((time 0))(RSG 0 1)()\n".repeat(500);
 const packed = () => new Response(new Blob([text]).stream().pipeThrough(new CompressionStream("gzip"))).blob();
@@ -37,5 +37,12 @@ describe("logs", () => {
     const blob = new Blob(["123456"]);
     await read(counted(await trickle(blob), blob.size, (share) => shares.push(share)));
     expect(shares.map((s) => Math.round(s * 6))).toEqual([1, 2, 3, 4, 5, 6]);
+  });
+});
+
+describe("a log that is too long", () => {
+  it("is refused while it comes", async () => {
+    expect(await read(limited(await trickle(new Blob(["12345"])), 5))).toBe("12345");
+    await expect(read(limited(await trickle(new Blob(["123456"])), 5))).rejects.toThrow("too long");
   });
 });

@@ -39,6 +39,7 @@ describe("the scale", () => {
     expect(ticksOf(0, 600, 8)).toEqual([0, 120, 240, 360, 480, 600]);
     expect(ticksOf(3.2, 20, 5)).toEqual([5, 10, 15, 20]);
     expect(ticksOf(0, 1e6, 4)).not.toHaveLength(0);
+    for (const end of [1e6, 1e9, 1e12]) expect(ticksOf(0, end, 8).length).toBeLessThanOrEqual(9);
   });
 });
 
