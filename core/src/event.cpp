@@ -15,7 +15,7 @@ namespace spark {
 namespace {
 constexpr std::size_t kFar = 12, kNear = 6;  // handlers
 constexpr std::size_t kNode = 384;          // bytes that a handler with nothing to do looks at
-constexpr std::size_t kParent = 320;        // and of the node above it, which many act on
+constexpr std::size_t kAbove = 64;          // and of the class of the node above it, on which controllers act
 }  // namespace
 
 void Channel::run(Entry& entry, const Event& event) {
@@ -71,7 +71,7 @@ void Channel::emit(const Event& event) {
   ++depth_;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (i + kFar < entries_.size()) prefetch(entries_[i + kFar].node, kNode);
-    if (const Leaf* next = i + kNear < entries_.size() ? entries_[i + kNear].node : nullptr) prefetch(next->parent(), kParent);
+    if (const Leaf* next = i + kNear < entries_.size() ? entries_[i + kNear].node : nullptr; next && next->parent()) prefetch(next->parent() + 1, kAbove);
     if (entries_[i].node) run(entries_[i], event);
   }
   --depth_;
