@@ -12,7 +12,8 @@ namespace spark::control {
 using Json = nlohmann::ordered_json;
 
 namespace {
-constexpr int kMaxNodes = 100000;  // of one tree answer
+// Of one tree answer, below the node that was asked for; for those who only look, who must not hold up the match.
+constexpr std::size_t kMostNodes = 100000, kMostNodesToLookAt = 2000;
 constexpr int kMaxDepth = 64;      // of lists in a value
 
 Json toJson(const Value& v) {
@@ -72,22 +73,22 @@ Json describe(const Leaf& leaf, const Property& p) {
   return out;
 }
 
-Json describeTree(const Leaf& leaf, int depth, int& budget) {
+/// What `left` nodes do not suffice for is told as what is too deep is: how many there are.
+Json describeTree(const Leaf& leaf, int depth, std::size_t& left) {
   Json out{{"name", leaf.name()}, {"class", leaf.classObject()->name()}, {"doc", leaf.classObject()->doc()}};
   const Node* node = leaf.asNode();
   if (!node || node->children().empty()) return out;
   Json& children = out["children"] = Json::array();
-  if (depth == 0) return out["more"] = node->children().size(), out;
-  for (const auto& c : node->children()) {
-    if (--budget < 0) throw Error("the tree has more than " + std::to_string(kMaxNodes) + " nodes below that path: ask for less depth");
-    children.push_back(describeTree(*c, depth - 1, budget));
-  }
+  if (depth == 0 || node->children().size() > left) return out["more"] = node->children().size(), out;
+  left -= node->children().size();
+  for (const auto& c : node->children()) children.push_back(describeTree(*c, depth - 1, left));
   return out;
 }
 
-Json tree(Kernel& kernel, const Json& request) {
-  int budget = kMaxNodes;
-  return {{"ok", true}, {"tree", describeTree(nodeOf(kernel, request), request.value("depth", -1), budget)}};
+Json tree(Kernel& kernel, const Json& request, std::size_t most) {
+  const Leaf& top = nodeOf(kernel, request);
+  std::size_t left = std::max(most, top.asNode() ? top.asNode()->children().size() : 0);
+  return {{"ok", true}, {"tree", describeTree(top, request.value("depth", -1), left)}};
 }
 
 Json get(Kernel& kernel, const Json& request) {
@@ -164,7 +165,7 @@ std::string dispatch(Kernel& kernel, const Leaf& self, const Json& request, Watc
   const std::string what = textOf(request, "do");
   if (!mayChange && (what == "set" || what == "call"))
     throw Error("'" + what + "' changes the match, which only the referee may: log in with the token that the host printed at its start");
-  if (what == "tree") return dump(tree(kernel, request));
+  if (what == "tree") return dump(tree(kernel, request, mayChange ? kMostNodes : kMostNodesToLookAt));
   if (what == "get") return dump(get(kernel, request));
   if (what == "set") return dump(set(kernel, request));
   if (what == "call") return dump(call(kernel, self, request));

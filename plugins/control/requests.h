@@ -2,7 +2,8 @@
 /// \file
 /// What sparkctl and other clients may ask: JSON in, JSON out, answered from the tree's own descriptions.
 ///
-///     {"do":"tree","path":"/sys","depth":2}         {"ok":true,"tree":{"name","class","doc","children":[...]}}
+///     {"do":"tree","path":"/sys","depth":2}         {"ok":true,"tree":{"name","class","doc","children":[...]}}; "more": so many
+///                                                   children that are not told, for depth or number
 ///     {"do":"get","path":"/x","property":"step"}    {"ok":true,"properties":[{"name","value","text","type","unit","doc",...}]}
 ///     {"do":"get","path":"/x"}                      all properties of the node
 ///     {"do":"set","path","property","value"}        as get, after the change

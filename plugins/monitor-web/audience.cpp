@@ -154,6 +154,10 @@ void Audience::takeAnswers() {
       takeStatus(std::move(answer.text));
       continue;
     }
+    if (!answer.viewers.empty()) {
+      tellSome(std::move(answer));
+      continue;
+    }
     Viewer* viewer = find(answer.viewer);
     if (!viewer) continue;
     if (!answer.text.empty()) viewer->sendText(std::move(answer.text));
@@ -180,6 +184,12 @@ void Audience::whenStatus(Clock::time_point now, std::function<void(const std::s
 void Audience::broadcast(std::string text) {
   const Message message{Message::Kind::text, std::make_shared<const std::string>(std::move(text))};
   for (const auto& [id, viewer] : viewers_) viewer->send(message);
+}
+
+void Audience::tellSome(Answer answer) {
+  const Message message{Message::Kind::text, std::make_shared<const std::string>(std::move(answer.text))};
+  for (const std::uint64_t id : answer.viewers)
+    if (Viewer* viewer = find(id)) viewer->send(message);
 }
 
 void Audience::takeSnapshot(Clock::time_point now) {

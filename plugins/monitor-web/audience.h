@@ -85,6 +85,7 @@ class Audience {
   void takeStatus(std::string text);
   void giveUpOnStatus(Clock::time_point now);
   void broadcast(std::string text);
+  void tellSome(Answer answer);
 
   Exchange& exchange_;
   Log& log_;

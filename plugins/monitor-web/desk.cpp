@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "api/monitor.h"
 #include "drawings_message.h"
@@ -49,7 +50,7 @@ void Desk::work(const Settings& settings, int spectators) {
     paid([&] { tell(Answer::Kind::reply, question.viewer, answer(question, settings)); });
   }
   lookAtWatches(now);
-  if (!artists_.empty() && now >= drawingsDue_ && account_ > 0) paid([&] { tellDrawings(now); });
+  if (!artists_.empty() && now >= drawingsDue_) tellDrawings(now);
   if (std::exchange(told_, false)) exchange_.wake();
 }
 
@@ -135,12 +136,25 @@ void Desk::tellDrawings(Clock::time_point now) {
   drawingsDue_ = now + kDrawingsApart;
   const auto* drawings = kernel_.root().find<IDrawings>("/sys/server/drawing");
   if (!drawings) return;
-  const std::uint64_t version = drawings->version();
-  for (Artist& artist : artists_) {
-    if (artist.version == version) continue;
-    tell(Answer::Kind::told, artist.viewer, drawingsMessage(drawings->sets(), artist.version));
-    artist.version = version;
+  while (account_ > 0) {
+    std::optional<std::uint64_t> since;
+    for (const Artist& artist : artists_)
+      if (artist.version != drawings->version()) since = std::min(since.value_or(artist.version), artist.version);
+    if (!since) return;
+    paid([&] { tellArtists(*drawings, *since); });
   }
+}
+
+/// Who was told the same last is told the same now: it is written once for all of them.
+void Desk::tellArtists(const IDrawings& drawings, std::uint64_t since) {
+  Answer answer{Answer::Kind::told, 0, drawingsMessage(drawings.sets(), since)};
+  for (Artist& artist : artists_) {
+    if (artist.version != since) continue;
+    answer.viewers.push_back(artist.viewer);
+    artist.version = drawings.version();
+  }
+  exchange_.answers.put(std::move(answer));
+  told_ = true;
 }
 
 }  // namespace spark::web

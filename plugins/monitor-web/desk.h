@@ -45,6 +45,7 @@ class Desk {
   void startWatch(const Question& question, control::Watch watch);
   void lookAtWatches(Clock::time_point now);
   void tellDrawings(Clock::time_point now);
+  void tellArtists(const IDrawings& drawings, std::uint64_t since);
   void tell(Answer::Kind kind, std::uint64_t viewer, std::string text);
   void refill(Clock::time_point now, double share);
   /// Does something and pays for it.

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "mailbox.h"
 #include "snapshot.h"
@@ -38,6 +39,7 @@ struct Answer {
   enum class Kind { reply, told, status } kind = Kind::reply;  ///< reply: ends a question; told: comes by itself
   std::uint64_t viewer = 0;
   std::string text;  ///< JSON
+  std::vector<std::uint64_t> viewers{};  ///< told: instead of `viewer`, when several get the same
 };
 
 /// Owned by the web server; both sides end before it.

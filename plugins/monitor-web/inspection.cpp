@@ -100,7 +100,10 @@ Json describe(IEye& eye, const Leaf& leaf) {
 /// What an eye's percept says, in the world.
 class Sighted {
  public:
-  explicit Sighted(IEye& eye) : eye_(eye) { eye.sights(truth_); }
+  explicit Sighted(IEye& eye) : eye_(eye) {
+    eye.sights(truth_);
+    std::stable_sort(truth_.begin(), truth_.end(), [](const IEye::Sight& a, const IEye::Sight& b) { return a.name < b.name; });
+  }
 
   /// `(See (B (pol d h v)) (P (team Red) (id 3) (head (pol d h v))) (L (pol d h v) (pol d h v)))`.
   void read(const Element& see) {
@@ -129,8 +132,8 @@ class Sighted {
     Vec3f where;
     if (seen.size() >= kMostSeen || !place(polar, where)) return;
     Json one{{"name", name}, {"seen", json(where)}};
-    const auto at = std::find_if(truth_.begin(), truth_.end(), [&](const IEye::Sight& s) { return s.name == name; });
-    if (at != truth_.end()) one["true"] = json(at->place);
+    const auto at = std::lower_bound(truth_.begin(), truth_.end(), name, [](const IEye::Sight& s, const std::string& n) { return s.name < n; });
+    if (at != truth_.end() && at->name == name) one["true"] = json(at->place);
     seen.push_back(std::move(one));
   }
   void addLine(const Element& from, const Element& to) {
@@ -139,7 +142,7 @@ class Sighted {
   }
 
   IEye& eye_;
-  std::vector<IEye::Sight> truth_;
+  std::vector<IEye::Sight> truth_;  ///< by name
 };
 
 struct Eye {

@@ -25,11 +25,11 @@ constexpr int kSpareDescriptors = 256;  // for agents, monitors, files
 constexpr int kSendBuffer = 131072;     // bytes that the system holds back for a viewer; the rest of what waits is ours to drop
 constexpr auto kAcceptPause = std::chrono::milliseconds(200);
 
-/// As many connections as the process has descriptors for.
+/// As many connections as the process has descriptors for; each may have a file open besides its socket.
 int affordable(int wanted) {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return wanted;
-  return std::min(wanted, std::max(16, static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 1 << 20)) - kSpareDescriptors));
+  return std::min(wanted, std::max(16, (static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 1 << 20)) - kSpareDescriptors) / 2));
 }
 
 ServiceSettings afforded(ServiceSettings s) {

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t kDeepest = 4;  // components below a folder
+constexpr const char* kPacked = "application/gzip";
 
 Reply refusal(unsigned status, std::string text) {
   Reply out;
@@ -85,7 +86,7 @@ std::string typeOf(const fs::path& file) {
                                                                       {".woff2", "font/woff2"},
                                                                       {".log", "text/plain; charset=utf-8"},
                                                                       {".txt", "text/plain; charset=utf-8"},
-                                                                      {".gz", "application/gzip"}}};
+                                                                      {".gz", kPacked}}};
   const std::string extension = lower(file.extension().string());
   for (const auto& [ending, type] : kTypes)
     if (extension == ending) return type;
@@ -150,7 +151,7 @@ Reply Site::page(std::string_view path) const {
     out.isStatus = true;
     return out;
   }
-  if (path.starts_with("/logs/")) return settings_.logs.empty() ? refusal(404, "There are no logs here.") : fileIn(settings_.logs, path.substr(6));
+  if (path.starts_with("/logs/")) return logFile(path.substr(6));
   if (hasViewer()) return fileIn(settings_.viewer, path == "/" ? "index.html" : path.substr(1));
   if (path == "/") {
     out.type = "text/html; charset=utf-8";
@@ -163,6 +164,15 @@ Reply Site::page(std::string_view path) const {
     return out;
   }
   return refusal(404, "There is no such page.");
+}
+
+/// Recorded games come from anywhere: a browser is never to take one for a page or a script of this server.
+Reply Site::logFile(std::string_view name) const {
+  if (settings_.logs.empty()) return refusal(404, "There are no logs here.");
+  Reply out = fileIn(settings_.logs, name);
+  if (out.status == 200) out.type = out.type == kPacked ? kPacked : "text/plain; charset=utf-8";
+  out.keep = false;
+  return out;
 }
 
 Reply Site::fileIn(const fs::path& folder, std::string_view name) const {

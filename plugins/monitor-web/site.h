@@ -50,6 +50,7 @@ class Site {
 
  private:
   Reply page(std::string_view path) const;
+  Reply logFile(std::string_view name) const;
   Reply fileIn(const std::filesystem::path& folder, std::string_view name) const;
   bool hasViewer() const;
   SiteSettings settings_;

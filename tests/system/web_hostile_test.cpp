@@ -1,8 +1,10 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "attack.h"
+#include "temporary_folder.h"
 #include "web_client.h"
 
 // Bad input at the web port of a host with a match going on. After every attack a player who did nothing wrong is still told of a clock that
@@ -206,6 +208,37 @@ TEST_CASE("Who does not read costs a bounded amount and is closed after a while"
   CHECK(s.memory() < before + 64);
   s.mustGoOn();
   for (auto& client : deaf) client->waitForClose();
+  s.mustGoOn();
+  s.mustEndWell();
+}
+
+TEST_CASE("Who asks for files and takes none of them leaves the host enough to open") {
+  constexpr rlim_t kFew = 700;
+  TemporaryFolder folder;
+  folder.write("long.log", std::string(4 << 20, 'x'));
+  rlimit limit{};
+  REQUIRE(getrlimit(RLIMIT_NOFILE, &limit) == 0);
+  REQUIRE(limit.rlim_max >= 2 * kFew);
+  limit.rlim_cur = kFew;
+  REQUIRE(setrlimit(RLIMIT_NOFILE, &limit) == 0);
+  Stadium s({"--set", "webLogs=" + folder.path().string()});  // with as few as that
+  limit.rlim_cur = 2 * kFew;
+  REQUIRE(setrlimit(RLIMIT_NOFILE, &limit) == 0);
+  const std::string request = "GET /logs/long.log HTTP/1.1\r\n" + local(s) + "\r\n";
+  boost::asio::io_context io;
+  std::vector<boost::asio::ip::tcp::socket> greedy;
+  for (rlim_t i = 0; i < kFew; ++i) {
+    auto& socket = greedy.emplace_back(io, boost::asio::ip::tcp::v4());
+    socket.set_option(boost::asio::socket_base::receive_buffer_size(4096));
+    socket.connect({boost::asio::ip::address_v4::loopback(), s.webPort});
+    boost::system::error_code ignored;
+    boost::asio::write(socket, boost::asio::buffer(request), ignored);
+  }
+  CHECK(s.client().get("/status.json").status == 200);
+  const auto open = std::distance(std::filesystem::directory_iterator("/proc/" + std::to_string(s.host.pid()) + "/fd"), {});
+  CHECK(static_cast<rlim_t>(open) < kFew - 100);
+  Witness newcomer(s.agentPort, "Late", 2);
+  newcomer.mustSeeTimePass();
   s.mustGoOn();
   s.mustEndWell();
 }

@@ -150,6 +150,23 @@ TEST_CASE("The tree comes with classes and documentation, as deep as asked") {
   REQUIRE(flat["tree"]["children"][0]["more"] == 2);
 }
 
+TEST_CASE("Who only looks gets no tree that takes long to tell, but every node of it when asked for it") {
+  Fixture f;
+  for (int i = 0; i < 60; ++i)
+    for (int k = 0; k < 100; ++k) f.house.kernel.create("Node", fmt::format("/usr/wide{}/leaf{}", i, k));
+  const auto tree = [&](const char* path, bool mayChange) {
+    control::Watch watch;
+    const Json request{{"do", "tree"}, {"path", path}};
+    return Json::parse(f.control->as<IRequests>()->answer(request.dump(), watch, mayChange))["tree"]["children"];
+  };
+  const Json looked = tree("/usr", false), whole = tree("/usr", true);
+  REQUIRE(looked.size() == whole.size());
+  REQUIRE(looked.front()["children"].size() == 100);
+  REQUIRE(looked.back()["more"] == 100);
+  REQUIRE(whole.back()["children"].size() == 100);
+  REQUIRE(tree("/usr/wide59", false).size() == 100);
+}
+
 TEST_CASE("A watch tells every change and nothing else, and ends with its node") {
   Fixture f;
   f.house.kernel.create("Node", "/usr/box");

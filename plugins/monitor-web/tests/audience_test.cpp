@@ -245,6 +245,18 @@ TEST_CASE("Each viewer has one question with the simulation at a time, and is no
   CHECK_THAT(eager->said, Contains("{\"id\":20}"));
 }
 
+TEST_CASE("What several are told is one message for all of them, and nobody else's") {
+  Theatre t;
+  auto first = t.enter(), second = t.enter(), other = t.enter();
+  for (auto& viewer : {first, second, other}) viewer->takeAll();
+  t.exchange.answers.put({Answer::Kind::told, 0, "{\"type\":\"drawings\"}", {first->id(), 77, second->id()}});
+  t.audience.collect(t.now);
+  REQUIRE(first->leaving.bytes);
+  CHECK(*first->leaving.bytes == "{\"type\":\"drawings\"}");
+  CHECK(first->leaving.bytes == second->leaving.bytes);
+  CHECK_FALSE(other->leaving.bytes);
+}
+
 TEST_CASE("Only who knows the token gives commands; who guesses is closed") {
   Theatre t;
   auto viewer = t.enter();

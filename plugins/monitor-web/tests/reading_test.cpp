@@ -94,6 +94,12 @@ TEST_CASE("Files are served with their type, by names that are there; without a 
   CHECK(site.answer(request("/assets/index-1.js")).keep);
   CHECK_FALSE(site.answer(request("/")).keep);
   CHECK(site.answer(request("/logs/game.log")).file == folder.path() / "logs/game.log");
+  for (const char* name : {"logs/trap.html", "logs/trap.js", "logs/trap.svg"}) {
+    folder.write(name, "<script>");
+    CHECK(site.answer(request("/" + std::string(name))).type == "text/plain; charset=utf-8");
+  }
+  folder.write("logs/game.log.gz", "1");
+  CHECK(site.answer(request("/logs/game.log.gz")).type == "application/gzip");
   for (const char* missing : {"/logs/", "/logs", "/logs/..", "/logs/../secret", "/none", "/assets", "/assets/"}) {
     INFO(missing);
     CHECK(site.answer(request(missing)).status == 404);
