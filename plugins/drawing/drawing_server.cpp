@@ -94,12 +94,14 @@ void DrawingServer::openPort() {
 }
 
 void DrawingServer::openForward() {
+  forwardedFrom_ = {};
   if (forwardTo_.empty()) return;
   const std::size_t colon = forwardTo_.rfind(':');
   if (colon == std::string::npos) throw Error("there is no port");
   const auto found = Udp::resolver(io_).resolve(forwardTo_.substr(0, colon), forwardTo_.substr(colon + 1));
   out_.emplace(io_);
   out_->connect(*found.begin());
+  forwardedFrom_ = out_->local_endpoint();
   out_->non_blocking(true);
 }
 
@@ -113,6 +115,7 @@ void DrawingServer::poll() {
     error_code ec;
     const std::size_t n = in_->receive_from(asio::buffer(bytes), from, 0, ec);
     if (ec) return;  // nothing more is there
+    if (from == forwardedFrom_) continue;  // our own, sent to ourselves: it would go round for ever
     ++packets_;
     draw(std::as_bytes(std::span(bytes.data(), n)));
   }

@@ -61,6 +61,7 @@ class DrawingServer : public Leaf, public IDrawings, public IInputSource {
   drawing::DrawBoard board_;
   boost::asio::io_context io_;
   std::optional<Udp::socket> in_, out_;
+  Udp::endpoint forwardedFrom_;  ///< of out_
   std::int64_t packets_ = 0, refused_ = 0;
 };
 

@@ -119,6 +119,16 @@ TEST_CASE("packets go on to another viewer, whoever drew") {
   CHECK(viewer.available() == 0);
 }
 
+TEST_CASE("packets that are forwarded to the server itself do not go round") {
+  Artist studio;
+  studio.open();
+  setProperty(*studio.node, "forward", "127.0.0.1:" + std::to_string(studio.get("port")));
+  studio.poll();
+  studio.send(sphere("a"));
+  for (int i = 0; i < 5; ++i) studio.poll();
+  CHECK(studio.get("packets") == 1);
+}
+
 TEST_CASE("a port or a viewer that cannot be had is told, and the house goes on") {
   Studio first, second;
   first.open();
