@@ -1,6 +1,7 @@
 #include "service.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <sys/resource.h>
 
 #include <boost/asio/io_context.hpp>
@@ -142,13 +143,15 @@ struct Service::Impl {
     });
   }
 
-  /// Signals are for the simulation's thread.
+  /// Signals are for the simulation's thread, and so is a processor that only one of them can have: this one does not push it off.
   void start() {
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     thread = std::thread([this] {
       pthread_setname_np(pthread_self(), "web");
+      const sched_param none{};
+      pthread_setschedparam(pthread_self(), SCHED_BATCH, &none);
       io.run();
     });
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
