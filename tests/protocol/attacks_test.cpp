@@ -1,0 +1,142 @@
+#include <catch2/catch.hpp>
+
+#include "robot_client.h"
+
+using namespace spark;
+using namespace spark::test;
+
+TEST_CASE("Bad actions harm nothing but themselves") {
+  Arena a;
+  Client c = robot(a);
+  c.send("(nonsense 1)(he1)(he1 nan)((he1 2))()(he1 abc)atom(he1 3)");
+  realise(a, 3);
+  REQUIRE(deeds() == Deeds{"1 he1 nan", "1 he1 0", "1 he1 3"});
+  REQUIRE(a.logged("no effector registered for predicate nonsense"));
+  REQUIRE(a.logged("agent 1 (" + c.name() + "): (he1 <value>): expected a number."));
+}
+
+TEST_CASE("A message with an error keeps what came before, the connection stays") {
+  Arena a;
+  Client c = robot(a);
+  c.send("(he1 1))(he1 2)");
+  realise(a, 1);
+  c.send("(he1 3)" + std::string(60000, '('));
+  realise(a, 2);
+  c.send("\x01\x02\xff garbage");
+  c.send("(he1 4)");
+  realise(a, 3);
+  REQUIRE(deeds() == Deeds{"1 he1 1", "1 he1 3", "1 he1 4"});
+  REQUIRE(a.logged("the rest of that message is ignored"));
+}
+
+TEST_CASE("200,000 nested parentheses over several messages close at most that connection") {
+  Arena a;
+  Client other = robot(a), c = robot(a);
+  for (int i = 0; i < 4; ++i) c.send(std::string(50000, '('));
+  c.raw(std::string("\x00\x03\x0d\x40", 4));  // and once in a single message that is too long
+  REQUIRE(c.closed());
+  other.send("(he1 1)");
+  realise(a, 1);
+  REQUIRE(a.agents() == 1);
+}
+
+TEST_CASE("Complaints about one agent are limited") {
+  Arena a;
+  Client c = robot(a);
+  std::string flood;
+  for (int i = 0; i < 5000; ++i) flood += "(bad 1)";
+  c.send(flood + "(he1 1)");
+  realise(a, 1);
+  std::size_t lines = 0;
+  for (std::size_t at = 0; (at = a.house.text.find("predicate bad", at)) != std::string::npos; ++at) ++lines;
+  REQUIRE(lines >= 1);
+  REQUIRE(lines <= 10);
+}
+
+TEST_CASE("Scenes that cannot be loaded leave the agent empty and say why") {
+  Arena a;
+  Client c = a.client();
+  a.until([&] { return a.agents() == 1; });
+  const std::string file = GENERATE("missing", "broken", "/etc/passwd", "../x");
+  c.send("(scene " + file + ")");
+  a.until([&] { return a.logged("Agent 1 gets no robot"); });
+  a.cycle();
+  a.cycle();
+  a.cycle();
+  REQUIRE(c.drain().empty());
+  REQUIRE(a.control->agents()[0]->children().size() == 1);
+  c.send("(scene robot)");
+  std::vector<std::string> got;
+  a.until([&] { return !(got = c.drain()).empty(); });
+}
+
+TEST_CASE("An agent that names bad scenes in every cycle is refused in the end, and does not fill the log") {
+  Arena a;
+  Client c = a.client();
+  a.until([&] { return a.agents() == 1; });
+  for (int i = 0; i < 100; ++i) {
+    c.send("(scene missing)");
+    c.arrive();
+    a.cycle();
+  }
+  int lines = 0;
+  for (auto at = a.house.text.find("gets no robot"); at != std::string::npos; at = a.house.text.find("gets no robot", at + 1)) ++lines;
+  REQUIRE(lines == 10);
+  REQUIRE(a.logged("no robot could be built too often"));
+}
+
+TEST_CASE("A second robot is refused") {
+  Arena a;
+  Client c = robot(a);
+  const auto children = a.control->agents()[0]->children().size();
+  c.send("(scene robot)(he1 1)");
+  realise(a, 1);
+  REQUIRE(a.logged("it has a robot already"));
+  REQUIRE(a.control->agents()[0]->children().size() == children);
+}
+
+TEST_CASE("Long texts of a client do not fill the log") {
+  Arena a;
+  Client c = robot(a);
+  a.house.text.clear();
+  c.send("(" + std::string(60000, 'x') + " 1)(scene " + std::string(3000, 'y') + ")(he1 1)");
+  realise(a, 1);
+  REQUIRE(a.logged("no effector registered for predicate xxx"));
+  REQUIRE(a.house.text.size() < 2000);
+}
+
+TEST_CASE("More agents than allowed are turned away") {
+  Arena a;
+  a.set("maxAgents", 1);
+  Client one = robot(a);
+  Client two = a.client();
+  REQUIRE(two.closed());
+  REQUIRE(a.logged("there are 1 agents already (maxAgents)"));
+}
+
+TEST_CASE("A client that never reads costs a bounded amount and does not disturb the others") {
+  Arena a;
+  Client other = robot(a);
+  Client deaf = a.client();
+  a.until([&] { return a.agents() == 2; });
+  deaf.send("(scene loud)");
+  std::size_t heard = 0;
+  for (int i = 0; i < 1200; ++i) {
+    a.cycle();
+    heard += other.drain().size();
+  }
+  REQUIRE(heard >= 1100);
+  REQUIRE(a.get("messagesDropped").toInteger() > 100);
+}
+
+TEST_CASE("A client that sends more than maxPending within a cycle is closed") {
+  Arena a;
+  Client other = robot(a), flood = robot(a);
+  std::string message;
+  for (int i = 0; i < 5000; ++i) message += "(he1 1)";
+  for (int i = 0; i < 20; ++i) flood.send(message);
+  REQUIRE(flood.closed());
+  REQUIRE(a.logged("it sent more than 262144 bytes within one cycle"));
+  a.cycle();
+  REQUIRE(a.agents() == 1);
+}
