@@ -35,6 +35,7 @@ void WebMonitor::take(const NewestFrame& newest, IMonitorEncoder*, const Event& 
   time_ = event.time;
   takenAt_ = kernel().structureVersion();
   if (!exchange()) return;
+  eventTimes_.resize(eventCount_, event.time);
   if (!exchange_->watched.load(std::memory_order_relaxed)) {
     events_.clear();
     eventTimes_.clear();
@@ -59,7 +60,7 @@ void WebMonitor::fill(const NewestFrame& newest, double time, web::Snapshot& out
   web::copyNodes(newest.frame, out);
   out.environment = newest.frame.env;
   out.keys = newest.keys;
-  eventTimes_.resize(eventCount_, time);
+  eventTimes_.resize(eventCount_, time);  // of events that came with no frame for us, as when a monitor connects
   std::swap(out.events, events_);
   std::swap(out.eventTimes, eventTimes_);
   events_.clear();

@@ -43,6 +43,18 @@ class Match : public Node, public IMonitorItem, public ITrainer {
   bool goal = false;
 };
 
+/// Stands still.
+class StillClock : public Node, public ISimulation {
+  SPARK_CLASS(StillClock, Node)
+ public:
+  static void describe(Description<StillClock>& d) { d.implements<ISimulation>(); }
+  double time() const override { return 0; }
+  std::int64_t cycle() const override { return 0; }
+  double step() const override { return 0.02; }
+  bool lockstep() const override { return false; }
+  bool paced() const override { return false; }
+};
+
 /// A house with a moving robot, whose cycles run in a thread of their own until it is stopped.
 struct Running : House {
   Running() {
@@ -78,11 +90,27 @@ struct Running : House {
       robot->setLocalPos({0.001f * static_cast<float>(cycle % 1000), 0, 0});
       if (const int wanted = cycle == 1 ? 0 : parts.exchange(0); wanted > 0) robot->create("Transform", "part");
       kernel.events().channel(phase::kPublish).emit(event);
+      time = event.time;
       std::this_thread::yield();
     }
   }
+  /// No cycle comes any more; viewers are served on. `first`, in between, is done while nothing runs.
+  template <class F>
+  void standStill(F first) {
+    stop();
+    first();
+    stopped = false;
+    loop = std::thread([this] {
+      auto& input = kernel.root().require<IInputSource>("/sys/server/web");
+      while (!stopped) {
+        input.poll();
+        std::this_thread::yield();
+      }
+    });
+  }
   Transform* robot;
   unsigned short port = 0;
+  double time = 0;  ///< s, of the last cycle; to be read while nothing runs
   std::atomic<bool> stopped{false};
   std::atomic<int> parts{0};
   std::thread loop;
@@ -125,6 +153,33 @@ TEST_CASE("Viewers see the scene move, ask, and a referee changes it") {
   CHECK(status["agents"].empty());
   viewer.say(R"({"do":"get","id":4,"path":"/usr"})");
   CHECK_THAT(viewer.textWith("\"id\":4"), Contains("no control server"));
+}
+
+TEST_CASE("An event has the time of its frame, however late that is shown; one that comes between frames that of the last") {
+  Running house;
+  WebClient viewer(house.port);
+  REQUIRE(viewer.watch() == 101);
+  viewer.binary();
+  double now = 0;
+  house.standStill([&] {
+    now = house.time + 1;
+    house.kernel.registerClass<StillClock>();
+    house.kernel.create<Leaf>("StillClock", "/sys/server/simulation");
+    const auto publish = [&](double after) {
+      const auto cycle = static_cast<std::int64_t>(1) << 40;  // of those in which frames are due
+      house.kernel.events().channel(phase::kPublish).emit({"", now + after, 0.02, cycle, nullptr});
+    };
+    publish(0);  // the viewers have one to show for a while
+    house.kernel.root().require<Match>("/sys/server/monitor/match").goal = true;
+    publish(1);
+    publish(2);
+    Predicates between;
+    between.open("between").close();
+    house.kernel.root().require<IFrameTaker>("/sys/server/monitor/web").event(Element(between, 0));
+  });
+  const Json goal = jsonWith(viewer, "\"goal\""), between = jsonWith(viewer, "\"between\"");
+  CHECK(goal["time"].get<double>() == Approx(now + 1).margin(0.01));
+  CHECK(between["time"].get<double>() == Approx(now + 2).margin(0.01));
 }
 
 TEST_CASE("A scene that changes is sent anew, before its first frame") {
