@@ -8,7 +8,7 @@ namespace spark::gamecontrol {
 
 namespace {
 
-constexpr std::string_view kScene = "scene", kInit = "init", kSync = "syn";
+constexpr std::string_view kScene = "scene", kInit = "init";
 
 bool holds(const Predicates& predicates, std::string_view wanted) {
   for (const Element e : predicates)

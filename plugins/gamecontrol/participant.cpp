@@ -13,8 +13,6 @@ namespace {
 constexpr std::uint32_t kMaxPendingTokens = 1 << 17;
 // What a client sent may stand in a line, but not at any length.
 constexpr std::size_t kLongestLine = 300;
-// What a sync predicate is called as long as no robot says otherwise.
-constexpr std::string_view kSync = "syn";
 constexpr std::size_t kAhead = 4;  // effectors or perceptors
 constexpr double kSmoothed = 16;   // answers
 constexpr const char* kNoException = "something that is no std::exception";

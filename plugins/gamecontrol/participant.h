@@ -19,6 +19,7 @@
 #include <chrono>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "api/agents.h"
@@ -28,6 +29,9 @@
 namespace spark::gamecontrol {
 
 using Clock = std::chrono::steady_clock;
+
+/// What a sync predicate is called as long as no robot says otherwise.
+inline constexpr std::string_view kSync = "syn";
 
 class Participant {
  public:

@@ -18,7 +18,7 @@ namespace spark::web {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr std::size_t kDeepest = 4;  // components below a folder
+constexpr std::size_t kMostFolders = 4;  // components below a folder
 constexpr const char* kPacked = "application/gzip";
 
 Reply refusal(unsigned status, std::string text) {
@@ -99,7 +99,7 @@ std::vector<std::string> plainComponents(std::string_view path) {
   while (true) {
     const std::size_t end = std::min(path.find('/'), path.size());
     std::string name = decoded(path.substr(0, end));
-    if (!isPlainName(name) || out.size() == kDeepest) return {};
+    if (!isPlainName(name) || out.size() == kMostFolders) return {};
     out.push_back(std::move(name));
     if (end == path.size()) return out;
     path.remove_prefix(end + 1);

@@ -9,12 +9,12 @@ namespace spark::web {
 
 namespace {
 using Json = nlohmann::json;
-constexpr int kDeepest = 32;
+constexpr int kDeepestJson = 32;
 
-/// JSON of at most kDeepest levels.
+/// JSON of at most kDeepestJson levels.
 Json parse(std::string_view text) {
   const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepest) throw Error("expected JSON nested at most " + std::to_string(kDeepest) + " deep");
+    if (depth > kDeepestJson) throw Error("expected JSON nested at most " + std::to_string(kDeepestJson) + " deep");
     return true;
   };
   try {

@@ -2,6 +2,7 @@
 /// \file
 /// The Nao as its players know it: joints, their names and limits, and the lengths of its legs by robot type.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <numbers>
@@ -16,6 +17,8 @@ constexpr double radians(double deg) { return deg * (kPi / 180); }
 constexpr double degrees(double rad) { return rad * (180 / kPi); }
 /// The angle brought into [-pi, pi).
 double normalized(double rad);
+/// `from` moved towards `to` by at most `by`.
+inline double towards(double from, double to, double by) { return from + std::clamp(to - from, -by, by); }
 
 /// All joints of all types; the toes exist with type 4 only. Arms and legs of the right side first, in the order of the percepts.
 enum class Joint : std::size_t {

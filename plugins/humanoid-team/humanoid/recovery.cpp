@@ -14,7 +14,6 @@ void bothLegs(Pose& pose, double hip, double knee, double ankle) {
   pose[Joint::rAnklePitch] = pose[Joint::lAnklePitch] = radians(ankle);
 }
 void bothArms(Pose& pose, double shoulder) { pose[Joint::rShoulderPitch] = pose[Joint::lShoulderPitch] = radians(shoulder); }
-double towards(double from, double to, double by) { return from + std::clamp(to - from, -by, by); }
 }  // namespace
 
 void Recovery::start(const Pose& from, const Pose& stance, double pace) {

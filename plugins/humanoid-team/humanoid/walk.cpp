@@ -6,9 +6,6 @@
 namespace humanoid {
 
 namespace {
-/// `from` moved towards `to` by at most `by`.
-double towards(double from, double to, double by) { return from + std::clamp(to - from, -by, by); }
-
 constexpr double kStartTime = 0.6;  // s until the first steps have their full height
 
 struct Leg {
