@@ -4,11 +4,11 @@
 
 namespace spark {
 
+using soccer::kTooNear;
 using soccer::Sights;
 using soccer::writePoint;
 
 namespace {
-constexpr float kTooNear = 0.1f;  ///< m: what is nearer is the head itself
 constexpr std::size_t kMostGlances = 512;
 
 /// Cuts a segment to what a camera that looks along y sees: y >= kTooNear and a window of the given half widths at y = 1.

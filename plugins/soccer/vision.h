@@ -15,6 +15,8 @@
 
 namespace spark::soccer {
 
+inline constexpr float kTooNear = 0.1f;  ///< m: what is nearer is the eye's own body
+
 /// A direction and distance as agents get it.
 struct Polar {
   double distance = 0;    ///< m

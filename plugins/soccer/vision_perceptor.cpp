@@ -4,15 +4,11 @@ namespace spark {
 
 using soccer::Sights;
 
-namespace {
-constexpr float kTooNear = 0.1f;  ///< m: what is nearer is the eye's own body
-}
-
 /// False when the object is too near or too far to be seen.
 bool VisionPerceptor::look(const Vec3f& place, soccer::Polar& out) {
   const Vec3f way = place - here_;
   const float distance = way.norm();
-  if (distance <= kTooNear || distance > outlook_.range()) return false;
+  if (distance <= soccer::kTooNear || distance > outlook_.range()) return false;
   Vec3f relative = soccer::seenBy(side(), way);
   if (!staticAxis_ && transform()) relative = transform()->world().block<3, 3>(0, 0).transpose() * way;
   out = soccer::polarOf(relative + noise_.calibration());

@@ -46,8 +46,6 @@ void dress(Twins& t, std::size_t joint, JointType type, const Vec3& anchor) {
   t.set(joint, JointParameter::suspensionCfm, 0, 1e-3);
 }
 
-const JointType kTypes[] = {JointType::ball,      JointType::hinge, JointType::hinge2,      JointType::slider,
-                            JointType::universal, JointType::fixed, JointType::angularMotor};
 const char* kNames[] = {"ball", "hinge", "hinge2", "slider", "universal", "fixed", "angular motor"};
 
 }  // namespace

@@ -12,6 +12,11 @@
 
 namespace spark::test {
 
+/// Every type of joint.
+inline constexpr engine::JointType kTypes[] = {engine::JointType::ball,      engine::JointType::hinge, engine::JointType::hinge2,
+                                               engine::JointType::slider,    engine::JointType::universal, engine::JointType::fixed,
+                                               engine::JointType::angularMotor};
+
 /// One engine's world with what was put into it.
 struct Scene {
   engine::IEngine& engine;

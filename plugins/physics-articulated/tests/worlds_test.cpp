@@ -7,9 +7,6 @@ using engine::JointType;
 
 namespace {
 
-const JointType kTypes[] = {JointType::ball,      JointType::hinge, JointType::hinge2,      JointType::slider,
-                            JointType::universal, JointType::fixed, JointType::angularMotor};
-
 /// Bodies near each other and joints of any type between any of them and the world: trees, loops, several between the same two.
 void addJungle(Twins& t, int bodies, int joints, double cfm, bool boxes = true) {
   for (int i = 0; i < bodies; ++i) {

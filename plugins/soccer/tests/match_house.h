@@ -12,6 +12,13 @@
 
 namespace spark::test {
 
+/// How often `what` is in `text`; places may overlap.
+inline int count(const std::string& text, const std::string& what) {
+  int n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
 /// Does what the test wrote into `next`, once; keeps what it was told last.
 class Puppet : public Behavior {
   SPARK_CLASS(Puppet, Behavior)

@@ -13,12 +13,6 @@ void quiet(MatchHouse& h, int agent) {
   callMethod(h.at("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/VisionPerceptor"), "addNoise", std::span(&off, 1));
 }
 
-int count(const std::string& text, const std::string& what) {
-  int n = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
-  return n;
-}
-
 }  // namespace
 
 TEST_CASE("vision is along the field's axes as the team sees them, all around, without itself", "[soccer]") {

@@ -8,12 +8,6 @@ using namespace spark::test;
 
 namespace {
 
-int count(const std::string& text, const std::string& what) {
-  int n = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
-  return n;
-}
-
 /// Gives the agent cone vision instead of its own.
 Leaf& giveEye(MatchHouse& h, int agent, int interval) {
   Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect" + std::to_string(agent) + "/body");
