@@ -3,7 +3,9 @@ import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { describe, expect, test } from "vitest";
 import { openReplay, type Replay } from "../../src/sources";
 
-const captures = `${process.env.SPARK_REFERENCE_DIR ?? ""}/captures`;
+const reference = process.env.SPARK_REFERENCE_DIR ?? "";
+const captures = `${reference}/captures`;
+if (reference && !existsSync(captures)) throw new Error(`SPARK_REFERENCE_DIR is '${reference}', where there is no folder captures/.`);
 const builds = existsSync(captures) ? readdirSync(captures).filter((name) => !name.includes(".")) : [];
 const sessions = builds.flatMap((build) => readdirSync(`${captures}/${build}`).filter((f) => f.endsWith(".jsonl")).map((f) => `${build}/${f}`));
 
