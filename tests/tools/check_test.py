@@ -1,0 +1,108 @@
+"""tools/check fails when nothing ran. Its ctest and cmake are replaced by ones that do what a test asks for."""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+ONE_TEST = '<testsuite name="x"><testcase name="a" status="run"/></testsuite>'
+NO_TEST = '<testsuite name="x" tests="0"/>'
+
+
+class Check(unittest.TestCase):
+    """A tree with the scripts of tools/ and nothing else."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.tree = Path(folder.name)
+        shutil.copytree(ROOT / "tools", self.tree / "tools", ignore=shutil.ignore_patterns("*.cpp", "__pycache__"))
+        self.programs = self.tree / "programs"
+        self.programs.mkdir()
+        self.program("cmake", "exit 0")
+        self.program("dpkg-query", "echo install ok installed")
+        self.program("node", "echo true")
+        self.program("npm", "exit 0")
+        self.program("chromium", "exit 0")
+        self.reports(ONE_TEST)
+        self.fuzzer("exit 0")
+
+    def program(self, name, text):
+        file = self.programs / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(f"#!/bin/sh\n{text}\n")
+        file.chmod(0o755)
+
+    def reports(self, text, of="*"):
+        """What ctest writes for the presets that `of` matches; one passed test for the others."""
+        self.program("ctest", 'while [ $# -gt 0 ]; do case $1 in --preset) preset=$2;; --output-junit) report=$2;; esac; shift; done\n'
+                     f"case $preset in {of}) printf '{text}';; *) printf '{ONE_TEST}';; esac >$report")
+
+    def fuzzer(self, text):
+        self.program(self.tree / "build/fuzz/bin/fuzz-some", text)
+
+    def check(self):
+        path = f"{self.programs}:{os.environ['PATH']}"
+        return subprocess.run([self.tree / "tools/check"], env=dict(os.environ, PATH=path), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    def expect(self, code, last, *said):
+        result = self.check()
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertEqual(result.stdout.strip().splitlines()[-1], last)
+        for text in said:
+            self.assertIn(text, result.stderr)
+
+    def test_all_stages_pass(self):
+        self.expect(0, "4 passed, 0 failed, 0 skipped")
+
+    def test_a_report_without_tests_is_a_failure(self):
+        self.reports(NO_TEST, "asan")
+        self.expect(1, "3 passed, 1 failed, 0 skipped", "asan: no test ran")
+
+    def test_no_report_is_a_failure(self):
+        self.reports("", "tsan")
+        self.expect(1, "3 passed, 1 failed, 0 skipped", "tsan: ctest gave no report")
+
+    def test_skipped_tests_are_counted_as_such(self):
+        self.reports('<testsuite name="x"><testcase name="a" status="notrun"><skipped/></testcase></testsuite>', "release")
+        self.expect(0, "3 passed, 0 failed, 1 skipped")
+
+    def test_a_test_that_fails_is_named(self):
+        self.reports('<testsuite name="x"><testcase name="a" status="fail"><failure/></testcase></testsuite>', "release")
+        self.expect(1, "3 passed, 1 failed, 0 skipped", "x: a")
+
+    def test_a_fuzzer_that_fails_is_named(self):
+        self.fuzzer("exit 1")
+        self.expect(1, "3 passed, 1 failed, 0 skipped", "fuzz: fuzz-some")
+
+    def test_fuzzing_without_a_program_is_a_failure(self):
+        (self.tree / "build/fuzz/bin/fuzz-some").unlink()
+        self.expect(1, "3 passed, 1 failed, 0 skipped", "fuzz: there is no program")
+
+
+class Presets(unittest.TestCase):
+    def test_running_no_test_is_an_error_in_each(self):
+        presets = json.loads((ROOT / "CMakePresets.json").read_text())["testPresets"]
+        self.assertTrue(presets)
+        for preset in presets:
+            self.assertEqual(preset["execution"]["noTestsAction"], "error", preset["name"])
+
+    def test_ctest_fails_then(self):
+        with tempfile.TemporaryDirectory() as folder:
+            presets = json.loads((ROOT / "CMakePresets.json").read_text())
+            presets["configurePresets"] = [{"name": p["configurePreset"], "generator": "Ninja", "binaryDir": folder} for p in presets["testPresets"]]
+            del presets["buildPresets"]
+            (Path(folder) / "CMakePresets.json").write_text(json.dumps(presets))
+            (Path(folder) / "CTestTestfile.cmake").write_text("add_test(one true)\n")
+            for preset in presets["testPresets"]:
+                for wanted, passes in (("one", True), ("nothing", False)):
+                    result = subprocess.run(["ctest", "--preset", preset["name"], "-R", wanted], cwd=folder, capture_output=True, text=True)
+                    self.assertEqual(result.returncode == 0, passes, result.stdout + result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
