@@ -15,13 +15,15 @@ namespace spark::test {
 inline std::filesystem::path pluginFolder() { return std::filesystem::canonical("/proc/self/exe").parent_path().parent_path() / "plugins"; }
 /// The programs of this build.
 inline std::filesystem::path binFolder() { return std::filesystem::canonical("/proc/self/exe").parent_path().parent_path() / "bin"; }
-/// The reference data; empty where SPARK_REFERENCE_DIR is not set: a test that needs it then exits with 77. A folder that is named but holds no
-/// recorded sessions ends the program with exit code 1: a test that was meant to run must not pass as skipped.
+/// The reference data; empty where SPARK_REFERENCE_DIR is not set: a test that needs it then exits with 77. A folder that is named but
+/// holds no recorded sessions ends the program with exit code 1: a test that was meant to run must not pass as skipped.
 inline std::filesystem::path referenceFolder() {
   const char* dir = std::getenv("SPARK_REFERENCE_DIR");
   if (!dir || !*dir) return {};
   if (!std::filesystem::is_directory(std::filesystem::path(dir) / "captures")) {
-    std::fprintf(stderr, "SPARK_REFERENCE_DIR is '%s', where there is no folder captures/. Name the folder that holds it, or unset the variable.\n", dir);
+    std::fprintf(stderr,
+                 "SPARK_REFERENCE_DIR is '%s', where there is no folder captures/. Name the folder that holds it, or unset the variable.\n",
+                 dir);
     std::exit(1);
   }
   return dir;

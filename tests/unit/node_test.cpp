@@ -196,8 +196,16 @@ TEST_CASE("What onUnlink throws is logged, and the node goes all the same") {
 TEST_CASE("What onUnlink makes goes too") {
   Core core;
   Thing& x = core.make("x");
-  x.atUnlink = [&](Thing& self) { core.make(self, "late"); };
+  std::string order;
+  x.atUnlink = [&](Thing& self) {
+    order += "x";
+    Thing& late = core.make(self, "late");
+    CHECK(late.isLinked());
+    late.atUnlink = [&](Thing&) { order += "l"; };
+    late.atEnd = [&](Thing& t) { order += t.isLinked() ? "?" : "L"; };
+  };
   core.top->remove(x);
+  CHECK(order == "xlL");
   CHECK(core.kernel.classOf("Thing").living() == 1);
 }
 
@@ -215,16 +223,18 @@ TEST_CASE("Removing destroys children first, front to back") {
 TEST_CASE("References are empty before the first destructor runs") {
   Core core;
   Thing &a = core.make("a"), &b = core.make(a, "b");
-  const Ref<Thing> toA(&a);
+  Thing& c = core.make(core.make(a, "branch"), "c");
+  const Ref<Thing> toA(&a), toC(&c);
   const Ref<ICounter> toB(&b);
   Ref<Thing> copy = toA;
   REQUIRE(copy.get() == &a);
   CHECK(toB->count() == 0);
   bool seen = true;
-  b.atEnd = [&](Thing&) { seen = toA || toB; };
+  b.atEnd = [&](Thing&) { seen = toA || toB || toC; };  // b goes first
   core.top->remove(a);
   CHECK_FALSE(seen);
   CHECK_FALSE(copy);
+  CHECK_FALSE(toC);
   CHECK(toB.get() == nullptr);
   Ref<Thing> empty;
   copy = empty;

@@ -98,6 +98,18 @@ TEST_CASE("The hash of bytes is the same everywhere") {
   CHECK(hashBytes("spark") == hashBytes(std::string("spark")));
 }
 
+TEST_CASE("The hash of a state is the same in every build") {
+  StateWriter out(false);
+  CHECK(out.hash() == 0x9ca066f1a4ab2eeaull);
+  out.write(0.0);
+  CHECK(out.hash() == 0x2689b13cf00e5476ull);
+  out.write(-1.5);
+  out.write(std::int64_t{-7});
+  out.write("nine bytes");
+  out.write(Value(List{1, 2.5, "x", Value(), false, List{}}));
+  CHECK(out.hash() == 0x78450215be7f88e7ull);
+}
+
 TEST_CASE("The state hash sees every state property, hidden state and the order of nodes") {
   Core core;
   Thing &a = core.make("a"), &b = core.make("b");

@@ -153,12 +153,21 @@ TEST_CASE("a plane as point and normal is the plane") {
 
 TEST_CASE("accepted classes without geometry are made and touch nothing") {
   PhysicsHouse house;
+  auto& seen = record(house.box("box", {0, 0, 1}, {1, 1, 1}));
   for (const char* name : {"ConvexCollider", "ConcaveCollider", "CompoundCollider", "EmptyCollider", "ConeCollider"}) {
-    Leaf& c = house.scene.create(name);
+    Node& c = *house.scene.create(name).asNode();
     house.call(c, "setPosition", {0.0, 0.0, 1.0});
     house.call(c, "addNotCollideWithColliderName", {"x", true});
+    auto& own = c.create<ICollisionRecorder>("RecorderHandler", "");
+    house.step();
+    INFO(name);
+    CHECK(seen.colliders().empty());
+    CHECK(own.colliders().empty());
   }
+  // One with a shape in the same place does.
+  house.call(house.scene.create("SphereCollider"), "setPosition", {0.0, 0.0, 1.0});
   house.step();
+  CHECK(seen.colliders().size() == 1);
 }
 
 TEST_CASE("a collider belongs to the body before it, not to one after it") {

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "fake_physics.h"
+#include "spark/state.h"
 #include "test_support.h"
 
 using namespace spark;
@@ -190,6 +191,22 @@ TEST_CASE("collision sensors say what touched since they last sensed") {
     const auto hash = stateHash(sensor);
     CHECK(robot.sense(sensor) == "(collision ball wall)");
     CHECK(stateHash(sensor) != hash);
+    CHECK(robot.sense(sensor).empty());
+  }
+  SECTION("what it has not told yet is part of saved state") {
+    Leaf& sensor = robot.transform->create("CollisionPerceptor", "c");
+    StateWriter out(true);
+    handler.onCollision({shell, ball, contact, true});
+    handler.onCollision({shell, wall, contact, true});
+    saveTree(sensor, out);
+    const auto hash = stateHash(sensor);
+    CHECK(robot.sense(sensor) == "(collision ball wall)");
+    handler.onCollision({shell, shell, contact, true});
+    StateReader in(out.bytes());
+    loadTree(sensor, in);
+    CHECK(in.atEnd());
+    CHECK(stateHash(sensor) == hash);
+    CHECK(robot.sense(sensor) == "(collision ball wall)");
     CHECK(robot.sense(sensor).empty());
   }
   SECTION("touch") {
