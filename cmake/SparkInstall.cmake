@@ -1,5 +1,9 @@
 # The relocatable tree: bin/ lib/ include/ share/spark, and the CMake package.
 include(CMakePackageConfigHelpers)
+add_dependencies(programs spark)
+if(TARGET viewer)
+  add_dependencies(programs viewer)
+endif()
 install(TARGETS spark spark-plugin-interface EXPORT SparkTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY core/include/spark DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES ${CMAKE_BINARY_DIR}/generated/spark/abi.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spark)

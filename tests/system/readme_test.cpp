@@ -1,21 +1,35 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
+#include <regex>
+#include <set>
 
 #include "process.h"
 #include "temporary_folder.h"
 #include "test_support.h"
 
-// People copy the first example of a README: it has to be a config that runs as it stands.
+// People copy the first example of a README: it has to be a config that runs as it stands. What a README starts has to be there.
 
 using namespace spark::test;
 namespace fs = std::filesystem;
 
 namespace {
+std::string textOf(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The first group of every match.
+std::set<std::string> matches(const std::string& text, const char* pattern) {
+  std::set<std::string> found;
+  const std::regex regex(pattern);
+  for (std::sregex_iterator it(text.begin(), text.end(), regex), end; it != end; ++it) found.insert((*it)[1]);
+  return found;
+}
+
 /// The first Lua block of a file, "" when there is none.
 std::string exampleOf(const fs::path& file) {
-  std::ifstream in(file);
-  const std::string text{std::istreambuf_iterator<char>(in), {}}, fence = "```lua\n";
+  const std::string text = textOf(file), fence = "```lua\n";
   const auto begin = text.find(fence);
   return begin == text.npos ? "" : text.substr(begin + fence.size(), text.find("\n```", begin) + 1 - begin - fence.size());
 }
@@ -36,4 +50,32 @@ TEST_CASE("The first example of every plugin's README, and of the scripts', is a
     INFO(checked.errors);
     CHECK(checked.code == 0);
   }
+}
+
+TEST_CASE("The target that tools/play builds makes every program that the README starts and every file that is installed") {
+  const fs::path build = binFolder().parent_path();
+  const Finished listed = runToEnd({"ninja", "-C", build.string(), "-t", "query", "programs"});
+  INFO(listed.errors);
+  REQUIRE(listed.code == 0);
+  const auto made = matches(listed.out, "\n    ([^\n]+)");
+
+  const auto started = matches(textOf(fs::path(SPARK_SOURCES) / "README.md"), "build/release/(bin/[a-z0-9-]+)");
+  REQUIRE(started.size() >= 5);
+  for (const std::string& program : started) {
+    INFO(program);
+    CHECK(made.count(program) == 1);
+  }
+
+  std::size_t installed = 0;
+  for (const auto& file : fs::recursive_directory_iterator(build)) {
+    if (file.path().filename() != "cmake_install.cmake") continue;
+    for (const std::string& product :
+         matches(textOf(file.path()), "TYPE (?:EXECUTABLE|MODULE|SHARED_LIBRARY|STATIC_LIBRARY) (?:OPTIONAL )?FILES \"([^\"]+)\"")) {
+      INFO(product);
+      CHECK(made.count(fs::relative(product, build).string()) == 1);
+      ++installed;
+    }
+  }
+  REQUIRE(installed > 25);
+  REQUIRE(textOf(fs::path(SPARK_SOURCES) / "tools" / "play").find("build release programs") != std::string::npos);
 }
