@@ -109,7 +109,9 @@ function monitors(t)
   plugin "monitor-json"
   local server = new("MonitorServer", "/sys/server/monitor")
   new(t.encoder or "SexpMonitor", "/sys/server/monitor/encoder")
-  tcpPort("monitors", t.port or 3200, "/sys/server/monitor").maxConnections = 128
+  local port = tcpPort("monitors", t.port or 3200, "/sys/server/monitor")
+  port.maxConnections = 128
+  port.makeRoomAfter = 10                      -- clients that never read are welcome, but 128 of them do not keep the others out
   return server
 end
 

@@ -30,18 +30,10 @@ class MonitorClient {
     else
       view.requestFull();  // it was not taken: nothing is known of what the client has
   }
-  /// Closes the connection once, with the reason in the log.
-  void close(std::string_view reason) {
-    if (closing_) return;
-    closing_ = true;
-    connection_.close(reason);
-  }
-  bool closing() const { return closing_; }
 
  private:
   IConnection& connection_;
   std::string message_;
-  bool closing_ = false;
 };
 
 }  // namespace spark

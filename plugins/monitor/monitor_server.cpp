@@ -19,7 +19,6 @@ void MonitorServer::describe(Description<MonitorServer>& d) {
   using M = MonitorServer;
   d.doc("Sends frames of the scene to monitors and takes trainer commands. Children: an encoder, items, trainers.");
   d.property("interval", &M::interval_).unit("cycles").min(1).doc("A frame is made in every n-th cycle; commands are executed in the cycles after these.");
-  d.property("stallTimeout", &M::stallTimeout_).unit("s").min(0).doc("A client that takes nothing for so long (wall time) is closed.");
   d.property("precision", &M::precision_).min(0).doc("A matrix is sent again when one of its elements changed by more (metres, or unit vectors).");
   d.property("clients", &M::clientCount).doc("Number of connected monitors.");
   d.method("requestFullState", &M::requestFullState).doc("The next message to every client is full.");
@@ -172,12 +171,8 @@ void MonitorServer::publish(const Event& event) {
   leftOut_ = changed_ && !source_ && !leftOut_ && version() != atAct_;
   if (leftOut_) return;
   ready_.clear();
-  for (auto& client : clients_) {
-    if (client->connection().stalledSeconds() > stallTimeout_)
-      client->close(fmt::format("the monitor took nothing for {} s", stallTimeout_));
-    else if (!client->closing() && client->connection().idle())
-      ready_.push_back(client.get());
-  }
+  for (auto& client : clients_)
+    if (client->connection().idle()) ready_.push_back(client.get());
   sendTo(ready_);
 }
 

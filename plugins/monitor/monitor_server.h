@@ -26,6 +26,9 @@ namespace spark {
 /// A frame is due in the cycles whose number is a multiple of `interval`. Commands act in the cycle after, so that a frame shows what
 /// `interval` steps made of them; game control must stand before the monitor server in the tree for agents to act before trainers. As in the installed base a
 /// frame of a scene that changed after the act phase of its own cycle is left out, the next one is full; two are never left out in a row.
+///
+/// A client that does not read is never closed: utilities open the port only to send commands, viewers pause. Frames are left out for it, and it
+/// costs one unsent message and some waiting events. Whose machine has gone is the transport's business.
 class MonitorServer : public Node, public IMonitorServer, public IConnectionConsumer {
   SPARK_CLASS(MonitorServer, Node)
  public:
@@ -64,7 +67,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   Version version() const;
 
   int interval_ = 2;
-  double stallTimeout_ = 10, precision_ = 0.005;
+  double precision_ = 0.005;
 
   NewestFrame newest_;
   VisibleNodes nodes_;

@@ -1,6 +1,7 @@
 #include "monitor_view.h"
 
 #include <bit>
+#include <utility>
 
 #include "spark/random.h"
 
@@ -28,9 +29,22 @@ EntryKey keyOf(const Predicates& predicates, std::uint32_t token) {
 }
 
 void MonitorView::addEvent(const Element& event) {
+  if (update_.events.size() > kMostWaiting) forgetOldEvents();
   const std::uint32_t at = update_.events.size();
   update_.events.append(event);
   events_ = mix(events_, keyOf(update_.events, at).content);
+}
+
+/// For viewers that never read.
+void MonitorView::forgetOldEvents() {
+  const Predicates all = std::exchange(update_.events, {});
+  events_ = 0;
+  for (const Element event : all) {
+    if (event.index() < all.size() / 2) continue;
+    const std::uint32_t at = update_.events.size();
+    update_.events.append(event);
+    events_ = mix(events_, keyOf(update_.events, at).content);
+  }
 }
 
 void MonitorView::encode(IMonitorEncoder& encoder, std::string& out) {

@@ -24,8 +24,9 @@ class MonitorView {
 
   /// The next message is full.
   void requestFull() { needsFull_ = true; }
-  /// An event that this viewer has not got.
+  /// An event that this viewer has not got. Of more than kMostWaiting tokens the older half is forgotten.
   void addEvent(const Element& event);
+  static constexpr std::uint32_t kMostWaiting = 8192;
   /// Appends the next message, made from the newest frame, to `out`. Touches only this view: several may do it at the same time.
   void encode(IMonitorEncoder& encoder, std::string& out);
   /// The message left: events are not told again.
@@ -40,6 +41,7 @@ class MonitorView {
 
  private:
   bool willBeFull() const { return needsFull_ || shape_ != newest_.frame.shape; }
+  void forgetOldEvents();
   void pickNodes();
   void pickEntries();
   bool changed(const EntryKey& key);

@@ -1,6 +1,9 @@
 #include "net-tcp/tcp_connection.h"
 
 #include <fmt/format.h>
+#include <netinet/tcp.h>
+
+#include <algorithm>
 
 #include <boost/asio/buffer.hpp>
 
@@ -17,6 +20,20 @@ std::string describePeer(const tcp::socket& socket) {
   const auto end = socket.remote_endpoint(ec);
   return ec ? std::string("(gone)") : fmt::format("{}:{}", end.address().to_string(), end.port());
 }
+
+/// A client whose machine has gone without a word is noticed by the system: after 30 s of silence it is probed, and the connection ends when it
+/// did not answer six times. A client that is there but does not read answers probes, for ever: no TCP_USER_TIMEOUT, which would end it.
+void keepAlive(tcp::socket& socket) {
+  constexpr int kIdle = 30, kInterval = 10, kProbes = 6;  // s, s, number
+  using Idle = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>;
+  using Interval = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPINTVL>;
+  using Probes = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPCNT>;
+  error_code ignored;
+  socket.set_option(tcp::socket::keep_alive(true), ignored);
+  socket.set_option(Idle(kIdle), ignored);
+  socket.set_option(Interval(kInterval), ignored);
+  socket.set_option(Probes(kProbes), ignored);
+}
 }  // namespace
 
 TcpConnection::TcpConnection(tcp::socket socket, std::uint64_t id, Node& port)
@@ -24,6 +41,7 @@ TcpConnection::TcpConnection(tcp::socket socket, std::uint64_t id, Node& port)
   error_code ignored;
   socket_.non_blocking(true, ignored);
   socket_.set_option(tcp::no_delay(true), ignored);
+  keepAlive(socket_);
 }
 
 void TcpConnection::watchRead() {
@@ -93,6 +111,15 @@ bool TcpConnection::flush() {
 
 double TcpConnection::stalledSeconds() const {
   return idle() ? 0.0 : std::chrono::duration<double>(Clock::now() - stalledSince_).count();
+}
+
+double TcpConnection::quietSeconds(Clock::time_point now) const {
+  return idle() ? 0.0 : std::chrono::duration<double>(now - std::max(stalledSince_, heardAt_)).count();
+}
+
+void TcpConnection::markSpoken() {
+  spoken_ = true;
+  if (!idle()) heardAt_ = Clock::now();
 }
 
 TcpConnection::Read TcpConnection::read(std::string& scratch) {

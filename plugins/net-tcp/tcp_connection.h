@@ -32,6 +32,8 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   bool send(std::string_view message) override;
   bool idle() const override { return written_ == out_.size(); }
   double stalledSeconds() const override;
+  /// Seconds since it last took a byte that waits for it or finished a message; 0 when nothing waits for it.
+  double quietSeconds(Clock::time_point now) const;
   void close(std::string_view reason) override;
 
   /// Shuts the socket; the port still has to tell the consumer.
@@ -46,7 +48,7 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   void consume(std::size_t bytes);
   /// It has sent a whole message.
   bool spoken() const { return spoken_; }
-  void markSpoken() { spoken_ = true; }
+  void markSpoken();
   /// Notes that the input ends in a part of a message (or not), for partialSeconds().
   void markPartial(bool partial);
   /// Seconds since the unfinished message began; 0 when there is none.
@@ -64,7 +66,7 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   std::string peer_, input_, out_;
   std::size_t written_ = 0;
   HandlerMemory readMemory_, writeMemory_;
-  Clock::time_point stalledSince_{}, partialSince_{};
+  Clock::time_point stalledSince_{}, heardAt_{}, partialSince_{};
   bool readable_ = true, closing_ = false, partial_ = false, watchingWrite_ = false, spoken_ = false;
 };
 

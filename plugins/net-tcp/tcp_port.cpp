@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
+#include <utility>
 
 #include "net-tcp/net_server.h"
 #include "spark/error.h"
@@ -29,6 +30,10 @@ void TcpPort::describe(Description<TcpPort>& d) {
   d.property("maxMessage", &TcpPort::maxMessage_).unit("bytes").range(1, 1 << 30).doc("A client that announces a longer message is closed.");
   d.property("maxConnections", &TcpPort::maxConnections_).range(1, 65536).doc("Further clients are closed at once.");
   d.property("makeRoom", &TcpPort::makeRoom_).doc("When there are maxConnections clients, a new one takes the place of the oldest that never sent a message.");
+  d.property("makeRoomAfter", &TcpPort::makeRoomAfter_)
+      .unit("s")
+      .min(0)
+      .doc("When it is full, a client that does not read and was not heard for longer than this (wall clock) makes room; 0: none does.");
   d.property("messageTimeout", &TcpPort::messageTimeout_).unit("s").min(0.001).doc("A client that takes longer to finish a message it began is closed (wall clock).");
   d.property("sendBuffer", &TcpPort::sendBuffer_).unit("bytes").range(4096, 1 << 28).doc("What the system may hold back for a client that does not read.");
   d.property("connections", &TcpPort::connectionCount).doc("Clients now.");
@@ -182,10 +187,25 @@ void TcpPort::take(tcp::socket socket) {
 bool TcpPort::full() {
   const auto stays = [](const Connection& c) { return !c->closing(); };
   if (std::count_if(connections_.begin(), connections_.end(), stays) < maxConnections_) return false;
-  const auto silent = std::find_if(connections_.begin(), connections_.end(), [](const Connection& c) { return !c->closing() && !c->spoken(); });
-  if (!makeRoom_ || silent == connections_.end()) return true;
-  (*silent)->close("it said nothing, and its place is needed");
+  TcpConnection* const leaves = givesWay();
+  if (!leaves) return true;
+  leaves->close(leaves->spoken() ? "it neither reads nor sends, and its place is needed" : "it said nothing, and its place is needed");
   return false;
+}
+
+/// Who is the least loss when the port is full, or nullptr: the oldest that never said anything where clients speak first; else of those that
+/// do not read the one that has been quiet for the longest, and who never said anything before all others.
+TcpConnection* TcpPort::givesWay() const {
+  const auto now = Clock::now();
+  TcpConnection* found = nullptr;
+  for (const Connection& c : connections_) {
+    if (c->closing()) continue;
+    if (makeRoom_ && !c->spoken()) return c.get();
+    if (makeRoomAfter_ <= 0 || c->quietSeconds(now) <= makeRoomAfter_) continue;
+    const auto loss = [now](const TcpConnection& x) { return std::pair(x.spoken(), -x.quietSeconds(now)); };
+    if (!found || loss(*c) < loss(*found)) found = c.get();
+  }
+  return found;
 }
 
 bool TcpPort::serve(TcpConnection& connection) {

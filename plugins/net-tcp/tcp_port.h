@@ -53,6 +53,7 @@ class TcpPort : public Node {
   bool cut(net::TcpConnection& connection);
   bool reap();
   bool full();
+  net::TcpConnection* givesWay() const;
   void closeSilent();
   std::int64_t messagesDropped() const { return messagesDropped_; }
   std::int64_t connectionsSeen() const { return connectionsSeen_; }
@@ -74,7 +75,7 @@ class TcpPort : public Node {
   std::string address_ = "0.0.0.0", consumerPath_ = "/sys/server/gamecontrol";
   bool makeRoom_ = false;
   int maxMessage_ = 65536, maxConnections_ = 64, sendBuffer_ = 262144;
-  double messageTimeout_ = 30;
+  double messageTimeout_ = 30, makeRoomAfter_ = 0;
   std::int64_t messagesDropped_ = 0, connectionsSeen_ = 0;
 
   IFraming* framing_ = nullptr;

@@ -196,6 +196,80 @@ TEST_CASE("A client that does not read: the tail stays, newer messages are dropp
   REQUIRE(c.receive() == "again");
 }
 
+namespace {
+/// Sends to a connection until its client's buffers are full.
+void fill(IConnection& connection) {
+  while (connection.idle()) REQUIRE(connection.send(std::string(60000, 'x')));
+}
+
+/// The server's end of a client's connection: they live in one process.
+int serverEnd(const Client& client) {
+  for (int fd = 3; fd < 1024; ++fd) {
+    sockaddr_in peer{};
+    socklen_t n = sizeof peer;
+    if (::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &n) == 0 && "127.0.0.1:" + std::to_string(ntohs(peer.sin_port)) == client.name()) return fd;
+  }
+  return -1;
+}
+
+int option(int fd, int level, int name) {
+  int value = -1;
+  socklen_t n = sizeof value;
+  REQUIRE(::getsockopt(fd, level, name, &value, &n) == 0);
+  return value;
+}
+}  // namespace
+
+TEST_CASE("Clients whose machine has gone are noticed by TCP keep-alive, which those that only do not read outlive") {
+  Wire w;
+  Client c = w.client();
+  w.waitForEvents(1);
+  const int fd = serverEnd(c);
+  REQUIRE(fd >= 0);
+  CHECK(option(fd, SOL_SOCKET, SO_KEEPALIVE) == 1);
+  CHECK(option(fd, IPPROTO_TCP, TCP_KEEPIDLE) == 30);
+  CHECK(option(fd, IPPROTO_TCP, TCP_KEEPINTVL) == 10);
+  CHECK(option(fd, IPPROTO_TCP, TCP_KEEPCNT) == 6);
+  CHECK(option(fd, IPPROTO_TCP, TCP_USER_TIMEOUT) == 0);
+}
+
+TEST_CASE("When a port is full, of the clients that do not read the quietest makes room, one that never spoke first; readers stay") {
+  Wire w;
+  setProperty(w.port(), "maxConnections", 4);
+  Client reader = w.client(), sender = w.client(), mute = w.client(), mute2 = w.client();
+  w.waitForEvents(4);
+  const auto connections = w.consumer->connections;
+  sender.send("command");
+  w.waitForEvents(5);
+  for (std::size_t i = 1; i < 4; ++i) fill(*connections[i]);
+  const auto knock = [&] {
+    const auto seen = w.consumer->events.size();
+    Client c = w.client();
+    w.until([&] { return w.consumer->events.size() > seen || c.drain().size() > 0 || w.logged(c.name() + " is closed: 4 clients are connected already"); }, false);
+    return std::pair(std::move(c), std::vector<std::string>(w.consumer->events.begin() + static_cast<std::ptrdiff_t>(seen), w.consumer->events.end()));
+  };
+
+  SECTION("unless nobody has to") { REQUIRE(knock().second.empty()); }
+  SECTION("and not before it was quiet for long enough") {
+    setProperty(w.port(), "makeRoomAfter", 1e6);
+    REQUIRE(knock().second.empty());
+  }
+  SECTION("in this order") {
+    setProperty(w.port(), "makeRoomAfter", 1e-9);
+    std::vector<Client> guests;
+    for (const char* gone : {"-3", "-4", "-2"}) {
+      auto [guest, events] = knock();
+      guests.push_back(std::move(guest));
+      w.until([&] { return std::find(w.consumer->events.begin(), w.consumer->events.end(), gone) != w.consumer->events.end(); }, false);
+    }
+    CHECK(w.logged(mute.name() + " is closed: it said nothing, and its place is needed."));
+    CHECK(w.logged(sender.name() + " is closed: it neither reads nor sends, and its place is needed."));
+    REQUIRE(knock().second.empty());  // all that are there read
+    reader.send("still here");
+    w.until([&] { return w.consumer->events.back() == "1:still here"; }, false);
+  }
+}
+
 TEST_CASE("A flood from one client does not keep the others waiting") {
   Wire w;
   Client flood = w.client();

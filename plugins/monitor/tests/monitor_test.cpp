@@ -129,7 +129,7 @@ TEST_CASE("five monitors of different speed each see everything and each event e
   CHECK(replicas[0].diffs == 201);
 }
 
-TEST_CASE("a monitor that never reads holds one message, then it is closed; the others go on") {
+TEST_CASE("a monitor that never reads holds one message, costs no more and is never closed; the others go on") {
   Stage stage;
   FakeConnection& deaf = stage.connect();
   FakeConnection& good = stage.connect();
@@ -138,17 +138,39 @@ TEST_CASE("a monitor that never reads holds one message, then it is closed; the 
     stage.nextFrame();
     CHECK_FALSE(good.read().empty());
   }
+  deaf.stalled = 1e6;
+  stage.monitor->received(deaf, "(push 7)");
+  stage.nextFrame();
+  stage.nextFrame();
+  CHECK(stage.trainer->pushed == std::vector<std::int64_t>{7});
   CHECK(deaf.sent == 1);
   CHECK(deaf.closes == 0);
-  deaf.stalled = 10.5;
-  stage.nextFrame();
-  stage.nextFrame();
-  CHECK(deaf.closes == 1);
-  CHECK(deaf.closed == "the monitor took nothing for 10 s");
   CHECK(good.closes == 0);
   CHECK(good.sent == 102);
   stage.monitor->disconnected(deaf);
   CHECK(getProperty(stage.node(), "clients") == Value(1));
+}
+
+TEST_CASE("a monitor that pauses gets whole messages again, and what it then shows is the scene; of very many events the newest are told") {
+  Stage stage;
+  FakeConnection& viewer = stage.connect();
+  Replica replica;
+  for (int frame = 0; frame < 30000; ++frame) {
+    stage.item->score = frame;
+    stage.item->waiting = 1;
+    stage.nextFrame();
+  }
+  REQUIRE(viewer.sent == 1);
+  replica.take(viewer.read());
+  stage.nextFrame();
+  replica.take(viewer.read());
+  stage.nextFrame();
+  replica.take(viewer.read());
+  CHECK(same(replica, newcomer(stage), 0.005001));
+  CHECK(replica.events.back() == "30000");
+  CHECK(replica.events.size() > 1000);
+  CHECK(replica.events.size() < 8192 / 2);
+  for (std::size_t i = 1; i < replica.events.size(); ++i) REQUIRE(std::stoi(replica.events[i]) == std::stoi(replica.events[i - 1]) + 1);
 }
 
 TEST_CASE("commands act in the cycle after a due one, in order of arrival, and bad ones are ignored with a line") {
