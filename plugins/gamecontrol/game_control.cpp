@@ -16,6 +16,8 @@ namespace spark {
 namespace {
 /// So many messages to an agent that has not sent (syn) yet leave no faster than joinPace, others waiting or not.
 constexpr std::int64_t kPacedMessages = 50;
+/// Who keeps a cycle waiting for longer is slow [s].
+constexpr double kSlow = 1;
 
 /// The participant so many places on, or nullptr.
 template <class Participants>
@@ -44,7 +46,16 @@ void GameControl::describe(Description<GameControl>& d) {
   d.property("robotFolder", &GameControl::robotFolder_).doc("Agents' robots are scene files below this folder, e.g. rsg/agent/; empty: anywhere.");
   d.property("holdWait", &GameControl::holdWait_).unit("s").min(0).doc("Expected agents that named a robot and are silent for so long get a first message (wall clock).");
   d.property("syncTimeout", &GameControl::syncTimeout_).unit("s").min(0).doc("Lockstep: an agent that does not answer for so long is closed (wall clock); 0: never.");
+  d.property("holdReport", &GameControl::holdReport_).unit("s").min(0).doc("While expected agents are waited for: time between two lines on who they are (wall clock).");
   d.property("joinWait", &GameControl::joinWait_)
+      .unit("s")
+      .min(0)
+      .doc("When expected agents are waited for and nothing more came from any for so long, the match starts with those that named a robot (wall clock); 0: never.");
+  d.property("joinBudget", &GameControl::joinBudget, &GameControl::setJoinBudget)
+      .unit("s")
+      .min(0)
+      .doc("Lockstep: what agents that were not expected and are new, or slow, may keep all others waiting in sum (wall clock); it grows back by a tenth of the time.");
+  d.property("answerWait", &GameControl::answerWait_)
       .unit("s")
       .min(0)
       .doc("Lockstep: until an agent that joins has its first percepts, others are waited for no longer than this in a cycle (wall clock).");
@@ -70,10 +81,19 @@ void GameControl::onUnlink() {
 }
 
 void GameControl::note(const std::string& line) {
-  auto& log = kernel().log();
-  if (!budget_.take(cycle_)) return;
-  if (const auto n = budget_.leftOut()) log.info("{} further lines about agents were left out.", n);
-  log.info("{}", line);
+  lines().write(Level::info, line);
+}
+
+void GameControl::complain(const std::string& line) { lines().write(Level::error, line); }
+
+gamecontrol::AgentLines& GameControl::lines() {
+  if (!lines_) lines_.emplace(kernel().log());
+  return *lines_;
+}
+
+void GameControl::setJoinBudget(double seconds) {
+  joinBudget_ = seconds;
+  waits_.setMost(seconds);
 }
 
 /// Messages come in the order of participants, or nearly so: the search begins where the last one ended.
@@ -104,7 +124,7 @@ void GameControl::received(IConnection& connection, std::string_view message) {
   if (!p || p->leaving()) return;
   resolveParsers();
   const std::string why = !p->heardFrom() && full() ? fmt::format("there are {} agents already (maxAgents)", maxAgents_)
-                                                    : p->receive(message, static_cast<std::size_t>(maxPending_), kernel().log(), cycle_);
+                                                    : p->receive(message, static_cast<std::size_t>(maxPending_), lines(), cycle_);
   if (why.empty()) {
     if (holding()) gamecontrol::Hold::note(*p);
     return;
@@ -130,16 +150,43 @@ void GameControl::removeAgent(AgentAspect& agent, bool close) {
 
 bool GameControl::ready(bool lockstep) {
   resolveParsers();
-  if (holding()) return hold_.over(newcomers_, expect_, holdWait_, kernel().log());
+  if (holding()) return hold_.over(newcomers_, {expect_, holdWait_, joinWait_, holdReport_}, kernel().log());
   if ((!lockstep && !sync_) || cyclesToTurn_ > 0) return true;
   const auto now = Clock::now();
   if (!std::exchange(waiting_, true)) waitingSince_ = now;
   const auto joins = [](const auto& p) { return p->joining(); };
   const bool somebodyJoins =
       std::any_of(participants_.begin(), participants_.end(), joins) || std::any_of(newcomers_.begin(), newcomers_.end(), joins);
-  bool all = true;
-  for (const auto& p : participants_) all &= answered(*p, now, somebodyJoins);
-  return all && !tooSoon(now);
+  bool strangers = false;
+  for (const auto& p : participants_) {
+    if (answered(*p, now, somebodyJoins)) continue;
+    if (!isStranger(*p, now)) return false;
+    strangers = true;
+  }
+  if (!strangers && !tooSoon(now)) return true;
+  return !indulge(now);
+}
+
+/// What it keeps others waiting is counted: until it has proved that it answers, and when it is slow. Expected agents never are.
+bool GameControl::isStranger(const Participant& p, Clock::time_point now) const {
+  return !p.trusted() || (!p.expected() && syncTimeout_ > 0 && seconds(now - waitingSince_) > kSlow);
+}
+
+/// All trusted agents have answered, and others have not, or are new and shall see what comes. True when the cycle waits for these. Without trusted
+/// agents nobody is kept waiting; where there are some, it lasts as long as the budget, so that a stranger who joins again and again, or
+/// answers now and then, costs a match a tenth of its time.
+bool GameControl::indulge(Clock::time_point now) {
+  const auto leads = [](const auto& p) { return !p->leaving() && p->mustSync() && p->trusted(); };
+  if (std::none_of(participants_.begin(), participants_.end(), leads)) return true;
+  waits_.refill(now);
+  waits_.refill(actedAt_);
+  if (indulgedAt_ != Clock::time_point()) waits_.spend(seconds(now - indulgedAt_));
+  else if (seconds(now - waitingSince_) > kSlow) waits_.spend(kSlow);  // which it had for nothing
+  indulgedAt_ = now;
+  if (waits_.left()) return true;
+  for (const auto& p : participants_)
+    if (p->mustSync() && !p->synced() && !p->expected()) p->distrust();
+  return false;
 }
 
 /// Who is waited for in lockstep: agents that sent (syn) once and were sent percepts since, until syncTimeout. All others only watch: an
@@ -148,7 +195,7 @@ bool GameControl::ready(bool lockstep) {
 bool GameControl::answered(Participant& p, Clock::time_point now, bool somebodyJoins) {
   if (p.leaving() || !p.mustSync() || p.synced()) return true;
   const double waited = seconds(now - waitingSince_);
-  if (somebodyJoins && !p.expected() && waited >= joinWait_) return true;
+  if (somebodyJoins && !p.expected() && waited >= answerWait_) return true;
   if (syncTimeout_ <= 0 || waited <= syncTimeout_) return false;
   p.connection()->close(fmt::format("{} did not answer for {} s, all others wait", p.label(), syncTimeout_));
   p.leave();
@@ -178,8 +225,12 @@ void GameControl::closeIdle() {
 }
 
 /// The clock must not stand still while a whole team comes in. Where it waits for agents, or nobody watches it, what happens in which cycle
-/// must not depend on such a limit.
-bool GameControl::mayLoad() { return loads_++ < loadsPerCycle_ || !realTime(); }
+/// must not depend on such a limit; but a stranger that joins again and again must not spend the match's time on building robots.
+bool GameControl::mayLoad(const AgentAspect& agent) {
+  if (realTime()) return loads_++ < loadsPerCycle_;
+  const Participant* p = participantOf(agent);
+  return !p || p->inside() || p->expected() || loading_.take(Clock::now());
+}
 
 bool GameControl::realTime() const {
   const auto* simulation = kernel().root().find<ISimulation>("/sys/server/simulation");
@@ -190,6 +241,7 @@ void GameControl::act(const Event& event) {
   cycle_ = event.cycle;
   waiting_ = false;
   actedAt_ = Clock::now();
+  if (indulgedAt_ != Clock::time_point()) waits_.spend(seconds(actedAt_ - std::exchange(indulgedAt_, {})));
   loads_ = 0;
   closeIdle();
   removeLeaving();
@@ -212,7 +264,8 @@ void GameControl::takeTurn(const Event& event) {
     for (const auto& p : participants_) p->promote();
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     if (auto* p = next(participants_, i, 2)) p->approachActing();
-    participants_[i]->realise(kernel().log(), cycle_);
+    if (waits_.left()) participants_[i]->countAnswer();
+    participants_[i]->realise(lines(), cycle_);
     if (perceptDelay_ > 0) participants_[i]->promote();
   }
 }
@@ -234,14 +287,14 @@ void GameControl::sense(const Event& event) {
   };
   kernel().jobs().run(participants_.size(), std::ref(one));  // a copy would take memory
   if (faults)
-    for (const auto& p : participants_) p->reportFault(kernel().log());
+    for (const auto& p : participants_) p->reportFault(lines());
   if (perceptDelay_ == 0) deliver();
 }
 
 void GameControl::deliver() {
   const auto now = Clock::now();
   for (const auto& p : participants_)
-    if (!p->deliver(kernel().log(), cycle_, now)) ++messagesDropped_;
+    if (!p->deliver(lines(), cycle_, now)) ++messagesDropped_;
 }
 
 void GameControl::removeLeaving() {
@@ -276,7 +329,7 @@ void GameControl::joinBehaviors() {
 }
 
 void GameControl::joinNewcomers() {
-  if (holding()) gamecontrol::Hold::order(newcomers_, expect_);
+  if (holding()) hold_.order(newcomers_, expect_);
   released_ = true;
   auto joining = std::move(newcomers_);
   newcomers_.clear();

@@ -3,6 +3,7 @@
 /// Game control: makes agents of connections and behaviours, dispatches their actions to effectors, asks their perceptors.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,10 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
 
   bool ready(bool lockstep) override;
 
-  /// Asked by an effector that is about to load a robot. False: not in this cycle, ask again in the next.
-  bool mayLoad();
+  /// Asked by an effector that is about to load a robot for `agent`. False: not in this cycle, ask again in the next.
+  bool mayLoad(const AgentAspect& agent);
+  /// A line that an agent caused; they are limited.
+  void complain(const std::string& line);
 
  protected:
   void onUnlink() override;
@@ -54,6 +57,8 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   void resolveRobots();
   void deliver();
   bool answered(Participant& p, Clock::time_point now, bool somebodyJoins);
+  bool isStranger(const Participant& p, Clock::time_point now) const;
+  bool indulge(Clock::time_point now);
   bool tooSoon(Clock::time_point now) const;
   bool full() const;
   void closeIdle();
@@ -63,6 +68,9 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   const Participant* participantOf(const AgentAspect& agent) const;
   void agentsChanged();
   void note(const std::string& line);
+  gamecontrol::AgentLines& lines();
+  double joinBudget() const { return joinBudget_; }
+  void setJoinBudget(double seconds);
   int agentCount() const { return static_cast<int>(agents().size()); }
   std::int64_t messagesDropped() const { return messagesDropped_; }
 
@@ -73,12 +81,16 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   mutable std::uint64_t agentsAt_ = 0;
   mutable std::size_t lastHeard_ = 0;                       ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
-  gamecontrol::LineBudget budget_{40};
+  std::optional<gamecontrol::AgentLines> lines_;
+  // What clients that are not trusted yet may take of a match in lockstep.
+  gamecontrol::Allowance waits_{60, 0.1};  ///< s, and s a second
+  gamecontrol::Allowance loading_{128, 4};  ///< robots, and robots a second
+  Clock::time_point indulgedAt_{};         ///< when this cycle was last kept waiting for them; zero: it was not
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, loadsPerCycle_ = 4;
   bool sync_ = false, released_ = false;
-  double agentStep_ = 0, holdWait_ = 0.5, syncTimeout_ = 30, joinWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
+  double joinBudget_ = 60, agentStep_ = 0, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30, answerWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
 
   int nextNumber_ = 1, agentsSeen_ = 0, loads_ = 0;
   std::int64_t messagesDropped_ = 0, cycle_ = 0;

@@ -4,11 +4,23 @@
 ///
 /// During the hold nothing is made in the tree; messages are parsed and kept. An agent is complete when it has named its robot `(scene ...)`,
 /// its team and number `(init ...)`, and has sent `(syn)` with that or later: a `(syn)` still on its way would count as the answer to its
-/// first percepts, sometimes. Clients that wait for a first message before they say who they are get a minimal
-/// one, `(time (now 0.00))`, once they have named a robot and been silent for a moment. When enough are complete they are ordered by team
-/// name and number, which makes their agents' numbers independent of who came first.
+/// first percepts, sometimes. When enough are complete they are ordered by team name and number, which makes their agents' numbers
+/// independent of who came first.
+///
+/// Clients differ in what they wait for before they go on:
+///
+///     all at once        scene, init, syn
+///     in turn            scene syn  <- message    init syn
+///     step by step       scene      <- message    init       <- message    syn
+///     no soccer player   scene syn  <- message    syn        <- message    syn        and never an init
+///     one program        agent 1 as above, then agent 2, which comes when agent 1 has been told more
+///
+/// So a client that named its robot and is silent for a moment gets a minimal message, `(time (now 0.00))`, once after each thing it said, until
+/// it is complete; one that answered two of them with `(syn)` and had no `(init ...)` to say needs none. The last kind cannot be helped so: when
+/// nothing came from anybody for a while, the match starts with who is there.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "gamecontrol/participant.h"
@@ -18,16 +30,31 @@ namespace spark::gamecontrol {
 class Hold {
  public:
   using List = std::vector<std::unique_ptr<Participant>>;
+  /// What ends it. Times are of the wall clock [s].
+  struct Terms {
+    int agents;        ///< how many are expected
+    double greetAfter; ///< silence after which a client gets a message
+    double startAfter; ///< without progress, after which the match starts with who is there; 0: never
+    double reportEvery;
+  };
   /// To be called after each message that `p` sent during the hold.
   static void note(Participant& p);
-  /// True when `expect` of the newcomers (in order of arrival) are complete; otherwise greets those that wait longer than `patience` [s].
-  bool over(const List& newcomers, int expect, double patience, Log& log);
-  /// Puts the first `expect` complete ones to the front, ordered; what they sent after `(scene ...)` is held back until they were sent
+  /// True when enough of the newcomers (in order of arrival) are complete, or nothing more comes; otherwise greets those that wait for a message,
+  /// and says now and then who is waited for.
+  bool over(const List& newcomers, const Terms& terms, Log& log);
+  /// Puts those with which the match starts to the front, ordered; what they sent after `(scene ...)` is held back until they were sent
   /// their first percepts. Returns how many these are.
-  static std::size_t order(List& newcomers, int expect);
+  std::size_t order(List& newcomers, int expect) const;
 
  private:
-  int reported_ = -1;
+  bool isThere(const Participant& p) const;
+  void greet(const List& newcomers, double patience, Clock::time_point now) const;
+  void noteProgress(const List& newcomers, Clock::time_point now);
+  void report(const List& newcomers, const Terms& terms, Clock::time_point now, Log& log);
+
+  int reported_ = -1, furthest_ = -1;
+  bool givenUp_ = false;  ///< the match starts with who is there
+  Clock::time_point progressAt_{}, reportedAt_{};
 };
 
 }  // namespace spark::gamecontrol

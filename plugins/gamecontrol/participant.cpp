@@ -45,13 +45,13 @@ void Participant::resolveParser(Node& gameControl) {
     }
 }
 
-void Participant::warn(Log& log, std::int64_t cycle, std::string_view text) {
+void Participant::warn(AgentLines& log, std::int64_t cycle, std::string_view text) {
   if (!budget_.take(cycle)) return;
-  if (const auto n = budget_.leftOut()) log.warning("{}: {} further lines were left out.", label_, n);
-  log.warning("{}: {}{}", label_, text.substr(0, kLongestLine), text.size() > kLongestLine ? " ..." : "");
+  if (const auto n = budget_.leftOut()) log.write(Level::warning, fmt::format("{}: {} further lines were left out.", label_, n));
+  log.write(Level::warning, fmt::format("{}: {}{}", label_, text.substr(0, kLongestLine), text.size() > kLongestLine ? " ..." : ""));
 }
 
-std::string Participant::receive(std::string_view message, std::size_t maxPending, Log& log, std::int64_t cycle) {
+std::string Participant::receive(std::string_view message, std::size_t maxPending, AgentLines& log, std::int64_t cycle) {
   heardFrom_ = true;
   lastHeard_ = Clock::now();
   noteAnswer();
@@ -84,8 +84,9 @@ void Participant::keep(const Predicates& arrived) {
     if (e.isList()) (holdingBack_ && e.head() != first_ ? later_ : pending_).append(e);
 }
 
-void Participant::holdBack(std::string_view first) {
-  expected_ = holdingBack_ = true;
+void Participant::holdBack(std::string_view first, bool expected) {
+  expected_ = expected;
+  holdingBack_ = true;
   first_ = first;
   arrived_.clear();
   std::swap(arrived_, pending_);
@@ -171,7 +172,7 @@ void Participant::approachActing() const {
   prefetch(pending_.tokens().data(), kBuffer);
 }
 
-void Participant::realise(Log& log, std::int64_t cycle) {
+void Participant::realise(AgentLines& log, std::int64_t cycle) {
   synced_ = false;
   // The cycle in which an agent connects only makes its aspect.
   if (skipCycle_) {
@@ -198,7 +199,7 @@ void Participant::realise(Log& log, std::int64_t cycle) {
   pendingBytes_ = 0;
 }
 
-void Participant::act(Effector& effector, const Element& action, Log& log, std::int64_t cycle) {
+void Participant::act(Effector& effector, const Element& action, AgentLines& log, std::int64_t cycle) {
   try {
     if (const std::string why = effector.act(action); !why.empty()) warn(log, cycle, why);
   } catch (const std::exception& fault) {
@@ -279,16 +280,16 @@ void Participant::load(StateReader& in) {
   read(later_);
 }
 
-void Participant::reportFault(Log& log) {
+void Participant::reportFault(AgentLines& log) {
   if (faulty_ == kNone) return;
   if (const Perceptor* p = perceptors_[faulty_].get())
-    log.error("{}: {} ({}) threw and is asked no more: {}", label_, p->path(), p->classObject()->name(), fault_);
+    log.write(Level::error, fmt::format("{}: {} ({}) threw and is asked no more: {}", label_, p->path(), p->classObject()->name(), fault_));
   perceptors_.erase(perceptors_.begin() + static_cast<std::ptrdiff_t>(faulty_));
   asked_.erase(asked_.begin() + static_cast<std::ptrdiff_t>(faulty_));
   faulty_ = kNone;
 }
 
-bool Participant::deliver(Log& log, std::int64_t cycle, Clock::time_point now) {
+bool Participant::deliver(AgentLines& log, std::int64_t cycle, Clock::time_point now) {
   if (percepts_.empty() || leaving()) return true;
   if (inside_) {
     try {
@@ -314,7 +315,6 @@ bool Participant::deliver(Log& log, std::int64_t cycle, Clock::time_point now) {
 }
 
 void Participant::greet(const Predicates& percepts) {
-  greeted_ = true;
   if (!connection_ || !parser()) return;
   message_.clear();
   parser()->write(percepts, message_);

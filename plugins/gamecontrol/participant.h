@@ -23,12 +23,11 @@
 #include <vector>
 
 #include "api/agents.h"
+#include "gamecontrol/agent_lines.h"
 #include "gamecontrol/line_budget.h"
 #include "spark/state.h"
 
 namespace spark::gamecontrol {
-
-using Clock = std::chrono::steady_clock;
 
 /// What a sync predicate is called as long as no robot says otherwise.
 inline constexpr std::string_view kSync = "syn";
@@ -60,7 +59,7 @@ class Participant {
   IParser* parser() const { return parserLeaf_ ? parser_ : nullptr; }
 
   /// A message came: parsed at once, realised in the next act. Returns "" or why the connection has to be closed.
-  std::string receive(std::string_view message, std::size_t maxPending, Log& log, std::int64_t cycle);
+  std::string receive(std::string_view message, std::size_t maxPending, AgentLines& log, std::int64_t cycle);
   /// Looks effectors and perceptors up again if something changed below its aspect. True when it has a robot now and had none before.
   bool resolveRobot();
   /// The tree changed since the last look: perceptors that died are asked no more.
@@ -76,7 +75,7 @@ class Participant {
   void approachSensing(std::size_t distance) const;
 
   /// Realises what is pending.
-  void realise(Log& log, std::int64_t cycle);
+  void realise(AgentLines& log, std::int64_t cycle);
   /// What a behaviour thought of becomes pending.
   void promote();
   /// Before the sense phase, in the simulation's thread: lets what its perceptors look at with others be brought up to date.
@@ -84,15 +83,21 @@ class Participant {
   /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent. False when a perceptor threw.
   bool sense(const Event& event);
   /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more.
-  void reportFault(Log& log);
+  void reportFault(AgentLines& log);
   /// Sends or hands over what was sensed last, at the instant `now`. False when the message was dropped because an earlier one has not left.
-  bool deliver(Log& log, std::int64_t cycle, Clock::time_point now);
+  bool deliver(AgentLines& log, std::int64_t cycle, Clock::time_point now);
 
   /// Lockstep: it can answer percepts with a sync predicate, was sent some, and has sent that predicate before.
   bool mustSync() const { return canSync() && pledged_; }
   /// As mustSync, but it never sent a sync predicate: it is told what every cycle brings and not waited for.
   bool watches() const { return canSync() && !pledged_; }
   bool synced() const { return synced_; }
+  /// Lockstep waits for it without counting: it was expected, lives inside, or has answered often enough.
+  bool trusted() const { return inside_ || expected_ || turnsAnswered_ >= kProbation; }
+  /// The cycle that begins found its answer there, or did without.
+  void countAnswer() { turnsAnswered_ += synced_; }
+  /// It kept others waiting for too long: it is not waited for until it answers again, and trusted only when it has done so often.
+  void distrust() { turnsAnswered_ = 0, pledged_ = false; }
   /// It was heard from, and its first percepts may be on their way.
   bool joining() const { return heardFrom_ && sent_ == 0 && counter_ <= kCyclesToFirstPercepts; }
   bool heardFrom() const { return heardFrom_; }
@@ -113,20 +118,26 @@ class Participant {
   const Predicates& pending() const { return pending_; }
   /// The last message that could be read; before it joined, and valid until the next one comes.
   const Predicates& lastMessage() const { return arrived_; }
-  /// During the hold: it said who it is and waits for the clock.
-  bool saidAll() const { return saidAll_; }
-  void setSaidAll() { saidAll_ = true; }
+  /// What the hold has seen of a client.
+  struct Held {
+    bool saidAll = false;  ///< it waits for nothing but the clock
+    bool greeted = false;  ///< it was sent a message since it was last heard
+    int answers = 0;       ///< to such messages, with a sync predicate
+  };
+  Held& held() { return held_; }
+  const Held& held() const { return held_; }
   /// Keeps all but the predicate `first` back until the first percepts were sent: what it sent during the hold then comes in time.
-  void holdBack(std::string_view first);
+  /// `expected`: lockstep always waits for it.
+  void holdBack(std::string_view first, bool expected);
   /// True for agents that were held until all expected ones were there.
   bool expected() const { return expected_; }
   /// One message outside of the cycle, to a client that waits for something before it goes on.
   void greet(const Predicates& percepts);
-  bool greeted() const { return greeted_; }
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   static constexpr std::int64_t kCyclesToFirstPercepts = 3;
+  static constexpr int kProbation = 100;  // answers
   struct Slot {
     std::string predicate;
     Ref<Effector> effector;
@@ -143,7 +154,7 @@ class Participant {
   /// It asked for its robot, which is to come in one of the next cycles.
   bool loading() const;
   std::size_t resolveEffectors(AgentAspect& root);
-  void act(Effector& effector, const Element& action, Log& log, std::int64_t cycle);
+  void act(Effector& effector, const Element& action, AgentLines& log, std::int64_t cycle);
   std::size_t fetchNext(std::size_t index) const;
   Slot* slot(std::string_view predicate, std::size_t& guess);
   /// What the counter is in the next sense phase.
@@ -152,7 +163,7 @@ class Participant {
   void keep(const Predicates& arrived);
   void noteAnswer();
   void encode();
-  void warn(Log& log, std::int64_t cycle, std::string_view text);
+  void warn(AgentLines& log, std::int64_t cycle, std::string_view text);
 
   std::string label_;
   int number_ = 0;
@@ -162,8 +173,9 @@ class Participant {
   Ref<Leaf> parserLeaf_;
   IParser* parser_ = nullptr;
   const bool inside_;
-  bool leaving_ = false, skipCycle_ = true, greeted_ = false, heardFrom_ = false, hadRobot_ = false, expected_ = false, holdingBack_ = false,
-       saidAll_ = false;
+  bool leaving_ = false, skipCycle_ = true, heardFrom_ = false, hadRobot_ = false, expected_ = false, holdingBack_ = false;
+  Held held_;
+  int turnsAnswered_ = 0;
   bool pledged_ = false, synced_ = false;  ///< sent a sync predicate: ever, since the last cycle
   Clock::time_point joinedAt_ = Clock::now(), lastHeard_ = joinedAt_;
   Clock::time_point askedAt_{};  ///< when the first percepts were sent that it has not answered; zero: there are none

@@ -64,13 +64,13 @@ class SceneEffector : public Effector {
       return;
     }
     auto* control = kernel().root().find<GameControl>("/sys/server/gamecontrol");
-    if (control && !control->mayLoad()) {
+    AgentAspect* inner = agent();
+    if (control && inner && !control->mayLoad(inner->outermost())) {
       late_ = true;
       return;
     }
     const std::string file = std::move(file_);
     file_.clear();
-    AgentAspect* inner = agent();
     if (!inner) return kernel().log().error("{}: (scene {}) needs an agent aspect above the effector.", path(), file);
     AgentAspect& root = inner->outermost();
     const std::size_t before = root.children().size();
@@ -82,7 +82,8 @@ class SceneEffector : public Effector {
     } catch (const std::exception& e) {
       ++failures_;
       while (root.children().size() > before) root.remove(*root.children().back());
-      kernel().log().error("Agent {} gets no robot: {}", root.number(), e.what());
+      const std::string line = fmt::format("Agent {} gets no robot: {}", root.number(), e.what());
+      control ? control->complain(line) : kernel().log().write(Level::error, line);
     }
   }
 

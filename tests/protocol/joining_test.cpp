@@ -194,7 +194,7 @@ TEST_CASE("Eleven clients that send scene and init without (syn) and wait join a
 TEST_CASE("One program leads eleven agents, reads each in turn, and answers at once or when it has read all") {
   const bool atOnce = GENERATE(true, false);
   Arena a(true);
-  a.set("joinWait", 0.001);
+  a.set("answerWait", 0.001);
   std::vector<Client> team;
   for (int unum = 1; unum <= 11; ++unum) {
     team.push_back(a.client());
@@ -215,9 +215,9 @@ TEST_CASE("One program leads eleven agents, reads each in turn, and answers at o
   REQUIRE(a.agents() == 11);
 }
 
-TEST_CASE("An agent is waited for though another joins; for joinWait only until that one has its first percepts") {
+TEST_CASE("An agent is waited for though another joins; for answerWait only until that one has its first percepts") {
   Arena a(true);
-  a.set("joinWait", 3600.0);
+  a.set("answerWait", 3600.0);
   Client player = connect(a);
   player.send("(scene robot)(syn)");
   player.arrive();
@@ -226,13 +226,92 @@ TEST_CASE("An agent is waited for though another joins; for joinWait only until 
   other.send("(scene robot)(syn)");
   other.arrive();
   REQUIRE(messagesUntilBlocked(a, player) == 0);
-  a.set("joinWait", 0);
+  a.set("answerWait", 0);
   a.until([&] { return !other.drain().empty(); });
   a.set("syncTimeout", 0);
   other.send("(syn)");
   other.arrive();
   player.drain();
   REQUIRE(messagesUntilBlocked(a, player) == 0);
+}
+
+namespace {
+/// Plays with an agent until it is trusted: it answers every message.
+void playUntilTrusted(Arena& a, Client& player) {
+  int answered = 0;
+  a.until([&] {
+    for (std::size_t n = player.drain().size(); n > 0; --n, ++answered) player.send("(syn)");
+    return answered >= 120;
+  });
+}
+}  // namespace
+
+TEST_CASE("Strangers who join a match in lockstep and do not answer, again and again, keep it waiting for joinBudget in sum") {
+  Arena a(true);
+  a.set("joinBudget", 0.02);
+  a.set("joinPace", 3600.0);  // new agents that have not sent (syn) would stop it, too
+  a.set("syncTimeout", 3600.0);
+  const bool says = GENERATE(true, false);
+  Client player = a.client();
+  player.send("(scene robot)(syn)");
+  playUntilTrusted(a, player);
+  for (int i = 0; i < 5; ++i) {
+    Client stranger = a.client();
+    stranger.send(says ? "(scene robot)(syn)" : "(scene robot)");
+    stranger.arrive();
+    const auto from = a.cycles();
+    a.until([&] {
+      for (std::size_t n = player.drain().size(); n > 0; --n) player.send("(syn)");
+      return a.cycles() >= from + 50;
+    });
+  }
+}
+
+TEST_CASE("Without agents that have proved themselves nobody is kept waiting: the budget is not touched") {
+  Arena a(true);
+  a.set("joinBudget", 0);
+  a.set("syncTimeout", 0);
+  Client player = connect(a);
+  player.send("(scene robot)(syn)");
+  player.arrive();
+  messagesUntilBlocked(a, player);
+  const auto from = a.cycles();
+  for (int i = 0; i < 200; ++i) a.step();
+  REQUIRE(a.cycles() == from);
+}
+
+TEST_CASE("In lockstep robots of strangers are built some at once and then few a second, expected ones always") {
+  Arena a(true);
+  Client player = a.client();
+  player.send("(scene robot)(syn)");
+  playUntilTrusted(a, player);
+  for (int i = 0; i < 200; ++i) {
+    Client stranger = a.client();
+    stranger.send("(scene robot)");
+    stranger.arrive();
+    for (int k = 0; k < 4; ++k) {
+      a.step();
+      for (std::size_t n = player.drain().size(); n > 0; --n) player.send("(syn)");
+    }
+  }
+  REQUIRE(a.get("agentsSeen").toInteger() > 100);
+  REQUIRE(a.get("agentsSeen").toInteger() < 190);
+}
+
+TEST_CASE("Clients that connect, complain and leave again and again write a bounded number of lines") {
+  Arena a(true);
+  for (int i = 0; i < 400; ++i) {
+    Client stranger = a.client();
+    stranger.send("(scene robot)(nonsense)");
+    stranger.arrive();
+    a.cycle();
+    a.cycle();
+    stranger.leave();
+    a.cycle();
+  }
+  const auto lines = std::count(a.house.text.begin(), a.house.text.end(), '\n');
+  REQUIRE(lines > 200);
+  REQUIRE(lines < 400);
 }
 
 TEST_CASE("Who cannot answer is not waited for") {
