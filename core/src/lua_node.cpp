@@ -17,9 +17,14 @@ struct NodeRef {
 using SubscriptionRef = std::weak_ptr<Subscription>;
 
 const std::vector<std::string>& builtins() {
-  static const std::vector<std::string> names{"name", "path", "class", "parent", "alive", "find", "children", "new", "delete", "attach", "on"};
+  static const std::vector<std::string> names{"name", "path", "class", "parent", "alive", "find", "children", "new", "delete", "attachScript", "attach", "on"};
   return names;
 }
+
+bool isBuiltin(std::string_view name) { return std::find(builtins().begin(), builtins().end(), name) != builtins().end(); }
+
+/// True for a built-in name that the node's class uses itself: joints have a method attach, file systems a property path. The class's counts.
+bool hidesBuiltin(ClassObject& c, std::string_view name) { return name != "alive" && (c.property(name) || c.method(name)); }
 
 /// The first argument of node:f(...).
 Leaf& self(lua_State* L, const char* function) {
@@ -71,14 +76,22 @@ int nodeDelete(lua_State* L) {
   return 0;
 }
 
-int nodeAttach(lua_State* L) {
-  mustBeTrusted(L, "node:attach");
-  Leaf& node = self(L, "attach");
+/// node:attachScript, and node:attach where the class has no method of that name.
+int nodeAttachScript(lua_State* L) {
+  mustBeTrusted(L, "node:attachScript");
+  Leaf& node = self(L, "attachScript");
   node.kernel().lua().attach(node, checkString(L, 2, "a script file"));
   return 0;
 }
 
 int nodeOn(lua_State* L) { return subscribe(L, self(L, "on"), 2); }
+
+/// A script's file given to a method that hides the built-in attach. Throws Error with the name that is never hidden.
+void refuseScript(const Leaf& node, const std::string& name, const std::vector<Value>& arguments) {
+  if (name != "attach" || arguments.empty() || arguments[0].type() != Value::Type::string || !arguments[0].toString().ends_with(".lua")) return;
+  throw Error("attach is a method of class " + node.classObject()->name() + " itself: write node:attachScript(\"" + arguments[0].toString() +
+              "\") to attach a script to " + node.path());
+}
 
 /// A method as the script calls it; its name is the upvalue.
 int callNodeMethod(lua_State* L) {
@@ -86,6 +99,7 @@ int callNodeMethod(lua_State* L) {
   Leaf& node = self(L, name.c_str());
   std::vector<Value> arguments;
   for (int i = 2; i <= lua_gettop(L); ++i) arguments.push_back(toValue(L, i));
+  refuseScript(node, name, arguments);
   Runtime& runtime = State::of(L).runtime();
   if (runtime.inConfig) {
     if (isGroup(node) && name == "set" && !arguments.empty() && runtime.settings.shields(node, arguments[0].plain())) return 0;
@@ -129,12 +143,12 @@ int nodeIndex(lua_State* L) {
     return 1;
   }
   Leaf& leaf = self(L, "find");
+  const bool own = isBuiltin(key) && hidesBuiltin(*leaf.classObject(), key);
   lua_pushvalue(L, 2);
-  if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL) return 1;
-  if (key == "parent") return pushAllowed(L, leaf.parent());
-  if (key == "name") pushValue(L, leaf.name());
-  else if (key == "path") pushValue(L, leaf.path());
-  else if (key == "class") pushValue(L, leaf.classObject()->name());
+  if (!own && lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL) return 1;
+  if (!own && key == "parent") return pushAllowed(L, leaf.parent());
+  if (!own && key == "path") pushValue(L, leaf.path());
+  else if (!own && key == "class") pushValue(L, leaf.classObject()->name());
   else if (const Property* p = leaf.classObject()->property(key)) pushValue(L, p->get(leaf));
   else if (leaf.classObject()->method(key)) pushMethod(L, key);
   else if (hasMember(leaf, key)) pushValue(L, callMethod(leaf, "get", std::array<Value, 1>{Value(key)}));
@@ -145,7 +159,7 @@ int nodeIndex(lua_State* L) {
 int nodeNewIndex(lua_State* L) {
   const std::string_view key = checkString(L, 2, "the name of a property");
   Leaf& leaf = self(L, "find");
-  if (key != "name" && std::find(builtins().begin(), builtins().end(), key) != builtins().end())
+  if (isBuiltin(key) && !leaf.classObject()->property(key))
     throw Error("cannot set " + leaf.path() + "." + std::string(key) + ": it is read only");
   Runtime& runtime = State::of(L).runtime();
   if (runtime.inConfig && runtime.settings.shields(leaf, key)) return 0;
@@ -178,8 +192,8 @@ int subscriptionFree(lua_State* L) {
 
 void openNodes(lua_State* L) {
   constexpr luaL_Reg kFunctions[] = {{"find", guarded<nodeFind>},     {"children", guarded<nodeChildren>}, {"new", guarded<nodeNew>},
-                                     {"delete", guarded<nodeDelete>}, {"attach", guarded<nodeAttach>},     {"on", guarded<nodeOn>},
-                                     {nullptr, nullptr}};
+                                     {"delete", guarded<nodeDelete>}, {"attachScript", guarded<nodeAttachScript>}, {"attach", guarded<nodeAttachScript>},
+                                     {"on", guarded<nodeOn>},         {nullptr, nullptr}};
   luaL_newmetatable(L, kNodeType);
   luaL_newlib(L, kFunctions);
   lua_newtable(L);

@@ -51,7 +51,8 @@ TEST_CASE("an untrusted script cannot make, delete or attach") {
   LuaHouse h;
   CHECK_THAT(sandbox(h, "self:new('Thing')"), Equals("the script attached to /usr/a failed: guest:1: node:new is not for untrusted scripts"));
   CHECK_THAT(sandbox(h, "self:delete()"), Contains("guest:1: delete is not for untrusted scripts"));
-  CHECK_THAT(sandbox(h, "self:attach('x.lua')"), Contains("guest:1: node:attach is not for untrusted scripts"));
+  for (const char* name : {"attach", "attachScript"})
+    CHECK_THAT(sandbox(h, std::string("self:") + name + "('x.lua')"), Contains("guest:1: node:attachScript is not for untrusted scripts"));
 }
 
 TEST_CASE("an untrusted script that computes too long is stopped") {

@@ -40,6 +40,41 @@ TEST_CASE("children are reached by find only") {
   CHECK_THAT(h.failure("return get('/usr/a').b"), Contains("has no property or method 'b'"));
 }
 
+namespace {
+/// A class that calls two of its members as every node's built-ins are called.
+class Coupling : public Node {
+  SPARK_CLASS(Coupling, Node)
+ public:
+  static void describe(Description<Coupling>& d) {
+    d.doc("Couples.");
+    d.property("path", &Coupling::track).doc("Where it runs.");
+    d.method("attach", &Coupling::attach).parameters({"first", "second"}).optional(1).doc("Couples two things.");
+  }
+  void attach(std::string first, std::string second) { coupled = first + "+" + second; }
+  std::string track = "straight", coupled;
+};
+}  // namespace
+
+TEST_CASE("a member of the class goes before a built-in of the same name") {
+  LuaHouse h;
+  h.kernel.registerClass<Coupling>();
+  Coupling& c = h.kernel.create<Coupling>("Coupling", "/usr/c");
+  h.thing("/usr/a");
+  h.write("mark.lua", "on('tick', function() get('/usr/a').count = get('/usr/a').count + 1 end)");
+  h.run("get('/usr/c'):attach('../a', '../b')");
+  CHECK(c.coupled == "../a+../b");
+  CHECK(h.run("return get('/usr/c').path") == Value("straight"));
+  h.run("get('/usr/c').path = 'round'");
+  CHECK(c.track == "round");
+  CHECK(h.run("return {tostring(get('/usr/c')), get('/usr/c'):getFullPath(), get('/usr/c').name}") == Value(List{"/usr/c", "/usr/c", "c"}));
+
+  h.run("get('/usr/c'):attachScript('mark.lua') get('/usr/a'):attachScript('mark.lua') get('/usr/a'):attach('mark.lua')");
+  h.emit("tick");
+  CHECK(h.kernel.root().find<Thing>("/usr/a")->count == 3);
+  CHECK_THAT(h.failure("get('/usr/c'):attach('mark.lua')"),
+             Equals("test:1: attach is a method of class Coupling itself: write node:attachScript(\"mark.lua\") to attach a script to /usr/c"));
+}
+
 TEST_CASE("nodes are equal by identity and work as table keys") {
   LuaHouse h;
   h.thing("/usr/a");
