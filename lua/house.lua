@@ -19,11 +19,11 @@ function files()
   plugin "files"
   local server = new("FileServer", "/sys/server/file")
   for i, folder in ipairs(host.scenePaths) do
-    new("DirectoryFileSystem", "/sys/server/file/scenePath" .. i):setPath(folder)  -- .path is the node's own
+    new("DirectoryFileSystem", "/sys/server/file/scenePath" .. i).path = folder
   end
   if host.share ~= "" then
     local share = new("DirectoryFileSystem", "/sys/server/file/share")
-    share:setPath(host.share .. "/scenes")
+    share.path = host.share .. "/scenes"
     share.prefix = "rsg"                        -- scenes/agent/sphere.rsg is known as rsg/agent/sphere.rsg
   end
   return server
