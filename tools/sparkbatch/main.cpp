@@ -18,7 +18,7 @@ constexpr int kWrong = 2;
 std::atomic<Wish> wish = Wish::goOn;
 static_assert(std::atomic<Wish>::is_always_lock_free);
 
-extern "C" void onSignal(int number) {
+extern "C" void endBatch(int number) {
   if (wish == Wish::abandon) std::signal(number, SIG_DFL), std::raise(number);
   wish = number == SIGINT && wish == Wish::goOn ? Wish::finish : Wish::abandon;
 }
@@ -28,7 +28,7 @@ extern "C" void onSignal(int number) {
 /// MPI has it; what has a row stays either way.
 void watchSignals() {
   struct sigaction action = {};
-  action.sa_handler = onSignal;
+  action.sa_handler = endBatch;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
