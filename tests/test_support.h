@@ -15,6 +15,8 @@ namespace spark::test {
 inline std::filesystem::path pluginFolder() { return std::filesystem::canonical("/proc/self/exe").parent_path().parent_path() / "plugins"; }
 /// The programs of this build.
 inline std::filesystem::path binFolder() { return std::filesystem::canonical("/proc/self/exe").parent_path().parent_path() / "bin"; }
+/// A program of this build, for a command line.
+inline std::string program(const std::string& name) { return (binFolder() / name).string(); }
 /// The reference data; empty where SPARK_REFERENCE_DIR is not set: a test that needs it then exits with 77. A folder that is named but
 /// holds no recorded sessions ends the program with exit code 1: a test that was meant to run must not pass as skipped.
 inline std::filesystem::path referenceFolder() {

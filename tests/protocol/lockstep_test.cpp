@@ -7,7 +7,7 @@ using namespace spark::test;
 
 namespace {
 /// Connects a robot and answers until the clock waits for it.
-Client robot(Arena& a, std::string_view scene = "(scene robot)(syn)") {
+Client joined(Arena& a, std::string_view scene = "(scene robot)(syn)") {
   Client c = a.client();
   const auto before = a.agents();
   a.until([&] { return a.agents() > before; });
@@ -29,7 +29,7 @@ int cyclesUntilBlocked(Arena& a) {
 
 TEST_CASE("The clock waits for (syn), and each gives one cycle") {
   Arena a(true);
-  Client c = robot(a);
+  Client c = joined(a);
   REQUIRE(cyclesUntilBlocked(a) == 0);
   for (int i = 0; i < 5; ++i) {
     c.send("(he1 1)(syn)");
@@ -41,7 +41,7 @@ TEST_CASE("The clock waits for (syn), and each gives one cycle") {
 
 TEST_CASE("Three syns in one message, or in three messages already there, give one cycle") {
   Arena a(true);
-  Client c = robot(a);
+  Client c = joined(a);
   cyclesUntilBlocked(a);
   SECTION("one message") { c.send("(syn)(syn)(syn)"); }
   SECTION("three messages") {
@@ -55,7 +55,7 @@ TEST_CASE("Three syns in one message, or in three messages already there, give o
 
 TEST_CASE("The position of (syn) does not matter, everything that was received is realised") {
   Arena a(true);
-  Client c = robot(a);
+  Client c = joined(a);
   cyclesUntilBlocked(a);
   c.send("(syn)(he1 1)");
   c.send("(he2 2)");
@@ -66,7 +66,7 @@ TEST_CASE("The position of (syn) does not matter, everything that was received i
 
 TEST_CASE("All agents that have sent (syn) are waited for") {
   Arena a(true);
-  Client one = robot(a);
+  Client one = joined(a);
   one.send("(syn)");
   Client two = a.client();
   a.until([&] { return a.agents() == 2; });
@@ -88,7 +88,7 @@ TEST_CASE("All agents that have sent (syn) are waited for") {
 TEST_CASE("An agent that falls silent is closed after syncTimeout, the others go on") {
   Arena a(true);
   a.set("syncTimeout", 0.02);
-  Client silent = robot(a);
+  Client silent = joined(a);
   a.until([&] { return a.agents() == 0; });
   REQUIRE(silent.closed());
   REQUIRE(a.logged("did not answer for 0.02 s, all others wait"));
@@ -97,7 +97,7 @@ TEST_CASE("An agent that falls silent is closed after syncTimeout, the others go
 
 TEST_CASE("A disconnect frees the clock") {
   Arena a(true);
-  Client c = robot(a);
+  Client c = joined(a);
   REQUIRE(cyclesUntilBlocked(a) == 0);
   c.leave();
   a.until([&] { return a.agents() == 0; });
@@ -105,7 +105,7 @@ TEST_CASE("A disconnect frees the clock") {
 
 TEST_CASE("Out of lockstep nobody is waited for, unless game control is told to") {
   Arena a(true);
-  Client c = robot(a);
+  Client c = joined(a);
   REQUIRE(a.gate->ready(false));
   a.set("sync", true);
   REQUIRE_FALSE(a.gate->ready(false));
@@ -114,7 +114,7 @@ TEST_CASE("Out of lockstep nobody is waited for, unless game control is told to"
 TEST_CASE("With a longer step agents act and sense in some cycles only, and the clock waits for them only there") {
   Arena a(true);
   a.set("agentStep", 0.06);
-  Client c = robot(a);
+  Client c = joined(a);
   c.send("(syn)");
   c.arrive();
   cyclesUntilBlocked(a);

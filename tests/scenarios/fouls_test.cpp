@@ -9,7 +9,7 @@ namespace {
 constexpr double kLying = 0.2, kCrouching = 0.4, kStanding = 0.6;  // m: heights of robots
 
 /// A match in PlayOn with the ball far away at (0, -9).
-struct Match : Stadium {
+struct FoulMatch : Stadium {
   using Stadium::Stadium;
   /// What was told since the last call: "index type team unum".
   std::vector<std::string> fouls() {
@@ -46,7 +46,7 @@ Fouls records(int from, int count, const std::string& rest) {
 }  // namespace
 
 TEST_CASE("A player on the ground for 15 s rises into the air for half a second and ends beside the field") {
-  Match s({{"Soccer.GoalieGroundMaxTime", 17}});
+  FoulMatch s({{"Soccer.GoalieGroundMaxTime", 17}});
   Player& goalie = s.join("A", 1, kLying);
   Player& a = s.join("A", 4, kLying);
   Player& b = s.join("B", 4, kLying);
@@ -77,7 +77,7 @@ TEST_CASE("A player on the ground for 15 s rises into the air for half a second 
 }
 
 TEST_CASE("Who does not stand for too long is taken away; half a second of standing prevents it") {
-  Match s({{"Soccer.NotStandingMaxTime", 6}, {"Soccer.GoalieNotStandingMaxTime", 12}});
+  FoulMatch s({{"Soccer.NotStandingMaxTime", 6}, {"Soccer.GoalieNotStandingMaxTime", 12}});
   Player& a = s.join("A", 2, kCrouching);
   Player& lucky = s.join("A", 3, kCrouching);
   Player& goalie = s.join("B", 1, kCrouching);
@@ -101,7 +101,7 @@ TEST_CASE("Who does not stand for too long is taken away; half a second of stand
 }
 
 TEST_CASE("The fourth player in the own area is put out over the nearest edge, and so is another when the goalie comes") {
-  Match s;
+  FoulMatch s;
   std::deque<Player*> a;
   for (int n = 1; n <= 5; ++n) a.push_back(&s.join("A", n, kStanding));
   s.play();
@@ -122,7 +122,7 @@ TEST_CASE("The fourth player in the own area is put out over the nearest edge, a
 }
 
 TEST_CASE("The third in a group of touching players has to leave it") {
-  Match s;
+  FoulMatch s;
   Player& a2 = s.join("A", 2, kStanding);
   Player& a3 = s.join("A", 3, kStanding);
   Player& b2 = s.join("B", 2, kStanding);
@@ -146,16 +146,16 @@ TEST_CASE("The third in a group of touching players has to leave it") {
 
 namespace {
 /// `runner` flies into `other`, who stands at the origin, from +x at `speed` m/s; both touch in the last of the cycles.
-void flyInto(Match& s, Player& runner, Player& other, double speed) {
-  s.command(s.put(runner, 0.3 + 2.5 * speed * Match::kStep, 0, 0.4) + s.put(other, 0, 0));
+void flyInto(FoulMatch& s, Player& runner, Player& other, double speed) {
+  s.command(s.put(runner, 0.3 + 2.5 * speed * FoulMatch::kStep, 0, 0.4) + s.put(other, 0, 0));
   s.run(1);
-  s.act(runner, fmt::format("(force {} 0 0)", -4 * speed / Match::kStep));
+  s.act(runner, fmt::format("(force {} 0 0)", -4 * speed / FoulMatch::kStep));
   s.run(4);
 }
 }  // namespace
 
 TEST_CASE("Who runs into an opponent is sent off, unless he is slow or has just played the ball") {
-  Match s;
+  FoulMatch s;
   Player& a = s.join("A", 2, kStanding);
   Player& b = s.join("B", 3, kStanding);
   s.play();
@@ -191,7 +191,7 @@ TEST_CASE("Who runs into an opponent is sent off, unless he is slow or has just 
 }
 
 TEST_CASE("With the historic distances a second player is sent away from a ball that an opponent is at") {
-  Match s({{"Soccer.MinOppDistance", 0.8}, {"Soccer.Min2PlDistance", 0.4}, {"Soccer.Min3PlDistance", 1.0}});
+  FoulMatch s({{"Soccer.MinOppDistance", 0.8}, {"Soccer.Min2PlDistance", 0.4}, {"Soccer.Min3PlDistance", 1.0}});
   Player& a2 = s.join("A", 2, kStanding);
   Player& a3 = s.join("A", 3, kStanding);
   Player& b2 = s.join("B", 2, kStanding);
@@ -205,7 +205,7 @@ TEST_CASE("With the historic distances a second player is sent away from a ball 
 }
 
 TEST_CASE("In later servers a player may hold the ball beside an opponent for 5 s") {
-  Match s(Stadium::Settings{{"compat", "L"}});
+  FoulMatch s(Stadium::Settings{{"compat", "L"}});
   Player& a = s.join("A", 2, kStanding);
   Player& b = s.join("B", 2, kStanding);
   s.trainer("(playMode PlayOn)" + s.put(b, 0.6, 0));
@@ -216,7 +216,7 @@ TEST_CASE("In later servers a player may hold the ball beside an opponent for 5 
 }
 
 TEST_CASE("Nothing is judged before the kick-off and after a goal, and clocks begin anew") {
-  Match s({{"Soccer.GroundMaxTime", 4}});
+  FoulMatch s({{"Soccer.GroundMaxTime", 4}});
   Player& a = s.join("A", 2, kLying);
   s.trainer(s.put(a, -5, 0, 0.1));
   s.seconds(5);
@@ -233,7 +233,7 @@ TEST_CASE("Nothing is judged before the kick-off and after a goal, and clocks be
 }
 
 TEST_CASE("Who would be placed where somebody stands is placed one radius further") {
-  Match s({{"Soccer.GroundMaxTime", 4}});
+  FoulMatch s({{"Soccer.GroundMaxTime", 4}});
   Player& a = s.join("A", 4, kLying);
   Player& b = s.join("B", 2, kStanding);
   s.trainer("(playMode PlayOn)" + s.ballTo(0, -9) + s.put(a, -5, 3, 0.1) + s.put(b, -1.8, 10.5));
@@ -254,7 +254,7 @@ double hinge(const Player& p, const std::string& name) {
 }  // namespace
 
 TEST_CASE("A Nao whose feet run into each other has its legs frozen for 1 s, and then may move them for 2 s") {
-  Match s;
+  FoulMatch s;
   Player& p = s.connect();
   s.act(p, "(scene rsg/agent/nao/nao.rsg)");
   s.run(3);

@@ -5,7 +5,6 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-const std::string kInRightGoal = Match::ballTo(15.3, 0.2, 0.1), kInLeftGoal = Match::ballTo(-15.3, 0.2, 0.1);
 }
 
 TEST_CASE("A goal counts for the side that attacks that goal, whoever touched the ball") {

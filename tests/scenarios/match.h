@@ -40,4 +40,7 @@ struct Match : Stadium {
   }
 };
 
+/// Puts the ball behind the line of a goal.
+inline const std::string kInRightGoal = Match::ballTo(15.3, 0.2, 0.1), kInLeftGoal = Match::ballTo(-15.3, 0.2, 0.1);
+
 }  // namespace spark::test

@@ -5,7 +5,6 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-const std::string kInRightGoal = Match::ballTo(15.3, 0.2, 0.1), kInLeftGoal = Match::ballTo(-15.3, 0.2, 0.1);
 
 /// A1 stands 0.35 m from the resting ball, B1 1.5 m from it.
 struct Pass : Match {

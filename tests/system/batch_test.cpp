@@ -18,7 +18,6 @@ using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-std::string program(const char* name) { return (binFolder() / name).string(); }
 
 /// A match of two small teams inside the host; what the config reports of it.
 const char* kMatch = R"(
@@ -26,7 +25,7 @@ include "soccer-sphere.lua"
 results{ pushes = 0 }
 get("/usr/agent"):on("act", function() Result.pushes = Result.pushes + math.random(3) end)
 )";
-const std::vector<std::string> kSmall{"--set", "team=Red Blue", "--set", "players=2", "--set", "Soccer.WaitBeforeKickOff=0.2"};
+const std::vector<std::string> kTwoTeams{"--set", "team=Red Blue", "--set", "players=2", "--set", "Soccer.WaitBeforeKickOff=0.2"};
 
 std::vector<std::string> with(std::vector<std::string> command, const std::vector<std::string>& more) {
   command.insert(command.end(), more.begin(), more.end());
@@ -65,7 +64,7 @@ std::vector<std::string> mpirun(int processes) {
 TEST_CASE("A batch gives what sparkhost gives for each of its runs, whatever the number of threads") {
   TemporaryFolder folder;
   const std::string config = folder.write("match.lua", kMatch);
-  const std::vector<std::string> sweep = with(kSmall, {"--runs", "2", "--seed", "5", "--duration", "4", "--sweep",
+  const std::vector<std::string> sweep = with(kTwoTeams, {"--runs", "2", "--seed", "5", "--duration", "4", "--sweep",
                                                        "Soccer.RuleHalfTime=1,120", "--report", "goal=/sys/variables/Soccer.GoalWidth"});
   const std::string one = (folder.path() / "one.jsonl").string(), three = (folder.path() / "three.jsonl").string();
   const Finished alone = runToEnd(batch(config, one, with(sweep, {"--threads", "1"})));
@@ -96,7 +95,7 @@ TEST_CASE("A batch gives what sparkhost gives for each of its runs, whatever the
     const Finished host =
         runToEnd(with({program("sparkhost"), "--config", config, "--rate", "max", "--duration", "4", "--agent-port", "0", "--monitor-port",
                        "0", "--seed", std::to_string(5 + i / 2), "--set", "Soccer.RuleHalfTime=" + std::string(i % 2 ? "120" : "1")},
-                      kSmall));
+                      kTwoTeams));
     REQUIRE(Json::parse(host.out.substr(host.out.find('\n') + 1))["stateHash"] == row["stateHash"]);
   }
   REQUIRE(rows[0]["stateHash"] != rows[2]["stateHash"]);
@@ -157,7 +156,7 @@ TEST_CASE("An interrupted batch ends what runs, keeps its rows, and goes on wher
   TemporaryFolder folder;
   const std::string config = folder.write("match.lua", kMatch);
   const std::string straight = (folder.path() / "straight.jsonl").string(), broken = (folder.path() / "broken.jsonl").string();
-  const std::vector<std::string> few = with(kSmall, {"--duration", "4", "--threads", "2", "--runs", "6"});
+  const std::vector<std::string> few = with(kTwoTeams, {"--duration", "4", "--threads", "2", "--runs", "6"});
   REQUIRE(runToEnd(batch(config, straight, few)).code == 0);
   {
     // every world says when it begins: the signal comes while the first ones run
@@ -217,7 +216,7 @@ TEST_CASE("Several processes give the table of one") {
   TemporaryFolder folder;
   const std::string config = folder.write("match.lua", kMatch);
   const std::string one = (folder.path() / "one.jsonl").string();
-  const std::vector<std::string> more = with(kSmall, {"--duration", "2", "--runs", "5", "--threads", "1"});
+  const std::vector<std::string> more = with(kTwoTeams, {"--duration", "2", "--runs", "5", "--threads", "1"});
   REQUIRE(runToEnd(batch(config, one, more)).code == 0);
   for (const int processes : {2, 3}) {
     const std::string many = (folder.path() / ("many" + std::to_string(processes) + ".jsonl")).string();

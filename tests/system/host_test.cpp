@@ -13,7 +13,6 @@ using Json = nlohmann::json;
 using Catch::Contains;
 
 namespace {
-std::string program(const char* name) { return (binFolder() / name).string(); }
 std::vector<std::string> host(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), program("sparkhost"));
   return arguments;

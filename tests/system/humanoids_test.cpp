@@ -11,9 +11,8 @@ using Catch::Contains;
 using Json = nlohmann::json;
 
 namespace {
-std::string program(const char* name) { return (binFolder() / name).string(); }
 
-std::unique_ptr<Process> host(const std::vector<std::string>& more) {
+std::unique_ptr<Process> startHost(const std::vector<std::string>& more) {
   std::vector<std::string> command{program("sparkhost"),
                                    "--config",
                                    "soccer.lua",
@@ -29,7 +28,7 @@ std::unique_ptr<Process> host(const std::vector<std::string>& more) {
   return std::make_unique<Process>(command);
 }
 
-std::unique_ptr<Process> team(const char* name, const Json& ports, int players) {
+std::unique_ptr<Process> startTeam(const char* name, const Json& ports, int players) {
   return std::make_unique<Process>(std::vector<std::string>{program("humanoid-team"), "--team", name, "--port",
                                                             std::to_string(ports["agentPort"].get<int>()), "--players",
                                                             std::to_string(players)});
@@ -37,10 +36,10 @@ std::unique_ptr<Process> team(const char* name, const Json& ports, int players) 
 }  // namespace
 
 TEST_CASE("Twenty-two humanoids play a short match in lockstep to its end, and no line of the log is a warning") {
-  const auto server = host({"--sync", "--rate", "max", "--expect", "22", "--seed", "7", "--log-level", "warning", "--set",
+  const auto server = startHost({"--sync", "--rate", "max", "--expect", "22", "--seed", "7", "--log-level", "warning", "--set",
                             "Soccer.RuleHalfTime=20", "--duration", "52"});
   const Json ports = Json::parse(server->line());
-  const auto red = team("Red", ports, 11), blue = team("Blue", ports, 11);
+  const auto red = startTeam("Red", ports, 11), blue = startTeam("Blue", ports, 11);
   const Json result = Json::parse(server->line());
   CAPTURE(server->errors(), red->errors(), blue->errors());
   REQUIRE(server->wait() == 0);
@@ -55,18 +54,18 @@ TEST_CASE("Twenty-two humanoids play a short match in lockstep to its end, and n
 
 TEST_CASE("A team of humanoids plays the same match again") {
   const auto play = [] {
-    const auto server = host({"--sync", "--rate", "max", "--expect", "6", "--seed", "3", "--log-level", "error", "--duration", "15"});
+    const auto server = startHost({"--sync", "--rate", "max", "--expect", "6", "--seed", "3", "--log-level", "error", "--duration", "15"});
     const Json ports = Json::parse(server->line());
-    const auto red = team("Red", ports, 3), blue = team("Blue", ports, 3);
+    const auto red = startTeam("Red", ports, 3), blue = startTeam("Blue", ports, 3);
     return Json::parse(server->line())["stateHash"].get<std::string>();
   };
   REQUIRE(play() == play());
 }
 
 TEST_CASE("In real time the status line says whether the cycle was held") {
-  const auto server = host({"--rate", "real", "--log-level", "info"});
+  const auto server = startHost({"--rate", "real", "--log-level", "info"});
   const Json ports = Json::parse(server->line());
-  const auto red = team("Red", ports, 2);
+  const auto red = startTeam("Red", ports, 2);
   server->waitForError("x real time, ");
   server->signal(SIGTERM);
   const Json result = Json::parse(server->line());

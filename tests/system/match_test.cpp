@@ -12,7 +12,6 @@ using Json = nlohmann::json;
 using Catch::Contains;
 
 namespace {
-std::string program(const char* name) { return (binFolder() / name).string(); }
 
 /// A short match of two teams over TCP, in lockstep.
 struct Match {

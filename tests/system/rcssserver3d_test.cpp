@@ -13,7 +13,6 @@ using Catch::Contains;
 using Json = nlohmann::json;
 
 namespace {
-std::string program(const std::string& name) { return (binFolder() / name).string(); }
 
 /// What pkill and killall compare with.
 std::string processName(int pid) {

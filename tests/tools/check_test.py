@@ -57,7 +57,12 @@ class Check(unittest.TestCase):
             self.assertIn(text, result.stderr)
 
     def test_all_stages_pass(self):
-        self.expect(0, "4 passed, 0 failed, 0 skipped")
+        self.expect(0, "4 passed, 0 failed, 0 skipped", "release build", "asan tests", "fuzz runs", "CPU s; 0 compiled, 0 from the compiler cache")
+        self.assertEqual(len((self.tree / "build/check/stages").read_text().splitlines()), 9)
+
+    def test_more_cpu_time_than_the_budget_fails(self):
+        (self.tree / "tools/check.budget").write_text("# none\n0\n")
+        self.expect(1, "4 passed, 1 failed, 0 skipped", "more than tools/check.budget allows (0)")
 
     def test_a_report_without_tests_is_a_failure(self):
         self.reports(NO_TEST, "asan")

@@ -10,8 +10,8 @@ using namespace spark::test;
 
 namespace {
 
-struct Encoder : House {
-  Encoder() {
+struct SexpEncoder : House {
+  SexpEncoder() {
     kernel.plugins().use("monitor-sexp");
     encoder = &kernel.create<IMonitorEncoder>("SexpMonitor", "/usr/encoder");
   }
@@ -26,7 +26,7 @@ struct Encoder : House {
 }  // namespace
 
 TEST_CASE("a full message has the blanks of the installed base") {
-  Encoder e;
+  SexpEncoder e;
   RecordedFrame f;
   fillFrame(f);
   CHECK(e.encode(f.update) ==
@@ -38,7 +38,7 @@ TEST_CASE("a full message has the blanks of the installed base") {
 }
 
 TEST_CASE("a diff names only what changed, and events follow the environment") {
-  Encoder e;
+  SexpEncoder e;
   RecordedFrame f;
   fillFrame(f);
   f.update.full = false;
@@ -50,7 +50,7 @@ TEST_CASE("a diff names only what changed, and events follow the environment") {
 }
 
 TEST_CASE("numbers are written as C writes %g") {
-  Encoder e;
+  SexpEncoder e;
   MonitorFrame frame;
   MonitorUpdate update{frame, true, {}, {}, {}};
   const double numbers[] = {0.1 + 0.2, 104.8800001, 1e6, 123456789, -0.0, 1e-5, std::numeric_limits<double>::infinity(), 2.5e-310};

@@ -8,10 +8,10 @@
 using namespace spark;
 
 namespace {
-struct Fixture {
+struct SexpFixture {
   test::House house;
   IParser* parser;
-  Fixture() {
+  SexpFixture() {
     house.kernel.plugins().use("parser-sexp");
     parser = &house.kernel.create<IParser>("SexpParser", "/usr/parser");
   }
@@ -24,7 +24,7 @@ struct Fixture {
 }  // namespace
 
 TEST_CASE("S-expressions are written as the installed base's clients read them") {
-  Fixture f;
+  SexpFixture f;
   Predicates p;
   p.open("time").open("now").add(7.359).close().close();
   p.open("See").close();
@@ -38,14 +38,14 @@ TEST_CASE("S-expressions are written as the installed base's clients read them")
 }
 
 TEST_CASE("Not-a-number and infinity keep C's spelling") {
-  Fixture f;
+  SexpFixture f;
   Predicates p;
   p.open("a").add(std::nan("")).add(HUGE_VAL).add(-HUGE_VAL).close();
   REQUIRE(f.written(p) == "(a nan inf -inf)");
 }
 
 TEST_CASE("A message with an error keeps what was complete before it") {
-  Fixture f;
+  SexpFixture f;
   const auto [text, kept] = GENERATE(table<std::string, std::string>({
       {"(a 1)(b 2", "(a 1)"}, {"(a 1))(b 2)", "(a 1)"}, {")(he1 2)", ""}, {"(a \"x", ""}, {"(a 1)(say ;zz)(he1 1)", "(a 1)"}, {"(a 1)\x01(b 2)", "(a 1)"}}));
   Predicates p;
@@ -55,7 +55,7 @@ TEST_CASE("A message with an error keeps what was complete before it") {
 }
 
 TEST_CASE("200,000 nested lists are refused without harm") {
-  Fixture f;
+  SexpFixture f;
   Predicates p;
   const auto result = f.parser->parse("(syn)" + std::string(200000, '('), p);
   REQUIRE(result.message.find("deeper than 64") != std::string::npos);

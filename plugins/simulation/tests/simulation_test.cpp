@@ -74,11 +74,11 @@ class Slow : public Node {
   }
 };
 
-struct Fixture {
+struct LoopFixture {
   test::House house;
   Leaf* simulation = nullptr;
   ISimulation* loop = nullptr;
-  Fixture() {
+  LoopFixture() {
     house.kernel.registerClass<Batches>();
     house.kernel.registerClass<Polled>();
     house.kernel.registerClass<Slow>();
@@ -94,7 +94,7 @@ struct Fixture {
 }  // namespace
 
 TEST_CASE("A cycle runs its phases in the order of the design") {
-  Fixture f;
+  LoopFixture f;
   std::string order;
   for (const char* name : {"publish", "sense", "rule", "place", "physics", "prepare", "act"})
     f.house.kernel.events().channel(name).add(f.house.kernel.root(), [&](Leaf&, const Event& e) { order += std::string(e.name) + " "; });
@@ -103,7 +103,7 @@ TEST_CASE("A cycle runs its phases in the order of the design") {
 }
 
 TEST_CASE("Time is the sum of executed steps, and phases after the solver see the new time") {
-  Fixture f;
+  LoopFixture f;
   double act = -1, sense = -1, step = 0;
   std::int64_t cycle = 0;
   f.house.kernel.events().channel("act").add(f.house.kernel.root(), [&](Leaf&, const Event& e) { act = e.time; });
@@ -121,14 +121,14 @@ TEST_CASE("Time is the sum of executed steps, and phases after the solver see th
 }
 
 TEST_CASE("run ends at its duration, neither a cycle early nor late") {
-  Fixture f;
+  LoopFixture f;
   setProperty(*f.simulation, "duration", 600.0);
   f.run();
   REQUIRE(f.loop->cycle() == 30000);
 }
 
 TEST_CASE("run ends when the kernel or a script asks for it") {
-  Fixture f;
+  LoopFixture f;
   f.house.kernel.events().channel("sense").add(f.house.kernel.root(), [&](Leaf&, const Event& e) {
     if (e.cycle == 7) callMethod(*f.simulation, "stop", {});
     if (e.cycle == 9) f.house.kernel.requestStop();
@@ -142,7 +142,7 @@ TEST_CASE("run ends when the kernel or a script asks for it") {
 }
 
 TEST_CASE("The clock waits for closed gates, then reads once more what was received meanwhile") {
-  Fixture f;
+  LoopFixture f;
   auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");
   source.waitsBeforeReady = 3;
   setProperty(*f.simulation, "sync", true);
@@ -154,7 +154,7 @@ TEST_CASE("The clock waits for closed gates, then reads once more what was recei
 }
 
 TEST_CASE("A stop request ends the wait at a gate that never opens") {
-  Fixture f;
+  LoopFixture f;
   auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");
   source.waitsBeforeReady = 1000000;
   source.stopAt = 5;
@@ -164,7 +164,7 @@ TEST_CASE("A stop request ends the wait at a gate that never opens") {
 }
 
 TEST_CASE("A source that cannot wait is polled before every cycle") {
-  Fixture f;
+  LoopFixture f;
   auto& polled = f.house.kernel.create<Polled>("Polled", "/sys/server/control");
   f.runCycles(10);
   REQUIRE(polled.polls == 10);
@@ -172,7 +172,7 @@ TEST_CASE("A source that cannot wait is polled before every cycle") {
 }
 
 TEST_CASE("In real time the clock never runs faster than wall time") {
-  Fixture f;
+  LoopFixture f;
   setProperty(*f.simulation, "rate", "real");
   const auto start = std::chrono::steady_clock::now();
   f.runCycles(6);
@@ -182,7 +182,7 @@ TEST_CASE("In real time the clock never runs faster than wall time") {
 
 TEST_CASE("What cycles take longer than real time allows is told, as fast as possible nothing is") {
   for (const char* rate : {"real", "max"}) {
-    Fixture f;
+    LoopFixture f;
     setProperty(*f.simulation, "rate", rate);
     f.house.kernel.events().channel("physics").add(f.house.kernel.root(), [](Leaf&, const Event&) {
       const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(45);
@@ -202,7 +202,7 @@ TEST_CASE("What cycles take longer than real time allows is told, as fast as pos
 }
 
 TEST_CASE("Waiting for agents is no lost time") {
-  Fixture f;
+  LoopFixture f;
   setProperty(*f.simulation, "rate", "real");
   f.house.kernel.create<ClosedForASecond>("ClosedForASecond", "/sys/server/gate");
   f.runCycles(3);
@@ -210,7 +210,7 @@ TEST_CASE("Waiting for agents is no lost time") {
 }
 
 TEST_CASE("Input is taken while real time passes") {
-  Fixture f;
+  LoopFixture f;
   auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");
   setProperty(*f.simulation, "rate", "real");
   f.runCycles(2);
@@ -219,7 +219,7 @@ TEST_CASE("Input is taken while real time passes") {
 }
 
 TEST_CASE("Wall time is measured per phase and is no state") {
-  Fixture f, g;
+  LoopFixture f, g;
   f.runCycles(3);
   g.runCycles(3);
   const Value micros = getProperty(*f.simulation, "phaseMicros");
@@ -231,7 +231,7 @@ TEST_CASE("Wall time is measured per phase and is no state") {
 }
 
 TEST_CASE("A run within a run is refused and does no harm") {
-  Fixture f;
+  LoopFixture f;
   std::string refusal;
   f.house.kernel.events().channel("rule").add(f.house.kernel.root(), [&](Leaf&, const Event& e) {
     if (e.cycle != 2) return;
@@ -247,7 +247,7 @@ TEST_CASE("A run within a run is refused and does no harm") {
 }
 
 TEST_CASE("Cycle and time are saved and restored") {
-  Fixture f, g;
+  LoopFixture f, g;
   f.runCycles(8);
   StateWriter out(true);
   saveTree(*f.simulation, out);
@@ -259,14 +259,14 @@ TEST_CASE("Cycle and time are saved and restored") {
 }
 
 TEST_CASE("The number of threads follows the property") {
-  Fixture f;
+  LoopFixture f;
   setProperty(*f.simulation, "threads", 4);
   REQUIRE(f.house.kernel.jobs().threads() == 4);
   REQUIRE_THROWS_AS(setProperty(*f.simulation, "threads", 0), Error);
 }
 
 TEST_CASE("Cycles are counted by how long they took, and in real time by how late they were") {
-  Fixture f;
+  LoopFixture f;
   f.house.kernel.create("Slow", "/usr/slow");
   setProperty(*f.simulation, "step", 0.001);
   const auto row = [&f](std::size_t i) { return getProperty(*f.simulation, "cycleTimes").toList().at(i).toList(); };
