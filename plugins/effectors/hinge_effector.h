@@ -20,6 +20,8 @@ class HingeEffector : public Effector, public IFreezable {
     if (!joint_) return "there is no HingeJoint above it";
     double speed = 0;
     if (std::string wrong = readNumber(action, 0, speed); !wrong.empty()) return wrong;
+    // A command wakes the body even where it does not reach the motor, as in the installed base.
+    if (speed != 0) wakeFirstBody();
     if (ignoreCommandAtStop_ && joint_->atStop(0)) return {};
     joint_->drive(0, frozen_ ? 0 : clampSpeed(*joint_, 0, speed));
     return {};
@@ -38,6 +40,9 @@ class HingeEffector : public Effector, public IFreezable {
   }
 
  private:
+  void wakeFirstBody() {
+    if (IRigidBody* body = joint_->body(0); body && !body->enabled()) body->enable();
+  }
   IJoint* joint_ = nullptr;
   bool ignoreCommandAtStop_ = true, frozen_ = false;
 };

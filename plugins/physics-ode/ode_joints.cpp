@@ -345,9 +345,14 @@ void OdeEngine::drive(Joint joint, int axis, double speed) {
 bool OdeEngine::atStop(Joint joint, int axis) const {
   const JointData& j = *data(joint);
   if (axis < 0 || axis >= axesOf(j.type)) return false;
-  const double angle = OdeEngine::angle(joint, axis);
   const engine::SolverAxis& a = j.axes[static_cast<std::size_t>(axis)];
-  return angle <= a.lowStop || angle >= a.highStop;
+  const double angle = OdeEngine::angle(joint, axis);
+  if (!j.world->exactReplay || j.type == JointType::slider) return angle <= a.lowStop || angle >= a.highStop;
+  // In degrees and rounded where the installed base rounds: a foot may rest at its stop for many cycles, and the last bit decides whether
+  // its motor hears commands. (Protocol, section 2.1.)
+  const double angleDeg = single(radToDeg(angle));
+  const auto stopDeg = [](double stop) { return stop * 180.0 / kPi; };
+  return angleDeg <= stopDeg(a.lowStop) || angleDeg >= stopDeg(a.highStop);
 }
 
 double OdeEngine::parameter(Joint joint, JointParameter p, int axis) const {

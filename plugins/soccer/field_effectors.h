@@ -19,32 +19,35 @@ class BeamEffector : public Effector {
   std::string act(const Element& action) override {
     double v[3];
     if (std::string wrong = readNumbers(action, v, 3); !wrong.empty()) return wrong;
-    x_ = v[0], y_ = v[1], angle_ = v[2];
+    x_ = static_cast<float>(v[0]), y_ = static_cast<float>(v[1]), angle_ = static_cast<float>(v[2]);
     pending_ = true;
     return {};
   }
 
  private:
-  static constexpr double kFarthest = 1000;  ///< m from the centre, along each axis
+  static constexpr float kFarthest = 1000;  ///< m from the centre, along each axis
   void prepare(const Event&) {
     if (!std::exchange(pending_, false)) return;
     const soccer::Player* player = match_.player(*this);
     if (!player || !match_.game()->paused()) return;
     const SoccerSettings& s = *match_.settings();
-    double x = x_ + s.beamNoiseXY * random_.uniform(-1, 1), y = y_ + s.beamNoiseXY * random_.uniform(-1, 1);
-    const double angle = angle_ + s.beamNoiseAngle * random_.uniform(-1, 1);
-    if (!s.startAnyFieldPosition) x = std::clamp(x, -s.fieldLength / 2, 0.0);
-    if (s.beamWithinFieldWidth) y = std::clamp(y, -s.fieldWidth / 2, s.fieldWidth / 2);
+    // In single precision, as the installed base: where exactly a robot is put decides the last digit of all that it senses afterwards.
+    const auto noise = [&](double width) { return static_cast<float>(width * random_.uniform(-1, 1)); };
+    float x = x_ + noise(s.beamNoiseXY), y = y_ + noise(s.beamNoiseXY);
+    const float angle = angle_ + noise(s.beamNoiseAngle);
+    if (!s.startAnyFieldPosition) x = std::clamp(x, static_cast<float>(-s.fieldLength / 2), 0.0F);
+    if (const auto most = static_cast<float>(s.fieldWidth / 2); s.beamWithinFieldWidth) y = std::clamp(y, -most, most);
     // where leagues set no limit, the engine's numbers still have one
     x = std::clamp(x, -kFarthest, kFarthest), y = std::clamp(y, -kFarthest, kFarthest);
     const bool left = player->side() == soccer::Side::left;
-    const double d = direction(player->side());
-    player->moveTo(Vec3(d * x, d * y, s.agentRadius), degToRad(left ? angle - 90 : angle + 90));
+    const float yaw = left ? angle - 90 : angle + 90, d = left ? 1 : -1;
+    player->moveTo(Vec3(d * x, d * y, s.agentRadius), degToRad(yaw));
   }
 
   MatchLookup match_;
   RandomStream random_{*this, "beam"};
-  double x_ = 0, y_ = 0, angle_ = 0;
+  float x_ = 0, y_ = 0;  ///< m
+  float angle_ = 0;      ///< deg
   bool pending_ = false;
 };
 

@@ -2,18 +2,9 @@
 
 #include <fstream>
 
-#include "box_overlap.h"
-
 namespace spark {
 
 namespace {
-
-/// Directly joined, so that they touch by construction.
-bool areJointed(const std::vector<IJoint*>& joints, const IRigidBody* a, const IRigidBody* b) {
-  return a && b && std::any_of(joints.begin(), joints.end(), [&](const IJoint* j) {
-           return (j->body(0) == a && j->body(1) == b) || (j->body(0) == b && j->body(1) == a);
-         });
-}
 
 /// How a part is called: after the transform that carries it.
 const std::string& partName(IRobotBox& box) {
@@ -69,20 +60,16 @@ SelfCollisionAspect::Robot SelfCollisionAspect::dissect(const soccer::Player& pl
   std::vector<IRobotBox*> boxes;
   player.agent->collect(boxes);
   for (IRobotBox* box : boxes) {
-    Box& b = robot.boxes.emplace_back(Box{box, {}, box->boxLengths() / 2, {}});
+    Box& b = robot.boxes.emplace_back(Box{box, {}, (box->boxLengths() / 2).cast<float>(), {}});
     for (std::size_t k = 0; k < effectors.size(); ++k)
       if (const auto& names = box->freezeJointEffectors(); std::find(names.begin(), names.end(), effectors[k]->leaf().name()) != names.end())
         b.limb.push_back(static_cast<int>(k));
   }
-  std::vector<IJoint*> joints;
-  player.agent->collect(joints);
   for (std::size_t a = 0; a < boxes.size(); ++a)
     for (std::size_t b = a + 1; b < boxes.size(); ++b) {
-      if (boxes[a]->ignores(boxes[b]->leaf().name()) || boxes[b]->ignores(boxes[a]->leaf().name())) continue;
-      const auto *colliderA = boxes[a]->leaf().as<ICollider>(), *colliderB = boxes[b]->leaf().as<ICollider>();
-      if (colliderA && colliderB && (colliderA->body() == colliderB->body() || areJointed(joints, colliderA->body(), colliderB->body())))
-        continue;
-      robot.pairs.push_back({static_cast<int>(a), static_cast<int>(b), robot.boxes[a].half.norm() + robot.boxes[b].half.norm()});
+      if (boxes[b]->ignores(boxes[a]->leaf().name())) continue;
+      const float reach = robot.boxes[a].half.norm() + robot.boxes[b].half.norm();
+      robot.pairs.push_back({static_cast<int>(a), static_cast<int>(b), kRounding * reach * reach});
     }
   return robot;
 }
@@ -107,7 +94,7 @@ void SelfCollisionAspect::thaw(Robot& robot, double now) {
 void SelfCollisionAspect::judgeRobot(std::size_t player, double now) {
   const SoccerSettings& s = settings();
   Robot& robot = robots_[player];
-  for (Box& b : robot.boxes) b.pose = b.box->pose();
+  for (Box& b : robot.boxes) b.now = soccer::SingleBox(b.box->pose(), b.half);
   bool foul = false;
   for (const Pair& pair : robot.pairs) {
     if (!overlap(robot, pair)) continue;
@@ -128,10 +115,9 @@ void SelfCollisionAspect::judgeRobot(std::size_t player, double now) {
 }
 
 bool SelfCollisionAspect::overlap(const Robot& robot, const Pair& pair) const {
-  const Box &a = robot.boxes[pair.a], &b = robot.boxes[pair.b];
-  const double tolerance = settings().selfCollisionsTolerance, reach = pair.reach - tolerance;
-  if (reach <= 0 || (a.pose.position - b.pose.position).squaredNorm() >= reach * reach) return false;
-  return soccer::overlapBeyond(tolerance, a.pose, a.half, b.pose, b.half);
+  const soccer::SingleBox &a = robot.boxes[pair.a].now, &b = robot.boxes[pair.b].now;
+  if ((a.centre - b.centre).squaredNorm() > pair.reachSquared) return false;
+  return soccer::overlapBeyond(static_cast<float>(settings().selfCollisionsTolerance), a, b);
 }
 
 /// True when a joint of the limb was neither frozen nor spared. Without FoulOnSelfCollisions only its clock starts.

@@ -1,13 +1,15 @@
 #pragma once
 
 #include "api/robot_parts.h"
+#include "box_overlap.h"
 #include "foul_aspect.h"
 
 namespace spark {
 
 /// A robot's boxes may not overlap by more than SelfCollisionsTolerance. The effectors that the boxes' limbs name are frozen for
 /// SelfCollisionJointFrozenTime, and then spared for SelfCollisionJointThawTime; or, with SelfCollisionBeamPenalty, the player is sent off.
-/// Boxes next to each other (jointed, or told not to collide) are not compared.
+/// Of two boxes the later one in the tree may name the earlier one (addNotCollideWithColliderName): they are not compared. All others are,
+/// neighbours at a joint and parts of one body too.
 class SelfCollisionAspect : public FoulAspect {
   SPARK_CLASS(SelfCollisionAspect, FoulAspect)
  public:
@@ -23,15 +25,16 @@ class SelfCollisionAspect : public FoulAspect {
 
  private:
   static constexpr double kLongAgo = -1e9;  ///< s
+  static constexpr float kRounding = 1.001F;
   struct Box {
     IRobotBox* box;
-    Pose pose;               ///< of this cycle
-    Vec3 half;               ///< of its edges [m]
+    soccer::SingleBox now;   ///< in this cycle
+    Vec3f half;              ///< of its edges [m]
     std::vector<int> limb;   ///< joints that it freezes
   };
   struct Pair {
     int a, b;
-    double reach;  ///< m: centres farther apart cannot overlap
+    float reachSquared;  ///< m^2: boxes whose centres are farther apart cannot overlap
   };
   struct Joint {
     IFreezable* effector;

@@ -26,8 +26,9 @@ namespace {
 
 const std::vector<std::string> kSessions{
     "mainline/nao0-rest",        "mainline/nao0-all-joints",       "mainline/nao0-squat-after-beam", "mainline/nao3-legs",
-    "mainline/team-walks-and-kicks", "mainline/ball-bounce-and-roll", "spl/nao0-rest",                  "spl/nao0-all-joints",
-    "spl/nao0-squat-after-beam", "spl/nao3-legs",                  "spl/ball-bounce-and-roll"};
+    "mainline/team-walks-and-kicks", "mainline/team-walks-and-dribbles",
+    "mainline/ball-bounce-and-roll", "spl/nao0-rest", "spl/nao0-all-joints", "spl/nao0-squat-after-beam", "spl/nao3-legs",
+    "spl/ball-bounce-and-roll"};
 
 /// `(beam -2 0.5 30)` as the noise of the recording made it: x [m], y [m], angle [deg], from the torso's matrix in the frames that follow.
 const std::map<std::string, std::string> kNoisyBeams{{"mainline/nao0-squat-after-beam", "(beam -2.0413 0.479276 20.387088)"},

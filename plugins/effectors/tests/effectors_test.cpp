@@ -114,6 +114,28 @@ TEST_CASE("only a speed that is not zero wakes the body") {
   CHECK(robot.body->awake);
 }
 
+TEST_CASE("a command that does not reach the motor wakes the body all the same, unless its speed is zero") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
+  robot.body->awake = false;
+  SECTION("at a stop") {
+    robot.joint->setParameter(engine::JointParameter::highStop, 0, 1);
+    robot.joint->angles[0] = 1;
+    robot.act(he1, "(he1 0)");
+    CHECK_FALSE(robot.body->awake);
+    robot.act(he1, "(he1 -0.1)");
+    CHECK(robot.body->awake);
+  }
+  SECTION("frozen") {
+    he1.as<IFreezable>()->freeze(true);
+    robot.act(he1, "(he1 0)");
+    CHECK_FALSE(robot.body->awake);
+    robot.act(he1, "(he1 -0.1)");
+    CHECK(robot.body->awake);
+  }
+  CHECK(robot.joint->velocity(0) == 0);
+}
+
 TEST_CASE("the other joints have their own units and limits") {
   Robot robot;
   robot.joint->maxSpeeds = {2, 3, 0};

@@ -103,6 +103,38 @@ TEST_CASE("to drive a joint wakes its first body unless it is to stand, and a jo
   CHECK_FALSE(two.ode.atStop(j, 0));
 }
 
+TEST_CASE("with exact replay the last bits at a stop are those of single-precision degrees") {
+  EngineHouse house;
+  for (const bool exact : {false, true}) {
+    INFO((exact ? "exact" : "not exact"));
+    setProperty(house.kernel.root().require<Leaf>("/sys/server/physics/engine"), "exactReplay", exact);
+    const engine::World world = house.ode.createWorld();
+    const Body foot = house.ode.createBody(world);
+    const Joint j = house.ode.createJoint(world, JointType::hinge);
+    house.ode.attach(j, foot, Body::none);
+    house.ode.setAxis(j, 0, {0, 0, 1});
+    const double stop = static_cast<float>(degToRad(75));
+    house.ode.setParameter(j, JointParameter::highStop, 0, stop);
+    house.ode.setParameter(j, JointParameter::lowStop, 0, -stop);
+    int inside = 0, ignored = 0;
+    for (const int sign : {-1, 1})
+      for (int i = -40; i <= 40; ++i) {
+        const double yaw = sign * (stop + i * 1e-8);
+        Mat3 r;
+        r << std::cos(yaw), -std::sin(yaw), 0, std::sin(yaw), std::cos(yaw), 0, 0, 0, 1;
+        house.ode.setRotation(foot, r);
+        const double angle = house.ode.angle(j, 0);
+        REQUIRE(std::abs(angle - yaw) < 1e-6);
+        const float deg = static_cast<float>(radToDeg(angle));
+        const bool atStop = exact ? std::abs(deg) >= stop * 180 / kPi : std::abs(angle) >= stop;
+        CHECK(house.ode.atStop(j, 0) == atStop);
+        if (std::abs(angle) < stop) ++inside, ignored += house.ode.atStop(j, 0);
+      }
+    CHECK(inside > 0);
+    CHECK((ignored > 0) == exact);  // 75 degrees, as they are rounded, are beyond the stop
+  }
+}
+
 TEST_CASE("a motor is as strong as its maximal force") {
   Two two;
   const Joint j = two.joint(JointType::hinge);

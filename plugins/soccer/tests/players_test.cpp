@@ -157,6 +157,19 @@ TEST_CASE("beams are in the team's own view, and only before kick-offs", "[socce
   CHECK(h.bodyOf(1).state().position.x() > -15);
 }
 
+TEST_CASE("beams turn in single precision, step by step", "[soccer]") {
+  MatchHouse h;
+  h.importField();
+  Puppet& a = h.join("A", 1);
+  a.next = "(beam -10 5 -80.5377)";
+  h.run(2);
+  const float sum = -80.5377F - 90;
+  const auto yaw = static_cast<float>(degToRad(sum));
+  REQUIRE(yaw != static_cast<float>(degToRad(-80.5377 - 90)));
+  const Mat3 r = h.bodyOf(1).state().rotation;
+  CHECK(std::atan2(r(1, 0), r(0, 0)) == Approx(static_cast<double>(yaw)).margin(6e-8).epsilon(0));
+}
+
 TEST_CASE("a kick's force follows the formula and lasts its steps", "[soccer]") {
   MatchHouse h;
   h.importField();

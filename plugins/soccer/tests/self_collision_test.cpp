@@ -1,6 +1,7 @@
-// Parts of one robot that overlap: when that is a foul, what it freezes, and how deep boxes overlap.
+// Parts of one robot that overlap: when that is a foul, what it freezes, and which boxes overlap.
 #include <unistd.h>
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <fstream>
 
@@ -122,31 +123,74 @@ TEST_CASE("self-collisions may be penalised by a beam, or not at all", "[fouls]"
   }
 }
 
-TEST_CASE("boxes overlap as deep as along their least axis", "[fouls]") {
+TEST_CASE("of two boxes only the later one's word keeps them from being compared", "[fouls]") {
+  BoxerMatch h;
+  h.setMode("BeforeKickOff");
+  const std::string robot = "/usr/scene/AgentAspect2/robot/";
+  // a change of the robot makes the referee look at it again
+  const auto name = [&](const char* speaker, const char* named) {
+    callMethod(h.at(robot + speaker), "addNotCollideWithColliderName", std::vector<Value>{named, true});
+    h.kernel.create("Transform", robot + "change");
+  };
+  SECTION("the later one names the earlier one") {
+    name("rarm/RightArm", "LeftArm");
+    h.setMode("PlayOn");
+    h.run(5);
+    CHECK(h.fouls().empty());
+  }
+  SECTION("the earlier one names the later one") {
+    name("larm/LeftArm", "RightArm");
+    h.setMode("PlayOn");
+    h.run(1);
+    CHECK(h.fouls() == Fouls{"1 7 1 2"});
+  }
+  SECTION("a joint between them does not matter") {
+    Leaf& joint = h.kernel.create("FixedJoint", robot + "rarm/joint");
+    callMethod(joint, "attach", std::vector<Value>{"../physics", "../../larm/physics"});
+    h.setMode("PlayOn");
+    h.run(1);
+    CHECK(h.fouls() == Fouls{"1 7 1 2"});
+  }
+}
+
+namespace {
+
+/// R = Rx Ry Rz, angles in degrees.
+Mat3 turned(double x, double y, double z) {
+  return (Eigen::AngleAxisd(degToRad(x), Vec3::UnitX()) * Eigen::AngleAxisd(degToRad(y), Vec3::UnitY()) *
+          Eigen::AngleAxisd(degToRad(z), Vec3::UnitZ()))
+      .toRotationMatrix();
+}
+
+/// What the referee says of a box at the origin and another one at `x`, both with these halves of their edges.
+bool overlap(double tolerance, const Vec3& half, double x, const Mat3& rotation) {
+  const Vec3f edges = half.cast<float>();
+  return soccer::overlapBeyond(static_cast<float>(tolerance), {Pose{}, edges}, {Pose{Vec3(x, 0, 0), rotation}, edges});
+}
+
+}  // namespace
+
+TEST_CASE("boxes overlap as deep as along a face's normal when that is least", "[fouls]") {
   const Vec3 half(0.5, 0.5, 0.5);
-  Pose a, b;
-  const auto overlap = [&](double tolerance) { return soccer::overlapBeyond(tolerance, a, half, b, half); };
-  SECTION("side by side") {
-    b.position = Vec3(0.9, 0.2, 0);
-    CHECK(overlap(0.099));
-    CHECK_FALSE(overlap(0.101));
-  }
-  SECTION("corner against face") {
-    // turned by 45 degrees about z the box reaches 0.7071 along x
-    const double c = std::sqrt(0.5);
-    b.rotation << c, -c, 0, c, c, 0, 0, 0, 1;
-    b.position = Vec3(0.5 + c - 0.05, 0, 0);
-    CHECK(overlap(0.049));
-    CHECK_FALSE(overlap(0.051));
-  }
-  SECTION("edge against edge, which no face normal separates") {
-    const double c = std::sqrt(0.5);
-    a.rotation << c, -c, 0, c, c, 0, 0, 0, 1;   // an edge along z towards +x
-    b.rotation << c, 0, c, 0, 1, 0, -c, 0, c;   // an edge along y towards -x
-    b.position = Vec3(2 * c - 0.03, 0, 0);
-    CHECK(overlap(0.029));
-    CHECK_FALSE(overlap(0.031));
-    b.position.x() = 2 * c + 0.001;
-    CHECK_FALSE(overlap(0));
-  }
+  const Mat3 rotation = turned(90, 30, 50);
+  const double touching = 0.5 + rotation.row(0).cwiseAbs().sum() * 0.5;
+  CHECK(overlap(0.199, half, touching - 0.2, rotation));
+  CHECK_FALSE(overlap(0.201, half, touching - 0.2, rotation));
+  CHECK_FALSE(overlap(0, half, touching + 0.001, rotation));
+}
+
+TEST_CASE("where edges cross, the tolerance counts by the sine of their angle", "[fouls]") {
+  const Vec3 half(0.05, 0.15, 0.05);
+  const Mat3 rotation = turned(40, 40, 40);
+  const double x = 0.05 + rotation.row(0).cwiseAbs().dot(half) - 0.06;
+  // The boxes overlap by 0.0303 m along the normal of their long edges, which enclose 71.3 degrees.
+  CHECK(overlap(0.0286, half, x, rotation));
+  CHECK_FALSE(overlap(0.0288, half, x, rotation));
+}
+
+TEST_CASE("boxes that are parallel or nearly so are no foul, however deep they overlap", "[fouls]") {
+  const Vec3 half(0.04, 0.035, 0.055);
+  CHECK_FALSE(overlap(0.04, half, 0.001, Mat3::Identity()));
+  CHECK_FALSE(overlap(0.04, half, 0.001, turned(8, 0, 0)));
+  CHECK_FALSE(overlap(0.04, half, 0.001, turned(3, 4, 5)));
 }
