@@ -17,7 +17,9 @@ local page = web()
 control()
 drawing()                               -- the log's drawings are shown on the page
 
+plugin "parser-json"
 local player = new("LogPlayer", "/sys/server/monitor/player")
+new("JsonParser", "/sys/server/monitor/player/parser").maxTokens = 262144   -- for logs that JsonMonitor wrote
 player.speed, player.waitForMonitor = speed, wait
 player.file = file
 -- Who watches in a browser is no monitor of the server: the first one lets the game begin too.

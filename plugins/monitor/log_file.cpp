@@ -8,6 +8,8 @@
 namespace spark {
 
 namespace {
+bool isJson(std::string_view line) { return line.starts_with("[["); }
+
 /// Bytes of draw commands at the start of a line: `[1, 0, ...][...]`.
 std::size_t drawCommands(std::string_view line) {
   std::size_t at = 0;
@@ -51,19 +53,19 @@ LogFile::LogFile(const std::string& path) : in_(path, std::ios::binary) {
   }
   if (at > start) endLine(at);
   in_.clear();
-  if (records_.empty()) throw Error("The log '" + path + "' holds no record; expected lines like ((time 0)...)(RSG 0 1)(...).");
+  if (records_.empty()) throw Error("The log '" + path + "' holds no record; expected lines like ((time 0)...)(RSG 0 1)(...), or the same in JSON.");
 }
 
 void LogFile::addLine(std::uint64_t offset, std::string_view line) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  const std::size_t skip = drawCommands(line);
+  const std::size_t skip = isJson(line) ? 0 : drawCommands(line);
   line.remove_prefix(skip);
   if (line.empty() && skip == 0) return;
-  if (line.empty() || line.front() != '(' || records_.size() >= kMost) {
+  if (line.empty() || (line.front() != '(' && !isJson(line)) || records_.size() >= kMost) {
     ++leftOut_;
     return;
   }
-  const bool full = line.find(")(RSG ") != std::string_view::npos;
+  const bool full = line.find(isJson(line) ? "],[\"RSG\"," : ")(RSG ") != std::string_view::npos;
   records_.push_back({offset + skip, static_cast<std::uint32_t>(line.size()), static_cast<std::uint32_t>(skip), full});
 }
 

@@ -7,7 +7,8 @@
 
 namespace spark {
 
-/// A recorded game: one monitor message a line, with what was drawn in front of it, `[1, 0, -3]...`. Lines that can be none are left out.
+/// A recorded game: one monitor message a line, with what was drawn in front of it, `[1, 0, -3]...`. Lines that can be none are left out. A message is an
+/// S-expression, or an array in JSON, which begins with two brackets.
 class LogFile {
  public:
   static constexpr std::size_t kLongest = 8u << 20;   ///< bytes of a line; longer ones are left out

@@ -18,6 +18,7 @@ void LogPlayer::describe(Description<LogPlayer>& d) {
   using P = LogPlayer;
   d.doc("Plays a recorded game to monitors. Commands: (p) pause, (f) forward, (b) back, (l) other direction, (speed x), (record n).");
   d.property("file", &P::file, &P::setFile).doc("The log: one monitor message a line. Opened when it is set.");
+  d.property("commands", &P::commands).doc("Names of the commands that it takes.");
   d.property("recordTime", &P::recordTime_).unit("s").range(0.001, 60).doc("Time between two records.");
   d.property("speed", &P::speed_).range(0, kFastest).state().doc("1: as it was recorded; 2: twice as fast.");
   d.property("paused", &P::paused_).state().doc("Stands still; (p) switches it.");
@@ -45,7 +46,7 @@ void LogPlayer::setFile(std::string path) {
 
 void LogPlayer::take(std::size_t record) {
   draw(record);
-  const std::string wrong = scene_.take(log_->read(record));
+  const std::string wrong = scene_.take(log_->read(record), childOf<IParser>());
   at_ = record;
   if (wrong.empty()) return;
   if (++damaged_ <= kMostLines) kernel().log().warning("{}: record {} of '{}' is passed over: {}", path(), record, path_, wrong);

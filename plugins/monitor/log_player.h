@@ -30,6 +30,7 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
   void loadState(StateReader& in) override;
 
  private:
+  std::vector<std::string> commands() const { return {"p", "f", "b", "l", "speed", "record"}; }
   std::string file() const { return path_; }
   /// Opens it. Throws Error when it cannot be played.
   void setFile(std::string path);

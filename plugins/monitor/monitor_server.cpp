@@ -4,6 +4,7 @@
 
 #include "log_player.h"
 #include "monitor_log.h"
+#include "spark/error.h"
 #include "spark/plugin.h"
 
 namespace spark {
@@ -21,6 +22,7 @@ void MonitorServer::describe(Description<MonitorServer>& d) {
   d.property("interval", &M::interval_).unit("cycles").min(1).doc("A frame is made in every n-th cycle; commands are executed in the cycles after these.");
   d.property("precision", &M::precision_).min(0).doc("A matrix is sent again when one of its elements changed by more (metres, or unit vectors).");
   d.property("clients", &M::clientCount).doc("Number of connected monitors.");
+  d.method("command", &M::commandOrThrow).parameters({"text"}).doc("Trainer's commands, as S-expressions; they act in the next cycle that takes commands.");
   d.method("requestFullState", &M::requestFullState).doc("The next message to every client is full.");
   d.implements<IMonitorServer>();
   d.implements<IConnectionConsumer>();
@@ -49,6 +51,7 @@ void MonitorServer::received(IConnection& connection, std::string_view message) 
 std::string MonitorServer::command(std::string_view from, std::string_view message) { return keepCommands(nullptr, from, message); }
 
 std::string MonitorServer::keepCommands(IParser* parser, std::string_view from, std::string_view message) {
+  lookUpHelpers();
   if (commands_.size() >= kMostWaiting) return dropMessage(from);
   const std::uint32_t before = commands_.size();
   const ReadResult result = parser ? parser->parse(message, commands_) : readSexp(message, commands_);
@@ -56,9 +59,32 @@ std::string MonitorServer::keepCommands(IParser* parser, std::string_view from, 
     commands_.truncate(before);
     return dropMessage(from);
   }
-  if (result.message.empty()) return {};
+  if (result.message.empty()) {
+    std::string unknown = unknownFrom(before);
+    // a monitor gets no answer on the wire: its parser would stumble over it
+    if (!unknown.empty() && (!toldUnknownAt_ || last_.cycle - *toldUnknownAt_ >= kComplainEvery)) {
+      toldUnknownAt_ = last_.cycle;
+      kernel().log().info("{}: from {}: {}", path(), from, unknown);
+    }
+    return unknown;
+  }
   kernel().log().debug("{}: from {}: {}:{}: {}; what came before it counts", path(), from, result.line, result.column, result.message);
   return fmt::format("{}:{}: {}", result.line, result.column, result.message);
+}
+
+std::string MonitorServer::unknownFrom(std::uint32_t first) const {
+  if (known_.empty()) return {};
+  for (const Element command : commands_) {
+    if (command.index() < first || !command.isList()) continue;
+    const std::string_view name = command.head();
+    if (std::find(known_.begin(), known_.end(), name) == known_.end())
+      return fmt::format("there is no command '{}' here.{}", name.substr(0, 40), didYouMean(name.substr(0, 40), known_));
+  }
+  return {};
+}
+
+void MonitorServer::commandOrThrow(std::string text) {
+  if (const std::string why = command("the host's owner", text); !why.empty()) throw Error(why);
 }
 
 std::string MonitorServer::dropMessage(std::string_view from) {
@@ -112,15 +138,23 @@ void MonitorServer::lookUpHelpers() {
   if (helpersAt_ == kernel().structureVersion()) return;
   items_.clear();
   trainers_.clear();
+  known_ = {"init", "getAck", "reqfullstate", "killsim"};
+  bool allSay = true;
   takers_.clear();
   encoder_ = childOf<IMonitorEncoder>();
   source_ = childOf<IFrameSource>();
   scene_ = kernel().root().find<ISceneServer>("/sys/server/scene");
   for (const auto& child : children()) {
     if (auto* item = child->as<IMonitorItem>()) items_.push_back(item);
-    if (auto* trainer = child->as<ITrainer>()) trainers_.push_back(trainer);
+    if (auto* trainer = child->as<ITrainer>()) {
+      trainers_.push_back(trainer);
+      allSay &= child->classObject()->property("commands") != nullptr;
+      if (allSay)
+        for (const Value& name : getProperty(*child, "commands").toList()) known_.push_back(name.toString());
+    }
     if (auto* taker = child->as<IFrameTaker>()) takers_.push_back(taker);
   }
+  if (!allSay) known_.clear();
   helpersAt_ = kernel().structureVersion();
 }
 

@@ -58,6 +58,10 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   /// Keeps what a parser (nullptr: S-expressions) makes of a message until it is due.
   std::string keepCommands(IParser* parser, std::string_view from, std::string_view message);
   std::string dropMessage(std::string_view from);
+  /// Which of the commands from token `first` on nobody takes, with the nearest that somebody does; "" when all are known.
+  std::string unknownFrom(std::uint32_t first) const;
+  /// As command(), for scripts and sparkctl. Throws Error.
+  void commandOrThrow(std::string text);
 
   /// Of tree and scene.
   struct Version {
@@ -81,7 +85,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   std::vector<std::size_t> encoding_;       ///< those that are encoded
   Predicates commands_;
   std::int64_t dropped_ = 0;  ///< messages since the last line about it
-  std::optional<std::int64_t> toldDroppedAt_;
+  std::optional<std::int64_t> toldDroppedAt_, toldUnknownAt_;
 
   std::uint64_t helpersAt_ = 0;
   IMonitorEncoder* encoder_ = nullptr;
@@ -90,6 +94,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   std::vector<IFrameTaker*> takers_;
   std::vector<IMonitorItem*> items_;
   std::vector<ITrainer*> trainers_;
+  std::vector<std::string> known_;  ///< commands; empty when a trainer does not say what it takes
   Event last_;  ///< of the last publish phase
   bool toldNoEncoder_ = false;
 };

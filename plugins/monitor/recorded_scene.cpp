@@ -1,5 +1,7 @@
 #include "recorded_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -26,7 +28,10 @@ std::string restOf(const Element& list) {
   std::string out;
   bool head = true;
   for (const Element e : list) {
-    if (!std::exchange(head, false) && out.size() + e.text().size() < kMostText) out.append(out.empty() ? "" : " ").append(e.text());
+    if (std::exchange(head, false)) continue;
+    const std::string number = e.isText() || e.isList() ? std::string() : fmt::format("{:g}", e.number());  // in JSON a mesh's parameters are numbers
+    const std::string_view word = number.empty() ? e.text() : number;
+    if (out.size() + word.size() < kMostText) out.append(out.empty() ? "" : " ").append(word);
   }
   return out;
 }
@@ -67,9 +72,12 @@ void RecordedScene::clear() {
   ++shape_;
 }
 
-std::string RecordedScene::take(std::string_view message) {
+std::string RecordedScene::take(std::string_view message, IParser* parser) {
   parsed_.clear();
-  if (const ReadResult result = readSexp(message, parsed_, kLimits); !result.message.empty()) return result.message;
+  const bool json = message.starts_with('[');
+  if (json && !parser) return "it is JSON: expected a parser below the player, e.g. new(\"JsonParser\", \"/sys/server/monitor/player/parser\")";
+  const ReadResult result = json ? parser->parse(message, parsed_) : readSexp(message, parsed_, kLimits);
+  if (!result.message.empty()) return result.message;
   for (const Token& t : parsed_.tokens())
     if (t.kind == Token::Kind::text && !isPlain(parsed_.textOf(t))) return "expected plain words and numbers, found quoted text";
   Element parts[3];

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "api/agents.h"
 #include "api/monitor.h"
 
 namespace spark {
@@ -15,8 +16,8 @@ class RecordedScene {
   /// `owner` stands for the recorded nodes, which are none of the tree; it must outlive the scene.
   explicit RecordedScene(Leaf& owner) : owner_(owner) {}
 
-  /// Takes one message. Returns "" or what is wrong with it.
-  std::string take(std::string_view message);
+  /// Takes one message, an S-expression or what `parser` (may be nullptr) reads, which begins with a bracket. Returns "" or what is wrong with it.
+  std::string take(std::string_view message, IParser* parser = nullptr);
   /// Forgets everything.
   void clear();
   /// Counts changes of nodes, meshes and materials.

@@ -60,15 +60,24 @@ const char* const kNoSuchPlayer = "no such player";
 
 }  // namespace
 
-bool TrainerCommandParser::command(const Element& c, std::string& why) {
-  using Run = std::string (TrainerCommandParser::*)(const Element&);
-  static constexpr std::pair<std::string_view, Run> kCommands[] = {
+const std::vector<std::pair<std::string_view, TrainerCommandParser::Run>>& TrainerCommandParser::table() {
+  static const std::vector<std::pair<std::string_view, Run>> kCommands = {
       {"playMode", &TrainerCommandParser::playMode}, {"kickOff", &TrainerCommandParser::kickOff},
       {"dropBall", &TrainerCommandParser::dropBall}, {"ball", &TrainerCommandParser::ball},
       {"agent", &TrainerCommandParser::agent},       {"select", &TrainerCommandParser::select},
       {"kill", &TrainerCommandParser::kill},         {"repos", &TrainerCommandParser::repos},
       {"time", &TrainerCommandParser::time},         {"score", &TrainerCommandParser::score}};
-  for (const auto& [name, run] : kCommands) {
+  return kCommands;
+}
+
+std::vector<std::string> TrainerCommandParser::commands() const {
+  std::vector<std::string> names;
+  for (const auto& [name, run] : table()) names.emplace_back(name);
+  return names;
+}
+
+bool TrainerCommandParser::command(const Element& c, std::string& why) {
+  for (const auto& [name, run] : table()) {
     if (c.head() != name) continue;
     match_.refresh(*this);
     if (!match_.game() || !match_.game()->pitch().ready())

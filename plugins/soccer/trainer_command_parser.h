@@ -11,12 +11,16 @@ class TrainerCommandParser : public Node, public ITrainer {
  public:
   static void describe(Description<TrainerCommandParser>& d) {
     d.doc("Executes trainers' commands: playMode, kickOff, dropBall, ball, agent, select, kill, repos, time, score.");
+    d.property("commands", &TrainerCommandParser::commands).doc("Names of the commands that it takes.");
     d.implements<ITrainer>();
   }
   bool command(const Element& command, std::string& why) override;
 
  private:
   using Player = soccer::Player;
+  using Run = std::string (TrainerCommandParser::*)(const Element&);
+  static const std::vector<std::pair<std::string_view, Run>>& table();
+  std::vector<std::string> commands() const;
   std::string playMode(const Element& c);
   std::string kickOff(const Element& c);
   std::string dropBall(const Element& c);

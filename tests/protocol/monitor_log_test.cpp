@@ -14,7 +14,11 @@ using namespace spark::test;
 namespace {
 
 struct TemporaryFile {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("spark-match-{}.log", ::getpid());
+  std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("spark-match-{}-{}.log", ::getpid(), next()++);
+  static int& next() {
+    static int n = 0;
+    return n;
+  }
   ~TemporaryFile() { std::filesystem::remove(path); }
 };
 
@@ -36,13 +40,14 @@ struct Cinema : House {
 };
 
 /// A short match of spheres, logged.
-std::vector<std::string> record(const std::filesystem::path& log) {
+std::vector<std::string> record(const std::filesystem::path& log, const std::string& encoder = "SexpMonitor") {
   House house;
   house.kernel.lua().addFolder(pluginFolder().parent_path() / "share" / "spark" / "lua");
   house.kernel.lua().run(fmt::format("host = {{ share = '{}', scenePaths = {{}} }}", (pluginFolder().parent_path() / "share" / "spark").string()), "test");
   for (const char* port : {"agents", "monitors"}) house.kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
   house.kernel.lua().addOverride("team", "Red Blue");
   house.kernel.lua().addOverride("players", 3);
+  house.kernel.lua().addOverride("monitor", encoder);
   house.kernel.lua().addOverride("monitorLog", log.string());
   house.kernel.lua().addOverride("/sys/server/simulation.rate", "max");
   house.kernel.lua().runConfig("soccer-sphere.lua");
@@ -63,10 +68,12 @@ bool sameNodes(const std::vector<StrictMonitor::Node>& a, const std::vector<Stri
 }  // namespace
 
 TEST_CASE("a match that was logged plays to a monitor, record for record, with nothing lost") {
-  const TemporaryFile file;
+  const TemporaryFile file, json;
   const std::vector<std::string> lines = record(file.path);
   REQUIRE(lines.size() == 101);
-  Cinema cinema(file.path);
+  const bool inJson = GENERATE(false, true);
+  if (inJson) REQUIRE(record(json.path, "JsonMonitor").front().starts_with("[["));
+  Cinema cinema(inJson ? json.path : file.path);
   REQUIRE(cinema.get("records") == 101);
   StrictMonitor logged, seen;
   cinema.run(2);  // the monitor is noticed

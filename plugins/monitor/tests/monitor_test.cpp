@@ -229,6 +229,31 @@ TEST_CASE("commands from inside the host act as those of monitors, and what is w
   CHECK(stage.server->command("the browser", flood).find("dropped") != std::string::npos);
 }
 
+TEST_CASE("a command that no trainer takes is answered with the nearest one, and monitors' with a line now and then") {
+  Stage stage;
+  FakeConnection& a = stage.connect();
+  CHECK(stage.server->command("the browser", "(pusch 3)") == "");  // a trainer that does not say what it takes may take anything
+  stage.kernel.registerClass<FrankTrainer>();
+  stage.node().create("FrankTrainer", "trainer2");
+  CHECK(stage.server->command("the browser", "(pusch 3)") == "");
+  stage.node().remove(*stage.node().child("trainer"));
+  CHECK(stage.server->command("the browser", "(pull 1)(reqfullstate)") == "");
+  CHECK(stage.server->command("the browser", "(pull 1)(pul 2)") == "there is no command 'pul' here. Did you mean 'pull'?");
+  CHECK(stage.server->command("the browser", "(killSim)") == "there is no command 'killSim' here. Did you mean 'killsim'?");
+  const Value text = "(pul 2)";
+  CHECK_THROWS_WITH(callMethod(stage.node(), "command", std::span(&text, 1)), Catch::Contains("Did you mean 'pull'?"));
+  stage.nextFrame();
+  const auto lines = [&] {
+    int n = 0;
+    for (auto at = stage.text.find("from client1: there is no command"); at != std::string::npos; at = stage.text.find("from client1: there is no command", at + 1)) ++n;
+    return n;
+  };
+  for (int i = 0; i < 400; ++i) stage.cycle();
+  for (int i = 0; i < 50; ++i) stage.monitor->received(a, "(pul 2)");
+  CHECK(lines() == 1);
+  CHECK(a.sent == 1);
+}
+
 TEST_CASE("a frame's transforms are those of the scene") {
   Stage stage;
   stage.nextFrame();

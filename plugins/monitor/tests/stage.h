@@ -42,6 +42,18 @@ class TestTrainer : public Node, public ITrainer {
   std::vector<std::int64_t> pushed;
 };
 
+/// Takes `(pull n)`, and says so.
+class FrankTrainer : public Node, public ITrainer {
+  SPARK_CLASS(FrankTrainer, Node)
+ public:
+  static void describe(Description<FrankTrainer>& d) {
+    d.implements<ITrainer>();
+    d.property("commands", &FrankTrainer::commands);
+  }
+  bool command(const Element& command, std::string&) override { return command.head() == "pull"; }
+  std::vector<std::string> commands() const { return {"pull"}; }
+};
+
 /// A language of its own: every word is a push of its length.
 class WordParser : public Node, public IParser {
   SPARK_CLASS(WordParser, Node)
