@@ -64,6 +64,21 @@ TEST_CASE("--set takes options and properties; an unknown name is an error with 
   REQUIRE(runToEnd(host({"--config", config, "--check", "--set", "answer"})).code == 2);
 }
 
+TEST_CASE("A flag for what a house does not have is an error in the user's words") {
+  const auto error = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"--config", "boxes.lua", "--check"});
+    const Finished f = runToEnd(host(arguments));
+    REQUIRE(f.code == 2);
+    return f.errors;
+  };
+  CHECK_THAT(error({"--monitor-port", "3200"}),
+             Contains("--monitor-port 3200: the house of 'boxes.lua' has no port for monitors: add monitors{} of house.lua; or leave --monitor-port out."));
+  CHECK_THAT(error({"--agent-port", "0"}), Contains("--agent-port 0: the house of 'boxes.lua' has no agents and no port for them"));
+  CHECK_THAT(error({"--expect", "2"}), Contains("--expect 2: the house of 'boxes.lua' has no agents and no port for them"));
+  CHECK_THAT(error({"--set", "web=false", "--web-port", "0"}), Contains("--web-port 0: the house of 'boxes.lua' has no page for browsers"));
+  REQUIRE(runToEnd(host({"--config", "boxes.lua", "--check", "--web-port", "0", "--rate", "max", "--sync"})).code == 0);
+}
+
 TEST_CASE("A wrong command line ends with exit code 2 and says what is wrong") {
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{},

@@ -68,6 +68,11 @@ void Host::build() {
   tellScripts();
   for (const auto& [key, value] : options_.overrides) kernel_.lua().addOverride(key, value);
   kernel_.lua().runConfig(options_.config);
+  for (const Options::Switch& s : options_.switches) {
+    Leaf* node = kernel_.root().find(s.path);
+    if (!node) throw Error(fmt::format("{}: the house of '{}' has no {}; or leave {} out.", s.flag, options_.config, s.missing, s.flag.substr(0, s.flag.find(' '))));
+    setProperty(*node, s.property, s.value);
+  }
 }
 
 std::string Host::open() {

@@ -65,14 +65,18 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : kUsageError;
   }
-  const auto put = [&](const char* key, spark::Value v) { out.overrides.emplace_back(key, std::move(v)); };
-  if (rate) put("/sys/server/simulation.rate", *rate);
-  if (sync) put("/sys/server/simulation.sync", true);
-  if (duration) put("/sys/server/simulation.duration", *duration);
-  if (expect) put("/sys/server/gamecontrol.expect", *expect);
-  if (agentPort) put("/sys/server/net/agents.port", *agentPort);
-  if (monitorPort) put("/sys/server/net/monitors.port", *monitorPort);
-  if (webPort) put("/sys/server/web.port", *webPort);
+  const auto put = [&](const char* flag, const char* path, const char* property, spark::Value v, const char* missing) {
+    const std::string text = std::string(flag) + (v.isBool() ? "" : " " + v.plain());
+    out.switches.push_back({text, path, property, std::move(v), missing});
+  };
+  constexpr const char *kLoop = "run loop: add simulation() of house.lua", *kAgents = "agents and no port for them: add agents{} of house.lua";
+  if (rate) put("--rate", "/sys/server/simulation", "rate", *rate, kLoop);
+  if (sync) put("--sync", "/sys/server/simulation", "sync", true, kLoop);
+  if (duration) put("--duration", "/sys/server/simulation", "duration", *duration, kLoop);
+  if (expect) put("--expect", "/sys/server/gamecontrol", "expect", *expect, kAgents);
+  if (agentPort) put("--agent-port", "/sys/server/net/agents", "port", *agentPort, kAgents);
+  if (monitorPort) put("--monitor-port", "/sys/server/net/monitors", "port", *monitorPort, "port for monitors: add monitors{} of house.lua");
+  if (webPort) put("--web-port", "/sys/server/web", "port", *webPort, "page for browsers: add web() of house.lua, and no --set web=false");
   makeAbsolute(out.pluginPaths);
   makeAbsolute(out.scenePaths);
   return std::nullopt;

@@ -14,8 +14,17 @@ namespace sparkhost {
 /// What the user asked for.
 struct Options {
   std::string config;
-  /// From --set and from the flags that stand for a property: key and value, in order; the last of a key wins.
+  /// A flag that stands for a property of a node that not every house has.
+  struct Switch {
+    std::string flag;  ///< as it was written
+    const char *path, *property;
+    spark::Value value;
+    const char* missing;  ///< what a house without that node lacks, and how it gets it
+  };
+  /// From --set: key and value, in order; the last of a key wins.
   std::vector<std::pair<std::string, spark::Value>> overrides;
+  /// Set when the house is built; they win over --set.
+  std::vector<Switch> switches;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> pluginPaths, scenePaths;  ///< absolute, existing folders
   std::string logLevel = "info";
