@@ -12,6 +12,7 @@ function soccerVariables(values)
   plugin "soccer"
   local soccer = new("SoccerSettings", "/sys/variables/Soccer")
   for name, value in pairs(values or {}) do soccer[name] = value end
+  soccer.Cheats = option{ name = "cheats", default = soccer.Cheats, doc = "For training: robots see the truth, too, their own position and heading and the ball's position." }
   return soccer
 end
 

@@ -1,6 +1,7 @@
 #include "game_state_aspect.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "team_material.h"
 
@@ -45,6 +46,14 @@ void GameStateAspect::setMode(PlayMode mode) {
   modeStart_ = time_;
   standing_ = 0;
   ++modeChanges_;
+}
+
+bool GameStateAspect::mayTell() {
+  const auto now = std::chrono::steady_clock::now();
+  linesAboutAgents_ = std::min(kLinesAboutAgents, linesAboutAgents_ + std::chrono::duration<double>(now - std::exchange(toldAt_, now)).count());
+  if (linesAboutAgents_ < 1) return false;
+  --linesAboutAgents_;
+  return true;
 }
 
 void GameStateAspect::setScores(int left, int right) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <vector>
 #include <string>
 
@@ -65,6 +66,9 @@ class GameStateAspect : public SoccerControlAspect {
   std::string join(AgentState& state, const std::string& teamName, std::int64_t unum);
   /// The next start position of the team.
   Vec3 nextStart(Side side);
+  /// True when one more line about who joins may be written: a hundred at once, then one a second (wall clock), so that clients that come again and
+  /// again do not fill a disk.
+  bool mayTell();
 
  protected:
   void saveState(StateWriter& out) const override;
@@ -106,6 +110,9 @@ class GameStateAspect : public SoccerControlAspect {
   std::int64_t modeChanges_ = 0, sideSwaps_ = 0;
   static constexpr int kLinesPerCycle = 4;
   int linesLeft_ = kLinesPerCycle;  ///< in the log, about modes
+  static constexpr double kLinesAboutAgents = 100;
+  double linesAboutAgents_ = kLinesAboutAgents;
+  std::chrono::steady_clock::time_point toldAt_{};
   int half_ = 1;
   bool kickedOffInHalf_ = false;
   Side firstKickOff_ = Side::none;  ///< predetermined for the first half; none: not determined yet

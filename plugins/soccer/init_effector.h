@@ -40,9 +40,9 @@ class InitEffector : public Effector {
     }
     const bool first = state->side() == soccer::Side::none;
     if (const std::string problem = refusal(*game, *state); !problem.empty()) {
-      if (mayTell()) kernel().log().warning("{}: init refused: {}", agent->path(), problem);
+      if (mayTell() && game->mayTell()) kernel().log().warning("{}: init refused: {}", agent->path(), problem);
     } else {
-      if (mayTell()) kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_, soccer::sideName(state->side()), state->unum());
+      if (mayTell() && game->mayTell()) kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_, soccer::sideName(state->side()), state->unum());
       dress(*agent, state->side(), state->unum());
       if (auto* scene = game->pitch().scene()) scene->markModified();
     }

@@ -183,13 +183,10 @@ void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {
     out.close();
   }
   for (const std::uint32_t i : outlook_.robotsNear(here_)) seeRobot(sights.robots()[i], out);
-  if (senseMyPos_) writePoint(out, "mypos", soccer::seenBy(side(), here_));
-  if (senseMyOrien_ && transform()) {
-    const Matrix& m = transform()->world();
-    const double heading = radToDeg(std::atan2(m(1, 1), m(0, 1)));  // of the y axis
-    out.pair("myorien", normalizeDeg(side() == soccer::Side::right ? heading - 180 : heading));
-  }
-  if (const Sights::Mark* ball = senseBallPos_ ? sights.ball() : nullptr) writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
+  const bool cheats = outlook_.settings() && outlook_.settings()->cheats;
+  if (senseMyPos_ || cheats) writePoint(out, "mypos", soccer::seenBy(side(), here_));
+  if ((senseMyOrien_ || cheats) && transform()) soccer::writeHeading(out, transform()->world(), side());
+  if (const Sights::Mark* ball = senseBallPos_ || cheats ? sights.ball() : nullptr) writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
   if (senseLine_ && (!outlook_.settings() || outlook_.settings()->fieldLinesSeen)) seeLines(out);
   out.close();
 }

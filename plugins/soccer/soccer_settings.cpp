@@ -83,6 +83,7 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
       .doc("Cycles between two looks through a RestrictedVisionPerceptor; 0: as the robot's scene file says.");
   d.property("VisionRange", &S::visionRange).unit("m").min(0).doc("Objects and players farther away are not seen, by nobody; 0: as the robots' files say.");
   d.property("VisionNoise", &S::visionNoise).doc("False: what robots see has no noise, whatever their scene files say.");
+  d.property("Cheats", &S::cheats).doc("For training: robots see the truth, too: (mypos x y z), (myorien deg), (ballpos x y z), in the view of their side.");
   d.property("FieldLinesSeen", &S::fieldLinesSeen).doc("Robots whose vision senses lines see the field's.");
 
   d.property("PassModeMaxBallSpeed", &S::passModeMaxBallSpeed).unit("m/s").min(0).doc("Pass mode: the ball must not be faster.");

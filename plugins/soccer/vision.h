@@ -121,6 +121,11 @@ inline Vec3f seenBy(Side side, const Vec3f& v) {
 Matrix fieldView(const Vec3f& place, Side side);
 /// The frame, x forward, of an eye that looks as its head does: heads look along their y axis.
 Matrix headView(const Transform& head);
+/// `(myorien deg)`: the heading of what a frame's y axis points at, as the side sees the field.
+inline void writeHeading(Predicates& out, const Matrix& frame, Side side) {
+  const double heading = radToDeg(std::atan2(frame(1, 1), frame(0, 1)));
+  out.pair("myorien", normalizeDeg(side == Side::right ? heading - 180 : heading));
+}
 /// `(mypos x y z)` in the side's view.
 void writePoint(Predicates& out, std::string_view name, const Vec3f& p);
 

@@ -38,7 +38,10 @@ void VisionPerceptor::sense(Predicates& out, const Event&) {
     writePolar(out, polar);
     out.close();
   }
-  if (senseMyPos_) soccer::writePoint(out, "mypos", soccer::seenBy(side(), here_));
+  const bool cheats = outlook_.settings() && outlook_.settings()->cheats;
+  if (senseMyPos_ || cheats) soccer::writePoint(out, "mypos", soccer::seenBy(side(), here_));
+  if (cheats && transform()) soccer::writeHeading(out, transform()->world(), side());
+  if (const Sights::Mark* ball = cheats ? sights.ball() : nullptr) soccer::writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
   out.close();
 }
 

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "process.h"
 #include "temporary_folder.h"
@@ -78,4 +79,25 @@ TEST_CASE("The target that tools/play builds makes every program that the README
   }
   REQUIRE(installed > 25);
   REQUIRE(textOf(fs::path(SPARK_SOURCES) / "tools" / "play").find("build release programs") != std::string::npos);
+}
+
+TEST_CASE("Every line of the page for those who used to edit spark.rb is taken by the host") {
+  const std::string page = textOf(fs::path(SPARK_SOURCES) / "docs" / "spark-rb.md");
+  std::istringstream lines(page);
+  std::set<std::string> settings;
+  for (std::string line; std::getline(lines, line);) {
+    const auto column = line.starts_with("|") ? line.find("| `--") : line.npos;
+    if (column != line.npos) settings.insert(line.substr(column + 3, line.find('`', column + 3) - column - 3));
+  }
+  REQUIRE(settings.size() > 40);
+  TemporaryFolder folder;
+  for (const std::string& setting : settings) {
+    std::vector<std::string> command{(binFolder() / "sparkhost").string(), "--check"};
+    if (setting.find("--config") == setting.npos) command.insert(command.end(), {"--config", "soccer.lua"});
+    std::istringstream words(setting);
+    for (std::string word; words >> word;) command.push_back(word == "FOLDER" ? folder.path().string() : word);
+    const Finished f = runToEnd(command);
+    INFO(setting << "\n" << f.errors);
+    CHECK(f.code == 0);
+  }
 }
