@@ -83,14 +83,14 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   gamecontrol::Hold hold_;
   std::optional<gamecontrol::AgentLines> lines_;
   // What clients that are not trusted yet may take of a match in lockstep.
-  gamecontrol::Allowance waits_{60, 0.1};  ///< s, and s a second
+  gamecontrol::Allowance waits_{30, 0.1};  ///< s, and s a second
   gamecontrol::Allowance loading_{128, 4};  ///< robots, and robots a second
   Clock::time_point indulgedAt_{};         ///< when this cycle was last kept waiting for them; zero: it was not
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, loadsPerCycle_ = 4;
   bool sync_ = false, released_ = false;
-  double joinBudget_ = 60, agentStep_ = 0, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30, answerWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
+  double joinBudget_ = 30, agentStep_ = 0, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30, answerWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
 
   int nextNumber_ = 1, agentsSeen_ = 0, loads_ = 0;
   std::int64_t messagesDropped_ = 0, cycle_ = 0;
