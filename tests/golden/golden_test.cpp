@@ -57,6 +57,7 @@ std::uint64_t worldHash(const std::string& config, const std::vector<std::pair<s
   lua.runConfig(config);
   Leaf& simulation = house.kernel.root().require<Leaf>("/sys/server/simulation");
   setProperty(simulation, "rate", "max");
+  if (Leaf* net = house.kernel.root().find("/sys/server/net")) setProperty(*net, "open", false);
   callMethod(simulation, "runCycles", std::vector<Value>{cycles});
   return stateHash(house.kernel.root());
 }
