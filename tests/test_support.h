@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "spark/kernel.h"
@@ -29,6 +30,15 @@ inline std::filesystem::path referenceFolder() {
     std::exit(1);
   }
   return dir;
+}
+
+/// True while a plugin's file is mapped: plugins run from private copies, which carry the file's name.
+inline bool isMapped(const std::filesystem::path& file) {
+  const std::string copy = "/memfd:" + file.filename().string() + " (deleted)";
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);)
+    if (line.ends_with(copy) || line.ends_with(file.string())) return true;
+  return false;
 }
 
 /// A kernel with the built plugins scanned; what it logs stands in `text`.

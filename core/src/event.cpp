@@ -144,6 +144,10 @@ std::vector<Channel*> Events::all() const {
   return out;
 }
 
+bool Events::running() const {
+  return std::any_of(channels_.begin(), channels_.end(), [](const auto& c) { return c->depth_ > 0; });
+}
+
 void Events::hook(Leaf& node) {
   for (const Hook* h : node.classObject()->hooks()) channel(h->channel).insert({&node, h->run, {}, 0});
 }

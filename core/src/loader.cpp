@@ -1,14 +1,10 @@
-#include <dlfcn.h>
-#include <elf.h>
-#include <ltdl.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <cstring>
-#include <fstream>
-#include <mutex>
+#include <utility>
 
+#include "loaded_library.h"
 #include "spark/error.h"
 #include "spark/kernel.h"
 
@@ -17,22 +13,18 @@
 //   scan(folder)   open every *.so (symbols resolved now, names local), read its descriptor, check magic and ABI word, list it under
 //                  /plugins. Nothing of the plugin runs: it has no constructors with effects, and registering is a call.
 //   use(name)      call registerClasses: the classes appear under /classes. If it throws, what it registered so far is taken back.
-//   unload(name)   refused while an object of its classes lives or a foreign class derives from them; then its atUnload actions run, its
-//                  classes go, /plugins loses it, and the last lt_dlclose unmaps the file.
+//   unload(name)   refused while an object of its classes lives, a foreign class derives from them or handlers run (their code may be the
+//                  plugin's); then its atUnload actions run, its classes go, /plugins loses it, and its library is unmapped. The name is kept:
+//                  the next use opens the file again, which may be another one by then.
+//   unloadLater    as unload where no handler runs, else when the run loop says settle(), between two cycles.
 //
-// libltdl asks the dynamic linker for lazy binding and keeps its error text to itself. So each file is first opened with dlopen(NOW, LOCAL):
-// what is missing is found then and said in the linker's own words; libltdl's handle keeps it open, ours is closed again.
+// What is mapped is a copy of the file (loaded_library.cpp), shared by kernels that load the same.
 
 namespace fs = std::filesystem;
 
 namespace spark {
 
 namespace {
-std::mutex& ltdlMutex() {
-  static std::mutex mutex;  // libltdl keeps process-wide lists
-  return mutex;
-}
-
 std::string sanitizerName(std::uint32_t s) { return s == 0 ? "no sanitizer" : s == 1 ? "the address sanitizer" : "the thread sanitizer"; }
 
 /// "" when the plugin's word agrees with ours, else what differs.
@@ -59,25 +51,6 @@ class ClassCollector : public Registrar {
   std::vector<std::function<void()>> actions;
 };
 
-/// "" when the file looks like a whole shared library. The dynamic linker trusts its headers: a file that was copied half would kill us.
-std::string fileProblem(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::error_code ec;
-  const std::uintmax_t size = fs::file_size(path, ec);
-  Elf64_Ehdr head{};
-  if (!in || ec) return {};  // the linker says it better
-  if (!in.read(reinterpret_cast<char*>(&head), sizeof head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 || head.e_type != ET_DYN)
-    return "it is no shared library";
-  if (head.e_ident[EI_CLASS] != ELFCLASS64) return {};
-  in.seekg(static_cast<std::streamoff>(head.e_phoff));
-  for (int i = 0; i < head.e_phnum; ++i) {
-    Elf64_Phdr part{};
-    if (!in.read(reinterpret_cast<char*>(&part), sizeof part) || part.p_offset > size || part.p_filesz > size - part.p_offset)
-      return "it is cut off after " + std::to_string(size) + " bytes";
-  }
-  return {};
-}
-
 std::string absolutePath(const fs::path& file) { return fs::absolute(file).lexically_normal().string(); }
 
 /// The word for a plugin in paths, configs and messages: letters, digits, '-', '_', '.'.
@@ -87,17 +60,14 @@ bool isPluginName(const char* name) {
 }
 }  // namespace
 
-Loader::Loader(Kernel& kernel) : kernel_(kernel) {
-  const std::lock_guard lock(ltdlMutex());
-  if (lt_dlinit() != 0) throw Error(std::string("cannot start libltdl: ") + lt_dlerror());
-}
+Loader::Loader(Kernel& kernel) : kernel_(kernel) {}
 
 Loader::~Loader() {
-  std::vector<void*> handles;
+  std::vector<std::shared_ptr<LoadedLibrary>> libraries;
   for (const auto& p : kernel_.pluginsNode_->children()) {
     Plugin& plugin = static_cast<Plugin&>(*p);
     runActions(plugin);
-    handles.push_back(plugin.handle_);
+    libraries.push_back(std::move(plugin.library_));
   }
   // The classes hold functions of the plugins: they go first. Somebody who still owns an object outside the tree will need its class
   // and its code: both are then left to the process.
@@ -111,13 +81,9 @@ Loader::~Loader() {
     keep = true;
   }
   for (ClassObject* c : foreign) drop(*c, keep);
-  for (const auto& p : kernel_.pluginsNode_->children()) static_cast<Plugin&>(*p).handle_ = nullptr;
   while (!kernel_.pluginsNode_->children().empty()) kernel_.pluginsNode_->detach(*kernel_.pluginsNode_->children().front());
-  if (keep) return;
-  const std::lock_guard lock(ltdlMutex());
-  for (void* h : handles)
-    if (h) lt_dlclose(static_cast<lt_dlhandle>(h));
-  lt_dlexit();
+  static auto& forever = *new std::vector<std::shared_ptr<LoadedLibrary>>;
+  if (keep) forever.insert(forever.end(), libraries.begin(), libraries.end());
 }
 
 void Loader::runActions(Plugin& plugin) {
@@ -139,23 +105,10 @@ void Loader::drop(ClassObject& c, bool leak) {
 }
 
 Plugin& Loader::open(const fs::path& file) {
-  const std::lock_guard lock(ltdlMutex());
   const std::string path = absolutePath(file);
-  if (const std::string problem = fileProblem(path); !problem.empty()) throw Error("refused plugin " + path + ": " + problem);
-  void* first = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!first) {
-    const char* text = dlerror();
-    throw Error("cannot load plugin " + path + ": " + (text ? text : "unknown reason"));
-  }
-  lt_dlhandle handle = lt_dlopen(path.c_str());
-  const char* why = handle ? nullptr : lt_dlerror();
-  const auto* d = handle ? static_cast<const PluginDescriptor*>(lt_dlsym(handle, "sparkPlugin")) : nullptr;
-  dlclose(first);
-  const auto refuse = [&](const std::string& reason) {
-    if (handle) lt_dlclose(handle);
-    throw Error("refused plugin " + path + ": " + reason);
-  };
-  if (!handle) refuse(why ? why : "libltdl cannot open it");
+  std::shared_ptr<LoadedLibrary> library = LoadedLibrary::load(path);
+  const auto* d = static_cast<const PluginDescriptor*>(library->symbol("sparkPlugin"));
+  const auto refuse = [&](const std::string& reason) { throw Error("refused plugin " + path + ": " + reason); };
   if (!d) refuse("it has no symbol sparkPlugin; a plugin ends with SPARK_PLUGIN(name, version, doc, classes...)");
   if (std::memcmp(d->magic, "SPARKPLG", 8) != 0) refuse("its descriptor lacks the magic word SPARKPLG");
   if (d->size < offsetof(PluginDescriptor, name)) refuse("its descriptor has only " + std::to_string(d->size) + " bytes");
@@ -171,7 +124,7 @@ Plugin& Loader::open(const fs::path& file) {
   plugin.doc_ = d->doc ? d->doc : "";
   plugin.file_ = path;
   for (const char* const* c = d->classes; c && *c; ++c) plugin.classes_.emplace_back(*c);
-  plugin.handle_ = handle;
+  plugin.library_ = std::move(library);
   plugin.descriptor_ = d;
   return plugin;
 }
@@ -229,16 +182,36 @@ void Loader::registerPlugin(Plugin& plugin) {
 }
 
 Plugin& Loader::use(std::string_view name) {
-  if (Leaf* found = kernel_.pluginsNode_->child(name)) {
-    Plugin& plugin = static_cast<Plugin&>(*found);
-    registerPlugin(plugin);
-    return plugin;
+  Plugin* plugin = static_cast<Plugin*>(kernel_.pluginsNode_->child(name));
+  if (plugin && !plugin->registered_ && !plugin->library_->isCurrent()) {  // built again since it was listed
+    unloaded_.insert_or_assign(plugin->name(), plugin->file_);
+    close(*plugin);
+    plugin = nullptr;
+  }
+  if (!plugin) plugin = openAgain(name);
+  if (plugin) {
+    registerPlugin(*plugin);
+    return *plugin;
   }
   std::vector<std::string> names;
   for (const auto& p : kernel_.pluginsNode_->children()) names.push_back(p->name());
   std::string where;
   for (const fs::path& f : folders_) where += (where.empty() ? "" : ", ") + f.string();
   throw Error("there is no plugin '" + std::string(name) + "'." + didYouMean(name, names) + " Looked in: " + (where.empty() ? "no folder" : where) + ".");
+}
+
+/// A plugin that was unloaded, or whose file came into a folder after the scan; nullptr when there is none.
+Plugin* Loader::openAgain(std::string_view name) {
+  std::vector<fs::path> files;
+  if (const auto known = unloaded_.find(name); known != unloaded_.end()) files.push_back(known->second);
+  if (isPluginName(std::string(name).c_str()))
+    for (const fs::path& folder : folders_) files.push_back(folder / (std::string(name) + ".so"));
+  for (const fs::path& file : files)
+    if (std::error_code ec; fs::is_regular_file(file, ec) && !fromFile(file)) {
+      Plugin& plugin = open(file);
+      if (plugin.name() == name) return &plugin;
+    }
+  return nullptr;
 }
 
 Plugin& Loader::useFile(const fs::path& file) {
@@ -258,10 +231,8 @@ Plugin& Loader::useFile(const fs::path& file) {
 }
 
 void Loader::close(Plugin& plugin) {
-  void* handle = plugin.handle_;
+  const std::shared_ptr<LoadedLibrary> library = std::move(plugin.library_);  // the node may hold what is in it
   kernel_.pluginsNode_->detach(plugin);
-  const std::lock_guard lock(ltdlMutex());
-  lt_dlclose(static_cast<lt_dlhandle>(handle));
 }
 
 Plugin* Loader::fromFile(const fs::path& file) const {
@@ -271,13 +242,19 @@ Plugin* Loader::fromFile(const fs::path& file) const {
   return nullptr;
 }
 
-void Loader::unload(std::string_view name) {
+std::vector<ClassObject*> Loader::classesOf(const Plugin& plugin) const {
+  std::vector<ClassObject*> all;
+  for (const auto& [name, c] : kernel_.classIndex_)
+    if (c->plugin_ == &plugin) all.push_back(c);
+  return all;
+}
+
+/// The plugin of that name. Throws Error when something needs it.
+Plugin& Loader::unused(std::string_view name) const {
   Leaf* found = kernel_.pluginsNode_->child(name);
   if (!found) throw Error("cannot unload plugin '" + std::string(name) + "': there is none of that name");
   Plugin& plugin = static_cast<Plugin&>(*found);
-  std::vector<ClassObject*> mine;
-  for (const auto& [n, c] : kernel_.classIndex_)
-    if (c->plugin_ == &plugin) mine.push_back(c);
+  const std::vector<ClassObject*> mine = classesOf(plugin);
   std::string living, derived;
   const auto isMine = [&](ClassObject* c) { return std::find(mine.begin(), mine.end(), c) != mine.end(); };
   const auto walk = [&](auto& self, const Node& node) -> void {
@@ -296,9 +273,31 @@ void Loader::unload(std::string_view name) {
     if (c->plugin_ != &plugin && std::any_of(mine.begin(), mine.end(), [&, derivedClass = c](ClassObject* m) { return m->name() == derivedClass->baseName(); }))
       derived += "\n  " + n + (c->plugin_ ? " of plugin '" + c->plugin_->name() + "'" : "");
   if (!derived.empty()) throw Error("cannot unload plugin '" + plugin.name() + "' while classes derive from its classes:" + derived + "\nUnload those first.");
+  return plugin;
+}
+
+void Loader::unload(std::string_view name) {
+  Plugin& plugin = unused(name);
+  if (kernel_.events().running())
+    throw Error("cannot unload plugin '" + plugin.name() + "' while handlers of events run, which may be its own. Unload it between two cycles.");
   runActions(plugin);
-  for (ClassObject* c : mine) drop(*c, false);
+  for (ClassObject* c : classesOf(plugin)) drop(*c, false);
+  unloaded_.insert_or_assign(plugin.name(), plugin.file_);
   close(plugin);
+}
+
+void Loader::unloadLater(std::string_view name) {
+  if (!kernel_.events().running()) return unload(name);
+  unused(name);
+  leaving_.emplace_back(name);
+}
+
+void Loader::unloadLeaving() {
+  for (const std::string& name : std::exchange(leaving_, {})) try {
+      unload(name);
+    } catch (const std::exception& e) {
+      kernel_.log().error("{}", e.what());
+    }
 }
 
 Plugin* Loader::providerOf(std::string_view className) const {

@@ -34,6 +34,7 @@ void Log::setSink(Sink sink) {
 }
 
 void Log::write(Level level, std::string_view line) {
+  if (level == Level::error) errors_.fetch_add(1, std::memory_order_relaxed);
   if (!enabled(level)) return;
   std::string clean;
   clean.reserve(line.size());

@@ -30,7 +30,10 @@ void Lua::runConfig(std::string_view file) {
 
 Value Lua::run(std::string_view text, std::string_view chunkName) { return impl_->run(text, "=" + std::string(chunkName)); }
 
-void Lua::attach(Leaf& node, std::string_view file) { impl_->attach(node, impl_->read(file, "script").text, "@" + std::string(file), true); }
+void Lua::attach(Leaf& node, std::string_view file, const Value& arguments) {
+  const auto push = [&](lua_State* L) { script::pushArguments(L, arguments); };
+  impl_->attach(node, impl_->read(file, "script").text, "@" + std::string(file), true, push);
+}
 
 void Lua::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) {
   impl_->attach(node, text, "=" + std::string(chunkName), trusted);
@@ -100,7 +103,7 @@ Value Runtime::run(std::string_view text, std::string_view chunkName) {
   return result;
 }
 
-void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted) {
+void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted, const State::Body& pushArguments) {
   const std::string path = node.path();
   if (!node.isLinked()) throw Error("cannot attach a script to " + path + ": it is not linked into the tree");
   std::shared_ptr<State> state = trusted;
@@ -117,7 +120,9 @@ void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkNa
     failure = state->run(isTrusted ? kHandlerBudget : kSandboxBudget, [&](lua_State* L) {
       pushEnvironment(L, node, false);
       load(L, text, chunkName, lua_gettop(L));
-      lua_call(L, 0, 0);
+      const int function = lua_gettop(L);
+      if (pushArguments) pushArguments(L);
+      lua_call(L, lua_gettop(L) - function, 0);
     });
   }
   if (!failure) return;

@@ -17,6 +17,11 @@ int plugin(lua_State* L) {
   return 1;
 }
 
+int unload(lua_State* L) {
+  State::of(L).runtime().kernel.plugins().unloadLater(checkString(L, 1, "a plugin's name"));
+  return 0;
+}
+
 int create(lua_State* L) {
   Runtime& runtime = State::of(L).runtime();
   const Ref<Leaf> made(&runtime.kernel.create(checkString(L, 1, "a class name"), checkString(L, 2, "a path")));
@@ -117,7 +122,7 @@ void addGlobals(lua_State* L, Leaf& node, bool config) {
     lua_setfield(L, environment, "self");
   }
   constexpr luaL_Reg kEverybody[] = {{"on", guarded<handle>}};
-  constexpr luaL_Reg kTrusted[] = {{"plugin", guarded<plugin>}, {"new", guarded<create>},    {"get", guarded<get>},
+  constexpr luaL_Reg kTrusted[] = {{"plugin", guarded<plugin>}, {"unload", guarded<unload>}, {"new", guarded<create>},    {"get", guarded<get>},
                                    {"delete", guarded<remove>}, {"option", guarded<option>}, {"include", guarded<include>}};
   const bool trusted = State::of(L).trusted();
   const auto add = [&](std::span<const luaL_Reg> functions) {

@@ -175,8 +175,9 @@ class Runtime {
   void pushConfigEnvironment(lua_State* L);
   /// Runs a chunk in the config's environment. Throws Error.
   Value run(std::string_view text, std::string_view chunkName);
-  /// Runs a chunk in an environment of its own. Throws Error; what it subscribed until then goes.
-  void attach(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted);
+  /// Runs a chunk in an environment of its own. `pushArguments` leaves on the stack what the chunk reads as `...`; empty: nothing. Throws Error;
+  /// what it subscribed until then goes.
+  void attach(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted, const State::Body& pushArguments = {});
   /// Adds the function on top of the stack, which is popped, as a handler. Throws Error.
   std::shared_ptr<Subscription> subscribe(lua_State* L, Leaf& node, std::string_view channel);
   /// Logs a handler's failure, once for each line of a script.
@@ -215,6 +216,8 @@ std::string_view checkString(lua_State* L, int index, const char* what);
 
 // Values (lua_value.cpp).
 void pushValue(lua_State* L, const Value& value);
+/// As pushValue for what a script is given: lists of pairs whose keys are words become tables with these keys. Nothing for nil.
+void pushArguments(lua_State* L, const Value& arguments);
 /// Throws Error when it is a function or too deep.
 Value toValue(lua_State* L, int index);
 /// Leaves a table's keys, sorted, as a sequence on the stack and returns their number. Throws Error for keys without an order.

@@ -80,7 +80,19 @@ int nodeDelete(lua_State* L) {
 int nodeAttachScript(lua_State* L) {
   mustBeTrusted(L, "node:attachScript");
   Leaf& node = self(L, "attachScript");
-  node.kernel().lua().attach(node, checkString(L, 2, "a script file"));
+  const std::string file(checkString(L, 2, "a script file"));
+  // What follows is handed on as it is: the script runs in the same state.
+  std::vector<int> arguments;
+  for (int i = 3, n = lua_gettop(L); i <= n; ++i) lua_pushvalue(L, i), arguments.push_back(luaL_ref(L, LUA_REGISTRYINDEX));
+  const auto push = [&](lua_State* to) {
+    luaL_checkstack(to, static_cast<int>(arguments.size()), "a script has too many arguments");
+    for (const int argument : arguments) lua_rawgeti(to, LUA_REGISTRYINDEX, argument);
+  };
+  const std::shared_ptr<void> release(nullptr, [&](void*) {
+    for (const int argument : arguments) luaL_unref(L, LUA_REGISTRYINDEX, argument);
+  });
+  Runtime& runtime = State::of(L).runtime();
+  runtime.attach(node, runtime.read(file, "script").text, "@" + file, true, push);
   return 0;
 }
 

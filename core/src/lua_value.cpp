@@ -142,6 +142,31 @@ void pushValue(lua_State* L, const Value& value) {
   }
 }
 
+namespace {
+bool isTable(const Value& v) {
+  return v.isList() && !v.toList().empty() &&
+         std::all_of(v.toList().begin(), v.toList().end(), [](const Value& p) { return p.isList() && p.toList().size() == 2 && p.toList()[0].isString(); });
+}
+
+void pushTables(lua_State* L, const Value& value) {
+  if (!value.isList()) return pushValue(L, value);
+  luaL_checkstack(L, 4, "a value is nested too deep");
+  lua_newtable(L);
+  const bool named = isTable(value);
+  lua_Integer i = 0;
+  for (const Value& e : value.toList()) {
+    if (named) pushValue(L, e.toList()[0]);
+    else lua_pushinteger(L, ++i);
+    pushTables(L, named ? e.toList()[1] : e);
+    lua_rawset(L, -3);
+  }
+}
+}  // namespace
+
+void pushArguments(lua_State* L, const Value& arguments) {
+  if (!arguments.isNil()) pushTables(L, arguments);
+}
+
 Value toValue(lua_State* L, int index) { return toValueNested(L, lua_absindex(L, index), 0); }
 
 lua_Integer pushSortedKeys(lua_State* L, int table) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -211,33 +212,57 @@ void appendFixed(std::string& out, double v, int decimals, bool asFloat) {
   out.append(buffer, putFixed(buffer, v, decimals, asFloat));
 }
 
-double readNumber(std::string_view text) {
+namespace {
+/// Reads numbers as most are written; false for all others.
+bool readShort(std::string_view text, double& v) {
   // Up to 15 digits are a whole number that a double holds, and so is 10^decimals up to 22: their quotient is rounded once, as it has to be.
   constexpr std::size_t kExactDigits = 15;
   const bool negative = text.starts_with('-');
   const std::string_view digits = text.substr(negative);
-  if (!digits.empty() && digits.size() <= kExactDigits + 1) {
-    std::uint64_t whole = 0;
-    std::size_t at = 0, point = digits.size();
-    for (; at < digits.size(); ++at) {
-      const auto digit = static_cast<unsigned>(digits[at] - '0');
-      if (digit < 10) whole = whole * 10 + digit;
-      else if (digits[at] == '.' && point == digits.size()) point = at;
-      else break;
-    }
-    const bool pointed = point < digits.size();
-    const std::size_t count = digits.size() - pointed;
-    if (at == digits.size() && count > 0 && count <= kExactDigits) {
-      const double v = static_cast<double>(whole) / kPowers[pointed ? digits.size() - point - 1 : 0];
-      return negative ? -v : v;
-    }
+  if (digits.empty() || digits.size() > kExactDigits + 1) return false;
+  std::uint64_t whole = 0;
+  std::size_t at = 0, point = digits.size();
+  for (; at < digits.size(); ++at) {
+    const auto digit = static_cast<unsigned>(digits[at] - '0');
+    if (digit < 10) whole = whole * 10 + digit;
+    else if (digits[at] == '.' && point == digits.size()) point = at;
+    else break;
   }
-  // atof wants a terminated string; numbers are short.
+  const bool pointed = point < digits.size();
+  const std::size_t count = digits.size() - pointed;
+  if (at != digits.size() || count == 0 || count > kExactDigits) return false;
+  v = static_cast<double>(whole) / kPowers[pointed ? digits.size() - point - 1 : 0];
+  if (negative) v = -v;
+  return true;
+}
+
+/// As C's strtod; returns how many bytes it read.
+std::size_t readSlowly(std::string_view text, double& v) {
+  // strtod wants a terminated string; numbers are short.
   char buffer[64];
-  if (text.size() >= sizeof buffer) return std::atof(std::string(text).c_str());
-  text.copy(buffer, text.size());
-  buffer[text.size()] = 0;
-  return std::atof(buffer);
+  const std::string all(text.size() < sizeof buffer ? std::string_view() : text);
+  text.copy(buffer, sizeof buffer - 1);
+  buffer[std::min(text.size(), sizeof buffer - 1)] = 0;
+  const char* begin = all.empty() ? buffer : all.c_str();
+  char* end = nullptr;
+  v = std::strtod(begin, &end);
+  return static_cast<std::size_t>(end - begin);
+}
+}  // namespace
+
+double readNumber(std::string_view text) {
+  double v = 0;
+  if (!readShort(text, v)) readSlowly(text, v);
+  return v;
+}
+
+bool readWholeNumber(std::string_view text, double& v) {
+  if (readShort(text, v)) return true;
+  double read = 0;
+  const bool blank = !text.empty() && std::isspace(static_cast<unsigned char>(text.front()));
+  if (text.empty() || blank || readSlowly(text, read) != text.size()) return false;
+  v = read;
+  return true;
 }
 
 void ByteWriter::integer(std::int64_t v) {

@@ -8,6 +8,13 @@ namespace spark {
 
 double Element::numberInText() const { return readNumber(text()); }
 
+std::optional<double> Element::asNumber() const {
+  if (!owner_ || isList()) return std::nullopt;
+  if (!isText()) return number();
+  double v = 0;
+  return readWholeNumber(text(), v) ? std::optional(v) : std::nullopt;
+}
+
 std::int64_t Element::integer() const {
   if (token().kind == Token::Kind::integer) return token().integer;
   const double d = number();
@@ -38,6 +45,14 @@ void Predicates::clear() {
   text_.clear();
   places_.clear();
   open_ = kNone;
+  surplus_ = false;
+}
+
+int Predicates::balance() {
+  int open = surplus_ ? -1 : 0;
+  for (; open_ != kNone; close()) open = std::max(open, 0) + 1;
+  surplus_ = false;
+  return open;
 }
 
 std::size_t Predicates::store(std::string_view text) {

@@ -142,6 +142,18 @@ Json plugins(Kernel& kernel) {
   return {{"ok", true}, {"plugins", list}};
 }
 
+Json load(Kernel& kernel, const Json& request) {
+  const Plugin& p = kernel.plugins().use(textOf(request, "name"));
+  std::string text = p.name() + " " + p.version() + " from " + p.file() + ":";
+  for (const std::string& c : p.classes()) text += " " + c;
+  return {{"ok", true}, {"text", text}};
+}
+
+Json unload(Kernel& kernel, const Json& request) {
+  kernel.plugins().unload(textOf(request, "name"));
+  return {{"ok", true}, {"text", ""}};
+}
+
 std::string dump(const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace); }
 std::string failure(const std::exception& e) { return dump({{"ok", false}, {"error", e.what()}}); }
 
@@ -163,15 +175,17 @@ std::string startWatch(Kernel& kernel, const Json& request, Watch& watch) {
 
 std::string dispatch(Kernel& kernel, const Leaf& self, const Json& request, Watch& watch, bool mayChange) {
   const std::string what = textOf(request, "do");
-  if (!mayChange && (what == "set" || what == "call"))
+  if (!mayChange && (what == "set" || what == "call" || what == "load" || what == "unload"))
     throw Error("'" + what + "' changes the match, which only the referee may: log in with the token that the host printed at its start");
   if (what == "tree") return dump(tree(kernel, request, mayChange ? kMostNodes : kMostNodesToLookAt));
   if (what == "get") return dump(get(kernel, request));
   if (what == "set") return dump(set(kernel, request));
   if (what == "call") return dump(call(kernel, self, request));
+  if (what == "load") return dump(load(kernel, request));
+  if (what == "unload") return dump(unload(kernel, request));
   if (what == "plugins") return dump(plugins(kernel));
   if (what == "watch") return startWatch(kernel, request, watch);
-  throw Error("expected tree, get, set, call, watch or plugins, found '" + what + "'");
+  throw Error("expected tree, get, set, call, watch, plugins, load or unload, found '" + what + "'");
 }
 }  // namespace
 

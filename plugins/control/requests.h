@@ -9,6 +9,8 @@
 ///     {"do":"set","path","property","value"}        as get, after the change
 ///     {"do":"call","path","method","arguments":[]}  {"ok":true,"text","value"}
 ///     {"do":"watch","path","property"}              one line {"ok":true,"cycle","time","text","value"} now and after every change
+///     {"do":"load","name":"wind"}                   {"ok":true,"text"}: a plugin's classes are registered, its file loaded when it is not
+///     {"do":"unload","name":"wind"}                 {"ok":true}
 ///     {"do":"plugins"}                              {"ok":true,"plugins":[{"name","version","doc","file","classes","registered"}]}
 ///
 /// Texts in "value" and "arguments" are read as people type them (true, 3, {1,2}, words). Errors: {"ok":false,"error":"..."}.
@@ -25,7 +27,7 @@ namespace spark::control {
 
 /// The answer to one line, without the line feed. Bad requests give an error answer; nothing is thrown. `self`: the server's own node,
 /// which requests must not saw off. When the request is a watch, `watch` is filled in and the answer is its first line. `mayChange` false
-/// refuses set and call.
+/// refuses all that changes something.
 std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch, bool mayChange = true);
 
 /// The next line of a watch, "" when the value is as before. An error answer when the property is gone (`done` is set).

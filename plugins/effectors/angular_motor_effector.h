@@ -1,6 +1,6 @@
 #pragma once
 
-#include "joint_command.h"
+#include "api/joint_command.h"
 
 namespace spark {
 
@@ -16,15 +16,16 @@ class AngularMotorEffector : public Effector {
   }
   std::string act(const Element& action) override {
     if (!motor_) return "there is no AngularMotor above it";
+    NumberArguments read(action);
     double speed = 0;
-    if (std::string wrong = readNumber(action, 0, speed); !wrong.empty()) return wrong;
+    if (!read(0, speed)) return read.remark();
     if (disabled_ && disabled_->get(motor_->leaf()).toBool()) {
       motor_->drive(0, 0);
-      return {};
+      return read.remark();
     }
     speed = clampSpeed(*motor_, 0, speed);
     motor_->drive(0, hinge_ ? clampSpeed(*hinge_, 0, speed) : speed);
-    return {};
+    return read.remark();
   }
 
  protected:

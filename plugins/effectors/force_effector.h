@@ -1,6 +1,6 @@
 #pragma once
 
-#include "joint_command.h"
+#include "api/joint_command.h"
 
 namespace spark {
 
@@ -14,12 +14,13 @@ class ForceEffector : public Effector {
   }
   std::string predicate() const override { return "force"; }
   std::string act(const Element& action) override {
+    NumberArguments read(action);
     Vec3 force;
     for (int i = 0; i < 3; ++i)
-      if (std::string wrong = readNumber(action, i, force[i]); !wrong.empty()) return wrong;
+      if (!read(static_cast<std::size_t>(i), force[i])) return read.remark();
     force_ = force;
     pending_ = true;
-    return {};
+    return read.remark();
   }
 
  private:

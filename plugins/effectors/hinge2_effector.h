@@ -1,6 +1,6 @@
 #pragma once
 
-#include "joint_command.h"
+#include "api/joint_command.h"
 
 namespace spark {
 
@@ -11,10 +11,10 @@ class Hinge2Effector : public Effector {
   static void describe(Description<Hinge2Effector>& d) { d.doc("Drives the second axis of the hinge2 joint above it: (name speed) in deg/s."); }
   std::string act(const Element& action) override {
     if (!joint_) return "there is no Hinge2Joint above it";
+    NumberArguments read(action);
     double speedDeg = 0;
-    if (std::string wrong = readNumber(action, 0, speedDeg); !wrong.empty()) return wrong;
-    joint_->drive(1, degToRad(speedDeg));
-    return {};
+    if (read(0, speedDeg)) joint_->drive(1, degToRad(speedDeg));
+    return read.remark();
   }
 
  protected:

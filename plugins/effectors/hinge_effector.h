@@ -1,7 +1,7 @@
 #pragma once
 
 #include "api/robot_parts.h"
-#include "joint_command.h"
+#include "api/joint_command.h"
 
 namespace spark {
 
@@ -18,13 +18,14 @@ class HingeEffector : public Effector, public IFreezable {
   }
   std::string act(const Element& action) override {
     if (!joint_) return "there is no HingeJoint above it";
+    NumberArguments read(action);
     double speed = 0;
-    if (std::string wrong = readNumber(action, 0, speed); !wrong.empty()) return wrong;
-    // A command wakes the body even where it does not reach the motor, as in the installed base.
-    if (speed != 0) wakeFirstBody();
-    if (ignoreCommandAtStop_ && joint_->atStop(0)) return {};
-    joint_->drive(0, frozen_ ? 0 : clampSpeed(*joint_, 0, speed));
-    return {};
+    if (read(0, speed)) {
+      // A command wakes the body even where it does not reach the motor, as in the installed base.
+      if (speed != 0) wakeFirstBody();
+      if (!(ignoreCommandAtStop_ && joint_->atStop(0))) joint_->drive(0, frozen_ ? 0 : clampSpeed(*joint_, 0, speed));
+    }
+    return read.remark();
   }
   Leaf& leaf() override { return *this; }
   void freeze(bool on) override { frozen_ = on; }

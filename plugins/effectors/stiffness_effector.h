@@ -1,6 +1,6 @@
 #pragma once
 
-#include "joint_command.h"
+#include "api/joint_command.h"
 
 namespace spark {
 
@@ -13,15 +13,16 @@ class StiffnessEffector : public Effector {
     d.property("stiffness", &StiffnessEffector::stiffness_).range(0, 1).state().doc("What was commanded last.");
   }
   std::string act(const Element& action) override {
+    NumberArguments read(action);
     double stiffness = 0;
-    if (std::string wrong = readNumber(action, 0, stiffness); !wrong.empty()) return wrong;
+    if (!read(0, stiffness)) return read.remark();
     stiffness_ = std::clamp(stiffness, 0.0, 1.0);
     if (motorStiffness_) {
       const Value value = stiffness_;
       Args args{{&value, 1}};
       motorStiffness_->set(motor_->leaf(), args);
     }
-    return {};
+    return read.remark();
   }
 
  protected:

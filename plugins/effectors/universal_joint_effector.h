@@ -1,6 +1,6 @@
 #pragma once
 
-#include "joint_command.h"
+#include "api/joint_command.h"
 
 namespace spark {
 
@@ -13,11 +13,11 @@ class UniversalJointEffector : public Effector {
   }
   std::string act(const Element& action) override {
     if (!joint_) return "there is no UniversalJoint above it";
+    NumberArguments read(action);
     double speed[2] = {0, 0};
-    for (int axis = 0; axis < 2; ++axis)
-      if (std::string wrong = readNumber(action, axis, speed[axis]); !wrong.empty()) return wrong;
+    if (!read(0, speed[0]) || !read(1, speed[1])) return read.remark();
     for (int axis = 0; axis < 2; ++axis) joint_->drive(axis, clampSpeed(*joint_, axis, speed[axis]));
-    return {};
+    return read.remark();
   }
 
  protected:

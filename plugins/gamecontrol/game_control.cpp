@@ -287,7 +287,7 @@ void GameControl::sense(const Event& event) {
   };
   kernel().jobs().run(participants_.size(), std::ref(one));  // a copy would take memory
   if (faults)
-    for (const auto& p : participants_) p->reportFault(lines());
+    for (const auto& p : participants_) p->reportFaults(lines());
   if (perceptDelay_ == 0) deliver();
 }
 

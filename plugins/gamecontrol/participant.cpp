@@ -249,9 +249,20 @@ bool Participant::sense(const Event& event) {
       faulty_ = i;
       fault_ = kNoException;
     }
+    if (percepts_.isUnbalanced()) [[unlikely]] balance(i);
   }
   encode();
-  return faulty_ == kNone;
+  return faulty_ == kNone && unbalanced_ == kNone;
+}
+
+/// What comes behind an open list would be in it: other percepts are not to suffer.
+void Participant::balance(std::size_t perceptor) {
+  const int open = percepts_.balance();
+  const std::uint64_t id = asked_[perceptor]->id();
+  if (unbalanced_ != kNone || std::find(blamed_.begin(), blamed_.end(), id) != blamed_.end()) return;
+  blamed_.push_back(id);
+  unbalanced_ = perceptor;
+  open_ = open;
 }
 
 void Participant::encode() {
@@ -280,7 +291,13 @@ void Participant::load(StateReader& in) {
   read(later_);
 }
 
-void Participant::reportFault(AgentLines& log) {
+void Participant::reportFaults(AgentLines& log) {
+  if (const Perceptor* p = unbalanced_ != kNone ? perceptors_[unbalanced_].get() : nullptr)
+    log.write(Level::error, fmt::format("{}: {} ({}) {} in sense(); its percept is as if it had closed what it opened. Each open() needs one close(). "
+                                        "This is said once.",
+                                        label_, p->path(), p->classObject()->name(),
+                                        open_ > 0 ? fmt::format("left {} list(s) open", open_) : std::string("closed a list that was not open")));
+  unbalanced_ = kNone;
   if (faulty_ == kNone) return;
   if (const Perceptor* p = perceptors_[faulty_].get())
     log.write(Level::error, fmt::format("{}: {} ({}) threw and is asked no more: {}", label_, p->path(), p->classObject()->name(), fault_));
@@ -297,6 +314,7 @@ bool Participant::deliver(AgentLines& log, std::int64_t cycle, Clock::time_point
     } catch (const std::exception& fault) {
       warn(log, cycle, fmt::format("it threw: {}", fault.what()));
     }
+    if (later_.isUnbalanced() && later_.balance() != 0) warn(log, cycle, "its actions did not close each list that they opened, once.");
     return true;
   }
   const bool first = sent_ == 0;

@@ -80,10 +80,11 @@ class Participant {
   void promote();
   /// Before the sense phase, in the simulation's thread: lets what its perceptors look at with others be brought up to date.
   void share(std::uint64_t round);
-  /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent. False when a perceptor threw.
+  /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent. False when a perceptor threw or
+  /// left lists open, which are closed.
   bool sense(const Event& event);
-  /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more.
-  void reportFault(AgentLines& log);
+  /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more; reports one that left lists open, once.
+  void reportFaults(AgentLines& log);
   /// Sends or hands over what was sensed last, at the instant `now`. False when the message was dropped because an earlier one has not left.
   bool deliver(AgentLines& log, std::int64_t cycle, Clock::time_point now);
 
@@ -163,6 +164,7 @@ class Participant {
   void keep(const Predicates& arrived);
   void noteAnswer();
   void encode();
+  void balance(std::size_t perceptor);
   void warn(AgentLines& log, std::int64_t cycle, std::string_view text);
 
   std::string label_;
@@ -192,6 +194,9 @@ class Participant {
   std::vector<Shared> shared_;
   std::size_t faulty_ = kNone;   ///< index of a perceptor that threw
   std::string fault_;
+  std::size_t unbalanced_ = kNone;      ///< index of a perceptor whose lists had to be closed, and
+  int open_ = 0;                        ///< what Predicates::balance() said of them
+  std::vector<std::uint64_t> blamed_;   ///< ids of those that were reported so
   std::string syncPredicate_;
   std::uint64_t robotAt_ = 0;  ///< its aspect's changedAt() at the last look
   std::int64_t counter_ = 0, sent_ = 0;

@@ -7,10 +7,10 @@ namespace spark {
 void ScriptBehavior::describe(Description<ScriptBehavior>& d) {
   d.doc("A behaviour written in Lua: handles start and think, leaves S-expressions in actions.");
   d.property("actions", &ScriptBehavior::actions_).doc("What is to be done: S-expressions, set by the script's handlers.");
-  d.method("script", &ScriptBehavior::script).parameters({"file"}).doc("Attaches the script.");
+  d.method("script", &ScriptBehavior::script).parameters({"file", "arguments"}).optional(1).doc("Attaches the script, which reads the arguments as `local args = ...`.");
 }
 
-void ScriptBehavior::script(std::string file) { kernel().lua().attach(*this, file); }
+void ScriptBehavior::script(std::string file, Value arguments) { kernel().lua().attach(*this, file, arguments); }
 
 void ScriptBehavior::start(Predicates& actions) { run("start", nullptr, actions); }
 

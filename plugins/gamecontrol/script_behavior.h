@@ -17,7 +17,7 @@ class ScriptBehavior : public Behavior {
   void think(const Predicates& percepts, Predicates& actions) override;
 
  private:
-  void script(std::string file);
+  void script(std::string file, Value arguments);
   void run(std::string_view channel, const Value* data, Predicates& actions);
   std::string actions_;
 };

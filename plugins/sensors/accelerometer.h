@@ -1,7 +1,7 @@
 #pragma once
 
-#include "cached_lookup.h"
-#include "local_frame.h"
+#include "api/cached_lookup.h"
+#include "api/local_frame.h"
 #include "api/agents.h"
 #include "api/physics.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "joint_above.h"
+#include "api/joint_above.h"
 
 namespace spark {
 

@@ -2,7 +2,7 @@
 
 #include "api/agents.h"
 #include "api/physics.h"
-#include "local_frame.h"
+#include "api/local_frame.h"
 
 namespace spark {
 

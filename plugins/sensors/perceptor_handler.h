@@ -1,8 +1,8 @@
 #pragma once
 
-#include "cached_lookup.h"
+#include "api/cached_lookup.h"
 #include "collision_perceptor.h"
-#include "first_below.h"
+#include "api/first_below.h"
 
 namespace spark {
 

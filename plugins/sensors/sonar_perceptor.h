@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "api/agents.h"
-#include "cached_lookup.h"
+#include "api/cached_lookup.h"
 #include "spark/random.h"
 
 namespace spark {

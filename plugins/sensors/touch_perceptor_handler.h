@@ -1,7 +1,7 @@
 #pragma once
 
-#include "cached_lookup.h"
-#include "first_below.h"
+#include "api/cached_lookup.h"
+#include "api/first_below.h"
 #include "force_resistance_perceptor.h"
 
 namespace spark {

@@ -174,6 +174,7 @@ void Simulation::waitForClock() {
 
 bool Simulation::collectInput() {
   waitForClock();
+  kernel().plugins().settle();
   const auto mark = Clock::now();
   poll();
   bool waited = false;

@@ -4,22 +4,9 @@
 #include <cmath>
 #include <functional>
 
+#include "api/first_below.h"
+
 namespace spark::soccer {
-
-namespace {
-
-/// The first descendant that is a T, depth first.
-template <class T>
-T* firstBelow(const Node& node) {
-  for (const auto& c : node.children()) {
-    if (T* match = c->as<T>()) return match;
-    if (Node* inner = c->asNode())
-      if (T* match = firstBelow<T>(*inner)) return match;
-  }
-  return nullptr;
-}
-
-}  // namespace
 
 Bounds Player::bounds() const {
   constexpr std::size_t kAhead = 3;                     // colliders

@@ -1,5 +1,3 @@
-#include <fstream>
-
 #include "all_plugins.h"
 
 // Each plugin comes, makes one of everything, and goes, for real: its file is no longer mapped.
@@ -8,13 +6,6 @@ using namespace spark;
 using spark::test::House;
 
 namespace {
-bool isMapped(const std::string& file) {
-  std::ifstream maps("/proc/self/maps");
-  for (std::string line; std::getline(maps, line);)
-    if (line.ends_with(file)) return true;
-  return false;
-}
-
 /// Registers `name` and whatever provides the bases of its classes; returns them, bases last.
 std::vector<std::string> useWithBases(Kernel& kernel, const std::string& name) {
   std::vector<std::string> used{name};
@@ -66,6 +57,6 @@ TEST_CASE("Every plugin unloads after its objects are gone, and is no longer map
         }
       });
     CHECK(used.empty());
-    CHECK_FALSE(isMapped(file));
+    CHECK_FALSE(test::isMapped(file));
   }
 }

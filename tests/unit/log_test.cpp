@@ -19,6 +19,7 @@ TEST_CASE("Only what passes the level is written, and formatted only then") {
   log.error("nothing");
   CHECK(text == "this 1|and that|");
   CHECK_FALSE(log.enabled(Level::error));
+  CHECK(log.errors() == 2);  // counted all the same
 }
 
 TEST_CASE("Text from outside cannot forge lines or control a terminal") {

@@ -189,3 +189,37 @@ TEST_CASE("a script's error has file, line and a short traceback") {
   CHECK_THAT(h.failure("x ="), Equals("test:1: unexpected symbol near <eof>"));
   CHECK_THAT(h.failure("error({})"), Equals("table\n  from test:1"));
 }
+
+TEST_CASE("an attached script gets arguments") {
+  LuaHouse house;
+  house.thing("/usr/a");
+  house.write("rule.lua", "local args, more = ...\nself.count = args and args.limit or -1\nself.label = tostring(args and args.who) .. tostring(more)\n"
+                          "if args and args.call then args.call(self) end");
+  SECTION("from Lua, as they are: tables, nodes, functions") {
+    house.run("get('/usr/a'):attachScript('rule.lua', {limit = 3, who = get('/usr'), call = function(node) node.mass = 5 end}, 'x')");
+    CHECK(house.kernel.root().require<Thing>("/usr/a").count == 3);
+    CHECK(house.kernel.root().require<Thing>("/usr/a").label == "/usrx");
+    CHECK(house.kernel.root().require<Thing>("/usr/a").mass == 5);
+  }
+  SECTION("none") {
+    house.run("get('/usr/a'):attachScript('rule.lua')");
+    CHECK(house.kernel.root().require<Thing>("/usr/a").count == -1);
+    CHECK(house.kernel.root().require<Thing>("/usr/a").label == "nilnil");
+  }
+  SECTION("from C++, as values") {
+    Thing& a = house.kernel.root().require<Thing>("/usr/a");
+    house.kernel.lua().attach(a, "rule.lua", List{List{"limit", 4}, List{"who", "me"}});
+    CHECK(a.count == 4);
+    CHECK(a.label == "menil");
+    house.write("list.lua", "local args = ...\nself.count = #args  self.anything = args");
+    house.kernel.lua().attach(a, "list.lua", List{1, 2, List{3}});
+    CHECK(a.count == 3);
+    CHECK(a.anything == Value(List{1, 2, List{3}}));
+  }
+}
+
+TEST_CASE("a script unloads plugins and loads them again") {
+  LuaHouse house;
+  CHECK_THAT(house.failure("unload 'nosuch'"), Catch::Contains("test:1: cannot unload plugin 'nosuch': there is none of that name"));
+  CHECK_THAT(house.failure("unload(3)"), Catch::Contains("expected a plugin's name"));
+}

@@ -108,6 +108,23 @@ TEST_CASE("Numbers are read to the last bit as atof reads them") {
     check(text);
 }
 
+TEST_CASE("Whole numbers are told from what only begins with one") {
+  for (const char* text : {"0", "-0", "+2", "1.", ".5", "-.5", "0x10", "1e3", "1E-300", "nan", "-inf", "999999999999999", "9007199254740993", "123456789012345678901234567890"}) {
+    CAPTURE(text);
+    double v = -7;
+    CHECK(readWholeNumber(text, v));
+    CHECK(std::bit_cast<std::uint64_t>(v) == std::bit_cast<std::uint64_t>(std::atof(text)));
+  }
+  std::string huge(100, '1');
+  huge += 'x';
+  for (const std::string_view text : {"", "-", ".", "abc", "1.5x", "1..2", " 7", "7 ", "1e", huge.c_str()}) {
+    CAPTURE(text);
+    double v = -7;
+    CHECK_FALSE(readWholeNumber(text, v));
+    CHECK(v == -7);
+  }
+}
+
 TEST_CASE("A writer's pieces arrive in order, long ones and a whole block of short ones too") {
   const std::string longText(10000, 'x');
   std::string out = "a", expected = "a";

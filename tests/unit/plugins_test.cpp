@@ -1,3 +1,6 @@
+#include <dlfcn.h>
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -11,6 +14,7 @@
 
 using namespace spark;
 using spark::test::House;
+using spark::test::isMapped;
 namespace fs = std::filesystem;
 
 namespace {
@@ -18,11 +22,22 @@ fs::path fixtures(const char* folder) { return test::pluginFolder().parent_path(
 fs::path bad(const std::string& name) { return fixtures("bad-plugins") / (name + ".so"); }
 fs::path good(const std::string& name) { return fixtures("fixture-plugins") / (name + ".so"); }
 
-bool isMapped(const std::string& file) {
-  std::ifstream maps("/proc/self/maps");
-  for (std::string line; std::getline(maps, line);)
-    if (line.ends_with(file)) return true;
-  return false;
+std::string bytesOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Writes into a file that is there, as cp does: whoever has it open sees it change.
+void overwrite(const fs::path& file, const std::string& bytes) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << bytes;
+}
+
+/// The bytes of a plugin with another version of the same length.
+std::string withVersion(std::string bytes, const std::string& old, const std::string& now) {
+  const std::size_t at = bytes.find(old + '\0');
+  REQUIRE(at != std::string::npos);
+  return bytes.replace(at, now.size(), now);
 }
 
 std::string refusal(const std::function<void()>& action) {
@@ -178,6 +193,7 @@ TEST_CASE("Unloading is refused while classes of other plugins derive") {
   CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }), Catch::Contains("FixtureDerived of plugin 'fixture-derived'"));
   loader.unload("fixture-derived");
   loader.unload("fixture-base");
+  CHECK(loader.providerOf("FixtureBase") == nullptr);
   CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }), Catch::Contains("there is none of that name"));
 }
 
@@ -224,4 +240,140 @@ TEST_CASE("The plugins' nodes belong to the loader") {
   CHECK_THROWS_AS(node.parent()->remove(node), Error);
   CHECK_THROWS_AS(node.setName("other"), Error);
   house.kernel.plugins().unload("fixture-base");
+}
+
+TEST_CASE("A file that is overwritten while its plugin runs harms nobody, and loading again gives the new version") {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "fixture-base.so";
+  fs::copy_file(good("fixture-base"), file);
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  loader.scan(folder.path());
+  loader.use("fixture-base");
+  const std::string whole = bytesOf(file);
+  overwrite(file, whole.substr(0, whole.size() / 3));  // a copy that is under way
+  Leaf& made = house.kernel.create("FixtureBase", "/usr/a");
+  house.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
+  CHECK(getProperty(made, "number") == Value(2.0));
+  overwrite(file, withVersion(whole, "1.2", "1.3"));
+  house.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
+  CHECK(getProperty(made, "number") == Value(3.0));
+  CHECK(house.kernel.root().require<Plugin>("/plugins/fixture-base").version() == "1.2");
+  made.parent()->remove(made);
+  loader.unload("fixture-base");
+  CHECK_FALSE(isMapped(file));
+  const Plugin& again = loader.use("fixture-base");  // without a scan
+  CHECK(again.version() == "1.3");
+  CHECK(again.file() == file.string());
+  CHECK(house.kernel.create("FixtureBase", "/usr/a").classObject()->plugin() == &again);
+}
+
+TEST_CASE("What is listed and not in use yet is taken as it is by then, and a file that came later is found") {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "fixture-base.so";
+  fs::copy_file(good("fixture-base"), file);
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  loader.scan(folder.path());
+  overwrite(file, withVersion(bytesOf(file), "1.2", "1.4"));
+  CHECK(loader.use("fixture-base").version() == "1.4");
+  CHECK_THAT(refusal([&] { loader.use("fixture-derived"); }), Catch::Contains("there is no plugin 'fixture-derived'"));
+  fs::copy_file(good("fixture-derived"), folder.path() / "fixture-derived.so");
+  CHECK(loader.use("fixture-derived").registered());
+  CHECK_THAT(refusal([&] { loader.use("../fixture-derived"); }), Catch::Contains("there is no plugin"));
+}
+
+TEST_CASE("A file that is broken when it is to be loaded again is refused, and may be repaired") {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "fixture-base.so";
+  fs::copy_file(good("fixture-base"), file);
+  const std::string whole = bytesOf(file);
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  loader.useFile(file);
+  loader.unload("fixture-base");
+  overwrite(file, whole.substr(0, whole.size() / 2));
+  CHECK_THAT(refusal([&] { loader.use("fixture-base"); }), Catch::Contains(file.string()) && Catch::Contains("it is cut off"));
+  fs::remove(file);
+  CHECK_THAT(refusal([&] { loader.use("fixture-base"); }), Catch::Contains("there is no plugin 'fixture-base'"));
+  overwrite(file, whole);
+  CHECK(loader.use("fixture-base").registered());
+}
+
+TEST_CASE("Kernels share a file that is the same, and each keeps the version that it loaded") {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "fixture-base.so";
+  fs::copy_file(good("fixture-base"), file);
+  const auto codeOf = [](House& house) { return reinterpret_cast<const void*>(house.kernel.classOf("FixtureBase").hooks().front()->run); };
+  House a(false), b(false), c(false);
+  a.kernel.plugins().useFile(file);
+  b.kernel.plugins().useFile(file);
+  CHECK(codeOf(a) == codeOf(b));
+  overwrite(file, withVersion(bytesOf(file), "1.2", "1.5"));
+  CHECK(c.kernel.plugins().useFile(file).version() == "1.5");
+  CHECK(codeOf(a) != codeOf(c));
+  CHECK(a.kernel.plugins().useFile(file).version() == "1.2");
+  CHECK(b.kernel.plugins().use("fixture-base").version() == "1.2");
+}
+
+TEST_CASE("Debuggers find a plugin's code under its file's name") {
+  House house(false);
+  house.kernel.plugins().useFile(good("fixture-base"));
+  Dl_info info = {};
+  REQUIRE(dladdr(reinterpret_cast<const void*>(house.kernel.classOf("FixtureBase").hooks().front()->run), &info) != 0);
+  CHECK(std::string(info.dli_fname) == good("fixture-base").string());
+}
+
+TEST_CASE("Where no private copy can be made the file itself is loaded") {
+  House house(false);
+  rlimit before = {};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const rlimit none{100, before.rlim_max};
+  REQUIRE(setrlimit(RLIMIT_FSIZE, &none) == 0);
+  Plugin& plugin = house.kernel.plugins().useFile(good("fixture-base"));
+  setrlimit(RLIMIT_FSIZE, &before);
+  CHECK(plugin.registered());
+  CHECK(isMapped(good("fixture-base")));
+  house.kernel.plugins().unload("fixture-base");
+  CHECK_FALSE(isMapped(good("fixture-base")));
+}
+
+TEST_CASE("While handlers run a plugin is not unloaded; what asked for it then gets it between two cycles") {
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  loader.useFile(good("fixture-base"));
+  Leaf& made = house.kernel.create("FixtureBase", "/usr/a");
+  std::string now, later;
+  house.kernel.events().channel("knock").add(house.kernel.root(), [&](Leaf&, const Event&) {
+    now = refusal([&] { loader.unload("fixture-base"); });
+    later = refusal([&] { loader.unloadLater("fixture-base"); });
+  });
+  house.kernel.events().channel("knock").emit({"knock"});
+  CHECK_THAT(later, Catch::Contains("while its objects live") && Catch::Contains("/usr/a (FixtureBase)"));
+  made.parent()->remove(made);
+  house.kernel.events().channel("knock").emit({"knock"});
+  CHECK_THAT(now, Catch::Contains("while handlers of events run"));
+  CHECK(later == "nothing was refused");
+  CHECK(house.kernel.findClass("FixtureBase") != nullptr);
+  loader.settle();
+  CHECK(house.kernel.findClass("FixtureBase") == nullptr);
+  CHECK(loader.use("fixture-base").registered());
+  loader.unloadLater("fixture-base");  // nothing runs
+  CHECK(house.kernel.findClass("FixtureBase") == nullptr);
+}
+
+TEST_CASE("Scripts unload and load plugins, at once in a config and between two cycles in a handler") {
+  House house(false);
+  house.kernel.plugins().scan(fixtures("fixture-plugins"));
+  Lua& lua = house.kernel.lua();
+  lua.run("plugin 'fixture-base'  unload 'fixture-base'", "test");
+  CHECK(house.kernel.findClass("FixtureBase") == nullptr);
+  lua.run("plugin 'fixture-base'  new('FixtureBase', '/usr/a')", "test");
+  CHECK_THAT(refusal([&] { lua.run("unload 'fixture-base'", "test"); }), Catch::Contains("test:1:") && Catch::Contains("/usr/a (FixtureBase)"));
+  lua.run("on('knock', function() delete '/usr/a'  unload 'fixture-base' end)", "test");
+  house.kernel.events().channel("knock").emit({"knock"});
+  CHECK(house.text.empty());
+  CHECK(house.kernel.findClass("FixtureBase") != nullptr);
+  house.kernel.plugins().settle();
+  CHECK(house.kernel.findClass("FixtureBase") == nullptr);
 }

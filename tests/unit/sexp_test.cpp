@@ -163,6 +163,39 @@ TEST_CASE("Numbers are read from text as C does") {
   CHECK((*longNumber.begin()).number() == 1e100);
 }
 
+TEST_CASE("An element tells whether it is a number") {
+  Predicates p;
+  REQUIRE(readSexp("(he1 1.5 abc 1.5x (2) \"3\")", p).message.empty());
+  const Element action = *p.begin();
+  CHECK(action.at(1).asNumber() == 1.5);
+  CHECK_FALSE(action.at(2).isNumber());
+  CHECK_FALSE(action.at(3).isNumber());
+  CHECK_FALSE(action.at(4).isNumber());
+  CHECK(action.at(5).asNumber() == 3);
+  CHECK_FALSE(action.at(6).isNumber());
+  Predicates written;
+  written.open("x").add(2.5).add(7).close();
+  CHECK((*written.begin()).at(1).asNumber() == 2.5);
+  CHECK((*written.begin()).at(2).asNumber() == 7);
+}
+
+TEST_CASE("Lists that were left open can be closed, and what comes next stands on its own") {
+  Predicates p;
+  p.open("GYR").open("rt").add(1);
+  CHECK(p.isUnbalanced());
+  CHECK(p.balance() == 2);
+  CHECK_FALSE(p.isUnbalanced());
+  p.open("HJ").pair("n", "hj1").close();
+  CHECK(p.balance() == 0);
+  std::string text;
+  writeSexp(p, 2, text);
+  CHECK(text == "(GYR (rt 1))(HJ (n hj1))");
+  p.open("ACC").close().close();
+  CHECK(p.isUnbalanced());
+  CHECK(p.balance() == -1);
+  CHECK(p.balance() == 0);
+}
+
 TEST_CASE("Named parameters are the first sub-list of that name with a value") {
   Predicates p;
   readSexp("(init (unum) unum (x 1) (unum 7 8) (unum 9) (teamname \"A B\"))", p);

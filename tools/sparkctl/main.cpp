@@ -97,6 +97,10 @@ int main(int argc, char** argv) {
   CLI::App* watches = app.add_subcommand("watch", "Prints a property now and whenever it changes");
   watches->add_option("PATH.PROPERTY", target)->required();
   CLI::App* plugins = app.add_subcommand("plugins", "The plugins that were found");
+  CLI::App* loads = app.add_subcommand("load", "Loads a plugin of the host's folders, as a config's line plugin \"NAME\" does");
+  loads->add_option("NAME", target)->required();
+  CLI::App* unloads = app.add_subcommand("unload", "Unloads a plugin that has no objects; load then takes the file as it is by then");
+  unloads->add_option("NAME", target)->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -109,6 +113,8 @@ int main(int argc, char** argv) {
     if (*sets) set(house, target, value);
     if (*calls) call(house, target, arguments);
     if (*watches) watch(house, target);
+    if (*loads) print(house.ask({{"do", "load"}, {"name", target}}).value("text", "") + "\n");
+    if (*unloads) house.ask({{"do", "unload"}, {"name", target}});
     if (*plugins) print(pluginsText(house.ask({{"do", "plugins"}})["plugins"]));
   } catch (const std::exception& e) {
     fmt::print(stderr, "sparkctl: {}\n", e.what());

@@ -73,6 +73,8 @@ class Events {
   Channel& channel(std::string_view name);
   /// All channels by name.
   std::vector<Channel*> all() const;
+  /// True while handlers of any channel run.
+  bool running() const;
 
  private:
   friend class Node;

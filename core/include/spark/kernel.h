@@ -24,6 +24,7 @@ namespace spark {
 
 class Lua;
 class Kernel;
+class LoadedLibrary;
 
 /// A plugin in the tree, `/plugins/<name>`: found by a scan, registered by a config line.
 class Plugin : public Leaf {
@@ -42,12 +43,13 @@ class Plugin : public Leaf {
   std::string version_, doc_, file_;
   std::vector<std::string> classes_;
   std::vector<std::function<void()>> atUnload_;
-  void* handle_ = nullptr;
+  std::shared_ptr<LoadedLibrary> library_;
   const PluginDescriptor* descriptor_ = nullptr;
   bool registered_ = false;
 };
 
-/// Finds, registers and unloads plugins (libltdl).
+/// Finds, registers and unloads plugins (libltdl). What is loaded is a private copy of the file as it was: whoever overwrites the file does no
+/// harm, and loading again after unload() gives the new version.
 class Loader {
  public:
   explicit Loader(Kernel& kernel);
@@ -55,14 +57,22 @@ class Loader {
   /// Reads the descriptors of all `*.so` in a folder (by name) and lists them under /plugins. What is no good is logged and skipped;
   /// returns the sentences that were logged. A file that is listed already is left alone.
   std::vector<std::string> scan(const std::filesystem::path& folder);
-  /// Registers a scanned plugin's classes; does nothing when it is registered. Throws Error: unknown name (with the nearest and the
-  /// folders that were searched), duplicate class, what the plugin threw.
+  /// Registers a scanned plugin's classes; does nothing when it is registered. A plugin that was unloaded, and a NAME.so that came into a
+  /// scanned folder since, is loaded first. Throws Error: unknown name (with the nearest and the folders that were searched), duplicate class,
+  /// what the plugin threw.
   Plugin& use(std::string_view name);
   /// Loads and registers one file. Throws Error.
   Plugin& useFile(const std::filesystem::path& file);
-  /// Removes a plugin's classes and unmaps its file. Throws Error when objects of its classes live (lists their paths) or classes of
-  /// other plugins derive from them.
+  /// Removes a plugin's classes and unmaps its file. Throws Error when objects of its classes live (lists their paths), classes of other
+  /// plugins derive from them, or handlers of events run.
   void unload(std::string_view name);
+  /// As unload; while handlers of events run it happens in the next settle(), where a late refusal is logged. Throws Error when it is
+  /// refused already.
+  void unloadLater(std::string_view name);
+  /// Between two cycles, outside of all handlers: unloads what handlers asked for. For run loops.
+  void settle() {
+    if (!leaving_.empty()) unloadLeaving();
+  }
   /// The scanned plugin that provides a class, nullptr when none does.
   Plugin* providerOf(std::string_view className) const;
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
@@ -75,8 +85,14 @@ class Loader {
   void runActions(Plugin& plugin);
   void drop(ClassObject& c, bool leak);
   Plugin* fromFile(const std::filesystem::path& file) const;
+  Plugin* openAgain(std::string_view name);
+  Plugin& unused(std::string_view name) const;
+  std::vector<ClassObject*> classesOf(const Plugin& plugin) const;
+  void unloadLeaving();
   Kernel& kernel_;
   std::vector<std::filesystem::path> folders_;
+  std::map<std::string, std::string, std::less<>> unloaded_;  // files by name
+  std::vector<std::string> leaving_;
 };
 
 /// Runs the same function for 0..n-1 on several threads. Results must not depend on how many.
@@ -193,8 +209,9 @@ class Lua {
   /// Runs a chunk of text in the config's environment and returns its first result. Throws Error.
   Value run(std::string_view text, std::string_view chunkName);
   /// Attaches a script file to a node: it runs at once with `self` set to the node, in an environment of its own, and may subscribe to
-  /// events with on(). It goes with the node. Throws Error.
-  void attach(Leaf& node, std::string_view file);
+  /// events with on(). It goes with the node. `arguments`: what the script reads with `local args = ...`; a list of pairs whose keys are words
+  /// is a table there ({{"limit", 3}} is {limit = 3}). Throws Error.
+  void attach(Leaf& node, std::string_view file, const Value& arguments = {});
   /// As attach for text. `trusted` false: nothing but computation and `self`, with limits on instructions and memory.
   void attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted);
   /// The options that the config declared: [name, default, doc, value] each.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -38,14 +39,17 @@ class Log {
   template <class... A>
   void warning(fmt::format_string<A...> f, A&&... a) { if (enabled(Level::warning)) write(Level::warning, fmt::format(f, std::forward<A>(a)...)); }
   template <class... A>
-  void error(fmt::format_string<A...> f, A&&... a) { if (enabled(Level::error)) write(Level::error, fmt::format(f, std::forward<A>(a)...)); }
+  void error(fmt::format_string<A...> f, A&&... a) { write(Level::error, fmt::format(f, std::forward<A>(a)...)); }
   /// One line, or several of which all but the first are indented (control characters are escaped: the text may come from a client).
   void write(Level level, std::string_view line);
+  /// Errors so far, whether the level lets them pass or not. No state.
+  std::int64_t errors() const { return errors_.load(std::memory_order_relaxed); }
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
   std::atomic<Level> level_{Level::info};
+  std::atomic<std::int64_t> errors_{0};
 };
 
 }  // namespace spark

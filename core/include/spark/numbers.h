@@ -24,6 +24,9 @@ void appendFixed(std::string& out, double v, int decimals, bool asFloat = true);
 
 /// Reads a number as C's atof: garbage is 0, trailing junk is ignored, nan, inf and hexadecimal digits are known.
 double readNumber(std::string_view text);
+/// Reads a number that is all of the text: as readNumber, but false, and `v` untouched, where that would pass over something or make 0 of
+/// garbage.
+bool readWholeNumber(std::string_view text, double& v);
 
 /// Appends to a string in large pieces: short writes cost no test for room each. What was written is there when the writer ends.
 class ByteWriter {

@@ -4,6 +4,7 @@
 /// cycle, it allocates nothing in steady state. And the S-expression reader that scene files, agents and monitors share.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,10 @@ class Element {
   std::string_view text() const;
   /// A number: as written, or as C atof reads the text (garbage is 0, trailing junk ignored). Lists are 0.
   double number() const;
+  /// The number when it is one: written as such, or a text that C's strtod reads to its end (with inf and nan, without blanks). Else nothing, where
+  /// number() would be 0 or ignore what follows.
+  std::optional<double> asNumber() const;
+  bool isNumber() const { return asNumber().has_value(); }
   /// The number truncated; out of range is clamped, NaN is 0.
   std::int64_t integer() const;
   /// Where it was read, from 1; 0 when it was written.
@@ -94,7 +99,8 @@ class Predicates {
   void clear();
   bool empty() const { return tokens_.empty(); }
 
-  /// Writing: open a list with a name (or none), add atoms, close it. Lists left open at the end are a programming error.
+  /// Writing: open a list with a name (or none), add atoms, close it. Lists left open at the end, and closing what is not open, are programming
+  /// errors: see isUnbalanced().
   Predicates& open(std::string_view name = {}) {
     Token t;
     t.kind = Token::Kind::list;
@@ -105,6 +111,7 @@ class Predicates {
     return name.empty() ? *this : add(name);
   }
   Predicates& close() {
+    if (open_ == kNone) return surplus_ = true, *this;
     Token& t = tokens_[open_];
     t.size = size() - open_;
     open_ = t.outer;
@@ -140,6 +147,10 @@ class Predicates {
   Predicates& pair(std::string_view name, const T& value) {
     return open(name).add(value).close();
   }
+  /// True when lists are open, or more were closed than were open, since the last clear() or balance().
+  bool isUnbalanced() const { return open_ != kNone || surplus_; }
+  /// Closes the lists that are open. Returns what had been wrong: so many lists open, -1 when too many were closed, 0 when all was well.
+  int balance();
   /// Sets where the token just added was read.
   void mark(std::uint32_t line, std::uint32_t column);
   /// Removes everything from token `index` on (that a reader began and could not finish).
@@ -167,6 +178,7 @@ class Predicates {
   std::string text_;           ///< what does not stand in tokens
   std::vector<Place> places_;  ///< of the tokens up to the last that was marked
   std::uint32_t open_ = kNone; ///< the innermost open list
+  bool surplus_ = false;       ///< close() was called without one
 };
 
 inline const Token& Element::token() const { return owner_->tokens_[index_]; }
