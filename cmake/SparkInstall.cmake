@@ -11,8 +11,18 @@ install(DIRECTORY plugins/api DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATC
 install(DIRECTORY lua/ DESTINATION ${CMAKE_INSTALL_DATADIR}/spark/lua)
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/spark/scenes)
 install(EXPORT SparkTargets NAMESPACE Spark:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Spark)
+set(SPARK_INSTALL_PLUGINS ${CMAKE_INSTALL_LIBDIR}/spark/plugins)
+set(SPARK_INSTALL_SHARE ${CMAKE_INSTALL_DATADIR}/spark)
 configure_package_config_file(cmake/SparkConfig.cmake.in ${CMAKE_BINARY_DIR}/SparkConfig.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Spark)
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Spark PATH_VARS SPARK_INSTALL_PLUGINS SPARK_INSTALL_SHARE)
+
+# Documentation: in the tree's own folders, so that links lead somewhere.
+file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} *.md LICENSE docs/*.md lua/*.md scenes/*.md plugins/*/README.md tools/*/README.md tests/*/README.md
+  plugins/sensors/gyro_rate_perceptor.h)
+foreach(page ${pages})
+  get_filename_component(folder ${page} DIRECTORY)
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/spark/${folder})
+endforeach()
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/SparkConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/SparkConfig.cmake ${CMAKE_BINARY_DIR}/SparkConfigVersion.cmake cmake/SparkPlugin.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Spark)

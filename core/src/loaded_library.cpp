@@ -203,7 +203,7 @@ class Neighbours {
     for (const std::string& folder : needs.folders)
       for (const std::string& library : needs.libraries)
         if (const auto file = resolved(folder, path); file && fs::is_regular_file(*file / library))
-          if (void* handle = dlopen((*file / library).c_str(), RTLD_NOW | RTLD_LOCAL)) handles_.push_back(handle);
+          if (void* handle = open(library, *file / library)) handles_.push_back(handle);
   }
   ~Neighbours() {
     for (void* handle : handles_) dlclose(handle);
@@ -212,6 +212,11 @@ class Neighbours {
   Neighbours& operator=(const Neighbours&) = delete;
 
  private:
+  /// What is there already, such as libspark, is not loaded again from elsewhere.
+  static void* open(const std::string& name, const fs::path& file) {
+    void* known = dlopen(name.c_str(), RTLD_LAZY | RTLD_NOLOAD);
+    return known ? known : dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  }
   static std::optional<fs::path> resolved(std::string folder, const std::string& path) {
     for (const std::string word : {"$ORIGIN", "${ORIGIN}"})
       if (const std::size_t at = folder.find(word); at != std::string::npos)
@@ -269,7 +274,7 @@ std::shared_ptr<LoadedLibrary> LoadedLibrary::load(const std::string& path) {
   const std::lock_guard lock(libraryMutex());
   std::erase_if(libraries(), [](const auto& weak) { return weak.expired(); });
   for (const auto& weak : libraries())
-    if (auto known = weak.lock(); known && known->path_ == path && known->isCurrent()) return known;
+    if (auto known = weak.lock(); known && known->path_ == path && known->stamp_ == FileStamp::of(path)) return known;
   std::shared_ptr<LoadedLibrary> made(new LoadedLibrary(path));
   made->open();
   libraries().push_back(made);
@@ -307,6 +312,11 @@ LoadedLibrary::~LoadedLibrary() {
   const std::lock_guard lock(libraryMutex());
   if (map_) map_->l_name = linkerName_;  // the linker frees it
   lt_dlclose(static_cast<lt_dlhandle>(handle_));
+}
+
+bool LoadedLibrary::hasChanged() const {
+  std::error_code ec;
+  return fs::exists(path_, ec) && !(FileStamp::of(path_) == stamp_);
 }
 
 const void* LoadedLibrary::symbol(const char* name) const {

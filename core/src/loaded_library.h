@@ -38,8 +38,8 @@ class LoadedLibrary {
 
   /// The address of an exported symbol, nullptr when there is none.
   const void* symbol(const char* name) const;
-  /// True while the file is the one that was loaded.
-  bool isCurrent() const { return FileStamp::of(path_) == stamp_; }
+  /// True when there is another file of that name now.
+  bool hasChanged() const;
 
  private:
   explicit LoadedLibrary(const std::string& path) : path_(path) {}

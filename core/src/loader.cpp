@@ -183,7 +183,7 @@ void Loader::registerPlugin(Plugin& plugin) {
 
 Plugin& Loader::use(std::string_view name) {
   Plugin* plugin = static_cast<Plugin*>(kernel_.pluginsNode_->child(name));
-  if (plugin && !plugin->registered_ && !plugin->library_->isCurrent()) {  // built again since it was listed
+  if (plugin && !plugin->registered_ && plugin->library_->hasChanged()) {  // built again since it was listed
     unloaded_.insert_or_assign(plugin->name(), plugin->file_);
     close(*plugin);
     plugin = nullptr;

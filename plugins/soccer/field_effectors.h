@@ -17,11 +17,12 @@ class BeamEffector : public Effector {
   }
   std::string predicate() const override { return "beam"; }
   std::string act(const Element& action) override {
+    NumberArguments read(action);
     double v[3];
-    if (std::string wrong = readNumbers(action, v, 3); !wrong.empty()) return wrong;
+    if (!readNumbers(read, v, 3)) return read.remark();
     x_ = static_cast<float>(v[0]), y_ = static_cast<float>(v[1]), angle_ = static_cast<float>(v[2]);
     pending_ = true;
-    return {};
+    return read.remark();
   }
 
  private:

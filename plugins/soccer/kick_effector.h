@@ -29,11 +29,12 @@ class KickEffector : public Effector {
   }
   std::string predicate() const override { return "kick"; }
   std::string act(const Element& action) override {
+    NumberArguments read(action);
     double v[2];
-    if (std::string wrong = readNumbers(action, v, 2); !wrong.empty()) return wrong;
+    if (!readNumbers(read, v, 2)) return read.remark();
     elevation_ = v[0], power_ = v[1];
     pending_ = true;
-    return {};
+    return read.remark();
   }
 
  protected:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "api/joint_command.h"
 #include "ball_state_aspect.h"
 #include "soccer_rule_aspect.h"
 
@@ -57,15 +58,11 @@ class MatchLookup {
   const soccer::Player* player_ = nullptr;
 };
 
-/// Reads `count` finite numbers behind an action's name. Returns "" or what is wrong.
-inline std::string readNumbers(const Element& action, double* out, int count) {
-  for (int i = 0; i < count; ++i) {
-    const Element e = action.at(static_cast<std::size_t>(i) + 1);
-    if (!e || e.isList()) return fmt::format("expected {} numbers, found {}", count, action.size() - 1);
-    out[i] = e.number();
-    if (!std::isfinite(out[i])) return fmt::format("argument {} is not a finite number", i + 1);
-  }
-  return {};
+/// The first `count` arguments. False when one is missing: the action is then to have no effect.
+inline bool readNumbers(NumberArguments& read, double* out, int count) {
+  for (int i = 0; i < count; ++i)
+    if (!read(static_cast<std::size_t>(i), out[i])) return false;
+  return true;
 }
 
 }  // namespace spark

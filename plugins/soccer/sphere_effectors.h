@@ -24,13 +24,14 @@ class DriveEffector : public Effector {
   }
   std::string predicate() const override { return "drive"; }
   std::string act(const Element& action) override {
+    NumberArguments read(action);
     double v[3];
-    if (std::string wrong = readNumbers(action, v, 3); !wrong.empty()) return wrong;
+    if (!readNumbers(read, v, 3)) return read.remark();
     Vec3 power(v[0], v[1], v[2]);
     // stableNorm: 1e300 is finite, its square is not
     if (const double length = power.stableNorm(); length > maxPower_) power *= maxPower_ / length;
     for (int i = 0; i < 3; ++i) force_[i] = power[i] * (sigma_ > 0 ? random_.normal(1, sigma_) : 1) * forceFactor_;
-    return {};
+    return read.remark();
   }
 
  protected:
@@ -112,11 +113,12 @@ class PanTiltEffector : public Effector {
   }
   std::string predicate() const override { return "pantilt"; }
   std::string act(const Element& action) override {
+    NumberArguments read(action);
     double v[2];
-    if (std::string wrong = readNumbers(action, v, 2); !wrong.empty()) return wrong;
+    if (!readNumbers(read, v, 2)) return read.remark();
     pan_ = v[0], tilt_ = v[1];
     pending_ = true;
-    return {};
+    return read.remark();
   }
 
  private:

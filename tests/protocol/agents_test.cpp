@@ -21,6 +21,17 @@ class TestFault : public Perceptor {
   }
 };
 
+/// Forgets to close a list, or closes one too many.
+class TestSloppy : public Perceptor {
+  SPARK_CLASS(TestSloppy, Perceptor)
+ public:
+  static void describe(Description<TestSloppy>& d) { d.doc("Counts its parentheses wrongly."); }
+  void sense(Predicates& out, const Event&) override {
+    if (name() == "open") out.open("OPEN").open("rt").add(1);
+    else out.pair("SURPLUS", 1).close();
+  }
+};
+
 /// Throws.
 class TestBomb : public Effector {
   SPARK_CLASS(TestBomb, Effector)
@@ -220,6 +231,34 @@ TEST_CASE("A perceptor or effector that throws is named, its agent and the host 
   REQUIRE(a.logged("/usr/scene/AgentAspect1/fault (TestFault) threw and is asked no more: the sensor is broken"));
   REQUIRE(a.logged("/usr/scene/AgentAspect1/bomb (TestBomb) threw: the motor is broken"));
   REQUIRE(c.receive()->find("half") == std::string::npos);
+}
+
+TEST_CASE("Lists that a perceptor leaves open are closed, others' percepts stay whole, and the log names it once") {
+  Arena a;
+  a.kernel.registerClass<TestSloppy>();
+  Client c = robot(a);
+  AgentAspect& agent = *a.control->agents()[0];
+  agent.create("TestSloppy", "open");
+  agent.create("TestSloppy", "surplus");
+  agent.create("TestClock", "behind");
+  for (int i = 0; i < 3; ++i) {
+    a.cycle();
+    c.drain();
+    c.send("(he1 1)");
+    realise(a, 1);
+    const std::string message = *c.receive();
+    CAPTURE(message);
+    CHECK_THAT(message, Catch::Contains("(OPEN (rt 1))(SURPLUS 1)("));
+    Predicates percepts;
+    CHECK(readSexp(message, percepts).message.empty());
+  }
+  const auto count = [&](const std::string& text) {
+    int n = 0;
+    for (std::size_t at = a.house.text.find(text); at != std::string::npos; at = a.house.text.find(text, at + 1)) ++n;
+    return n;
+  };
+  CHECK(count("/usr/scene/AgentAspect1/open (TestSloppy) left 2 list(s) open in sense()") == 1);
+  CHECK(count("/usr/scene/AgentAspect1/surplus (TestSloppy) closed a list that was not open in sense()") == 1);
 }
 
 TEST_CASE("What a perceptor or effector throws need not be an exception, nor come in the simulation's thread") {

@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -8,7 +10,8 @@
 #include "test_support.h"
 
 // What a plugin author does: installs Spark, builds a plugin with the installed headers and find_package(Spark), drops it into a folder.
-// The installed tree is moved in between, because it may be. What a team does: links its agent with the installed client library.
+// The installed tree is moved in between, because it may be. What a team does: links its agent with the installed client library. What the
+// documentation shows is taken out of the installed pages.
 
 using namespace spark::test;
 using Catch::Contains;
@@ -21,24 +24,46 @@ Finished must(const std::vector<std::string>& command) {
   REQUIRE(f.code == 0);
   return f;
 }
+
+std::string textOf(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The first block of a language in a page, behind `heading`.
+std::string block(const fs::path& page, const std::string& language, const std::string& heading = "") {
+  const std::string text = textOf(page), fence = "```" + language + "\n";
+  const auto begin = text.find(fence, text.find(heading));
+  INFO(page.string());
+  REQUIRE(begin != text.npos);
+  return text.substr(begin + fence.size(), text.find("\n```", begin) + 1 - begin - fence.size());
+}
+
+/// An installed and moved Spark.
+struct Installed {
+  TemporaryFolder folder;
+  fs::path prefix = folder.path() / "moved";
+  Installed() {
+    const fs::path first = folder.path() / "first";
+    must({"cmake", "--install", binFolder().parent_path().string(), "--prefix", first.string()});
+    fs::rename(first, prefix);
+  }
+  std::string program(const char* name) const { return (prefix / "bin" / name).string(); }
+};
 }  // namespace
 
 TEST_CASE("A plugin built outside of the tree is found, described and used") {
-  TemporaryFolder folder;
-  const fs::path build = binFolder().parent_path(), first = folder.path() / "first", prefix = folder.path() / "moved",
-                 work = folder.path() / "work";
-  must({"cmake", "--install", build.string(), "--prefix", first.string()});
-  fs::rename(first, prefix);
-
+  const Installed spark;
+  const fs::path prefix = spark.prefix, work = spark.folder.path() / "work";
   fs::copy(SPARK_FIXTURES "/drop-in", work, fs::copy_options::recursive);
   must({"cmake", "-S", work.string(), "-B", (work / "build").string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(),
         "-DCMAKE_BUILD_TYPE=Debug"});
   must({"cmake", "--build", (work / "build").string()});
-  const fs::path plugins = folder.path() / "plugins";
+  const fs::path plugins = spark.folder.path() / "plugins";
   fs::create_directory(plugins);
   fs::copy(work / "build" / "metronome.so", plugins);
 
-  const std::string host = (prefix / "bin" / "sparkhost").string();
+  const std::string host = spark.program("sparkhost");
   REQUIRE_THAT(must({host, "--list-plugins", "--plugin-path", plugins.string()}).out, Contains("metronome 0.1") && Contains("Metronome"));
   const Finished described = must({host, "--describe", "Metronome", "--plugin-path", plugins.string()});
   REQUIRE_THAT(described.out,
@@ -52,10 +77,8 @@ TEST_CASE("A plugin built outside of the tree is found, described and used") {
 }
 
 TEST_CASE("An agent built outside of the tree with the client library alone plays, and needs no other package") {
-  TemporaryFolder folder;
-  const fs::path build = binFolder().parent_path(), first = folder.path() / "first", prefix = folder.path() / "moved", work = folder.path() / "work";
-  must({"cmake", "--install", build.string(), "--prefix", first.string()});
-  fs::rename(first, prefix);
+  const Installed spark;
+  const fs::path prefix = spark.prefix, work = spark.folder.path() / "client";
   fs::copy(SPARK_FIXTURES "/client", work, fs::copy_options::recursive);
   must({"cmake", "-S", work.string(), "-B", (work / "build").string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON",
         "-DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_Boost=ON"});
@@ -71,4 +94,54 @@ TEST_CASE("An agent built outside of the tree with the client library alone play
   CHECK_THAT(played.out, !Contains("head at 0.0 degrees"));
   CHECK(nlohmann::json::parse(host.line())["agentsSeen"] == 1);
   CHECK(host.wait() == 0);
+}
+
+TEST_CASE("What the pages show builds from the installed tree as it stands: a plugin, a copied sensor, a program with a simulation in it") {
+  const Installed spark;
+  const fs::path pages = spark.prefix / "share" / "doc" / "spark", readme = pages / "README.md", guide = pages / "docs" / "plugin-guide.md",
+                 embedding = pages / "docs" / "embedding.md";
+  const TemporaryFolder& folder = spark.folder;
+  folder.write("wind/CMakeLists.txt", block(readme, "cmake", "## A plugin of your own"));
+  folder.write("wind/wind.cpp", block(readme, "cpp", "## A plugin of your own"));
+  folder.write("gyro/CMakeLists.txt", block(guide, "cmake", "## A copy of one of ours"));
+  folder.write("gyro/my_sensors.cpp", block(guide, "cpp", "## A copy of one of ours"));
+  // As the guide says: copied, and the class renamed.
+  std::string header = textOf(pages / "plugins" / "sensors" / "gyro_rate_perceptor.h");
+  for (std::size_t at = header.find("GyroRatePerceptor"); at != header.npos; at = header.find("GyroRatePerceptor", at)) header.replace(at, 17, "MyGyro");
+  folder.write("gyro/my_gyro.h", header);
+  folder.write("learner/CMakeLists.txt", block(embedding, "cmake"));
+  folder.write("learner/learner.cpp", block(embedding, "cpp"));
+  folder.write("CMakeLists.txt", "cmake_minimum_required(VERSION 3.25)\nproject(All CXX)\nadd_subdirectory(wind)\nadd_subdirectory(gyro)\nadd_subdirectory(learner)\n");
+
+  const std::string build = folder.file("build");
+  const Finished configured = must({"cmake", "-S", folder.path().string(), "-B", build, "-DCMAKE_PREFIX_PATH=" + spark.prefix.string(), "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror"});
+  CHECK_THAT(configured.out, Contains("no build type was given, so it is Release"));
+  CHECK_THAT(textOf(folder.path() / "build" / "CMakeCache.txt"), Contains("CMAKE_BUILD_TYPE:STRING=Release"));
+  must({"cmake", "--build", build, "--parallel", "2"});
+
+  const std::vector<std::string> look{spark.program("sparkhost"), "--plugin-path", build + "/wind", "--plugin-path", build + "/gyro"};
+  const auto describe = [&](const char* name) {
+    std::vector<std::string> command = look;
+    command.insert(command.end(), {"--describe", name});
+    return must(command).out;
+  };
+  CHECK_THAT(describe("Wind"), Contains("force") && Contains("N"));
+  CHECK_THAT(describe("MyGyro"), Contains("plugin my-sensors") && Contains("angular velocity"));
+
+  // Both lines of the program are equal, and it is a world in which something falls.
+  const std::string out = must({build + "/learner/learner"}).out;
+  CAPTURE(out);
+  const auto end = out.find('\n');
+  REQUIRE(end != out.npos);
+  CHECK_THAT(out, Contains("a crate is at"));
+  CHECK(out.substr(0, end + 1) == out.substr(end + 1));
+}
+
+TEST_CASE("Documentation is installed where its links lead somewhere") {
+  const Installed spark;
+  const fs::path pages = spark.prefix / "share" / "doc" / "spark";
+  for (const char* page : {"README.md", "LICENSE", "docs/README.md", "docs/plugin-guide.md", "docs/first-robot.md", "docs/embedding.md", "lua/README.md", "scenes/README.md",
+                           "plugins/sensors/README.md", "plugins/soccer/README.md", "tools/sparkbatch/README.md"})
+    CHECK(fs::is_regular_file(pages / page));
+  CHECK_FALSE(fs::exists(pages / "plugins" / "monitor-web" / "viewer" / "node_modules"));
 }

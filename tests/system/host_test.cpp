@@ -45,6 +45,35 @@ TEST_CASE("--check loads and wires, steps nothing, prints nothing on stdout") {
   REQUIRE_THAT(bad.errors, Contains("bad.lua:7") && Contains("'Simulation'"));
 }
 
+TEST_CASE("--check fails for what a run only logs: missing scene files and misspelt methods") {
+  TemporaryFolder folder;
+  folder.write("rsg/whole.rsg", "(RSG 0 1)\n((nd Transform (setName a) (setLocalPos 0 0 1)))\n");
+  folder.write("rsg/wheel.rsg", "(RSG 0 1)\n((nd Transform\n  (importScene rsg/weel.rsg)))\n");
+  folder.write("rsg/method.rsg", "(RSG 0 1)\n((nd Transform\n  (setLocalPso 0 0 1)))\n");
+  const auto check = [&](const std::string& name, const std::string& more) {
+    const std::string config = folder.write(name + ".lua", "include \"house.lua\"\nfiles() scene() simulation()\n" + more);
+    return runToEnd(host({"--config", config, "--scene-path", folder.path().string(), "--check"}));
+  };
+  const auto scene = [](const std::string& file) { return "get(\"/usr/scene\"):importScene(\"" + file + "\")\n"; };
+  const Finished whole = check("whole", scene("rsg/whole.rsg"));
+  CAPTURE(whole.errors);
+  CHECK(whole.code == 0);
+  const Finished wheel = check("wheel", scene("rsg/wheel.rsg"));
+  CHECK(wheel.code == 2);
+  CHECK_THAT(wheel.errors, Contains("rsg/wheel.rsg:3") && Contains("rsg/weel.rsg") && Contains("the check failed: 1 error"));
+  const Finished method = check("method", scene("rsg/method.rsg"));
+  CHECK(method.code == 2);
+  CHECK_THAT(method.errors, Contains("rsg/method.rsg:3:4") && Contains("'setLocalPos'") && Contains("the check failed: 1 error"));
+  const Finished gone = check("gone", scene("rsg/gone.rsg"));
+  CHECK(gone.code == 2);
+  CHECK_THAT(gone.errors, Contains("rsg/gone.rsg") && Contains("gone.lua:3"));
+  const Finished config = check("config", "new(\"Transform\", \"/usr/scene/a\"):setLocalPso(0, 0, 1)\n");
+  CHECK(config.code == 2);
+  CHECK_THAT(config.errors, Contains("config.lua:3") && Contains("'setLocalPos'"));
+  const Finished quiet = runToEnd(host({"--config", (folder.path() / "wheel.lua").string(), "--scene-path", folder.path().string(), "--check", "--log-level", "off"}));
+  CHECK(quiet.code == 2);
+}
+
 TEST_CASE("A config that is not there is an error that says where it was looked for") {
   const Finished f = runToEnd(host({"--config", "no-such-config.lua"}));
   REQUIRE(f.code == 2);

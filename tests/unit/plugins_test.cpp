@@ -377,3 +377,19 @@ TEST_CASE("Scripts unload and load plugins, at once in a config and between two 
   house.kernel.plugins().settle();
   CHECK(house.kernel.findClass("FixtureBase") == nullptr);
 }
+
+TEST_CASE("A library that a plugin finds relative to its own file is found, and goes with it") {
+  const test::TemporaryFolder folder;
+  fs::copy(fixtures("neighbour-plugins"), folder.path() / "elsewhere", fs::copy_options::recursive);
+  House house(false);
+  const fs::path file = folder.path() / "elsewhere" / "with-neighbour.so", library = folder.path() / "elsewhere" / "lib" / "libfixture-neighbour.so";
+  house.kernel.plugins().useFile(file);
+  CHECK(getProperty(house.kernel.create("WithNeighbour", "/usr/a"), "answer") == Value(42));
+  CHECK(isMapped(library));
+  house.kernel.root().child("usr")->asNode()->removeChildren();
+  house.kernel.plugins().unload("with-neighbour");
+  CHECK_FALSE(isMapped(file));
+  CHECK_FALSE(isMapped(library));
+  fs::remove(library);
+  CHECK_THAT(refusal([&] { house.kernel.plugins().use("with-neighbour"); }), Catch::Contains(file.string()) && Catch::Contains("libfixture-neighbour.so: cannot open"));
+}

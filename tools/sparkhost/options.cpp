@@ -53,7 +53,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
       ->type_name("P")
       ->check(CLI::Range(0, 65535));
   addSurroundings(app, out.pluginPaths, out.scenePaths, out.logLevel, "What stderr shows");
-  app.add_flag("--check", out.check, "Load, wire and import, but step nothing: exit code 0, or 2 and the error");
+  app.add_flag("--check", out.check, "Load, wire and import, but step nothing: exit code 0, or 2 and the errors, those of scenes that a run only logs too");
   app.add_flag("--histogram", out.histogram, "At the end: how late and how long cycles were, as a table on stderr");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
   app.add_option("--describe", out.describe, "Print what a class says about itself, and end")->type_name("CLASS")->excludes("--config");

@@ -52,6 +52,12 @@ void printDescriptions(spark::Kernel& kernel, const sparkhost::Options& options)
   if (!options.describe.empty()) fmt::print("{}", sparkhost::classDescription(kernel, options.describe));
 }
 
+/// What a run only logs, and goes on without, fails a check.
+void checkLog(spark::Kernel& kernel) {
+  if (const auto n = kernel.log().errors(); n > 0)
+    throw spark::Error(fmt::format("the check failed: {} in the log above (--log-level error shows them alone).", n == 1 ? "1 error" : fmt::format("{} errors", n)));
+}
+
 void runHouse(sparkhost::Host& host, const std::string& firstLine, bool histogram) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   sparkhost::StatusLine::install(host.kernel(), terminal);
@@ -74,6 +80,7 @@ int sparkhost::runProgram(int argc, char** argv) {
     if (options.config.empty()) return printDescriptions(host->kernel(), options);
     watchSignals(host->kernel());
     host->build();
+    if (options.check) checkLog(host->kernel());
     if (!options.check) firstLine = host->open();
   });
   if (!firstLine.empty()) orExit(1, [&] { runHouse(*host, firstLine, options.histogram); });

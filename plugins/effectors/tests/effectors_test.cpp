@@ -47,10 +47,25 @@ TEST_CASE("a hinge is driven at once, within its greatest speed, and keeps its s
   CHECK(robot.joint->velocity(0) == 6.1395);
   CHECK(robot.act(he1, "(he1 -99 surplus)").empty());
   CHECK(robot.joint->velocity(0) == -6.1395);
-  CHECK(robot.act(he1, "(he1 1.5x)").empty());
+  CHECK(robot.act(he1, "(he1 2e-1)").empty());
+  CHECK(robot.joint->velocity(0) == 0.2);
+}
+
+TEST_CASE("text that is no number counts as in the installed base, and is remarked on") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
+  CHECK(robot.act(he1, "(he1 1.5x)") == "expected a number as argument 1, found '1.5x', which counts as 1.5");
   CHECK(robot.joint->velocity(0) == 1.5);
-  CHECK(robot.act(he1, "(he1 garbage)").empty());
+  CHECK(robot.act(he1, "(he1 abc)") == "expected a number as argument 1, found 'abc', which counts as 0");
   CHECK(robot.joint->velocity(0) == 0);
+  CHECK(robot.act(he1, "(he1 " + std::string(500, 'a') + ")").size() < 150);
+  auto& uj = robot.add(engine::JointType::universal, "UniversalJointEffector", "uj");
+  CHECK(robot.act(uj, "(uj 1 two)") == "expected a number as argument 2, found 'two', which counts as 0");
+  CHECK(robot.joint->velocity(0) == 1);
+  auto& force = robot.transform->create<Effector>("ForceEffector", "f");
+  CHECK(robot.act(force, "(force x y 3)") == "expected a number as argument 1, found 'x', which counts as 0");
+  robot.prepare();
+  CHECK(robot.body->force == Vec3(0, 0, 3));
 }
 
 TEST_CASE("bad arguments are refused with a sentence and change nothing") {

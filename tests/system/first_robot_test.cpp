@@ -1,0 +1,33 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "process.h"
+#include "temporary_folder.h"
+#include "test_support.h"
+
+// The program of docs/first-robot.md, as a newcomer copies it.
+
+using namespace spark::test;
+using Catch::Contains;
+
+TEST_CASE("The robot of docs/first-robot.md joins, sees the ball, and drives") {
+  std::ifstream in(std::string(SPARK_SOURCES) + "/docs/first-robot.md");
+  const std::string page{std::istreambuf_iterator<char>(in), {}}, fence = "```python\n";
+  const auto begin = page.find(fence) + fence.size();
+  TemporaryFolder folder;
+  const std::string program = folder.write("first_robot.py", page.substr(begin, page.find("\n```", begin) + 1 - begin));
+
+  Process host({(binFolder() / "sparkhost").string(), "--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--agent-port", "0", "--monitor-port", "0",
+                "--set", "web=false"});
+  const int port = nlohmann::json::parse(host.line())["agentPort"];
+  const Finished robot = runToEnd({"python3", program, std::to_string(port), "100"});
+  CAPTURE(robot.out, robot.errors, host.errors());
+  CHECK(robot.code == 0);
+  CHECK_THAT(robot.out, Contains("the ball is 2.") && Contains("the ball is 3"));  // from the middle line, and from beside the field
+  CHECK_THAT(host.errors(), !Contains("warning"));
+  host.signal(SIGTERM);
+  CHECK(host.wait() == 0);
+}
