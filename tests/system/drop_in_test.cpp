@@ -25,11 +25,6 @@ Finished must(const std::vector<std::string>& command) {
   return f;
 }
 
-std::string textOf(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// The first block of a language in a page, behind `heading`.
 std::string block(const fs::path& page, const std::string& language, const std::string& heading = "") {
   const std::string text = textOf(page), fence = "```" + language + "\n";

@@ -1,7 +1,5 @@
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "process.h"
@@ -14,8 +12,7 @@ using namespace spark::test;
 using Catch::Contains;
 
 TEST_CASE("The robot of docs/first-robot.md joins, sees the ball, and drives") {
-  std::ifstream in(std::string(SPARK_SOURCES) + "/docs/first-robot.md");
-  const std::string page{std::istreambuf_iterator<char>(in), {}}, fence = "```python\n";
+  const std::string page = textOf(SPARK_SOURCES "/docs/first-robot.md"), fence = "```python\n";
   const auto begin = page.find(fence) + fence.size();
   TemporaryFolder folder;
   const std::string program = folder.write("first_robot.py", page.substr(begin, page.find("\n```", begin) + 1 - begin));

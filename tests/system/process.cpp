@@ -105,12 +105,7 @@ int Process::wait() {
 
 void Process::signal(int number) { kill(pid_, number); }
 
-std::string Process::errors() const {
-  std::ifstream in(errorFile_);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+std::string Process::errors() const { return textOf(errorFile_); }
 
 void Process::waitForError(const std::string& text) {
   const auto last = deadline();
@@ -120,6 +115,13 @@ void Process::waitForError(const std::string& text) {
     if (poll(&p, 1, 10) > 0 && errors().find(text) == std::string::npos)
       throw std::runtime_error(fmt::format("{} ended without saying '{}'; it said:\n{}", name_, text, errors()));
   }
+}
+
+std::string textOf(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
 }
 
 Finished runToEnd(const std::vector<std::string>& command) {

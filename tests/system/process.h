@@ -51,4 +51,7 @@ struct Finished {
 };
 Finished runToEnd(const std::vector<std::string>& command);
 
+/// What a file holds; "" when it is not there.
+std::string textOf(const std::filesystem::path& file);
+
 }  // namespace spark::test

@@ -15,11 +15,6 @@ using namespace spark::test;
 namespace fs = std::filesystem;
 
 namespace {
-std::string textOf(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// The first group of every match.
 std::set<std::string> matches(const std::string& text, const char* pattern) {
   std::set<std::string> found;
