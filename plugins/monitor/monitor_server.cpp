@@ -149,8 +149,8 @@ void MonitorServer::lookUpHelpers() {
     if (auto* trainer = child->as<ITrainer>()) {
       trainers_.push_back(trainer);
       allSay &= child->classObject()->property("commands") != nullptr;
-      if (allSay)
-        for (const Value& name : getProperty(*child, "commands").toList()) known_.push_back(name.toString());
+      const Value names = allSay ? getProperty(*child, "commands") : Value(List{});
+      for (const Value& name : names.toList()) known_.push_back(name.toString());
     }
     if (auto* taker = child->as<IFrameTaker>()) takers_.push_back(taker);
   }
