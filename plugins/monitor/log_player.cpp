@@ -165,12 +165,14 @@ void LogPlayer::saveState(StateWriter& out) const {
   out.write(record());
   out.write(due_);
   out.write(started_);
+  out.write(lastTime_);
 }
 
 void LogPlayer::loadState(StateReader& in) {
   setRecord(std::max<std::int64_t>(in.readInteger(), 0));
   due_ = in.readNumber();
   started_ = in.readBool();
+  lastTime_ = in.readNumber();
 }
 
 }  // namespace spark

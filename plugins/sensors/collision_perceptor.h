@@ -18,6 +18,7 @@ class CollisionPerceptor : public Perceptor {
   /// The physics phase: this collider touched.
   void touched(const Leaf& collider) {
     if (std::find(ids_.begin(), ids_.end(), collider.id()) != ids_.end()) return;
+    if (isRestored(collider)) return;
     ids_.push_back(collider.id());
     names_.add(collider.name());
   }
@@ -36,14 +37,29 @@ class CollisionPerceptor : public Perceptor {
     names_.clear();
     ids_.clear();
   }
-  /// What it has not told yet. Numbers of objects are another kernel's: a restored sensor may name a collider twice.
+  /// What it has not reported yet, by name: ids belong to one kernel.
   void saveState(StateWriter& out) const override { out.write(Value(toList(names_))); }
   void loadState(StateReader& in) override {
     forget();
-    append(in.readValue().toList(), names_);
+    const List names = in.readValue().toList();
+    append(names, names_);
+    ids_.assign(names.size(), kRestored);
   }
 
  private:
+  static constexpr std::uint64_t kRestored = 0;  ///< id of a collider of which only the name is known
+  /// True when a restored name is this collider's, which has its id from now on.
+  bool isRestored(const Leaf& collider) {
+    std::size_t i = 0;
+    for (const Element name : names_) {
+      if (ids_[i] == kRestored && name.text() == collider.name()) {
+        ids_[i] = collider.id();
+        return true;
+      }
+      ++i;
+    }
+    return false;
+  }
   Predicates names_;
   std::vector<std::uint64_t> ids_;
 };

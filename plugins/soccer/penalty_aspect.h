@@ -20,7 +20,7 @@ class PenaltyAspect : public SoccerControlAspect {
 
   static void describe(Description<PenaltyAspect>& d) {
     d.doc("Carries out the penalties of fouls. After all other soccer aspects.");
-    d.property("fouls", &PenaltyAspect::count_).state().readOnly().doc("Number of fouls called since the start.");
+    d.property("fouls", &PenaltyAspect::count_).readOnly().doc("Number of fouls called since the start.");
   }
   void rule(const Event& event) override;
 
@@ -29,7 +29,7 @@ class PenaltyAspect : public SoccerControlAspect {
   /// The player (an index) has no penalty to serve: only then he may be called.
   bool isFree(std::size_t player) const { return records_[player].sentence == Sentence::none; }
   /// He is held, and then placed outside.
-  void sendOff(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul) { call(pitch, player, foul, Sentence::off, {}); }
+  void sendOff(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul) { call(pitch, player, foul, Sentence::off, Vec3::Zero()); }
   /// He is moved to a safe place near `target` [m], at once.
   void moveAside(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul, const Vec3& target) {
     call(pitch, player, foul, Sentence::aside, target);
@@ -38,8 +38,14 @@ class PenaltyAspect : public SoccerControlAspect {
   void report(const soccer::Player& player, soccer::Foul foul);
 
  protected:
-  void saveState(StateWriter& out) const override { records_.save(out); }
-  void loadState(StateReader& in) override { records_.load(in); }
+  void saveState(StateWriter& out) const override {
+    out.write(Value(count_));
+    records_.save(out);
+  }
+  void loadState(StateReader& in) override {
+    count_ = in.readValue().toInteger();
+    records_.load(in);
+  }
 
  private:
   enum class Sentence { none, off, aside };

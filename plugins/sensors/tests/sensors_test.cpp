@@ -206,6 +206,7 @@ TEST_CASE("collision sensors say what touched since they last sensed") {
     loadTree(sensor, in);
     CHECK(in.atEnd());
     CHECK(stateHash(sensor) == hash);
+    handler.onCollision({shell, ball, contact, true});
     CHECK(robot.sense(sensor) == "(collision ball wall)");
     CHECK(robot.sense(sensor).empty());
   }
