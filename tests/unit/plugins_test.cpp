@@ -122,6 +122,15 @@ TEST_CASE("A file that is cut off, empty or a folder is refused") {
   CHECK_THAT(house.kernel.plugins().scan(folder.path() / "nowhere").at(0), Catch::Contains("cannot read plugin folder"));
 }
 
+TEST_CASE("Files of a folder are taken in the order of their names") {
+  House house(false);
+  const test::TemporaryFolder folder;
+  for (int i = 0; i < 20; ++i) std::ofstream(folder.path() / fmt::format("file{:02}.so", i * 7 % 20)).flush();
+  const auto problems = house.kernel.plugins().scan(folder.path());
+  REQUIRE(problems.size() == 20);
+  for (std::size_t i = 0; i < problems.size(); ++i) CHECK_THAT(problems[i], Catch::Contains(fmt::format("file{:02}.so", i)));
+}
+
 TEST_CASE("Scanning lists, a config line registers") {
   House house(false);
   CHECK(house.kernel.plugins().scan(fixtures("fixture-plugins")).empty());

@@ -137,3 +137,26 @@ TEST_CASE("where the search began has no say in what is found, to the last digit
   }
   CHECK(used.counted("passes") > used.counted("islands"));
 }
+
+TEST_CASE("islands that several threads solve move as with one thread, to the last digit") {
+  const auto states = [](int threads) {
+    Twins t(5);
+    t.kernel.jobs().setThreads(threads);
+    for (int i = 0; i < 24; i += 2) {
+      t.anyBody({0.1 * i, 0, 1}), t.anyBody({0.1 * i, 0.3, 1});
+      t.joint(JointType::ball, i, i + 1);
+    }
+    t.shake();
+    std::vector<double> out;
+    for (int k = 0; k < 20; ++k) {
+      t.solved.engine.step(t.solved.world, t.solved.contacts, t.dt);
+      for (const engine::Body b : t.solved.bodies) t.solved.engine.saveBody(b, out);
+    }
+    CHECK(t.counted("islands") == 12 * 20);
+    CHECK(t.counted("leftIslands") == 0);
+    return out;
+  };
+  const auto one = states(1);
+  CHECK((states(2) == one));
+  CHECK((states(4) == one));
+}

@@ -1,5 +1,7 @@
 #include "engine_fixture.h"
 
+#include <ode/ode.h>
+
 #include <Eigen/Geometry>
 
 using namespace spark;
@@ -181,6 +183,17 @@ TEST_CASE("the plugin stays while an engine lives, and goes afterwards") {
   engine.parent()->remove(engine);
   house.kernel.plugins().unload("physics-ode");
   CHECK(house.kernel.findClass("OdeEngine") == nullptr);
+}
+
+TEST_CASE("ODE is closed with the last engine, and its messages have no handler that could be gone") {
+  {
+    EngineHouse one;
+    const EngineHouse other;
+    CHECK(dGetErrorHandler() != nullptr);
+  }
+  CHECK(dGetErrorHandler() == nullptr);
+  CHECK(dGetMessageHandler() == nullptr);
+  CHECK(dGetDebugHandler() == nullptr);
 }
 
 TEST_CASE("a body that is turned by its own rotation again and again keeps right angles") {
