@@ -279,6 +279,8 @@ bool callLoosely(Leaf& leaf, const Method& method, std::span<const Value> argume
     Args args{arguments, true};
     method.call(leaf, args);
     return true;
+  } catch (const RefusedValue&) {
+    throw;
   } catch (const std::exception& e) {
     whyNot = signature(method) + ": " + e.what();
     return false;

@@ -87,6 +87,7 @@ Kernel::~Kernel() {
     if (Leaf* l = root_->children_[i].get(); l != classesNode_ && l != pluginsNode_) root_->detach(*l);
   loader_.reset();
   // Class objects count their products; the nodes that remain go before their classes.
+  classesNode_->forgetNames();
   std::vector<std::unique_ptr<Leaf>> classes = std::move(classesNode_->children_);
   classesNode_->children_.clear();
   root_->detach(*classesNode_);
@@ -178,6 +179,10 @@ Leaf& Kernel::create(std::string_view className, std::string_view path) {
 void Kernel::changed(Node* node) {
   ++structureVersion_;
   for (; node; node = node->parent_) node->changedAt_ = structureVersion_;
+}
+
+void Kernel::markChanged(Leaf& leaf) {
+  if (leaf.isLinked()) changed(leaf.parent());
 }
 
 void Kernel::updateOrder() {

@@ -99,6 +99,7 @@ void Loader::runActions(Plugin& plugin) {
 void Loader::drop(ClassObject& c, bool leak) {
   kernel_.classIndex_.erase(kernel_.classIndex_.find(c.name()));
   if (!leak) return kernel_.classesNode_->detach(c);
+  kernel_.classesNode_->forgetNames();
   for (auto& owner : kernel_.classesNode_->children_)
     if (owner.get() == &c) owner.release();
   std::erase(kernel_.classesNode_->children_, nullptr);

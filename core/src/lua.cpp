@@ -145,9 +145,10 @@ std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::
 }
 
 void Runtime::report(const Failure& failure, const Subscription& s) {
-  if (!reported_.insert(failure.where.empty() ? failure.text : failure.where).second) return;
-  kernel.log().error("handler of '{}' at {} failed: {}\n  It stays; further errors of this line are not logged.", s.channel->name(),
-                     s.node ? s.node->path() : "a deleted node", failure.text);
+  const bool isNew = reported_.insert(failure.where.empty() ? failure.text : failure.where).second;
+  if (!isNew && !failure.exhausted) return;
+  kernel.log().error("handler of '{}' at {} failed: {}\n  {}", s.channel->name(), s.node ? s.node->path() : "a deleted node", failure.text,
+                     failure.exhausted ? "It is switched off: it would take as long every time." : "It stays; further errors of this line are not logged.");
 }
 
 Subscription::~Subscription() { state->release(function); }
@@ -179,7 +180,9 @@ void Subscription::run(const Event& event) {
     lua_setfield(L, -2, "data");
     lua_call(L, 2, 0);
   });
-  if (failure) runtime.report(*failure, *this);
+  if (!failure) return;
+  runtime.report(*failure, *this);
+  if (failure->exhausted) remove();
 }
 
 }  // namespace script

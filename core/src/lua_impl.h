@@ -41,6 +41,7 @@ inline constexpr std::size_t kMaxDepth = 16;
 /// What went wrong in a run. `text` starts with file:line and ends with the traceback; `where` is file:line alone, "" when unknown.
 struct Failure {
   std::string text, where;
+  bool exhausted = false;  ///< the budget was used up
 };
 
 /// Gives a variable a value for a while.
@@ -180,7 +181,7 @@ class Runtime {
   void attach(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted, const State::Body& pushArguments = {});
   /// Adds the function on top of the stack, which is popped, as a handler. Throws Error.
   std::shared_ptr<Subscription> subscribe(lua_State* L, Leaf& node, std::string_view channel);
-  /// Logs a handler's failure, once for each line of a script.
+  /// Logs a handler's failure, once for each line of a script, and that it is switched off always.
   void report(const Failure& failure, const Subscription& subscription);
 
   Kernel& kernel;
@@ -245,6 +246,8 @@ void setMember(Leaf& leaf, std::string_view name, const Value& value);
 std::vector<std::string> memberNames(const Leaf& leaf);
 
 // Environments (lua_library.cpp, lua_globals.cpp).
+/// Replaces find, match, gmatch and gsub in the table on top of the stack by such that pay for what they compare (lua_patterns.cpp).
+void openPatterns(lua_State* L);
 /// Fills a new state's globals with the pure library.
 void openLibrary(lua_State* L, bool trusted);
 /// Leaves a new environment for scripts of `node` on the stack: the pure library, and for trusted scripts what reaches the house.

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "lua_impl.h"
 
@@ -228,6 +230,26 @@ int callCharged(lua_State* L) {
   return lua_tocfunction(L, lua_upvalueindex(1))(L);
 }
 
+/// Elements that a function of the table library moves, compares or joins, as its arguments say.
+struct Elements {
+  static double length(lua_State* L) { return lua_istable(L, 1) ? static_cast<double>(lua_rawlen(L, 1)) : 0; }
+  static double integer(lua_State* L, int index, double otherwise) {
+    return lua_isinteger(L, index) ? static_cast<double>(lua_tointeger(L, index)) : otherwise;
+  }
+  static double concat(lua_State* L) { return integer(L, 4, length(L)) - integer(L, 3, 1); }
+  static double insert(lua_State* L) { return lua_gettop(L) == 3 ? length(L) - integer(L, 2, 1) : 0; }
+  static double remove(lua_State* L) { return lua_gettop(L) == 2 ? length(L) - integer(L, 2, 1) : 0; }
+  static double move(lua_State* L) { return integer(L, 3, 0) - integer(L, 2, 0); }
+  static double sort(lua_State* L) { return 4 * length(L) * std::log2(length(L) + 1); }  // a comparison takes as long as four moves
+};
+
+/// Upvalue: the function of the table library. Takes the elements that it works on off the budget first.
+template <double (*Count)(lua_State*)>
+int callTable(lua_State* L) {
+  State::of(L).charge(L, static_cast<std::uint64_t>(std::clamp(Count(L), 0.0, 1e15)));
+  return lua_tocfunction(L, lua_upvalueindex(1))(L);
+}
+
 /// Replaces function `name` of the table on top of the stack, keeping the original in the registry as `key`.
 void replace(lua_State* L, const char* name, const char* key, lua_CFunction function) {
   lua_getfield(L, -1, name);
@@ -319,10 +341,22 @@ void openLibrary(lua_State* L, bool trusted) {
   remove(L, {"dump"});
   replace(L, "format", "spark.format", guarded<formatText>);
   replace(L, "rep", "spark.rep", guarded<repeatText>);
+  openPatterns(L);
   lua_pop(L, 1);
   lua_getfield(L, -1, "table");
   lua_pushcfunction(L, guarded<sortTable>);
   lua_setfield(L, -2, "sort");
+  constexpr luaL_Reg kTable[] = {{"concat", callTable<Elements::concat>},
+                                 {"insert", callTable<Elements::insert>},
+                                 {"move", callTable<Elements::move>},
+                                 {"remove", callTable<Elements::remove>},
+                                 {"sort", callTable<Elements::sort>}};
+  for (const luaL_Reg& f : kTable) {
+    if (!trusted) break;  // callCharged makes them pay
+    lua_getfield(L, -1, f.name);
+    lua_pushcclosure(L, f.func, 1);
+    lua_setfield(L, -2, f.name);
+  }
   lua_pop(L, 2);
   if (!trusted) restrict(L);
 

@@ -3,8 +3,8 @@
 
 #include "lua_impl.h"
 
-// Limits. A count hook runs every kHookInterval instructions and takes them off the budget of the run; an untrusted state's allocator
-// takes off a share for the bytes it hands out, so that few instructions cannot move much memory. When the budget is used up every
+// Limits. A count hook runs every kHookInterval instructions and takes them off the budget of the run; the allocator takes off a share
+// for the bytes it hands out, so that few instructions cannot move much memory. When the budget is used up every
 // further instruction fails, whatever the script catches, until the run has ended. Threads inherit the hook from the thread that makes
 // them, so coroutines count too.
 
@@ -64,9 +64,11 @@ void* State::allocate(void* self, void* block, std::size_t oldSize, std::size_t 
     state.memory_ -= oldSize;
     return nullptr;
   }
-  if (newSize > oldSize && state.memoryLimit_ != 0) {
-    if (state.memory_ + newSize - oldSize > state.memoryLimit_) return nullptr;
+  if (newSize > oldSize) {
+    if (state.memoryLimit_ != 0 && state.memory_ + newSize - oldSize > state.memoryLimit_) return nullptr;
     state.left_ -= static_cast<std::int64_t>(newSize / kBytesPerInstruction);
+    // The next instruction is the last: until the next count many more such blocks could be asked for.
+    if (state.left_ <= 0 && state.depth_ > 0) lua_sethook(state.threads_[state.depth_ - 1], &State::countHook, LUA_MASKCOUNT, 1);
   }
   void* made = std::realloc(block, newSize);
   if (made) state.memory_ += newSize - oldSize;
@@ -146,6 +148,7 @@ std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
   if (!main_) return std::nullopt;
   std::optional<Failure> result;
   if (status != LUA_OK) result = std::move(failure_).value_or(Failure{});
+  if (result) result->exhausted = left_ <= 0;
   if (status == LUA_ERRMEM) result = Failure{"used up its memory: an untrusted script may hold " + megabytes(kSandboxMemory), ""};
   if (result && result->text.empty()) result->text = "failed without a message";
   failure_.reset();

@@ -14,6 +14,10 @@
 
 namespace spark {
 
+namespace {
+constexpr std::size_t kManyChildren = 64;
+}
+
 /// Marks a leaf as on its way.
 struct Node::Changing {
   explicit Changing(Leaf& l) : leaf(l), before(l.changing_) {
@@ -29,6 +33,33 @@ struct Node::Changing {
   Leaf& leaf;
   bool before;
 };
+
+InUse::InUse(const Leaf& leaf, std::string_view why, int namesBelow)
+    : leaf_(const_cast<Leaf*>(&leaf)), why_(why), namesBelow_(namesBelow), link_(&leaf.kernel().inUse_), next_(*link_) {
+  *link_ = this;
+  if (next_) next_->link_ = &next_;
+}
+
+InUse::~InUse() {
+  *link_ = next_;
+  if (next_) next_->link_ = link_;
+}
+
+void Kernel::refuseUsed(const Leaf& leaf, bool rename, const std::string& doing) {
+  // How many levels `low` is below `high`, -1 when it is not below it.
+  const auto levels = [](const Leaf* low, const Leaf* high) {
+    for (int n = 0; low; low = low->parent(), ++n)
+      if (low == high) return n;
+    return -1;
+  };
+  for (const InUse* use = leaf.kernel().inUse_; use; use = use->next_) {
+    const Leaf* used = use->leaf_.get();
+    if (!used) continue;
+    const int below = levels(&leaf, used);
+    if (levels(used, &leaf) < 0 && !(rename && below > 0 && below <= use->namesBelow_)) continue;
+    throw Error(doing + ": " + (used == &leaf ? "it" : used->path()) + " is in use: " + std::string(use->why_));
+  }
+}
 
 Leaf::~Leaf() {
   if (life_) {
@@ -49,6 +80,8 @@ void Leaf::setName(std::string name) {
   if (name == "." || name == "..") refuse("'.' and '..' have a meaning in paths");
   if (name.empty() && parent_) refuse("what has a parent needs a name");
   if (linked_ && Node::isFixed(*this)) refuse("classes, plugins and their folders keep their names");
+  if (linked_ && name != name_) Kernel::refuseUsed(*this, true, "cannot name " + path() + " '" + name + "' now");
+  if (parent_) parent_->forgetNames();
   name_ = std::move(name);
   if (linked_) kernel().changed(parent_);
 }
@@ -59,16 +92,42 @@ bool Leaf::isLinked() const { return linked_; }
 
 std::string Leaf::path() const {
   if (!parent_) return linked_ ? "/" : name_;
-  int same = 0, mine = 0;
-  for (const auto& c : parent_->children())
-    if (c->name_ == name_) {
-      ++same;
-      if (c.get() == this) mine = same;
-    }
-  const std::string above = parent_->path();
-  std::string out = above == "/" ? above + name_ : above + "/" + name_;
-  if (mine > 1) out += "[" + std::to_string(mine) + "]";
+  std::vector<const Leaf*> way;
+  const Leaf* top = this;
+  for (; top->parent_; top = top->parent_) way.push_back(top);
+  std::string out = top->linked_ ? "" : top->name_;
+  for (std::size_t i = way.size(); i-- > 0;) {
+    out += "/" + way[i]->name_;
+    if (const std::size_t mine = way[i]->parent_->ordinal(*way[i]); mine > 1) out += "[" + std::to_string(mine) + "]";
+  }
   return out;
+}
+
+/// From 1, among the children of its name.
+std::size_t Node::ordinal(const Leaf& child) const {
+  if (names_) {
+    const auto same = names_->find(child.name_);
+    if (same != names_->end()) {
+      if (same->second.back() == &child) return same->second.size();
+      return static_cast<std::size_t>(std::find(same->second.begin(), same->second.end(), &child) - same->second.begin()) + 1;
+    }
+  }
+  std::size_t n = 1;
+  for (const auto& c : children_) {
+    if (c.get() == &child) return n;
+    if (c->name_ == child.name_) ++n;
+  }
+  return 1;
+}
+
+/// Called for every new child: from kManyChildren on they are found without looking at all of them.
+void Node::rememberName(Leaf& child) {
+  if (names_) {
+    (*names_)[child.name_].push_back(&child);
+  } else if (children_.size() >= kManyChildren) {
+    names_ = std::make_unique<Names>();
+    for (const auto& c : children_) (*names_)[c->name_].push_back(c.get());
+  }
 }
 
 Leaf* Leaf::find(std::string_view path) const {
@@ -132,6 +191,7 @@ void* Leaf::requireInterface(std::string_view path, const InterfaceId& id) const
 
 Node::~Node() {
   // Away from the list first: a child's destructor may look at its siblings.
+  forgetNames();
   const std::vector<std::unique_ptr<Leaf>> dying = std::move(children_);
   children_.clear();
 }
@@ -140,16 +200,24 @@ Leaf* Node::child(std::string_view name) const {
   int index = 1;
   if (!name.empty() && name.back() == ']') {
     // A literal match wins: names may end in ']'.
-    for (const auto& c : children_)
-      if (c->name_ == name) return c.get();
+    if (Leaf* literal = numbered(name, 1)) return literal;
     if (const std::size_t open = name.rfind('['); open != std::string_view::npos) {
       const auto r = std::from_chars(name.data() + open + 1, name.data() + name.size() - 1, index);
       if (r.ec != std::errc() || r.ptr != name.data() + name.size() - 1 || index < 1) return nullptr;
       name = name.substr(0, open);
     }
   }
+  return numbered(name, static_cast<std::size_t>(index));
+}
+
+/// The n-th child of that name, from 1.
+Leaf* Node::numbered(std::string_view name, std::size_t n) const {
+  if (names_) {
+    const auto same = names_->find(name);
+    return same != names_->end() && n <= same->second.size() ? same->second[n - 1] : nullptr;
+  }
   for (const auto& c : children_)
-    if (c->name_ == name && --index == 0) return c.get();
+    if (c->name_ == name && --n == 0) return c.get();
   return nullptr;
 }
 
@@ -183,6 +251,7 @@ bool Node::isFixed(const Leaf& leaf) {
 
 void Node::mustRest(const Leaf& leaf, const char* verb) {
   if (isFixed(leaf)) throw Error("cannot " + std::string(verb) + " " + leaf.path() + ": it belongs to the kernel (a plugin's classes go when it is unloaded)");
+  if (leaf.kernel().inUse_ && leaf.linked_) Kernel::refuseUsed(leaf, false, "cannot " + std::string(verb) + " " + leaf.path() + " now");
   if (leaf.kernel().changing_ == 0) return;
   const auto walk = [&](const auto& self, const Leaf& l) -> void {
     if (l.changing_) throw Error("cannot " + std::string(verb) + " " + leaf.path() + " now: " + (&l == &leaf ? "it" : l.path()) + " is just being linked or unlinked");
@@ -209,14 +278,20 @@ Leaf& Node::add(std::unique_ptr<Leaf> leaf) {
 
 Leaf& Node::attach(std::unique_ptr<Leaf> leaf) {
   Leaf& added = *leaf;
+  int levels = 1;
+  for (const Node* up = parent_; up; up = up->parent_) ++levels;
+  if (levels > kMostLevels)
+    throw Error("cannot add a " + added.class_->name() + " here: the tree is at most " + std::to_string(kMostLevels) + " levels deep");
   if (added.name_.empty()) added.name_ = added.class_->name();
   children_.push_back(std::move(leaf));
   added.parent_ = this;
+  rememberName(added);
   if (!linked_) return added;
   try {
     link(added);
   } catch (...) {
     bury(added);
+    forgetNames();
     const std::size_t i = indexOf(added);
     const std::unique_ptr<Leaf> dying = std::move(children_[i]);
     children_.erase(children_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -304,11 +379,24 @@ void Node::remove(Leaf& child) {
 void Node::detach(Leaf& child) {
   if (child.linked_) unlink(child);
   bury(child);
+  forgetNames();
   const std::size_t i = indexOf(child);
   const std::unique_ptr<Leaf> dying = std::move(children_[i]);
   children_.erase(children_.begin() + static_cast<std::ptrdiff_t>(i));
-  if (Node* node = dying->asNode())
-    while (!node->children_.empty()) node->detach(*node->children_.front());
+  if (Node* node = dying->asNode()) destroyBelow(*node);
+}
+
+/// First to last, what is below before what is above. All is unlinked and buried.
+void Node::destroyBelow(Node& node) {
+  while (!node.children_.empty()) {
+    node.forgetNames();
+    std::vector<std::unique_ptr<Leaf>> dying = std::move(node.children_);
+    node.children_.clear();
+    for (std::unique_ptr<Leaf>& leaf : dying) {
+      if (Node* inner = leaf->asNode()) destroyBelow(*inner);
+      leaf.reset();
+    }
+  }
 }
 
 void Node::removeChildren() {
@@ -327,6 +415,8 @@ void Node::reparent(Leaf& child, Node& newParent) {
   if (child.linked_ && !newParent.linked_) unlink(child);
   const auto carry = [&](Node& from, Node& to) {
     to.children_.reserve(to.children_.size() + 1);
+    from.forgetNames();
+    to.forgetNames();
     const std::size_t i = from.indexOf(child);
     std::unique_ptr<Leaf> moving = std::move(from.children_[i]);
     from.children_.erase(from.children_.begin() + static_cast<std::ptrdiff_t>(i));

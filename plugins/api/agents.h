@@ -125,12 +125,20 @@ class ControlAspect : public Node {
   static void describe(Description<ControlAspect>& d) {
     d.doc("A rule of the simulation.");
     d.abstract();
-    d.on<&ControlAspect::rule>("rule");
+    d.property("enabled", &ControlAspect::enabled_).doc("It takes part; false: as if it were not there.");
+    d.on<&ControlAspect::run>("rule");
   }
   virtual void rule(const Event& event) = 0;
+  /// Instead of rule() while it is switched off: forgets what must not count when it is switched on again.
+  virtual void rest(const Event&) {}
+  bool enabled() const { return enabled_; }
   /// Game control tells of agents: after the aspect is linked, before it is removed.
   virtual void agentConnected(AgentAspect&) {}
   virtual void agentLeaving(AgentAspect&) {}
+
+ private:
+  void run(const Event& event) { enabled_ ? rule(event) : rest(event); }
+  bool enabled_ = true;
 };
 
 /// An agent that thinks inside the host: C++ classes or Lua. Below /usr/agent. Registered by `gamecontrol`.

@@ -84,12 +84,15 @@ class Transform : public SceneNode {
  public:
   static void describe(Description<Transform>& d) {
     d.doc("Places what is below it.");
-    d.property("localTransform", &Transform::local, &Transform::setLocal).doc("Local 4x4 matrix, column-major.");
-    d.property("localPos", &Transform::localPos, &Transform::setLocalPos).unit("m").doc("Local translation.");
+    d.property("localTransform", &Transform::local, &Transform::placeLocal).doc("Local 4x4 matrix, column-major; all its numbers within 1e9.");
+    d.property("localPos", &Transform::localPos, &Transform::placeLocalPos).unit("m").doc("Local translation, within 1e9 m.");
     d.property("worldTransform", &Transform::world).doc("World 4x4 matrix as of the last place phase.");
-    d.method("setLocalRotation", &Transform::setLocalRotationDeg).parameters({"x [deg]", "y [deg]", "z [deg]"}).doc("R = Rx Ry Rz; the translation is kept.");
+    d.method("setLocalRotation", &Transform::turnLocal).parameters({"x [deg]", "y [deg]", "z [deg]"}).doc("R = Rx Ry Rz; the translation is kept.");
     d.alias("SLT", "setLocalTransform");
   }
+
+  /// What scripts and scene files may set: numbers of no greater magnitude [m; degrees]. Farther out single precision resolves 64 m.
+  static constexpr float kFarthest = 1e9f;
 
   const Matrix& local() const { return local_; }
   const Matrix& world() const { return world_; }
@@ -145,6 +148,23 @@ class Transform : public SceneNode {
   }
 
  private:
+  /// Throws RefusedValue unless the numbers are finite and within kFarthest.
+  template <class M>
+  static const M& sane(const M& numbers, const char* what) {
+    if (!(numbers.cwiseAbs().maxCoeff() <= kFarthest) || !numbers.allFinite()) throwAbsurd(what, numbers.data(), static_cast<int>(numbers.size()));
+    return numbers;
+  }
+  [[noreturn]] static void throwAbsurd(const char* what, const float* numbers, int n) {
+    std::string found;
+    for (int i = 0; i < n; ++i) found += (i > 0 ? " " : "") + Value(double(numbers[i])).text();
+    throw RefusedValue(std::string("expected ") + what + " of finite numbers from -1e9 to 1e9, found " + found);
+  }
+  void placeLocal(const Matrix& m) { setLocal(sane(m, "a matrix")); }
+  void placeLocalPos(const Vec3f& p) { setLocalPos(sane(p, "a position")); }
+  void turnLocal(float x, float y, float z) {
+    sane(Vec3f(x, y, z), "angles");
+    setLocalRotationDeg(x, y, z);
+  }
   void movedByHand() {
     moved_ = dirty_ = true;
     if (isLinked()) world_ = worldNow();

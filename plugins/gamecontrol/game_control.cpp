@@ -238,6 +238,7 @@ bool GameControl::realTime() const {
 }
 
 void GameControl::act(const Event& event) {
+  const InUse acting(*this, "agents act just now");
   cycle_ = event.cycle;
   waiting_ = false;
   actedAt_ = Clock::now();

@@ -68,8 +68,9 @@ void MonitorView::pickNodes() {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     bool differs = false;
     if (nodes[i].kind == FrameNode::Kind::transform) {
-      differs = !((nodes[i].local - sent_[i]).cwiseAbs().maxCoeff() <= newest_.precision);
-      if (differs || update_.full) sent_[i] = nodes[i].local;
+      // With a full update there is nothing to compare with: what was sent is new memory.
+      differs = update_.full || !((nodes[i].local - sent_[i]).cwiseAbs().maxCoeff() <= newest_.precision);
+      if (differs) sent_[i] = nodes[i].local;
     } else {
       // The first diff after a mesh came repeats its visibility: the installed base's monitors have always been sent that.
       differs = nodes[i].kind != FrameNode::Kind::light && (newest_.ids[i] > newestId_ || visible_[i] != nodes[i].visible);

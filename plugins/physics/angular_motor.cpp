@@ -107,7 +107,7 @@ void AngularMotor::setMotorAxis(int axis, int frame, const Vec3& direction) {
   if (frame < 0 || frame > 2)
     throw Error(where() + ": expected 0 (world), 1 (first body) or 2 (second body), found " + std::to_string(frame));
   anchors_[axis] = frame;
-  if (engine()) engine()->setAxis(handle(), axis, direction, frame);
+  withBodies([this, axis, frame, direction] { engine()->setAxis(handle(), axis, direction, frame); });
 }
 
 void AngularMotor::setAxisAngle(int axis, double deg) {

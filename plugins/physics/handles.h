@@ -3,6 +3,7 @@
 /// Shared ownership of engine worlds and spaces: the tree may drop a world before the bodies in it, and an engine before both.
 
 #include <memory>
+#include <string>
 
 #include "api/physics.h"
 
@@ -16,10 +17,15 @@ struct EngineUse {
   engine::IEngine* get() const { return leaf ? engine : nullptr; }
 };
 
-/// An engine's world; lives as long as anything in it.
+/// An engine's world; lives as long as anything in it, and keeps the engine in the tree.
 class WorldHandle {
  public:
-  explicit WorldHandle(const EngineUse& use) : use_(use), id_(use_.engine->createWorld()) {}
+  /// `path`: of the world's node.
+  WorldHandle(const EngineUse& use, const std::string& path)
+      : use_(use),
+        why_(path + " and the bodies, colliders and joints in it live in the engine; remove them all first"),
+        inUse_(*use_.leaf, why_),
+        id_(use_.engine->createWorld()) {}
   ~WorldHandle() {
     if (auto* e = engine()) e->destroyWorld(id_);
   }
@@ -30,6 +36,8 @@ class WorldHandle {
 
  private:
   EngineUse use_;
+  std::string why_;
+  InUse inUse_;
   engine::World id_;
 };
 

@@ -10,6 +10,7 @@ using engine::JointType;
 namespace {
 
 constexpr int kParameters = 11;
+constexpr double kShortestAxis = 1e-9;
 static_assert(static_cast<int>(JointParameter::suspensionCfm) == kParameters - 1);
 
 }  // namespace
@@ -66,6 +67,8 @@ void Joint::onLink() {
 void Joint::onUnlink() {
   if (engine()) engine()->destroyJoint(joint_);
   joint_ = engine::Joint::none;
+  attached_ = false;
+  waiting_.clear();
   world_.reset();
   PhysicsObject::onUnlink();
 }
@@ -127,22 +130,28 @@ void Joint::attach(std::string first, std::string second) {
     bodies_[0] = bodies_[1] = {};
     throw Error(where() + ": cannot attach '" + first + "' and '" + second + "'", e);
   }
+  attached_ = true;
   attached();
+  for (const auto& set : std::exchange(waiting_, {})) set();
 }
 
 void Joint::setAnchor(const Vec3& local) {
-  if (!engine()) return;
-  const Pose frame = physics::frameOf(*this);
-  engine()->setAnchor(joint_, frame.position + frame.rotation * local);
+  if (engine() && !local.allFinite()) throw RefusedValue(where() + ": expected finite numbers for the anchor");
+  withBodies([this, local] {
+    const Pose frame = physics::frameOf(*this);
+    engine()->setAnchor(joint_, frame.position + frame.rotation * local);
+  });
 }
 
 void Joint::setAxisLocal(int axis, const Vec3& direction) {
-  if (!engine()) return;
-  try {
-    engine()->setAxis(joint_, axis, physics::frameOf(*this).rotation * direction);
-  } catch (const Error& e) {
-    throw Error(where() + ": cannot set the axis", e);
-  }
+  if (engine() && !(direction.norm() >= kShortestAxis)) throw Error(where() + ": cannot set the axis", Error("expected an axis longer than 0"));
+  withBodies([this, axis, direction] {
+    try {
+      engine()->setAxis(joint_, axis, physics::frameOf(*this).rotation * direction);
+    } catch (const Error& e) {
+      throw Error(where() + ": cannot set the axis", e);
+    }
+  });
 }
 
 void Joint::enableFeedback(bool on) {

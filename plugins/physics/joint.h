@@ -2,12 +2,14 @@
 /// \file
 /// Joints.
 
+#include <functional>
+
 #include "rigid_body.h"
 
 namespace spark {
 
-/// Base of joints. Anchors and axes are given in the frame of the nearest transform, as it is when they are set; bodies by paths relative
-/// to the joint.
+/// Base of joints. Anchors and axes are given in the frame of the nearest transform, as it is when they are set, or, when they are set
+/// before the bodies are attached, as it is then; bodies by paths relative to the joint.
 class Joint : public PhysicsObject, public IJoint {
   SPARK_CLASS(Joint, PhysicsObject)
  public:
@@ -42,6 +44,13 @@ class Joint : public PhysicsObject, public IJoint {
   /// The engine that has the joint; nullptr when there is none.
   engine::IEngine* engine() const { return joint_ != engine::Joint::none ? world_->engine() : nullptr; }
   engine::Joint handle() const { return joint_; }
+  /// Does now, or as soon as the bodies are attached, what an engine can only do with bodies.
+  template <class F>
+  void withBodies(F f) {
+    if (!engine()) return;
+    if (attached_) f();
+    else waiting_.push_back(std::move(f));
+  }
   void setAnchor(const Vec3& local);
   /// `direction` in the joint's frame.
   void setAxisLocal(int axis, const Vec3& direction);
@@ -83,6 +92,8 @@ class Joint : public PhysicsObject, public IJoint {
   std::shared_ptr<physics::WorldHandle> world_;
   engine::Joint joint_{};
   Ref<RigidBody> bodies_[2];
+  std::vector<std::function<void()>> waiting_;  ///< anchors and axes that were set before attach, in that order
+  bool attached_ = false;
   double maxSpeed_[2] = {0, 0};
   bool feedback_ = false;
 };

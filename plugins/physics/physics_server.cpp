@@ -134,6 +134,7 @@ void PhysicsServer::shiftSurroundings() {
 
 void PhysicsServer::physics(const Event& event) {
   if (event.step <= 0 || !refresh()) return;
+  const InUse stepping(*this, "a step is under way");
   if (scene_) scene_->place();
   shiftSurroundings();
   solve(event);

@@ -35,7 +35,7 @@ void World::describe(Description<World>& d) {
 
 World& World::of(const Leaf& node) {
   for (Node* up = node.parent(); up; up = up->parent())
-    if (auto* world = up->childOf<World>(); world && world->handle()) return *world;
+    if (auto* world = up->childOf<World>(); world && world->handle() && world->handle()->engine()) return *world;
   throw Error(node.path() +
               ": expected a World in its scene, found none. Make one before importing bodies: new(\"World\", \"/usr/scene/world\")");
 }
@@ -47,7 +47,7 @@ void World::onLink() {
   // The engine is an interface without a leaf of its own: the server's child that offers it is what may die.
   Leaf* engineLeaf = kernel().root().find("/sys/server/physics/engine");
   if (!engineLeaf) engineLeaf = kernel().root().find("/sys/server/physics");
-  handle_ = std::make_shared<physics::WorldHandle>(physics::EngineUse{Ref<Leaf>(engineLeaf), &e});
+  handle_ = std::make_shared<physics::WorldHandle>(physics::EngineUse{Ref<Leaf>(engineLeaf), &e}, path());
   apply();
 }
 

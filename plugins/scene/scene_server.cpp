@@ -10,7 +10,7 @@ void SceneServer::describe(Description<SceneServer>& d) {
   d.implements<ISceneServer>();
   d.property("activeScene", &SceneServer::scenePath, &SceneServer::setScenePath).doc("Path of the active scene's root.");
   d.property("flattenTransforms", &SceneServer::flattenTransforms_)
-      .doc("After an import, transforms that hold nothing but transforms, and empty ones, go; their children move up.");
+      .doc("After an import, transforms of its own that hold nothing but transforms, and empty ones, go; their children move up.");
   d.property("modifiedCount", &SceneServer::modifiedCount).doc("How often nodes or materials of the scene changed.");
   d.method("createScene", &SceneServer::createScene).parameters({"path"}).doc("Makes a scene root and the active scene of it.");
   d.method("defineMesh", &SceneServer::defineMesh)
@@ -35,6 +35,7 @@ Node& SceneServer::scene() {
 void SceneServer::setScenePath(std::string path) {
   scenePath_ = std::move(path);
   scene_ = nullptr;
+  kernel().markChanged(*this);  // whoever remembers what is in the active scene looks again, in this very cycle
 }
 
 void SceneServer::createScene(std::string path) {
@@ -66,13 +67,24 @@ ISceneImporter& SceneServer::importerFor(const std::string& file) {
 void SceneServer::importScene(std::string_view file, Node& root, const List& arguments) {
   const std::string name(file);
   const Ref<Node> rootAlive(&root);
+  // Files import files: what the outermost import found there is not its to dissolve.
+  struct Importing {
+    Importing(std::uint64_t& f, std::uint64_t last) : first(f), outermost(f == 0) {
+      if (outermost) first = last + 1;
+    }
+    ~Importing() {
+      if (outermost) first = 0;
+    }
+    std::uint64_t& first;
+    bool outermost;
+  } importing(firstImported_, kernel().lastId());
   try {
     importerFor(name).import(name, root, arguments);
   } catch (...) {
     markModified();  // what it made before stays
     throw;
   }
-  if (flattenTransforms_ && rootAlive) spark::flattenTransforms(root);
+  if (flattenTransforms_ && rootAlive) spark::flattenTransforms(root, firstImported_);
   markModified();
 }
 
@@ -114,20 +126,20 @@ void Placement::place(Node& scene) {
   }
 }
 
-void flattenTransforms(Node& root) {
+void flattenTransforms(Node& root, std::uint64_t firstId) {
   // Children that move up are appended to `root` and seen by the same loop.
   for (std::size_t i = 0; i < root.children().size();) {
     Leaf& child = *root.children()[i];
     if (Node* node = child.asNode()) {
-      flattenTransforms(*node);
-      if (child.as<Transform>() && node->children().empty()) {
+      flattenTransforms(*node, firstId);
+      if (child.id() >= firstId && child.as<Transform>() && node->children().empty()) {
         root.remove(child);
         continue;
       }
     }
     ++i;
   }
-  auto* transform = root.as<Transform>();
+  auto* transform = root.id() >= firstId ? root.as<Transform>() : nullptr;
   if (!transform || root.children().empty() || !root.parent() || !root.parent()->as<SceneNode>()) return;
   for (const auto& child : root.children())
     if (!child->as<Transform>()) return;

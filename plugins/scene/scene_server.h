@@ -66,6 +66,7 @@ class SceneServer : public Node, public ISceneServer {
   std::string scenePath_ = "/usr/scene";
   bool flattenTransforms_ = true;
   std::uint64_t modified_ = 0, sceneVersion_ = 0;
+  std::uint64_t firstImported_ = 0;  ///< id from which on nodes are those of the import under way; 0: none is
   Node* scene_ = nullptr;
   Placement placement_;
   MeshLibrary meshes_;
@@ -73,7 +74,7 @@ class SceneServer : public Node, public ISceneServer {
 };
 
 /// Takes away, below and including `root`, transforms that place nothing but transforms (and empty ones): their children move up.
-/// World poses stay. (scene-language section 1.11)
-void flattenTransforms(Node& root);
+/// World poses stay. (scene-language section 1.11) Those with an id below `firstId` stay: others made them, and may hold them.
+void flattenTransforms(Node& root, std::uint64_t firstId = 0);
 
 }  // namespace spark

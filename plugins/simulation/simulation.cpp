@@ -25,6 +25,7 @@ namespace spark {
 
 namespace {
 constexpr double kSlice = 0.02;    // s; bound on the delay of a stop request and of polled sources
+constexpr const char* kTakesInput = "it takes input just now";
 constexpr double kJitter = 0.002;  // s; a cycle that starts later than this lost time that is not made up for
 using simulation::Part;
 
@@ -107,6 +108,9 @@ void Simulation::loop(More more) {
     ~Running() { flag = false; }
     bool& flag;
   } running(running_);
+  const InUse atWork(*this, "the run loop is at work; stop() ends it after the current cycle");
+  const InUse servers(kernel().root().require<Node>("/sys"), "servers keep their names while the run loop is at work", InUse::kAllBelow);
+  const InUse scenes(kernel().root().require<Node>("/usr"), "scenes keep their names while the run loop is at work", 1);
   stopped_ = false;
   due_ = Clock::now();
   while (more() && collectInput()) executeCycle();
@@ -123,11 +127,11 @@ void Simulation::resolve() {
   waiter_ = nullptr;
   if (Node* server = kernel().root().find<Node>("/sys/server"))
     for (const auto& child : server->children())
-      if (auto* source = child->as<IInputSource>()) sources_.push_back(source);
+      if (auto* source = child->as<IInputSource>()) sources_.push_back({source, child.get()});
   kernel().updateOrder();
   kernel().root().collect(gates_);
-  for (IInputSource* s : sources_)
-    if (!waiter_ && s->canWait()) waiter_ = s;
+  for (const Source& s : sources_)
+    if (!waiter_ && s.input->canWait()) waiter_ = &s;
 }
 
 // Input changes the tree (agents come and go), so positions are looked up anew for every source.
@@ -135,7 +139,8 @@ void Simulation::poll() {
   for (std::size_t i = 0;; ++i) {
     resolve();
     if (i >= sources_.size()) return;
-    sources_[i]->poll();
+    const InUse polled(*sources_[i].leaf, kTakesInput);
+    sources_[i].input->poll();
   }
 }
 
@@ -150,9 +155,10 @@ bool Simulation::gatesOpen() {
 void Simulation::waitForInput(double seconds) {
   resolve();
   const double slice = std::min(seconds, kSlice);
-  if (waiter_)
-    waiter_->wait(slice);
-  else
+  if (waiter_) {
+    const InUse waited(*waiter_->leaf, kTakesInput);
+    waiter_->input->wait(slice);
+  } else
     std::this_thread::sleep_for(std::chrono::duration<double>(slice));
   if (sources_.size() > 1) poll();
 }

@@ -71,9 +71,13 @@ class Simulation : public Node, public ISimulation {
   bool sync_ = false, stopped_ = false, running_ = false;
   int threads_ = 1;
 
-  std::vector<IInputSource*> sources_;
+  struct Source {
+    IInputSource* input;
+    Leaf* leaf;
+  };
+  std::vector<Source> sources_;
   std::vector<IInputGate*> gates_;
-  IInputSource* waiter_ = nullptr;  ///< the source to wait on, nullptr: sleep
+  const Source* waiter_ = nullptr;  ///< the source to wait on, nullptr: sleep
   std::uint64_t resolvedAt_ = 0;
 
   Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr, *sense_ = nullptr,

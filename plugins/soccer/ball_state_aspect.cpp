@@ -31,6 +31,16 @@ void BallStateAspect::rule(const Event&) {
     if (auto* r = pitch.goalRecorder(side)) r->clear();
 }
 
+void BallStateAspect::rest(const Event&) {
+  kicker_ = 0;
+  touched_ = false;
+  touchedBy_.fill(false);
+  inGoal_ = Side::none;
+  GameStateAspect* game = beside(game_, version_);
+  if (game && game->pitch().ready())
+    if (auto* r = game->pitch().ballRecorder()) r->clear();
+}
+
 /// One who touches the ball; the first of them is the toucher.
 void BallStateAspect::note(const soccer::Player* toucher, const soccer::Player*& first) {
   if (!toucher || toucher->side() == Side::none) return;

@@ -23,6 +23,8 @@ class BallStateAspect : public SoccerControlAspect {
 
   static void describe(Description<BallStateAspect>& d);
   void rule(const Event& event) override;
+  /// Switched off, nobody touches the ball, and it is nowhere but where it was.
+  void rest(const Event& event) override;
 
   /// A kick acts on the ball: its agent touches it in this cycle. The first of a cycle counts.
   void kickedBy(const AgentAspect& agent) {

@@ -51,7 +51,7 @@ class FoulAspect : public SoccerRule {
 
  private:
   void judge(const Event& event) final;
-  void rest() final { reset(); }
+  void skip() final { reset(); }
 
   PenaltyAspect* penalties_ = nullptr;
   PlayerContactAspect* contacts_ = nullptr;

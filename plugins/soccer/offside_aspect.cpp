@@ -6,26 +6,31 @@ using soccer::opponent;
 using soccer::PlayMode;
 using soccer::Side;
 
-void OffsideAspect::rule(const Event&) {
+bool OffsideAspect::inPlay() {
   GameStateAspect* game = beside(game_, gameVersion_);
   BallStateAspect* ball = beside(ball_, ballVersion_);
   SoccerRuleAspect* referee = beside(referee_, refereeVersion_);
-  if (!game || !ball || !referee) return;
+  if (!game || !ball || !referee) return false;
   soccer::Pitch& pitch = game->pitch();
-  if (!pitch.ready()) return;
+  if (!pitch.ready()) return false;
   const PlayMode mode = game->mode();
   if (mode == PlayMode::offsideLeft || mode == PlayMode::offsideRight) {
     pitch.placeBall(spot_);
     if (game->modeTime() >= pitch.settings().ruleKickInPauseTime)
       referee->award(forSide(PlayMode::freeKickLeft, opponent(sideOf(mode))), spot_);
-    return;
+    return false;
   }
-  if (mode != PlayMode::playOn) {
-    marked_.fill(false);
-    return;
-  }
+  if (mode != PlayMode::playOn) marked_.fill(false);
+  return mode == PlayMode::playOn;
+}
+
+void OffsideAspect::rule(const Event&) {
   // a touch that takes a restart is not one in PlayOn
-  if (ball->newTouch() && game->modeTime() > 0) touch(pitch);
+  if (inPlay() && ball_->newTouch() && game_->modeTime() > 0) touch(game_->pitch());
+}
+
+void OffsideAspect::rest(const Event&) {
+  if (inPlay()) marked_.fill(false);
 }
 
 void OffsideAspect::touch(soccer::Pitch& pitch) {

@@ -16,17 +16,21 @@ class OffsideAspect : public SoccerControlAspect {
  public:
   using Side = soccer::Side;
   static void describe(Description<OffsideAspect>& d) {
-    d.doc("Offside. Its presence below game control is what switches the rule on.");
+    d.doc("Offside. Its presence below game control switches the rule on, `enabled` off and on during a match.");
     d.property("marked", &OffsideAspect::markedUnums)
         .doc("Numbers of the marked players; they are of the team that touched the ball last.");
   }
   void rule(const Event& event) override;
+  /// Switched off, nobody is marked; an offside that was called is still taken to its free kick.
+  void rest(const Event& event) override;
 
  protected:
   void saveState(StateWriter& out) const override;
   void loadState(StateReader& in) override;
 
  private:
+  /// What both rule() and rest() begin with: false when there is nothing to judge.
+  bool inPlay();
   void touch(soccer::Pitch& pitch);
   void mark(const soccer::Pitch& pitch, Side side, int toucher);
   std::vector<int> markedUnums() const;

@@ -18,7 +18,7 @@ void PenaltyAspect::rule(const Event& event) {
 }
 
 void PenaltyAspect::call(const Pitch& pitch, std::size_t player, Foul foul, Sentence sentence, const Vec3& target) {
-  if (!isFree(player)) return;
+  if (!enabled() || !isFree(player)) return;
   records_[player] = {sentence, foul, 0, target};
   const Player& p = pitch.players()[player];
   ++count_;

@@ -23,6 +23,8 @@ class PenaltyAspect : public SoccerControlAspect {
     d.property("fouls", &PenaltyAspect::count_).readOnly().doc("Number of fouls called since the start.");
   }
   void rule(const Event& event) override;
+  /// Switched off, everybody is free.
+  void rest(const Event&) override { records_.reset(); }
 
   /// To be called by fouls before they judge.
   void follow(const soccer::Pitch& pitch) { records_.follow(pitch, kernel().structureVersion()); }

@@ -22,6 +22,11 @@ class PlayerContactAspect : public SoccerControlAspect {
     d.doc("Who touches whom, and who the ball, in this cycle; touching and charging are judged by it.");
   }
   void rule(const Event& event) override;
+  /// Switched off, nobody touches anybody.
+  void rest(const Event& event) override {
+    told_.clear();
+    rule(event);
+  }
 
   /// A collider of `self` meets one of `other`, nullptr: the ball's. During physics. The same point may be told from both sides.
   void add(const AgentAspect& self, const AgentAspect* other, const Vec3& point) { told_.push_back({&self, other, point}); }

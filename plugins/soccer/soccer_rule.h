@@ -14,23 +14,20 @@ class SoccerRule : public ControlAspect {
 
   static void describe(Description<SoccerRule>& d) {
     d.doc("Base of the rules of play.");
-    d.property("enabled", &SoccerRule::enabled_).doc("The rule is judged.");
     d.abstract();
   }
   void rule(const Event& event) final {
-    if (!findReferee() || !referee_->ready()) return;
-    if (enabled_)
-      judge(event);
-    else
-      rest();
+    if (findReferee() && referee_->ready()) judge(event);
   }
-  bool enabled() const { return enabled_; }
+  void rest(const Event&) final {
+    if (findReferee() && referee_->ready()) skip();
+  }
 
  protected:
   /// Everything below may be called.
   virtual void judge(const Event& event) = 0;
   /// Instead of judge() while the rule is switched off.
-  virtual void rest() {}
+  virtual void skip() {}
 
   SoccerRuleAspect& referee() const { return *referee_; }
   GameStateAspect& game() const { return referee_->game(); }
@@ -59,7 +56,6 @@ class SoccerRule : public ControlAspect {
     return referee_ != nullptr;
   }
 
-  bool enabled_ = true;
   SoccerRuleAspect* referee_ = nullptr;
   std::uint64_t version_ = 0;
 };

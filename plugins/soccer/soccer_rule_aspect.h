@@ -41,6 +41,8 @@ class SoccerRuleAspect : public SoccerControlAspect {
 
   static void describe(Description<SoccerRuleAspect>& d);
   void rule(const Event& event) override;
+  /// Switched off, no rule of play is judged, nor any foul.
+  void rest(const Event&) override { ready_ = false; }
 
   // For the rules of this cycle.
   /// False: there is no field, or another aspect is missing. Nothing below may be called then.

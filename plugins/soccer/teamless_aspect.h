@@ -10,14 +10,10 @@ class TeamlessAspect : public SoccerControlAspect {
  public:
   static void describe(Description<TeamlessAspect>& d) {
     d.doc("Robots without a team touch only what does not move.");
-    d.property("enabled", &TeamlessAspect::enabled_).doc("false: they touch everything.");
   }
-  void agentConnected(AgentAspect& agent) override { detach(agent.create(kGroup, kGroup), enabled_); }
-  void rule(const Event&) override {
-    if (std::exchange(version_, kernel().structureVersion()) != kernel().structureVersion()) lookUp();
-    for (Robot& r : robots_)
-      if (const bool wanted = enabled_ && isTeamless(r); wanted != r.detached) detach(*r.group, r.detached = wanted);
-  }
+  void agentConnected(AgentAspect& agent) override { detach(agent.create(kGroup, kGroup), enabled()); }
+  void rule(const Event&) override { follow(); }
+  void rest(const Event&) override { follow(); }
 
  protected:
   void loadState(StateReader&) override { version_ = 0; }
@@ -29,6 +25,11 @@ class TeamlessAspect : public SoccerControlAspect {
     Leaf* group;
     bool detached;
   };
+  void follow() {
+    if (std::exchange(version_, kernel().structureVersion()) != kernel().structureVersion()) lookUp();
+    for (Robot& r : robots_)
+      if (const bool wanted = enabled() && isTeamless(r); wanted != r.detached) detach(*r.group, r.detached = wanted);
+  }
   static bool isTeamless(const Robot& r) { return !r.state || r.state->side() == soccer::Side::none; }
   static void detach(Leaf& group, bool on) { setProperty(group, kDetached, on); }
   void lookUp() {
@@ -43,7 +44,6 @@ class TeamlessAspect : public SoccerControlAspect {
     }
   }
 
-  bool enabled_ = true;
   std::uint64_t version_ = 0;
   std::vector<Robot> robots_;  ///< as of the last change of the tree
 };

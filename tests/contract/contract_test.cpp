@@ -131,6 +131,34 @@ TEST_CASE("Every class, property and method is documented, with type and unit") 
   });
 }
 
+TEST_CASE("Every control aspect can be switched off") {
+  AllPlugins house;
+  int aspects = 0;
+  forEachClass(house, [&](Plugin&, ClassObject& c) {
+    if (!c.isA("ControlAspect")) return;
+    ++aspects;
+    const Property* p = c.property("enabled");
+    REQUIRE(p);
+    CHECK(p->type == "bool");
+    CHECK_FALSE(p->readOnly);
+    if (!c.isAbstract()) CHECK(c.defaultOf(*p) == Value(true));
+  });
+  CHECK(aspects > 20);
+}
+
+TEST_CASE("Members that hide what every node has in Lua are known") {
+  AllPlugins house;
+  forEachClass(house, [](Plugin&, ClassObject& c) {
+    for (const char* builtin : {"class", "parent", "alive", "find", "children", "new", "delete", "attachScript", "on"}) {
+      INFO(builtin);
+      CHECK_FALSE(c.property(builtin));
+      CHECK_FALSE(c.method(builtin));
+    }
+    if (c.method("attach")) CHECK(c.isA("Joint"));
+    if (c.property("path") || c.method("path")) CHECK(c.name().ends_with("FileSystem"));
+  });
+}
+
 TEST_CASE("Names of properties are words that Lua and scene files can write, and describe one thing each") {
   AllPlugins house;
   forEachClass(house, [](Plugin&, ClassObject& c) {

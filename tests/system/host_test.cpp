@@ -108,6 +108,18 @@ TEST_CASE("A flag for what a house does not have is an error in the user's words
   REQUIRE(runToEnd(host({"--config", "boxes.lua", "--check", "--web-port", "0", "--rate", "max", "--sync"})).code == 0);
 }
 
+TEST_CASE("A seed that is none, or needs more than 64 bits, is refused") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("small.lua", kSmall);
+  for (const char* seed : {"-1", "18446744073709551616", "99999999999999999999", "1.5", "0x", "many", "1 "}) {
+    const Finished f = runToEnd(host({"--config", config, "--check", "--seed", seed}));
+    INFO(f.errors);
+    REQUIRE(f.code == 2);
+    REQUIRE_THAT(f.errors + f.out, Contains("--seed: expected a whole number from 0 to 18446744073709551615 (64 bits), found '" + std::string(seed) + "'"));
+  }
+  for (const char* seed : {"0", "18446744073709551615"}) REQUIRE(runToEnd(host({"--config", config, "--check", "--seed", seed})).code == 0);
+}
+
 TEST_CASE("A wrong command line ends with exit code 2 and says what is wrong") {
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{},

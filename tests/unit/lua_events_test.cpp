@@ -137,6 +137,36 @@ TEST_CASE("an endless loop in a handler becomes an error that names script, line
   CHECK_THAT(h.text, Contains("handler of 'tick' at /usr/a failed: test:2: stopped after 50000000 instructions: is there an endless loop?"));
 }
 
+TEST_CASE("a handler that used up its budget is switched off, with a line for each") {
+  LuaHouse h;
+  Thing& a = h.thing("/usr/a");
+  h.run("n = 0\nfor i = 1, 2 do\n  get('/usr/a'):on('tick', function(self)\n    self.count = self.count + 1\n    while true do end\n  end)\nend");
+  h.run("get('/usr/a'):on('tick', function(self) n = n + 1 end)");
+  for (int i = 0; i < 3; ++i) h.emit("tick");
+  CHECK(a.count == 2);
+  CHECK(h.run("return n") == Value(3));
+  const std::string line =
+      "handler of 'tick' at /usr/a failed: test:5: stopped after 50000000 instructions: is there an endless loop?\n"
+      "  It is switched off: it would take as long every time.\n";
+  CHECK_THAT(h.text, Equals(line + line));
+}
+
+TEST_CASE("what works on much at once pays for it") {
+  LuaHouse h;
+  h.run("long = ('a'):rep(1000000) many = {} for i = 1, 200000 do many[i] = i % 1000 end");
+  for (const char* forever :
+       {"string.find(long, '.-.-.-b')", "long:match('(a*)*(a*)(a*)(a*)b')", "long:gsub('.-.-.-b', '')", "for x in long:gmatch('a*a*a*b') do end",
+        "while true do s = ('x'):rep(100000000) end", "while true do s = long:upper() end", "while true do s = long .. long end",
+        "while true do table.insert(many, 1, 0) end", "while true do table.sort(many) end", "while true do s = table.concat(many) end",
+        "while true do table.remove(many, 1) many[200000] = 1 end", "while true do table.move(many, 1, 200000, 2) end"}) {
+    INFO(forever);
+    h.text.clear();
+    h.run(std::string("s = nil handler = on('work', function() ") + forever + " end)");
+    h.emit("work");
+    CHECK_THAT(h.text, Contains("stopped after 50000000 instructions"));
+  }
+}
+
 TEST_CASE("neither pcall nor a coroutine saves an endless loop") {
   LuaHouse h;
   h.run("on('tick', function() while true do pcall(function() while true do end end) end end)");

@@ -114,6 +114,61 @@ TEST_CASE("a dead node says so and knows what it was") {
   CHECK_THAT(h.failure("get('/usr/b').anything = a"), Contains("this node is gone"));
 }
 
+TEST_CASE("patterns match as the reference manual says") {
+  LuaHouse h;
+  const std::vector<std::pair<const char*, Value>> cases{
+      {"{('hello world'):find('wor')}", List{7, 9}},
+      {"{('hello'):find('l+')}", List{3, 4}},
+      {"{('hello'):find('(l)(l)')}", List{3, 4, "l", "l"}},
+      {"{('a.b'):find('.', 2, true)}", List{2, 2}},
+      {"{('abc'):find('b', -1)}", List{}},
+      {"{('abc'):find('', 10)}", List{}},
+      {"{('abc'):find('', 4)}", List{4, 3}},
+      {"{('abc'):find('c$')}", List{3, 3}},
+      {"{('a$c'):find('$c')}", List{2, 3}},
+      {"{('  x = 5 '):match('^%s*(%w+)%s*=%s*(.-)%s*$')}", List{"x", "5"}},
+      {"{('key=val'):match('()=()')}", List{4, 5}},
+      {"('THE (quick) fox'):find('%((%a+)%)')", 5},
+      {"('f(a(b)c)d'):match('%b()')", "(a(b)c)"},
+      {"('THE (quick) fox'):match('%f[%a]%a+', 5)", "quick"},
+      {"('\"say \\'hi\\'\"'):match([[(['\"])(.-)%1]])", "\""},
+      {"('x-y]z'):match('[%]%-]+')", "-"},
+      {"('a]b'):match('[]]')", "]"},
+      {"('a-z'):match('[a%-z]+')", "a-z"},
+      {"('0xFf'):match('^0[xX](%x+)$')", "Ff"},
+      {"('abc'):match('[^%a]')", Value()},
+      {"('aaa'):match('a-')", ""},
+      {"('aaab'):match('a-b')", "aaab"},
+      {"('colour color'):gsub('colou?r', 'c')", "c c"},
+      {"{('abc'):gsub('', '-')}", List{"-a-b-c-", 4}},
+      {"{('hello world'):gsub('o', '0', 1)}", List{"hell0 world", 1}},
+      {"('hello world'):gsub('(%w+) (%w+)', '%2 %1 %0 %%')", "world hello hello world %"},
+      {"('$a $b'):gsub('%$(%w+)', {a = 'x'})", "x $b"},
+      {"('abc'):gsub('%w', function(c) return c == 'b' and c:upper() end)", "aBc"},
+      {"{('abc'):gsub('^a', 'x')}", List{"xbc", 1}},
+      {"(function() local t = {} for k, v in ('a=1, b=2'):gmatch('(%w+)=(%w+)') do t[#t + 1] = k .. v end return t end)()", List{"a1", "b2"}},
+      {"(function() local t = {} for w in ('one two'):gmatch('%a*') do t[#t + 1] = w end return t end)()", List{"one", "two"}},
+      {"(function() local t = {} for w in ('^a^'):gmatch('^a') do t[#t + 1] = w end return t end)()", List{"^a"}},
+      {"{('a\\0b'):find('%z')}", List{2, 2}},
+  };
+  for (const auto& [text, value] : cases) {
+    INFO(text);
+    CHECK(h.run(std::string("return (") + text + ")") == value);
+  }
+  CHECK_THAT(h.failure("('a'):find('%')"), Equals("test:1: malformed pattern (ends with '%')"));
+  CHECK_THAT(h.failure("('a'):find('[a')"), Equals("test:1: malformed pattern (missing ']')"));
+  CHECK_THAT(h.failure("('a'):find('%b')"), Equals("test:1: malformed pattern (missing arguments to '%b')"));
+  CHECK_THAT(h.failure("('a'):find('%f')"), Equals("test:1: missing '[' after '%f' in pattern"));
+  CHECK_THAT(h.failure("('a'):find('(a')"), Equals("test:1: unfinished capture"));
+  CHECK_THAT(h.failure("('a'):match('a)')"), Equals("test:1: invalid pattern capture"));
+  CHECK_THAT(h.failure("('a'):find('%1')"), Equals("test:1: invalid capture index %1"));
+  CHECK_THAT(h.failure("('a'):gsub('a', '%2')"), Contains("test:1: invalid capture index %2"));
+  CHECK_THAT(h.failure("('a'):gsub('a', '%x')"), Contains("test:1: invalid use of '%' in replacement string"));
+  CHECK_THAT(h.failure("('a'):gsub('a', function() return {} end)"), Contains("test:1: invalid replacement value (a table)"));
+  CHECK_THAT(h.failure("('a'):gsub('a')"), Contains("test:1: bad argument #2 to 'gsub' (string/function/table expected, got no value)"));
+  CHECK_THAT(h.failure("('x'):rep(300):find(('x?'):rep(300) .. ('x'):rep(300))"), Contains("pattern too complex"));
+}
+
 TEST_CASE("values keep their type both ways") {
   LuaHouse h;
   h.thing("/usr/a");

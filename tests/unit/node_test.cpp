@@ -407,3 +407,91 @@ TEST_CASE("Ids are never used again, and several kernels live side by side") {
   CHECK(core.make("b").id() > id);
   CHECK(other.kernel.root().find("/usr/t/b") == nullptr);
 }
+
+TEST_CASE("What is in use, and what is above it, can neither be removed nor moved nor renamed") {
+  Core core;
+  Thing &a = core.make("a"), &b = core.make(a, "b"), &c = core.make(b, "c"), &other = core.make("other");
+  {
+    const InUse use(b, "it holds the roof");
+    CHECK_THROWS_WITH(a.remove(b), Catch::Equals("cannot remove /usr/t/a/b now: it is in use: it holds the roof"));
+    CHECK_THROWS_WITH(core.top->remove(a), Catch::Equals("cannot remove /usr/t/a now: /usr/t/a/b is in use: it holds the roof"));
+    CHECK_THROWS_WITH(core.top->removeChildren(), Catch::Contains("/usr/t/a/b is in use"));
+    CHECK(core.top->children().size() == 2);
+    CHECK_THROWS_WITH(core.top->reparent(a, other), Catch::Contains("cannot move /usr/t/a now"));
+    CHECK_THROWS_WITH(a.setName("x"), Catch::Equals("cannot name /usr/t/a 'x' now: /usr/t/a/b is in use: it holds the roof"));
+    CHECK_THROWS_WITH(callMethod(a, "unlinkLeaf", {}), Catch::Contains("it holds the roof"));
+    CHECK_NOTHROW(a.setName("a"));
+    c.setName("d");
+    b.remove(c);
+    core.top->remove(other);
+  }
+  a.setName("x");
+  core.top->remove(a);
+  CHECK(core.top->children().empty());
+}
+
+TEST_CASE("Names below what is in use stay as far down as it says") {
+  Core core;
+  Thing &a = core.make("a"), &b = core.make(a, "b"), &c = core.make(b, "c");
+  const InUse use(a, "paths lead there", 1);
+  CHECK_THROWS_WITH(b.setName("x"), Catch::Equals("cannot name /usr/t/a/b 'x' now: /usr/t/a is in use: paths lead there"));
+  c.setName("x");
+  a.remove(b);
+}
+
+TEST_CASE("Uses end in any order, and with what was in use") {
+  Core core;
+  auto kernel = std::make_unique<spark::test::House>(false);
+  Leaf& leaf = kernel->kernel.create("Node", "/usr/a");
+  auto first = std::make_unique<InUse>(leaf, "one"), second = std::make_unique<InUse>(leaf, "two"), third = std::make_unique<InUse>(leaf, "three");
+  second.reset();
+  CHECK_THROWS_WITH(leaf.setName("b"), Catch::Contains("three"));
+  third.reset();
+  CHECK_THROWS_WITH(leaf.setName("b"), Catch::Contains("one"));
+  first.reset();
+  CHECK_NOTHROW(leaf.setName("b"));
+}
+
+TEST_CASE("Among very many children names lead to the same ones as among few") {
+  Core core;
+  std::vector<Thing*> all;
+  for (int i = 0; i < 300; ++i) all.push_back(&core.make(i % 3 == 0 ? "same" : "n" + std::to_string(i)));
+  const auto agree = [&] {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      CAPTURE(i, all[i]->path());
+      REQUIRE(core.kernel.root().find(all[i]->path()) == all[i]);
+    }
+    CHECK(core.top->child("same[99999]") == nullptr);
+    CHECK(core.top->child("none") == nullptr);
+  };
+  agree();
+  CHECK(all[297]->path() == "/usr/t/same[100]");
+  core.top->remove(*all[0]);
+  all.erase(all.begin());
+  agree();
+  CHECK(all[296]->path() == "/usr/t/same[99]");
+  all[10]->setName("same");
+  agree();
+  core.make("late");
+  all[20]->setName("other");
+  CHECK(core.top->child("n21") == nullptr);
+  agree();
+  Thing& elsewhere = core.make("elsewhere");
+  core.top->reparent(*all[5], elsewhere);
+  all.erase(all.begin() + 5);
+  core.make("later");
+  agree();
+  core.top->removeChildren();
+  CHECK(core.top->child("same") == nullptr);
+}
+
+TEST_CASE("The tree has a greatest depth") {
+  Core core;
+  Node* at = core.top;
+  const auto deeper = [&] { at = at->create("Node", "n").asNode(); };
+  CHECK_THROWS_WITH([&] { for (;;) deeper(); }(), Catch::Equals("cannot add a Node here: the tree is at most 1000 levels deep"));
+  CHECK(at->children().empty());
+  int levels = 0;
+  for (Node* up = at; up; up = up->parent()) ++levels;
+  CHECK(levels == Node::kMostLevels + 1);
+}

@@ -57,7 +57,9 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
   app.add_option("--runs", out.seeds, "Runs of each combination, each with a seed of its own (default 1)")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
-  app.add_option("--seed", out.seed, "Seed of the first; the others count up (default 1)")->type_name("N");
+  app.add_option("--seed", out.seed, "Seed of the first; the others count up (default 1)")
+      ->type_name("N")
+      ->check(sparkhost::seedProblem);
   app.add_option("--duration", out.duration, "A run ends after that much simulated time [s]; 0: when the config ends it")
       ->type_name("SECONDS")
       ->check(CLI::NonNegativeNumber);
@@ -82,6 +84,8 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
   try {
     app.parse(argc, argv);
     checkResults(out.results);
+    if (out.seed + static_cast<std::uint64_t>(out.seeds - 1) < out.seed)
+      throw CLI::ValidationError("--seed", "expected seeds of 64 bits; " + std::to_string(out.seeds) + " runs from " + std::to_string(out.seed) + " on go beyond");
     for (const std::string& s : settings) out.settings.push_back(splitSetting("--set", s));
     for (const std::string& s : sweep) {
       const auto [key, values] = splitSetting("--sweep", s);

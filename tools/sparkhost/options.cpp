@@ -34,7 +34,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--set", sets, "Overrides an option of the config, a Soccer.* variable or /path.property")
       ->type_name("K=V")
       ->allow_extra_args(false);
-  app.add_option("--seed", out.seed, "Seed of all random streams (default 1)")->type_name("N");
+  app.add_option("--seed", out.seed, "Seed of all random streams (default 1)")->type_name("N")->check(seedProblem);
   app.add_option("--rate", rate, "real: paced to wall time (default); max: as fast as it goes")->check(CLI::IsMember({"real", "max"}));
   app.add_flag("--sync", sync, "Lockstep: a cycle starts when every agent has answered with (syn)");
   app.add_option("--expect", expect, "Hold the clock until N agents have named robot and team")

@@ -3,10 +3,20 @@
 /// What programs that run configs are told of where they run, on their command lines.
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace sparkhost {
+
+/// Checks the text of a seed, which CLI11 would cut to 64 bits without a word.
+inline std::string seedProblem(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error == std::errc() && end == text.data() + text.size()) return {};
+  return "expected a whole number from 0 to 18446744073709551615 (64 bits), found '" + text + "'";
+}
 
 /// Adds --plugin-path, --scene-path (folders that must be there) and --log-level, which `shows` describes; the values found are written to
 /// the others, which must live as long as `app`.

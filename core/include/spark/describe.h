@@ -86,7 +86,8 @@ struct Pack {
   static std::tuple<A...> read(Args& args) { return std::tuple<A...>{one<A>(args)...}; }
   template <class T>
   static T one(Args& args) {
-    if (args.atEnd() && Convert<T>::kScalars > 0) return T{};
+    static const T kNone{};  // static, so that it is all zeros before: a vector's constructor may leave its numbers as they are
+    if (args.atEnd() && Convert<T>::kScalars > 0) return kNone;
     return Convert<T>::from(args);
   }
 };

@@ -25,6 +25,12 @@ class Error : public std::exception {
   std::string text_;
 };
 
+/// A value that is refused however lenient a scene file's calls are taken: the import ends, with the place in the file.
+class RefusedValue : public Error {
+ public:
+  using Error::Error;
+};
+
 /// The up to three `candidates` nearest to `wanted` as a sentence (" Did you mean 'a' or 'b'?"), or "" when nothing is near.
 std::string didYouMean(std::string_view wanted, const std::vector<std::string>& candidates);
 

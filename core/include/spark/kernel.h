@@ -156,6 +156,11 @@ class Kernel {
   /// Lists and numbers all linked nodes in tree order if the shape changed since the last call; every emit begins with it. Whoever changes
   /// the tree and then collects from much of it calls it in between. The simulation's thread only.
   void updateOrder();
+  /// Makes all caches that go by structureVersion() be looked up again, although nobody came or went: what stands for something else changed at
+  /// `leaf`, such as which scene is the active one.
+  void markChanged(Leaf& leaf);
+  /// The id of the object that was made last; whatever is made from now on has a greater one.
+  std::uint64_t lastId() const { return nextId_ - 1; }
 
   /// Asks the host to end; safe from signal handlers and threads.
   void requestStop() { stop_.store(true); }
@@ -167,8 +172,11 @@ class Kernel {
   friend class Loader;
   friend class RandomStream;
   friend class ClassObject;
+  friend class InUse;
   [[noreturn]] static void throwLacks(const Leaf& leaf, const InterfaceId& id);
   ClassObject& addClass(ClassDescription description, Plugin* plugin);
+  /// Throws Error when `leaf`, or what is below it, is in use; to be renamed: also when its name is kept. `doing`: "cannot remove /a now".
+  static void refuseUsed(const Leaf& leaf, bool rename, const std::string& doing);
   std::uint64_t streamSeed(const Leaf& owner, std::string_view purpose);
   /// The shape, or a name, changed at `node` or right below it.
   void changed(Node* node);
@@ -186,6 +194,7 @@ class Kernel {
   std::uint64_t seed_ = 1, structureVersion_ = 1, orderedAt_ = 0, nextId_ = 1;
   std::vector<Leaf*> order_;  // by preOrder_; valid while orderedAt_ is the structure's version
   int changing_ = 0;  // leaves that are being linked, moved or unlinked
+  InUse* inUse_ = nullptr;  // the newest first
   std::map<std::uint64_t, std::uint32_t> streamOrdinals_;
   std::mutex streamMutex_;
   std::atomic<bool> stop_{false};

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -109,7 +110,7 @@ class Leaf {
 
   const std::string& name() const { return name_; }
   /// Renames; siblings may share a name (the first is found by it, the others as `name[k]`). Throws Error for names that no path can
-  /// hold ("", ".", "..", with '/' or '\\') and for classes and plugins, whose names are fixed.
+  /// hold ("", ".", "..", with '/' or '\\'), for classes and plugins, whose names are fixed, and for what is in use (InUse).
   void setName(std::string name);
   /// The owner, nullptr for the root and for what is not linked.
   Node* parent() const { return parent_; }
@@ -189,6 +190,27 @@ class Leaf {
   bool changing_ = false;  ///< is being linked, moved or unlinked: it must stay where it is
 };
 
+/// Says that a leaf is in use: code of it is at work, or others live in it. While one of these lives, the leaf and what is above it can
+/// neither be removed nor moved nor renamed: that throws Error with `why`. The simulation's thread only.
+class InUse {
+ public:
+  /// What is below keeps its name, too: for servers, which are found by their paths.
+  static constexpr int kAllBelow = 1 << 20;
+  /// `why` finishes the sentence "it is in use: ..." and outlives this object. `namesBelow`: how many levels below keep their names.
+  InUse(const Leaf& leaf, std::string_view why, int namesBelow = 0);
+  ~InUse();
+  InUse(const InUse&) = delete;
+  InUse& operator=(const InUse&) = delete;
+
+ private:
+  friend class Kernel;
+  Ref<Leaf> leaf_;
+  std::string_view why_;
+  int namesBelow_;
+  InUse** link_;  ///< what points at this one in the kernel's list
+  InUse* next_;
+};
+
 /// A Leaf that owns children, in order.
 class Node : public Leaf {
  public:
@@ -207,6 +229,8 @@ class Node : public Leaf {
   std::uint64_t changedAt() const { return changedAt_; }
   /// The first child of that name, nullptr when there is none. Takes `name[k]`.
   Leaf* child(std::string_view name) const;
+  /// The tree is no deeper than this.
+  static constexpr int kMostLevels = 1000;
   /// Appends and links. Throws what onLink throws; the tree is then as before.
   Leaf& add(std::unique_ptr<Leaf> leaf);
   /// Makes an object of the named class, names it (unless `name` is empty) and adds it. Throws Error.
@@ -219,7 +243,7 @@ class Node : public Leaf {
     throwLacks(leaf, T::kInterface);
   }
   /// Unlinks and destroys a child with all below it. References to them are empty before the first destructor runs. Throws Error for what
-  /// is being linked or unlinked at that moment, and for classes and plugins (unload the plugin).
+  /// is being linked or unlinked at that moment or in use (InUse), and for classes and plugins (unload the plugin).
   void remove(Leaf& child);
   /// Unlinks and destroys all children, first to last. Throws as `remove`.
   void removeChildren();
@@ -261,7 +285,16 @@ class Node : public Leaf {
   static void link(Leaf& leaf);
   static void unlink(Leaf& leaf);
   static void moved(Leaf& leaf);
+  /// Children of one name, in order.
+  using Names = std::unordered_map<std::string_view, std::vector<Leaf*>>;
+  void rememberName(Leaf& child);
+  std::size_t ordinal(const Leaf& child) const;
+  Leaf* numbered(std::string_view name, std::size_t n) const;
+  /// To be called before children go, move or get other names.
+  void forgetNames() { names_.reset(); }
+  static void destroyBelow(Node& node);
   std::vector<std::unique_ptr<Leaf>> children_;
+  std::unique_ptr<Names> names_;  ///< of all children, when there are many and all came one after the other; else empty
   std::uint64_t changedAt_ = 0;
 };
 

@@ -30,6 +30,51 @@ double number(Leaf& leaf, const char* method, const List& arguments = {}) { retu
 
 }  // namespace
 
+TEST_CASE("anchors and axes that are set before the bodies are attached count, as if they were set after") {
+  const struct {
+    const char* className;
+    std::vector<std::pair<const char*, List>> calls;
+    int axes;
+  } cases[] = {
+      {"HingeJoint", {{"setAnchor", {0.1, 0.2, 0.5}}, {"setAxis", {0.0, 0.0, 1.0}}, {"setAxis", {1}}}, 1},
+      {"UniversalJoint", {{"setAnchor", {0.1, 0.2, 0.5}}, {"setAxis1", {0.0, 0.0, 1.0}}, {"setAxis2", {1.0, 0.0, 0.0}}}, 2},
+      {"Hinge2Joint", {{"setAnchor", {0.1, 0.2, 0.5}}}, 2},
+      {"BallJoint", {{"setAnchor", {0.1, 0.2, 0.5}}}, 0},
+      {"AngularMotor", {{"setNumAxes", {2}}, {"setMotorAxis", {0, 1, 0.0, 1.0, 0.0}}, {"setMotorAxis", {1, 2, 0.0, 0.0, 1.0}}}, 2},
+  };
+  for (const auto& c : cases) {
+    INFO(c.className);
+    Vec3 anchors[2], axes[2][2];
+    std::uint64_t hashes[2];
+    for (const bool before : {false, true}) {
+      Pair p;
+      Leaf& j = p.child.create(c.className, "joint");
+      if (!before) p.call(j, "attach", {"../body", "../../parent/body"});
+      for (const auto& [method, arguments] : c.calls) p.call(j, method, arguments);
+      if (before) p.call(j, "attach", {"../body", "../../parent/body"});
+      auto& joint = *j.as<IJoint>();
+      anchors[before] = joint.anchor();
+      for (int a = 0; a < c.axes; ++a) axes[before][a] = joint.axisNow(a);
+      p.childBody().setAngularVelocity({1, 2, 3});
+      p.step(20);
+      hashes[before] = stateHash(p.scene);
+    }
+    CHECK(anchors[0] == anchors[1]);
+    for (int a = 0; a < c.axes; ++a) {
+      CHECK(axes[0][a] == axes[1][a]);
+      CHECK(axes[0][a].norm() == Approx(1));
+    }
+    CHECK(hashes[0] == hashes[1]);
+  }
+}
+
+TEST_CASE("what no axis and no anchor can be is refused before the bodies are attached, too") {
+  Pair p;
+  Leaf& j = p.child.create("HingeJoint", "joint");
+  CHECK_THROWS_WITH(p.call(j, "setAxis", {0.0, 0.0, 0.0}), Catch::Contains("expected an axis longer than 0"));
+  CHECK_THROWS_WITH(p.call(j, "setAnchor", {0.0, std::nan(""), 0.0}), Catch::Contains("expected finite numbers for the anchor"));
+}
+
 TEST_CASE("a hinge: anchor and axis in the joint's frame, angles in degrees, motor in degrees, stops") {
   Pair p;
   Leaf& j = p.joint("HingeJoint");

@@ -167,6 +167,34 @@ TEST_CASE("an import below a transform moves its transforms up while the outer f
   CHECK(positionOf(h.scene->require<Transform>("wall").worldNow()).z() == 2);
 }
 
+TEST_CASE("groups that were there before an import stay, with what is imported into them") {
+  SceneHouse h;
+  h.write("room.rsg", "(RSG 0 1)((nd Transform (nd Transform (setName chair)(nd Probe))) (nd Transform (setName table)(setLocalPos 2 0 0)(nd Probe)))");
+  auto& room = h.scene->create<Transform>("Transform", "room");
+  h.scene->create("Transform", "marker");
+  callMethod(room, "importScene", List{"room.rsg"});
+  CHECK(room.children().size() == 2);  // what the file itself wrapped has dissolved
+  REQUIRE(room.child("chair"));
+  room.setLocalPos({10, 0, 0});
+  CHECK(positionOf(room.require<Transform>("table").worldNow()).x() == 12);
+  h.run("(nd Transform (setName more)(nd Transform (setName shelf)(nd Probe)))");
+  CHECK(h.scene->child("room"));
+  CHECK(h.scene->child("marker"));
+  CHECK(h.scene->child("shelf"));
+  CHECK_FALSE(h.scene->child("more"));
+}
+
+TEST_CASE("a place that is none ends the import with file, line and column, lenient or not") {
+  SceneHouse h;
+  const bool strict = GENERATE(false, true);
+  setProperty(*h.kernel.root().find("/sys/server/scene/rsg"), "strict", strict);
+  h.write("nowhere.rsg", "(RSG 0 1)\n((nd Transform (setName t)\n  (setLocalPos nan 0 1)))");
+  h.write("far.rsg", "(RSG 0 1)\n((nd Transform (setLocalPos 1e300 0 0)))");
+  CHECK_THROWS_WITH(callMethod(*h.scene, "importScene", List{"nowhere.rsg"}),
+                    Catch::Contains("nowhere.rsg:3:4: ") && Catch::Contains("expected a position of finite numbers from -1e9 to 1e9, found nan 0.0 1.0"));
+  CHECK_THROWS_WITH(callMethod(*h.scene, "importScene", List{"far.rsg"}), Catch::Contains("far.rsg:2:16: ") && Catch::Contains("found inf 0.0 0.0"));
+}
+
 TEST_CASE("methods and classes have short names") {
   SceneHouse h;
   h.run(

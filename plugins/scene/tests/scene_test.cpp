@@ -148,6 +148,38 @@ TEST_CASE("another path may hold the active scene") {
   CHECK(&f.server->scene() == f.scene);
 }
 
+TEST_CASE("a position or matrix that is no place is refused") {
+  Fixture f;
+  auto& t = f.scene->create<Transform>("Transform", "t");
+  callMethod(t, "setLocalPos", List{1.0, 2.0, -1e9});
+  const auto refused = [&](const char* method, const List& arguments, const char* what) {
+    INFO(method);
+    CHECK_THROWS_WITH(callMethod(t, method, arguments), Catch::Contains(what));
+    CHECK(t.localPos() == Vec3f(1, 2, -1e9f));
+    std::string whyNot;
+    CHECK_THROWS_AS(callLoosely(t, *t.classObject()->method(method), arguments, whyNot), RefusedValue);
+  };
+  const double nan = std::nan("");
+  refused("setLocalPos", {nan, 0.0, 1.0}, "expected a position of finite numbers from -1e9 to 1e9, found nan 0.0 1.0");
+  refused("setLocalPos", {0.0, 1.1e9, 1.0}, "found 0.0 1100000000.0 1.0");
+  refused("setLocalPos", {1e300, 0.0, 0.0}, "found inf 0.0 0.0");
+  refused("setLocalRotation", {0.0, 0.0, nan}, "expected angles of finite numbers from -1e9 to 1e9");
+  List matrix(16, Value(0.0));
+  matrix[5] = HUGE_VAL;
+  for (const char* method : {"setLocalTransform", "SLT"}) refused(method, matrix, "expected a matrix of finite numbers");
+  CHECK_THROWS_WITH(setProperty(t, "localPos", List{0.0, nan, 0.0}), Catch::Contains("cannot set /usr/scene/t.localPos") && Catch::Contains("found 0.0 nan 0.0"));
+}
+
+TEST_CASE("another active scene counts as a change of the tree") {
+  Fixture f;
+  const auto before = f.kernel.structureVersion();
+  f.kernel.create("Scene", "/usr/other");
+  const auto made = f.kernel.structureVersion();
+  CHECK(made > before);
+  setProperty(*f.kernel.root().find("/sys/server/scene"), "activeScene", "/usr/other");
+  CHECK(f.kernel.structureVersion() > made);
+}
+
 TEST_CASE("an import without an importer says what to add") {
   Fixture f;
   CHECK_THROWS_WITH(f.server->importScene("x.rsg", *f.scene, {}), Catch::Contains("has no importer below it"));

@@ -30,6 +30,39 @@ TEST_CASE("a player who lies for 15 s is held in the air for half a second and p
   CHECK(h.get("/sys/server/gamecontrol/PenaltyAspect", "fouls") == Value(2));
 }
 
+namespace {
+/// Fills the stack that the next call uses.
+[[gnu::noinline]] void smear(unsigned char with) {
+  volatile unsigned char bytes[1 << 16];
+  for (volatile unsigned char& b : bytes) b = with;
+}
+}  // namespace
+
+TEST_CASE("the state of a player who is held is the same in every run, whatever was in memory", "[fouls]") {
+  std::uint64_t hashes[2];
+  for (int run : {0, 1}) {
+    FoulMatch h({"IncapableFoulAspect"}, 2, 1, 0.1);
+    h.run(750);
+    smear(run ? 0x5a : 0xa5);
+    h.run(1);
+    REQUIRE(h.fouls() == Fouls{"1 4 1 2"});
+    hashes[run] = stateHash(*h.kernel.root().find("/sys/server/gamecontrol/PenaltyAspect"));
+  }
+  CHECK(hashes[0] == hashes[1]);
+}
+
+TEST_CASE("nobody is held while penalties are switched off", "[fouls]") {
+  FoulMatch h({"IncapableFoulAspect"}, 2, 0, 0.1);
+  Leaf& penalties = *h.kernel.root().find("/sys/server/gamecontrol/PenaltyAspect");
+  h.run(751);
+  CHECK(h.fouls() == Fouls{"1 4 1 2"});
+  setProperty(penalties, "enabled", false);
+  h.run(800);
+  CHECK(h.fouls().empty());
+  CHECK(h.position(h.a(2)).z() < 0.2);
+  CHECK(h.get("/sys/server/gamecontrol/PenaltyAspect", "fouls") == Value(1));
+}
+
 TEST_CASE("a player who does not stand for 30 s is incapable, a goalie after 60 s", "[fouls]") {
   FoulMatch h({"IncapableFoulAspect"}, 2, 0, 0.2);
   h.run(1500);

@@ -50,6 +50,26 @@ TEST_CASE("a player behind the second-last opponent who gets the ball is offside
   CHECK((h.ball().state().position - spot).head<2>().norm() < 0.5);
 }
 
+TEST_CASE("offside is switched off and on during a match", "[soccer]") {
+  OffsideMatch h;
+  Leaf& aspect = *h.kernel.root().find("/sys/server/gamecontrol/OffsideAspect");
+  h.pass();
+  CHECK(h.get("/sys/server/gamecontrol/OffsideAspect", "marked").text() == "{2}");
+  setProperty(aspect, "enabled", false);
+  h.receive(41);
+  CHECK(h.mode() == "PlayOn");
+  CHECK(h.get("/sys/server/gamecontrol/OffsideAspect", "marked").text() == "{}");
+  h.formation(40);
+  setProperty(aspect, "enabled", true);
+  h.runSeconds(0.2);  // that touch was long ago
+  h.pass();
+  h.receive(41);
+  CHECK(h.mode() == "offside_left");
+  setProperty(aspect, "enabled", false);
+  h.runSeconds(1.1);  // what was called is carried out
+  CHECK(h.mode() == "free_kick_right");
+}
+
 TEST_CASE("no offside: level with the defence, behind the ball, in the own half", "[soccer]") {
   OffsideMatch h;
   const double x = GENERATE(29.0, 19.0, -5.0);

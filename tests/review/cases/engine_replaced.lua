@@ -1,0 +1,24 @@
+-- The engine cannot be taken from under a world; the world goes on.
+-- expect: cannot remove /sys/server/physics/engine now: it is in use: /usr/scene/world and the bodies, colliders and joints in it live in the engine; remove them all first
+-- expect: a new body: true
+-- expect: both fall
+include "house.lua"
+files() scene() physics() simulation()
+local function ball(name, y)
+  local place = new("Transform", "/usr/scene/" .. name)
+  place.localPos = { 0, y, 50 }
+  place:new("RigidBody", "body"):setSphereTotal(1, 0.2)
+  place:new("SphereCollider", "collider").radius = 0.2
+  return place
+end
+local first, second = ball("first", 0), nil
+on("act", function(self, event)
+  if event.cycle == 40 then
+    print(select(2, pcall(delete, "/sys/server/physics/engine")))
+    print(pcall(new, "OdeEngine", "/sys/server/physics/engine"))
+  end
+  if event.cycle == 60 then
+    print("a new body:", pcall(function() second = ball("second", 5) end))
+  end
+  if event.cycle == 90 and first.localPos[3] < 40 and second.localPos[3] < 49 then print("both fall") end
+end)
