@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 
 #include "spark/error.h"
 #include "spark/kernel.h"
+#include "spark/running.h"
 
 namespace spark {
 
@@ -118,10 +120,23 @@ void ClassObject::resolve() {
   resolved_ = true;
 }
 
+/// Runs the constructor, which knows neither class nor place.
+std::unique_ptr<Leaf> ClassObject::construct() const {
+  const NowRunning now("the constructor", this);
+  const auto failed = [this] { return "the constructor of class " + name() + (plugin_ ? " of plugin " + plugin_->name() : "") + " failed"; };
+  try {
+    return description_.make();
+  } catch (const std::exception& e) {
+    throw Error(failed(), e);
+  } catch (...) {
+    throw Error(failed() + ": it threw something that is no std::exception");
+  }
+}
+
 std::unique_ptr<Leaf> ClassObject::create() {
   if (isAbstract()) throw Error("class " + name() + " is a base for others and cannot be made itself");
   resolve();
-  auto leaf = description_.make();
+  std::unique_ptr<Leaf> leaf = construct();
   leaf->class_ = this;
   leaf->id_ = kernel().nextId_++;
   ++living_;
@@ -238,6 +253,22 @@ std::string countProblem(const Method& m, std::span<const Value> arguments, bool
   else if (m.maxScalars != m.minScalars) wanted += " to " + std::to_string(m.maxScalars);
   return signature(m) + " expected " + wanted + " arguments, found " + std::to_string(n);
 }
+/// What loose reading made of texts where numbers are due: " 'six' was read as 0.", "" when there are none.
+std::string readAsNumbers(const Method& m, std::span<const Value> arguments) {
+  const auto wantsNumbers = [](const std::string& parameter) {
+    return parameter.find("number") != std::string::npos || parameter.find("integer") != std::string::npos || parameter.find("vec3") != std::string::npos;
+  };
+  if (!std::all_of(m.parameters.begin(), m.parameters.end(), wantsNumbers)) return {};
+  std::string out;
+  for (const Value& v : arguments) {
+    if (!v.isString()) continue;
+    const char* text = v.toString().c_str();
+    char* end = nullptr;
+    const double number = std::strtod(text, &end);
+    if (end == text || *end != 0) out += "\n  '" + v.toString() + "' is no number: it was read as " + Value(number).text() + ".";
+  }
+  return out;
+}
 }  // namespace
 
 Value getProperty(const Leaf& leaf, std::string_view name) { return findProperty(leaf, name).get(leaf); }
@@ -245,6 +276,7 @@ Value getProperty(const Leaf& leaf, std::string_view name) { return findProperty
 void setProperty(Leaf& leaf, std::string_view name, const Value& value) {
   const Property& p = findProperty(leaf, name);
   if (!p.set) throw Error(leaf.path() + "." + std::string(name) + " is read only");
+  const NowRunning now(p.name.c_str(), &leaf);
   try {
     Args args{std::span(&value, 1)};
     write(p, leaf, args);
@@ -262,6 +294,7 @@ Value callMethod(Leaf& leaf, std::string_view name, std::span<const Value> argum
     throw Error(leaf.path() + " (class " + c.name() + ") has no method '" + std::string(name) + "'." + didYouMean(name, names));
   }
   if (const std::string problem = countProblem(*m, arguments, false); !problem.empty()) throw Error("cannot call " + leaf.path() + ": " + problem);
+  const NowRunning now(m->name.c_str(), &leaf);
   try {
     Args args{arguments};
     Value result = m->call(leaf, args);
@@ -275,6 +308,7 @@ Value callMethod(Leaf& leaf, std::string_view name, std::span<const Value> argum
 bool callLoosely(Leaf& leaf, const Method& method, std::span<const Value> arguments, std::string& whyNot) {
   whyNot = countProblem(method, arguments, true);
   if (!whyNot.empty()) return false;
+  const NowRunning now(method.name.c_str(), &leaf);
   try {
     Args args{arguments, true};
     method.call(leaf, args);
@@ -282,7 +316,7 @@ bool callLoosely(Leaf& leaf, const Method& method, std::span<const Value> argume
   } catch (const RefusedValue&) {
     throw;
   } catch (const std::exception& e) {
-    whyNot = signature(method) + ": " + e.what();
+    whyNot = signature(method) + ": " + e.what() + readAsNumbers(method, arguments);
     return false;
   }
 }

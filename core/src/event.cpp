@@ -1,10 +1,12 @@
 #include "spark/event.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "spark/class_object.h"
 #include "spark/error.h"
 #include "spark/kernel.h"
+#include "spark/running.h"
 
 namespace spark {
 
@@ -19,22 +21,26 @@ constexpr std::size_t kAbove = 64;          // and of the class of the node abov
 }  // namespace
 
 void Channel::run(Entry& entry, const Event& event) {
-  const auto report = [&](const char* what) {
-    std::string who = "a removed node";
-    if (entry.node) {
-      const ClassObject& c = *entry.node->classObject();
-      who = entry.node->path() + " (class " + c.name() + (c.plugin() ? " of plugin " + c.plugin()->name() : "") + ")";
-    }
-    kernel_->log().error("{} of {} failed: {}", name_, who, what);
-  };
   try {
     if (entry.plain) entry.plain(*entry.node, event);
     else entry.handler(*entry.node, event);
   } catch (const std::exception& e) {
-    report(e.what());
+    report(entry, e.what());
   } catch (...) {
-    report("it threw something that is no std::exception");
+    report(entry, "it threw something that is no std::exception");
   }
+}
+
+/// Once for each handler: one that fails in every cycle would fill the disk.
+void Channel::report(Entry& entry, const char* what) {
+  kernel_->countFault();
+  if (std::exchange(entry.faulty, true)) return;
+  std::string who = "a removed node";
+  if (entry.node) {
+    const ClassObject& c = *entry.node->classObject();
+    who = entry.node->path() + " (class " + c.name() + (c.plugin() ? " of plugin " + c.plugin()->name() : "") + ")";
+  }
+  kernel_->log().error("{} of {} failed: {}\n  It stays; further faults of this handler are counted, not logged.", name_, who, what);
 }
 
 void Channel::sort() {
@@ -69,10 +75,14 @@ void Channel::emit(const Event& event) {
   settle();
   if (depth_ == 0) sort();
   ++depth_;
+  NowRunning now(name_.c_str());
+  now.beat();
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (i + kFar < entries_.size()) prefetch(entries_[i + kFar].node, kNode);
     if (const Leaf* next = i + kNear < entries_.size() ? entries_[i + kNear].node : nullptr; next && next->parent()) prefetch(next->parent() + 1, kAbove);
-    if (entries_[i].node) run(entries_[i], event);
+    if (!entries_[i].node) continue;
+    now.at(entries_[i].node);
+    run(entries_[i], event);
   }
   --depth_;
   if (holes_ || !pending_.empty()) settle();
@@ -82,6 +92,7 @@ void Channel::emitAt(Leaf& node, const Event& event) {
   settle();
   if (depth_ == 0) sort();
   ++depth_;
+  const NowRunning now(name_.c_str(), &node);
   for (Entry& e : entries_)
     if (e.node == &node) run(e, event);
   --depth_;

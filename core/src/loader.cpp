@@ -4,9 +4,11 @@
 #include <cstring>
 #include <utility>
 
+#include "library_file.h"
 #include "loaded_library.h"
 #include "spark/error.h"
 #include "spark/kernel.h"
+#include "spark/running.h"
 
 // How a plugin comes and goes.
 //
@@ -42,6 +44,14 @@ std::string abiProblem(const AbiWord& theirs) {
     return "its Spark headers (" + std::string(theirs.headers, strnlen(theirs.headers, 16)) + ") are not this host's (" + ours.headers + ")";
   return {};
 }
+
+/// The linker believes what a file says. Where it is wrong, the host's last words are the file's name.
+struct Loading {
+  explicit Loading(const char* file) { running().file = file; }
+  ~Loading() { running().file = nullptr; }
+  Loading(const Loading&) = delete;
+  Loading& operator=(const Loading&) = delete;
+};
 
 class ClassCollector : public Registrar {
  public:
@@ -107,6 +117,8 @@ void Loader::drop(ClassObject& c, bool leak) {
 
 Plugin& Loader::open(const fs::path& file) {
   const std::string path = absolutePath(file);
+  if (const std::string problem = libraryProblem(path); !problem.empty()) throw Error("refused plugin " + path + ": " + problem);
+  const Loading loading(path.c_str());
   std::shared_ptr<LoadedLibrary> library = LoadedLibrary::load(path);
   const auto* d = static_cast<const PluginDescriptor*>(library->symbol("sparkPlugin"));
   const auto refuse = [&](const std::string& reason) { throw Error("refused plugin " + path + ": " + reason); };
@@ -163,6 +175,7 @@ void Loader::registerPlugin(Plugin& plugin) {
     for (ClassObject* c : added) drop(*c, false);
   };
   std::vector<std::string> names;
+  const NowRunning now("registering", &plugin);
   try {
     plugin.descriptor_->registerClasses(collector);
     for (ClassDescription& d : collector.classes) {

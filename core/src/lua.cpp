@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "lua_impl.h"
 
@@ -19,20 +20,20 @@ void Lua::addFolder(fs::path folder) { impl_->folders.push_back(std::move(folder
 void Lua::addOverride(std::string key, Value value) { impl_->settings.add(std::move(key), std::move(value)); }
 
 void Lua::runConfig(std::string_view file) {
-  const script::Script config = impl_->read(file, "config");
+  const script::Script config = impl_->readConfig(file);
   const script::Restore keepFolder(impl_->configFolder, config.path.parent_path());
   {
     const script::Restore shielding(impl_->inConfig, true);
     impl_->run(config.text, "@" + std::string(file));
   }
+  impl_->checkChannels();
   impl_->settings.finish();
 }
 
 Value Lua::run(std::string_view text, std::string_view chunkName) { return impl_->run(text, "=" + std::string(chunkName)); }
 
 void Lua::attach(Leaf& node, std::string_view file, const Value& arguments) {
-  const auto push = [&](lua_State* L) { script::pushArguments(L, arguments); };
-  impl_->attach(node, impl_->read(file, "script").text, "@" + std::string(file), true, push);
+  impl_->attachFile(node, file, nullptr, [&](lua_State* L) { script::pushArguments(L, arguments); });
 }
 
 void Lua::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) {
@@ -51,10 +52,32 @@ Runtime::~Runtime() {
     if (const auto state = weak.lock()) state->close();
 }
 
-Script Runtime::read(std::string_view file, std::string_view what) const {
+/// A config is what the user names: in the working folder first.
+Script Runtime::readConfig(std::string_view file) {
   std::vector<fs::path> places{fs::current_path()};
   if (!configFolder.empty()) places.push_back(configFolder);
   places.insert(places.end(), folders.begin(), folders.end());
+  return read(file, "config", places);
+}
+
+/// A working folder may be anybody's: what is only included is not taken from there, unless the config itself was.
+Script Runtime::readInclude(std::string_view file, lua_State* includer) {
+  std::vector<fs::path> places;
+  if (const auto beside = folderOf(includer); !beside.empty()) places.push_back(beside);
+  if (!configFolder.empty() && std::find(places.begin(), places.end(), configFolder) == places.end()) places.push_back(configFolder);
+  places.insert(places.end(), folders.begin(), folders.end());
+  return read(file, "script", places);
+}
+
+/// The folder of the script that called the running C function; empty when it is none, or no file.
+fs::path Runtime::folderOf(lua_State* L) const {
+  lua_Debug ar{};
+  if (!L || !lua_getstack(L, 1, &ar) || !lua_getinfo(L, "S", &ar)) return {};
+  const auto known = origins_.find(ar.source);
+  return known == origins_.end() ? fs::path() : known->second;
+}
+
+Script Runtime::read(std::string_view file, std::string_view what, std::vector<fs::path> places) {
   if (fs::path(file).is_absolute()) places = {fs::path(file).parent_path()};
   std::string looked;
   std::vector<std::string> names;
@@ -66,6 +89,7 @@ Script Runtime::read(std::string_view file, std::string_view what) const {
       std::ifstream in(path, std::ios::binary);
       std::string text{std::istreambuf_iterator<char>(in), {}};
       if (!in) throw Error("cannot read " + std::string(what) + " " + path.string() + ": no permission?");
+      origins_["@" + std::string(file)] = path.parent_path();
       return {path, std::move(text)};
     }
     looked += (looked.empty() ? "" : ", ") + place.string();
@@ -131,7 +155,42 @@ void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkNa
   throw Error("the script attached to " + path + " failed: " + failure->text);
 }
 
+/// Scripts that are attached may lie where the user is: they are named by the user, or by a config that expects them there.
+void Runtime::attachFile(Leaf& node, std::string_view file, lua_State* from, const State::Body& pushArguments) {
+  std::vector<fs::path> places;
+  if (const auto beside = folderOf(from); !beside.empty()) places.push_back(beside);
+  if (!configFolder.empty()) places.push_back(configFolder);
+  places.insert(places.end(), folders.begin(), folders.end());
+  places.push_back(fs::current_path());
+  attach(node, read(file, "script", places).text, "@" + std::string(file), true, pushArguments);
+}
+
+/// What is near the name of a channel that nobody defined, as a sentence.
+std::string Runtime::nearChannels(std::string_view name) const {
+  std::vector<std::string> names;
+  for (const Channel* c : kernel.events().all()) {
+    if (c->doc().empty()) continue;
+    if (c->name() == name) return {};
+    names.push_back(c->name());
+  }
+  return didYouMean(name, names);
+}
+
+/// Channels may be defined after a config listens to them. At its end they are there, or the name is wrong.
+void Runtime::checkChannels() {
+  const auto listened = std::exchange(listened_, {});
+  for (const auto& [channel, where] : listened)
+    if (const std::string near = nearChannels(channel); !near.empty())
+      throw Error(where + "there is no event channel '" + channel + "': nothing would ever run this handler." + near);
+}
+
 std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::string_view channel) {
+  if (const std::string near = nearChannels(channel); !near.empty()) {
+    if (!inConfig) throw Error("there is no event channel '" + std::string(channel) + "': nothing would ever run this handler." + near);
+    luaL_where(L, 1);
+    listened_.emplace_back(channel, lua_tostring(L, -1));
+    lua_pop(L, 1);
+  }
   auto s = std::make_shared<Subscription>();
   State& state = State::of(L);
   s->state = state.shared_from_this();
@@ -145,6 +204,7 @@ std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::
 }
 
 void Runtime::report(const Failure& failure, const Subscription& s) {
+  kernel.countFault();
   const bool isNew = reported_.insert(failure.where.empty() ? failure.text : failure.where).second;
   if (!isNew && !failure.exhausted) return;
   kernel.log().error("handler of '{}' at {} failed: {}\n  {}", s.channel->name(), s.node ? s.node->path() : "a deleted node", failure.text,

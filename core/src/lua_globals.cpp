@@ -75,7 +75,7 @@ int option(lua_State* L) {
 
 int include(lua_State* L) {
   const std::string file(checkString(L, 1, "a file name"));
-  const std::string text = State::of(L).runtime().read(file, "script").text;
+  const std::string text = State::of(L).runtime().readInclude(file, L).text;
   lua_settop(L, 0);
   Runtime::load(L, text, "@" + file, lua_upvalueindex(2));
   lua_call(L, 0, LUA_MULTRET);

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -95,6 +96,8 @@ class State : public std::enable_shared_from_this<State> {
   static void* allocate(void* self, void* block, std::size_t oldSize, std::size_t newSize);
   static void countHook(lua_State* L, lua_Debug* ar);
   static int describeError(lua_State* L);
+  static std::string nearGlobals(lua_State* L, std::string_view text);
+  [[noreturn]] static void throwForGood(lua_State* L, lua_Debug* ar, const char* text);
   [[noreturn]] void throwExhausted(lua_State* L, lua_Debug* ar);
 
   Runtime& runtime_;
@@ -168,8 +171,14 @@ class Runtime {
   explicit Runtime(Kernel& kernel);
   ~Runtime();
 
-  /// Finds and reads a script; `what` names it in the error ("config", "script"). Throws Error that says where it looked.
-  Script read(std::string_view file, std::string_view what) const;
+  /// Finds and reads a config: in the working folder, beside a config that runs, in the folders. Throws Error that says where it looked.
+  Script readConfig(std::string_view file);
+  /// Finds and reads what a script includes: beside that script, beside the running config, in the folders. Throws as readConfig.
+  Script readInclude(std::string_view file, lua_State* includer);
+  /// Finds a script (as an include, in the working folder at last) and attaches it; `from`: the Lua function that does, or nullptr. Throws Error.
+  void attachFile(Leaf& node, std::string_view file, lua_State* from, const State::Body& pushArguments);
+  /// At a config's end: throws Error for a handler of a channel that nobody defined and whose name is nearly another's.
+  void checkChannels();
   /// Loads text and leaves the function, with the environment at `environment` (an absolute or upvalue index), on the stack. Lua error.
   static void load(lua_State* L, std::string_view text, std::string_view chunkName, int environment);
   /// Leaves the environment that configs share on the stack of a trusted thread.
@@ -195,8 +204,14 @@ class Runtime {
   std::vector<std::weak_ptr<Subscription>>* made = nullptr;  ///< collects what a script subscribes while it is attached
 
  private:
+  Script read(std::string_view file, std::string_view what, std::vector<std::filesystem::path> places);
+  std::filesystem::path folderOf(lua_State* L) const;
+  std::string nearChannels(std::string_view name) const;
+
   int configEnvironment_ = LUA_NOREF;
   std::set<std::string> reported_;
+  std::map<std::string, std::filesystem::path, std::less<>> origins_;  ///< folders of the files read, by chunk name
+  std::vector<std::pair<std::string, std::string>> listened_;         ///< channels nobody had defined then, and file:line
 };
 
 /// Wraps a C function: a std::exception becomes a Lua error that starts with the caller's file:line.

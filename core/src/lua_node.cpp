@@ -91,8 +91,7 @@ int nodeAttachScript(lua_State* L) {
   const std::shared_ptr<void> release(nullptr, [&](void*) {
     for (const int argument : arguments) luaL_unref(L, LUA_REGISTRYINDEX, argument);
   });
-  Runtime& runtime = State::of(L).runtime();
-  runtime.attach(node, runtime.read(file, "script").text, "@" + file, true, push);
+  State::of(L).runtime().attachFile(node, file, L, push);
   return 0;
 }
 

@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -79,18 +80,25 @@ void State::countHook(lua_State* L, lua_Debug* ar) {
   State& state = of(L);
   state.left_ -= lua_gethookcount(L);
   if (state.left_ <= 0) state.throwExhausted(L, ar);
+  if (state.runtime_.inConfig && state.runtime_.kernel.stopRequested())
+    throwForGood(L, ar, "stopped before the config was done: the host was asked to end. Does this loop end?");
   if (lua_gethookcount(L) != kHookInterval) lua_sethook(L, &State::countHook, LUA_MASKCOUNT, kHookInterval);
 }
 
-void State::throwExhausted(lua_State* L, lua_Debug* ar) {
+/// Every further instruction fails, too: pcall does not help.
+void State::throwForGood(lua_State* L, lua_Debug* ar, const char* text) {
   lua_sethook(L, &State::countHook, LUA_MASKCOUNT, 1);
   lua_getinfo(L, "Sl", ar);
-  if (ar->currentline > 0) lua_pushfstring(L, "%s:%d: ", ar->short_src, ar->currentline);
-  else lua_pushliteral(L, "");
-  lua_pushfstring(L, "stopped after %I instructions: is there an endless loop?", static_cast<LUAI_UACINT>(budget_));
-  lua_concat(L, 2);
+  if (ar->currentline > 0) lua_pushfstring(L, "%s:%d: %s", ar->short_src, ar->currentline, text);
+  else lua_pushstring(L, text);
   lua_error(L);
   std::abort();  // lua_error does not return, but is not declared so
+}
+
+void State::throwExhausted(lua_State* L, lua_Debug* ar) {
+  char text[100];
+  std::snprintf(text, sizeof text, "stopped after %lld instructions: is there an endless loop?", static_cast<long long>(budget_));
+  throwForGood(L, ar, text);
 }
 
 void State::charge(lua_State* L, std::uint64_t instructions) {
@@ -105,11 +113,33 @@ void State::release(int reference) {
   if (main_) luaL_unref(main_, LUA_REGISTRYINDEX, reference);
 }
 
+/// What is near the global that a script used although it is nil, as a sentence: names of the environment of the function that failed.
+std::string State::nearGlobals(lua_State* L, std::string_view text) {
+  constexpr std::string_view kMark = "a nil value (global '";
+  const std::size_t mark = text.find(kMark);
+  lua_Debug ar{};
+  if (mark == std::string_view::npos || !lua_checkstack(L, 5) || !lua_getstack(L, 1, &ar) || !lua_getinfo(L, "f", &ar)) return {};
+  std::string_view name = text.substr(mark + kMark.size());
+  name = name.substr(0, name.find('\''));
+  std::vector<std::string> names;
+  const int function = lua_gettop(L);
+  for (int i = 1; const char* upvalue = lua_getupvalue(L, function, i); ++i) {
+    if (std::string_view(upvalue) == "_ENV" && lua_istable(L, -1))
+      for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
+        if (lua_type(L, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(L, -2));
+    lua_pop(L, 1);
+  }
+  lua_pop(L, 1);
+  const std::string near = didYouMean(name, names);
+  return near.empty() ? near : "." + near;
+}
+
 // Runs where the error is raised, with the stack still there. The text is kept outside Lua: its memory may be used up.
 int State::describeError(lua_State* L) {
   State& state = of(L);
   Failure failure;
   appendText(L, 1, failure.text);
+  failure.text += nearGlobals(L, failure.text);
   lua_Debug ar{};
   int lines = 0;
   for (int level = 1; lua_getstack(L, level, &ar); ++level) {

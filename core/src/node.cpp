@@ -6,6 +6,7 @@
 #include "spark/class_object.h"
 #include "spark/error.h"
 #include "spark/kernel.h"
+#include "spark/running.h"
 
 // How a node joins and leaves. link: onLink of the parent, its hooks, then its children's; when one throws, what was linked is unlinked
 // again and add() throws. unlink: children first, then onUnlink, then its handlers go. Both may change the tree around them, so lists are
@@ -86,7 +87,10 @@ void Leaf::setName(std::string name) {
   if (linked_) kernel().changed(parent_);
 }
 
-Kernel& Leaf::kernel() const { return *class_->kernel_; }
+Kernel& Leaf::kernel() const {
+  if (!class_) throw Error("kernel() is not there in a constructor, nor is the tree: do this in onLink(), which runs when the object hangs in the tree");
+  return *class_->kernel_;
+}
 
 bool Leaf::isLinked() const { return linked_; }
 
@@ -331,7 +335,10 @@ void Node::link(Leaf& leaf) {
   kernel.changed(leaf.parent_);
   bool entered = false;
   try {
-    leaf.onLink();
+    {
+      const NowRunning now("onLink", &leaf);
+      leaf.onLink();
+    }
     entered = true;
     kernel.events().hook(leaf);
     if (Node* node = leaf.asNode()) linkChildren(*node);
@@ -346,6 +353,7 @@ void Node::link(Leaf& leaf) {
 }
 
 void Node::leave(Leaf& leaf) {
+  const NowRunning now("onUnlink", &leaf);
   try {
     leaf.onUnlink();
   } catch (const std::exception& e) {
@@ -442,7 +450,10 @@ void Node::reparent(Leaf& child, Node& newParent) {
 
 void Node::moved(Leaf& leaf) {
   const Changing guard(leaf);
-  leaf.onMoved();
+  {
+    const NowRunning now("onMoved", &leaf);
+    leaf.onMoved();
+  }
   if (Node* node = leaf.asNode())
     for (std::size_t i = 0; i < node->children_.size(); ++i) moved(*node->children_[i]);
 }

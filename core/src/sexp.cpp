@@ -1,7 +1,9 @@
 #include "spark/predicates.h"
 
 #include <array>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace spark {
 
@@ -18,6 +20,81 @@ constexpr auto kClasses = [] {
 }();
 bool is(Class what, char c) { return kClasses[static_cast<unsigned char>(c)] & what; }
 bool isEscapable(char c) { return c == '"' || c == '\'' || c == '(' || c == ')' || c == '\\'; }
+
+/// A list that lacks its ')', and the line that says so.
+struct Unclosed {
+  std::uint32_t line = 0, column = 0, siblingLine = 0;
+};
+
+/// Reads the indentation of a text in which some list is not closed: the first line that begins with '(' no further right than the list
+/// that is open there must have been meant as its sibling. Nothing where people do not indent.
+class Indentation {
+ public:
+  explicit Indentation(std::string_view bytes) : bytes_(bytes) {}
+
+  std::optional<Unclosed> read() {
+    for (at_ = 0; at_ < bytes_.size() && !flat_; ++at_) {
+      const char c = bytes_[at_];
+      if (c == '\n') {
+        ++line_;
+        lineStart_ = at_ + 1;
+        fresh_ = true;
+        continue;
+      }
+      if (c == ';') skipTo('\n');
+      else if (c == '"') skipTo('"');
+      else if (c == '(') open();
+      else if (c == ')') close();
+      fresh_ = fresh_ && is(kBlank, c);
+    }
+    return flat_ ? std::nullopt : found_;
+  }
+
+ private:
+  struct List {
+    std::uint32_t line, column;
+    bool first;  ///< begins its line, and says something there
+    bool flat;   ///< has lines that begin beside it
+  };
+  std::uint32_t column() const { return static_cast<std::uint32_t>(at_ - lineStart_) + 1; }
+  /// To the byte, or in front of a line's end.
+  void skipTo(char end) {
+    while (at_ + 1 < bytes_.size() && (bytes_[at_ + 1] != end || (end == '"' && bytes_[at_] == '\\'))) {
+      ++at_;
+      if (bytes_[at_] == '\n') ++line_, lineStart_ = at_ + 1;
+    }
+    if (end == '"') ++at_;
+  }
+  void open() {
+    if (fresh_)
+      for (std::size_t i = lists_.size(); i-- > 0;) {
+        List& outer = lists_[i];
+        if (!outer.first) continue;
+        if (outer.column >= column()) {
+          outer.flat = true;
+          if (!found_) found_ = Unclosed{outer.line, outer.column, line_};
+        }
+        break;
+      }
+    const std::size_t next = bytes_.find_first_not_of(" \t\r", at_ + 1);
+    lists_.push_back({line_, column(), fresh_ && next != std::string_view::npos && bytes_[next] != '\n', false});
+  }
+  void close() {
+    if (lists_.empty()) return;
+    flat_ = fresh_ && lists_.back().flat && lists_.back().column == column();
+    lists_.pop_back();
+  }
+
+  std::string_view bytes_;
+  std::size_t at_ = 0, lineStart_ = 0;
+  std::uint32_t line_ = 1;
+  bool fresh_ = true;  ///< nothing but blanks on this line so far
+  bool flat_ = false;  ///< lists and what is in them begin in the same column, and it is meant so
+  std::vector<List> lists_;
+  std::optional<Unclosed> found_;
+};
+
+std::optional<Unclosed> findUnclosed(std::string_view bytes) { return Indentation(bytes).read(); }
 
 /// One pass over the bytes with an explicit depth: no recursion, whatever the nesting.
 class Reader {
@@ -67,7 +144,7 @@ class Reader {
         expressionStart = out_.size();
       }
     }
-    if (!failed_ && depth_ > 0) fail("the list is not closed", expressionPlace);
+    if (!failed_ && depth_ > 0) failUnclosed(expressionPlace);
     if (failed_) out_.truncate(expressionStart);
     result_.consumed = at_;
     return std::move(result_);
@@ -83,6 +160,12 @@ class Reader {
     result_.message = std::move(message);
     result_.line = place.line;
     result_.column = place.column;
+  }
+  /// Files that people wrote: their lines say where the list should have ended.
+  void failUnclosed(Place place) {
+    const std::optional<Unclosed> guilty = limits_.places ? findUnclosed(bytes_) : std::nullopt;
+    if (!guilty) return fail("the list is not closed", place);
+    fail("the list is not closed: line " + std::to_string(guilty->siblingLine) + " begins beside it", {guilty->line, guilty->column});
   }
   void mark(Place place) {
     if (limits_.places) out_.mark(place.line, place.column);

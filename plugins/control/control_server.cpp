@@ -41,7 +41,9 @@ void ControlServer::onLink() {
 }
 
 void ControlServer::open() {
-  const auto file = control::freeSocket(control::socketFolder());
+  const auto folder = control::socketFolder();
+  control::sweep(folder);
+  const auto file = control::freeSocket(folder);
   Protocol::acceptor acceptor(io_);
   acceptor.open();
   acceptor.bind(Protocol::endpoint(file.string()));

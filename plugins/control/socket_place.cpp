@@ -6,8 +6,11 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <vector>
 
 #include "spark/error.h"
 
@@ -45,6 +48,19 @@ fs::path socketFolder() {
   if ((s.st_mode & 077) != 0)
     throw Error(folder.string() + ", where the control socket belongs, is open to other users. Say chmod 700 " + folder.string() + ".");
   return folder;
+}
+
+void sweep(const fs::path& folder) {
+  std::error_code ec;
+  std::vector<fs::path> dead;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    const fs::path& file = it->path();
+    const int pid = std::atoi(file.filename().c_str());  // <pid>.sock, <pid>-2.sock
+    if (file.extension() != ".sock" || pid <= 0 || !it->is_socket(ec)) continue;
+    // A house binds before it listens, and one in another container has no number here: both signs are needed.
+    if (kill(pid, 0) != 0 && errno == ESRCH && !alive(file)) dead.push_back(file);
+  }
+  for (const fs::path& file : dead) fs::remove(file, ec);
 }
 
 fs::path freeSocket(const fs::path& folder) {

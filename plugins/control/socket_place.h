@@ -12,5 +12,7 @@ std::filesystem::path socketFolder();
 
 /// A name in the folder that no living house uses: `<pid>.sock`, `<pid>-2.sock`, ... Removes a file that a dead process left there.
 std::filesystem::path freeSocket(const std::filesystem::path& folder);
+/// Removes the sockets of houses whose process has gone.
+void sweep(const std::filesystem::path& folder);
 
 }  // namespace spark::control

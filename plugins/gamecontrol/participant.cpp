@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gamecontrol/scene_effector.h"
+#include "spark/running.h"
 
 namespace spark::gamecontrol {
 
@@ -183,6 +184,7 @@ void Participant::realise(AgentLines& log, std::int64_t cycle) {
   std::size_t* guess = &firstSlot_;
   std::size_t ahead = firstSlot_;
   for (std::size_t i = 0; i < kAhead; ++i) ahead = fetchNext(ahead);
+  NowRunning now("act");
   for (const Element action : pending_) {
     ahead = fetchNext(ahead);
     const std::string_view head = action.head();
@@ -190,6 +192,7 @@ void Participant::realise(AgentLines& log, std::int64_t cycle) {
     Slot* s = slot(head, *guess);
     if (s) guess = &s->next;
     if (Effector* e = s ? s->effector.get() : nullptr) {
+      now.at(e);
       act(*e, action, log, cycle);
     } else if (hadRobot_ || head != kSync) {
       warn(log, cycle, fmt::format("no effector registered for predicate {}.", head));
@@ -203,8 +206,10 @@ void Participant::act(Effector& effector, const Element& action, AgentLines& log
   try {
     if (const std::string why = effector.act(action); !why.empty()) warn(log, cycle, why);
   } catch (const std::exception& fault) {
+    effector.kernel().countFault();
     warn(log, cycle, fmt::format("{} ({}) threw: {}", effector.path(), effector.classObject()->name(), fault.what()));
   } catch (...) {
+    effector.kernel().countFault();
     warn(log, cycle, fmt::format("{} ({}) threw {}", effector.path(), effector.classObject()->name(), kNoException));
   }
 }
@@ -217,8 +222,10 @@ void Participant::promote() {
 }
 
 void Participant::share(std::uint64_t round) {
+  if (shared_.empty()) return;
+  NowRunning now("share");
   for (const Shared& s : shared_)
-    if (isDue(*s.alive, nextCount())) s.view->share(round);
+    if (isDue(*s.alive, nextCount())) now.at(s.alive), s.view->share(round);
 }
 
 void Participant::approachSensing(std::size_t distance) const {
@@ -233,11 +240,13 @@ bool Participant::sense(const Event& event) {
   for (std::size_t i = 0; i < std::min(asked_.size(), 2 * kAhead); ++i) prefetch(asked_[i]->parent(), kAbove);
   counter_ = nextCount();
   percepts_.clear();
+  NowRunning now("sense");
   for (std::size_t i = 0; i < asked_.size(); ++i) {
     Perceptor* p = asked_[i];
     if (i + kAhead < asked_.size()) prefetch(asked_[i + kAhead], kPart);
     if (!isDue(*p, counter_)) continue;
     const std::uint32_t before = percepts_.size();
+    now.at(p);
     try {
       p->sense(percepts_, event);
     } catch (const std::exception& fault) {
@@ -299,8 +308,10 @@ void Participant::reportFaults(AgentLines& log) {
                                         open_ > 0 ? fmt::format("left {} list(s) open", open_) : std::string("closed a list that was not open")));
   unbalanced_ = kNone;
   if (faulty_ == kNone) return;
-  if (const Perceptor* p = perceptors_[faulty_].get())
+  if (const Perceptor* p = perceptors_[faulty_].get()) {
+    p->kernel().countFault();
     log.write(Level::error, fmt::format("{}: {} ({}) threw and is asked no more: {}", label_, p->path(), p->classObject()->name(), fault_));
+  }
   perceptors_.erase(perceptors_.begin() + static_cast<std::ptrdiff_t>(faulty_));
   asked_.erase(asked_.begin() + static_cast<std::ptrdiff_t>(faulty_));
   faulty_ = kNone;
@@ -309,9 +320,11 @@ void Participant::reportFaults(AgentLines& log) {
 bool Participant::deliver(AgentLines& log, std::int64_t cycle, Clock::time_point now) {
   if (percepts_.empty() || leaving()) return true;
   if (inside_) {
+    const NowRunning now("think", behavior());
     try {
       behavior()->think(percepts_, later_);
     } catch (const std::exception& fault) {
+      behavior()->kernel().countFault();
       warn(log, cycle, fmt::format("it threw: {}", fault.what()));
     }
     if (later_.isUnbalanced() && later_.balance() != 0) warn(log, cycle, "its actions did not close each list that they opened, once.");

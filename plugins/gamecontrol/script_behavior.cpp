@@ -10,6 +10,11 @@ void ScriptBehavior::describe(Description<ScriptBehavior>& d) {
   d.method("script", &ScriptBehavior::script).parameters({"file", "arguments"}).optional(1).doc("Attaches the script, which reads the arguments as `local args = ...`.");
 }
 
+void ScriptBehavior::onLink() {
+  kernel().events().define("start", Order::parentsFirst, "At a ScriptBehavior: its agent joins.");
+  kernel().events().define("think", Order::parentsFirst, "At a ScriptBehavior: here is what it perceives.");
+}
+
 void ScriptBehavior::script(std::string file, Value arguments) { kernel().lua().attach(*this, file, arguments); }
 
 void ScriptBehavior::start(Predicates& actions) { run("start", nullptr, actions); }

@@ -16,6 +16,9 @@ class ScriptBehavior : public Behavior {
   void start(Predicates& actions) override;
   void think(const Predicates& percepts, Predicates& actions) override;
 
+ protected:
+  void onLink() override;
+
  private:
   void script(std::string file, Value arguments);
   void run(std::string_view channel, const Value* data, Predicates& actions);

@@ -65,7 +65,8 @@ void LogFile::addLine(std::uint64_t offset, std::string_view line) {
     ++leftOut_;
     return;
   }
-  const bool full = line.find(isJson(line) ? "],[\"RSG\"," : ")(RSG ") != std::string_view::npos;
+  const bool isFull = line.find(isJson(line) ? "],[\"RSG\"," : ")(RSG ") != std::string_view::npos;
+  const auto full = isFull ? static_cast<std::uint32_t>(records_.size()) : records_.empty() ? 0 : records_.back().full;
   records_.push_back({offset + skip, static_cast<std::uint32_t>(line.size()), static_cast<std::uint32_t>(skip), full});
 }
 
@@ -80,10 +81,5 @@ const std::string& LogFile::read(std::uint64_t offset, std::size_t size) {
 const std::string& LogFile::read(std::size_t i) { return read(records_.at(i).offset, records_.at(i).size); }
 
 const std::string& LogFile::readDrawings(std::size_t i) { return read(records_.at(i).offset - records_.at(i).drawn, records_.at(i).drawn); }
-
-std::size_t LogFile::fullBefore(std::size_t i) const {
-  while (i > 0 && !records_.at(i).full) --i;
-  return i;
-}
 
 }  // namespace spark

@@ -25,13 +25,15 @@ class LogFile {
   /// What stands in front of the text of record i, as it was written.
   const std::string& readDrawings(std::size_t i);
   /// The last full record that is not behind i; 0 when there is none.
-  std::size_t fullBefore(std::size_t i) const;
+  std::size_t fullBefore(std::size_t i) const { return records_.at(i).full; }
+  /// True when there are draw commands in front of record i.
+  bool hasDrawings(std::size_t i) const { return records_.at(i).drawn > 0; }
 
  private:
   struct Record {
     std::uint64_t offset = 0;  ///< of its text
     std::uint32_t size = 0, drawn = 0;  ///< bytes of its text, and of the draw commands in front of it
-    bool full = false;
+    std::uint32_t full = 0;  ///< the last full record that is not behind it; 0 when there is none
   };
   void addLine(std::uint64_t offset, std::string_view line);
   const std::string& read(std::uint64_t offset, std::size_t size);

@@ -12,6 +12,7 @@ namespace {
 constexpr double kFastest = 100;
 constexpr double kTolerance = 1e-6;       ///< of a record; the sum of steps is not exact
 constexpr std::int64_t kMostLines = 10;  ///< about damaged records
+constexpr std::size_t kMostAFrame = 250;  ///< records on the way to another place: other monitors get frames meanwhile
 }  // namespace
 
 void LogPlayer::describe(Description<LogPlayer>& d) {
@@ -36,6 +37,8 @@ void LogPlayer::setFile(std::string path) {
   scene_.clear();
   due_ = 0;
   wanted_.reset();
+  moments_.clear();
+  underWay_ = false;
   started_ = false;
   damaged_ = 0;
   path_ = std::move(path);
@@ -48,6 +51,7 @@ void LogPlayer::take(std::size_t record) {
   draw(record);
   const std::string wrong = scene_.take(log_->read(record), childOf<IParser>());
   at_ = record;
+  moments_.passed(record, record - log_->fullBefore(record), scene_);
   if (wrong.empty()) return;
   if (++damaged_ <= kMostLines) kernel().log().warning("{}: record {} of '{}' is passed over: {}", path(), record, path_, wrong);
 }
@@ -80,15 +84,36 @@ void LogPlayer::takeDrawingsAway() {
 void LogPlayer::setRecord(std::int64_t record) {
   due_ = 0;
   wanted_.reset();
+  underWay_ = false;
   at_ = static_cast<std::size_t>(record);
   if (log_) goTo(std::min(at_, log_->size() - 1));
 }
 
-/// By way of the last full record. Events of the way are not told.
 void LogPlayer::goTo(std::size_t target) {
+  begin(target);
+  go(target, target + 1);
+}
+
+/// By way of the last full record, and from there of the last moment that is known. Events of the way are not told, drawings are made.
+void LogPlayer::begin(std::size_t target) {
   tellEvents_ = false;
   takeDrawingsAway();
-  for (std::size_t i = log_->fullBefore(target); i <= target; ++i) take(i);
+  const std::size_t full = log_->fullBefore(target);
+  std::size_t known = full;
+  const RecordedScene::Moment* moment = moments_.before(full + 1, target, known);
+  take(full);
+  if (moment && scene_.restore(*moment)) {
+    for (std::size_t i = full + 1; i <= known; ++i)
+      if (log_->hasDrawings(i)) draw(i);
+    at_ = known;
+  }
+  if (target > at_) moments_.beginWay(target - at_);
+}
+
+/// At most so many records; false while the target is not reached.
+bool LogPlayer::go(std::size_t target, std::size_t most) {
+  for (; most > 0 && at_ < target; --most) take(at_ + 1);
+  return at_ >= target;
 }
 
 bool LogPlayer::step() {
@@ -98,18 +123,24 @@ bool LogPlayer::step() {
   return true;
 }
 
-/// Commands say where to go; the way is gone once a frame, however many there were.
+/// Commands say where to go; the way is gone once a frame, however many there were, and a long one in several.
 void LogPlayer::aim(std::int64_t record) {
   if (log_) wanted_ = std::clamp<std::int64_t>(record, 0, static_cast<std::int64_t>(log_->size()) - 1);
 }
 
 void LogPlayer::goWhereAimed() {
   if (!wanted_) return;
-  const auto target = static_cast<std::size_t>(*std::exchange(wanted_, std::nullopt));
-  if (target == at_ + 1)
+  const auto target = static_cast<std::size_t>(*wanted_);
+  const bool goesOn = underWay_ && at_ <= target && at_ >= log_->fullBefore(target);
+  if (!goesOn && target == at_ + 1) {
     step();
-  else if (target != at_)
-    goTo(target);
+  } else if (goesOn || target != at_) {
+    if (!goesOn) begin(target);
+    underWay_ = !go(target, kMostAFrame);
+    if (underWay_) return;
+  }
+  underWay_ = false;
+  wanted_.reset();
 }
 
 /// So many records at once; false at the log's end.
@@ -128,7 +159,7 @@ bool LogPlayer::fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const
   if (!started_) lastTime_ = event.time;
   started_ |= watched || !waitForMonitor_;
   const double passed = std::exchange(lastTime_, event.time), now = event.time;
-  if (started_ && !paused_ && now > passed) {
+  if (started_ && !paused_ && !underWay_ && now > passed) {
     due_ += speed_ * (now - passed) / recordTime_;
     if (const double whole = std::floor(due_ + kTolerance); whole >= 1) due_ = advance(static_cast<std::size_t>(whole)) ? due_ - whole : 0;
   }

@@ -6,6 +6,7 @@
 #include "api/drawing.h"
 #include "frame_source.h"
 #include "log_file.h"
+#include "moments.h"
 #include "recorded_scene.h"
 #include "spark/describe.h"
 #include "spark/node.h"
@@ -44,6 +45,8 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
   /// One record on; false at the end.
   bool step();
   void goTo(std::size_t target);
+  void begin(std::size_t target);
+  bool go(std::size_t target, std::size_t most);
   void take(std::size_t record);
   void draw(std::size_t record);
   void takeDrawingsAway();
@@ -55,6 +58,8 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
   std::unique_ptr<LogFile> log_;
   RecordedScene scene_{*this};
   std::size_t at_ = 0;
+  log_player::Moments moments_;
+  bool underWay_ = false;  ///< to wanted_, which is too far for one frame
   std::optional<std::int64_t> wanted_;  ///< where commands want to be with the next frame
   double due_ = 0;        ///< part of a record that has passed
   double lastTime_ = 0;

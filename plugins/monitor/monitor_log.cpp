@@ -1,5 +1,7 @@
 #include "monitor_log.h"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -29,10 +31,14 @@ void MonitorLog::event(const Element& event) {
 /// Opens the file with the first frame. False when there is nothing to write to.
 bool MonitorLog::ready(const NewestFrame& newest) {
   if (failed_ || view_) return !failed_;
+  // A pipe that nobody reads must not hold the match: opening it fails. Later records wait for its reader.
   errno = 0;
-  out_.open(file_, std::ios::binary | std::ios::trunc);
+  if (const int file = open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666); file >= 0) {
+    fcntl(file, F_SETFL, fcntl(file, F_GETFL) & ~O_NONBLOCK);
+    out_.reset(fdopen(file, "wb"));
+  }
   if (!out_) {
-    fail("cannot be opened for writing");
+    fail(errno == ENXIO ? "is a pipe that nobody reads" : "cannot be opened for writing");
     return false;
   }
   view_.emplace(newest);
@@ -67,10 +73,9 @@ void MonitorLog::recordDrawings() {
 void MonitorLog::write() {
   record_ += '\n';
   errno = 0;
-  out_.write(drawn_.data(), static_cast<std::streamsize>(drawn_.size()));
-  out_.write(record_.data(), static_cast<std::streamsize>(record_.size()));
-  out_.flush();
-  if (!out_) return fail("cannot be written to");
+  std::fwrite(drawn_.data(), 1, drawn_.size(), out_.get());
+  std::fwrite(record_.data(), 1, record_.size(), out_.get());
+  if (std::fflush(out_.get()) != 0 || std::ferror(out_.get())) return fail("cannot be written to");
   view_->delivered();
   ++records_;
 }

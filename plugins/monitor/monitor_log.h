@@ -1,6 +1,7 @@
 #pragma once
 
-#include <fstream>
+#include <cstdio>
+#include <memory>
 
 #include "api/drawing.h"
 #include "monitor_view.h"
@@ -31,7 +32,10 @@ class MonitorLog : public Node, public IFrameTaker {
 
   std::optional<MonitorView> view_;
   Predicates early_;  ///< events of the time before the first frame came
-  std::ofstream out_;
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> out_;
   std::string record_, drawn_;
   const IDrawings* drawings_ = nullptr;
   std::uint64_t drawingsAt_ = 0;  ///< the tree's version when they were looked up

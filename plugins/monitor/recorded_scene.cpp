@@ -209,6 +209,29 @@ void RecordedScene::readEnvironment(const Element& list, bool full) {
   }
 }
 
+std::shared_ptr<const RecordedScene::Moment> RecordedScene::moment() const {
+  auto out = std::make_shared<Moment>();
+  out->nodes.resize(nodes_.size());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    std::copy_n(nodes_[i].local.data(), 16, out->nodes[i].first.begin());
+    out->nodes[i].second = visuals_[i] && visuals_[i]->shown;
+  }
+  out->entries = entries_;
+  out->events = events_;
+  return out;
+}
+
+bool RecordedScene::restore(const Moment& moment) {
+  if (moment.nodes.size() != nodes_.size()) return false;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    std::copy_n(moment.nodes[i].first.begin(), 16, nodes_[i].local.data());
+    if (visuals_[i]) visuals_[i]->shown = moment.nodes[i].second;
+  }
+  entries_ = moment.entries;
+  events_ = moment.events;
+  return true;
+}
+
 bool RecordedScene::sameShape(const std::vector<FrameNode>& nodes, const Visuals& visuals) const {
   if (nodes.size() != nodes_.size()) return false;
   for (std::size_t i = 0; i < nodes.size(); ++i) {

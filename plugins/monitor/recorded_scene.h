@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "api/agents.h"
@@ -24,6 +26,12 @@ class RecordedScene {
   std::uint64_t shape() const { return shape_; }
   /// Copies what it shows. `tellEvents`: also those of the last message (fouls).
   void copyTo(MonitorFrame& frame, std::vector<std::uint64_t>& ids, bool tellEvents) const;
+
+  /// What diffs change since the last full message.
+  struct Moment;
+  std::shared_ptr<const Moment> moment() const;
+  /// Is again as it was at a moment after the same full message, which must be the last one taken. False, and unchanged, when it was another.
+  bool restore(const Moment& moment);
 
  private:
   /// A light or mesh as it was recorded.
@@ -74,6 +82,12 @@ class RecordedScene {
   std::vector<Entry> entries_;
   std::uint64_t shape_ = 0, lastId_ = 0;
   bool known_ = false;  ///< a full message was taken
+};
+
+struct RecordedScene::Moment {
+  std::vector<std::pair<std::array<float, 16>, bool>> nodes;  ///< where they are, whether they are shown
+  std::vector<Entry> entries;
+  Predicates events;
 };
 
 }  // namespace spark

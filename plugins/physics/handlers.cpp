@@ -34,6 +34,11 @@ void ScriptHandler::describe(Description<ScriptHandler>& d) {
       .doc("A Lua file that is attached to this node; it calls self:on(\"collide\", function(self, event) ... end).");
 }
 
+void ScriptHandler::onLink() {
+  CollisionHandler::onLink();
+  kernel().events().define("collide", Order::parentsFirst, "At a ScriptHandler: something touches its collider.");
+}
+
 void ScriptHandler::onCollision(const Collision& collision) {
   touches_.push_back({Ref<Leaf>(&collision.other.leaf()), collision.contact.position, collision.contact.depth});
 }

@@ -30,6 +30,9 @@ class ScriptHandler : public CollisionHandler {
   /// Emits what the last step brought. Scripts may change the tree, so nothing of the step is in use any more.
   void emit(const Event& physics);
 
+ protected:
+  void onLink() override;
+
  private:
   struct Touch {
     Ref<Leaf> other;

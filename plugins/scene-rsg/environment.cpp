@@ -50,7 +50,10 @@ void Environment::missing(int slot) const {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < index_.size(); ++i)
     if (index_[i] >= 0) names.push_back(program_.variables[i]);
-  throw Error("there is no variable " + name + " here." + didYouMean(name, names));
+  const std::string near = didYouMean(name, names);
+  std::string all;
+  for (const std::string& n : names) all += (all.empty() ? " There are " : ", ") + n;
+  throw Error("there is no variable " + name + " here." + (near.empty() && !all.empty() ? all + "." : near));
 }
 
 }  // namespace spark::rsg

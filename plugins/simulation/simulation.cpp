@@ -5,6 +5,7 @@
 
 #include "spark/error.h"
 #include "spark/plugin.h"
+#include "spark/running.h"
 #include "spark/state.h"
 
 // One cycle, and where waiting happens:
@@ -27,6 +28,7 @@ namespace {
 constexpr double kSlice = 0.02;    // s; bound on the delay of a stop request and of polled sources
 constexpr const char* kTakesInput = "it takes input just now";
 constexpr double kJitter = 0.002;  // s; a cycle that starts later than this lost time that is not made up for
+constexpr const char* kInput = "input";  ///< as a phase, for last words and watchdogs
 using simulation::Part;
 
 double secondsUntil(std::chrono::steady_clock::time_point t) {
@@ -57,6 +59,8 @@ void Simulation::describe(Description<Simulation>& d) {
       .readOnly()
       .doc("Wall time by which cycles began too late in real time, because those before took longer than a step. It is not made up for.");
   d.property("lateCycles", &Simulation::lateCycles_).readOnly().doc("Cycles that began too late in real time.");
+  d.property("faults", &Simulation::faults)
+      .doc("Faults of plugins and scripts that were caught while the simulation ran; the log tells the first of each place.");
   d.method("run", &Simulation::run).doc("Runs until duration is reached or something asks to stop.");
   d.method("runCycles", &Simulation::runCycles).parameters({"count"}).doc("Runs that many cycles.");
   d.method("paceTable", &Simulation::paceTable).doc("cycleTimes and histogram as a table for people, with wider buckets.");
@@ -124,22 +128,25 @@ void Simulation::resolve() {
   resolvedAt_ = kernel().structureVersion();
   sources_.clear();
   gates_.clear();
-  waiter_ = nullptr;
+  waiter_ = {};
   if (Node* server = kernel().root().find<Node>("/sys/server"))
     for (const auto& child : server->children())
       if (auto* source = child->as<IInputSource>()) sources_.push_back({source, child.get()});
   kernel().updateOrder();
   kernel().root().collect(gates_);
   for (const Source& s : sources_)
-    if (!waiter_ && s.input->canWait()) waiter_ = &s;
+    if (!waiter_.input && s.input->canWait()) waiter_ = s;
 }
 
 // Input changes the tree (agents come and go), so positions are looked up anew for every source.
 void Simulation::poll() {
+  NowRunning now(kInput);
+  now.beat();
   for (std::size_t i = 0;; ++i) {
     resolve();
     if (i >= sources_.size()) return;
     const InUse polled(*sources_[i].leaf, kTakesInput);
+    now.at(sources_[i].leaf);
     sources_[i].input->poll();
   }
 }
@@ -155,9 +162,11 @@ bool Simulation::gatesOpen() {
 void Simulation::waitForInput(double seconds) {
   resolve();
   const double slice = std::min(seconds, kSlice);
-  if (waiter_) {
-    const InUse waited(*waiter_->leaf, kTakesInput);
-    waiter_->input->wait(slice);
+  NowRunning now(kInput, waiter_.leaf);
+  now.beat();
+  if (waiter_.input) {
+    const InUse waited(*waiter_.leaf, kTakesInput);
+    waiter_.input->wait(slice);
   } else
     std::this_thread::sleep_for(std::chrono::duration<double>(slice));
   if (sources_.size() > 1) poll();

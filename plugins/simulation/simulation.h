@@ -43,6 +43,7 @@ class Simulation : public Node, public ISimulation {
 
   void setThreads(int count);
   int threads() const { return threads_; }
+  std::int64_t faults() const { return kernel().faults(); }
   Value phaseMicros() const { return timers_.means(); }
   Value cycleTimes() const { return pace_.percentiles(); }
   std::string paceTable() const { return pace_.table(); }
@@ -72,12 +73,12 @@ class Simulation : public Node, public ISimulation {
   int threads_ = 1;
 
   struct Source {
-    IInputSource* input;
-    Leaf* leaf;
+    IInputSource* input = nullptr;
+    Leaf* leaf = nullptr;  ///< the same
   };
   std::vector<Source> sources_;
   std::vector<IInputGate*> gates_;
-  const Source* waiter_ = nullptr;  ///< the source to wait on, nullptr: sleep
+  Source waiter_;  ///< the source to wait on; none: sleep
   std::uint64_t resolvedAt_ = 0;
 
   Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr, *sense_ = nullptr,

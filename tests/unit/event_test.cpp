@@ -2,6 +2,7 @@
 
 #include "core_classes.h"
 #include "spark/error.h"
+#include "spark/running.h"
 
 using namespace spark;
 using spark::test::Core;
@@ -171,16 +172,58 @@ TEST_CASE("A handler that throws is reported with channel, node and class, and t
   a.onTick = [](Thing&, const Event&) { throw Error("broken"); };
   CHECK(t.emit() == "b");
   CHECK_THAT(t.text, Catch::Contains("tick of /usr/t/a (class Thing) failed: broken"));
-  a.onTick = [](Thing&, const Event&) { throw 7; };
+  t.top->remove(a);
+  Thing& c = t.named(*t.top, "c");
+  c.onTick = [](Thing&, const Event&) { throw 7; };
   CHECK(t.emit() == "b");
   CHECK_THAT(t.text, Catch::Contains("no std::exception"));
-  a.onTick = [&](Thing& self, const Event&) {
+  t.top->remove(c);
+  t.named(*t.top, "d").onTick = [&](Thing& self, const Event&) {
     for (int i = 0; i < 50; ++i) t.tick.add(*t.top, [](Leaf&, const Event&) {});
     t.top->remove(self);
     throw Error("while leaving");
   };
   CHECK(t.emit() == "b");
   CHECK_THAT(t.text, Catch::Contains("tick of a removed node failed: while leaving"));
+}
+
+TEST_CASE("A handler that throws each time is reported once and counted each time") {
+  Ticking t;
+  Thing &a = t.named(*t.top, "a"), &b = t.named(*t.top, "b");
+  int n = 0;
+  for (Thing* thing : {&a, &b}) thing->onTick = [&](Thing&, const Event&) { throw Error(fmt::format("broken {}", ++n)); };
+  for (int i = 0; i < 5; ++i) t.emit();
+  CHECK(t.kernel.faults() == 10);
+  CHECK_THAT(t.text, Catch::Contains("tick of /usr/t/a (class Thing) failed: broken 1\n  It stays; further faults of this handler are counted, not logged."));
+  CHECK_THAT(t.text, Catch::Contains("tick of /usr/t/b (class Thing) failed: broken 2"));
+  CHECK(t.text.find("broken 3") == std::string::npos);
+}
+
+TEST_CASE("What runs is known while it runs, and what ran around it afterwards") {
+  Ticking t;
+  Channel& inner = t.kernel.events().define("inner", Order::parentsFirst, "For tests.");
+  Thing &a = t.named(*t.top, "a"), &b = t.named(*t.top, "b");
+  const auto words = [] {
+    char text[200];
+    return std::string(text, describeRunning(running(), text, sizeof text));
+  };
+  std::vector<std::string> seen;
+  b.onTick = {};
+  inner.add(b, [&](Leaf&, const Event&) { seen.push_back(words()); });
+  a.onTick = [&](Thing&, const Event&) {
+    inner.emit({"inner"});
+    seen.push_back(words());
+  };
+  const std::uint64_t beats = running().beats;
+  t.emit();
+  CHECK(seen == std::vector<std::string>{"in inner of /usr/t/b (class Thing)", "in tick of /usr/t/a (class Thing)"});
+  CHECK(words() == "outside of the code of nodes");
+  CHECK(running().beats >= beats + 2);
+  // A second brother of that name, as paths say it; and only what there is room for.
+  NowRunning now("x", &t.make(*t.top, "a"));
+  CHECK(words() == "in x of /usr/t/a[2] (class Thing)");
+  char narrow[6];
+  CHECK(std::string(narrow, describeRunning(running(), narrow, sizeof narrow)) == "in x o");
 }
 
 TEST_CASE("One node alone can be told") {

@@ -93,6 +93,21 @@ TEST_CASE("A stray parenthesis ends the message; what came before stays") {
   CHECK(shown(")") == " !1:1 ')' without '('");
 }
 
+TEST_CASE("In a file whose lines are indented the list that is not closed is found by the line behind it") {
+  const auto wrong = [](std::string_view text) {
+    Predicates out;
+    const ReadResult r = readSexp(text, out, ReadLimits{64, 1 << 16, true});
+    return fmt::format("{}:{} {}", r.line, r.column, r.message);
+  };
+  CHECK(wrong("(RSG 0 1)\n(\n (nd A\n  (setX 1)\n  (nd B (setY 2)\n  (nd C)\n )\n)\n") == "5:3 the list is not closed: line 6 begins beside it");
+  CHECK(wrong("(nd A\n  (nd B\n    (setX 1\n  (nd C))\n)") == "3:5 the list is not closed: line 4 begins beside it");
+  CHECK(wrong("(nd A ; (\n  (say \"a ( \\\" ;\n\")\n  (nd B\n  (nd C))") == "4:3 the list is not closed: line 5 begins beside it");
+  // Bare brackets have what is in them below them; the last line cannot say anything; some do not indent.
+  CHECK(wrong("(\n(nd A)\n(nd B (c)\n)") == "1:1 the list is not closed");
+  CHECK(wrong("(nd A\n  (nd B)\n  (nd C (d)") == "1:1 the list is not closed");
+  CHECK(wrong("(nd A\n(nd B\n(c 1)\n)\n(nd D\n(e 1)\n") == "1:1 the list is not closed");
+}
+
 TEST_CASE("What is not closed is dropped, and the error says where it began") {
   CHECK(shown("(a)\n  (b (c)") == "[a] !2:3 the list is not closed");
   CHECK(shown("(a \"bc)") == " !1:4 the string is not closed");

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "batch.h"
+#include "spark/running.h"
 
 // Exit codes: 0 every run has a row; 1 some rows are errors; 2 the command line, the config or the table is wrong, nothing was run;
 // 3 it was interrupted. stdout carries one JSON line at the end, everything else goes to stderr.
@@ -68,6 +69,7 @@ int lead(const Options& options, Cluster& cluster) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  spark::installLastWords("sparkbatch");
   std::unique_ptr<Cluster> cluster;
   try {
     cluster = Cluster::join();

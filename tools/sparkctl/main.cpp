@@ -30,7 +30,9 @@ Target split(const std::string& text, bool memberNeeded) {
 /// The one house that is meant; throws when it is unclear.
 std::string choose(const std::string& socket, int pid) {
   if (!socket.empty()) return socket;
-  std::vector<std::string> all = houses();
+  std::vector<std::string> refused;
+  std::vector<std::string> all = houses(refused);
+  for (const std::string& why : refused) fmt::print(stderr, "sparkctl: {}: it is not looked into\n", why);
   if (pid > 0) std::erase_if(all, [&](const std::string& s) { return s.find(fmt::format("/{}.sock", pid)) == std::string::npos; });
   if (all.empty())
     throw std::runtime_error(pid > 0 ? fmt::format("process {} has no house with a control socket", pid)
@@ -78,9 +80,11 @@ int main(int argc, char** argv) {
   std::string socket, path = "/", target, value;
   std::vector<std::string> arguments;
   int pid = 0, depth = -1;
+  double timeout = 10;
   bool all = false;
   app.add_option("--socket", socket, "The house's control socket, where several run");
   app.add_option("--pid", pid, "The house's process, where several run");
+  app.add_option("--timeout", timeout, "How long to wait for each answer [s]")->check(CLI::Range(0.01, 1e6))->capture_default_str();
   app.require_subcommand(1);
   CLI::App* tree = app.add_subcommand("tree", "The tree below a path, with classes and what they are for");
   tree->add_option("PATH", path, "Where to begin")->capture_default_str();
@@ -107,7 +111,7 @@ int main(int argc, char** argv) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   try {
-    House house(choose(socket, pid));
+    House house(choose(socket, pid), timeout);
     if (*tree) print(treeText(house.ask({{"do", "tree"}, {"path", path}, {"depth", depth}})["tree"], path, all));
     if (*gets) get(house, target);
     if (*sets) set(house, target, value);

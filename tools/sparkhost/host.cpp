@@ -101,10 +101,10 @@ std::string Host::run() {
   return fmt::format(
       "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"lostSeconds\":{:.3f},\"lateCycles\":{},\"playMode\":\"{}\","
       "\"score\":[{},{}],"
-      "\"agentsSeen\":{},\"messagesDropped\":{},\"stateHash\":\"{:016x}\"}}",
+      "\"agentsSeen\":{},\"messagesDropped\":{},\"faults\":{},\"stateHash\":\"{:016x}\"}}",
       integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0, numberAt(root, kSimulation, "lostTime"),
       integerAt(root, kSimulation, "lateCycles"), textAt(root, kGameState, "playMode"), elementAt(root, kGameState, "score", 0),
-      elementAt(root, kGameState, "score", 1), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root), stateHash(root));
+      elementAt(root, kGameState, "score", 1), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root), root.kernel().faults(), stateHash(root));
 }
 
 }  // namespace sparkhost

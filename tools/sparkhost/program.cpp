@@ -3,15 +3,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 
 #include "describe.h"
+#include "hang_watch.h"
 #include "host.h"
 #include "spark/error.h"
+#include "spark/running.h"
 #include "status_line.h"
 
-// Exit codes: 0 as asked; 1 the run itself failed; 2 the command line, the config, a plugin or a scene is wrong (stderr says how).
+// Exit codes: 0 as asked; 1 the run itself failed, or its result could not be written; 2 the command line, the config, a plugin or a scene is wrong (stderr says how).
 // stdout carries JSON lines (or the text of --list-plugins and --describe), everything else goes to stderr.
 
 namespace {
@@ -20,20 +24,27 @@ spark::Kernel* stopOnSignal = nullptr;
 
 extern "C" void onSignal(int) { stopOnSignal->requestStop(); }
 
-/// The first SIGINT or SIGTERM ends the run cleanly, a second one as the system does.
+/// The first SIGINT, SIGTERM or SIGHUP (the terminal is gone) ends the run cleanly, a second one as the system does. Under nohup there is no
+/// SIGHUP.
 void watchSignals(spark::Kernel& kernel) {
   stopOnSignal = &kernel;
-  struct sigaction action = {};
+  struct sigaction action = {}, before = {};
   action.sa_handler = onSignal;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, &before);
+  if (before.sa_handler == SIG_IGN) sigaction(SIGHUP, &before, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-void printLine(const std::string& line) {
-  std::puts(line.c_str());
-  std::fflush(stdout);
+/// False, and a sentence, when it cannot be written: the match is worth more than the line.
+bool printLine(const std::string& line) {
+  errno = 0;
+  if (std::puts(line.c_str()) >= 0 && std::fflush(stdout) == 0) return true;
+  fmt::print(stderr, "sparkhost: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno), line);
+  std::clearerr(stdout);
+  return false;
 }
 
 /// Runs a step of the program; an error goes to stderr and ends it with `code`.
@@ -50,6 +61,7 @@ void orExit(int code, F step) {
 void printDescriptions(spark::Kernel& kernel, const sparkhost::Options& options) {
   if (options.listPlugins) fmt::print("{}", sparkhost::pluginList(kernel));
   if (!options.describe.empty()) fmt::print("{}", sparkhost::classDescription(kernel, options.describe));
+  if (std::fflush(stdout) != 0) throw spark::Error(fmt::format("cannot write to stdout: {}", std::strerror(errno)));
 }
 
 /// What a run only logs, and goes on without, fails a check.
@@ -58,19 +70,21 @@ void checkLog(spark::Kernel& kernel) {
     throw spark::Error(fmt::format("the check failed: {} in the log above (--log-level error shows them alone).", n == 1 ? "1 error" : fmt::format("{} errors", n)));
 }
 
-void runHouse(sparkhost::Host& host, const std::string& firstLine, bool histogram) {
+/// False when the result is lost.
+bool runHouse(sparkhost::Host& host, const std::string& firstLine, bool histogram) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   sparkhost::StatusLine::install(host.kernel(), terminal);
   printLine(firstLine);
   const std::string lastLine = host.run();
   if (terminal) fmt::print(stderr, "\n");
   if (histogram) fmt::print(stderr, "{}", host.histogram());
-  printLine(lastLine);
+  return printLine(lastLine);
 }
 
 }  // namespace
 
 int sparkhost::runProgram(int argc, char** argv) {
+  spark::installLastWords("sparkhost");
   Options options;
   if (const auto code = readOptions(argc, argv, options)) return *code;
   std::optional<Host> host;
@@ -79,10 +93,12 @@ int sparkhost::runProgram(int argc, char** argv) {
     host.emplace(options);
     if (options.config.empty()) return printDescriptions(host->kernel(), options);
     watchSignals(host->kernel());
+    HangWatch::install(host->kernel());
     host->build();
     if (options.check) checkLog(host->kernel());
     if (!options.check) firstLine = host->open();
   });
-  if (!firstLine.empty()) orExit(1, [&] { runHouse(*host, firstLine, options.histogram); });
-  return 0;
+  bool written = true;
+  if (!firstLine.empty()) orExit(1, [&] { written = runHouse(*host, firstLine, options.histogram); });
+  return written ? 0 : 1;
 }

@@ -45,6 +45,7 @@ std::string StatusLine::text(double time, double factor) const {
   if (textAt(root, kSimulation, "rate") == "real") out += lossText(root);
   if (const std::string mode = textAt(root, kGameState, "playMode"); !mode.empty())
     out += fmt::format(", {} {}:{}", mode, elementAt(root, kGameState, "score", 0), elementAt(root, kGameState, "score", 1));
+  if (const std::int64_t faults = kernel().faults(); faults > 0) out += fmt::format(", {} fault{}", faults, faults == 1 ? "" : "s");
   if (root.find(kGameControl)) out += fmt::format(", {} agents", integerAt(root, kGameControl, "agentCount"));
   return out;
 }

@@ -117,6 +117,7 @@ class ClassObject : public Leaf {
       if (casts_[i].id == id.id) return casts_[i].to(leaf);
     return nullptr;
   }
+  std::unique_ptr<Leaf> construct() const;
   void fillCasts();
   void resolve();
   std::int64_t livingCount() const;

@@ -48,12 +48,14 @@ class Channel {
     void (*plain)(Leaf&, const Event&);
     Handler handler;
     std::uint64_t number;
+    bool faulty = false;    // it threw once, and the log says so
   };
   void sort();
   void settle();
   void insert(Entry entry);
   void blank(Entry& entry);
   void run(Entry& entry, const Event& event);
+  void report(Entry& entry, const char* what);
   std::string name_, doc_;
   Order order_ = Order::parentsFirst;
   Kernel* kernel_ = nullptr;

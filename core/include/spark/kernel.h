@@ -166,6 +166,11 @@ class Kernel {
   void requestStop() { stop_.store(true); }
   bool stopRequested() const { return stop_.load(); }
 
+  /// Counts a fault of a plugin or a script that was caught while the simulation ran: the log tells the first of each place only.
+  void countFault() { faults_.fetch_add(1, std::memory_order_relaxed); }
+  /// Faults caught so far. No state.
+  std::int64_t faults() const { return faults_.load(std::memory_order_relaxed); }
+
  private:
   friend class Leaf;
   friend class Node;
@@ -198,6 +203,7 @@ class Kernel {
   std::map<std::uint64_t, std::uint32_t> streamOrdinals_;
   std::mutex streamMutex_;
   std::atomic<bool> stop_{false};
+  std::atomic<std::int64_t> faults_{0};
 };
 
 /// The script side, Lua 5.4. Configs and trusted scripts share one state; every untrusted script has a limited one of its own.

@@ -1,4 +1,5 @@
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
@@ -68,6 +69,36 @@ TEST_CASE("Only the user can reach the control socket") {
   REQUIRE((s.st_mode & 0777) == 0600);
   REQUIRE(stat(fs::path(f.socket()).parent_path().c_str(), &s) == 0);
   REQUIRE((s.st_mode & 0777) == 0700);
+}
+
+TEST_CASE("Sockets of houses that are gone are swept when one starts, others stay") {
+  RuntimeFolder folder;
+  const fs::path sockets = folder.path() / "spark";
+  fs::create_directory(sockets);
+  chmod(sockets.c_str(), 0700);
+  asio::io_context io;
+  const auto bind = [&](const fs::path& file) {
+    asio::local::stream_protocol::acceptor acceptor(io);
+    acceptor.open();
+    acceptor.bind(asio::local::stream_protocol::endpoint(file.string()));
+    return acceptor;  // closing it leaves the file
+  };
+  const int gone = fork();
+  if (gone == 0) _exit(0);
+  waitpid(gone, nullptr, 0);  // now no process has this number
+  const fs::path dead = sockets / fmt::format("{}.sock", gone), second = sockets / fmt::format("{}-2.sock", gone),
+                 starting = sockets / fmt::format("{}.sock", getppid()), container = sockets / fmt::format("{}-3.sock", gone);
+  bind(dead), bind(second), bind(starting);
+  auto listening = bind(container);
+  listening.listen();
+  test::House house;
+  house.kernel.plugins().use("control");
+  Leaf& control = house.kernel.create("ControlServer", "/sys/server/control");
+  CHECK_FALSE(getProperty(control, "socket").toString().empty());
+  CHECK_FALSE(fs::exists(dead));
+  CHECK_FALSE(fs::exists(second));
+  CHECK(fs::exists(starting));
+  CHECK(fs::exists(container));
 }
 
 TEST_CASE("A socket folder that is open to others is not used, and the house stands without") {

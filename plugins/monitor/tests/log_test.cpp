@@ -1,3 +1,5 @@
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -301,6 +303,86 @@ TEST_CASE("a player is stopped, stepped, turned, hurried and sent elsewhere") {
     player.command(monitor, wild);
   CHECK(player.at() <= 59);
   CHECK(getProperty(*player.player, "speed") == Value(1.0));
+}
+
+TEST_CASE("in a log with one full record every place is shown as it was recorded, wherever one comes from") {
+  std::string text = join({kFull});
+  constexpr int kRecords = 5000;
+  for (int i = 1; i < kRecords; ++i)
+    text += fmt::format("((time {:g})(score_left {}))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 {} 1)(nd StaticMesh (setVisible {}))))\n", 0.2 * i, i / 100,
+                        i, i % 2);
+  const TemporaryFile file(text);
+  Player player(file.path);
+  setProperty(*player.player, "paused", true);
+  const auto seen = [&] {
+    Replica now;
+    FakeConnection& newcomer = player.connect();
+    now.take(newcomer.read());
+    player.consumer->disconnected(newcomer);
+    return now.nodes.at(0).matrix[14];
+  };
+  FakeConnection& monitor = player.connect();
+  for (const int place : {4999, 4998, 4997, 100, 4000, 3999, 3998, 31, 32, 33, 4999, 2500, 2499, 1})
+    for (const bool command : {false, true}) {
+      if (command) player.command(monitor, fmt::format("(record {})", place).c_str());
+      else setProperty(*player.player, "record", std::int64_t{place});
+      for (int i = 0; i < 100 && command; ++i) player.cycle();  // a long way takes several frames
+      CAPTURE(place, command);
+      REQUIRE(player.at() == place);
+      REQUIRE(seen() == static_cast<float>(place));
+    }
+}
+
+TEST_CASE("steps back in a log with one full record do not begin there, and no frame goes a long way") {
+  // Records that are passed over are counted each time.
+  std::string text = join({kFull});
+  constexpr int kRecords = 20000;
+  for (int i = 1; i < kRecords; ++i) text += "(())\n";
+  const TemporaryFile file(text);
+  Player player(file.path);
+  setProperty(*player.player, "paused", true);
+  FakeConnection& monitor = player.connect();
+  const auto passed = [&](auto what) {
+    const std::int64_t before = getProperty(*player.player, "damaged").toInteger();
+    what();
+    return getProperty(*player.player, "damaged").toInteger() - before;
+  };
+  setProperty(*player.player, "record", std::int64_t{kRecords - 1});
+  CHECK(passed([&] { player.command(monitor, "(b)"); }) <= 200);
+  for (int i = 0; i < 300; ++i) CHECK(passed([&] { player.command(monitor, "(b)"); }) <= 200);
+  CHECK(passed([&] {
+          for (int i = 0; i < 300; ++i) player.command(monitor, "(b)");
+        }) <= 300 * 8);
+  CHECK(player.at() == kRecords - 1 - 601);
+  setProperty(*player.player, "file", file.path.string());  // nothing is known of it again
+  CHECK(passed([&] { player.consumer->received(monitor, "(record 19000)"), player.cycle(); }) <= 250);
+  CHECK(getProperty(*player.player, "record") == Value(19000));
+  CHECK(passed([&] { player.cycle(); }) <= 250);
+}
+
+TEST_CASE("a log on a pipe that nobody reads is refused with a sentence, and the match goes on") {
+  Stage stage;
+  TemporaryFile pipe;
+  REQUIRE(mkfifo(pipe.path.c_str(), 0600) == 0);
+  Leaf& log = stage.node().create("MonitorLog", "log");
+  setProperty(log, "file", pipe.path.string());
+  FakeConnection& monitor = stage.connect();
+  monitor.read();
+  for (int i = 0; i < 100; ++i) stage.cycle();
+  CHECK(!monitor.idle());
+  CHECK(stage.text.find("is a pipe that nobody reads") != std::string::npos);
+}
+
+TEST_CASE("a log on a pipe that is read is written there") {
+  Recorded stage;
+  std::filesystem::remove(stage.file.path);
+  REQUIRE(mkfifo(stage.file.path.c_str(), 0600) == 0);
+  const int reader = open(stage.file.path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  for (int i = 0; i < 30; ++i) stage.cycle();
+  char bytes[1000];
+  CHECK(read(reader, bytes, sizeof bytes) > 100);
+  CHECK(bytes[0] == '(');
+  close(reader);
 }
 
 TEST_CASE("damaged lines of a log are passed over, draw commands are skipped") {
