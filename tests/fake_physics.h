@@ -20,6 +20,7 @@ class FakeBody : public SceneNode, public IRigidBody {
   engine::BodyState state() const override { return now; }
   double mass() const override { return 1; }
   void setPose(const Pose& pose) override { now.position = pose.position, now.rotation = pose.rotation; }
+  void setPosition(const Vec3& p) override { now.position = p; }
   void setVelocity(const Vec3& v) override { now.linearVelocity = v; }
   void setAngularVelocity(const Vec3& w) override { now.angularVelocity = w; }
   void addForce(const Vec3& f) override { force += f; }

@@ -15,7 +15,7 @@ namespace spark {
 /// A body: what RigidBody offers. Found by `childOf<IRigidBody>()` of its transform, or as ancestor of controllers.
 class IRigidBody {
  public:
-  SPARK_INTERFACE(IRigidBody, 1);
+  SPARK_INTERFACE(IRigidBody, 2);
   virtual ~IRigidBody() = default;
   virtual Leaf& leaf() = 0;
   /// The engine's state now: after physics the new one.
@@ -24,6 +24,8 @@ class IRigidBody {
   virtual double mass() const = 0;
   /// Immediately; the transform follows at the next place phase.
   virtual void setPose(const Pose& pose) = 0;
+  /// m, the centre of mass in the world; as setPose, but its rotation stays as it is, to the last bit.
+  virtual void setPosition(const Vec3& position) = 0;
   /// m/s of the centre of mass, at once. Not zero: wakes the body.
   virtual void setVelocity(const Vec3& v) = 0;
   /// rad/s, at once. Not zero: wakes the body.

@@ -97,6 +97,12 @@ void RigidBody::setPose(const Pose& pose) {
   wake();
 }
 
+void RigidBody::setPosition(const Vec3& position) {
+  if (!engine()) return;
+  engine()->setPosition(body_, position);
+  wake();
+}
+
 void RigidBody::setVelocity(const Vec3& v) {
   if (!engine()) return;
   engine()->setLinearVelocity(body_, v);

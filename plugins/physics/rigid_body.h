@@ -27,6 +27,7 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   engine::BodyState state() const override;
   double mass() const override { return mass_.mass; }
   void setPose(const Pose& pose) override;
+  void setPosition(const Vec3& position) override;
   void setVelocity(const Vec3& v) override;
   void setAngularVelocity(const Vec3& w) override;
   void addForce(const Vec3& f) override;
@@ -88,7 +89,6 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   void translateMass(const Vec3&) {}
 
   Vec3 position() const { return state().position; }
-  void setPosition(const Vec3& p) { setPose({p, state().rotation}); }
   Vec3 velocity() const { return state().linearVelocity; }
   Vec3 angularVelocity() const { return state().angularVelocity; }
   void disable();

@@ -41,8 +41,7 @@ Vec3f turned(const Eigen::Matrix3f& a, const Vec3f& v) {
   return out;
 }
 
-void put(IRigidBody& body, const Vec3f& position, const Mat3& rotation) {
-  body.setPose({position.cast<double>(), rotation});
+void halt(IRigidBody& body) {
   body.setVelocity(Vec3::Zero());
   body.setAngularVelocity(Vec3::Zero());
 }
@@ -52,8 +51,9 @@ void put(IRigidBody& body, const Vec3f& position, const Mat3& rotation) {
 void Player::moveTo(const Vec3& target) const {
   const Vec3f from = position().cast<float>(), to = target.cast<float>();
   for (IRigidBody* b : bodies) {
-    const engine::BodyState s = b->state();
-    put(*b, to + (s.position.cast<float>() - from), s.rotation);
+    const Vec3f place = to + (b->state().position.cast<float>() - from);
+    b->setPosition(place.cast<double>());
+    halt(*b);
   }
 }
 
@@ -73,7 +73,9 @@ void Player::place(const Vec3& target, const Mat3& orientation) const {
   const Eigen::Matrix3f turn = product(orientation.cast<float>(), reference.rotation.cast<float>().transpose());
   for (IRigidBody* b : bodies) {
     const engine::BodyState old = b->state();
-    put(*b, to + turned(turn, old.position.cast<float>() - from), product(turn, old.rotation.cast<float>()).cast<double>());
+    const Vec3f place = to + turned(turn, old.position.cast<float>() - from);
+    b->setPose({place.cast<double>(), product(turn, old.rotation.cast<float>()).cast<double>()});
+    halt(*b);
   }
 }
 
@@ -164,7 +166,7 @@ int Pitch::count(Side side) const {
 void Pitch::placeBall(const Vec3& position) const {
   if (!ball_) return;
   ball_->enable();  // also when it is awake: where it is put it has not been idle yet
-  ball_->setPose({position, ball_->state().rotation});
+  ball_->setPosition(position);
   ball_->setVelocity(Vec3::Zero());
   ball_->setAngularVelocity(Vec3::Zero());
 }

@@ -115,7 +115,7 @@ std::string TrainerCommandParser::ball(const Element& c) {
   const bool place = numbers(c, "pos", p, 3), push = numbers(c, "vel", v, 3);
   if (!place && !push) return "expected (pos x y z) or (vel x y z)";
   ball->enable();
-  if (place) ball->setPose({Vec3(p[0], p[1], p[2]), ball->state().rotation});
+  if (place) ball->setPosition(Vec3(p[0], p[1], p[2]));
   if (push) {
     ball->setVelocity(Vec3(v[0], v[1], v[2]));
     ball->setAngularVelocity(Vec3::Zero());

@@ -74,9 +74,9 @@ Json row(const World& world, const char* way, int threads, const std::string& so
 }
 
 /// Two equal houses, one of which the raw side has taken over.
-class Match {
+class Comparison {
  public:
-  Match(const Setup& setup, Way way, Entrance& entrance)
+  Comparison(const Setup& setup, Way way, Entrance& entrance)
       : setup_(setup), way_(way), host_(one(setup), entrance), memory_((host_.run(kWarm), peakMegabytes())), twin_(dense(setup), twinEntrance_), raw_(twin_) {}
 
   Json play(int cycles) {

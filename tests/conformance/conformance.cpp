@@ -26,7 +26,7 @@ namespace {
 
 const std::vector<std::string> kSessions{
     "mainline/nao0-rest",        "mainline/nao0-all-joints",       "mainline/nao0-squat-after-beam", "mainline/nao3-legs",
-    "mainline/team-walks-and-kicks", "mainline/team-walks-and-dribbles",
+    "mainline/team-walks-and-kicks", "mainline/team-walks-and-dribbles", "mainline/team-scores-and-beams-again",
     "mainline/ball-bounce-and-roll", "spl/nao0-rest", "spl/nao0-all-joints", "spl/nao0-squat-after-beam", "spl/nao3-legs",
     "spl/ball-bounce-and-roll"};
 
