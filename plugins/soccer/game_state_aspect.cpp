@@ -73,7 +73,7 @@ void GameStateAspect::rule(const Event& event) {
 
 void GameStateAspect::advanceClock(double step) {
   if (clockRuns())
-    time_ += step;
+    time_ = time_ < kSingleUntil ? static_cast<float>(time_) + static_cast<float>(step) : time_ + step;
   else if (mode_ == PlayMode::gameOver || !pitch_.gameControl()->agents().empty())
     standing_ += step;
 }

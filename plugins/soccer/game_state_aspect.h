@@ -105,6 +105,9 @@ class GameStateAspect : public SoccerControlAspect {
   soccer::Pitch pitch_;
   RandomStream random_{*this, "referee"};
   PlayMode mode_ = PlayMode::beforeKickOff;
+  /// As in the installed base the clock of play is summed in single precision: behind 64 s it is a little slow, and a freeze or a kick-off
+  /// lasts a cycle longer. No match is as long as this [s]; behind it the clock would go wrong by per cents, and stand in the end.
+  static constexpr double kSingleUntil = 4096;
   double time_ = 0, modeStart_ = 0;  ///< s of play
   double standing_ = 0;              ///< s that the clock of play has stood: before the kick-off with agents there, after the match
   std::int64_t modeChanges_ = 0, sideSwaps_ = 0;

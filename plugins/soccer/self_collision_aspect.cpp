@@ -12,13 +12,17 @@ const std::string& partName(IRobotBox& box) {
   return part ? part->name() : box.leaf().name();
 }
 
+/// A trainer may have set the clock of play back: then it is long ago.
+bool isWithin(double seconds, double since, double now) { return now >= since && now - since < seconds; }
+
 }  // namespace
 
-void SelfCollisionAspect::judgePlay(const Event& event) {
+void SelfCollisionAspect::judgePlay(const Event&) {
   lookUp();
+  const double now = game().time();
   for (std::size_t i = 0; i < robots_.size(); ++i) {
-    thaw(robots_[i], event.time);
-    if (isJudged(i)) judgeRobot(i, event.time);
+    thaw(robots_[i], now);
+    if (isJudged(i)) judgeRobot(i, now);
   }
 }
 
@@ -85,7 +89,7 @@ void SelfCollisionAspect::keepClocks(const Robot& from, Robot& to) {
 
 void SelfCollisionAspect::thaw(Robot& robot, double now) {
   for (Joint& j : robot.joints) {
-    if (!j.frozen || now - j.since < settings().selfCollisionJointFrozenTime - 1e-9) continue;
+    if (!j.frozen || isWithin(settings().selfCollisionJointFrozenTime, j.since, now)) continue;
     j.effector->freeze(false);
     j.frozen = false;
   }
@@ -100,7 +104,7 @@ void SelfCollisionAspect::judgeRobot(std::size_t player, double now) {
     if (!overlap(robot, pair)) continue;
     const Box &a = robot.boxes[pair.a], &b = robot.boxes[pair.b];
     if (s.selfCollisionBeamPenalty) {
-      if (now - robot.sentOff < s.selfCollisionBeamCooldownTime - 1e-9) return;
+      if (isWithin(s.selfCollisionBeamCooldownTime, robot.sentOff, now)) return;
       robot.sentOff = now;
       tell(players()[player], a, b, now);
       if (s.foulOnSelfCollisions) sendOff(player, Foul::selfCollision);
@@ -127,7 +131,7 @@ bool SelfCollisionAspect::freeze(Robot& robot, const Box& box, double now) {
   bool any = false;
   for (int k : box.limb) {
     Joint& joint = robot.joints[k];
-    if (now - joint.since < spared - 1e-9) continue;
+    if (isWithin(spared, joint.since, now)) continue;
     joint.since = now;
     joint.frozen = s.foulOnSelfCollisions;
     if (joint.frozen) joint.effector->freeze(true);

@@ -39,7 +39,7 @@ class SelfCollisionAspect : public FoulAspect {
   struct Joint {
     IFreezable* effector;
     bool frozen = false;
-    double since = kLongAgo;  ///< s of the simulated clock: when it was frozen last
+    double since = kLongAgo;  ///< s of the clock of play: when it was frozen last
   };
   struct Robot {
     int agent = 0;                ///< its number
@@ -47,7 +47,7 @@ class SelfCollisionAspect : public FoulAspect {
     std::vector<Box> boxes;
     std::vector<Pair> pairs;
     std::vector<Joint> joints;
-    double sentOff = kLongAgo;  ///< s
+    double sentOff = kLongAgo;  ///< s of the clock of play
   };
 
   void lookUp();

@@ -6,6 +6,7 @@
 
 #include "api/physics.h"
 #include "league.h"
+#include "scene_text.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -72,8 +73,6 @@ lshank     lthigh/boxBody        llj4 lle4  -0.055  -1.005  1.265  1       0  0 
 lankle     lshank/boxBody        llj5 lle5  -0.055  -1.005  1.165  1       0  0         -45   75  6.1395
 lfoot      lankle/sphereBody     llj6 lle6  -0.055  -1.005  1.16   0       1  0         -45   25  6.1395
 )";
-
-std::istream& operator>>(std::istream& in, Vec3& v) { return in >> v.x() >> v.y() >> v.z(); }
 
 std::vector<Part> type0() {
   std::vector<Part> parts;
@@ -151,13 +150,6 @@ std::vector<Part> partsOf(int type) {
   if (type == 3) stretch(parts, -0.854263, 0.0729541, 1.31713, 1.10926, 1.06926);
   if (type == 4) addToes(parts);
   return parts;
-}
-
-Vec3 vectorOf(Leaf& joint, const char* method) {
-  const Value value = callMethod(joint, method, {});
-  Args args{};
-  args.values = {&value, 1};
-  return Convert<Vec3>::from(args);
 }
 
 void checkJoint(const Part& p, IJoint& joint, Node& robot) {

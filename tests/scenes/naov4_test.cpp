@@ -6,6 +6,7 @@
 
 #include "api/physics.h"
 #include "league.h"
+#include "scene_text.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -13,7 +14,7 @@ using namespace spark::test;
 namespace {
 
 // Middle and right side; the left side is the mirror image.
-const char* const kParts = R"(
+const char* const kHalf = R"(
 torso      1.04956 -0.00006 -1.0048  1.4577
 neck       0.06442 -0.00018 -1       1.5843
 head       0.60533  0.00093 -0.99617 1.6616
@@ -30,7 +31,7 @@ rfoot      0.16184  0.0533  -0.94511 1.1488
 )";
 
 // perceptor, effector, parts, anchor, axis, stops, greatest speed, torque, Ke, Kt, R, Tenv, and whether the left stops are mirrored
-const char* const kJoints = R"(
+const char* const kMotors = R"(
 hj1  he1  neck      torso      0      -1     1.61     0       0 1       -119.5   119.5  8.29382 10   0.397936 2.5  6     38 0
 hj2  he2  head      neck       0      -1     1.61     1       0 0        -38.5    29.5  7.19426  2.6 0.345576 2.9 32.1   38 0
 raj1 rae1 rshoulder torso      0.098  -1     1.6      1       0 0       -119.5   119.5  8.29382 10   0.397936 2.5  6     38 0
@@ -52,8 +53,6 @@ struct Joint {
   bool mirrored;
 };
 
-std::istream& operator>>(std::istream& in, Vec3& v) { return in >> v.x() >> v.y() >> v.z(); }
-
 std::string left(std::string name) {
   if (name.starts_with("r")) name.front() = 'l';
   return name;
@@ -71,7 +70,7 @@ Joint leftOf(Joint j) {
 /// In tree order: head, right arm, left arm, right leg, left leg.
 std::vector<Joint> jointsOf() {
   std::vector<Joint> right;
-  std::istringstream in(kJoints);
+  std::istringstream in(kMotors);
   for (Joint j; in >> j.perceptor >> j.effector >> j.child >> j.parent >> j.anchor >> j.axis >> j.min >> j.max >> j.speed >> j.torque >>
                 j.speedConstant >> j.torqueConstant >> j.resistance >> j.environment >> j.mirrored;)
     right.push_back(j);
@@ -81,13 +80,6 @@ std::vector<Joint> jointsOf() {
   for (int i = 6; i < 12; ++i) all.push_back(right[i]);
   for (int i = 6; i < 12; ++i) all.push_back(leftOf(right[i]));
   return all;
-}
-
-Vec3 vectorOf(Leaf& joint, const char* method) {
-  const Value value = callMethod(joint, method, {});
-  Args args{};
-  args.values = {&value, 1};
-  return Convert<Vec3>::from(args);
 }
 
 void checkMotor(const Joint& j, IJoint& motor) {
@@ -109,7 +101,7 @@ void checkMotor(const Joint& j, IJoint& motor) {
 }
 
 template <class T>
-std::vector<std::string> namesOf(const Node& root) {
+std::vector<std::string> classesAndNames(const Node& root) {
   std::vector<T*> all;
   root.collect(all);
   std::vector<std::string> out;
@@ -129,7 +121,7 @@ struct Robot {
 
 TEST_CASE("the Nao V4 has the bodies of its page") {
   Robot robot;
-  std::istringstream in(kParts);
+  std::istringstream in(kHalf);
   double mass = 0;
   int n = 0;
   std::string name;
@@ -184,8 +176,8 @@ TEST_CASE("the Nao V4 senses in the order of its page") {
     wanted.push_back("AngularMotorPerceptor:" + j.perceptor);
     if (j.perceptor == "hj2") wanted.insert(wanted.end(), {"RestrictedVisionPerceptor", "RestrictedVisionPerceptor", "GPS:head"});
   }
-  CHECK(namesOf<Perceptor>(robot.agent) == wanted);
-  CHECK(namesOf<Effector>(robot.agent).size() == 4 + 2 * 22);
+  CHECK(classesAndNames<Perceptor>(robot.agent) == wanted);
+  CHECK(classesAndNames<Effector>(robot.agent).size() == 4 + 2 * 22);
 }
 
 TEST_CASE("the Nao V4's motors hold it, turn at the commanded speed within their own, and go limp without stiffness") {
