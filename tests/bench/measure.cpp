@@ -176,7 +176,7 @@ Json bytes(House& house, LocalPort& port) {
 
 Json measureLocal(const Setup& setup, int cycles) {
   LocalEntrance entrance;
-  Match match(setup, Way::host, entrance);
+  Comparison match(setup, Way::host, entrance);
   Json rows = match.play(cycles);
   const Json sizes = bytes(match.host(), entrance.port());
   for (std::size_t i = 1; i < rows.size(); ++i) rows[i].update(sizes);
@@ -185,7 +185,7 @@ Json measureLocal(const Setup& setup, int cycles) {
 
 Json measureTcp(const Setup& setup, int cycles, int line) {
   TcpEntrance entrance(line);
-  return Match(setup, Way::tcp, entrance).play(cycles);
+  return Comparison(setup, Way::tcp, entrance).play(cycles);
 }
 }  // namespace
 

@@ -19,11 +19,11 @@ using spark::client::read;
 
 namespace {
 
-struct Host {
+struct ServingHost {
   Process process;
   int agentPort = 0, monitorPort = 0;
 
-  explicit Host(std::vector<std::string> arguments) : process(command(std::move(arguments)), 120) {
+  explicit ServingHost(std::vector<std::string> arguments) : process(command(std::move(arguments)), 120) {
     const auto ports = nlohmann::json::parse(process.line());
     agentPort = ports["agentPort"];
     monitorPort = ports["monitorPort"];
@@ -45,9 +45,9 @@ const char* const kNao = "(scene rsg/agent/nao/nao_hetero.rsg 0)";
 std::string init(const std::string& team, int unum) { return "(init (unum " + std::to_string(unum) + ")(teamname " + team + "))"; }
 
 /// A player that says one thing after the other, each when it has got a message, and then answers every message with the last one.
-class Player {
+class ScriptedPlayer {
  public:
-  Player(int port, std::vector<std::string> words) : connection_("127.0.0.1", port), words_(std::move(words)) { say(); }
+  ScriptedPlayer(int port, std::vector<std::string> words) : connection_("127.0.0.1", port), words_(std::move(words)) { say(); }
   /// Answers what has come; false when the server has closed.
   bool play() try {
     while (const auto message = connection_.receive(0.001)) {
@@ -84,9 +84,9 @@ std::vector<std::string> plain(int) { return {"(scene rsg/agent/sphere.rsg)(syn)
 /// A match that starts when its players, which come in this order, are there; what it comes to.
 std::string match(const std::vector<int>& order) {
   const std::vector<std::vector<std::string>> kinds{stepByStep(1), stepByStep(2), inTurn(1), inTurn(9), atOnce(4), plain(0)};
-  Host host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", std::to_string(order.size()), "--duration", "2", "--set", "/sys/server/gamecontrol.holdWait=0.02"});
-  std::vector<std::unique_ptr<Player>> players;
-  for (const int kind : order) players.push_back(std::make_unique<Player>(host.agentPort, kinds[static_cast<std::size_t>(kind)]));
+  ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", std::to_string(order.size()), "--duration", "2", "--set", "/sys/server/gamecontrol.holdWait=0.02"});
+  std::vector<std::unique_ptr<ScriptedPlayer>> players;
+  for (const int kind : order) players.push_back(std::make_unique<ScriptedPlayer>(host.agentPort, kinds[static_cast<std::size_t>(kind)]));
   for (bool on = true; on;)
     for (auto& p : players) on &= p->play();
   const auto result = host.result();
@@ -97,8 +97,8 @@ std::string match(const std::vector<int>& order) {
 }
 
 /// A sphere that keeps the clock of a match in lockstep running for `seconds`.
-struct Pacemaker : Player {
-  explicit Pacemaker(int port) : Player(port, {"(scene rsg/agent/sphere.rsg)(syn)", init("Pace", 1) + "(syn)", "(syn)"}) {}
+struct Pacemaker : ScriptedPlayer {
+  explicit Pacemaker(int port) : ScriptedPlayer(port, {"(scene rsg/agent/sphere.rsg)(syn)", init("Pace", 1) + "(syn)", "(syn)"}) {}
   void run(double seconds) {
     while (heard() < 3) REQUIRE(play());
     for (const double begin = time(); time() < begin + seconds;) REQUIRE(play());
@@ -117,11 +117,11 @@ TEST_CASE("Players that wait for messages at different places, and a robot witho
 }
 
 TEST_CASE("A program that makes its agents one after the other plays with --expect: the match starts when no more comes") {
-  Host host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "3", "--set", "/sys/server/gamecontrol.holdWait=0.02", "--set",
+  ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "3", "--set", "/sys/server/gamecontrol.holdWait=0.02", "--set",
              "/sys/server/gamecontrol.joinWait=0.5"});
-  std::vector<std::unique_ptr<Player>> players;
+  std::vector<std::unique_ptr<ScriptedPlayer>> players;
   for (int unum = 1; unum <= 3; ++unum) {
-    players.push_back(std::make_unique<Player>(host.agentPort, stepByStep(unum)));
+    players.push_back(std::make_unique<ScriptedPlayer>(host.agentPort, stepByStep(unum)));
     while (players.back()->heard() < 6)
       for (auto& p : players) REQUIRE(p->play());
   }
@@ -135,7 +135,7 @@ TEST_CASE("A program that makes its agents one after the other plays with --expe
 }
 
 TEST_CASE("The host says whom it waits for") {
-  Host host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "2", "--set", "/sys/server/gamecontrol.holdReport=0.05"});
+  ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "2", "--set", "/sys/server/gamecontrol.holdReport=0.05"});
   Connection half("127.0.0.1", host.agentPort);
   half.send(kNao);
   host.process.waitForError(" has named its robot, owes (init ...) and (syn); 1 is not connected; ");
@@ -145,7 +145,7 @@ TEST_CASE("The host says whom it waits for") {
 }
 
 TEST_CASE("A utility that opens the monitor port only to send commands, and never reads, is served as long as it likes") {
-  Host host({"--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "Soccer.AutomaticKickOff=false"});
+  ServingHost host({"--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "Soccer.AutomaticKickOff=false"});
   Connection utility("127.0.0.1", host.monitorPort);
   Pacemaker player(host.agentPort);
   player.run(0.1);
@@ -164,7 +164,7 @@ TEST_CASE("A utility that opens the monitor port only to send commands, and neve
 }
 
 TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene when it asks for it") {
-  Host host({"--config", "soccer-sphere.lua", "--sync", "--rate", "max"});
+  ServingHost host({"--config", "soccer-sphere.lua", "--sync", "--rate", "max"});
   Connection viewer("127.0.0.1", host.monitorPort);
   REQUIRE(kindOf(*viewer.receive()) == "RSG");
   Pacemaker player(host.agentPort);
@@ -204,10 +204,10 @@ TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene w
 
 TEST_CASE("A learner sees the truth with --set cheats=true, beside what a trainer that never reads does to it") {
   const std::string config = GENERATE("training.lua", "soccer-sphere.lua");
-  Host host({"--config", config, "--sync", "--rate", "max", "--expect", "1", "--set", "cheats=true", "--set", "Soccer.AutomaticKickOff=false"});
+  ServingHost host({"--config", config, "--sync", "--rate", "max", "--expect", "1", "--set", "cheats=true", "--set", "Soccer.AutomaticKickOff=false"});
   const bool sphere = config == "soccer-sphere.lua";
   const std::string scene = sphere ? "(scene rsg/agent/sphere.rsg)" : kNao;
-  Player player(host.agentPort, {scene + init("Learner", 1) + "(syn)", "(syn)"});
+  ScriptedPlayer player(host.agentPort, {scene + init("Learner", 1) + "(syn)", "(syn)"});
   Connection trainer("127.0.0.1", host.monitorPort);
   while (player.heard() < 5) REQUIRE(player.play());
   trainer.send("(playMode PlayOn)(agent (unum 1)(team Left)(move -4 2 0.5 0))(ball (pos 3 1 0.05)(vel 0 0 0))");

@@ -76,6 +76,28 @@ TEST_CASE("joints of overlapping parts are frozen for 1 s and then spared for 2 
   }
 }
 
+TEST_CASE("late in a half a freeze lasts a cycle longer: the clock of play is summed in single precision", "[fouls]") {
+  BoxerMatch h;
+  REQUIRE(h.trainer("(time 90)").empty());
+  h.run(1);
+  REQUIRE(h.frozen("lae1"));
+  h.run(50);
+  CHECK(h.frozen("lae1"));
+  h.run(1);
+  CHECK_FALSE(h.frozen("lae1"));
+}
+
+TEST_CASE("a trainer who sets the clock back ends a freeze", "[fouls]") {
+  BoxerMatch h;
+  REQUIRE(h.trainer("(time 90)").empty());
+  h.run(1);
+  REQUIRE(h.frozen("lae1"));
+  REQUIRE(h.trainer("(time 10)").empty());
+  h.set("SelfCollisionsTolerance", 1.0);
+  h.run(1);
+  CHECK_FALSE(h.frozen("lae1"));
+}
+
 TEST_CASE("small overlaps of a robot's parts are tolerated", "[fouls]") {
   BoxerMatch h("0.03");
   h.run(10);
