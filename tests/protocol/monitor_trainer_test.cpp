@@ -195,7 +195,7 @@ TEST_CASE("(reqfullstate) makes the next message full, (init) and (getAck) do no
   CHECK(t.s.over());
 }
 
-TEST_CASE("what is malformed or wild changes nothing, costs the trainer nothing and says nothing above level debug") {
+TEST_CASE("what is malformed or wild changes nothing, costs the trainer nothing, and only a command that is none is answered") {
   Training t;
   t.s.trainer("(select (unum 2)(team Right))" + Stadium::ballTo(1, 2));
   t.s.run(100);
@@ -236,5 +236,7 @@ TEST_CASE("what is malformed or wild changes nothing, costs the trainer nothing 
   t.s.trainer("(reqfullstate)");
   CHECK(difference(before, scene(), 1e-3) == "");
   CHECK(t.state("battery") == battery);
-  CHECK(t.s.log().substr(said) == "");
+  const std::string log = t.s.log().substr(said);
+  CHECK_THAT(log, Catch::Contains("there is no command 'nosuchcommand' here"));
+  CHECK(std::count(log.begin(), log.end(), '\n') == 1);
 }

@@ -32,7 +32,7 @@ TEST_CASE("After a goal: 3 s in which the ball is free, teams take their halves,
   m.checkAt(m.b2, 2.5, 2);
   CHECK(m.ball().x() > 15);
   CHECK(m.until("KickOff_Right", 5) > 0);
-  CHECK(m.time() - goal == Approx(3.0).margin(0.001));
+  CHECK(m.time() - goal == Approx(3.0).margin(kCycle));
   m.run(1);
   m.checkBall(0, 0, 0.001);
   m.act(m.a2, "(beam -9 4 0)");
@@ -115,7 +115,7 @@ TEST_CASE("A shoot-out: straight from the kick-off counts, the goalie stays in h
     m.trainer(Match::put(m.a1, -5, 5) + kInRightGoal);
     CHECK(m.mode() == "Goal_Left");
     CHECK(m.score() == std::pair(1, 0));
-    CHECK(m.until("GameOver", 4) == Approx(3.0).margin(0.001));
+    CHECK(m.until("GameOver", 4) == Approx(3.0).margin(kCycle));
   }
   SECTION("the goalie leaves his area") {
     m.run(5);

@@ -30,7 +30,7 @@ TEST_CASE("Pass mode is granted to who stands at a resting ball with no opponent
   CHECK(m.mode() == "pass_left");
   m.checkTold("pass_left");
   CHECK(m.until("PlayOn", 6) > 0);
-  CHECK(m.time() - before == Approx(4.0).margin(0.001));
+  CHECK(m.time() - before == Approx(4.0).margin(kCycle));
 }
 
 TEST_CASE("Pass mode is granted to the right team alike") {

@@ -14,6 +14,9 @@
 
 namespace spark::test {
 
+/// s; the clock of play is summed in single precision, so that what lasts some seconds may end a cycle late.
+constexpr double kCycle = 0.0201;
+
 /// A player: an agent with a robot, and what it was told last.
 struct Player {
   LoopbackClient client;

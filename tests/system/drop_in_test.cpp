@@ -121,7 +121,7 @@ TEST_CASE("What the pages show builds from the installed tree as it stands: a pl
     return must(command).out;
   };
   CHECK_THAT(describe("Wind"), Contains("force") && Contains("N"));
-  CHECK_THAT(describe("MyGyro"), Contains("plugin my-sensors") && Contains("angular velocity"));
+  CHECK_THAT(describe("MyGyro"), Contains("plugin: my-sensors") && Contains("angular velocity"));
 
   // Both lines of the program are equal, and it is a world in which something falls.
   const std::string out = must({build + "/learner/learner"}).out;

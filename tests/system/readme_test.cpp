@@ -50,10 +50,14 @@ TEST_CASE("The first example of every plugin's README, and of the scripts', is a
 
 TEST_CASE("The target that tools/play builds makes every program that the README starts and every file that is installed") {
   const fs::path build = binFolder().parent_path();
-  const Finished listed = runToEnd({"ninja", "-C", build.string(), "-t", "query", "programs"});
-  INFO(listed.errors);
-  REQUIRE(listed.code == 0);
-  const auto made = matches(listed.out, "\n    ([^\n]+)");
+  std::string listed;
+  for (const char* tool : {"query", "inputs"}) {  // what the target names, and what that is made of
+    const Finished f = runToEnd({"ninja", "-C", build.string(), "-t", tool, "programs"});
+    INFO(f.errors);
+    REQUIRE(f.code == 0);
+    listed += f.out;
+  }
+  const auto made = matches(listed, " *([^\n]+)\n");
 
   const auto started = matches(textOf(fs::path(SPARK_SOURCES) / "README.md"), "build/release/(bin/[a-z0-9-]+)");
   REQUIRE(started.size() >= 5);

@@ -161,7 +161,7 @@ TEST_CASE("a position or matrix that is no place is refused") {
   };
   const double nan = std::nan("");
   refused("setLocalPos", {nan, 0.0, 1.0}, "expected a position of finite numbers from -1e9 to 1e9, found nan 0.0 1.0");
-  refused("setLocalPos", {0.0, 1.1e9, 1.0}, "found 0.0 1100000000.0 1.0");
+  refused("setLocalPos", {0.0, 1.1e9, 1.0}, "found 0.0 1.1e+09 1.0");
   refused("setLocalPos", {1e300, 0.0, 0.0}, "found inf 0.0 0.0");
   refused("setLocalRotation", {0.0, 0.0, nan}, "expected angles of finite numbers from -1e9 to 1e9");
   List matrix(16, Value(0.0));

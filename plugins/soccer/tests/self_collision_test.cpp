@@ -23,6 +23,7 @@ struct BoxerMatch : FoulMatch {
     run(2);
     fouls();
     setMode("PlayOn");
+    trainer("(time 20)");  // from 16 s to 64 s the clock of play is not slow
   }
   bool frozen(const char* effector) {
     std::vector<Effector*> all;
