@@ -212,6 +212,7 @@ class Runtime {
  private:
   Script read(std::string_view file, std::string_view what, std::vector<std::filesystem::path> places);
   std::filesystem::path folderOf(lua_State* L) const;
+  bool isChannel(std::string_view name) const;
   std::string nearChannels(std::string_view name) const;
 
   int configEnvironment_ = LUA_NOREF;
