@@ -165,14 +165,18 @@ void Runtime::attachFile(Leaf& node, std::string_view file, lua_State* from, con
   attach(node, read(file, "script", places).text, "@" + std::string(file), true, pushArguments);
 }
 
+bool Runtime::isChannel(std::string_view name) const {
+  for (const Channel* c : kernel.events().all())
+    if (c->name() == name) return !c->doc().empty();
+  return false;
+}
+
 /// What is near the name of a channel that nobody defined, as a sentence.
 std::string Runtime::nearChannels(std::string_view name) const {
   std::vector<std::string> names;
-  for (const Channel* c : kernel.events().all()) {
-    if (c->doc().empty()) continue;
-    if (c->name() == name) return {};
-    names.push_back(c->name());
-  }
+  if (isChannel(name)) return {};
+  for (const Channel* c : kernel.events().all())
+    if (!c->doc().empty()) names.push_back(c->name());
   return didYouMean(name, names);
 }
 
@@ -185,11 +189,12 @@ void Runtime::checkChannels() {
 }
 
 std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::string_view channel) {
-  if (const std::string near = nearChannels(channel); !near.empty()) {
-    if (!inConfig) throw Error("there is no event channel '" + std::string(channel) + "': nothing would ever run this handler." + near);
+  if (inConfig && !isChannel(channel)) {  // who defines it may come later
     luaL_where(L, 1);
     listened_.emplace_back(channel, lua_tostring(L, -1));
     lua_pop(L, 1);
+  } else if (const std::string near = nearChannels(channel); !near.empty()) {
+    throw Error("there is no event channel '" + std::string(channel) + "': nothing would ever run this handler." + near);
   }
   auto s = std::make_shared<Subscription>();
   State& state = State::of(L);

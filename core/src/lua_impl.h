@@ -34,6 +34,8 @@ class Runtime;
 inline constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max() / 4;
 inline constexpr std::int64_t kHandlerBudget = 50'000'000;
 inline constexpr std::int64_t kSandboxBudget = 1'000'000;
+/// Bytes of memory or text that cost as much as an instruction.
+inline constexpr std::size_t kBytesPerInstruction = 16;
 /// Bytes that an untrusted script may hold.
 inline constexpr std::size_t kSandboxMemory = 2u << 20;
 /// How often scripts may enter each other (a handler that raises an event that ...).
@@ -86,6 +88,10 @@ class State : public std::enable_shared_from_this<State> {
   std::optional<Failure> run(std::int64_t budget, const Body& body);
   /// Takes instructions off the running script's budget, for C functions whose work depends on their arguments. Lua error when it is used up.
   void charge(lua_State* L, std::uint64_t instructions);
+  /// As charge, one instruction: for each small step of a C function.
+  void charge(lua_State* L) {
+    if (--left_ <= 0) charge(L, 0);
+  }
   /// Frees a reference of luaL_ref. Never fails.
   void release(int reference);
   /// Ends the Lua state; what still refers to it finds it closed.
@@ -206,6 +212,7 @@ class Runtime {
  private:
   Script read(std::string_view file, std::string_view what, std::vector<std::filesystem::path> places);
   std::filesystem::path folderOf(lua_State* L) const;
+  bool isChannel(std::string_view name) const;
   std::string nearChannels(std::string_view name) const;
 
   int configEnvironment_ = LUA_NOREF;

@@ -15,7 +15,6 @@ namespace spark::script {
 
 namespace {
 constexpr const char* kStreamType = "random stream";
-constexpr std::size_t kBytesPerInstruction = 16;
 
 /// Lua's own function, kept in the registry by a function that replaces it.
 int callOriginal(lua_State* L, const char* key) {

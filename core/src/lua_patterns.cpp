@@ -11,15 +11,14 @@ namespace spark::script {
 
 namespace patterns {
 constexpr int kMostCaptures = 32;
-constexpr int kDeepest = 200;           // nested calls of a pattern
-constexpr std::uint64_t kCharged = 256;  // comparisons are taken off the budget in such portions
+constexpr int kDeepest = 200;                         // nested calls of a pattern
 constexpr std::ptrdiff_t kOpen = -1, kPosition = -2;  // instead of a capture's length
 
 /// One attempt to match a pattern, and what it captured.
 class Matcher {
  public:
   Matcher(lua_State* L, std::string_view subject, std::string_view pattern)
-      : L_(L), begin_(subject.data()), end_(begin_ + subject.size()), patternEnd_(pattern.data() + pattern.size()) {}
+      : L_(L), state_(State::of(L)), begin_(subject.data()), end_(begin_ + subject.size()), patternEnd_(pattern.data() + pattern.size()) {}
 
   /// The end of the match of `pattern` at `at`, nullptr when there is none.
   const char* start(const char* at, const char* pattern) {
@@ -57,25 +56,46 @@ class Matcher {
     std::ptrdiff_t length;
   };
 
-  void pay() {
-    if (++steps_ % kCharged == 0) State::of(L_).charge(L_, kCharged);
-  }
+  void pay() { state_.charge(L_); }
 
   static bool inClass(int c, int letter) {
     bool in = false;
     switch (std::tolower(letter)) {
-      case 'a': in = std::isalpha(c) != 0; break;
-      case 'c': in = std::iscntrl(c) != 0; break;
-      case 'd': in = std::isdigit(c) != 0; break;
-      case 'g': in = std::isgraph(c) != 0; break;
-      case 'l': in = std::islower(c) != 0; break;
-      case 'p': in = std::ispunct(c) != 0; break;
-      case 's': in = std::isspace(c) != 0; break;
-      case 'u': in = std::isupper(c) != 0; break;
-      case 'w': in = std::isalnum(c) != 0; break;
-      case 'x': in = std::isxdigit(c) != 0; break;
-      case 'z': in = c == 0; break;
-      default: return letter == c;
+      case 'a':
+        in = std::isalpha(c) != 0;
+        break;
+      case 'c':
+        in = std::iscntrl(c) != 0;
+        break;
+      case 'd':
+        in = std::isdigit(c) != 0;
+        break;
+      case 'g':
+        in = std::isgraph(c) != 0;
+        break;
+      case 'l':
+        in = std::islower(c) != 0;
+        break;
+      case 'p':
+        in = std::ispunct(c) != 0;
+        break;
+      case 's':
+        in = std::isspace(c) != 0;
+        break;
+      case 'u':
+        in = std::isupper(c) != 0;
+        break;
+      case 'w':
+        in = std::isalnum(c) != 0;
+        break;
+      case 'x':
+        in = std::isxdigit(c) != 0;
+        break;
+      case 'z':
+        in = c == 0;
+        break;
+      default:
+        return letter == c;
     }
     return std::isupper(letter) ? !in : in;
   }
@@ -121,10 +141,14 @@ class Matcher {
     pay();
     if (at >= end_) return false;
     switch (*p) {
-      case '.': return true;
-      case '%': return inClass(byte(at), byte(p + 1));
-      case '[': return inSet(byte(at), p, behind - 1);
-      default: return byte(p) == byte(at);
+      case '.':
+        return true;
+      case '%':
+        return inClass(byte(at), byte(p + 1));
+      case '[':
+        return inSet(byte(at), p, behind - 1);
+      default:
+        return byte(p) == byte(at);
     }
   }
 
@@ -179,9 +203,11 @@ class Matcher {
   const char* again(const char* at, int digit) {
     const int i = digit - '1';
     if (i < 0 || i >= level_ || captures_[i].length == kOpen) throw Error("invalid capture index %" + std::to_string(i + 1));
-    const auto length = static_cast<std::size_t>(std::max<std::ptrdiff_t>(captures_[i].length, 0));
-    State::of(L_).charge(L_, length / kCharged);
-    if (static_cast<std::size_t>(end_ - at) < length || std::memcmp(captures_[i].begin, at, length) != 0) return nullptr;
+    if (captures_[i].length == kPosition) return nullptr;  // a place is no text
+    const auto length = static_cast<std::size_t>(captures_[i].length);
+    if (static_cast<std::size_t>(end_ - at) < length) return nullptr;
+    state_.charge(L_, length / kBytesPerInstruction);
+    if (std::memcmp(captures_[i].begin, at, length) != 0) return nullptr;
     return at + length;
   }
 
@@ -202,8 +228,10 @@ class Matcher {
       pay();
       if (p == patternEnd_) return at;
       switch (*p) {
-        case '(': return p + 1 < patternEnd_ && p[1] == ')' ? open(at, p + 2, kPosition) : open(at, p + 1, kOpen);
-        case ')': return close(at, p + 1);
+        case '(':
+          return p + 1 < patternEnd_ && p[1] == ')' ? open(at, p + 2, kPosition) : open(at, p + 1, kOpen);
+        case ')':
+          return close(at, p + 1);
         case '$':
           if (p + 1 == patternEnd_) return at == end_ ? at : nullptr;
           break;
@@ -230,7 +258,8 @@ class Matcher {
             continue;
           }
           break;
-        default: break;
+        default:
+          break;
       }
       const char* behind = classEnd(p);
       const char suffix = behind < patternEnd_ ? *behind : '\0';
@@ -251,9 +280,9 @@ class Matcher {
   }
 
   lua_State* L_;
+  State& state_;
   const char *begin_, *end_, *patternEnd_;
   int level_ = 0, depth_ = kDeepest;
-  std::uint64_t steps_ = 0;
   std::array<Capture, kMostCaptures> captures_;
 };
 
@@ -272,6 +301,19 @@ static std::size_t beginAt(lua_State* L, int index, std::size_t length) {
   return static_cast<std::size_t>(n + at);
 }
 
+/// Where `what` begins at or behind `from`; npos when it does not.
+static std::size_t findPlain(lua_State* L, std::string_view subject, std::string_view what, std::size_t from) {
+  State& state = State::of(L);
+  while (!what.empty()) {
+    const std::size_t at = std::min(subject.find(what[0], from), subject.size());
+    state.charge(L, 1 + (at - from + what.size()) / kBytesPerInstruction);
+    if (what.size() > subject.size() - at) return std::string_view::npos;
+    if (subject.compare(at, what.size(), what) == 0) return at;
+    from = at + 1;
+  }
+  return from;
+}
+
 static int search(lua_State* L, bool find) {
   const std::string_view subject = text(L, 1), pattern = text(L, 2);
   const std::size_t from = beginAt(L, 3, subject.size());
@@ -280,8 +322,7 @@ static int search(lua_State* L, bool find) {
     return 1;
   }
   if (find && (lua_toboolean(L, 4) || pattern.find_first_of("^$*+?.([%-") == std::string_view::npos)) {
-    const std::size_t at = subject.find(pattern, from);
-    State::of(L).charge(L, ((at == std::string_view::npos ? subject.size() : at) - from) / kCharged);
+    const std::size_t at = findPlain(L, subject, pattern, from);
     if (at == std::string_view::npos) {
       luaL_pushfail(L);
       return 1;
@@ -392,8 +433,9 @@ static bool appendReplacement(lua_State* L, const Matcher& m, std::string& out, 
 static int gsub(lua_State* L) {
   const std::string_view subject = text(L, 1), pattern = text(L, 2);
   const int type = lua_type(L, 3);
-  luaL_argexpected(L, type == LUA_TNUMBER || type == LUA_TSTRING || type == LUA_TFUNCTION || type == LUA_TTABLE, 3, "string/function/table");
   const lua_Integer most = luaL_optinteger(L, 4, static_cast<lua_Integer>(subject.size()) + 1);
+  luaL_argexpected(L, type == LUA_TNUMBER || type == LUA_TSTRING || type == LUA_TFUNCTION || type == LUA_TTABLE, 3,
+                   "string/function/table");
   const bool anchored = pattern.starts_with('^');
   const char* const first = pattern.data() + (anchored ? 1 : 0);
   Matcher m(L, subject, pattern);
@@ -407,7 +449,7 @@ static int gsub(lua_State* L) {
       ++n;
       const std::size_t before = out.size();
       changed |= appendReplacement(L, m, out, at, to);
-      State::of(L).charge(L, (out.size() - before) / kCharged);
+      State::of(L).charge(L, (out.size() - before) / kBytesPerInstruction);
       at = last = to;
     } else if (at < m.end()) {
       out += *at++;

@@ -13,7 +13,6 @@ namespace spark::script {
 
 namespace {
 constexpr int kHookInterval = 1000;
-constexpr std::size_t kBytesPerInstruction = 16;
 constexpr int kTracebackLines = 8;
 
 int callBody(lua_State* L) {

@@ -128,6 +128,35 @@ if n == 4 then get("/sys/server/simulation"):on("act", function(self, event) if 
   REQUIRE(timelessRowsOf(table).size() == 4);
 }
 
+TEST_CASE("A rule or a script that fails while the run is on makes its row an error") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("rule.lua", R"(
+include "house.lua"
+files() simulation()
+local n = option{ name = "n", default = 1, doc = "2 is wrong, and so is 3, once." }
+on("rule", function(self, event)
+  if n == 2 or n == 3 and event.cycle == 7 then nosuch() end
+end)
+)");
+  for (const char* level : {"error", "off"}) {
+    const std::string table = (folder.path() / (std::string(level) + ".jsonl")).string();
+    const Finished f = runToEnd(batch(config, table, {"--duration", "1", "--sweep", "n=1,2,3", "--threads", "1", "--log-level", level}));
+    CAPTURE(level, f.errors);
+    CHECK(f.code == 1);
+    CHECK(Json::parse(f.out)["failed"] == 2);
+    const std::vector<Json> rows = rowsOf(table);
+    REQUIRE(rows.size() == 3);
+    CHECK(rows[0]["end"] == "duration");
+    CHECK_FALSE(rows[0].contains("error"));
+    for (const auto& [row, words] : {std::pair{rows[1], "50 faults of plugins or scripts; "}, std::pair{rows[2], "1 fault of plugins or scripts; "}}) {
+      CHECK(row["end"] == "error");
+      CHECK(row["cycles"] == 50);
+      CHECK_THAT(row["error"].get<std::string>(), Contains(words));
+      if (std::string(level) == "error") CHECK_THAT(row["error"].get<std::string>(), Contains("rule.lua:6: attempt to call a nil value (global 'nosuch')"));
+    }
+  }
+}
+
 TEST_CASE("What is wrong with the command line or the first world is said before a table is begun") {
   TemporaryFolder folder;
   const std::string table = (folder.path() / "t.csv").string();

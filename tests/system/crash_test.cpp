@@ -19,17 +19,20 @@ struct Crashing {
   std::vector<std::string> command(const std::string& config, std::vector<std::string> more = {}) const {
     const std::string text = "include \"house.lua\"\nfiles() scene() simulation()\nplugin \"gamecontrol\"\nplugin \"crashing\"\n";
     std::vector<std::string> out{(binFolder() / "sparkhost").string(), "--config", folder.write("crash.lua", text + config),
-                                 "--plugin-path", plugins(), "--rate", "max"};
+                                 "--plugin-path", plugins()};
     out.insert(out.end(), more.begin(), more.end());
     return out;
   }
-  Finished run(const std::string& config, std::vector<std::string> more = {}) const { return runToEnd(command(config, std::move(more))); }
+  Finished run(const std::string& config, std::vector<std::string> more = {}) const {
+    more.insert(more.end(), {"--rate", "max"});
+    return runToEnd(command(config, std::move(more)));
+  }
   std::string hook(const std::string& how) const {
-    return "local h = new('CrashHook', '/usr/thing/h')\nh.how = '" + how + "'\nh.until = '" + folder.file("go") + "'\n";
+    return "local h = new('CrashHook', '/usr/thing/h')\nh.how = '" + how + "'\nh.stopFile = '" + folder.file("go") + "'\n";
   }
   /// An agent in the host whose robot has the sensor.
   std::string agent(const std::string& how) const {
-    folder.write("rsg/agent/robot.rsg", "(RSG 0 1)\n((nd TRF (nd CrashSensor (setName eye) (setHow " + how + ") (setUntil " + folder.file("go") + "))))\n");
+    folder.write("rsg/agent/robot.rsg", "(RSG 0 1)\n((nd TRF (nd CrashSensor (setName eye) (setHow " + how + ") (setStopFile " + folder.file("go") + "))))\n");
     return "agents{ port = 0 }\n"
            "new('ScriptBehavior', '/usr/agent/b'):on('start', function(self) self.actions = '(scene rsg/agent/robot.rsg)' end)\n";
   }
@@ -76,7 +79,7 @@ TEST_CASE("What crashes at set-up is named: properties by their name, constructo
 
 TEST_CASE("A signal that somebody sends ends the host as ever, with its words") {
   const Crashing c;
-  Process p(c.command("", {"--rate", "real"}), 60);
+  Process p(c.command(""), 60);
   p.line();
   p.signal(SIGSEGV);
   CHECK(p.wait() == 128 + SIGSEGV);
@@ -118,7 +121,7 @@ TEST_CASE("What hangs is named while it hangs, and once") {
   const Crashing c;
   for (const bool sensor : {true, false}) {
     auto more = sensor ? c.scenes() : std::vector<std::string>{"--duration", "2"};
-    more.insert(more.end(), {"--set", "/sys/host/watchdog.after=0.5"});
+    more.insert(more.end(), {"--rate", "max", "--set", "/sys/host/watchdog.after=0.5"});
     Process p(c.command(sensor ? c.agent("hang") : c.hook("hang"), more), 60);
     p.line();
     p.waitForError(sensor ? "/eye (class CrashSensor of plugin crashing)." : "it has been in prepare of /usr/thing/h (class CrashHook of plugin crashing).");

@@ -23,7 +23,6 @@ using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-std::string program(const char* name) { return (binFolder() / name).string(); }
 std::vector<std::string> host(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), program("sparkhost"));
   return arguments;
@@ -33,10 +32,20 @@ Finished shell(const std::string& line) { return runToEnd({"sh", "-c", line}); }
 
 const char* kSmall = "include \"house.lua\"\nfiles() simulation() control()\n";
 
-/// Sockets of this test's own.
+/// Sockets of this test's own: no other house on this machine is seen.
 struct Runtime : TemporaryFolder {
-  Runtime() { setenv("XDG_RUNTIME_DIR", path().c_str(), 1); }
-  ~Runtime() { unsetenv("XDG_RUNTIME_DIR"); }
+  Runtime() {
+    setenv("XDG_RUNTIME_DIR", path().c_str(), 1);
+    setenv("TMPDIR", path().c_str(), 1);
+  }
+  ~Runtime() {
+    unsetenv("XDG_RUNTIME_DIR");
+    if (temporary_.empty()) unsetenv("TMPDIR");
+    else setenv("TMPDIR", temporary_.c_str(), 1);
+  }
+
+ private:
+  std::string temporary_ = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "";
 };
 
 /// A program that listens at a Unix socket and never says a word.
@@ -162,7 +171,7 @@ TEST_CASE("sparkctl does not believe a folder that others could have made, nor a
 
 TEST_CASE("What a config includes comes from beside it and from Spark, not from the folder the user happens to be in") {
   TemporaryFolder folder;
-  folder.write("house.lua", "log.error('taken over')\n");
+  folder.write("house.lua", "log.warning('taken over')\n");
   const std::string cd = "cd " + folder.path().string() + " && ";
   const Finished shared = shell(cd + program("sparkhost") + " --config boxes.lua --check");
   CHECK(shared.code == 0);

@@ -156,6 +156,7 @@ TEST_CASE("what works on much at once pays for it") {
   h.run("long = ('a'):rep(1000000) many = {} for i = 1, 200000 do many[i] = i % 1000 end");
   for (const char* forever :
        {"string.find(long, '.-.-.-b')", "long:match('(a*)*(a*)(a*)(a*)b')", "long:gsub('.-.-.-b', '')", "for x in long:gmatch('a*a*a*b') do end",
+        "while true do long:find(('a'):rep(10000) .. 'b', 1, true) end",
         "while true do s = ('x'):rep(100000000) end", "while true do s = long:upper() end", "while true do s = long .. long end",
         "while true do table.insert(many, 1, 0) end", "while true do table.sort(many) end", "while true do s = table.concat(many) end",
         "while true do table.remove(many, 1) many[200000] = 1 end", "while true do table.move(many, 1, 200000, 2) end"}) {
@@ -164,6 +165,17 @@ TEST_CASE("what works on much at once pays for it") {
     h.run(std::string("s = nil handler = on('work', function() ") + forever + " end)");
     h.emit("work");
     CHECK_THAT(h.text, Contains("stopped after 50000000 instructions"));
+  }
+}
+
+TEST_CASE("many small searches pay as much as a large one") {
+  LuaHouse h;
+  for (const char* search : {"('aaaaaaaa'):find('.-.-b')", "('aaaaaaaa'):match('a*a*a*b')", "('aaaaaaaa'):gsub('.-.-b', '')"}) {
+    INFO(search);
+    h.run(std::string("n = 0 on('work', function() while true do n = n + 1 local x = ") + search + " end end)");
+    h.emit("work");
+    CHECK(h.run("return n").toInteger() < 1'000'000);  // each takes some 100 comparisons, and 5 instructions
+    CHECK(h.run("return n").toInteger() > 10'000);
   }
 }
 

@@ -79,11 +79,22 @@ sparkhost::Options hostOptions(const Options& options, const Run& run) {
   return out;
 }
 
-/// The house, its log on stderr with the run's number.
-std::unique_ptr<Host> makeHost(const sparkhost::Options& options, const Run& run) {
+/// The house, its log on stderr with the run's number. `fault` becomes what the log says of the first fault, when its level lets it.
+std::unique_ptr<Host> makeHost(const sparkhost::Options& options, const Run& run, std::string* fault = nullptr) {
   auto host = std::make_unique<Host>(options);
-  host->kernel().log().setSink([number = run.number](Level, std::string_view text) { sayLine(fmt::format("run {}: {}", number, text)); });
+  Kernel& kernel = host->kernel();
+  kernel.log().setSink([&kernel, fault, number = run.number](Level level, std::string_view text) {
+    if (fault && fault->empty() && level >= Level::warning && kernel.faults() > 0) *fault = text;
+    sayLine(fmt::format("run {}: {}", number, text));
+  });
   return host;
+}
+
+/// Why the numbers of a run whose plugins or scripts failed are none to rely on.
+std::string faultsOf(const Kernel& kernel, const std::string& first) {
+  const std::int64_t n = kernel.faults();
+  return fmt::format("{} fault{} of plugins or scripts; {}", n, n == 1 ? "" : "s",
+                     first.empty() ? "--log-level warning tells the first of each place" : "the first: " + first);
 }
 
 Json toJson(const Value& v) {
@@ -159,10 +170,10 @@ Row simulate(const Options& options, const Run& run, Watch& watch) {
   Row row{{"run", run.number}, {"seed", run.seed}};
   for (const auto& [key, text] : run.point) row[key] = toJson(Value::fromText(text));
   const Stopwatch clock;
-  std::string error;
+  std::string error, fault;
   try {
     const sparkhost::Options asked = hostOptions(options, run);
-    const auto host = makeHost(asked, run);
+    const auto host = makeHost(asked, run, &fault);
     host->build();
     closeNetwork(host->kernel().root());
     host->kernel().registerClass<Pulse>();
@@ -172,6 +183,7 @@ Row simulate(const Options& options, const Run& run, Watch& watch) {
     addOutcome(root, row);
     addReports(root, options.reports, row);
     addResults(root, row);
+    if (host->kernel().faults() > 0) error = faultsOf(host->kernel(), fault);
   } catch (const std::exception& e) {
     error = e.what();
   } catch (...) {

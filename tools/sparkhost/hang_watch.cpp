@@ -24,7 +24,11 @@ void HangWatch::install(Kernel& kernel) {
 
 HangWatch::~HangWatch() { stop(); }
 
-void HangWatch::onUnlink() { stop(); }
+/// The host ends between two looks: what hung has returned.
+void HangWatch::onUnlink() {
+  stop();
+  if (told_) tellGoesOn();
+}
 
 void HangWatch::start() {
   dog_.emplace();
@@ -42,6 +46,11 @@ void HangWatch::stop() {
   dog_.reset();
 }
 
+void HangWatch::tellGoesOn() {
+  kernel().log().warning("The simulation goes on after {:.1f} s.", std::chrono::duration<double>(Clock::now() - last_).count());
+  told_ = toldEnd_ = false;
+}
+
 void HangWatch::watch() {
   std::unique_lock lock(mutex_);
   while (!wake_.wait_for(lock, kLook, [this] { return ending_; })) look();
@@ -50,10 +59,9 @@ void HangWatch::watch() {
 /// Counts looks, not time: a host that was suspended, or has no processor, does not hang.
 void HangWatch::look() {
   if (dog_->gotOn()) {
-    if (told_) kernel().log().warning("The simulation goes on after {:.1f} s.", std::chrono::duration<double>(Clock::now() - last_).count());
+    if (told_) tellGoesOn();
     last_ = Clock::now();
     stuck_ = 0;
-    told_ = toldEnd_ = false;
     return;
   }
   stuck_ += kLookSeconds;

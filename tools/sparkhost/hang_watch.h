@@ -37,6 +37,7 @@ class HangWatch : public spark::Node {
   void watch();
   void look();
   void tell();
+  void tellGoesOn();
 
   std::atomic<double> after_ = 2;
   std::optional<spark::Watchdog> dog_;
@@ -44,7 +45,7 @@ class HangWatch : public spark::Node {
   std::mutex mutex_;
   std::condition_variable wake_;
   bool ending_ = false;
-  // Of its thread alone.
+  // Of its thread alone, and of who ended that.
   Clock::time_point last_{};  ///< when it got on
   double stuck_ = 0;          ///< s that it was seen not to
   bool told_ = false, toldEnd_ = false;

@@ -1,8 +1,6 @@
 -- A position that is no number, or beyond all bounds, ends the import with its place in the file.
--- expect: nowhere.rsg:3:5: cannot call setLocalPos
--- expect: far.rsg:2:27:
--- expect: found inf 0.0 0.0
--- expect: from 1e9
+-- expect: rsg/review/nowhere.rsg:3:30: expected a position of finite numbers from -1e9 to 1e9, found nan 0.0 1.0
+-- expect: rsg/review/far.rsg:2:29: expected a position of finite numbers from -1e9 to 1e9, found inf 0.0 0.0
 include "house.lua"
 files() scene() physics() simulation()
 for _, file in ipairs{ "rsg/review/nowhere.rsg", "rsg/review/far.rsg" } do
