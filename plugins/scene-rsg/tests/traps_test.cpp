@@ -192,7 +192,7 @@ TEST_CASE("a place that is none ends the import with file, line and column, leni
   h.write("far.rsg", "(RSG 0 1)\n((nd Transform (setLocalPos 1e300 0 0)))");
   CHECK_THROWS_WITH(callMethod(*h.scene, "importScene", List{"nowhere.rsg"}),
                     Catch::Contains("nowhere.rsg:3:4: ") && Catch::Contains("expected a position of finite numbers from -1e9 to 1e9, found nan 0.0 1.0"));
-  CHECK_THROWS_WITH(callMethod(*h.scene, "importScene", List{"far.rsg"}), Catch::Contains("far.rsg:2:16: ") && Catch::Contains("found inf 0.0 0.0"));
+  CHECK_THROWS_WITH(callMethod(*h.scene, "importScene", List{"far.rsg"}), Catch::Contains("far.rsg:2:17: ") && Catch::Contains("found inf 0.0 0.0"));
 }
 
 TEST_CASE("methods and classes have short names") {
