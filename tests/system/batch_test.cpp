@@ -169,6 +169,7 @@ TEST_CASE("What is wrong with the command line or the first world is said before
       {batch(config, table, {"--sweep", "answer=1,2", "--sweep", "answer=3"}), "twice"},
       {batch(config, table, {"--report", "score"}), "/path.property"},
       {batch(config, table, {"--retry"}), "--resume"},
+      {batch(config, table, {"--seed", "-1"}), "--seed: expected a whole number from 0 to 18446744073709551615 (64 bits), found '-1'"},
       {batch(config, (folder.path() / "t.txt").string()), ".csv or .jsonl"},
       {batch(folder.write("none.lua", "include 'house.lua'\n"), table), "there is no /sys/server/simulation"}};
   for (const auto& [command, text] : wrong) {

@@ -128,6 +128,19 @@ TEST_CASE("A result that cannot be written is on stderr, and the exit code says 
   CHECK(f.code == 1);
   CHECK_THAT(f.errors, Contains("cannot write to stdout (No space left on device); this line is lost there: {\"cycles\":50,"));
   CHECK(shell(program("sparkhost") + " --list-plugins > /dev/full").code != 0);
+  const Finished batch =
+      shell(program("sparkbatch") + " --config " + folder.file("small.lua") + " --results " + folder.file("t.csv") + " --duration 1 > /dev/full");
+  CHECK(batch.code == 1);
+  CHECK_THAT(batch.errors, Contains("cannot write to stdout (No space left on device); this line is lost there: {\"runs\":1,"));
+}
+
+TEST_CASE("An answer of a house that cannot be written is an error of sparkctl") {
+  Runtime runtime;
+  Process p(host({"--config", runtime.write("small.lua", kSmall)}), 60);
+  p.line();
+  const Finished f = shell(program("sparkctl") + " plugins > /dev/full");
+  CHECK(f.code == 1);
+  CHECK_THAT(f.errors, Contains("cannot write to stdout: No space left on device"));
 }
 
 TEST_CASE("sparkctl does not wait for ever for a house that is stopped, nor for a mute one") {

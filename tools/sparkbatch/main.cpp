@@ -2,14 +2,16 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <thread>
 
 #include "batch.h"
 #include "spark/running.h"
 
-// Exit codes: 0 every run has a row; 1 some rows are errors; 2 the command line, the config or the table is wrong, nothing was run;
+// Exit codes: 0 every run has a row; 1 some rows are errors, or the line is lost; 2 the command line, the config or the table is wrong, nothing was run;
 // 3 it was interrupted. stdout carries one JSON line at the end, everything else goes to stderr.
 
 namespace {
@@ -62,9 +64,10 @@ int lead(const Options& options, Cluster& cluster) {
     return kWrong;
   }
   const int code = leader->run(wish);
-  fmt::print("{}\n", leader->summary());
-  std::fflush(stdout);
-  return code;
+  const std::string summary = leader->summary();
+  if (std::puts(summary.c_str()) >= 0 && std::fflush(stdout) == 0) return code;
+  fmt::print(stderr, "sparkbatch: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno), summary);
+  return std::max(code, 1);
 }
 }  // namespace
 

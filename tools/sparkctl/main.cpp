@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <stdexcept>
 
 #include "house.h"
 #include "print.h"
 
-// Exit codes: 0 done; 1 the house refused or there is none; 2 the command line is wrong.
+// Exit codes: 0 done; 1 the house refused, there is none, or its answer cannot be written; 2 the command line is wrong.
 
 using namespace sparkctl;
 
@@ -42,8 +44,8 @@ std::string choose(const std::string& socket, int pid) {
 }
 
 void print(const std::string& text) {
-  std::fputs(text.c_str(), stdout);
-  std::fflush(stdout);
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
+    throw std::runtime_error(fmt::format("cannot write to stdout: {}", std::strerror(errno)));
 }
 
 void get(House& house, const std::string& what) {

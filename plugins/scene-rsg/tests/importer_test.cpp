@@ -168,6 +168,49 @@ TEST_CASE("for monitors a complete scene replaces what was there") {
   CHECK(h.scene->children().size() == 2);
 }
 
+namespace {
+/// Another format: "list", then files, each of which is imported below a probe of its own.
+class ListImporter : public Node, public ISceneImporter {
+  SPARK_CLASS(ListImporter, Node)
+ public:
+  static void describe(Description<ListImporter>& d) {
+    d.doc("Imports lists of files.");
+    d.implements<ISceneImporter>();
+  }
+  bool recognises(std::string_view text) const override { return text.starts_with("list\n"); }
+  void import(std::string_view file, Node& root, const List&) override {
+    std::istringstream lines(kernel().root().require<IFileServer>("/sys/server/file").read(file));
+    std::string line;
+    for (std::getline(lines, line); std::getline(lines, line);) {
+      auto& probe = root.create<Node>("Probe", "of");
+      kernel().root().require<ISceneServer>("/sys/server/scene").importScene(line, probe, {});
+    }
+  }
+};
+}  // namespace
+
+TEST_CASE("importers of several formats nest in each other, and an error tells the way through all of them") {
+  SceneHouse h;
+  h.kernel.registerClass<ListImporter>();
+  h.kernel.create("ListImporter", "/sys/server/scene/list");
+  h.write("inner.toy", "list\nleaf.rsg\nleaf.rsg\n");
+  h.write("leaf.rsg", "(RSG 0 1)((nd Transform (setName leaf)(setLocalPos 0 0 1)(nd Probe)))");
+  h.run("(nd Transform (setName a)(nd Probe (setName p)(importScene inner.toy)))(nd Probe (setName b))");
+  REQUIRE(h.scene->find("a/p/of[2]/leaf/Probe"));
+  CHECK(h.scene->find("a/p/of[1]/leaf"));
+  CHECK(h.scene->find("b"));
+  h.write("inner.toy", "list\nleaf.rsg\ngone.rsg\n");
+  h.run("(nd Transform (setName c)(nd Probe (setName p)(importScene inner.toy)))(nd Probe (setName d))");
+  CHECK(h.logged("the import of 'inner.toy' failed"));
+  CHECK(h.logged("gone.rsg"));
+  CHECK(h.scene->find("c/p/of[1]/leaf"));
+  CHECK(h.scene->find("d"));
+  h.set("strict", true);
+  const std::string text = h.failure("(nd Probe (importScene inner.toy))");
+  CHECK(text.find("test.rsg:2:13: ") == 0);
+  CHECK(text.find("gone.rsg") != std::string::npos);
+}
+
 TEST_CASE("strict turns into errors what is otherwise passed over") {
   SceneHouse h;
   h.set("strict", true);

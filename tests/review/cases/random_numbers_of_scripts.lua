@@ -1,0 +1,9 @@
+-- A seed gives scripts the same random numbers in every run, to each script its own, whatever others draw.
+-- expect: first drew 0.700150
+-- expect: second drew 0.051372
+-- args: --rate max --duration 1 --seed 7
+include "house.lua"
+files() scene() simulation()
+for _, name in ipairs{ "first", "second" } do
+  new("Transform", "/usr/scene/" .. name):attachScript("scripts/draws.lua", { name = name })
+end
