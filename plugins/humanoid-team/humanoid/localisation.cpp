@@ -9,14 +9,27 @@ namespace {
 /// The robot's forward is the field's x when its heading is 0: robot axes to field axes.
 Eigen::Rotation2Dd rotation(double heading) { return Eigen::Rotation2Dd(heading - kPi / 2); }
 
-constexpr double kNear = 25;  // m; what is further off tells the direction, hardly the place
+constexpr double kTorsoHeight = 0.35;         // m, of one who stands or walks
+constexpr double kNod = 0.4, kMostNod = 0.4;  // of what a look tells; rad
+constexpr double kNear = 25;                  // m; what is further off tells the direction, hardly the place
 }  // namespace
 
-Vec3 Localisation::level(const Vec3& inHead, const Percepts& percepts, const Posture& posture) {
+Vec3 Localisation::level(const Vec3& inHead, const Percepts& percepts, const Posture& posture) const {
   const Mat3 head = (Eigen::AngleAxisd(percepts.joints[Joint::headYaw], Vec3::UnitZ()) *
                      Eigen::AngleAxisd(percepts.joints[Joint::headPitch], Vec3::UnitX()))
                         .toRotationMatrix();
-  return posture.level() * (head * inHead + Vec3(0, 0, kCameraHeight));
+  return Eigen::AngleAxisd(nod_, Vec3::UnitX()) * (posture.level() * (head * inHead + Vec3(0, 0, kCameraHeight)));
+}
+
+/// The accelerometer of who walks errs by some degrees of lean; marks of known height tell.
+void Localisation::findHorizon(const Percepts& percepts, const Posture& posture) {
+  double across = 0, along = 0;
+  for (const Sighting& s : percepts.sightings) {
+    const Vec3 place = level(s.place, percepts, posture);
+    across += place.y() * (s.landmark->place.z() - kTorsoHeight - place.z());
+    along += place.y() * place.y();
+  }
+  if (along > 1 && posture.lying() == Lying::no) nod_ = std::clamp(nod_ + kNod * std::atan2(across, along), -kMostNod, kMostNod);
 }
 
 Vec2 Localisation::toField(const Vec2& fromRobot) const { return place_ + rotation(heading_) * fromRobot; }
@@ -31,6 +44,7 @@ void Localisation::update(const Percepts& percepts, const Posture& posture, cons
 
 // With two marks or more, the turn and shift that fit them best; with one, the heading is believed and the place is moved.
 void Localisation::match(const Percepts& percepts, const Posture& posture) {
+  findHorizon(percepts, posture);
   const double flip = percepts.side == "right" ? -1 : 1;
   std::vector<std::pair<Vec2, Vec2>> seen;  // from the robot, on the field
   Vec2 robotMean = Vec2::Zero(), fieldMean = Vec2::Zero();

@@ -19,7 +19,7 @@ class Localisation {
   /// rad; 0: its front is towards the opponents' goal, positive to the left.
   double heading() const { return heading_; }
   /// A point of the head's frame, seen from the torso's middle but level: x right, y forward, z up [m].
-  static Vec3 level(const Vec3& inHead, const Percepts& percepts, const Posture& posture);
+  Vec3 level(const Vec3& inHead, const Percepts& percepts, const Posture& posture) const;
   /// From the robot's level frame to the field, and back.
   Vec2 toField(const Vec2& fromRobot) const;
   Vec2 toRobot(const Vec2& onField) const;
@@ -29,9 +29,11 @@ class Localisation {
  private:
   static constexpr double kTrust = 3;  ///< s
   void match(const Percepts& percepts, const Posture& posture);
+  void findHorizon(const Percepts& percepts, const Posture& posture);
 
   Vec2 place_ = Vec2::Zero();
   double heading_ = 0, age_ = kTrust;  ///< age: s since it saw enough
+  double nod_ = 0;                     ///< rad that the posture's lean is wrong
 };
 
 }  // namespace humanoid

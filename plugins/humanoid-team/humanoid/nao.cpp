@@ -40,6 +40,9 @@ double topSpeed(const Build& build, Joint j) {
   return 6.1395;
 }
 
-int robotType(int unum) { return unum % 3 * 2; }
+int robotType(int unum) {
+  constexpr std::array<int, 12> types{0, 0, 4, 2, 0, 4, 1, 3, 1, 3, 1, 3};
+  return types.at(static_cast<std::size_t>(std::clamp(unum, 1, 11)));
+}
 
 }  // namespace humanoid

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,18 +10,22 @@
 namespace humanoid {
 
 namespace {
-constexpr double kJointShare = 0.8;                        // of the way left that a joint makes in a cycle
-constexpr double kBallMemory = 4;                          // s
-constexpr double kMateMemory = 1.5;                        // s
-constexpr double kRest = 0.3;                              // s that he lies still before he gets up
-constexpr double kMostRest = 1.5;                          // s after which he tries all the same
-constexpr std::array kPaces{1.0, 1.06, 0.94, 1.12, 0.88};  // what failed once would fail again
-constexpr double kRestSpeed = 0.08;                        // rad in a cycle
-constexpr double kStill = 0.2;                             // rad/s
-constexpr double kBeamEvery = 0.1;                         // s
-constexpr double kBeamTime = 1.0;                          // s in which he is beamed to his place
-constexpr double kAskEvery = 1;                            // s between two inits that were not answered
-constexpr int kSaySlots = 22;                              // cycles in which each of eleven speaks once
+constexpr double kJointShare = 0.8;   // of the way left that a joint makes in a cycle
+constexpr double kBallMemory = 4;     // s
+constexpr double kMateMemory = 1.5;   // s
+constexpr double kOtherMemory = 0.8;  // s that a player is taken to be where he was seen
+constexpr double kAtBall = 0.4;       // m: he plays the ball, or may have
+constexpr double kBarred = 8;         // s after which somebody else must have touched the ball
+constexpr double kRest = 0.1;         // s that he lies, at least, before he gets up
+constexpr double kMostRest = 0.6;     // s after which he tries although he still rolls
+constexpr double kStill = 1;          // rad/s
+constexpr double kSlip = 0.78;        // of the speed that is walked
+constexpr double kSettling = 0.03;    // rad in a cycle towards the stance
+constexpr double kSteady = 0.5;       // s that he treads on the spot then
+constexpr double kBeamEvery = 0.1;    // s
+constexpr double kBeamTime = 1.0;     // s in which he is beamed to his place
+constexpr double kAskEvery = 1;       // s between two inits that were not answered
+constexpr int kSaySlots = 22;         // cycles in which each of eleven speaks once
 
 void armsDown(const Build& build, Pose& pose) {
   pose[Joint::rShoulderPitch] = pose[Joint::lShoulderPitch] = radians(-100);
@@ -36,10 +41,10 @@ HumanoidPlayer::HumanoidPlayer(std::string team, int unum, int type)
       type_(type),
       build_(buildOf(type)),
       drive_(build_),
-      walk_(build_, gaitOf(type)),
-      kick_(build_, gaitOf(type)),
-      recovery_(recoveryOf(type)) {
-  standStill();
+      gait_(gaitOf(type)),
+      walk_(build_, gait_) {
+  armsDown(build_, pose_);
+  walk_.stand(pose_);
 }
 
 void HumanoidPlayer::start(spark::Predicates& actions) const {
@@ -57,7 +62,7 @@ void HumanoidPlayer::think(const spark::Predicates& message, spark::Predicates& 
     say(actions);
   }
   look();
-  drive_.drive(pose_, percepts_.joints, kJointShare, actions);
+  drive_.drive(pose_, percepts_.joints, walking_ ? gait_.share : kJointShare, actions);
 }
 
 // ---- what he knows ----
@@ -66,9 +71,13 @@ void HumanoidPlayer::sense(const spark::Predicates& message) {
   read(message, team_, percepts_);
   posture_.update(percepts_);
   const Velocity& v = walk_.velocity();
-  localisation_.update(percepts_, posture_, walking_ ? Vec2(Vec2(v.right, v.forward) * kCycle) : Vec2(Vec2::Zero()));
+  const Vec2 moved = walking_ ? Vec2(Vec2(v.right, v.forward) * kSlip * kCycle) : Vec2(Vec2::Zero());
+  localisation_.update(percepts_, posture_, moved);
+  ballFromHere_ = Eigen::Rotation2Dd(-(posture_.level() * percepts_.gyro).z() * kCycle) * (ballFromHere_ - moved);
   senseBall();
+  senseOthers();
   hear();
+  watchRestart();
   if (posture_.lying() == Lying::no)
     lyingSince_ = -1;
   else if (lyingSince_ < 0)
@@ -76,9 +85,38 @@ void HumanoidPlayer::sense(const spark::Predicates& message) {
 }
 
 void HumanoidPlayer::senseBall() {
-  if (!percepts_.ball || !localisation_.known()) return;
-  ball_ = localisation_.toField(Localisation::level(*percepts_.ball, percepts_, posture_).head<2>());
-  ballAt_ = percepts_.now;
+  if (percepts_.ball) {
+    ballFromHere_ = localisation_.level(*percepts_.ball, percepts_, posture_).head<2>();
+    if (localisation_.known()) ballAt_ = percepts_.now;
+  }
+  ball_ = localisation_.toField(ballFromHere_);
+}
+
+void HumanoidPlayer::senseOthers() {
+  std::erase_if(others_, [this](const Other& o) { return percepts_.now - o.seenAt > kOtherMemory; });
+  if (!localisation_.known()) return;
+  for (const SeenPlayer& p : percepts_.players) {
+    if (p.team == team_ && p.unum == unum_) continue;  // his own arms
+    const Vec2 place = localisation_.toField(localisation_.level(p.place, percepts_, posture_).head<2>());
+    const auto known = std::find_if(others_.begin(), others_.end(), [&](const Other& o) { return o.unum == p.unum && o.team == p.team; });
+    if (known != others_.end())
+      *known = {p.team, p.unum, percepts_.now, place};
+    else
+      others_.push_back({p.team, p.unum, percepts_.now, place});
+  }
+}
+
+/// Who took a restart may not touch the ball again before somebody else has.
+void HumanoidPlayer::watchRestart() {
+  const bool ours = !pausedMode(percepts_.playMode) && percepts_.playMode != "PlayOn" && !theirBall(percepts_.playMode, percepts_.side);
+  const bool atBall = percepts_.now - ballAt_ < 1 && (ball_ - localisation_.place()).norm() < kAtBall;
+  if (restart_ && percepts_.playMode == "PlayOn" && atBall) barredSince_ = percepts_.now;
+  restart_ = ours;
+  if (barredSince_ < 0) return;
+  const bool touched =
+      std::any_of(others_.begin(), others_.end(), [this](const Other& o) { return (o.place - ball_).norm() < 0.3; }) ||
+      std::any_of(mates_.begin(), mates_.end(), [this](const Mate& m) { return m.heardAt > barredSince_ && m.toBall < 0.3; });
+  if (touched || percepts_.now - barredSince_ > kBarred || percepts_.playMode != "PlayOn") barredSince_ = -1;
 }
 
 /// A message is `unum:x:y:d`: the ball's place and the speaker's distance from it, in cm.
@@ -89,12 +127,16 @@ void HumanoidPlayer::hear() {
     mates_[static_cast<std::size_t>(unum)] = {percepts_.now, d / 100.0};
     if (percepts_.now - ballAt_ < kMateMemory) continue;
     ball_ = Vec2(x, y) / 100.0;
+    ballFromHere_ = localisation_.toRobot(ball_);
     ballAt_ = percepts_.now - 0.5 * kBallMemory;
   }
 }
 
-/// Who lies has further to go.
-double HumanoidPlayer::toBall() const { return (ball_ - localisation_.place()).norm() + (lyingSince_ >= 0 || busy() ? 2 : 0); }
+/// Who lies, or has the ball behind him, has further to go; who may not touch it too far.
+double HumanoidPlayer::toBall() const {
+  const Vec2 way = ball_ - localisation_.place();
+  return way.norm() + (lyingSince_ >= 0 || getUp_.playing() ? 2 : 0) + (way.x() < -0.2 ? 0.6 : 0) + (barredSince_ >= 0 ? 20 : 0);
+}
 
 Situation HumanoidPlayer::situation() const {
   Situation s;
@@ -108,6 +150,7 @@ Situation HumanoidPlayer::situation() const {
   s.place = localisation_.place();
   s.heading = localisation_.heading();
   s.ball = ball_;
+  s.barred = barredSince_ >= 0;
   s.nearest = true;
   for (int i = 1; i <= 11; ++i) {
     const Mate& mate = mates_[static_cast<std::size_t>(i)];
@@ -125,32 +168,38 @@ void HumanoidPlayer::act(const Decision& decision, spark::Predicates& actions) {
     pausedSince_ = -1;
   else if (pausedSince_ < 0)
     pausedSince_ = percepts_.now;
-  if (movement_.playing()) return movement_.step(pose_);
-  if (recovery_.playing()) return recovery_.step(percepts_, posture_, pose_);
-  if (kick_.playing() && decision.task != Task::getUp && decision.task != Task::fall) return kick_.step(pose_);
+  if (getUp_.playing()) return rise();
   task_ = decision.task;
-  if (task_ != Task::getUp && task_ != Task::fall) attempts_ = 0;
   switch (decision.task) {
     case Task::takePlace:
       return takePlace(decision.target, actions);
     case Task::fall:
-      return standStill();
+      walking_ = false;
+      return settle();
     case Task::getUp:
       return getUp();
     case Task::search:
       return walk({0, 0, 0.6});
     case Task::stand:
-      return walk({});
+      return percepts_.playMode == "GameOver" ? standStill() : walk({});
     case Task::walk: {
-      const Steering s = steer(localisation_.toRobot(decision.target), normalized(decision.facing - localisation_.heading()));
+      const Vec2 target = localisation_.toRobot(decision.target);
+      const Steering s = steer(pass(target, inTheWay(0)), normalized(decision.facing - localisation_.heading()));
       return walk({s.forward, s.right, s.turn});
     }
-    case Task::kick:
-      walk({});
-      if (walking_) return;
-      kick_.start(decision.rightFoot);
-      return;
+    case Task::dribble: {
+      const Steering s = run(pass(localisation_.toRobot(decision.target), inTheWay(kAtBall)), decision.speed);
+      return walk({s.forward, s.right, s.turn});
+    }
   }
+}
+
+/// The others from the robot, without those so near to the ball.
+std::vector<Vec2> HumanoidPlayer::inTheWay(double nearBall) const {
+  std::vector<Vec2> places;
+  for (const Other& o : others_)
+    if ((o.place - ball_).norm() > nearBall) places.push_back(localisation_.toRobot(o.place));
+  return places;
 }
 
 void HumanoidPlayer::takePlace(const Vec2& place, spark::Predicates& actions) {
@@ -161,41 +210,46 @@ void HumanoidPlayer::takePlace(const Vec2& place, spark::Predicates& actions) {
   posture_.reset();
 }
 
-/// From back or belly he lies still with straight limbs first: the movements were found from there. On a side he would tip back meanwhile.
 void HumanoidPlayer::getUp() {
   walking_ = false;
-  kick_.stop();
-  if (posture_.lying() == Lying::onSide) return movement_.start(tipForward(), pose_);
+  const double lain = percepts_.now - lyingSince_;
+  if (lain < kRest || (percepts_.gyro.norm() > kStill && lain < kMostRest)) return;
+  fell_ = posture_.lying();
+  getUp_.start(movementOf(type_, fell_), pose_);
+  rise();
+}
+
+/// Who lies on another side after the first pose begins anew; who stands treads on the spot for a moment.
+void HumanoidPlayer::rise() {
+  getUp_.step(percepts_, posture_, pose_);
+  if (getUp_.begun() && posture_.lying() != fell_) return getUp_.stop();
+  if (getUp_.playing() || posture_.lying() != Lying::no) return;
+  roseAt_ = percepts_.now;
+  walk_.start(pose_);
+  walking_ = true;
+}
+
+/// Treads on the spot where there is nowhere to go.
+void HumanoidPlayer::walk(const Velocity& velocity) {
+  if (!walking_) walk_.start(pose_);
+  walking_ = true;
+  armsDown(build_, pose_);
+  const bool steady = percepts_.now - roseAt_ > kSteady;
+  walk_.step(steady ? velocity : Velocity{}, percepts_, posture_, pose_);
+}
+
+/// Walks to a halt, then stretches.
+void HumanoidPlayer::standStill() {
+  if (walking_ && !walk_.mayStop()) return walk({});
+  walking_ = false;
+  settle();
+}
+
+void HumanoidPlayer::settle() {
   Pose stance = pose_;
   armsDown(build_, stance);
   walk_.stand(stance);
-  double off = 0;
-  for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i) {
-    pose_.at(i) += std::clamp(stance.at(i) - pose_.at(i), -kRestSpeed, kRestSpeed);
-    off = std::max(off, std::abs(stance.at(i) - pose_.at(i)));
-  }
-  if (off > 0) restingSince_ = percepts_.now;
-  if (off > 0 || percepts_.gyro.norm() > kStill) stillSince_ = percepts_.now;
-  if (percepts_.now - stillSince_ < kRest && percepts_.now - restingSince_ < kMostRest) return;
-  if (posture_.lying() == Lying::onBack) return movement_.start(rollOver(), pose_, attempts_++ % 2 == 1);
-  recovery_.start(pose_, stance, kPaces[static_cast<std::size_t>(attempts_++) % kPaces.size()]);
-}
-
-/// Stops when both feet are down, and begins anew when there is somewhere to go.
-void HumanoidPlayer::walk(const Velocity& velocity) {
-  const bool wanted = std::abs(velocity.forward) > 0.01 || std::abs(velocity.right) > 0.01 || std::abs(velocity.turn) > 0.05;
-  if (!walking_ && !wanted) return standStill();
-  if (!walking_) walk_.start();
-  walking_ = true;
-  armsDown(build_, pose_);
-  walk_.step(velocity, percepts_, posture_, pose_);
-  if (!wanted && walk_.mayStop()) walking_ = false;
-}
-
-void HumanoidPlayer::standStill() {
-  walking_ = false;
-  armsDown(build_, pose_);
-  walk_.stand(pose_);
+  for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i) pose_.at(i) = towards(pose_.at(i), stance.at(i), kSettling);
 }
 
 /// Turns the head to the ball; sweeps while it does not know where that is.
@@ -208,7 +262,7 @@ void HumanoidPlayer::look() {
     const Vec2 way = localisation_.toRobot(ball_);
     pan = std::clamp(std::atan2(-way.x(), way.y()), radians(-100), radians(100));
   }
-  const auto moved = [](double from, double to) { return from + std::clamp(to - from, -0.06, 0.06); };
+  const auto moved = [](double from, double to) { return towards(from, to, 0.04); };
   pose_[Joint::headYaw] = moved(pose_[Joint::headYaw], pan);
   pose_[Joint::headPitch] = moved(pose_[Joint::headPitch], tilt);
 }

@@ -4,11 +4,9 @@
 
 #include <string>
 
+#include "get_up.h"
 #include "joint_drive.h"
-#include "keyframes.h"
-#include "kick.h"
 #include "localisation.h"
-#include "recovery.h"
 #include "tactics.h"
 #include "walk.h"
 
@@ -40,20 +38,32 @@ class HumanoidPlayer {
     double heardAt = -10, toBall = 1e9;  ///< s, m
   };
 
+  /// Another player where he was seen.
+  struct Other {
+    std::string team;
+    int unum;
+    double seenAt;  ///< s
+    Vec2 place;     ///< on the field [m]
+  };
+
   void sense(const spark::Predicates& message);
   void senseBall();
+  void senseOthers();
   void hear();
+  void watchRestart();
+  std::vector<Vec2> inTheWay(double nearBall) const;
   Situation situation() const;
   Decision decideNow() const;
   void act(const Decision& decision, spark::Predicates& actions);
   void takePlace(const Vec2& place, spark::Predicates& actions);
   void getUp();
   void walk(const Velocity& velocity);
+  void rise();
   void standStill();
+  void settle();
   void look();
   void say(spark::Predicates& actions) const;
   double toBall() const;
-  bool busy() const { return recovery_.playing() || movement_.playing() || kick_.playing(); }
 
   std::string team_;
   int unum_, type_;
@@ -62,18 +72,22 @@ class HumanoidPlayer {
   Posture posture_;
   Localisation localisation_;
   JointDrive drive_;
+  const Gait& gait_;
   Walk walk_;
-  Kick kick_;
-  Recovery recovery_;
-  Player movement_;
+  GetUp getUp_;
+  Lying fell_ = Lying::no;  ///< how he lay when he began to get up
   Pose pose_{};
   Task task_ = Task::stand;
   bool walking_ = false;
-  int attempts_ = 0;  ///< to get up, since he stood
-  double initAt_ = -10, beamAt_ = -10, lyingSince_ = -1, stillSince_ = 0, restingSince_ = 0, pausedSince_ = -1;  ///< s
-  Vec2 ball_ = Vec2::Zero();                                                                                     ///< on the field [m]
-  double ballAt_ = -100;  ///< s, when it was last seen or told of
+  double roseAt_ = -100;                                                     ///< s
+  double initAt_ = -10, beamAt_ = -10, lyingSince_ = -1, pausedSince_ = -1;  ///< s
+  Vec2 ballFromHere_ = Vec2::Zero();                                         ///< the ball from the robot, x to its right, y forward [m]
+  Vec2 ball_ = Vec2::Zero();                                                 ///< on the field [m]
+  double ballAt_ = -100;                                                     ///< s, when it was last seen or told of
   std::array<Mate, 12> mates_;
+  std::vector<Other> others_;
+  bool restart_ = false;     ///< the last message told of a restart of ours
+  double barredSince_ = -1;  ///< s, when he took a restart that nobody has touched since; -1: he may play
 };
 
 }  // namespace humanoid

@@ -3,24 +3,32 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kick.h"
-
 // What a player does, first line that fits:
 //
 //     lies, or tips over                  -> get up, or let it happen
 //     before a kick-off, after a goal     -> be beamed to the place in the formation
 //     does not know where he or the ball is -> turn and look
 //     the others' ball                    -> keep away from it
-//     nearest to the ball                 -> behind it as seen from the goal, then kick, or walk into it
+//     took a restart himself              -> keep away until somebody else has touched the ball
+//     nearest to the ball                 -> behind it as seen from the goal, then through it
 //     everybody else                      -> a place that moves with the ball
 
 namespace humanoid {
 
 namespace {
-constexpr double kTipping = radians(50);  // of tilt: no step saves him
-constexpr double kKeepAway = 2.4;         // m from the ball at the others' restarts
-constexpr double kBehind = 0.25;          // m behind the ball from where to approach it
-constexpr double kAround = 0.45;          // m beside the ball when he has to get round it
+constexpr double kTipping = radians(50);   // of tilt: no step saves him
+constexpr double kKeepAway = 2.4;          // m from the ball at the others' restarts
+constexpr double kBehind = 0.35;           // m behind the ball: there he turns towards it
+constexpr double kAround = 0.5;            // m from the ball when he has to get round it
+constexpr double kFurther = radians(55);   // that he goes round it at a time
+constexpr double kAtHand = 0.8;            // m from the ball: he goes slowly there unless he pushes it
+constexpr double kTurned = radians(40);    // from the ball's way: he turns on the spot before he pushes it
+constexpr double kSlow = 0.4, kFast = 10;  // m/s
+constexpr double kFoot = 0.05;             // m beside the middle of a player, where his foot meets the ball
+constexpr double kAhead = 0.5;             // m ahead on his line that he walks to
+constexpr double kFree = radians(22);      // from the goal's direction in which he may push the ball when the goal is far
+constexpr double kClear = 0.55;            // m between two players' middles when one passes the other
+constexpr double kLookOut = 1.1;           // m ahead in which others matter
 const Vec2 kTheirGoal(15, 0), kOwnGoal(-15, 0);
 
 constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
@@ -38,32 +46,40 @@ constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
 
 double angleOf(const Vec2& v) { return std::atan2(v.y(), v.x()); }
 
-Decision walkTo(const Vec2& target, double facing) { return {Task::walk, target, facing, true}; }
+Decision walkTo(const Vec2& target, double facing) { return {Task::walk, target, facing}; }
 
 Decision keepAway(const Situation& s) {
   const Vec2 back = kOwnGoal - s.ball;
   const Vec2 from = (s.place - s.ball).norm() > 0.1 ? Vec2(s.place - s.ball) : back;
-  if (from.norm() > kKeepAway) return {Task::stand, s.place, s.heading, true};
+  if (from.norm() > kKeepAway) return {Task::stand, s.place, s.heading};
   return walkTo(s.ball + back.normalized() * kKeepAway, angleOf(-back));
 }
 
-/// The kick's direction: at the goal; from beside it at least forward.
-Vec2 aim(const Vec2& ball) {
-  const Vec2 way = kTheirGoal - ball;
-  return way.norm() > 0.5 ? Vec2(way.normalized()) : Vec2(1, 0);
+/// Where the ball is to go: at the goal; when that is far, as much aside as the player comes from aside.
+Vec2 aim(const Situation& s) {
+  const Vec2 toGoal = kTheirGoal - s.ball, from = s.ball - s.place;
+  const double distance = toGoal.norm();
+  if (distance < 0.3) return {1, 0};
+  const double free = std::clamp((distance - 1.5) / 4.5, 0.0, 1.0) * kFree + std::atan2(0.5, distance);
+  const double goal = angleOf(toGoal), off = from.norm() < 0.05 ? 0 : std::clamp(normalized(angleOf(from) - goal), -free, free);
+  Vec2 way(std::cos(goal + off), std::sin(goal + off));
+  if (const double y = s.ball.y() + 2 * way.y(); std::abs(y) > 9 && y * way.y() > 0) way = toGoal / distance;  // not over the touch line
+  return way;
 }
 
+/// Round the ball to its back as seen from the goal, then along the line through it: a foot pushes it on at every step.
 Decision attack(const Situation& s) {
-  const Vec2 way = aim(s.ball), from = s.place - s.ball, across(-way.y(), way.x());
-  const double behind = -from.dot(way), beside = from.dot(across), facing = angleOf(way);
-  if (behind < 0.05 && from.norm() < 1.2)  // before the ball: round it
-    return walkTo(s.ball + across * (beside < 0 ? -kAround : kAround) - way * 0.1, facing);
-  const bool aligned = std::abs(normalized(s.heading - facing)) < radians(20);
-  if (from.norm() > 0.45 || !aligned) return walkTo(s.ball - way * kBehind, facing);
-  const bool rightFoot = beside > 0;  // the ball is to the right of a player who is to its left
-  const double off = std::abs(beside) - Kick::kBallSide;
-  if (std::abs(off) < 0.035 && behind < Kick::kBallForward + 0.03) return {Task::kick, s.ball, facing, rightFoot};
-  return walkTo(s.ball - way * (Kick::kBallForward - 0.02) + across * (rightFoot ? Kick::kBallSide : -Kick::kBallSide), facing);
+  const Vec2 way = aim(s), from = s.place - s.ball, across(-way.y(), way.x());
+  const double behind = -from.dot(way), beside = from.dot(across), side = beside < 0 ? -1 : 1, facing = angleOf(way);
+  const bool near = from.norm()<kAtHand, turned = std::abs(normalized(s.heading - facing))> kTurned;
+  if (behind > 0.04 && std::abs(beside) < 0.09 + 0.4 * behind && !(near && turned))
+    return {Task::dribble, s.ball + across * (side * kFoot) + way * (kAhead - behind), facing};
+  const Vec2 back = s.ball - way * kBehind;
+  const double at = angleOf(from), left = normalized(angleOf(-way) - at);
+  if (std::abs(left) < kFurther) return near ? walkTo(back, facing) : Decision{Task::dribble, back, facing};
+  if (from.norm() > 2) return {Task::dribble, back, facing};
+  const double next = at + std::clamp(left, -kFurther, kFurther);
+  return {Task::dribble, s.ball + Vec2(std::cos(next), std::sin(next)) * kAround, facing, near ? kSlow : kFast};
 }
 
 Decision wait(const Situation& s) {
@@ -71,17 +87,18 @@ Decision wait(const Situation& s) {
   const double facing = angleOf(s.ball - s.place);
   if ((target - s.place).norm() > 0.6) return walkTo(target, facing);
   if (std::abs(normalized(s.heading - facing)) > radians(40)) return walkTo(s.place, facing);
-  return {Task::stand, s.place, s.heading, true};
+  return {Task::stand, s.place, s.heading};
 }
 }  // namespace
 
 Decision decide(const Situation& s) {
-  if (s.lying != Lying::no) return {Task::getUp, s.place, s.heading, true};
-  if (s.tilt > kTipping) return {Task::fall, s.place, s.heading, true};
-  if (pausedMode(s.playMode)) return {Task::takePlace, kickOffPlace(s.unum), 0, true};
-  if (s.playMode == "GameOver") return {Task::stand, s.place, s.heading, true};
-  if (!s.located || !s.ballKnown) return {Task::search, s.place, s.heading, true};
+  if (s.lying != Lying::no) return {Task::getUp, s.place, s.heading};
+  if (s.tilt > kTipping) return {Task::fall, s.place, s.heading};
+  if (pausedMode(s.playMode)) return {Task::takePlace, kickOffPlace(s.unum), 0};
+  if (s.playMode == "GameOver") return {Task::stand, s.place, s.heading};
+  if (!s.located || !s.ballKnown) return {Task::search, s.place, s.heading};
   if (theirBall(s.playMode, s.side)) return (s.ball - s.place).norm() < kKeepAway + 0.5 ? keepAway(s) : wait(s);
+  if (s.barred) return keepAway(s);
   return s.nearest && (s.unum != 1 || s.ball.x() < -12) ? attack(s) : wait(s);
 }
 
@@ -107,11 +124,31 @@ bool theirBall(std::string_view playMode, std::string_view side) {
   return left != (side == "left");
 }
 
+Vec2 pass(const Vec2& target, const std::vector<Vec2>& others) {
+  const double distance = target.norm();
+  if (distance < 0.1) return target;
+  const Vec2 way = target / distance, left(-way.y(), way.x());
+  double nearest = std::min(kLookOut, distance + 0.3);
+  Vec2 round = target;
+  for (const Vec2& other : others) {
+    const double along = other.dot(way), beside = other.dot(left);
+    if (along < 0 || along > nearest || std::abs(beside) > kClear) continue;
+    nearest = along;
+    round = way * std::max(along, 0.2) + left * (beside > 0 ? beside - kClear : beside + kClear);
+  }
+  return round;
+}
+
 Steering steer(const Vec2& target, double facing) {
   const double distance = target.norm(), bearing = std::atan2(-target.x(), target.y());  // to the left
   if (distance < 0.5) return {1.2 * target.y(), 1.2 * target.x(), 1.2 * facing};
   if (std::abs(bearing) > radians(150) && distance < 0.8) return {-distance, 0, 0};
   return {std::abs(bearing) > radians(60) ? 0 : std::cos(bearing) * std::min(distance, 1.0), 0, 1.5 * bearing};
+}
+
+Steering run(const Vec2& target, double speed) {
+  const double bearing = std::atan2(-target.x(), target.y());
+  return {std::abs(bearing) > radians(70) ? 0 : std::min(speed, std::cos(bearing)), 0, 2.2 * bearing};
 }
 
 }  // namespace humanoid

@@ -3,6 +3,7 @@
 /// What a player decides to do, from what he knows. No memory but what is handed in: the same situation gives the same decision.
 
 #include <string>
+#include <vector>
 
 #include "localisation.h"
 
@@ -15,18 +16,20 @@ struct Situation {
   Lying lying = Lying::no;
   double tilt = 0;                                           ///< rad, of the torso
   bool located = false, ballKnown = false, nearest = false;  ///< nearest: no team-mate says that he is nearer to the ball
+  bool barred = false;                                       ///< he took the restart: another one must touch the ball before he does
   Vec2 place = Vec2::Zero(), ball = Vec2::Zero();
   double heading = 0;  ///< rad
 };
 
-enum class Task { takePlace, fall, getUp, search, stand, walk, kick };
+/// walk: to a place, to stop there; dribble: through it.
+enum class Task { takePlace, fall, getUp, search, stand, walk, dribble };
 
 /// What to do next.
 struct Decision {
   Task task = Task::stand;
-  Vec2 target = Vec2::Zero();  ///< walk: where to, on the field; takePlace: where to be beamed
+  Vec2 target = Vec2::Zero();  ///< walk, dribble: where to, on the field; takePlace: where to be beamed
   double facing = 0;           ///< walk: heading at the target [rad]
-  bool rightFoot = true;       ///< kick
+  double speed = 10;           ///< dribble: at most [m/s]
 };
 
 Decision decide(const Situation& s);
@@ -44,5 +47,9 @@ struct Steering {
   double forward, right, turn;
 };
 Steering steer(const Vec2& target, double facing);
+/// The same without stopping there.
+Steering run(const Vec2& target, double speed);
+/// Where to go instead when others are in the way. All from the robot, x to its right, y forward [m].
+Vec2 pass(const Vec2& target, const std::vector<Vec2>& others);
 
 }  // namespace humanoid

@@ -7,6 +7,9 @@ namespace humanoid {
 
 namespace {
 constexpr double kStartTime = 0.6;  // s until the first steps have their full height
+constexpr double kBlend = 0.2;      // s from the pose in which it starts to that of walking
+constexpr double kStanceHeight = 0.92, kStanceForward = 0.001, kStanceLean = 0.04,
+                 kStanceSpread = -0.006;  // as in a gait; stands by itself
 
 struct Leg {
   double lift, way;  ///< 0..1 of the foot's height, -1..1 of its way
@@ -19,10 +22,20 @@ Leg legAt(double phase, double pause) {
   const double s = std::clamp((2 * t - pause) / (1 - 2 * pause), 0.0, 1.0);
   return {0.5 - 0.5 * std::cos(2 * kPi * s), -std::cos(kPi * s)};
 }
+
+/// A sole that is level at `place` below an upright torso, seen from one that leans forward.
+Foot leant(const Vec3& place, double lean) {
+  const double c = std::cos(lean), s = std::sin(lean);
+  Foot foot;
+  foot.place = Vec3(place.x(), c * place.y() - s * place.z(), s * place.y() + c * place.z());
+  foot.pitch = lean;
+  return foot;
+}
 }  // namespace
 
-void Walk::start() {
-  phase_ = strength_ = 0;
+void Walk::start(const Pose& from) {
+  phase_ = strength_ = blended_ = 0;
+  from_ = from;
   now_ = {};
 }
 
@@ -32,30 +45,35 @@ bool Walk::mayStop() const {
 }
 
 void Walk::stand(Pose& pose) const {
-  for (const bool right : {true, false}) placeFoot(build_, right, footOf(right, 0, 0, Vec2::Zero()), pose);
+  for (const bool right : {true, false}) {
+    Foot foot = leant({(right ? 1 : -1) * kStanceSpread, kStanceForward, -kStanceHeight * legLength(build_)}, kStanceLean);
+    placeFoot(build_, right, foot, pose);
+  }
 }
 
 /// `shift`: of both feet against the torso, m.
 Foot Walk::footOf(bool right, double lift, double way, const Vec2& shift) const {
-  const double side = right ? 1 : -1, step = gait_.period / 4;
-  const Vec3 place(side * gait_.spread + now_.right * step * way + shift.x(), gait_.forward + now_.forward * step * way + shift.y(),
+  const double side = right ? 1 : -1, step = gait_.period / 4, lean = gait_.lean + gait_.leanSpeed * now_.forward;
+  const Vec3 place(side * gait_.spread + now_.right * step * way + shift.x(),
+                   gait_.forward + gait_.forwardSpeed * now_.forward + now_.forward * step * way + shift.y(),
                    -gait_.height * legLength(build_) + gait_.lift * strength_ * lift);
-  const double c = std::cos(gait_.lean), s = std::sin(gait_.lean);
-  Foot foot;
-  foot.place = Vec3(place.x(), c * place.y() - s * place.z(), s * place.y() + c * place.z());
-  foot.pitch = gait_.lean;
+  Foot foot = leant(place, lean);
+  foot.pitch += sole_;
   foot.yaw = now_.turn * step * way - side * std::abs(now_.turn) * step;  // hips turn feet outwards only
   return foot;
 }
 
 void Walk::step(const Velocity& wanted, const Percepts& percepts, const Posture& posture, Pose& pose) {
   const double gain = gait_.change * kCycle;
-  now_.forward = towards(now_.forward, std::clamp(wanted.forward, -0.6 * gait_.maxForward, gait_.maxForward), gain * gait_.maxForward);
+  const double forwardWanted = std::clamp(wanted.forward, -0.6 * gait_.maxForward, gait_.maxForward);
+  now_.forward = towards(now_.forward, forwardWanted,
+                         (std::abs(forwardWanted) < std::abs(now_.forward) ? gait_.brake * kCycle : gain) * gait_.maxForward);
   now_.right = towards(now_.right, std::clamp(wanted.right, -gait_.maxSide, gait_.maxSide), gain * gait_.maxSide);
   now_.turn = towards(now_.turn, std::clamp(wanted.turn, -gait_.maxTurn, gait_.maxTurn), 2 * gain * gait_.maxTurn);
   strength_ = std::min(1.0, strength_ + kCycle / kStartTime);
 
-  const double forward = posture.forward() - gait_.lean, right = posture.right();
+  const double forward = posture.forward() - gait_.lean - gait_.leanSpeed * now_.forward, right = posture.right();
+  sole_ = std::clamp(gait_.soleTilt * forward - gait_.soleRate * percepts.gyro.x(), -0.3, 0.3);
   Vec2 shift(gait_.tiltRight * right + gait_.rateRight * percepts.gyro.y(),
              gait_.tiltForward * forward - gait_.rateForward * percepts.gyro.x());
   shift.x() += strength_ * gait_.sway * std::sin(2 * kPi * phase_ + gait_.swayLead);
@@ -63,6 +81,8 @@ void Walk::step(const Velocity& wanted, const Percepts& percepts, const Posture&
     const Leg leg = legAt(isRight ? phase_ : phase_ + 0.5, gait_.pause);
     placeFoot(build_, isRight, footOf(isRight, leg.lift, leg.way, shift), pose);
   }
+  blended_ = std::min(1.0, blended_ + kCycle / kBlend);
+  for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i) pose.at(i) = from_.at(i) + (pose.at(i) - from_.at(i)) * blended_;
   phase_ += kCycle / gait_.period;
   if (phase_ >= 1) phase_ -= 1;
 }

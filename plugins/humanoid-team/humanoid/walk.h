@@ -21,6 +21,10 @@ struct Gait {
   double tiltForward = 0, rateForward = 0, tiltRight = 0, rateRight = 0;  ///< m of feet for a rad of lean, for a rad/s
   double maxForward = 0.3, maxSide = 0.1, maxTurn = 0.8;                  ///< m/s, m/s, rad/s
   double change = 0.5;                                                    ///< 1/s: part of the highest speed that may be gained in a second
+  double brake = 0.5;                                                     ///< the same, lost
+  double leanSpeed = 0, forwardSpeed = 0;                                 ///< more lean and feet further forward for a m/s
+  double soleTilt = 0, soleRate = 0;                                      ///< of the soles' pitch for a rad of lean, for a rad/s
+  double share = 0.8;                                                     ///< of the way left that a joint makes in a cycle
 };
 /// The gait that suits a type, 0..4.
 const Gait& gaitOf(int type);
@@ -33,11 +37,11 @@ struct Velocity {
 class Walk {
  public:
   Walk(const Build& build, const Gait& gait) : build_(build), gait_(gait) {}
-  /// Starts with a step from standing.
-  void start();
-  /// One cycle further; returns the angles of both legs in `pose`. Speeds beyond the gait's are cut.
+  /// Starts with steps on the spot that grow. `from`: the pose of the whole body now.
+  void start(const Pose& from);
+  /// One cycle further. `pose`: the arms' angles as they should be, to which the legs' are added. Speeds beyond the gait's are cut.
   void step(const Velocity& wanted, const Percepts& percepts, const Posture& posture, Pose& pose);
-  /// The stance from which a walk starts and in which it may end.
+  /// A stance that needs no balance.
   void stand(Pose& pose) const;
   /// What it walks by now: for dead reckoning.
   const Velocity& velocity() const { return now_; }
@@ -51,6 +55,9 @@ class Walk {
   const Gait& gait_;
   double phase_ = 0;     ///< 0..1; the right leg swings in the first half
   double strength_ = 0;  ///< 0..1, grows at the start
+  double blended_ = 1;   ///< 0..1 of the way from the pose in which it started
+  Pose from_{};
+  double sole_ = 0;  ///< rad, of both soles against the ground
   Velocity now_;
 };
 
