@@ -2,6 +2,9 @@
 file(WRITE ${CMAKE_BINARY_DIR}/reference.cmake "if(NOT DEFINED ENV{SPARK_REFERENCE_DIR})\n  set(ENV{SPARK_REFERENCE_DIR} [==[${SPARK_REFERENCE_DIR}]==])\nendif()\n")
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_BINARY_DIR}/reference.cmake)
 
+# Tests run for seconds and are compiled for minutes.
+set(SPARK_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
+
 # Makes a test wait for a plugin; called last, when all plugins are known.
 function(spark_test_needs target plugin)
   if(TARGET plugin-${plugin})
@@ -30,6 +33,7 @@ function(spark_test name)
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests DEFINE_SYMBOL "")
     target_link_libraries(${target} PRIVATE spark-test-main Spark::plugin)
     target_compile_definitions(${target} PRIVATE SPARK_SOURCES="${CMAKE_SOURCE_DIR}")
+    target_compile_options(${target} PRIVATE ${SPARK_TEST_OPTIONS})
     target_precompile_headers(${target} REUSE_FROM spark-test-pch)
     target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
   endif()

@@ -66,6 +66,6 @@ POINTS = {
     "3": ("cases of the review", lambda: tests("review-.*")),
     "4a": ("two teams of ours", demo_team.point),
     "4b": ("builds from an empty cache", stages),
-    "4c": ("killed mutants", mutants.point),
+    "4c": ("killed mutants", mutants.killed_mutants),
     "5": ("earlier milestones", others),
 }
