@@ -13,6 +13,15 @@ struct WorkingFolder {
   explicit WorkingFolder(const std::filesystem::path& folder) { std::filesystem::current_path(folder); }
   ~WorkingFolder() { std::filesystem::current_path(before); }
 };
+/// Defines a channel when it comes.
+class Definer : public Leaf {
+  SPARK_CLASS(Definer, Leaf)
+ public:
+  static void describe(Description<Definer>& d) { d.doc("Defines 'prepare'."); }
+
+ protected:
+  void onLink() override { kernel().events().define("prepare", Order::parentsFirst, "A phase."); }
+};
 }  // namespace
 
 TEST_CASE("a config is found in the working folder first, then in the added folders in order") {
@@ -58,6 +67,66 @@ TEST_CASE("include also looks beside the config that runs") {
   h.write("mine/b.lua", "b = 1");
   h.kernel.lua().runConfig((h.folder / "mine/a.lua").string());
   CHECK(h.run("return b") == Value(1));
+}
+
+TEST_CASE("what is included is found beside the file that includes it, and never in the working folder") {
+  LuaHouse h;
+  for (const char* sub : {"mine/parts", "work"}) std::filesystem::create_directories(h.folder / sub);
+  h.write("mine/a.lua", "include 'parts/a.lua'");
+  h.write("mine/parts/a.lua", "include 'b.lua'");
+  h.write("mine/parts/b.lua", "b = 'beside'");
+  h.write("work/b.lua", "b = 'taken over'");
+  const WorkingFolder there(h.folder / "work");
+  h.kernel.lua().runConfig((h.folder / "mine/a.lua").string());
+  CHECK(h.run("return b") == Value("beside"));
+  std::filesystem::remove(h.folder / "mine/parts/b.lua");
+  const std::string text = LuaHouse::errorOf([&] { h.kernel.lua().runConfig((h.folder / "mine/a.lua").string()); });
+  CHECK_THAT(text, Contains("there is no script 'b.lua'. Looked in: ") && !Contains((h.folder / "work").string()));
+  CHECK(h.run("return b") == Value("beside"));
+}
+
+TEST_CASE("a script that is attached may lie in the working folder, when it is nowhere else") {
+  LuaHouse h;
+  std::filesystem::create_directory(h.folder / "work");
+  const WorkingFolder there(h.folder / "work");
+  h.write("work/s.lua", "self.label = 'work'");
+  Thing& a = h.thing("/usr/a");
+  h.kernel.lua().attach(a, "s.lua");
+  CHECK(a.label == "work");
+  h.write("s.lua", "self.label = 'folder'");
+  h.kernel.lua().attach(a, "s.lua");
+  CHECK(a.label == "folder");
+}
+
+TEST_CASE("a config that does not return ends when the kernel is asked to end, whatever it catches") {
+  for (const char* loop : {"while true do end", "while true do pcall(function() while true do end end) end"}) {
+    LuaHouse h;
+    h.kernel.requestStop();
+    CHECK(h.configFailure("short = true") == "");
+    CHECK_THAT(h.configFailure(std::string("before = 1\n") + loop), Contains("config.lua:2: stopped before the config was done: the host was asked to end."));
+  }
+}
+
+TEST_CASE("a handler of a channel whose name is nearly another's is an error: at the config's end, in what runs at once") {
+  LuaHouse h;
+  const auto define = [&] { h.kernel.events().define("prepare", Order::parentsFirst, "A phase."); };
+  CHECK(h.configFailure("on('prepair', function() end)") == "");  // nobody knows of such a channel
+  define();
+  CHECK_THAT(h.configFailure("\non('prepair', function() end)"),
+             Contains("config.lua:2: there is no event channel 'prepair': nothing would ever run this handler. Did you mean 'prepare'?"));
+  CHECK_THAT(h.failure("on('prepair', function() end)"), Contains("test:1: there is no event channel 'prepair'"));
+  CHECK(h.failure("on('prepare', function() end) on('of my own', function() end)") == "");
+  LuaHouse late;
+  late.kernel.registerClass<Definer>();
+  CHECK_THAT(late.configFailure("on('prepair', function() end)\nnew('Definer', '/usr/d')"), Contains("config.lua:1: there is no event channel 'prepair'"));
+  CHECK(late.configFailure("delete('/usr/d') on('prepare', function() end)\nnew('Definer', '/usr/d')") == "");
+}
+
+TEST_CASE("a global that is nil is answered with the nearest") {
+  LuaHouse h;
+  h.write("rooms.lua", "function physics() end");
+  CHECK_THAT(h.configFailure("include 'rooms.lua'\nphsyics()"), Contains("config.lua:2: attempt to call a nil value (global 'phsyics'). Did you mean 'physics'?"));
+  CHECK_THAT(h.failure("local x = maths.pi"), Contains("attempt to index a nil value (global 'maths'). Did you mean 'math'?"));
 }
 
 TEST_CASE("errors in configs name file and line, also through includes") {
