@@ -10,22 +10,27 @@
 namespace humanoid {
 
 namespace {
-constexpr double kJointShare = 0.8;   // of the way left that a joint makes in a cycle
-constexpr double kBallMemory = 4;     // s
-constexpr double kMateMemory = 1.5;   // s
-constexpr double kOtherMemory = 0.8;  // s that a player is taken to be where he was seen
-constexpr double kAtBall = 0.4;       // m: he plays the ball, or may have
-constexpr double kBarred = 8;         // s after which somebody else must have touched the ball
-constexpr double kRest = 0.1;         // s that he lies, at least, before he gets up
-constexpr double kMostRest = 0.6;     // s after which he tries although he still rolls
-constexpr double kStill = 1;          // rad/s
-constexpr double kSlip = 0.78;        // of the speed that is walked
-constexpr double kSettling = 0.03;    // rad in a cycle towards the stance
-constexpr double kSteady = 0.5;       // s that he treads on the spot then
-constexpr double kBeamEvery = 0.1;    // s
-constexpr double kBeamTime = 1.0;     // s in which he is beamed to his place
-constexpr double kAskEvery = 1;       // s between two inits that were not answered
-constexpr int kSaySlots = 22;         // cycles in which each of eleven speaks once
+constexpr double kJointShare = 0.8;          // of the way left that a joint makes in a cycle
+constexpr double kBallMemory = 4;            // s
+constexpr double kMateMemory = 1.5;          // s
+constexpr double kOtherMemory = 0.8;         // s that a player is taken to be where he was seen
+constexpr double kAtBall = 0.4;              // m: he plays the ball, or may have
+constexpr double kTouch = 0.2;               // m from the ball: he has touched it
+constexpr double kDuel = 1.0;                // m from the ball: an opponent plays it, too
+constexpr double kBarred = 8;                // s after which somebody else must have touched the ball
+constexpr double kRest = 0.1;                // s that he lies, at least, before he gets up
+constexpr double kMostRest = 0.6;            // s after which he tries although he still rolls
+constexpr double kUpright = radians(40);     // of tilt at most
+constexpr double kPropped = 1, kSits = 1.2;  // s without standing upright, without a foot on the ground: he lies
+constexpr double kStill = 1;                 // rad/s
+constexpr double kSlip = 0.78;               // of the speed that is walked
+constexpr double kSettling = 0.03;           // rad in a cycle towards the stance
+constexpr double kForgets = 6;               // s after which an attempt to get up is another one
+constexpr double kSteady = 0.5;              // s that he treads on the spot then
+constexpr double kBeamEvery = 0.1;           // s
+constexpr double kBeamTime = 1.0;            // s in which he is beamed to his place
+constexpr double kAskEvery = 1;              // s between two inits that were not answered
+constexpr int kSaySlots = 22;                // cycles in which each of eleven speaks once
 
 void armsDown(const Build& build, Pose& pose) {
   pose[Joint::rShoulderPitch] = pose[Joint::lShoulderPitch] = radians(-100);
@@ -78,10 +83,19 @@ void HumanoidPlayer::sense(const spark::Predicates& message) {
   senseOthers();
   hear();
   watchRestart();
-  if (posture_.lying() == Lying::no)
+  if (posture_.tilt() < kUpright) uprightAt_ = percepts_.now;
+  if (percepts_.rightFoot || percepts_.leftFoot || pausedMode(percepts_.playMode)) footAt_ = percepts_.now;
+  if (lying() == Lying::no)
     lyingSince_ = -1;
   else if (lyingSince_ < 0)
     lyingSince_ = percepts_.now;
+}
+
+/// Propped up on his limbs, or sitting, he lies as well.
+Lying HumanoidPlayer::lying() const {
+  if (posture_.lying() != Lying::no) return posture_.lying();
+  if (percepts_.now - uprightAt_ > kPropped) return posture_.forward() > 0 ? Lying::onFront : Lying::onBack;
+  return percepts_.now - footAt_ > kSits ? Lying::onBack : Lying::no;
 }
 
 void HumanoidPlayer::senseBall() {
@@ -114,8 +128,8 @@ void HumanoidPlayer::watchRestart() {
   restart_ = ours;
   if (barredSince_ < 0) return;
   const bool touched =
-      std::any_of(others_.begin(), others_.end(), [this](const Other& o) { return (o.place - ball_).norm() < 0.3; }) ||
-      std::any_of(mates_.begin(), mates_.end(), [this](const Mate& m) { return m.heardAt > barredSince_ && m.toBall < 0.3; });
+      std::any_of(others_.begin(), others_.end(), [this](const Other& o) { return (o.place - ball_).norm() < kTouch; }) ||
+      std::any_of(mates_.begin(), mates_.end(), [this](const Mate& m) { return m.heardAt > barredSince_ && m.toBall < kTouch; });
   if (touched || percepts_.now - barredSince_ > kBarred || percepts_.playMode != "PlayOn") barredSince_ = -1;
 }
 
@@ -143,7 +157,7 @@ Situation HumanoidPlayer::situation() const {
   s.playMode = percepts_.playMode;
   s.side = percepts_.side;
   s.unum = unum_;
-  s.lying = posture_.lying();
+  s.lying = lying();
   s.tilt = posture_.tilt();
   s.located = localisation_.known();
   s.ballKnown = percepts_.now - ballAt_ < kBallMemory;
@@ -151,6 +165,8 @@ Situation HumanoidPlayer::situation() const {
   s.heading = localisation_.heading();
   s.ball = ball_;
   s.barred = barredSince_ >= 0;
+  s.contested =
+      std::any_of(others_.begin(), others_.end(), [this](const Other& o) { return o.team != team_ && (o.place - ball_).norm() < kDuel; });
   s.nearest = true;
   for (int i = 1; i <= 11; ++i) {
     const Mate& mate = mates_[static_cast<std::size_t>(i)];
@@ -214,17 +230,25 @@ void HumanoidPlayer::getUp() {
   walking_ = false;
   const double lain = percepts_.now - lyingSince_;
   if (lain < kRest || (percepts_.gyro.norm() > kStill && lain < kMostRest)) return;
-  fell_ = posture_.lying();
-  getUp_.start(movementOf(type_, fell_), pose_);
+  fell_ = lying();
+  // what failed twice would fail again
+  static constexpr std::array other{Lying::onSide, Lying::onSide, Lying::onBack, Lying::onFront};
+  if (percepts_.now - triedAt_ > kForgets) attempts_ = 0;
+  triedAt_ = percepts_.now;
+  const bool again = ++attempts_ % 3 == 0;
+  getUp_.start(movementOf(type_, again ? other.at(static_cast<std::size_t>(fell_)) : fell_), pose_);
   rise();
 }
 
 /// Who lies on another side after the first pose begins anew; who stands treads on the spot for a moment.
 void HumanoidPlayer::rise() {
   getUp_.step(percepts_, posture_, pose_);
-  if (getUp_.begun() && posture_.lying() != fell_) return getUp_.stop();
-  if (getUp_.playing() || posture_.lying() != Lying::no) return;
+  const Lying lies = posture_.lying();
+  uprightAt_ = footAt_ = percepts_.now;
+  if (getUp_.begun() && lies != Lying::no && lies != fell_) return getUp_.stop();
+  if (getUp_.playing() || lies != Lying::no) return;
   roseAt_ = percepts_.now;
+  localisation_.lose();  // while it lay it saw the world askew
   walk_.start(pose_);
   walking_ = true;
 }

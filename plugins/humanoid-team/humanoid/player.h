@@ -52,6 +52,7 @@ class HumanoidPlayer {
   void hear();
   void watchRestart();
   std::vector<Vec2> inTheWay(double nearBall) const;
+  Lying lying() const;
   Situation situation() const;
   Decision decideNow() const;
   void act(const Decision& decision, spark::Predicates& actions);
@@ -79,7 +80,9 @@ class HumanoidPlayer {
   Pose pose_{};
   Task task_ = Task::stand;
   bool walking_ = false;
-  double roseAt_ = -100;                                                     ///< s
+  int attempts_ = 0;                                                         ///< to get up, one soon after the other
+  double roseAt_ = -100, triedAt_ = -100;                                    ///< s, when he stood up, and began to get up
+  double uprightAt_ = 0, footAt_ = 0;                                        ///< s, when he was upright, and had a foot on the ground, last
   double initAt_ = -10, beamAt_ = -10, lyingSince_ = -1, pausedSince_ = -1;  ///< s
   Vec2 ballFromHere_ = Vec2::Zero();                                         ///< the ball from the robot, x to its right, y forward [m]
   Vec2 ball_ = Vec2::Zero();                                                 ///< on the field [m]

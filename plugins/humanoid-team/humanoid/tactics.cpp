@@ -16,19 +16,21 @@
 namespace humanoid {
 
 namespace {
-constexpr double kTipping = radians(50);   // of tilt: no step saves him
-constexpr double kKeepAway = 2.4;          // m from the ball at the others' restarts
-constexpr double kBehind = 0.35;           // m behind the ball: there he turns towards it
-constexpr double kAround = 0.5;            // m from the ball when he has to get round it
-constexpr double kFurther = radians(55);   // that he goes round it at a time
-constexpr double kAtHand = 0.8;            // m from the ball: he goes slowly there unless he pushes it
-constexpr double kTurned = radians(40);    // from the ball's way: he turns on the spot before he pushes it
-constexpr double kSlow = 0.4, kFast = 10;  // m/s
-constexpr double kFoot = 0.05;             // m beside the middle of a player, where his foot meets the ball
-constexpr double kAhead = 0.5;             // m ahead on his line that he walks to
-constexpr double kFree = radians(22);      // from the goal's direction in which he may push the ball when the goal is far
-constexpr double kClear = 0.55;            // m between two players' middles when one passes the other
-constexpr double kLookOut = 1.1;           // m ahead in which others matter
+constexpr double kTipping = radians(50);      // of tilt: no step saves him
+constexpr double kKeepAway = 2.4;             // m from the ball at the others' restarts
+constexpr double kBehind = 0.35;              // m behind the ball: there he turns towards it
+constexpr double kAround = 0.5;               // m from the ball when he has to get round it
+constexpr double kFurther = radians(55);      // that he goes round it at a time
+constexpr double kAtHand = 0.8;               // m from the ball: he goes slowly there unless he pushes it
+constexpr double kTurned = radians(40);       // from the ball's way: he turns on the spot before he pushes it
+constexpr double kSlow = 0.45, kFast = 10;    // m/s
+constexpr double kFoot = 0.05;                // m beside the middle of a player, where his foot meets the ball
+constexpr double kAhead = 0.5;                // m ahead on his line that he walks to
+constexpr double kMouth = 0.5, kShot = 3;     // m beside the goal's middle at which he aims at most, up to that distance
+constexpr double kWiden = 0.25;               // m further aside for each m further away
+constexpr double kAsideInDuel = radians(35);  // further aside when an opponent is at the ball
+constexpr double kClear = 0.55;               // m between two players' middles when one passes the other
+constexpr double kLookOut = 1.1;              // m ahead in which others matter
 const Vec2 kTheirGoal(15, 0), kOwnGoal(-15, 0);
 
 constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
@@ -55,16 +57,16 @@ Decision keepAway(const Situation& s) {
   return walkTo(s.ball + back.normalized() * kKeepAway, angleOf(-back));
 }
 
-/// Where the ball is to go: at the goal; when that is far, as much aside as the player comes from aside.
+/// Where the ball is to go: between the posts; from further away as far aside as the player comes from aside, and more so in a duel.
 Vec2 aim(const Situation& s) {
-  const Vec2 toGoal = kTheirGoal - s.ball, from = s.ball - s.place;
-  const double distance = toGoal.norm();
+  const Vec2 from = s.ball - s.place;
+  const double distance = (kTheirGoal - s.ball).norm(), width = kMouth + kWiden * std::max(0.0, distance - kShot);
   if (distance < 0.3) return {1, 0};
-  const double free = std::clamp((distance - 1.5) / 4.5, 0.0, 1.0) * kFree + std::atan2(0.5, distance);
-  const double goal = angleOf(toGoal), off = from.norm() < 0.05 ? 0 : std::clamp(normalized(angleOf(from) - goal), -free, free);
-  Vec2 way(std::cos(goal + off), std::sin(goal + off));
-  if (const double y = s.ball.y() + 2 * way.y(); std::abs(y) > 9 && y * way.y() > 0) way = toGoal / distance;  // not over the touch line
-  return way;
+  const double more = s.contested ? kAsideInDuel : 0, goal = angleOf(kTheirGoal - s.ball);
+  const double right = normalized(angleOf(kTheirGoal - Vec2(0, width) - s.ball) - goal) - more;
+  const double left = normalized(angleOf(kTheirGoal + Vec2(0, width) - s.ball) - goal) + more;
+  const double off = from.norm() < 0.05 ? 0 : std::clamp(normalized(angleOf(from) - goal), right, left);
+  return {std::cos(goal + off), std::sin(goal + off)};
 }
 
 /// Round the ball to its back as seen from the goal, then along the line through it: a foot pushes it on at every step.
@@ -141,7 +143,7 @@ Vec2 pass(const Vec2& target, const std::vector<Vec2>& others) {
 
 Steering steer(const Vec2& target, double facing) {
   const double distance = target.norm(), bearing = std::atan2(-target.x(), target.y());  // to the left
-  if (distance < 0.5) return {1.2 * target.y(), 1.2 * target.x(), 1.2 * facing};
+  if (distance < 0.5) return {1.8 * target.y(), 1.8 * target.x(), 1.8 * facing};
   if (std::abs(bearing) > radians(150) && distance < 0.8) return {-distance, 0, 0};
   return {std::abs(bearing) > radians(60) ? 0 : std::cos(bearing) * std::min(distance, 1.0), 0, 1.5 * bearing};
 }

@@ -17,6 +17,7 @@ struct Situation {
   double tilt = 0;                                           ///< rad, of the torso
   bool located = false, ballKnown = false, nearest = false;  ///< nearest: no team-mate says that he is nearer to the ball
   bool barred = false;                                       ///< he took the restart: another one must touch the ball before he does
+  bool contested = false;                                    ///< an opponent is at the ball
   Vec2 place = Vec2::Zero(), ball = Vec2::Zero();
   double heading = 0;  ///< rad
 };
