@@ -23,7 +23,7 @@ namespace {
 fs::path folderName() {
   if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime && fs::is_directory(runtime))
     return fs::path(runtime) / "spark";
-  return fmt::format("/tmp/spark-{}", geteuid());
+  return fs::temp_directory_path() / fmt::format("spark-{}", geteuid());
 }
 
 /// True when a house answers there.

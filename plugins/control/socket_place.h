@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Where control sockets live: $XDG_RUNTIME_DIR/spark or /tmp/spark-<uid>, one file per house, named after the process.
+/// Where control sockets live: $XDG_RUNTIME_DIR/spark or $TMPDIR/spark-<uid>, one file per house, named after the process.
 
 #include <filesystem>
 

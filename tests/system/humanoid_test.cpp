@@ -123,7 +123,7 @@ std::string getUpWalkAndPush(int type, bool forward, int seed) {
   HumanoidPlayer& player = training.player();
   REQUIRE(training.playUntil(20, [&] { return player.percepts().playMode == "KickOff_Left"; }));
   const std::string ankles = forward ? "(rle5 2)(lle5 2)(rle3 -1)(lle3 -1)" : "(rle5 -2)(lle5 -2)";
-  for (int cycle = 0; cycle < 100 && player.posture().lying() == humanoid::Lying::no; ++cycle) training.meddle(ankles);
+  for (int cycle = 0; cycle < 300 && player.posture().lying() == humanoid::Lying::no; ++cycle) training.meddle(ankles);
   REQUIRE(player.posture().lying() != humanoid::Lying::no);
   REQUIRE(training.look().torso.z() < kStanding);
 

@@ -27,7 +27,7 @@ namespace {
 std::vector<fs::path> folders() {
   std::vector<fs::path> out;
   if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime) out.push_back(fs::path(runtime) / "spark");
-  out.emplace_back(fmt::format("/tmp/spark-{}", geteuid()));
+  out.push_back(fs::temp_directory_path() / fmt::format("spark-{}", geteuid()));
   return out;
 }
 
