@@ -346,12 +346,9 @@ void openLibrary(lua_State* L, bool trusted) {
   lua_getfield(L, -1, "table");
   lua_pushcfunction(L, guarded<sortTable>);
   lua_setfield(L, -2, "sort");
-  constexpr luaL_Reg kTable[] = {{"concat", callTable<Elements::concat>},
-                                 {"insert", callTable<Elements::insert>},
-                                 {"move", callTable<Elements::move>},
-                                 {"remove", callTable<Elements::remove>},
-                                 {"sort", callTable<Elements::sort>},
-                                 {"unpack", callTable<Elements::unpack>}};
+  constexpr luaL_Reg kTable[] = {{"concat", callTable<Elements::concat>}, {"insert", callTable<Elements::insert>},
+                                 {"move", callTable<Elements::move>},     {"remove", callTable<Elements::remove>},
+                                 {"sort", callTable<Elements::sort>},     {"unpack", callTable<Elements::unpack>}};
   for (const luaL_Reg& f : kTable) {
     if (!trusted) break;  // callCharged makes them pay
     lua_getfield(L, -1, f.name);

@@ -275,9 +275,11 @@ TEST_CASE("sparkctl refuses what would leave a running house without its servers
     CHECK(f.code == 1);
     return f.errors;
   };
-  for (const char* path : {"/sys", "/sys/server", "/sys/server/gamecontrol", "/sys/server/simulation", "/sys/server/net", "/usr", "/usr/scene"})
+  for (const char* path :
+       {"/sys", "/sys/server", "/sys/server/gamecontrol", "/sys/server/simulation", "/sys/server/net", "/usr", "/usr/scene"})
     CHECK_THAT(refused({"set", std::string(path) + ".name", "x"}), Contains(std::string("cannot name ") + path + " 'x' now"));
-  for (const char* call : {"/sys/server/gamecontrol.unlinkLeaf", "/sys/server.unlinkChildren", "/sys/server/simulation.unlinkLeaf", "/sys.unlinkChildren"})
+  for (const char* call :
+       {"/sys/server/gamecontrol.unlinkLeaf", "/sys/server.unlinkChildren", "/sys/server/simulation.unlinkLeaf", "/sys.unlinkChildren"})
     CHECK_THAT(refused({"call", call}), Contains("cannot remove") && Contains("servers stay until its end"));
   p.signal(SIGTERM);
   CHECK(Json::parse(p.line())["cycles"].get<int>() > 0);

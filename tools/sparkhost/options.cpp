@@ -59,7 +59,8 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--describe", out.describe, "Print what a class says about itself, and end")->type_name("CLASS")->excludes("--config");
   app.footer(
       "stdout: a first JSON line with the ports and the page for browsers, a last one with the result; all else is on stderr.\n"
-      "Exit code 0: done; 1: it failed on the way, or a line could not be written to stdout; 2: the command line, the config or what --check looks at "
+      "Exit code 0: done; 1: it failed on the way, or a line could not be written to stdout; 2: the command line, the config or what "
+      "--check looks at "
       "is wrong.\nSIGINT, SIGTERM and SIGHUP end a run with its result, a second one ends it at once.");
   try {
     app.parse(argc, argv);
