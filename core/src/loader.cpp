@@ -209,6 +209,7 @@ Plugin& Loader::use(std::string_view name) {
   }
   std::vector<std::string> names;
   for (const auto& p : kernel_.pluginsNode_->children()) names.push_back(p->name());
+  for (const auto& [known, file] : unloaded_) names.push_back(known);
   std::string where;
   for (const fs::path& f : folders_) where += (where.empty() ? "" : ", ") + f.string();
   throw Error("there is no plugin '" + std::string(name) + "'." + didYouMean(name, names) + " Looked in: " + (where.empty() ? "no folder" : where) + ".");

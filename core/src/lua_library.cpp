@@ -235,10 +235,11 @@ struct Elements {
   static double integer(lua_State* L, int index, double otherwise) {
     return lua_isinteger(L, index) ? static_cast<double>(lua_tointeger(L, index)) : otherwise;
   }
-  static double concat(lua_State* L) { return integer(L, 4, length(L)) - integer(L, 3, 1); }
+  static double concat(lua_State* L) { return 4 * (integer(L, 4, length(L)) - integer(L, 3, 1)); }  // numbers become texts
   static double insert(lua_State* L) { return lua_gettop(L) == 3 ? length(L) - integer(L, 2, 1) : 0; }
   static double remove(lua_State* L) { return lua_gettop(L) == 2 ? length(L) - integer(L, 2, 1) : 0; }
   static double move(lua_State* L) { return integer(L, 3, 0) - integer(L, 2, 0); }
+  static double unpack(lua_State* L) { return integer(L, 3, length(L)) - integer(L, 2, 1); }
   static double sort(lua_State* L) { return 4 * length(L) * std::log2(length(L) + 1); }  // a comparison takes as long as four moves
 };
 
@@ -345,16 +346,22 @@ void openLibrary(lua_State* L, bool trusted) {
   lua_getfield(L, -1, "table");
   lua_pushcfunction(L, guarded<sortTable>);
   lua_setfield(L, -2, "sort");
-  constexpr luaL_Reg kTable[] = {{"concat", callTable<Elements::concat>},
-                                 {"insert", callTable<Elements::insert>},
-                                 {"move", callTable<Elements::move>},
-                                 {"remove", callTable<Elements::remove>},
-                                 {"sort", callTable<Elements::sort>}};
+  constexpr luaL_Reg kTable[] = {{"concat", callTable<Elements::concat>}, {"insert", callTable<Elements::insert>},
+                                 {"move", callTable<Elements::move>},     {"remove", callTable<Elements::remove>},
+                                 {"sort", callTable<Elements::sort>},     {"unpack", callTable<Elements::unpack>}};
   for (const luaL_Reg& f : kTable) {
     if (!trusted) break;  // callCharged makes them pay
     lua_getfield(L, -1, f.name);
     lua_pushcclosure(L, f.func, 1);
     lua_setfield(L, -2, f.name);
+  }
+  lua_pop(L, 1);
+  lua_getfield(L, -1, "utf8");
+  for (const char* name : {"codepoint", "len", "offset"}) {
+    if (!trusted) break;
+    lua_getfield(L, -1, name);
+    lua_pushcclosure(L, callCharged, 1);
+    lua_setfield(L, -2, name);
   }
   lua_pop(L, 2);
   if (!trusted) restrict(L);

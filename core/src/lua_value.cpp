@@ -180,6 +180,7 @@ lua_Integer pushSortedKeys(lua_State* L, int table) {
     lua_pushvalue(L, -2);
     lua_rawseti(L, unsorted, keys.back().position);
   }
+  State::of(L).charge(L, 4 * keys.size());  // as table.sort
   std::sort(keys.begin(), keys.end());
   lua_createtable(L, static_cast<int>(keys.size()), 0);
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -196,6 +197,7 @@ void pushNextKey(lua_State* L, int table, int after) {
   lua_pushnil(L);
   const int found = lua_gettop(L);
   for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
+    State::of(L).charge(L);
     const Key k = keyAt(L, -2);
     if ((low && !(*low < k)) || (best && !(k < *best))) continue;
     best = k;

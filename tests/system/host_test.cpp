@@ -238,6 +238,54 @@ TEST_CASE("sparkctl shows the house and changes it") {
   REQUIRE(p.wait() == 0);
 }
 
+TEST_CASE("sparkctl loads and unloads plugins of a running house") {
+  TemporaryFolder folder;
+  Process p(host({"--config", folder.write("small.lua", kSmall)}));
+  p.line();
+  const auto ctl = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {program("sparkctl"), "--pid", std::to_string(p.pid())});
+    return runToEnd(arguments);
+  };
+  CHECK(ctl({"get", "/classes/DrawingServer"}).code == 1);
+  for (int i = 0; i < 2; ++i) {
+    CHECK(ctl({"load", "drawing"}).code == 0);
+    CHECK(ctl({"get", "/classes/DrawingServer"}).code == 0);
+    CHECK(ctl({"unload", "drawing"}).code == 0);
+    CHECK(ctl({"get", "/classes/DrawingServer"}).code == 1);
+  }
+  const Finished used = ctl({"unload", "simulation"});
+  CHECK(used.code == 1);
+  CHECK_THAT(used.errors, Contains("cannot unload plugin 'simulation' while its objects live") && Contains("/sys/server/simulation"));
+  const Finished typo = ctl({"load", "drawin"});
+  CHECK(typo.code == 1);
+  CHECK_THAT(typo.errors, Contains("there is no plugin 'drawin'") && Contains("'drawing'"));
+  p.signal(SIGTERM);
+  p.line();
+  CHECK(p.wait() == 0);
+}
+
+TEST_CASE("sparkctl refuses what would leave a running house without its servers") {
+  TemporaryFolder folder;
+  Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0"}));
+  p.line();
+  const auto refused = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {program("sparkctl"), "--pid", std::to_string(p.pid())});
+    const Finished f = runToEnd(arguments);
+    CAPTURE(arguments.back(), f.out);
+    CHECK(f.code == 1);
+    return f.errors;
+  };
+  for (const char* path :
+       {"/sys", "/sys/server", "/sys/server/gamecontrol", "/sys/server/simulation", "/sys/server/net", "/usr", "/usr/scene"})
+    CHECK_THAT(refused({"set", std::string(path) + ".name", "x"}), Contains(std::string("cannot name ") + path + " 'x' now"));
+  for (const char* call :
+       {"/sys/server/gamecontrol.unlinkLeaf", "/sys/server.unlinkChildren", "/sys/server/simulation.unlinkLeaf", "/sys.unlinkChildren"})
+    CHECK_THAT(refused({"call", call}), Contains("cannot remove") && Contains("servers stay until its end"));
+  p.signal(SIGTERM);
+  CHECK(Json::parse(p.line())["cycles"].get<int>() > 0);
+  CHECK(p.wait() == 0);
+}
+
 TEST_CASE("sparkctl without a house says so") {
   TemporaryFolder folder;
   setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);

@@ -155,11 +155,13 @@ TEST_CASE("what works on much at once pays for it") {
   LuaHouse h;
   h.run("long = ('a'):rep(1000000) many = {} for i = 1, 200000 do many[i] = i % 1000 end");
   for (const char* forever :
-       {"string.find(long, '.-.-.-b')", "long:match('(a*)*(a*)(a*)(a*)b')", "long:gsub('.-.-.-b', '')", "for x in long:gmatch('a*a*a*b') do end",
-        "while true do long:find(('a'):rep(10000) .. 'b', 1, true) end",
+       {"string.find(long, '.-.-.-b')", "long:match('(a*)*(a*)(a*)(a*)b')", "long:gsub('.-.-.-b', '')",
+        "for x in long:gmatch('a*a*a*b') do end", "while true do long:find(('a'):rep(10000) .. 'b', 1, true) end",
         "while true do s = ('x'):rep(100000000) end", "while true do s = long:upper() end", "while true do s = long .. long end",
         "while true do table.insert(many, 1, 0) end", "while true do table.sort(many) end", "while true do s = table.concat(many) end",
-        "while true do table.remove(many, 1) many[200000] = 1 end", "while true do table.move(many, 1, 200000, 2) end"}) {
+        "while true do table.remove(many, 1) many[200000] = 1 end", "while true do table.move(many, 1, 200000, 2) end",
+        "while true do s = select('#', table.unpack(many)) end", "while true do next(many) end",
+        "while true do for k in pairs(many) do break end end", "while true do utf8.len(long) end"}) {
     INFO(forever);
     h.text.clear();
     h.run(std::string("s = nil handler = on('work', function() ") + forever + " end)");
