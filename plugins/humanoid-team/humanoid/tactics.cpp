@@ -28,7 +28,7 @@ constexpr double kFoot = 0.05;                // m beside the middle of a player
 constexpr double kAhead = 0.5;                // m ahead on his line that he walks to
 constexpr double kMouth = 0.5, kShot = 3;     // m beside the goal's middle at which he aims at most, up to that distance
 constexpr double kWiden = 0.25;               // m further aside for each m further away
-constexpr double kAsideInDuel = radians(35);  // further aside when an opponent is at the ball
+constexpr double kAsideInDuel = radians(60);  // further aside when an opponent is at the ball
 constexpr double kClear = 0.55;               // m between two players' middles when one passes the other
 constexpr double kLookOut = 1.1;              // m ahead in which others matter
 const Vec2 kTheirGoal(15, 0), kOwnGoal(-15, 0);
@@ -45,6 +45,20 @@ constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
                                                             {-2.4, 2.5},
                                                             {-2.3, 0},
                                                             {-2.4, -2.5}}};
+
+/// Where the field players wait, from the ball.
+constexpr std::array<std::array<double, 2>, 12> kFromBall{{{0, 0},
+                                                           {0, 0},
+                                                           {-4, 4.5},
+                                                           {-5, 1},
+                                                           {-2.5, -2.5},
+                                                           {-4, -4.5},
+                                                           {-1, 5},
+                                                           {-2, 1.8},
+                                                           {-1, -5},
+                                                           {2.5, 2.5},
+                                                           {3.5, 0},
+                                                           {2.5, -2.5}}};
 
 double angleOf(const Vec2& v) { return std::atan2(v.y(), v.x()); }
 
@@ -111,8 +125,8 @@ Vec2 kickOffPlace(int unum) {
 
 Vec2 waitingPlace(int unum, const Vec2& ball) {
   if (unum == 1) return {-14.3, std::clamp(ball.y(), -0.8, 0.8)};
-  const Vec2 home = kickOffPlace(unum);
-  Vec2 place(std::clamp(home.x() + 0.6 * ball.x() + (home.x() > -3 ? 1.0 : 0.0), -13.0, 12.0), home.y() + 0.3 * ball.y());
+  const auto& from = kFromBall.at(static_cast<std::size_t>(std::clamp(unum, 1, 11)));
+  Vec2 place(std::clamp(0.85 * ball.x() + from[0], -13.0, 13.0), std::clamp(0.5 * ball.y() + from[1], -9.0, 9.0));
   const Vec2 off = place - ball;
   if (off.norm() < 1.5) place = ball + (off.norm() > 0.1 ? Vec2(off.normalized()) : Vec2(-1, 0)) * 1.5;
   return place;
