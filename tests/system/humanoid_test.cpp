@@ -26,8 +26,25 @@ class Training {
  public:
   /// The clock stands until he is there: with the same seed the same happens.
   Training(int type, int seed)
-      : host_({(binFolder() / "sparkhost").string(), "--config", "soccer.lua", "--seed", std::to_string(seed), "--sync", "--rate", "max", "--expect", "1", "--agent-port",
-               "0", "--monitor-port", "0", "--log-level", "error", "--set", "Soccer.AutomaticKickOff=true", "--set",
+      : host_({(binFolder() / "sparkhost").string(),
+               "--config",
+               "soccer.lua",
+               "--seed",
+               std::to_string(seed),
+               "--sync",
+               "--rate",
+               "max",
+               "--expect",
+               "1",
+               "--agent-port",
+               "0",
+               "--monitor-port",
+               "0",
+               "--log-level",
+               "error",
+               "--set",
+               "Soccer.AutomaticKickOff=true",
+               "--set",
                "Soccer.WaitBeforeKickOff=3"}),
         ports_(Json::parse(host_.line())),
         agent_(ports_["agentPort"].get<unsigned short>()),
@@ -127,7 +144,9 @@ std::string getUpWalkAndPush(int type, bool forward, int seed) {
   REQUIRE(player.posture().lying() != humanoid::Lying::no);
   REQUIRE(training.look().torso.z() < kStanding);
 
-  if (!training.playUntil(150, [&] { return player.task() != Task::getUp && player.task() != Task::fall && player.posture().tilt() < 0.3; })) return "get up";
+  if (!training.playUntil(150,
+                          [&] { return player.task() != Task::getUp && player.task() != Task::fall && player.posture().tilt() < 0.3; }))
+    return "get up";
   const auto [stood, ball] = training.look();
   if (stood.z() < kStanding) return "stand";
   const humanoid::Vec3 from = stood, lay = ball;

@@ -4,11 +4,12 @@
 local kGround, kUp, kHeld = 0.25, 0.5, 0.8   -- m: a torso below is not standing (as the referee has it); s it must stand again; m: the referee holds it
 local kEvery = 5                             -- cycles between two looks
 
+league = { solver = "articulated" }          -- the same physics; --set solver=dense plays with the engine's own
 include "soccer.lua"
 soccerTeams("humanoid-team", "HumanoidBehavior", "Red Blue", option{ name = "eleven", default = 11, doc = "Players of each team." })
 Soccer.AutomaticKickOff, Soccer.WaitBeforeKickOff = true, 5
 
-local counts = { playerSeconds = 0, groundSeconds = 0, fouls = 0, ballMetres = 0 }
+local counts = { playerSeconds = 0, groundSeconds = 0, fouls = 0 }
 for type = 0, 4 do
   for _, what in ipairs { "falls", "ups", "upSeconds", "longest" } do counts[what .. type] = 0 end
 end

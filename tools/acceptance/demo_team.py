@@ -11,7 +11,7 @@ TYPES = range(5)
 
 def point():
     """(measured, verdict): ten matches of 2 x 300 s with all five types and the foul rules on."""
-    say(f"Playing {SEEDS} matches of two teams of ours; some 6 minutes on two cores that do nothing else")
+    say(f"Playing {SEEDS} matches of two teams of ours; some 800 s of CPU time")
     with tempfile.TemporaryDirectory() as folder:
         table = Path(folder) / "matches.csv"
         done = run([BIN / "sparkbatch", "--config", ROOT / "tools/acceptance/demo_team.lua", "--runs", str(SEEDS), "--seed", "1", "--results", table])

@@ -41,7 +41,7 @@ double topSpeed(const Build& build, Joint j) {
 }
 
 int robotType(int unum) {
-  constexpr std::array<int, 12> types{0, 0, 4, 2, 0, 4, 1, 3, 1, 3, 1, 3};
+  constexpr std::array<int, 12> types{0, 3, 4, 2, 0, 2, 0, 1, 4, 1, 4, 1};
   return types.at(static_cast<std::size_t>(std::clamp(unum, 1, 11)));
 }
 

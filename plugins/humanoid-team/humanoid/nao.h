@@ -79,7 +79,7 @@ constexpr double kKneeForward = 0.005;   ///< m that the knee is before the hip 
 constexpr double kCameraHeight = 0.155;  ///< m from the torso's middle up to the head's, where the camera is
 
 /// Robot types of a team of eleven, by uniform number 1..11: within the league's limits (at most 7 of a type, 9 of two, at least 3 types).
-/// All five types play; those with long legs, which walk fastest, attack.
+/// All five types play; the widest, which others knock over most easily, keeps the goal.
 int robotType(int unum);
 
 }  // namespace humanoid

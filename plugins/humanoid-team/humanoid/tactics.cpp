@@ -29,8 +29,8 @@ constexpr double kAhead = 0.5;                // m ahead on his line that he wal
 constexpr double kMouth = 0.5, kShot = 3;     // m beside the goal's middle at which he aims at most, up to that distance
 constexpr double kWiden = 0.25;               // m further aside for each m further away
 constexpr double kAsideInDuel = radians(60);  // further aside when an opponent is at the ball
-constexpr double kClear = 0.55;               // m between two players' middles when one passes the other
-constexpr double kLookOut = 1.1;              // m ahead in which others matter
+constexpr double kClear = 0.65;               // m between two players' middles when one passes the other
+constexpr double kLookOut = 1.4;              // m ahead in which others matter
 const Vec2 kTheirGoal(15, 0), kOwnGoal(-15, 0);
 
 constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
@@ -47,18 +47,8 @@ constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
                                                             {-2.4, -2.5}}};
 
 /// Where the field players wait, from the ball.
-constexpr std::array<std::array<double, 2>, 12> kFromBall{{{0, 0},
-                                                           {0, 0},
-                                                           {-4, 4.5},
-                                                           {-5, 1},
-                                                           {-2.5, -2.5},
-                                                           {-4, -4.5},
-                                                           {-1, 5},
-                                                           {-2, 1.8},
-                                                           {-1, -5},
-                                                           {2.5, 2.5},
-                                                           {3.5, 0},
-                                                           {2.5, -2.5}}};
+constexpr std::array<std::array<double, 2>, 12> kFromBall{
+    {{0, 0}, {0, 0}, {-4, 4.5}, {-5, 1}, {-2.5, -2.5}, {-4, -4.5}, {-1, 5}, {-2, 1.8}, {-1, -5}, {2.5, 2.5}, {3.5, 0}, {2.5, -2.5}}};
 
 double angleOf(const Vec2& v) { return std::atan2(v.y(), v.x()); }
 
