@@ -19,7 +19,7 @@ constexpr double kTouch = 0.2;               // m from the ball: he has touched 
 constexpr double kDuel = 1.0;                // m from the ball: an opponent plays it, too
 constexpr double kBarred = 8;                // s after which somebody else must have touched the ball
 constexpr double kRest = 0.1;                // s that he lies, at least, before he gets up
-constexpr double kMostRest = 0.6;            // s after which he tries although he still rolls
+constexpr double kMostRest = 0.35;           // s after which he tries although he still rolls
 constexpr double kUpright = radians(40);     // of tilt at most
 constexpr double kPropped = 1, kSits = 1.2;  // s without standing upright, without a foot on the ground: he lies
 constexpr double kStill = 1;                 // rad/s
@@ -232,7 +232,7 @@ void HumanoidPlayer::getUp() {
   if (lain < kRest || (percepts_.gyro.norm() > kStill && lain < kMostRest)) return;
   fell_ = lying();
   // what failed twice would fail again
-  static constexpr std::array other{Lying::onSide, Lying::onSide, Lying::onBack, Lying::onFront};
+  static constexpr std::array other{Lying::onSide, Lying::onSide, Lying::onSide, Lying::onBack};
   if (percepts_.now - triedAt_ > kForgets) attempts_ = 0;
   triedAt_ = percepts_.now;
   const bool again = ++attempts_ % 3 == 0;
