@@ -6,7 +6,7 @@ import { openReplay, type Replay } from "../../src/sources";
 const reference = process.env.SPARK_REFERENCE_DIR ?? "";
 const captures = `${reference}/captures`;
 if (reference && !existsSync(captures)) throw new Error(`SPARK_REFERENCE_DIR is '${reference}', where there is no folder captures/.`);
-const builds = existsSync(captures) ? readdirSync(captures).filter((name) => !name.includes(".")) : [];
+const builds = ["mainline", "spl"].filter((name) => existsSync(`${captures}/${name}`));
 const sessions = builds.flatMap((build) => readdirSync(`${captures}/${build}`).filter((f) => f.endsWith(".jsonl")).map((f) => `${build}/${f}`));
 
 function messages(session: string): string[] {
