@@ -301,7 +301,7 @@ TEST_CASE("A file that is broken when it is to be loaded again is refused, and m
   Loader& loader = house.kernel.plugins();
   loader.useFile(file);
   loader.unload("fixture-base");
-  overwrite(file, whole.substr(0, whole.size() / 2));
+  overwrite(file, whole.substr(0, 4000));  // of a file with debug information half would do
   CHECK_THAT(refusal([&] { loader.use("fixture-base"); }), Catch::Contains(file.string()) && Catch::Contains("it is cut off"));
   fs::remove(file);
   CHECK_THAT(refusal([&] { loader.use("fixture-base"); }), Catch::Contains("there is no plugin 'fixture-base'"));
