@@ -173,10 +173,11 @@ TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene w
   const double now = player.last().find("GS").find("t")[1].number();  // monitors are told the match's clock
   REQUIRE(now > 60);
   // What was under way when its buffers were full, a gap, and then what is now.
+  constexpr double kPatience = 0.1;  // s of wall time; TCP takes seconds until a full connection flows again, and the match is not to end meanwhile
   double last = 0, gap = 0;
   int messages = 0;
   while (last < now - 0.5) {
-    auto message = viewer.receive(0.001);
+    auto message = viewer.receive(kPatience);
     if (!message) {
       player.run(0.04);
       continue;
@@ -194,7 +195,7 @@ TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene w
   viewer.send("(reqfullstate)");
   std::string kind;
   while (kind != "RSG") {
-    if (auto message = viewer.receive(0.001)) kind = kindOf(*message);
+    if (auto message = viewer.receive(kPatience)) kind = kindOf(*message);
     else player.run(0.04);
   }
   viewer.send("(killsim)");
