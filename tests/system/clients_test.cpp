@@ -48,9 +48,9 @@ std::string init(const std::string& team, int unum) { return "(init (unum " + st
 class ScriptedPlayer {
  public:
   ScriptedPlayer(int port, std::vector<std::string> words) : connection_("127.0.0.1", port), words_(std::move(words)) { say(); }
-  /// Answers what has come; false when the server has closed.
+  /// Answers one message, if there is one: a host that is fast has the next one at once. False when the server has closed.
   bool play() try {
-    while (const auto message = connection_.receive(0.001)) {
+    if (const auto message = connection_.receive(0.001)) {
       ++heard_;
       last_ = read(*message);
       say();
