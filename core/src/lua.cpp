@@ -189,7 +189,7 @@ void Runtime::checkChannels() {
 }
 
 std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::string_view channel) {
-  if (inConfig && !isChannel(channel)) {  // who defines it may come later
+  if (inConfig && !isChannel(channel)) {  // its definer may be created later in the config
     luaL_where(L, 1);
     listened_.emplace_back(channel, lua_tostring(L, -1));
     lua_pop(L, 1);

@@ -218,14 +218,19 @@ TEST_CASE("A folder of broken plugins is reported, and the host starts") {
   REQUIRE_THAT(f.errors, Contains("broken.so"));
 }
 
+/// Runs sparkctl on a running house.
+static auto controlOf(const Process& p) {
+  return [pid = std::to_string(p.pid())](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {program("sparkctl"), "--pid", pid});
+    return runToEnd(arguments);
+  };
+}
+
 TEST_CASE("sparkctl shows the house and changes it") {
   TemporaryFolder folder;
   Process p(host({"--config", folder.write("small.lua", kSmall)}));
   p.line();
-  const auto ctl = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {program("sparkctl"), "--pid", std::to_string(p.pid())});
-    return runToEnd(arguments);
-  };
+  const auto ctl = controlOf(p);
   REQUIRE_THAT(ctl({"tree", "/sys"}).out, Contains("simulation  (Simulation)") && Contains("run loop"));
   REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out, Contains("step = 0.02 s") && Contains("Simulated time of one cycle."));
   REQUIRE_THAT(ctl({"plugins"}).out, Contains("* control"));
@@ -242,10 +247,7 @@ TEST_CASE("sparkctl loads and unloads plugins of a running house") {
   TemporaryFolder folder;
   Process p(host({"--config", folder.write("small.lua", kSmall)}));
   p.line();
-  const auto ctl = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {program("sparkctl"), "--pid", std::to_string(p.pid())});
-    return runToEnd(arguments);
-  };
+  const auto ctl = controlOf(p);
   CHECK(ctl({"get", "/classes/DrawingServer"}).code == 1);
   for (int i = 0; i < 2; ++i) {
     CHECK(ctl({"load", "drawing"}).code == 0);

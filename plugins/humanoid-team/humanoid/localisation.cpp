@@ -9,7 +9,7 @@ namespace {
 /// The robot's forward is the field's x when its heading is 0: robot axes to field axes.
 Eigen::Rotation2Dd rotation(double heading) { return Eigen::Rotation2Dd(heading - kPi / 2); }
 
-constexpr double kTorsoHeight = 0.35;         // m, of one who stands or walks
+constexpr double kTorsoHeight = 0.35;         // m, of a player that stands or walks
 constexpr double kNod = 0.4, kMostNod = 0.4;  // of what a look tells; rad
 constexpr double kNear = 25;                  // m; what is further off tells the direction, hardly the place
 }  // namespace
@@ -21,7 +21,7 @@ Vec3 Localisation::level(const Vec3& inHead, const Percepts& percepts, const Pos
   return Eigen::AngleAxisd(nod_, Vec3::UnitX()) * (posture.level() * (head * inHead + Vec3(0, 0, kCameraHeight)));
 }
 
-/// The accelerometer of who walks errs by some degrees of lean; marks of known height tell.
+/// While a player walks, the lean from its accelerometer is wrong by several degrees; landmarks of known height correct it.
 void Localisation::findHorizon(const Percepts& percepts, const Posture& posture) {
   double across = 0, along = 0;
   for (const Sighting& s : percepts.sightings) {

@@ -17,7 +17,7 @@ constexpr double kOtherMemory = 0.8;         // s that a player is taken to be w
 constexpr double kAtBall = 0.4;              // m: he plays the ball, or may have
 constexpr double kTouch = 0.2;               // m from the ball: he has touched it
 constexpr double kDuel = 1.0;                // m from the ball: an opponent plays it, too
-constexpr double kBarred = 8;                // s after which somebody else must have touched the ball
+constexpr double kBarred = 8;                // s after which another player is assumed to have touched the ball
 constexpr double kRest = 0.1;                // s that he lies, at least, before he gets up
 constexpr double kMostRest = 0.35;           // s after which he tries although he still rolls
 constexpr double kUpright = radians(40);     // of tilt at most
@@ -120,7 +120,7 @@ void HumanoidPlayer::senseOthers() {
   }
 }
 
-/// Who took a restart may not touch the ball again before somebody else has.
+/// A player that took a restart may not touch the ball again before another player has.
 void HumanoidPlayer::watchRestart() {
   const bool ours = !pausedMode(percepts_.playMode) && percepts_.playMode != "PlayOn" && !theirBall(percepts_.playMode, percepts_.side);
   const bool atBall = percepts_.now - ballAt_ < 1 && (ball_ - localisation_.place()).norm() < kAtBall;
@@ -146,7 +146,7 @@ void HumanoidPlayer::hear() {
   }
 }
 
-/// Who lies, or has the ball behind him, has further to go; who may not touch it too far.
+/// Adds distance for a player that lies or has the ball behind it, and puts one that may not touch the ball out of the running.
 double HumanoidPlayer::toBall() const {
   const Vec2 way = ball_ - localisation_.place();
   return way.norm() + (lyingSince_ >= 0 || getUp_.playing() ? 2 : 0) + (way.x() < -0.2 ? 0.6 : 0) + (barredSince_ >= 0 ? 20 : 0);
