@@ -34,7 +34,7 @@ class Humanoid : public spark::agent::Player {
 int main(int argc, char** argv) {
   spark::agent::TeamProgram program("humanoid-team", "A team of Naos that plays soccer against a server.");
   int type = -1;
-  program.app().add_option("--type", type, "Robot type of all players, 0..4; else mixed within the league's limits")->check(CLI::Range(0, 4));
+  program.addNumber("--type", type, 0, 4, "Robot type of all players; else mixed within the league's limits");
   return program.run(argc, argv, [&](int unum) {
     return std::make_unique<Humanoid>(program.options().team, unum, type >= 0 ? type : humanoid::robotType(unum));
   });

@@ -62,17 +62,18 @@ class Watcher {
 int main(int argc, char** argv) {
   constexpr int kTeam = 11, kTypes = 5;
   spark::agent::TeamProgram program("idle-team", "Load for a server: agents that stand about, and monitors that look on.", 2 * kTeam);
-  std::string robot = "rsg/agent/nao/nao_hetero.rsg", other = "Idle";
+  const std::string nao = "rsg/agent/nao/nao_hetero.rsg";
+  std::string robot = nao, other = "Idle";
   int type = -1, monitors = 0, monitorPort = 3200;
-  program.app().add_option("--robot", robot, "Scene file of the robot")->capture_default_str();
-  program.app().add_option("--type", type, "Argument of the robot's file; without it and --robot types 0 to 4 in turn");
-  program.app().add_option("--other-team", other, "Name of the team of players 12 to 22")->capture_default_str();
-  program.app().add_option("--monitors", monitors, "Monitors to connect")->check(CLI::Range(0, 1000))->capture_default_str();
-  program.app().add_option("--monitor-port", monitorPort, "The server's monitor port")->check(CLI::Range(1, 65535))->capture_default_str();
+  program.addText("--robot", robot, "Scene file of the robot");
+  program.addNumber("--type", type, 0, 1000, "Argument of the robot's file; without it Naos are of types 0 to 4 in turn");
+  program.addText("--other-team", other, "Name of the team of players 12 to 22");
+  program.addNumber("--monitors", monitors, 0, 1000, "Monitors to connect");
+  program.addNumber("--monitor-port", monitorPort, 1, 65535, "The server's monitor port");
   std::vector<std::unique_ptr<Watcher>> watchers;
   return program.run(argc, argv, [&](int number) {
     while (static_cast<int>(watchers.size()) < monitors) watchers.push_back(std::make_unique<Watcher>(program.io(), program.options().host, monitorPort));
-    const bool first = number <= kTeam, mixed = program.app().count("--robot") + program.app().count("--type") == 0;
+    const bool first = number <= kTeam, mixed = type < 0 && robot == nao;
     return std::make_unique<Idler>(first ? program.options().team : other, first ? number : number - kTeam, robot, mixed ? number % kTypes : type);
   });
 }

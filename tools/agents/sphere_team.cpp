@@ -28,6 +28,6 @@ class Sphere : public spark::agent::Player {
 int main(int argc, char** argv) {
   spark::agent::TeamProgram program("sphere-team", "A team of spheres that plays 2004-style soccer against a server.");
   std::string robot = "rsg/agent/sphere.rsg";
-  program.app().add_option("--robot", robot, "Scene file of the robot")->capture_default_str();
+  program.addText("--robot", robot, "Scene file of the robot");
   return program.run(argc, argv, [&](int unum) { return std::make_unique<Sphere>(program.options().team, unum, robot); });
 }

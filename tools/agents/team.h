@@ -2,13 +2,18 @@
 /// \file
 /// A team in one process: options, connections, and the loop in which its players play until the server ends the match.
 
-#include <CLI/CLI.hpp>
-#include <boost/asio/io_context.hpp>
 #include <functional>
 #include <memory>
 #include <string>
 
 #include "spark/predicates.h"
+
+namespace CLI {
+class App;
+}
+namespace boost::asio {
+class io_context;
+}
 
 namespace spark::agent {
 
@@ -42,19 +47,22 @@ class TeamProgram {
   };
   /// `most`: players that one process can have.
   TeamProgram(std::string name, const std::string& description, int most = 11);
-  /// For options of its own.
-  CLI::App& app() { return app_; }
+  ~TeamProgram();
+  /// Options of its own; `value` is the default and takes what the command line says.
+  void addText(const std::string& option, std::string& value, const std::string& description);
+  /// A whole number in [least, most]; `value` as it is when the option is not there.
+  void addNumber(const std::string& option, int& value, int least, int most, const std::string& description);
   const Options& options() const { return options_; }
   /// The loop that the match runs in, for what else a program does.
-  boost::asio::io_context& io() { return io_; }
+  boost::asio::io_context& io() { return *io_; }
   /// Reads the command line and plays; `make` makes a player by his number, from 1. Returns the exit code.
   int run(int argc, char** argv, const std::function<std::unique_ptr<Player>(int unum)>& make);
 
  private:
   bool play(const std::function<std::unique_ptr<Player>(int unum)>& make);
-  boost::asio::io_context io_{1};
+  std::unique_ptr<boost::asio::io_context> io_;
   std::string name_;
-  CLI::App app_;
+  std::unique_ptr<CLI::App> app_;
   Options options_;
 };
 
