@@ -12,7 +12,7 @@
 // number, end the server itself.
 
 namespace {
-constexpr int kUsageError = 2;
+constexpr int kWrongOptions = 2;
 
 /// The config that stands for a start-up script: a Lua file is one itself, of the Ruby scripts the names are known.
 std::string configFor(const std::string& script) {
@@ -24,7 +24,7 @@ std::string configFor(const std::string& script) {
   return "soccer.lua";
 }
 
-int runHost(std::vector<std::string> arguments) {
+int runArguments(std::vector<std::string> arguments) {
   std::vector<char*> pointers;
   for (std::string& a : arguments) pointers.push_back(a.data());
   pointers.push_back(nullptr);
@@ -32,7 +32,7 @@ int runHost(std::vector<std::string> arguments) {
 }
 }  // namespace
 
-int main(int argc, char** argv) {
+int sparkhost::runServer3d(int argc, char** argv) {
   const std::string name = std::filesystem::path(argv[0]).filename();
   CLI::App app{"Serves soccer of the 3D league: sparkhost with soccer.lua, under this name and with this server's options.", name};
   std::string script, prefix, drawHost;
@@ -50,12 +50,12 @@ int main(int argc, char** argv) {
     if (!rest.empty() && rest.front() != "--")
       throw CLI::ExtrasError(name, std::vector<std::string>{rest.front() + " (see --help; options of sparkhost go behind a lone --)"});
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : kUsageError;
+    return app.exit(e) == 0 ? 0 : kWrongOptions;
   }
   std::vector<std::string> arguments{"sparkhost", "--config", configFor(script)};
   if (agentPort) arguments.insert(arguments.end(), {"--agent-port", std::to_string(*agentPort)});
   if (monitorPort) arguments.insert(arguments.end(), {"--monitor-port", std::to_string(*monitorPort)});
   const std::vector<std::string> rest = app.remaining();
   if (rest.size() > 1) arguments.insert(arguments.end(), rest.begin() + 1, rest.end());
-  return runHost(std::move(arguments));
+  return runArguments(std::move(arguments));
 }
