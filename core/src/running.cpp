@@ -98,14 +98,9 @@ const char* nameOf(int number) {
   }
 }
 
+/// In one piece, or not at all: short texts are not cut.
 void say(const char* text, std::size_t size) {
-  while (size > 0) {
-    const ssize_t n = write(STDERR_FILENO, text, size);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return;
-    text += n;
-    size -= static_cast<std::size_t>(n);
-  }
+  while (write(STDERR_FILENO, text, size) < 0 && errno == EINTR) continue;
 }
 
 void onCrash(int number, siginfo_t* info, void*) {

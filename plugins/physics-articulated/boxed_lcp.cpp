@@ -69,7 +69,6 @@ bool BoxedLcp::drive(std::size_t i, std::vector<State>& states, std::size_t& cha
     x_[i] += direction * step.size;
     switch (step.event) {
       case Event::settled:
-        w_[i] = 0;
         states[i] = State::holds;
         sweep(i);
         return true;
@@ -79,7 +78,6 @@ bool BoxedLcp::drive(std::size_t i, std::vector<State>& states, std::size_t& cha
         x_[i] = states[i] == State::low ? low[i] : high[i];
         return true;
       case Event::leaves:
-        w_[step.row] = 0;
         states[step.row] = State::holds;
         sweep(step.row);
         break;

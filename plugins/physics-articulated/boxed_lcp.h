@@ -33,7 +33,8 @@ class BoxedLcp {
   bool drive(std::size_t i, std::vector<State>& states, std::size_t& changes);
   Step longest(std::size_t i, double direction, const std::vector<State>& states) const;
   std::size_t rows_ = 0;
-  std::vector<double> original_, x_, w_, column_;
+  std::vector<double> original_, x_, column_;
+  std::vector<double> w_;  ///< of rows that stand at a bound; those that hold have none
 };
 
 }  // namespace spark::articulated

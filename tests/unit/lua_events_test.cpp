@@ -215,6 +215,23 @@ TEST_CASE("handlers may raise events, but not without end") {
   CHECK_THAT(h.text, Contains("scripts entered each other more than 16 deep: does a handler raise its own event?"));
 }
 
+TEST_CASE("a handler pays for the handlers of the events that it raises, and no more than that") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.kernel.events().define("outer", Order::parentsFirst, "");
+  h.kernel.events().define("inner", Order::parentsFirst, "");
+  h.run("inner, done = 0, 0\n"
+        "get('/usr/a'):on('inner', function() for i = 1, work do end inner = inner + 1 end)\n"
+        "get('/usr/a'):on('outer', function(a) for k = 1, 100 do a:raise('inner') for i = 1, 5000 do end end done = done + 1 end)");
+  h.run("work = 100");
+  h.emit("outer");
+  CHECK(h.run("return {inner, done}") == Value(List{100, 1}));
+  h.run("work = 1000000");
+  h.emit("outer");
+  CHECK(h.run("return done") == Value(1));
+  CHECK_THAT(h.text, Contains("stopped after 50000000 instructions"));
+}
+
 TEST_CASE("scripts end before the nodes: what nodes emit when they go reaches no script") {
   std::string text;
   {

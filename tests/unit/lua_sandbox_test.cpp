@@ -97,6 +97,12 @@ TEST_CASE("an untrusted script that hoards memory is stopped") {
   CHECK(h.run("local t = {} for i = 1, 1e5 do t[i] = {} end return #t") == Value(100000));  // the house's own scripts are not limited
 }
 
+TEST_CASE("an untrusted script may grow and drop tables as long as it likes") {
+  LuaHouse h;
+  CHECK(sandbox(h, "for i = 1, 400 do local t = {} for k = 1, 400 do t[k] = k end end self.count = collectgarbage and 0 or 1") == "");
+  CHECK(h.kernel.root().find<Thing>("/usr/a")->count == 1);
+}
+
 TEST_CASE("untrusted scripts do not share anything with each other") {
   LuaHouse h;
   Thing& b = h.thing("/usr/b");

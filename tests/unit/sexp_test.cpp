@@ -278,6 +278,19 @@ TEST_CASE("Predicates copy, cut and reuse their memory") {
   CHECK(p.size() == 0);
 }
 
+TEST_CASE("What was read before stays as it was when the rest is cut off") {
+  Predicates p;
+  readSexp("(kept-and-longer-than-eight)", p);
+  const auto size = static_cast<std::uint32_t>(p.size());
+  for (const char* rest : {"(abcdefgh as-long-as-the-first-one-was)", "(1 2 3 4 5 6 7 8 9 0 as-long-as-the-first-one-was)", "(a)"}) {
+    readSexp(rest, p);
+    p.truncate(size);
+    readSexp("(new-and-longer-than-eight)", p);
+    CHECK((*p.begin()).head() == "kept-and-longer-than-eight");
+    p.truncate(size);
+  }
+}
+
 TEST_CASE("Predicates become values and back") {
   Predicates p;
   readSexp("(a (b 1))", p);

@@ -214,8 +214,17 @@ TEST_CASE("a sleeping body wakes when it is pushed, moved or enabled, and not by
   };
   REQUIRE(sleep());
   body.addForce({0, 0, 0});
+  body.addTorque({0, 0, 0});
+  body.setVelocity({0, 0, 0});
+  body.setAngularVelocity({0, 0, 0});
   CHECK_FALSE(body.enabled());
   body.addForce({1, 0, 0});
+  CHECK(body.enabled());
+  REQUIRE(sleep());
+  body.addTorque({0, 0, 1});
+  CHECK(body.enabled());
+  REQUIRE(sleep());
+  body.setAngularVelocity({0, 0, 1});
   CHECK(body.enabled());
   REQUIRE(sleep());
   body.setVelocity({0, 0, 1});

@@ -164,6 +164,17 @@ TEST_CASE("contacts of the last step can be looked at, all with their force when
   CHECK(server.contacts().empty());
 }
 
+TEST_CASE("every contact has its force when forces are measured, also where nobody asked for one") {
+  Ground g;
+  g.collider().create("ContactJointHandler");
+  g.ground.create("ContactJointHandler");
+  setProperty(*g.kernel.root().find("/sys/server/physics"), "measureForces", true);
+  g.step();
+  const auto& contacts = g.kernel.root().require<IPhysicsServer>("/sys/server/physics").contacts();
+  REQUIRE(contacts.size() == 4);
+  for (const engine::Contact& c : contacts) CHECK((c.feedback && c.forceOnA.norm() > 0));
+}
+
 TEST_CASE("a handler that changes the tree in the middle of a step is named, and nothing breaks") {
   Ground g;
   g.kernel.registerClass<CountingHandler>();
