@@ -203,8 +203,12 @@ void HumanoidPlayer::act(const Decision& decision, spark::Predicates& actions) {
       const Steering s = steer(pass(target, inTheWay(0)), normalized(decision.facing - localisation_.heading()));
       return walk({s.forward, s.right, s.turn});
     }
-    case Task::dribble: {
-      const Steering s = run(pass(localisation_.toRobot(decision.target), inTheWay(kAtBall)), decision.speed);
+    case Task::run: {
+      const Steering s = run(pass(localisation_.toRobot(decision.target), inTheWay(kAtBall)));
+      return walk({s.forward, s.right, s.turn});
+    }
+    case Task::push: {
+      const Steering s = push(localisation_.toRobot(decision.target), normalized(decision.facing - localisation_.heading()));
       return walk({s.forward, s.right, s.turn});
     }
   }

@@ -21,16 +21,22 @@ constexpr double kKeepAway = 2.4;             // m from the ball at the others' 
 constexpr double kBehind = 0.35;              // m behind the ball: there he turns towards it
 constexpr double kAround = 0.5;               // m from the ball when he has to get round it
 constexpr double kFurther = radians(55);      // that he goes round it at a time
-constexpr double kAtHand = 0.8;               // m from the ball: he goes slowly there unless he pushes it
-constexpr double kTurned = radians(40);       // from the ball's way: he turns on the spot before he pushes it
-constexpr double kSlow = 0.45, kFast = 10;    // m/s
+constexpr double kAtHand = 0.8;               // m from the ball: he steps to its back, or pushes it
+constexpr double kFar = 2;                    // m from the ball: he does not go round it yet
+constexpr double kTurned = radians(40);       // from the ball's way: he does not push it before he has turned
 constexpr double kFoot = 0.05;                // m beside the middle of a player, where his foot meets the ball
+constexpr double kToes = 0.1;                 // m that his foot is ahead then
+constexpr double kExact = 0.03;               // m beside that which do not matter
 constexpr double kAhead = 0.5;                // m ahead on his line that he walks to
-constexpr double kMouth = 0.5, kShot = 3;     // m beside the goal's middle at which he aims at most, up to that distance
+constexpr double kMouth = 0.3, kShot = 3;     // m beside the goal's middle at which he aims at most, up to that distance
 constexpr double kWiden = 0.25;               // m further aside for each m further away
 constexpr double kAsideInDuel = radians(60);  // further aside when an opponent is at the ball
+constexpr double kStraight = 4;               // m from the goal: there he aims at it, duel or not
 constexpr double kClear = 0.65;               // m between two players' middles when one passes the other
 constexpr double kLookOut = 1.4;              // m ahead in which others matter
+constexpr double kForward = 0.7, kBackward = 0.35, kSideways = 0.18;  // m/s that players walk, about
+constexpr double kTurn = 1;                                           // rad/s that they turn
+constexpr double kMostBackward = 0.5, kMostSideways = 0.25;           // m/s, more is not asked of a gait
 const Vec2 kTheirGoal(15, 0), kOwnGoal(-15, 0);
 
 constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
@@ -61,12 +67,12 @@ Decision keepAway(const Situation& s) {
   return walkTo(s.ball + back.normalized() * kKeepAway, angleOf(-back));
 }
 
-/// Where the ball is to go: between the posts; from further away as far aside as the player comes from aside, and more so in a duel.
+/// Where the ball is to go: between the posts; from further away as far aside as the player comes from aside, and there more so in a duel.
 Vec2 aim(const Situation& s) {
   const Vec2 from = s.ball - s.place;
   const double distance = (kTheirGoal - s.ball).norm(), width = kMouth + kWiden * std::max(0.0, distance - kShot);
   if (distance < 0.3) return {1, 0};
-  const double more = s.contested ? kAsideInDuel : 0, goal = angleOf(kTheirGoal - s.ball);
+  const double more = s.contested && distance > kStraight ? kAsideInDuel : 0, goal = angleOf(kTheirGoal - s.ball);
   const double right = normalized(angleOf(kTheirGoal - Vec2(0, width) - s.ball) - goal) - more;
   const double left = normalized(angleOf(kTheirGoal + Vec2(0, width) - s.ball) - goal) + more;
   const double off = from.norm() < 0.05 ? 0 : std::clamp(normalized(angleOf(from) - goal), right, left);
@@ -77,15 +83,16 @@ Vec2 aim(const Situation& s) {
 Decision attack(const Situation& s) {
   const Vec2 way = aim(s), from = s.place - s.ball, across(-way.y(), way.x());
   const double behind = -from.dot(way), beside = from.dot(across), side = beside < 0 ? -1 : 1, facing = angleOf(way);
-  const bool near = from.norm()<kAtHand, turned = std::abs(normalized(s.heading - facing))> kTurned;
-  if (behind > 0.04 && std::abs(beside) < 0.09 + 0.4 * behind && !(near && turned))
-    return {Task::dribble, s.ball + across * (side * kFoot) + way * (kAhead - behind), facing};
+  const bool near = from.norm() < kAtHand, turned = std::abs(normalized(s.heading - facing)) < kTurned;
+  const Vec2 meet = s.ball + across * (side * kFoot);
+  if (near && turned && behind > 0.04 && std::abs(beside) < 0.1 + 0.35 * behind) return {Task::push, meet, facing};
+  if (!near && behind > 0 && std::abs(beside) < 0.09 + 0.4 * behind) return {Task::run, meet + way * (kAhead - behind), facing};
   const Vec2 back = s.ball - way * kBehind;
   const double at = angleOf(from), left = normalized(angleOf(-way) - at);
-  if (std::abs(left) < kFurther) return near ? walkTo(back, facing) : Decision{Task::dribble, back, facing};
-  if (from.norm() > 2) return {Task::dribble, back, facing};
+  if (std::abs(left) < kFurther) return near ? walkTo(back, facing) : Decision{Task::run, back, facing};
+  if (from.norm() > kFar) return {Task::run, back, facing};
   const double next = at + std::clamp(left, -kFurther, kFurther);
-  return {Task::dribble, s.ball + Vec2(std::cos(next), std::sin(next)) * kAround, facing, near ? kSlow : kFast};
+  return walkTo(s.ball + Vec2(std::cos(next), std::sin(next)) * kAround, facing);
 }
 
 Decision wait(const Situation& s) {
@@ -147,14 +154,23 @@ Vec2 pass(const Vec2& target, const std::vector<Vec2>& others) {
 
 Steering steer(const Vec2& target, double facing) {
   const double distance = target.norm(), bearing = std::atan2(-target.x(), target.y());  // to the left
-  if (distance < 0.5) return {1.8 * target.y(), 1.8 * target.x(), 1.8 * facing};
-  if (std::abs(bearing) > radians(150) && distance < 0.8) return {-distance, 0, 0};
-  return {std::abs(bearing) > radians(60) ? 0 : std::cos(bearing) * std::min(distance, 1.0), 0, 1.5 * bearing};
+  const double along = target.y() > 0 ? target.y() / kForward : -target.y() / kBackward;
+  const double straight = std::max({along, std::abs(target.x()) / kSideways, std::abs(facing) / kTurn});
+  const double turned = (std::abs(bearing) + std::abs(normalized(facing - bearing))) / kTurn + distance / kForward;
+  if (straight > turned) return {std::abs(bearing) > radians(60) ? 0 : std::cos(bearing) * std::min(distance, 1.0), 0, 2 * bearing};
+  const Vec2 speed = 1.8 * target;
+  const double slower = std::max({1.0, std::abs(speed.x()) / kMostSideways, speed.y(), -speed.y() / kMostBackward});
+  return {speed.y() / slower, speed.x() / slower, 1.8 * facing};
 }
 
-Steering run(const Vec2& target, double speed) {
+Steering run(const Vec2& target) {
   const double bearing = std::atan2(-target.x(), target.y());
-  return {std::abs(bearing) > radians(70) ? 0 : std::min(speed, std::cos(bearing)), 0, 2.2 * bearing};
+  return {std::abs(bearing) > radians(70) ? 0 : std::cos(bearing), 0, 2.2 * bearing};
+}
+
+Steering push(const Vec2& target, double facing) {
+  const double aside = std::abs(target.x()) - kExact, ahead = std::max(0.0, target.y() - kToes);
+  return {aside > 0 ? std::min(1.0, ahead * kSideways / aside) : 1, 3 * target.x(), 2.2 * facing};
 }
 
 }  // namespace humanoid

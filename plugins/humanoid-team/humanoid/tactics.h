@@ -22,15 +22,14 @@ struct Situation {
   double heading = 0;  ///< rad
 };
 
-/// walk: to a place, to stop there; dribble: through it.
-enum class Task { takePlace, fall, getUp, search, stand, walk, dribble };
+/// walk: to a place, to stop there; run: through it; push: the ball is right ahead, it is to meet a foot.
+enum class Task { takePlace, fall, getUp, search, stand, walk, run, push };
 
 /// What to do next.
 struct Decision {
   Task task = Task::stand;
-  Vec2 target = Vec2::Zero();  ///< walk, dribble: where to, on the field; takePlace: where to be beamed
-  double facing = 0;           ///< walk: heading at the target [rad]
-  double speed = 10;           ///< dribble: at most [m/s]
+  Vec2 target = Vec2::Zero();  ///< walk, run, push: where to, on the field; takePlace: where to be beamed
+  double facing = 0;           ///< walk, push: heading at the target [rad]
 };
 
 Decision decide(const Situation& s);
@@ -42,14 +41,16 @@ Vec2 waitingPlace(int unum, const Vec2& ball);
 bool pausedMode(std::string_view playMode);
 /// True when only the other team may touch the ball. `side`: of the own team.
 bool theirBall(std::string_view playMode, std::string_view side);
-/// How to walk to a point. `target`: from the robot, x to its right, y forward [m]; `facing`: turn to make at the target [rad]. Unlimited:
-/// the gait cuts it.
+/// How to walk to a point: straight, or turned towards it, which is sooner. `target`: from the robot, x to its right, y forward [m];
+/// `facing`: turn to make at the target [rad]. Unlimited: the gait cuts it.
 struct Steering {
   double forward, right, turn;
 };
 Steering steer(const Vec2& target, double facing);
 /// The same without stopping there.
-Steering run(const Vec2& target, double speed);
+Steering run(const Vec2& target);
+/// The same for a ball that a foot is to push on: no further ahead than it has come beside.
+Steering push(const Vec2& target, double facing);
 /// Where to go instead when others are in the way. All from the robot, x to its right, y forward [m].
 Vec2 pass(const Vec2& target, const std::vector<Vec2>& others);
 

@@ -269,17 +269,48 @@ TEST_CASE("The nearest goes behind the ball and then through it, towards the goa
   Situation s = playing();
   s.place = {-2, 0.1};
   Decision d = decide(s);
-  REQUIRE(d.task == Task::dribble);
+  REQUIRE(d.task == Task::run);
   REQUIRE(d.target.x() > s.place.x());
   s.place = {-0.2, 0.05};
   d = decide(s);
-  REQUIRE(d.task == Task::dribble);
-  REQUIRE(d.target.x() > 0.1);
+  REQUIRE(d.task == Task::push);
+  REQUIRE((d.target - s.ball).norm() < 0.1);
+  REQUIRE(std::abs(d.facing) < radians(20));
+  s.heading = radians(90);  // turns first
+  REQUIRE(decide(s).task == Task::walk);
   s.place = {0.6, 0.05};  // before the ball: round it
   d = decide(s);
-  REQUIRE(d.task == Task::dribble);
+  REQUIRE(d.task == Task::walk);
   REQUIRE(std::abs(d.target.y()) > 0.3);
   REQUIRE(d.target.x() < 0.3);
+}
+
+TEST_CASE("In a duel the ball goes aside, but not near the goal") {
+  Situation s = playing();
+  s.contested = true;
+  for (const double x : {0.0, 12.0}) {
+    s.ball = {x, 0};
+    s.place = {x - 0.2, 0.2};
+    const Decision d = decide(s);
+    CAPTURE(x, degrees(d.facing));
+    REQUIRE((d.facing < radians(-30)) == (x < 11));
+  }
+}
+
+TEST_CASE("A place near by is walked to without a turn, back or aside, one further away is turned to") {
+  REQUIRE(steer({0, -0.6}, 0).forward < -0.2);
+  REQUIRE(steer({0, -0.6}, 0).turn == Approx(0).margin(1e-9));
+  REQUIRE(steer({0.3, 0}, 0).right > 0.2);
+  REQUIRE(steer({0, -5}, 0).forward == 0);
+  REQUIRE(std::abs(steer({0, -5}, 0).turn) > 1);
+  REQUIRE(std::abs(steer({0, -0.6}, kPi).turn) > 1);  // he is to look that way anyway
+}
+
+TEST_CASE("A player does not walk past a ball that is not before his foot yet") {
+  REQUIRE(push({0, 0.3}, 0).forward == 1);
+  const Steering aside = push({0.15, 0.15}, 0);
+  REQUIRE((aside.right > 0.2 && aside.forward < 0.2));
+  REQUIRE(push({0.15, 0.02}, 0).forward == 0);
 }
 
 TEST_CASE("Who took the restart leaves the ball to others") {
