@@ -146,10 +146,9 @@ void HumanoidPlayer::hear() {
   }
 }
 
-/// Adds distance for a player that lies or has the ball behind it, and puts one that may not touch the ball out of the running.
+/// Adds distance for a player that lies, and puts one that may not touch the ball out of the running.
 double HumanoidPlayer::toBall() const {
-  const Vec2 way = ball_ - localisation_.place();
-  return way.norm() + (lyingSince_ >= 0 || getUp_.playing() ? 2 : 0) + (way.x() < -0.2 ? 0.6 : 0) + (barredSince_ >= 0 ? 20 : 0);
+  return wayToBall(localisation_.place(), ball_) + (lyingSince_ >= 0 || getUp_.playing() ? 2 : 0) + (barredSince_ >= 0 ? 20 : 0);
 }
 
 Situation HumanoidPlayer::situation() const {

@@ -32,6 +32,7 @@ constexpr double kMouth = 0.3, kShot = 3;     // m beside the goal's middle at w
 constexpr double kWiden = 0.25;               // m further aside for each m further away
 constexpr double kAsideInDuel = radians(60);  // further aside when an opponent is at the ball
 constexpr double kStraight = 4;               // m from the goal: there he aims at it, duel or not
+constexpr double kRound = 2;                  // m that getting round the whole ball counts as
 constexpr double kClear = 0.65;               // m between two players' middles when one passes the other
 constexpr double kLookOut = 1.4;              // m ahead in which others matter
 constexpr double kForward = 0.7, kBackward = 0.35, kSideways = 0.18;  // m/s that players walk, about
@@ -52,9 +53,9 @@ constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
                                                             {-2.3, 0},
                                                             {-2.4, -2.5}}};
 
-/// Where the field players wait, from the ball.
+/// Where the field players wait, from the ball. Two are behind it, ready to go on where the first one loses it.
 constexpr std::array<std::array<double, 2>, 12> kFromBall{
-    {{0, 0}, {0, 0}, {-4, 4.5}, {-5, 1}, {-2.5, -2.5}, {-4, -4.5}, {-1, 5}, {-2, 1.8}, {-1, -5}, {2.5, 2.5}, {3.5, 0}, {2.5, -2.5}}};
+    {{0, 0}, {0, 0}, {-4, 4.5}, {-5, 1}, {-2, -1.2}, {-4, -4.5}, {-1, 5}, {-1.6, 1}, {-1, -5}, {0.8, 2.2}, {3.5, 0}, {0.8, -2.2}}};
 
 double angleOf(const Vec2& v) { return std::atan2(v.y(), v.x()); }
 
@@ -118,6 +119,10 @@ Decision decide(const Situation& s) {
 Vec2 kickOffPlace(int unum) {
   const auto& p = kFormation.at(static_cast<std::size_t>(std::clamp(unum, 1, 11)));
   return {p[0], p[1]};
+}
+
+double wayToBall(const Vec2& place, const Vec2& ball) {
+  return (ball - place).norm() + kRound * 0.5 * (1 - std::cos(angleOf(ball - place) - angleOf(kTheirGoal - ball)));
 }
 
 Vec2 waitingPlace(int unum, const Vec2& ball) {

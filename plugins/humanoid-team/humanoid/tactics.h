@@ -35,6 +35,8 @@ struct Decision {
 Decision decide(const Situation& s);
 /// Where number 1..11 stands at kick-off.
 Vec2 kickOffPlace(int unum);
+/// m, how far it is to the ball: further for a player who must get round it to push it towards the goal.
+double wayToBall(const Vec2& place, const Vec2& ball);
 /// Where number 1..11 waits when others are nearer to the ball.
 Vec2 waitingPlace(int unum, const Vec2& ball);
 /// True for modes in which players may be beamed and nobody plays.

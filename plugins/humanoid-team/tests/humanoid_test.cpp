@@ -285,6 +285,12 @@ TEST_CASE("The nearest goes behind the ball and then through it, towards the goa
   REQUIRE(d.target.x() < 0.3);
 }
 
+TEST_CASE("Who is behind the ball is nearer to it than who must get round it") {
+  REQUIRE(wayToBall({2, 0}, {5, 0}) == Approx(3));
+  REQUIRE(wayToBall({6.2, 0}, {5, 0}) > 3);
+  REQUIRE(wayToBall({6, 0}, {5, 0}) > wayToBall({5, 1}, {5, 0}));
+}
+
 TEST_CASE("In a duel the ball goes aside, but not near the goal") {
   Situation s = playing();
   s.contested = true;
