@@ -133,7 +133,7 @@ void HumanoidPlayer::watchRestart() {
   if (touched || percepts_.now - barredSince_ > kBarred || percepts_.playMode != "PlayOn") barredSince_ = -1;
 }
 
-/// A message is `unum:x:y:d`: the ball's place and the speaker's distance from it, in cm.
+/// A message is `unum:x:y:d`: the ball's place and the speaker's way to it, in cm.
 void HumanoidPlayer::hear() {
   for (const std::string& text : percepts_.heard) {
     int unum = 0, x = 0, y = 0, d = 0;

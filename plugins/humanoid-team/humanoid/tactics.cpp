@@ -10,7 +10,7 @@
 //     does not know where he or the ball is -> turn and look
 //     the others' ball                    -> keep away from it
 //     took a restart himself              -> keep away until somebody else has touched the ball
-//     nearest to the ball                 -> behind it as seen from the goal, then through it
+//     shortest way to the ball            -> behind it as seen from the goal, then through it
 //     everybody else                      -> a place that moves with the ball
 
 namespace humanoid {

@@ -15,7 +15,7 @@ struct Situation {
   int unum = 1;
   Lying lying = Lying::no;
   double tilt = 0;                                           ///< rad, of the torso
-  bool located = false, ballKnown = false, nearest = false;  ///< nearest: no team-mate says that he is nearer to the ball
+  bool located = false, ballKnown = false, nearest = false;  ///< nearest: no team-mate says that his way to the ball is shorter
   bool barred = false;                                       ///< he took the restart: another one must touch the ball before he does
   bool contested = false;                                    ///< an opponent is at the ball
   Vec2 place = Vec2::Zero(), ball = Vec2::Zero();
@@ -51,7 +51,8 @@ struct Steering {
 Steering steer(const Vec2& target, double facing);
 /// The same without stopping there.
 Steering run(const Vec2& target);
-/// The same for a ball that a foot is to push on: no further ahead than it has come beside.
+/// How to push on a ball with a foot. `target`: what comes to where the foot is, as above; until it is right ahead, no further on than
+/// aside.
 Steering push(const Vec2& target, double facing);
 /// Where to go instead when others are in the way. All from the robot, x to its right, y forward [m].
 Vec2 pass(const Vec2& target, const std::vector<Vec2>& others);
