@@ -21,9 +21,10 @@ class HingeEffector : public Effector, public IFreezable {
     NumberArguments read(action);
     double speed = 0;
     if (read(0, speed)) {
+      const bool ignored = ignoreCommandAtStop_ && joint_->atStop(0);
+      if (!ignored) joint_->drive(0, frozen_ ? 0 : clampSpeed(*joint_, 0, speed));
       // A command wakes the body even where it does not reach the motor, as in the installed base.
-      if (speed != 0) wakeFirstBody();
-      if (!(ignoreCommandAtStop_ && joint_->atStop(0))) joint_->drive(0, frozen_ ? 0 : clampSpeed(*joint_, 0, speed));
+      if (speed != 0 && (ignored || frozen_)) wakeFirstBody();
     }
     return read.remark();
   }

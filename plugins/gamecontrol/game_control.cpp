@@ -229,6 +229,7 @@ void GameControl::closeIdle() {
 bool GameControl::mayLoad(const AgentAspect& agent) {
   if (realTime()) return loads_++ < loadsPerCycle_;
   const Participant* p = participantOf(agent);
+  loading_.setMost(2 * maxAgents_);
   return !p || p->inside() || p->expected() || loading_.take(Clock::now());
 }
 

@@ -84,7 +84,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   std::optional<gamecontrol::AgentLines> lines_;
   // What clients that are not trusted yet may take of a match in lockstep.
   gamecontrol::Allowance waits_{30, 0.1};  ///< s, and s a second
-  gamecontrol::Allowance loading_{128, 4};  ///< robots, and robots a second
+  gamecontrol::Allowance loading_{0, 4};    ///< robots, twice as many as there may be agents, and robots a second
   Clock::time_point indulgedAt_{};         ///< when this cycle was last kept waiting for them; zero: it was not
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";

@@ -25,7 +25,7 @@ class Reference(unittest.TestCase):
 
     def seen_by_tests(self, reference):
         """The variable in a test that this build's ctest settings start."""
-        (self.path / "CTestTestfile.cmake").write_text(f'include("{BUILD}/reference.cmake")\nadd_test(probe sh -c "echo value=$SPARK_REFERENCE_DIR.")\n')
+        (self.path / "CTestTestfile.cmake").write_text(f'include("{BUILD}/environment.cmake")\nadd_test(probe sh -c "echo value=$SPARK_REFERENCE_DIR.")\n')
         result = run(["ctest", "-V"], reference, cwd=self.path)
         self.assertEqual(result.returncode, 0, result.stdout)
         return result.stdout.split("value=")[-1].split(".\n")[0]
@@ -40,7 +40,7 @@ class Reference(unittest.TestCase):
         self.assertEqual(self.seen_by_tests(UNSET), configured)
 
     def test_no_test_has_a_frozen_value(self):
-        self.assertIn("reference.cmake", (BUILD / "CTestTestfile.cmake").read_text())
+        self.assertIn("environment.cmake", (BUILD / "CTestTestfile.cmake").read_text())
         for file in BUILD.rglob("CTestTestfile.cmake"):
             self.assertNotIn("SPARK_REFERENCE_DIR", file.read_text(), file)
 
