@@ -35,7 +35,7 @@ struct Decision {
 Decision decide(const Situation& s);
 /// Where number 1..11 stands at kick-off.
 Vec2 kickOffPlace(int unum);
-/// m, how far it is to the ball: further for a player who must get round it to push it towards the goal.
+/// Length of the way to the ball [m]: up to 2 m more for a player who must go round it before he can push it towards the goal.
 double wayToBall(const Vec2& place, const Vec2& ball);
 /// Where number 1..11 waits when others are nearer to the ball.
 Vec2 waitingPlace(int unum, const Vec2& ball);
@@ -51,8 +51,8 @@ struct Steering {
 Steering steer(const Vec2& target, double facing);
 /// The same without stopping there.
 Steering run(const Vec2& target);
-/// How to push on a ball with a foot. `target`: what comes to where the foot is, as above; until it is right ahead, no further on than
-/// aside.
+/// How to push the ball with a foot. `target`: where the middle of the robot is to pass, so that a foot meets the ball; `facing`: as above. It walks
+/// on no faster than it gets rid of its sideways error.
 Steering push(const Vec2& target, double facing);
 /// Where to go instead when others are in the way. All from the robot, x to its right, y forward [m].
 Vec2 pass(const Vec2& target, const std::vector<Vec2>& others);
