@@ -15,6 +15,17 @@ std::string saved(const Leaf& root) {
   saveTree(root, out);
   return out.bytes();
 }
+
+/// State that takes any number of plain arguments.
+class Listing : public Leaf {
+  SPARK_CLASS(Listing, Leaf)
+ public:
+  static void describe(Description<Listing>& d) {
+    d.doc("Keeps a list.");
+    d.property("numbers", &Listing::numbers).state().doc("Its state.");
+  }
+  std::vector<double> numbers;
+};
 }  // namespace
 
 TEST_CASE("Random streams depend on seed, path, class and purpose") {
@@ -157,6 +168,18 @@ TEST_CASE("Saved state loads into a tree of the same shape, in another kernel to
   CHECK(saved(*other.top) == bytes);
   CHECK(stateHash(*other.top) == stateHash(*core.top));
   CHECK(other.top->find<Thing>("a/b")->noise_.normal() == b.noise_.normal());
+}
+
+TEST_CASE("A list is saved and loaded as one value") {
+  Core from, to;
+  for (Core* c : {&from, &to}) c->kernel.registerClass<Listing>();
+  auto& a = static_cast<Listing&>(from.top->create("Listing", "l"));
+  auto& b = static_cast<Listing&>(to.top->create("Listing", "l"));
+  a.numbers = {1, 2.5, -3};
+  const std::string bytes = saved(*from.top);
+  StateReader in(bytes);
+  loadTree(*to.top, in);
+  CHECK(b.numbers == a.numbers);
 }
 
 TEST_CASE("State that does not fit is refused") {

@@ -8,8 +8,6 @@
 namespace sparkhost {
 
 namespace {
-constexpr int kUsageError = 2;
-
 /// `K=V`; throws what CLI11 prints.
 std::pair<std::string, spark::Value> splitOverride(const std::string& text) {
   const std::size_t at = text.find('=');

@@ -11,6 +11,8 @@
 
 namespace sparkhost {
 
+inline constexpr int kUsageError = 2;  ///< exit code: the command line is wrong
+
 /// What the user asked for.
 struct Options {
   std::string config;

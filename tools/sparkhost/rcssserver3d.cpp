@@ -6,14 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "options.h"
 #include "program.h"
 
 // sparkhost with the command line of rcssserver3d and simspark. It is no second process: scripts that kill it by its name, or by its
 // number, end the server itself.
 
 namespace {
-constexpr int kWrongOptions = 2;
-
 /// The config that stands for a start-up script: a Lua file is one itself, of the Ruby scripts the names are known.
 std::string configFor(const std::string& script) {
   const std::filesystem::path path(script);
@@ -50,7 +49,7 @@ int sparkhost::runServer3d(int argc, char** argv) {
     if (!rest.empty() && rest.front() != "--")
       throw CLI::ExtrasError(name, std::vector<std::string>{rest.front() + " (see --help; options of sparkhost go behind a lone --)"});
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : kWrongOptions;
+    return app.exit(e) == 0 ? 0 : sparkhost::kUsageError;
   }
   std::vector<std::string> arguments{"sparkhost", "--config", configFor(script)};
   if (agentPort) arguments.insert(arguments.end(), {"--agent-port", std::to_string(*agentPort)});

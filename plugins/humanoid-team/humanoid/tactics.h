@@ -35,7 +35,7 @@ struct Decision {
 Decision decide(const Situation& s);
 /// Where number 1..11 stands at kick-off.
 Vec2 kickOffPlace(int unum);
-/// Length of the way to the ball [m]: up to 2 m more for a player who must go round it before he can push it towards the goal.
+/// Length of the way to the ball [m]. Going round it, to push it towards the goal, counts as up to 2 m more.
 double wayToBall(const Vec2& place, const Vec2& ball);
 /// Where number 1..11 waits when others are nearer to the ball.
 Vec2 waitingPlace(int unum, const Vec2& ball);
