@@ -175,8 +175,7 @@ Needs needsOf(const std::string& name) {
     return p.p_type == PT_LOAD && address >= p.p_vaddr && address - p.p_vaddr + valueOf(DT_STRSZ) <= p.p_filesz;
   });
   if (home == segments.end()) return {};
-  std::vector<char> texts(valueOf(DT_STRSZ) + 1);
-  texts.pop_back();
+  std::vector<char> texts(valueOf(DT_STRSZ));
   if (!readBytes(file, address - home->p_vaddr + home->p_offset, texts)) return {};
   texts.push_back(0);
   Needs needs;

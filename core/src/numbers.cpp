@@ -74,9 +74,10 @@ inline std::uint64_t scaled(double v, int k) {
   return product < 0x1p30 && nearest(product, whole) ? whole : scaledExactly(v, k);
 }
 
+/// How many digits it has; none for 0.
 int countDigits(std::uint64_t v) {
   const int guess = (64 - std::countl_zero(v | 1)) * 1233 >> 12;  // log10(2) = 1233 / 4096
-  return guess + (v >= kTens[static_cast<std::size_t>(guess)] || v == 0);
+  return guess + (v >= kTens[static_cast<std::size_t>(guess)]);
 }
 
 /// Writes the last `count` digits of `v` so that they end before `end`, and takes them off `v`.

@@ -28,12 +28,16 @@ namespace {
 constexpr std::size_t kRecords = 128;       // threads that run nodes at a time; further ones are not watched
 constexpr std::size_t kStack = 64u << 10;   // bytes for handlers
 constexpr std::size_t kDeepest = 64;        // nodes of a path
-constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
 Running records[kRecords];
 [[gnu::tls_model("initial-exec")]] thread_local Running* mine = nullptr;
 const char* volatile programName = nullptr;  // set: crashes are told
-struct sigaction before[kCrashes.size()];
+/// A signal that tells of a crash, and what handled it before.
+struct Crash {
+  int signal;
+  struct sigaction before = {};
+};
+std::array crashes{Crash{SIGSEGV}, Crash{SIGBUS}, Crash{SIGFPE}, Crash{SIGILL}, Crash{SIGABRT}};
 
 int threadNumber() { return static_cast<int>(syscall(SYS_gettid)); }
 
@@ -104,8 +108,8 @@ void say(const char* text, std::size_t size) {
 }
 
 void onCrash(int number, siginfo_t* info, void*) {
-  for (std::size_t i = 0; i < kCrashes.size(); ++i)  // first: what follows may crash as well
-    if (kCrashes[i] == number) sigaction(number, &before[i], nullptr);
+  for (const Crash& c : crashes)  // first: what follows may crash as well
+    if (c.signal == number) sigaction(number, &c.before, nullptr);
   char text[Watchdog::kLongest];
   Words head(text, sizeof text);
   head << programName << ": crashed by " << nameOf(number);
@@ -208,11 +212,11 @@ std::size_t describeRunning(const Running& now, char* text, std::size_t size) {
 void installLastWords(const char* program) {
   programName = program;
   running();
-  for (std::size_t i = 0; i < kCrashes.size(); ++i) {
+  for (Crash& c : crashes) {
     struct sigaction action = {};
     action.sa_sigaction = onCrash;
     action.sa_flags = SA_SIGINFO | SA_ONSTACK;
-    sigaction(kCrashes[i], &action, &before[i]);
+    sigaction(c.signal, &action, &c.before);
   }
 }
 

@@ -73,6 +73,10 @@ struct SpaceData {
   std::uint64_t collidedAt = 0;  ///< exact replay: number of the step in which its geoms were last collided with each other
 };
 
+struct MeshDeleter {
+  void operator()(dTriMeshDataID mesh) const { dGeomTriMeshDataDestroy(mesh); }
+};
+
 struct alignas(kCacheLine) GeomData {
   dGeomID id;
   BodyData* body = nullptr;
@@ -83,7 +87,7 @@ struct alignas(kCacheLine) GeomData {
   Pose base;          ///< the shape's own frame: a ray's direction, else identity
   WorldData* world;
   dSpaceID space;
-  dTriMeshDataID mesh = nullptr;
+  std::unique_ptr<dxTriMeshData, MeshDeleter> mesh;
 };
 
 /// Of a joint: what every step looks at.

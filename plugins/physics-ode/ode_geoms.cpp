@@ -94,10 +94,10 @@ void OdeEngine::makeShape(GeomData& g) {
       g.base = {s.rayOrigin, alongZ(s.rayDirection)};
       break;
     case Shape::mesh:
-      g.mesh = dGeomTriMeshDataCreate();
-      dGeomTriMeshDataBuildDouble(g.mesh, s.vertices.data(), 3 * sizeof(double), static_cast<int>(s.vertices.size() / 3),
+      g.mesh.reset(dGeomTriMeshDataCreate());
+      dGeomTriMeshDataBuildDouble(g.mesh.get(), s.vertices.data(), 3 * sizeof(double), static_cast<int>(s.vertices.size() / 3),
                                   s.triangles.data(), static_cast<int>(s.triangles.size()), 3 * sizeof(std::uint32_t));
-      g.id = dCreateTriMesh(g.space, g.mesh, nullptr, nullptr, nullptr);
+      g.id = dCreateTriMesh(g.space, g.mesh.get(), nullptr, nullptr, nullptr);
       break;
   }
   dGeomSetData(g.id, &g);
@@ -165,7 +165,6 @@ Geom OdeEngine::createGeom(engine::Space space, const ShapeDescription& shape, v
 void OdeEngine::destroyGeom(Geom geom) {
   GeomData* g = data(geom);
   dGeomDestroy(g->id);
-  if (g->mesh) dGeomTriMeshDataDestroy(g->mesh);
   forget(g->world->geoms, g);
 }
 
@@ -176,8 +175,7 @@ void OdeEngine::setShape(Geom geom, const ShapeDescription& shape) {
   if (reshape(g, shape)) return;
   const bool collides = dGeomIsEnabled(g.id);
   dGeomDestroy(g.id);
-  if (g.mesh) dGeomTriMeshDataDestroy(g.mesh);
-  g.mesh = nullptr;
+  g.mesh.reset();
   g.shape = shape;
   makeShape(g);
   place(g);

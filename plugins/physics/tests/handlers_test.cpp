@@ -160,6 +160,9 @@ TEST_CASE("contacts of the last step can be looked at, all with their force when
   CHECK(withForce() == 8);
   CHECK(upper.solved == 8);
   CHECK(indifferent.solved == 0);
+  setProperty(*g.kernel.root().find("/sys/server/physics"), "measureForces", false);
+  g.step();
+  CHECK(std::count_if(server.contacts().begin(), server.contacts().end(), [](const engine::Contact& c) { return c.feedback; }) == 4);
   g.scene.remove(other);
   CHECK(server.contacts().empty());
 }
@@ -239,6 +242,20 @@ TEST_CASE("a script handler emits collide at itself, after the step, with what t
   CHECK(std::abs(position.x()) == Approx(0.5).margin(1e-6));
   g.step(3);
   CHECK(others.size() == 1);
+}
+
+TEST_CASE("a ScriptHandler tells of every point until it is removed") {
+  Ground g;
+  Leaf& handler = g.collider().create("ScriptHandler");
+  int told = 0, removeAt = 0;
+  g.kernel.events().channel("collide").add(handler, [&](Leaf& self, const Event&) {
+    if (++told == removeAt) self.parent()->remove(self);
+  });
+  g.step();
+  CHECK(told == 4);
+  removeAt = 6;
+  g.step(2);
+  CHECK(told == 6);
 }
 
 TEST_CASE("Lua reacts to collisions") {
