@@ -249,29 +249,3 @@ TEST_CASE("Plugins with damaged headers are refused before the dynamic linker be
   CHECK(f.code == 0);
   for (int copy = 0; copy < kCopies; ++copy) CHECK_THAT(f.errors, Contains(fmt::format("copy{}.so", copy)));
 }
-
-TEST_CASE("A plugin one of whose segments lies where nothing is loaded is refused") {
-  TemporaryFolder folder;
-  const fs::path broken = folder.path() / "broken";
-  fs::create_directory(broken);
-  const std::string good = contentOf(pluginFolder() / "files.so");
-  Elf64_Ehdr head;
-  REQUIRE(good.size() > sizeof head);
-  std::memcpy(&head, good.data(), sizeof head);
-  std::vector<std::string> names;
-  for (int i = 0; i < head.e_phnum; ++i) {
-    const std::size_t at = head.e_phoff + static_cast<std::size_t>(i) * sizeof(Elf64_Phdr);
-    Elf64_Phdr p;
-    std::memcpy(&p, good.data() + at, sizeof p);
-    if (p.p_type == PT_LOAD || p.p_type == PT_NULL || p.p_type == PT_GNU_STACK) continue;
-    p.p_vaddr += 1 << 30;
-    std::string bytes = good;
-    std::memcpy(bytes.data() + at, &p, sizeof p);
-    names.push_back(fmt::format("segment{}.so", i));
-    std::ofstream(broken / names.back(), std::ios::binary) << bytes;
-  }
-  REQUIRE(names.size() >= 2);
-  const Finished f = runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path", broken.string()}));
-  CHECK(f.code == 0);
-  for (const std::string& name : names) CHECK_THAT(f.errors, Contains(name));
-}

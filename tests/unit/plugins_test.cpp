@@ -1,4 +1,5 @@
 #include <dlfcn.h>
+#include <elf.h>
 #include <sys/resource.h>
 
 #include <catch2/catch.hpp>
@@ -120,6 +121,29 @@ TEST_CASE("A file that is cut off, empty or a folder is refused") {
   CHECK_THAT(problems[1], Catch::Contains("empty.so") && Catch::Contains("it is no shared library"));
   CHECK_THAT(problems[2], Catch::Contains("folder.so"));
   CHECK_THAT(house.kernel.plugins().scan(folder.path() / "nowhere").at(0), Catch::Contains("cannot read plugin folder"));
+}
+
+TEST_CASE("A file one of whose segments lies where nothing is loaded is refused") {
+  const std::string whole = bytesOf(good("fixture-base"));
+  Elf64_Ehdr head;
+  REQUIRE(whole.size() > sizeof head);
+  std::memcpy(&head, whole.data(), sizeof head);
+  const test::TemporaryFolder folder;
+  std::size_t moved = 0;
+  for (int i = 0; i < head.e_phnum; ++i) {
+    const std::size_t at = head.e_phoff + static_cast<std::size_t>(i) * sizeof(Elf64_Phdr);
+    Elf64_Phdr p;
+    std::memcpy(&p, whole.data() + at, sizeof p);
+    if (p.p_type == PT_LOAD || p.p_type == PT_NULL || p.p_type == PT_GNU_STACK) continue;
+    p.p_vaddr += 1 << 30;
+    std::string bytes = whole;
+    std::memcpy(bytes.data() + at, &p, sizeof p);
+    overwrite(folder.path() / ("segment" + std::to_string(i) + ".so"), bytes);
+    ++moved;
+  }
+  REQUIRE(moved >= 2);
+  House house(false);
+  CHECK(house.kernel.plugins().scan(folder.path()).size() == moved);
 }
 
 TEST_CASE("Files of a folder are taken in the order of their names") {

@@ -10,6 +10,7 @@ from pathlib import Path
 from acceptance.common import BIN, FAIL, OPEN, PASS, ROOT, run, say, tests
 
 STEP = 0.02  # s of a cycle
+RAW = 3406  # us: a cycle of raw ODE with 22 moving humanoids where the targets in microseconds were set
 PAGE = ROOT / "docs/performance.md"
 HISTORY = ROOT / "tests/bench/history"
 history = False  # whether what is measured is kept
@@ -33,6 +34,21 @@ def row(rows, world, way, threads=1):
 
 def judge(*good):
     return PASS if all(good) else FAIL
+
+
+@functools.lru_cache(maxsize=None)
+def slowness():
+    """How many times slower than there raw ODE runs now; 1 where it is faster."""
+    return max(1, row(bench("--only", "moving22", "--way", "host"), "moving22", "raw")["cpuMicros"] / RAW)
+
+
+def within(micros, most):
+    """Targets in microseconds hold at the speed of the machine that they were set for."""
+    return micros <= most * slowness()
+
+
+def at_speed(text):
+    return text + (f"; raw ODE is {slowness():.2f} x slower than where the target was set, and so may this be" if slowness() > 1 else "")
 
 
 def both_ways(world):
@@ -60,13 +76,13 @@ def at_rest():
     r = row(both_ways("rest22"), "rest22", "tcp")
     host = row(both_ways("rest22"), "rest22", "host")
     each = r["cpuMicros"] / r["agents"]
-    return f"{each:.1f} us over TCP, sending included; {host['cpuMicros'] / r['agents']:.1f} us in process", judge(each <= 25)
+    return at_speed(f"{each:.1f} us over TCP, sending included; {host['cpuMicros'] / r['agents']:.1f} us in process"), judge(within(each, 25))
 
 
 def loading():
     rows = bench("--loading")
     worst = max(r["worstMicros"] for r in rows)
-    return f"{worst / 1000:.2f} ms the longest, {max(r['medianMicros'] for r in rows) / 1000:.2f} ms the median", judge(worst <= 2000)
+    return at_speed(f"{worst / 1000:.2f} ms the longest, {max(r['medianMicros'] for r in rows) / 1000:.2f} ms the median"), judge(within(worst, 2000))
 
 
 def spheres():
@@ -81,7 +97,7 @@ def encoding():
     limits = {"bytes/percepts": 3, "bytes/monitor-full": 100, "bytes/action": 3}
     missing = [n for n in limits if n not in found]
     measured = ", ".join(f"{n.split('/')[1]} {found[n]:.2f} us" for n in limits if n in found)
-    return measured + (f"; missing: {missing}" if missing else ""), OPEN if missing else judge(*(found[n] <= most for n, most in limits.items()))
+    return at_speed(measured) + (f"; missing: {missing}" if missing else ""), OPEN if missing else judge(*(within(found[n], most) for n, most in limits.items()))
 
 
 def real_time():
