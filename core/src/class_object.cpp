@@ -41,6 +41,23 @@ void checkChoices(const Property& p, const Value& v) {
   throw Error("expected one of " + all + ", found " + v.text());
 }
 
+/// The type in `name: type [unit]`, of which only the type must be there.
+std::string_view typeOf(std::string_view parameter) {
+  if (const std::size_t colon = parameter.find(": "); colon != std::string_view::npos) parameter.remove_prefix(colon + 2);
+  return parameter.substr(0, parameter.find(" ["));
+}
+
+/// What typed texts among the arguments mean for the method.
+std::vector<Value> readTyped(const Method& m, std::span<const Value> arguments) {
+  constexpr std::string_view kListOf = "list of ";
+  const bool each = arguments.size() == m.parameters.size();
+  std::string_view type;  // of plain arguments that together make a vector: none of its own
+  if (!each && m.parameters.size() == 1 && typeOf(m.parameters[0]).starts_with(kListOf)) type = typeOf(m.parameters[0]).substr(kListOf.size());
+  std::vector<Value> out;
+  for (std::size_t i = 0; i < arguments.size(); ++i) out.push_back(arguments[i].readAs(each ? typeOf(m.parameters[i]) : type));
+  return out;
+}
+
 void write(const Property& p, Leaf& leaf, Args& args) {
   for (const Value& v : args.values) {
     checkRange(p, v, args.loose);
@@ -278,7 +295,8 @@ void setProperty(Leaf& leaf, std::string_view name, const Value& value) {
   if (!p.set) throw Error(leaf.path() + "." + std::string(name) + " is read only");
   const NowRunning now(p.name.c_str(), &leaf);
   try {
-    Args args{std::span(&value, 1)};
+    const Value meant = value.readAs(p.type);
+    Args args{std::span(&meant, 1)};
     write(p, leaf, args);
   } catch (const std::exception& e) {
     throw Error("cannot set " + leaf.path() + "." + std::string(name), e);
@@ -296,6 +314,8 @@ Value callMethod(Leaf& leaf, std::string_view name, std::span<const Value> argum
   if (const std::string problem = countProblem(*m, arguments, false); !problem.empty()) throw Error("cannot call " + leaf.path() + ": " + problem);
   const NowRunning now(m->name.c_str(), &leaf);
   try {
+    std::vector<Value> meant;
+    if (std::any_of(arguments.begin(), arguments.end(), [](const Value& v) { return v.isTyped(); })) arguments = meant = readTyped(*m, arguments);
     Args args{arguments};
     Value result = m->call(leaf, args);
     if (!args.atEnd()) throw Error(signature(*m) + " expected fewer arguments, found " + std::to_string(arguments.size()));

@@ -10,8 +10,9 @@ namespace spark::script {
 
 namespace {
 /// The value as the default's type; throws Error that says what would be right.
-Value fitted(const Value& value, const Value& defaultValue) {
+Value fitted(const Value& given, const Value& defaultValue) {
   using Type = Value::Type;
+  const Value value = given.readAs(defaultValue.isNil() ? std::string_view() : typeName(defaultValue.type()));
   if (defaultValue.isNil() || value.type() == defaultValue.type()) return value;
   switch (defaultValue.type()) {
     case Type::number:

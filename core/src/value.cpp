@@ -46,15 +46,18 @@ Value scalarFromText(std::string_view t) {
   return t;
 }
 
+/// How the words of a text are read that stand in no quotes.
+using ReadWord = Value (*)(std::string_view);
+
 /// Takes one value off `t`; `ok` turns false where a list is not well formed.
-Value valueFromText(std::string_view& t, bool inList, int depth, bool& ok) {
+Value valueFromText(std::string_view& t, ReadWord readWord, bool inList, int depth, bool& ok) {
   skipBlanks(t);
   if (depth < 32 && !t.empty() && (t.front() == '{' || t.front() == '[')) {
     const char close = t.front() == '{' ? '}' : ']';
     t.remove_prefix(1);
     List list;
     for (skipBlanks(t); !t.empty() && t.front() != close; skipBlanks(t)) {
-      list.push_back(valueFromText(t, true, depth + 1, ok));
+      list.push_back(valueFromText(t, readWord, true, depth + 1, ok));
       if (!ok) return {};
       skipBlanks(t);
       if (!t.empty() && t.front() == ',') t.remove_prefix(1);
@@ -73,7 +76,7 @@ Value valueFromText(std::string_view& t, bool inList, int depth, bool& ok) {
   std::size_t n = inList ? t.find_first_of(",}] ") : t.size();
   if (n == std::string_view::npos) n = t.size();
   if (inList && n == 0) ok = false;
-  Value v = scalarFromText(t.substr(0, n));
+  Value v = readWord(t.substr(0, n));
   t.remove_prefix(n);
   return v;
 }
@@ -95,12 +98,35 @@ std::string Value::text() const {
 
 std::string Value::plain() const { return isString() ? toString() : text(); }
 
-Value Value::fromText(std::string_view text) {
+namespace {
+Value allFromText(std::string_view text, ReadWord readWord) {
   std::string_view rest = text;
   bool ok = true;
-  Value v = valueFromText(rest, false, 0, ok);
+  Value v = valueFromText(rest, readWord, false, 0, ok);
   skipBlanks(rest);
   return ok && rest.empty() ? v : Value(text);
+}
+
+/// `text` without the quotes around all of it.
+std::string_view unquoted(std::string_view text) {
+  const bool quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.find(text.front(), 1) == text.size() - 1;
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+}  // namespace
+
+Value Value::fromText(std::string_view text) { return allFromText(text, scalarFromText); }
+
+Value Value::typed(std::string_view text) {
+  Value v;
+  v.data_ = Typed{std::string(text)};
+  return v;
+}
+
+Value Value::readAs(std::string_view typeName) const {
+  if (!isTyped()) return *this;
+  if (typeName == Convert<std::string>::typeName()) return unquoted(toString());
+  if (typeName == Convert<std::vector<std::string>>::typeName()) return allFromText(toString(), [](std::string_view word) { return Value(word); });
+  return fromText(toString());
 }
 
 std::string_view typeName(Value::Type type) {

@@ -41,7 +41,7 @@ Value fromJson(const Json& j, int depth = 0) {
   if (j.is_boolean()) return j.get<bool>();
   if (j.is_number_integer()) return j.get<std::int64_t>();
   if (j.is_number()) return j.get<double>();
-  if (j.is_string()) return Value::fromText(j.get<std::string>());
+  if (j.is_string()) return Value::typed(j.get<std::string>());
   if (!j.is_array()) return {};
   List out;
   for (const Json& e : j) out.push_back(fromJson(e, depth + 1));

@@ -237,6 +237,10 @@ TEST_CASE("sparkctl shows the house and changes it") {
   REQUIRE(ctl({"set", "/sys/server/simulation.step", "0.01"}).code == 0);
   REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out, Contains("0.01 s"));
   REQUIRE(ctl({"set", "/sys/server/simulation.step", "soon"}).code == 1);
+  REQUIRE(ctl({"set", "/sys/server/files.name", "007"}).code == 0);  // text stays text
+  REQUIRE_THAT(ctl({"get", "/sys/server/007.name"}).out, Contains("name = 007"));
+  REQUIRE(ctl({"call", "/sys/server/007.setName", "1e3"}).code == 0);
+  REQUIRE_THAT(ctl({"tree", "/sys"}).out, Contains("1e3  ("));
   REQUIRE(ctl({"get", "/nowhere"}).code == 1);
   REQUIRE(ctl({"call", "/sys/server/simulation.stop"}).code == 0);
   REQUIRE(Json::parse(p.line())["cycles"].get<int>() > 0);

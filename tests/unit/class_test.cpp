@@ -141,6 +141,11 @@ TEST_CASE("Calls check number and type of their arguments") {
   CHECK(call(t, "opt", {1}) == Value(1.0));
   CHECK(call(t, "join", {"a", "b", 3}) == Value("ab3"));
   CHECK(call(t, "join", {}) == Value(""));
+  CHECK(call(t, "join", {Value::typed("007"), Value::typed("1e3")}) == Value("0071e3"));
+  CHECK(call(t, "join", {Value::typed("{007, 'a b'}")}) == Value("007a b"));
+  CHECK(call(t, "add", {Value::typed("007"), Value::typed("1e3")}) == Value(1007.0));
+  CHECK(call(t, "setList", {Value::typed("0.5"), Value::typed("1")}) == Value());
+  CHECK(call(t, "setList", {Value::typed("{0.5, 1}")}) == Value());
   CHECK_THROWS_WITH(call(t, "add", {1}), Catch::Contains("add(a: number, b: number) expected 2 arguments, found 1"));
   CHECK_THROWS_WITH(call(t, "add", {1, 2, 3}), Catch::Contains("expected 2 arguments, found 3"));
   CHECK_THROWS_WITH(call(t, "opt", {1, 2, 3}), Catch::Contains("expected 1 to 2 arguments"));

@@ -167,6 +167,18 @@ TEST_CASE("an option's value takes the type of its default") {
   CHECK(h.run("return v") == Value(List{1.0, "42", 3}));
 }
 
+TEST_CASE("what a person types for an option or a property is text until its type is known") {
+  LuaHouse h;
+  for (const char* key : {"team", "number", "list", "any", "/usr/a.label", "/usr/a.mass", "/usr/a.anything"}) h.kernel.lua().addOverride(key, Value::typed("007"));
+  h.kernel.lua().addOverride("list", Value::typed("{1, x}"));
+  h.kernel.lua().addOverride("token", Value::typed("0123456789012345678"));
+  CHECK(h.configFailure("new('Thing', '/usr/a')\n"
+                        "v = {option{name = 'team', default = 'A'}, option{name = 'token', default = ''}, option{name = 'number', default = 1},\n"
+                        "  option{name = 'list', default = {}}, option{name = 'any'}}") == "");
+  CHECK(h.run("return v") == Value(List{"007", "0123456789012345678", 7, List{1, "x"}, 7}));
+  CHECK(h.run("a = get '/usr/a' return {a.label, a.mass, a.anything}") == Value(List{"007", 7.0, 7}));
+}
+
 TEST_CASE("an option refuses another type and what is not among its choices") {
   LuaHouse h;
   h.kernel.lua().addOverride("agents", Value("many"));

@@ -78,6 +78,28 @@ TEST_CASE("What a person types becomes the value it looks like") {
   CHECK(Value::fromText("").isString());
 }
 
+TEST_CASE("What a person types is read when it is known what it is for") {
+  const auto read = [](const char* text, const char* type) { return Value::typed(text).readAs(type); };
+  for (const char* text : {"007", "1e3", "0123456789012345678", "12345678901234567890", "nil", "true", "{a, b}", " x ", ""}) {
+    CAPTURE(text);
+    CHECK(read(text, "string") == Value(text));
+    CHECK(read(text, "number") == Value::fromText(text));
+    CHECK(read(text, "") == Value::fromText(text));
+  }
+  CHECK(read("'5'", "string") == Value("5"));
+  CHECK(read("\"a b\"", "string") == Value("a b"));
+  CHECK(read("'a' and 'b'", "string") == Value("'a' and 'b'"));
+  CHECK(read("'", "string") == Value("'"));
+  CHECK(read("{007, true, 'a b'}", "list of string") == Value(List{"007", "true", "a b"}));
+  CHECK(read("007", "list of string") == Value("007"));
+  CHECK(Value(7).readAs("string") == Value(7));
+  const Value typed = Value::typed("12");
+  CHECK((typed.isTyped() && typed.isString() && !typed.isNumber()));
+  CHECK(typed.toString() == "12");
+  CHECK(typed.plain() == "12");
+  CHECK_FALSE(Value("12").isTyped());
+}
+
 TEST_CASE("A list that is not well formed is a string, and reading it ends") {
   for (const char* text : {"[1}", "{1]", "{", "{1", "[[1]", "{,}", "{1} x", "[}", "{{{{"}) {
     CAPTURE(text);

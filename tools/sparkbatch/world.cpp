@@ -72,7 +72,7 @@ sparkhost::Options hostOptions(const Options& options, const Run& run) {
   if (options.duration > 0) out.overrides.emplace_back("/sys/server/simulation.duration", options.duration);
   const auto set = [&](const std::string& key, const std::string& text) {
     out.overrides.emplace_back(
-        key, Value::fromText(replaced(replaced(text, "{run}", std::to_string(run.number)), "{seed}", std::to_string(run.seed))));
+        key, Value::typed(replaced(replaced(text, "{run}", std::to_string(run.number)), "{seed}", std::to_string(run.seed))));
   };
   for (const auto& [key, text] : options.settings) set(key, text);
   for (const auto& [key, text] : run.point) set(key, text);

@@ -12,7 +12,7 @@ namespace {
 std::pair<std::string, spark::Value> splitOverride(const std::string& text) {
   const std::size_t at = text.find('=');
   if (at == 0 || at == std::string::npos) throw CLI::ValidationError("--set", "expected KEY=VALUE, found '" + text + "'");
-  return {text.substr(0, at), spark::Value::fromText(std::string_view(text).substr(at + 1))};
+  return {text.substr(0, at), spark::Value::typed(std::string_view(text).substr(at + 1))};
 }
 
 void makeAbsolute(std::vector<std::string>& folders) {

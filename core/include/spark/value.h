@@ -32,8 +32,10 @@ class Value {
   Value(std::string v) : data_(std::move(v)) {}
   Value(std::string_view v) : data_(std::string(v)) {}
   Value(List v) : data_(std::move(v)) {}
+  /// Text as a person typed it (`--set K=TEXT`, sparkctl): a string that is not read before it is known what it is for. See readAs.
+  static Value typed(std::string_view text);
 
-  Type type() const { return static_cast<Type>(data_.index()); }
+  Type type() const { return isTyped() ? Type::string : static_cast<Type>(data_.index()); }
   bool isNil() const { return type() == Type::nil; }
   bool isBool() const { return type() == Type::boolean; }
   bool isInteger() const { return type() == Type::integer; }
@@ -41,12 +43,14 @@ class Value {
   bool isNumber() const { return isInteger() || type() == Type::number; }
   bool isString() const { return type() == Type::string; }
   bool isList() const { return type() == Type::list; }
+  /// True for what typed() made; such a value is a string as well.
+  bool isTyped() const { return std::holds_alternative<Typed>(data_); }
 
   /// The value as the named type. Precondition: it is of that type (`toNumber` also takes integers).
   bool toBool() const { return std::get<bool>(data_); }
   std::int64_t toInteger() const { return std::get<std::int64_t>(data_); }
   double toNumber() const { return isInteger() ? static_cast<double>(toInteger()) : std::get<double>(data_); }
-  const std::string& toString() const { return std::get<std::string>(data_); }
+  const std::string& toString() const { return isTyped() ? std::get<Typed>(data_).text : std::get<std::string>(data_); }
   const List& toList() const { return std::get<List>(data_); }
   List& toList() { return std::get<List>(data_); }
 
@@ -61,11 +65,18 @@ class Value {
   std::string plain() const;
   /// Reads what a person types after `--set K=`: true, false, nil, numbers, `{...}` or `[...]`; all else is a string.
   static Value fromText(std::string_view text);
+  /// What typed text means where a type is expected (named as Convert<T>::typeName() does): for a string the text itself, without quotes around
+  /// all of it; for a list of strings its texts; for anything else, an unknown type included, as fromText reads it. Other values are what they are.
+  Value readAs(std::string_view typeName) const;
 
   bool operator==(const Value&) const = default;
 
  private:
-  std::variant<std::monostate, bool, std::int64_t, double, std::string, List> data_;
+  struct Typed {
+    std::string text;
+    bool operator==(const Typed&) const = default;
+  };
+  std::variant<std::monostate, bool, std::int64_t, double, std::string, List, Typed> data_;
 };
 
 /// "nil", "bool", "integer", "number", "string", "list".
