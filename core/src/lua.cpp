@@ -186,6 +186,14 @@ void Runtime::checkChannels() {
   for (const auto& [channel, where] : listened)
     if (const std::string near = nearChannels(channel); !near.empty())
       throw Error(where + "there is no event channel '" + channel + "': nothing would ever run this handler." + near);
+  std::vector<ClassObject*> classes;
+  kernel.root().require<Node>("/classes").collect(classes);
+  for (ClassObject* c : classes) {
+    if (c->living() == 0) continue;
+    for (const Hook* hook : c->hooks())
+      if (const std::string near = nearChannels(hook->channel); !near.empty())
+        kernel.log().warning("class {} has a hook on '{}', and there is no such channel: nothing runs it.{}", c->name(), hook->channel, near);
+  }
 }
 
 std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::string_view channel) {

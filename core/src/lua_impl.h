@@ -183,7 +183,8 @@ class Runtime {
   Script readInclude(std::string_view file, lua_State* includer);
   /// Finds a script (as an include, in the working folder at last) and attaches it; `from`: the Lua function that does, or nullptr. Throws Error.
   void attachFile(Leaf& node, std::string_view file, lua_State* from, const State::Body& pushArguments);
-  /// At a config's end: throws Error for a handler of a channel that nobody defined and whose name is nearly another's.
+  /// At a config's end: throws Error for a handler of a channel that nobody defined and whose name is nearly another's, and warns of such a hook of
+  /// a class that lives.
   void checkChannels();
   /// Loads text and leaves the function, with the environment at `environment` (an absolute or upvalue index), on the stack. Lua error.
   static void load(lua_State* L, std::string_view text, std::string_view chunkName, int environment);

@@ -22,6 +22,17 @@ class Definer : public Leaf {
  protected:
   void onLink() override { kernel().events().define("prepare", Order::parentsFirst, "A phase."); }
 };
+
+class Misspelt : public Leaf {
+  SPARK_CLASS(Misspelt, Leaf)
+ public:
+  static void describe(Description<Misspelt>& d) {
+    d.doc("Hooks on what nobody defines.");
+    d.on<&Misspelt::prepare>("prepar");
+    d.on<&Misspelt::prepare>("of my own");
+  }
+  void prepare(const Event&) {}
+};
 }  // namespace
 
 TEST_CASE("a config is found in the working folder first, then in the added folders in order") {
@@ -120,6 +131,16 @@ TEST_CASE("a handler of a channel whose name is nearly another's is an error: at
   late.kernel.registerClass<Definer>();
   CHECK_THAT(late.configFailure("on('prepair', function() end)\nnew('Definer', '/usr/d')"), Contains("config.lua:1: there is no event channel 'prepair'"));
   CHECK(late.configFailure("delete('/usr/d') on('prepare', function() end)\nnew('Definer', '/usr/d')") == "");
+}
+
+TEST_CASE("a class that hooks on a channel whose name is nearly another's is named at the config's end, once it lives") {
+  LuaHouse h;
+  h.kernel.registerClass<Misspelt>();
+  h.kernel.events().define("prepare", Order::parentsFirst, "A phase.");
+  CHECK(h.configFailure("") == "");
+  CHECK(h.text == "");
+  CHECK(h.configFailure("new('Misspelt', '/usr/m')") == "");
+  CHECK(h.text == "class Misspelt has a hook on 'prepar', and there is no such channel: nothing runs it. Did you mean 'prepare'?\n");
 }
 
 TEST_CASE("a global that is nil is answered with the nearest") {
