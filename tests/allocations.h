@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Counts what a test program takes from the heap. One file of a program includes it: it replaces operator new for all. Not for programs with
-/// a sanitizer, which has an operator new of its own.
+/// Counts what a test program takes from the heap. One file of a program includes it: it replaces operator new for all.
+/// Not for programs with a sanitizer, which has an operator new of its own.
 
 #include <dlfcn.h>
 
@@ -12,7 +12,8 @@
 
 namespace spark::test {
 
-/// What all threads of the process take from the heap while `on`. Not counted: what ODE takes itself; its hash spaces do in every step.
+/// What all threads of the process take from the heap while `on`. Not counted: what ODE takes itself; its hash spaces
+/// do in every step.
 struct Allocations {
   static inline std::atomic<bool> on = false;
   static inline std::atomic<int> count = 0;
@@ -29,7 +30,8 @@ struct Allocations {
   static void* take(std::size_t size, std::size_t alignment, const void* caller) {
     if (on && !isOde(caller)) ++count;
     if (size == 0) size = 1;
-    void* p = alignment == 0 ? std::malloc(size) : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    void* p = alignment == 0 ? std::malloc(size)
+                             : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
     return p ? p : throw std::bad_alloc();
   }
 
@@ -44,8 +46,12 @@ struct Allocations {
 
 void* operator new(std::size_t size) { return spark::test::Allocations::take(size, 0, __builtin_return_address(0)); }
 void* operator new[](std::size_t size) { return spark::test::Allocations::take(size, 0, __builtin_return_address(0)); }
-void* operator new(std::size_t size, std::align_val_t a) { return spark::test::Allocations::take(size, static_cast<std::size_t>(a), __builtin_return_address(0)); }
-void* operator new[](std::size_t size, std::align_val_t a) { return spark::test::Allocations::take(size, static_cast<std::size_t>(a), __builtin_return_address(0)); }
+void* operator new(std::size_t size, std::align_val_t a) {
+  return spark::test::Allocations::take(size, static_cast<std::size_t>(a), __builtin_return_address(0));
+}
+void* operator new[](std::size_t size, std::align_val_t a) {
+  return spark::test::Allocations::take(size, static_cast<std::size_t>(a), __builtin_return_address(0));
+}
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete[](void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }

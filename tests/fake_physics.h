@@ -65,7 +65,8 @@ class FakeJoint : public SceneNode, public IJoint {
     if (bodies[0] && speed != 0) bodies[0]->enable();
   }
   bool atStop(int axis) const override {
-    return angles[axis] <= parameter(engine::JointParameter::lowStop, axis) || angles[axis] >= parameter(engine::JointParameter::highStop, axis);
+    return angles[axis] <= parameter(engine::JointParameter::lowStop, axis) ||
+           angles[axis] >= parameter(engine::JointParameter::highStop, axis);
   }
   double maxSpeed(int axis) const override { return maxSpeeds[axis]; }
   double feedbackTorque() const override { return torque; }
@@ -95,7 +96,9 @@ class FakeCollider : public SceneNode, public ICollider {
 class Battery : public SceneNode {
   SPARK_CLASS(Battery, SceneNode)
  public:
-  static void describe(Description<Battery>& d) { d.property("power", &Battery::power), d.property("capacity", &Battery::capacity); }
+  static void describe(Description<Battery>& d) {
+    d.property("power", &Battery::power), d.property("capacity", &Battery::capacity);
+  }
   double power = 750, capacity = 1000;
 };
 

@@ -11,7 +11,8 @@
 
 namespace spark::test {
 
-/// A frame and what one client is to get of it, made from the text of a recorded message. Diffs must follow the full message of their shape.
+/// A frame and what one client is to get of it, made from the text of a recorded message. Diffs must follow the full
+/// message of their shape.
 class RecordedFrame {
  public:
   RecordedFrame() : update{frame, false, {}, {}, {}} {}
@@ -32,7 +33,9 @@ class RecordedFrame {
   MonitorUpdate update;
 
  private:
-  static bool isNumber(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789+-.e") == std::string_view::npos; }
+  static bool isNumber(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789+-.e") == std::string_view::npos;
+  }
   void readEnvironment(const Element& env) {
     frame.env = {};
     update.env.clear();
@@ -107,12 +110,14 @@ class RecordedFrame {
   std::size_t next_ = 0;
 };
 
-/// A small frame made by hand: a light, a transform with a mesh, a box that is hidden, and an environment with a name of odd bytes.
+/// A small frame made by hand: a light, a transform with a mesh, a box that is hidden, and an environment with a name
+/// of odd bytes.
 inline void fillFrame(RecordedFrame& f) {
   f.read(
       "((FieldLength 30)(time 0.42)(play_modes A B)(half 1))(RSG 0 1)"
       "((nd Light (setDiffuse 1 1 1 1) (setAmbient 0.8 0.8 0.8 1) (setSpecular 0.1 0.1 0.1 1))"
-      "(nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0.0403208 1)(nd StaticMesh (setVisible 1) (setTransparent) (load StdCapsule 0.015 0.08) (sSc 0.042 1 "
+      "(nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0.0403208 1)(nd StaticMesh (setVisible 1) (setTransparent) (load "
+      "StdCapsule 0.015 0.08) (sSc 0.042 1 "
       "1)(resetMaterials matLeft naowhite))(nd TRF (SLT 1 -8.74228e-08 0 0 0 1 0 0 0 0 1 0 0 0 0 1)))"
       "(nd SMN (setVisible 0) (load StdUnitBox) (sSc 1 51 1) (sMat matGrey)))");
 }

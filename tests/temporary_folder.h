@@ -14,7 +14,8 @@ namespace spark::test {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "spark-test-XXXXXX").string();  // mkdtemp puts letters of its own for the X
+    std::string name = (std::filesystem::temp_directory_path() / "spark-test-XXXXXX")
+                           .string();  // mkdtemp puts letters of its own for the X
     path_ = ::mkdtemp(name.data());
   }
   ~TemporaryFolder() {

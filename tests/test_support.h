@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What tests share: a kernel that finds the built plugins and logs into a string, and the reference data if it is there.
+/// What tests share: a kernel that finds the built plugins and logs into a string, and the reference data if it is
+/// there.
 
 #include <cstdio>
 #include <cstdlib>
@@ -13,19 +14,25 @@
 namespace spark::test {
 
 /// The plugins of this build: <build>/plugins, next to the tests' own folder.
-inline std::filesystem::path pluginFolder() { return std::filesystem::canonical("/proc/self/exe").parent_path().parent_path() / "plugins"; }
+inline std::filesystem::path pluginFolder() {
+  return std::filesystem::canonical("/proc/self/exe").parent_path().parent_path() / "plugins";
+}
 /// The programs of this build.
-inline std::filesystem::path binFolder() { return std::filesystem::canonical("/proc/self/exe").parent_path().parent_path() / "bin"; }
+inline std::filesystem::path binFolder() {
+  return std::filesystem::canonical("/proc/self/exe").parent_path().parent_path() / "bin";
+}
 /// A program of this build, for a command line.
 inline std::string program(const std::string& name) { return (binFolder() / name).string(); }
-/// The reference data; empty where SPARK_REFERENCE_DIR is not set: a test that needs it then exits with 77. A folder that is named but
-/// holds no recorded sessions ends the program with exit code 1: a test that was meant to run must not pass as skipped.
+/// The reference data; empty where SPARK_REFERENCE_DIR is not set: a test that needs it then exits with 77. A folder
+/// that is named but holds no recorded sessions ends the program with exit code 1: a test that was meant to run must
+/// not pass as skipped.
 inline std::filesystem::path referenceFolder() {
   const char* dir = std::getenv("SPARK_REFERENCE_DIR");
   if (!dir || !*dir) return {};
   if (!std::filesystem::is_directory(std::filesystem::path(dir) / "captures")) {
     std::fprintf(stderr,
-                 "SPARK_REFERENCE_DIR is '%s', where there is no folder captures/. Name the folder that holds it, or unset the variable.\n",
+                 "SPARK_REFERENCE_DIR is '%s', where there is no folder captures/. Name the folder that holds it, or "
+                 "unset the variable.\n",
                  dir);
     std::exit(1);
   }

@@ -14,8 +14,8 @@
 
 namespace spark::test {
 
-/// One connection. Waits without limit: ctest ends a test that stalls. Functions throw boost::system::system_error when the server closed it,
-/// unless they say otherwise.
+/// One connection. Waits without limit: ctest ends a test that stalls. Functions throw boost::system::system_error when
+/// the server closed it, unless they say otherwise.
 class WebClient {
  public:
   /// `receiveBuffer`: bytes that the system takes for it while it does not read; 0: as many as usual.
@@ -55,7 +55,9 @@ class WebClient {
   }
   /// Lines that ask for a WebSocket.
   static std::string upgrade(const std::string& host) {
-    return host + "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n";
+    return host +
+           "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: "
+           "dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n";
   }
   std::string host() const { return "Host: 127.0.0.1:" + std::to_string(port_) + "\r\n"; }
   /// Becomes a viewer; returns the answer's status, 101.
@@ -68,9 +70,12 @@ class WebClient {
     const auto size = [&](int bytes) {
       for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8) out += static_cast<char>(payload.size() >> shift);
     };
-    if (payload.size() < 126) out += static_cast<char>(mask | payload.size());
-    else if (payload.size() < 65536) out += static_cast<char>(mask | 126), size(2);
-    else out += static_cast<char>(mask | 127), size(8);
+    if (payload.size() < 126)
+      out += static_cast<char>(mask | payload.size());
+    else if (payload.size() < 65536)
+      out += static_cast<char>(mask | 126), size(2);
+    else
+      out += static_cast<char>(mask | 127), size(8);
     if (!masked) return out += payload;
     const char key[4] = {0x11, 0x22, 0x33, 0x44};
     out.append(key, 4);
@@ -91,15 +96,19 @@ class WebClient {
       size = 0;
       for (const char c : take(bytes)) size = size << 8 | static_cast<unsigned char>(c);
     };
-    if (size == 126) longSize(2);
-    else if (size == 127) longSize(8);
+    if (size == 126)
+      longSize(2);
+    else if (size == 127)
+      longSize(8);
     return {head[0] & 0x0f, take(size)};
   }
   /// The next text message that holds `part`; other messages are passed over.
   std::string textWith(std::string_view part) {
     for (;;) {
       Message message = next();
-      if (message.opcode == 8) throw std::runtime_error("closed by the server: " + message.payload.substr(std::min<std::size_t>(2, message.payload.size())));
+      if (message.opcode == 8)
+        throw std::runtime_error("closed by the server: " +
+                                 message.payload.substr(std::min<std::size_t>(2, message.payload.size())));
       if (message.opcode == 1 && message.payload.find(part) != std::string::npos) return message.payload;
     }
   }

@@ -28,8 +28,9 @@ void checkRange(const Property& p, const Value& v, bool loose) {
     Args args{std::span(&v, 1), loose};
     const double d = Convert<double>::from(args);
     if ((p.min && !(d >= *p.min)) || (p.max && !(d <= *p.max)))
-      throw Error("expected " + (p.min ? Value(*p.min).text() : std::string("-inf")) + " to " + (p.max ? Value(*p.max).text() : std::string("inf")) +
-                  (p.unit.empty() ? "" : " " + p.unit) + ", found " + v.text());
+      throw Error("expected " + (p.min ? Value(*p.min).text() : std::string("-inf")) + " to " +
+                  (p.max ? Value(*p.max).text() : std::string("inf")) + (p.unit.empty() ? "" : " " + p.unit) +
+                  ", found " + v.text());
   }
 }
 
@@ -43,7 +44,8 @@ void checkChoices(const Property& p, const Value& v) {
 
 /// The type in `name: type [unit]`, of which only the type must be there.
 std::string_view typeOf(std::string_view parameter) {
-  if (const std::size_t colon = parameter.find(": "); colon != std::string_view::npos) parameter.remove_prefix(colon + 2);
+  if (const std::size_t colon = parameter.find(": "); colon != std::string_view::npos)
+    parameter.remove_prefix(colon + 2);
   return parameter.substr(0, parameter.find(" ["));
 }
 
@@ -52,9 +54,11 @@ std::vector<Value> readTyped(const Method& m, std::span<const Value> arguments) 
   constexpr std::string_view kListOf = "list of ";
   const bool each = arguments.size() == m.parameters.size();
   std::string_view type;  // of plain arguments that together make a vector: none of its own
-  if (!each && m.parameters.size() == 1 && typeOf(m.parameters[0]).starts_with(kListOf)) type = typeOf(m.parameters[0]).substr(kListOf.size());
+  if (!each && m.parameters.size() == 1 && typeOf(m.parameters[0]).starts_with(kListOf))
+    type = typeOf(m.parameters[0]).substr(kListOf.size());
   std::vector<Value> out;
-  for (std::size_t i = 0; i < arguments.size(); ++i) out.push_back(arguments[i].readAs(each ? typeOf(m.parameters[i]) : type));
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+    out.push_back(arguments[i].readAs(each ? typeOf(m.parameters[i]) : type));
   return out;
 }
 
@@ -67,11 +71,13 @@ void write(const Property& p, Leaf& leaf, Args& args) {
 }
 }  // namespace
 
-ClassObject::ClassObject(ClassDescription description, Plugin* plugin) : description_(std::move(description)), plugin_(plugin) {
+ClassObject::ClassObject(ClassDescription description, Plugin* plugin)
+    : description_(std::move(description)), plugin_(plugin) {
   setName(description_.name);
   // A property x gives setX and getX, unless the class has methods of those names.
   const auto has = [&](const std::string& n) {
-    return std::any_of(description_.methods.begin(), description_.methods.end(), [&](const Method& m) { return m.name == n; });
+    return std::any_of(description_.methods.begin(), description_.methods.end(),
+                       [&](const Method& m) { return m.name == n; });
   };
   std::vector<Method> generated;
   for (const Property& p : description_.properties) {
@@ -120,8 +126,10 @@ ClassObject* ClassObject::base() {
   base_ = kernel().findClass(description_.base);
   if (!base_) {
     Plugin* provider = kernel().plugins().providerOf(description_.base);
-    throw Error("class " + name() + (plugin_ ? " of plugin " + plugin_->name() : "") + " needs its base class " + description_.base + ", which is not registered. " +
-                (provider ? "Plugin '" + provider->name() + "' provides it: add plugin \"" + provider->name() + "\" to the config."
+    throw Error("class " + name() + (plugin_ ? " of plugin " + plugin_->name() : "") + " needs its base class " +
+                description_.base + ", which is not registered. " +
+                (provider ? "Plugin '" + provider->name() + "' provides it: add plugin \"" + provider->name() +
+                                "\" to the config."
                           : "No scanned plugin provides it."));
   }
   return base_;
@@ -140,7 +148,9 @@ void ClassObject::resolve() {
 /// Runs the constructor, which knows neither class nor place.
 std::unique_ptr<Leaf> ClassObject::construct() const {
   const NowRunning now("the constructor", this);
-  const auto failed = [this] { return "the constructor of class " + name() + (plugin_ ? " of plugin " + plugin_->name() : "") + " failed"; };
+  const auto failed = [this] {
+    return "the constructor of class " + name() + (plugin_ ? " of plugin " + plugin_->name() : "") + " failed";
+  };
   try {
     return description_.make();
   } catch (const std::exception& e) {
@@ -171,7 +181,8 @@ void ClassObject::fillCasts() {
   std::vector<Cast> all;
   for (const ClassObject* c = this; c; c = c->base_)
     for (const auto& i : c->description_.interfaces)
-      if (std::none_of(all.begin(), all.end(), [&](const Cast& known) { return known.id == i.id.id; })) all.push_back({i.id.id, i.cast});
+      if (std::none_of(all.begin(), all.end(), [&](const Cast& known) { return known.id == i.id.id; }))
+        all.push_back({i.id.id, i.cast});
   castMask_ = std::bit_ceil(4 * all.size() + 1) - 1;
   casts_.assign(castMask_ + 1, Cast{});
   for (const Cast& cast : all) {
@@ -200,8 +211,10 @@ std::vector<const Property*> ClassObject::properties() {
   if (ClassObject* b = base()) out = b->properties();
   for (const Property& p : description_.properties) {
     const auto same = std::find_if(out.begin(), out.end(), [&](const Property* q) { return q->name == p.name; });
-    if (same == out.end()) out.push_back(&p);
-    else *same = &p;
+    if (same == out.end())
+      out.push_back(&p);
+    else
+      *same = &p;
   }
   return out;
 }
@@ -211,8 +224,10 @@ std::vector<const Method*> ClassObject::methods() {
   if (ClassObject* b = base()) out = b->methods();
   for (const Method& m : description_.methods) {
     const auto same = std::find_if(out.begin(), out.end(), [&](const Method* q) { return q->name == m.name; });
-    if (same == out.end()) out.push_back(&m);
-    else *same = &m;
+    if (same == out.end())
+      out.push_back(&m);
+    else
+      *same = &m;
   }
   return out;
 }
@@ -244,7 +259,8 @@ const Property& findProperty(const Leaf& leaf, std::string_view name) {
   if (const Property* p = c.property(name)) return *p;
   std::vector<std::string> names;
   for (const Property* p : c.properties()) names.push_back(p->name);
-  throw Error(leaf.path() + " (class " + c.name() + ") has no property '" + std::string(name) + "'." + didYouMean(name, names));
+  throw Error(leaf.path() + " (class " + c.name() + ") has no property '" + std::string(name) + "'." +
+              didYouMean(name, names));
 }
 
 std::string signature(const Method& m) {
@@ -263,17 +279,21 @@ std::string countProblem(const Method& m, std::span<const Value> arguments, bool
   const int n = scalarCount(arguments);
   // One list may stand for one argument; only what is plainly too few or too many is refused here.
   const bool tooFew = n < m.minScalars && static_cast<int>(arguments.size()) < m.minScalars;
-  const bool tooMany = m.maxScalars >= 0 && static_cast<int>(arguments.size()) > m.maxScalars && !(loose && m.surplusIgnored);
+  const bool tooMany =
+      m.maxScalars >= 0 && static_cast<int>(arguments.size()) > m.maxScalars && !(loose && m.surplusIgnored);
   if (!tooFew && !tooMany) return {};
   std::string wanted = std::to_string(m.minScalars);
-  if (m.maxScalars < 0) wanted = "at least " + wanted;
-  else if (m.maxScalars != m.minScalars) wanted += " to " + std::to_string(m.maxScalars);
+  if (m.maxScalars < 0)
+    wanted = "at least " + wanted;
+  else if (m.maxScalars != m.minScalars)
+    wanted += " to " + std::to_string(m.maxScalars);
   return signature(m) + " expected " + wanted + " arguments, found " + std::to_string(n);
 }
 /// What loose reading made of texts where numbers are due: " 'six' was read as 0.", "" when there are none.
 std::string readAsNumbers(const Method& m, std::span<const Value> arguments) {
   const auto wantsNumbers = [](const std::string& parameter) {
-    return parameter.find("number") != std::string::npos || parameter.find("integer") != std::string::npos || parameter.find("vec3") != std::string::npos;
+    return parameter.find("number") != std::string::npos || parameter.find("integer") != std::string::npos ||
+           parameter.find("vec3") != std::string::npos;
   };
   if (!std::all_of(m.parameters.begin(), m.parameters.end(), wantsNumbers)) return {};
   std::string out;
@@ -282,7 +302,8 @@ std::string readAsNumbers(const Method& m, std::span<const Value> arguments) {
     const char* text = v.toString().c_str();
     char* end = nullptr;
     const double number = std::strtod(text, &end);
-    if (end == text || *end != 0) out += "\n  '" + v.toString() + "' is no number: it was read as " + Value(number).text() + ".";
+    if (end == text || *end != 0)
+      out += "\n  '" + v.toString() + "' is no number: it was read as " + Value(number).text() + ".";
   }
   return out;
 }
@@ -309,16 +330,20 @@ Value callMethod(Leaf& leaf, std::string_view name, std::span<const Value> argum
   if (!m) {
     std::vector<std::string> names;
     for (const Method* q : c.methods()) names.push_back(q->name);
-    throw Error(leaf.path() + " (class " + c.name() + ") has no method '" + std::string(name) + "'." + didYouMean(name, names));
+    throw Error(leaf.path() + " (class " + c.name() + ") has no method '" + std::string(name) + "'." +
+                didYouMean(name, names));
   }
-  if (const std::string problem = countProblem(*m, arguments, false); !problem.empty()) throw Error("cannot call " + leaf.path() + ": " + problem);
+  if (const std::string problem = countProblem(*m, arguments, false); !problem.empty())
+    throw Error("cannot call " + leaf.path() + ": " + problem);
   const NowRunning now(m->name.c_str(), &leaf);
   try {
     std::vector<Value> meant;
-    if (std::any_of(arguments.begin(), arguments.end(), [](const Value& v) { return v.isTyped(); })) arguments = meant = readTyped(*m, arguments);
+    if (std::any_of(arguments.begin(), arguments.end(), [](const Value& v) { return v.isTyped(); }))
+      arguments = meant = readTyped(*m, arguments);
     Args args{arguments};
     Value result = m->call(leaf, args);
-    if (!args.atEnd()) throw Error(signature(*m) + " expected fewer arguments, found " + std::to_string(arguments.size()));
+    if (!args.atEnd())
+      throw Error(signature(*m) + " expected fewer arguments, found " + std::to_string(arguments.size()));
     return result;
   } catch (const std::exception& e) {
     throw Error("cannot call " + std::string(name) + " of " + leaf.path(), e);

@@ -10,20 +10,22 @@
 
 namespace spark {
 
-// Handlers are kept sorted by tree order, sorted again only when the tree's shape or the handlers changed since the last emit. While a
-// channel runs its entries are never moved nor destroyed: what is added waits in pending_, what goes is blanked. So handlers may change
-// the tree and the handlers, their own included. Afterwards settle() makes it so.
+// Handlers are kept sorted by tree order, sorted again only when the tree's shape or the handlers changed since the
+// last emit. While a channel runs its entries are never moved nor destroyed: what is added waits in pending_, what goes
+// is blanked. So handlers may change the tree and the handlers, their own included. Afterwards settle() makes it so.
 
 namespace {
 constexpr std::size_t kFar = 12, kNear = 6;  // handlers
-constexpr std::size_t kNode = 384;          // bytes that a handler with nothing to do looks at
-constexpr std::size_t kAbove = 64;          // and of the class of the node above it, on which controllers act
+constexpr std::size_t kNode = 384;           // bytes that a handler with nothing to do looks at
+constexpr std::size_t kAbove = 64;           // and of the class of the node above it, on which controllers act
 }  // namespace
 
 void Channel::run(Entry& entry, const Event& event) {
   try {
-    if (entry.plain) entry.plain(*entry.node, event);
-    else entry.handler(*entry.node, event);
+    if (entry.plain)
+      entry.plain(*entry.node, event);
+    else
+      entry.handler(*entry.node, event);
   } catch (const std::exception& e) {
     report(entry, e.what());
   } catch (...) {
@@ -40,7 +42,8 @@ void Channel::report(Entry& entry, const char* what) {
     const ClassObject& c = *entry.node->classObject();
     who = entry.node->path() + " (class " + c.name() + (c.plugin() ? " of plugin " + c.plugin()->name() : "") + ")";
   }
-  kernel_->log().error("{} of {} failed: {}\n  It stays; further faults of this handler are counted, not logged.", name_, who, what);
+  kernel_->log().error("{} of {} failed: {}\n  It stays; further faults of this handler are counted, not logged.",
+                       name_, who, what);
 }
 
 void Channel::sort() {
@@ -50,7 +53,8 @@ void Channel::sort() {
   const auto before = [first](const Entry& a, const Entry& b) {
     return first ? a.node->preOrder_ < b.node->preOrder_ : a.node->postOrder_ < b.node->postOrder_;
   };
-  if (!std::is_sorted(entries_.begin(), entries_.end(), before)) std::stable_sort(entries_.begin(), entries_.end(), before);
+  if (!std::is_sorted(entries_.begin(), entries_.end(), before))
+    std::stable_sort(entries_.begin(), entries_.end(), before);
   sortedAt_ = kernel_->structureVersion();
   dirty_ = false;
 }
@@ -79,7 +83,8 @@ void Channel::emit(const Event& event) {
   now.beat();
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (i + kFar < entries_.size()) prefetch(entries_[i + kFar].node, kNode);
-    if (const Leaf* next = i + kNear < entries_.size() ? entries_[i + kNear].node : nullptr; next && next->parent()) prefetch(next->parent() + 1, kAbove);
+    if (const Leaf* next = i + kNear < entries_.size() ? entries_[i + kNear].node : nullptr; next && next->parent())
+      prefetch(next->parent() + 1, kAbove);
     if (!entries_[i].node) continue;
     now.at(entries_[i].node);
     run(entries_[i], event);
@@ -112,7 +117,8 @@ void Channel::blank(Entry& entry) {
 }
 
 std::uint64_t Channel::add(Leaf& node, Handler handler) {
-  if (!node.isLinked()) throw Error("cannot handle '" + name_ + "' at " + node.path() + ": it is not linked into the tree");
+  if (!node.isLinked())
+    throw Error("cannot handle '" + name_ + "' at " + node.path() + ": it is not linked into the tree");
   insert({&node, nullptr, std::move(handler), ++lastNumber_});
   return lastNumber_;
 }
@@ -131,7 +137,8 @@ void Channel::remove(std::uint64_t subscription) {
 }
 
 Channel& Events::channel(std::string_view name) {
-  const auto it = std::lower_bound(channels_.begin(), channels_.end(), name, [](const auto& c, std::string_view n) { return c->name_ < n; });
+  const auto it = std::lower_bound(channels_.begin(), channels_.end(), name,
+                                   [](const auto& c, std::string_view n) { return c->name_ < n; });
   if (it != channels_.end() && (*it)->name_ == name) return **it;
   auto made = std::make_unique<Channel>();
   made->name_ = name;
@@ -142,7 +149,8 @@ Channel& Events::channel(std::string_view name) {
 Channel& Events::define(std::string_view name, Order order, std::string doc) {
   Channel& c = channel(name);
   if (!c.doc_.empty() && c.order_ != order)
-    throw Error("event channel '" + std::string(name) + "' is defined already with the other order of handlers (" + c.doc_ + ")");
+    throw Error("event channel '" + std::string(name) + "' is defined already with the other order of handlers (" +
+                c.doc_ + ")");
   c.order_ = order;
   c.doc_ = std::move(doc);
   c.dirty_ = true;

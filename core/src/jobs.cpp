@@ -6,9 +6,11 @@
 #include "spark/kernel.h"
 
 // A cycle has a handful of rounds, some of a few dozen microseconds: what a round costs beside its jobs matters. So
-//  - who has nothing to do looks for a next round a little while before it sleeps, where every thread can have a core of its own; a host
+//  - who has nothing to do looks for a next round a little while before it sleeps, where every thread can have a core
+//  of its own; a host
 //    that waits for input has long gone to sleep;
-//  - a round is over when its jobs are done, not when everybody has seen it: who wakes up too late finds it closed and goes back to sleep.
+//  - a round is over when its jobs are done, not when everybody has seen it: who wakes up too late finds it closed and
+//  goes back to sleep.
 
 namespace spark {
 namespace {
@@ -42,7 +44,8 @@ struct Jobs::Impl {
   std::size_t n = 0;
   std::atomic<std::size_t> next{0};
   std::atomic<std::uint64_t> round{0};
-  std::atomic<std::size_t> inside{0};  ///< threads that work in this round, the caller's not counted; changed under the mutex
+  std::atomic<std::size_t> inside{
+      0};  ///< threads that work in this round, the caller's not counted; changed under the mutex
   std::size_t asleep = 0;
   bool open = false, ending = false, patient = false;
 
@@ -105,7 +108,8 @@ void Jobs::setThreads(int count) {
   impl_->stop();
   count = std::min(count, 64);
   impl_->patient = count <= static_cast<int>(std::thread::hardware_concurrency());
-  for (int i = 1; i < count; ++i) impl_->threads.emplace_back([this, seen = impl_->round.load()] { impl_->loop(seen); });
+  for (int i = 1; i < count; ++i)
+    impl_->threads.emplace_back([this, seen = impl_->round.load()] { impl_->loop(seen); });
 }
 
 int Jobs::threads() const { return static_cast<int>(impl_->threads.size()) + 1; }

@@ -57,8 +57,12 @@ ClassDescription plainClass(const char* name, const char* base, const char* doc,
 }  // namespace
 
 Kernel::Kernel() : events_(std::make_unique<Events>(*this)) {
-  addClass(plainClass("Leaf", "", "A named element of the tree.", []() -> std::unique_ptr<Leaf> { return std::make_unique<Leaf>(); }), nullptr);
-  addClass(plainClass("Node", "Leaf", "An element that owns children.", []() -> std::unique_ptr<Leaf> { return std::make_unique<Node>(); }), nullptr);
+  addClass(plainClass("Leaf", "", "A named element of the tree.",
+                      []() -> std::unique_ptr<Leaf> { return std::make_unique<Leaf>(); }),
+           nullptr);
+  addClass(plainClass("Node", "Leaf", "An element that owns children.",
+                      []() -> std::unique_ptr<Leaf> { return std::make_unique<Node>(); }),
+           nullptr);
   ClassDescription classClass = describeClass<ClassObject>();
   classClass.make = nullptr;
   addClass(std::move(classClass), nullptr);
@@ -78,7 +82,8 @@ Kernel::Kernel() : events_(std::make_unique<Events>(*this)) {
   lua_ = std::make_unique<Lua>(*this);
 }
 
-// Order of the end: scripts (they hold references), the tree but for classes and plugins, then class objects, then the plugins' files.
+// Order of the end: scripts (they hold references), the tree but for classes and plugins, then class objects, then the
+// plugins' files.
 Kernel::~Kernel() {
   lua_.reset();
   for (const char* top : {"usr", "sys"})
@@ -98,7 +103,8 @@ Kernel::~Kernel() {
 
 ClassObject& Kernel::addClass(ClassDescription description, Plugin* plugin) {
   if (ClassObject* other = findClass(description.name))
-    throw Error("class '" + description.name + "' is registered already, by " + (other->plugin() ? "plugin '" + other->plugin()->name() + "'" : "the kernel") +
+    throw Error("class '" + description.name + "' is registered already, by " +
+                (other->plugin() ? "plugin '" + other->plugin()->name() + "'" : "the kernel") +
                 ". Two plugins cannot provide one name: use only one of them.");
   auto made = std::make_unique<ClassObject>(std::move(description), plugin);
   ClassObject& c = *made;
@@ -113,7 +119,8 @@ ClassObject& Kernel::addClass(ClassDescription description, Plugin* plugin) {
     // Kept in order of name.
     auto& list = classesNode_->children_;
     classesNode_->attach(std::move(made));
-    for (std::size_t i = list.size() - 1; i > 0 && list[i]->name() < list[i - 1]->name(); --i) std::swap(list[i], list[i - 1]);
+    for (std::size_t i = list.size() - 1; i > 0 && list[i]->name() < list[i - 1]->name(); --i)
+      std::swap(list[i], list[i - 1]);
   } else {
     made.release();  // the constructor hands the first classes to the tree
   }
@@ -131,7 +138,8 @@ ClassObject& Kernel::classOf(std::string_view name) {
   if (ClassObject* c = findClass(name)) return *c;
   if (loader_)
     if (Plugin* p = loader_->providerOf(name))
-      throw Error("there is no class '" + std::string(name) + "' yet: plugin '" + p->name() + "' provides it. Add plugin \"" + p->name() + "\" to the config.");
+      throw Error("there is no class '" + std::string(name) + "' yet: plugin '" + p->name() +
+                  "' provides it. Add plugin \"" + p->name() + "\" to the config.");
   std::vector<std::string> names;
   for (const auto& [n, c] : classIndex_) names.push_back(n);
   if (pluginsNode_)
@@ -147,12 +155,15 @@ std::vector<ClassObject*> Kernel::classes() const {
 }
 
 void Kernel::throwLacks(const Leaf& leaf, const InterfaceId& id) {
-  throw Error("expected a " + std::string(id.name) + ", found " + leaf.path() + " of class " + leaf.classObject()->name() + ", which lacks interface " + id.name +
-              " version " + std::to_string(id.version));
+  throw Error("expected a " + std::string(id.name) + ", found " + leaf.path() + " of class " +
+              leaf.classObject()->name() + ", which lacks interface " + id.name + " version " +
+              std::to_string(id.version));
 }
 
 Leaf& Kernel::create(std::string_view className, std::string_view path) {
-  if (path.empty() || path.front() != '/') throw Error("expected an absolute path for a new " + std::string(className) + ", found '" + std::string(path) + "'");
+  if (path.empty() || path.front() != '/')
+    throw Error("expected an absolute path for a new " + std::string(className) + ", found '" + std::string(path) +
+                "'");
   ClassObject& c = classOf(className);
   Node* at = root_.get();
   const std::size_t last = path.rfind('/');
@@ -165,12 +176,15 @@ Leaf& Kernel::create(std::string_view className, std::string_view path) {
     if (part.empty()) continue;
     Leaf* next = at->child(part);
     if (!next) next = &at->create("Node", part);
-    if (!next->asNode()) throw Error("cannot make " + std::string(path) + ": " + next->path() + " cannot have children");
+    if (!next->asNode())
+      throw Error("cannot make " + std::string(path) + ": " + next->path() + " cannot have children");
     at = next->asNode();
   }
   const std::string_view name = path.substr(last + 1);
   if (name.empty()) throw Error("expected a name at the end of '" + std::string(path) + "'");
-  if (at->child(name)) throw Error("cannot make " + std::string(path) + ": it exists already, as " + at->child(name)->classObject()->name());
+  if (at->child(name))
+    throw Error("cannot make " + std::string(path) + ": it exists already, as " +
+                at->child(name)->classObject()->name());
   auto leaf = c.create();
   leaf->setName(std::string(name));
   return at->add(std::move(leaf));
@@ -204,7 +218,8 @@ void Kernel::enumerate(Leaf& leaf, std::uint32_t& post) {
 
 std::uint64_t Kernel::streamSeed(const Leaf& owner, std::string_view purpose) {
   static_assert(sizeof(std::size_t) == 8);
-  const std::string key = owner.path() + "\n" + (owner.classObject() ? owner.classObject()->name() : "") + "\n" + std::string(purpose);
+  const std::string key =
+      owner.path() + "\n" + (owner.classObject() ? owner.classObject()->name() : "") + "\n" + std::string(purpose);
   const std::uint64_t h = hashBytes(key);
   const std::lock_guard lock(streamMutex_);
   const std::uint32_t ordinal = streamOrdinals_[h]++;

@@ -21,22 +21,24 @@
 
 #include "spark/error.h"
 
-// A plugin's author builds while the host runs. The linker maps a file's pages as they are needed: were it the author's file, code of the old
-// and the new version would run side by side. So what is loaded is a copy in memory (memfd_create(2)) that nobody else can write.
+// A plugin's author builds while the host runs. The linker maps a file's pages as they are needed: were it the author's
+// file, code of the old and the new version would run side by side. So what is loaded is a copy in memory
+// (memfd_create(2)) that nobody else can write.
 //
 //   the file ── copied as far as it is loaded, again while somebody writes it ──► a memfd
-//   memfd ── dlopen(NOW, LOCAL) as /proc/self/fd/... ── lt_dlopen of the same name ──► one mapping; the descriptor is closed
-//   the linker's list ── the mapping's name becomes the file's ──► debuggers, sanitizers and dladdr(3) find symbols in the file
+//   memfd ── dlopen(NOW, LOCAL) as /proc/self/fd/... ── lt_dlopen of the same name ──► one mapping; the memfd is closed
+//   the linker's list ── the mapping gets the file's name ──► debuggers, sanitizers and dladdr(3) find the symbols
 //
-// libltdl asks the dynamic linker for lazy binding and keeps its error text to itself. So each file is first opened with dlopen(NOW, LOCAL):
-// what is missing is found then and said in the linker's own words; libltdl's handle keeps it open, ours is closed again.
+// libltdl asks the dynamic linker for lazy binding and keeps its error text to itself. So each file is first opened
+// with dlopen(NOW, LOCAL): what is missing is found then and said in the linker's own words; libltdl's handle keeps it
+// open, ours is closed again.
 //
-// Names: both libltdl and the linker take an equal name for an equal file, and descriptors' numbers come again. So each copy's name is spelled
-// in a way of its own. $ORIGIN in a copy's search path would be /proc: libraries that are found so are loaded first, from where they are, and
-// the linker then finds them by their names.
+// Names: both libltdl and the linker take an equal name for an equal file, and descriptors' numbers come again. So each
+// copy's name is spelled in a way of its own. $ORIGIN in a copy's search path would be /proc: libraries that are found
+// so are loaded first, from where they are, and the linker then finds them by their names.
 //
-// Where no copy can be made (no memfd or /proc, no descriptor free, a limit on the size of files, a system that forbids to run one) the file
-// itself is loaded.
+// Where no copy can be made (no memfd or /proc, no descriptor free, a limit on the size of files, a system that forbids
+// to run one) the file itself is loaded.
 
 namespace fs = std::filesystem;
 
@@ -71,29 +73,35 @@ class OpenFile {
 
 template <class T>
 bool readBytes(int file, std::uint64_t offset, std::vector<T>& to) {
-  return pread(file, to.data(), to.size() * sizeof(T), static_cast<off_t>(offset)) == static_cast<ssize_t>(to.size() * sizeof(T));
+  return pread(file, to.data(), to.size() * sizeof(T), static_cast<off_t>(offset)) ==
+         static_cast<ssize_t>(to.size() * sizeof(T));
 }
 
 std::vector<Elf64_Phdr> segmentsOf(int file) {
   std::vector<Elf64_Ehdr> head(1);
-  if (!readBytes(file, 0, head) || std::memcmp(head[0].e_ident, ELFMAG, SELFMAG) != 0 || head[0].e_ident[EI_CLASS] != ELFCLASS64) return {};
+  if (!readBytes(file, 0, head) || std::memcmp(head[0].e_ident, ELFMAG, SELFMAG) != 0 ||
+      head[0].e_ident[EI_CLASS] != ELFCLASS64)
+    return {};
   std::vector<Elf64_Phdr> segments(head[0].e_phnum);
   if (!readBytes(file, head[0].e_phoff, segments)) return {};
   return segments;
 }
 
-/// Bytes from the beginning that are loaded; what follows is for debuggers. 0: it is no library, and nobody needs a copy.
+/// Bytes from the beginning that are loaded; what follows is for debuggers. 0: it is no library, and nobody needs a
+/// copy.
 std::uint64_t loadedBytes(int file, std::uint64_t size) {
   const std::vector<Elf64_Phdr> segments = segmentsOf(file);
   std::uint64_t end = 0;
-  for (const Elf64_Phdr& p : segments) end = std::max<std::uint64_t>(end, p.p_offset > size || p.p_filesz > size ? size : p.p_offset + p.p_filesz);
+  for (const Elf64_Phdr& p : segments)
+    end = std::max<std::uint64_t>(end, p.p_offset > size || p.p_filesz > size ? size : p.p_offset + p.p_filesz);
   return segments.empty() ? 0 : std::min(std::max<std::uint64_t>(end, sizeof(Elf64_Ehdr)), size);
 }
 
 bool copyBytes(int from, int to, std::uint64_t count) {
   std::vector<char> block(1u << 18);
   for (std::uint64_t at = 0; at < count;) {
-    const ssize_t n = pread(from, block.data(), std::min<std::uint64_t>(block.size(), count - at), static_cast<off_t>(at));
+    const ssize_t n =
+        pread(from, block.data(), std::min<std::uint64_t>(block.size(), count - at), static_cast<off_t>(at));
     if (n <= 0) return n == 0;  // it was shortened: its stamp says so
     if (pwrite(to, block.data(), static_cast<std::size_t>(n), static_cast<off_t>(at)) != n) return false;
     at += static_cast<std::uint64_t>(n);
@@ -110,7 +118,8 @@ bool allows(std::uint64_t size) {
 class Source {
  public:
   /// Throws Error when the file is written all the time.
-  explicit Source(const std::string& path) : path_(path), name_(path), copy_(memfd_create(shortName(path).c_str(), MFD_CLOEXEC)) {
+  explicit Source(const std::string& path)
+      : path_(path), name_(path), copy_(memfd_create(shortName(path).c_str(), MFD_CLOEXEC)) {
     const OpenFile file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     struct stat s = {};
     for (int i = 0; i < kTries; ++i) {
@@ -132,7 +141,8 @@ class Source {
   void useFileItself() { name_ = path_; }
   /// The linker's words about it, with the file's name for the copy's.
   std::string words(std::string text) const {
-    for (std::size_t at = text.find(name_); at != std::string::npos && isCopy(); at = text.find(name_, at + path_.size()))
+    for (std::size_t at = text.find(name_); at != std::string::npos && isCopy();
+         at = text.find(name_, at + path_.size()))
       text.replace(at, name_.size(), path_);
     return text;
   }
@@ -162,7 +172,8 @@ struct Needs {
 Needs needsOf(const std::string& name) {
   const OpenFile file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
   const std::vector<Elf64_Phdr> segments = segmentsOf(file);
-  const auto dynamic = std::find_if(segments.begin(), segments.end(), [](const auto& p) { return p.p_type == PT_DYNAMIC; });
+  const auto dynamic =
+      std::find_if(segments.begin(), segments.end(), [](const auto& p) { return p.p_type == PT_DYNAMIC; });
   if (dynamic == segments.end()) return {};
   std::vector<Elf64_Dyn> entries(dynamic->p_filesz / sizeof(Elf64_Dyn));
   if (!readBytes(file, dynamic->p_offset, entries)) return {};
@@ -194,7 +205,8 @@ Needs needsOf(const std::string& name) {
   return needs;
 }
 
-/// Opens what a copy would not find: libraries that its search path has relative to the file ($ORIGIN). Held until the copy is open.
+/// Opens what a copy would not find: libraries that its search path has relative to the file ($ORIGIN). Held until the
+/// copy is open.
 class Neighbours {
  public:
   Neighbours(const std::string& name, const std::string& path) {
@@ -225,20 +237,23 @@ class Neighbours {
   std::vector<void*> handles_;
 };
 
-/// "" when the file looks like a whole shared library. The dynamic linker trusts its headers: a file that was copied half would kill us.
+/// "" when the file looks like a whole shared library. The dynamic linker trusts its headers: a file that was copied
+/// half would kill us.
 std::string fileProblem(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::error_code ec;
   const std::uintmax_t size = fs::file_size(path, ec);
   Elf64_Ehdr head{};
   if (!in || ec) return {};  // the linker says it better
-  if (!in.read(reinterpret_cast<char*>(&head), sizeof head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 || head.e_type != ET_DYN)
+  if (!in.read(reinterpret_cast<char*>(&head), sizeof head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 ||
+      head.e_type != ET_DYN)
     return "it is no shared library";
   if (head.e_ident[EI_CLASS] != ELFCLASS64) return {};
   in.seekg(static_cast<std::streamoff>(head.e_phoff));
   for (int i = 0; i < head.e_phnum; ++i) {
     Elf64_Phdr part{};
-    if (!in.read(reinterpret_cast<char*>(&part), sizeof part) || part.p_offset > size || part.p_filesz > size - part.p_offset)
+    if (!in.read(reinterpret_cast<char*>(&part), sizeof part) || part.p_offset > size ||
+        part.p_filesz > size - part.p_offset)
       return "it is cut off after " + std::to_string(size) + " bytes";
   }
   return {};
@@ -265,8 +280,8 @@ FileStamp FileStamp::of(const std::string& path) {
 
 bool FileStamp::operator==(const FileStamp& o) const {
   const auto same = [](const timespec& a, const timespec& b) { return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec; };
-  return there_ && o.there_ && s_.st_dev == o.s_.st_dev && s_.st_ino == o.s_.st_ino && s_.st_size == o.s_.st_size && same(s_.st_mtim, o.s_.st_mtim) &&
-         same(s_.st_ctim, o.s_.st_ctim);
+  return there_ && o.there_ && s_.st_dev == o.s_.st_dev && s_.st_ino == o.s_.st_ino && s_.st_size == o.s_.st_size &&
+         same(s_.st_mtim, o.s_.st_mtim) && same(s_.st_ctim, o.s_.st_ctim);
 }
 
 std::shared_ptr<LoadedLibrary> LoadedLibrary::load(const std::string& path) {
@@ -282,7 +297,9 @@ std::shared_ptr<LoadedLibrary> LoadedLibrary::load(const std::string& path) {
 
 void LoadedLibrary::open() {
   Source source(path_);
-  const auto fail = [&](const char* how, const std::string& why) { throw Error(std::string(how) + " plugin " + path_ + ": " + source.words(why)); };
+  const auto fail = [&](const char* how, const std::string& why) {
+    throw Error(std::string(how) + " plugin " + path_ + ": " + source.words(why));
+  };
   if (const std::string problem = fileProblem(source.name()); !problem.empty()) fail("refused", problem);
   static const int started = lt_dlinit();
   if (started != 0) fail("cannot load", "libltdl does not start");

@@ -26,8 +26,8 @@ class FileStamp {
   bool there_ = false;
 };
 
-/// A shared library that this process has loaded: a private copy of the file, so that writing to the file does no harm. Kernels that load the
-/// same unchanged file share one; it is unmapped when the last of them lets go.
+/// A shared library that this process has loaded: a private copy of the file, so that writing to the file does no harm.
+/// Kernels that load the same unchanged file share one; it is unmapped when the last of them lets go.
 class LoadedLibrary {
  public:
   /// `path`: absolute. Throws Error that names the file and says why it cannot be loaded. Thread safe.
@@ -47,9 +47,9 @@ class LoadedLibrary {
 
   std::string path_;
   FileStamp stamp_;
-  void* handle_ = nullptr;         ///< libltdl's
+  void* handle_ = nullptr;          ///< libltdl's
   struct link_map* map_ = nullptr;  ///< the dynamic linker's; of copies only
-  char* linkerName_ = nullptr;     ///< what it called the copy
+  char* linkerName_ = nullptr;      ///< what it called the copy
 };
 
 }  // namespace spark

@@ -12,12 +12,15 @@
 
 // How a plugin comes and goes.
 //
-//   scan(folder)   open every *.so (symbols resolved now, names local), read its descriptor, check magic and ABI word, list it under
-//                  /plugins. Nothing of the plugin runs: it has no constructors with effects, and registering is a call.
-//   use(name)      call registerClasses: the classes appear under /classes. If it throws, what it registered so far is taken back.
-//   unload(name)   refused while an object of its classes lives, a foreign class derives from them or handlers run (their code may be the
-//                  plugin's); then its atUnload actions run, its classes go, /plugins loses it, and its library is unmapped. The name is kept:
-//                  the next use opens the file again, which may be another one by then.
+//   scan(folder)   open every *.so (symbols resolved now, names local), read its descriptor, check magic and ABI word,
+//                  list it under /plugins. Nothing of the plugin runs: it has no constructors with effects, and
+//                  registering is a call.
+//   use(name)      call registerClasses: the classes appear under /classes. If it throws, what it registered so far is
+//                  removed again.
+//   unload(name)   refused while an object of its classes lives, a foreign class derives from them or handlers run
+//                  (their code may be the plugin's); then its atUnload actions run, its classes go, /plugins loses it,
+//                  and its library is unmapped. The name is kept: the next use opens the file again, which may be
+//                  another one by then.
 //   unloadLater    as unload where no handler runs, else when the run loop says settle(), between two cycles.
 //
 // What is mapped is a copy of the file (loaded_library.cpp), shared by kernels that load the same.
@@ -27,7 +30,9 @@ namespace fs = std::filesystem;
 namespace spark {
 
 namespace {
-std::string sanitizerName(std::uint32_t s) { return s == 0 ? "no sanitizer" : s == 1 ? "the address sanitizer" : "the thread sanitizer"; }
+std::string sanitizerName(std::uint32_t s) {
+  return s == 0 ? "no sanitizer" : s == 1 ? "the address sanitizer" : "the thread sanitizer";
+}
 
 /// "" when the plugin's word agrees with ours, else what differs.
 std::string abiProblem(const AbiWord& theirs) {
@@ -35,13 +40,19 @@ std::string abiProblem(const AbiWord& theirs) {
   const auto number = [](const char* what, std::uint32_t a, std::uint32_t b) {
     return std::string("it was built with ") + what + " " + std::to_string(a) + ", this host with " + std::to_string(b);
   };
-  if (theirs.version < ours.version) return "it was built for the older plugin ABI " + std::to_string(theirs.version) + ", this host has " + std::to_string(ours.version);
-  if (theirs.version > ours.version) return "it was built for the newer plugin ABI " + std::to_string(theirs.version) + ", this host has " + std::to_string(ours.version);
-  if (theirs.sanitizer != ours.sanitizer) return "it was built with " + sanitizerName(theirs.sanitizer) + ", this host with " + sanitizerName(ours.sanitizer);
+  if (theirs.version < ours.version)
+    return "it was built for the older plugin ABI " + std::to_string(theirs.version) + ", this host has " +
+           std::to_string(ours.version);
+  if (theirs.version > ours.version)
+    return "it was built for the newer plugin ABI " + std::to_string(theirs.version) + ", this host has " +
+           std::to_string(ours.version);
+  if (theirs.sanitizer != ours.sanitizer)
+    return "it was built with " + sanitizerName(theirs.sanitizer) + ", this host with " + sanitizerName(ours.sanitizer);
   if (theirs.compiler != ours.compiler) return number("compiler ABI", theirs.compiler, ours.compiler);
   if (theirs.alignment != ours.alignment) return number("alignment", theirs.alignment, ours.alignment);
   if (std::memcmp(theirs.headers, ours.headers, sizeof ours.headers) != 0)
-    return "its Spark headers (" + std::string(theirs.headers, strnlen(theirs.headers, 16)) + ") are not this host's (" + ours.headers + ")";
+    return "its Spark headers (" + std::string(theirs.headers, strnlen(theirs.headers, 16)) +
+           ") are not this host's (" + ours.headers + ")";
   return {};
 }
 
@@ -66,7 +77,9 @@ std::string absolutePath(const fs::path& file) { return fs::absolute(file).lexic
 /// The word for a plugin in paths, configs and messages: letters, digits, '-', '_', '.'.
 bool isPluginName(const char* name) {
   const std::string_view n = name ? name : "";
-  return !n.empty() && n.front() != '.' && n.size() <= 100 && std::all_of(n.begin(), n.end(), [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; });
+  return !n.empty() && n.front() != '.' && n.size() <= 100 && std::all_of(n.begin(), n.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '-' || c == '_' || c == '.';
+  });
 }
 }  // namespace
 
@@ -79,8 +92,8 @@ Loader::~Loader() {
     runActions(plugin);
     libraries.push_back(std::move(plugin.library_));
   }
-  // The classes hold functions of the plugins: they go first. Somebody who still owns an object outside the tree will need its class
-  // and its code: both are then left to the process.
+  // The classes hold functions of the plugins: they go first. Somebody who still owns an object outside the tree will
+  // need its class and its code: both are then left to the process.
   bool keep = false;
   std::vector<ClassObject*> foreign;
   for (const auto& [name, c] : kernel_.classIndex_) {
@@ -91,7 +104,8 @@ Loader::~Loader() {
     keep = true;
   }
   for (ClassObject* c : foreign) drop(*c, keep);
-  while (!kernel_.pluginsNode_->children().empty()) kernel_.pluginsNode_->detach(*kernel_.pluginsNode_->children().front());
+  while (!kernel_.pluginsNode_->children().empty())
+    kernel_.pluginsNode_->detach(*kernel_.pluginsNode_->children().front());
   static auto& forever = *new std::vector<std::shared_ptr<LoadedLibrary>>;
   if (keep) forever.insert(forever.end(), libraries.begin(), libraries.end());
 }
@@ -117,17 +131,24 @@ void Loader::drop(ClassObject& c, bool leak) {
 
 Plugin& Loader::open(const fs::path& file) {
   const std::string path = absolutePath(file);
-  if (const std::string problem = libraryProblem(path); !problem.empty()) throw Error("refused plugin " + path + ": " + problem);
+  if (const std::string problem = libraryProblem(path); !problem.empty())
+    throw Error("refused plugin " + path + ": " + problem);
   const Loading loading(path.c_str());
   std::shared_ptr<LoadedLibrary> library = LoadedLibrary::load(path);
   const auto* d = static_cast<const PluginDescriptor*>(library->symbol("sparkPlugin"));
   const auto refuse = [&](const std::string& reason) { throw Error("refused plugin " + path + ": " + reason); };
   if (!d) refuse("it has no symbol sparkPlugin; a plugin ends with SPARK_PLUGIN(name, version, doc, classes...)");
   if (std::memcmp(d->magic, "SPARKPLG", 8) != 0) refuse("its descriptor lacks the magic word SPARKPLG");
-  if (d->size < offsetof(PluginDescriptor, name)) refuse("its descriptor has only " + std::to_string(d->size) + " bytes");
-  if (const std::string problem = abiProblem(d->abi); !problem.empty()) refuse(problem + ". Build it again with this host's headers.");
-  if (d->size != sizeof(PluginDescriptor)) refuse("its descriptor has " + std::to_string(d->size) + " bytes, this host's " + std::to_string(sizeof(PluginDescriptor)));
-  if (!isPluginName(d->name)) refuse("its name '" + std::string(d->name ? d->name : "") + "' is none: letters, digits, '-', '_' and '.' make one");
+  if (d->size < offsetof(PluginDescriptor, name))
+    refuse("its descriptor has only " + std::to_string(d->size) + " bytes");
+  if (const std::string problem = abiProblem(d->abi); !problem.empty())
+    refuse(problem + ". Build it again with this host's headers.");
+  if (d->size != sizeof(PluginDescriptor))
+    refuse("its descriptor has " + std::to_string(d->size) + " bytes, this host's " +
+           std::to_string(sizeof(PluginDescriptor)));
+  if (!isPluginName(d->name))
+    refuse("its name '" + std::string(d->name ? d->name : "") +
+           "' is none: letters, digits, '-', '_' and '.' make one");
   if (Leaf* other = kernel_.pluginsNode_->child(d->name))
     refuse(std::string("there is a plugin '") + d->name + "' already, from " + static_cast<Plugin*>(other)->file_);
   auto made = kernel_.classOf("Plugin").create();
@@ -150,7 +171,8 @@ std::vector<std::string> Loader::scan(const fs::path& folder) {
     if (it->path().extension() == ".so") files.push_back(it->path());
   if (ec) {
     problems.push_back("cannot read plugin folder " + folder.string() + ": " + ec.message());
-  } else if (const fs::path full = absolutePath(folder); std::find(folders_.begin(), folders_.end(), full) == folders_.end()) {
+  } else if (const fs::path full = absolutePath(folder);
+             std::find(folders_.begin(), folders_.end(), full) == folders_.end()) {
     folders_.push_back(full);
   }
   std::sort(files.begin(), files.end());
@@ -212,7 +234,8 @@ Plugin& Loader::use(std::string_view name) {
   for (const auto& [known, file] : unloaded_) names.push_back(known);
   std::string where;
   for (const fs::path& f : folders_) where += (where.empty() ? "" : ", ") + f.string();
-  throw Error("there is no plugin '" + std::string(name) + "'." + didYouMean(name, names) + " Looked in: " + (where.empty() ? "no folder" : where) + ".");
+  throw Error("there is no plugin '" + std::string(name) + "'." + didYouMean(name, names) +
+              " Looked in: " + (where.empty() ? "no folder" : where) + ".");
 }
 
 /// A plugin that was unloaded, or whose file came into a folder after the scan; nullptr when there is none.
@@ -282,19 +305,25 @@ Plugin& Loader::unused(std::string_view name) const {
   std::size_t products = 0;
   for (ClassObject* c : mine) products += c->living();
   if (products > 0)
-    throw Error("cannot unload plugin '" + plugin.name() + "' while its objects live:" + (living.empty() ? " " + std::to_string(products) + " outside the tree" : living) +
+    throw Error("cannot unload plugin '" + plugin.name() + "' while its objects live:" +
+                (living.empty() ? " " + std::to_string(products) + " outside the tree" : living) +
                 "\nRemove them first.");
   for (const auto& [n, c] : kernel_.classIndex_)
-    if (c->plugin_ != &plugin && std::any_of(mine.begin(), mine.end(), [&, derivedClass = c](ClassObject* m) { return m->name() == derivedClass->baseName(); }))
+    if (c->plugin_ != &plugin && std::any_of(mine.begin(), mine.end(), [&, derivedClass = c](ClassObject* m) {
+          return m->name() == derivedClass->baseName();
+        }))
       derived += "\n  " + n + (c->plugin_ ? " of plugin '" + c->plugin_->name() + "'" : "");
-  if (!derived.empty()) throw Error("cannot unload plugin '" + plugin.name() + "' while classes derive from its classes:" + derived + "\nUnload those first.");
+  if (!derived.empty())
+    throw Error("cannot unload plugin '" + plugin.name() + "' while classes derive from its classes:" + derived +
+                "\nUnload those first.");
   return plugin;
 }
 
 void Loader::unload(std::string_view name) {
   Plugin& plugin = unused(name);
   if (kernel_.events().running())
-    throw Error("cannot unload plugin '" + plugin.name() + "' while handlers of events run, which may be its own. Unload it between two cycles.");
+    throw Error("cannot unload plugin '" + plugin.name() +
+                "' while handlers of events run, which may be its own. Unload it between two cycles.");
   runActions(plugin);
   for (ClassObject* c : classesOf(plugin)) drop(*c, false);
   unloaded_.insert_or_assign(plugin.name(), plugin.file_);
@@ -318,7 +347,8 @@ void Loader::unloadLeaving() {
 Plugin* Loader::providerOf(std::string_view className) const {
   for (const auto& p : kernel_.pluginsNode_->children()) {
     Plugin& plugin = static_cast<Plugin&>(*p);
-    if (std::find(plugin.classes().begin(), plugin.classes().end(), className) != plugin.classes().end()) return &plugin;
+    if (std::find(plugin.classes().begin(), plugin.classes().end(), className) != plugin.classes().end())
+      return &plugin;
   }
   return nullptr;
 }

@@ -25,7 +25,8 @@ Level levelFromName(std::string_view name) {
   const std::vector<std::string> names{"trace", "debug", "info", "warning", "error", "off"};
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i] == name) return static_cast<Level>(i);
-  throw Error("expected a log level (trace, debug, info, warning, error, off), found '" + std::string(name) + "'." + didYouMean(name, names));
+  throw Error("expected a log level (trace, debug, info, warning, error, off), found '" + std::string(name) + "'." +
+              didYouMean(name, names));
 }
 
 void Log::setSink(Sink sink) {
@@ -42,9 +43,12 @@ void Log::write(Level level, std::string_view line) {
     const char c = line[i];
     const auto byte = static_cast<unsigned char>(c);
     // What follows a line break is indented: text from a client cannot pass for a line of its own.
-    if (byte == '\n') clean += i + 1 < line.size() && line[i + 1] == ' ' ? "\n" : "\n  ";
-    else if (byte == '\t' || (byte >= 0x20 && byte != 0x7f)) clean += c;
-    else clean += fmt::format("\\x{:02x}", byte);
+    if (byte == '\n')
+      clean += i + 1 < line.size() && line[i + 1] == ' ' ? "\n" : "\n  ";
+    else if (byte == '\t' || (byte >= 0x20 && byte != 0x7f))
+      clean += c;
+    else
+      clean += fmt::format("\\x{:02x}", byte);
   }
   const std::lock_guard lock(impl_->mutex);
   if (impl_->sink) return impl_->sink(level, clean);

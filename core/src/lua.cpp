@@ -30,7 +30,9 @@ void Lua::runConfig(std::string_view file) {
   impl_->settings.finish();
 }
 
-Value Lua::run(std::string_view text, std::string_view chunkName) { return impl_->run(text, "=" + std::string(chunkName)); }
+Value Lua::run(std::string_view text, std::string_view chunkName) {
+  return impl_->run(text, "=" + std::string(chunkName));
+}
 
 void Lua::attach(Leaf& node, std::string_view file, const Value& arguments) {
   impl_->attachFile(node, file, nullptr, [&](lua_State* L) { script::pushArguments(L, arguments); });
@@ -44,7 +46,8 @@ std::vector<List> Lua::options() const { return impl_->settings.options(); }
 
 namespace script {
 
-Runtime::Runtime(Kernel& k) : kernel(k), settings(k), trusted(std::make_shared<State>(*this, nullptr)), scriptNode(&k.root()) {}
+Runtime::Runtime(Kernel& k)
+    : kernel(k), settings(k), trusted(std::make_shared<State>(*this, nullptr)), scriptNode(&k.root()) {}
 
 Runtime::~Runtime() {
   trusted->close();
@@ -64,7 +67,8 @@ Script Runtime::readConfig(std::string_view file) {
 Script Runtime::readInclude(std::string_view file, lua_State* includer) {
   std::vector<fs::path> places;
   if (const auto beside = folderOf(includer); !beside.empty()) places.push_back(beside);
-  if (!configFolder.empty() && std::find(places.begin(), places.end(), configFolder) == places.end()) places.push_back(configFolder);
+  if (!configFolder.empty() && std::find(places.begin(), places.end(), configFolder) == places.end())
+    places.push_back(configFolder);
   places.insert(places.end(), folders.begin(), folders.end());
   return read(file, "script", places);
 }
@@ -84,7 +88,9 @@ Script Runtime::read(std::string_view file, std::string_view what, std::vector<f
   for (const fs::path& place : places) {
     const fs::path path = place / file;  // an absolute file stays what it is
     std::error_code ec;
-    if (fs::is_directory(path, ec)) throw Error("cannot read " + std::string(what) + " '" + std::string(file) + "': " + path.string() + " is a folder");
+    if (fs::is_directory(path, ec))
+      throw Error("cannot read " + std::string(what) + " '" + std::string(file) + "': " + path.string() +
+                  " is a folder");
     if (fs::exists(path, ec)) {
       std::ifstream in(path, std::ios::binary);
       std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -127,7 +133,8 @@ Value Runtime::run(std::string_view text, std::string_view chunkName) {
   return result;
 }
 
-void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted, const State::Body& pushArguments) {
+void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted,
+                     const State::Body& pushArguments) {
   const std::string path = node.path();
   if (!node.isLinked()) throw Error("cannot attach a script to " + path + ": it is not linked into the tree");
   std::shared_ptr<State> state = trusted;
@@ -155,7 +162,8 @@ void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkNa
   throw Error("the script attached to " + path + " failed: " + failure->text);
 }
 
-/// Scripts that are attached may lie where the user is: they are named by the user, or by a config that expects them there.
+/// Scripts that are attached may lie where the user is: they are named by the user, or by a config that expects them
+/// there.
 void Runtime::attachFile(Leaf& node, std::string_view file, lua_State* from, const State::Body& pushArguments) {
   std::vector<fs::path> places;
   if (const auto beside = folderOf(from); !beside.empty()) places.push_back(beside);
@@ -192,7 +200,8 @@ void Runtime::checkChannels() {
     if (c->living() == 0) continue;
     for (const Hook* hook : c->hooks())
       if (const std::string near = nearChannels(hook->channel); !near.empty())
-        kernel.log().warning("class {} has a hook on '{}', and there is no such channel: nothing runs it.{}", c->name(), hook->channel, near);
+        kernel.log().warning("class {} has a hook on '{}', and there is no such channel: nothing runs it.{}", c->name(),
+                             hook->channel, near);
   }
 }
 
@@ -202,7 +211,8 @@ std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::
     listened_.emplace_back(channel, lua_tostring(L, -1));
     lua_pop(L, 1);
   } else if (const std::string near = nearChannels(channel); !near.empty()) {
-    throw Error("there is no event channel '" + std::string(channel) + "': nothing would ever run this handler." + near);
+    throw Error("there is no event channel '" + std::string(channel) + "': nothing would ever run this handler." +
+                near);
   }
   auto s = std::make_shared<Subscription>();
   State& state = State::of(L);
@@ -220,8 +230,10 @@ void Runtime::report(const Failure& failure, const Subscription& s) {
   kernel.countFault();
   const bool isNew = reported_.insert(failure.where.empty() ? failure.text : failure.where).second;
   if (!isNew && !failure.exhausted) return;
-  kernel.log().error("handler of '{}' at {} failed: {}\n  {}", s.channel->name(), s.node ? s.node->path() : "a deleted node", failure.text,
-                     failure.exhausted ? "It is switched off: it would take as long every time." : "It stays; further errors of this line are not logged.");
+  kernel.log().error("handler of '{}' at {} failed: {}\n  {}", s.channel->name(),
+                     s.node ? s.node->path() : "a deleted node", failure.text,
+                     failure.exhausted ? "It is switched off: it would take as long every time."
+                                       : "It stays; further errors of this line are not logged.");
 }
 
 Subscription::~Subscription() { state->release(function); }
@@ -248,8 +260,10 @@ void Subscription::run(const Event& event) {
     lua_setfield(L, -2, "step");
     lua_pushinteger(L, event.cycle);
     lua_setfield(L, -2, "cycle");
-    if (event.data) pushValue(L, *event.data);
-    else lua_pushnil(L);
+    if (event.data)
+      pushValue(L, *event.data);
+    else
+      lua_pushnil(L);
     lua_setfield(L, -2, "data");
     lua_call(L, 2, 0);
   });

@@ -2,15 +2,13 @@
 
 #include "lua_impl.h"
 
-// What reaches the house from a script's environment. Upvalue 1 of these functions is the script's node (the root for configs), upvalue 2
-// the environment.
+// What reaches the house from a script's environment. Upvalue 1 of these functions is the script's node (the root for
+// configs), upvalue 2 the environment.
 
 namespace spark::script {
 
 namespace {
-Leaf& scriptNode(lua_State* L) {
-  return *toNode(L, lua_upvalueindex(1));
-}
+Leaf& scriptNode(lua_State* L) { return *toNode(L, lua_upvalueindex(1)); }
 
 int plugin(lua_State* L) {
   pushNode(L, &State::of(L).runtime().kernel.plugins().use(checkString(L, 1, "a plugin's name")));
@@ -51,13 +49,16 @@ int remove(lua_State* L) {
 
 int option(lua_State* L) {
   static const std::vector<std::string> known{"name", "default", "doc", "choices"};
-  if (!lua_istable(L, 1)) throw Error("option expected a table: option{name = \"agents\", default = 11, doc = \"...\"}, found a " + typeAt(L, 1));
+  if (!lua_istable(L, 1))
+    throw Error("option expected a table: option{name = \"agents\", default = 11, doc = \"...\"}, found a " +
+                typeAt(L, 1));
   lua_settop(L, 1);
   for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1)) {
     std::string key;
     appendText(L, -2, key);
     if (std::find(known.begin(), known.end(), key) == known.end())
-      throw Error("option knows no field '" + key + "'." + didYouMean(key, known) + " It has name, default, doc and choices.");
+      throw Error("option knows no field '" + key + "'." + didYouMean(key, known) +
+                  " It has name, default, doc and choices.");
   }
   lua_getfield(L, 1, "name");
   const std::string name(checkString(L, -1, "an option's name"));
@@ -107,7 +108,8 @@ void pushLog(lua_State* L, Level level) {
 int findNamespace(lua_State* L) {
   Leaf* found = nullptr;
   if (lua_type(L, 2) == LUA_TSTRING)
-    if (const auto* groups = State::of(L).runtime().kernel.root().find<Node>("/sys/variables")) found = groups->child(checkString(L, 2, "a name"));
+    if (const auto* groups = State::of(L).runtime().kernel.root().find<Node>("/sys/variables"))
+      found = groups->child(checkString(L, 2, "a name"));
   pushNode(L, found);
   return 1;
 }
@@ -122,8 +124,9 @@ void addGlobals(lua_State* L, Leaf& node, bool config) {
     lua_setfield(L, environment, "self");
   }
   constexpr luaL_Reg kEverybody[] = {{"on", guarded<handle>}};
-  constexpr luaL_Reg kTrusted[] = {{"plugin", guarded<plugin>}, {"unload", guarded<unload>}, {"new", guarded<create>},    {"get", guarded<get>},
-                                   {"delete", guarded<remove>}, {"option", guarded<option>}, {"include", guarded<include>}};
+  constexpr luaL_Reg kTrusted[] = {
+      {"plugin", guarded<plugin>}, {"unload", guarded<unload>}, {"new", guarded<create>},     {"get", guarded<get>},
+      {"delete", guarded<remove>}, {"option", guarded<option>}, {"include", guarded<include>}};
   const bool trusted = State::of(L).trusted();
   const auto add = [&](std::span<const luaL_Reg> functions) {
     for (const luaL_Reg& f : functions) {
@@ -139,7 +142,10 @@ void addGlobals(lua_State* L, Leaf& node, bool config) {
     pushLog(L, Level::info);
     lua_setfield(L, environment, "print");
     lua_newtable(L);
-    for (const auto& [name, level] : {std::pair("debug", Level::debug), {"info", Level::info}, {"warning", Level::warning}, {"error", Level::error}}) {
+    for (const auto& [name, level] : {std::pair("debug", Level::debug),
+                                      {"info", Level::info},
+                                      {"warning", Level::warning},
+                                      {"error", Level::error}}) {
       pushLog(L, level);
       lua_setfield(L, -2, name);
     }

@@ -2,17 +2,16 @@
 /// \file
 /// Private to the kernel's Lua runtime: states with limits, environments, nodes as userdata, settings.
 ///
-/// Trusted scripts (configs, attached files) share one Lua state. Every untrusted script has a state of its own with a memory limit, so
-/// that nothing it does to its tables reaches the others. A state is entered through State::run only: it gives the script a stack of its
-/// own, an instruction budget and a traceback. Lua's errors are C++ exceptions (lua5.4-c++): destructors run, and `guarded` turns
-/// std::exception into Lua errors with file:line.
-
-#include <lua.hpp>
+/// Trusted scripts (configs, attached files) share one Lua state. Every untrusted script has a state of its own with a
+/// memory limit, so that nothing it does to its tables reaches the others. A state is entered through State::run only:
+/// it gives the script a stack of its own, an instruction budget and a traceback. Lua's errors are C++ exceptions
+/// (lua5.4-c++): destructors run, and `guarded` turns std::exception into Lua errors with file:line.
 
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <lua.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -41,7 +40,8 @@ inline constexpr std::size_t kSandboxMemory = 2u << 20;
 /// How often scripts may enter each other (a handler that raises an event that ...).
 inline constexpr std::size_t kMaxDepth = 16;
 
-/// What went wrong in a run. `text` starts with file:line and ends with the traceback; `where` is file:line alone, "" when unknown.
+/// What went wrong in a run. `text` starts with file:line and ends with the traceback; `where` is file:line alone, ""
+/// when unknown.
 struct Failure {
   std::string text, where;
   bool exhausted = false;  ///< the budget was used up
@@ -81,12 +81,14 @@ class State : public std::enable_shared_from_this<State> {
   static State& of(lua_State* L) { return **static_cast<State**>(lua_getextraspace(L)); }
   Runtime& runtime() { return runtime_; }
   bool trusted() const { return trusted_; }
-  /// True when scripts of this state may touch `leaf`: all may the trusted one, its node and what is below an untrusted one.
+  /// True when scripts of this state may touch `leaf`: all may the trusted one, its node and what is below an untrusted
+  /// one.
   bool allows(const Leaf& leaf) const;
 
   /// Runs `body` in protected mode on an empty stack. Nothing when all went well.
   std::optional<Failure> run(std::int64_t budget, const Body& body);
-  /// Takes instructions off the running script's budget, for C functions whose work depends on their arguments. Lua error when it is used up.
+  /// Takes instructions off the running script's budget, for C functions whose work depends on their arguments. Lua
+  /// error when it is used up.
   void charge(lua_State* L, std::uint64_t instructions);
   /// As charge, one instruction: for each small step of a C function.
   void charge(lua_State* L) {
@@ -177,24 +179,29 @@ class Runtime {
   explicit Runtime(Kernel& kernel);
   ~Runtime();
 
-  /// Finds and reads a config: in the working folder, beside a config that runs, in the folders. Throws Error that says where it looked.
+  /// Finds and reads a config: in the working folder, beside a config that runs, in the folders. Throws Error that says
+  /// where it looked.
   Script readConfig(std::string_view file);
-  /// Finds and reads what a script includes: beside that script, beside the running config, in the folders. Throws as readConfig.
+  /// Finds and reads what a script includes: beside that script, beside the running config, in the folders. Throws as
+  /// readConfig.
   Script readInclude(std::string_view file, lua_State* includer);
-  /// Finds a script (as an include, in the working folder at last) and attaches it; `from`: the Lua function that does, or nullptr. Throws Error.
+  /// Finds a script (as an include, in the working folder at last) and attaches it; `from`: the Lua function that does,
+  /// or nullptr. Throws Error.
   void attachFile(Leaf& node, std::string_view file, lua_State* from, const State::Body& pushArguments);
-  /// At a config's end: throws Error for a handler of a channel that nobody defined and whose name is nearly another's, and warns of such a hook of
-  /// a class that lives.
+  /// At a config's end: throws Error for a handler of a channel that nobody defined and whose name is nearly another's,
+  /// and warns of such a hook of a class that lives.
   void checkChannels();
-  /// Loads text and leaves the function, with the environment at `environment` (an absolute or upvalue index), on the stack. Lua error.
+  /// Loads text and leaves the function, with the environment at `environment` (an absolute or upvalue index), on the
+  /// stack. Lua error.
   static void load(lua_State* L, std::string_view text, std::string_view chunkName, int environment);
   /// Leaves the environment that configs share on the stack of a trusted thread.
   void pushConfigEnvironment(lua_State* L);
   /// Runs a chunk in the config's environment. Throws Error.
   Value run(std::string_view text, std::string_view chunkName);
-  /// Runs a chunk in an environment of its own. `pushArguments` leaves on the stack what the chunk reads as `...`; empty: nothing. Throws Error;
-  /// what it subscribed until then goes.
-  void attach(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted, const State::Body& pushArguments = {});
+  /// Runs a chunk in an environment of its own. `pushArguments` leaves on the stack what the chunk reads as `...`;
+  /// empty: nothing. Throws Error; what it subscribed until then goes.
+  void attach(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted,
+              const State::Body& pushArguments = {});
   /// Adds the function on top of the stack, which is popped, as a handler. Throws Error.
   std::shared_ptr<Subscription> subscribe(lua_State* L, Leaf& node, std::string_view channel);
   /// Logs a handler's failure, once for each line of a script, and that it is switched off always.
@@ -205,9 +212,9 @@ class Runtime {
   std::vector<std::filesystem::path> folders;
   std::shared_ptr<State> trusted;
   std::vector<std::weak_ptr<State>> sandboxes;
-  std::filesystem::path configFolder;  ///< of the running config, searched too
-  bool inConfig = false;               ///< overrides shield what is assigned now
-  Ref<Leaf> scriptNode;                ///< the node of the running script; the root for configs
+  std::filesystem::path configFolder;                        ///< of the running config, searched too
+  bool inConfig = false;                                     ///< overrides shield what is assigned now
+  Ref<Leaf> scriptNode;                                      ///< the node of the running script; the root for configs
   std::vector<std::weak_ptr<Subscription>>* made = nullptr;  ///< collects what a script subscribes while it is attached
 
  private:
@@ -219,7 +226,7 @@ class Runtime {
   int configEnvironment_ = LUA_NOREF;
   std::set<std::string> reported_;
   std::map<std::string, std::filesystem::path, std::less<>> origins_;  ///< folders of the files read, by chunk name
-  std::vector<std::pair<std::string, std::string>> listened_;         ///< channels nobody had defined then, and file:line
+  std::vector<std::pair<std::string, std::string>> listened_;  ///< channels nobody had defined then, and file:line
 };
 
 /// Wraps a C function: a std::exception becomes a Lua error that starts with the caller's file:line.
@@ -240,11 +247,13 @@ std::string_view checkString(lua_State* L, int index, const char* what);
 
 // Values (lua_value.cpp).
 void pushValue(lua_State* L, const Value& value);
-/// As pushValue for what a script is given: lists of pairs whose keys are words become tables with these keys. Nothing for nil.
+/// As pushValue for what a script is given: lists of pairs whose keys are words become tables with these keys. Nothing
+/// for nil.
 void pushArguments(lua_State* L, const Value& arguments);
 /// Throws Error when it is a function or too deep.
 Value toValue(lua_State* L, int index);
-/// Leaves a table's keys, sorted, as a sequence on the stack and returns their number. Throws Error for keys without an order.
+/// Leaves a table's keys, sorted, as a sequence on the stack and returns their number. Throws Error for keys without an
+/// order.
 lua_Integer pushSortedKeys(lua_State* L, int table);
 /// Leaves the first key after the one at `after` (0: the very first) on the stack, nil when there is none.
 void pushNextKey(lua_State* L, int table, int after);
@@ -262,18 +271,21 @@ void deleteNode(lua_State* L, Leaf& node);
 /// on(channel, function): the arguments are at `channelIndex` and above. Leaves the subscription's userdata; returns 1.
 int subscribe(lua_State* L, Leaf& node, int channelIndex);
 
-// Members of nodes by name: properties, and the variables of a group (a class with methods get and set and a property names).
+// Members of nodes by name: properties, and the variables of a group (a class with methods get and set and a property
+// names).
 bool isGroup(const Leaf& leaf);
 bool hasMember(const Leaf& leaf, std::string_view name);
 void setMember(Leaf& leaf, std::string_view name, const Value& value);
 std::vector<std::string> memberNames(const Leaf& leaf);
 
 // Environments (lua_library.cpp, lua_globals.cpp).
-/// Replaces find, match, gmatch and gsub in the table on top of the stack by such that pay for what they compare (lua_patterns.cpp).
+/// Replaces find, match, gmatch and gsub in the table on top of the stack by such that pay for what they compare
+/// (lua_patterns.cpp).
 void openPatterns(lua_State* L);
 /// Fills a new state's globals with the pure library.
 void openLibrary(lua_State* L, bool trusted);
-/// Leaves a new environment for scripts of `node` on the stack: the pure library, and for trusted scripts what reaches the house.
+/// Leaves a new environment for scripts of `node` on the stack: the pure library, and for trusted scripts what reaches
+/// the house.
 void pushEnvironment(lua_State* L, Leaf& node, bool config);
 /// Adds plugin, new, get, ... to the table on top of the stack.
 void addGlobals(lua_State* L, Leaf& node, bool config);

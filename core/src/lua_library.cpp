@@ -4,10 +4,11 @@
 
 #include "lua_impl.h"
 
-// The pure library of all scripts. Lua's own, but: traversal by sorted key, a stable sort (Lua's picks its pivot by the clock), random
-// numbers from the kernel's streams, no addresses in texts, nothing that depends on the garbage collector, no files, no clock, no load.
-// Untrusted scripts get a part of it in which every function also pays for the size of its arguments; no metatables (they let a C
-// function loop without end), no patterns (they take exponential time).
+// The pure library of all scripts. Lua's own, but: traversal by sorted key, a stable sort (Lua's picks its pivot by the
+// clock), random numbers from the kernel's streams, no addresses in texts, nothing that depends on the garbage
+// collector, no files, no clock, no load. Untrusted scripts get a part of it in which every function also pays for the
+// size of its arguments; no metatables (they let a C function loop without end), no patterns (they take exponential
+// time).
 //
 // The globals table of a state holds what every environment gets a copy of; no script reaches it.
 
@@ -59,7 +60,9 @@ int pairsSorted(lua_State* L) {
     lua_call(L, 1, 3);
     return 3;
   }
-  if (!lua_istable(L, 1)) throw Error("pairs expected a table, found a " + typeAt(L, 1) + (toNode(L, 1) ? ": use ipairs(node:children())" : ""));
+  if (!lua_istable(L, 1))
+    throw Error("pairs expected a table, found a " + typeAt(L, 1) +
+                (toNode(L, 1) ? ": use ipairs(node:children())" : ""));
   lua_settop(L, 1);
   pushSortedKeys(L, 1);
   lua_pushinteger(L, 0);
@@ -82,7 +85,9 @@ int setMetatable(lua_State* L) {
     for (const char* key : {"__gc", "__mode"}) {
       lua_pushstring(L, key);
       lua_rawget(L, 2);
-      if (!lua_isnil(L, -1)) throw Error(std::string("a metatable must not have ") + key + ": the garbage collector's moment is not the same in every run");
+      if (!lua_isnil(L, -1))
+        throw Error(std::string("a metatable must not have ") + key +
+                    ": the garbage collector's moment is not the same in every run");
       lua_pop(L, 1);
     }
   return callOriginal(L, "spark.setmetatable");
@@ -164,7 +169,8 @@ int sortTable(lua_State* L) {
     lua_rawseti(L, from, i);
   }
   for (lua_Integer width = 1; width < n; width *= 2, std::swap(from, to))
-    for (lua_Integer low = 1; low <= n; low += 2 * width) merge(L, from, to, low, std::min(low + width, n + 1), std::min(low + 2 * width, n + 1));
+    for (lua_Integer low = 1; low <= n; low += 2 * width)
+      merge(L, from, to, low, std::min(low + width, n + 1), std::min(low + 2 * width, n + 1));
   for (lua_Integer i = 1; i <= n; ++i) {
     lua_rawgeti(L, from, i);
     lua_seti(L, 1, i);
@@ -208,7 +214,8 @@ int drawRandom(lua_State* L) {
 int seedRandom(lua_State* L) {
   Stream& stream = streamOf(L);
   const lua_Number number = luaL_checknumber(L, 1);
-  stream.numbers.seed(lua_isinteger(L, 1) ? static_cast<std::uint64_t>(lua_tointeger(L, 1)) : std::bit_cast<std::uint64_t>(number));
+  stream.numbers.seed(lua_isinteger(L, 1) ? static_cast<std::uint64_t>(lua_tointeger(L, 1))
+                                          : std::bit_cast<std::uint64_t>(number));
   stream.keyed = true;
   return 0;
 }
@@ -235,12 +242,16 @@ struct Elements {
   static double integer(lua_State* L, int index, double otherwise) {
     return lua_isinteger(L, index) ? static_cast<double>(lua_tointeger(L, index)) : otherwise;
   }
-  static double concat(lua_State* L) { return 4 * (integer(L, 4, length(L)) - integer(L, 3, 1)); }  // numbers become texts
+  static double concat(lua_State* L) {
+    return 4 * (integer(L, 4, length(L)) - integer(L, 3, 1));
+  }  // numbers become texts
   static double insert(lua_State* L) { return lua_gettop(L) == 3 ? length(L) - integer(L, 2, 1) : 0; }
   static double remove(lua_State* L) { return lua_gettop(L) == 2 ? length(L) - integer(L, 2, 1) : 0; }
   static double move(lua_State* L) { return integer(L, 3, 0) - integer(L, 2, 0); }
   static double unpack(lua_State* L) { return integer(L, 3, length(L)) - integer(L, 2, 1); }
-  static double sort(lua_State* L) { return 4 * length(L) * std::log2(length(L) + 1); }  // a comparison takes as long as four moves
+  static double sort(lua_State* L) {
+    return 4 * length(L) * std::log2(length(L) + 1);
+  }  // a comparison takes as long as four moves
 };
 
 /// Upvalue: the function of the table library. Takes the elements that it works on off the budget first.
@@ -286,7 +297,8 @@ void restrict(lua_State* L) {
   lua_settop(L, 0);
   lua_pushglobaltable(L);
   lua_pushvalue(L, 1);
-  keepCharged(L, {"assert", "error", "ipairs", "next", "pairs", "pcall", "rawequal", "rawget", "rawlen", "rawset", "select", "tonumber", "tostring", "type"});
+  keepCharged(L, {"assert", "error", "ipairs", "next", "pairs", "pcall", "rawequal", "rawget", "rawlen", "rawset",
+                  "select", "tonumber", "tostring", "type"});
   keepChargedLibrary(L, "string", {"byte", "char", "format", "len", "lower", "rep", "reverse", "sub", "upper"});
   keepChargedLibrary(L, "table", {"concat", "insert", "pack", "remove", "sort", "unpack"});
   keepChargedLibrary(L, "utf8", {"char", "charpattern", "codepoint", "codes", "len", "offset"});
@@ -326,8 +338,9 @@ void appendText(lua_State* L, int index, std::string& out) {
 }
 
 void openLibrary(lua_State* L, bool trusted) {
-  constexpr luaL_Reg kLibraries[] = {{"_G", luaopen_base},      {"string", luaopen_string}, {"table", luaopen_table},
-                                     {"math", luaopen_math},    {"utf8", luaopen_utf8},     {"coroutine", luaopen_coroutine}};
+  constexpr luaL_Reg kLibraries[] = {{"_G", luaopen_base},     {"string", luaopen_string},
+                                     {"table", luaopen_table}, {"math", luaopen_math},
+                                     {"utf8", luaopen_utf8},   {"coroutine", luaopen_coroutine}};
   for (const luaL_Reg& library : kLibraries) {
     luaL_requiref(L, library.name, library.func, 1);
     lua_pop(L, 1);
@@ -335,7 +348,10 @@ void openLibrary(lua_State* L, bool trusted) {
   lua_pushglobaltable(L);
   remove(L, {"_G", "collectgarbage", "dofile", "load", "loadfile", "print", "warn"});
   replace(L, "setmetatable", "spark.setmetatable", guarded<setMetatable>);
-  constexpr luaL_Reg kBase[] = {{"next", guarded<nextSorted>}, {"pairs", guarded<pairsSorted>}, {"tostring", guarded<toText>}, {nullptr, nullptr}};
+  constexpr luaL_Reg kBase[] = {{"next", guarded<nextSorted>},
+                                {"pairs", guarded<pairsSorted>},
+                                {"tostring", guarded<toText>},
+                                {nullptr, nullptr}};
   luaL_setfuncs(L, kBase, 0);
   lua_getfield(L, -1, "string");
   remove(L, {"dump"});

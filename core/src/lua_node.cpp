@@ -17,19 +17,26 @@ struct NodeRef {
 using SubscriptionRef = std::weak_ptr<Subscription>;
 
 const std::vector<std::string>& builtins() {
-  static const std::vector<std::string> names{"name", "path", "class", "parent", "alive", "find", "children", "new", "delete", "attachScript", "attach", "on"};
+  static const std::vector<std::string> names{"name",     "path", "class",  "parent",       "alive",  "find",
+                                              "children", "new",  "delete", "attachScript", "attach", "on"};
   return names;
 }
 
-bool isBuiltin(std::string_view name) { return std::find(builtins().begin(), builtins().end(), name) != builtins().end(); }
+bool isBuiltin(std::string_view name) {
+  return std::find(builtins().begin(), builtins().end(), name) != builtins().end();
+}
 
-/// True for a built-in name that the node's class uses itself: joints have a method attach, file systems a property path. The class's counts.
-bool hidesBuiltin(ClassObject& c, std::string_view name) { return name != "alive" && (c.property(name) || c.method(name)); }
+/// True for a built-in name that the node's class uses itself: joints have a method attach, file systems a property
+/// path. The class's counts.
+bool hidesBuiltin(ClassObject& c, std::string_view name) {
+  return name != "alive" && (c.property(name) || c.method(name));
+}
 
 /// The first argument of node:f(...).
 Leaf& self(lua_State* L, const char* function) {
   if (Leaf* leaf = toNode(L, 1)) return *leaf;
-  throw Error(std::string("expected a node before ") + function + ", found " + typeAt(L, 1) + ": write node:" + function + "(...), with a colon");
+  throw Error(std::string("expected a node before ") + function + ", found " + typeAt(L, 1) +
+              ": write node:" + function + "(...), with a colon");
 }
 
 void mustBeTrusted(lua_State* L, const char* what) {
@@ -62,9 +69,12 @@ int nodeChildren(lua_State* L) {
 int nodeNew(lua_State* L) {
   mustBeTrusted(L, "node:new");
   Leaf& node = self(L, "new");
-  if (!node.asNode()) throw Error("cannot make a child of " + node.path() + ": a " + node.classObject()->name() + " cannot have children");
+  if (!node.asNode())
+    throw Error("cannot make a child of " + node.path() + ": a " + node.classObject()->name() +
+                " cannot have children");
   const std::string_view className = checkString(L, 2, "a class name");
-  Leaf& made = node.asNode()->create(className, lua_isnoneornil(L, 3) ? std::string_view() : checkString(L, 3, "a name"));
+  Leaf& made =
+      node.asNode()->create(className, lua_isnoneornil(L, 3) ? std::string_view() : checkString(L, 3, "a name"));
   Ref<Leaf> alive(&made);
   State::of(L).runtime().settings.apply();
   pushNode(L, alive.get());
@@ -83,7 +93,8 @@ int nodeAttachScript(lua_State* L) {
   const std::string file(checkString(L, 2, "a script file"));
   // What follows is handed on as it is: the script runs in the same state.
   std::vector<int> arguments;
-  for (int i = 3, n = lua_gettop(L); i <= n; ++i) lua_pushvalue(L, i), arguments.push_back(luaL_ref(L, LUA_REGISTRYINDEX));
+  for (int i = 3, n = lua_gettop(L); i <= n; ++i)
+    lua_pushvalue(L, i), arguments.push_back(luaL_ref(L, LUA_REGISTRYINDEX));
   const auto push = [&](lua_State* to) {
     luaL_checkstack(to, static_cast<int>(arguments.size()), "a script has too many arguments");
     for (const int argument : arguments) lua_rawgeti(to, LUA_REGISTRYINDEX, argument);
@@ -99,9 +110,11 @@ int nodeOn(lua_State* L) { return subscribe(L, self(L, "on"), 2); }
 
 /// A script's file given to a method that hides the built-in attach. Throws Error with the name that is never hidden.
 void refuseScript(const Leaf& node, const std::string& name, const std::vector<Value>& arguments) {
-  if (name != "attach" || arguments.empty() || arguments[0].type() != Value::Type::string || !arguments[0].toString().ends_with(".lua")) return;
-  throw Error("attach is a method of class " + node.classObject()->name() + " itself: write node:attachScript(\"" + arguments[0].toString() +
-              "\") to attach a script to " + node.path());
+  if (name != "attach" || arguments.empty() || arguments[0].type() != Value::Type::string ||
+      !arguments[0].toString().ends_with(".lua"))
+    return;
+  throw Error("attach is a method of class " + node.classObject()->name() + " itself: write node:attachScript(\"" +
+              arguments[0].toString() + "\") to attach a script to " + node.path());
 }
 
 /// A method as the script calls it; its name is the upvalue.
@@ -113,11 +126,12 @@ int callNodeMethod(lua_State* L) {
   refuseScript(node, name, arguments);
   Runtime& runtime = State::of(L).runtime();
   if (runtime.inConfig) {
-    if (isGroup(node) && name == "set" && !arguments.empty() && runtime.settings.shields(node, arguments[0].plain())) return 0;
+    if (isGroup(node) && name == "set" && !arguments.empty() && runtime.settings.shields(node, arguments[0].plain()))
+      return 0;
     if (name.size() > 3 && name.starts_with("set"))
       for (const Property* p : node.classObject()->properties())
-        if (p->name.size() + 3 == name.size() && std::equal(p->name.begin() + 1, p->name.end(), name.begin() + 4) && (p->name[0] | 32) == (name[3] | 32) &&
-            runtime.settings.shields(node, p->name))
+        if (p->name.size() + 3 == name.size() && std::equal(p->name.begin() + 1, p->name.end(), name.begin() + 4) &&
+            (p->name[0] | 32) == (name[3] | 32) && runtime.settings.shields(node, p->name))
           return 0;
   }
   pushValue(L, callMethod(node, name, arguments));
@@ -141,8 +155,8 @@ void pushMethod(lua_State* L, std::string_view name) {
     names.insert(names.end(), builtins().begin(), builtins().end());
     for (const Method* m : leaf.classObject()->methods()) names.push_back(m->name);
   }
-  throw Error(leaf.path() + " (class " + leaf.classObject()->name() + ") has no property" + (readable ? " or method '" : " '") + std::string(name) + "'." +
-              didYouMean(name, names));
+  throw Error(leaf.path() + " (class " + leaf.classObject()->name() + ") has no property" +
+              (readable ? " or method '" : " '") + std::string(name) + "'." + didYouMean(name, names));
 }
 
 /// Upvalues: the functions that every node has, the methods used so far by name.
@@ -158,12 +172,18 @@ int nodeIndex(lua_State* L) {
   lua_pushvalue(L, 2);
   if (!own && lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL) return 1;
   if (!own && key == "parent") return pushAllowed(L, leaf.parent());
-  if (!own && key == "path") pushValue(L, leaf.path());
-  else if (!own && key == "class") pushValue(L, leaf.classObject()->name());
-  else if (const Property* p = leaf.classObject()->property(key)) pushValue(L, p->get(leaf));
-  else if (leaf.classObject()->method(key)) pushMethod(L, key);
-  else if (hasMember(leaf, key)) pushValue(L, callMethod(leaf, "get", std::array<Value, 1>{Value(key)}));
-  else throwUnknown(leaf, key, true);
+  if (!own && key == "path")
+    pushValue(L, leaf.path());
+  else if (!own && key == "class")
+    pushValue(L, leaf.classObject()->name());
+  else if (const Property* p = leaf.classObject()->property(key))
+    pushValue(L, p->get(leaf));
+  else if (leaf.classObject()->method(key))
+    pushMethod(L, key);
+  else if (hasMember(leaf, key))
+    pushValue(L, callMethod(leaf, "get", std::array<Value, 1>{Value(key)}));
+  else
+    throwUnknown(leaf, key, true);
   return 1;
 }
 
@@ -202,9 +222,14 @@ int subscriptionFree(lua_State* L) {
 }  // namespace
 
 void openNodes(lua_State* L) {
-  constexpr luaL_Reg kFunctions[] = {{"find", guarded<nodeFind>},     {"children", guarded<nodeChildren>}, {"new", guarded<nodeNew>},
-                                     {"delete", guarded<nodeDelete>}, {"attachScript", guarded<nodeAttachScript>}, {"attach", guarded<nodeAttachScript>},
-                                     {"on", guarded<nodeOn>},         {nullptr, nullptr}};
+  constexpr luaL_Reg kFunctions[] = {{"find", guarded<nodeFind>},
+                                     {"children", guarded<nodeChildren>},
+                                     {"new", guarded<nodeNew>},
+                                     {"delete", guarded<nodeDelete>},
+                                     {"attachScript", guarded<nodeAttachScript>},
+                                     {"attach", guarded<nodeAttachScript>},
+                                     {"on", guarded<nodeOn>},
+                                     {nullptr, nullptr}};
   luaL_newmetatable(L, kNodeType);
   luaL_newlib(L, kFunctions);
   lua_newtable(L);
@@ -258,7 +283,8 @@ Leaf* toNode(lua_State* L, int index) {
   const auto* n = static_cast<NodeRef*>(luaL_testudata(L, index, kNodeType));
   if (!n) return nullptr;
   if (Leaf* leaf = n->ref.get()) return leaf;
-  throw Error("this node is gone: it was " + n->path + " and has been deleted. Ask node.alive before you use a node that may die.");
+  throw Error("this node is gone: it was " + n->path +
+              " and has been deleted. Ask node.alive before you use a node that may die.");
 }
 
 void deleteNode(lua_State* L, Leaf& node) {
@@ -294,8 +320,10 @@ bool hasMember(const Leaf& leaf, std::string_view name) {
 }
 
 void setMember(Leaf& leaf, std::string_view name, const Value& value) {
-  if (!leaf.classObject()->property(name) && isGroup(leaf)) callMethod(leaf, "set", std::array<Value, 2>{Value(name), value});
-  else setProperty(leaf, name, value);
+  if (!leaf.classObject()->property(name) && isGroup(leaf))
+    callMethod(leaf, "set", std::array<Value, 2>{Value(name), value});
+  else
+    setProperty(leaf, name, value);
 }
 
 std::vector<std::string> memberNames(const Leaf& leaf) {

@@ -4,8 +4,9 @@
 
 #include "lua_impl.h"
 
-// find, match, gmatch and gsub of Lua 5.4 (reference manual, section 6.4.1). Lua's own run as one instruction however long they take, and a
-// pattern such as ".-.-.-b" takes exponential time: these pay a unit of the budget for each comparison.
+// find, match, gmatch and gsub of Lua 5.4 (reference manual, section 6.4.1). Lua's own run as one instruction however
+// long they take, and a pattern such as ".-.-.-b" takes exponential time: these pay a unit of the budget for each
+// comparison.
 
 namespace spark::script {
 
@@ -18,7 +19,11 @@ constexpr std::ptrdiff_t kOpen = -1, kPosition = -2;  // instead of a capture's 
 class Matcher {
  public:
   Matcher(lua_State* L, std::string_view subject, std::string_view pattern)
-      : L_(L), state_(State::of(L)), begin_(subject.data()), end_(begin_ + subject.size()), patternEnd_(pattern.data() + pattern.size()) {}
+      : L_(L),
+        state_(State::of(L)),
+        begin_(subject.data()),
+        end_(begin_ + subject.size()),
+        patternEnd_(pattern.data() + pattern.size()) {}
 
   /// The end of the match of `pattern` at `at`, nullptr when there is none.
   const char* start(const char* at, const char* pattern) {
@@ -202,7 +207,8 @@ class Matcher {
 
   const char* again(const char* at, int digit) {
     const int i = digit - '1';
-    if (i < 0 || i >= level_ || captures_[i].length == kOpen) throw Error("invalid capture index %" + std::to_string(i + 1));
+    if (i < 0 || i >= level_ || captures_[i].length == kOpen)
+      throw Error("invalid capture index %" + std::to_string(i + 1));
     if (captures_[i].length == kPosition) return nullptr;  // a place is no text
     const auto length = static_cast<std::size_t>(captures_[i].length);
     if (static_cast<std::size_t>(end_ - at) < length) return nullptr;
@@ -471,8 +477,11 @@ static int gsub(lua_State* L) {
 
 void openPatterns(lua_State* L) {
   using namespace patterns;
-  constexpr luaL_Reg kFunctions[] = {
-      {"find", guarded<find>}, {"match", guarded<match>}, {"gmatch", guarded<gmatch>}, {"gsub", guarded<gsub>}, {nullptr, nullptr}};
+  constexpr luaL_Reg kFunctions[] = {{"find", guarded<find>},
+                                     {"match", guarded<match>},
+                                     {"gmatch", guarded<gmatch>},
+                                     {"gsub", guarded<gsub>},
+                                     {nullptr, nullptr}};
   luaL_setfuncs(L, kFunctions, 0);
 }
 

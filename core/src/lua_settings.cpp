@@ -3,8 +3,9 @@
 
 #include "lua_impl.h"
 
-// An override is `option`, `Namespace.Name` (which is /sys/variables/Namespace.Name) or `/path.property`. Those of nodes are set as soon as
-// the node exists, so that a scene imported next already reads them, and shield their property from what the config assigns.
+// An override is `option`, `Namespace.Name` (which is /sys/variables/Namespace.Name) or `/path.property`. Those of
+// nodes are set as soon as the node exists, so that a scene imported next already reads them, and shield their property
+// from what the config assigns.
 
 namespace spark::script {
 
@@ -25,10 +26,11 @@ Value fitted(const Value& given, const Value& defaultValue) {
     case Type::string:
       if (!value.isList() && !value.isNil()) return value.plain();
       break;
-    default: break;
+    default:
+      break;
   }
-  throw Error("expected " + std::string(typeName(defaultValue.type())) + " (its default is " + defaultValue.text() + "), found " +
-              std::string(typeName(value.type())) + " " + value.text());
+  throw Error("expected " + std::string(typeName(defaultValue.type())) + " (its default is " + defaultValue.text() +
+              "), found " + std::string(typeName(value.type())) + " " + value.text());
 }
 
 void checkChoice(const Value& value, const List& choices) {
@@ -64,13 +66,16 @@ void Settings::add(std::string key, Value value) {
   overrides_.push_back(std::move(o));
 }
 
-Value Settings::declare(const std::string& name, const Value& defaultValue, const std::string& doc, const List& choices) {
+Value Settings::declare(const std::string& name, const Value& defaultValue, const std::string& doc,
+                        const List& choices) {
   if (name.empty() || name.find_first_of("./= ") != std::string::npos)
-    throw Error("cannot declare option '" + name + "': a name must be there and must not hold '.', '/', '=' or a blank");
+    throw Error("cannot declare option '" + name +
+                "': a name must be there and must not hold '.', '/', '=' or a blank");
   const auto same = std::find_if(options_.begin(), options_.end(), [&](const Option& o) { return o.name == name; });
   if (same != options_.end()) {
     if (same->defaultValue == defaultValue && same->choices == choices) return same->value;
-    throw Error("option '" + name + "' is declared already, with another default or other choices (its default was " + same->defaultValue.text() + ")");
+    throw Error("option '" + name + "' is declared already, with another default or other choices (its default was " +
+                same->defaultValue.text() + ")");
   }
   Option option{name, doc, defaultValue, defaultValue, choices};
   try {
@@ -96,8 +101,8 @@ void Settings::set(Override& o, Leaf& target) {
   if (isGroup(target)) {
     o.met = o.met || hasMember(target, o.member);
   } else if (!hasMember(target, o.member)) {
-    throw Error("unknown setting '" + o.key + "': " + target.path() + " (class " + target.classObject()->name() + ") has no property '" + o.member + "'." +
-                didYouMean(o.member, memberNames(target)));
+    throw Error("unknown setting '" + o.key + "': " + target.path() + " (class " + target.classObject()->name() +
+                ") has no property '" + o.member + "'." + didYouMean(o.member, memberNames(target)));
   } else {
     o.met = true;
   }

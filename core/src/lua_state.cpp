@@ -4,10 +4,10 @@
 
 #include "lua_impl.h"
 
-// Limits. A count hook runs every kHookInterval instructions and takes them off the budget of the run; the allocator takes off a share
-// for the bytes it hands out, so that few instructions cannot move much memory. When the budget is used up every
-// further instruction fails, whatever the script catches, until the run has ended. Threads inherit the hook from the thread that makes
-// them, so coroutines count too.
+// Limits. A count hook runs every kHookInterval instructions and takes them off the budget of the run; the allocator
+// takes off a share for the bytes it hands out, so that few instructions cannot move much memory. When the budget is
+// used up every further instruction fails, whatever the script catches, until the run has ended. Threads inherit the
+// hook from the thread that makes them, so coroutines count too.
 
 namespace spark::script {
 
@@ -68,7 +68,8 @@ void* State::allocate(void* self, void* block, std::size_t oldSize, std::size_t 
     if (state.memoryLimit_ != 0 && state.memory_ + newSize - oldSize > state.memoryLimit_) return nullptr;
     state.left_ -= static_cast<std::int64_t>(newSize / kBytesPerInstruction);
     // The next instruction is the last: until the next count many more such blocks could be asked for.
-    if (state.left_ <= 0 && state.depth_ > 0) lua_sethook(state.threads_[state.depth_ - 1], &State::countHook, LUA_MASKCOUNT, 1);
+    if (state.left_ <= 0 && state.depth_ > 0)
+      lua_sethook(state.threads_[state.depth_ - 1], &State::countHook, LUA_MASKCOUNT, 1);
   }
   void* made = std::realloc(block, newSize);
   if (made) state.memory_ += newSize - oldSize;
@@ -88,15 +89,18 @@ void State::countHook(lua_State* L, lua_Debug* ar) {
 void State::throwForGood(lua_State* L, lua_Debug* ar, const char* text) {
   lua_sethook(L, &State::countHook, LUA_MASKCOUNT, 1);
   lua_getinfo(L, "Sl", ar);
-  if (ar->currentline > 0) lua_pushfstring(L, "%s:%d: %s", ar->short_src, ar->currentline, text);
-  else lua_pushstring(L, text);
+  if (ar->currentline > 0)
+    lua_pushfstring(L, "%s:%d: %s", ar->short_src, ar->currentline, text);
+  else
+    lua_pushstring(L, text);
   lua_error(L);
   std::abort();  // lua_error does not return, but is not declared so
 }
 
 void State::throwExhausted(lua_State* L, lua_Debug* ar) {
   char text[100];
-  std::snprintf(text, sizeof text, "stopped after %lld instructions: is there an endless loop?", static_cast<long long>(budget_));
+  std::snprintf(text, sizeof text, "stopped after %lld instructions: is there an endless loop?",
+                static_cast<long long>(budget_));
   throwForGood(L, ar, text);
 }
 
@@ -112,12 +116,14 @@ void State::release(int reference) {
   if (main_) luaL_unref(main_, LUA_REGISTRYINDEX, reference);
 }
 
-/// What is near the global that a script used although it is nil, as a sentence: names of the environment of the function that failed.
+/// What is near the global that a script used although it is nil, as a sentence: names of the environment of the
+/// function that failed.
 std::string State::nearGlobals(lua_State* L, std::string_view text) {
   constexpr std::string_view kMark = "a nil value (global '";
   const std::size_t mark = text.find(kMark);
   lua_Debug ar{};
-  if (mark == std::string_view::npos || !lua_checkstack(L, 5) || !lua_getstack(L, 1, &ar) || !lua_getinfo(L, "f", &ar)) return {};
+  if (mark == std::string_view::npos || !lua_checkstack(L, 5) || !lua_getstack(L, 1, &ar) || !lua_getinfo(L, "f", &ar))
+    return {};
   std::string_view name = text.substr(mark + kMark.size());
   name = name.substr(0, name.find('\''));
   std::vector<std::string> names;
@@ -161,7 +167,10 @@ int State::describeError(lua_State* L) {
 
 std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
   if (!main_) return Failure{"the scripts have ended", ""};
-  if (depth_ == kMaxDepth) return Failure{"scripts entered each other more than " + std::to_string(kMaxDepth) + " deep: does a handler raise its own event?", ""};
+  if (depth_ == kMaxDepth)
+    return Failure{"scripts entered each other more than " + std::to_string(kMaxDepth) +
+                       " deep: does a handler raise its own event?",
+                   ""};
   const std::int64_t outerLeft = left_, outerBudget = budget_;
   const std::size_t outerLimit = memoryLimit_;
   lua_State* L = threads_[depth_++];
@@ -178,7 +187,8 @@ std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
   std::optional<Failure> result;
   if (status != LUA_OK) result = std::move(failure_).value_or(Failure{});
   if (result) result->exhausted = left_ <= 0;
-  if (status == LUA_ERRMEM) result = Failure{"used up its memory: an untrusted script may hold " + megabytes(kSandboxMemory), ""};
+  if (status == LUA_ERRMEM)
+    result = Failure{"used up its memory: an untrusted script may hold " + megabytes(kSandboxMemory), ""};
   if (result && result->text.empty()) result->text = "failed without a message";
   failure_.reset();
   lua_settop(L, 0);

@@ -21,7 +21,8 @@ struct Key {
     if (kind == Kind::string) return text < o.text;
     if (kind == Kind::number && !(integral && o.integral)) {
       // A float key is never integral, so beyond 2^53, where rounding could matter, at most one side is a float.
-      const lua_Number a = integral ? static_cast<lua_Number>(integer) : number, b = o.integral ? static_cast<lua_Number>(o.integer) : o.number;
+      const lua_Number a = integral ? static_cast<lua_Number>(integer) : number,
+                       b = o.integral ? static_cast<lua_Number>(o.integer) : o.number;
       return a < b;
     }
     return integer < o.integer;
@@ -33,8 +34,10 @@ Key keyAt(lua_State* L, int index) {
   switch (lua_type(L, index)) {
     case LUA_TNUMBER:
       k.integral = lua_isinteger(L, index);
-      if (k.integral) k.integer = lua_tointeger(L, index);
-      else k.number = lua_tonumber(L, index);
+      if (k.integral)
+        k.integer = lua_tointeger(L, index);
+      else
+        k.number = lua_tonumber(L, index);
       return k;
     case LUA_TSTRING: {
       std::size_t n = 0;
@@ -47,7 +50,8 @@ Key keyAt(lua_State* L, int index) {
       k.kind = Key::Kind::boolean;
       k.integer = lua_toboolean(L, index);
       return k;
-    default: break;
+    default:
+      break;
   }
   if (const Leaf* leaf = toNode(L, index)) {
     k.kind = Key::Kind::node;
@@ -61,7 +65,9 @@ Key keyAt(lua_State* L, int index) {
 Value toValueNested(lua_State* L, int index, int depth);
 
 Value tableToValue(lua_State* L, int index, int depth) {
-  if (depth > kMaxNesting) throw Error("cannot pass this table: it is nested more than " + std::to_string(kMaxNesting) + " deep, or holds itself");
+  if (depth > kMaxNesting)
+    throw Error("cannot pass this table: it is nested more than " + std::to_string(kMaxNesting) +
+                " deep, or holds itself");
   if (!lua_checkstack(L, 8)) throw Error("cannot pass this table: no stack left");
   const auto length = static_cast<lua_Integer>(lua_rawlen(L, index));
   lua_Integer keys = 0;
@@ -91,8 +97,10 @@ Value tableToValue(lua_State* L, int index, int depth) {
 Value toValueNested(lua_State* L, int index, int depth) {
   switch (lua_type(L, index)) {
     case LUA_TNONE:
-    case LUA_TNIL: return {};
-    case LUA_TBOOLEAN: return static_cast<bool>(lua_toboolean(L, index));
+    case LUA_TNIL:
+      return {};
+    case LUA_TBOOLEAN:
+      return static_cast<bool>(lua_toboolean(L, index));
     case LUA_TNUMBER:
       if (lua_isinteger(L, index)) return static_cast<std::int64_t>(lua_tointeger(L, index));
       return static_cast<double>(lua_tonumber(L, index));
@@ -101,8 +109,10 @@ Value toValueNested(lua_State* L, int index, int depth) {
       const char* s = lua_tolstring(L, index, &n);
       return std::string(s, n);
     }
-    case LUA_TTABLE: return tableToValue(L, index, depth);
-    default: break;
+    case LUA_TTABLE:
+      return tableToValue(L, index, depth);
+    default:
+      break;
   }
   if (const Leaf* leaf = toNode(L, index)) return leaf->path();
   throw Error("expected a value (nil, boolean, number, string, table or node), found a " + typeAt(L, index));
@@ -118,7 +128,8 @@ std::string typeAt(lua_State* L, int index) {
 }
 
 std::string_view checkString(lua_State* L, int index, const char* what) {
-  if (lua_type(L, index) != LUA_TSTRING) throw Error(std::string("expected ") + what + " (a string), found " + typeAt(L, index));
+  if (lua_type(L, index) != LUA_TSTRING)
+    throw Error(std::string("expected ") + what + " (a string), found " + typeAt(L, index));
   std::size_t n = 0;
   const char* s = lua_tolstring(L, index, &n);
   return {s, n};
@@ -126,12 +137,19 @@ std::string_view checkString(lua_State* L, int index, const char* what) {
 
 void pushValue(lua_State* L, const Value& value) {
   switch (value.type()) {
-    case Value::Type::nil: return lua_pushnil(L);
-    case Value::Type::boolean: return lua_pushboolean(L, value.toBool());
-    case Value::Type::integer: return lua_pushinteger(L, value.toInteger());
-    case Value::Type::number: return lua_pushnumber(L, value.toNumber());
-    case Value::Type::string: lua_pushlstring(L, value.toString().data(), value.toString().size()); return;
-    case Value::Type::list: break;
+    case Value::Type::nil:
+      return lua_pushnil(L);
+    case Value::Type::boolean:
+      return lua_pushboolean(L, value.toBool());
+    case Value::Type::integer:
+      return lua_pushinteger(L, value.toInteger());
+    case Value::Type::number:
+      return lua_pushnumber(L, value.toNumber());
+    case Value::Type::string:
+      lua_pushlstring(L, value.toString().data(), value.toString().size());
+      return;
+    case Value::Type::list:
+      break;
   }
   const List& list = value.toList();
   luaL_checkstack(L, 4, "a value is nested too deep");
@@ -144,8 +162,9 @@ void pushValue(lua_State* L, const Value& value) {
 
 namespace {
 bool isTable(const Value& v) {
-  return v.isList() && !v.toList().empty() &&
-         std::all_of(v.toList().begin(), v.toList().end(), [](const Value& p) { return p.isList() && p.toList().size() == 2 && p.toList()[0].isString(); });
+  return v.isList() && !v.toList().empty() && std::all_of(v.toList().begin(), v.toList().end(), [](const Value& p) {
+           return p.isList() && p.toList().size() == 2 && p.toList()[0].isString();
+         });
 }
 
 void pushTables(lua_State* L, const Value& value) {
@@ -155,8 +174,10 @@ void pushTables(lua_State* L, const Value& value) {
   const bool named = isTable(value);
   lua_Integer i = 0;
   for (const Value& e : value.toList()) {
-    if (named) pushValue(L, e.toList()[0]);
-    else lua_pushinteger(L, ++i);
+    if (named)
+      pushValue(L, e.toList()[0]);
+    else
+      lua_pushinteger(L, ++i);
     pushTables(L, named ? e.toList()[1] : e);
     lua_rawset(L, -3);
   }

@@ -8,10 +8,11 @@
 #include "spark/kernel.h"
 #include "spark/running.h"
 
-// How a node joins and leaves. link: onLink of the parent, its hooks, then its children's; when one throws, what was linked is unlinked
-// again and add() throws. unlink: children first, then onUnlink, then its handlers go. Both may change the tree around them, so lists are
-// walked by index and looked at again; only what is on its way in or out itself must stay where it is (`changing_`). Once all is unlinked
-// references turn empty, then destructors run: none sees another object half destroyed.
+// How a node joins and leaves. link: onLink of the parent, its hooks, then its children's; when one throws, what was
+// linked is unlinked again and add() throws. unlink: children first, then onUnlink, then its handlers go. Both may
+// change the tree around them, so lists are walked by index and looked at again; only what is on its way in or out
+// itself must stay where it is (`changing_`). Once all is unlinked references turn empty, then destructors run: none
+// sees another object half destroyed.
 
 namespace spark {
 
@@ -77,7 +78,8 @@ detail::Life* Leaf::life() const {
 
 void Leaf::setName(std::string name) {
   const auto refuse = [&](const char* why) { throw Error("cannot name " + path() + " '" + name + "': " + why); };
-  if (name.find_first_of("/\\") != std::string::npos) refuse("a name must not hold '/' or '\\', which separate names in paths");
+  if (name.find_first_of("/\\") != std::string::npos)
+    refuse("a name must not hold '/' or '\\', which separate names in paths");
   if (name == "." || name == "..") refuse("'.' and '..' have a meaning in paths");
   if (name.empty() && parent_) refuse("what has a parent needs a name");
   if (linked_ && Node::isFixed(*this)) refuse("classes, plugins and their folders keep their names");
@@ -88,7 +90,10 @@ void Leaf::setName(std::string name) {
 }
 
 Kernel& Leaf::kernel() const {
-  if (!class_) throw Error("kernel() is not there in a constructor, nor is the tree: do this in onLink(), which runs when the object hangs in the tree");
+  if (!class_)
+    throw Error(
+        "kernel() is not there in a constructor, nor is the tree: do this in onLink(), which runs when the object "
+        "hangs in the tree");
   return *class_->kernel_;
 }
 
@@ -113,7 +118,9 @@ std::size_t Node::ordinal(const Leaf& child) const {
     const auto same = names_->find(child.name_);
     if (same != names_->end()) {
       if (same->second.back() == &child) return same->second.size();
-      return static_cast<std::size_t>(std::find(same->second.begin(), same->second.end(), &child) - same->second.begin()) + 1;
+      return static_cast<std::size_t>(std::find(same->second.begin(), same->second.end(), &child) -
+                                      same->second.begin()) +
+             1;
     }
   }
   std::size_t n = 1;
@@ -186,11 +193,13 @@ void* Leaf::requireInterface(std::string_view path, const InterfaceId& id) const
       at = next;
       rest.remove_prefix(std::min(n + 1, rest.size()));
     }
-    throw Error("expected a " + std::string(id.name) + " at '" + std::string(path) + "' (seen from " + this->path() + "), found nothing." + hint);
+    throw Error("expected a " + std::string(id.name) + " at '" + std::string(path) + "' (seen from " + this->path() +
+                "), found nothing." + hint);
   }
   if (void* p = found->query(id)) return p;
-  throw Error("expected a " + std::string(id.name) + " at " + found->path() + ", found a " + (found->class_ ? found->class_->name() : "Leaf") +
-              ", which lacks interface " + id.name + " version " + std::to_string(id.version) + ".");
+  throw Error("expected a " + std::string(id.name) + " at " + found->path() + ", found a " +
+              (found->class_ ? found->class_->name() : "Leaf") + ", which lacks interface " + id.name + " version " +
+              std::to_string(id.version) + ".");
 }
 
 Node::~Node() {
@@ -254,11 +263,16 @@ bool Node::isFixed(const Leaf& leaf) {
 }
 
 void Node::mustRest(const Leaf& leaf, const char* verb) {
-  if (isFixed(leaf)) throw Error("cannot " + std::string(verb) + " " + leaf.path() + ": it belongs to the kernel (a plugin's classes go when it is unloaded)");
-  if (leaf.kernel().inUse_ && leaf.linked_) Kernel::refuseUsed(leaf, false, "cannot " + std::string(verb) + " " + leaf.path() + " now");
+  if (isFixed(leaf))
+    throw Error("cannot " + std::string(verb) + " " + leaf.path() +
+                ": it belongs to the kernel (a plugin's classes go when it is unloaded)");
+  if (leaf.kernel().inUse_ && leaf.linked_)
+    Kernel::refuseUsed(leaf, false, "cannot " + std::string(verb) + " " + leaf.path() + " now");
   if (leaf.kernel().changing_ == 0) return;
   const auto walk = [&](const auto& self, const Leaf& l) -> void {
-    if (l.changing_) throw Error("cannot " + std::string(verb) + " " + leaf.path() + " now: " + (&l == &leaf ? "it" : l.path()) + " is just being linked or unlinked");
+    if (l.changing_)
+      throw Error("cannot " + std::string(verb) + " " + leaf.path() + " now: " + (&l == &leaf ? "it" : l.path()) +
+                  " is just being linked or unlinked");
     if (l.asNode())
       for (const auto& c : l.asNode()->children_) self(self, *c);
   };
@@ -266,15 +280,20 @@ void Node::mustRest(const Leaf& leaf, const char* verb) {
 }
 
 std::size_t Node::indexOf(const Leaf& child) const {
-  return static_cast<std::size_t>(std::find_if(children_.begin(), children_.end(), [&](const auto& c) { return c.get() == &child; }) - children_.begin());
+  return static_cast<std::size_t>(
+      std::find_if(children_.begin(), children_.end(), [&](const auto& c) { return c.get() == &child; }) -
+      children_.begin());
 }
 
 Leaf& Node::add(std::unique_ptr<Leaf> leaf) {
   if (!leaf) throw Error("cannot add nothing to " + path());
   Leaf& added = *leaf;
-  if (!added.class_) throw Error("cannot add an object without a class to " + path() + ": make it through its class object");
-  if (added.parent_ || added.linked_) throw Error("cannot add " + added.path() + " to " + path() + ": it has a parent already");
-  if (class_ && class_->kernel_ != added.class_->kernel_) throw Error("cannot add " + added.path() + " to " + path() + ": it was made by another kernel");
+  if (!added.class_)
+    throw Error("cannot add an object without a class to " + path() + ": make it through its class object");
+  if (added.parent_ || added.linked_)
+    throw Error("cannot add " + added.path() + " to " + path() + ": it has a parent already");
+  if (class_ && class_->kernel_ != added.class_->kernel_)
+    throw Error("cannot add " + added.path() + " to " + path() + ": it was made by another kernel");
   if (class_ && (this == kernel().classesNode_ || this == kernel().pluginsNode_))
     throw Error("cannot add " + added.path() + " to " + path() + ": what is there comes from plugins");
   return attach(std::move(leaf));
@@ -285,7 +304,8 @@ Leaf& Node::attach(std::unique_ptr<Leaf> leaf) {
   int levels = 1;
   for (const Node* up = parent_; up; up = up->parent_) ++levels;
   if (levels > kMostLevels)
-    throw Error("cannot add a " + added.class_->name() + " here: the tree is at most " + std::to_string(kMostLevels) + " levels deep");
+    throw Error("cannot add a " + added.class_->name() + " here: the tree is at most " + std::to_string(kMostLevels) +
+                " levels deep");
   if (added.name_.empty()) added.name_ = added.class_->name();
   children_.push_back(std::move(leaf));
   added.parent_ = this;
@@ -379,7 +399,8 @@ void Node::bury(Leaf& leaf) {
 }
 
 void Node::remove(Leaf& child) {
-  if (child.parent_ != this) throw Error("cannot remove " + child.path() + " from " + path() + ": it is no child of it");
+  if (child.parent_ != this)
+    throw Error("cannot remove " + child.path() + " from " + path() + ": it is no child of it");
   mustRest(child, "remove");
   detach(child);
 }
@@ -417,7 +438,8 @@ void Node::reparent(Leaf& child, Node& newParent) {
   for (Node* p = &newParent; p; p = p->parent_)
     if (p == &child) throw Error("cannot move " + child.path() + " below itself");
   mustRest(child, "move");
-  if (&newParent.kernel() != &kernel()) throw Error("cannot move " + child.path() + " to " + newParent.path() + ", which belongs to another kernel");
+  if (&newParent.kernel() != &kernel())
+    throw Error("cannot move " + child.path() + " to " + newParent.path() + ", which belongs to another kernel");
   if (&newParent == kernel().classesNode_ || &newParent == kernel().pluginsNode_)
     throw Error("cannot move " + child.path() + " to " + newParent.path() + ": what is there comes from plugins");
   if (child.linked_ && !newParent.linked_) unlink(child);
@@ -435,8 +457,10 @@ void Node::reparent(Leaf& child, Node& newParent) {
   };
   carry(*this, newParent);
   try {
-    if (child.linked_ == newParent.linked_) moved(child);
-    else link(child);
+    if (child.linked_ == newParent.linked_)
+      moved(child);
+    else
+      link(child);
   } catch (...) {
     carry(newParent, *this);
     try {

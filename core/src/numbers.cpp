@@ -8,10 +8,11 @@
 #include <cmath>
 #include <cstdlib>
 
-// The digits of a number up to its k-th decimal are the whole number next to v * 10^k. In double precision that product is off by less than
-// 1e-6, which matters only next to a tie. There it is worked out exactly: a double is m * 2^e with a whole m below 2^53, and m * 5^k fits 128
-// bits for k up to 27, so that dividing by the power of two that is left loses nothing, and ties go to the even digit as C wants it. Numbers
-// that are larger or smaller than those of messages go the long way through std::to_chars.
+// The digits of a number up to its k-th decimal are the whole number next to v * 10^k. In double precision that product
+// is off by less than 1e-6, which matters only next to a tie. There it is worked out exactly: a double is m * 2^e with
+// a whole m below 2^53, and m * 5^k fits 128 bits for k up to 27, so that dividing by the power of two that is left
+// loses nothing, and ties go to the even digit as C wants it. Numbers that are larger or smaller than those of messages
+// go the long way through std::to_chars.
 
 namespace spark {
 
@@ -19,11 +20,12 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-static_assert(std::endian::native == std::endian::little, "digits are put together in a word, the first in its lowest byte");
+static_assert(std::endian::native == std::endian::little,
+              "digits are put together in a word, the first in its lowest byte");
 
-constexpr int kGeneralDigits = 6;             // of %g
+constexpr int kGeneralDigits = 6;                 // of %g
 constexpr std::uint64_t kZeros = 0x303030303030;  // so many
-constexpr int kMostDecimals = 27;  // 5^27 < 2^63
+constexpr int kMostDecimals = 27;                 // 5^27 < 2^63
 constexpr auto kFives = [] {
   std::array<std::uint64_t, kMostDecimals + 1> out{1};
   for (std::size_t k = 1; k < out.size(); ++k) out[k] = out[k - 1] * 5;
@@ -39,11 +41,13 @@ constexpr std::array kPowers{1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8
 /// "00" to "99".
 constexpr auto kPairs = [] {
   std::array<char, 200> out{};
-  for (std::size_t i = 0; i < 100; ++i) out[2 * i] = static_cast<char>('0' + i / 10), out[2 * i + 1] = static_cast<char>('0' + i % 10);
+  for (std::size_t i = 0; i < 100; ++i)
+    out[2 * i] = static_cast<char>('0' + i / 10), out[2 * i + 1] = static_cast<char>('0' + i % 10);
   return out;
 }();
 
-/// |v| * 10^k, rounded to the nearest whole number, ties to the even one. |v| < 2^31, 0 <= k <= kMostDecimals, the result below 2^63.
+/// |v| * 10^k, rounded to the nearest whole number, ties to the even one. |v| < 2^31, 0 <= k <= kMostDecimals, the
+/// result below 2^63.
 [[gnu::noinline]] std::uint64_t scaledExactly(double v, int k) {
   constexpr int kMantissaBits = 52, kBias = 1075;
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(v) & ~(1ull << 63);
@@ -58,7 +62,8 @@ constexpr auto kPairs = [] {
   return whole + (rest > half || (rest == half && whole % 2));
 }
 
-/// The whole number next to `product`, which is below 2^30 and was rounded twice; false when it is too near a tie for that.
+/// The whole number next to `product`, which is below 2^30 and was rounded twice; false when it is too near a tie for
+/// that.
 inline bool nearest(double product, std::uint64_t& whole) {
   constexpr double kMargin = 1e-6;
   constexpr double kUnits = 0x1p52;  // from here on doubles are whole numbers, which stand in their lower bits
@@ -98,8 +103,8 @@ char* putSlowly(char* to, std::size_t room, double v, Format... format) {
   return std::to_chars(to, to + room, v, format...).ptr;
 }
 
-/// How %g writes numbers of one decimal exponent: what comes before the digits, how many of them before the point, how many at least, what
-/// comes behind them.
+/// How %g writes numbers of one decimal exponent: what comes before the digits, how many of them before the point, how
+/// many at least, what comes behind them.
 struct Layout {
   char before[8] = {}, behind[4] = {};
   std::uint8_t beforeSize = 0, whole = kGeneralDigits, least = 0, behindSize = 0;
@@ -126,15 +131,17 @@ constexpr auto kLayouts = [] {
 }();
 
 /// 10^kLeastExponent and on.
-constexpr std::array kBounds{1e-22, 1e-21, 1e-20, 1e-19, 1e-18, 1e-17, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8,
-                             1e-7,  1e-6,  1e-5,  1e-4,  1e-3,  1e-2,  1e-1,  1e0,   1e1,   1e2,   1e3,   1e4,   1e5,   1e6};
+constexpr std::array kBounds{1e-22, 1e-21, 1e-20, 1e-19, 1e-18, 1e-17, 1e-16, 1e-15, 1e-14, 1e-13,
+                             1e-12, 1e-11, 1e-10, 1e-9,  1e-8,  1e-7,  1e-6,  1e-5,  1e-4,  1e-3,
+                             1e-2,  1e-1,  1e0,   1e1,   1e2,   1e3,   1e4,   1e5,   1e6};
 /// The decimal exponent of a number from 1e-21 to 1e6, of binary exponent `binary`.
 inline int exponentOf(double v, int binary) {
   const int guess = binary * 315653 >> 20;  // floor(binary * log10(2)): the exponent or one less
   return guess + (v >= kBounds[static_cast<std::size_t>(guess + 1 - kLeastExponent)]);
 }
 
-/// Writes digits below 1,000,000, the last `Decimals` of them behind the point; no branch, since nobody knows how many there are before it.
+/// Writes digits below 1,000,000, the last `Decimals` of them behind the point; no branch, since nobody knows how many
+/// there are before it.
 template <int Decimals>
 char* putShort(char* to, std::uint32_t digits) {
   static_assert(Decimals == 2 || Decimals == 3);
@@ -157,7 +164,8 @@ char* putFixed(char* to, double v, int decimals, bool asFloat) {
   constexpr double kLateClock = 65536, kEndOfClocks = 1e9;
   constexpr int kFastDecimals = 9;
   constexpr std::uint64_t kShortEnd = 1000000;
-  if (std::isnan(v)) return static_cast<char*>(std::memcpy(to, "nan", 3)) + 3;  // its sign means nothing, and clients do not read it
+  if (std::isnan(v))
+    return static_cast<char*>(std::memcpy(to, "nan", 3)) + 3;  // its sign means nothing, and clients do not read it
   const bool clock = v >= kLateClock && v < kEndOfClocks;
   if (asFloat && !clock) v = static_cast<float>(v);
   if (!(std::abs(v) < 0x1p31) || decimals < 0 || decimals > kFastDecimals)
@@ -176,7 +184,7 @@ char* putFixed(char* to, double v, int decimals, bool asFloat) {
 }
 
 char* putGeneral(char* to, double v) {
-  constexpr std::uint64_t kEnd = 1000000;  // behind the largest number of six digits
+  constexpr std::uint64_t kEnd = 1000000;              // behind the largest number of six digits
   constexpr int kLeastBinary = -69, kMostBinary = 18;  // 1.7e-21 and on, below 524,288
   const double size = std::abs(v);
   const int binary = static_cast<int>(std::bit_cast<std::uint64_t>(size) >> 52) - 1023;
@@ -193,9 +201,11 @@ char* putGeneral(char* to, double v) {
   const auto high = static_cast<std::uint32_t>(digits) / 10000, low = static_cast<std::uint32_t>(digits) % 10000;
   // The first digit is the lowest byte.
   const std::uint64_t text = pair(high) | pair(low / 100) << 16 | pair(low % 100) << 32;
-  const int count = 8 - static_cast<int>(static_cast<unsigned>(std::countl_zero((text ^ kZeros) | 1)) / 8);  // one at least
+  const int count =
+      8 - static_cast<int>(static_cast<unsigned>(std::countl_zero((text ^ kZeros) | 1)) / 8);  // one at least
 
-  // No branch here: where the digits of a matrix have their point is anybody's guess. What is written too much is written over.
+  // No branch here: where the digits of a matrix have their point is anybody's guess. What is written too much is
+  // written over.
   const Layout& layout = kLayouts[static_cast<std::size_t>(exponent - kLeastExponent)];
   std::memcpy(to, layout.before, sizeof layout.before);
   to += layout.beforeSize;
@@ -216,7 +226,8 @@ void appendFixed(std::string& out, double v, int decimals, bool asFloat) {
 namespace {
 /// Reads numbers as most are written; false for all others.
 bool readShort(std::string_view text, double& v) {
-  // Up to 15 digits are a whole number that a double holds, and so is 10^decimals up to 22: their quotient is rounded once, as it has to be.
+  // Up to 15 digits are a whole number that a double holds, and so is 10^decimals up to 22: their quotient is rounded
+  // once, as it has to be.
   constexpr std::size_t kExactDigits = 15;
   const bool negative = text.starts_with('-');
   const std::string_view digits = text.substr(negative);
@@ -225,9 +236,12 @@ bool readShort(std::string_view text, double& v) {
   std::size_t at = 0, point = digits.size();
   for (; at < digits.size(); ++at) {
     const auto digit = static_cast<unsigned>(digits[at] - '0');
-    if (digit < 10) whole = whole * 10 + digit;
-    else if (digits[at] == '.' && point == digits.size()) point = at;
-    else break;
+    if (digit < 10)
+      whole = whole * 10 + digit;
+    else if (digits[at] == '.' && point == digits.size())
+      point = at;
+    else
+      break;
   }
   const bool pointed = point < digits.size();
   const std::size_t count = digits.size() - pointed;

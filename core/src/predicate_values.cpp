@@ -6,10 +6,14 @@ namespace {
 Value toValue(const Element& e) {
   const Token& t = e.token();
   switch (t.kind) {
-    case Token::Kind::number: return t.number;
-    case Token::Kind::integer: return t.integer;
-    case Token::Kind::text: return e.text();
-    case Token::Kind::list: break;
+    case Token::Kind::number:
+      return t.number;
+    case Token::Kind::integer:
+      return t.integer;
+    case Token::Kind::text:
+      return e.text();
+    case Token::Kind::list:
+      break;
   }
   List out;
   for (const Element inner : e) out.push_back(toValue(inner));
@@ -18,12 +22,21 @@ Value toValue(const Element& e) {
 
 void appendValue(const Value& v, Predicates& out) {
   switch (v.type()) {
-    case Value::Type::number: out.add(v.toNumber()); return;
-    case Value::Type::integer: out.add(v.toInteger()); return;
-    case Value::Type::string: out.add(v.toString()); return;
+    case Value::Type::number:
+      out.add(v.toNumber());
+      return;
+    case Value::Type::integer:
+      out.add(v.toInteger());
+      return;
+    case Value::Type::string:
+      out.add(v.toString());
+      return;
     case Value::Type::nil:
-    case Value::Type::boolean: out.add(v.text()); return;
-    case Value::Type::list: break;
+    case Value::Type::boolean:
+      out.add(v.text());
+      return;
+    case Value::Type::list:
+      break;
   }
   out.open();
   append(v.toList(), out);

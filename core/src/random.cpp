@@ -72,7 +72,8 @@ std::uint64_t RandomStream::below(std::uint64_t n) {
 
 RandomStream Convert<RandomStream>::from(Args& args) {
   const Value& v = args.take();
-  if (!v.isList() || v.toList().size() != 6) throw Error("expected the six numbers of a random stream, found " + v.text());
+  if (!v.isList() || v.toList().size() != 6)
+    throw Error("expected the six numbers of a random stream, found " + v.text());
   RandomStream out(0);
   const List& l = v.toList();
   for (int i = 0; i < 4; ++i) out.s_[i] = static_cast<std::uint64_t>(l[i].toInteger());

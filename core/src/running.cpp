@@ -15,19 +15,19 @@
 #include "spark/class_object.h"
 #include "spark/kernel.h"
 
-// Signal handlers may allocate nothing and take no lock. So words go into fixed buffers, by hand, and each thread that has a record also has a
-// stack for its handlers: a thread that used up its own can say so.
+// Signal handlers may allocate nothing and take no lock. So words go into fixed buffers, by hand, and each thread that
+// has a record also has a stack for its handlers: a thread that used up its own can say so.
 //
-// A crash: the handler says its words, puts back what handled the signal before and returns. The instruction fails again and the process ends
-// as if nobody had looked: core, exit status, a sanitizer's report. A watchdog's question is a signal to the thread that hangs, which writes
-// the answer itself: the nodes it names cannot change meanwhile.
+// A crash: the handler says its words, puts back what handled the signal before and returns. The instruction fails
+// again and the process ends as if nobody had looked: core, exit status, a sanitizer's report. A watchdog's question is
+// a signal to the thread that hangs, which writes the answer itself: the nodes it names cannot change meanwhile.
 
 namespace spark {
 
 namespace {
-constexpr std::size_t kRecords = 128;       // threads that run nodes at a time; further ones are not watched
-constexpr std::size_t kStack = 64u << 10;   // bytes for handlers
-constexpr std::size_t kDeepest = 64;        // nodes of a path
+constexpr std::size_t kRecords = 128;      // threads that run nodes at a time; further ones are not watched
+constexpr std::size_t kStack = 64u << 10;  // bytes for handlers
+constexpr std::size_t kDeepest = 64;       // nodes of a path
 
 Running records[kRecords];
 [[gnu::tls_model("initial-exec")]] thread_local Running* mine = nullptr;
@@ -58,7 +58,8 @@ class Words {
 
  private:
   Words& add(const char* text, std::size_t n) {
-    for (; n > 0 && at_ < end_; --n, ++text) *at_++ = static_cast<unsigned char>(*text) < 0x20 || *text == 0x7f ? '?' : *text;
+    for (; n > 0 && at_ < end_; --n, ++text)
+      *at_++ = static_cast<unsigned char>(*text) < 0x20 || *text == 0x7f ? '?' : *text;
     return *this;
   }
   char *at_, *begin_, *end_;
@@ -94,11 +95,16 @@ void addClass(const ClassObject& c, Words& words) {
 
 const char* nameOf(int number) {
   switch (number) {
-    case SIGSEGV: return "SIGSEGV";
-    case SIGBUS: return "SIGBUS";
-    case SIGFPE: return "SIGFPE";
-    case SIGILL: return "SIGILL";
-    default: return "SIGABRT";
+    case SIGSEGV:
+      return "SIGSEGV";
+    case SIGBUS:
+      return "SIGBUS";
+    case SIGFPE:
+      return "SIGFPE";
+    case SIGILL:
+      return "SIGILL";
+    default:
+      return "SIGABRT";
   }
 }
 
@@ -113,12 +119,15 @@ void onCrash(int number, siginfo_t* info, void*) {
   char text[Watchdog::kLongest];
   Words head(text, sizeof text);
   head << programName << ": crashed by " << nameOf(number);
-  if (number == SIGSEGV || number == SIGBUS) (head << " at address 0x").number(reinterpret_cast<std::uintptr_t>(info->si_addr), 16);
+  if (number == SIGSEGV || number == SIGBUS)
+    (head << " at address 0x").number(reinterpret_cast<std::uintptr_t>(info->si_addr), 16);
   say("\n", 1);
   say(text, head.size());
   say(" ", 1);
-  if (mine) say(text, describeRunning(*mine, text, sizeof text));
-  else say("in a thread that runs no nodes", 30);
+  if (mine)
+    say(text, describeRunning(*mine, text, sizeof text));
+  else
+    say("in a thread that runs no nodes", 30);
   constexpr char kHint[] = ". A debugger (gdb) shows the line.\n";
   say(kHint, sizeof kHint - 1);
   // What the processor found it finds again; what was sent has to be sent again.
@@ -199,7 +208,8 @@ std::size_t describeRunning(const Running& now, char* text, std::size_t size) {
     words << "outside of the code of nodes";
     return words.size();
   }
-  const auto* made = node->classObject() && node->classObject()->name() == "Class" ? static_cast<const ClassObject*>(node) : nullptr;
+  const auto* made =
+      node->classObject() && node->classObject()->name() == "Class" ? static_cast<const ClassObject*>(node) : nullptr;
   words << "in " << (phase ? phase : "code") << " of ";
   if (made) return addClass(*made, words), words.size();
   addPath(*node, words);

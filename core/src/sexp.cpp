@@ -1,9 +1,9 @@
-#include "spark/predicates.h"
-
 #include <array>
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include "spark/predicates.h"
 
 namespace spark {
 
@@ -15,7 +15,8 @@ constexpr auto kClasses = [] {
   std::array<std::uint8_t, 256> out{};
   for (const unsigned char c : {' ', '\t', '\r', '\n'}) out[c] = kBlank;
   for (unsigned c = 0; c < out.size(); ++c)
-    if ((c >= 0x2A && c <= 0x7E) || c == '!' || (c >= 0x23 && c <= 0x26) || c > 0x7F) out[c] = c == '\\' ? kAtom : kAtom | kPlain;
+    if ((c >= 0x2A && c <= 0x7E) || c == '!' || (c >= 0x23 && c <= 0x26) || c > 0x7F)
+      out[c] = c == '\\' ? kAtom : kAtom | kPlain;
   return out;
 }();
 bool is(Class what, char c) { return kClasses[static_cast<unsigned char>(c)] & what; }
@@ -26,8 +27,8 @@ struct Unclosed {
   std::uint32_t line = 0, column = 0, siblingLine = 0;
 };
 
-/// Reads the indentation of a text in which some list is not closed: the first line that begins with '(' no further right than the list
-/// that is open there must have been meant as its sibling. Nothing where people do not indent.
+/// Reads the indentation of a text in which some list is not closed: the first line that begins with '(' no further
+/// right than the list that is open there must have been meant as its sibling. Nothing where people do not indent.
 class Indentation {
  public:
   explicit Indentation(std::string_view bytes) : bytes_(bytes) {}
@@ -41,10 +42,14 @@ class Indentation {
         fresh_ = true;
         continue;
       }
-      if (c == ';') skipTo('\n');
-      else if (c == '"') skipTo('"');
-      else if (c == '(') open();
-      else if (c == ')') close();
+      if (c == ';')
+        skipTo('\n');
+      else if (c == '"')
+        skipTo('"');
+      else if (c == '(')
+        open();
+      else if (c == ')')
+        close();
       fresh_ = fresh_ && is(kBlank, c);
     }
     return flat_ ? std::nullopt : found_;
@@ -99,7 +104,8 @@ std::optional<Unclosed> findUnclosed(std::string_view bytes) { return Indentatio
 /// One pass over the bytes with an explicit depth: no recursion, whatever the nesting.
 class Reader {
  public:
-  Reader(std::string_view bytes, Predicates& out, const ReadLimits& limits) : bytes_(bytes), out_(out), limits_(limits) {}
+  Reader(std::string_view bytes, Predicates& out, const ReadLimits& limits)
+      : bytes_(bytes), out_(out), limits_(limits) {}
 
   ReadResult read(std::size_t maxExpressions) {
     std::size_t complete = 0;
@@ -165,7 +171,8 @@ class Reader {
   void failUnclosed(Place place) {
     const std::optional<Unclosed> guilty = limits_.places ? findUnclosed(bytes_) : std::nullopt;
     if (!guilty) return fail("the list is not closed", place);
-    fail("the list is not closed: line " + std::to_string(guilty->siblingLine) + " begins beside it", {guilty->line, guilty->column});
+    fail("the list is not closed: line " + std::to_string(guilty->siblingLine) + " begins beside it",
+         {guilty->line, guilty->column});
   }
   void mark(Place place) {
     if (limits_.places) out_.mark(place.line, place.column);
@@ -255,8 +262,9 @@ class Reader {
 /// More than any token takes, and what stands before and behind it.
 constexpr std::size_t kTokenRoom = kFixedRoom + 16;
 
-/// Writes the elements of tokens [t, end), a blank between them. `at` has room for a token, and so has what is returned: the place to write
-/// stays in a register, where a writer's own would be stored and loaded again for each byte.
+/// Writes the elements of tokens [t, end), a blank between them. `at` has room for a token, and so has what is
+/// returned: the place to write stays in a register, where a writer's own would be stored and loaded again for each
+/// byte.
 char* writeElements(const Predicates& from, const Token* t, const Token* end, int decimals, ByteWriter& out, char* at) {
   const auto more = [&out](char* to) { return out.end(to), out.room(kTokenRoom); };
   while (t < end) {
@@ -272,7 +280,9 @@ char* writeElements(const Predicates& from, const Token* t, const Token* end, in
           at = out.room(kTokenRoom);
         }
         break;
-      case Token::Kind::number: at = putFixed(at, t->number, decimals); break;
+      case Token::Kind::number:
+        at = putFixed(at, t->number, decimals);
+        break;
       case Token::Kind::integer:
         out.end(at);
         out.integer(t->integer);

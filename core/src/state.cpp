@@ -23,7 +23,8 @@ void StateWriter::write(std::string_view v) {
   word(v.size());
   for (std::size_t i = 0; i < v.size(); i += 8) {
     std::uint64_t w = 0;
-    for (std::size_t k = 0; k < 8 && i + k < v.size(); ++k) w |= static_cast<std::uint64_t>(static_cast<unsigned char>(v[i + k])) << (8 * k);
+    for (std::size_t k = 0; k < 8 && i + k < v.size(); ++k)
+      w |= static_cast<std::uint64_t>(static_cast<unsigned char>(v[i + k])) << (8 * k);
     word(w);
   }
 }
@@ -31,11 +32,20 @@ void StateWriter::write(std::string_view v) {
 void StateWriter::write(const Value& v) {
   word(static_cast<std::uint64_t>(v.type()));
   switch (v.type()) {
-    case Value::Type::nil: break;
-    case Value::Type::boolean: write(v.toBool()); break;
-    case Value::Type::integer: write(v.toInteger()); break;
-    case Value::Type::number: write(v.toNumber()); break;
-    case Value::Type::string: write(std::string_view(v.toString())); break;
+    case Value::Type::nil:
+      break;
+    case Value::Type::boolean:
+      write(v.toBool());
+      break;
+    case Value::Type::integer:
+      write(v.toInteger());
+      break;
+    case Value::Type::number:
+      write(v.toNumber());
+      break;
+    case Value::Type::string:
+      write(std::string_view(v.toString()));
+      break;
     case Value::Type::list:
       word(v.toList().size());
       for (const Value& e : v.toList()) write(e);
@@ -73,17 +83,23 @@ std::string StateReader::readString() {
 
 Value StateReader::readValue() {
   switch (const std::uint64_t type = word()) {
-    case 0: return {};
-    case 1: return readBool();
-    case 2: return readInteger();
-    case 3: return readNumber();
-    case 4: return readString();
+    case 0:
+      return {};
+    case 1:
+      return readBool();
+    case 2:
+      return readInteger();
+    case 3:
+      return readNumber();
+    case 4:
+      return readString();
     case 5: {
       List list;
       for (std::uint64_t n = word(); n > 0; --n) list.push_back(readValue());
       return list;
     }
-    default: throw Error("saved state holds a value of unknown type " + std::to_string(type));
+    default:
+      throw Error("saved state holds a value of unknown type " + std::to_string(type));
   }
 }
 

@@ -12,11 +12,15 @@ namespace spark {
 const Value* Value::at(std::string_view key) const {
   if (!isList()) return nullptr;
   for (const Value& entry : toList())
-    if (entry.isList() && entry.toList().size() == 2 && entry.toList()[0].isString() && entry.toList()[0].toString() == key) return &entry.toList()[1];
+    if (entry.isList() && entry.toList().size() == 2 && entry.toList()[0].isString() &&
+        entry.toList()[0].toString() == key)
+      return &entry.toList()[1];
   return nullptr;
 }
 
-const Value* Value::at(std::size_t index) const { return isList() && index < toList().size() ? &toList()[index] : nullptr; }
+const Value* Value::at(std::size_t index) const {
+  return isList() && index < toList().size() ? &toList()[index] : nullptr;
+}
 
 namespace {
 std::string numberText(double v) {
@@ -84,12 +88,18 @@ Value valueFromText(std::string_view& t, ReadWord readWord, bool inList, int dep
 
 std::string Value::text() const {
   switch (type()) {
-    case Type::nil: return "nil";
-    case Type::boolean: return toBool() ? "true" : "false";
-    case Type::integer: return std::to_string(toInteger());
-    case Type::number: return numberText(toNumber());
-    case Type::string: return '"' + toString() + '"';
-    case Type::list: break;
+    case Type::nil:
+      return "nil";
+    case Type::boolean:
+      return toBool() ? "true" : "false";
+    case Type::integer:
+      return std::to_string(toInteger());
+    case Type::number:
+      return numberText(toNumber());
+    case Type::string:
+      return '"' + toString() + '"';
+    case Type::list:
+      break;
   }
   std::string out = "{";
   for (const Value& v : toList()) out += (out.size() > 1 ? ", " : "") + v.text();
@@ -109,7 +119,8 @@ Value allFromText(std::string_view text, ReadWord readWord) {
 
 /// `text` without the quotes around all of it.
 std::string_view unquoted(std::string_view text) {
-  const bool quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.find(text.front(), 1) == text.size() - 1;
+  const bool quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') &&
+                      text.find(text.front(), 1) == text.size() - 1;
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 }  // namespace
@@ -125,7 +136,8 @@ Value Value::typed(std::string_view text) {
 Value Value::readAs(std::string_view typeName) const {
   if (!isTyped()) return *this;
   if (typeName == Convert<std::string>::typeName()) return unquoted(toString());
-  if (typeName == Convert<std::vector<std::string>>::typeName()) return allFromText(toString(), [](std::string_view word) { return Value(word); });
+  if (typeName == Convert<std::vector<std::string>>::typeName())
+    return allFromText(toString(), [](std::string_view word) { return Value(word); });
   return fromText(toString());
 }
 
@@ -141,7 +153,8 @@ const Value& Args::take() {
 
 namespace {
 [[noreturn]] void wrongType(std::string_view expected, const Value& found) {
-  throw Error("expected " + std::string(expected) + ", found " + std::string(typeName(found.type())) + " " + found.text());
+  throw Error("expected " + std::string(expected) + ", found " + std::string(typeName(found.type())) + " " +
+              found.text());
 }
 
 /// A single value, also when it comes as a list of one.
@@ -177,9 +190,11 @@ I integerFrom(Args& args) {
     throw Error("expected an integer, found " + numberText(d));
   }
   if (!args.loose && d != std::trunc(d)) throw Error("expected an integer, found " + numberText(d));
-  constexpr double kLow = static_cast<double>(std::numeric_limits<I>::min()), kHigh = static_cast<double>(std::numeric_limits<I>::max());
+  constexpr double kLow = static_cast<double>(std::numeric_limits<I>::min()),
+                   kHigh = static_cast<double>(std::numeric_limits<I>::max());
   if (d >= kLow && d <= kHigh) return static_cast<I>(d);
-  if (!args.loose) throw Error("expected an integer of " + numberText(kLow) + " to " + numberText(kHigh) + ", found " + numberText(d));
+  if (!args.loose)
+    throw Error("expected an integer of " + numberText(kLow) + " to " + numberText(kHigh) + ", found " + numberText(d));
   return d < kLow ? std::numeric_limits<I>::min() : std::numeric_limits<I>::max();
 }
 }  // namespace

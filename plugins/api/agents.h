@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Agents: the aspect that makes a subtree an agent, its perceptors and effectors, control aspects, parsers, and game control's services.
+/// Agents: the aspect that makes a subtree an agent, its perceptors and effectors, control aspects, parsers, and game
+/// control's services.
 
 #include <array>
 
@@ -22,8 +23,8 @@ class IParser {
   virtual void write(const Predicates& predicates, std::string& out) = 0;
 };
 
-/// Turns a subtree into an agent. Game control makes one per connection (`/usr/scene/AgentAspect<n>`); robots of the installed base nest
-/// a second one. Registered by `gamecontrol`.
+/// Turns a subtree into an agent. Game control makes one per connection (`/usr/scene/AgentAspect<n>`); robots of the
+/// installed base nest a second one. Registered by `gamecontrol`.
 class AgentAspect : public Transform {
   SPARK_CLASS(AgentAspect, Transform)
  public:
@@ -45,8 +46,8 @@ class AgentAspect : public Transform {
   int number_ = 0;
 };
 
-/// Writes what it senses. Called in the sense phase, possibly by several threads, one agent a thread: reads the world, changes only itself.
-/// Registered by `gamecontrol`.
+/// Writes what it senses. Called in the sense phase, possibly by several threads, one agent a thread: reads the world,
+/// changes only itself. Registered by `gamecontrol`.
 class Perceptor : public SceneNode {
   SPARK_CLASS(Perceptor, SceneNode)
  public:
@@ -66,18 +67,19 @@ class Perceptor : public SceneNode {
   std::string predicateName_;
 };
 
-/// Something that several perceptors look at, as eyes look at one scene: it is brought up to date once, before the first of them senses.
-/// Offered by perceptors.
+/// Something that several perceptors look at, as eyes look at one scene: it is brought up to date once, before the
+/// first of them senses. Offered by perceptors.
 class ISharedView {
  public:
   SPARK_INTERFACE(ISharedView, 1);
   virtual ~ISharedView() = default;
-  /// The sense phase, in the simulation's thread: this perceptor will be asked, and none was asked yet. `round` differs from phase to phase.
+  /// The sense phase, in the simulation's thread: this perceptor will be asked, and none was asked yet. `round` differs
+  /// from phase to phase.
   virtual void share(std::uint64_t round) = 0;
 };
 
-/// An eye, for those who show what an agent sees beside what is true. Offered by perceptors that tell polar coordinates. Used between two
-/// cycles, in the simulation's thread; it looks anew at where things are.
+/// An eye, for those who show what an agent sees beside what is true. Offered by perceptors that tell polar
+/// coordinates. Used between two cycles, in the simulation's thread; it looks anew at where things are.
 class IEye {
  public:
   SPARK_INTERFACE(IEye, 1);
@@ -85,7 +87,7 @@ class IEye {
   /// Something that may be seen. Its name is made of its percept's: "B", "F1L", "P Red 3", "P Red 3 head".
   struct Sight {
     std::string name;
-    Vec3f place;                   ///< in the world [m]
+    Vec3f place;  ///< in the world [m]
   };
   /// Where it is and looks, in the world: x forward, y to the left, z up.
   virtual Matrix view() = 0;
@@ -110,15 +112,16 @@ class Effector : public SceneNode {
   }
   /// The predicate it answers to: the node's name for joints, a fixed word for others. Asked when the tree changed.
   virtual std::string predicate() const { return name(); }
-  /// The act phase: a list `(predicate arguments...)` came. Immediate effectors act now; others keep it and act in prepare. Returns "" or
-  /// one line that says what was wrong (expected, found); nothing is thrown.
+  /// The act phase: a list `(predicate arguments...)` came. Immediate effectors act now; others keep it and act in
+  /// prepare. Returns "" or one line that says what was wrong (expected, found); nothing is thrown.
   virtual std::string act(const Element& action) = 0;
 
   /// The innermost agent aspect above; nullptr outside of agents.
   AgentAspect* agent() const { return ancestor<AgentAspect>(); }
 };
 
-/// A rule of the simulation, child of game control; runs in the rule phase, in child order. Registered by `gamecontrol`.
+/// A rule of the simulation, child of game control; runs in the rule phase, in child order. Registered by
+/// `gamecontrol`.
 class ControlAspect : public Node {
   SPARK_CLASS(ControlAspect, Node)
  public:
@@ -166,11 +169,11 @@ class IGameControl {
   virtual void removeAgent(AgentAspect& agent, bool close) = 0;
   /// Number of agents that ever had a robot.
   virtual int agentsSeen() const = 0;
-  /// What an agent sensed last; nullptr when that is nothing yet or it is no agent. Valid until the next sense phase, in which perceptors
-  /// that are not due say nothing.
+  /// What an agent sensed last; nullptr when that is nothing yet or it is no agent. Valid until the next sense phase,
+  /// in which perceptors that are not due say nothing.
   virtual const Predicates* percepts(const AgentAspect& agent) const = 0;
-  /// Wall time from the agent's percepts being sent to the next message from it [s], smoothed over some 16 of them; NaN when not known: it
-  /// lives inside the host, has not answered yet, or is no agent.
+  /// Wall time from the agent's percepts being sent to the next message from it [s], smoothed over some 16 of them; NaN
+  /// when not known: it lives inside the host, has not answered yet, or is no agent.
   virtual double latency(const AgentAspect& agent) const = 0;
 };
 

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// The one interface between `physics` and an engine. Opaque typed handles; contacts as plain data; one call steps a world, so that an
-/// engine may solve whole islands itself. Double precision, SI, radians. An engine is used by one thread at a time.
+/// The one interface between `physics` and an engine. Opaque typed handles; contacts as plain data; one call steps a
+/// world, so that an engine may solve whole islands itself. Double precision, SI, radians. An engine is used by one
+/// thread at a time.
 
 #include <span>
 #include <vector>
@@ -18,16 +19,16 @@ enum class Geom : std::uintptr_t { none = 0 };
 enum class Joint : std::uintptr_t { none = 0 };
 
 struct WorldParameters {
-  Vec3 gravity{0, 0, -9.81};       ///< m/s^2
+  Vec3 gravity{0, 0, -9.81};  ///< m/s^2
   double erp = 0.2, cfm = 1e-5;
   bool autoDisable = true;
   double contactSurfaceLayer = 0.001;  ///< m
 };
 
 struct Mass {
-  double mass = 1;                 ///< kg
-  Vec3 center = Vec3::Zero();      ///< m, body frame
-  Mat3 inertia = Mat3::Identity(); ///< kg m^2, about the body's origin
+  double mass = 1;                  ///< kg
+  Vec3 center = Vec3::Zero();       ///< m, body frame
+  Mat3 inertia = Mat3::Identity();  ///< kg m^2, about the body's origin
 };
 
 enum class Shape { box, sphere, capsule, cylinder, plane, ray, mesh };
@@ -38,18 +39,31 @@ struct ShapeDescription {
   double radius = 1, length = 1;   ///< sphere, capsule (without caps), cylinder, ray length [m]
   double plane[4] = {0, 0, 1, 0};  ///< a b c d, normal of length 1: ax + by + cz = d, in the world
   Vec3 rayOrigin = Vec3::Zero(), rayDirection{0, 0, 1};
-  std::vector<double> vertices;    ///< mesh: x y z each
+  std::vector<double> vertices;          ///< mesh: x y z each
   std::vector<std::uint32_t> triangles;  ///< mesh: three indices each
 };
 
 enum class JointType { ball, hinge, hinge2, slider, universal, fixed, angularMotor };
-enum class JointParameter { lowStop, highStop, velocity, maxForce, fudgeFactor, bounce, cfm, stopErp, stopCfm, suspensionErp, suspensionCfm };
+enum class JointParameter {
+  lowStop,
+  highStop,
+  velocity,
+  maxForce,
+  fudgeFactor,
+  bounce,
+  cfm,
+  stopErp,
+  stopCfm,
+  suspensionErp,
+  suspensionCfm
+};
 
 /// Contact surface after combination (scene-language section 3.3). A flag says that the value counts.
 struct Surface {
   bool bounceOn = false, softErpOn = false, softCfmOn = false, slipOn = false;
-  bool pyramid = false;            ///< mu is a coefficient: friction is bounded by mu times the normal force that acts without friction
-  double mu = HUGE_VAL;            ///< bound of friction along each tangent [N], or its coefficient; infinite by default
+  bool pyramid =
+      false;  ///< mu is a coefficient: friction is bounded by mu times the normal force that acts without friction
+  double mu = HUGE_VAL;  ///< bound of friction along each tangent [N], or its coefficient; infinite by default
   double bounce = 0, bounceVelocity = 0;  ///< restitution 0..1; least speed [m/s]
   double softErp = 0, softCfm = 0, slip1 = 0, slip2 = 0;
 };
@@ -57,14 +71,14 @@ struct Surface {
 /// One contact point, made by detect(), completed by collision handlers, consumed by step().
 struct Contact {
   Geom geomA = Geom::none, geomB = Geom::none;  ///< as reported (outermost of a transform geom)
-  void* ownerA = nullptr;          ///< what createGeom was given
+  void* ownerA = nullptr;                       ///< what createGeom was given
   void* ownerB = nullptr;
-  Vec3 position, normal;           ///< world; the normal points into A
-  double depth = 0;                ///< m
-  bool solve = false;              ///< a handler wants a contact joint
-  bool feedback = false;           ///< a handler wants the force
+  Vec3 position, normal;  ///< world; the normal points into A
+  double depth = 0;       ///< m
+  bool solve = false;     ///< a handler wants a contact joint
+  bool feedback = false;  ///< a handler wants the force
   Surface surface;
-  Vec3 forceOnA = Vec3::Zero();    ///< N, world: set by step() when feedback
+  Vec3 forceOnA = Vec3::Zero();  ///< N, world: set by step() when feedback
 };
 
 /// The contacts of one step, grouped by geom pair in detection order. Reused: capacity stays.
@@ -98,7 +112,8 @@ class IEngine {
   virtual void destroyBody(Body) = 0;
   virtual void setMass(Body, const Mass&) = 0;
   virtual BodyState state(Body) const = 0;
-  /// For many, without a call per body: 1 for each that is awake, else 0; and where those stand, as state() says. `out` of others stays as it is.
+  /// For many, without a call per body: 1 for each that is awake, else 0; and where those stand, as state() says. `out`
+  /// of others stays as it is.
   virtual void posesOfAwake(std::span<const Body>, std::span<std::uint8_t> awake, std::span<Matrix> out) const = 0;
   virtual void setPosition(Body, const Vec3&) = 0;
   virtual void setRotation(Body, const Mat3&) = 0;
@@ -108,7 +123,7 @@ class IEngine {
   virtual void addTorque(Body, const Vec3&) = 0;  ///< world frame
   /// Adds the force -linear v and the torque -angular w of its speeds [N s/m, N m s]; nothing while it sleeps.
   virtual void addDrag(Body, double linear, double angular) = 0;
-  virtual Vec3 force(Body) const = 0;             ///< accumulated so far
+  virtual Vec3 force(Body) const = 0;  ///< accumulated so far
   virtual Vec3 torque(Body) const = 0;
   virtual void setForce(Body, const Vec3&) = 0;
   virtual void setTorque(Body, const Vec3&) = 0;
@@ -154,12 +169,14 @@ class IEngine {
   /// Force [N] and torque [Nm] on the first and second body in the last step; zero without feedback.
   virtual void feedback(Joint, Vec3& force1, Vec3& torque1, Vec3& force2, Vec3& torque2) const = 0;
 
-  /// Finds contacts: at most `perPair` points a pair, no pair connected by a joint, none the filter refuses. Appends in a fixed order.
+  /// Finds contacts: at most `perPair` points a pair, no pair connected by a joint, none the filter refuses. Appends in
+  /// a fixed order.
   virtual void detect(World, PairFilter, int perPair, Contacts& out) = 0;
-  /// Solves the contacts that say `solve` and all joints, integrates by `dt` [s], clears forces, writes wanted feedback.
+  /// Solves the contacts that say `solve` and all joints, integrates by `dt` [s], clears forces, writes wanted
+  /// feedback.
   virtual void step(World, Contacts&, double dt) = 0;
-  /// Bodies whose state was not finite (or beyond all reason) after the last step: they were put back to their last good pose, at rest.
-  /// Valid until the next step.
+  /// Bodies whose state was not finite (or beyond all reason) after the last step: they were put back to their last
+  /// good pose, at rest. Valid until the next step.
   virtual std::span<const Body> repaired(World) const = 0;
 };
 

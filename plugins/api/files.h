@@ -14,9 +14,11 @@ class IFileSystem {
  public:
   SPARK_INTERFACE(IFileSystem, 1);
   virtual ~IFileSystem() = default;
-  /// The content of a resource ("rsg/agent/sphere.rsg"), nothing when it has none of that name. Throws Error when it cannot be read.
+  /// The content of a resource ("rsg/agent/sphere.rsg"), nothing when it has none of that name. Throws Error when it
+  /// cannot be read.
   virtual std::optional<std::string> read(const std::string& resource) = 0;
-  /// Changes when the resource's content may have changed (modification time, archive identity); 0 when it does not exist.
+  /// Changes when the resource's content may have changed (modification time, archive identity); 0 when it does not
+  /// exist.
   virtual std::uint64_t stamp(const std::string& resource) = 0;
   /// For messages: where it looks.
   virtual std::string where() const = 0;
@@ -27,7 +29,8 @@ class IFileServer {
  public:
   SPARK_INTERFACE(IFileServer, 1);
   virtual ~IFileServer() = default;
-  /// The content from the first file system that has it. Throws Error: bad name, is a folder, not found (says where it looked), too large.
+  /// The content from the first file system that has it. Throws Error: bad name, is a folder, not found (says where it
+  /// looked), too large.
   virtual std::string read(std::string_view resource) = 0;
   virtual bool exists(std::string_view resource) = 0;
   /// Changes when read() may give something else; for caches.

@@ -6,8 +6,9 @@
 
 namespace spark {
 
-/// The first T (a class or an interface) below `node`, depth first; nullptr when there is none. It belongs to the tree: keep it no longer than
-/// the tree's shape stays (CachedLookup), or as a Ref. Linear in the number of nodes: for set-up and look-ups that are remembered.
+/// The first T (a class or an interface) below `node`, depth first; nullptr when there is none. It belongs to the tree:
+/// keep it no longer than the tree's shape stays (CachedLookup), or as a Ref. Linear in the number of nodes: for set-up
+/// and look-ups that are remembered.
 template <class T>
 T* firstBelow(const Node& node) {
   for (const auto& child : node.children()) {

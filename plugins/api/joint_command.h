@@ -18,21 +18,26 @@
 
 namespace spark {
 
-/// Reads the arguments of `(predicate arguments...)` as finite numbers, and remembers what was wrong with the first that is none. Lives in one
-/// call of act(). Allocates only when something is wrong.
+/// Reads the arguments of `(predicate arguments...)` as finite numbers, and remembers what was wrong with the first
+/// that is none. Lives in one call of act(). Allocates only when something is wrong.
 class NumberArguments {
  public:
   explicit NumberArguments(const Element& action) : action_(action) {}
 
-  /// Argument `index` (from 0). False when it is missing, a list or not finite: `out` is then untouched, and the command should have no
-  /// effect. Text that is no number counts as the installed base counts it, by C's atof ("abc" is 0, "1.5x" is 1.5), and is remarked on.
+  /// Argument `index` (from 0). False when it is missing, a list or not finite: `out` is then untouched, and the
+  /// command should have no effect. Text that is no number counts as the installed base counts it, by C's atof ("abc"
+  /// is 0, "1.5x" is 1.5), and is remarked on.
   bool operator()(std::size_t index, double& out) {
     const Element argument = action_.at(index + 1);
-    if (!argument || argument.isList()) return refuse(fmt::format("expected a number as argument {}, found {}", index + 1, argument ? "a list" : "none"));
+    if (!argument || argument.isList())
+      return refuse(fmt::format("expected a number as argument {}, found {}", index + 1, argument ? "a list" : "none"));
     const std::optional<double> exact = argument.asNumber();
     const double v = exact ? *exact : argument.number();
-    if (!std::isfinite(v)) return refuse(fmt::format("expected a finite number as argument {}, found {}", index + 1, v));
-    if (!exact) refuse(fmt::format("expected a number as argument {}, found '{}', which counts as {}", index + 1, argument.text().substr(0, kShown), v));
+    if (!std::isfinite(v))
+      return refuse(fmt::format("expected a finite number as argument {}, found {}", index + 1, v));
+    if (!exact)
+      refuse(fmt::format("expected a number as argument {}, found '{}', which counts as {}", index + 1,
+                         argument.text().substr(0, kShown), v));
     out = v;
     return true;
   }

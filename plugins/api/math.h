@@ -80,7 +80,8 @@ inline std::array<double, N> numbers(Args& args) {
   std::array<double, N> out{};
   if (!args.atEnd() && args.values[args.next].isList()) {
     Args inner{args.values[args.next].toList(), args.loose};
-    if (inner.left() != N) throw Error("expected " + std::to_string(N) + " numbers, found a list of " + std::to_string(inner.left()));
+    if (inner.left() != N)
+      throw Error("expected " + std::to_string(N) + " numbers, found a list of " + std::to_string(inner.left()));
     ++args.next;
     for (double& v : out) v = Convert<double>::from(inner);
   } else {

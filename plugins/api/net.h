@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Connections: a network server (`/sys/server/net`) with ports below it, a framing (and perhaps a parser) below each port. A port delivers
-/// whole messages to its consumer, in the simulation's thread, during IInputSource::poll and wait.
+/// Connections: a network server (`/sys/server/net`) with ports below it, a framing (and perhaps a parser) below each
+/// port. A port delivers whole messages to its consumer, in the simulation's thread, during IInputSource::poll and
+/// wait.
 
 #include <cstdint>
 #include <string>
@@ -21,7 +22,8 @@ class IConnection {
   virtual const std::string& peer() const = 0;
   /// The port node, e.g. to look for a parser below it.
   virtual Node& port() = 0;
-  /// Frames and sends a message, or drops and counts it when an earlier one has not left yet; returns false then. Never blocks.
+  /// Frames and sends a message, or drops and counts it when an earlier one has not left yet; returns false then. Never
+  /// blocks.
   virtual bool send(std::string_view message) = 0;
   /// True when nothing is waiting to leave.
   virtual bool idle() const = 0;
@@ -50,9 +52,9 @@ class IFraming {
   /// What take() found at the start of the bytes.
   struct Frame {
     enum class Status { message, more, bad } status = Status::more;
-    std::size_t consumed = 0;      ///< bytes to drop
-    std::string_view message;      ///< a view into the bytes
-    std::string why;               ///< bad: one sentence
+    std::size_t consumed = 0;  ///< bytes to drop
+    std::string_view message;  ///< a view into the bytes
+    std::string why;           ///< bad: one sentence
   };
   /// Looks at the bytes received so far; `limit`: the longest message [bytes].
   virtual Frame take(std::string_view bytes, std::size_t limit) = 0;

@@ -1,15 +1,18 @@
 #pragma once
 /// \file
-/// The phases of one simulated instant, as channels, and the run loop's services. The order within a phase is tree order as stated.
+/// The phases of one simulated instant, as channels, and the run loop's services. The order within a phase is tree
+/// order as stated.
 
 #include "spark/event.h"
 #include "spark/node.h"
 
 namespace spark::phase {
 // Defined by `simulation`, in this order each cycle. Event: time [s] of the simulated clock, step [s], cycle.
-inline constexpr const char* kAct = "act";          ///< parents first. Agents' messages are realised.
-inline constexpr const char* kPrepare = "prepare";  ///< children first. Deferred actions, controllers, sampling before the step.
-inline constexpr const char* kPhysics = "physics";  ///< parents first. Contacts, collision handlers, joints, one solver step.
+inline constexpr const char* kAct = "act";  ///< parents first. Agents' messages are realised.
+inline constexpr const char* kPrepare =
+    "prepare";  ///< children first. Deferred actions, controllers, sampling before the step.
+inline constexpr const char* kPhysics =
+    "physics";  ///< parents first. Contacts, collision handlers, joints, one solver step.
 inline constexpr const char* kPlace = "place";      ///< parents first. Bodies write transforms; world matrices.
 inline constexpr const char* kRule = "rule";        ///< parents first. Control aspects.
 inline constexpr const char* kSense = "sense";      ///< parents first. Perceptors.
@@ -39,8 +42,8 @@ class IInputGate {
  public:
   SPARK_INTERFACE(IInputGate, 1);
   virtual ~IInputGate() = default;
-  /// False: the next cycle must not start yet. Asked after every batch of input. `lockstep`: the clock waits for every agent;
-  /// otherwise only what holds the very first cycle (agents that are expected) counts.
+  /// False: the next cycle must not start yet. Asked after every batch of input. `lockstep`: the clock waits for every
+  /// agent; otherwise only what holds the very first cycle (agents that are expected) counts.
   virtual bool ready(bool lockstep) = 0;
 };
 
@@ -51,7 +54,8 @@ class IInputSource {
   virtual ~IInputSource() = default;
   /// Takes all input that is there without waiting: ports in tree order.
   virtual void poll() = 0;
-  /// Waits for input until a deadline (s from now) or a stop request, takes what came. Returns false when the time ran out.
+  /// Waits for input until a deadline (s from now) or a stop request, takes what came. Returns false when the time ran
+  /// out.
   virtual bool wait(double seconds) = 0;
   /// False: it has no wait worth calling; the run loop waits on another source and polls this one now and then.
   virtual bool canWait() const { return true; }

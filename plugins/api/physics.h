@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// What other plugins see of bodies, colliders and joints, and the bases of collision handlers and body controllers.
-/// Double precision, SI, radians, world frame unless a name says otherwise. Used in the simulation's thread; readers in the sense phase may
-/// be several.
+/// Double precision, SI, radians, world frame unless a name says otherwise. Used in the simulation's thread; readers in
+/// the sense phase may be several.
 
 #include <optional>
 #include <span>
@@ -34,7 +34,8 @@ class IRigidBody {
   virtual void addForce(const Vec3& f) = 0;
   /// Nm, likewise.
   virtual void addTorque(const Vec3& t) = 0;
-  /// Force -linear v and torque -angular w for the next step, of its speeds now [N s/m, N m s]; nothing while it sleeps.
+  /// Force -linear v and torque -angular w for the next step, of its speeds now [N s/m, N m s]; nothing while it
+  /// sleeps.
   virtual void addDrag(double linear, double angular) = 0;
   /// False while it sleeps: nothing moved it for a while, and the solver leaves it out.
   virtual bool enabled() const = 0;
@@ -103,7 +104,7 @@ struct Collision {
   ICollider& self;
   ICollider& other;
   engine::Contact& contact;
-  bool direct;       ///< self is the contact's A
+  bool direct;  ///< self is the contact's A
 };
 
 /// Child of a collider; runs for each contact point, before the solver. Registered by `physics`.
@@ -136,10 +137,14 @@ class ContactJointHandler : public CollisionHandler {
     d.doc("Makes contacts of its collider solid; holds the surface.");
     d.property("contactBounceMode", &H::bounceMode, &H::setBounceMode).doc("Contacts bounce.");
     d.property("contactBounceValue", &H::bounce, &H::setBounce).min(0).doc("Restitution.");
-    d.property("minBounceVel", &H::bounceVelocity, &H::setBounceVelocity).unit("m/s").min(0).doc("Least speed at which contacts bounce.");
+    d.property("minBounceVel", &H::bounceVelocity, &H::setBounceVelocity)
+        .unit("m/s")
+        .min(0)
+        .doc("Least speed at which contacts bounce.");
     d.property("contactSoftERPMode", &H::erpMode, &H::setErpMode).doc("Contacts have their own error reduction.");
     d.property("contactSoftERP", &H::erp, &H::setErp).range(0, 1).doc("Error reduction of contacts.");
-    d.property("contactSoftCFMMode", &H::cfmMode, &H::setCfmMode).doc("Contacts have their own constraint force mixing.");
+    d.property("contactSoftCFMMode", &H::cfmMode, &H::setCfmMode)
+        .doc("Contacts have their own constraint force mixing.");
     d.property("contactSoftCFM", &H::cfm, &H::setCfm).min(0).doc("Constraint force mixing of contacts.");
     d.property("contactSlipMode", &H::slipMode, &H::setSlipMode).doc("Force-dependent slip in both directions.");
     d.property("contactSlip", &H::slip, &H::setSlip).min(0).doc("Slip of contacts, both directions.");
@@ -212,8 +217,9 @@ class IPhysicsServer {
   virtual engine::World world() = 0;
   /// All bodies of a subtree in tree order.
   virtual void bodies(Node& root, std::vector<IRigidBody*>& out) = 0;
-  /// The contacts of the last step, whether they were solved or not; owners are ICollider (see colliderOf). `forceOnA` counts where
-  /// `feedback` says so: property measureForces asks for all. Valid until the next step or change of the tree; empty since such a change.
+  /// The contacts of the last step, whether they were solved or not; owners are ICollider (see colliderOf). `forceOnA`
+  /// counts where `feedback` says so: property measureForces asks for all. Valid until the next step or change of the
+  /// tree; empty since such a change.
   virtual std::span<const engine::Contact> contacts() const = 0;
   /// The collider that an owner of these contacts is.
   virtual ICollider& colliderOf(void* owner) const = 0;

@@ -26,8 +26,8 @@ class IRobotBox {
   virtual const std::vector<std::string>& freezeJointEffectors() const = 0;
 };
 
-/// An effector that a rule can freeze: while it is frozen, a command sets speed 0. What was commanded before goes on until then.
-/// Offered by HingeEffector.
+/// An effector that a rule can freeze: while it is frozen, a command sets speed 0. What was commanded before goes on
+/// until then. Offered by HingeEffector.
 class IFreezable {
  public:
   SPARK_INTERFACE(IFreezable, 1);

@@ -21,8 +21,8 @@ class ISceneServer {
   virtual Leaf& leaf() = 0;
   /// Root of the active scene (class Scene); throws Error when there is none.
   virtual Node& scene() = 0;
-  /// Imports a file below `root` through the first importer that knows it. Throws Error with file:line:column; see the importer for
-  /// what stays in the tree.
+  /// Imports a file below `root` through the first importer that knows it. Throws Error with file:line:column; see the
+  /// importer for what stays in the tree.
   virtual void importScene(std::string_view file, Node& root, const List& arguments) = 0;
   /// Tells monitors and caches that nodes or materials changed (counted).
   virtual void markModified() = 0;
@@ -61,7 +61,9 @@ class SceneNode : public Node {
 
   static void describe(Description<SceneNode>& d) {
     d.doc("Base of all scene nodes.");
-    d.method("importScene", &SceneNode::importScene).parameters({"file", "arguments"}).doc("Imports a scene file below this node; the arguments bind to its template.");
+    d.method("importScene", &SceneNode::importScene)
+        .parameters({"file", "arguments"})
+        .doc("Imports a scene file below this node; the arguments bind to its template.");
   }
   /// The nearest transform above, nullptr at the scene's root. Valid while linked.
   Transform* transform() const { return transform_; }
@@ -77,21 +79,27 @@ class SceneNode : public Node {
   Transform* transform_ = nullptr;
 };
 
-/// Places what is below it. Local and world matrix; the world matrix is brought up to date in the place phase and by worldNow().
-/// Registered by `scene`.
+/// Places what is below it. Local and world matrix; the world matrix is brought up to date in the place phase and by
+/// worldNow(). Registered by `scene`.
 class Transform : public SceneNode {
   SPARK_CLASS(Transform, SceneNode)
  public:
   static void describe(Description<Transform>& d) {
     d.doc("Places what is below it.");
-    d.property("localTransform", &Transform::local, &Transform::placeLocal).doc("Local 4x4 matrix, column-major; all its numbers within 1e9.");
-    d.property("localPos", &Transform::localPos, &Transform::placeLocalPos).unit("m").doc("Local translation, within 1e9 m.");
+    d.property("localTransform", &Transform::local, &Transform::placeLocal)
+        .doc("Local 4x4 matrix, column-major; all its numbers within 1e9.");
+    d.property("localPos", &Transform::localPos, &Transform::placeLocalPos)
+        .unit("m")
+        .doc("Local translation, within 1e9 m.");
     d.property("worldTransform", &Transform::world).doc("World 4x4 matrix as of the last place phase.");
-    d.method("setLocalRotation", &Transform::turnLocal).parameters({"x [deg]", "y [deg]", "z [deg]"}).doc("R = Rx Ry Rz; the translation is kept.");
+    d.method("setLocalRotation", &Transform::turnLocal)
+        .parameters({"x [deg]", "y [deg]", "z [deg]"})
+        .doc("R = Rx Ry Rz; the translation is kept.");
     d.alias("SLT", "setLocalTransform");
   }
 
-  /// What scripts and scene files may set: numbers of no greater magnitude [m; degrees]. Farther out single precision resolves 64 m.
+  /// What scripts and scene files may set: numbers of no greater magnitude [m; degrees]. Farther out single precision
+  /// resolves 64 m.
   static constexpr float kFarthest = 1e9f;
 
   const Matrix& local() const { return local_; }
@@ -119,7 +127,8 @@ class Transform : public SceneNode {
   }
   /// The world matrix from all locals above, computed now (set-up and trainer commands; the step reads world()).
   Matrix worldNow() const { return transform() ? Matrix(transform()->worldNow() * local_) : local_; }
-  /// For the scene server's place: world := above * local. True when moved by hand since the last call or when told that above was.
+  /// For the scene server's place: world := above * local. True when moved by hand since the last call or when told
+  /// that above was.
   bool updateWorld(bool aboveMoved) {
     world_ = transform() ? Matrix(transform()->world_ * local_) : local_;
     const bool moved = moved_ || aboveMoved;
@@ -144,14 +153,16 @@ class Transform : public SceneNode {
     for (int i = 0; i < 16; ++i) local_.data()[i] = static_cast<float>(in.readNumber());
     moved_ = in.readBool();
     dirty_ = true;
-    world_ = transform() ? Matrix(transform()->world_ * local_) : local_;  // parents are loaded first; prepare reads it before place
+    world_ = transform() ? Matrix(transform()->world_ * local_)
+                         : local_;  // parents are loaded first; prepare reads it before place
   }
 
  private:
   /// Throws RefusedValue unless the numbers are finite and within kFarthest.
   template <class M>
   static const M& sane(const M& numbers, const char* what) {
-    if (!(numbers.cwiseAbs().maxCoeff() <= kFarthest) || !numbers.allFinite()) throwAbsurd(what, numbers.data(), static_cast<int>(numbers.size()));
+    if (!(numbers.cwiseAbs().maxCoeff() <= kFarthest) || !numbers.allFinite())
+      throwAbsurd(what, numbers.data(), static_cast<int>(numbers.size()));
     return numbers;
   }
   [[noreturn]] static void throwAbsurd(const char* what, const float* numbers, int n) {

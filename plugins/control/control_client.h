@@ -15,7 +15,8 @@ class ControlClient {
   using Socket = boost::asio::local::stream_protocol::socket;
   explicit ControlClient(Socket socket);
 
-  /// Writes what waits, then answers at most one request and looks at its watch. Returns false when the client is gone or misbehaves.
+  /// Writes what waits, then answers at most one request and looks at its watch. Returns false when the client is gone
+  /// or misbehaves.
   bool serve(Kernel& kernel, const Leaf& self);
 
  private:

@@ -9,8 +9,9 @@
 #include "spark/error.h"
 #include "spark/plugin.h"
 
-// Who may talk to a house: its own user. The socket lies in a folder that only the user can enter (0700), is itself 0600, and the peer's
-// uid is asked of the system for every connection. A house that cannot have a socket runs without one and says so.
+// Who may talk to a house: its own user. The socket lies in a folder that only the user can enter (0700), is itself
+// 0600, and the peer's uid is asked of the system for every connection. A house that cannot have a socket runs without
+// one and says so.
 
 namespace spark {
 

@@ -15,8 +15,8 @@
 
 namespace spark {
 
-/// At /sys/server/control. Works only in the run loop's poll, between two cycles: what it changes is an input like any other. Other servers
-/// that hear clients let it answer for them.
+/// At /sys/server/control. Works only in the run loop's poll, between two cycles: what it changes is an input like any
+/// other. Other servers that hear clients let it answer for them.
 class ControlServer : public Leaf, public IInputSource, public IRequests {
   SPARK_CLASS(ControlServer, Leaf)
  public:

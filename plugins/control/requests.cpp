@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 // Of one tree answer, below the node that was asked for; for those who only look, who must not hold up the match.
 constexpr std::size_t kMostNodes = 100000, kMostNodesToLookAt = 2000;
-constexpr int kMaxDepth = 64;      // of lists in a value
+constexpr int kMaxDepth = 64;  // of lists in a value
 
 Json toJson(const Value& v) {
   switch (v.type()) {
@@ -60,12 +60,14 @@ const Property& propertyOf(Leaf& leaf, const std::string& name) {
   if (const Property* p = leaf.classObject()->property(name)) return *p;
   std::vector<std::string> names;
   for (const Property* p : leaf.classObject()->properties()) names.push_back(p->name);
-  throw Error(leaf.path() + " (" + leaf.classObject()->name() + ") has no property '" + name + "'." + didYouMean(name, names));
+  throw Error(leaf.path() + " (" + leaf.classObject()->name() + ") has no property '" + name + "'." +
+              didYouMean(name, names));
 }
 
 Json describe(const Leaf& leaf, const Property& p) {
   const Value v = p.get(leaf);
-  Json out{{"name", p.name}, {"value", toJson(v)}, {"text", v.plain()}, {"type", p.type}, {"unit", p.unit}, {"doc", p.doc}};
+  Json out{{"name", p.name}, {"value", toJson(v)}, {"text", v.plain()},
+           {"type", p.type}, {"unit", p.unit},     {"doc", p.doc}};
   if (p.readOnly) out["readOnly"] = true;
   if (p.min) out["min"] = *p.min;
   if (p.max) out["max"] = *p.max;
@@ -176,7 +178,9 @@ std::string startWatch(Kernel& kernel, const Json& request, Watch& watch) {
 std::string dispatch(Kernel& kernel, const Leaf& self, const Json& request, Watch& watch, bool mayChange) {
   const std::string what = textOf(request, "do");
   if (!mayChange && (what == "set" || what == "call" || what == "load" || what == "unload"))
-    throw Error("'" + what + "' changes the match, which only the referee may: log in with the token that the host printed at its start");
+    throw Error(
+        "'" + what +
+        "' changes the match, which only the referee may: log in with the token that the host printed at its start");
   if (what == "tree") return dump(tree(kernel, request, mayChange ? kMostNodes : kMostNodesToLookAt));
   if (what == "get") return dump(get(kernel, request));
   if (what == "set") return dump(set(kernel, request));

@@ -44,9 +44,11 @@ fs::path socketFolder() {
   if (lstat(folder.c_str(), &s) != 0 || !S_ISDIR(s.st_mode))
     throw Error(folder.string() + ", where the control socket belongs, is no folder. Remove it.");
   if (s.st_uid != geteuid())
-    throw Error(folder.string() + ", where the control socket belongs, is another user's. Set XDG_RUNTIME_DIR to a folder of your own.");
+    throw Error(folder.string() +
+                ", where the control socket belongs, is another user's. Set XDG_RUNTIME_DIR to a folder of your own.");
   if ((s.st_mode & 077) != 0)
-    throw Error(folder.string() + ", where the control socket belongs, is open to other users. Say chmod 700 " + folder.string() + ".");
+    throw Error(folder.string() + ", where the control socket belongs, is open to other users. Say chmod 700 " +
+                folder.string() + ".");
   return folder;
 }
 

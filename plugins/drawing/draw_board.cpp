@@ -60,7 +60,10 @@ bool DrawBoard::makeRoom() {
 }
 
 std::size_t DrawBoard::indexOf(std::string_view set) {
-  const auto find = [&] { return std::lower_bound(shown_.begin(), shown_.end(), set, [](const Set& s, std::string_view name) { return s.name < name; }); };
+  const auto find = [&] {
+    return std::lower_bound(shown_.begin(), shown_.end(), set,
+                            [](const Set& s, std::string_view name) { return s.name < name; });
+  };
   auto at = find();
   if (at != shown_.end() && at->name == set) return static_cast<std::size_t>(at - shown_.begin());
   if (shown_.size() >= kMostSets && !makeRoom()) return shown_.size();
@@ -140,7 +143,8 @@ void DrawBoard::clear() {
   place_ = {};
 }
 
-/// A swap concerns all sets whose names begin so. In order of name these follow at once: what a swap took from them is drawn again.
+/// A swap concerns all sets whose names begin so. In order of name these follow at once: what a swap took from them is
+/// drawn again.
 void DrawBoard::record(std::uint64_t since, std::string& out) const {
   if (version_ == since) return;
   Recorder recorder(out);

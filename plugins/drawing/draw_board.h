@@ -8,8 +8,8 @@
 
 namespace spark::drawing {
 
-/// What is drawn, by sets. A set has two pictures: the one that is shown and the next, which is drawn meanwhile; swapping shows the next
-/// one and begins a new one. Agents' texts are a set of their own, shown at once.
+/// What is drawn, by sets. A set has two pictures: the one that is shown and the next, which is drawn meanwhile;
+/// swapping shows the next one and begins a new one. Agents' texts are a set of their own, shown at once.
 ///
 /// Anybody may draw, so what there can be is limited; what does not fit is refused.
 class DrawBoard {
@@ -17,7 +17,7 @@ class DrawBoard {
   using Set = IDrawings::Set;
   static constexpr std::size_t kMostSets = 256;
   static constexpr std::size_t kMostShapes = 1024;        ///< of one picture
-  static constexpr std::size_t kMostPoints = 8192;       ///< of all pictures, and a shape without any counts as one
+  static constexpr std::size_t kMostPoints = 8192;        ///< of all pictures, and a shape without any counts as one
   static constexpr std::size_t kMostRecorded = 1u << 20;  ///< bytes that record() appends
   /// Name of the set of agents' texts. Nobody else's shapes go there.
   static constexpr const char* kAgents = "agents";
@@ -50,7 +50,7 @@ class DrawBoard {
   std::vector<Set> shown_;                  ///< by name
   std::vector<std::vector<Drawing>> next_;  ///< of each set
   static constexpr std::size_t kAgentBytes = 256;
-  std::bitset<kAgentBytes> labelled_;       ///< agents, by their byte, that ever had a text
+  std::bitset<kAgentBytes> labelled_;               ///< agents, by their byte, that ever had a text
   std::array<std::uint16_t, kAgentBytes> place_{};  ///< of an agent's text in their set, from 1; 0: it has none
   std::size_t points_ = 0;
   std::uint64_t version_ = 0;

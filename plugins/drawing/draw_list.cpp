@@ -22,14 +22,22 @@ class ShapeReader {
   std::string read() {
     out_ = {};
     const std::string_view name = list_.head();
-    if (name == "circle") shape(Kind::circle), points("at", 2), number("radius", out_.size, true), thickness();
-    else if (name == "line") shape(Kind::line), points("from", 3), points("to", 3), thickness();
-    else if (name == "point") shape(Kind::point), points("at", 3), out_.size = kPointSize, number("size", out_.size, false);
-    else if (name == "sphere") shape(Kind::sphere), points("at", 3), number("radius", out_.size, true);
-    else if (name == "polygon") shape(Kind::polygon), corners();
-    else if (name == "text") shape(Kind::text), points("at", 3), say(true);
-    else if (name == "agent") shape(Kind::agentText), agent(), say(false);
-    else return fmt::format("expected a circle, line, point, sphere, polygon, text or agent, found '{}'", name);
+    if (name == "circle")
+      shape(Kind::circle), points("at", 2), number("radius", out_.size, true), thickness();
+    else if (name == "line")
+      shape(Kind::line), points("from", 3), points("to", 3), thickness();
+    else if (name == "point")
+      shape(Kind::point), points("at", 3), out_.size = kPointSize, number("size", out_.size, false);
+    else if (name == "sphere")
+      shape(Kind::sphere), points("at", 3), number("radius", out_.size, true);
+    else if (name == "polygon")
+      shape(Kind::polygon), corners();
+    else if (name == "text")
+      shape(Kind::text), points("at", 3), say(true);
+    else if (name == "agent")
+      shape(Kind::agentText), agent(), say(false);
+    else
+      return fmt::format("expected a circle, line, point, sphere, polygon, text or agent, found '{}'", name);
     color();
     return std::move(wrong_);
   }
@@ -55,7 +63,8 @@ class ShapeReader {
     return true;
   }
   void points(const char* name, int count) {
-    if (const Element e = list_.named(name); !e || !point(e, count)) expect(fmt::format("({} {}) with numbers below {}", name, count == 2 ? "x y" : "x y z", PacketReader::kFarthest));
+    if (const Element e = list_.named(name); !e || !point(e, count))
+      expect(fmt::format("({} {}) with numbers below {}", name, count == 2 ? "x y" : "x y z", PacketReader::kFarthest));
   }
   void corners() {
     for (const Element e : list_)
@@ -79,7 +88,8 @@ class ShapeReader {
     const Element side = list_.named("side"), unum = list_.named("unum");
     const std::string_view where = side ? side.at(1).text() : std::string_view();
     const std::int64_t number = unum ? unum.at(1).integer() : 0;
-    if ((where != "left" && where != "right") || number < 1 || number > 128) return expect("(side left) or (side right), and (unum 1) to (unum 128)");
+    if ((where != "left" && where != "right") || number < 1 || number > 128)
+      return expect("(side left) or (side right), and (unum 1) to (unum 128)");
     out_.right = where == "right";
     out_.number = static_cast<int>(number);
   }

@@ -7,7 +7,8 @@
 ///     (point (at x y z) (size pixels))             (text (at x y z) (say "what is written"))
 ///     (agent (side left) (unum 3) (say "..."))     without (say ...) the agent's text goes
 ///
-/// each with `(color red green blue alpha)`, 0 to 255, alpha only of polygons; circles and lines with `(thickness pixels)`.
+/// each with `(color red green blue alpha)`, 0 to 255, alpha only of polygons; circles and lines with `(thickness
+/// pixels)`.
 
 #include <string>
 

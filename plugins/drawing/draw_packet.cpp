@@ -18,12 +18,16 @@ using Kind = Drawing::Kind;
 std::size_t characterAt(std::string_view bytes) {
   const auto at = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
   const std::uint8_t first = at(0);
-  const std::size_t n = first < 0x80 ? 1 : first >= 0xc2 && first < 0xe0 ? 2 : first >= 0xe0 && first < 0xf0 ? 3 : first >= 0xf0 && first < 0xf5 ? 4 : 0;
+  const std::size_t n = first < 0x80                    ? 1
+                        : first >= 0xc2 && first < 0xe0 ? 2
+                        : first >= 0xe0 && first < 0xf0 ? 3
+                        : first >= 0xf0 && first < 0xf5 ? 4
+                                                        : 0;
   if (n == 0 || n > bytes.size()) return 0;
   for (std::size_t i = 1; i < n; ++i)
     if ((at(i) & 0xc0) != 0x80) return 0;
-  if (first == 0xe0 && at(1) < 0xa0) return 0;                           // longer than needed
-  if (first == 0xed && at(1) > 0x9f) return 0;                           // halves of characters
+  if (first == 0xe0 && at(1) < 0xa0) return 0;  // longer than needed
+  if (first == 0xed && at(1) > 0x9f) return 0;  // halves of characters
   if ((first == 0xf0 && at(1) < 0x90) || (first == 0xf4 && at(1) > 0x8f)) return 0;
   return n;
 }
@@ -112,8 +116,10 @@ bool PacketReader::readText(std::uint8_t type, Command& out) {
   if (type > 2) return false;
   d.kind = type == 0 ? Kind::text : Kind::agentText;
   out.kind = type == 0 ? Command::Kind::draw : Command::Kind::agentText;
-  if (type == 0) d.points.push_back(point());
-  else readAgent(d);
+  if (type == 0)
+    d.points.push_back(point());
+  else
+    readAgent(d);
   if (type == 2) return true;
   d.color = color();
   d.text = text(kLongestText);
@@ -159,7 +165,8 @@ Color PacketReader::color(bool alpha) {
 std::string PacketReader::text(std::size_t longest) {
   const auto end = std::find(rest_.begin(), rest_.end(), std::byte{0});
   if (end == rest_.end()) return failed_ = true, std::string();
-  const std::string_view bytes(reinterpret_cast<const char*>(rest_.data()), static_cast<std::size_t>(end - rest_.begin()));
+  const std::string_view bytes(reinterpret_cast<const char*>(rest_.data()),
+                               static_cast<std::size_t>(end - rest_.begin()));
   rest_ = rest_.subspan(bytes.size() + 1);
   return cleanText(bytes, longest);
 }
@@ -209,7 +216,8 @@ void writeDrawing(const Drawing& d, std::string_view set, std::string& out) {
   constexpr std::size_t kMostCorners = 255;
   switch (d.kind) {
     case Kind::circle:
-      put(out, 1), put(out, 0), putNumber(out, d.points[0].x()), putNumber(out, d.points[0].y()), putNumber(out, d.size), putNumber(out, d.thickness);
+      put(out, 1), put(out, 0), putNumber(out, d.points[0].x()), putNumber(out, d.points[0].y()),
+          putNumber(out, d.size), putNumber(out, d.thickness);
       break;
     case Kind::line:
       put(out, 1), put(out, 1), putPoint(out, d.points[0]), putPoint(out, d.points[1]), putNumber(out, d.thickness);

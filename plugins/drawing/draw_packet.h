@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// The packets of the drawing port, as the installed base's viewer reads them. Several commands stand in a packet, each a type, a subtype
-/// and what belongs to it:
+/// The packets of the drawing port, as the installed base's viewer reads them. Several commands stand in a packet, each
+/// a type, a subtype and what belongs to it:
 ///
-///     0 0 name\0                              swap: what was drawn under names that begin so is shown, and a new picture begun
+///     0 0 name\0                              swap: shows what was drawn under names that begin so, begins anew
 ///     1 0 x y radius thickness rgb name\0     circle            1 3 x y z radius rgb name\0         sphere
 ///     1 1 x y z x y z thickness rgb name\0    line              1 4 n rgba n times (x y z) name\0   polygon
 ///     1 2 x y z size rgb name\0               point             2 0 x y z rgb text\0 name\0         text
@@ -25,11 +25,12 @@ namespace spark::drawing {
 /// What one command says.
 struct Command {
   enum class Kind { swap, draw, agentText, none } kind = Kind::none;
-  std::string set;                 ///< swap: how names begin; draw: the name
-  Drawing drawing;                 ///< agentText: with an empty text it takes the agent's away
+  std::string set;  ///< swap: how names begin; draw: the name
+  Drawing drawing;  ///< agentText: with an empty text it takes the agent's away
 };
 
-/// Reads packets of outside origin: names and texts come out as short, valid UTF-8 without control characters, numbers finite.
+/// Reads packets of outside origin: names and texts come out as short, valid UTF-8 without control characters, numbers
+/// finite.
 class PacketReader {
  public:
   static constexpr std::size_t kLongestName = 64, kLongestText = 128;  ///< bytes; what is longer is cut

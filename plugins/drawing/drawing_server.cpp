@@ -9,8 +9,9 @@
 #include "draw_packet.h"
 #include "spark/error.h"
 
-// The port is open to whoever can reach it, so nothing that comes through it may harm the match: a poll takes so many packets, for so
-// long, and no more (what comes faster the system drops), packets are read with care, and what there can be to be shown is limited.
+// The port is open to whoever can reach it, so nothing that comes through it may harm the match: a poll takes so many
+// packets, for so long, and no more (what comes faster the system drops), packets are read with care, and what there
+// can be to be shown is limited.
 
 namespace spark {
 
@@ -29,11 +30,16 @@ void DrawingServer::describe(Description<DrawingServer>& d) {
   d.doc("Keeps what agents draw for viewers; takes it from a UDP port, from draw effectors and from plugins.");
   d.implements<IDrawings>();
   d.implements<IInputSource>();
-  d.property("port", &S::port, &S::setPort).range(-1, 65535).doc("UDP port; -1: none; 0 picks a free one, which is read back once it is open.");
-  d.property("address", &S::address, &S::setAddress).doc("Address of this machine at which the port is opened; 0.0.0.0: all.");
-  d.property("forward", &S::forwardTo, &S::setForwardTo).doc("host:port of another viewer that gets all packets too; empty: none.");
+  d.property("port", &S::port, &S::setPort)
+      .range(-1, 65535)
+      .doc("UDP port; -1: none; 0 picks a free one, which is read back once it is open.");
+  d.property("address", &S::address, &S::setAddress)
+      .doc("Address of this machine at which the port is opened; 0.0.0.0: all.");
+  d.property("forward", &S::forwardTo, &S::setForwardTo)
+      .doc("host:port of another viewer that gets all packets too; empty: none.");
   d.property("packets", &S::packets).doc("Number of packets that came through the port.");
-  d.property("refused", &S::refused).doc("Number of packets that could not be read to their end, and of shapes for which there was no room.");
+  d.property("refused", &S::refused)
+      .doc("Number of packets that could not be read to their end, and of shapes for which there was no room.");
   d.property("sets", &S::names).doc("Names of the sets that show something.");
   d.method("clear", &S::clear).doc("Shows nothing any more.");
 }
@@ -74,13 +80,15 @@ void DrawingServer::open() {
     openPort();
   } catch (const std::exception& e) {
     in_.reset();
-    kernel().log().warning("{}: drawings cannot come in at {}:{}: {}. Choose another port, or -1 for none.", path(), address_, port_, e.what());
+    kernel().log().warning("{}: drawings cannot come in at {}:{}: {}. Choose another port, or -1 for none.", path(),
+                           address_, port_, e.what());
   }
   try {
     openForward();
   } catch (const std::exception& e) {
     out_.reset();
-    kernel().log().warning("{}: drawings cannot be forwarded to '{}': {}. Expected host:port, as in 127.0.0.1:32769.", path(), forwardTo_, e.what());
+    kernel().log().warning("{}: drawings cannot be forwarded to '{}': {}. Expected host:port, as in 127.0.0.1:32769.",
+                           path(), forwardTo_, e.what());
   }
 }
 
@@ -114,7 +122,7 @@ void DrawingServer::poll() {
     Udp::endpoint from;
     error_code ec;
     const std::size_t n = in_->receive_from(asio::buffer(bytes), from, 0, ec);
-    if (ec) return;  // nothing more is there
+    if (ec) return;                        // nothing more is there
     if (from == forwardedFrom_) continue;  // our own, sent to ourselves: it would go round for ever
     ++packets_;
     draw(std::as_bytes(std::span(bytes.data(), n)));

@@ -11,8 +11,8 @@
 
 namespace spark {
 
-/// Keeps what agents draw, for the viewers that ask: from a UDP port in the format of the installed base's viewer, from effectors, from
-/// other plugins. At /sys/server/drawing. The match does not depend on it, it is no state.
+/// Keeps what agents draw, for the viewers that ask: from a UDP port in the format of the installed base's viewer, from
+/// effectors, from other plugins. At /sys/server/drawing. The match does not depend on it, it is no state.
 ///
 ///     agents ─► UDP port ─► poll, so many packets each ─┐
 ///     agents ─► DrawEffector, act phase ────────────────┼─► board ─► the browser's viewer, the log

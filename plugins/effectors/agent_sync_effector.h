@@ -4,7 +4,8 @@
 
 namespace spark {
 
-/// `(syn)`: the agent has said all it wants to say in this cycle. Game control sees the message; there is nothing to do here.
+/// `(syn)`: the agent has said all it wants to say in this cycle. Game control sees the message; there is nothing to do
+/// here.
 class AgentSyncEffector : public Effector, public ISyncEffector {
   SPARK_CLASS(AgentSyncEffector, Effector)
  public:

@@ -4,14 +4,15 @@
 
 namespace spark {
 
-/// `(he1 1.5)`: speed of the angular motor above it, rad/s, at once and until the next command. A motor that is disabled (too hot, without
-/// energy) stands still instead.
+/// `(he1 1.5)`: speed of the angular motor above it, rad/s, at once and until the next command. A motor that is
+/// disabled (too hot, without energy) stands still instead.
 class AngularMotorEffector : public Effector {
   SPARK_CLASS(AngularMotorEffector, Effector)
  public:
   static void describe(Description<AngularMotorEffector>& d) {
     d.doc(
-        "Drives the angular motor above it: (name speed) in rad/s, within the greatest speed of the motor or of the hinge that holds it; a "
+        "Drives the angular motor above it: (name speed) in rad/s, within the greatest speed of the motor or of the "
+        "hinge that holds it; a "
         "disabled motor stands still.");
   }
   std::string act(const Element& action) override {

@@ -9,7 +9,8 @@ class CreateEffector : public Effector {
   SPARK_CLASS(CreateEffector, Effector)
  public:
   static void describe(Description<CreateEffector>& d) {
-    d.doc("Builds the agent from a fixed scene file: (create). Arguments are ignored; without a file it has no effect.");
+    d.doc(
+        "Builds the agent from a fixed scene file: (create). Arguments are ignored; without a file it has no effect.");
     d.property("scene", &CreateEffector::scene_).doc("The scene file that is built.");
     d.on<&CreateEffector::prepare>(phase::kPrepare);
   }

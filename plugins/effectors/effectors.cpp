@@ -1,5 +1,3 @@
-#include "spark/plugin.h"
-
 #include "agent_sync_effector.h"
 #include "angular_motor_effector.h"
 #include "create_effector.h"
@@ -7,8 +5,10 @@
 #include "hinge2_effector.h"
 #include "hinge_effector.h"
 #include "hmdp_effector.h"
+#include "spark/plugin.h"
 #include "stiffness_effector.h"
 #include "universal_joint_effector.h"
 
-SPARK_PLUGIN("effectors", "1.0", "Effectors that are not soccer.", spark::HingeEffector, spark::UniversalJointEffector, spark::Hinge2Effector,
-             spark::AngularMotorEffector, spark::StiffnessEffector, spark::AgentSyncEffector, spark::ForceEffector, spark::CreateEffector, spark::HMDPEffector)
+SPARK_PLUGIN("effectors", "1.0", "Effectors that are not soccer.", spark::HingeEffector, spark::UniversalJointEffector,
+             spark::Hinge2Effector, spark::AngularMotorEffector, spark::StiffnessEffector, spark::AgentSyncEffector,
+             spark::ForceEffector, spark::CreateEffector, spark::HMDPEffector)

@@ -4,12 +4,15 @@
 
 namespace spark {
 
-/// `(force 0 0 10)`: a force on the body above it (or beside it, below its transform), N in the world's frame, for the next step.
+/// `(force 0 0 10)`: a force on the body above it (or beside it, below its transform), N in the world's frame, for the
+/// next step.
 class ForceEffector : public Effector {
   SPARK_CLASS(ForceEffector, Effector)
  public:
   static void describe(Description<ForceEffector>& d) {
-    d.doc("Pushes the body above or beside it during one step: (force x y z) in N, world frame. The last command of a cycle counts.");
+    d.doc(
+        "Pushes the body above or beside it during one step: (force x y z) in N, world frame. The last command of a "
+        "cycle counts.");
     d.on<&ForceEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "force"; }

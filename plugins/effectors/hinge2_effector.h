@@ -4,11 +4,14 @@
 
 namespace spark {
 
-/// `(wheel 90)`: speed of the second axis (the wheel) of the hinge2 above it, in degrees per second as the installed base has it; no limit.
+/// `(wheel 90)`: speed of the second axis (the wheel) of the hinge2 above it, in degrees per second as the installed
+/// base has it; no limit.
 class Hinge2Effector : public Effector {
   SPARK_CLASS(Hinge2Effector, Effector)
  public:
-  static void describe(Description<Hinge2Effector>& d) { d.doc("Drives the second axis of the hinge2 joint above it: (name speed) in deg/s."); }
+  static void describe(Description<Hinge2Effector>& d) {
+    d.doc("Drives the second axis of the hinge2 joint above it: (name speed) in deg/s.");
+  }
   std::string act(const Element& action) override {
     if (!joint_) return "there is no Hinge2Joint above it";
     NumberArguments read(action);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "api/robot_parts.h"
 #include "api/joint_command.h"
+#include "api/robot_parts.h"
 
 namespace spark {
 
@@ -12,9 +12,13 @@ class HingeEffector : public Effector, public IFreezable {
   static void describe(Description<HingeEffector>& d) {
     d.doc("Drives the hinge joint above it: (name speed) in rad/s, within the joint's greatest speed.");
     d.implements<IFreezable>();
-    d.property("frozen", &HingeEffector::frozen_).state().doc("Commands set speed 0: the rule of self-collisions has frozen it.");
+    d.property("frozen", &HingeEffector::frozen_)
+        .state()
+        .doc("Commands set speed 0: the rule of self-collisions has frozen it.");
     d.property("ignoreCommandAtStop", &HingeEffector::ignoreCommandAtStop_)
-        .doc("At or beyond a stop commands are ignored and the speed stays, as the installed base does against exploding feet.");
+        .doc(
+            "At or beyond a stop commands are ignored and the speed stays, as the installed base does against "
+            "exploding feet.");
   }
   std::string act(const Element& action) override {
     if (!joint_) return "there is no HingeJoint above it";

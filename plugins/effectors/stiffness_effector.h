@@ -4,7 +4,8 @@
 
 namespace spark {
 
-/// `(he1s 0.8)`: which part of its greatest torque the angular motor above it may use, 0..1, at once and until the next command.
+/// `(he1s 0.8)`: which part of its greatest torque the angular motor above it may use, 0..1, at once and until the next
+/// command.
 class StiffnessEffector : public Effector {
   SPARK_CLASS(StiffnessEffector, Effector)
  public:

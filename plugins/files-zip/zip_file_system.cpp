@@ -13,8 +13,13 @@ void ZipFileSystem::describe(Description<ZipFileSystem>& d) {
   d.implements<IFileSystem>();
   d.property("path", &ZipFileSystem::file, &ZipFileSystem::setFile).doc("The archive.");
   d.property("prefix", &ZipFileSystem::prefix, &ZipFileSystem::setPrefix)
-      .doc("Resource names start with this, and the rest is looked up in the archive: 'rsg/' mounts the archive as rsg.");
-  d.property("maxBytes", &ZipFileSystem::maxBytes_).unit("bytes").min(0).doc("Members that are larger unpacked are refused.");
+      .doc(
+          "Resource names start with this, and the rest is looked up in the archive: 'rsg/' mounts the archive as "
+          "rsg.");
+  d.property("maxBytes", &ZipFileSystem::maxBytes_)
+      .unit("bytes")
+      .min(0)
+      .doc("Members that are larger unpacked are refused.");
 }
 
 void ZipFileSystem::setFile(std::string path) {
@@ -29,7 +34,8 @@ void ZipFileSystem::setPrefix(std::string prefix) {
 }
 
 std::string ZipFileSystem::where() const {
-  return "archive '" + (path_.empty() ? std::string("(none)") : path_) + "'" + (prefix_.empty() ? "" : " (as '" + prefix_ + "')");
+  return "archive '" + (path_.empty() ? std::string("(none)") : path_) + "'" +
+         (prefix_.empty() ? "" : " (as '" + prefix_ + "')");
 }
 
 bool ZipFileSystem::refresh() {
@@ -39,7 +45,8 @@ bool ZipFileSystem::refresh() {
     return false;
   }
   const std::int64_t parts[] = {s.st_mtim.tv_sec, s.st_mtim.tv_nsec, s.st_size, static_cast<std::int64_t>(s.st_ino)};
-  const std::uint64_t identity = std::max<std::uint64_t>(1, hashBytes({reinterpret_cast<const char*>(parts), sizeof parts}) >> 8);
+  const std::uint64_t identity =
+      std::max<std::uint64_t>(1, hashBytes({reinterpret_cast<const char*>(parts), sizeof parts}) >> 8);
   if (archive_ && identity == identity_) return true;
   int code = 0;
   archive_.reset(zip_open(path_.c_str(), ZIP_RDONLY, &code));
@@ -62,19 +69,23 @@ zip_int64_t ZipFileSystem::locate(const std::string& resource) {
 std::optional<std::string> ZipFileSystem::read(const std::string& resource) {
   const zip_int64_t index = locate(resource);
   if (index < 0) {
-    if (archive_ && locate(resource + "/") >= 0) throw Error("expected a file, found a folder: '" + resource + "' in " + where());
+    if (archive_ && locate(resource + "/") >= 0)
+      throw Error("expected a file, found a folder: '" + resource + "' in " + where());
     return {};
   }
-  const auto fail = [&](const std::string& why) { throw Error("cannot read '" + resource + "' in " + where() + ": " + why); };
+  const auto fail = [&](const std::string& why) {
+    throw Error("cannot read '" + resource + "' in " + where() + ": " + why);
+  };
   zip_stat_t stat;
-  if (zip_stat_index(archive_.get(), static_cast<zip_uint64_t>(index), 0, &stat) != 0) fail(zip_strerror(archive_.get()));
+  if (zip_stat_index(archive_.get(), static_cast<zip_uint64_t>(index), 0, &stat) != 0)
+    fail(zip_strerror(archive_.get()));
   if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) && stat.encryption_method != ZIP_EM_NONE) fail("it is encrypted");
   if (!(stat.valid & ZIP_STAT_SIZE)) fail("its size is unknown");
   if (stat.size > static_cast<zip_uint64_t>(maxBytes_))
-    fail("it is too large: " + std::to_string(stat.size) + " bytes, at most " + std::to_string(maxBytes_) + " are allowed (" + path() +
-         ".maxBytes)");
-  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(zip_fopen_index(archive_.get(), static_cast<zip_uint64_t>(index), 0),
-                                                               zip_fclose);
+    fail("it is too large: " + std::to_string(stat.size) + " bytes, at most " + std::to_string(maxBytes_) +
+         " are allowed (" + path() + ".maxBytes)");
+  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
+      zip_fopen_index(archive_.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
   if (!file) fail(zip_strerror(archive_.get()));
   std::string content(stat.size, '\0');
   for (std::size_t have = 0; have < content.size();) {

@@ -30,7 +30,8 @@ void DirectoryFileSystem::setPrefix(std::string prefix) {
 }
 
 std::string DirectoryFileSystem::where() const {
-  return "folder '" + (path_.empty() ? std::string("(none)") : path_) + "'" + (prefix_.empty() ? "" : " (as '" + prefix_ + "')");
+  return "folder '" + (path_.empty() ? std::string("(none)") : path_) + "'" +
+         (prefix_.empty() ? "" : " (as '" + prefix_ + "')");
 }
 
 std::optional<fs::path> DirectoryFileSystem::locate(const std::string& resource) const {
@@ -41,7 +42,8 @@ std::optional<fs::path> DirectoryFileSystem::locate(const std::string& resource)
   const fs::path file = fs::canonical(root / resource.substr(prefix_.size()), failed);
   if (failed) return {};
   const fs::path inside = file.lexically_relative(root);
-  if (inside.empty() || *inside.begin() == "..") throw Error("resource '" + resource + "' is refused: a link leads out of " + where());
+  if (inside.empty() || *inside.begin() == "..")
+    throw Error("resource '" + resource + "' is refused: a link leads out of " + where());
   return file;
 }
 
@@ -52,15 +54,17 @@ std::optional<std::string> DirectoryFileSystem::read(const std::string& resource
   const fs::file_status status = fs::status(*file, failed);
   if (failed) throw Error("cannot look at '" + file->string() + "': " + failed.message());
   if (fs::is_directory(status)) throw Error("expected a file, found a folder: '" + resource + "' in " + where());
-  if (!fs::is_regular_file(status)) throw Error("expected a plain file, found something else: '" + resource + "' in " + where());
+  if (!fs::is_regular_file(status))
+    throw Error("expected a plain file, found something else: '" + resource + "' in " + where());
   const std::uintmax_t size = fs::file_size(*file, failed);
   if (failed) throw Error("cannot look at '" + file->string() + "': " + failed.message());
   if (size > static_cast<std::uintmax_t>(maxBytes_))
-    throw Error("resource '" + resource + "' is too large: " + std::to_string(size) + " bytes, at most " + std::to_string(maxBytes_) +
-                " are allowed (" + path() + ".maxBytes)");
+    throw Error("resource '" + resource + "' is too large: " + std::to_string(size) + " bytes, at most " +
+                std::to_string(maxBytes_) + " are allowed (" + path() + ".maxBytes)");
   std::ifstream in(*file, std::ios::binary);
   std::string content(size, '\0');
-  if (!in || !in.read(content.data(), static_cast<std::streamsize>(size))) throw Error("cannot read '" + file->string() + "'");
+  if (!in || !in.read(content.data(), static_cast<std::streamsize>(size)))
+    throw Error("cannot read '" + file->string() + "'");
   return content;
 }
 

@@ -91,7 +91,8 @@ void FileServer::notFound(const std::string& name) const {
     return false;
   });
   throw Error("there is no resource '" + name + "'. " +
-              (places.empty() ? path() + " has no file systems below it: add a DirectoryFileSystem." : "Looked in " + places + "."));
+              (places.empty() ? path() + " has no file systems below it: add a DirectoryFileSystem."
+                              : "Looked in " + places + "."));
 }
 
 }  // namespace spark

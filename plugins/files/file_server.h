@@ -11,7 +11,8 @@
 namespace spark::files {
 
 /// Checks a resource name and returns its normal form: '/' between components, no empty ones, no ".".
-/// Throws Error for empty and absolute names, names that climb out with "..", backslashes, drive letters, control characters.
+/// Throws Error for empty and absolute names, names that climb out with "..", backslashes, drive letters, control
+/// characters.
 std::string normalName(std::string_view resource);
 
 }  // namespace spark::files

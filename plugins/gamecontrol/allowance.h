@@ -18,7 +18,8 @@ class Allowance {
   /// True when something is left, as of the last refill.
   bool left() const { return left_ > 0; }
   void refill(Clock::time_point now) {
-    if (refilledAt_ != Clock::time_point()) left_ = std::min(most_, left_ + perSecond_ * std::chrono::duration<double>(now - refilledAt_).count());
+    if (refilledAt_ != Clock::time_point())
+      left_ = std::min(most_, left_ + perSecond_ * std::chrono::duration<double>(now - refilledAt_).count());
     refilledAt_ = now;
   }
   void spend(double amount) { left_ = std::max(left_ - amount, -most_); }

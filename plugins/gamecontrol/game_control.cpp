@@ -30,43 +30,81 @@ double seconds(std::chrono::steady_clock::duration d) { return std::chrono::dura
 
 void GameControl::describe(Description<GameControl>& d) {
   d.doc("Makes agents of connections and behaviours, dispatches their actions, asks their perceptors.");
-  d.property("createEffector", &GameControl::createEffector_).doc("Class of the effector with which an agent asks for its robot.");
-  d.property("expect", &GameControl::expect_).range(0, 1000).doc("Holds the clock at cycle 0 until so many agents have sent scene, init and syn; they are numbered by team and number.");
-  d.property("maxAgents", &GameControl::maxAgents_).range(0, 1000).doc("Further agents are closed; clients that never said anything do not count.");
-  d.property("maxPending", &GameControl::maxPending_).unit("bytes").range(1024, 1 << 28).doc("A client that sends more within one cycle is closed.");
+  d.property("createEffector", &GameControl::createEffector_)
+      .doc("Class of the effector with which an agent asks for its robot.");
+  d.property("expect", &GameControl::expect_)
+      .range(0, 1000)
+      .doc(
+          "Holds the clock at cycle 0 until so many agents have sent scene, init and syn; they are numbered by team "
+          "and number.");
+  d.property("maxAgents", &GameControl::maxAgents_)
+      .range(0, 1000)
+      .doc("Further agents are closed; clients that never said anything do not count.");
+  d.property("maxPending", &GameControl::maxPending_)
+      .unit("bytes")
+      .range(1024, 1 << 28)
+      .doc("A client that sends more within one cycle is closed.");
   d.property("loadsPerCycle", &GameControl::loadsPerCycle_)
       .min(1)
-      .doc("In real time so many robots are loaded in one cycle at most, the others in the next ones; elsewhere all at once.");
-  d.property("perceptDelay", &GameControl::perceptDelay_).range(0, 1).doc("Cycles between sensing and sending; the installed base has 1.");
+      .doc(
+          "In real time so many robots are loaded in one cycle at most, the others in the next ones; elsewhere all at "
+          "once.");
+  d.property("perceptDelay", &GameControl::perceptDelay_)
+      .range(0, 1)
+      .doc("Cycles between sensing and sending; the installed base has 1.");
   d.property("agentStep", &GameControl::agentStep_)
       .unit("s")
       .min(0)
-      .doc("Simulated time between two turns of the agents, in which they act and sense; no more than one turn a cycle.");
+      .doc(
+          "Simulated time between two turns of the agents, in which they act and sense; no more than one turn a "
+          "cycle.");
   d.property("sync", &GameControl::sync_).doc("Waits for the agents' (syn) although the run loop is not in lockstep.");
-  d.property("robotFolder", &GameControl::robotFolder_).doc("Agents' robots are scene files below this folder, e.g. rsg/agent/; empty: anywhere.");
-  d.property("holdWait", &GameControl::holdWait_).unit("s").min(0).doc("Expected agents that named a robot and are silent for so long get a first message (wall clock).");
-  d.property("syncTimeout", &GameControl::syncTimeout_).unit("s").min(0).doc("Lockstep: an agent that does not answer for so long is closed (wall clock); 0: never.");
-  d.property("holdReport", &GameControl::holdReport_).unit("s").min(0).doc("While expected agents are waited for: time between two lines on who they are (wall clock).");
+  d.property("robotFolder", &GameControl::robotFolder_)
+      .doc("Agents' robots are scene files below this folder, e.g. rsg/agent/; empty: anywhere.");
+  d.property("holdWait", &GameControl::holdWait_)
+      .unit("s")
+      .min(0)
+      .doc("Expected agents that named a robot and are silent for so long get a first message (wall clock).");
+  d.property("syncTimeout", &GameControl::syncTimeout_)
+      .unit("s")
+      .min(0)
+      .doc("Lockstep: an agent that does not answer for so long is closed (wall clock); 0: never.");
+  d.property("holdReport", &GameControl::holdReport_)
+      .unit("s")
+      .min(0)
+      .doc("While expected agents are waited for: time between two lines on who they are (wall clock).");
   d.property("joinWait", &GameControl::joinWait_)
       .unit("s")
       .min(0)
-      .doc("When expected agents are waited for and nothing more came from any for so long, the match starts with those that named a robot (wall clock); 0: never.");
+      .doc(
+          "When expected agents are waited for and nothing more came from any for so long, the match starts with those "
+          "that named a robot (wall clock); 0: never.");
   d.property("joinBudget", &GameControl::joinBudget, &GameControl::setJoinBudget)
       .unit("s")
       .min(0)
-      .doc("Lockstep: what agents that were not expected and are new, or slow, may keep all others waiting in sum (wall clock); it grows back by a tenth of the time.");
+      .doc(
+          "Lockstep: what agents that were not expected and are new, or slow, may keep all others waiting in sum (wall "
+          "clock); it grows back by a tenth of the time.");
   d.property("answerWait", &GameControl::answerWait_)
       .unit("s")
       .min(0)
-      .doc("Lockstep: until an agent that joins has its first percepts, others are waited for no longer than this in a cycle (wall clock).");
+      .doc(
+          "Lockstep: until an agent that joins has its first percepts, others are waited for no longer than this in a "
+          "cycle (wall clock).");
   d.property("joinPace", &GameControl::joinPace_)
       .unit("s")
       .min(0)
-      .doc("Lockstep: cycles take at least so long while an agent that is new, or all there are, have not sent (syn) yet (wall clock).");
-  d.property("idleLimit", &GameControl::idleLimit_).unit("s").min(0).doc("A client that has no robot after so long is closed (wall clock); 0: never.");
+      .doc(
+          "Lockstep: cycles take at least so long while an agent that is new, or all there are, have not sent (syn) "
+          "yet (wall clock).");
+  d.property("idleLimit", &GameControl::idleLimit_)
+      .unit("s")
+      .min(0)
+      .doc("A client that has no robot after so long is closed (wall clock); 0: never.");
   d.property("agentCount", &GameControl::agentCount).doc("Agents now.");
   d.property("agentsSeen", &GameControl::agentsSeen).doc("Agents that ever had a robot.");
-  d.property("messagesDropped", &GameControl::messagesDropped).doc("Percepts not sent because the client had not taken earlier ones.");
+  d.property("messagesDropped", &GameControl::messagesDropped)
+      .doc("Percepts not sent because the client had not taken earlier ones.");
   d.implements<IGameControl>();
   d.implements<IConnectionConsumer>();
   d.implements<IInputGate>();
@@ -80,9 +118,7 @@ void GameControl::onUnlink() {
   agents_.clear();
 }
 
-void GameControl::note(const std::string& line) {
-  lines().write(Level::info, line);
-}
+void GameControl::note(const std::string& line) { lines().write(Level::info, line); }
 
 void GameControl::complain(const std::string& line) { lines().write(Level::error, line); }
 
@@ -110,7 +146,9 @@ GameControl::Participant* GameControl::participantOf(const IConnection& connecti
 
 bool GameControl::full() const {
   const auto counts = [](const auto& p) { return p->heardFrom(); };
-  return std::count_if(participants_.begin(), participants_.end(), counts) + std::count_if(newcomers_.begin(), newcomers_.end(), counts) >= maxAgents_;
+  return std::count_if(participants_.begin(), participants_.end(), counts) +
+             std::count_if(newcomers_.begin(), newcomers_.end(), counts) >=
+         maxAgents_;
 }
 
 void GameControl::connected(IConnection& connection) {
@@ -123,8 +161,9 @@ void GameControl::received(IConnection& connection, std::string_view message) {
   Participant* p = participantOf(connection);
   if (!p || p->leaving()) return;
   resolveParsers();
-  const std::string why = !p->heardFrom() && full() ? fmt::format("there are {} agents already (maxAgents)", maxAgents_)
-                                                    : p->receive(message, static_cast<std::size_t>(maxPending_), lines(), cycle_);
+  const std::string why = !p->heardFrom() && full()
+                              ? fmt::format("there are {} agents already (maxAgents)", maxAgents_)
+                              : p->receive(message, static_cast<std::size_t>(maxPending_), lines(), cycle_);
   if (why.empty()) {
     if (holding()) gamecontrol::Hold::note(*p);
     return;
@@ -155,8 +194,8 @@ bool GameControl::ready(bool lockstep) {
   const auto now = Clock::now();
   if (!std::exchange(waiting_, true)) waitingSince_ = now;
   const auto joins = [](const auto& p) { return p->joining(); };
-  const bool somebodyJoins =
-      std::any_of(participants_.begin(), participants_.end(), joins) || std::any_of(newcomers_.begin(), newcomers_.end(), joins);
+  const bool somebodyJoins = std::any_of(participants_.begin(), participants_.end(), joins) ||
+                             std::any_of(newcomers_.begin(), newcomers_.end(), joins);
   bool strangers = false;
   for (const auto& p : participants_) {
     if (answered(*p, now, somebodyJoins)) continue;
@@ -167,21 +206,24 @@ bool GameControl::ready(bool lockstep) {
   return !indulge(now);
 }
 
-/// What it keeps others waiting is counted: until it has proved that it answers, and when it is slow. Expected agents never are.
+/// What it keeps others waiting is counted: until it has proved that it answers, and when it is slow. Expected agents
+/// never are.
 bool GameControl::isStranger(const Participant& p, Clock::time_point now) const {
   return !p.trusted() || (!p.expected() && syncTimeout_ > 0 && seconds(now - waitingSince_) > kSlow);
 }
 
-/// All trusted agents have answered, and others have not, or are new and shall see what comes. True when the cycle waits for these. Without trusted
-/// agents nobody is kept waiting; where there are some, it lasts as long as the budget, so that a stranger who joins again and again, or
-/// answers now and then, costs a match a tenth of its time.
+/// All trusted agents have answered, and others have not, or are new and shall see what comes. True when the cycle
+/// waits for these. Without trusted agents nobody is kept waiting; where there are some, it lasts as long as the
+/// budget, so that a stranger who joins again and again, or answers now and then, costs a match a tenth of its time.
 bool GameControl::indulge(Clock::time_point now) {
   const auto leads = [](const auto& p) { return !p->leaving() && p->mustSync() && p->trusted(); };
   if (std::none_of(participants_.begin(), participants_.end(), leads)) return true;
   waits_.refill(now);
   waits_.refill(actedAt_);
-  if (indulgedAt_ != Clock::time_point()) waits_.spend(seconds(now - indulgedAt_));
-  else if (seconds(now - waitingSince_) > kSlow) waits_.spend(kSlow);  // which it had for nothing
+  if (indulgedAt_ != Clock::time_point())
+    waits_.spend(seconds(now - indulgedAt_));
+  else if (seconds(now - waitingSince_) > kSlow)
+    waits_.spend(kSlow);  // which it had for nothing
   indulgedAt_ = now;
   if (waits_.left()) return true;
   for (const auto& p : participants_)
@@ -189,9 +231,10 @@ bool GameControl::indulge(Clock::time_point now) {
   return false;
 }
 
-/// Who is waited for in lockstep: agents that sent (syn) once and were sent percepts since, until syncTimeout. All others only watch: an
-/// idle connection, or a client that says (syn) when all of its team have joined, must not stop the match. One program may lead many agents
-/// and read each in turn: while one is about to get its first percepts, the others are not waited for so long.
+/// Who is waited for in lockstep: agents that sent (syn) once and were sent percepts since, until syncTimeout. All
+/// others only watch: an idle connection, or a client that says (syn) when all of its team have joined, must not stop
+/// the match. One program may lead many agents and read each in turn: while one is about to get its first percepts, the
+/// others are not waited for so long.
 bool GameControl::answered(Participant& p, Clock::time_point now, bool somebodyJoins) {
   if (p.leaving() || !p.mustSync() || p.synced()) return true;
   const double waited = seconds(now - waitingSince_);
@@ -202,7 +245,8 @@ bool GameControl::answered(Participant& p, Clock::time_point now, bool somebodyJ
   return true;
 }
 
-/// Some clients read until nothing is there before they go on: a match that runs as fast as it can would never let those join.
+/// Some clients read until nothing is there before they go on: a match that runs as fast as it can would never let
+/// those join.
 bool GameControl::tooSoon(Clock::time_point now) const {
   if (seconds(now - actedAt_) >= joinPace_) return false;
   bool watched = false, led = false;
@@ -224,8 +268,9 @@ void GameControl::closeIdle() {
   }
 }
 
-/// The clock must not stand still while a whole team comes in. Where it waits for agents, or nobody watches it, what happens in which cycle
-/// must not depend on such a limit; but a stranger that joins again and again must not spend the match's time on building robots.
+/// The clock must not stand still while a whole team comes in. Where it waits for agents, or nobody watches it, what
+/// happens in which cycle must not depend on such a limit; but a stranger that joins again and again must not spend the
+/// match's time on building robots.
 bool GameControl::mayLoad(const AgentAspect& agent) {
   if (realTime()) return loads_++ < loadsPerCycle_;
   const Participant* p = participantOf(agent);
@@ -251,8 +296,10 @@ void GameControl::act(const Event& event) {
   joinNewcomers();
   resolveParsers();
   isTurn_ = cyclesToTurn_ == 0;
-  if (isTurn_) takeTurn(event);
-  else --cyclesToTurn_;
+  if (isTurn_)
+    takeTurn(event);
+  else
+    --cyclesToTurn_;
   resolveRobots();
 }
 
@@ -261,7 +308,8 @@ void GameControl::takeTurn(const Event& event) {
   constexpr double kEarly = 0.005;
   const double cycles = event.step > 0 ? std::ceil((agentStep_ - kEarly) / event.step - 1e-9) : 1;
   cyclesToTurn_ = static_cast<int>(std::clamp(cycles, 1.0, 1e6)) - 1;
-  if (perceptDelay_ > 0) deliver();
+  if (perceptDelay_ > 0)
+    deliver();
   else
     for (const auto& p : participants_) p->promote();
   for (std::size_t i = 0; i < participants_.size(); ++i) {
@@ -300,7 +348,8 @@ void GameControl::deliver() {
 }
 
 void GameControl::removeLeaving() {
-  const auto stays = std::stable_partition(participants_.begin(), participants_.end(), [](const auto& p) { return !p->leaving(); });
+  const auto stays =
+      std::stable_partition(participants_.begin(), participants_.end(), [](const auto& p) { return !p->leaving(); });
   if (stays == participants_.end()) return;
   for (auto it = stays; it != participants_.end(); ++it) {
     Participant& p = **it;
@@ -349,7 +398,8 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
     Node& scene = server ? server->scene() : kernel().root().require<Node>("/usr/scene");
     aspect = &scene.create<AgentAspect>("AgentAspect", fmt::format("AgentAspect{}", number));
     aspect->setNumber(number);
-    if (auto* scene = aspect->create(createEffector_, "_CreateEffector").as<SceneEffector>()) scene->setFolder(robotFolder_);
+    if (auto* scene = aspect->create(createEffector_, "_CreateEffector").as<SceneEffector>())
+      scene->setFolder(robotFolder_);
     p.join(number, *aspect);
   } catch (const std::exception& e) {
     kernel().log().error("{} cannot be made: {}", p.label(), e.what());
@@ -431,7 +481,8 @@ void GameControl::loadState(StateReader& in) {
   cyclesToTurn_ = static_cast<int>(in.readInteger());
   const auto n = in.readInteger();
   if (n != static_cast<std::int64_t>(participants_.size()))
-    throw Error(fmt::format("{}: the state has {} agents, here are {}. Connect the same agents first.", path(), n, participants_.size()));
+    throw Error(fmt::format("{}: the state has {} agents, here are {}. Connect the same agents first.", path(), n,
+                            participants_.size()));
   for (const auto& p : participants_) {
     if (const auto number = in.readInteger(); number != p->number())
       throw Error(fmt::format("{}: the state has agent {} where agent {} is.", path(), number, p->number()));

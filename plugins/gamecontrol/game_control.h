@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Game control: makes agents of connections and behaviours, dispatches their actions to effectors, asks their perceptors.
+/// Game control: makes agents of connections and behaviours, dispatches their actions to effectors, asks their
+/// perceptors.
 
 #include <memory>
 #include <optional>
@@ -76,26 +77,27 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
 
   std::vector<std::unique_ptr<Participant>> participants_;  ///< in order of number
   std::vector<std::unique_ptr<Participant>> newcomers_;     ///< in order of arrival
-  std::vector<std::uint64_t> refusedBehaviors_;             ///< ids of those that could not be made an agent; not tried again
-  mutable std::vector<AgentAspect*> agents_;                ///< of participants_; asked in the simulation's thread only
+  std::vector<std::uint64_t> refusedBehaviors_;  ///< ids of those that could not be made an agent; not tried again
+  mutable std::vector<AgentAspect*> agents_;     ///< of participants_; asked in the simulation's thread only
   mutable std::uint64_t agentsAt_ = 0;
-  mutable std::size_t lastHeard_ = 0;                       ///< index of the participant that sent the last message
+  mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
   std::optional<gamecontrol::AgentLines> lines_;
   // What clients that are not trusted yet may take of a match in lockstep.
   gamecontrol::Allowance waits_{30, 0.1};  ///< s, and s a second
-  gamecontrol::Allowance loading_{0, 4};    ///< robots, twice as many as there may be agents, and robots a second
+  gamecontrol::Allowance loading_{0, 4};   ///< robots, twice as many as there may be agents, and robots a second
   Clock::time_point indulgedAt_{};         ///< when this cycle was last kept waiting for them; zero: it was not
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, loadsPerCycle_ = 4;
   bool sync_ = false, released_ = false;
-  double joinBudget_ = 30, agentStep_ = 0, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30, answerWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
+  double joinBudget_ = 30, agentStep_ = 0, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30,
+         answerWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
 
   int nextNumber_ = 1, agentsSeen_ = 0, loads_ = 0;
   std::int64_t messagesDropped_ = 0, cycle_ = 0;
-  int cyclesToTurn_ = 0;   ///< between the next cycle and the agents' next turn
-  bool isTurn_ = true;     ///< they have it in this cycle
+  int cyclesToTurn_ = 0;     ///< between the next cycle and the agents' next turn
+  bool isTurn_ = true;       ///< they have it in this cycle
   std::uint64_t round_ = 0;  ///< of sensing
   std::uint64_t parsersAt_ = 0, robotsAt_ = 0, perceptorsAt_ = 0, behaviorsAt_ = 0;
   bool waiting_ = false;

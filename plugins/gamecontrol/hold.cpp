@@ -46,7 +46,8 @@ std::string owes(const Participant& p) {
   if (!p.heardFrom()) return p.label() + " has said nothing";
   if (!scene) return p.label() + " owes (scene ...)" + (init ? "" : ", (init ...)") + " and (syn)";
   if (init) return p.label() + " has named its robot and its team, owes (syn)";
-  return p.label() + " has named its robot, owes (init ...) and (syn)" + (syn ? "; if it has no init, (syn) to two messages" : "");
+  return p.label() + " has named its robot, owes (init ...) and (syn)" +
+         (syn ? "; if it has no init, (syn) to two messages" : "");
 }
 
 }  // namespace
@@ -63,15 +64,19 @@ bool Hold::isThere(const Participant& p) const { return complete(p) || (givenUp_
 bool Hold::over(const List& newcomers, const Terms& terms, Log& log) {
   const auto now = Clock::now();
   noteProgress(newcomers, now);
-  const auto there = static_cast<int>(std::count_if(newcomers.begin(), newcomers.end(), [](const auto& p) { return complete(*p); }));
+  const auto there =
+      static_cast<int>(std::count_if(newcomers.begin(), newcomers.end(), [](const auto& p) { return complete(*p); }));
   if (std::exchange(reported_, there) != there) log.info("{} of {} expected agents are ready.", there, terms.agents);
   if (there >= terms.agents) return true;
   greet(newcomers, terms.greetAfter, now);
-  const bool anybody = std::any_of(newcomers.begin(), newcomers.end(), [](const auto& p) { return !p->leaving() && sent(*p, kScene); });
+  const bool anybody =
+      std::any_of(newcomers.begin(), newcomers.end(), [](const auto& p) { return !p->leaving() && sent(*p, kScene); });
   givenUp_ = anybody && terms.startAfter > 0 && seconds(now - progressAt_) >= terms.startAfter;
   if (givenUp_)
-    log.warning("Of {} expected agents {} are ready, and nothing more came for {} s (joinWait): the match starts. Others join as they come.", terms.agents,
-                there, terms.startAfter);
+    log.warning(
+        "Of {} expected agents {} are ready, and nothing more came for {} s (joinWait): the match starts. Others join "
+        "as they come.",
+        terms.agents, there, terms.startAfter);
   else
     report(newcomers, terms, now, log);
   return givenUp_;
@@ -79,7 +84,9 @@ bool Hold::over(const List& newcomers, const Terms& terms, Log& log) {
 
 void Hold::greet(const List& newcomers, double patience, Clock::time_point now) const {
   for (const auto& p : newcomers) {
-    if (p->leaving() || complete(*p) || p->held().greeted || !sent(*p, kScene) || seconds(now - p->lastHeard()) <= patience) continue;
+    if (p->leaving() || complete(*p) || p->held().greeted || !sent(*p, kScene) ||
+        seconds(now - p->lastHeard()) <= patience)
+      continue;
     Predicates hello;
     hello.open("time").open("now").add(0.0).close().close();
     p->greet(hello);
@@ -110,7 +117,9 @@ void Hold::report(const List& newcomers, const Terms& terms, Clock::time_point n
   if (left > kMostNamed) line += fmt::format("{} more are not ready; ", left - kMostNamed);
   const auto missing = static_cast<std::int64_t>(terms.agents) - static_cast<std::int64_t>(connected);
   if (missing > 0) line += fmt::format("{} {} not connected; ", missing, missing == 1 ? "is" : "are");
-  if (terms.startAfter > 0 && furthest_ > 0) line += fmt::format("without any news the match starts in {:.0f} s; ", terms.startAfter - seconds(now - progressAt_));
+  if (terms.startAfter > 0 && furthest_ > 0)
+    line +=
+        fmt::format("without any news the match starts in {:.0f} s; ", terms.startAfter - seconds(now - progressAt_));
   if (line.empty()) return;
   line.resize(line.size() - 2);
   log.info("Waiting for {} of {} agents: {}.", terms.agents - reported_, terms.agents, line);
@@ -119,8 +128,10 @@ void Hold::report(const List& newcomers, const Terms& terms, Clock::time_point n
 std::size_t Hold::order(List& newcomers, int expect) const {
   int left = expect;
   // Those that are complete before those that are merely there.
-  const auto whole = std::stable_partition(newcomers.begin(), newcomers.end(), [&](const auto& p) { return complete(*p) && left-- > 0; });
-  const auto middle = std::stable_partition(whole, newcomers.end(), [&](const auto& p) { return left > 0 && isThere(*p) && left-- > 0; });
+  const auto whole = std::stable_partition(newcomers.begin(), newcomers.end(),
+                                           [&](const auto& p) { return complete(*p) && left-- > 0; });
+  const auto middle = std::stable_partition(whole, newcomers.end(),
+                                            [&](const auto& p) { return left > 0 && isThere(*p) && left-- > 0; });
   std::stable_sort(newcomers.begin(), middle, [](const auto& a, const auto& b) { return whoIs(*a) < whoIs(*b); });
   for (auto it = newcomers.begin(); it != middle; ++it) (*it)->holdBack(kScene, !givenUp_);
   return static_cast<std::size_t>(middle - newcomers.begin());

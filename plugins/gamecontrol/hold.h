@@ -2,10 +2,10 @@
 /// \file
 /// Joining reproducibly: the clock stands at cycle 0 until the expected agents are there.
 ///
-/// During the hold nothing is made in the tree; messages are parsed and kept. An agent is complete when it has named its robot `(scene ...)`,
-/// its team and number `(init ...)`, and has sent `(syn)` with that or later: a `(syn)` still on its way would count as the answer to its
-/// first percepts, sometimes. When enough are complete they are ordered by team name and number, which makes their agents' numbers
-/// independent of who came first.
+/// During the hold nothing is made in the tree; messages are parsed and kept. An agent is complete when it has named
+/// its robot `(scene ...)`, its team and number `(init ...)`, and has sent `(syn)` with that or later: a `(syn)` still
+/// on its way would count as the answer to its first percepts, sometimes. When enough are complete they are ordered by
+/// team name and number, which makes their agents' numbers independent of who came first.
 ///
 /// Clients differ in what they wait for before they go on:
 ///
@@ -15,9 +15,10 @@
 ///     no soccer player   scene syn  <- message    syn        <- message    syn        and never an init
 ///     one program        agent 1 as above, then agent 2, which comes when agent 1 has been told more
 ///
-/// So a client that named its robot and is silent for a moment gets a minimal message, `(time (now 0.00))`, once after each thing it said, until
-/// it is complete; one that answered two of them with `(syn)` and had no `(init ...)` to say needs none. The last kind cannot be helped so: when
-/// nothing came from anybody for a while, the match starts with who is there.
+/// So a client that named its robot and is silent for a moment gets a minimal message, `(time (now 0.00))`, once after
+/// each thing it said, until it is complete; one that answered two of them with `(syn)` and had no `(init ...)` to say
+/// needs none. The last kind cannot be helped so: when nothing came from anybody for a while, the match starts with who
+/// is there.
 
 #include <memory>
 #include <string>
@@ -32,18 +33,18 @@ class Hold {
   using List = std::vector<std::unique_ptr<Participant>>;
   /// What ends it. Times are of the wall clock [s].
   struct Terms {
-    int agents;        ///< how many are expected
-    double greetAfter; ///< silence after which a client gets a message
-    double startAfter; ///< without progress, after which the match starts with who is there; 0: never
+    int agents;         ///< how many are expected
+    double greetAfter;  ///< silence after which a client gets a message
+    double startAfter;  ///< without progress, after which the match starts with who is there; 0: never
     double reportEvery;
   };
   /// To be called after each message that `p` sent during the hold.
   static void note(Participant& p);
-  /// True when enough of the newcomers (in order of arrival) are complete, or nothing more comes; otherwise greets those that wait for a message,
-  /// and says now and then who is waited for.
+  /// True when enough of the newcomers (in order of arrival) are complete, or nothing more comes; otherwise greets
+  /// those that wait for a message, and says now and then who is waited for.
   bool over(const List& newcomers, const Terms& terms, Log& log);
-  /// Puts those with which the match starts to the front, ordered; what they sent after `(scene ...)` is held back until they were sent
-  /// their first percepts. Returns how many these are.
+  /// Puts those with which the match starts to the front, ordered; what they sent after `(scene ...)` is held back
+  /// until they were sent their first percepts. Returns how many these are.
   std::size_t order(List& newcomers, int expect) const;
 
  private:

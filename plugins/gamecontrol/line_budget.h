@@ -6,7 +6,8 @@
 
 namespace spark::gamecontrol {
 
-/// At most `lines` per `kWindow` cycles; counts what was left out. Counted in cycles: no clock, and a halted host does not chatter.
+/// At most `lines` per `kWindow` cycles; counts what was left out. Counted in cycles: no clock, and a halted host does
+/// not chatter.
 class LineBudget {
  public:
   static constexpr std::int64_t kWindow = 100;

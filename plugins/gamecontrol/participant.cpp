@@ -17,13 +17,15 @@ constexpr std::size_t kLongestLine = 300;
 constexpr std::size_t kAhead = 4;  // effectors or perceptors
 constexpr double kSmoothed = 16;   // answers
 constexpr const char* kNoException = "something that is no std::exception";
-constexpr std::size_t kPart = 256, kPerceptor = 448, kAbove = 768, kBuffer = 256;  // bytes, as far as they are looked at in most cycles
+constexpr std::size_t kPart = 256, kPerceptor = 448, kAbove = 768,
+                      kBuffer = 256;  // bytes, as far as they are looked at in most cycles
 }  // namespace
 
 Participant::Participant(IConnection& connection)
     : label_(fmt::format("agent at {}", connection.peer())), connection_(&connection), inside_(false) {}
 
-Participant::Participant(Behavior& behavior) : label_(fmt::format("agent of {}", behavior.path())), behavior_(&behavior), inside_(true) {}
+Participant::Participant(Behavior& behavior)
+    : label_(fmt::format("agent of {}", behavior.path())), behavior_(&behavior), inside_(true) {}
 
 void Participant::join(int number, AgentAspect& aspect) {
   number_ = number;
@@ -48,11 +50,14 @@ void Participant::resolveParser(Node& gameControl) {
 
 void Participant::warn(AgentLines& log, std::int64_t cycle, std::string_view text) {
   if (!budget_.take(cycle)) return;
-  if (const auto n = budget_.leftOut()) log.write(Level::warning, fmt::format("{}: {} further lines were left out.", label_, n));
-  log.write(Level::warning, fmt::format("{}: {}{}", label_, text.substr(0, kLongestLine), text.size() > kLongestLine ? " ..." : ""));
+  if (const auto n = budget_.leftOut())
+    log.write(Level::warning, fmt::format("{}: {} further lines were left out.", label_, n));
+  log.write(Level::warning,
+            fmt::format("{}: {}{}", label_, text.substr(0, kLongestLine), text.size() > kLongestLine ? " ..." : ""));
 }
 
-std::string Participant::receive(std::string_view message, std::size_t maxPending, AgentLines& log, std::int64_t cycle) {
+std::string Participant::receive(std::string_view message, std::size_t maxPending, AgentLines& log,
+                                 std::int64_t cycle) {
   heardFrom_ = true;
   lastHeard_ = Clock::now();
   noteAnswer();
@@ -63,11 +68,14 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
   arrived_.clear();
   const ReadResult result = parser()->parse(message, arrived_);
   if (!result.message.empty())
-    warn(log, cycle, fmt::format("{} at {}:{}; the rest of that message is ignored.", result.message, result.line, result.column));
+    warn(log, cycle,
+         fmt::format("{} at {}:{}; the rest of that message is ignored.", result.message, result.line, result.column));
   for (const Element e : arrived_) synced_ |= isSync(e.head());
   pledged_ |= synced_;
-  if (pending_.empty() && !holdingBack_ && number_ > 0) std::swap(pending_, arrived_);
-  else keep(arrived_);
+  if (pending_.empty() && !holdingBack_ && number_ > 0)
+    std::swap(pending_, arrived_);
+  else
+    keep(arrived_);
   return {};
 }
 
@@ -78,7 +86,9 @@ void Participant::noteAnswer() {
   askedAt_ = {};
 }
 
-bool Participant::isSync(std::string_view predicate) const { return predicate == (hadRobot_ ? std::string_view(syncPredicate_) : kSync) && !predicate.empty(); }
+bool Participant::isSync(std::string_view predicate) const {
+  return predicate == (hadRobot_ ? std::string_view(syncPredicate_) : kSync) && !predicate.empty();
+}
 
 void Participant::keep(const Predicates& arrived) {
   for (const Element e : arrived)
@@ -133,10 +143,13 @@ std::size_t Participant::resolveEffectors(AgentAspect& root) {
   syncPredicate_.clear();
   for (Effector* e : found) effectors_.push_back({e->predicate(), e, e});
   // Of equal predicates the last in tree order counts.
-  std::stable_sort(effectors_.begin(), effectors_.end(), [](const Slot& a, const Slot& b) { return a.predicate < b.predicate; });
+  std::stable_sort(effectors_.begin(), effectors_.end(),
+                   [](const Slot& a, const Slot& b) { return a.predicate < b.predicate; });
   for (std::size_t i = 0; i + 1 < effectors_.size();)
-    if (effectors_[i].predicate == effectors_[i + 1].predicate) effectors_.erase(effectors_.begin() + static_cast<std::ptrdiff_t>(i));
-    else ++i;
+    if (effectors_[i].predicate == effectors_[i + 1].predicate)
+      effectors_.erase(effectors_.begin() + static_cast<std::ptrdiff_t>(i));
+    else
+      ++i;
   for (const Slot& s : effectors_)
     if (s.effector->as<ISyncEffector>()) syncPredicate_ = s.predicate;
   return found.size();
@@ -144,7 +157,8 @@ std::size_t Participant::resolveEffectors(AgentAspect& root) {
 
 Participant::Slot* Participant::slot(std::string_view predicate, std::size_t& guess) {
   if (guess < effectors_.size() && effectors_[guess].predicate == predicate) return &effectors_[guess];
-  const auto it = std::lower_bound(effectors_.begin(), effectors_.end(), predicate, [](const Slot& s, std::string_view p) { return s.predicate < p; });
+  const auto it = std::lower_bound(effectors_.begin(), effectors_.end(), predicate,
+                                   [](const Slot& s, std::string_view p) { return s.predicate < p; });
   if (it == effectors_.end() || it->predicate != predicate) return nullptr;
   guess = static_cast<std::size_t>(it - effectors_.begin());
   return &*it;
@@ -231,7 +245,8 @@ void Participant::share(std::uint64_t round) {
 void Participant::approachSensing(std::size_t distance) const {
   if (distance >= 3) return prefetch(this, sizeof *this);
   if (distance == 2) return prefetch(asked_.data(), asked_.size() * sizeof asked_[0]);
-  for (std::size_t i = 0; i < std::min(asked_.size(), 2 * kAhead); ++i) prefetch(asked_[i], kPerceptor);  // sense fetches the others
+  for (std::size_t i = 0; i < std::min(asked_.size(), 2 * kAhead); ++i)
+    prefetch(asked_[i], kPerceptor);  // sense fetches the others
 }
 
 bool Participant::sense(const Event& event) {
@@ -258,7 +273,8 @@ bool Participant::sense(const Event& event) {
       faulty_ = i;
       fault_ = kNoException;
     }
-    if (percepts_.isUnbalanced()) [[unlikely]] balance(i);
+    if (percepts_.isUnbalanced()) [[unlikely]]
+      balance(i);
   }
   encode();
   return faulty_ == kNone && unbalanced_ == kNone;
@@ -302,15 +318,18 @@ void Participant::load(StateReader& in) {
 
 void Participant::reportFaults(AgentLines& log) {
   if (const Perceptor* p = unbalanced_ != kNone ? perceptors_[unbalanced_].get() : nullptr)
-    log.write(Level::error, fmt::format("{}: {} ({}) {} in sense(); its percept is as if it had closed what it opened. Each open() needs one close(). "
+    log.write(Level::error, fmt::format("{}: {} ({}) {} in sense(); its percept is as if it had closed what it opened. "
+                                        "Each open() needs one close(). "
                                         "This is said once.",
                                         label_, p->path(), p->classObject()->name(),
-                                        open_ > 0 ? fmt::format("left {} list(s) open", open_) : std::string("closed a list that was not open")));
+                                        open_ > 0 ? fmt::format("left {} list(s) open", open_)
+                                                  : std::string("closed a list that was not open")));
   unbalanced_ = kNone;
   if (faulty_ == kNone) return;
   if (const Perceptor* p = perceptors_[faulty_].get()) {
     p->kernel().countFault();
-    log.write(Level::error, fmt::format("{}: {} ({}) threw and is asked no more: {}", label_, p->path(), p->classObject()->name(), fault_));
+    log.write(Level::error, fmt::format("{}: {} ({}) threw and is asked no more: {}", label_, p->path(),
+                                        p->classObject()->name(), fault_));
   }
   perceptors_.erase(perceptors_.begin() + static_cast<std::ptrdiff_t>(faulty_));
   asked_.erase(asked_.begin() + static_cast<std::ptrdiff_t>(faulty_));
@@ -327,7 +346,8 @@ bool Participant::deliver(AgentLines& log, std::int64_t cycle, Clock::time_point
       behavior()->kernel().countFault();
       warn(log, cycle, fmt::format("it threw: {}", fault.what()));
     }
-    if (later_.isUnbalanced() && later_.balance() != 0) warn(log, cycle, "its actions did not close each list that they opened, once.");
+    if (later_.isUnbalanced() && later_.balance() != 0)
+      warn(log, cycle, "its actions did not close each list that they opened, once.");
     return true;
   }
   const bool first = sent_ == 0;

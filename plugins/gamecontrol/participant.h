@@ -9,11 +9,11 @@
 ///     cycle k+2    end of act: effectors and perceptors are looked up; sense: first percepts
 ///     cycle k+3    act: percepts sent, after this cycle's inputs were taken; what answers them acts in k+4
 ///
-/// Effectors that a message addresses before they were looked up are "not registered": the action is lost with a warning. Only `(syn)` counts
-/// at once: who sends it takes part in lockstep from then on.
+/// Effectors that a message addresses before they were looked up are "not registered": the action is lost with a
+/// warning. Only `(syn)` counts at once: who sends it takes part in lockstep from then on.
 ///
-/// A client is idle until its first message: the cycles until then are not counted, so that what comes in every third cycle does not
-/// depend on how long it hesitated.
+/// A client is idle until its first message: the cycles until then are not counted, so that what comes in every third
+/// cycle does not depend on how long it hesitated.
 
 #include <algorithm>
 #include <chrono>
@@ -60,12 +60,13 @@ class Participant {
 
   /// A message came: parsed at once, realised in the next act. Returns "" or why the connection has to be closed.
   std::string receive(std::string_view message, std::size_t maxPending, AgentLines& log, std::int64_t cycle);
-  /// Looks effectors and perceptors up again if something changed below its aspect. True when it has a robot now and had none before.
+  /// Looks effectors and perceptors up again if something changed below its aspect. True when it has a robot now and
+  /// had none before.
   bool resolveRobot();
   /// The tree changed since the last look: perceptors that died are asked no more.
   void forgetTheDead();
-  // A crowd does not fit the caches: while others have their turn, what this one will look at in its own is on its way there. Each part leads
-  // to the next, so that the way has stages.
+  // A crowd does not fit the caches: while others have their turn, what this one will look at in its own is on its way
+  // there. Each part leads to the next, so that the way has stages.
   static constexpr std::size_t kStages = 3;
   /// Before realise, when two others have theirs first.
   void approachActing() const;
@@ -78,14 +79,17 @@ class Participant {
   void realise(AgentLines& log, std::int64_t cycle);
   /// What a behaviour thought of becomes pending.
   void promote();
-  /// Before the sense phase, in the simulation's thread: lets what its perceptors look at with others be brought up to date.
+  /// Before the sense phase, in the simulation's thread: lets what its perceptors look at with others be brought up to
+  /// date.
   void share(std::uint64_t round);
-  /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent. False when a perceptor threw or
-  /// left lists open, which are closed.
+  /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent. False
+  /// when a perceptor threw or left lists open, which are closed.
   bool sense(const Event& event);
-  /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more; reports one that left lists open, once.
+  /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more; reports one that left
+  /// lists open, once.
   void reportFaults(AgentLines& log);
-  /// Sends or hands over what was sensed last, at the instant `now`. False when the message was dropped because an earlier one has not left.
+  /// Sends or hands over what was sensed last, at the instant `now`. False when the message was dropped because an
+  /// earlier one has not left.
   bool deliver(AgentLines& log, std::int64_t cycle, Clock::time_point now);
 
   /// Lockstep: it can answer percepts with a sync predicate, was sent some, and has sent that predicate before.
@@ -97,7 +101,8 @@ class Participant {
   bool trusted() const { return inside_ || expected_ || turnsAnswered_ >= kProbation; }
   /// The cycle that begins found its answer there, or did without.
   void countAnswer() { turnsAnswered_ += synced_; }
-  /// It kept others waiting for too long: it is not waited for until it answers again, and trusted only when it has done so often.
+  /// It kept others waiting for too long: it is not waited for until it answers again, and trusted only when it has
+  /// done so often.
   void distrust() { turnsAnswered_ = 0, pledged_ = false; }
   /// It was heard from, and its first percepts may be on their way.
   bool joining() const { return heardFrom_ && sent_ == 0 && counter_ <= kCyclesToFirstPercepts; }
@@ -111,7 +116,8 @@ class Participant {
   const Predicates& percepts() const { return percepts_; }
   /// Wall time from percepts to the answer [s], smoothed; NaN when not known.
   double latency() const { return latency_; }
-  /// What is under way inside the host: percepts that were not sent yet, what a behaviour wants to do next. Messages on the wire are not.
+  /// What is under way inside the host: percepts that were not sent yet, what a behaviour wants to do next. Messages on
+  /// the wire are not.
   void save(StateWriter& out) const;
   void load(StateReader& in);
 
@@ -127,8 +133,8 @@ class Participant {
   };
   Held& held() { return held_; }
   const Held& held() const { return held_; }
-  /// Keeps all but the predicate `first` back until the first percepts were sent: what it sent during the hold then comes in time.
-  /// `expected`: lockstep always waits for it.
+  /// Keeps all but the predicate `first` back until the first percepts were sent: what it sent during the hold then
+  /// comes in time. `expected`: lockstep always waits for it.
   void holdBack(std::string_view first, bool expected);
   /// True for agents that were held until all expected ones were there.
   bool expected() const { return expected_; }
@@ -143,7 +149,8 @@ class Participant {
     std::string predicate;
     Ref<Effector> effector;
     const void* node = nullptr;  ///< the effector's memory, not to be read
-    std::size_t next = 0;  ///< index of the one that was addressed after it last: agents say the same things in the same order
+    std::size_t next =
+        0;  ///< index of the one that was addressed after it last: agents say the same things in the same order
   };
   struct Shared {
     Ref<Perceptor> perceptor;
@@ -175,7 +182,8 @@ class Participant {
   Ref<Leaf> parserLeaf_;
   IParser* parser_ = nullptr;
   const bool inside_;
-  bool leaving_ = false, skipCycle_ = true, heardFrom_ = false, hadRobot_ = false, expected_ = false, holdingBack_ = false;
+  bool leaving_ = false, skipCycle_ = true, heardFrom_ = false, hadRobot_ = false, expected_ = false,
+       holdingBack_ = false;
   Held held_;
   int turnsAnswered_ = 0;
   bool pledged_ = false, synced_ = false;  ///< sent a sync predicate: ever, since the last cycle
@@ -192,11 +200,11 @@ class Participant {
   std::vector<Ref<Perceptor>> perceptors_;
   std::vector<Perceptor*> asked_;  ///< perceptors_, as long as the tree stays: a reference costs a cache line each
   std::vector<Shared> shared_;
-  std::size_t faulty_ = kNone;   ///< index of a perceptor that threw
+  std::size_t faulty_ = kNone;  ///< index of a perceptor that threw
   std::string fault_;
-  std::size_t unbalanced_ = kNone;      ///< index of a perceptor whose lists had to be closed, and
-  int open_ = 0;                        ///< what Predicates::balance() said of them
-  std::vector<std::uint64_t> blamed_;   ///< ids of those that were reported so
+  std::size_t unbalanced_ = kNone;     ///< index of a perceptor whose lists had to be closed, and
+  int open_ = 0;                       ///< what Predicates::balance() said of them
+  std::vector<std::uint64_t> blamed_;  ///< ids of those that were reported so
   std::string syncPredicate_;
   std::uint64_t robotAt_ = 0;  ///< its aspect's changedAt() at the last look
   std::int64_t counter_ = 0, sent_ = 0;

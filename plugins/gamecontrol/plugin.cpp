@@ -4,5 +4,7 @@
 #include "gamecontrol/scene_effector.h"
 #include "gamecontrol/script_behavior.h"
 
-SPARK_PLUGIN("gamecontrol", "1.0", "Agents: their connections and behaviours, effectors, perceptors, and the rules' base.", spark::GameControl, spark::AgentAspect,
-             spark::Perceptor, spark::Effector, spark::ControlAspect, spark::Behavior, spark::SceneEffector, spark::ScriptBehavior)
+SPARK_PLUGIN("gamecontrol", "1.0",
+             "Agents: their connections and behaviours, effectors, perceptors, and the rules' base.",
+             spark::GameControl, spark::AgentAspect, spark::Perceptor, spark::Effector, spark::ControlAspect,
+             spark::Behavior, spark::SceneEffector, spark::ScriptBehavior)

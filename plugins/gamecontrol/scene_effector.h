@@ -8,7 +8,8 @@
 
 namespace spark {
 
-/// The effector that every agent has from the start. Deferred: the file is imported below the agent in the prepare phase.
+/// The effector that every agent has from the start. Deferred: the file is imported below the agent in the prepare
+/// phase.
 class SceneEffector : public Effector {
   SPARK_CLASS(SceneEffector, Effector)
  public:
@@ -26,21 +27,25 @@ class SceneEffector : public Effector {
 
   std::string act(const Element& action) override {
     if (loaded_) return "(scene ...): it has a robot already; a second one is refused.";
-    if (failures_ >= kMostFailures) return "(scene ...): no robot could be built too often; connect again to try once more.";
+    if (failures_ >= kMostFailures)
+      return "(scene ...): no robot could be built too often; connect again to try once more.";
     const Element file = action.at(1);
-    if (!file || !file.isText() || file.text().empty()) return "(scene <file> <arguments>...): expected a file name after scene.";
+    if (!file || !file.isText() || file.text().empty())
+      return "(scene <file> <arguments>...): expected a file name after scene.";
     if (file.text().size() > kLongestName) return "(scene <file> ...): the file's name is too long.";
-    if (!allowed(file.text())) return fmt::format("(scene {}): robots are files below {}; others are refused.", file.text(), folder_);
+    if (!allowed(file.text()))
+      return fmt::format("(scene {}): robots are files below {}; others are refused.", file.text(), folder_);
     file_ = file.text();
     arguments_.clear();
-    for (auto it = ++++action.begin(); it != action.end(); ++it) arguments_.push_back(value(*it));
+    for (auto it = ++ ++action.begin(); it != action.end(); ++it) arguments_.push_back(value(*it));
     return {};
   }
 
  private:
   static constexpr std::size_t kLongestName = 512;
 
-  /// Absolute names, folders, and names with `..` in them get through: the file server refuses those, and says better why.
+  /// Absolute names, folders, and names with `..` in them get through: the file server refuses those, and says better
+  /// why.
   bool allowed(std::string_view file) const {
     const bool climbs = ("/" + std::string(file) + "/").find("/../") != std::string::npos;
     return file.starts_with(folder_) || folder_ == std::string(file) + "/" || file.starts_with("/") || climbs;
@@ -48,10 +53,14 @@ class SceneEffector : public Effector {
 
   static Value value(const Element& e) {
     switch (e.token().kind) {
-      case Token::Kind::text: return e.text();
-      case Token::Kind::number: return e.number();
-      case Token::Kind::integer: return e.integer();
-      case Token::Kind::list: break;
+      case Token::Kind::text:
+        return e.text();
+      case Token::Kind::number:
+        return e.number();
+      case Token::Kind::integer:
+        return e.integer();
+      case Token::Kind::list:
+        break;
     }
     List out;
     for (const Element inner : e) out.push_back(value(inner));

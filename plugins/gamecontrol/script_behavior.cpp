@@ -6,8 +6,12 @@ namespace spark {
 
 void ScriptBehavior::describe(Description<ScriptBehavior>& d) {
   d.doc("A behaviour written in Lua: handles start and think, leaves S-expressions in actions.");
-  d.property("actions", &ScriptBehavior::actions_).doc("What is to be done: S-expressions, set by the script's handlers.");
-  d.method("script", &ScriptBehavior::script).parameters({"file", "arguments"}).optional(1).doc("Attaches the script, which reads the arguments as `local args = ...`.");
+  d.property("actions", &ScriptBehavior::actions_)
+      .doc("What is to be done: S-expressions, set by the script's handlers.");
+  d.method("script", &ScriptBehavior::script)
+      .parameters({"file", "arguments"})
+      .optional(1)
+      .doc("Attaches the script, which reads the arguments as `local args = ...`.");
 }
 
 void ScriptBehavior::onLink() {
@@ -31,7 +35,8 @@ void ScriptBehavior::run(std::string_view channel, const Value* data, Predicates
   event.data = data;
   kernel().events().channel(channel).emitAt(*this, event);
   const ReadResult result = readSexp(actions_, actions);
-  if (!result.message.empty()) kernel().log().warning("{}.actions: {} at {}:{}.", path(), result.message, result.line, result.column);
+  if (!result.message.empty())
+    kernel().log().warning("{}.actions: {} at {}:{}.", path(), result.message, result.line, result.column);
 }
 
 }  // namespace spark

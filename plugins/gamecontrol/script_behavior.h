@@ -7,8 +7,8 @@
 
 namespace spark {
 
-/// Runs a script's handlers: `start` once, `think` for each cycle's percepts (`event.data`: nested lists). What the script leaves in the
-/// property `actions`, S-expressions, is done.
+/// Runs a script's handlers: `start` once, `think` for each cycle's percepts (`event.data`: nested lists). What the
+/// script leaves in the property `actions`, S-expressions, is done.
 class ScriptBehavior : public Behavior {
   SPARK_CLASS(ScriptBehavior, Behavior)
  public:

@@ -12,10 +12,14 @@ class HumanoidBehavior : public Behavior {
  public:
   static void describe(Description<HumanoidBehavior>& d) {
     using B = HumanoidBehavior;
-    d.doc("Plays soccer with a Nao inside the host, as the external demo team does. Properties count when the agent is made.");
+    d.doc(
+        "Plays soccer with a Nao inside the host, as the external demo team does. Properties count when the agent is "
+        "made.");
     d.property("team", &B::team_).doc("Name of its team.");
     d.property("unum", &B::unum_).range(1, 11).doc("Its number; 1 keeps the goal.");
-    d.property("type", &B::type_).range(-1, 4).doc("Type of its robot; -1: the one that the demo team has for this number; all five types play.");
+    d.property("type", &B::type_)
+        .range(-1, 4)
+        .doc("Type of its robot; -1: the one that the demo team has for this number; all five types play.");
   }
   void start(Predicates& actions) override {
     player_.emplace(team_, unum_, type_ >= 0 ? type_ : humanoid::robotType(unum_));

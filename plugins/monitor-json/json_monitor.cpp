@@ -4,9 +4,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <span>
-
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "spark/numbers.h"
 #include "spark/plugin.h"
@@ -17,8 +16,10 @@ namespace {
 
 /// Six significant digits; null when not finite.
 void put(ByteWriter& out, double v) {
-  if (std::isfinite(v)) out.general(v);
-  else out.put("null");
+  if (std::isfinite(v))
+    out.general(v);
+  else
+    out.put("null");
 }
 
 void put(ByteWriter& out, std::int64_t v) { out.integer(v); }
@@ -26,7 +27,8 @@ void put(ByteWriter& out, std::int64_t v) { out.integer(v); }
 /// A JSON string; bytes that are no UTF-8 (names come from clients) become U+FFFD.
 void put(ByteWriter& out, std::string_view text) {
   const auto plain = [](unsigned char c) { return c >= 0x20 && c < 0x7f && c != '"' && c != '\\'; };
-  if (!std::all_of(text.begin(), text.end(), plain)) return out.put(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (!std::all_of(text.begin(), text.end(), plain))
+    return out.put(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   out.put('"');
   out.put(text);
   out.put('"');
@@ -46,10 +48,14 @@ void putList(ByteWriter& out, std::string_view name, std::span<const float> numb
 void putElement(ByteWriter& out, const Element& element) {
   const Token& token = element.token();
   switch (token.kind) {
-    case Token::Kind::text: return put(out, element.text());
-    case Token::Kind::number: return put(out, token.number);
-    case Token::Kind::integer: return put(out, token.integer);
-    case Token::Kind::list: break;
+    case Token::Kind::text:
+      return put(out, element.text());
+    case Token::Kind::number:
+      return put(out, token.number);
+    case Token::Kind::integer:
+      return put(out, token.integer);
+    case Token::Kind::list:
+      break;
   }
   out.put('[');
   bool first = true;
@@ -119,8 +125,12 @@ void putNode(ByteWriter& out, const FrameNode& node, bool full, bool changed) {
         putLight(out, *node.visual);
       }
       return;
-    case FrameNode::Kind::mesh: out.put(",\"StaticMesh\""); break;
-    case FrameNode::Kind::singleMaterial: out.put(",\"SMN\""); break;
+    case FrameNode::Kind::mesh:
+      out.put(",\"StaticMesh\"");
+      break;
+    case FrameNode::Kind::singleMaterial:
+      out.put(",\"SMN\"");
+      break;
   }
   if (full)
     putMesh(out, node);

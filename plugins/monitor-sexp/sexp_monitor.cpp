@@ -33,10 +33,14 @@ void putList(ByteWriter& out, std::string_view name, std::span<const float> numb
 void putElement(ByteWriter& out, const Element& element) {
   const Token& token = element.token();
   switch (token.kind) {
-    case Token::Kind::text: return out.put(element.text());
-    case Token::Kind::number: return out.general(token.number);
-    case Token::Kind::integer: return out.integer(token.integer);
-    case Token::Kind::list: break;
+    case Token::Kind::text:
+      return out.put(element.text());
+    case Token::Kind::number:
+      return out.general(token.number);
+    case Token::Kind::integer:
+      return out.integer(token.integer);
+    case Token::Kind::list:
+      break;
   }
   out.put('(');
   bool first = true;
@@ -48,8 +52,8 @@ void putElement(ByteWriter& out, const Element& element) {
   out.put(')');
 }
 
-/// A matrix, column by column. Most parts of a robot are shifted and not turned, and no column ends in anything but 0 or 1 unless somebody
-/// shears the scene: that is known before it is written.
+/// A matrix, column by column. Most parts of a robot are shifted and not turned, and no column ends in anything but 0
+/// or 1 unless somebody shears the scene: that is known before it is written.
 void putTransform(ByteWriter& out, const Matrix& matrix) {
   constexpr float kUpright[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   out.put(" (SLT");
@@ -84,7 +88,8 @@ void putScale(ByteWriter& out, const Vec3f& scale) {
   std::size_t size = 0;
   out.put("(sSc");
   for (int i = 0; i < 3; ++i) {
-    if (i == 0 || std::bit_cast<std::uint32_t>(scale[i]) != std::bit_cast<std::uint32_t>(scale[i - 1])) size = static_cast<std::size_t>(putGeneral(text + 1, scale[i]) - text);
+    if (i == 0 || std::bit_cast<std::uint32_t>(scale[i]) != std::bit_cast<std::uint32_t>(scale[i - 1]))
+      size = static_cast<std::size_t>(putGeneral(text + 1, scale[i]) - text);
     out.put({text, std::min(size, sizeof text)});
   }
   out.put(')');
@@ -126,8 +131,12 @@ void putNode(ByteWriter& out, const FrameNode& node, bool full, bool changed) {
         putLight(out, *node.visual);
       }
       return;
-    case FrameNode::Kind::mesh: out.put(" StaticMesh"); break;
-    case FrameNode::Kind::singleMaterial: out.put(" SMN"); break;
+    case FrameNode::Kind::mesh:
+      out.put(" StaticMesh");
+      break;
+    case FrameNode::Kind::singleMaterial:
+      out.put(" SMN");
+      break;
   }
   if (full)
     putMesh(out, node);

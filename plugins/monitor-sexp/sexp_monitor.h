@@ -4,7 +4,8 @@
 
 namespace spark {
 
-/// Writes monitor messages as S-expressions, to the blank as the installed base's monitors (RoboViz, rcssmonitor3d) have been sent them:
+/// Writes monitor messages as S-expressions, to the blank as the installed base's monitors (RoboViz, rcssmonitor3d)
+/// have been sent them:
 ///
 ///     ((time 0.8)(play_mode 3))(RDS 0 1)((nd(nd))(nd (SLT 1 0 ... 1)(nd StaticMesh (setVisible 1))))
 ///

@@ -18,13 +18,14 @@ using std::chrono::seconds;
 // Few rates, so that there are few lanes.
 constexpr std::array<double, 7> kRates{1, 2, 5, 10, 20, 25, 50};
 constexpr double kAllowance = 400, kAllowanceRate = 200;  // messages a viewer may send at once, and a second
-constexpr auto kSceneApart = milliseconds(250);           // while a scene keeps changing it is described so often at most
+constexpr auto kSceneApart = milliseconds(250);  // while a scene keeps changing it is described so often at most
 
-constexpr auto kAlwaysApart = milliseconds(100);          // the time of play is told so often at most
+constexpr auto kAlwaysApart = milliseconds(100);  // the time of play is told so often at most
 constexpr auto kStatusPatience = seconds(2);
 
 double nearestRate(double rate) {
-  return *std::min_element(kRates.begin(), kRates.end(), [rate](double a, double b) { return std::abs(a - rate) < std::abs(b - rate); });
+  return *std::min_element(kRates.begin(), kRates.end(),
+                           [rate](double a, double b) { return std::abs(a - rate) < std::abs(b - rate); });
 }
 
 Clock::duration periodOf(double rate) { return duration_cast<Clock::duration>(duration<double>(1 / rate)); }
@@ -32,7 +33,8 @@ Clock::duration periodOf(double rate) { return duration_cast<Clock::duration>(du
 Clock::duration toleranceOf(double rate) { return periodOf(rate) / 4; }
 }  // namespace
 
-Audience::Audience(Exchange& exchange, Log& log, AudienceSettings settings) : exchange_(exchange), log_(log), settings_(std::move(settings)) {}
+Audience::Audience(Exchange& exchange, Log& log, AudienceSettings settings)
+    : exchange_(exchange), log_(log), settings_(std::move(settings)) {}
 
 Audience::~Audience() { dismiss(); }
 
@@ -112,12 +114,17 @@ void Audience::act(Viewer& viewer, ViewerMessage message) {
     case What::drawings:
       viewer.wantsDrawings = message.on;
       return exchange_.questions.put({Question::Kind::drawings, viewer.id(), 0, {}, false, message.on});
-    case What::login: return login(viewer, message.text);
-    case What::unwatch: return exchange_.questions.put({Question::Kind::unwatch, viewer.id(), message.id});
+    case What::login:
+      return login(viewer, message.text);
+    case What::unwatch:
+      return exchange_.questions.put({Question::Kind::unwatch, viewer.id(), message.id});
     case What::command:
-      if (!viewer.referee) return viewer.sendText(reply("answer", message.id, failure("only the referee gives commands: open the referee's link")));
+      if (!viewer.referee)
+        return viewer.sendText(
+            reply("answer", message.id, failure("only the referee gives commands: open the referee's link")));
       return ask(viewer, {Question::Kind::command, viewer.id(), message.id, std::move(message.text), true});
-    case What::request: return ask(viewer, {Question::Kind::request, viewer.id(), message.id, std::move(message.text), viewer.referee});
+    case What::request:
+      return ask(viewer, {Question::Kind::request, viewer.id(), message.id, std::move(message.text), viewer.referee});
   }
 }
 
@@ -214,7 +221,8 @@ void Audience::takeScene(Clock::time_point now) {
 
 void Audience::noteFlickers() {
   for (std::uint32_t i = 0; i < visible_.size(); ++i)
-    if (visible_[i] != snapshot_.visible[i] && std::find(flickers_.begin(), flickers_.end(), i) == flickers_.end()) flickers_.push_back(i);
+    if (visible_[i] != snapshot_.visible[i] && std::find(flickers_.begin(), flickers_.end(), i) == flickers_.end())
+      flickers_.push_back(i);
 }
 
 void Audience::tellEnvironment(Clock::time_point now) {
@@ -293,7 +301,8 @@ Clock::time_point Audience::tick(Clock::time_point now) {
     stallsDue_ = now + seconds(1);
     giveUpOnStatus(now);
     for (const auto& [id, viewer] : viewers_)
-      if (now - viewer->leavingSince(now) > duration<double>(settings_.stallTimeout)) viewer->close("you do not read what you are sent");
+      if (now - viewer->leavingSince(now) > duration<double>(settings_.stallTimeout))
+        viewer->close("you do not read what you are sent");
   }
   const Clock::time_point frame = wantSnapshot(now);
   return std::min({frame, statusWanted && !statusAsked_ ? statusDue_ : stallsDue_, stallsDue_});

@@ -2,10 +2,12 @@
 /// \file
 /// All viewers, and what each is to get. I/O thread only; knows no sockets.
 ///
-/// Viewers that want the same rate and detail share a lane: a frame is quantised and encoded once for all of them, as a delta and, when
-/// somebody needs one, as a key. A viewer that has not taken the last frame misses the next ones and gets a key when it is back.
+/// Viewers that want the same rate and detail share a lane: a frame is quantised and encoded once for all of them, as a
+/// delta and, when somebody needs one, as a key. A viewer that has not taken the last frame misses the next ones and
+/// gets a key when it is back.
 ///
-/// The simulation's thread is asked for a snapshot shortly before the next lane is due, and not at all while nobody watches.
+/// The simulation's thread is asked for a snapshot shortly before the next lane is due, and not at all while nobody
+/// watches.
 
 #include <functional>
 #include <map>
@@ -52,7 +54,8 @@ class Audience {
   Clock::time_point tick(Clock::time_point now);
 
   std::size_t size() const { return viewers_.size(); }
-  /// Tells how the host is doing, `{"type":"status",...}`, as soon as that is known; at once if it was asked a moment ago.
+  /// Tells how the host is doing, `{"type":"status",...}`, as soon as that is known; at once if it was asked a moment
+  /// ago.
   void whenStatus(Clock::time_point now, std::function<void(const std::string&)> hear);
 
  private:
@@ -93,19 +96,20 @@ class Audience {
   std::map<std::uint64_t, std::shared_ptr<Viewer>> viewers_;  ///< in order of arrival
   std::vector<Lane> lanes_;
 
-  Snapshot snapshot_;          ///< ours, while it is not with the simulation's thread
-  bool away_ = false;          ///< it is
+  Snapshot snapshot_;                         ///< ours, while it is not with the simulation's thread
+  bool away_ = false;                         ///< it is
   std::shared_ptr<const std::string> scene_;  ///< the message
-  std::uint64_t shape_ = 0;    ///< of scene_
-  std::uint32_t shapeNumber_ = 0;  ///< as viewers know it
+  std::uint64_t shape_ = 0;                   ///< of scene_
+  std::uint32_t shapeNumber_ = 0;             ///< as viewers know it
   Clock::time_point sceneAt_{};
-  std::vector<std::uint8_t> visible_;     ///< as the scene was sent
-  std::vector<std::uint32_t> flickers_;   ///< nodes that were otherwise since
+  std::vector<std::uint8_t> visible_;    ///< as the scene was sent
+  std::vector<std::uint32_t> flickers_;  ///< nodes that were otherwise since
   EnvironmentDiary diary_;
   Clock::time_point alwaysDue_{};
   std::string status_;
   bool statusAsked_ = false;
-  std::vector<std::pair<std::function<void(const std::string&)>, Clock::time_point>> statusWaiters_;  ///< and since when
+  std::vector<std::pair<std::function<void(const std::string&)>, Clock::time_point>>
+      statusWaiters_;  ///< and since when
   Clock::time_point statusAt_{}, statusDue_{}, stallsDue_{};
 };
 

@@ -35,7 +35,7 @@ struct Hall {
   std::list<Connection*> visitors;  ///< HTTP, who came or asked last at the end
   std::size_t viewers = 0;
   std::uint64_t lastId = 0;
-  std::function<void()> pump;       ///< looks at the audience's clock again
+  std::function<void()> pump;  ///< looks at the audience's clock again
 };
 
 /// Serves HTTP to a connection until it ends or becomes a viewer.

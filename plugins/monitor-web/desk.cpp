@@ -14,15 +14,18 @@ namespace {
 using std::chrono::duration;
 using std::chrono::milliseconds;
 
-constexpr double kMostSaved = 0.002;              // s; what is not used up is kept up to here: no cycle waits much longer
+constexpr double kMostSaved = 0.002;  // s; what is not used up is kept up to here: no cycle waits much longer
 constexpr std::size_t kMostWatches = 1024, kMostWatchesEach = 64;
-constexpr auto kWatchApart = milliseconds(100);   // a watched property is looked at so often at most
+constexpr auto kWatchApart = milliseconds(100);  // a watched property is looked at so often at most
 constexpr auto kDrawingsApart = milliseconds(100);
 
-double secondsSince(std::chrono::steady_clock::time_point t) { return duration<double>(std::chrono::steady_clock::now() - t).count(); }
+double secondsSince(std::chrono::steady_clock::time_point t) {
+  return duration<double>(std::chrono::steady_clock::now() - t).count();
+}
 }  // namespace
 
-Desk::Desk(Kernel& kernel, Exchange& exchange) : kernel_(kernel), exchange_(exchange), report_(kernel), inspection_(kernel) {}
+Desk::Desk(Kernel& kernel, Exchange& exchange)
+    : kernel_(kernel), exchange_(exchange), report_(kernel), inspection_(kernel) {}
 
 template <class F>
 void Desk::paid(F f) {
@@ -58,8 +61,10 @@ void Desk::receive(Question question, int spectators) {
   using Kind = Question::Kind;
   const auto ofViewer = [&](const auto& x) { return x.viewer == question.viewer; };
   switch (question.kind) {
-    case Kind::request: return requests_.push_back(std::move(question));
-    case Kind::command: return tell(Answer::Kind::reply, question.viewer, command(question));
+    case Kind::request:
+      return requests_.push_back(std::move(question));
+    case Kind::command:
+      return tell(Answer::Kind::reply, question.viewer, command(question));
     case Kind::unwatch:
       std::erase_if(watches_, [&](const auto& w) { return w->viewer == question.viewer && w->id == question.id; });
       return;
@@ -72,7 +77,8 @@ void Desk::receive(Question question, int spectators) {
       std::erase_if(watches_, [&](const auto& w) { return w->viewer == question.viewer; });
       std::erase_if(requests_, ofViewer);
       return;
-    case Kind::status: return tell(Answer::Kind::status, 0, report_.make(spectators));
+    case Kind::status:
+      return tell(Answer::Kind::status, 0, report_.make(spectators));
   }
 }
 
@@ -83,12 +89,14 @@ void Desk::tell(Answer::Kind kind, std::uint64_t viewer, std::string text) {
 
 std::string Desk::command(const Question& question) {
   auto* monitor = kernel_.root().find<IMonitorServer>("/sys/server/monitor");
-  const std::string why = monitor ? monitor->command("the web's referee", question.text) : "this house has no monitor server, which takes commands";
+  const std::string why = monitor ? monitor->command("the web's referee", question.text)
+                                  : "this house has no monitor server, which takes commands";
   return reply("answer", question.id, why.empty() ? "{\"ok\":true}" : failure(why));
 }
 
 std::string Desk::answer(const Question& question, const Settings& settings) {
-  if (!settings.everybodyInspects && !question.referee) return reply("answer", question.id, failure("only the referee asks here"));
+  if (!settings.everybodyInspects && !question.referee)
+    return reply("answer", question.id, failure("only the referee asks here"));
   const auto request = nlohmann::json::parse(question.text);  // it was read before
   const std::string what = request.at("do");
   if (Inspection::knows(what)) return reply("answer", question.id, inspection_.answer(request));
@@ -99,7 +107,8 @@ std::string Desk::answer(const Question& question, const Settings& settings) {
   if (what != "watch") return reply("answer", question.id, line);
   if (watch.started) {
     const auto ofViewer = [&](const auto& w) { return w->viewer == question.viewer; };
-    if (watches_.size() >= kMostWatches || std::count_if(watches_.begin(), watches_.end(), ofViewer) >= static_cast<int>(kMostWatchesEach))
+    if (watches_.size() >= kMostWatches ||
+        std::count_if(watches_.begin(), watches_.end(), ofViewer) >= static_cast<int>(kMostWatchesEach))
       return reply("watched", question.id, failure("too many properties are watched"));
     startWatch(question, std::move(watch));
   }
@@ -108,7 +117,8 @@ std::string Desk::answer(const Question& question, const Settings& settings) {
 
 void Desk::startWatch(const Question& question, control::Watch watch) {
   std::erase_if(watches_, [&](const auto& w) { return w->viewer == question.viewer && w->id == question.id; });
-  watches_.push_back(std::make_unique<Watched>(Watched{question.viewer, question.id, std::move(watch), Clock::now() + kWatchApart}));
+  watches_.push_back(
+      std::make_unique<Watched>(Watched{question.viewer, question.id, std::move(watch), Clock::now() + kWatchApart}));
 }
 
 /// In turn, from where the account ran out the last time.
@@ -122,7 +132,8 @@ void Desk::lookAtWatches(Clock::time_point now) {
     if (now >= w.due) {
       w.due = now + kWatchApart;
       paid([&] {
-        if (const std::string line = requests->nextOf(w.watch, done); !line.empty()) tell(Answer::Kind::told, w.viewer, reply("watched", w.id, line));
+        if (const std::string line = requests->nextOf(w.watch, done); !line.empty())
+          tell(Answer::Kind::told, w.viewer, reply("watched", w.id, line));
       });
     }
     if (done)

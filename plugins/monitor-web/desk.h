@@ -11,19 +11,20 @@
 #include "api/drawing.h"
 #include "exchange.h"
 #include "inspection.h"
-#include "status_report.h"
 #include "spark/kernel.h"
+#include "status_report.h"
 
 namespace spark::web {
 
-/// All viewers together get a share of wall time: each request and each look at a watched property is paid for with the time it took, and
-/// when the account is empty the next one waits. Commands of the referee and what costs next to nothing are not weighed.
+/// All viewers together get a share of wall time: each request and each look at a watched property is paid for with the
+/// time it took, and when the account is empty the next one waits. Commands of the referee and what costs next to
+/// nothing are not weighed.
 class Desk {
  public:
   struct Settings {
-    double share = 0.02;         ///< of wall time
+    double share = 0.02;            ///< of wall time
     bool everybodyInspects = true;  ///< false: only the referee asks about the tree
-    bool refereeChanges = true;  ///< the referee may set properties and call methods
+    bool refereeChanges = true;     ///< the referee may set properties and call methods
   };
   /// Both must outlive it.
   Desk(Kernel& kernel, Exchange& exchange);
@@ -64,8 +65,8 @@ class Desk {
   };
   std::vector<Artist> artists_;  ///< viewers that want drawings, and what they were told last
   Clock::time_point drawingsDue_{}, refilledAt_{};
-  double account_ = 0;           ///< s
-  bool told_ = false;            ///< an answer is to be rung for
+  double account_ = 0;  ///< s
+  bool told_ = false;   ///< an answer is to be rung for
 };
 
 }  // namespace spark::web

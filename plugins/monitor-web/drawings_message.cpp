@@ -44,13 +44,28 @@ void putDrawing(std::string& out, const Drawing& d) {
   const auto point = [&](std::size_t i) { return i < d.points.size() ? d.points[i] : Vec3f(0, 0, 0); };
   out += fmt::format("{{\"kind\":\"{}\"", kNames[static_cast<int>(d.kind)]);
   switch (d.kind) {
-    case Kind::circle: putList(out, "centre", point(0).x(), point(0).y()), putNumberAs(out, "radius", d.size), putNumberAs(out, "thickness", d.thickness); break;
-    case Kind::line: putPoint(out, "from", point(0)), putPoint(out, "to", point(1)), putNumberAs(out, "thickness", d.thickness); break;
-    case Kind::point: putPoint(out, "at", point(0)), putNumberAs(out, "size", d.size); break;
-    case Kind::sphere: putPoint(out, "centre", point(0)), putNumberAs(out, "radius", d.size); break;
-    case Kind::polygon: putCorners(out, d.points); break;
-    case Kind::text: putPoint(out, "at", point(0)), putText(out, d.text); break;
-    case Kind::agentText: out += fmt::format(",\"side\":\"{}\",\"number\":{}", d.right ? "right" : "left", d.number), putText(out, d.text); break;
+    case Kind::circle:
+      putList(out, "centre", point(0).x(), point(0).y()), putNumberAs(out, "radius", d.size),
+          putNumberAs(out, "thickness", d.thickness);
+      break;
+    case Kind::line:
+      putPoint(out, "from", point(0)), putPoint(out, "to", point(1)), putNumberAs(out, "thickness", d.thickness);
+      break;
+    case Kind::point:
+      putPoint(out, "at", point(0)), putNumberAs(out, "size", d.size);
+      break;
+    case Kind::sphere:
+      putPoint(out, "centre", point(0)), putNumberAs(out, "radius", d.size);
+      break;
+    case Kind::polygon:
+      putCorners(out, d.points);
+      break;
+    case Kind::text:
+      putPoint(out, "at", point(0)), putText(out, d.text);
+      break;
+    case Kind::agentText:
+      out += fmt::format(",\"side\":\"{}\",\"number\":{}", d.right ? "right" : "left", d.number), putText(out, d.text);
+      break;
   }
   putList(out, "colour", d.color.r, d.color.g, d.color.b, d.color.a);
   out += '}';

@@ -21,12 +21,12 @@ namespace spark::web {
 /// Something that only the simulation's thread can know or do.
 struct Question {
   enum class Kind {
-    request,    ///< JSON, as the control plugin's and the inspection's; `referee`: may change things
-    command,    ///< a trainer's, S-expressions; only of referees
-    unwatch,    ///< ends watch `id`
-    drawings,   ///< wants them from now on, or (`on` false) no longer
-    gone,       ///< the viewer left
-    status,     ///< how the host is doing, for all
+    request,   ///< JSON, as the control plugin's and the inspection's; `referee`: may change things
+    command,   ///< a trainer's, S-expressions; only of referees
+    unwatch,   ///< ends watch `id`
+    drawings,  ///< wants them from now on, or (`on` false) no longer
+    gone,      ///< the viewer left
+    status,    ///< how the host is doing, for all
   } kind = Kind::request;
   std::uint64_t viewer = 0;
   std::int64_t id = 0;
@@ -38,7 +38,7 @@ struct Question {
 struct Answer {
   enum class Kind { reply, told, status } kind = Kind::reply;  ///< reply: ends a question; told: comes by itself
   std::uint64_t viewer = 0;
-  std::string text;  ///< JSON
+  std::string text;                      ///< JSON
   std::vector<std::uint64_t> viewers{};  ///< told: instead of `viewer`, when several get the same
 };
 

@@ -24,7 +24,8 @@ inline void makeParser(std::optional<HeaderParser>& parser) {
   parser->body_limit(std::uint64_t{0});
 }
 
-/// What counts of a head that was read; views into the parser. Of a header that came twice the request is one without host.
+/// What counts of a head that was read; views into the parser. Of a header that came twice the request is one without
+/// host.
 inline Request requestIn(const HeaderParser& parser) {
   namespace http = boost::beast::http;
   const auto view = [](boost::beast::string_view s) { return std::string_view(s.data(), s.size()); };
@@ -46,9 +47,12 @@ inline Request requestIn(const HeaderParser& parser) {
 inline std::optional<Reply> complaintAbout(const boost::beast::error_code& ec) {
   namespace http = boost::beast::http;
   static const auto& category = make_error_code(http::error::end_of_stream).category();
-  if (!ec || ec.category() != category || ec == http::error::end_of_stream || ec == http::error::partial_message) return std::nullopt;
+  if (!ec || ec.category() != category || ec == http::error::end_of_stream || ec == http::error::partial_message)
+    return std::nullopt;
   Reply out;
-  out.status = ec == http::error::header_limit || ec == http::error::buffer_overflow ? 431 : ec == http::error::body_limit ? 413 : 400;
+  out.status = ec == http::error::header_limit || ec == http::error::buffer_overflow ? 431
+               : ec == http::error::body_limit                                       ? 413
+                                                                                     : 400;
   out.text = "This is no request that is understood here: " + ec.message() + "\n";
   out.close = true;
   return out;

@@ -24,7 +24,8 @@ constexpr auto kLinger = std::chrono::seconds(2);
 constexpr std::size_t kMostDrained = 1 << 20;
 
 constexpr const char* kPolicy =
-    "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self' ws: wss: blob: data:; "
+    "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src "
+    "'self' ws: wss: blob: data:; "
     "worker-src 'self' blob:; object-src 'none'; base-uri 'none'; frame-ancestors 'none'";
 
 class HttpSession : public Connection, public std::enable_shared_from_this<HttpSession> {
@@ -42,7 +43,8 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
     hall_.visitors.splice(hall_.visitors.end(), hall_.visitors, place);
     makeParser(parser_);
     expire();
-    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code ec, std::size_t) { self->heard(ec); });
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](error_code ec, std::size_t) { self->heard(ec); });
   }
 
  private:
@@ -50,7 +52,10 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
   using Text = http::response<http::string_body>;
   using File = http::response<http::file_body>;
 
-  void expire() { stream_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(hall_.settings.requestTimeout))); }
+  void expire() {
+    stream_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>(hall_.settings.requestTimeout)));
+  }
 
   void heard(error_code ec) {
     if (const auto complaint = complaintAbout(ec)) return answer(*complaint);
@@ -153,8 +158,8 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
     });
   }
 
-  /// Says that nothing more comes. What the other still sends is taken for a moment: a connection that is closed with unread bytes takes
-  /// the answer with it.
+  /// Says that nothing more comes. What the other still sends is taken for a moment: a connection that is closed with
+  /// unread bytes takes the answer with it.
   void end() {
     answering = false;
     error_code ignored;
@@ -163,9 +168,10 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
     drain(kMostDrained);
   }
   void drain(std::size_t left) {
-    stream_.async_read_some(boost::asio::buffer(waste_), [self = shared_from_this(), left](error_code ec, std::size_t n) {
-      if (!ec && n < left) self->drain(left - n);
-    });
+    stream_.async_read_some(boost::asio::buffer(waste_),
+                            [self = shared_from_this(), left](error_code ec, std::size_t n) {
+                              if (!ec && n < left) self->drain(left - n);
+                            });
   }
 
   Hall& hall_;

@@ -15,7 +15,8 @@ using namespace std::chrono_literals;
 
 // What one answer holds at most.
 constexpr std::size_t kMostContacts = 1024, kMostJoints = 256, kMostSeen = 512, kMostLines = 256, kMostTokens = 8192;
-/// Agents that are watched at the same time: who asks for another one takes the place of the one that was asked for longest ago.
+/// Agents that are watched at the same time: who asks for another one takes the place of the one that was asked for
+/// longest ago.
 constexpr std::size_t kMostWatched = 4;
 constexpr auto kForgetAfter = 5s;
 /// No agent's sight is kept more often: a match that runs as fast as it can is not slowed down.
@@ -40,7 +41,8 @@ Json json(const Element& e) {
   if (!e.isList()) {
     const Token& token = e.token();
     if (token.kind == Token::Kind::integer) return e.integer();
-    if (token.kind == Token::Kind::number) return std::isfinite(token.number) ? Json(rounded(token.number)) : Json(nullptr);
+    if (token.kind == Token::Kind::number)
+      return std::isfinite(token.number) ? Json(rounded(token.number)) : Json(nullptr);
     return std::string(e.text());
   }
   Json out = Json::array();
@@ -56,13 +58,20 @@ const std::string& pathIn(const Json& request) {
 
 const char* nameOf(engine::JointType type) {
   switch (type) {
-    case engine::JointType::ball: return "ball";
-    case engine::JointType::hinge: return "hinge";
-    case engine::JointType::hinge2: return "hinge2";
-    case engine::JointType::slider: return "slider";
-    case engine::JointType::universal: return "universal";
-    case engine::JointType::fixed: return "fixed";
-    case engine::JointType::angularMotor: return "motor";
+    case engine::JointType::ball:
+      return "ball";
+    case engine::JointType::hinge:
+      return "hinge";
+    case engine::JointType::hinge2:
+      return "hinge2";
+    case engine::JointType::slider:
+      return "slider";
+    case engine::JointType::universal:
+      return "universal";
+    case engine::JointType::fixed:
+      return "fixed";
+    case engine::JointType::angularMotor:
+      return "motor";
   }
   return "";
 }
@@ -76,7 +85,8 @@ Json describe(IJoint& joint) {
   const bool slides = joint.jointType() == engine::JointType::slider;
   const auto unit = [slides](double v) { return rounded(slides ? v : radToDeg(v)); };
   Json out{{"path", joint.leaf().path()}, {"type", nameOf(joint.jointType())}, {"anchor", json(joint.anchor())}};
-  Json &axes = out["axes"] = Json::array(), &angles = out["angles"] = Json::array(), &rates = out["rates"] = Json::array();
+  Json &axes = out["axes"] = Json::array(), &angles = out["angles"] = Json::array(),
+       &rates = out["rates"] = Json::array();
   for (int axis = 0; axis < joint.axes(); ++axis) {
     axes.push_back(json(joint.axisNow(axis)));
     angles.push_back(unit(joint.angle(axis)));
@@ -84,7 +94,8 @@ Json describe(IJoint& joint) {
   }
   if (measuresTorque(joint.leaf())) out["torque"] = rounded(joint.feedbackTorque());
   if (joint.axes() == 0) return out;
-  const double low = joint.parameter(engine::JointParameter::lowStop, 0), high = joint.parameter(engine::JointParameter::highStop, 0);
+  const double low = joint.parameter(engine::JointParameter::lowStop, 0),
+               high = joint.parameter(engine::JointParameter::highStop, 0);
   if (std::isfinite(low)) out["low"] = unit(low);
   if (std::isfinite(high)) out["high"] = unit(high);
   return out;
@@ -102,15 +113,19 @@ class Sighted {
  public:
   explicit Sighted(IEye& eye) : eye_(eye) {
     eye.sights(truth_);
-    std::stable_sort(truth_.begin(), truth_.end(), [](const IEye::Sight& a, const IEye::Sight& b) { return a.name < b.name; });
+    std::stable_sort(truth_.begin(), truth_.end(),
+                     [](const IEye::Sight& a, const IEye::Sight& b) { return a.name < b.name; });
   }
 
   /// `(See (B (pol d h v)) (P (team Red) (id 3) (head (pol d h v))) (L (pol d h v) (pol d h v)))`.
   void read(const Element& see) {
     for (const Element e : see) {
-      if (e.head() == "P") readPlayer(e);
-      else if (e.head() == "L") addLine(e.at(1), e.at(2));
-      else if (e.named("pol")) add(std::string(e.head()), e.named("pol"));
+      if (e.head() == "P")
+        readPlayer(e);
+      else if (e.head() == "L")
+        addLine(e.at(1), e.at(2));
+      else if (e.named("pol"))
+        add(std::string(e.head()), e.named("pol"));
     }
   }
   Json seen = Json::array(), lines = Json::array();
@@ -132,7 +147,8 @@ class Sighted {
     Vec3f where;
     if (seen.size() >= kMostSeen || !place(polar, where)) return;
     Json one{{"name", name}, {"seen", json(where)}};
-    const auto at = std::lower_bound(truth_.begin(), truth_.end(), name, [](const IEye::Sight& s, const std::string& n) { return s.name < n; });
+    const auto at = std::lower_bound(truth_.begin(), truth_.end(), name,
+                                     [](const IEye::Sight& s, const std::string& n) { return s.name < n; });
     if (at != truth_.end() && at->name == name) one["true"] = json(at->place);
     seen.push_back(std::move(one));
   }
@@ -175,10 +191,14 @@ std::string Inspection::answer(const Json& request) {
   Json out;
   try {
     const std::string what = request.value("do", "");
-    if (what == "contacts") out = contacts();
-    else if (what == "joints") out = joints(request);
-    else if (what == "percepts") out = percepts(request);
-    else throw Error("expected contacts, joints or percepts, found '" + what + "'");
+    if (what == "contacts")
+      out = contacts();
+    else if (what == "joints")
+      out = joints(request);
+    else if (what == "percepts")
+      out = percepts(request);
+    else
+      throw Error("expected contacts, joints or percepts, found '" + what + "'");
     out["ok"] = true;
   } catch (const std::exception& e) {
     out = {{"ok", false}, {"error", e.what()}};
@@ -198,7 +218,8 @@ Json Inspection::contacts() const {
     if (list.size() >= kMostContacts) break;
     ICollider &a = physics.colliderOf(c.ownerA), &b = physics.colliderOf(c.ownerB);
     if (!a.body() && !b.body()) continue;  // nothing that could move
-    list.push_back({{"position", json(c.position)}, {"normal", json(c.normal)}, {"depth", rounded(c.depth)}, {"solved", c.solve}});
+    list.push_back(
+        {{"position", json(c.position)}, {"normal", json(c.normal)}, {"depth", rounded(c.depth)}, {"solved", c.solve}});
     Json& one = list.back();
     if (c.solve && c.feedback) one["force"] = json(c.forceOnA);
     one["a"] = a.leaf().path();
@@ -228,7 +249,11 @@ Json Inspection::percepts(const Json& request) {
   watch.askedAt = now;
   if (watch.kept.is_null()) keepWhatItSees(watch, now);
 
-  Json out{{"time", rounded(time())}, {"percepts", Json::array()}, {"seen", Json::array()}, {"lines", Json::array()}, {"cones", Json::array()}};
+  Json out{{"time", rounded(time())},
+           {"percepts", Json::array()},
+           {"seen", Json::array()},
+           {"lines", Json::array()},
+           {"cones", Json::array()}};
   auto& control = kernel_.root().require<IGameControl>("/sys/server/gamecontrol");
   bool sees = false;
   if (const Predicates* all = control.percepts(*agent); all && all->size() <= kMostTokens)
@@ -246,10 +271,12 @@ Json Inspection::percepts(const Json& request) {
 }
 
 Inspection::Watched& Inspection::watched(AgentAspect& agent) {
-  const auto known = std::find_if(watched_.begin(), watched_.end(), [&](const Watched& w) { return w.agent.get() == &agent; });
+  const auto known =
+      std::find_if(watched_.begin(), watched_.end(), [&](const Watched& w) { return w.agent.get() == &agent; });
   if (known != watched_.end()) return *known;
   if (watched_.size() >= kMostWatched)
-    watched_.erase(std::min_element(watched_.begin(), watched_.end(), [](const Watched& a, const Watched& b) { return a.askedAt < b.askedAt; }));
+    watched_.erase(std::min_element(watched_.begin(), watched_.end(),
+                                    [](const Watched& a, const Watched& b) { return a.askedAt < b.askedAt; }));
   return watched_.emplace_back(Watched{Ref<AgentAspect>(&agent), {}, {}, nullptr, nullptr});
 }
 
@@ -273,7 +300,8 @@ void Inspection::keepWhatItSees(Watched& watch, Clock::time_point now) const {
       sighted.read(see);
       watch.keptAt = now;
       watch.see = json(see);
-      watch.kept = {{"seenTime", rounded(time())}, {"seen", std::move(sighted.seen)}, {"lines", std::move(sighted.lines)}};
+      watch.kept = {
+          {"seenTime", rounded(time())}, {"seen", std::move(sighted.seen)}, {"lines", std::move(sighted.lines)}};
       return;
     }
 }

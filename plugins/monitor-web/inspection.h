@@ -3,15 +3,19 @@
 /// What a viewer may ask to look into the match: what touches, how joints stand, what an agent senses.
 ///
 ///     {"do":"contacts"}                {"contacts":[{"position","normal","depth","solved","force","a","b"}, ...]}
-///     {"do":"joints","path":p}         {"joints":[{"path","type","anchor","axes","angles","rates","torque","low","high"}, ...]}
-///     {"do":"percepts","path":p}       {"time","percepts","head","cones":[{"path","matrix","horizontal","vertical","range"}, ...],
+///     {"do":"joints","path":p}         {"joints":[{"path","type","anchor","axes","angles","rates",
+///                                                 "torque","low","high"}, ...]}
+///     {"do":"percepts","path":p}       {"time","percepts","head",
+///                                       "cones":[{"path","matrix","horizontal","vertical","range"}, ...],
 ///                                       "seenTime","seen":[{"name","seen","true"}, ...],"lines":[[from, to], ...]}
 ///
-/// Metres, newtons, degrees (sliders: metres), the world's frame; normals and forces are those on `a`. Matrices are column by column; those of eyes look along x,
-/// z is up. `p` is a node, of an agent: any of its own. What is not known is left out: forces that nobody measures, joints without
-/// stops, sight without limit, the truth about what has no place.
+/// Metres, newtons, degrees (sliders: metres), the world's frame; normals and forces are those on `a`. Matrices are
+/// column by column; those of eyes look along x, z is up. `p` is a node, of an agent: any of its own. What is not known
+/// is left out: forces that nobody measures, joints without stops, sight without limit, the truth about what has no
+/// place.
 ///
-/// An agent sees in some cycles only, and what it saw is to be compared with what was true then. So who asked for percepts lately is watched:
+/// An agent sees in some cycles only, and what it saw is to be compared with what was true then. So who asked for
+/// percepts lately is watched:
 ///
 ///     poll ─► look(): in a cycle in which a watched agent saw ─► keeps its percept with camera and true places
 ///     request ─► what it senses now, and what was kept

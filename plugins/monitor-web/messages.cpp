@@ -64,10 +64,16 @@ void putMesh(std::string& out, const NodeDescription& node, bool visible) {
 void putNode(std::string& out, const NodeDescription& node, bool visible) {
   put(out, "{{\"parent\":{}", node.parent);
   switch (node.kind) {
-    case FrameNode::Kind::transform: putTransform(out, node); break;
-    case FrameNode::Kind::light: out += ",\"kind\":\"light\""; break;
+    case FrameNode::Kind::transform:
+      putTransform(out, node);
+      break;
+    case FrameNode::Kind::light:
+      out += ",\"kind\":\"light\"";
+      break;
     case FrameNode::Kind::mesh:
-    case FrameNode::Kind::singleMaterial: putMesh(out, node, visible); break;
+    case FrameNode::Kind::singleMaterial:
+      putMesh(out, node, visible);
+      break;
   }
   out += '}';
 }
@@ -110,10 +116,14 @@ void putNumber(std::string& out, double value, int digits) {
 void putElement(std::string& out, const Element& element) {
   const Token& token = element.token();
   switch (token.kind) {
-    case Token::Kind::text: return isNumber(element.text()) ? putNumber(out, element.number(), 10) : putQuoted(out, element.text());
-    case Token::Kind::number: return putNumber(out, token.number, 10);
-    case Token::Kind::integer: return put(out, "{}", token.integer);
-    case Token::Kind::list: break;
+    case Token::Kind::text:
+      return isNumber(element.text()) ? putNumber(out, element.number(), 10) : putQuoted(out, element.text());
+    case Token::Kind::number:
+      return putNumber(out, token.number, 10);
+    case Token::Kind::integer:
+      return put(out, "{}", token.integer);
+    case Token::Kind::list:
+      break;
   }
   out += '[';
   bool first = true;
@@ -126,7 +136,8 @@ void putElement(std::string& out, const Element& element) {
 }
 
 std::string helloMessage(double step, double rate) {
-  return fmt::format("{{\"type\":\"hello\",\"protocol\":1,\"spark\":\"{}\",\"step\":{:g},\"rate\":{:g}}}", SPARK_VERSION, step, rate);
+  return fmt::format("{{\"type\":\"hello\",\"protocol\":1,\"spark\":\"{}\",\"step\":{:g},\"rate\":{:g}}}",
+                     SPARK_VERSION, step, rate);
 }
 
 std::string sceneMessage(const Snapshot& s, std::uint32_t shape) {

@@ -16,7 +16,8 @@ void putNumber(std::string& out, double value, int digits = 6);
 /// Appends an element: lists as arrays, texts that are numbers as numbers.
 void putElement(std::string& out, const Element& element);
 
-/// `{"type":"hello",...}`. `step`: simulated seconds of a cycle; `rate`: frames a second that a viewer gets unless it asks for another.
+/// `{"type":"hello",...}`. `step`: simulated seconds of a cycle; `rate`: frames a second that a viewer gets unless it
+/// asks for another.
 std::string helloMessage(double step, double rate);
 /// `{"type":"scene",...}` with the matrices as they are now.
 std::string sceneMessage(const Snapshot& snapshot, std::uint32_t shape);
@@ -32,8 +33,8 @@ std::string failure(std::string_view why);
 /// What viewers were told of the environment, to tell them what changed.
 class EnvironmentDiary {
  public:
-  /// Notes what the snapshot says; the message that tells the differences, "" when there are none. `always`: also of the entries that other
-  /// monitors get with every frame, such as the time of play.
+  /// Notes what the snapshot says; the message that tells the differences, "" when there are none. `always`: also of
+  /// the entries that other monitors get with every frame, such as the time of play.
   std::string take(const Snapshot& snapshot, bool always);
 
  private:

@@ -11,11 +11,16 @@ namespace {
 /// Shapes that a viewer can draw: planes are the ground, rays are nothing to see, meshes come as meshes.
 std::optional<SceneShape> shapeOf(const engine::ShapeDescription& s) {
   switch (s.shape) {
-    case engine::Shape::box: return SceneShape{SceneShape::Kind::box, {s.lengths.x(), s.lengths.y(), s.lengths.z()}};
-    case engine::Shape::sphere: return SceneShape{SceneShape::Kind::sphere, {s.radius}};
-    case engine::Shape::capsule: return SceneShape{SceneShape::Kind::capsule, {s.radius, s.length}};
-    case engine::Shape::cylinder: return SceneShape{SceneShape::Kind::cylinder, {s.radius, s.length}};
-    default: return std::nullopt;
+    case engine::Shape::box:
+      return SceneShape{SceneShape::Kind::box, {s.lengths.x(), s.lengths.y(), s.lengths.z()}};
+    case engine::Shape::sphere:
+      return SceneShape{SceneShape::Kind::sphere, {s.radius}};
+    case engine::Shape::capsule:
+      return SceneShape{SceneShape::Kind::capsule, {s.radius, s.length}};
+    case engine::Shape::cylinder:
+      return SceneShape{SceneShape::Kind::cylinder, {s.radius, s.length}};
+    default:
+      return std::nullopt;
   }
 }
 

@@ -23,14 +23,16 @@ using boost::system::error_code;
 
 namespace {
 constexpr int kSpareDescriptors = 256;  // for agents, monitors, files
-constexpr int kSendBuffer = 131072;     // bytes that the system holds back for a viewer; the rest of what waits is ours to drop
+constexpr int kSendBuffer =
+    131072;  // bytes that the system holds back for a viewer; the rest of what waits is ours to drop
 constexpr auto kAcceptPause = std::chrono::milliseconds(200);
 
 /// As many connections as the process has descriptors for; each may have a file open besides its socket.
 int affordable(int wanted) {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return wanted;
-  return std::min(wanted, std::max(16, (static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 1 << 20)) - kSpareDescriptors) / 2));
+  return std::min(wanted,
+                  std::max(16, (static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 1 << 20)) - kSpareDescriptors) / 2));
 }
 
 ServiceSettings afforded(ServiceSettings s) {
@@ -64,7 +66,9 @@ struct Service::Impl {
   void open(const ServiceSettings& s) {
     error_code ec;
     const auto address = asio::ip::make_address(s.address, ec);
-    if (ec) throw Error(fmt::format("the web server's address: expected an IP address such as 127.0.0.1 or 0.0.0.0, found '{}'", s.address));
+    if (ec)
+      throw Error(fmt::format(
+          "the web server's address: expected an IP address such as 127.0.0.1 or 0.0.0.0, found '{}'", s.address));
     const bool had = bind({address, s.port}, ec);
     const std::string why = ec.message();
     if (!had && (s.port == 0 || !bind({address, 0}, ec)))
@@ -105,13 +109,15 @@ struct Service::Impl {
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
-    if (hall.visitors.size() + hall.viewers >= static_cast<std::size_t>(hall.settings.maxConnections) && !makeRoom()) return;
+    if (hall.visitors.size() + hall.viewers >= static_cast<std::size_t>(hall.settings.maxConnections) && !makeRoom())
+      return;
     serveHttp(hall, beast::tcp_stream(std::move(socket)));
   }
 
   /// Ends the visitor who was quiet longest, else the one who came first; viewers stay.
   bool makeRoom() {
-    const auto quiet = std::find_if(hall.visitors.begin(), hall.visitors.end(), [](const Connection* c) { return !c->answering; });
+    const auto quiet =
+        std::find_if(hall.visitors.begin(), hall.visitors.end(), [](const Connection* c) { return !c->answering; });
     const auto at = quiet == hall.visitors.end() ? hall.visitors.begin() : quiet;
     if (at == hall.visitors.end()) return false;
     (*at)->drop();
@@ -143,7 +149,8 @@ struct Service::Impl {
     });
   }
 
-  /// Signals are for the simulation's thread, and so is a processor that only one of them can have: this one does not push it off.
+  /// Signals are for the simulation's thread, and so is a processor that only one of them can have: this one does not
+  /// push it off.
   void start() {
     sigset_t all, before;
     sigfillset(&all);
@@ -169,7 +176,8 @@ struct Service::Impl {
   std::thread thread;
 };
 
-Service::Service(ServiceSettings settings, Exchange& exchange, Log& log) : impl_(std::make_unique<Impl>(std::move(settings), exchange, log)) {}
+Service::Service(ServiceSettings settings, Exchange& exchange, Log& log)
+    : impl_(std::make_unique<Impl>(std::move(settings), exchange, log)) {}
 Service::~Service() = default;
 unsigned short Service::port() const { return impl_->port; }
 int Service::viewers() const { return impl_->viewers.load(std::memory_order_relaxed); }

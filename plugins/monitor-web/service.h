@@ -13,17 +13,17 @@ namespace spark::web {
 
 struct ServiceSettings {
   std::string address = "127.0.0.1";
-  unsigned short port = 3280;   ///< 0: a free one
+  unsigned short port = 3280;  ///< 0: a free one
   int maxConnections = 512, maxViewers = 256;
-  double requestTimeout = 15;   ///< s; until a request must be there, and until a piece of an answer must be taken
+  double requestTimeout = 15;  ///< s; until a request must be there, and until a piece of an answer must be taken
   SiteSettings site;
   AudienceSettings audience;
 };
 
 class Service {
  public:
-  /// Opens the port and starts the thread. When the port is taken, a free one is, and the log says so. Throws Error: no port at all.
-  /// `exchange` and `log` must outlive it.
+  /// Opens the port and starts the thread. When the port is taken, a free one is, and the log says so. Throws Error: no
+  /// port at all. `exchange` and `log` must outlive it.
   Service(ServiceSettings settings, Exchange& exchange, Log& log);
   /// Closes all connections and ends the thread.
   ~Service();

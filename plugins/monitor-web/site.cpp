@@ -10,8 +10,8 @@
 
 #include "plain_page.h"
 
-// Which file a request may mean is decided on names alone: every component must be a plain name (no dots in front, no separators, no control
-// characters, after decoding), so that a path cannot leave its folder.
+// Which file a request may mean is decided on names alone: every component must be a plain name (no dots in front, no
+// separators, no control characters, after decoding), so that a path cannot leave its folder.
 
 namespace spark::web {
 
@@ -31,13 +31,15 @@ Reply refusal(unsigned status, std::string text) {
 
 std::string lower(std::string_view text) {
   std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return out;
 }
 
 /// The name of `host` without its port, in lower case; brackets of an IPv6 address are taken off.
 std::string nameOf(std::string_view host) {
-  if (host.starts_with('[')) return host.find(']') == host.npos ? std::string() : lower(host.substr(1, host.find(']') - 1));
+  if (host.starts_with('['))
+    return host.find(']') == host.npos ? std::string() : lower(host.substr(1, host.find(']') - 1));
   return lower(host.substr(0, host.find(':')));
 }
 
@@ -60,7 +62,8 @@ std::string decoded(std::string_view text) {
       out += text[i];
       continue;
     }
-    const int high = i + 2 < text.size() ? hexDigit(text[i + 1]) : -1, low = i + 2 < text.size() ? hexDigit(text[i + 2]) : -1;
+    const int high = i + 2 < text.size() ? hexDigit(text[i + 1]) : -1,
+              low = i + 2 < text.size() ? hexDigit(text[i + 2]) : -1;
     if (high < 0 || low < 0) return {};
     out += static_cast<char>(high * 16 + low);
     i += 2;
@@ -118,7 +121,8 @@ bool Site::isOurs(std::string_view host) const {
   boost::system::error_code ec;
   boost::asio::ip::make_address(name, ec);  // an address cannot be pointed elsewhere
   if (!ec || name == "localhost" || name.ends_with(".localhost") || name == machineName()) return true;
-  return std::any_of(settings_.hosts.begin(), settings_.hosts.end(), [&](const std::string& known) { return known == "*" || lower(known) == name; });
+  return std::any_of(settings_.hosts.begin(), settings_.hosts.end(),
+                     [&](const std::string& known) { return known == "*" || lower(known) == name; });
 }
 
 bool Site::hasViewer() const {
@@ -128,7 +132,9 @@ bool Site::hasViewer() const {
 
 Reply Site::answer(const Request& request) const {
   if (!isOurs(request.host))
-    return refusal(421, fmt::format("This server is not known as '{}'. Its config may name it: server.hosts = {{ \"NAME\" }}.", request.host.substr(0, 100)));
+    return refusal(
+        421, fmt::format("This server is not known as '{}'. Its config may name it: server.hosts = {{ \"NAME\" }}.",
+                         request.host.substr(0, 100)));
   if (request.method != "GET" && request.method != "HEAD") return refusal(405, "Only GET and HEAD are answered.");
   if (request.hasBody) return refusal(413, "A request with a body is not taken.");
   if (!request.target.starts_with('/')) return refusal(400, "Expected a path.");

@@ -11,7 +11,8 @@ namespace {
 
 using beast::error_code;
 
-/// A viewer behind a WebSocket. Lives as long as something is on its way; the audience knows it from the handshake to the end of reading.
+/// A viewer behind a WebSocket. Lives as long as something is on its way; the audience knows it from the handshake to
+/// the end of reading.
 class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketViewer> {
  public:
   SocketViewer(Hall& hall, beast::tcp_stream stream, std::string peer)
@@ -24,7 +25,8 @@ class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketVi
   void accept(const http::request<http::empty_body>& request) {
     socket_.async_accept(request, [self = shared_from_this()](error_code ec) {
       if (ec) return;
-      self->socket_.control_callback([s = self.get()](beast::websocket::frame_type, beast::string_view) { s->knocked(); });
+      self->socket_.control_callback(
+          [s = self.get()](beast::websocket::frame_type, beast::string_view) { s->knocked(); });
       self->hall_.log.debug("Web: {} watches.", self->peer());
       self->hall_.audience.arrived(self, Clock::now());
       self->hall_.pump();
@@ -68,18 +70,21 @@ class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketVi
 
   void transmit(const Message& message) override {
     socket_.binary(message.binary());
-    socket_.async_write(boost::asio::buffer(*message.bytes), [self = shared_from_this(), bytes = message.bytes](error_code ec, std::size_t) {
-      if (ec)
-        beast::get_lowest_layer(self->socket_).close();  // reading ends as well
-      else
-        self->sent();
-    });
+    socket_.async_write(boost::asio::buffer(*message.bytes),
+                        [self = shared_from_this(), bytes = message.bytes](error_code ec, std::size_t) {
+                          if (ec)
+                            beast::get_lowest_layer(self->socket_).close();  // reading ends as well
+                          else
+                            self->sent();
+                        });
   }
 
   void hangUp(std::string_view reason) override {
     hall_.log.info("Web: {} was closed: {}.", peer(), reason);
     if (idle()) {
-      socket_.async_close({beast::websocket::close_code::policy_error, beast::string_view(reason.data(), reason.size())}, [self = shared_from_this()](error_code) {});
+      socket_.async_close(
+          {beast::websocket::close_code::policy_error, beast::string_view(reason.data(), reason.size())},
+          [self = shared_from_this()](error_code) {});
     } else {
       beast::get_lowest_layer(socket_).close();  // it would not hear it before what waits
     }

@@ -33,8 +33,9 @@ std::string StatusReport::make(int spectators) {
   const auto now = std::chrono::steady_clock::now();
   const double passed = std::chrono::duration<double>(now - std::exchange(madeAt_, now)).count();
   const double factor = passed > 0 ? (time - std::exchange(time_, time)) / passed : 0;
-  std::string out = fmt::format("{{\"type\":\"status\",\"realTimeFactor\":{:.3f},\"cycle\":{},\"time\":{:.2f},\"spectators\":{}", factor,
-                                clock ? clock->cycle() : 0, time, spectators);
+  std::string out =
+      fmt::format("{{\"type\":\"status\",\"realTimeFactor\":{:.3f},\"cycle\":{},\"time\":{:.2f},\"spectators\":{}",
+                  factor, clock ? clock->cycle() : 0, time, spectators);
   putMatch(out);
   lookUpAgents();
   putAgents(out);
@@ -45,7 +46,8 @@ void StatusReport::putMatch(std::string& out) const {
   const Leaf* match = kernel_.root().find("/sys/server/gamecontrol/GameStateAspect");
   const Value mode = valueOf(match, "playMode"), score = valueOf(match, "score");
   if (mode.isString()) out += ",\"playMode\":", putQuoted(out, mode.toString());
-  if (score.isList() && score.toList().size() == 2) out += fmt::format(",\"score\":[{},{}]", score.toList()[0].plain(), score.toList()[1].plain());
+  if (score.isList() && score.toList().size() == 2)
+    out += fmt::format(",\"score\":[{},{}]", score.toList()[0].plain(), score.toList()[1].plain());
 }
 
 void StatusReport::lookUpAgents() {

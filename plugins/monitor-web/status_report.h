@@ -10,7 +10,8 @@
 
 namespace spark::web {
 
-/// Used in the simulation's thread, between cycles. Looks only at what nodes say about themselves: a house need not play soccer.
+/// Used in the simulation's thread, between cycles. Looks only at what nodes say about themselves: a house need not
+/// play soccer.
 class StatusReport {
  public:
   explicit StatusReport(Kernel& kernel) : kernel_(kernel) {}
@@ -31,7 +32,7 @@ class StatusReport {
   std::vector<Agent> agents_;
   std::uint64_t lookedUpAt_ = 0;  ///< structure version
   std::chrono::steady_clock::time_point madeAt_ = std::chrono::steady_clock::now();
-  double time_ = 0;               ///< s, simulated, when one was made last
+  double time_ = 0;  ///< s, simulated, when one was made last
 };
 
 }  // namespace spark::web

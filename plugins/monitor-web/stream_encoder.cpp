@@ -11,7 +11,8 @@ static_assert(std::endian::native == std::endian::little, "frames are little end
 namespace {
 constexpr std::uint8_t kKey = 1, kDelta = 2;
 constexpr std::size_t kWorthSkipping = 3;  // unchanged transforms that cost more as empty masks than as a new run
-// A value moves to another step only when it is this far from the one it has: what trembles around the middle of two stays.
+// A value moves to another step only when it is this far from the one it has: what trembles around the middle of two
+// stays.
 constexpr float kHold = 0.75f;
 constexpr float kLargest = 1 << 30;
 
@@ -48,7 +49,8 @@ StreamEncoder::Quantised StreamEncoder::quantise(const Matrix& m, const Quantise
   Quantised out;
   for (int i = 0; i < 3; ++i) out[i] = step(m(i, 3) * perMetre, before[i]);
   const Eigen::Vector4f q = rotationOf(m) * perUnit;
-  const Eigen::Vector4f last(static_cast<float>(before[3]), static_cast<float>(before[4]), static_cast<float>(before[5]), static_cast<float>(before[6]));
+  const Eigen::Vector4f last(static_cast<float>(before[3]), static_cast<float>(before[4]),
+                             static_cast<float>(before[5]), static_cast<float>(before[6]));
   const float sign = q.dot(last) < 0 ? -1.f : 1.f;  // both signs are one rotation: the nearer one is
   for (int i = 0; i < 4; ++i) out[3 + i] = step(sign * q[i], before[3 + i]);
   return out;
@@ -56,7 +58,8 @@ StreamEncoder::Quantised StreamEncoder::quantise(const Matrix& m, const Quantise
 
 void StreamEncoder::advance(const Instant& instant) {
   const std::size_t size = instant.transforms.size();
-  hasDelta_ = serial_ > 0 && instant.shape == shape_ && size == now_.size() && instant.visible.size() == visible_.size();
+  hasDelta_ =
+      serial_ > 0 && instant.shape == shape_ && size == now_.size() && instant.visible.size() == visible_.size();
   if (!hasDelta_) {
     zero_.assign(size, {});
     now_ = zero_;

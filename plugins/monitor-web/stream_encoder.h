@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The binary frames that viewers get: quantised positions and rotations, whole (key) or as differences to the frame before (delta).
-/// Pure computation; README.md has the format byte by byte.
+/// The binary frames that viewers get: quantised positions and rotations, whole (key) or as differences to the frame
+/// before (delta). Pure computation; README.md has the format byte by byte.
 
 #include <array>
 #include <cstdint>
@@ -17,8 +17,8 @@ namespace spark::web {
 struct Precision {
   int position = 0, rotation = 0;
 };
-inline constexpr Precision kFine{10, 10};   ///< 1 mm, some 0.1 degrees
-inline constexpr Precision kCoarse{7, 7};   ///< 8 mm, some 0.9 degrees
+inline constexpr Precision kFine{10, 10};  ///< 1 mm, some 0.1 degrees
+inline constexpr Precision kCoarse{7, 7};  ///< 8 mm, some 0.9 degrees
 
 /// One instant as a stream takes it.
 struct Instant {

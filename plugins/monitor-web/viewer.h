@@ -24,7 +24,8 @@ struct Message {
 
 /// Bytes that may wait for a viewer; one that lets more pile up is closed.
 inline constexpr std::size_t kMostWaiting = 16u << 20;
-/// Questions of a viewer that may wait for the simulation's thread; until there are fewer, nothing more is read from it.
+/// Questions of a viewer that may wait for the simulation's thread; until there are fewer, nothing more is read from
+/// it.
 inline constexpr std::size_t kMostAsked = 16;
 
 /// A viewer behind some transport. Messages leave one after the other.
@@ -55,12 +56,12 @@ class Viewer {
 
   // What the audience keeps of it.
   std::size_t lane = 0;
-  std::uint64_t shape = 0;          ///< of the scene it was sent; 0: none
+  std::uint64_t shape = 0;  ///< of the scene it was sent; 0: none
   bool needsKey = true, referee = false, wantsDrawings = false;
   int wrongTokens = 0;
-  double allowance = 0;             ///< messages that it may send now
+  double allowance = 0;  ///< messages that it may send now
   Clock::time_point allowanceAt{};
-  std::deque<Question> asked;       ///< the first is with the simulation's thread
+  std::deque<Question> asked;  ///< the first is with the simulation's thread
 
  protected:
   /// The transport has sent the message it was given.
@@ -76,9 +77,9 @@ class Viewer {
   friend class Audience;
   const std::uint64_t id_;
   const std::string peer_;
-  std::deque<Message> queue_;       ///< the first is leaving
-  std::size_t waiting_ = 0;         ///< bytes
-  int large_ = 0;                   ///< scenes and frames that wait
+  std::deque<Message> queue_;  ///< the first is leaving
+  std::size_t waiting_ = 0;    ///< bytes
+  int large_ = 0;              ///< scenes and frames that wait
   Clock::time_point leavingSince_{};
   bool closing_ = false;
 };

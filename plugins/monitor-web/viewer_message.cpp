@@ -34,7 +34,8 @@ std::string textOf(const Json& message, const char* key) {
 std::int64_t idOf(const Json& message, bool needed) {
   const auto at = message.find("id");
   if (at != message.end() && at->is_number_integer()) return at->get<std::int64_t>();
-  if (needed || at != message.end()) throw Error("the message lacks a whole number \"id\", by which its answer is known");
+  if (needed || at != message.end())
+    throw Error("the message lacks a whole number \"id\", by which its answer is known");
   return 0;
 }
 

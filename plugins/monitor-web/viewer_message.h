@@ -20,11 +20,11 @@ struct ViewerMessage {
     request,   ///< anything else: the simulation's thread knows
   } what = What::request;
   std::int64_t id = 0;
-  double rate = 0;        ///< frames a second; 0: as it was
+  double rate = 0;             ///< frames a second; 0: as it was
   std::optional<bool> fine{};  ///< none: as it was
   bool on = true;
-  bool watch = false;     ///< request: begins a watch
-  std::string text;       ///< request: the message itself
+  bool watch = false;  ///< request: begins a watch
+  std::string text;    ///< request: the message itself
 };
 
 /// Bytes of a message that are taken at most.

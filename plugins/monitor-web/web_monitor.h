@@ -7,8 +7,8 @@
 
 namespace spark {
 
-/// Below the monitor server. When somebody watches and wants a frame, copies the newest one for the web server's thread; otherwise it costs a
-/// look at a pointer. Has no state: who watches does not change the simulation.
+/// Below the monitor server. When somebody watches and wants a frame, copies the newest one for the web server's
+/// thread; otherwise it costs a look at a pointer. Has no state: who watches does not change the simulation.
 class WebMonitor : public Node, public IFrameTaker {
   SPARK_CLASS(WebMonitor, Node)
  public:
@@ -25,8 +25,8 @@ class WebMonitor : public Node, public IFrameTaker {
   void fill(const NewestFrame& newest, double time, web::Snapshot& out);
 
   web::Exchange* exchange_ = nullptr;
-  std::uint64_t lookedAt_ = 0;   ///< structure version when it was looked for
-  Predicates events_;            ///< since the last snapshot
+  std::uint64_t lookedAt_ = 0;  ///< structure version when it was looked for
+  Predicates events_;           ///< since the last snapshot
   std::vector<double> eventTimes_;
   std::size_t eventCount_ = 0;
   const NewestFrame* newest_ = nullptr;  ///< the monitor server's

@@ -19,8 +19,8 @@ class Desk;
 class Service;
 }  // namespace web
 
-/// At /sys/server/web. A thread of its own serves viewers; this one hands it frames (WebMonitor) and answers what viewers ask, between
-/// cycles. Has no state: who watches does not change the simulation, but for what a referee does.
+/// At /sys/server/web. A thread of its own serves viewers; this one hands it frames (WebMonitor) and answers what
+/// viewers ask, between cycles. Has no state: who watches does not change the simulation, but for what a referee does.
 class WebServer : public Node, public IInputSource {
   SPARK_CLASS(WebServer, Node)
  public:
@@ -45,7 +45,8 @@ class WebServer : public Node, public IInputSource {
   void setPort(int port);
   int viewers() const;
   int connections() const;
-  /// Sets the referee's token; "" makes one up. Throws Error: it is short, or the server listens already. No property: those can be read.
+  /// Sets the referee's token; "" makes one up. Throws Error: it is short, or the server listens already. No property:
+  /// those can be read.
   void setToken(std::string token);
   std::string link() const;
   std::string refereeLink() const;
@@ -64,7 +65,7 @@ class WebServer : public Node, public IInputSource {
   std::unique_ptr<web::Service> service_;
   std::unique_ptr<web::Desk> desk_;
   bool tried_ = false;
-  std::int64_t cycle_ = -1;                            ///< when one was seen last
+  std::int64_t cycle_ = -1;  ///< when one was seen last
   std::chrono::steady_clock::time_point cycleAt_{};
 };
 

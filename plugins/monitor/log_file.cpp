@@ -24,8 +24,10 @@ std::size_t drawCommands(std::string_view line) {
 }  // namespace
 
 LogFile::LogFile(const std::string& path) : in_(path, std::ios::binary) {
-  if (std::filesystem::is_directory(path)) throw Error("The log '" + path + "' is a folder; expected a file of monitor messages.");
-  if (!in_) throw Error("The log '" + path + "' cannot be read. Check its name; it is looked up in the working folder.");
+  if (std::filesystem::is_directory(path))
+    throw Error("The log '" + path + "' is a folder; expected a file of monitor messages.");
+  if (!in_)
+    throw Error("The log '" + path + "' cannot be read. Check its name; it is looked up in the working folder.");
   std::string line, chunk(1u << 16, ' ');
   std::uint64_t start = 0, at = 0;  // of the line, of the chunk
   bool tooLong = false;
@@ -53,7 +55,9 @@ LogFile::LogFile(const std::string& path) : in_(path, std::ios::binary) {
   }
   if (at > start) endLine(at);
   in_.clear();
-  if (records_.empty()) throw Error("The log '" + path + "' holds no record; expected lines like ((time 0)...)(RSG 0 1)(...), or the same in JSON.");
+  if (records_.empty())
+    throw Error("The log '" + path +
+                "' holds no record; expected lines like ((time 0)...)(RSG 0 1)(...), or the same in JSON.");
 }
 
 void LogFile::addLine(std::uint64_t offset, std::string_view line) {
@@ -80,6 +84,8 @@ const std::string& LogFile::read(std::uint64_t offset, std::size_t size) {
 
 const std::string& LogFile::read(std::size_t i) { return read(records_.at(i).offset, records_.at(i).size); }
 
-const std::string& LogFile::readDrawings(std::size_t i) { return read(records_.at(i).offset - records_.at(i).drawn, records_.at(i).drawn); }
+const std::string& LogFile::readDrawings(std::size_t i) {
+  return read(records_.at(i).offset - records_.at(i).drawn, records_.at(i).drawn);
+}
 
 }  // namespace spark

@@ -11,13 +11,15 @@ namespace spark {
 namespace {
 constexpr double kFastest = 100;
 constexpr double kTolerance = 1e-6;       ///< of a record; the sum of steps is not exact
-constexpr std::int64_t kMostLines = 10;  ///< about damaged records
+constexpr std::int64_t kMostLines = 10;   ///< about damaged records
 constexpr std::size_t kMostAFrame = 250;  ///< records on the way to another place: other monitors get frames meanwhile
 }  // namespace
 
 void LogPlayer::describe(Description<LogPlayer>& d) {
   using P = LogPlayer;
-  d.doc("Plays a recorded game to monitors. Commands: (p) pause, (f) forward, (b) back, (l) other direction, (speed x), (record n).");
+  d.doc(
+      "Plays a recorded game to monitors. Commands: (p) pause, (f) forward, (b) back, (l) other direction, (speed x), "
+      "(record n).");
   d.property("file", &P::file, &P::setFile).doc("The log: one monitor message a line. Opened when it is set.");
   d.property("commands", &P::commands).doc("Names of the commands that it takes.");
   d.property("recordTime", &P::recordTime_).unit("s").range(0.001, 60).doc("Time between two records.");
@@ -25,7 +27,9 @@ void LogPlayer::describe(Description<LogPlayer>& d) {
   d.property("paused", &P::paused_).state().doc("Stands still; (p) switches it.");
   d.property("backward", &P::backward_).state().doc("Plays backwards; (l) switches it.");
   d.property("waitForMonitor", &P::waitForMonitor_).doc("Does not begin before the first monitor is there.");
-  d.property("record", &P::record, &P::setRecord).min(0).doc("The record that is shown, from 0. Setting it goes there; without a file it is where the next one begins.");
+  d.property("record", &P::record, &P::setRecord)
+      .min(0)
+      .doc("The record that is shown, from 0. Setting it goes there; without a file it is where the next one begins.");
   d.property("records", &P::records).doc("How many there are.");
   d.property("damaged", &P::damaged_).readOnly().doc("Records that could not be played and were passed over.");
   d.implements<IFrameSource>();
@@ -53,7 +57,8 @@ void LogPlayer::take(std::size_t record) {
   at_ = record;
   moments_.passed(record, record - log_->fullBefore(record), scene_);
   if (wrong.empty()) return;
-  if (++damaged_ <= kMostLines) kernel().log().warning("{}: record {} of '{}' is passed over: {}", path(), record, path_, wrong);
+  if (++damaged_ <= kMostLines)
+    kernel().log().warning("{}: record {} of '{}' is passed over: {}", path(), record, path_, wrong);
 }
 
 /// Packets as bytes with their sign: `[0, 0, 97, 0][2, 2, -128]`.
@@ -65,8 +70,10 @@ void LogPlayer::draw(std::size_t record) {
   int value = 0;
   for (const char *at = text.data(), *end = at + text.size(); at < end;) {
     const auto [behind, wrong] = std::from_chars(at, end, value);
-    if (wrong == std::errc()) packet.push_back(static_cast<std::byte>(value));
-    else if (*at == ']') drawings->draw(packet), packet.clear();
+    if (wrong == std::errc())
+      packet.push_back(static_cast<std::byte>(value));
+    else if (*at == ']')
+      drawings->draw(packet), packet.clear();
     at = std::max(behind, at + 1);
   }
 }
@@ -94,7 +101,8 @@ void LogPlayer::goTo(std::size_t target) {
   go(target, target + 1);
 }
 
-/// By way of the last full record, and from there of the last moment that is known. Events of the way are not told, drawings are made.
+/// By way of the last full record, and from there of the last moment that is known. Events of the way are not told,
+/// drawings are made.
 void LogPlayer::begin(std::size_t target) {
   tellEvents_ = false;
   takeDrawingsAway();
@@ -161,7 +169,8 @@ bool LogPlayer::fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const
   const double passed = std::exchange(lastTime_, event.time), now = event.time;
   if (started_ && !paused_ && !underWay_ && now > passed) {
     due_ += speed_ * (now - passed) / recordTime_;
-    if (const double whole = std::floor(due_ + kTolerance); whole >= 1) due_ = advance(static_cast<std::size_t>(whole)) ? due_ - whole : 0;
+    if (const double whole = std::floor(due_ + kTolerance); whole >= 1)
+      due_ = advance(static_cast<std::size_t>(whole)) ? due_ - whole : 0;
   }
   goWhereAimed();
   scene_.copyTo(frame, ids, std::exchange(tellEvents_, false));

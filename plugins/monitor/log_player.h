@@ -13,10 +13,11 @@
 
 namespace spark {
 
-/// Plays a recorded game to all monitors of the server above it. Each gets what it lacks, as in a live game, so monitors come and go, and
-/// the game can be stopped, stepped and played backwards while they watch.
+/// Plays a recorded game to all monitors of the server above it. Each gets what it lacks, as in a live game, so
+/// monitors come and go, and the game can be stopped, stepped and played backwards while they watch.
 ///
-/// Trainer commands, named after the keys of the old log player: `(p)` pause or go on, `(f)` and `(b)` one record forward or back,
+/// Trainer commands, named after the keys of the old log player: `(p)` pause or go on, `(f)` and `(b)` one record
+/// forward or back,
 /// `(l)` the other direction, `(speed 2)`, `(record 150)`. What was drawn goes to the house's drawings, if it has any.
 class LogPlayer : public Node, public IFrameSource, public ITrainer {
   SPARK_CLASS(LogPlayer, Node)
@@ -59,9 +60,9 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
   RecordedScene scene_{*this};
   std::size_t at_ = 0;
   log_player::Moments moments_;
-  bool underWay_ = false;  ///< to wanted_, which is too far for one frame
+  bool underWay_ = false;               ///< to wanted_, which is too far for one frame
   std::optional<std::int64_t> wanted_;  ///< where commands want to be with the next frame
-  double due_ = 0;        ///< part of a record that has passed
+  double due_ = 0;                      ///< part of a record that has passed
   double lastTime_ = 0;
   bool started_ = false;  ///< a monitor came
   bool tellEvents_ = false;

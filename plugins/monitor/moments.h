@@ -8,9 +8,9 @@
 
 namespace spark::log_player {
 
-/// Moments of a recorded game from which a player can go on, so that a step back does not begin at a full record far away. Some are spread
-/// over all that was ever seen, others lie close together on the last way, each at most so many: a step back through a million records
-/// takes some dozens of them.
+/// Moments of a recorded game from which a player can go on, so that a step back does not begin at a full record far
+/// away. Some are spread over all that was ever seen, others lie close together on the last way, each at most so many:
+/// a step back through a million records takes some dozens of them.
 class Moments {
  public:
   static constexpr std::size_t kFirstSpacing = 32, kMostSpread = 256, kMostClose = 64;

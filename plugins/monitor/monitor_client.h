@@ -7,8 +7,8 @@
 
 namespace spark {
 
-/// A monitor behind a connection. There is no queue of frames: only when the last message has left is the next one made, from the newest
-/// frame.
+/// A monitor behind a connection. There is no queue of frames: only when the last message has left is the next one
+/// made, from the newest frame.
 class MonitorClient {
  public:
   /// Both must outlive the client.

@@ -14,8 +14,14 @@ void MonitorLog::describe(Description<MonitorLog>& d) {
   using L = MonitorLog;
   d.doc("Writes a log of the match that log players and monitors can play: one monitor message a line.");
   d.property("file", &L::file_).doc("The file; what it held is replaced. Read when the first record is written.");
-  d.property("interval", &L::interval_).unit("s").min(0).doc("Simulated time between two records, rounded to cycles; the server's own interval is the shortest.");
-  d.property("fullInterval", &L::fullInterval_).unit("s").min(0).doc("A record is full when the last full one is older.");
+  d.property("interval", &L::interval_)
+      .unit("s")
+      .min(0)
+      .doc("Simulated time between two records, rounded to cycles; the server's own interval is the shortest.");
+  d.property("fullInterval", &L::fullInterval_)
+      .unit("s")
+      .min(0)
+      .doc("A record is full when the last full one is older.");
   d.property("records", &L::records_).readOnly().doc("Records written.");
   d.implements<IFrameTaker>();
 }
@@ -49,7 +55,8 @@ bool MonitorLog::ready(const NewestFrame& newest) {
 
 void MonitorLog::take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) {
   if (event.cycle < next_ || !encoder || !ready(newest)) return;
-  const auto every = std::max<std::int64_t>(1, event.step > 0 ? std::llround(std::min(interval_ / event.step, 1e9)) : 1);
+  const auto every =
+      std::max<std::int64_t>(1, event.step > 0 ? std::llround(std::min(interval_ / event.step, 1e9)) : 1);
   next_ = event.cycle + every;
   // Half a step of tolerance: the sum of steps is not exact.
   if (event.time - lastFull_ > fullInterval_ + 0.5 * event.step) view_->requestFull();
@@ -82,8 +89,9 @@ void MonitorLog::write() {
 
 void MonitorLog::fail(std::string_view what) {
   failed_ = true;
-  kernel().log().error("{}: the log '{}' {} ({}); there is no log from here on. Check the folder and the space on the disk.", path(), file_, what,
-                       errno ? std::strerror(errno) : "unknown reason");
+  kernel().log().error(
+      "{}: the log '{}' {} ({}); there is no log from here on. Check the folder and the space on the disk.", path(),
+      file_, what, errno ? std::strerror(errno) : "unknown reason");
 }
 
 }  // namespace spark

@@ -10,9 +10,9 @@
 
 namespace spark {
 
-/// Writes what a monitor would be sent into a file, one message a line: the installed base's `sparkmonitor.log`. Child of the monitor
-/// server; a viewer of its own, so the log is complete whatever the monitors were sent. What agents drew stands in front of a record, as the
-/// installed base's viewer writes it.
+/// Writes what a monitor would be sent into a file, one message a line: the installed base's `sparkmonitor.log`. Child
+/// of the monitor server; a viewer of its own, so the log is complete whatever the monitors were sent. What agents drew
+/// stands in front of a record, as the installed base's viewer writes it.
 class MonitorLog : public Node, public IFrameTaker {
   SPARK_CLASS(MonitorLog, Node)
  public:

@@ -19,10 +19,17 @@ constexpr std::int64_t kComplainEvery = 250;
 void MonitorServer::describe(Description<MonitorServer>& d) {
   using M = MonitorServer;
   d.doc("Sends frames of the scene to monitors and takes trainer commands. Children: an encoder, items, trainers.");
-  d.property("interval", &M::interval_).unit("cycles").min(1).doc("A frame is made in every n-th cycle; commands are executed in the cycles after these.");
-  d.property("precision", &M::precision_).min(0).doc("A matrix is sent again when one of its elements changed by more (metres, or unit vectors).");
+  d.property("interval", &M::interval_)
+      .unit("cycles")
+      .min(1)
+      .doc("A frame is made in every n-th cycle; commands are executed in the cycles after these.");
+  d.property("precision", &M::precision_)
+      .min(0)
+      .doc("A matrix is sent again when one of its elements changed by more (metres, or unit vectors).");
   d.property("clients", &M::clientCount).doc("Number of connected monitors.");
-  d.method("command", &M::commandOrThrow).parameters({"text"}).doc("Trainer's commands, as S-expressions; they act in the next cycle that takes commands.");
+  d.method("command", &M::commandOrThrow)
+      .parameters({"text"})
+      .doc("Trainer's commands, as S-expressions; they act in the next cycle that takes commands.");
   d.method("requestFullState", &M::requestFullState).doc("The next message to every client is full.");
   d.implements<IMonitorServer>();
   d.implements<IConnectionConsumer>();
@@ -48,7 +55,9 @@ void MonitorServer::received(IConnection& connection, std::string_view message) 
   keepCommands(parser ? parser : childOf<IParser>(), connection.peer(), message);
 }
 
-std::string MonitorServer::command(std::string_view from, std::string_view message) { return keepCommands(nullptr, from, message); }
+std::string MonitorServer::command(std::string_view from, std::string_view message) {
+  return keepCommands(nullptr, from, message);
+}
 
 std::string MonitorServer::keepCommands(IParser* parser, std::string_view from, std::string_view message) {
   lookUpHelpers();
@@ -68,7 +77,8 @@ std::string MonitorServer::keepCommands(IParser* parser, std::string_view from, 
     }
     return unknown;
   }
-  kernel().log().debug("{}: from {}: {}:{}: {}; what came before it counts", path(), from, result.line, result.column, result.message);
+  kernel().log().debug("{}: from {}: {}:{}: {}; what came before it counts", path(), from, result.line, result.column,
+                       result.message);
   return fmt::format("{}:{}: {}", result.line, result.column, result.message);
 }
 
@@ -78,7 +88,8 @@ std::string MonitorServer::unknownFrom(std::uint32_t first) const {
     if (command.index() < first || !command.isList()) continue;
     const std::string_view name = command.head();
     if (std::find(known_.begin(), known_.end(), name) == known_.end())
-      return fmt::format("there is no command '{}' here.{}", name.substr(0, 40), didYouMean(name.substr(0, 40), known_));
+      return fmt::format("there is no command '{}' here.{}", name.substr(0, 40),
+                         didYouMean(name.substr(0, 40), known_));
   }
   return {};
 }
@@ -91,7 +102,8 @@ std::string MonitorServer::dropMessage(std::string_view from) {
   ++dropped_;
   if (!toldDroppedAt_ || last_.cycle - *toldDroppedAt_ >= kComplainEvery) {
     toldDroppedAt_ = last_.cycle;
-    kernel().log().warning("{}: {} sends more commands than can wait for the next cycle; {} messages were dropped", path(), from, dropped_);
+    kernel().log().warning("{}: {} sends more commands than can wait for the next cycle; {} messages were dropped",
+                           path(), from, dropped_);
     dropped_ = 0;
   }
   return "more commands wait than the next cycle can take: it was dropped";
@@ -220,7 +232,10 @@ void MonitorServer::sendTo(const std::vector<MonitorClient*>& clients) {
   for (const MonitorClient* client : clients) encoders_.push_back(encoderFor(*client));
   if (std::find(encoders_.begin(), encoders_.end(), nullptr) != encoders_.end()) {
     if (!toldNoEncoder_)
-      kernel().log().error("{}: expected an encoder below it, found none; monitors get nothing. Add one, e.g. new(\"SexpMonitor\", \"{}/encoder\").", path(), path());
+      kernel().log().error(
+          "{}: expected an encoder below it, found none; monitors get nothing. Add one, e.g. new(\"SexpMonitor\", "
+          "\"{}/encoder\").",
+          path(), path());
     toldNoEncoder_ = true;
     return;
   }
@@ -228,7 +243,9 @@ void MonitorServer::sendTo(const std::vector<MonitorClient*>& clients) {
   leaders_.clear();
   encoding_.clear();
   for (std::size_t i = 0; i < clients.size(); ++i) {
-    const auto same = [&](std::size_t k) { return encoders_[k] == encoders_[i] && clients[k]->view.isLike(clients[i]->view); };
+    const auto same = [&](std::size_t k) {
+      return encoders_[k] == encoders_[i] && clients[k]->view.isLike(clients[i]->view);
+    };
     const auto leader = std::find_if(encoding_.begin(), encoding_.end(), same);
     leaders_.push_back(leader == encoding_.end() ? i : *leader);
     if (leaders_.back() == i) encoding_.push_back(i);
@@ -245,5 +262,6 @@ void MonitorServer::sendTo(const std::vector<MonitorClient*>& clients) {
 
 }  // namespace spark
 
-SPARK_PLUGIN("monitor", "1.0", "The monitor server: frames of the scene for monitors, commands from trainers; logs and their player.", spark::MonitorServer,
-             spark::MonitorLog, spark::LogPlayer)
+SPARK_PLUGIN("monitor", "1.0",
+             "The monitor server: frames of the scene for monitors, commands from trainers; logs and their player.",
+             spark::MonitorServer, spark::MonitorLog, spark::LogPlayer)

@@ -21,14 +21,16 @@ namespace spark {
 ///                 ├─► client: what changed since *its* last message ─► encoder ─► connection, when idle
 ///                 ├─► client ...
 ///                 └─► log: another viewer, in the host
-///     clients ─► commands, read when they arrive ─► act phase of the cycle after a due one ─► built in, then trainers in order
+///     clients ─► commands, read when they arrive ─► act phase of the cycle after a due one ─► built in, then trainers
 ///
-/// A frame is due in the cycles whose number is a multiple of `interval`. Commands act in the cycle after, so that a frame shows what
-/// `interval` steps made of them; game control must stand before the monitor server in the tree for agents to act before trainers. As in the installed base a
-/// frame of a scene that changed after the act phase of its own cycle is left out, the next one is full; two are never left out in a row.
+/// A frame is due in the cycles whose number is a multiple of `interval`. Commands act in the cycle after, so that a
+/// frame shows what `interval` steps made of them; game control must stand before the monitor server in the tree for
+/// agents to act before trainers. As in the installed base a frame of a scene that changed after the act phase of its
+/// own cycle is left out, the next one is full; two are never left out in a row.
 ///
-/// A client that does not read is never closed: utilities open the port only to send commands, viewers pause. Frames are left out for it, and it
-/// costs one unsent message and some waiting events. Whose machine has gone is the transport's business.
+/// A client that does not read is never closed: utilities open the port only to send commands, viewers pause. Frames
+/// are left out for it, and it costs one unsent message and some waiting events. Whose machine has gone is the
+/// transport's business.
 class MonitorServer : public Node, public IMonitorServer, public IConnectionConsumer {
   SPARK_CLASS(MonitorServer, Node)
  public:
@@ -58,7 +60,8 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   /// Keeps what a parser (nullptr: S-expressions) makes of a message until it is due.
   std::string keepCommands(IParser* parser, std::string_view from, std::string_view message);
   std::string dropMessage(std::string_view from);
-  /// Which of the commands from token `first` on nobody takes, with the nearest that somebody does; "" when all are known.
+  /// Which of the commands from token `first` on nobody takes, with the nearest that somebody does; "" when all are
+  /// known.
   std::string unknownFrom(std::uint32_t first) const;
   /// As command(), for scripts and sparkctl. Throws Error.
   void commandOrThrow(std::string text);
@@ -75,9 +78,9 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
 
   NewestFrame newest_;
   VisibleNodes nodes_;
-  Version atAct_;         ///< in the act phase of the last due cycle
-  bool changed_ = false;  ///< the newest frame has another shape than the one before
-  bool leftOut_ = false;  ///< the last frame that was due was not sent
+  Version atAct_;                                        ///< in the act phase of the last due cycle
+  bool changed_ = false;                                 ///< the newest frame has another shape than the one before
+  bool leftOut_ = false;                                 ///< the last frame that was due was not sent
   std::vector<std::unique_ptr<MonitorClient>> clients_;  ///< in order of arrival
   std::vector<MonitorClient*> ready_;
   std::vector<IMonitorEncoder*> encoders_;  ///< of the clients that are sent to
@@ -95,7 +98,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   std::vector<IMonitorItem*> items_;
   std::vector<ITrainer*> trainers_;
   std::vector<std::string> known_;  ///< commands; empty when a trainer does not say what it takes
-  Event last_;  ///< of the last publish phase
+  Event last_;                      ///< of the last publish phase
   bool toldNoEncoder_ = false;
 };
 

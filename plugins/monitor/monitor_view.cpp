@@ -19,10 +19,18 @@ EntryKey keyOf(const Predicates& predicates, std::uint32_t token) {
     const Token& t = tokens[i];
     key.content = mix(key.content, static_cast<std::uint64_t>(t.kind));
     switch (t.kind) {
-      case Token::Kind::list: key.content = mix(key.content, t.size); break;
-      case Token::Kind::text: key.content = mix(key.content, hashBytes(predicates.textOf(t))); break;
-      case Token::Kind::number: key.content = mix(key.content, std::bit_cast<std::uint64_t>(t.number)); break;
-      case Token::Kind::integer: key.content = mix(key.content, static_cast<std::uint64_t>(t.integer)); break;
+      case Token::Kind::list:
+        key.content = mix(key.content, t.size);
+        break;
+      case Token::Kind::text:
+        key.content = mix(key.content, hashBytes(predicates.textOf(t)));
+        break;
+      case Token::Kind::number:
+        key.content = mix(key.content, std::bit_cast<std::uint64_t>(t.number));
+        break;
+      case Token::Kind::integer:
+        key.content = mix(key.content, static_cast<std::uint64_t>(t.integer));
+        break;
     }
   }
   return key;
@@ -72,8 +80,10 @@ void MonitorView::pickNodes() {
       differs = update_.full || !((nodes[i].local - sent_[i]).cwiseAbs().maxCoeff() <= newest_.precision);
       if (differs) sent_[i] = nodes[i].local;
     } else {
-      // The first diff after a mesh came repeats its visibility: the installed base's monitors have always been sent that.
-      differs = nodes[i].kind != FrameNode::Kind::light && (newest_.ids[i] > newestId_ || visible_[i] != nodes[i].visible);
+      // The first diff after a mesh came repeats its visibility: the installed base's monitors have always been sent
+      // that.
+      differs =
+          nodes[i].kind != FrameNode::Kind::light && (newest_.ids[i] > newestId_ || visible_[i] != nodes[i].visible);
       visible_[i] = nodes[i].visible;
       newest = std::max(newest, newest_.ids[i]);
     }
@@ -89,10 +99,17 @@ void MonitorView::pickEntries() {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     bool wanted = update_.full;
     switch (entries[i].policy) {
-      case EnvPolicy::full: break;
-      case EnvPolicy::change: wanted |= changed(newest_.keys[i]); break;
-      case EnvPolicy::always: wanted = true; break;
-      case EnvPolicy::once: wanted = false; break;  // waits among the events
+      case EnvPolicy::full:
+        break;
+      case EnvPolicy::change:
+        wanted |= changed(newest_.keys[i]);
+        break;
+      case EnvPolicy::always:
+        wanted = true;
+        break;
+      case EnvPolicy::once:
+        wanted = false;
+        break;  // waits among the events
     }
     if (wanted) update_.env.push_back(entries[i].token);
   }
@@ -116,7 +133,8 @@ void MonitorView::delivered() {
 
 bool MonitorView::isLike(const MonitorView& other) const {
   const bool full = willBeFull();
-  return full == other.willBeFull() && events_ == other.events_ && newestId_ == other.newestId_ && (full || history_ == other.history_);
+  return full == other.willBeFull() && events_ == other.events_ && newestId_ == other.newestId_ &&
+         (full || history_ == other.history_);
 }
 
 void MonitorView::become(const MonitorView& other) {

@@ -12,11 +12,11 @@ EntryKey keyOf(const Predicates& predicates, std::uint32_t token);
 
 /// What one viewer (a client, a log) was sent, and from it what it is to get next.
 ///
-/// Every viewer has its own reference: matrices as last sent, the value of each `change` entry as last sent, waiting events. So viewers
-/// of different speed each get all they lack and nothing twice, however many frames they miss.
+/// Every viewer has its own reference: matrices as last sent, the value of each `change` entry as last sent, waiting
+/// events. So viewers of different speed each get all they lack and nothing twice, however many frames they miss.
 ///
-/// Viewers that were sent the same in the same frames are alike: one of them is encoded, the others become() it. A hundred monitors
-/// that keep up cost one encoding.
+/// Viewers that were sent the same in the same frames are alike: one of them is encoded, the others become() it. A
+/// hundred monitors that keep up cost one encoding.
 class MonitorView {
  public:
   /// `newest` must outlive the view.
@@ -27,7 +27,8 @@ class MonitorView {
   /// An event that this viewer has not got. Of more than kMostWaiting tokens the older half is forgotten.
   void addEvent(const Element& event);
   static constexpr std::uint32_t kMostWaiting = 8192;
-  /// Appends the next message, made from the newest frame, to `out`. Touches only this view: several may do it at the same time.
+  /// Appends the next message, made from the newest frame, to `out`. Touches only this view: several may do it at the
+  /// same time.
   void encode(IMonitorEncoder& encoder, std::string& out);
   /// The message left: events are not told again.
   void delivered();

@@ -29,7 +29,9 @@ std::string restOf(const Element& list) {
   bool head = true;
   for (const Element e : list) {
     if (std::exchange(head, false)) continue;
-    const std::string number = e.isText() || e.isList() ? std::string() : fmt::format("{:g}", e.number());  // in JSON a mesh's parameters are numbers
+    const std::string number = e.isText() || e.isList()
+                                   ? std::string()
+                                   : fmt::format("{:g}", e.number());  // in JSON a mesh's parameters are numbers
     const std::string_view word = number.empty() ? e.text() : number;
     if (out.size() + word.size() < kMostText) out.append(out.empty() ? "" : " ").append(word);
   }
@@ -75,11 +77,14 @@ void RecordedScene::clear() {
 std::string RecordedScene::take(std::string_view message, IParser* parser) {
   parsed_.clear();
   const bool json = message.starts_with('[');
-  if (json && !parser) return "it is JSON: expected a parser below the player, e.g. new(\"JsonParser\", \"/sys/server/monitor/player/parser\")";
+  if (json && !parser)
+    return "it is JSON: expected a parser below the player, e.g. new(\"JsonParser\", "
+           "\"/sys/server/monitor/player/parser\")";
   const ReadResult result = json ? parser->parse(message, parsed_) : readSexp(message, parsed_, kLimits);
   if (!result.message.empty()) return result.message;
   for (const Token& t : parsed_.tokens())
-    if (t.kind == Token::Kind::text && !isPlain(parsed_.textOf(t))) return "expected plain words and numbers, found quoted text";
+    if (t.kind == Token::Kind::text && !isPlain(parsed_.textOf(t)))
+      return "expected plain words and numbers, found quoted text";
   Element parts[3];
   std::size_t count = 0;
   for (const Element e : parsed_) {
@@ -156,10 +161,12 @@ std::string RecordedScene::readNode(const Element& element, int depth) {
     visual->names.clear();
     bool first = true;
     for (const Element name : e) {
-      if (!std::exchange(first, false) && visual->names.size() < kMostMaterials) visual->names.emplace_back(name.text().substr(0, kMostText));
+      if (!std::exchange(first, false) && visual->names.size() < kMostMaterials)
+        visual->names.emplace_back(name.text().substr(0, kMostText));
     }
   }
-  if (visual && node.kind != FrameNode::Kind::light && visual->mesh.empty()) return "expected a mesh's name (load ...), found none";
+  if (visual && node.kind != FrameNode::Kind::light && visual->mesh.empty())
+    return "expected a mesh's name (load ...), found none";
   newNodes_.push_back(node);
   newVisuals_.push_back(std::move(visual));
   return readNodes(element, depth + 1);
@@ -168,7 +175,8 @@ std::string RecordedScene::readNode(const Element& element, int depth) {
 std::string RecordedScene::checkDiff(const Element& list, int depth, std::size_t& next) const {
   for (const Element e : list) {
     if (!isNode(e)) continue;
-    if (next >= nodes_.size() || nodes_[next].depth != depth) return "expected the nodes of the last full message, found others";
+    if (next >= nodes_.size() || nodes_[next].depth != depth)
+      return "expected the nodes of the last full message, found others";
     ++next;
     if (std::string wrong = checkDiff(e, depth + 1, next); !wrong.empty()) return wrong;
   }
@@ -200,7 +208,8 @@ void RecordedScene::readEnvironment(const Element& list, bool full) {
       events_.append(e);
       continue;
     }
-    auto at = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) { return known.name == e.head(); });
+    auto at =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) { return known.name == e.head(); });
     if (at == entries_.end() && entries_.size() >= kMostEntries) continue;
     if (at == entries_.end()) at = entries_.insert(at, Entry{std::string(e.head()), {}, false});
     at->value.clear();

@@ -11,14 +11,15 @@
 
 namespace spark {
 
-/// What recorded monitor messages show: full ones replace it, diffs patch it. Recordings are outside data: a message that does not fit
-/// changes nothing.
+/// What recorded monitor messages show: full ones replace it, diffs patch it. Recordings are outside data: a message
+/// that does not fit changes nothing.
 class RecordedScene {
  public:
   /// `owner` stands for the recorded nodes, which are none of the tree; it must outlive the scene.
   explicit RecordedScene(Leaf& owner) : owner_(owner) {}
 
-  /// Takes one message, an S-expression or what `parser` (may be nullptr) reads, which begins with a bracket. Returns "" or what is wrong with it.
+  /// Takes one message, an S-expression or what `parser` (may be nullptr) reads, which begins with a bracket. Returns
+  /// "" or what is wrong with it.
   std::string take(std::string_view message, IParser* parser = nullptr);
   /// Forgets everything.
   void clear();
@@ -30,7 +31,8 @@ class RecordedScene {
   /// What diffs change since the last full message.
   struct Moment;
   std::shared_ptr<const Moment> moment() const;
-  /// Is again as it was at a moment after the same full message, which must be the last one taken. False, and unchanged, when it was another.
+  /// Is again as it was at a moment after the same full message, which must be the last one taken. False, and
+  /// unchanged, when it was another.
   bool restore(const Moment& moment);
 
  private:

@@ -54,9 +54,15 @@ void VisibleNodes::copyTo(std::vector<FrameNode>& out) const {
       continue;
     }
     switch (entry.visual->kind()) {
-      case IVisual::Kind::light: node.kind = FrameNode::Kind::light; break;
-      case IVisual::Kind::mesh: node.kind = FrameNode::Kind::mesh; break;
-      case IVisual::Kind::singleMaterial: node.kind = FrameNode::Kind::singleMaterial; break;
+      case IVisual::Kind::light:
+        node.kind = FrameNode::Kind::light;
+        break;
+      case IVisual::Kind::mesh:
+        node.kind = FrameNode::Kind::mesh;
+        break;
+      case IVisual::Kind::singleMaterial:
+        node.kind = FrameNode::Kind::singleMaterial;
+        break;
     }
     node.visible = entry.visual->visible();
     node.transparent = entry.visual->transparent();

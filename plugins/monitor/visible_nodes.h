@@ -6,11 +6,13 @@
 
 namespace spark {
 
-/// The nodes of the active scene that monitors see, in depth-first order: transforms, lights and meshes; everything else is transparent, its
-/// visible children stand in its place. Looked up again only when the tree or the scene changed.
+/// The nodes of the active scene that monitors see, in depth-first order: transforms, lights and meshes; everything
+/// else is transparent, its visible children stand in its place. Looked up again only when the tree or the scene
+/// changed.
 class VisibleNodes {
  public:
-  /// Looks again if needed. True when clients need a full message: nodes came or went, or the scene was marked modified.
+  /// Looks again if needed. True when clients need a full message: nodes came or went, or the scene was marked
+  /// modified.
   bool refresh(Kernel& kernel);
   /// True when refresh() would find nothing new: pointers that it gave out are valid.
   bool fresh(Kernel& kernel) const;

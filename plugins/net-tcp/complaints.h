@@ -22,8 +22,10 @@ class Complaints {
       begin_ = now;
       written_ = left_ = 0;
     }
-    if (written_ < kLines) ++written_, log.write(level, line);
-    else ++left_;
+    if (written_ < kLines)
+      ++written_, log.write(level, line);
+    else
+      ++left_;
   }
 
  private:

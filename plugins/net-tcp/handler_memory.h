@@ -21,8 +21,10 @@ class HandlerMemory {
     return block_;
   }
   void give(void* p) {
-    if (p == block_) used_ = false;
-    else ::operator delete(p);
+    if (p == block_)
+      used_ = false;
+    else
+      ::operator delete(p);
   }
 
  private:
@@ -40,7 +42,9 @@ struct HandlerAllocator {
   T* allocate(std::size_t n) const { return static_cast<T*>(memory->take(n * sizeof(T))); }
   void deallocate(T* p, std::size_t) const { memory->give(p); }
   template <class U>
-  bool operator==(const HandlerAllocator<U>& other) const { return memory == other.memory; }
+  bool operator==(const HandlerAllocator<U>& other) const {
+    return memory == other.memory;
+  }
   HandlerMemory* memory;
 };
 

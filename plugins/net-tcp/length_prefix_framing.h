@@ -27,7 +27,9 @@ class LengthPrefixFraming : public Leaf, public IFraming {
     for (std::size_t i = 0; i < kPrefix; ++i) length = length << 8 | static_cast<unsigned char>(bytes[i]);
     if (length > limit) {
       frame.status = Frame::Status::bad;
-      frame.why = fmt::format("announces a message of {} bytes, at most {} are taken (a 4-byte big-endian length is expected)", length, limit);
+      frame.why =
+          fmt::format("announces a message of {} bytes, at most {} are taken (a 4-byte big-endian length is expected)",
+                      length, limit);
     } else if (bytes.size() - kPrefix >= length) {
       frame.status = Frame::Status::message;
       frame.consumed = kPrefix + length;
@@ -38,7 +40,8 @@ class LengthPrefixFraming : public Leaf, public IFraming {
 
   void frame(std::string_view message, std::string& out) override {
     const auto n = static_cast<std::uint32_t>(message.size());
-    const char prefix[kPrefix] = {static_cast<char>(n >> 24), static_cast<char>(n >> 16), static_cast<char>(n >> 8), static_cast<char>(n)};
+    const char prefix[kPrefix] = {static_cast<char>(n >> 24), static_cast<char>(n >> 16), static_cast<char>(n >> 8),
+                                  static_cast<char>(n)};
     out.append(prefix, kPrefix).append(message);
   }
 };

@@ -59,7 +59,8 @@ bool NetServer::round() {
 }
 
 bool NetServer::wait(double seconds) {
-  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::clamp(seconds, 0.0, 3600.0)));
+  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double>(std::clamp(seconds, 0.0, 3600.0)));
   for (;;) {
     if (round() || kernel().stopRequested()) return true;
     const auto now = Clock::now();
@@ -74,5 +75,5 @@ bool NetServer::wait(double seconds) {
 
 }  // namespace spark
 
-SPARK_PLUGIN("net-tcp", "1.0", "Network server with TCP ports on Boost.Asio, and the length-prefix framing.", spark::NetServer, spark::TcpPort,
-             spark::LengthPrefixFraming)
+SPARK_PLUGIN("net-tcp", "1.0", "Network server with TCP ports on Boost.Asio, and the length-prefix framing.",
+             spark::NetServer, spark::TcpPort, spark::LengthPrefixFraming)

@@ -17,8 +17,8 @@ namespace spark {
 
 class TcpPort;
 
-/// At /sys/server/net. Works in the simulation's thread only: nothing happens between the run loop's calls but what the operating system
-/// does, so a cycle sees the input that was there when it asked.
+/// At /sys/server/net. Works in the simulation's thread only: nothing happens between the run loop's calls but what the
+/// operating system does, so a cycle sees the input that was there when it asked.
 class NetServer : public Node, public IInputSource {
   SPARK_CLASS(NetServer, Node)
  public:

@@ -4,7 +4,6 @@
 #include <netinet/tcp.h>
 
 #include <algorithm>
-
 #include <boost/asio/buffer.hpp>
 
 #include "net-tcp/tcp_port.h"
@@ -21,8 +20,9 @@ std::string describePeer(const tcp::socket& socket) {
   return ec ? std::string("(gone)") : fmt::format("{}:{}", end.address().to_string(), end.port());
 }
 
-/// A client whose machine has gone without a word is noticed by the system: after 30 s of silence it is probed, and the connection ends when it
-/// did not answer six times. A client that is there but does not read answers probes, for ever: no TCP_USER_TIMEOUT, which would end it.
+/// A client whose machine has gone without a word is noticed by the system: after 30 s of silence it is probed, and the
+/// connection ends when it did not answer six times. A client that is there but does not read answers probes, for ever:
+/// no TCP_USER_TIMEOUT, which would end it.
 void keepAlive(tcp::socket& socket) {
   constexpr int kIdle = 30, kInterval = 10, kProbes = 6;  // s, s, number
   using Idle = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>;
@@ -46,7 +46,8 @@ TcpConnection::TcpConnection(tcp::socket socket, std::uint64_t id, Node& port)
 
 void TcpConnection::watchRead() {
   readable_ = false;
-  socket_.async_wait(tcp::socket::wait_read, MemoryHandler(readMemory_, [self = shared_from_this()](const error_code& ec) {
+  socket_.async_wait(tcp::socket::wait_read,
+                     MemoryHandler(readMemory_, [self = shared_from_this()](const error_code& ec) {
                        if (!ec) self->readable_ = true;
                      }));
 }
@@ -54,7 +55,8 @@ void TcpConnection::watchRead() {
 void TcpConnection::watchWrite() {
   if (watchingWrite_ || closing_) return;
   watchingWrite_ = true;
-  socket_.async_wait(tcp::socket::wait_write, MemoryHandler(writeMemory_, [self = shared_from_this()](const error_code& ec) {
+  socket_.async_wait(tcp::socket::wait_write,
+                     MemoryHandler(writeMemory_, [self = shared_from_this()](const error_code& ec) {
                        self->watchingWrite_ = false;
                        if (!ec) self->flush();
                      }));

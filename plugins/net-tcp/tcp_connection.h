@@ -2,8 +2,9 @@
 /// \file
 /// One client of a port: what it sent and was not cut yet, what it was sent and did not take yet.
 ///
-/// Nothing here is driven by callbacks. Asio only tells that a socket became readable or writable; bytes move when the port asks for it, in
-/// the port's order, so that the order of delivery depends on what arrived and not on how the operating system reported it.
+/// Nothing here is driven by callbacks. Asio only tells that a socket became readable or writable; bytes move when the
+/// port asks for it, in the port's order, so that the order of delivery depends on what arrived and not on how the
+/// operating system reported it.
 
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
@@ -20,8 +21,8 @@ using Clock = std::chrono::steady_clock;
 
 class TcpConnection final : public IConnection, public std::enable_shared_from_this<TcpConnection> {
  public:
-  /// What reading brought. `all`: less than there was room for, so that nothing more is there. `ended`: the client has gone or the connection
-  /// failed.
+  /// What reading brought. `all`: less than there was room for, so that nothing more is there. `ended`: the client has
+  /// gone or the connection failed.
   enum class Read { nothing, some, all, ended };
 
   TcpConnection(tcp::socket socket, std::uint64_t id, Node& port);

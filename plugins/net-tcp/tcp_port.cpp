@@ -12,39 +12,57 @@ namespace spark {
 namespace {
 using boost::system::error_code;
 using net::Clock;
-using net::TcpConnection;
 using net::tcp;
+using net::TcpConnection;
 
-constexpr std::size_t kReadSize = 65536;      // bytes a read
-constexpr int kReadsPerPoll = 4;              // per connection: nobody starves behind a client that floods
+constexpr std::size_t kReadSize = 65536;  // bytes a read
+constexpr int kReadsPerPoll = 4;          // per connection: nobody starves behind a client that floods
 constexpr int kAcceptsPerPoll = 64;
-constexpr auto kAcceptPause = std::chrono::seconds(1);   // after the system refused, e.g. out of descriptors
+constexpr auto kAcceptPause = std::chrono::seconds(1);  // after the system refused, e.g. out of descriptors
 constexpr auto kTimeoutCheck = std::chrono::milliseconds(500);
 }  // namespace
 
 void TcpPort::describe(Description<TcpPort>& d) {
   d.doc("A listening TCP port; delivers messages to its consumer, cut by the framing below it.");
-  d.property("port", &TcpPort::port, &TcpPort::setPort).range(0, 65535).doc("Port number; 0 picks a free one, which is read back once it listens.");
+  d.property("port", &TcpPort::port, &TcpPort::setPort)
+      .range(0, 65535)
+      .doc("Port number; 0 picks a free one, which is read back once it listens.");
   d.property("address", &TcpPort::address_).doc("Address to listen on.");
-  d.property("consumer", &TcpPort::consumer, &TcpPort::setConsumer).doc("Path of the node that gets connections and messages.");
-  d.property("maxMessage", &TcpPort::maxMessage_).unit("bytes").range(1, 1 << 30).doc("A client that announces a longer message is closed.");
+  d.property("consumer", &TcpPort::consumer, &TcpPort::setConsumer)
+      .doc("Path of the node that gets connections and messages.");
+  d.property("maxMessage", &TcpPort::maxMessage_)
+      .unit("bytes")
+      .range(1, 1 << 30)
+      .doc("A client that announces a longer message is closed.");
   d.property("maxConnections", &TcpPort::maxConnections_).range(1, 65536).doc("Further clients are closed at once.");
-  d.property("makeRoom", &TcpPort::makeRoom_).doc("When there are maxConnections clients, a new one takes the place of the oldest that never sent a message.");
+  d.property("makeRoom", &TcpPort::makeRoom_)
+      .doc("When there are maxConnections clients, a new one takes the place of the oldest that never sent a message.");
   d.property("makeRoomAfter", &TcpPort::makeRoomAfter_)
       .unit("s")
       .min(0)
-      .doc("When it is full, a client that does not read and was not heard for longer than this (wall clock) makes room; 0: none does.");
-  d.property("messageTimeout", &TcpPort::messageTimeout_).unit("s").min(0.001).doc("A client that takes longer to finish a message it began is closed (wall clock).");
-  d.property("sendBuffer", &TcpPort::sendBuffer_).unit("bytes").range(4096, 1 << 28).doc("What the system may hold back for a client that does not read.");
+      .doc(
+          "When it is full, a client that does not read and was not heard for longer than this (wall clock) makes "
+          "room; 0: none does.");
+  d.property("messageTimeout", &TcpPort::messageTimeout_)
+      .unit("s")
+      .min(0.001)
+      .doc("A client that takes longer to finish a message it began is closed (wall clock).");
+  d.property("sendBuffer", &TcpPort::sendBuffer_)
+      .unit("bytes")
+      .range(4096, 1 << 28)
+      .doc("What the system may hold back for a client that does not read.");
   d.property("connections", &TcpPort::connectionCount).doc("Clients now.");
   d.property("connectionsSeen", &TcpPort::connectionsSeen).doc("Clients that were ever taken.");
-  d.property("messagesDropped", &TcpPort::messagesDropped).doc("Messages not sent because their client had not taken an earlier one.");
+  d.property("messagesDropped", &TcpPort::messagesDropped)
+      .doc("Messages not sent because their client had not taken an earlier one.");
   d.method("listen", &TcpPort::listen).doc("Opens the port; otherwise the first poll does.");
 }
 
 void TcpPort::onLink() {
   auto* server = ancestor<NetServer>();
-  if (!server) throw Error(fmt::format("A TcpPort lives below a NetServer, found '{}'. Create it as /sys/server/net/<name>.", parent()->path()));
+  if (!server)
+    throw Error(fmt::format("A TcpPort lives below a NetServer, found '{}'. Create it as /sys/server/net/<name>.",
+                            parent()->path()));
   io_ = server->io();
   scratch_.resize(kReadSize);
 }
@@ -97,14 +115,18 @@ void TcpPort::resolve() {
 void TcpPort::listen() {
   if (listening()) return;
   resolve();
-  if (!framing_) throw Error(fmt::format("{} has no framing below it. Add one, e.g. new(\"LengthPrefixFraming\", \"{}/framing\").", path(), path()));
+  if (!framing_)
+    throw Error(fmt::format("{} has no framing below it. Add one, e.g. new(\"LengthPrefixFraming\", \"{}/framing\").",
+                            path(), path()));
   if (!consumer_) {
     require<IConnectionConsumer>(consumerPath_);  // says what is missing
     throw Error(fmt::format("{}.consumer = '{}' takes no connections.", path(), consumerPath_));
   }
   error_code ec;
   const auto address = boost::asio::ip::make_address(address_, ec);
-  if (ec) throw Error(fmt::format("{}.address: expected an IP address such as 0.0.0.0 or ::1, found '{}'.", path(), address_));
+  if (ec)
+    throw Error(
+        fmt::format("{}.address: expected an IP address such as 0.0.0.0 or ::1, found '{}'.", path(), address_));
   tcp::acceptor acceptor(*io_);
   const tcp::endpoint end(address, static_cast<unsigned short>(port_));
   const char* step = "open";
@@ -115,7 +137,8 @@ void TcpPort::listen() {
   if (!failed()) step = "bind", acceptor.bind(end, ec);
   if (!failed()) step = "listen on", acceptor.listen(boost::asio::socket_base::max_listen_connections, ec);
   if (failed())
-    throw Error(fmt::format("{}: cannot {} {}:{}: {}. Choose another port; 0 picks a free one.", path(), step, address_, port_, ec.message()));
+    throw Error(fmt::format("{}: cannot {} {}:{}: {}. Choose another port; 0 picks a free one.", path(), step, address_,
+                            port_, ec.message()));
   port_ = acceptor.local_endpoint().port();
   acceptor_.emplace(std::move(acceptor));
   *acceptReady_ = true;
@@ -124,7 +147,8 @@ void TcpPort::listen() {
 
 void TcpPort::watchAccept() {
   *acceptReady_ = false;
-  acceptor_->async_wait(tcp::acceptor::wait_read, net::MemoryHandler(acceptMemory_, [ready = acceptReady_](const error_code& ec) {
+  acceptor_->async_wait(tcp::acceptor::wait_read,
+                        net::MemoryHandler(acceptMemory_, [ready = acceptReady_](const error_code& ec) {
                           if (!ec) *ready = true;
                         }));
 }
@@ -142,7 +166,8 @@ bool TcpPort::poll() {
   if (now - timeoutsChecked_ >= kTimeoutCheck) {
     timeoutsChecked_ = now;
     for (auto& c : connections_)
-      if (c->partialSeconds(now) > messageTimeout_) c->close(fmt::format("it began a message and did not finish it within {} s", messageTimeout_));
+      if (c->partialSeconds(now) > messageTimeout_)
+        c->close(fmt::format("it began a message and did not finish it within {} s", messageTimeout_));
   }
   return reap() || any;
 }
@@ -170,7 +195,8 @@ bool TcpPort::acceptAll() {
 void TcpPort::take(tcp::socket socket) {
   error_code ignored;
   socket.set_option(tcp::socket::send_buffer_size(sendBuffer_), ignored);
-  auto connection = std::make_shared<TcpConnection>(std::move(socket), static_cast<std::uint64_t>(connectionsSeen_ + 1), *this);
+  auto connection =
+      std::make_shared<TcpConnection>(std::move(socket), static_cast<std::uint64_t>(connectionsSeen_ + 1), *this);
   if (!consumer_ || !consumerLeaf_) {
     connection->close(fmt::format("nothing at '{}' takes connections", consumerPath_));
   } else if (full()) {
@@ -189,12 +215,14 @@ bool TcpPort::full() {
   if (std::count_if(connections_.begin(), connections_.end(), stays) < maxConnections_) return false;
   TcpConnection* const leaves = givesWay();
   if (!leaves) return true;
-  leaves->close(leaves->spoken() ? "it neither reads nor sends, and its place is needed" : "it said nothing, and its place is needed");
+  leaves->close(leaves->spoken() ? "it neither reads nor sends, and its place is needed"
+                                 : "it said nothing, and its place is needed");
   return false;
 }
 
-/// Who is the least loss when the port is full, or nullptr: the oldest that never said anything where clients speak first; else of those that
-/// do not read the one that has been quiet for the longest, and who never said anything before all others.
+/// Who is the least loss when the port is full, or nullptr: the oldest that never said anything where clients speak
+/// first; else of those that do not read the one that has been quiet for the longest, and who never said anything
+/// before all others.
 TcpConnection* TcpPort::givesWay() const {
   const auto now = Clock::now();
   TcpConnection* found = nullptr;
@@ -214,15 +242,17 @@ bool TcpPort::serve(TcpConnection& connection) {
     const auto result = connection.read(scratch_);
     if (result == TcpConnection::Read::nothing) break;
     if (result == TcpConnection::Read::ended) {
-      if (connection.input().empty()) complain(Level::debug, fmt::format("{} left.", connection.peer()));
-      else complain(Level::info, fmt::format("{} left in the middle of a message.", connection.peer()));
+      if (connection.input().empty())
+        complain(Level::debug, fmt::format("{} left.", connection.peer()));
+      else
+        complain(Level::info, fmt::format("{} left in the middle of a message.", connection.peer()));
       connection.shut();
       break;
     }
     const bool delivered = cut(connection);
     any |= delivered;
-    // It stays readable: until the next poll its next message is mostly there, and is read without asking the system before. Only who waits
-    // without a message is watched.
+    // It stays readable: until the next poll its next message is mostly there, and is read without asking the system
+    // before. Only who waits without a message is watched.
     if (delivered && result == TcpConnection::Read::all) break;
   }
   return any;

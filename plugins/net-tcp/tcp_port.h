@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A listening TCP port: accepts, reads in a fair round, cuts messages with the framing below it, delivers to its consumer.
+/// A listening TCP port: accepts, reads in a fair round, cuts messages with the framing below it, delivers to its
+/// consumer.
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -26,7 +27,8 @@ class TcpPort : public Node {
   /// Opens the port. Throws Error: no framing or consumer, bad address, in use. Does nothing when it is open.
   void listen();
   bool listening() const { return acceptor_.has_value(); }
-  /// One fair round in accept order: old connections are read, new ones are taken and read. True when something was delivered.
+  /// One fair round in accept order: old connections are read, new ones are taken and read. True when something was
+  /// delivered.
   bool poll();
 
   /// For connections: frames with the framing below, counts, writes rate-limited lines that name this port.

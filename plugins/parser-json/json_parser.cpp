@@ -19,7 +19,8 @@ bool isPlain(std::string_view text) {
 }
 
 void writeText(std::string_view text, ByteWriter& out) {
-  if (!isPlain(text)) return out.put(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (!isPlain(text))
+    return out.put(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   out.put('"');
   out.put(text);
   out.put('"');
@@ -35,10 +36,14 @@ void writeNumber(double v, int decimals, ByteWriter& out) {
 void writeElement(const Element& e, int decimals, ByteWriter& out) {
   const Token& t = e.token();
   switch (t.kind) {
-    case Token::Kind::text: return writeText(e.text(), out);
-    case Token::Kind::number: return writeNumber(t.number, decimals, out);
-    case Token::Kind::integer: return out.integer(t.integer);
-    case Token::Kind::list: break;
+    case Token::Kind::text:
+      return writeText(e.text(), out);
+    case Token::Kind::number:
+      return writeNumber(t.number, decimals, out);
+    case Token::Kind::integer:
+      return out.integer(t.integer);
+    case Token::Kind::list:
+      break;
   }
   out.put('[');
   bool first = true;
@@ -58,11 +63,17 @@ class JsonParser : public Leaf, public IParser {
  public:
   static void describe(Description<JsonParser>& d) {
     d.doc("Reads and writes JSON that mirrors the S-expressions.");
-    d.property("decimals", &JsonParser::decimals_).range(-1, 9).doc("Decimals of every number that is no integer, as the S-expressions have them; -1: as many as it has.");
+    d.property("decimals", &JsonParser::decimals_)
+        .range(-1, 9)
+        .doc("Decimals of every number that is no integer, as the S-expressions have them; -1: as many as it has.");
     d.property("maxDepth", &JsonParser::maxDepth_).range(1, 1000).doc("Lists nested deeper are refused.");
     d.property("maxTokens", &JsonParser::maxTokens_).range(1, 1e6).doc("Longer messages are refused.");
-    d.method("parse", &JsonParser::parseText).parameters({"text"}).doc("The text's top-level elements, as far as it can be read.");
-    d.method("write", &JsonParser::writeText).parameters({"elements"}).doc("The message for a list of top-level elements.");
+    d.method("parse", &JsonParser::parseText)
+        .parameters({"text"})
+        .doc("The text's top-level elements, as far as it can be read.");
+    d.method("write", &JsonParser::writeText)
+        .parameters({"elements"})
+        .doc("The message for a list of top-level elements.");
     d.implements<IParser>();
   }
 

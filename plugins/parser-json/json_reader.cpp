@@ -32,11 +32,12 @@ class Cursor {
   std::size_t* at_;
 };
 
-/// Takes nlohmann's events. Whether a top-level array is a predicate or holds predicates shows in its first element; until then it is
-/// `undecided_`.
+/// Takes nlohmann's events. Whether a top-level array is a predicate or holds predicates shows in its first element;
+/// until then it is `undecided_`.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  Builder(Predicates& out, const ReadLimits& limits) : out_(out), limits_(limits), first_(out.size()), complete_(out.size()) {}
+  Builder(Predicates& out, const ReadLimits& limits)
+      : out_(out), limits_(limits), first_(out.size()), complete_(out.size()) {}
 
   bool null() override { return add(std::numeric_limits<double>::quiet_NaN()); }
   bool boolean(bool v) override { return add(std::string_view(v ? "true" : "false")); }
@@ -48,7 +49,9 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool number_float(number_float_t v, const string_t&) override { return add(static_cast<double>(v)); }
   bool string(string_t& v) override { return add(std::string_view(v)); }
   bool binary(binary_t&) override { return fail("binary data is no part of the language"); }
-  bool start_object(std::size_t) override { return fail("objects are no part of the language; write [\"name\", value]"); }
+  bool start_object(std::size_t) override {
+    return fail("objects are no part of the language; write [\"name\", value]");
+  }
   bool key(string_t&) override { return fail("objects are no part of the language"); }
   bool end_object() override { return fail("objects are no part of the language"); }
 
@@ -120,7 +123,8 @@ ReadResult read(std::string_view bytes, Predicates& out, const ReadLimits& limit
   for (;;) {
     while (at < bytes.size() && isBlank(bytes[at])) ++at;
     if (at >= bytes.size()) break;
-    if (!nlohmann::json::sax_parse(Cursor(bytes, at), Cursor(bytes, at), &builder, nlohmann::json::input_format_t::json, false)) {
+    if (!nlohmann::json::sax_parse(Cursor(bytes, at), Cursor(bytes, at), &builder, nlohmann::json::input_format_t::json,
+                                   false)) {
       builder.dropUnfinished();
       result.message = builder.message();
       result.line = 1;

@@ -22,7 +22,8 @@ double smallArc(double y, double x) {
   const double c = eighth * 0.125;
   const double z = (y - c * x) / (x + c * y);
   const double zz = z * z;
-  const double series = zz * (-1.0 / 3 + zz * (1.0 / 5 + zz * (-1.0 / 7 + zz * (1.0 / 9 + zz * (-1.0 / 11 + zz * (1.0 / 13))))));
+  const double series =
+      zz * (-1.0 / 3 + zz * (1.0 / 5 + zz * (-1.0 / 7 + zz * (1.0 / 9 + zz * (-1.0 / 11 + zz * (1.0 / 13))))));
   return kArcs[eighth] + (z + z * series);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Rotations and angles of joints. Nothing here calls the mathematical library, whose last digits depend on the processor.
+/// Rotations and angles of joints. Nothing here calls the mathematical library, whose last digits depend on the
+/// processor.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -19,13 +20,15 @@ struct Turn {
   static Turn of(const Mat3& m);
   Turn inverse() const { return {w, -v}; }
 };
-inline Turn operator*(const Turn& a, const Turn& b) { return {a.w * b.w - a.v.dot(b.v), a.w * b.v + b.w * a.v + a.v.cross(b.v)}; }
+inline Turn operator*(const Turn& a, const Turn& b) {
+  return {a.w * b.w - a.v.dot(b.v), a.w * b.v + b.w * a.v + a.v.cross(b.v)};
+}
 
 /// As std::atan2, within a few of the last digit, and the same on every processor.
 double angleOf(double y, double x);
 
-/// How far a joint has turned about `axis` from where it was set, -pi..pi: `turn` is the second body's rotation in the first, relative to
-/// what it was.
+/// How far a joint has turned about `axis` from where it was set, -pi..pi: `turn` is the second body's rotation in the
+/// first, relative to what it was.
 double hingeAngle(const Turn& turn, const Vec3& axis);
 
 /// Two directions that stand upright on `n` and on each other.

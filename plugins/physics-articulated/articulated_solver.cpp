@@ -6,9 +6,11 @@ namespace spark {
 
 std::size_t ArticulatedSolver::step(engine::SolverStep& step) {
   Jobs& jobs = kernel().jobs();
-  return stepper_.step(step, static_cast<std::size_t>(jobs.threads()), [&](std::size_t n, const auto& work) { jobs.run(n, work); });
+  return stepper_.step(step, static_cast<std::size_t>(jobs.threads()),
+                       [&](std::size_t n, const auto& work) { jobs.run(n, work); });
 }
 
 }  // namespace spark
 
-SPARK_PLUGIN("physics-articulated", "1.0", "A solver for articulated bodies, to stand below an engine.", spark::ArticulatedSolver)
+SPARK_PLUGIN("physics-articulated", "1.0", "A solver for articulated bodies, to stand below an engine.",
+             spark::ArticulatedSolver)

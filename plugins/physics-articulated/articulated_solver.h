@@ -14,13 +14,16 @@ class ArticulatedSolver : public Leaf, public engine::ISolver {
   SPARK_CLASS(ArticulatedSolver, Leaf)
  public:
   static void describe(Description<ArticulatedSolver>& d) {
-    d.doc("Solves joints and contacts along the trees that joints make of bodies; stands below an engine as its child `solver`.");
+    d.doc(
+        "Solves joints and contacts along the trees that joints make of bodies; stands below an engine as its child "
+        "`solver`.");
     d.implements<engine::ISolver>();
     d.property("mostRows", &ArticulatedSolver::mostRows, &ArticulatedSolver::setMostRows)
         .min(0)
         .doc("Islands with more rows of contacts between bodies and of loops of joints are left to the engine.");
     d.property("islands", &ArticulatedSolver::islands).doc("Islands solved since the node was made.");
-    d.property("passes", &ArticulatedSolver::passes).doc("Passes that these took to find which bounds hold; one each is the least.");
+    d.property("passes", &ArticulatedSolver::passes)
+        .doc("Passes that these took to find which bounds hold; one each is the least.");
     d.property("exactSolutions", &ArticulatedSolver::exactSolutions)
         .doc("How often passes ran out, and the bounds were found in the exact, slow way.");
     d.property("leftIslands", &ArticulatedSolver::leftIslands).doc("Islands that were left to the engine.");

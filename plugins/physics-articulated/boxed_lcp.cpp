@@ -8,8 +8,8 @@ void BoxedLcp::resize(std::size_t rows) {
   for (auto* v : {&b, &low, &high, &x_, &w_, &column_}) v->assign(rows, 0);
 }
 
-// With the rows in C swept, column i says what a unit of x_i does: to x_C by -A_CC^-1 A_Ci (kept with its sign turned), to w_N by what is
-// left of A_Ni. Sweeping twice undoes it.
+// With the rows in C swept, column i says what a unit of x_i does: to x_C by -A_CC^-1 A_Ci (kept with its sign turned),
+// to w_N by what is left of A_Ni. Sweeping twice undoes it.
 void BoxedLcp::sweep(std::size_t k) {
   const std::size_t n = rows_;
   const double pivot = 1 / a[k * n + k];

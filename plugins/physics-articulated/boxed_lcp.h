@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The exact way to find which bounds hold, for the rare steps in which the quick way (pivoting.h) does not come to an end.
+/// The exact way to find which bounds hold, for the rare steps in which the quick way (pivoting.h) does not come to an
+/// end.
 
 #include <vector>
 
@@ -8,12 +9,13 @@
 
 namespace spark::articulated {
 
-/// Find x with  w = A x + b,  low <= x <= high,  w >= 0 where x = low,  w <= 0 where x = high,  else w = 0.  A is symmetric positive
-/// semidefinite; low <= 0 <= high.
+/// Find x with  w = A x + b,  low <= x <= high,  w >= 0 where x = low,  w <= 0 where x = high,  else w = 0.  A is
+/// symmetric positive semidefinite; low <= 0 <= high.
 ///
-/// Dantzig's way: one row after the other is driven from 0 to where its conditions are met, while those before it keep theirs. Whenever one
-/// of these runs into a bound or leaves it, it changes sides. All that is asked of A at any time is the matrix "swept" on the rows that
-/// hold, A_CC^-1 and what follows from it, and one change of side is one sweep: rows^2 operations.
+/// Dantzig's way: one row after the other is driven from 0 to where its conditions are met, while those before it keep
+/// theirs. Whenever one of these runs into a bound or leaves it, it changes sides. All that is asked of A at any time
+/// is the matrix "swept" on the rows that hold, A_CC^-1 and what follows from it, and one change of side is one sweep:
+/// rows^2 operations.
 class BoxedLcp {
  public:
   std::vector<double> a, b, low, high;  ///< a: row by row, all of it

@@ -9,13 +9,15 @@ double wantedAlongNormal(const engine::Contact& contact, double leaving, const R
   const engine::Surface& s = contact.surface;
   const double erp = s.softErpOn ? s.softErp : scale.erp;
   double wanted = scale.perSecond * erp * std::max(0.0, contact.depth - scale.contactSurfaceLayer);
-  if (s.bounceOn && s.bounceVelocity >= 0 && -leaving > s.bounceVelocity) wanted = std::max(wanted, -s.bounce * leaving);
+  if (s.bounceOn && s.bounceVelocity >= 0 && -leaving > s.bounceVelocity)
+    wanted = std::max(wanted, -s.bounce * leaving);
   return wanted;
 }
 
 }  // namespace
 
-int contactRows(const engine::Contact& contact, bool reversed, const Frame& a, const Frame* b, const RowScale& scale, Row* out) {
+int contactRows(const engine::Contact& contact, bool reversed, const Frame& a, const Frame* b, const RowScale& scale,
+                Row* out) {
   const engine::Surface& s = contact.surface;
   Vec3 directions[3];
   directions[0] = reversed ? Vec3(-contact.normal) : contact.normal;
@@ -30,7 +32,8 @@ int contactRows(const engine::Contact& contact, bool reversed, const Frame& a, c
     if (b) row.b = Six::of(-d, d.cross(a2));
     double cfm = scale.cfm;
     if (i == 0) {
-      const double leaving = dot(row.a, Six::of(a.velocity, a.spin)) + (b ? dot(row.b, Six::of(b->velocity, b->spin)) : 0);
+      const double leaving =
+          dot(row.a, Six::of(a.velocity, a.spin)) + (b ? dot(row.b, Six::of(b->velocity, b->spin)) : 0);
       row.target = wantedAlongNormal(contact, leaving, scale) * scale.perSecond;
       row.low = 0;
       if (s.softCfmOn) cfm = s.softCfm;

@@ -38,8 +38,8 @@ void Coupling::form(const Elimination& trees, const Rows& rows) {
   const Reach* all = reaches_.data();
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j <= i; ++j)
-      touching_[i * n + j] =
-          Elimination::touch(all + members_[i].start, all + members_[i].end, all + members_[j].start, all + members_[j].end);
+      touching_[i * n + j] = Elimination::touch(all + members_[i].start, all + members_[i].end, all + members_[j].start,
+                                                all + members_[j].end);
 }
 
 void Coupling::factor(const Rows& rows) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Rows that cannot be part of a tree: contacts between two moving bodies, joints that close loops, and rows so stiff that a body's inertia
-/// would drown in them. Their forces come from one dense system, as large as there are such rows:
+/// Rows that cannot be part of a tree: contacts between two moving bodies, joints that close loops, and rows so stiff
+/// that a body's inertia would drown in them. Their forces come from one dense system, as large as there are such rows:
 ///
 ///     (R + D) x = r - J u0        R_ij: how rows i and j touch through the trees;  u0: the motion without these forces
 

@@ -112,7 +112,8 @@ void Elimination::forward(bool targets) {
     Six q = (targets ? node.target : Six::zero()) - pushed;
     node.hold.forward(q);
     node.q = q;
-    if (node.parent >= 0) nodes[static_cast<std::size_t>(node.parent)].load += timesTransposed(node.up, q * node.hold.inverse);
+    if (node.parent >= 0)
+      nodes[static_cast<std::size_t>(node.parent)].load += timesTransposed(node.up, q * node.hold.inverse);
   }
 }
 

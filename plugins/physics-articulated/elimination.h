@@ -2,12 +2,14 @@
 /// \file
 /// Trees of bodies, eliminated from the leaves to the roots.
 ///
-/// A body with nothing but forces on it moves by   M u = f.   Held to a parent by rows   J u + K u_p + D x = r   with forces x it moves by
+/// A body with nothing but forces on it moves by   M u = f.   Held to a parent by rows   J u + K u_p + D x = r   with
+/// forces x it moves by
 ///
 ///     M u - J^T x = f                      u    motion (velocity / dt)          M    inertia, 6 x 6
 ///     J u + D x + K u_p = r                x    forces of the joint's rows      D    softness, diagonal, may be 0
 ///
-/// Eliminating u and then x leaves to the parent more inertia and more force, as if the child were a part of it that gives a little:
+/// Eliminating u and then x leaves to the parent more inertia and more force, as if the child were a part of it that
+/// gives a little:
 ///
 ///     W = J M^-1 J^T + D                           how much the child gives where it is held
 ///     M_p += K^T W^-1 K                            inertia that the parent feels
@@ -16,19 +18,23 @@
 ///          torso                 factor, forward:   leaves first, each hands its K^T W^-1 K and force to the one above
 ///         /  |  \                                         |
 ///      arm  head  thigh                                   v
-///       |           |            backward:          roots first: from the parent's motion the joint's forces, from them the child's motion
-///      hand       shank
-///                   |            Every block is 6 x 6. Rows that do not hold (a motor at its bound, a stop that is left) are 0 in J and K
-///                  foot ~~~~~    and 1 in D: the block stays 6 x 6 and the row's force is 0; a force at a bound acts as a given force.
+///       |           |            backward:          roots first: from the parent's motion the joint's forces,
+///      hand       shank                             from them the child's motion
+///                   |
+///                  foot ~~~~~
 ///
-/// Where the world is in place of the parent, K is not there. Rows of a contact with the static world concern one body alone: with D > 0
-/// their forces are (r - J u) / D, which makes them part of M and f of that body:   M += J^T J / D,   f += J^T r / D.
+/// Every block is 6 x 6. Rows that do not hold (a motor at its bound, a stop that is left) are 0 in J and K and 1 in D:
+/// the block stays 6 x 6 and the row's force is 0; a force at a bound acts as a given force.
 ///
-/// M is positive definite, W is positive semidefinite: no order of rows matters, nothing is divided by a softness that could be 0, and rows
-/// that say the same twice with D = 0 get their force once.
+/// Where the world is in place of the parent, K is not there. Rows of a contact with the static world concern one body
+/// alone: with D > 0 their forces are (r - J u) / D, which makes them part of M and f of that body:   M += J^T J / D,
+/// f += J^T r / D.
 ///
-/// With what is eliminated it is cheap to ask how a single row reaches through the tree (Reach): only the bodies between it and the root
-/// answer. Two rows touch each other through what their reaches have in common:
+/// M is positive definite, W is positive semidefinite: no order of rows matters, nothing is divided by a softness that
+/// could be 0, and rows that say the same twice with D = 0 get their force once.
+///
+/// With what is eliminated it is cheap to ask how a single row reaches through the tree (Reach): only the bodies
+/// between it and the root answer. Two rows touch each other through what their reaches have in common:
 ///
 ///     R_i . R_j = J_i T^-1 J_j^T     with T the whole tree.   coupling.h needs nothing else.
 

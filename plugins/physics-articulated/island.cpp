@@ -8,8 +8,8 @@ namespace {
 
 /// Rows stiffer than this, against how their bodies give, would drown the inertia of which they became a part.
 constexpr double kStiffest = 1e8;
-/// Rows of the dense system are this soft at least, against how their bodies give: rows that say the same twice share their force then, and
-/// velocities change less than rounding would.
+/// Rows of the dense system are this soft at least, against how their bodies give: rows that say the same twice share
+/// their force then, and velocities change less than rounding would.
 constexpr double kLeastSoftness = 1e-11;
 /// Velocities that differ by less [m/s, rad/s; or this part of the island's velocities] are the same to the pivoting.
 constexpr double kSameVelocity = 1e-11;
@@ -122,11 +122,14 @@ void Island::readJoints(WorldView& world, const IslandPlan& plan) {
 
 double Island::mobility(const Six& along, int index) const {
   const engine::SolverBody& body = *system_.trees.nodes[static_cast<std::size_t>(index)].body;
-  const Vec3 turning = system_.trees.nodes[static_cast<std::size_t>(index)].frame.rotation.transpose() * along.angular();
+  const Vec3 turning =
+      system_.trees.nodes[static_cast<std::size_t>(index)].frame.rotation.transpose() * along.angular();
   return along.linear().squaredNorm() / body.mass + turning.dot(body.inverseInertia * turning);
 }
 
-double Island::mobility(const Row& row) const { return mobility(row.a, row.nodeA) + (row.nodeB >= 0 ? mobility(row.b, row.nodeB) : 0); }
+double Island::mobility(const Row& row) const {
+  return mobility(row.a, row.nodeA) + (row.nodeB >= 0 ? mobility(row.b, row.nodeB) : 0);
+}
 
 /// The row has bounds that pivoting is to find.
 void Island::bound(int index) {
@@ -148,7 +151,8 @@ void Island::readContacts(WorldView& world, const IslandPlan& plan) {
     const engine::SolverPair& pair = world.step.pairs[static_cast<std::size_t>(c)];
     const int a = nodeOf(world, pair.a), b = nodeOf(world, pair.b);
     Part part{c, rows.size(), 0};
-    part.count = contactRows(contact, pair.reversed, node(a).frame, b < 0 ? nullptr : &node(b).frame, scale_, rows.offer(kContactRows));
+    part.count = contactRows(contact, pair.reversed, node(a).frame, b < 0 ? nullptr : &node(b).frame, scale_,
+                             rows.offer(kContactRows));
     rows.take(part.count);
     const ContactMemory::States* before = world.contacts.before(c);
     for (int i = part.first; i < part.first + part.count; ++i) {
@@ -175,7 +179,8 @@ void Island::readContacts(WorldView& world, const IslandPlan& plan) {
 void Island::gatherForces() {
   for (Node& n : system_.trees.nodes) {
     const Frame& f = n.frame;
-    n.given = Six::of(n.body->mass * scale_.perSecond * f.velocity + f.force, n.inertia * (scale_.perSecond * f.spin) + f.torque);
+    n.given = Six::of(n.body->mass * scale_.perSecond * f.velocity + f.force,
+                      n.inertia * (scale_.perSecond * f.spin) + f.torque);
   }
 }
 
@@ -227,7 +232,8 @@ void Island::write(WorldView& world) {
     }
   }
   for (const Part& part : contacts_)
-    for (int i = 0; i < part.count; ++i) world.contacts.now(part.index)[static_cast<std::size_t>(i)] = system_.rows[part.first + i].state;
+    for (int i = 0; i < part.count; ++i)
+      world.contacts.now(part.index)[static_cast<std::size_t>(i)] = system_.rows[part.first + i].state;
   for (Node& n : system_.trees.nodes) {
     const double dt = world.step.dt;
     integrate(*n.body, dt * n.motion.linear(), dt * n.motion.angular(), dt);

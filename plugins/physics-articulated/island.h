@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// One island from the engine's bodies and back: reads, solves, moves. An Island is used again and again, by one thread at a time, and
-/// keeps its memory.
+/// One island from the engine's bodies and back: reads, solves, moves. An Island is used again and again, by one thread
+/// at a time, and keeps its memory.
 
 #include "memory.h"
 #include "pivoting.h"
@@ -27,7 +27,8 @@ struct IslandPlan {
 class Island {
  public:
   explicit Island(int mostPasses) { pivoting_.mostPasses = mostPasses; }
-  /// Makes room, so that nothing need be allocated later: for bodies, rows, those of them that are no part of a tree, and trees of a depth.
+  /// Makes room, so that nothing need be allocated later: for bodies, rows, those of them that are no part of a tree,
+  /// and trees of a depth.
   void reserve(std::size_t bodies, std::size_t rows, std::size_t coupling, std::size_t depth);
   /// Steps the island; false when it is left to the engine, and then nothing is changed.
   bool step(WorldView& world, const IslandPlan& plan);

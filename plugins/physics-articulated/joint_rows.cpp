@@ -1,7 +1,7 @@
 #include "rows.h"
 
-// Rows by joint type. Both bodies' velocities meet in a row with opposite signs, at the same point or about the same axis; the target
-// pushes back what has drifted apart. a1 and a2 are the anchors seen from the bodies' centres.
+// Rows by joint type. Both bodies' velocities meet in a row with opposite signs, at the same point or about the same
+// axis; the target pushes back what has drifted apart. a1 and a2 are the anchors seen from the bodies' centres.
 
 namespace spark::articulated {
 
@@ -66,9 +66,12 @@ struct JointWriter {
     if (position >= axis.highStop) return beyond = position - axis.highStop, 2;
     return 0;
   }
-  static bool stopsTurn(const SolverAxis& axis) { return (axis.lowStop >= -kPi || axis.highStop <= kPi) && axis.lowStop <= axis.highStop; }
+  static bool stopsTurn(const SolverAxis& axis) {
+    return (axis.lowStop >= -kPi || axis.highStop <= kPi) && axis.lowStop <= axis.highStop;
+  }
 
-  /// What a motor does that presses against a stop: its whole force, or a part of it away from the stop, acts besides the stop's row.
+  /// What a motor does that presses against a stop: its whole force, or a part of it away from the stop, acts besides
+  /// the stop's row.
   double pressing(const SolverAxis& axis, int stop) const {
     double force = axis.maxForce;
     if (axis.velocity > 0 || (axis.velocity == 0 && stop == 2)) force = -force;
@@ -83,7 +86,8 @@ struct JointWriter {
     b->torque -= force * onB.angular();
   }
 
-  /// The row of a motor, or of the stop that the axis has reached. `velocity`: of a relative to b along the axis, for bounce.
+  /// The row of a motor, or of the stop that the axis has reached. `velocity`: of a relative to b along the axis, for
+  /// bounce.
   void addAxis(int index, const Six& onA, const Six& onB, int stop, double beyond, double velocity) {
     const SolverAxis& axis = joint.axes[static_cast<std::size_t>(index)];
     const bool locked = stop && axis.lowStop == axis.highStop;
@@ -123,7 +127,9 @@ struct JointWriter {
     addTurning(p, correction() * error.dot(p), scale.cfm);
     addTurning(q, correction() * error.dot(q), scale.cfm);
     double beyond = 0;
-    const int stop = stopsTurn(joint.axes[0]) ? stopAt(joint.axes[0], hingeAngle(turned(joint.relativeA), joint.axisA[0]), beyond) : 0;
+    const int stop = stopsTurn(joint.axes[0])
+                         ? stopAt(joint.axes[0], hingeAngle(turned(joint.relativeA), joint.axisA[0]), beyond)
+                         : 0;
     addTurningAxis(0, axis, stop, beyond);
   }
 
@@ -134,7 +140,8 @@ struct JointWriter {
     // Forces act halfway between the centres, so that they do not turn the pair.
     const Vec3 half = b ? Vec3(0.5 * (b->position - a.position)) : Vec3(Vec3::Zero());
     const Vec3 apart = placeB() + inWorldB(joint.anchorB) - a.position;
-    for (const Vec3& d : {p, q}) add(Six::of(d, half.cross(d)), Six::of(-d, half.cross(d)), correction() * d.dot(apart), scale.cfm);
+    for (const Vec3& d : {p, q})
+      add(Six::of(d, half.cross(d)), Six::of(-d, half.cross(d)), correction() * d.dot(apart), scale.cfm);
     if (!b && joint.reversed) axis = -axis;
     const SolverAxis& limits = joint.axes[0];
     double beyond = 0;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What bounded rows were found in, for the next step's search to begin with. It makes the search short and has no say in what is found.
+/// What bounded rows were found in, for the next step's search to begin with. It makes the search short and has no say
+/// in what is found.
 
 #include "rows.h"
 

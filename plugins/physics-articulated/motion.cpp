@@ -42,8 +42,10 @@ void integrate(engine::SolverBody& body, const Vec3& velocity, const Vec3& spin,
   double* q = body.quaternion;
   const Turn rate = Turn{0, spin} * Turn::of(q);
   const double half = 0.5 * dt;
-  const double moved[] = {q[0] + half * rate.w, q[1] + half * rate.v.x(), q[2] + half * rate.v.y(), q[3] + half * rate.v.z()};
-  const double scale = 1 / std::sqrt(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2] + moved[3] * moved[3]);
+  const double moved[] = {q[0] + half * rate.w, q[1] + half * rate.v.x(), q[2] + half * rate.v.y(),
+                          q[3] + half * rate.v.z()};
+  const double scale =
+      1 / std::sqrt(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2] + moved[3] * moved[3]);
   for (int i = 0; i < 4; ++i) q[i] = moved[i] * scale;
   rotationOf(q, body.rotation);
   for (int i = 0; i < 3; ++i) body.force[i] = body.torque[i] = 0;

@@ -6,8 +6,8 @@
 
 namespace spark::articulated {
 
-/// Torque of a body that spins, with its own inertia [kg m^2, world frame], taken at the end of the step so that it adds no energy
-/// (Lacoursiere 2006).
+/// Torque of a body that spins, with its own inertia [kg m^2, world frame], taken at the end of the step so that it
+/// adds no energy (Lacoursiere 2006).
 Vec3 gyroscopicTorque(const Mat3& inertia, const Vec3& spin, double dt);
 
 /// Gives a body its new velocity [m/s] and spin [rad/s, world], and takes it where they lead in dt.

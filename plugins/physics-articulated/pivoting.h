@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Which rows hold, and which stand at a bound: motors that give all they have, stops that are left, contacts that part, friction that
-/// slips.
+/// Which rows hold, and which stand at a bound: motors that give all they have, stops that are left, contacts that
+/// part, friction that slips.
 
 #include "boxed_lcp.h"
 #include "system.h"
@@ -15,15 +15,16 @@ struct Bounded {
   double force = 0;   ///< N, Nm
 };
 
-/// Finds the states in which every row keeps its conditions. There is only one such solution: with softness > 0 the matrix is positive
-/// definite, however the search began.
+/// Finds the states in which every row keeps its conditions. There is only one such solution: with softness > 0 the
+/// matrix is positive definite, however the search began.
 ///
-/// Block principal pivoting: solve, turn all rows over that break their conditions, solve again. Mostly there is nothing to turn, since it
-/// begins with the states of the step before. When the number of broken rows does not fall, only a (repeatable) random half
-/// of them is turned, which breaks cycles; when passes run out, the rows with bounds are solved exactly (BoxedLcp).
+/// Block principal pivoting: solve, turn all rows over that break their conditions, solve again. Mostly there is
+/// nothing to turn, since it begins with the states of the step before. When the number of broken rows does not fall,
+/// only a (repeatable) random half of them is turned, which breaks cycles; when passes run out, the rows with bounds
+/// are solved exactly (BoxedLcp).
 ///
-/// A row within rounding of a bound stands at it, whatever its state was before: so the outcome depends on the island alone and not on
-/// where the search began, and a world that was saved and restored goes on with the same digits.
+/// A row within rounding of a bound stands at it, whatever its state was before: so the outcome depends on the island
+/// alone and not on where the search began, and a world that was saved and restored goes on with the same digits.
 class Pivoting {
  public:
   int mostPasses = 30;

@@ -67,7 +67,8 @@ void Plan::find(const engine::SolverStep& step, const Topology& topology) {
       islands_.push_back(static_cast<int>(t));
       mostBodies_ = std::max(mostBodies_, static_cast<std::size_t>(r.bodies));
       mostRows_ = std::max(mostRows_, static_cast<std::size_t>(r.bodies) * kJointRows +
-                                          static_cast<std::size_t>(r.contacts) * kContactRows + static_cast<std::size_t>(r.coupling));
+                                          static_cast<std::size_t>(r.contacts) * kContactRows +
+                                          static_cast<std::size_t>(r.coupling));
       mostCoupling_ = std::max(mostCoupling_, static_cast<std::size_t>(r.coupling));
     }
     r.trees = r.contacts = 0;

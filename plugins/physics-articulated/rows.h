@@ -6,8 +6,9 @@
 ///
 ///     a . motion(nodeA) + b . motion(nodeB) + softness * force = target,     low <= force <= high,
 ///
-/// and at a bound the equation gives way in the direction in which the bound holds: at `low` the left side may be larger, at `high`
-/// smaller. The force acts on the bodies along a and b. softness = cfm / dt, target = wanted velocity / dt.
+/// and at a bound the equation gives way in the direction in which the bound holds: at `low` the left side may be
+/// larger, at `high` smaller. The force acts on the bodies along a and b. softness = cfm / dt, target = wanted velocity
+/// / dt.
 
 #include <cstdint>
 #include <span>
@@ -85,11 +86,12 @@ struct RowScale {
 /// Most rows that a joint and a contact have.
 inline constexpr int kJointRows = 6, kContactRows = 3;
 
-/// Writes a joint's rows for bodies `a` and `b` (nullptr: the world) and returns how many. Motors that press against a stop add their force
-/// to the bodies instead. Fills a, b, target, softness, bounds, axis and stop.
+/// Writes a joint's rows for bodies `a` and `b` (nullptr: the world) and returns how many. Motors that press against a
+/// stop add their force to the bodies instead. Fills a, b, target, softness, bounds, axis and stop.
 int jointRows(const engine::SolverJoint& joint, Frame& a, Frame* b, const RowScale& scale, Row* out);
 
 /// The same for a contact, at most 3: the normal first. `reversed`: the normal counts the other way round.
-int contactRows(const engine::Contact& contact, bool reversed, const Frame& a, const Frame* b, const RowScale& scale, Row* out);
+int contactRows(const engine::Contact& contact, bool reversed, const Frame& a, const Frame* b, const RowScale& scale,
+                Row* out);
 
 }  // namespace spark::articulated

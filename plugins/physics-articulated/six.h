@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Six-vectors (a velocity with its spin, a force with its torque), blocks of 6 x 6 and their factors. All sizes are fixed; numbers are
-/// worked on in pairs, which every x86-64 has (and other processors have the like), always in the same order.
+/// Six-vectors (a velocity with its spin, a force with its torque), blocks of 6 x 6 and their factors. All sizes are
+/// fixed; numbers are worked on in pairs, which every x86-64 has (and other processors have the like), always in the
+/// same order.
 
 #include "api/math.h"
 

@@ -26,7 +26,8 @@ void Stepper::makeRoom(const Kept& kept, std::size_t threads, int most) {
   // Which island meets which thread is chance: all have room for the largest.
   const Plan& plan = kept.plan;
   const std::size_t coupling = std::min(plan.mostCoupling(), static_cast<std::size_t>(std::max(most, 0)));
-  for (const auto& island : islandsOfThreads_) island->reserve(plan.mostBodies(), plan.mostRows(), coupling, kept.topology.depth);
+  for (const auto& island : islandsOfThreads_)
+    island->reserve(plan.mostBodies(), plan.mostRows(), coupling, kept.topology.depth);
 }
 
 std::size_t Stepper::countLeft(const engine::SolverStep& step, const Kept& kept) {
@@ -60,7 +61,8 @@ std::size_t Stepper::step(engine::SolverStep& step, std::size_t threads, const S
   std::atomic<std::size_t> next{0};
   const auto work = [&](std::size_t thread) {
     Island& island = *islandsOfThreads_[thread];
-    for (std::size_t i = next.fetch_add(1); i < n; i = next.fetch_add(1)) kept.left[i] = !island.step(world, kept.plan[i]);
+    for (std::size_t i = next.fetch_add(1); i < n; i = next.fetch_add(1))
+      kept.left[i] = !island.step(world, kept.plan[i]);
   };
   if (threads < 2 || n < 2)
     work(0);

@@ -18,10 +18,12 @@ class Stepper {
   /// Islands with more rows that are no part of a tree are left to the engine.
   int mostRows = 600;
 
-  /// Steps the world with up to `threads` threads; the result is the same with any number. Returns how many bodies are left to the engine.
+  /// Steps the world with up to `threads` threads; the result is the same with any number. Returns how many bodies are
+  /// left to the engine.
   std::size_t step(engine::SolverStep& step, std::size_t threads, const Spread& spread);
   void forget(engine::World world);
-  /// Since the stepper was made: searches for what holds, their passes, searches that needed the exact way, islands left.
+  /// Since the stepper was made: searches for what holds, their passes, searches that needed the exact way, islands
+  /// left.
   std::int64_t islands() const { return islands_; }
   std::int64_t passes() const;
   std::int64_t exactSolutions() const;

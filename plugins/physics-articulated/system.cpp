@@ -6,7 +6,9 @@ void System::changed(const Row& row) {
   // The body that the row is a part of. Rows of the dense system change no body.
   const auto a = static_cast<std::size_t>(row.nodeA);
   const auto index = static_cast<int>(&row - rows.begin());
-  const auto isEdgeOf = [&](const Node& node) { return index >= node.firstRow && index < node.firstRow + node.rowCount; };
+  const auto isEdgeOf = [&](const Node& node) {
+    return index >= node.firstRow && index < node.firstRow + node.rowCount;
+  };
   if (row.inBody || isEdgeOf(trees.nodes[a]))
     trees.nodes[a].changed = true;
   else if (row.nodeB >= 0 && isEdgeOf(trees.nodes[static_cast<std::size_t>(row.nodeB)]))

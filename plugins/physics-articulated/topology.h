@@ -8,7 +8,8 @@
 
 namespace spark::articulated {
 
-/// A body's place in its tree. `joint` holds it to `parent`, or to the world where there is none; -1: it hangs on nothing.
+/// A body's place in its tree. `joint` holds it to `parent`, or to the world where there is none; -1: it hangs on
+/// nothing.
 struct Branch {
   int body = 0;     ///< index in SolverStep::bodies
   int parent = -1;  ///< branch, before this one
@@ -27,7 +28,8 @@ struct Topology {
   std::vector<int> branchOf, treeOf;  ///< by body
   std::size_t depth = 0;              ///< bodies from a root to the farthest leaf
 
-  /// Throws away what was there and finds the trees anew. Bodies that a joint holds to the world become roots where they can.
+  /// Throws away what was there and finds the trees anew. Bodies that a joint holds to the world become roots where
+  /// they can.
   void find(const engine::SolverStep& step);
 };
 

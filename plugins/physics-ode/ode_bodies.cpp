@@ -10,7 +10,7 @@ using namespace ode;
 using engine::Body;
 
 namespace {
-constexpr std::ptrdiff_t kAhead = 4;   // bodies
+constexpr std::ptrdiff_t kAhead = 4;  // bodies
 constexpr std::size_t kMotion = 128;  // bytes of ODE's from a body's velocity to its torque
 }  // namespace
 
@@ -68,11 +68,14 @@ void OdeEngine::destroyBody(Body body) {
 
 void OdeEngine::setMass(Body body, const engine::Mass& mass) {
   const bool finite = std::isfinite(mass.mass) && mass.center.allFinite() && mass.inertia.allFinite();
-  if (!finite || mass.mass <= 0) throw Error("expected a mass above 0 kg and finite numbers, found " + std::to_string(mass.mass) + " kg");
-  if (mass.center.norm() > 1e-9) throw Error("expected a centre of mass at the body's origin; move the body there first");
+  if (!finite || mass.mass <= 0)
+    throw Error("expected a mass above 0 kg and finite numbers, found " + std::to_string(mass.mass) + " kg");
+  if (mass.center.norm() > 1e-9)
+    throw Error("expected a centre of mass at the body's origin; move the body there first");
   if (Eigen::LLT<Mat3>(mass.inertia).info() != Eigen::Success || !mass.inertia.isApprox(mass.inertia.transpose(), 1e-9))
     throw Error(
-        "expected a symmetric, positive definite inertia: no real body has the one given. Check its diagonal and products of inertia");
+        "expected a symmetric, positive definite inertia: no real body has the one given. Check its diagonal and "
+        "products of inertia");
   dMass m;
   dMassSetZero(&m);
   m.mass = mass.mass;
@@ -87,7 +90,8 @@ void OdeEngine::setMass(Body body, const engine::Mass& mass) {
 engine::BodyState OdeEngine::state(Body body) const {
   const BodyData& b = *data(body);
   const WorldData& w = *b.world;
-  return {crossing(w, toVec(b.position)), crossing(w, toVec(b.velocity)), crossing(w, toVec(b.spin)), crossing(w, toMat(b.rotation))};
+  return {crossing(w, toVec(b.position)), crossing(w, toVec(b.velocity)), crossing(w, toVec(b.spin)),
+          crossing(w, toMat(b.rotation))};
 }
 
 void OdeEngine::posesOfAwake(std::span<const Body> bodies, std::span<std::uint8_t> awake, std::span<Matrix> out) const {
@@ -114,8 +118,8 @@ void OdeEngine::setPosition(Body body, const Vec3& wanted) {
 
 namespace {
 
-/// Rounding of single precision stays below; what is worse is made right-angled before it grows: who turns a robot by what its own rotation
-/// says, again and again within one step, doubles the error each time.
+/// Rounding of single precision stays below; what is worse is made right-angled before it grows: who turns a robot by
+/// what its own rotation says, again and again within one step, doubles the error each time.
 constexpr double kRightAngled = 1e-5;
 
 /// The rotation nearest to `m` by its first two rows.
@@ -226,7 +230,8 @@ void OdeEngine::saveBody(Body body, std::vector<double>& out) const {
 
 void OdeEngine::loadBody(Body body, std::span<const double> in) {
   if (in.size() != kSaved)
-    throw Error("expected " + std::to_string(kSaved) + " numbers of a body's saved state, found " + std::to_string(in.size()));
+    throw Error("expected " + std::to_string(kSaved) + " numbers of a body's saved state, found " +
+                std::to_string(in.size()));
   BodyData& b = *data(body);
   const double* p = in.data();
   // ODE's own setters normalise again, which may change the last bit: the state is written where ODE keeps it.

@@ -87,8 +87,9 @@ void OdeEngine::setInnerCollision(Space space, bool on) { data(space)->inner = o
 namespace {
 
 void setSurface(dSurfaceParameters& to, const engine::Surface& s, const WorldData& w) {
-  to.mode = (s.bounceOn ? dContactBounce : 0) | (s.softErpOn ? dContactSoftERP : 0) | (s.softCfmOn ? dContactSoftCFM : 0) |
-            (s.slipOn ? dContactSlip1 | dContactSlip2 : 0) | (s.pyramid ? dContactApprox1 : 0);
+  to.mode = (s.bounceOn ? dContactBounce : 0) | (s.softErpOn ? dContactSoftERP : 0) |
+            (s.softCfmOn ? dContactSoftCFM : 0) | (s.slipOn ? dContactSlip1 | dContactSlip2 : 0) |
+            (s.pyramid ? dContactApprox1 : 0);
   to.mu = crossing(w, s.mu);
   to.bounce = crossing(w, s.bounce);
   to.bounce_vel = crossing(w, s.bounceVelocity);
@@ -187,7 +188,8 @@ void OdeEngine::sleep(WorldData& w, double dt) {
     BodyData& b = *body;
     // Nothing sleeps in mid-air.
     if ((b.joints == 0 && b.touchedAt != w.steps) || !b.awake) continue;
-    if (dCalcVectorDot3(b.velocity, b.velocity) > kIdleSpeedSquared || dCalcVectorDot3(b.spin, b.spin) > kIdleSpeedSquared) {
+    if (dCalcVectorDot3(b.velocity, b.velocity) > kIdleSpeedSquared ||
+        dCalcVectorDot3(b.spin, b.spin) > kIdleSpeedSquared) {
       b.stepsLeft = kIdleSteps;
       b.timeLeft = 0;
       continue;

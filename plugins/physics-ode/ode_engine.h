@@ -3,21 +3,26 @@
 /// The engine interface on ODE 0.16, double precision. ODE's types do not leave this folder.
 ///
 /// What is ours and not ODE's, and why:
-///  - Auto-disable: ODE's rule with ODE's thresholds, but its counters live here, where they can be saved. A restored world goes on
+///  - Auto-disable: ODE's rule with ODE's thresholds, but its counters live here, where they can be saved. A restored
+///  world goes on
 ///    bit for bit.
-///  - Pair order: ODE's spaces report pairs in an order that depends on history. Pairs are collected, sorted by the age of their
+///  - Pair order: ODE's spaces report pairs in an order that depends on history. Pairs are collected, sorted by the age
+///  of their
 ///    geoms, then collided: same tree, same state, same contacts. (Not with `exactReplay`: see there.)
 ///  - Spaces: each space collides its own geoms once per step, and never twice.
-///  - Knots: the direct solver's time grows with the cube of an island's constraints, and thirty robots that appear in one place would
+///  - Knots: the direct solver's time grows with the cube of an island's constraints, and thirty robots that appear in
+///  one place would
 ///    take minutes. Islands of more than `directRows` rows are solved by ODE's iterative solver (see ode_islands.cpp).
-///  - Solver: a child that offers engine::ISolver steps the islands that it knows how to step; ODE keeps bodies, joints and geoms, finds
+///  - Solver: a child that offers engine::ISolver steps the islands that it knows how to step; ODE keeps bodies, joints
+///  and geoms, finds
 ///    contacts, and steps the islands that are left, all of them where there is no such child (see ode_solver.cpp).
-///  - Faults: a body whose state is no number after a step is put back to its last good pose, at rest. Numbers that are no numbers do
+///  - Faults: a body whose state is no number after a step is put back to its last good pose, at rest. Numbers that are
+///  no numbers do
 ///    not get in.
 ///
 ///     detect:  sweep and prune -> close pairs -> filters -> sort -> narrow phase -> contacts
-///     step:    contacts -> pairs of bodies -> auto-disable -> solver -> what is left: contact joints, dWorldStep (knots: dWorldQuickStep),
-///              feedback -> faults
+///     step:    contacts -> pairs of bodies -> auto-disable -> solver -> what is left: contact joints, dWorldStep
+///              (knots: dWorldQuickStep), feedback -> faults
 
 #include <ode/ode.h>
 
@@ -44,7 +49,8 @@ struct GoodPose {
   dReal position[3], quaternion[4];
 };
 
-/// Of a body: what every step looks at. It stands before what a solver sees of it, whose first part every step looks at too.
+/// Of a body: what every step looks at. It stands before what a solver sees of it, whose first part every step looks at
+/// too.
 struct BodyBasics {
   dBodyID id;
   WorldData* world;
@@ -52,11 +58,13 @@ struct BodyBasics {
   int stepsLeft;                ///< idle steps until it sleeps
   double timeLeft = 0;          ///< idle time until it sleeps [s]
   std::uint64_t touchedAt = 0;  ///< number of the step in which it last had a contact
-  /// Memory of the body that was made some after this one: who comes to this one comes to that one soon. To be prefetched only, it may be gone.
+  /// Memory of the body that was made some after this one: who comes to this one comes to that one soon. To be
+  /// prefetched only, it may be gone.
   const void *ahead = nullptr, *odeAhead = nullptr;
 };
 
-/// What a solver sees of a body leads into ODE's memory. `awake` is what ODE says, `left` is true where no solver steps.
+/// What a solver sees of a body leads into ODE's memory. `awake` is what ODE says, `left` is true where no solver
+/// steps.
 struct alignas(kCacheLine) BodyData : BodyBasics, engine::SolverBody {
   GoodPose good;
   int staticRows = 0;          ///< rows of its contacts with the static world in that step
@@ -69,8 +77,9 @@ struct SpaceData {
   dSpaceID id;
   WorldData* world;
   bool inner = true;
-  bool top = false;             ///< exact replay: has no space around it
-  std::uint64_t collidedAt = 0;  ///< exact replay: number of the step in which its geoms were last collided with each other
+  bool top = false;  ///< exact replay: has no space around it
+  std::uint64_t collidedAt =
+      0;  ///< exact replay: number of the step in which its geoms were last collided with each other
 };
 
 struct MeshDeleter {
@@ -81,10 +90,10 @@ struct alignas(kCacheLine) GeomData {
   dGeomID id;
   BodyData* body = nullptr;
   void* owner;
-  std::uint64_t age;  ///< counts up in order of creation
-  Pose offset;        ///< in the body's frame, or in the world without a body
+  std::uint64_t age;               ///< counts up in order of creation
+  Pose offset;                     ///< in the body's frame, or in the world without a body
   engine::ShapeDescription shape;  ///< keeps the numbers of a mesh alive
-  Pose base;          ///< the shape's own frame: a ray's direction, else identity
+  Pose base;                       ///< the shape's own frame: a ray's direction, else identity
   WorldData* world;
   dSpaceID space;
   std::unique_ptr<dxTriMeshData, MeshDeleter> mesh;
@@ -94,13 +103,14 @@ struct alignas(kCacheLine) GeomData {
 struct JointBasics {
   dJointID id;
   WorldData* world;
-  /// A hinge's angle, as ODE tells it, and the state of the world's rotations for which it was asked last: effectors and sensors want the
-  /// same number. Sensors ask in several threads.
+  /// A hinge's angle, as ODE tells it, and the state of the world's rotations for which it was asked last: effectors
+  /// and sensors want the same number. Sensors ask in several threads.
   mutable std::atomic<double> lastAngle = 0;
   mutable std::atomic<std::uint64_t> angleAt = 0;
 };
 
-/// What a solver sees of a joint says the same as ODE's own; see ode_frames.cpp. With `reversed`, `a` is the body that was given second.
+/// What a solver sees of a joint says the same as ODE's own; see ode_frames.cpp. With `reversed`, `a` is the body that
+/// was given second.
 struct alignas(kCacheLine) JointData : JointBasics, engine::SolverJoint {
   dJointFeedback feedback{};
   bool attached() const { return a != nullptr; }
@@ -132,19 +142,22 @@ struct WorldData {
   std::vector<engine::SolverPair> contactPairs;  ///< one for each contact of the step
   std::vector<dJointFeedback> feedback;
   std::vector<engine::Body> repaired;
-  int unitingRows = 0, staticRows = 0, mostStaticRows = 0;  ///< this step's rows of contacts between bodies; with the static world; most of those on one body
-  int heldRows = 0, heldBodies = 0;         ///< most rows, and most bodies, that joints alone hold together
-  std::uint64_t heldAt = 0;                 ///< the structure for which they were counted
-  std::vector<BodyData*> sleepers;          ///< bodies of islands kept out of a run of one of ODE's solvers
-  std::vector<BodyData*> toVisit;           ///< while an island is walked through
-  std::vector<BodyData*> solved;            ///< bodies that are kept out of ODE's step: they had theirs
-  std::uint64_t structure = 0;              ///< another number when bodies or joints came, went or were attached anew
-  std::uint64_t listedAt = 0;               ///< the structure of the lists below
+  int unitingRows = 0, staticRows = 0,
+      mostStaticRows =
+          0;  ///< this step's rows of contacts between bodies; with the static world; most of those on one body
+  int heldRows = 0, heldBodies = 0;  ///< most rows, and most bodies, that joints alone hold together
+  std::uint64_t heldAt = 0;          ///< the structure for which they were counted
+  std::vector<BodyData*> sleepers;   ///< bodies of islands kept out of a run of one of ODE's solvers
+  std::vector<BodyData*> toVisit;    ///< while an island is walked through
+  std::vector<BodyData*> solved;     ///< bodies that are kept out of ODE's step: they had theirs
+  std::uint64_t structure = 0;       ///< another number when bodies or joints came, went or were attached anew
+  std::uint64_t listedAt = 0;        ///< the structure of the lists below
   std::vector<engine::SolverBody*> solverBodies;
   std::vector<engine::SolverJoint*> solverJoints;
 };
 
-/// Bring what a solver sees of a joint up to what ODE's own was told in the same moment; numbers as they crossed the engine's interface.
+/// Bring what a solver sees of a joint up to what ODE's own was told in the same moment; numbers as they crossed the
+/// engine's interface.
 namespace frames {
 void created(JointData& j);
 void attached(JointData& j);
@@ -214,7 +227,8 @@ inline bool sane(const dReal* v, int n) {
   return most < 1e8;
 }
 inline bool sane(const Vec3& v) { return sane(v.data(), 3); }
-/// Forces [N, Nm] and what joints are told end here, far beyond what any body stands: ODE ends the process when a turn overflows.
+/// Forces [N, Nm] and what joints are told end here, far beyond what any body stands: ODE ends the process when a turn
+/// overflows.
 inline constexpr double kMost = 1e30;
 inline double bounded(double v) { return std::clamp(v, -kMost, kMost); }
 inline Vec3 bounded(const Vec3& v) { return v.cwiseMax(-kMost).cwiseMin(kMost); }
@@ -251,15 +265,19 @@ class OdeEngine : public Node, public engine::IEngine {
  public:
   ~OdeEngine() override;
   static void describe(Description<OdeEngine>& d) {
-    d.doc("Rigid bodies by the Open Dynamics Engine (direct solver). A child that offers ISolver steps what it can in ODE's stead.");
+    d.doc(
+        "Rigid bodies by the Open Dynamics Engine (direct solver). A child that offers ISolver steps what it can in "
+        "ODE's stead.");
     d.implements<engine::IEngine>();
     d.property("version", &OdeEngine::version).doc("The library's configuration.");
     d.property("directRows", &OdeEngine::directRows_)
         .min(0)
         .doc("Islands of more constraint rows (three a contact) are solved iteratively: not exactly, but in time.");
     d.property("exactReplay", &OdeEngine::exactReplay_)
-        .doc("Worlds made from now on repeat recorded sessions of the installed base to the last digit: numbers cross the engine's interface in "
-             "single precision, and contacts are solved in the order in which ODE's hash spaces report them.");
+        .doc(
+            "Worlds made from now on repeat recorded sessions of the installed base to the last digit: numbers cross "
+            "the engine's interface in "
+            "single precision, and contacts are solved in the order in which ODE's hash spaces report them.");
     d.property("approximateSteps", &OdeEngine::approximateSteps).doc("How many steps had such an island.");
     d.property("messages", &OdeEngine::messages).doc("How often ODE complained about something.");
   }
@@ -276,7 +294,8 @@ class OdeEngine : public Node, public engine::IEngine {
   void destroyBody(engine::Body body) override;
   void setMass(engine::Body body, const engine::Mass& mass) override;
   engine::BodyState state(engine::Body body) const override;
-  void posesOfAwake(std::span<const engine::Body> bodies, std::span<std::uint8_t> awake, std::span<Matrix> out) const override;
+  void posesOfAwake(std::span<const engine::Body> bodies, std::span<std::uint8_t> awake,
+                    std::span<Matrix> out) const override;
   void setPosition(engine::Body body, const Vec3& p) override;
   void setRotation(engine::Body body, const Mat3& r) override;
   void setLinearVelocity(engine::Body body, const Vec3& v) override;

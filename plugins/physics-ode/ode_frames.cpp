@@ -2,10 +2,10 @@
 
 #include "ode_engine.h"
 
-// A joint remembers where its bodies stood when it was set: anchors, axes and relative rotations in the bodies' frames. ODE keeps these
-// numbers to itself, so they are noted here a second time, at the calls that make ODE note them, from the same poses. Where a body is
-// missing its frame is the world's. A joint that is attached keeps what stands in its first body's frame and takes the rest from there, as
-// ODE does; a fixed joint and an angular motor keep all they have.
+// A joint remembers where its bodies stood when it was set: anchors, axes and relative rotations in the bodies' frames.
+// ODE keeps these numbers to itself, so they are noted here a second time, at the calls that make ODE note them, from
+// the same poses. Where a body is missing its frame is the world's. A joint that is attached keeps what stands in its
+// first body's frame and takes the rest from there, as ODE does; a fixed joint and an angular motor keep all they have.
 
 namespace spark::ode {
 
@@ -14,8 +14,12 @@ using engine::SolverBody;
 
 namespace {
 
-Vec3 toWorld(const SolverBody* b, const Vec3& direction) { return b ? Vec3(toMat(b->rotation) * direction) : direction; }
-Vec3 toBody(const SolverBody* b, const Vec3& direction) { return b ? Vec3(toMat(b->rotation).transpose() * direction) : direction; }
+Vec3 toWorld(const SolverBody* b, const Vec3& direction) {
+  return b ? Vec3(toMat(b->rotation) * direction) : direction;
+}
+Vec3 toBody(const SolverBody* b, const Vec3& direction) {
+  return b ? Vec3(toMat(b->rotation).transpose() * direction) : direction;
+}
 Vec3 pointToWorld(const SolverBody* b, const Vec3& p) { return b ? Vec3(toWorld(b, p) + toVec(b->position)) : p; }
 Vec3 pointToBody(const SolverBody* b, const Vec3& p) { return b ? toBody(b, p - toVec(b->position)) : p; }
 
@@ -54,7 +58,8 @@ void noteCross(JointData& j) {
 /// A wheel's angles are counted from the other axis, made perpendicular to its own.
 void noteWheel(JointData& j) {
   const Vec3 first = toWorld(j.a, j.axisA[0]), second = toWorld(j.b, j.axisB[1]);
-  const Vec3 fromFirst = (second - first.dot(second) * first).normalized(), fromSecond = (first - first.dot(second) * second).normalized();
+  const Vec3 fromFirst = (second - first.dot(second) * first).normalized(),
+             fromSecond = (first - first.dot(second) * second).normalized();
   j.v1 = toBody(j.a, fromFirst);
   j.v2 = toBody(j.a, first.cross(fromFirst));
   j.w1 = toBody(j.b, fromSecond);

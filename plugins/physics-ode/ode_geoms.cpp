@@ -20,8 +20,8 @@ void expectLength(double v, const char* what) {
 void checkMesh(const ShapeDescription& s) {
   const std::size_t points = s.vertices.size() / 3;
   if (points == 0 || s.vertices.size() % 3 || s.triangles.empty() || s.triangles.size() % 3)
-    throw Error(fmt::format("expected three numbers a vertex and three indices a triangle, found {} and {}", s.vertices.size(),
-                            s.triangles.size()));
+    throw Error(fmt::format("expected three numbers a vertex and three indices a triangle, found {} and {}",
+                            s.vertices.size(), s.triangles.size()));
   for (double v : s.vertices)
     if (!std::isfinite(v)) throw Error("a vertex of the mesh is not finite");
   for (std::uint32_t i : s.triangles)
@@ -42,7 +42,8 @@ void check(const ShapeDescription& s) {
       expectLength(s.length, "a length");
       break;
     case Shape::plane:
-      if (const double n = std::hypot(s.plane[0], s.plane[1], s.plane[2]); !(n > 1e-12) || !std::isfinite(n) || !std::isfinite(s.plane[3]))
+      if (const double n = std::hypot(s.plane[0], s.plane[1], s.plane[2]);
+          !(n > 1e-12) || !std::isfinite(n) || !std::isfinite(s.plane[3]))
         throw Error("expected a plane with a normal longer than 0 m and finite numbers");
       break;
     case Shape::ray:
@@ -95,8 +96,9 @@ void OdeEngine::makeShape(GeomData& g) {
       break;
     case Shape::mesh:
       g.mesh.reset(dGeomTriMeshDataCreate());
-      dGeomTriMeshDataBuildDouble(g.mesh.get(), s.vertices.data(), 3 * sizeof(double), static_cast<int>(s.vertices.size() / 3),
-                                  s.triangles.data(), static_cast<int>(s.triangles.size()), 3 * sizeof(std::uint32_t));
+      dGeomTriMeshDataBuildDouble(g.mesh.get(), s.vertices.data(), 3 * sizeof(double),
+                                  static_cast<int>(s.vertices.size() / 3), s.triangles.data(),
+                                  static_cast<int>(s.triangles.size()), 3 * sizeof(std::uint32_t));
       g.id = dCreateTriMesh(g.space, g.mesh.get(), nullptr, nullptr, nullptr);
       break;
   }
@@ -123,7 +125,8 @@ void OdeEngine::place(GeomData& g) {
 
 namespace {
 
-/// Gives ODE's geom other measures where it keeps its kind, so that it keeps its place in its space. False: it must be made anew.
+/// Gives ODE's geom other measures where it keeps its kind, so that it keeps its place in its space. False: it must be
+/// made anew.
 bool reshape(GeomData& g, const ShapeDescription& s) {
   if (s.shape != g.shape.shape) return false;
   switch (s.shape) {

@@ -3,10 +3,11 @@
 
 #include "ode_engine.h"
 
-// An island is what joints and solved contacts hold together; the static world holds nothing together. When the contacts of a step cannot
-// bring too many constraints together, nothing is counted. Else islands are found by union of bodies, and if one is too large the world
-// is stepped twice: first without the bodies of large islands, by the direct solver, then with only them, by the iterative one. A body that
-// is out is one that sleeps, as ODE knows it; islands do not touch each other, so nobody is woken.
+// An island is what joints and solved contacts hold together; the static world holds nothing together. When the
+// contacts of a step cannot bring too many constraints together, nothing is counted. Else islands are found by union of
+// bodies, and if one is too large the world is stepped twice: first without the bodies of large islands, by the direct
+// solver, then with only them, by the iterative one. A body that is out is one that sleeps, as ODE knows it; islands do
+// not touch each other, so nobody is woken.
 
 namespace spark {
 
@@ -63,7 +64,8 @@ void countHeld(WorldData& w) {
 std::int64_t boundOfRows(WorldData& w) {
   countHeld(w);
   const std::int64_t parts = 1 + w.unitingRows / kContactRows;
-  return w.unitingRows + parts * w.heldRows + std::min<std::int64_t>(w.staticRows, parts * w.heldBodies * w.mostStaticRows);
+  return w.unitingRows + parts * w.heldRows +
+         std::min<std::int64_t>(w.staticRows, parts * w.heldBodies * w.mostStaticRows);
 }
 
 /// Puts the awake bodies of large (or of all other) islands to sleep; they stand in w.sleepers.
@@ -92,8 +94,9 @@ void visitNeighbours(WorldData& w, const BodyData& b) {
     }
 }
 
-/// Says that the geoms of all bodies that dWorldStep is going to move have moved, in the order in which it moves them in one thread: a geom
-/// that is known to have moved stays where it is in its space. Islands are walked through as ODE does it, the youngest body first.
+/// Says that the geoms of all bodies that dWorldStep is going to move have moved, in the order in which it moves them
+/// in one thread: a geom that is known to have moved stays where it is in its space. Islands are walked through as ODE
+/// does it, the youngest body first.
 void moveGeomsInOrder(WorldData& w) {
   for (auto youngest = w.bodies.rbegin(); youngest != w.bodies.rend(); ++youngest) {
     if ((*youngest)->foundAt == w.steps || !dBodyIsEnabled((*youngest)->id)) continue;
@@ -114,7 +117,8 @@ constexpr std::ptrdiff_t kWorthThreads = 40;
 }  // namespace
 
 void OdeEngine::solveDirectly(WorldData& w, double dt) {
-  const auto awake = std::count_if(w.bodies.begin(), w.bodies.end(), [](const auto& b) { return dBodyIsEnabled(b->id); });
+  const auto awake =
+      std::count_if(w.bodies.begin(), w.bodies.end(), [](const auto& b) { return dBodyIsEnabled(b->id); });
   w.threads->setParallel(awake >= kWorthThreads);
   if (w.threads->parallel() && w.exactReplay) moveGeomsInOrder(w);
   dWorldStep(w.id, dt);
@@ -131,7 +135,8 @@ void OdeEngine::solve(WorldData& w, double dt) {
   if (largest <= directRows_) return solveDirectly(w, dt);
   if (++approximateSteps_ == 1)
     kernel().log().info(
-        "{}: {} constraint rows hang together, more than the {} that the direct solver is given (directRows): such islands are solved "
+        "{}: {} constraint rows hang together, more than the {} that the direct solver is given (directRows): such "
+        "islands are solved "
         "approximately. "
         "Do robots stand in each other?",
         path(), largest, directRows_);

@@ -29,8 +29,9 @@ int axesOf(JointType type) {
 }
 
 int odeParameter(JointParameter p, int axis) {
-  static constexpr int kNames[] = {dParamLoStop, dParamHiStop,  dParamVel,     dParamFMax,          dParamFudgeFactor,  dParamBounce,
-                                   dParamCFM,    dParamStopERP, dParamStopCFM, dParamSuspensionERP, dParamSuspensionCFM};
+  static constexpr int kNames[] = {dParamLoStop,      dParamHiStop,        dParamVel,          dParamFMax,
+                                   dParamFudgeFactor, dParamBounce,        dParamCFM,          dParamStopERP,
+                                   dParamStopCFM,     dParamSuspensionERP, dParamSuspensionCFM};
   return kNames[static_cast<int>(p)] + dParamGroup * axis;
 }
 static_assert(static_cast<int>(JointParameter::stopErp) == 7 && static_cast<int>(JointParameter::suspensionCfm) == 10);
@@ -40,8 +41,9 @@ Vec3 angularVelocity(const engine::SolverBody* b) { return b ? toVec(b->spin) : 
 /// Where a solver sees a parameter.
 double& told(JointData& j, JointParameter p, int axis) {
   using Axis = engine::SolverAxis;
-  static constexpr double Axis::*kPlaces[] = {&Axis::lowStop, &Axis::highStop, &Axis::velocity, &Axis::maxForce, &Axis::fudgeFactor,
-                                              &Axis::bounce,  &Axis::cfm,      &Axis::stopErp,  &Axis::stopCfm};
+  static constexpr double Axis::*kPlaces[] = {&Axis::lowStop,  &Axis::highStop,    &Axis::velocity,
+                                              &Axis::maxForce, &Axis::fudgeFactor, &Axis::bounce,
+                                              &Axis::cfm,      &Axis::stopErp,     &Axis::stopCfm};
   if (p == JointParameter::suspensionErp) return j.suspensionErp;
   if (p == JointParameter::suspensionCfm) return j.suspensionCfm;
   return j.axes[axis].*kPlaces[static_cast<int>(p)];
@@ -102,8 +104,8 @@ double hingeAngle(const JointData& j) {
 
 }  // namespace
 
-/// The solver leaves nothing of joints and bodies in the caches. Sensors come to a joint from afar and would wait for each in turn; here the
-/// next ones' memory is under way meanwhile.
+/// The solver leaves nothing of joints and bodies in the caches. Sensors come to a joint from afar and would wait for
+/// each in turn; here the next ones' memory is under way meanwhile.
 void OdeEngine::tellAngles(WorldData& w) {
   constexpr std::size_t kFar = 10, kNear = 5;
   constexpr std::size_t kHinge = 448;  // bytes of ODE's
@@ -114,7 +116,8 @@ void OdeEngine::tellAngles(WorldData& w) {
     }
     if (i + kNear < n) prefetch(w.joints[i + kNear]->id, kHinge);
     const JointData& j = *w.joints[i];
-    if (j.type == JointType::hinge && j.attached() && j.angleAt.load(std::memory_order_relaxed) >= w.anglesAt) hingeAngle(j);
+    if (j.type == JointType::hinge && j.attached() && j.angleAt.load(std::memory_order_relaxed) >= w.anglesAt)
+      hingeAngle(j);
   }
   w.anglesAt = w.rotations;
 }
@@ -165,7 +168,8 @@ void OdeEngine::destroyJoint(Joint joint) {
 }
 
 void OdeEngine::attach(Joint joint, engine::Body a, engine::Body b) {
-  if (a == b && a != engine::Body::none) throw Error("a joint cannot connect a body with itself: name two bodies, or one and the world");
+  if (a == b && a != engine::Body::none)
+    throw Error("a joint cannot connect a body with itself: name two bodies, or one and the world");
   // ODE ends the process for it.
   if (data(joint)->type == JointType::hinge2 && (a == Body::none) != (b == Body::none))
     throw Error("a wheel's joint (hinge2) needs two bodies, found one: name the chassis and the wheel");
@@ -240,7 +244,8 @@ void OdeEngine::setAxis(Joint joint, int axis, const Vec3& wanted, int frame) {
       break;
     }
     case JointType::angularMotor:
-      if ((frame == 1 && j.reversed) || (frame == 2 && !j.b && !j.reversed) || frame < 0 || frame > 2) frame = 0;  // the world is that body
+      if ((frame == 1 && j.reversed) || (frame == 2 && !j.b && !j.reversed) || frame < 0 || frame > 2)
+        frame = 0;  // the world is that body
       if (axis >= j.motorAxes) return;
       dJointSetAMotorAxis(j.id, axis, frame, v.x(), v.y(), v.z());
       break;
@@ -324,7 +329,8 @@ Vec3 OdeEngine::axis(Joint joint, int axis) const {
 void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double wanted) {
   JointData& j = *data(joint);
   if (!hasParameter(j, p, axis) || std::isnan(wanted)) return;
-  const bool nowhere = std::isinf(wanted) && (p == JointParameter::lowStop || p == JointParameter::highStop);  // there is no such stop
+  const bool nowhere =
+      std::isinf(wanted) && (p == JointParameter::lowStop || p == JointParameter::highStop);  // there is no such stop
   const double v = crossing(*j.world, nowhere ? wanted : bounded(wanted));
   const int name = odeParameter(p, axis);
   tell(j, name, v);
@@ -348,8 +354,8 @@ bool OdeEngine::atStop(Joint joint, int axis) const {
   const engine::SolverAxis& a = j.axes[static_cast<std::size_t>(axis)];
   const double angle = OdeEngine::angle(joint, axis);
   if (!j.world->exactReplay || j.type == JointType::slider) return angle <= a.lowStop || angle >= a.highStop;
-  // In degrees and rounded where the installed base rounds: a foot may rest at its stop for many cycles, and the last bit decides whether
-  // its motor hears commands. (Protocol, section 2.1.)
+  // In degrees and rounded where the installed base rounds: a foot may rest at its stop for many cycles, and the last
+  // bit decides whether its motor hears commands. (Protocol, section 2.1.)
   const double angleDeg = single(radToDeg(angle));
   const auto stopDeg = [](double stop) { return stop * 180.0 / kPi; };
   return angleDeg <= stopDeg(a.lowStop) || angleDeg >= stopDeg(a.highStop);

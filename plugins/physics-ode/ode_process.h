@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What ODE keeps per process and per thread, shared by all engines of a process: initialisation, error handlers, the lock of meshes.
+/// What ODE keeps per process and per thread, shared by all engines of a process: initialisation, error handlers, the
+/// lock of meshes.
 
 #include <mutex>
 #include <string>
@@ -16,8 +17,8 @@ class ProcessUse {
   ProcessUse& operator=(const ProcessUse&) = delete;
 };
 
-/// While it lives, what ODE says in this thread (errors, assertions, messages) is appended to a text, and ODE neither ends the process
-/// nor prints. Allocates ODE's data for this thread at first use.
+/// While it lives, what ODE says in this thread (errors, assertions, messages) is appended to a text, and ODE neither
+/// ends the process nor prints. Allocates ODE's data for this thread at first use.
 class Listening {
  public:
   explicit Listening(std::string& text);

@@ -1,7 +1,8 @@
 #include "ode_engine.h"
 
-// A solver below the engine works on the engine's own memory: bodies and joints say what ODE says (see ode_bodies.cpp, ode_frames.cpp), and
-// what it integrates stands where ODE keeps it. So ODE goes on with any body as if it had stepped it. What a solver leaves, ODE steps.
+// A solver below the engine works on the engine's own memory: bodies and joints say what ODE says (see ode_bodies.cpp,
+// ode_frames.cpp), and what it integrates stands where ODE keeps it. So ODE goes on with any body as if it had stepped
+// it. What a solver leaves, ODE steps.
 
 namespace spark {
 

@@ -19,8 +19,8 @@ void IslandThreads::hear(std::string& text) {
   }
 }
 
-IslandThreads::Call& IslandThreads::post(Call* then, int* fault, std::size_t waitsFor, dThreadedCallFunction* function, void* context,
-                                         dcallindex_t index) {
+IslandThreads::Call& IslandThreads::post(Call* then, int* fault, std::size_t waitsFor, dThreadedCallFunction* function,
+                                         void* context, dcallindex_t index) {
   Lane& lane = current ? *current : outside_;
   if (lane.free.empty()) lane.free.push_back(&lane.memory.emplace_back());
   Call& call = *lane.free.back();

@@ -2,16 +2,19 @@
 /// \file
 /// A world's islands in several threads, with the result of one thread.
 ///
-/// ODE posts calls while it steps a world: as many "job starts" as there are threads, each of which then takes one island after the
-/// other and posts the stages of an island's solution as calls that wait for each other. ODE's own pool gives every call to whoever is
-/// free, so several threads work in one island, and the order in which they come decides the order of sums. Here only job starts run
-/// side by side, by the kernel's jobs; what one of them posts is run by the same thread, the last posted that waits for nothing first, as
-/// ODE's implementation for one thread does it. So each island is solved by one thread, in one order.
+/// ODE posts calls while it steps a world: as many "job starts" as there are threads, each of which then takes one
+/// island after the other and posts the stages of an island's solution as calls that wait for each other. ODE's own
+/// pool gives every call to whoever is free, so several threads work in one island, and the order in which they come
+/// decides the order of sums. Here only job starts run side by side, by the kernel's jobs; what one of them posts is
+/// run by the same thread, the last posted that waits for nothing first, as ODE's implementation for one thread does
+/// it. So each island is solved by one thread, in one order.
 ///
-///     step -> post: group, start 0, start 1 -> wait: jobs run start i -> [island -> stage, stage, ...] [island -> ...] -> group
+///     step -> post: group, start 0, start 1 -> wait: jobs run start i
+///          -> [island -> stage, stage, ...] [island -> ...] -> group
 ///
-/// The order of threads would still show in the order in which geoms of different islands go to the heads of their spaces, where hash
-/// spaces begin to look for pairs. So they are told in one thread, before the step: see moveGeomsInOrder() in ode_islands.cpp.
+/// The order of threads would still show in the order in which geoms of different islands go to the heads of their
+/// spaces, where hash spaces begin to look for pairs. So they are told in one thread, before the step: see
+/// moveGeomsInOrder() in ode_islands.cpp.
 
 #include <ode/ode.h>
 
@@ -35,8 +38,8 @@ class IslandThreads {
 
   /// Makes ODE use it for that world from now on.
   void serve(dWorldID world);
-  /// Before a step: solve islands side by side (by default not). ODE keeps memory for as many threads as it was told of in the last step,
-  /// so what changes from step to step is this, not the number.
+  /// Before a step: solve islands side by side (by default not). ODE keeps memory for as many threads as it was told of
+  /// in the last step, so what changes from step to step is this, not the number.
   void setParallel(bool on) { parallel_ = on && jobs_.threads() > 1; }
   bool parallel() const { return parallel_; }
   /// Before a step: ODE is to think that there is one thread, whatever the jobs have.
@@ -72,7 +75,8 @@ class IslandThreads {
   static const dThreadingFunctionsInfo& functions();
   static IslandThreads& of(dThreadingImplementationID id) { return *reinterpret_cast<IslandThreads*>(id); }
   unsigned threads() const { return alone_ ? 1 : static_cast<unsigned>(jobs_.threads()); }
-  Call& post(Call* then, int* fault, std::size_t waitsFor, dThreadedCallFunction* function, void* context, dcallindex_t index);
+  Call& post(Call* then, int* fault, std::size_t waitsFor, dThreadedCallFunction* function, void* context,
+             dcallindex_t index);
   /// Runs all that was posted.
   void runAll();
   void runStarts();

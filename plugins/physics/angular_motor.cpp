@@ -10,7 +10,8 @@ namespace spark {
 void AngularMotor::describe(Description<AngularMotor>& d) {
   using M = AngularMotor;
   d.doc(
-      "Drives the angles between two bodies; below a HingeJoint it drives the hinge's. With a maxTorque it is a modelled motor: current, "
+      "Drives the angles between two bodies; below a HingeJoint it drives the hinge's. With a maxTorque it is a "
+      "modelled motor: current, "
       "heat and battery follow from its torque, and limit it.");
   d.property("numAxes", &M::numAxes, &M::setNumAxes).range(0, 3).doc("How many axes it drives.");
   d.method("setMotorAxis", &M::setMotorAxis)
@@ -22,21 +23,29 @@ void AngularMotor::describe(Description<AngularMotor>& d) {
   d.method("setAxisAngle", &M::setAxisAngle)
       .parameters({"axis", "angle [deg]"})
       .doc("The angle about an axis, which user mode cannot measure.");
-  d.method("getAxisAngle", &M::axisAngle).parameters({"axis"}).doc("The angle about an axis; below a hinge, the hinge's [deg].");
+  d.method("getAxisAngle", &M::axisAngle)
+      .parameters({"axis"})
+      .doc("The angle about an axis; below a hinge, the hinge's [deg].");
   d.method("getAxisAngleRate", &M::axisAngleRate).parameters({"axis"}).doc("Its rate [deg/s].");
-  d.method("getAxisAnchor", &M::axisAnchor).parameters({"axis"}).doc("What an axis turns with: 0 world, 1 first body, 2 second body.");
+  d.method("getAxisAnchor", &M::axisAnchor)
+      .parameters({"axis"})
+      .doc("What an axis turns with: 0 world, 1 first body, 2 second body.");
 
   d.property("battery", &M::battery_).doc("Path of the Battery it draws from, relative to the motor.");
   d.property("speedConstant", &M::speedConstant_).unit("V s/rad").doc("Back electromotive force per speed.");
   d.property("torqueConstant", &M::torqueConstant_).unit("Nm/A").doc("Torque per current.");
   d.property("resistance", &M::resistance_).unit("Ohm").min(0).doc("Resistance of the winding.");
-  d.property("environmentTempeature", &M::environment_).unit("C").doc("Temperature around it (the scene files' own spelling).");
+  d.property("environmentTempeature", &M::environment_)
+      .unit("C")
+      .doc("Temperature around it (the scene files' own spelling).");
   d.property("thermalConductivity", &M::conductivity_).unit("W/K").min(0).doc("Heat it gives away per degree.");
   d.property("heatCapacity", &M::heatCapacity_).unit("J/K").min(0).doc("Heat it takes per degree.");
   d.property("protectionTempeature", &M::protectionTemperature_)
       .unit("C")
       .doc("Above it the motor protects itself (the scene files' own spelling).");
-  d.property("protectionStiffness", &M::protectionStiffness_).range(0, 1).doc("Greatest stiffness of a motor that protects itself.");
+  d.property("protectionStiffness", &M::protectionStiffness_)
+      .range(0, 1)
+      .doc("Greatest stiffness of a motor that protects itself.");
   d.property("maxTorque", &M::maxTorque_)
       .unit("Nm")
       .min(0)
@@ -68,7 +77,9 @@ bool AngularMotor::disabled() const {
 void AngularMotor::prepare(const Event&) {
   if (!modelled()) return;
   const Battery* battery = surroundings().battery;
-  const double stiffness = battery && battery->empty() ? 0.0 : tooHot() ? std::min(stiffness_, protectionStiffness_) : stiffness_;
+  const double stiffness = battery && battery->empty() ? 0.0
+                           : tooHot()                  ? std::min(stiffness_, protectionStiffness_)
+                                                       : stiffness_;
   setParameter(engine::JointParameter::maxForce, 0, stiffness * maxTorque_);
 }
 
@@ -78,7 +89,8 @@ void AngularMotor::measure(const Event& event) {
   current_ = torqueConstant_ != 0 ? feedbackTorque() / torqueConstant_ : 0;
   const double heat = current_ * current_ * resistance_;  // W
   const double speed = std::abs(s.hinge ? s.hinge->angleRate(0) : angleRate(0));
-  if (s.battery && s.server && s.server->batteryDischarge()) s.battery->drain((speedConstant_ * speed * current_ + heat) * event.step);
+  if (s.battery && s.server && s.server->batteryDischarge())
+    s.battery->drain((speedConstant_ * speed * current_ + heat) * event.step);
   if (s.server && s.server->jointHeating() && heatCapacity_ > 0)
     temperature_ += (heat - conductivity_ * (temperature_ - environment_)) * event.step / heatCapacity_;
 }

@@ -9,9 +9,10 @@ namespace spark {
 
 class PhysicsServer;
 
-/// Drives the angles between two bodies; below a HingeJoint it drives the hinge's. With a greatest torque it is a modelled motor: the
-/// torque that it had in a step says the current, the current what it drew from its battery and how much warmer it got, and these how
-/// strong it is in the next step (scene-language section 3.5). Without one its force is what setMaxMotorForce says.
+/// Drives the angles between two bodies; below a HingeJoint it drives the hinge's. With a greatest torque it is a
+/// modelled motor: the torque that it had in a step says the current, the current what it drew from its battery and how
+/// much warmer it got, and these how strong it is in the next step (scene-language section 3.5). Without one its force
+/// is what setMaxMotorForce says.
 class AngularMotor : public Joint {
   SPARK_CLASS(AngularMotor, Joint)
  public:
@@ -56,7 +57,8 @@ class AngularMotor : public Joint {
   int axes_ = 0, anchors_[3] = {0, 0, 0};
   bool euler_ = false;
   std::string battery_;
-  double speedConstant_ = 4.3, torqueConstant_ = 4.3, resistance_ = 6.44, environment_ = 20, conductivity_ = 0.025, heatCapacity_ = 26;
+  double speedConstant_ = 4.3, torqueConstant_ = 4.3, resistance_ = 6.44, environment_ = 20, conductivity_ = 0.025,
+         heatCapacity_ = 26;
   double protectionTemperature_ = 80, protectionStiffness_ = 0.8, maxTorque_ = 0, stiffness_ = 1, temperature_ = 20;
   double current_ = 0;  ///< A, in the last step
   mutable Surroundings surroundings_;

@@ -29,11 +29,14 @@ void Collider::describe(Description<Collider>& d) {
   d.method("setRotation", &Collider::setRotation)
       .parameters({"matrix: 6 or 16 numbers"})
       .doc("Rotation inside a TransformCollider or on a body; in the world for a static collider.");
-  d.method("addCollisionHandler", &Collider::addCollisionHandler).parameters({"class"}).doc("Makes a handler of that class below it.");
+  d.method("addCollisionHandler", &Collider::addCollisionHandler)
+      .parameters({"class"})
+      .doc("Makes a handler of that class below it.");
   d.method("addNotCollideWithColliderName", &Collider::addNotCollideWithColliderName)
       .parameters({"name", "on"})
       .doc("Within its space: never collide with colliders of that name (true), or do so again (false).");
-  d.property("notCollideWith", &Collider::notCollideWith).doc("Names of colliders of its space that it does not collide with.");
+  d.property("notCollideWith", &Collider::notCollideWith)
+      .doc("Names of colliders of its space that it does not collide with.");
   d.abstract();
 }
 
@@ -133,7 +136,8 @@ void Collider::addNotCollideWithColliderName(std::string name, bool on) {
 
 bool Collider::mayCollideWith(const Collider& other) const {
   const auto detached = [](const CollisionGroup* group) { return group && group->detached(); };
-  if (group_ != other.group_ && hasBody_ && other.hasBody_ && (detached(group_) || detached(other.group_))) return false;
+  if (group_ != other.group_ && hasBody_ && other.hasBody_ && (detached(group_) || detached(other.group_)))
+    return false;
   if (notCollideWith_.empty() && other.notCollideWith_.empty()) return true;
   if (space_ != other.space_) return true;
   const auto names = [](const Collider& a, const Collider& b) {
@@ -176,7 +180,8 @@ void Collider::findHandlers(bool defaultOnTransform) {
 }
 
 Pose Collider::geomPose() const {
-  return engine() && geom_ != engine::Geom::none ? engine()->pose(geom_) : physics::compose(physics::frameOf(*this), local_);
+  return engine() && geom_ != engine::Geom::none ? engine()->pose(geom_)
+                                                 : physics::compose(physics::frameOf(*this), local_);
 }
 
 Vec3 Collider::toShape(const Vec3& p) const {

@@ -7,8 +7,8 @@
 
 namespace spark {
 
-/// Base of colliders. Belongs to the RigidBody that stands before it among its siblings; without one it is static, where its nearest
-/// transform is. A collider inside a TransformCollider is part of that.
+/// Base of colliders. Belongs to the RigidBody that stands before it among its siblings; without one it is static,
+/// where its nearest transform is. A collider inside a TransformCollider is part of that.
 class Collider : public PhysicsObject, public ICollider, public IFollowsTransform {
   SPARK_CLASS(Collider, PhysicsObject)
  public:
@@ -24,7 +24,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   IRigidBody* body() const override { return body_.get(); }
   void bounds(Vec3& low, Vec3& high) const override;
   std::optional<engine::ShapeDescription> shape() const override { return std::nullopt; }
-  /// Half of the shape's extent along the world's axes when it is turned so [m]; nothing for shapes that are not alike on both sides.
+  /// Half of the shape's extent along the world's axes when it is turned so [m]; nothing for shapes that are not alike
+  /// on both sides.
   virtual std::optional<Vec3> halfExtent(const Mat3&) const { return std::nullopt; }
   Pose poseInTransform() const override { return offset(); }
   void follow(const Matrix& world) override;
@@ -35,7 +36,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   bool solid() const { return solid_; }
   bool listens() const { return listens_; }
   bool hasBody() const { return hasBody_; }
-  /// Looks at the children again. `defaultOnTransform`: a TransformCollider without a handler of its own gets the default one.
+  /// Looks at the children again. `defaultOnTransform`: a TransformCollider without a handler of its own gets the
+  /// default one.
   void refreshHandlers(bool defaultOnTransform);
   /// False when the two are told not to collide: same space, and one names the other; or one is in a detached group.
   bool mayCollideWith(const Collider& other) const;

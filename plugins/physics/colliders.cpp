@@ -18,7 +18,8 @@ void BoxCollider::describe(Description<BoxCollider>& d) {
   d.method("addSCFreezeJointEffName", &BoxCollider::addFreezeJointEffector)
       .parameters({"effector"})
       .doc("An effector that the self-collision rule of soccer freezes when this box touches its own robot.");
-  d.property("freezeJointEffectors", &BoxCollider::freezeJointEffectors).doc("Names of the effectors that the self-collision rule freezes.");
+  d.property("freezeJointEffectors", &BoxCollider::freezeJointEffectors)
+      .doc("Names of the effectors that the self-collision rule freezes.");
 }
 
 std::optional<ShapeDescription> BoxCollider::shape() const {
@@ -76,7 +77,8 @@ std::optional<ShapeDescription> PlaneCollider::shape() const {
 
 void PlaneCollider::setParams(std::vector<double> n) {
   if (n.size() == 4) return change(plane_, {n[0], n[1], n[2], n[3]});
-  if (n.size() != 6) throw Error(where() + ": expected 4 numbers (a b c d) or 6 (point, normal), found " + std::to_string(n.size()));
+  if (n.size() != 6)
+    throw Error(where() + ": expected 4 numbers (a b c d) or 6 (point, normal), found " + std::to_string(n.size()));
   const Vec3 point(n[0], n[1], n[2]), normal(n[3], n[4], n[5]);
   change(plane_, {normal.x(), normal.y(), normal.z(), normal.dot(point)});
 }
@@ -103,7 +105,9 @@ void RayCollider::setParams(const Vec3& origin, const Vec3& direction, double le
 }
 
 void TriMeshCollider::describe(Description<TriMeshCollider>& d) {
-  d.doc("Triangles; it collides once it has vertices and triangles. Static is best: two meshes find each other only roughly.");
+  d.doc(
+      "Triangles; it collides once it has vertices and triangles. Static is best: two meshes find each other only "
+      "roughly.");
   d.property("vertices", &TriMeshCollider::vertices, &TriMeshCollider::setVertices)
       .unit("m")
       .doc("x y z of each vertex; new ones take the triangles away.");
@@ -120,8 +124,8 @@ std::optional<ShapeDescription> TriMeshCollider::shape() const {
 void TriMeshCollider::setMesh(std::vector<double> vertices, std::vector<std::int64_t> triangles) {
   for (std::int64_t t : triangles)
     if (t < 0 || 3 * t + 2 >= static_cast<std::int64_t>(vertices.size()))
-      throw Error(where() + ": a triangle names vertex " + std::to_string(t) + ", there are " + std::to_string(vertices.size() / 3) +
-                  ". Set the vertices first");
+      throw Error(where() + ": a triangle names vertex " + std::to_string(t) + ", there are " +
+                  std::to_string(vertices.size() / 3) + ". Set the vertices first");
   ShapeDescription s = mesh_;
   s.vertices = std::move(vertices);
   s.triangles.assign(triangles.begin(), triangles.end());

@@ -12,7 +12,8 @@ class TransformCollider : public Collider {
   SPARK_CLASS(TransformCollider, Collider)
  public:
   static void describe(Description<TransformCollider>& d) {
-    d.doc("Holds a collider at an offset from its body; contacts are reported for it, so handlers are its own children.");
+    d.doc(
+        "Holds a collider at an offset from its body; contacts are reported for it, so handlers are its own children.");
   }
 };
 
@@ -94,8 +95,10 @@ class LongCollider : public ConvexCollider {
   }
   std::optional<Vec3> halfExtent(const Mat3& turned) const override {
     const Vec3 z = turned.col(2).cwiseAbs();
-    if constexpr (S == engine::Shape::capsule) return Vec3(z * (length() / 2) + Vec3::Constant(radius()));
-    else return Vec3(z * (length() / 2) + radius() * (Vec3::Ones() - z.cwiseProduct(z)).cwiseMax(0).cwiseSqrt());
+    if constexpr (S == engine::Shape::capsule)
+      return Vec3(z * (length() / 2) + Vec3::Constant(radius()));
+    else
+      return Vec3(z * (length() / 2) + radius() * (Vec3::Ones() - z.cwiseProduct(z)).cwiseMax(0).cwiseSqrt());
   }
 
  protected:

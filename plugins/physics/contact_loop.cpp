@@ -15,7 +15,8 @@ const engine::Surface* surfaceOf(const Collider::Handlers& h) {
 /// The contact points from `i` on that belong to one pair.
 std::size_t endOfPair(const engine::Contacts& contacts, std::size_t i) {
   std::size_t end = i + 1;
-  while (end < contacts.size() && contacts[end].geomA == contacts[i].geomA && contacts[end].geomB == contacts[i].geomB) ++end;
+  while (end < contacts.size() && contacts[end].geomA == contacts[i].geomA && contacts[end].geomB == contacts[i].geomB)
+    ++end;
   return end;
 }
 
@@ -60,7 +61,8 @@ void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
     }
     if (kernel.structureVersion() == version) continue;
     kernel.log().error(
-        "a collision handler of {} or {} changed the tree while contacts were handled; this step has no contacts. Change it in another "
+        "a collision handler of {} or {} changed the tree while contacts were handled; this step has no contacts. "
+        "Change it in another "
         "phase.",
         a.path(), b.path());
     contacts.clear();

@@ -17,9 +17,7 @@ class DragController : public BodyController {
     d.property("linearDrag", &DragController::linear_).unit("N s/m").min(0).state().doc("Force per speed.");
     d.property("angularDrag", &DragController::angular_).unit("N m s").min(0).state().doc("Torque per angular speed.");
   }
-  void control(IRigidBody& body, const Event&) override {
-    body.addDrag(linear_, angular_);
-  }
+  void control(IRigidBody& body, const Event&) override { body.addDrag(linear_, angular_); }
 
  private:
   double linear_ = 0.1, angular_ = 0.1;
@@ -31,7 +29,10 @@ class VelocityController : public BodyController {
  public:
   static void describe(Description<VelocityController>& d) {
     d.doc("Keeps the body above it from getting too fast.");
-    d.property("maxVelocity", &VelocityController::max_).unit("m/s").state().doc("Greatest speed; 0 or less: no limit.");
+    d.property("maxVelocity", &VelocityController::max_)
+        .unit("m/s")
+        .state()
+        .doc("Greatest speed; 0 or less: no limit.");
   }
   void control(IRigidBody& body, const Event&) override {
     if (max_ <= 0 || !body.enabled()) return;
@@ -59,7 +60,8 @@ class FPSController : public BodyController {
     d.property("upward", &C::upward_).range(-1, 1).state().doc("Push up, -1..1.");
   }
   void control(IRigidBody& body, const Event&) override {
-    const Matrix turn = rotationDeg(0, 0, static_cast<float>(horizontal_)), tilt = rotationDeg(static_cast<float>(vertical_), 0, 0);
+    const Matrix turn = rotationDeg(0, 0, static_cast<float>(horizontal_)),
+                 tilt = rotationDeg(static_cast<float>(vertical_), 0, 0);
     const Pose view = toPose(Matrix(turn * tilt));
     if (turned_ != Vec3(horizontal_, vertical_, 1)) body.setPose({body.state().position, view.rotation});
     turned_ = {horizontal_, vertical_, 1};

@@ -28,7 +28,8 @@ std::vector<std::string> RecorderHandler::paths() const {
 
 void ScriptHandler::describe(Description<ScriptHandler>& d) {
   d.doc(
-      "Emits the event 'collide' at itself for each contact point of the collider above it, its data being {path of the other collider, "
+      "Emits the event 'collide' at itself for each contact point of the collider above it, its data being {path of "
+      "the other collider, "
       "{x, y, z} [m], depth [m]}; runs after the step.");
   d.property("script", &ScriptHandler::script, &ScriptHandler::setScript)
       .doc("A Lua file that is attached to this node; it calls self:on(\"collide\", function(self, event) ... end).");

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Shared ownership of engine worlds and spaces: the tree may drop a world before the bodies in it, and an engine before both.
+/// Shared ownership of engine worlds and spaces: the tree may drop a world before the bodies in it, and an engine
+/// before both.
 
 #include <memory>
 #include <string>
@@ -73,7 +74,8 @@ inline Pose relative(const Pose& outer, const Pose& world) {
 }
 /// The pose of the nearest transform above a node, computed now.
 inline Pose frameOf(const SceneNode& node) { return node.transform() ? toPose(node.transform()->worldNow()) : Pose{}; }
-/// A pose from 6 numbers (position, rotation in degrees) or 16 (a column-major matrix); nothing given: identity. Throws Error otherwise.
+/// A pose from 6 numbers (position, rotation in degrees) or 16 (a column-major matrix); nothing given: identity. Throws
+/// Error otherwise.
 Pose poseFrom(const std::vector<double>& numbers);
 
 }  // namespace spark::physics

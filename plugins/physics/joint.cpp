@@ -40,12 +40,16 @@ void Joint::describe(Description<Joint>& d) {
   axis("Bounce", &J::set<P::bounce>, &J::get<P::bounce>, "", "Restitution of the stops, 0..1.");
   axis("CFM", &J::set<P::cfm>, &J::get<P::cfm>, "", "How much the motor yields.");
   axis("StopCFM", &J::set<P::stopCfm>, &J::get<P::stopCfm>, "", "How much the stops yield.");
-  axis("StopERP", &J::set<P::stopErp>, &J::get<P::stopErp>, "", "Part of the excess over a stop that is put right in one step.");
-  axis("SuspensionERP", &J::set<P::suspensionErp>, &J::get<P::suspensionErp>, "", "Error reduction of a wheel's suspension.");
-  axis("SuspensionCFM", &J::set<P::suspensionCfm>, &J::get<P::suspensionCfm>, "", "How much a wheel's suspension yields.");
+  axis("StopERP", &J::set<P::stopErp>, &J::get<P::stopErp>, "",
+       "Part of the excess over a stop that is put right in one step.");
+  axis("SuspensionERP", &J::set<P::suspensionErp>, &J::get<P::suspensionErp>, "",
+       "Error reduction of a wheel's suspension.");
+  axis("SuspensionCFM", &J::set<P::suspensionCfm>, &J::get<P::suspensionCfm>, "",
+       "How much a wheel's suspension yields.");
   axis("LinearMotorVelocity", &J::set<P::velocity>, &J::get<P::velocity>, "m/s", "Wanted speed of the motor.");
   axis("AngularMotorVelocity", &J::setDeg<P::velocity>, &J::getDeg<P::velocity>, "deg/s", "Wanted speed of the motor.");
-  axis("MaxMotorForce", &J::set<P::maxForce>, &J::get<P::maxForce>, "N or Nm", "Greatest force of the motor; 0: no motor.");
+  axis("MaxMotorForce", &J::set<P::maxForce>, &J::get<P::maxForce>, "N or Nm",
+       "Greatest force of the motor; 0: no motor.");
 
   d.property("jointMaxSpeed1", &J::maxSpeed1, &J::setMaxSpeed1)
       .unit("rad/s")
@@ -55,7 +59,9 @@ void Joint::describe(Description<Joint>& d) {
       .doc("Greatest speed that effectors may command on the second axis; 0: no limit.");
   d.method("enableFeedback", &J::enableFeedback).parameters({"on"}).doc("Torques are measured from now on.");
   d.property("feedback", &J::feedback, &J::enableFeedback).doc("Torques are measured.");
-  d.property("torque", &J::feedbackTorque).unit("Nm").doc("Sum of the torques on both bodies in the last step; 0 without feedback.");
+  d.property("torque", &J::feedbackTorque)
+      .unit("Nm")
+      .doc("Sum of the torques on both bodies in the last step; 0 without feedback.");
 }
 
 void Joint::onLink() {
@@ -111,9 +117,11 @@ double Joint::feedbackTorque() const {
 Ref<RigidBody> Joint::bodyAt(const std::string& path) {
   if (path.empty()) return {};
   Leaf* found = find(path);
-  if (auto* body = found ? found->as<RigidBody>() : nullptr; body && body->world() == world_) return Ref<RigidBody>(body);
+  if (auto* body = found ? found->as<RigidBody>() : nullptr; body && body->world() == world_)
+    return Ref<RigidBody>(body);
   kernel().log().warning(
-      "{}: expected a RigidBody at '{}', found {}; it is attached to the static world instead. Paths are relative to the joint, and the "
+      "{}: expected a RigidBody at '{}', found {}; it is attached to the static world instead. Paths are relative to "
+      "the joint, and the "
       "body must stand before the joint.",
       where(), path, found ? "a " + found->classObject()->name() : "nothing");
   return {};
@@ -144,7 +152,8 @@ void Joint::setAnchor(const Vec3& local) {
 }
 
 void Joint::setAxisLocal(int axis, const Vec3& direction) {
-  if (engine() && !(direction.norm() >= kShortestAxis)) throw Error(where() + ": cannot set the axis", Error("expected an axis longer than 0"));
+  if (engine() && !(direction.norm() >= kShortestAxis))
+    throw Error(where() + ": cannot set the axis", Error("expected an axis longer than 0"));
   withBodies([this, axis, direction] {
     try {
       engine()->setAxis(joint_, axis, physics::frameOf(*this).rotation * direction);

@@ -8,8 +8,8 @@
 
 namespace spark {
 
-/// Base of joints. Anchors and axes are given in the frame of the nearest transform, as it is when they are set, or, when they are set
-/// before the bodies are attached, as it is then; bodies by paths relative to the joint.
+/// Base of joints. Anchors and axes are given in the frame of the nearest transform, as it is when they are set, or,
+/// when they are set before the bodies are attached, as it is then; bodies by paths relative to the joint.
 class Joint : public PhysicsObject, public IJoint {
   SPARK_CLASS(Joint, PhysicsObject)
  public:
@@ -22,7 +22,9 @@ class Joint : public PhysicsObject, public IJoint {
   Vec3 axisNow(int axis) const override { return engine() ? engine()->axis(joint_, axis) : Vec3(Vec3::Zero()); }
   double angle(int axis) const override { return engine() ? engine()->angle(joint_, axis) : 0; }
   double angleRate(int axis) const override { return engine() ? engine()->angleRate(joint_, axis) : 0; }
-  double parameter(engine::JointParameter p, int axis) const override { return engine() ? engine()->parameter(joint_, p, axis) : 0; }
+  double parameter(engine::JointParameter p, int axis) const override {
+    return engine() ? engine()->parameter(joint_, p, axis) : 0;
+  }
   void setParameter(engine::JointParameter p, int axis, double v) override;
   void drive(int axis, double speed) override {
     if (engine()) engine()->drive(joint_, axis, speed);
@@ -48,8 +50,10 @@ class Joint : public PhysicsObject, public IJoint {
   template <class F>
   void withBodies(F f) {
     if (!engine()) return;
-    if (attached_) f();
-    else waiting_.push_back(std::move(f));
+    if (attached_)
+      f();
+    else
+      waiting_.push_back(std::move(f));
   }
   void setAnchor(const Vec3& local);
   /// `direction` in the joint's frame.

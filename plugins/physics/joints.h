@@ -26,7 +26,9 @@ class HingeJoint : public Generic6DOFJoint {
         .parameters({"point [m]"})
         .surplusIgnored()
         .doc("Where the axis passes, in the joint's frame.");
-    d.method("setAxis", &HingeJoint::setAxis).parameters({"0, 1 or 2, or a direction"}).doc("The axis, in the joint's frame.");
+    d.method("setAxis", &HingeJoint::setAxis)
+        .parameters({"0, 1 or 2, or a direction"})
+        .doc("The axis, in the joint's frame.");
     d.method("getAnchor", &HingeJoint::anchor).doc("Where the axis passes, in the world [m].");
     d.method("getAxis", &HingeJoint::worldAxis).doc("The axis, in the world.");
     d.method("getAngle", &HingeJoint::degrees).doc("Angle of the first body relative to the second [deg].");
@@ -38,7 +40,8 @@ class HingeJoint : public Generic6DOFJoint {
   void setAxis(std::vector<double> v) {
     if (v.size() == 1 && v[0] >= 0 && v[0] < 3) return setAxisLocal(0, Vec3::Unit(static_cast<int>(v[0])));
     if (v.size() != 3)
-      throw Error(where() + ": expected an axis 0, 1 or 2, or a direction of 3 numbers, found " + std::to_string(v.size()) + " numbers");
+      throw Error(where() + ": expected an axis 0, 1 or 2, or a direction of 3 numbers, found " +
+                  std::to_string(v.size()) + " numbers");
     setAxisLocal(0, {v[0], v[1], v[2]});
   }
   Vec3 worldAxis() const { return axisNow(0); }
@@ -65,7 +68,10 @@ class UniversalJoint : public Generic6DOFJoint {
         .parameters({"direction"})
         .surplusIgnored()
         .doc("The second body's axis, in the joint's frame.");
-    d.method("getAngle", &UniversalJoint::angleDeg).parameters({"axis"}).optional(1).doc("Angle about an axis, 0 or 1 [deg].");
+    d.method("getAngle", &UniversalJoint::angleDeg)
+        .parameters({"axis"})
+        .optional(1)
+        .doc("Angle about an axis, 0 or 1 [deg].");
     d.method("getAngleRate", &UniversalJoint::angleRateDeg).parameters({"axis"}).optional(1).doc("Its rate [deg/s].");
   }
   engine::JointType jointType() const override { return engine::JointType::universal; }
@@ -86,7 +92,10 @@ class Hinge2Joint : public Generic6DOFJoint {
         .surplusIgnored()
         .doc("The wheel's centre, in the joint's frame; sets the axes as well: steering about z, rolling about x.");
     d.method("getAnchor", &Hinge2Joint::anchor).doc("The wheel's centre, in the world [m].");
-    d.method("getAngle", &Hinge2Joint::angleDeg).parameters({"axis"}).optional(1).doc("Angle about an axis: 0 steering, 1 rolling [deg].");
+    d.method("getAngle", &Hinge2Joint::angleDeg)
+        .parameters({"axis"})
+        .optional(1)
+        .doc("Angle about an axis: 0 steering, 1 rolling [deg].");
     d.method("getAngleRate", &Hinge2Joint::angleRateDeg).parameters({"axis"}).optional(1).doc("Its rate [deg/s].");
   }
   engine::JointType jointType() const override { return engine::JointType::hinge2; }
@@ -105,7 +114,10 @@ class BallJoint : public Generic6DOFJoint {
  public:
   static void describe(Description<BallJoint>& d) {
     d.doc("Turns freely about a point.");
-    d.method("setAnchor", &BallJoint::setAnchor).parameters({"point [m]"}).surplusIgnored().doc("The point, in the joint's frame.");
+    d.method("setAnchor", &BallJoint::setAnchor)
+        .parameters({"point [m]"})
+        .surplusIgnored()
+        .doc("The point, in the joint's frame.");
     d.method("getAnchor", &BallJoint::anchor).doc("The point, in the world [m].");
   }
   engine::JointType jointType() const override { return engine::JointType::ball; }

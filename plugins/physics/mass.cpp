@@ -3,10 +3,14 @@
 namespace spark::physics {
 namespace {
 
-engine::Mass diagonal(double mass, double x, double y, double z) { return {mass, Vec3::Zero(), Mat3(Vec3(x, y, z).asDiagonal())}; }
+engine::Mass diagonal(double mass, double x, double y, double z) {
+  return {mass, Vec3::Zero(), Mat3(Vec3(x, y, z).asDiagonal())};
+}
 
 /// What a point mass at `p` adds to the inertia about the origin.
-Mat3 pointInertia(double mass, const Vec3& p) { return mass * (p.squaredNorm() * Mat3::Identity() - p * p.transpose()); }
+Mat3 pointInertia(double mass, const Vec3& p) {
+  return mass * (p.squaredNorm() * Mat3::Identity() - p * p.transpose());
+}
 
 }  // namespace
 
@@ -24,7 +28,8 @@ engine::Mass sphereMass(double m, double r) {
 
 engine::Mass capsuleMass(double m, double r, double l) {
   const double tube = cylinderVolume(r, l), caps = sphereVolume(r), density = m / (tube + caps);
-  const double across = tube * (0.25 * r * r + 1.0 / 12.0 * l * l) + caps * (0.4 * r * r + 0.375 * r * l + 0.25 * l * l);
+  const double across =
+      tube * (0.25 * r * r + 1.0 / 12.0 * l * l) + caps * (0.4 * r * r + 0.375 * r * l + 0.25 * l * l);
   const double along = (tube * 0.5 + caps * 0.4) * r * r;
   return diagonal(m, across * density, across * density, along * density);
 }
@@ -43,10 +48,13 @@ engine::Mass addMass(const engine::Mass& whole, const engine::Mass& part, const 
   engine::Mass sum;
   sum.mass = whole.mass + part.mass;
   sum.center = (whole.mass * whole.center + part.mass * at.position) / sum.mass;
-  sum.inertia = whole.inertia + at.rotation * part.inertia * at.rotation.transpose() + pointInertia(part.mass, at.position);
+  sum.inertia =
+      whole.inertia + at.rotation * part.inertia * at.rotation.transpose() + pointInertia(part.mass, at.position);
   return sum;
 }
 
-engine::Mass centred(const engine::Mass& m) { return {m.mass, Vec3::Zero(), m.inertia - pointInertia(m.mass, m.center)}; }
+engine::Mass centred(const engine::Mass& m) {
+  return {m.mass, Vec3::Zero(), m.inertia - pointInertia(m.mass, m.center)};
+}
 
 }  // namespace spark::physics

@@ -20,8 +20,8 @@ double sphereVolume(double radius);
 double capsuleVolume(double radius, double length);
 double cylinderVolume(double radius, double length);
 
-/// `part` (about its own centre) turned and moved to `at`, added to `whole`; the sum's `center` is its centre of mass and its inertia is
-/// about the origin.
+/// `part` (about its own centre) turned and moved to `at`, added to `whole`; the sum's `center` is its centre of mass
+/// and its inertia is about the origin.
 engine::Mass addMass(const engine::Mass& whole, const engine::Mass& part, const Pose& at);
 /// The same mass with its centre of mass moved to the origin.
 engine::Mass centred(const engine::Mass& mass);

@@ -15,11 +15,13 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
   d.property("batteryDischarge", &S::batteryDischarge_).doc("Motors draw from their batteries.");
   d.property("defaultHandlerOnTransformCollider", &S::defaultOnTransform, &S::setDefaultOnTransform)
       .doc(
-          "A TransformCollider without a handler of its own bounces by default, whatever its inner collider has; false: it takes the inner "
+          "A TransformCollider without a handler of its own bounces by default, whatever its inner collider has; "
+          "false: it takes the inner "
           "one's handlers.");
   d.property("measureForces", &S::measureForces_)
       .doc(
-          "Every solved contact tells its force, for those who look at contacts; the last digits of what the dense solver computes may differ "
+          "Every solved contact tells its force, for those who look at contacts; the last digits of what the dense "
+          "solver computes may differ "
           "from a run without.");
   d.property("contactsPerPair", &S::contactsPerPair_).range(1, 16).doc("Contact points of two colliders at most.");
   d.on<&PhysicsServer::physics>("physics");
@@ -28,7 +30,9 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
 
 engine::IEngine& PhysicsServer::engine() {
   Leaf* found = find("engine");
-  if (!found) throw Error(path() + " has no engine below it: add one, for instance new(\"OdeEngine\", \"" + path() + "/engine\")");
+  if (!found)
+    throw Error(path() + " has no engine below it: add one, for instance new(\"OdeEngine\", \"" + path() +
+                "/engine\")");
   return require<engine::IEngine>("engine");
 }
 
@@ -65,7 +69,8 @@ void PhysicsServer::collect(const Node& scene) {
   scene.collect(objects);
   for (PhysicsObject* object : objects) {
     if (auto* body = object->as<RigidBody>()) {
-      if (body->transform() && body->world() == world_->handle()) bodies_.push_back({body, body->transform(), body->transform()->transform(), 0});
+      if (body->transform() && body->world() == world_->handle())
+        bodies_.push_back({body, body->transform(), body->transform()->transform(), 0});
     } else if (auto* collider = object->as<Collider>()) {
       collider->refreshHandlers(defaultOnTransform_);
       collider->setGroup(nullptr);
@@ -168,13 +173,14 @@ void PhysicsServer::reportFaults() {
     for (const Placed& p : bodies_)
       if (p.body->handle() == handle && p.body->countFault())
         kernel().log().error(
-            "{}: its position or speed was no number after the step; it was put back to its last good place, at rest. Look for extreme "
+            "{}: its position or speed was no number after the step; it was put back to its last good place, at rest. "
+            "Look for extreme "
             "forces, masses or joint parameters.",
             p.body->path());
 }
 
 namespace {
-constexpr std::size_t kAhead = 6;       // nodes
+constexpr std::size_t kAhead = 6;        // nodes
 constexpr std::size_t kTransform = 384;  // bytes that are looked at
 }  // namespace
 

@@ -33,7 +33,8 @@ class PhysicsServer : public Node, public IPhysicsServer {
     Transform* transform;  ///< that it moves
     Transform* above;      ///< the transform around that, nullptr for none
     int depth;             ///< transforms above the body
-    bool moving = false;   ///< was awake when it was placed last: what the body itself keeps for placing need not be looked at
+    bool moving =
+        false;  ///< was awake when it was placed last: what the body itself keeps for placing need not be looked at
   };
   World* findWorld();
   /// Looks at the scene again when its shape changed. False when there is nothing to step.
@@ -57,8 +58,8 @@ class PhysicsServer : public Node, public IPhysicsServer {
   std::vector<Placed> bodies_;
   std::vector<Ref<ScriptHandler>> scripts_;
   engine::Contacts contacts_;
-  std::uint64_t contactsAt_ = 0;        ///< the tree's version when they were found
-  std::vector<std::size_t> measured_;   ///< contacts whose force only measureForces asked for
+  std::uint64_t contactsAt_ = 0;       ///< the tree's version when they were found
+  std::vector<std::size_t> measured_;  ///< contacts whose force only measureForces asked for
   std::vector<engine::Body> handles_;  ///< of bodies_
   std::vector<std::uint8_t> awake_;
   std::vector<Matrix> poses_;

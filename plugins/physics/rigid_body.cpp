@@ -11,8 +11,12 @@ void RigidBody::describe(Description<RigidBody>& d) {
   d.implements<IFollowsTransform>();
   d.property("mass", &B::mass, &B::setMass).unit("kg").doc("Total mass; setting it scales the inertia as well.");
   d.property("position", &B::position, &B::setPosition).unit("m").doc("Centre of mass in the world.");
-  d.property("velocity", &B::velocity, &B::setVelocity).unit("m/s").doc("Velocity of the centre of mass, in the world.");
-  d.property("angularVelocity", &B::angularVelocity, &B::setAngularVelocity).unit("rad/s").doc("Angular velocity, in the world.");
+  d.property("velocity", &B::velocity, &B::setVelocity)
+      .unit("m/s")
+      .doc("Velocity of the centre of mass, in the world.");
+  d.property("angularVelocity", &B::angularVelocity, &B::setAngularVelocity)
+      .unit("rad/s")
+      .doc("Angular velocity, in the world.");
   d.property("gravityOn", &B::usesGravity, &B::useGravity).doc("The world's gravity acts on it.");
 
   const auto solid = [&](const char* shape, auto set, auto setTotal, std::vector<std::string> lengths) {
@@ -29,18 +33,21 @@ void RigidBody::describe(Description<RigidBody>& d) {
     lengths.insert(lengths.begin(), "density [kg/m^3]");
     d.method(std::string("add") + shape, add)
         .parameters(lengths)
-        .doc(std::string("Adds a solid ") + shape + " to what the body has, and moves its origin to the common centre.");
+        .doc(std::string("Adds a solid ") + shape +
+             " to what the body has, and moves its origin to the common centre.");
     lengths.front() = "mass [kg]";
     d.method(std::string("add") + shape + "Total", addTotal)
         .parameters(lengths)
-        .doc(std::string("Adds a solid ") + shape + " to what the body has, and moves its origin to the common centre.");
+        .doc(std::string("Adds a solid ") + shape +
+             " to what the body has, and moves its origin to the common centre.");
   };
   solid("Box", &B::setBox, &B::setBoxTotal, {"edges [m]"});
   solid("Sphere", &B::setSphere, &B::setSphereTotal, {"radius [m]"});
   solid("Capsule", &B::setCapsule, &B::setCapsuleTotal, {"radius [m]", "length [m]"});
   solid("Cylinder", &B::setCylinder, &B::setCylinderTotal, {"radius [m]", "length [m]"});
   added("Box", &B::addBox, &B::addBoxTotal, {"edges [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
-  added("Sphere", &B::addSphere, &B::addSphereTotal, {"radius [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
+  added("Sphere", &B::addSphere, &B::addSphereTotal,
+        {"radius [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
   added("Capsule", &B::addCapsule, &B::addCapsuleTotal,
         {"radius [m]", "length [m]", "matrix: position [m] and rotation [deg], or 16 numbers"});
   added("Cylinder", &B::addCylinder, &B::addCylinderTotal,
@@ -49,9 +56,13 @@ void RigidBody::describe(Description<RigidBody>& d) {
       .parameters({"mass [kg]", "centre [m]", "I11 I22 I33 [kg m^2]", "I12 I13 I23 [kg m^2]"})
       .surplusIgnored()
       .doc("Mass and inertia as numbers. The centre must be 0: another one is ignored, with a line in the log.");
-  d.method("translateMass", &B::translateMass).parameters({"offset [m]"}).doc("Accepted for old scenes; does nothing, as it always did.");
+  d.method("translateMass", &B::translateMass)
+      .parameters({"offset [m]"})
+      .doc("Accepted for old scenes; does nothing, as it always did.");
 
-  d.method("addForce", &B::addForceBy).parameters({"force [N]"}).doc("For the next step, at the centre of mass, in the world.");
+  d.method("addForce", &B::addForceBy)
+      .parameters({"force [N]"})
+      .doc("For the next step, at the centre of mass, in the world.");
   d.method("addTorque", &B::addTorque).parameters({"torque [Nm]"}).doc("For the next step, in the world.");
   d.method("enable", &B::enable).doc("Wakes the body.");
   d.method("disable", &B::disable).doc("Puts the body to sleep.");
@@ -190,7 +201,8 @@ void RigidBody::setMass(double m) {
 void RigidBody::setMassParameters(double m, const Vec3& center, const Vec3& diagonal, const Vec3& products) {
   if (!center.isZero(1e-9))
     kernel().log().warning(
-        "{}: setMassParameters was given the centre ({}, {}, {}); a body's centre of mass is its origin, so 0 was taken. Move the "
+        "{}: setMassParameters was given the centre ({}, {}, {}); a body's centre of mass is its origin, so 0 was "
+        "taken. Move the "
         "transform there.",
         where(), center.x(), center.y(), center.z());
   engine::Mass mass{m, Vec3::Zero(), Mat3(diagonal.asDiagonal())};
@@ -236,7 +248,8 @@ void RigidBody::loadState(StateReader& in) {
   for (int i = 0; i < 3; ++i) shift_[i] = in.readNumber();
   for (int i = 0; i < 3; ++i) pendingShift_[i] = in.readNumber();
   const std::int64_t count = in.readInteger();
-  if (count < 0 || count > 1024) throw Error(where() + ": expected the saved numbers of a body, found a count of " + std::to_string(count));
+  if (count < 0 || count > 1024)
+    throw Error(where() + ": expected the saved numbers of a body, found a count of " + std::to_string(count));
   std::vector<double> numbers(static_cast<std::size_t>(count));
   for (double& v : numbers) v = in.readNumber();
   applyMass(mass);

@@ -17,7 +17,8 @@ class Body : public PhysicsObject {
   }
 };
 
-/// A rigid body. Takes its pose from the nearest transform when it is linked; after each step the transform takes its pose.
+/// A rigid body. Takes its pose from the nearest transform when it is linked; after each step the transform takes its
+/// pose.
 class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   SPARK_CLASS(RigidBody, Body)
  public:
@@ -43,7 +44,8 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   const std::shared_ptr<physics::WorldHandle>& world() const { return world_; }
   const engine::Mass& massDistribution() const { return mass_; }
 
-  /// For the physics server's place: true when its transform must be written (it is awake, or was changed in its sleep).
+  /// For the physics server's place: true when its transform must be written (it is awake, or was changed in its
+  /// sleep).
   bool takeUnplaced();
   /// Where it stands now.
   Matrix pose() const;
@@ -68,13 +70,21 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   void setBoxTotal(double m, const Vec3& e) { applyMass(physics::boxMass(m, e)); }
   void setSphere(double density, double r) { applyMass(physics::sphereMass(density * physics::sphereVolume(r), r)); }
   void setSphereTotal(double m, double r) { applyMass(physics::sphereMass(m, r)); }
-  void setCapsule(double density, double r, double l) { applyMass(physics::capsuleMass(density * physics::capsuleVolume(r, l), r, l)); }
+  void setCapsule(double density, double r, double l) {
+    applyMass(physics::capsuleMass(density * physics::capsuleVolume(r, l), r, l));
+  }
   void setCapsuleTotal(double m, double r, double l) { applyMass(physics::capsuleMass(m, r, l)); }
-  void setCylinder(double density, double r, double l) { applyMass(physics::cylinderMass(density * physics::cylinderVolume(r, l), r, l)); }
+  void setCylinder(double density, double r, double l) {
+    applyMass(physics::cylinderMass(density * physics::cylinderVolume(r, l), r, l));
+  }
   void setCylinderTotal(double m, double r, double l) { applyMass(physics::cylinderMass(m, r, l)); }
-  void addBox(double density, const Vec3& e, std::vector<double> at) { add(physics::boxMass(density * physics::boxVolume(e), e), at); }
+  void addBox(double density, const Vec3& e, std::vector<double> at) {
+    add(physics::boxMass(density * physics::boxVolume(e), e), at);
+  }
   void addBoxTotal(double m, const Vec3& e, std::vector<double> at) { add(physics::boxMass(m, e), at); }
-  void addSphere(double density, double r, std::vector<double> at) { add(physics::sphereMass(density * physics::sphereVolume(r), r), at); }
+  void addSphere(double density, double r, std::vector<double> at) {
+    add(physics::sphereMass(density * physics::sphereVolume(r), r), at);
+  }
   void addSphereTotal(double m, double r, std::vector<double> at) { add(physics::sphereMass(m, r), at); }
   void addCapsule(double density, double r, double l, std::vector<double> at) {
     add(physics::capsuleMass(density * physics::capsuleVolume(r, l), r, l), at);
@@ -83,7 +93,9 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   void addCylinder(double density, double r, double l, std::vector<double> at) {
     add(physics::cylinderMass(density * physics::cylinderVolume(r, l), r, l), at);
   }
-  void addCylinderTotal(double m, double r, double l, std::vector<double> at) { add(physics::cylinderMass(m, r, l), at); }
+  void addCylinderTotal(double m, double r, double l, std::vector<double> at) {
+    add(physics::cylinderMass(m, r, l), at);
+  }
   void setMass(double m);
   void setMassParameters(double m, const Vec3& center, const Vec3& diagonal, const Vec3& products);
   void translateMass(const Vec3&) {}

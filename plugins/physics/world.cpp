@@ -12,7 +12,8 @@ Pose physics::poseFrom(const std::vector<double>& n) {
     return p;
   }
   if (n.size() != 16)
-    throw Error("expected a matrix as 6 numbers (position, rotation in degrees) or 16 (column-major), found " + std::to_string(n.size()));
+    throw Error("expected a matrix as 6 numbers (position, rotation in degrees) or 16 (column-major), found " +
+                std::to_string(n.size()));
   Pose p;
   p.position = {n[12], n[13], n[14]};
   for (int column = 0; column < 3; ++column)
@@ -23,8 +24,14 @@ Pose physics::poseFrom(const std::vector<double>& n) {
 void World::describe(Description<World>& d) {
   d.doc("The physical world of a scene: gravity and the solver's parameters.");
   d.property("gravity", &World::gravity, &World::setGravity).unit("m/s^2").state().doc("Acceleration of all bodies.");
-  d.property("ERP", &World::erp, &World::setErp).range(0, 1).state().doc("Part of a joint's error that is put right in one step.");
-  d.property("CFM", &World::cfm, &World::setCfm).min(0).state().doc("Constraint force mixing: how much all constraints yield.");
+  d.property("ERP", &World::erp, &World::setErp)
+      .range(0, 1)
+      .state()
+      .doc("Part of a joint's error that is put right in one step.");
+  d.property("CFM", &World::cfm, &World::setCfm)
+      .min(0)
+      .state()
+      .doc("Constraint force mixing: how much all constraints yield.");
   d.property("autoDisableFlag", &World::autoDisable, &World::setAutoDisable).state().doc("Bodies at rest fall asleep.");
   d.property("contactSurfaceLayer", &World::surfaceLayer, &World::setSurfaceLayer)
       .unit("m")
@@ -37,7 +44,8 @@ World& World::of(const Leaf& node) {
   for (Node* up = node.parent(); up; up = up->parent())
     if (auto* world = up->childOf<World>(); world && world->handle() && world->handle()->engine()) return *world;
   throw Error(node.path() +
-              ": expected a World in its scene, found none. Make one before importing bodies: new(\"World\", \"/usr/scene/world\")");
+              ": expected a World in its scene, found none. Make one before importing bodies: new(\"World\", "
+              "\"/usr/scene/world\")");
 }
 
 void World::onLink() {

@@ -12,9 +12,10 @@ namespace spark::rsg {
 
 /// Template parameters and definitions; file scope, all values are texts.
 ///
-/// The installed base keeps parameters and definitions in one list and lets the two counters drift apart when an import passes another
-/// number of arguments than the template has names (scene-language section 1.6). By default each name has its own value instead, and a
-/// parameter that was not given is an error where it is used; `byName` false keeps the drifting list.
+/// The installed base keeps parameters and definitions in one list and lets the two counters drift apart when an import
+/// passes another number of arguments than the template has names (scene-language section 1.6). By default each name
+/// has its own value instead, and a parameter that was not given is an error where it is used; `byName` false keeps the
+/// drifting list.
 class Environment {
  public:
   Environment(const Program& program, std::vector<std::string> arguments, bool byName);

@@ -36,13 +36,14 @@ class Expression {
     return true;
   }
   [[noreturn]] void fail(const std::string& expected) const {
-    throw Error("expected " + expected + (rest_.empty() ? " at the end" : " at '" + std::string(rest_.substr(0, 20)) + "'") +
+    throw Error("expected " + expected +
+                (rest_.empty() ? " at the end" : " at '" + std::string(rest_.substr(0, 20)) + "'") +
                 " of expression '" + std::string(text_.substr(0, 200)) + "'");
   }
   const Value& number(const Value& v) const {
     if (!v.isNumber())
-      throw Error("expected a number to calculate with, found " + std::string(typeName(v.type())) + " " + v.text().substr(0, 80) +
-                  " in expression '" + std::string(text_.substr(0, 200)) + "'");
+      throw Error("expected a number to calculate with, found " + std::string(typeName(v.type())) + " " +
+                  v.text().substr(0, 80) + " in expression '" + std::string(text_.substr(0, 200)) + "'");
     return v;
   }
   Value apply(char op, const Value& a, const Value& b) const;
@@ -70,7 +71,8 @@ Value Expression::apply(char op, const Value& a, const Value& b) const {
     if (op == '/' && floors_ && y != 0 && y != -1) return x / y - (x % y != 0 && (x < 0) != (y < 0));
   }
   const double x = a.toNumber(), y = number(b).toNumber();
-  if (op == '/' && y == 0) throw Error("expected a divisor that is not 0 in expression '" + std::string(text_.substr(0, 200)) + "'");
+  if (op == '/' && y == 0)
+    throw Error("expected a divisor that is not 0 in expression '" + std::string(text_.substr(0, 200)) + "'");
   const double r = op == '+' ? x + y : op == '-' ? x - y : op == '*' ? x * y : x / y;
   if (!std::isfinite(r)) throw Error("the result of '" + std::string(text_.substr(0, 200)) + "' is too large");
   return r;
@@ -115,10 +117,12 @@ Value Expression::indexed() {
     const Value* element = nullptr;
     if (index.isString())
       element = v.at(index.toString());
-    else if (index.isNumber() && index.toNumber() >= 0 && index.toNumber() < 1e6 && index.toNumber() == std::floor(index.toNumber()))
+    else if (index.isNumber() && index.toNumber() >= 0 && index.toNumber() < 1e6 &&
+             index.toNumber() == std::floor(index.toNumber()))
       element = v.at(static_cast<std::size_t>(index.toNumber()));
     if (!element)
-      throw Error("there is no element " + index.text().substr(0, 80) + " in expression '" + std::string(text_.substr(0, 200)) + "'" +
+      throw Error("there is no element " + index.text().substr(0, 80) + " in expression '" +
+                  std::string(text_.substr(0, 200)) + "'" +
                   (v.isList() ? ": found a list of " + std::to_string(v.toList().size()) : ": found no list"));
     Value inner = *element;
     v = std::move(inner);
@@ -191,7 +195,8 @@ std::string resultText(const Value& value, bool digits6) {
       return value.text();
     case Value::Type::number: {
       const float narrow = static_cast<float>(value.toNumber());
-      if (!std::isfinite(narrow)) throw Error("expected a finite number that fits single precision, found " + value.text());
+      if (!std::isfinite(narrow))
+        throw Error("expected a finite number that fits single precision, found " + value.text());
       return digits6 ? fmt::format("{:.6g}", static_cast<double>(narrow)) : fmt::format("{}", value.toNumber());
     }
     default:

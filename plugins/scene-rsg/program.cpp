@@ -21,13 +21,15 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kHeadAlia
                                                                                      {"sMat", "setMaterial"}}};
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kClassAliases{
     {{"BN", "BaseNode"}, {"SMN", "SingleMatNode"}, {"TRF", "Transform"}}};
-/// The methods of the original's class Transform: calls of these names are done at once, whatever the class of the node.
-constexpr std::array<std::string_view, 10> kImmediate{"getFullPath",      "setName",          "getName",     "isLeaf",
-                                                      "unlinkLeaf",       "unlinkChildren",   "importScene", "setLocalPos",
-                                                      "setLocalRotation", "setLocalTransform"};
+/// The methods of the original's class Transform: calls of these names are done at once, whatever the class of the
+/// node.
+constexpr std::array<std::string_view, 10> kImmediate{
+    "getFullPath",    "setName",     "getName",     "isLeaf",           "unlinkLeaf",
+    "unlinkChildren", "importScene", "setLocalPos", "setLocalRotation", "setLocalTransform"};
 
 template <std::size_t N>
-std::string_view resolve(const std::array<std::pair<std::string_view, std::string_view>, N>& aliases, std::string_view word) {
+std::string_view resolve(const std::array<std::pair<std::string_view, std::string_view>, N>& aliases,
+                         std::string_view word) {
   for (const auto& [alias, name] : aliases)
     if (alias == word) return name;
   return word;
@@ -92,7 +94,8 @@ bool Compiler::atom(Position& at, const Position& end, const Element& list, Bloc
     return add(std::move(s)), false;
   }
   if (word == "node" || word == "select") {
-    if (!(at != end) || (*at).isList()) return add(failing(site, "expected a name after '" + std::string(word) + "'")), true;
+    if (!(at != end) || (*at).isList())
+      return add(failing(site, "expected a name after '" + std::string(word) + "'")), true;
     Statement s;
     s.kind = word == "node" ? Statement::Kind::node : Statement::Kind::select;
     s.site = site;
@@ -119,7 +122,8 @@ Statement Compiler::parameters(Position at, const Position& end, const Site& sit
   for (; at != end && !(*at).isList(); ++at) {
     const std::string_view name = (*at).text();
     if (name.size() < 2 || name[0] != '$')
-      return failing(siteOf(*at), "expected a parameter such as '$size' in template, found '" + std::string(name) + "'");
+      return failing(siteOf(*at),
+                     "expected a parameter such as '$size' in template, found '" + std::string(name) + "'");
     s.slots.push_back(slot(name));
   }
   return s;
@@ -152,8 +156,8 @@ Statement Compiler::choose(Position at, const Position& end, const Site& site) {
     } else {
       o.kind = Operand::Kind::bad;
       o.site = siteOf(*at);
-      o.text =
-          "expected a case such as (true (nd Box)), found " + ((*at).isList() ? "an empty list" : "'" + std::string((*at).text()) + "'");
+      o.text = "expected a case such as (true (nd Box)), found " +
+               ((*at).isList() ? "an empty list" : "'" + std::string((*at).text()) + "'");
     }
     s.operands.push_back(std::move(o));
     const Element body = (*at).isList() ? (*at).at(1) : Element();
@@ -169,7 +173,8 @@ Statement Compiler::call(std::string_view method, Position at, const Position& e
   s.text = method;
   s.immediate = std::find(kImmediate.begin(), kImmediate.end(), method) != kImmediate.end();
   for (; at != end; ++at) s.operands.push_back(operand(*at));
-  s.constant = std::all_of(s.operands.begin(), s.operands.end(), [](const Operand& o) { return o.kind == Operand::Kind::text; });
+  s.constant =
+      std::all_of(s.operands.begin(), s.operands.end(), [](const Operand& o) { return o.kind == Operand::Kind::text; });
   if (s.constant)
     for (const Operand& o : s.operands) s.arguments.emplace_back(o.text);
   return s;
@@ -189,7 +194,8 @@ Operand Compiler::operand(const Element& e) {
   const std::string_view head = e.head();
   if (head != "eval" && head != "join") {
     o.kind = Operand::Kind::bad;
-    o.text = "expected a text, a variable, (eval ...) or (join ...), found a list that begins with '" + std::string(head) + "'";
+    o.text = "expected a text, a variable, (eval ...) or (join ...), found a list that begins with '" +
+             std::string(head) + "'";
     return o;
   }
   o.kind = head == "eval" ? Operand::Kind::eval : Operand::Kind::join;
@@ -206,7 +212,9 @@ int Compiler::slot(std::string_view variable) {
   return static_cast<int>(names.size() - 1);
 }
 
-bool isMagic(std::string_view word) { return word == "RSG" || word == "RubySceneGraph" || word == "RDS" || word == "RubyDeltaScene"; }
+bool isMagic(std::string_view word) {
+  return word == "RSG" || word == "RubySceneGraph" || word == "RDS" || word == "RubyDeltaScene";
+}
 
 std::string place(std::string_view resource, std::uint32_t line, std::uint32_t column) {
   return std::string(resource) + ":" + std::to_string(line) + ":" + std::to_string(column) + ": ";

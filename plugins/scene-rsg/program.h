@@ -17,7 +17,8 @@ struct Site {
   std::uint32_t line = 0, column = 0;
 };
 
-/// An argument: a text, a variable, `(eval ...)`, `(join ...)`; or what can be none of them, an error once it is reached.
+/// An argument: a text, a variable, `(eval ...)`, `(join ...)`; or what can be none of them, an error once it is
+/// reached.
 struct Operand {
   enum class Kind { text, variable, eval, join, bad };
   Kind kind = Kind::text;
@@ -83,8 +84,8 @@ struct ReadingRules {
 /// True when the text begins with the header of a scene file, of whatever version.
 bool looksLikeScene(std::string_view text);
 
-/// Compiles a file. Throws Error with file:line:column when it cannot be read at all: header, brackets. What is wrong inside becomes a
-/// statement that fails when it is reached, as the installed base has it.
+/// Compiles a file. Throws Error with file:line:column when it cannot be read at all: header, brackets. What is wrong
+/// inside becomes a statement that fails when it is reached, as the installed base has it.
 std::shared_ptr<const Program> compile(std::string_view resource, std::string_view text, const ReadingRules& rules);
 
 /// "file:line:column".

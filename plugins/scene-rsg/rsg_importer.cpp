@@ -18,21 +18,34 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
       .doc("Whatever is otherwise only logged is an error; wins over the loose switches.");
   d.property("evalDigits6", &I::rule<&R::evalDigits6>, &I::setRule<&R::evalDigits6>)
       .doc("Every eval rounds to six significant digits, as the installed base does.");
-  d.property("integerDivision", &I::rule<&R::integerDivision>, &I::setRule<&R::integerDivision>).doc("Two integers divide to the floor.");
+  d.property("integerDivision", &I::rule<&R::integerDivision>, &I::setRule<&R::integerDivision>)
+      .doc("Two integers divide to the floor.");
   d.property("looseArguments", &I::rule<&R::looseArguments>, &I::setRule<&R::looseArguments>)
       .doc("Calls with wrong arguments are skipped with a warning, once for each place.");
   d.property("defineByName", &I::rule<&R::defineByName>, &I::setRule<&R::defineByName>)
-      .doc("Each name has its own value; off: definitions and parameters share one list that drifts when arguments are missing.");
+      .doc(
+          "Each name has its own value; off: definitions and parameters share one list that drifts when arguments are "
+          "missing.");
   d.property("looseTrailingParen", &I::rule<&R::looseTrailingParen>, &I::setRule<&R::looseTrailingParen>)
       .doc("What follows a file's body is ignored.");
-  d.property("unlinkOnCompleteScenes", &I::unlinkOnCompleteScenes_).doc("A complete scene replaces what is below its root; for monitors.");
-  d.property("unlinkOnUnreadable", &I::unlinkOnUnreadable_).doc("A file with broken brackets empties its root, as the original did.");
+  d.property("unlinkOnCompleteScenes", &I::unlinkOnCompleteScenes_)
+      .doc("A complete scene replaces what is below its root; for monitors.");
+  d.property("unlinkOnUnreadable", &I::unlinkOnUnreadable_)
+      .doc("A file with broken brackets empties its root, as the original did.");
   d.property("maxDepth", &I::maxDepth, &I::setMaxDepth).range(1, 256).doc("Imports within imports.");
   d.property("maxImports", &I::maxImports, &I::setMaxImports).min(1).doc("Files that one import may import in all.");
   d.property("maxNodes", &I::maxNodes, &I::setMaxNodes).min(1).doc("Nodes that one import may make in all.");
-  d.property("argumentLimit", &I::argumentLimit_).unit("1").min(0).doc("Largest number that an import from outside may pass.");
-  d.property("keptBytes", &I::keptBytes_).unit("bytes").min(0).doc("Compiled files are kept for the next import up to so much text.");
-  d.property("filesParsed", &I::filesParsed_).readOnly().doc("Files read and compiled so far; a second robot of a kind adds none.");
+  d.property("argumentLimit", &I::argumentLimit_)
+      .unit("1")
+      .min(0)
+      .doc("Largest number that an import from outside may pass.");
+  d.property("keptBytes", &I::keptBytes_)
+      .unit("bytes")
+      .min(0)
+      .doc("Compiled files are kept for the next import up to so much text.");
+  d.property("filesParsed", &I::filesParsed_)
+      .readOnly()
+      .doc("Files read and compiled so far; a second robot of a kind adds none.");
   d.property("imports", &I::imports_).readOnly().doc("Files imported so far.");
   d.property("evals", &I::evals_).readOnly().doc("Expressions evaluated so far.");
   d.property("calls", &I::calls_).readOnly().doc("Method calls made so far.");
@@ -67,7 +80,8 @@ void RsgImporter::keep(const std::string& file, Cached cached) {
   kept_ += cached.bytes;
   cache_.insert_or_assign(file, std::move(cached));
   while (kept_ > keptBytes_) {
-    const auto oldest = std::min_element(cache_.begin(), cache_.end(), [](const auto& a, const auto& b) { return a.second.checked < b.second.checked; });
+    const auto oldest = std::min_element(
+        cache_.begin(), cache_.end(), [](const auto& a, const auto& b) { return a.second.checked < b.second.checked; });
     if (oldest->second.checked == outermost_) return;
     kept_ -= oldest->second.bytes;
     cache_.erase(oldest);
@@ -117,10 +131,12 @@ void RsgImporter::import(std::string_view file, Node& root, const List& argument
     ++outermost_;
   }
   if (frames_.size() >= static_cast<std::size_t>(budget_.maxDepth))
-    throw Error("'" + name + "' is imported " + std::to_string(frames_.size()) + " deep: does a file import itself? At most " +
-                std::to_string(budget_.maxDepth) + " are allowed (" + path() + ".maxDepth)");
+    throw Error("'" + name + "' is imported " + std::to_string(frames_.size()) +
+                " deep: does a file import itself? At most " + std::to_string(budget_.maxDepth) + " are allowed (" +
+                path() + ".maxDepth)");
   if (++budget_.imports > budget_.maxImports)
-    exhausted("too many imports: at most " + std::to_string(budget_.maxImports) + " are allowed (" + path() + ".maxImports)");
+    exhausted("too many imports: at most " + std::to_string(budget_.maxImports) + " are allowed (" + path() +
+              ".maxImports)");
   std::vector<std::string> texts = textsOf(name, arguments);
   const std::shared_ptr<const rsg::Program> program = load(name, root);
   if (unlinkOnCompleteScenes_ && !program->delta && frames_.empty()) root.removeChildren();

@@ -40,8 +40,8 @@ struct Frame {
 
 /// Builds nodes from scene files (`(RSG 0 1)(...)`), from a compiled form that is kept for each file.
 ///
-/// A file that is wrong inside keeps the nodes made so far, runs the calls queued so far, and then throws. An import within a file that
-/// fails is logged, and the outer file goes on (unless `strict`). See README.md.
+/// A file that is wrong inside keeps the nodes made so far, runs the calls queued so far, and then throws. An import
+/// within a file that fails is logged, and the outer file goes on (unless `strict`). See README.md.
 class RsgImporter : public Leaf, public ISceneImporter {
   SPARK_CLASS(RsgImporter, Leaf)
  public:

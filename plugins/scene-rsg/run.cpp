@@ -27,7 +27,9 @@ decltype(auto) Run::located(const Site& site, F f) const {
 }
 
 Run::Run(RsgImporter& importer, const Program& program, std::vector<std::string> arguments)
-    : importer_(importer), program_(program), environment_(program, std::move(arguments), importer.rules_.defineByName) {}
+    : importer_(importer),
+      program_(program),
+      environment_(program, std::move(arguments), importer.rules_.defineByName) {}
 
 void Run::execute(Node& root) {
   root_ = &root;
@@ -90,7 +92,8 @@ ClassObject& Run::classOf(const Statement& s) const {
   if (s.made) return *s.made;
   ClassObject& made = importer_.kernel().classOf(s.text);
   if (!made.isA(SceneNode::kClassName))
-    throw Error("expected a class of scene nodes, found " + made.name() + ", which does not derive from " + SceneNode::kClassName);
+    throw Error("expected a class of scene nodes, found " + made.name() + ", which does not derive from " +
+                SceneNode::kClassName);
   s.made = &made;
   return made;
 }
@@ -99,8 +102,8 @@ Node& Run::makeNode(const Statement& s, Node& parent) {
   ClassObject& made = classOf(s);
   Budget& budget = importer_.budget_;
   if (++budget.nodes > budget.maxNodes)
-    importer_.exhausted("too many nodes: one import may make at most " + std::to_string(budget.maxNodes) + " (" + importer_.path() +
-                        ".maxNodes)");
+    importer_.exhausted("too many nodes: one import may make at most " + std::to_string(budget.maxNodes) + " (" +
+                        importer_.path() + ".maxNodes)");
   return *parent.add(made.create()).asNode();
 }
 
@@ -108,7 +111,8 @@ Node& Run::nextNode(Cursor& cursor) {
   const auto& children = cursor.node->children();
   const std::size_t i = (*cursor.passed)++;
   if (i >= children.size())
-    throw Error("expected at most " + std::to_string(children.size()) + " nodes below " + cursor.node->path() + ", found one more");
+    throw Error("expected at most " + std::to_string(children.size()) + " nodes below " + cursor.node->path() +
+                ", found one more");
   if (auto* node = children[i]->as<SceneNode>()) return *node;
   throw Error("expected a scene node, found " + children[i]->path());
 }
@@ -135,7 +139,8 @@ void Run::choose(const Statement& s, const Cursor& cursor) {
   }
   if (s.blocks.empty()) return;
   std::string labels;
-  for (std::size_t i = 1; i < s.operands.size() && i < 10; ++i) labels += (i > 1 ? ", '" : "'") + textOf(s.operands[i]) + "'";
+  for (std::size_t i = 1; i < s.operands.size() && i < 10; ++i)
+    labels += (i > 1 ? ", '" : "'") + textOf(s.operands[i]) + "'";
   throw Error("no case matches '" + value + "', there are " + labels);
 }
 
@@ -185,8 +190,9 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
     if (s.complained && !importer_.rules_.strict) return;
     std::vector<std::string> names;
     for (const Method* m : node.classObject()->methods()) names.push_back(m->name);
-    return complain(s, Level::error,
-                    "class " + node.classObject()->name() + " has no method '" + s.text + "'." + didYouMean(s.text, names));
+    return complain(
+        s, Level::error,
+        "class " + node.classObject()->name() + " has no method '" + s.text + "'." + didYouMean(s.text, names));
   }
   if (s.text == "unlinkLeaf" && &node == root_) throw Error("a scene cannot remove the node that it is imported into");
   if (importer_.rules_.strict || !importer_.rules_.looseArguments) {
@@ -234,13 +240,16 @@ std::string Run::textOf(const Operand& o) {
     for (const Operand& part : o.parts) {
       text += textOf(part);
       if (eval) text += ' ';
-      if (text.size() > kMaxText) throw Error("expected a text of at most " + std::to_string(kMaxText) + " bytes, found a longer one");
+      if (text.size() > kMaxText)
+        throw Error("expected a text of at most " + std::to_string(kMaxText) + " bytes, found a longer one");
     }
     if (!eval) return text;
     ++importer_.evals_;
     const auto lookup = [this](std::string_view group, std::string_view member) { return variable(group, member); };
-    std::string result = resultText(evaluate(text, lookup, importer_.rules_.integerDivision), importer_.rules_.evalDigits6);
-    if (result.size() > kMaxText) throw Error("expected a text of at most " + std::to_string(kMaxText) + " bytes, found a longer one");
+    std::string result =
+        resultText(evaluate(text, lookup, importer_.rules_.integerDivision), importer_.rules_.evalDigits6);
+    if (result.size() > kMaxText)
+      throw Error("expected a text of at most " + std::to_string(kMaxText) + " bytes, found a longer one");
     return result;
   });
 }
@@ -255,7 +264,9 @@ Value Run::variable(std::string_view group, std::string_view member) const {
     throw Error("there are no variables '" + std::string(group) + "' below /sys/variables." + didYouMean(group, names));
   }
   Value value = found->variable(member);
-  if (value.isNil()) throw Error("the variable " + std::string(group) + (member.empty() ? "" : "." + std::string(member)) + " is not set");
+  if (value.isNil())
+    throw Error("the variable " + std::string(group) + (member.empty() ? "" : "." + std::string(member)) +
+                " is not set");
   return value;
 }
 

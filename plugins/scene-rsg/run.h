@@ -21,8 +21,8 @@ inline constexpr std::size_t kMaxText = 4096;
 ///       (nd RigidBody
 ///         (setMass 2)))        all other calls wait, with their arguments computed, until this file is read
 ///
-/// So a joint may name bodies that come later in its file, and a body finds its transform in place. An error ends the walk; the queued
-/// calls run nevertheless, then it is thrown.
+/// So a joint may name bodies that come later in its file, and a body finds its transform in place. An error ends the
+/// walk; the queued calls run nevertheless, then it is thrown.
 class Run {
  public:
   Run(RsgImporter& importer, const Program& program, std::vector<std::string> arguments);

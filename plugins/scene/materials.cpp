@@ -14,7 +14,9 @@ void MaterialSolid::describe(Description<MaterialSolid>& d) {
 
 void MaterialServer::describe(Description<MaterialServer>& d) {
   d.doc("Holds the materials that scenes refer to by name.");
-  d.method("define", &MaterialServer::define).parameters({"name", "diffuse"}).doc("Makes (or changes) a material of one colour.");
+  d.method("define", &MaterialServer::define)
+      .parameters({"name", "diffuse"})
+      .doc("Makes (or changes) a material of one colour.");
   d.method("resetMaterials", &MaterialServer::reset).doc("Drops all materials but one, 'default'.");
 }
 
@@ -34,7 +36,8 @@ void MaterialServer::warnUnlessKnown(const std::string& name, const Leaf& user) 
   if (warned_.size() < 1000) warned_.insert(name);  // names may come from a client
   std::vector<std::string> names;
   for (const auto& c : children()) names.push_back(c->name());
-  kernel().log().warning("{} uses the material '{}', which {} does not have.{}", user.path(), name, path(), didYouMean(name, names));
+  kernel().log().warning("{} uses the material '{}', which {} does not have.{}", user.path(), name, path(),
+                         didYouMean(name, names));
 }
 
 }  // namespace spark

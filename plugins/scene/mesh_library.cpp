@@ -27,7 +27,9 @@ std::vector<std::string> objMaterials(std::string_view text) {
   return {names.begin(), names.end()};
 }
 
-void MeshLibrary::define(std::string mesh, std::vector<std::string> materials) { declared_[std::move(mesh)] = std::move(materials); }
+void MeshLibrary::define(std::string mesh, std::vector<std::string> materials) {
+  declared_[std::move(mesh)] = std::move(materials);
+}
 
 const std::vector<std::string>& MeshLibrary::materials(Kernel& kernel, const std::string& mesh) {
   // Mesh names may come from a client: only those that exist are remembered.

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Which materials a mesh has. Meshes themselves are never loaded: no part of the simulation looks at them, only viewers do.
+/// Which materials a mesh has. Meshes themselves are never loaded: no part of the simulation looks at them, only
+/// viewers do.
 
 #include <map>
 #include <string>

@@ -8,11 +8,16 @@ namespace spark {
 void SceneServer::describe(Description<SceneServer>& d) {
   d.doc("Holds the active scene, imports scene files, keeps world matrices up to date.");
   d.implements<ISceneServer>();
-  d.property("activeScene", &SceneServer::scenePath, &SceneServer::setScenePath).doc("Path of the active scene's root.");
+  d.property("activeScene", &SceneServer::scenePath, &SceneServer::setScenePath)
+      .doc("Path of the active scene's root.");
   d.property("flattenTransforms", &SceneServer::flattenTransforms_)
-      .doc("After an import, transforms of its own that hold nothing but transforms, and empty ones, go; their children move up.");
+      .doc(
+          "After an import, transforms of its own that hold nothing but transforms, and empty ones, go; their children "
+          "move up.");
   d.property("modifiedCount", &SceneServer::modifiedCount).doc("How often nodes or materials of the scene changed.");
-  d.method("createScene", &SceneServer::createScene).parameters({"path"}).doc("Makes a scene root and the active scene of it.");
+  d.method("createScene", &SceneServer::createScene)
+      .parameters({"path"})
+      .doc("Makes a scene root and the active scene of it.");
   d.method("defineMesh", &SceneServer::defineMesh)
       .parameters({"mesh", "materials"})
       .doc("Says which materials a mesh has, for meshes whose file is not there.");
@@ -24,8 +29,8 @@ Node& SceneServer::scene() {
     scene_ = nullptr;
     Leaf* found = kernel().root().find(scenePath_);
     if (!found || !found->asNode())
-      throw Error("there is no scene at '" + scenePath_ + "': make one, new(\"Scene\", \"" + scenePath_ + "\"), or set " + path() +
-                  ".activeScene");
+      throw Error("there is no scene at '" + scenePath_ + "': make one, new(\"Scene\", \"" + scenePath_ +
+                  "\"), or set " + path() + ".activeScene");
     scene_ = found->asNode();
     sceneVersion_ = kernel().structureVersion();
   }
@@ -48,12 +53,15 @@ ISceneImporter& SceneServer::importerFor(const std::string& file) {
   int importers = 0;
   for (const auto& child : children())
     if (auto* importer = child->as<ISceneImporter>(); importer && importers++ == 0) first = importer;
-  if (!first) throw Error(path() + " has no importer below it: add one, for instance new(\"RsgImporter\", \"" + path() + "/rsg\")");
+  if (!first)
+    throw Error(path() + " has no importer below it: add one, for instance new(\"RsgImporter\", \"" + path() +
+                "/rsg\")");
   if (importers == 1) return *first;
 
   auto& files = kernel().root().require<IFileServer>("/sys/server/file");
   const std::uint64_t stamp = files.stamp(file);
-  if (const auto known = known_.find(file); known != known_.end() && known->second.stamp == stamp && known->second.importer)
+  if (const auto known = known_.find(file);
+      known != known_.end() && known->second.stamp == stamp && known->second.importer)
     return *known->second.importer->as<ISceneImporter>();
   const std::string text = files.read(file);
   for (const auto& child : children())
@@ -61,7 +69,8 @@ ISceneImporter& SceneServer::importerFor(const std::string& file) {
       known_.insert_or_assign(file, Known{stamp, Ref<Leaf>(child.get())});
       return *importer;
     }
-  throw Error("none of the " + std::to_string(importers) + " importers below " + path() + " knows the format of '" + file + "'");
+  throw Error("none of the " + std::to_string(importers) + " importers below " + path() + " knows the format of '" +
+              file + "'");
 }
 
 void SceneServer::importScene(std::string_view file, Node& root, const List& arguments) {

@@ -13,7 +13,9 @@ namespace spark {
 class Scene : public SceneNode {
   SPARK_CLASS(Scene, SceneNode)
  public:
-  static void describe(Description<Scene>& d) { d.doc("Root of a scene; what is below it is placed in the world frame."); }
+  static void describe(Description<Scene>& d) {
+    d.doc("Root of a scene; what is below it is placed in the world frame.");
+  }
 };
 
 /// All transforms of a scene, top-down, with what follows them; made anew when the tree's shape changed.
@@ -58,7 +60,9 @@ class SceneServer : public Node, public ISceneServer {
   };
   ISceneImporter& importerFor(const std::string& file);
   void createScene(std::string path);
-  void defineMesh(std::string mesh, std::vector<std::string> materials) { meshes_.define(std::move(mesh), std::move(materials)); }
+  void defineMesh(std::string mesh, std::vector<std::string> materials) {
+    meshes_.define(std::move(mesh), std::move(materials));
+  }
   void onPlace(const Event&) { place(); }
   const std::string& scenePath() const { return scenePath_; }
   void setScenePath(std::string path);
@@ -73,8 +77,9 @@ class SceneServer : public Node, public ISceneServer {
   std::map<std::string, Known, std::less<>> known_;
 };
 
-/// Takes away, below and including `root`, transforms that place nothing but transforms (and empty ones): their children move up.
-/// World poses stay. (scene-language section 1.11) Those with an id below `firstId` stay: others made them, and may hold them.
+/// Takes away, below and including `root`, transforms that place nothing but transforms (and empty ones): their
+/// children move up. World poses stay. (scene-language section 1.11) Those with an id below `firstId` stay: others made
+/// them, and may hold them.
 void flattenTransforms(Node& root, std::uint64_t firstId = 0);
 
 }  // namespace spark

@@ -8,7 +8,8 @@ void Variables::describe(Description<Variables>& d) {
   d.method("set", &Variables::set).parameters({"name", "value"}).doc("Sets a variable; nil takes it away.");
   d.method("get", &Variables::get).parameters({"name"}).doc("The variable's value, nil when there is none.");
   d.property("names", &Variables::names).doc("Names of all variables, sorted.");
-  d.property("value", &Variables::value_).doc("What scene files read as the bare group: a list, indexed from 0, or a table of names.");
+  d.property("value", &Variables::value_)
+      .doc("What scene files read as the bare group: a list, indexed from 0, or a table of names.");
 }
 
 Value Variables::variable(std::string_view name) const {

@@ -8,8 +8,8 @@
 
 namespace spark {
 
-/// A group of variables below /sys/variables: its name is the group's (`Soccer`), scene files read `Soccer.FieldLength`.
-/// What is read without a member (`NaoType[0]['UseToe']`) is the group's own `value`.
+/// A group of variables below /sys/variables: its name is the group's (`Soccer`), scene files read
+/// `Soccer.FieldLength`. What is read without a member (`NaoType[0]['UseToe']`) is the group's own `value`.
 class Variables : public Leaf, public IVariables {
   SPARK_CLASS(Variables, Leaf)
  public:

@@ -6,7 +6,9 @@
 namespace spark {
 
 namespace {
-SceneServer* serverOf(const Leaf& leaf) { return leaf.isLinked() ? leaf.kernel().root().find<SceneServer>("/sys/server/scene") : nullptr; }
+SceneServer* serverOf(const Leaf& leaf) {
+  return leaf.isLinked() ? leaf.kernel().root().find<SceneServer>("/sys/server/scene") : nullptr;
+}
 void modified(const Leaf& leaf) {
   if (!leaf.isLinked()) return;
   if (auto* server = leaf.kernel().root().find<ISceneServer>("/sys/server/scene")) server->markModified();
@@ -71,7 +73,9 @@ void StaticMesh::describe(Description<StaticMesh>& d) {
       .doc("Takes another mesh: 'models/x.obj', or a standard one with parameters.");
   d.property("scale", &StaticMesh::scale_).unit("1").readOnly().doc("Scale of what is shown.");
   d.method("setScale", &StaticMesh::setScale).parameters({"scale"}).doc("Scales what is shown.");
-  d.property("materials", &StaticMesh::materials_).readOnly().doc("Material of each face group, in the mesh's alphabetical order.");
+  d.property("materials", &StaticMesh::materials_)
+      .readOnly()
+      .doc("Material of each face group, in the mesh's alphabetical order.");
   d.method("resetMaterials", &StaticMesh::resetMaterials).parameters({"materials"}).doc("Replaces all materials.");
   d.property("castShadows", &StaticMesh::castShadows_).doc("Viewers let it cast shadows.");
   d.property("useExternalMesh", &StaticMesh::useExternalMesh_).doc("Viewers show the external mesh instead.");
@@ -139,7 +143,9 @@ void Sphere::describe(Description<Sphere>& d) {
 
 void Capsule::describe(Description<Capsule>& d) {
   d.doc("A visible capsule along z.");
-  d.method("setParams", &Capsule::setParams).parameters({"radius [m]", "length [m]"}).doc("Radius, and length without the caps.");
+  d.method("setParams", &Capsule::setParams)
+      .parameters({"radius [m]", "length [m]"})
+      .doc("Radius, and length without the caps.");
   d.property("radius", &Capsule::radius_).unit("m").readOnly().doc("Radius.");
   d.property("length", &Capsule::length_).unit("m").readOnly().doc("Length without the caps.");
 }

@@ -1,23 +1,27 @@
 #pragma once
 
+#include "api/agents.h"
 #include "api/cached_lookup.h"
 #include "api/local_frame.h"
-#include "api/agents.h"
 #include "api/physics.h"
 
 namespace spark {
 
-/// `(ACC (n torso) (a 0.00 0.00 9.81))`: what a real accelerometer feels, in its body's frame: at rest upright (0 0 9.81), in free fall 0.
+/// `(ACC (n torso) (a 0.00 0.00 9.81))`: what a real accelerometer feels, in its body's frame: at rest upright (0
+/// 0 9.81), in free fall 0.
 ///
-/// It samples in the prepare phase, before the step, from the velocities after the two steps before: its percept is one cycle older than
-/// the rest of the message. The installed base's robots were tuned with this delay.
+/// It samples in the prepare phase, before the step, from the velocities after the two steps before: its percept is one
+/// cycle older than the rest of the message. The installed base's robots were tuned with this delay.
 class Accelerometer : public Perceptor {
   SPARK_CLASS(Accelerometer, Perceptor)
  public:
   static void describe(Description<Accelerometer>& d) {
     d.doc("Senses the specific force on its transform's body, in the body's frame: (ACC (n name) (a x y z)) in m/s^2.");
     d.property("gravity", &Accelerometer::gravity_).unit("m/s^2").doc("What it takes for gravity.");
-    d.property("lastVelocity", &Accelerometer::lastVelocity_).unit("m/s").state().doc("The body's velocity at the last sample, world frame.");
+    d.property("lastVelocity", &Accelerometer::lastVelocity_)
+        .unit("m/s")
+        .state()
+        .doc("The body's velocity at the last sample, world frame.");
     d.property("acceleration", &Accelerometer::acceleration_).unit("m/s^2").state().doc("The last sample, body frame.");
     d.on<&Accelerometer::prepare>(phase::kPrepare);
   }

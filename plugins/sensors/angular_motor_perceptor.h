@@ -4,19 +4,22 @@
 
 namespace spark {
 
-/// `(HJ (n hj1) (ax 1.72) (rt 0.00) (tq 0.00) (tp 23.00) (ct 0.00))`, each item as switched on: angle [deg] and rate [deg/s] of the hinge
-/// that the motor above it drives, the motor's torque [Nm], temperature [deg C] (when it changed by more than one) and current [mA].
+/// `(HJ (n hj1) (ax 1.72) (rt 0.00) (tq 0.00) (tp 23.00) (ct 0.00))`, each item as switched on: angle [deg] and rate
+/// [deg/s] of the hinge that the motor above it drives, the motor's torque [Nm], temperature [deg C] (when it changed
+/// by more than one) and current [mA].
 class AngularMotorPerceptor : public Perceptor {
   SPARK_CLASS(AngularMotorPerceptor, Perceptor)
  public:
   static void describe(Description<AngularMotorPerceptor>& d) {
     using P = AngularMotorPerceptor;
-    d.doc("Senses the angular motor above it: (HJ (n name) (ax deg) (rt deg/s) (tq Nm) (tp C) (ct mA)), as switched on.");
+    d.doc(
+        "Senses the angular motor above it: (HJ (n name) (ax deg) (rt deg/s) (tq Nm) (tp C) (ct mA)), as switched on.");
     d.property("senseAngle", &P::senseAngle_).doc("Says the hinge's angle.");
     d.property("senseRate", &P::senseRate_).doc("Says the hinge's speed.");
     d.property("senseTorque", &P::senseTorque_).doc("Says the motor's torque; the motor must have feedback enabled.");
     d.property("senseCurrent", &P::senseCurrent_).doc("Says the motor's current where the motor models one.");
-    d.property("senseTemperature", &P::senseTemperature_).doc("Says the motor's temperature after each change above 1 C, where the motor models one.");
+    d.property("senseTemperature", &P::senseTemperature_)
+        .doc("Says the motor's temperature after each change above 1 C, where the motor models one.");
     d.property("toldTemperature", &P::toldTemperature_).unit("C").state().doc("The temperature that was said last.");
   }
   void sense(Predicates& out, const Event&) override {

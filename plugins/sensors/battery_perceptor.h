@@ -8,7 +8,9 @@ namespace spark {
 class BatteryPerceptor : public Perceptor {
   SPARK_CLASS(BatteryPerceptor, Perceptor)
  public:
-  static void describe(Description<BatteryPerceptor>& d) { d.doc("Senses the state of charge of the Battery above it: (name part), 0..1."); }
+  static void describe(Description<BatteryPerceptor>& d) {
+    d.doc("Senses the state of charge of the Battery above it: (name part), 0..1.");
+  }
   void sense(Predicates& out, const Event&) override {
     if (!power_ || !capacity_) return;
     const double capacity = capacity_->get(*battery_).toNumber();
@@ -32,7 +34,8 @@ class BatteryPerceptor : public Perceptor {
     power_ = number("power");
     capacity_ = number("capacity");
     if (!power_ || !capacity_)
-      kernel().log().warning("{}: expected a Battery above it, found none; it senses nothing. Put it below the battery.", path());
+      kernel().log().warning(
+          "{}: expected a Battery above it, found none; it senses nothing. Put it below the battery.", path());
   }
   const Property* number(const char* property) const {
     const Property* p = battery_ ? battery_->classObject()->property(property) : nullptr;

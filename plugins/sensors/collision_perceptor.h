@@ -8,12 +8,14 @@
 
 namespace spark {
 
-/// `(collision floor Ball)`: names of the colliders that touched since it last sensed, each once; says nothing when there were none. A
-/// PerceptorHandler feeds it.
+/// `(collision floor Ball)`: names of the colliders that touched since it last sensed, each once; says nothing when
+/// there were none. A PerceptorHandler feeds it.
 class CollisionPerceptor : public Perceptor {
   SPARK_CLASS(CollisionPerceptor, Perceptor)
  public:
-  static void describe(Description<CollisionPerceptor>& d) { d.doc("Senses what touched its transform's colliders: (collision names...)."); }
+  static void describe(Description<CollisionPerceptor>& d) {
+    d.doc("Senses what touched its transform's colliders: (collision names...).");
+  }
 
   /// The physics phase: this collider touched.
   void touched(const Leaf& collider) {

@@ -1,21 +1,30 @@
 #pragma once
 
 #include "api/agents.h"
-#include "api/physics.h"
 #include "api/local_frame.h"
+#include "api/physics.h"
 
 namespace spark {
 
-/// `(FRP (n rf) (c 0.00 -0.02 -0.01) (f 0.00 0.00 22.59))`: where and how strongly the collider beside it was pressed in the last step; says
-/// nothing when nothing touched. A TouchPerceptorHandler feeds it after the solver; it is emptied in the prepare phase, before the contacts
-/// of the step are found. Point and force are in the frame of its transform (by the local matrix: robots' parts hang in an identity).
+/// `(FRP (n rf) (c 0.00 -0.02 -0.01) (f 0.00 0.00 22.59))`: where and how strongly the collider beside it was pressed
+/// in the last step; says nothing when nothing touched. A TouchPerceptorHandler feeds it after the solver; it is
+/// emptied in the prepare phase, before the contacts of the step are found. Point and force are in the frame of its
+/// transform (by the local matrix: robots' parts hang in an identity).
 class ForceResistancePerceptor : public Perceptor {
   SPARK_CLASS(ForceResistancePerceptor, Perceptor)
  public:
   static void describe(Description<ForceResistancePerceptor>& d) {
-    d.doc("Senses the force on the collider beside it and its mean point: (FRP (n name) (c x y z) (f x y z)) in m and N, only when touched.");
-    d.property("point", &ForceResistancePerceptor::point_).unit("m").state().doc("Mean point that was felt last, world frame.");
-    d.property("force", &ForceResistancePerceptor::force_).unit("N").state().doc("Force that was felt last, world frame.");
+    d.doc(
+        "Senses the force on the collider beside it and its mean point: (FRP (n name) (c x y z) (f x y z)) in m and N, "
+        "only when touched.");
+    d.property("point", &ForceResistancePerceptor::point_)
+        .unit("m")
+        .state()
+        .doc("Mean point that was felt last, world frame.");
+    d.property("force", &ForceResistancePerceptor::force_)
+        .unit("N")
+        .state()
+        .doc("Force that was felt last, world frame.");
     d.on<&ForceResistancePerceptor::prepare>(phase::kPrepare);
   }
 

@@ -8,7 +8,9 @@ namespace spark {
 class GPS : public Perceptor {
   SPARK_CLASS(GPS, Perceptor)
  public:
-  static void describe(Description<GPS>& d) { d.doc("Senses its transform's world matrix, row by row: (GPS (n name) (tf m00 m01 ... m33))."); }
+  static void describe(Description<GPS>& d) {
+    d.doc("Senses its transform's world matrix, row by row: (GPS (n name) (tf m00 m01 ... m33)).");
+  }
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;
     const Matrix& world = transform()->world();

@@ -1,23 +1,27 @@
 #pragma once
 
+#include "api/agents.h"
 #include "api/cached_lookup.h"
 #include "api/local_frame.h"
-#include "api/agents.h"
 #include "api/physics.h"
 
 namespace spark {
 
-/// `(GYR (n torso) (rt 0.01 0.00 -0.09))`: how fast the body beside it turns, in the body's own frame, degrees per second.
+/// `(GYR (n torso) (rt 0.01 0.00 -0.09))`: how fast the body beside it turns, in the body's own frame, degrees per
+/// second.
 class GyroRatePerceptor : public Perceptor {
   SPARK_CLASS(GyroRatePerceptor, Perceptor)
  public:
   static void describe(Description<GyroRatePerceptor>& d) {
-    d.doc("Senses the angular velocity of its transform's body, in the body's frame: (GYR (n name) (rt x y z)) in deg/s.");
+    d.doc(
+        "Senses the angular velocity of its transform's body, in the body's frame: (GYR (n name) (rt x y z)) in "
+        "deg/s.");
   }
 
   void sense(Predicates& out, const Event&) override {
     // Looked up anew only after the tree changed; transform() is the nearest one above.
-    IRigidBody* body = body_.get(kernel(), [this] { return transform() ? transform()->childOf<IRigidBody>() : nullptr; });
+    IRigidBody* body =
+        body_.get(kernel(), [this] { return transform() ? transform()->childOf<IRigidBody>() : nullptr; });
     if (!body) return;
 
     const Vec3f world = body->state().angularVelocity.cast<float>();

@@ -8,7 +8,9 @@ namespace spark {
 class Hinge2Perceptor : public Perceptor {
   SPARK_CLASS(Hinge2Perceptor, Perceptor)
  public:
-  static void describe(Description<Hinge2Perceptor>& d) { d.doc("Senses the first angle of the hinge2 joint above it: (H2J (n name) (ax 0 deg))."); }
+  static void describe(Description<Hinge2Perceptor>& d) {
+    d.doc("Senses the first angle of the hinge2 joint above it: (H2J (n name) (ax 0 deg)).");
+  }
   void sense(Predicates& out, const Event&) override {
     if (!joint_) return;
     out.open("H2J").pair("n", name());

@@ -8,7 +8,9 @@ namespace spark {
 class HingePerceptor : public Perceptor {
   SPARK_CLASS(HingePerceptor, Perceptor)
  public:
-  static void describe(Description<HingePerceptor>& d) { d.doc("Senses the angle of the hinge joint above it: (HJ (n name) (ax deg))."); }
+  static void describe(Description<HingePerceptor>& d) {
+    d.doc("Senses the angle of the hinge joint above it: (HJ (n name) (ax deg)).");
+  }
   /// Half of what robots sense: left to itself the compiler makes a call of each token.
   [[gnu::flatten]] void sense(Predicates& out, const Event&) override {
     if (!joint_) return;

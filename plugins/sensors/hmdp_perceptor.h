@@ -8,7 +8,9 @@ namespace spark {
 class HMDPPerceptor : public Perceptor {
   SPARK_CLASS(HMDPPerceptor, Perceptor)
  public:
-  static void describe(Description<HMDPPerceptor>& d) { d.doc("Accepted in scenes; no motor chip is emulated, so it never has anything to say."); }
+  static void describe(Description<HMDPPerceptor>& d) {
+    d.doc("Accepted in scenes; no motor chip is emulated, so it never has anything to say.");
+  }
   void sense(Predicates&, const Event&) override {}
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "api/cached_lookup.h"
-#include "collision_perceptor.h"
 #include "api/first_below.h"
+#include "collision_perceptor.h"
 
 namespace spark {
 
@@ -10,9 +10,12 @@ namespace spark {
 class PerceptorHandler : public CollisionHandler {
   SPARK_CLASS(PerceptorHandler, CollisionHandler)
  public:
-  static void describe(Description<PerceptorHandler>& d) { d.doc("Feeds the first CollisionPerceptor below its nearest transform."); }
+  static void describe(Description<PerceptorHandler>& d) {
+    d.doc("Feeds the first CollisionPerceptor below its nearest transform.");
+  }
   void onCollision(const Collision& collision) override {
-    auto* perceptor = perceptor_.get(kernel(), [this] { return transform() ? firstBelow<CollisionPerceptor>(*transform()) : nullptr; });
+    auto* perceptor = perceptor_.get(
+        kernel(), [this] { return transform() ? firstBelow<CollisionPerceptor>(*transform()) : nullptr; });
     if (perceptor) perceptor->touched(collision.other.leaf());
   }
 

@@ -12,7 +12,9 @@ class PerfectVisionPerceptor : public Perceptor {
  public:
   static void describe(Description<PerfectVisionPerceptor>& d) {
     d.doc("Senses the positions of all transforms of the scene: (PerfectVision (name (pos x y z)) ...) in m.");
-    d.method("setInversion", &PerfectVisionPerceptor::setInversion).parameters({"x", "y", "z"}).doc("Mirrors these axes.");
+    d.method("setInversion", &PerfectVisionPerceptor::setInversion)
+        .parameters({"x", "y", "z"})
+        .doc("Mirrors these axes.");
   }
   void setInversion(bool x, bool y, bool z) { signs_ = {x ? -1.f : 1.f, y ? -1.f : 1.f, z ? -1.f : 1.f}; }
 

@@ -1,5 +1,3 @@
-#include "spark/plugin.h"
-
 #include "accelerometer.h"
 #include "angular_motor_perceptor.h"
 #include "battery_perceptor.h"
@@ -14,12 +12,15 @@
 #include "perceptor_handler.h"
 #include "perfect_vision_perceptor.h"
 #include "sonar_perceptor.h"
+#include "spark/plugin.h"
 #include "time_perceptor.h"
 #include "touch_perceptor.h"
 #include "touch_perceptor_handler.h"
 #include "universal_joint_perceptor.h"
 
-SPARK_PLUGIN("sensors", "1.0", "Perceptors that are not soccer, and the collision handlers that feed them.", spark::TimePerceptor, spark::HingePerceptor,
-             spark::UniversalJointPerceptor, spark::Hinge2Perceptor, spark::AngularMotorPerceptor, spark::GyroRatePerceptor, spark::Accelerometer,
-             spark::ForceResistancePerceptor, spark::CollisionPerceptor, spark::TouchPerceptor, spark::GPS, spark::BatteryPerceptor, spark::HMDPPerceptor,
-             spark::PerfectVisionPerceptor, spark::SonarPerceptor, spark::ImagePerceptor, spark::PerceptorHandler, spark::TouchPerceptorHandler)
+SPARK_PLUGIN("sensors", "1.0", "Perceptors that are not soccer, and the collision handlers that feed them.",
+             spark::TimePerceptor, spark::HingePerceptor, spark::UniversalJointPerceptor, spark::Hinge2Perceptor,
+             spark::AngularMotorPerceptor, spark::GyroRatePerceptor, spark::Accelerometer,
+             spark::ForceResistancePerceptor, spark::CollisionPerceptor, spark::TouchPerceptor, spark::GPS,
+             spark::BatteryPerceptor, spark::HMDPPerceptor, spark::PerfectVisionPerceptor, spark::SonarPerceptor,
+             spark::ImagePerceptor, spark::PerceptorHandler, spark::TouchPerceptorHandler)

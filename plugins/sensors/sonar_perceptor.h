@@ -11,8 +11,9 @@
 
 namespace spark {
 
-/// `(US Left (0.87 2.31 5.00 ...))`: distances over the ground to other robots and to goal posts in a cone about its transform's y axis, the
-/// nearest first; what is missing is told as the greatest distance. A sonar looks level: heights do not count.
+/// `(US Left (0.87 2.31 5.00 ...))`: distances over the ground to other robots and to goal posts in a cone about its
+/// transform's y axis, the nearest first; what is missing is told as the greatest distance. A sonar looks level:
+/// heights do not count.
 class SonarPerceptor : public Perceptor {
   SPARK_CLASS(SonarPerceptor, Perceptor)
  public:
@@ -49,12 +50,15 @@ class SonarPerceptor : public Perceptor {
     for (const Transform* target : *targets_.get(kernel(), [this] { return &findTargets(); })) {
       const Vec3f to = positionOf(target->world()) - positionOf(here);
       const double distance = std::hypot(to.x(), to.y());
-      const double cross = forward.x() * to.y() - forward.y() * to.x(), along = forward.x() * to.x() + forward.y() * to.y();
-      if (distance <= maxRange_ && std::abs(radToDeg(std::atan2(cross, along))) <= senseConeDeg_ / 2) echoes_.push_back(distance);
+      const double cross = forward.x() * to.y() - forward.y() * to.x(),
+                   along = forward.x() * to.x() + forward.y() * to.y();
+      if (distance <= maxRange_ && std::abs(radToDeg(std::atan2(cross, along))) <= senseConeDeg_ / 2)
+        echoes_.push_back(distance);
     }
     std::sort(echoes_.begin(), echoes_.end());
     if (echoes_.size() > static_cast<std::size_t>(maxEchoes_)) echoes_.resize(static_cast<std::size_t>(maxEchoes_));
-    for (double& echo : echoes_) echo = std::max(minRange_, std::min(maxRange_, noise_ ? echo + random_.normal(0, kSigma) : echo));
+    for (double& echo : echoes_)
+      echo = std::max(minRange_, std::min(maxRange_, noise_ ? echo + random_.normal(0, kSigma) : echo));
   }
 
   /// The transforms of all goal posts and robots of the scene but its own.
@@ -71,7 +75,8 @@ class SonarPerceptor : public Perceptor {
     for (const auto& child : node.children()) {
       if (child.get() == self || !child->asNode()) continue;
       const auto* mark = child->as<SceneNode>();
-      if (mark && mark->transform() && (child->classObject()->isA("AgentState") || child->classObject()->isA("GoalPost")))
+      if (mark && mark->transform() &&
+          (child->classObject()->isA("AgentState") || child->classObject()->isA("GoalPost")))
         found_.push_back(mark->transform());
       collect(*child->asNode(), self);
     }

@@ -9,7 +9,8 @@
 
 namespace spark::simulation {
 
-/// Counts durations from 0 to two minutes, each within 1/16 of its size (below 16 us: to the microsecond). Adding allocates nothing.
+/// Counts durations from 0 to two minutes, each within 1/16 of its size (below 16 us: to the microsecond). Adding
+/// allocates nothing.
 class Histogram {
  public:
   using Duration = std::chrono::steady_clock::duration;
@@ -18,7 +19,8 @@ class Histogram {
   void add(Duration d);
   void reset() { *this = {}; }
   std::int64_t count() const { return count_; }
-  /// Microseconds that a share (0..1) of all stayed within: the upper end of a bucket, but no more than the longest; 0 without any.
+  /// Microseconds that a share (0..1) of all stayed within: the upper end of a bucket, but no more than the longest; 0
+  /// without any.
   double percentile(double share) const;
   double longest() const { return longest_; }
 

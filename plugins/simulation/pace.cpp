@@ -25,7 +25,8 @@ void Pace::reset() {
 List Pace::percentiles() const {
   List out;
   const auto put = [&out](const char* name, const Histogram& h) {
-    out.push_back(List{Value(name), Value(h.count()), Value(h.percentile(0.5)), Value(h.percentile(0.9)), Value(h.percentile(0.99)), Value(h.percentile(0.999)), Value(h.longest())});
+    out.push_back(List{Value(name), Value(h.count()), Value(h.percentile(0.5)), Value(h.percentile(0.9)),
+                       Value(h.percentile(0.99)), Value(h.percentile(0.999)), Value(h.longest())});
   };
   put("late", late_);
   put("long", long_);
@@ -37,12 +38,14 @@ List Pace::buckets() const {
   List out;
   for (std::size_t i = 0; i < Histogram::kBuckets; ++i)
     if (late_.inBucket(i) || long_.inBucket(i) || done_.inBucket(i))
-      out.push_back(List{Value(Histogram::begin(i)), Value(late_.inBucket(i)), Value(long_.inBucket(i)), Value(done_.inBucket(i))});
+      out.push_back(List{Value(Histogram::begin(i)), Value(late_.inBucket(i)), Value(long_.inBucket(i)),
+                         Value(done_.inBucket(i))});
   return out;
 }
 
 std::string Pace::table() const {
-  std::string out = fmt::format("{:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "[us]", "cycles", "50 %", "90 %", "99 %", "99.9 %", "longest");
+  std::string out = fmt::format("{:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "[us]", "cycles", "50 %", "90 %",
+                                "99 %", "99.9 %", "longest");
   for (const Value& row : percentiles()) {
     const List& r = row.toList();
     out += fmt::format("{:>10} {:>9}", r[0].toString(), r[1].toInteger());
@@ -58,7 +61,8 @@ std::string Pace::table() const {
   };
   for (std::size_t i = 0; i < Histogram::kBuckets; i += kRow) {
     const std::int64_t late = sum(late_, i), length = sum(long_, i), done = sum(done_, i);
-    if (late || length || done) out += fmt::format("{:>10.0f} {:>9} {:>9} {:>9}\n", Histogram::begin(i), late, length, done);
+    if (late || length || done)
+      out += fmt::format("{:>10.0f} {:>9} {:>9} {:>9}\n", Histogram::begin(i), late, length, done);
   }
   return out;
 }

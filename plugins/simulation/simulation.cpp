@@ -15,19 +15,20 @@
 //    input is taken        └ poll all sources; while a gate is closed, wait for input and ask again;
 //    meanwhile)              then poll once more: what was received when the last answer was read counts
 //
-// All waiting is inside a source's wait(), so that input is taken as it comes, and in slices, so that a stop request and sources that can
-// only be polled are seen soon. Waiting never shows in the state: the simulated clock stands still meanwhile. In real time, what a cycle
-// takes longer than its step is dropped, and counted: the simulation gets slower, it never catches up with double steps.
+// All waiting is inside a source's wait(), so that input is taken as it comes, and in slices, so that a stop request
+// and sources that can only be polled are seen soon. Waiting never shows in the state: the simulated clock stands still
+// meanwhile. In real time, what a cycle takes longer than its step is dropped, and counted: the simulation gets slower,
+// it never catches up with double steps.
 //
-// Unlike the original, the first cycle has a step like every other: nobody can see the difference (an agent's robot exists from the end
-// of a cycle's act phase at the earliest), and cycles * step is the time.
+// Unlike the original, the first cycle has a step like every other: nobody can see the difference (an agent's robot
+// exists from the end of a cycle's act phase at the earliest), and cycles * step is the time.
 
 namespace spark {
 
 namespace {
-constexpr double kSlice = 0.02;    // s; bound on the delay of a stop request and of polled sources
+constexpr double kSlice = 0.02;  // s; bound on the delay of a stop request and of polled sources
 constexpr const char* kTakesInput = "it takes input just now";
-constexpr double kJitter = 0.002;  // s; a cycle that starts later than this lost time that is not made up for
+constexpr double kJitter = 0.002;        // s; a cycle that starts later than this lost time that is not made up for
 constexpr const char* kInput = "input";  ///< as a phase, for last words and watchdogs
 using simulation::Part;
 
@@ -40,30 +41,45 @@ void Simulation::describe(Description<Simulation>& d) {
   d.doc("The run loop: names the phases and drives them.");
   d.implements<ISimulation>();
   d.property("step", &Simulation::step_).unit("s").range(1e-6, 1).doc("Simulated time of one cycle.");
-  d.property("rate", &Simulation::rate_).choices({"real", "max"}).doc("real: paced to wall time; max: as fast as it goes.");
+  d.property("rate", &Simulation::rate_)
+      .choices({"real", "max"})
+      .doc("real: paced to wall time; max: as fast as it goes.");
   d.property("sync", &Simulation::sync_).doc("Lockstep: a cycle starts when every agent has answered.");
-  d.property("duration", &Simulation::duration_).unit("s").min(0).doc("Simulated time after which run() ends; 0: never.");
+  d.property("duration", &Simulation::duration_)
+      .unit("s")
+      .min(0)
+      .doc("Simulated time after which run() ends; 0: never.");
   d.property("threads", &Simulation::threads, &Simulation::setThreads)
       .range(1, 64)
       .doc("Host threads for physics, sensing and encoding. Results do not depend on it.");
   d.property("cycle", &Simulation::cycle).doc("Number of the current cycle, from 1; 0 before the first.");
   d.property("time", &Simulation::time).unit("s").doc("Simulated time since the start.");
-  d.property("phaseMicros", &Simulation::phaseMicros).doc("Mean wall time per cycle of each phase since resetTimers() [microseconds].");
+  d.property("phaseMicros", &Simulation::phaseMicros)
+      .doc("Mean wall time per cycle of each phase since resetTimers() [microseconds].");
   d.property("cycleTimes", &Simulation::cycleTimes)
-      .doc("Three lists {name, cycles, p50, p90, p99, p99.9, longest} of wall time since resetTimers() [microseconds]: late, from when a cycle was due in real time to "
-           "its beginning; long, from its beginning to its end; done, from when it was due to its end.");
+      .doc(
+          "Three lists {name, cycles, p50, p90, p99, p99.9, longest} of wall time since resetTimers() [microseconds]: "
+          "late, from when a cycle was due in real time to "
+          "its beginning; long, from its beginning to its end; done, from when it was due to its end.");
   d.property("histogram", &Simulation::histogram)
-      .doc("The same in buckets, a list {from, late, long, done} for each that has any: where it begins [microseconds], and how many cycles are in it.");
+      .doc(
+          "The same in buckets, a list {from, late, long, done} for each that has any: where it begins [microseconds], "
+          "and how many cycles are in it.");
   d.property("lostTime", &Simulation::lostTime_)
       .unit("s")
       .readOnly()
-      .doc("Wall time by which cycles began too late in real time, because those before took longer than a step. It is not made up for.");
+      .doc(
+          "Wall time by which cycles began too late in real time, because those before took longer than a step. It is "
+          "not made up for.");
   d.property("lateCycles", &Simulation::lateCycles_).readOnly().doc("Cycles that began too late in real time.");
   d.property("faults", &Simulation::faults)
-      .doc("Faults of plugins and scripts that were caught while the simulation ran; the log tells the first of each place.");
+      .doc(
+          "Faults of plugins and scripts that were caught while the simulation ran; the log tells the first of each "
+          "place.");
   d.method("run", &Simulation::run).doc("Runs until duration is reached or something asks to stop.");
   d.method("runCycles", &Simulation::runCycles).parameters({"count"}).doc("Runs that many cycles.");
-  d.method("paceTable", &Simulation::paceTable).doc("cycleTimes and histogram as a table for people, with wider buckets.");
+  d.method("paceTable", &Simulation::paceTable)
+      .doc("cycleTimes and histogram as a table for people, with wider buckets.");
   d.method("stop", &Simulation::stop).doc("Ends run() after the current cycle.");
   d.method("resetTimers", &Simulation::resetTimers).doc("Starts phaseMicros, cycleTimes and histogram anew.");
 }
@@ -71,8 +87,10 @@ void Simulation::describe(Description<Simulation>& d) {
 void Simulation::onLink() {
   Events& events = kernel().events();
   act_ = &events.define(phase::kAct, Order::parentsFirst, "Agents' messages are realised; immediate effectors act.");
-  prepare_ = &events.define(phase::kPrepare, Order::childrenFirst, "Deferred actions, controllers, sampling before the step.");
-  physics_ = &events.define(phase::kPhysics, Order::parentsFirst, "Contacts, collision handlers, joints, one solver step.");
+  prepare_ =
+      &events.define(phase::kPrepare, Order::childrenFirst, "Deferred actions, controllers, sampling before the step.");
+  physics_ =
+      &events.define(phase::kPhysics, Order::parentsFirst, "Contacts, collision handlers, joints, one solver step.");
   place_ = &events.define(phase::kPlace, Order::parentsFirst, "Bodies write transforms; world matrices.");
   rule_ = &events.define(phase::kRule, Order::parentsFirst, "Control aspects see the new world.");
   sense_ = &events.define(phase::kSense, Order::parentsFirst, "Perceptors read the world.");
@@ -113,7 +131,8 @@ void Simulation::loop(More more) {
     bool& flag;
   } running(running_);
   const InUse atWork(*this, "the run loop is at work; stop() ends it after the current cycle");
-  const InUse servers(kernel().root().require<Node>("/sys"), "servers keep their names while the run loop is at work", InUse::kAllBelow);
+  const InUse servers(kernel().root().require<Node>("/sys"), "servers keep their names while the run loop is at work",
+                      InUse::kAllBelow);
   const InUse scenes(kernel().root().require<Node>("/usr"), "scenes keep their names while the run loop is at work", 1);
   stopped_ = false;
   due_ = Clock::now();
@@ -237,5 +256,6 @@ void Simulation::executeCycle() {
 
 }  // namespace spark
 
-SPARK_PLUGIN("simulation", "1.0", "The run loop: names the phases and drives them in real time, in lockstep, or as fast as possible.",
+SPARK_PLUGIN("simulation", "1.0",
+             "The run loop: names the phases and drives them in real time, in lockstep, or as fast as possible.",
              spark::Simulation)

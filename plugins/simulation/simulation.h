@@ -81,11 +81,11 @@ class Simulation : public Node, public ISimulation {
   Source waiter_;  ///< the source to wait on; none: sleep
   std::uint64_t resolvedAt_ = 0;
 
-  Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr, *sense_ = nullptr,
-          *publish_ = nullptr;
-  Clock::time_point due_{};  ///< when the next cycle may start in real time
+  Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr,
+          *sense_ = nullptr, *publish_ = nullptr;
+  Clock::time_point due_{};     ///< when the next cycle may start in real time
   Clock::time_point wanted_{};  ///< when this one was due, or could start because agents had answered
-  double lostTime_ = 0;      ///< s of wall time; says how the host does, not how the world is: no state
+  double lostTime_ = 0;         ///< s of wall time; says how the host does, not how the world is: no state
   std::int64_t lateCycles_ = 0;
   simulation::Timers timers_;
   simulation::Pace pace_;

@@ -5,7 +5,8 @@
 
 namespace spark {
 
-/// Stands in the colliders of robots and tells PlayerContactAspect, where there is one, which robots (and the ball) they meet.
+/// Stands in the colliders of robots and tells PlayerContactAspect, where there is one, which robots (and the ball)
+/// they meet.
 class AgentCollisionHandler : public CollisionHandler {
   SPARK_CLASS(AgentCollisionHandler, CollisionHandler)
  public:
@@ -17,7 +18,8 @@ class AgentCollisionHandler : public CollisionHandler {
     refresh();
     if (!contacts_ || !self_) return;
     if (other_ != &collision.other) look(collision.other);
-    if (otherAgent_ ? otherAgent_ != self_ : otherIsBall_) contacts_->add(*self_, otherAgent_, collision.contact.position);
+    if (otherAgent_ ? otherAgent_ != self_ : otherIsBall_)
+      contacts_->add(*self_, otherAgent_, collision.contact.position);
   }
 
  private:

@@ -13,8 +13,8 @@
 
 namespace spark {
 
-/// What the match knows of a player: team, number, battery, where it looks, what it heard. Must be named AgentState and stand below the
-/// robot's agent aspect. Visible itself: agents see it as `P`.
+/// What the match knows of a player: team, number, battery, where it looks, what it heard. Must be named AgentState and
+/// stand below the robot's agent aspect. Visible itself: agents see it as `P`.
 class AgentState : public ObjectState {
   SPARK_CLASS(AgentState, ObjectState)
  public:

@@ -25,7 +25,8 @@ void BallHoldingAspect::judgePlay(const Event& event) {
 bool BallHoldingAspect::underPressure(Side side) const {
   if (settings().ballHoldOppDist <= 0) return true;
   return std::any_of(players().begin(), players().end(), [&](const soccer::Player& p) {
-    return p.side() == opponent(side) && p.torso && distance(p.position(), ball().position()) <= settings().ballHoldOppDist;
+    return p.side() == opponent(side) && p.torso &&
+           distance(p.position(), ball().position()) <= settings().ballHoldOppDist;
   });
 }
 

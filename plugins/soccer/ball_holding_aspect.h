@@ -4,8 +4,8 @@
 
 namespace spark {
 
-/// Keeping the ball within BallHoldRadius for too long while an opponent is near it. A rule of later servers, off unless
-/// Soccer.UseBallHolding is set.
+/// Keeping the ball within BallHoldRadius for too long while an opponent is near it. A rule of later servers, off
+/// unless Soccer.UseBallHolding is set.
 class BallHoldingAspect : public FoulAspect {
   SPARK_CLASS(BallHoldingAspect, FoulAspect)
  public:

@@ -4,8 +4,8 @@
 
 namespace spark {
 
-/// What happened to the ball in this cycle: who touched it, whether it is on the field, whether it is in a goal. Runs after game state
-/// and before the rules.
+/// What happened to the ball in this cycle: who touched it, whether it is on the field, whether it is in a goal. Runs
+/// after game state and before the rules.
 class BallStateAspect : public SoccerControlAspect {
   SPARK_CLASS(BallStateAspect, SoccerControlAspect)
  public:

@@ -1,8 +1,10 @@
 #pragma once
 /// \file
-/// Do two boxes overlap, as the installed base's referee decides it? Separating axes (S. Gottschalk, Collision Queries using Oriented Bounding
-/// Boxes, 2000, chapter 5): 3 + 3 face normals and 9 cross products of edges. Two things are that referee's own:
-///  - The cross products are not brought to unit length. Where edges enclose an angle of sine s, the tolerance is worth tolerance / s:
+/// Do two boxes overlap, as the installed base's referee decides it? Separating axes (S. Gottschalk, Collision Queries
+/// using Oriented Bounding Boxes, 2000, chapter 5): 3 + 3 face normals and 9 cross products of edges. Two things are
+/// that referee's own:
+///  - The cross products are not brought to unit length. Where edges enclose an angle of sine s, the tolerance is worth
+///  tolerance / s:
 ///    boxes that are nearly parallel, such as two shanks side by side, are hardly ever a foul.
 ///  - All of it is in single precision, as the boxes' transforms are there.
 
@@ -20,12 +22,14 @@ struct SingleBox {
 
   SingleBox() = default;
   /// `half`: half of its edges [m].
-  SingleBox(const Pose& pose, const Vec3f& half) : centre(pose.position.cast<float>()), axes(pose.rotation.cast<float>()) {
+  SingleBox(const Pose& pose, const Vec3f& half)
+      : centre(pose.position.cast<float>()), axes(pose.rotation.cast<float>()) {
     for (int i = 0; i < 3; ++i) edges.col(i) = axes.col(i) * half[i];
   }
 };
 
-/// True when the shadows of the boxes on `direction` overlap by no more than `tolerance`, which counts as long as `direction` is.
+/// True when the shadows of the boxes on `direction` overlap by no more than `tolerance`, which counts as long as
+/// `direction` is.
 inline bool apartAlong(const Vec3f& direction, float tolerance, const SingleBox& a, const SingleBox& b) {
   const Vec3f between = b.centre - a.centre;
   float reach = 0;

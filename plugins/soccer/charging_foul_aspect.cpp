@@ -13,7 +13,8 @@ double angleDeg(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 void ChargingFoulAspect::judgePlay(const Event& event) {
   follow(runners_);
   observe(event.time);
-  std::erase_if(harmless_, [&](const Harmless& h) { return event.time - h.time >= settings().chargingCollisionMinTime - 1e-9; });
+  std::erase_if(harmless_,
+                [&](const Harmless& h) { return event.time - h.time >= settings().chargingCollisionMinTime - 1e-9; });
   if (!contacts() || !settings().useCharging) return;
   for (const Meeting& m : contacts()->meetings())
     if (players()[m.a].side() == opponent(players()[m.b].side())) judgeMeeting(m, event.time);
@@ -61,7 +62,8 @@ bool ChargingFoulAspect::mayCharge(std::size_t player) const {
 /// The contact goes on after a harmless one, and so is harmless itself.
 bool ChargingFoulAspect::wentOn(const Meeting& meeting, double now) {
   const int a = players()[meeting.a].agent->number(), b = players()[meeting.b].agent->number();
-  const auto before = std::find_if(harmless_.begin(), harmless_.end(), [&](const Harmless& h) { return h.a == a && h.b == b; });
+  const auto before =
+      std::find_if(harmless_.begin(), harmless_.end(), [&](const Harmless& h) { return h.a == a && h.b == b; });
   if (before == harmless_.end()) return false;
   before->time = now;
   return true;
@@ -90,8 +92,8 @@ std::array<bool, 2> ChargingFoulAspect::conduct(const std::array<Party, 2>& pair
                  pair[i].speed >= s.chargingMinSpeed;
   if (charges[0] || charges[1] || std::abs(a.ballDistance - b.ballDistance) <= s.chargingMinDeltaDist) return charges;
   const int farther = a.ballDistance > b.ballDistance ? 0 : 1;
-  charges[farther] =
-      std::abs(a.opponentAngle - b.opponentAngle) > s.chargingMinDeltaAng || pair[1 - farther].speed < s.chargingMinSpeed;
+  charges[farther] = std::abs(a.opponentAngle - b.opponentAngle) > s.chargingMinDeltaAng ||
+                     pair[1 - farther].speed < s.chargingMinSpeed;
   return charges;
 }
 

@@ -6,18 +6,23 @@
 
 namespace spark {
 
-/// Running into an opponent (protocol section 6.7). For each pair of standing opponents who touch, neither of them just moved by the
-/// referee nor under a penalty:
+/// Running into an opponent (protocol section 6.7). For each pair of standing opponents who touch, neither of them just
+/// moved by the referee nor under a penalty:
 ///
-///  1. Conduct. With the ball near to one of them, who moves rather towards the opponent than towards the ball charges; if neither does,
-///     the one farther from the ball who runs straighter into the other, or into one who stands. Far from the ball both may.
+///  1. Conduct. With the ball near to one of them, who moves rather towards the opponent than towards the ball charges;
+///  if neither does,
+///     the one farther from the ball who runs straighter into the other, or into one who stands. Far from the ball both
+///     may.
 ///  2. It takes speed, and speed towards the contact.
-///  3. Both, or a contact at the ball: nobody. Also spared: a goalie in his own area, who has just touched the ball, whom such a spared
+///  3. Both, or a contact at the ball: nobody. Also spared: a goalie in his own area, who has just touched the ball,
+///  whom such a spared
 ///     player has just charged; and contacts that go on after a harmless one.
 class ChargingFoulAspect : public FoulAspect {
   SPARK_CLASS(ChargingFoulAspect, FoulAspect)
  public:
-  static void describe(Description<ChargingFoulAspect>& d) { d.doc("Running into an opponent is a foul; off with Soccer.UseCharging false."); }
+  static void describe(Description<ChargingFoulAspect>& d) {
+    d.doc("Running into an opponent is a foul; off with Soccer.UseCharging false.");
+  }
 
  protected:
   void judgePlay(const Event& event) override;

@@ -11,7 +11,9 @@ void CrowdingFoulAspect::judgePlay(const Event&) {
   if (s.minOppDistance <= 0) return;
   std::array<Nearest, 2> teams;
   for (std::size_t i = 0; i < players().size(); ++i)
-    if (isJudged(i)) teams[players()[i].side() == Side::right].take(static_cast<int>(i), distance(players()[i].position(), ball().position()));
+    if (isJudged(i))
+      teams[players()[i].side() == Side::right].take(static_cast<int>(i),
+                                                     distance(players()[i].position(), ball().position()));
   for (const Side side : {Side::left, Side::right}) {
     if (game().mode() == forSide(soccer::PlayMode::kickOffLeft, side)) continue;
     if (teams[side == Side::left].distance[0] > s.minOppDistance) continue;

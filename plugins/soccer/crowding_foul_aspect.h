@@ -6,13 +6,15 @@
 
 namespace spark {
 
-/// While an opponent is at the ball, not more than one (and not more than two) of a team may be near it. Off with the league's distances
-/// of 0. The kicking team may crowd at its own kick-off.
+/// While an opponent is at the ball, not more than one (and not more than two) of a team may be near it. Off with the
+/// league's distances of 0. The kicking team may crowd at its own kick-off.
 class CrowdingFoulAspect : public FoulAspect {
   SPARK_CLASS(CrowdingFoulAspect, FoulAspect)
  public:
   static void describe(Description<CrowdingFoulAspect>& d) {
-    d.doc("Being the second or third of a team too near to a ball that an opponent is at is a foul; off while MinOppDistance is 0.");
+    d.doc(
+        "Being the second or third of a team too near to a ball that an opponent is at is a foul; off while "
+        "MinOppDistance is 0.");
   }
 
  protected:

@@ -6,7 +6,8 @@
 
 namespace spark {
 
-/// `(beam x y angle)`: jumps to a place of the own half, before kick-offs and after goals. x, y as the team sees the field.
+/// `(beam x y angle)`: jumps to a place of the own half, before kick-offs and after goals. x, y as the team sees the
+/// field.
 class BeamEffector : public Effector {
   SPARK_CLASS(BeamEffector, Effector)
  public:
@@ -32,7 +33,8 @@ class BeamEffector : public Effector {
     const soccer::Player* player = match_.player(*this);
     if (!player || !match_.game()->paused()) return;
     const SoccerSettings& s = *match_.settings();
-    // In single precision, as the installed base: where exactly a robot is put decides the last digit of all that it senses afterwards.
+    // In single precision, as the installed base: where exactly a robot is put decides the last digit of all that it
+    // senses afterwards.
     const auto noise = [&](double width) { return static_cast<float>(width * random_.uniform(-1, 1)); };
     float x = x_ + noise(s.beamNoiseXY), y = y_ + noise(s.beamNoiseXY);
     const float angle = angle_ + noise(s.beamNoiseAngle);
@@ -68,7 +70,8 @@ class SayEffector : public Effector {
     const std::string_view text = word.text();
     if (text.empty()) return "expected one word, found an empty one";
     for (const unsigned char c : text)
-      if (c < 0x21 || c > 0x7e || c == '(' || c == ')') return fmt::format("byte {} is not allowed in a message", int(c));
+      if (c < 0x21 || c > 0x7e || c == '(' || c == ')')
+        return fmt::format("byte {} is not allowed in a message", int(c));
     const soccer::Player* speaker = match_.player(*this);
     if (!speaker || text.size() > static_cast<std::size_t>(match_.settings()->sayMsgSize)) return {};
     speaker->state->hearSelf(text);
@@ -77,7 +80,8 @@ class SayEffector : public Effector {
       if (&hearer == speaker || hearer.side() == soccer::Side::none) continue;
       const Vec3 way = (mouth - hearer.position()) * direction(hearer.side());
       if (way.norm() > kRange) continue;
-      hearer.state->hear(hearer.side() == speaker->side(), speaker->state->team(), radToDeg(std::atan2(way.y(), way.x())), text);
+      hearer.state->hear(hearer.side() == speaker->side(), speaker->state->team(),
+                         radToDeg(std::atan2(way.y(), way.x())), text);
     }
     return {};
   }

@@ -12,7 +12,9 @@ namespace spark {
 class Ball : public Transform {
   SPARK_CLASS(Ball, Transform)
  public:
-  static void describe(Description<Ball>& d) { d.doc("The ball: /usr/scene/Ball with children physics and geometry/recorder."); }
+  static void describe(Description<Ball>& d) {
+    d.doc("The ball: /usr/scene/Ball with children physics and geometry/recorder.");
+  }
 };
 
 /// A flag without a body.
@@ -38,7 +40,8 @@ class ObjectState : public SoccerNode {
  public:
   static void describe(Description<ObjectState>& d) {
     d.doc("Makes the transform above it visible to agents.");
-    d.property("perceptName", &ObjectState::perceptName_).doc("Its label in See: B, F1L, ...; \"\" for parts of robots.");
+    d.property("perceptName", &ObjectState::perceptName_)
+        .doc("Its label in See: B, F1L, ...; \"\" for parts of robots.");
     d.property("ID", &ObjectState::id_).doc("Name of the part of a robot that it marks: head, lfoot, ...");
   }
   const std::string& perceptName() const { return perceptName_; }

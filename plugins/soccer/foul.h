@@ -2,7 +2,8 @@
 
 namespace spark::soccer {
 
-/// What the automatic referee judges. The numbers are those that monitors are told (protocol section 6.7); 3 and 5 are never used.
+/// What the automatic referee judges. The numbers are those that monitors are told (protocol section 6.7); 3 and 5 are
+/// never used.
 enum class Foul {
   crowding = 0,
   touching = 1,

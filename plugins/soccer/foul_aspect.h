@@ -6,8 +6,8 @@
 
 namespace spark {
 
-/// Base of the fouls. Each is judged in every cycle, after the rules of play and before PenaltyAspect; while the match pauses (before
-/// kick-off, after a goal) its counters are reset.
+/// Base of the fouls. Each is judged in every cycle, after the rules of play and before PenaltyAspect; while the match
+/// pauses (before kick-off, after a goal) its counters are reset.
 class FoulAspect : public SoccerRule {
   SPARK_CLASS(FoulAspect, SoccerRule)
  public:

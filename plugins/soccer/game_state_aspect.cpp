@@ -21,7 +21,11 @@ void GameStateAspect::describe(Description<GameStateAspect>& d) {
       .choices({soccer::kPlayModeNames.begin(), soccer::kPlayModeNames.end()})
       .state()
       .doc("The play mode. Setting it does not move the ball.");
-  d.property("time", &G::time, &G::setTime).unit("s").min(0).state().doc("Time of play; stands before the kick-off and after the match.");
+  d.property("time", &G::time, &G::setTime)
+      .unit("s")
+      .min(0)
+      .state()
+      .doc("Time of play; stands before the kick-off and after the match.");
   d.property("modeTime", &G::modeTime).unit("s").doc("Since the play mode changed.");
   d.property("half", &G::half).doc("1 or 2.");
   d.property("score", &G::scoreList).doc("Goals of the left and of the right team.");
@@ -41,7 +45,9 @@ void GameStateAspect::setModeText(std::string name) {
 void GameStateAspect::setMode(PlayMode mode) {
   if (mode == mode_) return;
   // trainers may switch modes thousands of times in a cycle
-  if (linesLeft_ > 0) --linesLeft_, kernel().log().info("soccer: {:.2f} s, {} after {}", time_, soccer::playModeName(mode), soccer::playModeName(mode_));
+  if (linesLeft_ > 0)
+    --linesLeft_, kernel().log().info("soccer: {:.2f} s, {} after {}", time_, soccer::playModeName(mode),
+                                      soccer::playModeName(mode_));
   mode_ = mode;
   modeStart_ = time_;
   standing_ = 0;
@@ -50,7 +56,8 @@ void GameStateAspect::setMode(PlayMode mode) {
 
 bool GameStateAspect::mayTell() {
   const auto now = std::chrono::steady_clock::now();
-  linesAboutAgents_ = std::min(kLinesAboutAgents, linesAboutAgents_ + std::chrono::duration<double>(now - std::exchange(toldAt_, now)).count());
+  linesAboutAgents_ = std::min(
+      kLinesAboutAgents, linesAboutAgents_ + std::chrono::duration<double>(now - std::exchange(toldAt_, now)).count());
   if (linesAboutAgents_ < 1) return false;
   --linesAboutAgents_;
   return true;
@@ -67,7 +74,8 @@ void GameStateAspect::rule(const Event& event) {
   if (!p.ready()) return;
   advanceHalf();
   advanceClock(event.step);
-  if (mode_ == PlayMode::beforeKickOff && p.settings().automaticKickOff && modeReached(p.settings().waitBeforeKickOff)) kickOff(Side::none);
+  if (mode_ == PlayMode::beforeKickOff && p.settings().automaticKickOff && modeReached(p.settings().waitBeforeKickOff))
+    kickOff(Side::none);
   if (mode_ == PlayMode::gameOver && p.settings().automaticQuit && modeReached(kQuitAfter)) kernel().requestStop();
 }
 
@@ -139,13 +147,15 @@ std::string GameStateAspect::join(AgentState& state, const std::string& name, st
   if (!isPlainWord(name)) return "the team name holds a blank, a control character, or one of ( ) \" ' ; \\";
   // it stands up to 22 times in what a robot sees, and clients read at most 8 KiB
   constexpr std::size_t kLongestName = 32;
-  if (name.size() > kLongestName) return fmt::format("the team name has {} bytes, at most {} are allowed", name.size(), kLongestName);
+  if (name.size() > kLongestName)
+    return fmt::format("the team name has {} bytes, at most {} are allowed", name.size(), kLongestName);
   Side side = Side::none;
   for (Side s : {Side::left, Side::right}) {
     if (side == Side::none && (team(s).name == name || team(s).name.empty())) side = s;
   }
   if (side == Side::none)
-    return fmt::format("there are two teams already, '{}' and '{}': a third, '{}', cannot play", teams_[0].name, teams_[1].name, name);
+    return fmt::format("there are two teams already, '{}' and '{}': a third, '{}', cannot play", teams_[0].name,
+                       teams_[1].name, name);
   const int most = pitch_.settings().teamSize;
   if (unum < 0 || unum > most) return fmt::format("number {} is not one of 1..{}", unum, most);
   Team& wanted = team(side);
@@ -182,9 +192,11 @@ std::string GameStateAspect::robotTypeProblem(Side side, const AgentState& joini
   }
   for (int t = 0; t < 64; ++t)
     if (t != type) most = std::max(most, count[t]);
-  if (count[type] >= s.maxRobotTypeCount) return fmt::format("the team has {} robots of type {} already", count[type], type);
+  if (count[type] >= s.maxRobotTypeCount)
+    return fmt::format("the team has {} robots of type {} already", count[type], type);
   if (count[type] + most + 1 > s.maxSumTwoRobotTypes)
-    return fmt::format("more than {} robots of two types (type {} is one) are not allowed", s.maxSumTwoRobotTypes, type);
+    return fmt::format("more than {} robots of two types (type {} is one) are not allowed", s.maxSumTwoRobotTypes,
+                       type);
   if (count[type] > 0 && s.teamSize - registered <= s.minRobotTypesCount - types)
     return fmt::format("the team needs robots of {} types: type {} is there already", s.minRobotTypesCount, type);
   return {};
@@ -193,7 +205,8 @@ std::string GameStateAspect::robotTypeProblem(Side side, const AgentState& joini
 Vec3 GameStateAspect::nextStart(Side side) {
   const SoccerSettings& s = pitch().settings();
   const double r = s.agentRadius, first = s.fieldWidth / 2 - 2 * r;
-  const double aside = s.startDistance > 0 ? s.startDistance : 3 * r, ahead = s.startDistance > 0 ? s.startDistance : 2 * r;
+  const double aside = s.startDistance > 0 ? s.startDistance : 3 * r,
+               ahead = s.startDistance > 0 ? s.startDistance : 2 * r;
   const int perColumn = static_cast<int>((first + s.fieldWidth / 2) / aside) + 1;
   // start positions are never given back: after half the field they begin anew
   const int columns = std::max(1, static_cast<int>((s.fieldLength / 2 - 2 * r) / ahead));

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <chrono>
-#include <vector>
 #include <string>
+#include <vector>
 
 #include "soccer_control_aspect.h"
 
@@ -32,8 +32,8 @@ class GameStateAspect : public SoccerControlAspect {
   PlayMode mode() const { return mode_; }
   /// Sets the mode; nothing happens when it is the mode already.
   void setMode(PlayMode mode);
-  /// s since the last real change, 0 in the cycle of the change. On the clock of play, where it runs: a trainer who sets the clock ahead
-  /// ends pauses too; set back, the mode begins anew.
+  /// s since the last real change, 0 in the cycle of the change. On the clock of play, where it runs: a trainer who
+  /// sets the clock ahead ends pauses too; set back, the mode begins anew.
   double modeTime() const { return clockRuns() ? time_ - modeStart_ : standing_; }
   /// The mode has lasted `seconds`, but for rounding.
   bool modeReached(double seconds) const { return modeTime() > seconds - kRounding; }
@@ -49,7 +49,9 @@ class GameStateAspect : public SoccerControlAspect {
   /// Counts the times that teams swapped sides.
   std::int64_t sideSwaps() const { return sideSwaps_; }
   /// No fouls are judged, beams are allowed.
-  bool paused() const { return mode_ == PlayMode::beforeKickOff || mode_ == PlayMode::goalLeft || mode_ == PlayMode::goalRight; }
+  bool paused() const {
+    return mode_ == PlayMode::beforeKickOff || mode_ == PlayMode::goalLeft || mode_ == PlayMode::goalRight;
+  }
 
   int score(Side side) const { return side == Side::none ? 0 : team(side).score; }
   void addGoal(Side side) { ++team(side).score; }
@@ -62,12 +64,13 @@ class GameStateAspect : public SoccerControlAspect {
 
   /// Kick-off for a side; none: who is due, or a coin decides. The ball goes to the centre.
   void kickOff(Side side);
-  /// Gives an agent its team and number (0: the lowest free one). Returns "" or what forbids it; nothing has changed then.
+  /// Gives an agent its team and number (0: the lowest free one). Returns "" or what forbids it; nothing has changed
+  /// then.
   std::string join(AgentState& state, const std::string& teamName, std::int64_t unum);
   /// The next start position of the team.
   Vec3 nextStart(Side side);
-  /// True when one more line about who joins may be written: a hundred at once, then one a second (wall clock), so that clients that come again and
-  /// again do not fill a disk.
+  /// True when one more line about who joins may be written: a hundred at once, then one a second (wall clock), so that
+  /// clients that come again and again do not fill a disk.
   bool mayTell();
 
  protected:
@@ -105,11 +108,12 @@ class GameStateAspect : public SoccerControlAspect {
   soccer::Pitch pitch_;
   RandomStream random_{*this, "referee"};
   PlayMode mode_ = PlayMode::beforeKickOff;
-  /// As in the installed base the clock of play is summed in single precision: behind 64 s it is a little slow, and a freeze or a kick-off
-  /// lasts a cycle longer. No match is as long as this [s]; behind it the clock would go wrong by per cents, and stand in the end.
+  /// As in the installed base the clock of play is summed in single precision: behind 64 s it is a little slow, and a
+  /// freeze or a kick-off lasts a cycle longer. No match is as long as this [s]; behind it the clock would go wrong by
+  /// per cents, and stand in the end.
   static constexpr double kSingleUntil = 4096;
   double time_ = 0, modeStart_ = 0;  ///< s of play
-  double standing_ = 0;              ///< s that the clock of play has stood: before the kick-off with agents there, after the match
+  double standing_ = 0;  ///< s that the clock of play has stood: before the kick-off with agents there, after the match
   std::int64_t modeChanges_ = 0, sideSwaps_ = 0;
   static constexpr int kLinesPerCycle = 4;
   int linesLeft_ = kLinesPerCycle;  ///< in the log, about modes

@@ -7,7 +7,8 @@ namespace spark {
 using soccer::opponent;
 
 void DoubleTouchRule::judge(const Event&) {
-  if (referee().playing() && referee().lastKick().again() && referee().restricted()) referee().awardFreeKick(opponent(ball().last().side));
+  if (referee().playing() && referee().lastKick().again() && referee().restricted())
+    referee().awardFreeKick(opponent(ball().last().side));
 }
 
 void GoalRule::judge(const Event&) {
@@ -20,8 +21,8 @@ void GoalRule::goal(Side goalOf) {
   const Side scorer = opponent(goalOf);
   game().addGoal(scorer);
   const BallStateAspect::Touch& last = ball().last();
-  kernel().log().info("soccer: goal for {}, {} : {}, last touch by {} {}", soccer::sideName(scorer), game().score(Side::left),
-                      game().score(Side::right), soccer::sideName(last.side), last.unum);
+  kernel().log().info("soccer: goal for {}, {} : {}, last touch by {} {}", soccer::sideName(scorer),
+                      game().score(Side::left), game().score(Side::right), soccer::sideName(last.side), last.unum);
   game().setMode(forSide(PlayMode::goalLeft, scorer));
 }
 

@@ -8,7 +8,9 @@ namespace spark {
 class DoubleTouchRule : public SoccerRule {
   SPARK_CLASS(DoubleTouchRule, SoccerRule)
  public:
-  static void describe(Description<DoubleTouchRule>& d) { d.doc("The taker of a restart may not touch the ball twice."); }
+  static void describe(Description<DoubleTouchRule>& d) {
+    d.doc("The taker of a restart may not touch the ball twice.");
+  }
 
  private:
   void judge(const Event&) override;
@@ -43,7 +45,9 @@ class PenaltyShootoutRule : public SoccerRule {
 class BallOutRule : public SoccerRule {
   SPARK_CLASS(BallOutRule, SoccerRule)
  public:
-  static void describe(Description<BallOutRule>& d) { d.doc("The ball leaves the field: goal kick, corner or kick-in."); }
+  static void describe(Description<BallOutRule>& d) {
+    d.doc("The ball leaves the field: goal kick, corner or kick-in.");
+  }
 
  private:
   void judge(const Event&) override;

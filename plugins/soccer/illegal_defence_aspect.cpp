@@ -15,7 +15,8 @@ void IllegalDefenceAspect::judgePlay(const Event&) {
   for (Inside& i : were_) i.was = i.is;
 }
 
-/// Of those who just came in the farthest from the goal; of all when the goalie came, or nobody. -1: there are only goalies.
+/// Of those who just came in the farthest from the goal; of all when the goalie came, or nobody. -1: there are only
+/// goalies.
 int IllegalDefenceAspect::guilty(Side side) const {
   const Vec3 goal(-direction(side) * settings().fieldLength / 2, 0, 0);
   int found = -1;

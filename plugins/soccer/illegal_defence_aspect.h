@@ -4,12 +4,14 @@
 
 namespace spark {
 
-/// At most MaxPlayersInsideOwnArea of a team in its own penalty area: who just came has to leave, for a goalie the player farthest from
-/// the goal.
+/// At most MaxPlayersInsideOwnArea of a team in its own penalty area: who just came has to leave, for a goalie the
+/// player farthest from the goal.
 class IllegalDefenceAspect : public FoulAspect {
   SPARK_CLASS(IllegalDefenceAspect, FoulAspect)
  public:
-  static void describe(Description<IllegalDefenceAspect>& d) { d.doc("Being one too many in the own penalty area is a foul."); }
+  static void describe(Description<IllegalDefenceAspect>& d) {
+    d.doc("Being one too many in the own penalty area is a foul.");
+  }
 
  protected:
   void judgePlay(const Event& event) override;

@@ -5,8 +5,9 @@
 
 namespace spark {
 
-/// `(init (unum 7)(teamname A))`: takes the agent into a team and puts it at the team's next start position. Refused quietly for the agent,
-/// with one line in the log: without a team it then falls down in the middle of the field, as it always did (protocol section 1.6).
+/// `(init (unum 7)(teamname A))`: takes the agent into a team and puts it at the team's next start position. Refused
+/// quietly for the agent, with one line in the log: without a team it then falls down in the middle of the field, as it
+/// always did (protocol section 1.6).
 class InitEffector : public Effector {
   SPARK_CLASS(InitEffector, Effector)
  public:
@@ -35,14 +36,18 @@ class InitEffector : public Effector {
     AgentState* state = match_.state();
     AgentAspect* agent = match_.agent();
     if (!game || !state || !agent || !game->pitch().ready()) {
-      if (mayTell()) kernel().log().warning("{}: init refused: it needs an AgentState in the robot and soccer's rules below game control", path());
+      if (mayTell())
+        kernel().log().warning(
+            "{}: init refused: it needs an AgentState in the robot and soccer's rules below game control", path());
       return;
     }
     const bool first = state->side() == soccer::Side::none;
     if (const std::string problem = refusal(*game, *state); !problem.empty()) {
       if (mayTell() && game->mayTell()) kernel().log().warning("{}: init refused: {}", agent->path(), problem);
     } else {
-      if (mayTell() && game->mayTell()) kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_, soccer::sideName(state->side()), state->unum());
+      if (mayTell() && game->mayTell())
+        kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_,
+                            soccer::sideName(state->side()), state->unum());
       dress(*agent, state->side(), state->unum());
       if (auto* scene = game->pitch().scene()) scene->markModified();
     }
@@ -52,7 +57,8 @@ class InitEffector : public Effector {
 
   /// Takes the agent into the team; returns "" or why it cannot be.
   std::string refusal(GameStateAspect& game, AgentState& state) const {
-    if (state.side() != soccer::Side::none && state.team() == team_ && (unum_ == 0 || unum_ == state.unum())) return "it plays already";
+    if (state.side() != soccer::Side::none && state.team() == team_ && (unum_ == 0 || unum_ == state.unum()))
+      return "it plays already";
     return game.join(state, team_, unum_);
   }
 
@@ -66,7 +72,8 @@ class InitEffector : public Effector {
   /// An agent that sends init in every cycle does not fill the log.
   bool mayTell() {
     if (lines_ == kMostLines) return false;
-    if (++lines_ == kMostLines) kernel().log().warning("{}: it sends init again and again; what becomes of it is told no more", path());
+    if (++lines_ == kMostLines)
+      kernel().log().warning("{}: it sends init again and again; what becomes of it is told no more", path());
     return true;
   }
 

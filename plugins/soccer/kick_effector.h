@@ -12,13 +12,17 @@ class KickEffector : public Effector {
  public:
   static void describe(Description<KickEffector>& d) {
     using K = KickEffector;
-    d.doc("Kicks the ball away: (kick elevation power), deg and 1..maxPower. A kick lasts some steps; another one meanwhile is ignored.");
+    d.doc(
+        "Kicks the ball away: (kick elevation power), deg and 1..maxPower. A kick lasts some steps; another one "
+        "meanwhile is ignored.");
     d.property("kickMargin", &K::margin_).unit("m").min(0).doc("So near the surfaces of player and ball must be.");
     d.property("forceFactor", &K::forceFactor_).unit("N").min(0).doc("Force per power.");
     d.property("torqueFactor", &K::torqueFactor_).unit("m").min(0).doc("Torque per horizontal force, times 2 pi.");
     d.property("steps", &K::steps_).min(1).doc("So many steps a kick lasts.");
     d.property("maxPower", &K::maxPower_).unit("1").min(1).doc("Greatest power.");
-    d.method("setAngleRange", &K::setAngleRange).parameters({"least [deg]", "greatest [deg]"}).doc("Range of elevations.");
+    d.method("setAngleRange", &K::setAngleRange)
+        .parameters({"least [deg]", "greatest [deg]"})
+        .doc("Range of elevations.");
     d.method("setNoiseParams", &K::setNoise)
         .parameters({"force [power]", "theta [rad]", "phi at the ends [deg]", "phi in the middle [deg]"})
         .doc("Standard deviations of power, direction, and elevation.");
@@ -48,7 +52,9 @@ class KickEffector : public Effector {
   }
 
  private:
-  void setAngleRange(double least, double greatest) { leastAngle_ = std::min(least, greatest), greatestAngle_ = std::max(least, greatest); }
+  void setAngleRange(double least, double greatest) {
+    leastAngle_ = std::min(least, greatest), greatestAngle_ = std::max(least, greatest);
+  }
   void setNoise(double force, double theta, double phiEnd, double phiMid) {
     sigmaForce_ = force, sigmaTheta_ = theta, sigmaPhiEnd_ = phiEnd, sigmaPhiMid_ = phiMid;
   }
@@ -73,7 +79,8 @@ class KickEffector : public Effector {
     const double theta = std::atan2(way.y(), way.x()) + noise(sigmaTheta_);
     const double phi = degToRad(noisyElevation());
     const double power = std::clamp(power_, 1.0, maxPower_) + noise(sigmaForce_);
-    force_ = forceFactor_ * power * Vec3(std::cos(phi) * std::cos(theta), std::cos(phi) * std::sin(theta), std::sin(phi));
+    force_ =
+        forceFactor_ * power * Vec3(std::cos(phi) * std::cos(theta), std::cos(phi) * std::sin(theta), std::sin(phi));
     stepsLeft_ = steps_;
   }
 

@@ -22,7 +22,8 @@ void KickOffRule::earnRightToScore() {
   const Side kicked = referee().kickOffSide();
   if (kicked == Side::none || !ball().touched()) return;
   const Vec3& b = ball().position();
-  if (ball().last().side != kicked || std::hypot(b.x(), b.y()) > settings().freeKickDistance) referee().setKickOffSide(Side::none);
+  if (ball().last().side != kicked || std::hypot(b.x(), b.y()) > settings().freeKickDistance)
+    referee().setKickOffSide(Side::none);
 }
 
 }  // namespace spark

@@ -8,14 +8,16 @@ namespace spark {
 class BeforeKickOffRule : public SoccerRule {
   SPARK_CLASS(BeforeKickOffRule, SoccerRule)
  public:
-  static void describe(Description<BeforeKickOffRule>& d) { d.doc("Before the kick-off: the ball is held, teams stay in their halves."); }
+  static void describe(Description<BeforeKickOffRule>& d) {
+    d.doc("Before the kick-off: the ball is held, teams stay in their halves.");
+  }
 
  private:
   void judge(const Event&) override;
 };
 
-/// KickOff_X: the others stay away from the ball; the first touch starts the play. The team that kicked off may not score before an
-/// opponent touched the ball, or one of its own outside of the centre circle.
+/// KickOff_X: the others stay away from the ball; the first touch starts the play. The team that kicked off may not
+/// score before an opponent touched the ball, or one of its own outside of the centre circle.
 class KickOffRule : public SoccerRule {
   SPARK_CLASS(KickOffRule, SoccerRule)
  public:

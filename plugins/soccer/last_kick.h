@@ -4,7 +4,8 @@
 
 namespace spark::soccer {
 
-/// Who took the last restart, as long as nobody else has touched the ball since: double touches and goals straight from a kick.
+/// Who took the last restart, as long as nobody else has touched the ball since: double touches and goals straight from
+/// a kick.
 class LastKick {
  public:
   /// The restart was taken with this touch.

@@ -6,8 +6,8 @@
 
 namespace spark {
 
-/// What an effector or perceptor needs of the match, found again when the shape of the tree changed. One object each; refresh() and the
-/// pointers are safe in the sense phase, player() is for the simulation's thread.
+/// What an effector or perceptor needs of the match, found again when the shape of the tree changed. One object each;
+/// refresh() and the pointers are safe in the sense phase, player() is for the simulation's thread.
 class MatchLookup {
  public:
   /// What is missing is nullptr.

@@ -10,7 +10,9 @@ namespace spark {
 class GameStatePerceptor : public Perceptor {
   SPARK_CLASS(GameStatePerceptor, Perceptor)
  public:
-  static void describe(Description<GameStatePerceptor>& d) { d.doc("The state of the match: (GS (sl n) (sr n) (t s) (pm mode))."); }
+  static void describe(Description<GameStatePerceptor>& d) {
+    d.doc("The state of the match: (GS (sl n) (sr n) (t s) (pm mode)).");
+  }
   void sense(Predicates& out, const Event&) override {
     match_.refresh(*this);
     const GameStateAspect* game = match_.game();
@@ -31,7 +33,8 @@ class GameStatePerceptor : public Perceptor {
   }
 
  private:
-  /// `(k left) (ti ((1 penalty_none 0.000)) ())`: a player without a penalty has minus the time of play left, as in the installed base.
+  /// `(k left) (ti ((1 penalty_none 0.000)) ())`: a player without a penalty has minus the time of play left, as in the
+  /// installed base.
   static void tellMore(Predicates& out, const GameStateAspect& game, int teamSize) {
     out.pair("k", sideName(game.halfKickOff()));
     out.open("ti");
@@ -51,7 +54,9 @@ class HearPerceptor : public Perceptor {
   SPARK_CLASS(HearPerceptor, Perceptor)
  public:
   static void describe(Description<HearPerceptor>& d) {
-    d.doc("What was said in this cycle: (hear team time direction message); direction in deg from the team's own x axis.");
+    d.doc(
+        "What was said in this cycle: (hear team time direction message); direction in deg from the team's own x "
+        "axis.");
   }
   void sense(Predicates& out, const Event&) override {
     match_.refresh(*this);
@@ -83,13 +88,18 @@ class AgentStatePerceptor : public Perceptor {
   SPARK_CLASS(AgentStatePerceptor, Perceptor)
  public:
   AgentStatePerceptor() { interval_ = 10; }
-  static void describe(Description<AgentStatePerceptor>& d) { d.doc("Where the agent looks, its battery and its temperature."); }
+  static void describe(Description<AgentStatePerceptor>& d) {
+    d.doc("Where the agent looks, its battery and its temperature.");
+  }
   void sense(Predicates& out, const Event&) override {
     match_.refresh(*this);
     const AgentState* s = match_.state();
     if (!s) return;
     out.open("AgentState");
-    out.open("pan_tilt").add(static_cast<int>(std::lround(s->pan()))).add(static_cast<int>(std::lround(s->tilt()))).close();
+    out.open("pan_tilt")
+        .add(static_cast<int>(std::lround(s->pan())))
+        .add(static_cast<int>(std::lround(s->tilt())))
+        .close();
     out.pair("battery", s->battery());
     out.pair("temp", match_.settings() && match_.settings()->constantTemperature ? kTemperature : s->temperature());
     out.close();

@@ -36,8 +36,10 @@ void GameStateItem::contribute(Environment& env) {
   if (!game || !match_.settings()) return;
   field(env, *match_.settings());
   env.put(EnvPolicy::always, "time", game->time());
-  if (!game->teamName(Side::left).empty()) env.put(EnvPolicy::change, "team_left", std::string_view(game->teamName(Side::left)));
-  if (!game->teamName(Side::right).empty()) env.put(EnvPolicy::change, "team_right", std::string_view(game->teamName(Side::right)));
+  if (!game->teamName(Side::left).empty())
+    env.put(EnvPolicy::change, "team_left", std::string_view(game->teamName(Side::left)));
+  if (!game->teamName(Side::right).empty())
+    env.put(EnvPolicy::change, "team_right", std::string_view(game->teamName(Side::right)));
   env.put(EnvPolicy::change, "half", game->half());
   env.put(EnvPolicy::change, "score_left", game->score(Side::left));
   env.put(EnvPolicy::change, "score_right", game->score(Side::right));
@@ -52,8 +54,10 @@ void GameStateItem::contribute(Environment& env) {
 void GameStateItem::scoreWaits(Environment& env, const GameStateAspect& game) {
   const PassModeRule* pass = match_.referee() ? match_.referee()->passMode() : nullptr;
   if (!pass || game.mode() != soccer::PlayMode::playOn) return;
-  if (const double left = pass->scoreWait(Side::left); left > 0) env.put(EnvPolicy::always, "pass_mode_score_wait_left", left);
-  if (const double right = pass->scoreWait(Side::right); right > 0) env.put(EnvPolicy::always, "pass_mode_score_wait_right", right);
+  if (const double left = pass->scoreWait(Side::left); left > 0)
+    env.put(EnvPolicy::always, "pass_mode_score_wait_left", left);
+  if (const double right = pass->scoreWait(Side::right); right > 0)
+    env.put(EnvPolicy::always, "pass_mode_score_wait_right", right);
 }
 
 void SoccerRuleItem::contribute(Environment& env) {

@@ -13,7 +13,8 @@ class GameStateItem : public Node, public IMonitorItem {
  public:
   static void describe(Description<GameStateItem>& d) {
     d.doc("Tells monitors field, time, teams, half, score and play mode.");
-    d.property("areas", &GameStateItem::areas_).doc("Tells the size of the penalty areas, too: newer monitors draw the lines of any field with it.");
+    d.property("areas", &GameStateItem::areas_)
+        .doc("Tells the size of the penalty areas, too: newer monitors draw the lines of any field with it.");
     d.implements<IMonitorItem>();
   }
   void contribute(Environment& env) override;

@@ -58,7 +58,8 @@ void OffsideAspect::mark(const soccer::Pitch& pitch, Side side, int toucher) {
   }
   const double line = std::max({0.0, towards * ball_->position().x(), second});
   for (const soccer::Player& p : pitch.players())
-    if (p.side() == side && p.state->unum() != toucher && p.state->unum() <= GameStateAspect::kTeamSize) marked_[p.state->unum()] = towards * p.position().x() > line;
+    if (p.side() == side && p.state->unum() != toucher && p.state->unum() <= GameStateAspect::kTeamSize)
+      marked_[p.state->unum()] = towards * p.position().x() > line;
 }
 
 std::vector<int> OffsideAspect::markedUnums() const {

@@ -8,9 +8,9 @@ namespace spark {
 
 /// Offside, as a rule of its own: one line of the config adds it.
 ///
-/// At each new touch in PlayOn the toucher's team-mates in an offside position are marked: in the opponents' half, nearer to their goal
-/// line than the ball and than the second-last opponent. A marked player's touch before an opponent's gives offside_X (X: his side), and
-/// after the restart's pause the opponents have a free kick at that spot.
+/// At each new touch in PlayOn the toucher's team-mates in an offside position are marked: in the opponents' half,
+/// nearer to their goal line than the ball and than the second-last opponent. A marked player's touch before an
+/// opponent's gives offside_X (X: his side), and after the restart's pause the opponents have a free kick at that spot.
 class OffsideAspect : public SoccerControlAspect {
   SPARK_CLASS(OffsideAspect, SoccerControlAspect)
  public:

@@ -5,7 +5,8 @@
 
 namespace spark {
 
-/// `(pass)`: asks for pass mode; granted when the ball rests at the player's feet and no opponent is near (protocol section 2.5).
+/// `(pass)`: asks for pass mode; granted when the ball rests at the player's feet and no opponent is near (protocol
+/// section 2.5).
 class PassEffector : public Effector {
   SPARK_CLASS(PassEffector, Effector)
  public:

@@ -39,7 +39,8 @@ void PassModeRule::forget() {
 void PassModeRule::passing() {
   const SoccerSettings& s = settings();
   if (ball().touched() || game().modeReached(s.passModeDuration)) return game().setMode(PlayMode::playOn);
-  pitch().repel(opponent(side()), ball().position(), s.passModeMinOppBallDist, 1.1 * s.passModeMinOppBallDist, random());
+  pitch().repel(opponent(side()), ball().position(), s.passModeMinOppBallDist, 1.1 * s.passModeMinOppBallDist,
+                random());
   Team& t = team(side());
   t.lastActive = pitch().now();
   t.spot = ball().position();
@@ -73,7 +74,8 @@ void PassModeRule::request(const soccer::Player& player) {
 bool PassModeRule::mayPass(const soccer::Player& player) const {
   const SoccerSettings& s = settings();
   const Side mine = player.side();
-  if (game().mode() != PlayMode::playOn || pitch().now() - team(mine).lastActive < s.passModeRetryWaitTime - kRounding) return false;
+  if (game().mode() != PlayMode::playOn || pitch().now() - team(mine).lastActive < s.passModeRetryWaitTime - kRounding)
+    return false;
   if (ball().touchedBy(mine) || pitch().ball()->state().linearVelocity.norm() > s.passModeMaxBallSpeed) return false;
   const Vec3 spot = pitch().ballPosition();
   const auto distances = [&](const soccer::Player& p) {
@@ -84,7 +86,8 @@ bool PassModeRule::mayPass(const soccer::Player& player) const {
   for (const soccer::Player& p : pitch().players()) {
     if (p.side() != opponent(mine) || !p.torso) continue;
     const auto [theirs, theirsBefore] = distances(p);
-    if (theirs < s.passModeMinOppBallDist || (theirsBefore >= 0 && theirsBefore < s.passModeMinOppBallDist)) return false;
+    if (theirs < s.passModeMinOppBallDist || (theirsBefore >= 0 && theirsBefore < s.passModeMinOppBallDist))
+      return false;
   }
   return true;
 }
@@ -92,7 +95,8 @@ bool PassModeRule::mayPass(const soccer::Player& player) const {
 void PassModeRule::noteDistances() {
   for (Team& t : teams_) t.ballDistance.fill(Team::kUnknown);
   for (const soccer::Player& p : pitch().players())
-    if (p.side() != Side::none && p.torso && p.state->unum() <= GameStateAspect::kTeamSize) team(p.side()).ballDistance[p.state->unum()] = groundDistance(p.position(), ball().position());
+    if (p.side() != Side::none && p.torso && p.state->unum() <= GameStateAspect::kTeamSize)
+      team(p.side()).ballDistance[p.state->unum()] = groundDistance(p.position(), ball().position());
 }
 
 void PassModeRule::saveState(StateWriter& out) const {

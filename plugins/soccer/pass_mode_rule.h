@@ -6,9 +6,9 @@
 
 namespace spark {
 
-/// Pass mode (protocol sections 2.5, 6.3, 6.4): opponents are kept away from a resting ball for a while; in return the team may not score
-/// for PassModeScoreWaitTime. The ban ends early when two team-mates have touched the ball since, and one of them after it had gone
-/// PassModeMinOppBallDist from where it lay.
+/// Pass mode (protocol sections 2.5, 6.3, 6.4): opponents are kept away from a resting ball for a while; in return the
+/// team may not score for PassModeScoreWaitTime. The ban ends early when two team-mates have touched the ball since,
+/// and one of them after it had gone PassModeMinOppBallDist from where it lay.
 class PassModeRule : public SoccerRule {
   SPARK_CLASS(PassModeRule, SoccerRule)
  public:
@@ -34,8 +34,9 @@ class PassModeRule : public SoccerRule {
     int toucher = 0;             ///< number of the first who touched the ball since
     bool twoTouched = false;
     static constexpr double kUnknown = -1;  ///< m
-    Vec3 spot = Vec3::Zero();                                                ///< where the ball was in pass mode [m]
-    std::array<double, GameStateAspect::kTeamSize + 1> ballDistance{};       ///< of each player at the last judging [m]; < 0: unknown
+    Vec3 spot = Vec3::Zero();               ///< where the ball was in pass mode [m]
+    std::array<double, GameStateAspect::kTeamSize + 1>
+        ballDistance{};  ///< of each player at the last judging [m]; < 0: unknown
     double before(int unum) const { return unum <= GameStateAspect::kTeamSize ? ballDistance[unum] : kUnknown; }
   };
   Team& team(Side s) { return teams_[s == Side::right]; }

@@ -6,9 +6,11 @@
 
 namespace spark {
 
-/// Carries out what fouls bring, and tells monitors. The last of the soccer aspects: fouls before it call players in the same cycle.
+/// Carries out what fouls bring, and tells monitors. The last of the soccer aspects: fouls before it call players in
+/// the same cycle.
 ///
-///     sendOff:    called -> held in the air for FoulHoldTime, rising (a foul record in each cycle) -> beside the field -> free
+///     sendOff:    called -> held in the air for FoulHoldTime, rising (a foul record in each cycle)
+///                        -> beside the field -> free
 ///     moveAside:  called -> moved (one foul record) -> free
 ///
 /// While the match pauses everybody is free.
@@ -31,7 +33,9 @@ class PenaltyAspect : public SoccerControlAspect {
   /// The player (an index) has no penalty to serve: only then he may be called.
   bool isFree(std::size_t player) const { return records_[player].sentence == Sentence::none; }
   /// He is held, and then placed outside.
-  void sendOff(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul) { call(pitch, player, foul, Sentence::off, Vec3::Zero()); }
+  void sendOff(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul) {
+    call(pitch, player, foul, Sentence::off, Vec3::Zero());
+  }
   /// He is moved to a safe place near `target` [m], at once.
   void moveAside(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul, const Vec3& target) {
     call(pitch, player, foul, Sentence::aside, target);

@@ -9,12 +9,13 @@
 namespace spark::soccer {
 
 Bounds Player::bounds() const {
-  constexpr std::size_t kAhead = 3;                     // colliders
+  constexpr std::size_t kAhead = 3;                      // colliders
   constexpr std::size_t kBefore = 192, kCollider = 576;  // bytes around an interface that are looked at
   Bounds all;
   Vec3 low, high;
   for (std::size_t i = 0; i < colliders.size(); ++i) {
-    if (i + kAhead < colliders.size()) prefetch(reinterpret_cast<const char*>(colliders[i + kAhead]) - kBefore, kCollider);
+    if (i + kAhead < colliders.size())
+      prefetch(reinterpret_cast<const char*>(colliders[i + kAhead]) - kBefore, kCollider);
     colliders[i]->bounds(low, high);
     all.low = all.low.cwiseMin(low);
     all.high = all.high.cwiseMax(high);
@@ -24,8 +25,8 @@ Bounds Player::bounds() const {
 
 namespace {
 
-// Moves are computed as the installed base computes them, in single precision and from left to right: where a robot stands decides every
-// digit of what happens to it later.
+// Moves are computed as the installed base computes them, in single precision and from left to right: where a robot
+// stands decides every digit of what happens to it later.
 
 Eigen::Matrix3f product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
   Eigen::Matrix3f out;
@@ -129,12 +130,14 @@ void Pitch::findPlayers() {
   players_ = std::move(now);
   byAgent_.clear();
   for (const Player& p : players_) byAgent_.emplace_back(p.agent, byAgent_.size());
-  std::sort(byAgent_.begin(), byAgent_.end(), [](const auto& a, const auto& b) { return std::less<>()(a.first, b.first); });
+  std::sort(byAgent_.begin(), byAgent_.end(),
+            [](const auto& a, const auto& b) { return std::less<>()(a.first, b.first); });
   order_.reserve(players_.size());
 }
 
 std::size_t Pitch::indexOf(const Leaf* agent) const {
-  const auto it = std::lower_bound(byAgent_.begin(), byAgent_.end(), agent, [](const auto& known, const Leaf* l) { return std::less<>()(known.first, l); });
+  const auto it = std::lower_bound(byAgent_.begin(), byAgent_.end(), agent,
+                                   [](const auto& known, const Leaf* l) { return std::less<>()(known.first, l); });
   return it != byAgent_.end() && it->first == agent ? it->second : players_.size();
 }
 
@@ -233,7 +236,8 @@ void Pitch::clearOpponentHalf(Side side, double circle, double distance, RandomS
   shuffled(side, random, [&](const Player& p) {
     const Bounds b = p.bounds();
     if (!opponentHalf(side).touches(b)) return;
-    const double farX = std::max(std::abs(b.low.x()), std::abs(b.high.x())), farY = std::max(std::abs(b.low.y()), std::abs(b.high.y()));
+    const double farX = std::max(std::abs(b.low.x()), std::abs(b.high.x())),
+                 farY = std::max(std::abs(b.low.y()), std::abs(b.high.y()));
     if (std::hypot(farX, farY) < circle) return;
     Vec3 target = p.position();
     target.x() = -direction(side) * distance;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What rules and effectors see of the match: ball, goals, players and the settings, looked up once per shape of the tree.
+/// What rules and effectors see of the match: ball, goals, players and the settings, looked up once per shape of the
+/// tree.
 
 #include <vector>
 
@@ -26,7 +27,9 @@ struct Bounds {
 /// A rectangle on the ground.
 struct Area {
   double minX = 0, minY = 0, maxX = 0, maxY = 0;
-  bool contains(double x, double y, double pad = 0) const { return x > minX - pad && x < maxX + pad && y > minY - pad && y < maxY + pad; }
+  bool contains(double x, double y, double pad = 0) const {
+    return x > minX - pad && x < maxX + pad && y > minY - pad && y < maxY + pad;
+  }
   /// As Bounds of any height.
   bool touches(const Bounds& b) const {
     return !b.empty() && b.high.x() > minX && b.low.x() < maxX && b.high.y() > minY && b.low.y() < maxY;
@@ -37,7 +40,7 @@ struct Area {
 struct Player {
   AgentAspect* agent = nullptr;  ///< the outermost aspect
   AgentState* state = nullptr;
-  std::uint64_t changedAt = 0;   ///< the agent's, when its parts were looked up
+  std::uint64_t changedAt = 0;  ///< the agent's, when its parts were looked up
   IRigidBody* torso = nullptr;  ///< first body of the innermost aspect; nullptr: a robot without bodies
   std::vector<IRigidBody*> bodies;
   std::vector<ICollider*> colliders;
@@ -91,14 +94,16 @@ class Pitch {
   Area penaltyArea(Side side) const;
   /// Everything on the other side of the centre line, seen from `side`.
   Area opponentHalf(Side side) const;
-  /// Outside of both penalty areas: an inner point comes to the area's front corner on its side; y stays on the field, z as it is.
+  /// Outside of both penalty areas: an inner point comes to the area's front corner on its side; y stays on the field,
+  /// z as it is.
   Vec3 freeBallPosition(const Vec3& wanted) const;
 
   /// s: the simulated clock now.
   double now() const { return simulation_ ? simulation_->time() : 0; }
 
-  // What the referee does to players (protocol section 6.6). Orientations stay, velocities are taken away, and the time is noted: rules
-  // that spare who was just moved ask movedWithin(player, 1.0). Bodies are moved at once, transforms follow at the next place phase.
+  // What the referee does to players (protocol section 6.6). Orientations stay, velocities are taken away, and the time
+  // is noted: rules that spare who was just moved ask movedWithin(player, 1.0). Bodies are moved at once, transforms
+  // follow at the next place phase.
   /// Moves to `target` or the first safe place near it. `avoidBall`: not beside the ball either.
   void moveSafely(const Player& player, const Vec3& target, bool avoidBall) const;
   /// Moves to `target` whoever stands there, as for a player who is held in the air.
@@ -116,13 +121,15 @@ class Pitch {
     each(first);
     each(opponent(first));
   }
-  /// Moves away who touches the sphere: `distance` towards his own end, or in y where that would be behind his goal line.
+  /// Moves away who touches the sphere: `distance` towards his own end, or in y where that would be behind his goal
+  /// line.
   void clearSphere(Side side, const Vec3& centre, double radius, double distance, RandomStream& random) const;
   /// As clearSphere for one player.
   void clearSphere(const Player& player, const Vec3& centre, double radius, double distance) const;
   /// Moves out of a rectangle, `distance` beyond its edge on the team's own side.
   void clearArea(Side side, const Area& area, double distance, RandomStream& random) const;
-  /// Out of the opponents' half, to `distance` on the own side, unless all of him is within `circle` of the centre (0: no circle).
+  /// Out of the opponents' half, to `distance` on the own side, unless all of him is within `circle` of the centre (0:
+  /// no circle).
   void clearOpponentHalf(Side side, double circle, double distance, RandomStream& random) const;
   /// To where they may stand at a kick-off of `side`.
   void clearForKickOff(Side side, RandomStream& random) const;
@@ -144,7 +151,8 @@ class Pitch {
   IRigidBody* ball_ = nullptr;
   ICollisionRecorder *ballRecorder_ = nullptr, *leftGoal_ = nullptr, *rightGoal_ = nullptr;
   std::vector<Player> players_;
-  std::vector<std::pair<const Leaf*, std::size_t>> byAgent_;  ///< players by the address of their agent, to look up only
+  std::vector<std::pair<const Leaf*, std::size_t>>
+      byAgent_;  ///< players by the address of their agent, to look up only
   mutable std::vector<const Player*> order_;
   mutable SafePlace safePlace_;
 };

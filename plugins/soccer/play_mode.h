@@ -11,12 +11,15 @@ namespace spark::soccer {
 /// A team's half, and thereby the team: left plays towards +x. The numbers are those of the monitor protocol.
 enum class Side { none = 0, left = 1, right = 2 };
 constexpr Side opponent(Side s) { return s == Side::left ? Side::right : s == Side::right ? Side::left : Side::none; }
-/// +1 for left, -1 for right: multiplies x and y to see the field as the team does. Teams attack towards +x of their own view.
+/// +1 for left, -1 for right: multiplies x and y to see the field as the team does. Teams attack towards +x of their
+/// own view.
 constexpr double direction(Side s) { return s == Side::right ? -1.0 : 1.0; }
 /// "left", "right", "none": as agents read them.
 constexpr const char* sideName(Side s) { return s == Side::left ? "left" : s == Side::right ? "right" : "none"; }
 /// "Left" and "Right" as trainers write them; everything else is none.
-constexpr Side sideFromTrainer(std::string_view text) { return text == "Left" ? Side::left : text == "Right" ? Side::right : Side::none; }
+constexpr Side sideFromTrainer(std::string_view text) {
+  return text == "Left" ? Side::left : text == "Right" ? Side::right : Side::none;
+}
 
 /// The order is the number on the wire.
 enum class PlayMode {

@@ -6,8 +6,8 @@
 
 namespace spark {
 
-/// Who touches whom, and who the ball, in this cycle: what the colliders' AgentCollisionHandlers tell during physics, put together for the
-/// fouls that come after it. Players without a team count as nobody.
+/// Who touches whom, and who the ball, in this cycle: what the colliders' AgentCollisionHandlers tell during physics,
+/// put together for the fouls that come after it. Players without a team count as nobody.
 class PlayerContactAspect : public SoccerControlAspect {
   SPARK_CLASS(PlayerContactAspect, SoccerControlAspect)
  public:
@@ -28,8 +28,11 @@ class PlayerContactAspect : public SoccerControlAspect {
     rule(event);
   }
 
-  /// A collider of `self` meets one of `other`, nullptr: the ball's. During physics. The same point may be told from both sides.
-  void add(const AgentAspect& self, const AgentAspect* other, const Vec3& point) { told_.push_back({&self, other, point}); }
+  /// A collider of `self` meets one of `other`, nullptr: the ball's. During physics. The same point may be told from
+  /// both sides.
+  void add(const AgentAspect& self, const AgentAspect* other, const Vec3& point) {
+    told_.push_back({&self, other, point});
+  }
 
   /// In the order in which their contacts were found.
   std::span<const Meeting> meetings() const { return meetings_; }

@@ -7,12 +7,13 @@
 
 namespace spark::soccer {
 
-/// One record for each player of the pitch, by his index there. A player keeps his record while he stays, a new one starts with T().
-/// T has save(StateWriter&) const and load(StateReader&).
+/// One record for each player of the pitch, by his index there. A player keeps his record while he stays, a new one
+/// starts with T(). T has save(StateWriter&) const and load(StateReader&).
 template <class T>
 class PlayerRecords {
  public:
-  /// Makes the records fit the players. To be called before they are used; costs a comparison while the tree's shape is the same.
+  /// Makes the records fit the players. To be called before they are used; costs a comparison while the tree's shape is
+  /// the same.
   void follow(const Pitch& pitch, std::uint64_t structureVersion) {
     if (version_ == structureVersion) return;
     version_ = structureVersion;

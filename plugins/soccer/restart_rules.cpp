@@ -34,7 +34,8 @@ void GoalKickRule::judge(const Event&) {
     kickedIn_ = game().modeChanges();
     referee().lastKick().taken(ball().last(), false);
   }
-  if (!area.contains(ball().position().x(), ball().position().y()) || !ball().onField()) game().setMode(PlayMode::playOn);
+  if (!area.contains(ball().position().x(), ball().position().y()) || !ball().onField())
+    game().setMode(PlayMode::playOn);
 }
 
 void GoalKickRule::saveState(StateWriter& out) const {
@@ -49,10 +50,12 @@ void GoalKickRule::loadState(StateReader& in) {
 
 void DropBallRule::judge(const Event&) {
   // At a kick-off nobody holds the ball: it is dropped where it lies, at its height.
-  if (in(PlayMode::kickOffLeft) && game().modeReached(settings().ruleDropBallTime)) return referee().dropBall(pitch().ballPosition());
+  if (in(PlayMode::kickOffLeft) && game().modeReached(settings().ruleDropBallTime))
+    return referee().dropBall(pitch().ballPosition());
   for (const PlayMode restart : {PlayMode::kickInLeft, PlayMode::cornerKickLeft, PlayMode::goalKickLeft,
                                  PlayMode::freeKickLeft, PlayMode::directFreeKickLeft})
-    if (in(restart) && game().modeReached(settings().ruleDropBallTime)) return referee().dropBall(referee().kickPosition());
+    if (in(restart) && game().modeReached(settings().ruleDropBallTime))
+      return referee().dropBall(referee().kickPosition());
 }
 
 }  // namespace spark

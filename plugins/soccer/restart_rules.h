@@ -4,8 +4,8 @@
 
 namespace spark {
 
-/// What restarts have in common. Nothing happens for RuleKickInPauseTime; then opponents are cleared, the kicking team is pushed off the ball
-/// once, and the ball is pinned to the kick position until it is touched.
+/// What restarts have in common. Nothing happens for RuleKickInPauseTime; then opponents are cleared, the kicking team
+/// is pushed off the ball once, and the ball is pinned to the kick position until it is touched.
 class SetPieceRule : public SoccerRule {
   SPARK_CLASS(SetPieceRule, SoccerRule)
  public:

@@ -11,8 +11,8 @@ using soccer::writePoint;
 namespace {
 constexpr std::size_t kMostGlances = 512;
 
-/// Cuts a segment to what a camera that looks along y sees: y >= kTooNear and a window of the given half widths at y = 1.
-/// False when nothing is left.
+/// Cuts a segment to what a camera that looks along y sees: y >= kTooNear and a window of the given half widths at y
+/// = 1. False when nothing is left.
 bool clip(Vec3f& begin, Vec3f& end, float halfX, float halfZ) {
   const Vec3f from = begin, way = end - begin;
   float first = 0, last = 1;
@@ -45,7 +45,10 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
   d.implements<ISharedView>();
   d.implements<IEye>();
   d.on<&V::prepare>(phase::kPrepare);
-  d.property("range", &V::range_).unit("m").min(0).doc("Flags, goals, ball and players farther away are not seen, lines are; infinite by default.");
+  d.property("range", &V::range_)
+      .unit("m")
+      .min(0)
+      .doc("Flags, goals, ball and players farther away are not seen, lines are; infinite by default.");
   d.property("staticSenseAxis", &V::staticAxis_)
       .doc("Angles from the field's x axis as the team sees it, less pan and tilt; else in the head's frame.");
   d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
@@ -59,8 +62,12 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
   d.method("setViewCones", &V::setViewCones)
       .parameters({"horizontal [deg]", "vertical [deg]"})
       .doc("Full cones in the head's frame; half cones with static axes.");
-  d.method("setPanRange", &V::setPanRange).parameters({"low [deg]", "high [deg]"}).doc("How far it may be turned aside.");
-  d.method("setTiltRange", &V::setTiltRange).parameters({"low [deg]", "high [deg]"}).doc("How far it may be turned up and down.");
+  d.method("setPanRange", &V::setPanRange)
+      .parameters({"low [deg]", "high [deg]"})
+      .doc("How far it may be turned aside.");
+  d.method("setTiltRange", &V::setTiltRange)
+      .parameters({"low [deg]", "high [deg]"})
+      .doc("How far it may be turned up and down.");
   d.method("addNoise", &V::setNoise).parameters({"on"}).doc("Noise on or off.");
   d.method("setNoiseParams", &V::setNoiseParameters)
       .parameters({"distance [%]", "phi [deg]", "theta [deg]", "error [m]"})
@@ -89,8 +96,8 @@ bool RestrictedVisionPerceptor::inCone(const soccer::Polar& p) const {
   return std::abs(p.horizontal) <= cone_[0] / divisor && std::abs(p.vertical) <= cone_[1] / divisor;
 }
 
-/// True for most of what is outside of the cone, without an angle computed: sin(angle - half) > 0, with room for rounding. What it lets pass
-/// inCone judges.
+/// True for most of what is outside of the cone, without an angle computed: sin(angle - half) > 0, with room for
+/// rounding. What it lets pass inCone judges.
 bool RestrictedVisionPerceptor::isPlainlyOutside(const Vec3f& view) const {
   constexpr double kRounding = 1e-9;
   if (staticAxis_) return false;
@@ -143,7 +150,9 @@ void RestrictedVisionPerceptor::seeRobot(const Sights::Robot& robot, Predicates&
   bool seen = false;
   const auto begin = [&] {
     if (!std::exchange(seen, true))
-      out.open(robot.state->perceptName()).pair("team", std::string_view(robot.state->team())).pair("id", robot.state->unum());
+      out.open(robot.state->perceptName())
+          .pair("team", std::string_view(robot.state->team()))
+          .pair("id", robot.state->unum());
   };
   for (const Sights::Mark& part : outlook_.sights().partsOf(robot)) {
     if (!look(part.place, polar)) continue;
@@ -186,7 +195,8 @@ void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {
   const bool cheats = outlook_.settings() && outlook_.settings()->cheats;
   if (senseMyPos_ || cheats) writePoint(out, "mypos", soccer::seenBy(side(), here_));
   if ((senseMyOrien_ || cheats) && transform()) soccer::writeHeading(out, transform()->world(), side());
-  if (const Sights::Mark* ball = senseBallPos_ || cheats ? sights.ball() : nullptr) writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
+  if (const Sights::Mark* ball = senseBallPos_ || cheats ? sights.ball() : nullptr)
+    writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
   if (senseLine_ && (!outlook_.settings() || outlook_.settings()->fieldLinesSeen)) seeLines(out);
   out.close();
 }
@@ -230,7 +240,8 @@ Vec3f RestrictedVisionPerceptor::placeOf(double distance, double horizontalDeg, 
   outlook_.bring(*this, range_);
   const AgentState* s = outlook_.state();
   const double pan = s ? s->pan() : 0, tilt = s ? s->tilt() : 0;
-  return soccer::placeOf(*this) + soccer::seenBy(side(), soccer::pointOf({distance, horizontalDeg + pan, verticalDeg + tilt}));
+  return soccer::placeOf(*this) +
+         soccer::seenBy(side(), soccer::pointOf({distance, horizontalDeg + pan, verticalDeg + tilt}));
 }
 
 void RestrictedVisionPerceptor::sights(std::vector<Sight>& out) {
@@ -240,7 +251,8 @@ void RestrictedVisionPerceptor::sights(std::vector<Sight>& out) {
 
 void RestrictedVisionPerceptor::prepare(const Event&) {
   outlook_.refresh(*this);
-  if (const SoccerSettings* league = outlook_.settings(); league && league->visionInterval > 0) interval_ = league->visionInterval;
+  if (const SoccerSettings* league = outlook_.settings(); league && league->visionInterval > 0)
+    interval_ = league->visionInterval;
 }
 
 }  // namespace spark

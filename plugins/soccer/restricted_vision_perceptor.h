@@ -41,7 +41,9 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   void setNoise(bool on) { noise_.on = on; }
   bool noisy() const { return noise_.on; }
   std::vector<int> cones() const { return {cone_[0], cone_[1]}; }
-  void setNoiseParameters(double distance, double phi, double theta, double error) { noise_.set(distance, phi, theta, error); }
+  void setNoiseParameters(double distance, double phi, double theta, double error) {
+    noise_.set(distance, phi, theta, error);
+  }
   const RandomStream& randomState() const { return noise_.random; }
   void setRandomState(RandomStream r) { noise_.random = r; }
   soccer::Side side() const { return outlook_.state() ? outlook_.state()->side() : soccer::Side::none; }
@@ -60,9 +62,11 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   soccer::Outlook outlook_;
   soccer::VisionNoise noise_{*this};
   std::array<int, 2> cone_{90, 90}, pan_{-90, 90}, tilt_{-20, 20};
-  bool staticAxis_ = true, senseMyPos_ = false, senseMyOrien_ = false, senseBallPos_ = false, senseLine_ = false, senseLineName_ = false;
+  bool staticAxis_ = true, senseMyPos_ = false, senseMyOrien_ = false, senseBallPos_ = false, senseLine_ = false,
+       senseLineName_ = false;
   float range_ = soccer::Sights::kUnlimited;
-  /// What stood where in its view when it looked last: robots at rest see the same again, and angles are what seeing costs.
+  /// What stood where in its view when it looked last: robots at rest see the same again, and angles are what seeing
+  /// costs.
   struct Glance {
     Vec3f view = Vec3f::Constant(std::numeric_limits<float>::quiet_NaN());  ///< in the frame in which it looks [m]
     bool seen = false;
@@ -71,11 +75,11 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   std::vector<Glance> glances_;  ///< in the order of looking
   std::size_t glance_ = 0;       ///< the next one
   // while it looks
-  Vec3f here_ = Vec3f::Zero();                            ///< m
+  Vec3f here_ = Vec3f::Zero();  ///< m
   struct {
     double sin = 0, cos = 1;
-  } halfWidth_, halfHeight_;                              ///< of the cone
-  std::array<float, 2> window_{1, 1};                     ///< half width and height of what it sees, 1 m ahead
+  } halfWidth_, halfHeight_;           ///< of the cone
+  std::array<float, 2> window_{1, 1};  ///< half width and height of what it sees, 1 m ahead
 };
 
 }  // namespace spark

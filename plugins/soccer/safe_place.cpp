@@ -43,7 +43,8 @@ void SafePlace::propose(int i, int j) {
 
 /// Takes it out. Among equals the first proposed.
 SafePlace::Candidate SafePlace::nearest() {
-  const auto at = std::min_element(open_.begin(), open_.end(), [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
+  const auto at = std::min_element(open_.begin(), open_.end(),
+                                   [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
   const Candidate c = *at;
   open_.erase(at);
   return c;
@@ -60,9 +61,11 @@ bool SafePlace::isSafe(const Pitch& pitch, const Player& player, double x, doubl
   }
   if (std::abs(x) > s.fieldLength / 2 && std::abs(y) < s.goalWidth / 2 + s.agentRadius) return false;
   const Vec3 ball = pitch.ballPosition();
-  if (avoidBall && std::hypot(x - ball.x(), y - ball.y()) < std::max(2 * s.agentRadius, s.passModeMinOppBallDist)) return false;
+  if (avoidBall && std::hypot(x - ball.x(), y - ball.y()) < std::max(2 * s.agentRadius, s.passModeMinOppBallDist))
+    return false;
   const Vec3 here(x, y, s.agentRadius);
-  return std::none_of(others_.begin(), others_.end(), [&](const Bounds& b) { return b.touchesSphere(here, s.agentRadius); });
+  return std::none_of(others_.begin(), others_.end(),
+                      [&](const Bounds& b) { return b.touchesSphere(here, s.agentRadius); });
 }
 
 }  // namespace spark::soccer

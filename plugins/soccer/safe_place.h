@@ -12,16 +12,17 @@ struct Bounds;
 
 /// The safe-reposition search of protocol section 6.6: where a player may be put without harm to others.
 ///
-/// A place is refused that would bring one player too many into the own penalty area, that lies behind a goal, that is too near to the
-/// ball, or where somebody stands. Then places one agent's radius further towards the own end and further from the middle are tried, the
-/// nearest to the player first; each refused one leads to its two neighbours:
+/// A place is refused that would bring one player too many into the own penalty area, that lies behind a goal, that is
+/// too near to the ball, or where somebody stands. Then places one agent's radius further towards the own end and
+/// further from the middle are tried, the nearest to the player first; each refused one leads to its two neighbours:
 ///
 ///     target  x  x  o        x: refused, o: waits its turn
 ///        x    x  o
 ///        o    o               each step is AgentRadius
 class SafePlace {
  public:
-  /// `target` or the first safe place near it; `target` when MaxNumSafeRepositionAttempts places were refused. z is kept.
+  /// `target` or the first safe place near it; `target` when MaxNumSafeRepositionAttempts places were refused. z is
+  /// kept.
   Vec3 find(const Pitch& pitch, const Player& player, const Vec3& target, bool avoidBall);
 
  private:

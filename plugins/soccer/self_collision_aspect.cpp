@@ -43,7 +43,8 @@ void SelfCollisionAspect::lookUp() {
   version_ = kernel().structureVersion();
   std::vector<Robot> now;
   for (const soccer::Player& p : players()) {
-    const auto before = std::find_if(robots_.begin(), robots_.end(), [&](const Robot& r) { return r.agent == p.agent->number(); });
+    const auto before =
+        std::find_if(robots_.begin(), robots_.end(), [&](const Robot& r) { return r.agent == p.agent->number(); });
     if (before != robots_.end() && before->changedAt == p.changedAt) {
       now.push_back(std::move(*before));
       continue;
@@ -66,7 +67,8 @@ SelfCollisionAspect::Robot SelfCollisionAspect::dissect(const soccer::Player& pl
   for (IRobotBox* box : boxes) {
     Box& b = robot.boxes.emplace_back(Box{box, {}, (box->boxLengths() / 2).cast<float>(), {}});
     for (std::size_t k = 0; k < effectors.size(); ++k)
-      if (const auto& names = box->freezeJointEffectors(); std::find(names.begin(), names.end(), effectors[k]->leaf().name()) != names.end())
+      if (const auto& names = box->freezeJointEffectors();
+          std::find(names.begin(), names.end(), effectors[k]->leaf().name()) != names.end())
         b.limb.push_back(static_cast<int>(k));
   }
   for (std::size_t a = 0; a < boxes.size(); ++a)
@@ -143,10 +145,11 @@ bool SelfCollisionAspect::freeze(Robot& robot, const Box& box, double now) {
 void SelfCollisionAspect::tell(const soccer::Player& player, const Box& a, const Box& b, double now) {
   const SoccerSettings& s = settings();
   if (!s.printSelfCollisions && !s.writeSelfCollisionsToFile) return;
-  const std::string line =
-      fmt::format("{} {}: {} and {}", soccer::sideName(player.side()), player.state->unum(), partName(*a.box), partName(*b.box));
+  const std::string line = fmt::format("{} {}: {} and {}", soccer::sideName(player.side()), player.state->unum(),
+                                       partName(*a.box), partName(*b.box));
   if (s.printSelfCollisions) kernel().log().info("soccer: self-collision, {}", line);
-  if (s.writeSelfCollisionsToFile) std::ofstream(s.selfCollisionRecordFilename, std::ios::app) << fmt::format("{:.2f} {}\n", now, line);
+  if (s.writeSelfCollisionsToFile)
+    std::ofstream(s.selfCollisionRecordFilename, std::ios::app) << fmt::format("{:.2f} {}\n", now, line);
 }
 
 void SelfCollisionAspect::saveState(StateWriter& out) const {

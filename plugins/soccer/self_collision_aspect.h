@@ -6,15 +6,18 @@
 
 namespace spark {
 
-/// A robot's boxes may not overlap by more than SelfCollisionsTolerance. The effectors that the boxes' limbs name are frozen for
-/// SelfCollisionJointFrozenTime, and then spared for SelfCollisionJointThawTime; or, with SelfCollisionBeamPenalty, the player is sent off.
-/// Of two boxes the later one in the tree may name the earlier one (addNotCollideWithColliderName): they are not compared. All others are,
-/// neighbours at a joint and parts of one body too.
+/// A robot's boxes may not overlap by more than SelfCollisionsTolerance. The effectors that the boxes' limbs name are
+/// frozen for SelfCollisionJointFrozenTime, and then spared for SelfCollisionJointThawTime; or, with
+/// SelfCollisionBeamPenalty, the player is sent off. Of two boxes the later one in the tree may name the earlier one
+/// (addNotCollideWithColliderName): they are not compared. All others are, neighbours at a joint and parts of one body
+/// too.
 class SelfCollisionAspect : public FoulAspect {
   SPARK_CLASS(SelfCollisionAspect, FoulAspect)
  public:
   static void describe(Description<SelfCollisionAspect>& d) {
-    d.doc("A robot that runs into itself has its joints frozen, or is sent off; off with Soccer.FoulOnSelfCollisions false.");
+    d.doc(
+        "A robot that runs into itself has its joints frozen, or is sent off; off with Soccer.FoulOnSelfCollisions "
+        "false.");
   }
 
  protected:
@@ -28,9 +31,9 @@ class SelfCollisionAspect : public FoulAspect {
   static constexpr float kRounding = 1.001F;
   struct Box {
     IRobotBox* box;
-    soccer::SingleBox now;   ///< in this cycle
-    Vec3f half;              ///< of its edges [m]
-    std::vector<int> limb;   ///< joints that it freezes
+    soccer::SingleBox now;  ///< in this cycle
+    Vec3f half;             ///< of its edges [m]
+    std::vector<int> limb;  ///< joints that it freezes
   };
   struct Pair {
     int a, b;

@@ -44,7 +44,8 @@ void Sights::collect(Kernel& kernel) {
       continue;
     }
     AgentAspect* agent = &inner->outermost();
-    if (robots_.empty() || robots_.back().agent != agent) robots_.push_back({.agent = agent, .firstPart = static_cast<std::uint32_t>(parts_.size())});
+    if (robots_.empty() || robots_.back().agent != agent)
+      robots_.push_back({.agent = agent, .firstPart = static_cast<std::uint32_t>(parts_.size())});
     Robot& robot = robots_.back();
     if (auto* state = o->as<AgentState>()) {
       robot.state = state;
@@ -56,7 +57,8 @@ void Sights::collect(Kernel& kernel) {
   }
   std::erase_if(robots_, [](const Robot& r) { return !r.state; });
   for (const Robot& r : robots_) states_.emplace_back(r.agent, r.state);
-  std::stable_sort(states_.begin(), states_.end(), [](const auto& a, const auto& b) { return std::less<>()(a.first, b.first); });
+  std::stable_sort(states_.begin(), states_.end(),
+                   [](const auto& a, const auto& b) { return std::less<>()(a.first, b.first); });
 }
 
 void Sights::place() {
@@ -77,7 +79,8 @@ const Sights::Mark* Sights::ball() const {
 }
 
 AgentState* Sights::stateOf(const AgentAspect* agent) const {
-  const auto behind = std::upper_bound(states_.begin(), states_.end(), agent, [](const AgentAspect* a, const auto& s) { return std::less<>()(a, s.first); });
+  const auto behind = std::upper_bound(states_.begin(), states_.end(), agent,
+                                       [](const AgentAspect* a, const auto& s) { return std::less<>()(a, s.first); });
   return behind != states_.begin() && std::prev(behind)->first == agent ? std::prev(behind)->second : nullptr;
 }
 
@@ -85,7 +88,8 @@ AgentState* Sights::stateOf(const AgentAspect* agent) const {
 std::uint32_t Sights::cellOf(float coordinate) const {
   constexpr std::int32_t kMiddle = 1 << 30;
   const float cells = std::floor(coordinate / cell_), far = static_cast<float>(kMiddle);
-  return static_cast<std::uint32_t>(kMiddle + (cells > -far ? static_cast<std::int32_t>(std::min(cells, far / 2)) : -kMiddle));
+  return static_cast<std::uint32_t>(kMiddle +
+                                    (cells > -far ? static_cast<std::int32_t>(std::min(cells, far / 2)) : -kMiddle));
 }
 
 void Sights::sortIntoCells() {

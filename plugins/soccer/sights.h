@@ -13,10 +13,12 @@
 
 namespace spark::soccer {
 
-/// The visible objects of the scene, collected when the shape of the tree changed, and where they are, brought up to date once a sense
-/// phase. Eyes of a league share the one of its settings: they read it in the sense phase, possibly in several threads.
+/// The visible objects of the scene, collected when the shape of the tree changed, and where they are, brought up to
+/// date once a sense phase. Eyes of a league share the one of its settings: they read it in the sense phase, possibly
+/// in several threads.
 ///
-/// For eyes that see so far and no farther the robots are sorted into square cells of the ground plane, so that each looks at what is near:
+/// For eyes that see so far and no farther the robots are sorted into square cells of the ground plane, so that each
+/// looks at what is near:
 ///
 ///        ─ ─ ┬───┬───┬───┬ ─ ─       sorted by row and column; an eye takes from each row that its range meets
 ///            │   │ 4 │ 9 │           the run of columns that it meets: a search a row. What it finds it sorts
@@ -28,14 +30,14 @@ class Sights {
   struct Mark {
     const ObjectState* object;
     const Transform* frame = nullptr;  ///< the transform above it, nullptr for none
-    Vec3f place = Vec3f::Zero();  ///< in the world [m]
+    Vec3f place = Vec3f::Zero();       ///< in the world [m]
   };
   /// A robot: its state, and the marked parts (none: it is seen by its state alone).
   struct Robot {
     AgentAspect* agent;
     AgentState* state = nullptr;
     const Transform* frame = nullptr;  ///< the transform above the state
-    Vec3f place = Vec3f::Zero();  ///< of the state [m]
+    Vec3f place = Vec3f::Zero();       ///< of the state [m]
     std::uint32_t firstPart = 0, parts = 0;
   };
   /// A line of the field.
@@ -54,7 +56,9 @@ class Sights {
   std::span<const Mark> field() const { return field_; }
   /// In scene order.
   std::span<const Robot> robots() const { return robots_; }
-  std::span<const Mark> partsOf(const Robot& robot) const { return std::span(parts_).subspan(robot.firstPart, robot.parts); }
+  std::span<const Mark> partsOf(const Robot& robot) const {
+    return std::span(parts_).subspan(robot.firstPart, robot.parts);
+  }
   std::span<const Stroke> lines() const { return lines_; }
   /// Number of all points that may be seen.
   std::size_t size() const { return field_.size() + robots_.size() + parts_.size() + 2 * lines_.size(); }
@@ -62,11 +66,12 @@ class Sights {
   const Mark* ball() const;
   /// What the match knows of an agent, nullptr when it knows nothing.
   AgentState* stateOf(const AgentAspect* agent) const;
-  /// Indices of the robots of which something may be within `range` [m] of `place`, in scene order; all where there is no limit.
+  /// Indices of the robots of which something may be within `range` [m] of `place`, in scene order; all where there is
+  /// no limit.
   void near(const Vec3f& place, float range, std::vector<std::uint32_t>& out) const;
 
  private:
-  using Cell = std::uint64_t;  ///< row and column
+  using Cell = std::uint64_t;                ///< row and column
   static constexpr float kLeastCell = 0.1f;  ///< m
 
   void collect(Kernel& kernel);

@@ -24,23 +24,25 @@
 
 SPARK_PLUGIN("soccer", "1.0", "Soccer: field, rules, and what players sense and do.",
              // the field
-             spark::SoccerSettings, spark::Ball, spark::FieldFlag, spark::SoccerNode, spark::ObjectState, spark::GoalPost, spark::Line,
-             spark::AgentState, spark::AgentCollisionHandler,
+             spark::SoccerSettings, spark::Ball, spark::FieldFlag, spark::SoccerNode, spark::ObjectState,
+             spark::GoalPost, spark::Line, spark::AgentState, spark::AgentCollisionHandler,
              // rules
-             spark::SoccerControlAspect, spark::GameStateAspect, spark::BallStateAspect, spark::SoccerRuleAspect, spark::OffsideAspect,
-             spark::SPLState, spark::SPLRule, spark::TeamlessAspect,
+             spark::SoccerControlAspect, spark::GameStateAspect, spark::BallStateAspect, spark::SoccerRuleAspect,
+             spark::OffsideAspect, spark::SPLState, spark::SPLRule, spark::TeamlessAspect,
              // the referee's rules of play
-             spark::SoccerRule, spark::BeforeKickOffRule, spark::KickOffRule, spark::SetPieceRule, spark::RestartRule, spark::GoalKickRule,
-             spark::PassModeRule, spark::DoubleTouchRule, spark::GoalRule, spark::PenaltyShootoutRule, spark::BallOutRule,
-             spark::DropBallRule,
+             spark::SoccerRule, spark::BeforeKickOffRule, spark::KickOffRule, spark::SetPieceRule, spark::RestartRule,
+             spark::GoalKickRule, spark::PassModeRule, spark::DoubleTouchRule, spark::GoalRule,
+             spark::PenaltyShootoutRule, spark::BallOutRule, spark::DropBallRule,
              // fouls
-             spark::PlayerContactAspect, spark::FoulAspect, spark::IncapableFoulAspect, spark::CrowdingFoulAspect, spark::IllegalDefenceAspect,
-             spark::TouchingFoulAspect, spark::ChargingFoulAspect, spark::BallHoldingAspect, spark::SelfCollisionAspect, spark::PenaltyAspect,
+             spark::PlayerContactAspect, spark::FoulAspect, spark::IncapableFoulAspect, spark::CrowdingFoulAspect,
+             spark::IllegalDefenceAspect, spark::TouchingFoulAspect, spark::ChargingFoulAspect,
+             spark::BallHoldingAspect, spark::SelfCollisionAspect, spark::PenaltyAspect,
              // what players sense
-             spark::GameStatePerceptor, spark::HearPerceptor, spark::AgentStatePerceptor, spark::GameTimePerceptor, spark::VisionPerceptor,
-             spark::RestrictedVisionPerceptor,
+             spark::GameStatePerceptor, spark::HearPerceptor, spark::AgentStatePerceptor, spark::GameTimePerceptor,
+             spark::VisionPerceptor, spark::RestrictedVisionPerceptor,
              // what players do
-             spark::InitEffector, spark::SingleMatInitEffector, spark::StaticMeshInitEffector, spark::BeamEffector, spark::SayEffector,
-             spark::PassEffector, spark::KickEffector, spark::DriveEffector, spark::CatchEffector, spark::PanTiltEffector,
+             spark::InitEffector, spark::SingleMatInitEffector, spark::StaticMeshInitEffector, spark::BeamEffector,
+             spark::SayEffector, spark::PassEffector, spark::KickEffector, spark::DriveEffector, spark::CatchEffector,
+             spark::PanTiltEffector,
              // monitors and trainers
              spark::GameStateItem, spark::SoccerRuleItem, spark::TrainerCommandParser)

@@ -4,8 +4,9 @@
 
 namespace spark {
 
-/// Base of the rules of play. A rule stands below the referee (SoccerRuleAspect), or beside and after it, and judges once a cycle, in
-/// tree order. It acts on the referee's `mode()`, and asks `holds()` or `playing()` whether a rule before it has ended that mode already.
+/// Base of the rules of play. A rule stands below the referee (SoccerRuleAspect), or beside and after it, and judges
+/// once a cycle, in tree order. It acts on the referee's `mode()`, and asks `holds()` or `playing()` whether a rule
+/// before it has ended that mode already.
 class SoccerRule : public ControlAspect {
   SPARK_CLASS(SoccerRule, ControlAspect)
  public:
@@ -44,7 +45,9 @@ class SoccerRule : public ControlAspect {
   void onLink() override {
     ControlAspect::onLink();
     if (!findReferee())
-      kernel().log().warning("{} judges nothing: expected a SoccerRuleAspect above or beside it, found none. Create one before it.", path());
+      kernel().log().warning(
+          "{} judges nothing: expected a SoccerRuleAspect above or beside it, found none. Create one before it.",
+          path());
   }
 
  private:

@@ -11,16 +11,25 @@ using soccer::Side;
 namespace {
 constexpr std::size_t kFoulsKept = 64;
 /// In the order of judging.
-constexpr const char* kRules[] = {"BeforeKickOffRule", "KickOffRule", "RestartRule",         "GoalKickRule", "PassModeRule",
-                                  "DoubleTouchRule",   "GoalRule",    "PenaltyShootoutRule", "BallOutRule",  "DropBallRule"};
+constexpr const char* kRules[] = {"BeforeKickOffRule", "KickOffRule",     "RestartRule", "GoalKickRule",
+                                  "PassModeRule",      "DoubleTouchRule", "GoalRule",    "PenaltyShootoutRule",
+                                  "BallOutRule",       "DropBallRule"};
 }  // namespace
 
 void SoccerRuleAspect::describe(Description<SoccerRuleAspect>& d) {
   using R = SoccerRuleAspect;
-  d.doc("The referee: what the rules of play share. It makes the rules below itself: KickOffRule, GoalRule, PassModeRule, ...");
-  d.property("kickPosition", &R::kickPosition_).unit("m").readOnly().state().doc("Where the current or last restart is taken.");
+  d.doc(
+      "The referee: what the rules of play share. It makes the rules below itself: KickOffRule, GoalRule, "
+      "PassModeRule, ...");
+  d.property("kickPosition", &R::kickPosition_)
+      .unit("m")
+      .readOnly()
+      .state()
+      .doc("Where the current or last restart is taken.");
   d.method("dropBall", &R::dropBall).parameters({"where [m]"}).doc("Drops the ball there; play goes on.");
-  d.method("reportFoul", &R::reportFoul).parameters({"type", "team", "unum"}).doc("Tells monitors of a foul; team is left, right or none.");
+  d.method("reportFoul", &R::reportFoul)
+      .parameters({"type", "team", "unum"})
+      .doc("Tells monitors of a foul; team is left, right or none.");
 }
 
 void SoccerRuleAspect::onLink() {
@@ -128,7 +137,11 @@ void SoccerRuleAspect::dropBall(const Vec3& where) {
 
 void SoccerRuleAspect::reportFoul(int type, std::string team, int unum) {
   if (fouls_.size() >= kFoulsKept) fouls_.erase(fouls_.begin());
-  fouls_.push_back({++foulCount_, type, team == "left" ? Side::left : team == "right" ? Side::right : Side::none, unum});
+  fouls_.push_back({++foulCount_, type,
+                    team == "left"    ? Side::left
+                    : team == "right" ? Side::right
+                                      : Side::none,
+                    unum});
 }
 
 void SoccerRuleAspect::saveState(StateWriter& out) const {

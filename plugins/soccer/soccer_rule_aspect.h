@@ -9,8 +9,9 @@ namespace spark {
 
 class PassModeRule;
 
-/// The referee: what the rules of play share. It stands after ball state and makes the rules below itself, each a control aspect of its
-/// own that the config may set or switch off (soccer_rule.h). Their order is the order of judging:
+/// The referee: what the rules of play share. It stands after ball state and makes the rules below itself, each a
+/// control aspect of its own that the config may set or switch off (soccer_rule.h). Their order is the order of
+/// judging:
 ///
 ///     SoccerRuleAspect         the mode of this cycle, where a restart is, who took it
 ///       BeforeKickOffRule      the ball is held, teams stay in their halves
@@ -21,8 +22,9 @@ class PassModeRule;
 ///       DoubleTouchRule        PlayOn, pass_X                                                          -> free_kick_X
 ///       GoalRule               PlayOn, pass_X -> Goal_X, goal_kick_X, corner_kick_X; Goal_X            -> KickOff_X
 ///       PenaltyShootoutRule    with Soccer.PenaltyShootout: the goalie left his area                   -> Goal_Left
-///       BallOutRule            PlayOn, pass_X                                         -> goal_kick_X, corner_kick_X, KickIn_X
-///       DropBallRule           a restart that nobody takes                                             -> PlayOn
+///       BallOutRule            PlayOn, pass_X                                   -> goal_kick_X, corner_kick_X,
+///       KickIn_X DropBallRule           a restart that nobody takes                                             ->
+///       PlayOn
 ///
 /// A mode that began in this cycle is judged from the next cycle on; one that a trainer set, in the same cycle.
 class SoccerRuleAspect : public SoccerControlAspect {
@@ -91,7 +93,9 @@ class SoccerRuleAspect : public SoccerControlAspect {
   void loadState(StateReader& in) override;
 
  private:
-  static bool isPlay(PlayMode m) { return m == PlayMode::playOn || m == PlayMode::passLeft || m == PlayMode::passRight; }
+  static bool isPlay(PlayMode m) {
+    return m == PlayMode::playOn || m == PlayMode::passLeft || m == PlayMode::passRight;
+  }
   bool findMatch();
   void enterMode();
   Vec3 positionFor(PlayMode mode) const;

@@ -8,8 +8,9 @@
 
 namespace spark {
 
-/// The variables `Soccer.*`: what scene files read, rules obey and monitors show. Defaults are those of the 3D league (30 x 20 m).
-/// Rules read them in every cycle, so that a change takes effect at once; scene files read them when they are loaded.
+/// The variables `Soccer.*`: what scene files read, rules obey and monitors show. Defaults are those of the 3D league
+/// (30 x 20 m). Rules read them in every cycle, so that a change takes effect at once; scene files read them when they
+/// are loaded.
 class SoccerSettings : public Node, public IVariables {
   SPARK_CLASS(SoccerSettings, Node)
  public:
@@ -30,7 +31,8 @@ class SoccerSettings : public Node, public IVariables {
   int teamSize = 11, maxRobotTypeCount = 7, minRobotTypesCount = 3, maxSumTwoRobotTypes = 9;
   // Restarts
   double freeKickDistance = 2.0, freeKickMoveDist = 2.5, kickRepelDist = 0.5, goalKickDist = 1.0;
-  double ruleGoalPauseTime = 3, ruleKickInPauseTime = 1, ruleDropBallTime = 15, ruleHalfTime = 300, waitBeforeKickOff = 30;
+  double ruleGoalPauseTime = 3, ruleKickInPauseTime = 1, ruleDropBallTime = 15, ruleHalfTime = 300,
+         waitBeforeKickOff = 30;
   bool automaticKickOff = false, coinTossForKickOff = false, singleHalfTime = false, changeSidesInSecondHalf = false;
   bool penaltyShootout = false, startAnyFieldPosition = false, automaticQuit = false, useOffside = false;
   int maxNumSafeRepositionAttempts = 100;
@@ -46,27 +48,32 @@ class SoccerSettings : public Node, public IVariables {
   double passModeMaxBallSpeed = 0.05, passModeMaxBallDist = 0.5, passModeMinOppBallDist = 1, passModeDuration = 4;
   double passModeScoreWaitTime = 10, passModeRetryWaitTime = 3;
   // Fouls
-  double notStandingMaxTime = 30, goalieNotStandingMaxTime = 60, groundMaxTime = 15, goalieGroundMaxTime = 30, foulHoldTime = 0.5;
+  double notStandingMaxTime = 30, goalieNotStandingMaxTime = 60, groundMaxTime = 15, goalieGroundMaxTime = 30,
+         foulHoldTime = 0.5;
   double minOppDistance = 0, min2PlDistance = 0, min3PlDistance = 0;
   int maxPlayersInsideOwnArea = 3, maxTouchGroupSize = 2;
   bool illegalDefenseBeamPenalty = false, touchingFoulBeamPenalty = false;
   bool useCharging = true;
   double chargingMinSpeed = 0.4, chargingMinBallSpeedAngle = 30, chargingMinDeltaDist = 0.05, chargingMinDeltaAng = 15;
-  double chargingImmunityTime = 1, chargingCollisionMinTime = 0.2, chargingMaxBallRulesDist = 1, chargingMinCollBallDist = 0.1;
+  double chargingImmunityTime = 1, chargingCollisionMinTime = 0.2, chargingMaxBallRulesDist = 1,
+         chargingMinCollBallDist = 0.1;
   double chargingMinCollisionSpeed = 0.2;
   double selfCollisionsTolerance = 0.04, selfCollisionJointFrozenTime = 1, selfCollisionJointThawTime = 2,
          selfCollisionBeamCooldownTime = 10;
-  bool printSelfCollisions = true, foulOnSelfCollisions = true, selfCollisionBeamPenalty = false, writeSelfCollisionsToFile = false;
+  bool printSelfCollisions = true, foulOnSelfCollisions = true, selfCollisionBeamPenalty = false,
+       writeSelfCollisionsToFile = false;
   std::string selfCollisionRecordFilename = "SelfCollisions.txt";
   bool useBallHolding = false;
-  double ballHoldRadius = 0.12, ballHoldOppDist = 0.75, ballHoldMaxTime = 5, goalieBallHoldMaxTime = 10, ballHoldResetTime = 1;
+  double ballHoldRadius = 0.12, ballHoldOppDist = 0.75, ballHoldMaxTime = 5, goalieBallHoldMaxTime = 10,
+         ballHoldResetTime = 1;
   // Keep-away
   bool keepaway = false;
   double keepawayCenterX = 0, keepawayCenterY = 0, keepawayLength = 20, keepawayWidth = 20;
   double keepawayLengthReductionRate = 4, keepawayWidthReductionRate = 4;
   // Nodes of the field, relative to the scene
   std::string ballRecorder = "Ball/geometry/recorder";
-  std::string leftGoalRecorder = "leftgoal/GoalBox/BoxCollider/recorder", rightGoalRecorder = "rightgoal/GoalBox/BoxCollider/recorder";
+  std::string leftGoalRecorder = "leftgoal/GoalBox/BoxCollider/recorder",
+              rightGoalRecorder = "rightgoal/GoalBox/BoxCollider/recorder";
 
  private:
   std::map<std::string, Value, std::less<>> others_;

@@ -65,7 +65,10 @@ class CatchEffector : public Effector {
  public:
   static void describe(Description<CatchEffector>& d) {
     d.doc("The goalie (number 1) catches the ball inside his penalty area: (catch).");
-    d.property("catchMargin", &CatchEffector::margin_).unit("m").min(0).doc("So near the surfaces of goalie and ball must be.");
+    d.property("catchMargin", &CatchEffector::margin_)
+        .unit("m")
+        .min(0)
+        .doc("So near the surfaces of goalie and ball must be.");
     d.on<&CatchEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "catch"; }
@@ -88,7 +91,8 @@ class CatchEffector : public Effector {
     if (from.z() > s.agentRadius + 0.01 || (ball - from).norm() > s.agentRadius + s.ballRadius + margin_) return;
     const Vec3 target = from + Vec3(direction(goalie->side()) * (s.agentRadius + s.ballRadius + kGap), 0, 0);
     for (const soccer::Player& p : pitch.players())
-      if (&p != goalie && p.torso && p.side() != soccer::Side::none) pitch.clearSphere(p, target, kClearRadius, kClearDistance);
+      if (&p != goalie && p.torso && p.side() != soccer::Side::none)
+        pitch.clearSphere(p, target, kClearRadius, kClearDistance);
     pitch.placeBall(target);
     if (auto* state = match_.ball()) state->kickedBy(*goalie->agent);
   }

@@ -8,7 +8,8 @@
 
 namespace spark::soccer {
 
-/// Dresses a robot: matTeam becomes matLeft or matRight, matNum becomes matNum<unum>, in place; a robot that is dressed changes sides.
+/// Dresses a robot: matTeam becomes matLeft or matRight, matNum becomes matNum<unum>, in place; a robot that is dressed
+/// changes sides.
 inline void paintTeam(Node& robot, Side side, int unum) {
   std::vector<IVisual*> visuals;
   robot.collect(visuals);

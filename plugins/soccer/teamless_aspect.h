@@ -4,7 +4,8 @@
 
 namespace spark {
 
-/// Robots without a team touch the ground only: they are created at one spot, inside of each other, and would burst apart.
+/// Robots without a team touch the ground only: they are created at one spot, inside of each other, and would burst
+/// apart.
 class TeamlessAspect : public SoccerControlAspect {
   SPARK_CLASS(TeamlessAspect, SoccerControlAspect)
  public:

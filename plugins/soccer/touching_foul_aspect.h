@@ -4,8 +4,9 @@
 
 namespace spark {
 
-/// At most MaxTouchGroupSize players may touch each other. The last to join is guilty when his team has at least half of the group (a
-/// team-mate when he is the goalie), else a random opponent of the group; goalies are drawn only when there is nobody else.
+/// At most MaxTouchGroupSize players may touch each other. The last to join is guilty when his team has at least half
+/// of the group (a team-mate when he is the goalie), else a random opponent of the group; goalies are drawn only when
+/// there is nobody else.
 class TouchingFoulAspect : public FoulAspect {
   SPARK_CLASS(TouchingFoulAspect, FoulAspect)
  public:

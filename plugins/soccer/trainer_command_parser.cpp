@@ -46,7 +46,9 @@ bool numbers(const Element& list, double* out, int count) {
 }
 
 /// The numbers of `(name n...)` inside a command.
-bool numbers(const Element& command, std::string_view name, double* out, int count) { return numbers(command.named(name), out, count); }
+bool numbers(const Element& command, std::string_view name, double* out, int count) {
+  return numbers(command.named(name), out, count);
+}
 
 /// A command without arguments, about whom the trainer selected.
 bool isBare(const Element& command) { return command.size() == 1; }
@@ -207,8 +209,10 @@ std::string TrainerCommandParser::time(const Element& c) {
 
 std::string TrainerCommandParser::score(const Element& c) {
   const Element left = c.named("left"), right = c.named("right");
-  const auto goals = left && right ? std::pair(integerIn(left.at(1)), integerIn(right.at(1))) : std::pair<std::optional<int>, std::optional<int>>();
-  if (!goals.first || !goals.second || *goals.first < 0 || *goals.second < 0) return "expected (left a)(right b), both 0 or more";
+  const auto goals = left && right ? std::pair(integerIn(left.at(1)), integerIn(right.at(1)))
+                                   : std::pair<std::optional<int>, std::optional<int>>();
+  if (!goals.first || !goals.second || *goals.first < 0 || *goals.second < 0)
+    return "expected (left a)(right b), both 0 or more";
   match_.game()->setScores(*goals.first, *goals.second);
   return {};
 }

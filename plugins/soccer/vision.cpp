@@ -9,7 +9,8 @@ Polar polarOf(const Vec3f& r) {
 
 Vec3f pointOf(const Polar& p) {
   const double h = degToRad(p.horizontal), v = degToRad(p.vertical);
-  return Vec3(p.distance * std::cos(v) * std::cos(h), p.distance * std::cos(v) * std::sin(h), p.distance * std::sin(v)).cast<float>();
+  return Vec3(p.distance * std::cos(v) * std::cos(h), p.distance * std::cos(v) * std::sin(h), p.distance * std::sin(v))
+      .cast<float>();
 }
 
 void tellSights(const Sights& sights, std::vector<IEye::Sight>& out) {
@@ -17,7 +18,8 @@ void tellSights(const Sights& sights, std::vector<IEye::Sight>& out) {
   for (const Sights::Robot& r : sights.robots()) {
     const std::string name = fmt::format("{} {} {}", r.state->perceptName(), r.state->team(), r.state->unum());
     out.push_back({name, r.place});
-    for (const Sights::Mark& part : sights.partsOf(r)) out.push_back({fmt::format("{} {}", name, part.object->id()), part.place});
+    for (const Sights::Mark& part : sights.partsOf(r))
+      out.push_back({fmt::format("{} {}", name, part.object->id()), part.place});
   }
 }
 

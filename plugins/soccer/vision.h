@@ -27,7 +27,9 @@ struct Polar {
 /// Polar coordinates of a point in a frame with x forward, y to the left, z up.
 Polar polarOf(const Vec3f& relative);
 /// `(pol d h v)`.
-inline void writePolar(Predicates& out, const Polar& p) { out.open("pol").add(p.distance).add(p.horizontal).add(p.vertical).close(); }
+inline void writePolar(Predicates& out, const Polar& p) {
+  out.open("pol").add(p.distance).add(p.horizontal).add(p.vertical).close();
+}
 
 /// The installed base's noise: distance in proportion, angles absolute, and a constant calibration error.
 class VisionNoise {
@@ -37,7 +39,8 @@ class VisionNoise {
   bool allowed = true;  ///< as the league says
   RandomStream random;
   bool active() const { return on && allowed; }
-  /// The installed base's setNoiseParams: distance [%], phi (vertical) [deg], theta (horizontal) [deg], calibration error [m].
+  /// The installed base's setNoiseParams: distance [%], phi (vertical) [deg], theta (horizontal) [deg], calibration
+  /// error [m].
   void set(double distance, double phi, double theta, double error) {
     sigmaDistance_ = distance, sigmaPhi_ = phi, sigmaTheta_ = theta, error_ = error;
   }
@@ -95,7 +98,10 @@ class Outlook {
 
  private:
   void findState();
-  float limited(float range) const { return settings_ && settings_->visionRange > 0 ? std::min(range, static_cast<float>(settings_->visionRange)) : range; }
+  float limited(float range) const {
+    return settings_ && settings_->visionRange > 0 ? std::min(range, static_cast<float>(settings_->visionRange))
+                                                   : range;
+  }
   std::uint64_t version_ = 0, stateVersion_ = 0;
   bool shared_ = false;
   float range_ = Sights::kUnlimited;

@@ -41,7 +41,8 @@ void VisionPerceptor::sense(Predicates& out, const Event&) {
   const bool cheats = outlook_.settings() && outlook_.settings()->cheats;
   if (senseMyPos_ || cheats) soccer::writePoint(out, "mypos", soccer::seenBy(side(), here_));
   if (cheats && transform()) soccer::writeHeading(out, transform()->world(), side());
-  if (const Sights::Mark* ball = cheats ? sights.ball() : nullptr) soccer::writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
+  if (const Sights::Mark* ball = cheats ? sights.ball() : nullptr)
+    soccer::writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
   out.close();
 }
 

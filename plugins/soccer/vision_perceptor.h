@@ -44,7 +44,9 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye {
   void setNoise(bool on) { noise_.on = on; }
   void setRandom(bool on) { randomNoise_ = on; }
   bool noisy() const { return noise_.on; }
-  void setNoiseParameters(double distance, double phi, double theta, double error) { noise_.set(distance, phi, theta, error); }
+  void setNoiseParameters(double distance, double phi, double theta, double error) {
+    noise_.set(distance, phi, theta, error);
+  }
   const RandomStream& randomState() const { return noise_.random; }
   void setRandomState(RandomStream r) { noise_.random = r; }
   soccer::Side side() const { return outlook_.state() ? outlook_.state()->side() : soccer::Side::none; }

@@ -16,7 +16,8 @@ namespace spark {
 //     nearest to the ball   -> behind the ball, as seen from where it is to go, and kick
 //     everybody else        -> its place in the formation, which moves with the ball; never offside
 //
-// Positions come from vision alone: the four corner flags give the field's size and the own place. All angles are along the field's axes.
+// Positions come from vision alone: the four corner flags give the field's size and the own place. All angles are along
+// the field's axes.
 
 namespace {
 
@@ -56,7 +57,9 @@ SpherePlayer::Point SpherePlayer::Point::unit() const {
   return l > 1e-9 ? Point{x / l, y / l} : Point{1, 0};
 }
 
-SpherePlayer::SpherePlayer(std::string team, int unum) : team_(std::move(team)), unum_(std::clamp(unum, 1, 11)) { others_.reserve(32); }
+SpherePlayer::SpherePlayer(std::string team, int unum) : team_(std::move(team)), unum_(std::clamp(unum, 1, 11)) {
+  others_.reserve(32);
+}
 
 void SpherePlayer::start(Predicates& actions) { actions.open("scene").add(scene_).close(); }
 
@@ -106,7 +109,8 @@ void SpherePlayer::readGameState(const Element& gs) {
   }
 }
 
-/// Who is nearest to the ball when our restart turns into play took it, and must not touch the ball again before somebody else.
+/// Who is nearest to the ball when our restart turns into play took it, and must not touch the ball again before
+/// somebody else.
 void SpherePlayer::noteRestart(const std::string& before) {
   if (playMode_ != "PlayOn") return;
   const std::string now = std::exchange(playMode_, before);
@@ -138,7 +142,8 @@ void SpherePlayer::readVision(const Element& see) {
       ball_ = self_ + way, toBall_ = way, ballTime_ = now_, seesBall_ = true;
     } else if (e.head() == "P") {
       const Element team = e.named("team"), id = e.named("id");
-      if (team && id) others_.push_back({team.at(1).text() == team_, static_cast<int>(id.at(1).integer()), self_ + way});
+      if (team && id)
+        others_.push_back({team.at(1).text() == team_, static_cast<int>(id.at(1).integer()), self_ + way});
     }
   }
 }
@@ -175,7 +180,8 @@ void SpherePlayer::readField(const Element& see) {
 /// A restart of the given kind ("" for any) is ours.
 bool SpherePlayer::ours(std::string_view kind) const {
   std::string_view mode = playMode_;
-  const bool left = mode.ends_with("_left") || mode.ends_with("_Left"), right = mode.ends_with("_right") || mode.ends_with("_Right");
+  const bool left = mode.ends_with("_left") || mode.ends_with("_Left"),
+             right = mode.ends_with("_right") || mode.ends_with("_Right");
   if ((!left && !right) || (left ? "left" : "right") != side_) return false;
   return !mode.starts_with("offside") && (kind.empty() || mode.starts_with(kind));
 }
@@ -229,7 +235,8 @@ SpherePlayer::Point SpherePlayer::formation() const {
   return p;
 }
 
-/// Nearest of the team to where the ball will be; the goalie counts only near his goal, the taker of a restart not for a while.
+/// Nearest of the team to where the ball will be; the goalie counts only near his goal, the taker of a restart not for
+/// a while.
 bool SpherePlayer::goesToBall() const {
   const Point soon = ballSoon(0.3);
   const auto cost = [&](int unum, Point place) {
@@ -254,7 +261,8 @@ void SpherePlayer::play(Predicates& actions) {
 
 void SpherePlayer::keepGoal(Predicates& actions) {
   const Point goal{-halfLength_, 0};
-  const bool inArea = ball_.x < -halfLength_ + 16 * halfLength_ / 52 && std::abs(ball_.y) < goalHalfWidth_ + 16 * halfWidth_ / 34;
+  const bool inArea =
+      ball_.x < -halfLength_ + 16 * halfLength_ / 52 && std::abs(ball_.y) < goalHalfWidth_ + 16 * halfWidth_ / 34;
   if (inArea && playMode_ == "PlayOn") {
     if (toBall_.length() < 0.9 && now_ > caughtAt_ + 2) {
       caughtAt_ = now_;
@@ -309,17 +317,22 @@ void SpherePlayer::attack(Predicates& actions) {
   const Point now = (toBall_ + (ballVelocity_ - velocity_) * (now_ - ballTime_ + kLatency)).unit();
   const Point flies = now * kShotSpeed + ballVelocity_;
   const double hits = flies.x > 4 ? ball_.y + flies.y / flies.x * ahead : 1e9;
-  if (ahead < kShotRange * scale && std::abs(hits) < 0.9 * goalHalfWidth_) offer({ball_ + flies * ahead, kShotSpeed, 0, 0}, 16 * looks);
+  if (ahead < kShotRange * scale && std::abs(hits) < 0.9 * goalHalfWidth_)
+    offer({ball_ + flies * ahead, kShotSpeed, 0, 0}, 16 * looks);
   const Point goal{halfLength_ - ball_.x, -0.7 * ball_.y};
   const double off = std::acos(std::clamp(now.dot(goal.unit()), -1.0, 1.0));
   if (off < 0.6) offer({ball_ + now * 10, 9, 0, 0}, 1.5 * wayIsFree(ball_, ball_ + now * 10) - 1.5 * off);
-  if (ball_.x < -0.5 * halfLength_) offer({{0.1 * halfLength_, ball_.y > 0 ? halfWidth_ : -halfWidth_}, 20, 20, 0}, 1.2);
+  if (ball_.x < -0.5 * halfLength_)
+    offer({{0.1 * halfLength_, ball_.y > 0 ? halfWidth_ : -halfWidth_}, 20, 20, 0}, 1.2);
   for (const Other& o : others_) {
     if (!o.mate || o.unum == 1) continue;
     const Point lead = o.place + Point{2.5, 0};
     const double distance = (lead - ball_).length();
-    if (distance < 6 || distance > 35 * scale || o.place.x > offsideLine() || lead.x < std::min(ball_.x - 4, 0.5 * halfLength_)) continue;
-    offer({lead, 6 + 0.4 * distance, 0, o.unum}, std::min((lead.x - ball_.x) / (6 * scale), 3.0) + 2 * wayIsFree(ball_, lead) - 1.5);
+    if (distance < 6 || distance > 35 * scale || o.place.x > offsideLine() ||
+        lead.x < std::min(ball_.x - 4, 0.5 * halfLength_))
+      continue;
+    offer({lead, 6 + 0.4 * distance, 0, o.unum},
+          std::min((lead.x - ball_.x) / (6 * scale), 3.0) + 2 * wayIsFree(ball_, lead) - 1.5);
   }
   if (ours("goal_kick")) best = {{0, ball_.y > 0 ? halfWidth_ * 0.6 : -halfWidth_ * 0.6}, 28, 20, 0};
   kickTowards(best.target, best.speed, best.elevationDeg, actions);
@@ -341,15 +354,22 @@ double SpherePlayer::keeperY() const {
 void SpherePlayer::kickTowards(Point target, double speed, double elevationDeg, Predicates& actions) {
   const Point wanted = kickWay(target, speed), side{-wanted.y, wanted.x};
   const Point rel = toBall_ + (ballVelocity_ - velocity_) * (now_ - ballTime_ + kLatency);
-  const double distance = rel.length(), along = rel.dot(wanted), across = rel.dot(side), aim = std::atan2(std::abs(across), along);
+  const double distance = rel.length(), along = rel.dot(wanted), across = rel.dot(side),
+               aim = std::atan2(std::abs(across), along);
   // with an opponent at the ball any kick that does not go back is better than none; a restart has time to be exact
   const bool play = playMode_ == "PlayOn";
-  const bool pressed =
-      play && std::any_of(others_.begin(), others_.end(), [this](const Other& o) { return !o.mate && (o.place - ball_).length() < 1.5; });
-  const double tolerance = pressed ? (rel.unit().x > 0.2 ? 1.2 : 0.6) : play ? 0.15 : 0.12 + 0.05 * std::max(0.0, now_ - modeSince_ - 3);
+  const bool pressed = play && std::any_of(others_.begin(), others_.end(), [this](const Other& o) {
+                         return !o.mate && (o.place - ball_).length() < 1.5;
+                       });
+  const double tolerance = pressed ? (rel.unit().x > 0.2 ? 1.2 : 0.6)
+                           : play  ? 0.15
+                                   : 0.12 + 0.05 * std::max(0.0, now_ - modeSince_ - 3);
   const bool backwards = play && ball_.x < 0.3 * halfLength_ && rel.unit().x < -0.3;
   if (distance < kReach + 0.25 && aim < tolerance && !backwards)
-    actions.open("kick").add(elevationDeg).add(std::clamp(std::min(speed, aim < 0.15 ? speed : 12) / kSpeedPerKick, 1.0, 100.0)).close();
+    actions.open("kick")
+        .add(elevationDeg)
+        .add(std::clamp(std::min(speed, aim < 0.15 ? speed : 12) / kSpeedPerKick, 1.0, 100.0))
+        .close();
   // where it meets the ball; from the wrong side it goes round, without touching
   Point spot = self_ + rel + ballVelocity_ * std::min(0.1 + distance / kTopSpeed, 1.5);
   double pace = 1.5 + 5 * std::max(0.0, distance - kReach) + std::max(0.0, ballVelocity_.dot(rel.unit()));

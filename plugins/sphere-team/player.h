@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The brain of a sphere player: percepts in, actions out. It knows nothing of a host: the same source file is built into the
-/// in-process behaviour (`SphereBehavior`) and into the external demo team.
+/// The brain of a sphere player: percepts in, actions out. It knows nothing of a host: the same source file is built
+/// into the in-process behaviour (`SphereBehavior`) and into the external demo team.
 
 #include <string>
 #include <vector>
@@ -10,8 +10,9 @@
 
 namespace spark {
 
-/// Plays 2004-style soccer with a sphere: runs to the ball, kicks at the goal, keeps the goal with number 1, does not crowd, keeps
-/// away at the opponents' restarts. Deterministic: the same percepts give the same actions. One object plays one agent; not thread safe.
+/// Plays 2004-style soccer with a sphere: runs to the ball, kicks at the goal, keeps the goal with number 1, does not
+/// crowd, keeps away at the opponents' restarts. Deterministic: the same percepts give the same actions. One object
+/// plays one agent; not thread safe.
 class SpherePlayer {
  public:
   /// `team`: the team's name; `unum`: 1..11, number 1 is the goalie.

@@ -10,7 +10,9 @@ class SphereBehavior : public Behavior {
  public:
   static void describe(Description<SphereBehavior>& d) {
     using B = SphereBehavior;
-    d.doc("Plays soccer with a sphere inside the host, as the external demo team does. Properties count when the agent is made.");
+    d.doc(
+        "Plays soccer with a sphere inside the host, as the external demo team does. Properties count when the agent "
+        "is made.");
     d.property("team", &B::team_).doc("Name of its team.");
     d.property("unum", &B::unum_).range(1, 11).doc("Its number; 1 keeps the goal.");
     d.property("robot", &B::robot_).doc("Scene file of its robot.");

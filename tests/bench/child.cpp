@@ -64,7 +64,8 @@ Json Child::result() {
   int status = 0;
   waitpid(pid_, &status, 0);
   pid_ = -1;
-  if (text.empty()) throw Error(fmt::format("the child that measured ended with status {:#x} and said nothing", status));
+  if (text.empty())
+    throw Error(fmt::format("the child that measured ended with status {:#x} and said nothing", status));
   Json answer = Json::parse(text);
   if (answer.contains("error")) throw Error(answer["error"].get<std::string>());
   return answer["value"];

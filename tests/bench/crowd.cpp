@@ -17,12 +17,14 @@ namespace spark::bench {
 
 /// A connection: an agent, or a monitor, which has nothing to say.
 struct Crowd::Client {
-  Client(int port, std::optional<Dialogue> talk) : socket(::socket(AF_INET, SOCK_STREAM, 0)), dialogue(std::move(talk)) {
+  Client(int port, std::optional<Dialogue> talk)
+      : socket(::socket(AF_INET, SOCK_STREAM, 0)), dialogue(std::move(talk)) {
     sockaddr_in to{};
     to.sin_family = AF_INET;
     to.sin_port = htons(static_cast<std::uint16_t>(port));
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (connect(socket, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) throw Error(fmt::format("cannot connect to port {}", port));
+    if (connect(socket, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0)
+      throw Error(fmt::format("cannot connect to port {}", port));
     const int on = 1;
     setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     speak();
@@ -74,7 +76,9 @@ void watch(int events, int fd, void* who) {
 }
 }  // namespace
 
-Crowd::Crowd(const World& world, int line) : world_(world), line_(line), events_(epoll_create1(0)) { watch(events_, line_, nullptr); }
+Crowd::Crowd(const World& world, int line) : world_(world), line_(line), events_(epoll_create1(0)) {
+  watch(events_, line_, nullptr);
+}
 
 Crowd::~Crowd() { close(events_); }
 
@@ -96,16 +100,21 @@ void Crowd::obey(const std::string& command) {
 void Crowd::obey() {
   char buffer[256];
   const ssize_t n = read(line_, buffer, sizeof buffer);
-  if (n <= 0) over_ = true;
-  else said_.append(buffer, static_cast<std::size_t>(n));
-  for (std::size_t end; !over_ && (end = said_.find('\n')) != std::string::npos; said_.erase(0, end + 1)) obey(said_.substr(0, end));
+  if (n <= 0)
+    over_ = true;
+  else
+    said_.append(buffer, static_cast<std::size_t>(n));
+  for (std::size_t end; !over_ && (end = said_.find('\n')) != std::string::npos; said_.erase(0, end + 1))
+    obey(said_.substr(0, end));
 }
 
 void Crowd::hear(Client& client) {
   static char buffer[65536];
   const ssize_t n = recv(client.socket, buffer, sizeof buffer, MSG_DONTWAIT);
-  if (n <= 0) epoll_ctl(events_, EPOLL_CTL_DEL, client.socket, nullptr);
-  else if (client.take(buffer, static_cast<std::size_t>(n))) client.speak();
+  if (n <= 0)
+    epoll_ctl(events_, EPOLL_CTL_DEL, client.socket, nullptr);
+  else if (client.take(buffer, static_cast<std::size_t>(n)))
+    client.speak();
 }
 
 void Crowd::serve() {
@@ -113,8 +122,10 @@ void Crowd::serve() {
   while (!over_) {
     const int n = epoll_wait(events_, ready, 64, -1);
     for (int i = 0; i < n; ++i)
-      if (auto* client = static_cast<Client*>(ready[i].data.ptr)) hear(*client);
-      else obey();
+      if (auto* client = static_cast<Client*>(ready[i].data.ptr))
+        hear(*client);
+      else
+        obey();
   }
 }
 

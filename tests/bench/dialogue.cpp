@@ -9,8 +9,9 @@
 namespace spark::bench {
 
 namespace {
-constexpr std::array<const char*, 24> kMotors{"he1",  "he2",  "rae1", "rae2", "rae3", "rae4", "lae1", "lae2", "lae3", "lae4", "rle1", "rle2",
-                                              "rle3", "rle4", "rle5", "rle6", "lle1", "lle2", "lle3", "lle4", "lle5", "lle6", "rle7", "lle7"};
+constexpr std::array<const char*, 24> kMotors{"he1",  "he2",  "rae1", "rae2", "rae3", "rae4", "lae1", "lae2",
+                                              "lae3", "lae4", "rle1", "rle2", "rle3", "rle4", "rle5", "rle6",
+                                              "lle1", "lle2", "lle3", "lle4", "lle5", "lle6", "rle7", "lle7"};
 constexpr std::size_t kMotorsWithoutToes = 22;
 constexpr int kToedType = 4, kTypes = 5;
 constexpr std::size_t kDirections = 10;  // spheres drive in so many directions
@@ -24,7 +25,8 @@ using Period = std::array<std::string, kPeriod>;
 Period swings(std::size_t motors) {
   Period out;
   for (int n = 0; n < kPeriod; ++n) {
-    for (std::size_t i = 0; i < motors; ++i) out[n] += fmt::format("({} {:.2f})", kMotors[i], motorSpeed(static_cast<int>(i), n));
+    for (std::size_t i = 0; i < motors; ++i)
+      out[n] += fmt::format("({} {:.2f})", kMotors[i], motorSpeed(static_cast<int>(i), n));
     out[n] += kSync;
   }
   return out;
@@ -32,7 +34,8 @@ Period swings(std::size_t motors) {
 
 Period drives(std::size_t direction) {
   Period out;
-  for (int n = 0; n < kPeriod; ++n) out[n] = fmt::format("(drive {:.2f} {:.2f} 0){}", drivePower(direction, n, 0), drivePower(direction, n, 1), kSync);
+  for (int n = 0; n < kPeriod; ++n)
+    out[n] = fmt::format("(drive {:.2f} {:.2f} 0){}", drivePower(direction, n, 0), drivePower(direction, n, 1), kSync);
   return out;
 }
 
@@ -61,7 +64,9 @@ double drivePower(std::size_t agent, std::int64_t n, int axis) {
 }
 
 Dialogue::Dialogue(const World& world, std::size_t agent)
-    : world_(world), agent_(agent), begin_(kJoinCycles * (world.humanoid() ? world.count - static_cast<std::int64_t>(agent) : 1) + kSettleCycles) {
+    : world_(world),
+      agent_(agent),
+      begin_(kJoinCycles * (world.humanoid() ? world.count - static_cast<std::int64_t>(agent) : 1) + kSettleCycles) {
   if (world.motion == World::Motion::heap) begin_ += kHeapCycles;
   motions(world, agent);
 }
@@ -81,7 +86,8 @@ std::string Dialogue::beam() const {
 
 std::string_view Dialogue::say(std::int64_t received) {
   if (received == 0)
-    text_ = world_.humanoid() ? fmt::format("(scene rsg/agent/nao/nao_hetero.rsg {}){}", agent_ % kTypes, kSync) : fmt::format("(scene rsg/agent/sphere.rsg){}", kSync);
+    text_ = world_.humanoid() ? fmt::format("(scene rsg/agent/nao/nao_hetero.rsg {}){}", agent_ % kTypes, kSync)
+                              : fmt::format("(scene rsg/agent/sphere.rsg){}", kSync);
   else if (received == 1)
     text_ = init();
   else if (received == 4 && world_.humanoid())

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What the bench's agents say: they load a robot, take a number and a place, and then move by numbers that the raw side knows as well.
+/// What the bench's agents say: they load a robot, take a number and a place, and then move by numbers that the raw
+/// side knows as well.
 
 #include <cstdint>
 #include <string>
@@ -10,7 +11,8 @@
 
 namespace spark::bench {
 
-/// Humanoids come one after another, so many cycles apart: several in one place are a knot for the solver. Spheres come all at once.
+/// Humanoids come one after another, so many cycles apart: several in one place are a knot for the solver. Spheres come
+/// all at once.
 inline constexpr int kJoinCycles = 8;
 /// Cycles from the last one's coming until they begin to move: they have reached their places and stand.
 inline constexpr int kSettleCycles = 50;
@@ -38,7 +40,7 @@ class Dialogue {
   std::string beam() const;
   const World& world_;
   std::size_t agent_;
-  std::int64_t begin_;   ///< messages after which it moves
+  std::int64_t begin_;  ///< messages after which it moves
   std::string text_;
 };
 

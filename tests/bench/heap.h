@@ -6,7 +6,8 @@
 
 namespace spark::bench {
 
-/// Lays all agents down and on top of each other, two a layer, just above the ground: they fall into one heap within some 100 cycles.
+/// Lays all agents down and on top of each other, two a layer, just above the ground: they fall into one heap within
+/// some 100 cycles.
 void pileUp(Kernel& kernel);
 
 }  // namespace spark::bench

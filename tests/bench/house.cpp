@@ -61,7 +61,8 @@ void House::build() {
   const fs::path share = bin() / ".." / "share" / "spark";
   Lua& lua = kernel_.lua();
   lua.addFolder(share / "lua");
-  lua.run(fmt::format("host = {{ share = \"{}\", scenePaths = {{}} }}", fs::weakly_canonical(share).string()), "sparkbench");
+  lua.run(fmt::format("host = {{ share = \"{}\", scenePaths = {{}} }}", fs::weakly_canonical(share).string()),
+          "sparkbench");
   if (setup_.world.kind == World::Kind::boxes) {
     lua.run(kBoxes, "boxes");
   } else {
@@ -73,7 +74,8 @@ void House::build() {
   }
   simulation_ = &kernel_.root().require<Leaf>("/sys/server/simulation");
   setProperty(*simulation_, "rate", "max");
-  if (setup_.world.motion == World::Motion::heap) setProperty(kernel_.root().require<Leaf>("/sys/server/physics/engine"), "directRows", kAllRows);
+  if (setup_.world.motion == World::Motion::heap)
+    setProperty(kernel_.root().require<Leaf>("/sys/server/physics/engine"), "directRows", kAllRows);
   entrance_.open(kernel_);
 }
 
@@ -85,7 +87,8 @@ void House::admitAgents() {
     if (setup_.world.humanoid() || i + 1 == count) run(kJoinCycles);
   }
   const int seen = kernel_.root().require<IGameControl>("/sys/server/gamecontrol").agentsSeen();
-  if (seen != count) throw Error(fmt::format("{}: expected {} agents with a robot, found {}", setup_.world.name, count, seen));
+  if (seen != count)
+    throw Error(fmt::format("{}: expected {} agents with a robot, found {}", setup_.world.name, count, seen));
 }
 
 void House::run(std::int64_t cycles) {

@@ -29,7 +29,12 @@ void runJobs(benchmark::State& state) {
 }  // namespace
 
 void registerJobs() {
-  benchmark::RegisterBenchmark("jobs/22", runJobs)->ArgNames({"threads", "work"})->ArgsProduct({{1, 2, 4}, {0, 1}})->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("jobs/22", runJobs)
+      ->ArgNames({"threads", "work"})
+      ->ArgsProduct({{1, 2, 4}, {0, 1}})
+      ->UseRealTime()
+      ->MeasureProcessCPUTime()
+      ->Unit(benchmark::kMicrosecond);
 }
 
 }  // namespace spark::bench

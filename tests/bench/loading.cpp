@@ -12,9 +12,10 @@
 #include "api/agents.h"
 #include "spark/error.h"
 
-// A match is deterministic, so the n-th cycle of every repetition does the same work, and the least of its times is what that work costs.
-// A quiet cycle is one with as many robots, all asleep, in which the same eyes are open (they see in every third cycle); what is above it is
-// the price of the change, the solver's work for the new robot, which is awake, included.
+// A match is deterministic, so the n-th cycle of every repetition does the same work, and the least of its times is
+// what that work costs. A quiet cycle is one with as many robots, all asleep, in which the same eyes are open (they see
+// in every third cycle); what is above it is the price of the change, the solver's work for the new robot, which is
+// awake, included.
 
 namespace spark::bench {
 
@@ -40,13 +41,19 @@ class Newcomer : public Behavior {
   static void describe(Description<Newcomer>& d) { d.doc("An agent that only comes."); }
   int index = 0;
 
-  void start(Predicates& actions) override { actions.open("scene").add("rsg/agent/nao/nao_hetero.rsg").add(index % kKinds).close(); }
+  void start(Predicates& actions) override {
+    actions.open("scene").add("rsg/agent/nao/nao_hetero.rsg").add(index % kKinds).close();
+  }
   void think(const Predicates&, Predicates& actions) override {
     ++thoughts_;
     if (thoughts_ == 1)
       actions.open("init").pair("unum", index % 11 + 1).pair("teamname", index < 11 ? "Left" : "Right").close();
     else if (thoughts_ == 4)
-      actions.open("beam").add(-2 - 2.4 * (index % 11 % 4)).add(4.0 * (index % 11 / 4 - 1) + 0.3 * (index % 11 % 4)).add(0.0).close();
+      actions.open("beam")
+          .add(-2 - 2.4 * (index % 11 % 4))
+          .add(4.0 * (index % 11 / 4 - 1) + 0.3 * (index % 11 % 4))
+          .add(0.0)
+          .close();
   }
 
  private:
@@ -63,7 +70,8 @@ class Match {
     kernel_.plugins().scan(bin / ".." / "plugins");
     kernel_.lua().addFolder(share / "lua");
     kernel_.lua().run(fmt::format("host = {{ share = \"{}\", scenePaths = {{}} }}", share.string()), "bench");
-    for (const char* port : {"agents", "monitors"}) kernel_.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+    for (const char* port : {"agents", "monitors"})
+      kernel_.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
     kernel_.lua().addOverride("webPort", 0);
     kernel_.lua().addOverride("monitorLog", "/dev/null");
     kernel_.lua().runConfig("soccer.lua");
@@ -157,7 +165,8 @@ CycleCost quietAs(std::size_t k, const std::vector<CycleCost>& cycles) {
   };
   CycleCost out;
   out.total = over([](const CycleCost& c) { return c.total; });
-  for (std::size_t p = 0; p < cycles.front().phases.size(); ++p) out.phases.push_back(over([p](const CycleCost& c) { return c.phases[p]; }));
+  for (std::size_t p = 0; p < cycles.front().phases.size(); ++p)
+    out.phases.push_back(over([p](const CycleCost& c) { return c.phases[p]; }));
   return out;
 }
 
@@ -224,8 +233,11 @@ void print(const Loading& loading) {
   for (const Change& c : loading.leaves) printRow(c);
   printPhases(loading, loading.leaves.front());
   const Json row = rowOf(loading);
-  fmt::print("longest cycle of a join: {:.0f} µs above a quiet one at worst, median {:.0f}; of a leave {:.0f}; of the first robot of all {:.0f}; heap {:.0f} kB per robot\n", row["worstMicros"].get<double>(),
-             row["medianMicros"].get<double>(), row["worstLeaveMicros"].get<double>(), row["firstMicros"].get<double>(), loading.kBPerRobot);
+  fmt::print(
+      "longest cycle of a join: {:.0f} µs above a quiet one at worst, median {:.0f}; of a leave {:.0f}; of the first "
+      "robot of all {:.0f}; heap {:.0f} kB per robot\n",
+      row["worstMicros"].get<double>(), row["medianMicros"].get<double>(), row["worstLeaveMicros"].get<double>(),
+      row["firstMicros"].get<double>(), loading.kBPerRobot);
 }
 
 }  // namespace
@@ -252,8 +264,10 @@ Loading measureLoading(int robots, int repeats) {
 
 void runLoading(bool json) {
   const Loading loading = measureLoading(22, 9);
-  if (json) fmt::print("{}\n", Json::array({rowOf(loading)}).dump(1));
-  else print(loading);
+  if (json)
+    fmt::print("{}\n", Json::array({rowOf(loading)}).dump(1));
+  else
+    print(loading);
 }
 
 }  // namespace spark::bench

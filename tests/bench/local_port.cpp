@@ -5,7 +5,8 @@
 
 namespace spark::bench {
 
-LocalConnection::LocalConnection(Node& port, std::uint64_t id) : port_(port), id_(id), peer_(fmt::format("local:{}", id)) {}
+LocalConnection::LocalConnection(Node& port, std::uint64_t id)
+    : port_(port), id_(id), peer_(fmt::format("local:{}", id)) {}
 
 bool LocalConnection::send(std::string_view message) {
   traffic.add(static_cast<std::int64_t>(message.size()));

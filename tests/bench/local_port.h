@@ -41,7 +41,8 @@ class LocalConnection : public IConnection {
   std::string peer_;
 };
 
-/// Agents and a monitor inside: a child of /sys/server, polled by the run loop. An agent answers each message once, in the cycle after.
+/// Agents and a monitor inside: a child of /sys/server, polled by the run loop. An agent answers each message once, in
+/// the cycle after.
 class LocalPort : public Node, public IInputSource {
   SPARK_CLASS(LocalPort, Node)
  public:

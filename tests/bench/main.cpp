@@ -30,7 +30,8 @@ struct Options {
 std::vector<World> wanted(const Options& options) {
   std::vector<World> out;
   for (const World& w : worlds())
-    if (options.only.empty() || std::find(options.only.begin(), options.only.end(), w.name) != options.only.end()) out.push_back(w);
+    if (options.only.empty() || std::find(options.only.begin(), options.only.end(), w.name) != options.only.end())
+      out.push_back(w);
   return out;
 }
 
@@ -51,18 +52,33 @@ Json measureWorld(const Setup& setup, const Options& options) {
 void readOptions(CLI::App& app, Options& o) {
   std::vector<std::string> names;
   for (const World& w : worlds()) names.push_back(w.name);
-  app.add_option("--only", o.only, "Worlds to measure, e.g. moving22,rest22")->delimiter(',')->check(CLI::IsMember(names));
-  app.add_option("--way", o.ways, "How: host (in process), tcp (agents over TCP in lockstep)")->delimiter(',')->check(CLI::IsMember({"host", "tcp"}));
+  app.add_option("--only", o.only, "Worlds to measure, e.g. moving22,rest22")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
+  app.add_option("--way", o.ways, "How: host (in process), tcp (agents over TCP in lockstep)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"host", "tcp"}));
   app.add_option("--cycles", o.cycles, "Cycles to measure in each world")->check(CLI::Range(1, 1000000));
-  app.add_option("--threads", o.threads, "Measures with so many host threads too")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--solver", o.solver, "The host's solver; raw ODE is dWorldStep all the same")->check(CLI::IsMember({"dense", "articulated"}))->capture_default_str();
+  app.add_option("--threads", o.threads, "Measures with so many host threads too")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  app.add_option("--solver", o.solver, "The host's solver; raw ODE is dWorldStep all the same")
+      ->check(CLI::IsMember({"dense", "articulated"}))
+      ->capture_default_str();
   app.add_option("--csv", o.csv, "Writes all rows to a file")->type_name("FILE");
-  app.add_option("--history", o.history, "Appends the main figures to this machine's file in a folder, e.g. tests/bench/history")->type_name("DIR")->check(CLI::ExistingDirectory);
+  app.add_option("--history", o.history,
+                 "Appends the main figures to this machine's file in a folder, e.g. tests/bench/history")
+      ->type_name("DIR")
+      ->check(CLI::ExistingDirectory);
   app.add_flag("--json", o.json, "Prints a JSON array of rows instead of a table");
-  app.add_flag("--validate-hash", o.validate, "Instead of measuring: hashes of the same world measured, unmeasured, again, and with several threads");
+  app.add_flag("--validate-hash", o.validate,
+               "Instead of measuring: hashes of the same world measured, unmeasured, again, and with several threads");
   app.add_flag("--loading", o.loading, "Instead: what a robot's coming and going costs the cycles of a match of 22");
   app.add_flag("--micro", o.micro, "Instead: small parts by themselves");
-  app.add_option("--realtime", o.realtime, "Instead: so many seconds of real time over TCP, and how late and long its cycles were")->type_name("SECONDS")->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--realtime", o.realtime,
+                 "Instead: so many seconds of real time over TCP, and how late and long its cycles were")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(1.0, 3600.0));
 }
 
 void print(const World& world, const Json& rows, const Options& o) {

@@ -24,7 +24,8 @@ struct Clocks {
     timespec t{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     const auto wall = std::chrono::steady_clock::now().time_since_epoch();
-    return {1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec), std::chrono::duration<double, std::micro>(wall).count()};
+    return {1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec),
+            std::chrono::duration<double, std::micro>(wall).count()};
   }
 };
 
@@ -69,7 +70,8 @@ Json row(const World& world, const char* way, int threads, const std::string& so
   r["cyclesPerSecond"] = 1e6 / wall;
   r["agentStepsPerSecond"] = 1e6 / wall * world.agents();
   r["cpuPerSimulatedSecond"] = 1e-6 * cpu / 0.02;
-  for (const auto& [name, micros] : s.parts) r[name] = quantile(micros, 0.25);  // wall time: what else the machine does only adds to it
+  for (const auto& [name, micros] : s.parts)
+    r[name] = quantile(micros, 0.25);  // wall time: what else the machine does only adds to it
   return r;
 }
 
@@ -77,7 +79,12 @@ Json row(const World& world, const char* way, int threads, const std::string& so
 class Comparison {
  public:
   Comparison(const Setup& setup, Way way, Entrance& entrance)
-      : setup_(setup), way_(way), host_(one(setup), entrance), memory_((host_.run(kWarm), peakMegabytes())), twin_(dense(setup), twinEntrance_), raw_(twin_) {}
+      : setup_(setup),
+        way_(way),
+        host_(one(setup), entrance),
+        memory_((host_.run(kWarm), peakMegabytes())),
+        twin_(dense(setup), twinEntrance_),
+        raw_(twin_) {}
 
   Json play(int cycles) {
     host_.phases();
@@ -106,8 +113,10 @@ class Comparison {
       raws_.add(Phases{{"collide", collide}, {"solve", solve}});
     };
     const auto runHost = [&] { alone = perCycle([&] { host_.run(kBlock); }), alone_.add(host_.phases()); };
-    if (i % 2) runRaw(), runHost();
-    else runHost(), runRaw();
+    if (i % 2)
+      runRaw(), runHost();
+    else
+      runHost(), runRaw();
     contacts_.push_back(raw_.contacts());
     awake_.push_back(raw_.awake());
     raws_.add(raw);
@@ -200,7 +209,8 @@ double quantile(std::vector<double> v, double share) {
 }
 
 Json measure(const Setup& setup, Way way, int cycles) {
-  Child child([&](int line) { return way == Way::tcp ? measureTcp(setup, cycles, line) : measureLocal(setup, cycles); });
+  Child child(
+      [&](int line) { return way == Way::tcp ? measureTcp(setup, cycles, line) : measureLocal(setup, cycles); });
   if (way == Way::tcp) Crowd(setup.world, child.line()).serve();
   return child.result();
 }

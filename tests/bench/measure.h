@@ -11,9 +11,10 @@ namespace spark::bench {
 enum class Way { host, tcp };
 const char* nameOf(Way way);
 
-/// Measures one world one way in a process of its own. Raw and host step equal houses: before each block of a few cycles the raw side is put
-/// into the host's state, and blocks alternate, so that what else the machine does hits both alike. With several threads the host's blocks
-/// alternate between one thread and these. Returns rows (README.md), that of raw ODE first. Throws Error.
+/// Measures one world one way in a process of its own. Raw and host step equal houses: before each block of a few
+/// cycles the raw side is put into the host's state, and blocks alternate, so that what else the machine does hits both
+/// alike. With several threads the host's blocks alternate between one thread and these. Returns rows (README.md), that
+/// of raw ODE first. Throws Error.
 Json measure(const Setup& setup, Way way, int cycles);
 
 /// What a share (0..1) of some numbers does not exceed; 0 when there are none.

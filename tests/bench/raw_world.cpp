@@ -42,13 +42,17 @@ const engine::Surface* surfaceOf(const Collider& c) {
   return h.contact ? h.contact->surface() : h.fallback ? fallback.surface() : nullptr;
 }
 
-ode::WorldData& worldOf(Kernel& kernel) { return *ode::data(kernel.root().require<IPhysicsServer>("/sys/server/physics").world()); }
+ode::WorldData& worldOf(Kernel& kernel) {
+  return *ode::data(kernel.root().require<IPhysicsServer>("/sys/server/physics").world());
+}
 
 dBodyID bodyOf(const IRigidBody& body, const ode::WorldData& w) {
-  // Bodies do not tell their ids; no two stand at the same place, and numbers cross the engine's interface in single precision at least.
+  // Bodies do not tell their ids; no two stand at the same place, and numbers cross the engine's interface in single
+  // precision at least.
   const Vec3 p = body.state().position;
   for (const auto& b : w.bodies)
-    if (const dReal* q = dBodyGetPosition(b->id); (Vec3(q[0], q[1], q[2]) - p).cwiseAbs().maxCoeff() <= 4e-6) return b->id;
+    if (const dReal* q = dBodyGetPosition(b->id); (Vec3(q[0], q[1], q[2]) - p).cwiseAbs().maxCoeff() <= 4e-6)
+      return b->id;
   throw Error("a body of the house is not in the engine");
 }
 }  // namespace
@@ -65,7 +69,8 @@ RawWorld::RawWorld(House& house) {
     bodyIds_.push_back(b->id);
   }
   joints_ = static_cast<int>(w.joints.size());
-  perPair_ = static_cast<int>(getProperty(house.kernel().root().require<Leaf>("/sys/server/physics"), "contactsPerPair").toInteger());
+  perPair_ = static_cast<int>(
+      getProperty(house.kernel().root().require<Leaf>("/sys/server/physics"), "contactsPerPair").toInteger());
   step_ = getProperty(house.kernel().root().require<Leaf>("/sys/server/simulation"), "step").toNumber();
   // What needs the house's own view comes before geoms forget their owners.
   takeDrags(house.kernel());
@@ -81,7 +86,8 @@ void RawWorld::takeGeoms(const std::vector<std::unique_ptr<ode::GeomData>>& geom
     const auto& owner = *static_cast<const Collider*>(g->owner);
     auto raw = std::make_unique<Geom>();
     if (const engine::Surface* s = surfaceOf(owner)) {
-      const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const engine::Surface* k) { return same(*k, *s); });
+      const auto known =
+          std::find_if(kinds.begin(), kinds.end(), [&](const engine::Surface* k) { return same(*k, *s); });
       raw->surface = static_cast<std::size_t>(known - kinds.begin());
       if (known == kinds.end()) kinds.push_back(s);
       raw->solid = true;
@@ -97,7 +103,8 @@ void RawWorld::takeGeoms(const std::vector<std::unique_ptr<ode::GeomData>>& geom
     const Value names = getProperty(*static_cast<const Collider*>(geoms[i]->owner), "notCollideWith");
     for (const Value& name : names.toList())
       for (const std::size_t k : byName[name.toString()])
-        if (geoms[i]->space == geoms[k]->space) geoms_[i]->never.push_back(geoms_[k].get()), geoms_[k]->never.push_back(geoms_[i].get());
+        if (geoms[i]->space == geoms[k]->space)
+          geoms_[i]->never.push_back(geoms_[k].get()), geoms_[k]->never.push_back(geoms_[i].get());
   }
 }
 
@@ -109,7 +116,8 @@ void RawWorld::takeDrags(Kernel& kernel) {
   kernel.root().require<Node>("/usr/scene").collect(controllers);
   for (BodyController* c : controllers)
     if (c->classObject()->name() == "DragController" && c->ancestor<IRigidBody>())
-      drags_.push_back({bodyOf(*c->ancestor<IRigidBody>(), w), getProperty(*c, "linearDrag").toNumber(), getProperty(*c, "angularDrag").toNumber()});
+      drags_.push_back({bodyOf(*c->ancestor<IRigidBody>(), w), getProperty(*c, "linearDrag").toNumber(),
+                        getProperty(*c, "angularDrag").toNumber()});
 }
 
 /// The engine's joint is the one in which a number that nobody else has turns up.
@@ -157,7 +165,8 @@ void RawWorld::takeDrivers(House& house) {
 
 void RawWorld::follow(House& house) {
   const ode::WorldData& w = worldOf(house.kernel());
-  if (w.bodies.size() != bodyIds_.size()) throw Error(fmt::format("expected {} bodies as in the house's twin, found {}", bodyIds_.size(), w.bodies.size()));
+  if (w.bodies.size() != bodyIds_.size())
+    throw Error(fmt::format("expected {} bodies as in the house's twin, found {}", bodyIds_.size(), w.bodies.size()));
   for (std::size_t i = 0; i < bodyIds_.size(); ++i) {
     const dBodyID from = w.bodies[i]->id, to = bodyIds_[i];
     const dReal *p = dBodyGetPosition(from), *v = dBodyGetLinearVel(from), *r = dBodyGetAngularVel(from);
@@ -171,11 +180,16 @@ void RawWorld::follow(House& house) {
   cycle_ = house.cycles();
 }
 
-int RawWorld::awake() const { return static_cast<int>(std::count_if(bodyIds_.begin(), bodyIds_.end(), [](dBodyID b) { return dBodyIsEnabled(b) != 0; })); }
+int RawWorld::awake() const {
+  return static_cast<int>(
+      std::count_if(bodyIds_.begin(), bodyIds_.end(), [](dBodyID b) { return dBodyIsEnabled(b) != 0; }));
+}
 
 std::pair<double, double> RawWorld::phases() {
   const auto mean = [this](std::chrono::steady_clock::duration& sum) {
-    return timed_ ? std::chrono::duration<double, std::micro>(std::exchange(sum, {})).count() / static_cast<double>(timed_) : 0.0;
+    return timed_
+               ? std::chrono::duration<double, std::micro>(std::exchange(sum, {})).count() / static_cast<double>(timed_)
+               : 0.0;
   };
   const std::pair<double, double> out{mean(collide_), mean(solve_)};
   timed_ = 0;
@@ -186,8 +200,10 @@ void RawWorld::act() {
   ++cycle_;
   for (const Motor& m : motors_) {
     const double v = motorSpeed(m.index, cycle_);
-    if (m.universal) dJointSetUniversalParam(m.joint, dParamVel + dParamGroup * m.axis, v);
-    else dJointSetHingeParam(m.joint, dParamVel, v);
+    if (m.universal)
+      dJointSetUniversalParam(m.joint, dParamVel + dParamGroup * m.axis, v);
+    else
+      dJointSetHingeParam(m.joint, dParamVel, v);
     if (const dBodyID b = dJointGetBody(m.joint, 0); b && !dBodyIsEnabled(b)) dBodyEnable(b);
   }
   for (const Driver& d : drivers_) {
@@ -204,8 +220,10 @@ void RawWorld::act() {
 }
 
 void RawWorld::nearCallback(void* self, dGeomID a, dGeomID b) {
-  if (dGeomIsSpace(a) || dGeomIsSpace(b)) dSpaceCollide2(a, b, self, nearCallback);
-  else static_cast<RawWorld*>(self)->near(a, b);
+  if (dGeomIsSpace(a) || dGeomIsSpace(b))
+    dSpaceCollide2(a, b, self, nearCallback);
+  else
+    static_cast<RawWorld*>(self)->near(a, b);
 }
 
 void RawWorld::near(dGeomID a, dGeomID b) {

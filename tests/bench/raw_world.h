@@ -2,9 +2,10 @@
 /// \file
 /// The same problem without a host: plain ODE calls on the bodies, joints and geoms that a house made.
 ///
-/// Taken over once from the engine: ids of world, spaces, bodies, joints; who collides with whom; the surface of each pair of materials,
-/// combined beforehand. Then a cycle is what an ODE programmer would write: forces, motors, dSpaceCollide with a near callback that makes
-/// contact joints, dWorldStep, dJointGroupEmpty. ODE's own auto-disable is on where the house's is.
+/// Taken over once from the engine: ids of world, spaces, bodies, joints; who collides with whom; the surface of each
+/// pair of materials, combined beforehand. Then a cycle is what an ODE programmer would write: forces, motors,
+/// dSpaceCollide with a near callback that makes contact joints, dWorldStep, dJointGroupEmpty. ODE's own auto-disable
+/// is on where the house's is.
 
 #include <ode/ode.h>
 

@@ -31,7 +31,10 @@ Json play(const Setup& setup, double seconds, int line) {
   house.run(kWarm);
   callMethod(loop, "resetTimers", {});
   house.run(std::llround(seconds / kStep));
-  return {{"times", toJson(getProperty(loop, "cycleTimes"))}, {"histogram", toJson(getProperty(loop, "histogram"))}, {"lateCycles", toJson(getProperty(loop, "lateCycles"))}, {"table", callMethod(loop, "paceTable", {}).toString()}};
+  return {{"times", toJson(getProperty(loop, "cycleTimes"))},
+          {"histogram", toJson(getProperty(loop, "histogram"))},
+          {"lateCycles", toJson(getProperty(loop, "lateCycles"))},
+          {"table", callMethod(loop, "paceTable", {}).toString()}};
 }
 
 /// Cycles that were done within a step, from buckets {from, late, long, done}.
@@ -48,12 +51,19 @@ Json realtime(const Setup& setup, double seconds, bool print) {
   Child child([&](int line) { return play(setup, seconds, line); });
   Crowd(setup.world, child.line()).serve();
   const Json played = child.result();
-  Json row{{"world", setup.world.name}, {"way", "realtime"}, {"threads", setup.threads}, {"solver", setup.solver}, {"agents", setup.world.agents()}};
+  Json row{{"world", setup.world.name},
+           {"way", "realtime"},
+           {"threads", setup.threads},
+           {"solver", setup.solver},
+           {"agents", setup.world.agents()}};
   row["cycles"] = played["times"][0][1];
   row["lateCycles"] = played["lateCycles"];
   row["withinStep"] = withinStep(played["histogram"]);
-  for (const Json& t : played["times"]) row[t[0].get<std::string>()] = {{"p50", t[2]}, {"p90", t[3]}, {"p99", t[4]}, {"p99.9", t[5]}, {"longest", t[6]}};
-  if (print) fmt::print("{} in real time over TCP, {} late cycles\n{}", setup.world.title, played["lateCycles"].get<std::int64_t>(), played["table"].get<std::string>());
+  for (const Json& t : played["times"])
+    row[t[0].get<std::string>()] = {{"p50", t[2]}, {"p90", t[3]}, {"p99", t[4]}, {"p99.9", t[5]}, {"longest", t[6]}};
+  if (print)
+    fmt::print("{} in real time over TCP, {} late cycles\n{}", setup.world.title,
+               played["lateCycles"].get<std::int64_t>(), played["table"].get<std::string>());
   return Json::array({row});
 }
 

@@ -18,12 +18,40 @@ namespace spark::bench {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr std::array kColumns{"world",   "way",     "threads", "solver",  "agents",      "bodies", "awake",  "joints",     "contacts",        "cpuMicros",
-                              "wallMicros", "ratio", "speedup", "cyclesPerSecond", "agentStepsPerSecond", "cpuPerSimulatedSecond", "peakMegabytes",
-                              "perceptBytes", "monitorFullBytes", "monitorPartialBytes", "collide", "solve", "input", "act", "prepare", "physics", "place", "rule", "sense",
-                              "publish", "hash"};
+constexpr std::array kColumns{"world",
+                              "way",
+                              "threads",
+                              "solver",
+                              "agents",
+                              "bodies",
+                              "awake",
+                              "joints",
+                              "contacts",
+                              "cpuMicros",
+                              "wallMicros",
+                              "ratio",
+                              "speedup",
+                              "cyclesPerSecond",
+                              "agentStepsPerSecond",
+                              "cpuPerSimulatedSecond",
+                              "peakMegabytes",
+                              "perceptBytes",
+                              "monitorFullBytes",
+                              "monitorPartialBytes",
+                              "collide",
+                              "solve",
+                              "input",
+                              "act",
+                              "prepare",
+                              "physics",
+                              "place",
+                              "rule",
+                              "sense",
+                              "publish",
+                              "hash"};
 constexpr std::array kHistory{"world", "way", "threads", "solver", "cpuMicros", "wallMicros", "ratio", "peakMegabytes"};
-constexpr std::array kParts{"collide", "solve", "input", "act", "prepare", "physics", "place", "rule", "sense", "publish"};
+constexpr std::array kParts{"collide", "solve", "input", "act",   "prepare",
+                            "physics", "place", "rule",  "sense", "publish"};
 
 std::string cell(const Json& row, const char* column) {
   const auto it = row.find(column);
@@ -43,7 +71,9 @@ std::string head(std::span<const char* const> columns) { return fmt::format("{}\
 double number(const Json& row, const char* name) { return row.value(name, 0.0); }
 
 /// A number, or nothing where the row has none.
-std::string shown(const Json& row, const char* name, const char* format) { return row.contains(name) ? fmt::format(fmt::runtime(format), number(row, name)) : ""; }
+std::string shown(const Json& row, const char* name, const char* format) {
+  return row.contains(name) ? fmt::format(fmt::runtime(format), number(row, name)) : "";
+}
 
 /// Model name of the processor, as a file name.
 std::string processor() {
@@ -56,8 +86,10 @@ std::string processor() {
     }
   std::string out;
   for (const char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c))) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    else if (!out.empty() && out.back() != '-') out += '-';
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
   while (!out.empty() && out.back() == '-') out.pop_back();
   return out;
 }
@@ -75,21 +107,28 @@ std::string commit(const fs::path& folder) {
 }  // namespace
 
 void printHead() {
-  fmt::print("{:<26} {:<5} {:>7} {:>10} {:>10} {:>7} {:>8} {:>10} {:>12} {:>9} {:>8}\n", "world", "way", "threads", "CPU us", "wall us", "x raw", "speedup", "cycles/s", "agent steps/s",
-             "CPU s/s", "peak MB");
+  fmt::print("{:<26} {:<5} {:>7} {:>10} {:>10} {:>7} {:>8} {:>10} {:>12} {:>9} {:>8}\n", "world", "way", "threads",
+             "CPU us", "wall us", "x raw", "speedup", "cycles/s", "agent steps/s", "CPU s/s", "peak MB");
 }
 
 void printRows(const World& world, const Json& rows) {
   for (const Json& r : rows) {
     const bool raw = r["way"] == "raw";
-    fmt::print("{:<26} {:<5} {:>7} {:>10.1f} {:>10.1f} {:>7} {:>8} {:>10.0f} {:>12.0f} {:>9.4f} {:>8}\n", raw ? world.title : "", r["way"].get<std::string>(), r["threads"].get<int>(),
-               number(r, "cpuMicros"), number(r, "wallMicros"), shown(r, "ratio", "{:.3f}"), shown(r, "speedup", "{:.2f}"), number(r, "cyclesPerSecond"), number(r, "agentStepsPerSecond"),
-               number(r, "cpuPerSimulatedSecond"), shown(r, "peakMegabytes", "{:.1f}"));
+    fmt::print("{:<26} {:<5} {:>7} {:>10.1f} {:>10.1f} {:>7} {:>8} {:>10.0f} {:>12.0f} {:>9.4f} {:>8}\n",
+               raw ? world.title : "", r["way"].get<std::string>(), r["threads"].get<int>(), number(r, "cpuMicros"),
+               number(r, "wallMicros"), shown(r, "ratio", "{:.3f}"), shown(r, "speedup", "{:.2f}"),
+               number(r, "cyclesPerSecond"), number(r, "agentStepsPerSecond"), number(r, "cpuPerSimulatedSecond"),
+               shown(r, "peakMegabytes", "{:.1f}"));
     std::string parts;
     for (const char* p : kParts)
       if (r.contains(p)) parts += fmt::format(" {} {:.1f}", p, number(r, p));
-    if (raw) parts += fmt::format("; {} bodies ({:.0f} awake), {} joints, {:.0f} contacts, {}", r["bodies"].get<int>(), number(r, "awake"), r["joints"].get<int>(), number(r, "contacts"), r["solver"].get<std::string>());
-    if (r.contains("monitorFullBytes")) parts += fmt::format("; bytes: percept {:.0f}, monitor full {:.0f}, partial {:.0f}", number(r, "perceptBytes"), number(r, "monitorFullBytes"), number(r, "monitorPartialBytes"));
+    if (raw)
+      parts += fmt::format("; {} bodies ({:.0f} awake), {} joints, {:.0f} contacts, {}", r["bodies"].get<int>(),
+                           number(r, "awake"), r["joints"].get<int>(), number(r, "contacts"),
+                           r["solver"].get<std::string>());
+    if (r.contains("monitorFullBytes"))
+      parts += fmt::format("; bytes: percept {:.0f}, monitor full {:.0f}, partial {:.0f}", number(r, "perceptBytes"),
+                           number(r, "monitorFullBytes"), number(r, "monitorPartialBytes"));
     if (r.contains("hash")) parts += "; hash " + r["hash"].get<std::string>();
     fmt::print("{:>32}:{}\n", "us", parts);
   }

@@ -28,7 +28,8 @@ void TcpEntrance::open(Kernel& kernel) {
 
 void TcpEntrance::tell(const std::string& text) {
   char answer = 0;
-  if (write(line_, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || read(line_, &answer, 1) != 1) throw Error("the crowd of agents is gone");
+  if (write(line_, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || read(line_, &answer, 1) != 1)
+    throw Error("the crowd of agents is gone");
 }
 
 }  // namespace spark::bench

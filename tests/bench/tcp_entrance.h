@@ -6,7 +6,8 @@
 
 namespace spark::bench {
 
-/// Lockstep over the loopback. Lines to the crowd: `open AGENTPORT MONITORPORT`, `admit`, `watch`; each is answered by one byte.
+/// Lockstep over the loopback. Lines to the crowd: `open AGENTPORT MONITORPORT`, `admit`, `watch`; each is answered by
+/// one byte.
 class TcpEntrance : public Entrance {
  public:
   explicit TcpEntrance(int line) : line_(line) {}

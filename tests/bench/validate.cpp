@@ -33,7 +33,9 @@ Json validate(const Setup& setup, int cycles, bool print) {
   for (const auto& [key, value] : row.items())
     if (key != "world" && key != "solver" && key != "cycles") same = same && value == row["measured"];
   row["same"] = same;
-  if (print) fmt::print("{:<12} {} cycles: {} {}\n", setup.world.name, run, row["measured"].get<std::string>(), same ? "measured, unmeasured, again, with several threads" : "DIFFERS: " + row.dump());
+  if (print)
+    fmt::print("{:<12} {} cycles: {} {}\n", setup.world.name, run, row["measured"].get<std::string>(),
+               same ? "measured, unmeasured, again, with several threads" : "DIFFERS: " + row.dump());
   std::fflush(stdout);
   return Json::array({row});
 }

@@ -10,7 +10,8 @@ int cycles(World::Motion motion, int count) { return count < 11 ? 400 : motion =
 
 void addHumanoids(std::vector<World>& all, World::Motion motion, const char* name, const char* what) {
   for (const int count : {1, 2, 6, 11, 22})
-    all.push_back({World::Kind::humanoids, motion, fmt::format("{}{}", name, count), fmt::format("{} humanoid{}, {}", count, count > 1 ? "s" : "", what), count, cycles(motion, count)});
+    all.push_back({World::Kind::humanoids, motion, fmt::format("{}{}", name, count),
+                   fmt::format("{} humanoid{}, {}", count, count > 1 ? "s" : "", what), count, cycles(motion, count)});
 }
 }  // namespace
 
@@ -22,7 +23,8 @@ const std::vector<World>& worlds() {
     addHumanoids(out, World::Motion::heap, "heap", "fallen in a heap");
     out.push_back({World::Kind::boxes, World::Motion::moving, "boxes1000", "1,000 boxes", 1000, 200});
     for (const int count : {10, 100, 1000})
-      out.push_back({World::Kind::spheres, World::Motion::moving, fmt::format("spheres{}", count), fmt::format("{} sphere agents, driving", count == 1000 ? "1,000" : std::to_string(count)), count,
+      out.push_back({World::Kind::spheres, World::Motion::moving, fmt::format("spheres{}", count),
+                     fmt::format("{} sphere agents, driving", count == 1000 ? "1,000" : std::to_string(count)), count,
                      count < 1000 ? 1000 : 100});
     return out;
   }();

@@ -19,8 +19,8 @@ class BallPath {
   std::vector<std::string> places_;
 };
 
-/// True when everything that `recorded` has after its first move stands in `ours` too, in that order. Only where a message may have been
-/// lost on the recording's way may `ours` have more.
+/// True when everything that `recorded` has after its first move stands in `ours` too, in that order. Only where a
+/// message may have been lost on the recording's way may `ours` have more.
 bool samePath(const std::vector<std::string>& recorded, const std::vector<std::string>& ours);
 
 }  // namespace spark::test

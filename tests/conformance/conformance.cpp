@@ -1,12 +1,13 @@
 /// \file
-/// Replays recorded lockstep sessions of the installed base against a host of this build and says how far the sensors without noise are from
-/// the recorded ones.
+/// Replays recorded lockstep sessions of the installed base against a host of this build and says how far the sensors
+/// without noise are from the recorded ones.
 ///
 ///     spark-conformance                         every session, as a Markdown table
 ///     spark-conformance mainline/nao0-rest ...  these
 ///
-/// Sessions are files below SPARK_REFERENCE_DIR/captures. Exit code 0: every printed digit is the recorded one; 1: not so; 77: no reference
-/// data. A session whose beam was recorded with noise is replayed with the beam that its monitor frames show.
+/// Sessions are files below SPARK_REFERENCE_DIR/captures. Exit code 0: every printed digit is the recorded one; 1: not
+/// so; 77: no reference data. A session whose beam was recorded with noise is replayed with the beam that its monitor
+/// frames show.
 
 #include <fmt/format.h>
 
@@ -24,15 +25,25 @@
 namespace spark::test {
 namespace {
 
-const std::vector<std::string> kSessions{
-    "mainline/nao0-rest",        "mainline/nao0-all-joints",       "mainline/nao0-squat-after-beam", "mainline/nao3-legs",
-    "mainline/team-walks-and-kicks", "mainline/team-walks-and-dribbles", "mainline/team-scores-and-beams-again",
-    "mainline/ball-bounce-and-roll", "spl/nao0-rest", "spl/nao0-all-joints", "spl/nao0-squat-after-beam", "spl/nao3-legs",
-    "spl/ball-bounce-and-roll"};
+const std::vector<std::string> kSessions{"mainline/nao0-rest",
+                                         "mainline/nao0-all-joints",
+                                         "mainline/nao0-squat-after-beam",
+                                         "mainline/nao3-legs",
+                                         "mainline/team-walks-and-kicks",
+                                         "mainline/team-walks-and-dribbles",
+                                         "mainline/team-scores-and-beams-again",
+                                         "mainline/ball-bounce-and-roll",
+                                         "spl/nao0-rest",
+                                         "spl/nao0-all-joints",
+                                         "spl/nao0-squat-after-beam",
+                                         "spl/nao3-legs",
+                                         "spl/ball-bounce-and-roll"};
 
-/// `(beam -2 0.5 30)` as the noise of the recording made it: x [m], y [m], angle [deg], from the torso's matrix in the frames that follow.
-const std::map<std::string, std::string> kNoisyBeams{{"mainline/nao0-squat-after-beam", "(beam -2.0413 0.479276 20.387088)"},
-                                                     {"spl/nao0-squat-after-beam", "(beam -1.95753 0.516926 37.928452)"}};
+/// `(beam -2 0.5 30)` as the noise of the recording made it: x [m], y [m], angle [deg], from the torso's matrix in the
+/// frames that follow.
+const std::map<std::string, std::string> kNoisyBeams{
+    {"mainline/nao0-squat-after-beam", "(beam -2.0413 0.479276 20.387088)"},
+    {"spl/nao0-squat-after-beam", "(beam -1.95753 0.516926 37.928452)"}};
 
 /// The numbers of each channel in a message: "HJ hj1" -> {1.72}, "FRP rf" -> {c, f}.
 using Readings = std::map<std::string, std::vector<double>>;
@@ -98,7 +109,8 @@ struct Outcome {
 
 Outcome replaySession(const std::string& name, const Recording& recording) {
   // A frame each cycle: which half of them was recorded depends on when the agent came.
-  std::vector<std::string> settings{"Soccer.BeamNoiseXY=0", "Soccer.BeamNoiseAngle=0", "/sys/server/monitor.interval=1"};
+  std::vector<std::string> settings{"Soccer.BeamNoiseXY=0", "Soccer.BeamNoiseAngle=0",
+                                    "/sys/server/monitor.interval=1"};
   if (name.starts_with("spl/")) settings.push_back("/sys/server/gamecontrol/parser.decimals=3");
   LockstepHost host(settings);
   Client monitor(host.monitorPort), agent(host.agentPort);
@@ -133,7 +145,8 @@ std::pair<std::string, bool> judgeBall(const std::string& name, const Recording&
   if (!thrown && recording.ball.empty()) return {"-", true};
   const std::vector<std::string>& recorded = thrown ? o.recordedBall.places() : recording.ball;
   const bool same = samePath(recorded, o.ball.places());
-  return {fmt::format("{} of {} places, the last {}", same ? "all" : "NOT all", recorded.size(), recorded.back()), same};
+  return {fmt::format("{} of {} places, the last {}", same ? "all" : "NOT all", recorded.size(), recorded.back()),
+          same};
 }
 
 bool report(const std::string& name, const std::filesystem::path& folder) {
@@ -143,8 +156,9 @@ bool report(const std::string& name, const std::filesystem::path& folder) {
   const Outcome o = replaySession(name, recording);
   const auto& most = o.sensors.greatest;
   const auto [ball, ballSame] = judgeBall(name, recording, o);
-  std::cout << fmt::format("| {}{} | {} | {} | {:g} | {:g} | {:g} | {:g} | {} | {} | {} |\n", name, kNoisyBeams.contains(name) ? " \\*" : "", o.cycles,
-                           o.sensors.compared, most.at("HJ"), most.at("GYR"), most.at("ACC"), most.at("FRP"), o.sensors.differ, o.sensors.shape, ball)
+  std::cout << fmt::format("| {}{} | {} | {} | {:g} | {:g} | {:g} | {:g} | {} | {} | {} |\n", name,
+                           kNoisyBeams.contains(name) ? " \\*" : "", o.cycles, o.sensors.compared, most.at("HJ"),
+                           most.at("GYR"), most.at("ACC"), most.at("FRP"), o.sensors.differ, o.sensors.shape, ball)
             << std::flush;
   if (!o.sensors.first.empty()) std::cerr << name << ": first at " << o.sensors.first << "\n";
   return o.sensors.none() && ballSame;
@@ -157,7 +171,8 @@ int run(std::vector<std::string> names) {
     return 77;
   }
   if (names.empty()) names = kSessions;
-  std::cout << "| session | cycles | numbers | HJ [deg] | GYR [deg/s] | ACC [m/s^2] | FRP [m, N] | differ | other sensors | ball |\n"
+  std::cout << "| session | cycles | numbers | HJ [deg] | GYR [deg/s] | ACC [m/s^2] | FRP [m, N] | differ | other "
+               "sensors | ball |\n"
                "|---|---|---|---|---|---|---|---|---|---|\n";
   bool exact = true;
   for (const std::string& name : names) exact = report(name, reference / "captures") && exact;

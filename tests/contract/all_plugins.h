@@ -33,6 +33,8 @@ struct AllPlugins : House {
 };
 
 /// True when `type` holds numbers that a unit could make clear.
-inline bool isNumeric(const std::string& type) { return type == "number" || type == "vec3" || type == "list of number"; }
+inline bool isNumeric(const std::string& type) {
+  return type == "number" || type == "vec3" || type == "list of number";
+}
 
 }  // namespace spark::test

@@ -4,7 +4,8 @@
 #include "all_plugins.h"
 #include "spark/state.h"
 
-// What a plugin's author must have done, so that Lua, scene files, sparkctl, --describe and saved state work with his classes.
+// What a plugin's author must have done, so that Lua, scene files, sparkctl, --describe and saved state work with his
+// classes.
 
 using namespace spark;
 using spark::test::AllPlugins;
@@ -37,11 +38,15 @@ bool isSentence(const std::string& text) { return text.size() >= 5 && text.back(
 /// True when a number's range or doc says that it has no unit.
 bool isPureNumber(const Property& p) {
   if (p.min && p.max) return true;
-  static const char* words[] = {"factor", "ratio", "share",       "fraction", "coefficient", "exponent", "direction",   "axis",
-                                "scale",  "score", "number of", "matrix",   "probability", "relative", "restitution", "constraint force mixing", "slip"};
+  static const char* words[] = {
+      "factor", "ratio", "share",     "fraction", "coefficient", "exponent", "direction",   "axis",
+      "scale",  "score", "number of", "matrix",   "probability", "relative", "restitution", "constraint force mixing",
+      "slip"};
   std::string doc = p.doc;
-  std::transform(doc.begin(), doc.end(), doc.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::any_of(std::begin(words), std::end(words), [&](const char* w) { return doc.find(w) != std::string::npos; });
+  std::transform(doc.begin(), doc.end(), doc.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::any_of(std::begin(words), std::end(words),
+                     [&](const char* w) { return doc.find(w) != std::string::npos; });
 }
 
 std::string outOfRange(const Property& p, const Value& v) {
@@ -52,7 +57,8 @@ std::string outOfRange(const Property& p, const Value& v) {
     const double d = v.toNumber();
     if (p.min && !(d >= *p.min)) return v.text() + " is below " + Value(*p.min).text();
     if (p.max && !(d <= *p.max)) return v.text() + " is above " + Value(*p.max).text();
-  } else if (v.isString() && !p.choices.empty() && std::find(p.choices.begin(), p.choices.end(), v.toString()) == p.choices.end()) {
+  } else if (v.isString() && !p.choices.empty() &&
+             std::find(p.choices.begin(), p.choices.end(), v.toString()) == p.choices.end()) {
     return v.text() + " is none of its choices";
   }
   return {};
@@ -62,7 +68,8 @@ std::string outOfRange(const Property& p, const Value& v) {
 bool isClose(const Value& a, const Value& b) {
   if (a.isNumber() && b.isNumber()) {
     const double x = a.toNumber(), y = b.toNumber();
-    return x == y || (std::isnan(x) && std::isnan(y)) || std::abs(x - y) <= 1e-5 * std::max({1.0, std::abs(x), std::abs(y)});
+    return x == y || (std::isnan(x) && std::isnan(y)) ||
+           std::abs(x - y) <= 1e-5 * std::max({1.0, std::abs(x), std::abs(y)});
   }
   if (!a.isList() || !b.isList()) return a == b;
   if (a.toList().size() != b.toList().size()) return false;
@@ -86,11 +93,13 @@ Value another(const Property& p, const Value& v) {
 std::string roundTrip(Leaf& object, const Property& p) {
   const Value before = p.get(object);
   setProperty(object, p.name, before);
-  if (const Value after = p.get(object); !isClose(before, after)) return "set to its own value " + before.text() + " it reads " + after.text();
+  if (const Value after = p.get(object); !isClose(before, after))
+    return "set to its own value " + before.text() + " it reads " + after.text();
   const Value other = another(p, before);
   if (other.isNil()) return {};
   setProperty(object, p.name, other);
-  if (const Value after = p.get(object); !isClose(other, after)) return "set to " + other.text() + " it reads " + after.text();
+  if (const Value after = p.get(object); !isClose(other, after))
+    return "set to " + other.text() + " it reads " + after.text();
   return {};
 }
 }  // namespace
@@ -117,7 +126,9 @@ TEST_CASE("Every class, property and method is documented, with type and unit") 
       CHECK(isSentence(p->doc));
       CHECK_FALSE(p->type.empty());
       if (test::isNumeric(p->type) && p->unit.empty() && !isPureNumber(*p))
-        FAIL_CHECK("a number without a unit: give it .unit(\"m\"), .unit(\"1\") for a pure number, or say in its doc that it is a factor, ratio, ...");
+        FAIL_CHECK(
+            "a number without a unit: give it .unit(\"m\"), .unit(\"1\") for a pure number, or say in its doc that it "
+            "is a factor, ratio, ...");
     }
     for (const Method* m : c.methods()) {
       INFO("method " << m->name << " (" << m->doc << ")");
@@ -149,7 +160,8 @@ TEST_CASE("Every control aspect can be switched off") {
 TEST_CASE("Members that hide what every node has in Lua are known") {
   AllPlugins house;
   forEachClass(house, [](Plugin&, ClassObject& c) {
-    for (const char* builtin : {"class", "parent", "alive", "find", "children", "new", "delete", "attachScript", "on"}) {
+    for (const char* builtin :
+         {"class", "parent", "alive", "find", "children", "new", "delete", "attachScript", "on"}) {
       INFO(builtin);
       CHECK_FALSE(c.property(builtin));
       CHECK_FALSE(c.method(builtin));
@@ -165,7 +177,8 @@ TEST_CASE("Names of properties are words that Lua and scene files can write, and
     std::set<std::string> seen;
     for (const Property* p : ownProperties(c)) {
       INFO("property " << p->name);
-      CHECK(std::all_of(p->name.begin(), p->name.end(), [](unsigned char ch) { return std::isalnum(ch) || ch == '_'; }));
+      CHECK(
+          std::all_of(p->name.begin(), p->name.end(), [](unsigned char ch) { return std::isalnum(ch) || ch == '_'; }));
       CHECK(seen.insert(p->name).second);
       CHECK(p->readOnly == !p->set);
     }

@@ -1,7 +1,8 @@
 #include "all_plugins.h"
 #include "spark/state.h"
 
-// Most classes are at home in a scene: a small house with a world and a body, into which one object of each class moves.
+// Most classes are at home in a scene: a small house with a world and a body, into which one object of each class
+// moves.
 
 using namespace spark;
 using spark::test::AllPlugins;
@@ -30,7 +31,8 @@ struct SmallHouse : AllPlugins {
   /// Where an object of the class finds what it looks for above it: nodes that are made for another's inside go there.
   std::vector<Node*> homes() {
     std::vector<Node*> out;
-    for (const char* path : {"/usr/scene/thing", "/usr/scene/thing/shape", "/sys/server/gamecontrol", "/sys/server/monitor", "/lonely"})
+    for (const char* path :
+         {"/usr/scene/thing", "/usr/scene/thing/shape", "/sys/server/gamecontrol", "/sys/server/monitor", "/lonely"})
       out.push_back(&kernel.root().require<Node>(path));
     return out;
   }
@@ -45,7 +47,9 @@ struct SmallHouse : AllPlugins {
     }
     return nullptr;
   }
-  void run(int cycles) { callMethod(*kernel.root().find("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles}); }
+  void run(int cycles) {
+    callMethod(*kernel.root().find("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles});
+  }
 };
 
 /// Sockets and transports need more than a house.

@@ -38,10 +38,12 @@ TEST_CASE("Every plugin has a README with an example and a table that names its 
     CHECK(text.find("```lua") != std::string::npos);
     std::string missing;
     for (ClassObject* c : house.classesOf(*plugin)) {
-      if (text.find("--describe " + c->name()) != std::string::npos) continue;  // too many for a table: the README says how to list them
+      if (text.find("--describe " + c->name()) != std::string::npos)
+        continue;  // too many for a table: the README says how to list them
       for (const Property* p : c->properties()) {
         const bool own = (!c->base() || c->base()->property(p->name) == nullptr) && p->type != "random stream";
-        if (own && tables.find("`" + p->name + "`") == std::string::npos) missing += "\n  " + c->name() + "." + p->name + "  " + p->type + " [" + p->unit + "]  " + p->doc;
+        if (own && tables.find("`" + p->name + "`") == std::string::npos)
+          missing += "\n  " + c->name() + "." + p->name + "  " + p->type + " [" + p->unit + "]  " + p->doc;
       }
     }
     if (!missing.empty()) FAIL_CHECK("its table does not name:" << missing);

@@ -1,4 +1,5 @@
-// Packets of the drawing port: whatever comes, what is kept of it is in bounds and valid, and what is written of it reads the same again.
+// Packets of the drawing port: whatever comes, what is kept of it is in bounds and valid, and what is written of it
+// reads the same again.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

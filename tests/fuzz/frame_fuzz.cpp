@@ -14,7 +14,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (frame.status == Status::bad && frame.why.empty()) std::abort();
     if (frame.status != Status::message) break;
     if (frame.consumed == 0 || frame.consumed > bytes.size() || frame.message.size() > kLimit) std::abort();
-    if (frame.message.data() < bytes.data() || frame.message.data() + frame.message.size() > bytes.data() + frame.consumed) std::abort();
+    if (frame.message.data() < bytes.data() ||
+        frame.message.data() + frame.message.size() > bytes.data() + frame.consumed)
+      std::abort();
     std::string again;
     framing.frame(frame.message, again);
     if (again != bytes.substr(0, frame.consumed)) std::abort();

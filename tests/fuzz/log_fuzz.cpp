@@ -1,4 +1,5 @@
-// Recorded monitor messages: whatever stands in a log, the scene stays one that can be encoded, and what is encoded of it can be read again.
+// Recorded monitor messages: whatever stands in a log, the scene stays one that can be encoded, and what is encoded of
+// it can be read again.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

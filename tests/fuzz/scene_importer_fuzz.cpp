@@ -1,7 +1,8 @@
 // The importer of scene files, run on arbitrary files and arguments with all classes of the `scene` plugin.
 //
-// Input: one byte of switches, then chunks that end with a zero byte: the file a.rsg, the file b.rsg (which a.rsg may import), arguments.
-// Whatever comes, the import ends with success or an Error, within its limits, and the house can be taken down.
+// Input: one byte of switches, then chunks that end with a zero byte: the file a.rsg, the file b.rsg (which a.rsg may
+// import), arguments. Whatever comes, the import ends with success or an Error, within its limits, and the house can be
+// taken down.
 
 #include <cstdlib>
 #include <map>
@@ -47,15 +48,16 @@ struct House {
 
   House() {
     kernel.log().setLevel(Level::off);
-    registerAll<SceneNode, Transform, Scene, SceneServer, Light, Camera, Axis, RenderNode, StaticMesh, SingleMatNode, Box, Sphere, Capsule,
-                Cylinder, MaterialSolid, MaterialServer, Variables, RsgImporter, TwoFiles>();
+    registerAll<SceneNode, Transform, Scene, SceneServer, Light, Camera, Axis, RenderNode, StaticMesh, SingleMatNode,
+                Box, Sphere, Capsule, Cylinder, MaterialSolid, MaterialServer, Variables, RsgImporter, TwoFiles>();
     files = &kernel.create<TwoFiles>("TwoFiles", "/sys/server/file");
     server = &kernel.create<ISceneServer>("SceneServer", "/sys/server/scene");
     importer = &kernel.create("RsgImporter", "/sys/server/scene/rsg");
     kernel.create("MaterialServer", "/sys/server/material");
     kernel.create("Scene", "/usr/scene");
     callMethod(kernel.create("Variables", "/sys/variables/Soccer"), "set", List{"FieldLength", 30.0});
-    setProperty(kernel.create("Variables", "/sys/variables/Type"), "value", List{List{List{"key", "true"}}, List{1, 2.5}});
+    setProperty(kernel.create("Variables", "/sys/variables/Type"), "value",
+                List{List{List{"key", "true"}}, List{1, 2.5}});
     setProperty(*importer, "maxNodes", kMaxNodes);
     setProperty(*importer, "maxImports", 60);
     setProperty(*importer, "maxDepth", 8);

@@ -4,8 +4,8 @@
 
 #include "../../plugins/monitor-web/http_request.h"
 
-// Requests as they come from a socket, in the pieces that the first byte says: what is answered is a refusal, a page of ours, or a file below
-// the folders that are served.
+// Requests as they come from a socket, in the pieces that the first byte says: what is answered is a refusal, a page of
+// ours, or a file below the folders that are served.
 
 using namespace spark::web;
 
@@ -50,7 +50,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     // Names alone decide which file is meant, whatever there is.
     const auto names = plainComponents(request.target.substr(std::min<std::size_t>(1, request.target.size())));
     for (const std::string& name : names)
-      if (name == ".." || name == "." || name.find('/') != name.npos) throw std::logic_error("a name that is none: " + name);
+      if (name == ".." || name == "." || name.find('/') != name.npos)
+        throw std::logic_error("a name that is none: " + name);
     if (reply.close || reply.stream) return 0;
   }
   return 0;

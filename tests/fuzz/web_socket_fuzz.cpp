@@ -6,21 +6,24 @@
 #include "../../plugins/monitor-web/viewer_socket.h"
 #include "spark/error.h"
 
-// Bytes behind the handshake of a WebSocket: frames are read as for a viewer, their messages too. What is too long or breaks the rules ends it.
+// Bytes behind the handshake of a WebSocket: frames are read as for a viewer, their messages too. What is too long or
+// breaks the rules ends it.
 
 using namespace spark::web;
 namespace beast = boost::beast;
 
 namespace {
 constexpr const char* kHandshake =
-    "GET /stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+    "GET /stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: "
+    "dGhlIHNhbXBsZSBub25jZQ==\r\n"
     "Sec-WebSocket-Version: 13\r\n\r\n";
 
 void check(std::string_view text) {
   if (text.size() > kLongestMessage) throw std::logic_error("a message that is too long");
   try {
     const ViewerMessage message = readViewerMessage(text);
-    if (message.rate != 0 && (message.rate < kSlowest || message.rate > kFastest)) throw std::logic_error("a rate out of range");
+    if (message.rate != 0 && (message.rate < kSlowest || message.rate > kFastest))
+      throw std::logic_error("a rate out of range");
   } catch (const spark::Error&) {
   }
 }

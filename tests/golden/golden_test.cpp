@@ -1,8 +1,9 @@
 /// Worlds without clients have the committed state hash after a number of cycles (hashes.txt beside this file).
 ///
-/// The first row is a hash of sines, powers and the like. Where it differs, the C library returns other digits than on the machine that
-/// wrote the file, and the worlds differ for that reason. glibc has variants of these functions for processors with FMA, with other last
-/// digits; they are switched off here, so that the rows hold on every x86-64 machine with the same version of glibc.
+/// The first row is a hash of sines, powers and the like. Where it differs, the C library returns other digits than on
+/// the machine that wrote the file, and the worlds differ for that reason. glibc has variants of these functions for
+/// processors with FMA, with other last digits; they are switched off here, so that the rows hold on every x86-64
+/// machine with the same version of glibc.
 
 #include <unistd.h>
 
@@ -30,7 +31,8 @@ const bool restarted = [] {
   std::ifstream in("/proc/self/cmdline", std::ios::binary);
   const std::string all{std::istreambuf_iterator<char>(in), {}};
   std::vector<char*> arguments;
-  for (std::size_t i = 0; i < all.size(); i += std::strlen(&all[i]) + 1) arguments.push_back(const_cast<char*>(&all[i]));
+  for (std::size_t i = 0; i < all.size(); i += std::strlen(&all[i]) + 1)
+    arguments.push_back(const_cast<char*>(&all[i]));
   arguments.push_back(nullptr);
   execv("/proc/self/exe", arguments.data());
   return false;
@@ -40,15 +42,16 @@ std::uint64_t mathHash() {
   StateWriter out(false);
   for (int i = 1; i <= 1000; ++i) {
     const double x = 0.0137 * i;
-    for (const double y :
-         {std::sin(x), std::cos(x), std::tan(x), std::atan2(x, 3 - x), std::acos(x / 14), std::exp(x), std::log(x), std::pow(x, 1.7)})
+    for (const double y : {std::sin(x), std::cos(x), std::tan(x), std::atan2(x, 3 - x), std::acos(x / 14), std::exp(x),
+                           std::log(x), std::pow(x, 1.7)})
       out.write(y);
   }
   return out.hash();
 }
 
 /// The state hash of a config after `cycles`.
-std::uint64_t worldHash(const std::string& config, const std::vector<std::pair<std::string, Value>>& settings, int cycles) {
+std::uint64_t worldHash(const std::string& config, const std::vector<std::pair<std::string, Value>>& settings,
+                        int cycles) {
   test::House house;
   Lua& lua = house.kernel.lua();
   lua.addFolder(SPARK_SOURCES "/lua");
@@ -72,7 +75,8 @@ std::vector<Row> measured() {
   constexpr int kBoxes = 500, kSpheres = 3000;
   return {{"math", 0, mathHash()},
           {"boxes", kBoxes, worldHash("boxes.lua", {}, kBoxes)},
-          {"soccer-sphere", kSpheres, worldHash("soccer-sphere.lua", {{"team", "Red Blue"}, {"Soccer.RuleHalfTime", 20}}, kSpheres)}};
+          {"soccer-sphere", kSpheres,
+           worldHash("soccer-sphere.lua", {{"team", "Red Blue"}, {"Soccer.RuleHalfTime", 20}}, kSpheres)}};
 }
 
 std::string lineOf(const Row& row) { return fmt::format("{} {} {:016x}", row.name, row.cycles, row.hash); }
@@ -94,7 +98,9 @@ TEST_CASE("Worlds have the committed state hash") {
   for (std::string line; std::getline(in, line);)
     if (!line.starts_with("#")) committed.push_back(line);
   REQUIRE(committed.size() == rows.size());
-  INFO("When a change means to move every match: SPARK_RENEW=1 build/release/tests/test-golden, and commit tests/golden/hashes.txt.");
+  INFO(
+      "When a change means to move every match: SPARK_RENEW=1 build/release/tests/test-golden, and commit "
+      "tests/golden/hashes.txt.");
   INFO("When `math` differs, the C library is another one.");
   for (std::size_t i = 0; i < rows.size(); ++i) CHECK(lineOf(rows[i]) == committed[i]);
 }

@@ -8,8 +8,9 @@
 #include "recording.h"
 #include "test_support.h"
 
-// Recorded sessions, replayed in lockstep: what agents are told must have the recorded shape to the byte, with numbers left open, and what
-// robots see must lie within the noise of what was seen. How far bodies follow the recording to the last digit is measured elsewhere.
+// Recorded sessions, replayed in lockstep: what agents are told must have the recorded shape to the byte, with numbers
+// left open, and what robots see must lie within the noise of what was seen. How far bodies follow the recording to the
+// last digit is measured elsewhere.
 
 using namespace spark::test;
 
@@ -17,14 +18,17 @@ namespace {
 
 struct Session {
   const char* name;
-  int looks;                 ///< at least so many messages with See are compared by value, on any processor
-  bool ballIsMoved = false;  ///< by a trainer, whose commands act a monitor's period sooner or later: where it is, is left open
+  int looks;  ///< at least so many messages with See are compared by value, on any processor
+  bool ballIsMoved =
+      false;  ///< by a trainer, whose commands act a monitor's period sooner or later: where it is, is left open
 };
-/// Those of one agent. Its pose is known while all of its other senses agree with the recording, and unless it was beamed with noise.
+/// Those of one agent. Its pose is known while all of its other senses agree with the recording, and unless it was
+/// beamed with noise.
 const Session kSessions[] = {{"nao0-rest", 90}, {"ball-bounce-and-roll", 120, true}, {"nao0-all-joints", 20},
                              {"nao3-legs", 40}, {"nao0-squat-after-beam", 0},        {"team-walks-and-kicks", 300}};
 
-constexpr int kJoining = 5;  ///< cycles in which a number may be told a message earlier or later: agents are not waited for yet
+constexpr int kJoining =
+    5;  ///< cycles in which a number may be told a message earlier or later: agents are not waited for yet
 
 /// One version of the installed base.
 struct Version {
@@ -38,7 +42,8 @@ std::filesystem::path captureFile(const Version& version, const std::string& ses
   const auto folder = referenceFolder();
   if (folder.empty()) std::exit(77);
   for (const char* end : {".jsonl", ".jsonl.gz"})
-    if (const auto file = folder / "captures" / version.folder / (session + end); std::filesystem::exists(file)) return file;
+    if (const auto file = folder / "captures" / version.folder / (session + end); std::filesystem::exists(file))
+      return file;
   return {};
 }
 
@@ -88,8 +93,8 @@ std::string gsShape(std::string gs, bool joining) {
   return shape(gs);
 }
 
-/// The first difference in shape, "" when there is none. GS may be that of one of the `near` cycles (trainers' commands come a cycle
-/// sooner or later).
+/// The first difference in shape, "" when there is none. GS may be that of one of the `near` cycles (trainers' commands
+/// come a cycle sooner or later).
 std::string difference(const Parts& ours, const Parts& recorded, const std::vector<Parts>& near, bool joining) {
   if (!ours.fault.empty()) return ours.fault;
   if (!recorded.fault.empty()) return "in the recording, " + recorded.fault;
@@ -100,12 +105,15 @@ std::string difference(const Parts& ours, const Parts& recorded, const std::vect
     if (shape(a) == shape(b)) continue;
     const bool gs = a.starts_with("(GS ") && b.starts_with("(GS ");
     if (gs && gsShape(a, joining) == gsShape(b, joining)) continue;
-    const auto same = [&](const Parts& p) { return p.fixed.size() > i && gsShape(p.fixed[i], joining) == gsShape(a, joining); };
+    const auto same = [&](const Parts& p) {
+      return p.fixed.size() > i && gsShape(p.fixed[i], joining) == gsShape(a, joining);
+    };
     if (gs && std::any_of(near.begin(), near.end(), same)) continue;
     return a + " instead of " + b;
   }
   for (const auto& [name, force] : ours.forces)
-    if (const auto other = recorded.forces.find(name); other != recorded.forces.end() && shape(force) != shape(other->second))
+    if (const auto other = recorded.forces.find(name);
+        other != recorded.forces.end() && shape(force) != shape(other->second))
       return force + " instead of " + other->second;
   return {};
 }
@@ -121,15 +129,17 @@ bool samePose(const Parts& ours, const Parts& recorded) {
   };
   if (ours.fixed.size() != recorded.fixed.size() || ours.forces.size() != recorded.forces.size()) return false;
   for (std::size_t i = 0; i < ours.fixed.size(); ++i)
-    if (!ours.fixed[i].starts_with("(time ") && !ours.fixed[i].starts_with("(GS ") && !agree(ours.fixed[i], recorded.fixed[i]))
+    if (!ours.fixed[i].starts_with("(time ") && !ours.fixed[i].starts_with("(GS ") &&
+        !agree(ours.fixed[i], recorded.fixed[i]))
       return false;
   for (const auto& [name, force] : ours.forces)
-    if (const auto other = recorded.forces.find(name); other == recorded.forces.end() || !agree(force, other->second)) return false;
+    if (const auto other = recorded.forces.find(name); other == recorded.forces.end() || !agree(force, other->second))
+      return false;
   return true;
 }
 
-// The model of the noise: standard deviations in parts of the distance, in deg, in deg; a calibration error of at most 5 mm along each
-// axis.
+// The model of the noise: standard deviations in parts of the distance, in deg, in deg; a calibration error of at most
+// 5 mm along each axis.
 constexpr double kSigma[3] = {0.000965, 0.1480, 0.1225};
 constexpr double kCalibration = 0.005 * 1.7321;
 constexpr double kSigmas = 5.5;
@@ -174,7 +184,8 @@ class Spread {
     for (std::size_t i = 0; i < exact.points.size(); ++i) {
       const Seen &a = exact.points[i], &b = noisy.points[i];
       if (a.distance < 15) continue;  // nearer, the calibration error and the last digit count
-      const double error[3] = {(b.distance - a.distance) / a.distance, b.horizontal - a.horizontal, b.vertical - a.vertical};
+      const double error[3] = {(b.distance - a.distance) / a.distance, b.horizontal - a.horizontal,
+                               b.vertical - a.vertical};
       for (int k = 0; k < 3; ++k) squares_[k] += error[k] * error[k];
       ++count_;
     }
@@ -196,12 +207,13 @@ struct Looks {
 void unmatchedItem(Looks& looks, const Item& item, const char* who) {
   ++looks.unmatched;
   if (!atEdge(item) && looks.fault.empty())
-    looks.fault =
-        fmt::format("{} sees {} at {} {} {}", who, item.name, item.points[0].distance, item.points[0].horizontal, item.points[0].vertical);
+    looks.fault = fmt::format("{} sees {} at {} {} {}", who, item.name, item.points[0].distance,
+                              item.points[0].horizontal, item.points[0].vertical);
 }
 
 /// Walks both lists in order. Items that only one has must be at the edge.
-void compareLooks(const std::string& exact, const std::string& noisy, double rounding, Looks& looks, bool withBall = true) {
+void compareLooks(const std::string& exact, const std::string& noisy, double rounding, Looks& looks,
+                  bool withBall = true) {
   std::vector<Item> a = items(exact), b = items(noisy);
   if (!withBall)
     for (std::vector<Item>* all : {&a, &b}) std::erase_if(*all, [](const Item& item) { return item.name == "B"; });
@@ -252,7 +264,8 @@ void note(std::vector<std::string>& announced, const Parts& parts) {
 
 }  // namespace
 
-TEST_CASE("A player's recorded session replays with messages of the recorded shape, and what it sees lies within the noise") {
+TEST_CASE(
+    "A player's recorded session replays with messages of the recorded shape, and what it sees lies within the noise") {
   Spread all;
   for (const Version& version : kVersions) {
     for (const Session& session : kSessions) {
@@ -266,8 +279,8 @@ TEST_CASE("A player's recorded session replays with messages of the recorded sha
       int forces = 0, forcesMissing = 0, told = 0;
       std::vector<std::string> ours, theirs;
       const double rounding = 0.5 * std::pow(10, -version.decimals);
-      const std::string errors =
-          replay(recording, settings(version, false), [&](int cycle, const std::string& agent, const std::string& answer) {
+      const std::string errors = replay(
+          recording, settings(version, false), [&](int cycle, const std::string& agent, const std::string& answer) {
             CAPTURE(cycle);
             const std::string& recorded = recording.answer(agent, cycle);
             const Parts a = take(answer, version.decimals), b = take(recorded, version.decimals);
@@ -286,9 +299,10 @@ TEST_CASE("A player's recorded session replays with messages of the recorded sha
       CHECK(looks.compared >= session.looks);
       CHECK(looks.unmatched * 15 <= looks.items);
       all = looks.spread;
-      WARN(version.folder << "/" << session.name << ": " << told << " messages, " << looks.compared << " looks with " << looks.items
-                          << " items compared, " << looks.unmatched << " at the edge of the view seen by one only, " << forcesMissing
-                          << " of " << forces << " contact forces not felt");
+      WARN(version.folder << "/" << session.name << ": " << told << " messages, " << looks.compared << " looks with "
+                          << looks.items << " items compared, " << looks.unmatched
+                          << " at the edge of the view seen by one only, " << forcesMissing << " of " << forces
+                          << " contact forces not felt");
     }
   }
   // the recorded noise is the model's

@@ -6,8 +6,8 @@
 #include "recording.h"
 #include "spark/predicates.h"
 
-// Twenty-two robots in view of each other. Clients judge servers by what arrives: a robot's messages all differ, none is longer than the
-// buffer into which clients read, and numbers are plain.
+// Twenty-two robots in view of each other. Clients judge servers by what arrives: a robot's messages all differ, none
+// is longer than the buffer into which clients read, and numbers are plain.
 
 using namespace spark;
 using namespace spark::test;
@@ -23,7 +23,8 @@ constexpr int kTypes[kTeam] = {4, 4, 4, 4, 0, 0, 0, 0, 1, 1, 1};
 std::string beam(int unum) {
   if (unum == 1) return "(beam -14.5 0 0)";
   const int row = (unum - 2) / 2;
-  return "(beam " + std::to_string(-2 - 1.6 * row) + " " + std::to_string((unum % 2 ? 1 : -1) * (0.9 + 0.3 * row)) + " 0)";
+  return "(beam " + std::to_string(-2 - 1.6 * row) + " " + std::to_string((unum % 2 ? 1 : -1) * (0.9 + 0.3 * row)) +
+         " 0)";
 }
 
 struct Player {
@@ -91,8 +92,8 @@ TEST_CASE("Of twenty-two robots in view of each other none is told anything twic
         REQUIRE(seeFault(e, compat == "F" ? 3 : 2) == "");
         mostRobots = std::max(mostRobots, robotsIn(e));
         const std::vector<Item> seen = items(e);
-        mostLines =
-            std::max(mostLines, static_cast<int>(std::count_if(seen.begin(), seen.end(), [](const Item& i) { return i.name == "L"; })));
+        mostLines = std::max(mostLines, static_cast<int>(std::count_if(seen.begin(), seen.end(),
+                                                                       [](const Item& i) { return i.name == "L"; })));
       }
       std::string answer = "(say 12345678901234567890)(syn)";
       if (++p->messages == 1)
@@ -105,8 +106,8 @@ TEST_CASE("Of twenty-two robots in view of each other none is told anything twic
   CHECK(mostRobots == 2 * kTeam);
   CHECK(mostLines == (compat == "F" ? 0 : 18));  // all but three behind him
   CHECK(longest > 4500);                         // it was a crowd
-  WARN("compat " << compat << ": the longest message had " << longest << " bytes, the most robots seen at once were " << mostRobots
-                 << ", lines " << mostLines);
+  WARN("compat " << compat << ": the longest message had " << longest << " bytes, the most robots seen at once were "
+                 << mostRobots << ", lines " << mostLines);
   players.clear();
   host.end();
 }

@@ -49,7 +49,8 @@ bool isPoint(const Element& e, int decimals) {
 
 /// A robot: `(P (team A) (id 3) (head (pol ...)) ...)`.
 std::string robotFault(const Element& e, int decimals) {
-  if (e.size() < 4 || e.at(1).head() != "team" || e.at(1).size() != 2 || e.at(2).head() != "id" || e.at(2).size() != 2) return "robot";
+  if (e.size() < 4 || e.at(1).head() != "team" || e.at(1).size() != 2 || e.at(2).head() != "id" || e.at(2).size() != 2)
+    return "robot";
   if (e.at(2).at(1).integer() < 1 || e.at(2).at(1).integer() > 11) return "number";
   std::size_t last = 0;
   for (std::size_t i = 3; i < e.size(); ++i) {
@@ -90,8 +91,9 @@ std::string shape(std::string_view text) {
 
 std::vector<double> decimals(std::string_view text) {
   std::vector<double> out;
-  forNumbers(text,
-             [&](std::size_t begin, std::size_t end) { out.push_back(std::atof(std::string(text.substr(begin, end - begin)).c_str())); });
+  forNumbers(text, [&](std::size_t begin, std::size_t end) {
+    out.push_back(std::atof(std::string(text.substr(begin, end - begin)).c_str()));
+  });
   return out;
 }
 
@@ -120,8 +122,10 @@ std::vector<Item> items(const std::string& see) {
       if (e.head() == "L") {
         out.push_back({"L", {point(e.at(1)), point(e.at(2))}});
       } else if (e.head() == "P") {
-        const std::string who = "P " + std::string(e.at(1).at(1).text()) + " " + std::string(e.at(2).at(1).text()) + " ";
-        for (std::size_t i = 3; i < e.size(); ++i) out.push_back({who + std::string(e.at(i).head()), {point(e.at(i).at(1))}});
+        const std::string who =
+            "P " + std::string(e.at(1).at(1).text()) + " " + std::string(e.at(2).at(1).text()) + " ";
+        for (std::size_t i = 3; i < e.size(); ++i)
+          out.push_back({who + std::string(e.at(i).head()), {point(e.at(i).at(1))}});
       } else {
         out.push_back({std::string(e.head()), {point(e.at(1))}});
       }
@@ -145,7 +149,8 @@ std::string seeFault(const std::string& see, int decimals) {
       if (mark && (at < last || e.size() != 2 || !isPoint(e.at(1), decimals))) return "mark " + written(e);
       if (!mark && e.head() != "P" && e.head() != "L") return "unknown item " + written(e);
       if (at < last) return "order of " + written(e);
-      if (at == lines && (e.size() != 3 || !isPoint(e.at(1), decimals) || !isPoint(e.at(2), decimals))) return "line " + written(e);
+      if (at == lines && (e.size() != 3 || !isPoint(e.at(1), decimals) || !isPoint(e.at(2), decimals)))
+        return "line " + written(e);
       if (at == robots)
         if (const std::string fault = robotFault(e, decimals); !fault.empty()) return fault + " in " + written(e);
       last = mark ? at + 1 : at;  // each mark once

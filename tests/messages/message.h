@@ -30,7 +30,8 @@ struct Item {
 };
 /// The items of `(See ...)`, parts of robots one by one.
 std::vector<Item> items(const std::string& see);
-/// What is wrong with the writing of `(See ...)`: spacing, order of items, names, numbers' decimals. "" when nothing is.
+/// What is wrong with the writing of `(See ...)`: spacing, order of items, names, numbers' decimals. "" when nothing
+/// is.
 std::string seeFault(const std::string& see, int decimals);
 
 }  // namespace spark::test

@@ -47,8 +47,8 @@ class LockstepHost {
   std::unique_ptr<Process> process_;
 };
 
-/// Sends what was sent, and hands each answer over: (cycle, agent, answer). An agent whose connection the host closes is handed over once
-/// more, with an empty answer. Returns what the host wrote to stderr.
+/// Sends what was sent, and hands each answer over: (cycle, agent, answer). An agent whose connection the host closes
+/// is handed over once more, with an empty answer. Returns what the host wrote to stderr.
 std::string replay(const Recording& recording, const std::vector<std::string>& settings,
                    const std::function<void(int, const std::string&, const std::string&)>& each);
 

@@ -41,7 +41,8 @@ std::string all(const std::vector<std::string>& messages) {
 }
 
 Finished check(const std::vector<std::string>& settings) {
-  std::vector<std::string> command{(binFolder() / "sparkhost").string(), "--config", "soccer.lua", "--check", "--log-level", "warning"};
+  std::vector<std::string> command{
+      (binFolder() / "sparkhost").string(), "--config", "soccer.lua", "--check", "--log-level", "warning"};
   for (const std::string& s : settings) command.insert(command.end(), {"--set", s});
   return runToEnd(command);
 }
@@ -62,7 +63,9 @@ TEST_CASE("compat=F speaks as the SPL's server") {
   const auto messages = listen({"compat=F"});
   const std::string text = all(messages);
   CHECK(holds(messages.front(), "(GS (sl 0) (sr 0) (t 0.000) (pm BeforeKickOff) (k left) (ti () ()))"));
-  CHECK(holds(text, "(GS (unum 3) (team left) (sl 0) (sr 0) (t 0.000) (pm BeforeKickOff) (k left) (ti ((3 penalty_none 0.000)) ()))"));
+  CHECK(holds(text,
+              "(GS (unum 3) (team left) (sl 0) (sr 0) (t 0.000) (pm BeforeKickOff) (k left) (ti ((3 penalty_none "
+              "0.000)) ()))"));
   CHECK(holds(text, "(See "));
   CHECK_FALSE(holds(text, "(L "));
   CHECK(interval(messages) == 3);
@@ -76,8 +79,8 @@ TEST_CASE("compat=L looks every second cycle, and is else the mainline") {
 }
 
 TEST_CASE("What is set by itself wins over the version") {
-  const auto messages =
-      listen({"compat=F", "Soccer.FieldLinesSeen=true", "Soccer.VisionInterval=4", "/sys/server/gamecontrol/parser.decimals=1"});
+  const auto messages = listen({"compat=F", "Soccer.FieldLinesSeen=true", "Soccer.VisionInterval=4",
+                                "/sys/server/gamecontrol/parser.decimals=1"});
   CHECK(holds(all(messages), " (L (pol "));
   CHECK(holds(messages.back(), "(t 0.0) (pm BeforeKickOff) (k left)"));
   CHECK(interval(messages) == 4);
@@ -154,9 +157,10 @@ TEST_CASE("Every variable of the installed base's league is set by its own name"
                              "PassModeRetryWaitTime"})
     settings.push_back(std::string("Soccer.") + number + "=2");
   for (const char* flag :
-       {"AutomaticKickOff", "CoinTossForKickOff", "PenaltyShootout", "StartAnyFieldPosition", "AutomaticQuit", "ChangeSidesInSecondHalf",
-        "Keepaway", "SingleHalfTime", "UseOffside", "TouchingFoulBeamPenalty", "UseCharging", "PrintSelfCollisions", "FoulOnSelfCollisions",
-        "SelfCollisionBeamPenalty", "WriteSelfCollisionsToFile", "IllegalDefenseBeamPenalty", "ReportScore", "LabelMessages"})
+       {"AutomaticKickOff", "CoinTossForKickOff", "PenaltyShootout", "StartAnyFieldPosition", "AutomaticQuit",
+        "ChangeSidesInSecondHalf", "Keepaway", "SingleHalfTime", "UseOffside", "TouchingFoulBeamPenalty", "UseCharging",
+        "PrintSelfCollisions", "FoulOnSelfCollisions", "SelfCollisionBeamPenalty", "WriteSelfCollisionsToFile",
+        "IllegalDefenseBeamPenalty", "ReportScore", "LabelMessages"})
     settings.push_back(std::string("Soccer.") + flag + "=true");
   for (const char* text : {"SelfCollisionRecordFilename", "BallRecorder", "LeftGoalRecorder", "RightGoalRecorder"})
     settings.push_back(std::string("Soccer.") + text + "=x");

@@ -22,8 +22,12 @@ engine::Surface bouncy() {
   return s;
 }
 
-const std::pair<const char*, engine::Surface> kSurfaces[] = {
-    {"hard", {}}, {"soft", soft()}, {"bouncy", bouncy()}, {"little friction", rough(0.6, false)}, {"pyramid", rough(0.5, true)}, {"none", rough(0, false)}};
+const std::pair<const char*, engine::Surface> kSurfaces[] = {{"hard", {}},
+                                                             {"soft", soft()},
+                                                             {"bouncy", bouncy()},
+                                                             {"little friction", rough(0.6, false)},
+                                                             {"pyramid", rough(0.5, true)},
+                                                             {"none", rough(0, false)}};
 
 }  // namespace
 
@@ -33,8 +37,8 @@ TEST_CASE("single things fall, bounce, slide and come to rest as with ODE") {
     h.ground();
     for (int i = 0; i < 4; ++i) {
       const Body b = h.body({3.0 * i, 0, 0.8});
-      const engine::ShapeDescription shapes[] = {box(0.5, 0.4, 0.3), round(Shape::sphere, 0.25), round(Shape::capsule, 0.15, 0.3),
-                                                 round(Shape::cylinder, 0.2, 0.3)};
+      const engine::ShapeDescription shapes[] = {box(0.5, 0.4, 0.3), round(Shape::sphere, 0.25),
+                                                 round(Shape::capsule, 0.15, 0.3), round(Shape::cylinder, 0.2, 0.3)};
       h.geom(shapes[i], b);
       h.ode.setMass(b, {1.5, Vec3::Zero(), Mat3(Vec3(0.03, 0.05, 0.04).asDiagonal())});
       h.ode.setRotation(b, Mat3(Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized())));

@@ -5,7 +5,8 @@ using namespace spark::oracle;
 
 namespace {
 
-constexpr JointType kTypes[] = {JointType::ball, JointType::hinge, JointType::hinge2, JointType::slider, JointType::universal, JointType::fixed};
+constexpr JointType kTypes[] = {JointType::ball,   JointType::hinge,     JointType::hinge2,
+                                JointType::slider, JointType::universal, JointType::fixed};
 
 /// What is done to the axes of a chain's joints.
 enum class Drive { none, motors, weakMotors, stops, motorsAndStops, locked };
@@ -21,8 +22,8 @@ void drive(OracleHouse& h, Joint j, Drive how, int i) {
   }
 }
 
-/// A chain that hangs from the world, or lies in the air, of bodies that stand at all angles. `order`: 0 older body first, 1 younger first,
-/// 2 in turn.
+/// A chain that hangs from the world, or lies in the air, of bodies that stand at all angles. `order`: 0 older body
+/// first, 1 younger first, 2 in turn.
 struct Chain : OracleHouse {
   std::vector<Body> bodies;
   std::vector<Joint> joints;
@@ -35,7 +36,8 @@ struct Chain : OracleHouse {
       ode.setRotation(b, Mat3(Eigen::AngleAxisd(0.5 * i, Vec3(1, 2, 3).normalized())));
       ode.setAngularVelocity(b, {0.3, 0.2 * (i % 3), -0.4});
       bodies.push_back(b);
-      if (last != Body::none || hangs) connect(type, last, b, last == Body::none ? Vec3(at - Vec3(0.2, 0, 0)) : middle(last, b), order, how, i);
+      if (last != Body::none || hangs)
+        connect(type, last, b, last == Body::none ? Vec3(at - Vec3(0.2, 0, 0)) : middle(last, b), order, how, i);
       last = b;
     }
     if (closed) connect(type, last, bodies[0], middle(last, bodies[0]), order, how, links);
@@ -119,10 +121,12 @@ TEST_CASE("angular motors hold and turn balls as with ODE, in every frame, with 
       }
       for (int n = 0; n < 80; ++n) {
         for (const auto& [m, i] : motors)
-          for (int axis = 0; axis < 3 && !euler; ++axis) h.ode.setMotorAngle(m, axis, 0.3 * std::sin(0.1 * n + i + axis));
+          for (int axis = 0; axis < 3 && !euler; ++axis)
+            h.ode.setMotorAngle(m, axis, 0.3 * std::sin(0.1 * n + i + axis));
         h.run(1);
       }
-      expectAgreement(fmt::format("angular motors, {}, order {}", euler ? "Euler" : "user", order), h.shadow.agreement());
+      expectAgreement(fmt::format("angular motors, {}, order {}", euler ? "Euler" : "user", order),
+                      h.shadow.agreement());
     }
 }
 
@@ -136,8 +140,9 @@ TEST_CASE("a tree of all joints falls on the ground, lies and is driven as with 
     Body last = trunk;
     for (int i = 0; i < 3; ++i) {
       const Body b = h.ball(Vec3(0, 0, 1.2) + out * (0.5 + 0.35 * i), 0.12, 0.6);
-      const Joint j = limb % 2 ? h.join(kTypes[(limb + i) % 6], last, b, Vec3(0, 0, 1.2) + out * (0.35 + 0.35 * i), 0.2 * i)
-                               : h.join(kTypes[(limb + i) % 6], b, last, Vec3(0, 0, 1.2) + out * (0.35 + 0.35 * i), 0.2 * i);
+      const Joint j = limb % 2
+                          ? h.join(kTypes[(limb + i) % 6], last, b, Vec3(0, 0, 1.2) + out * (0.35 + 0.35 * i), 0.2 * i)
+                          : h.join(kTypes[(limb + i) % 6], b, last, Vec3(0, 0, 1.2) + out * (0.35 + 0.35 * i), 0.2 * i);
       h.motor(j, 0, i % 2 ? 2 : -2, 8);
       h.stops(j, 0, -0.6, 0.6);
       last = b;
@@ -190,7 +195,8 @@ TEST_CASE("a car on suspended wheels drives as with ODE") {
 }
 
 TEST_CASE("joints without any give, and of their own softness, act as with ODE") {
-  // Balls and fixed joints keep the world's parameters of the moment in which they are made; the others take them at each step.
+  // Balls and fixed joints keep the world's parameters of the moment in which they are made; the others take them at
+  // each step.
   for (const JointType type : {JointType::ball, JointType::fixed, JointType::hinge}) {
     OracleHouse h;
     engine::WorldParameters p;

@@ -56,7 +56,9 @@ double apart(const Yard& a, const Yard& b, const std::vector<Body>& ofA, const s
 
 }  // namespace
 
-TEST_CASE("an island that is too large is left to ODE, which does with it what it does alone, bit for bit; the others are solved beside it") {
+TEST_CASE(
+    "an island that is too large is left to ODE, which does with it what it does alone, bit for bit; the others are "
+    "solved beside it") {
   Yard dense(false), articulated(true);
   for (Yard* y : {&dense, &articulated}) setProperty(y->engine, "directRows", 60);
   for (int i = 0; i < 20; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The house of lua/soccer.lua with humanoids inside it, without network, stepped cycle by cycle; with the solver that is asked for.
+/// The house of lua/soccer.lua with humanoids inside it, without network, stepped cycle by cycle; with the solver that
+/// is asked for.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -19,15 +20,18 @@ class Puppet : public Behavior {
   SPARK_CLASS(Puppet, Behavior)
  public:
   static void describe(Description<Puppet>& d) { d.doc("Drives its motors as a test says."); }
-  int number = 0;                   ///< from 0; every second one plays for the other team
-  double x = 0, y = 0, angle = 0;   ///< where it stands [m, deg]
-  std::vector<std::string> motors;  ///< empty: stands still
+  int number = 0;                                             ///< from 0; every second one plays for the other team
+  double x = 0, y = 0, angle = 0;                             ///< where it stands [m, deg]
+  std::vector<std::string> motors;                            ///< empty: stands still
   std::function<double(std::size_t motor, int cycle)> speed;  ///< rad/s
 
-  void start(Predicates& actions) override { actions.open("scene").add("rsg/agent/nao/nao_hetero.rsg").add(number % 4).close(); }
+  void start(Predicates& actions) override {
+    actions.open("scene").add("rsg/agent/nao/nao_hetero.rsg").add(number % 4).close();
+  }
   void think(const Predicates&, Predicates& actions) override {
     ++thoughts_;
-    if (thoughts_ == 1) actions.open("init").pair("unum", number / 2 + 1).pair("teamname", number % 2 ? "Right" : "Left").close();
+    if (thoughts_ == 1)
+      actions.open("init").pair("unum", number / 2 + 1).pair("teamname", number % 2 ? "Right" : "Left").close();
     if (thoughts_ == 4) actions.open("beam").add(x).add(y).add(angle).close();
     if (!speed) return;
     ++cycle_;
@@ -50,9 +54,12 @@ class Pitch : test::House {
     Lua& lua = kernel.lua();
     lua.addFolder(SPARK_SOURCES "/lua");
     lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = {} }", "pitch");
-    std::map<std::string, Value> all{{"/sys/server/simulation.rate", "max"}, {"/sys/server/net/agents.port", 0},
-                                     {"/sys/server/net/monitors.port", 0},   {"exactReplay", false},
-                                     {"Soccer.BeamNoiseXY", 0},              {"Soccer.BeamNoiseAngle", 0}};
+    std::map<std::string, Value> all{{"/sys/server/simulation.rate", "max"},
+                                     {"/sys/server/net/agents.port", 0},
+                                     {"/sys/server/net/monitors.port", 0},
+                                     {"exactReplay", false},
+                                     {"Soccer.BeamNoiseXY", 0},
+                                     {"Soccer.BeamNoiseAngle", 0}};
     for (const auto& [key, value] : settings) all[key] = value;
     for (const auto& [key, value] : all) lua.addOverride(key, value);
     lua.runConfig("soccer.lua");
@@ -71,7 +78,9 @@ class Pitch : test::House {
   }
   using test::House::kernel;
 
-  const std::vector<AgentAspect*>& robots() { return kernel.root().require<IGameControl>("/sys/server/gamecontrol").agents(); }
+  const std::vector<AgentAspect*>& robots() {
+    return kernel.root().require<IGameControl>("/sys/server/gamecontrol").agents();
+  }
   /// Soccer's ball.
   IRigidBody& ball() { return *kernel.root().require<Node>("/usr/scene/Ball").childOf<IRigidBody>(); }
   void run(int cycles) { callMethod(simulation(), "runCycles", std::vector<Value>{cycles}); }
@@ -83,9 +92,13 @@ class Pitch : test::House {
   void move(const std::function<double(std::size_t motor, int cycle)>& speed = swing) {
     for (Puppet* p : puppets_) p->speed = speed;
   }
-  static double swing(std::size_t motor, int cycle) { return 0.8 * std::sin(0.06 * cycle + 0.7 * static_cast<double>(motor)); }
+  static double swing(std::size_t motor, int cycle) {
+    return 0.8 * std::sin(0.06 * cycle + 0.7 * static_cast<double>(motor));
+  }
   /// As fast as the motors can, this way and that.
-  static double wild(std::size_t motor, int cycle) { return (cycle / 4 * 7919 + static_cast<int>(motor) * 104729) % 3 * 6.0 - 6; }
+  static double wild(std::size_t motor, int cycle) {
+    return (cycle / 4 * 7919 + static_cast<int>(motor) * 104729) % 3 * 6.0 - 6;
+  }
   /// Pushes all bodies of a robot.
   void push(std::size_t robot, const Vec3& velocity) {
     std::vector<IRigidBody*> bodies;

@@ -114,11 +114,14 @@ void ShadowSolver::compareForces() {
     if (j.b) both.insert(both.end(), {{forceB, ode::toVec(j.feedback.f2)}, {torqueB, ode::toVec(j.feedback.t2)}});
   }
   for (std::size_t i = 0; i < contacts_.size(); ++i)
-    if (contacts_[i].feedback && pairs_[i].a && !answers_[pairs_[i].a->index].left) both.emplace_back(contactForces_[i], contacts_[i].forceOnA);
+    if (contacts_[i].feedback && pairs_[i].a && !answers_[pairs_[i].a->index].left)
+      both.emplace_back(contactForces_[i], contacts_[i].forceOnA);
   double greatest = 1;
   for (const auto& [ours, odes] : both) greatest = std::max(greatest, odes.norm());
   for (const auto& [ours, odes] : both)
-    if (const double error = (ours - odes).norm() / greatest; !(error <= agreement_.force) && !std::isnan(agreement_.force)) agreement_.force = error;
+    if (const double error = (ours - odes).norm() / greatest;
+        !(error <= agreement_.force) && !std::isnan(agreement_.force))
+      agreement_.force = error;
   agreement_.feedbacks += both.size();
 }
 

@@ -12,8 +12,9 @@
 
 namespace spark::oracle {
 
-/// How far two steps from one state are apart, at worst, over many steps. Errors are parts of the greatest value in the world; what is
-/// slower than ODE's threshold of sleep (0.01 m/s, 0.01 rad/s) counts as that, and a force below 1 N or Nm as that.
+/// How far two steps from one state are apart, at worst, over many steps. Errors are parts of the greatest value in the
+/// world; what is slower than ODE's threshold of sleep (0.01 m/s, 0.01 rad/s) counts as that, and a force below 1 N or
+/// Nm as that.
 struct Agreement {
   std::size_t steps = 0, compared = 0;  ///< compared: bodies, once for each step
   std::size_t left = 0;                 ///< bodies that were left to ODE
@@ -23,9 +24,9 @@ struct Agreement {
   std::size_t worstStep = 0;
 };
 
-/// A solver that asks the solver below it (its child `tested`), notes the answer, puts the world back as it was and leaves it all to ODE. So
-/// the world goes on as ODE says, and no step inherits another's error. Compares in the phase after the engine's step where the house has
-/// phases; else somebody calls compare().
+/// A solver that asks the solver below it (its child `tested`), notes the answer, puts the world back as it was and
+/// leaves it all to ODE. So the world goes on as ODE says, and no step inherits another's error. Compares in the phase
+/// after the engine's step where the house has phases; else somebody calls compare().
 class ShadowSolver : public Node, public engine::ISolver {
   SPARK_CLASS(ShadowSolver, Node)
  public:

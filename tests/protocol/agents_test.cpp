@@ -1,7 +1,6 @@
 #include <algorithm>
-#include <cmath>
-
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "robot_client.h"
 
@@ -27,8 +26,10 @@ class TestSloppy : public Perceptor {
  public:
   static void describe(Description<TestSloppy>& d) { d.doc("Counts its parentheses wrongly."); }
   void sense(Predicates& out, const Event&) override {
-    if (name() == "open") out.open("OPEN").open("rt").add(1);
-    else out.pair("SURPLUS", 1).close();
+    if (name() == "open")
+      out.open("OPEN").open("rt").add(1);
+    else
+      out.pair("SURPLUS", 1).close();
   }
 };
 
@@ -115,10 +116,12 @@ TEST_CASE("A perceptor of interval 3 senses when the agent's cycle count, from c
   c.send("(scene robot)(syn)");
   // Connected in cycle 1, loaded in 2, sensed from 3 on: as recorded, the first message has it.
   a.until([&] { return a.agents() == 1 && !a.kernel.root().find("/usr/scene/AgentAspect1/vision"); }, false);
-  a.until([&] {
-    a.cycle();
-    return a.kernel.root().find("/usr/scene/AgentAspect1/vision") != nullptr;
-  }, false);
+  a.until(
+      [&] {
+        a.cycle();
+        return a.kernel.root().find("/usr/scene/AgentAspect1/vision") != nullptr;
+      },
+      false);
   const auto loaded = a.cycles();
   std::string seen;
   for (int i = 0; i < 7; ++i) a.cycle();
@@ -180,10 +183,12 @@ TEST_CASE("A leaving client's agent goes at the start of the next cycle, the oth
   Arena a;
   Client one = robot(a), two = robot(a);
   one.leave();
-  a.until([&] {
-    a.cycle();
-    return a.agents() == 1;
-  }, false);
+  a.until(
+      [&] {
+        a.cycle();
+        return a.agents() == 1;
+      },
+      false);
   REQUIRE(a.kernel.root().find("/usr/scene/AgentAspect1") == nullptr);
   REQUIRE(a.control->agents()[0]->number() == 2);
   Client three = robot(a);
@@ -197,7 +202,8 @@ TEST_CASE("An agent that is removed loses its connection if that is wanted") {
   a.control->removeAgent(*a.control->agents()[0], close);
   a.cycle();
   REQUIRE(a.agents() == 0);
-  if (close) REQUIRE(c.closed());
+  if (close)
+    REQUIRE(c.closed());
   else {
     c.send("(he1 1)");
     a.cycle();
@@ -210,9 +216,7 @@ TEST_CASE("Control aspects hear of agents") {
   Arena a;
   a.kernel.registerClass<TestRule>();
   a.kernel.create("TestRule", "/sys/server/gamecontrol/rule");
-  {
-    Client c = robot(a);
-  }
+  { Client c = robot(a); }
   realise(a, 2);
   REQUIRE(deeds() == Deeds{"come /usr/scene/AgentAspect1", "go /usr/scene/AgentAspect1"});
 }
@@ -275,7 +279,8 @@ TEST_CASE("What a perceptor or effector throws need not be an exception, nor com
   a.cycle();
   for (Client& c : clients) c.send("(odd)(he1 1)");
   realise(a, 4);
-  REQUIRE(a.logged("/usr/scene/AgentAspect4/odd (TestFault) threw and is asked no more: something that is no std::exception"));
+  REQUIRE(a.logged(
+      "/usr/scene/AgentAspect4/odd (TestFault) threw and is asked no more: something that is no std::exception"));
   REQUIRE(a.logged("(TestBomb) threw something that is no std::exception"));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A house with network, parsers and game control, robots made of test doubles, and TCP clients, all in one thread: a client that waits
-/// for bytes polls the server meanwhile, so nothing here sleeps or depends on timing.
+/// A house with network, parsers and game control, robots made of test doubles, and TCP clients, all in one thread: a
+/// client that waits for bytes polls the server meanwhile, so nothing here sleeps or depends on timing.
 
 #include <arpa/inet.h>
 #include <linux/sockios.h>
@@ -32,7 +32,9 @@ class TestClock : public Perceptor {
   SPARK_CLASS(TestClock, Perceptor)
  public:
   static void describe(Description<TestClock>& d) { d.doc("Tells the time."); }
-  void sense(Predicates& out, const Event& event) override { out.open("time").open("now").add(event.time).close().close(); }
+  void sense(Predicates& out, const Event& event) override {
+    out.open("time").open("now").add(event.time).close().close();
+  }
 };
 
 /// `(cnt n)` in every third cycle.
@@ -72,7 +74,8 @@ class TestInit : public Effector {
   std::string predicate() const override { return "init"; }
   std::string act(const Element& action) override {
     const Element team = action.named("teamname"), unum = action.named("unum");
-    deeds().push_back(fmt::format("{} init {} {}", agent()->outermost().number(), team ? team.at(1).text() : "", unum ? unum.at(1).integer() : 0));
+    deeds().push_back(fmt::format("{} init {} {}", agent()->outermost().number(), team ? team.at(1).text() : "",
+                                  unum ? unum.at(1).integer() : 0));
     return {};
   }
 };
@@ -89,7 +92,8 @@ class TestSync : public Effector, public ISyncEffector {
   std::string act(const Element&) override { return {}; }
 };
 
-/// Scene server whose files are known by heart: "robot", "mute" (no syn effector), "loud" (large percepts); all else is an error.
+/// Scene server whose files are known by heart: "robot", "mute" (no syn effector), "loud" (large percepts); all else is
+/// an error.
 class TestScenes : public Node, public ISceneServer {
   SPARK_CLASS(TestScenes, Node)
  public:
@@ -102,7 +106,8 @@ class TestScenes : public Node, public ISceneServer {
   void importScene(std::string_view file, Node& root, const List& arguments) override {
     root.create("TestClock", "clock");
     if (file == "broken") throw Error("broken:3:1: expected ')', found the end of the file");
-    if (file != "robot" && file != "mute" && file != "loud") throw Error("The scene '" + std::string(file) + "' does not exist.");
+    if (file != "robot" && file != "mute" && file != "loud")
+      throw Error("The scene '" + std::string(file) + "' does not exist.");
     root.create("TestVision", "vision");
     if (file == "loud") root.create("TestNoise", "noise");
     root.create("TestMotor", "he1");
@@ -125,7 +130,8 @@ class Arena;
 class Client {
  public:
   Client(Arena& arena, int port);
-  Client(Client&& other) noexcept : arena_(other.arena_), fd_(std::exchange(other.fd_, -1)), in_(std::move(other.in_)) {}
+  Client(Client&& other) noexcept
+      : arena_(other.arena_), fd_(std::exchange(other.fd_, -1)), in_(std::move(other.in_)) {}
   ~Client() { leave(); }
   void leave() {
     if (fd_ >= 0) ::close(std::exchange(fd_, -1));
@@ -226,8 +232,10 @@ class Arena {
   void until(const std::function<bool()>& done, bool cycles = true) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (!done()) {
-      if (cycles) step();
-      else net->poll();
+      if (cycles)
+        step();
+      else
+        net->poll();
       if (std::chrono::steady_clock::now() > end) throw Error("The test waited 20 s in vain. The log:\n" + house.text);
       net->wait(0.0005);
     }
@@ -258,7 +266,8 @@ inline Client::Client(Arena& arena, int port) : arena_(arena), fd_(::socket(AF_I
   to.sin_family = AF_INET;
   to.sin_port = htons(static_cast<std::uint16_t>(port));
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (::connect(fd_, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) throw Error(std::string("connect: ") + std::strerror(errno));
+  if (::connect(fd_, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0)
+    throw Error(std::string("connect: ") + std::strerror(errno));
   const int on = 1;
   ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
 }
@@ -273,25 +282,32 @@ inline std::string Client::name() const {
 inline void Client::raw(std::string_view bytes) {
   while (!bytes.empty()) {
     const auto n = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (n > 0) bytes.remove_prefix(static_cast<std::size_t>(n));
-    else if (errno == EAGAIN) arena_.net->poll();
-    else return;
+    if (n > 0)
+      bytes.remove_prefix(static_cast<std::size_t>(n));
+    else if (errno == EAGAIN)
+      arena_.net->poll();
+    else
+      return;
   }
 }
 
 inline void Client::arrive() const {
-  arena_.until([this] {
-    int unacknowledged = 0;
-    ::ioctl(fd_, SIOCOUTQ, &unacknowledged);
-    return unacknowledged == 0;
-  }, false);
+  arena_.until(
+      [this] {
+        int unacknowledged = 0;
+        ::ioctl(fd_, SIOCOUTQ, &unacknowledged);
+        return unacknowledged == 0;
+      },
+      false);
 }
 
 inline bool Client::take() {
   char buffer[65536];
   const auto n = ::recv(fd_, buffer, sizeof buffer, MSG_DONTWAIT);
-  if (n > 0) in_.append(buffer, static_cast<std::size_t>(n));
-  else if (n == 0 || errno != EAGAIN) ended_ = true;
+  if (n > 0)
+    in_.append(buffer, static_cast<std::size_t>(n));
+  else if (n == 0 || errno != EAGAIN)
+    ended_ = true;
   return n > 0;
 }
 

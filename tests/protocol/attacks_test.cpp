@@ -80,7 +80,9 @@ TEST_CASE("An agent that names bad scenes in every cycle is refused in the end, 
     a.cycle();
   }
   int lines = 0;
-  for (auto at = a.house.text.find("gets no robot"); at != std::string::npos; at = a.house.text.find("gets no robot", at + 1)) ++lines;
+  for (auto at = a.house.text.find("gets no robot"); at != std::string::npos;
+       at = a.house.text.find("gets no robot", at + 1))
+    ++lines;
   REQUIRE(lines == 10);
   REQUIRE(a.logged("no robot could be built too often"));
 }

@@ -29,9 +29,12 @@ struct Player {
   void play() {
     for (const auto& message : client.drain()) {
       heard.push_back(message);
-      if (said == 0 && style != Style::plain) client.send(init(team, unum) + (style == Style::inTurn ? "(syn)" : ""));
-      else if (said < 2) client.send("(syn)");
-      else client.send(fmt::format("(he1 {})(syn)", message.size()));
+      if (said == 0 && style != Style::plain)
+        client.send(init(team, unum) + (style == Style::inTurn ? "(syn)" : ""));
+      else if (said < 2)
+        client.send("(syn)");
+      else
+        client.send(fmt::format("(he1 {})(syn)", message.size()));
       said += style == Style::inTurn ? 2 : 1;
     }
   }
@@ -43,9 +46,11 @@ struct Player {
   std::vector<std::string> heard;
 };
 
-/// Plays 40 cycles with players in this order of connecting; returns everything that was done, then what was heard first.
+/// Plays 40 cycles with players in this order of connecting; returns everything that was done, then what was heard
+/// first.
 std::vector<std::string> match(const std::vector<int>& order, Style style, int threads = 1) {
-  static const std::vector<std::pair<std::string, int>> kPlayers{{"Alpha", 1}, {"Alpha", 2}, {"Beta", 1}, {"Beta", 10}, {"Beta", 3}};
+  static const std::vector<std::pair<std::string, int>> kPlayers{
+      {"Alpha", 1}, {"Alpha", 2}, {"Beta", 1}, {"Beta", 10}, {"Beta", 3}};
   Arena a(true);
   a.kernel.jobs().setThreads(threads);
   a.set("expect", static_cast<int>(order.size()));
@@ -61,7 +66,8 @@ std::vector<std::string> match(const std::vector<int>& order, Style style, int t
     return a.cycles() >= 40;
   });
   auto all = deeds();
-  std::sort(players.begin(), players.end(), [](const auto& x, const auto& y) { return std::tie(x->team, x->unum) < std::tie(y->team, y->unum); });
+  std::sort(players.begin(), players.end(),
+            [](const auto& x, const auto& y) { return std::tie(x->team, x->unum) < std::tie(y->team, y->unum); });
   for (const auto& p : players) all.insert(all.end(), p->heard.begin(), p->heard.begin() + 30);
   return all;
 }
@@ -108,7 +114,8 @@ TEST_CASE("Expected agents are numbered by team and number, whoever came first, 
   const Style style = GENERATE(Style::atOnce, Style::inTurn);
   const auto first = match({0, 1, 2, 3, 4}, style);
   REQUIRE(std::vector<std::string>(first.begin(), first.begin() + 5) ==
-          std::vector<std::string>{"1 init Alpha 1", "1 he1 " + first[1].substr(6), "2 init Alpha 2", "2 he1 " + first[3].substr(6), "3 init Beta 1"});
+          std::vector<std::string>{"1 init Alpha 1", "1 he1 " + first[1].substr(6), "2 init Alpha 2",
+                                   "2 he1 " + first[3].substr(6), "3 init Beta 1"});
   REQUIRE(std::count_if(first.begin(), first.end(), [](const auto& s) { return s.find("init") != s.npos; }) == 5);
   REQUIRE(std::find(first.begin(), first.end(), "4 init Beta 3") != first.end());
   REQUIRE(std::find(first.begin(), first.end(), "5 init Beta 10") != first.end());
@@ -116,7 +123,9 @@ TEST_CASE("Expected agents are numbered by team and number, whoever came first, 
   REQUIRE(match({2, 4, 0, 3, 1}, style) == first);
 }
 
-TEST_CASE("Agents that wait for a message after each thing they say, and robots without init, start and play the same match in any order") {
+TEST_CASE(
+    "Agents that wait for a message after each thing they say, and robots without init, start and play the same match "
+    "in any order") {
   const Style style = GENERATE(Style::stepByStep, Style::plain);
   const auto first = match({0, 1, 2, 3, 4}, style);
   const char* begin = style == Style::plain ? "argument \"Alpha1\"" : "1 init Alpha 1";
@@ -138,7 +147,8 @@ TEST_CASE("When nothing more comes for joinWait the match starts with who is the
     a.until([&] { return a.gate->ready(true); }, false);
     a.cycle();
     REQUIRE(a.agents() == 3);
-    REQUIRE(a.logged("Of 3 expected agents 1 are ready, and nothing more came for 0.05 s (joinWait): the match starts."));
+    REQUIRE(
+        a.logged("Of 3 expected agents 1 are ready, and nothing more came for 0.05 s (joinWait): the match starts."));
     // One program makes its agents one after the other: the first one plays while the second one comes.
     Client second = a.client();
     second.send("(scene robot)" + init("A", 2) + "(syn)");
@@ -175,7 +185,8 @@ TEST_CASE("While it waits the host says whom it waits for and what each owes") {
   CHECK(a.logged("Waiting for 5 of 6 agents: agent at " + silent.name() + " has said nothing; "));
   CHECK(a.logged("agent at " + bare.name() + " owes (scene ...) and (syn); "));
   CHECK(a.logged("agent at " + named.name() + " has named its robot and its team, owes (syn); "));
-  CHECK(a.logged("agent at " + plain.name() + " has named its robot, owes (init ...) and (syn); if it has no init, (syn) to two messages; "));
+  CHECK(a.logged("agent at " + plain.name() +
+                 " has named its robot, owes (init ...) and (syn); if it has no init, (syn) to two messages; "));
   CHECK(a.logged("1 is not connected; without any news the match starts in 60 s."));
   CHECK_FALSE(a.logged(ready.name()));
 }
@@ -193,10 +204,12 @@ TEST_CASE("A client that waits for a first message gets a minimal one, the other
   Client complete = a.client();
   complete.send("(scene robot)" + init("A", 1) + "(syn)");
   std::vector<std::string> got;
-  a.until([&] {
-    REQUIRE_FALSE(a.gate->ready(true));
-    return !(got = waits.drain()).empty();
-  }, false);
+  a.until(
+      [&] {
+        REQUIRE_FALSE(a.gate->ready(true));
+        return !(got = waits.drain()).empty();
+      },
+      false);
   REQUIRE(got == std::vector<std::string>{"(time (now 0.00))"});
   for (int i = 0; i < 100; ++i) {
     a.net->wait(0.0005);
@@ -224,7 +237,12 @@ TEST_CASE("Who leaves during the hold is not counted, who comes on top joins aft
   const auto seen = a.house.text.size() - 1;
   Client late = ready("B", 5);
   REQUIRE_FALSE(a.gate->ready(true));
-  a.until([&] { a.gate->ready(true); return a.house.text.rfind("1 of 2 expected agents are ready.\n") > seen; }, false);
+  a.until(
+      [&] {
+        a.gate->ready(true);
+        return a.house.text.rfind("1 of 2 expected agents are ready.\n") > seen;
+      },
+      false);
   Client last = ready("A", 9);
   a.until([&] { return a.gate->ready(true); }, false);
   a.cycle();

@@ -34,7 +34,8 @@ struct FrameText {
   /// The end of the number that is a whole word at `i`; `i` when there is none.
   static std::size_t numberEnd(const std::string& text, std::size_t i) {
     const std::size_t end = text.find_first_not_of("0123456789+-.e", i);
-    const bool isNumber = end != std::string::npos && end > i && (text[end] == ' ' || text[end] == ')') && text.find_first_of("0123456789", i) < end;
+    const bool isNumber = end != std::string::npos && end > i && (text[end] == ' ' || text[end] == ')') &&
+                          text.find_first_of("0123456789", i) < end;
     return isNumber ? end : i;
   }
 };
@@ -52,7 +53,8 @@ inline std::string difference(const std::string& expected, const std::string& fo
   }
   for (std::size_t i = 0; i < a.numbers.size(); ++i)
     if (!(std::abs(a.numbers[i] - b.numbers[i]) <= tolerance))
-      return "number " + std::to_string(i) + ": expected " + std::to_string(a.numbers[i]) + ", found " + std::to_string(b.numbers[i]);
+      return "number " + std::to_string(i) + ": expected " + std::to_string(a.numbers[i]) + ", found " +
+             std::to_string(b.numbers[i]);
   return {};
 }
 

@@ -2,7 +2,8 @@
 
 #include "arena.h"
 
-// How agents come into a match that goes on, in lockstep: who is waited for from when on, and who cannot stop the others.
+// How agents come into a match that goes on, in lockstep: who is waited for from when on, and who cannot stop the
+// others.
 
 using namespace spark;
 using namespace spark::test;
@@ -35,8 +36,8 @@ std::size_t firstMessages(Arena& a, Client& c, const std::vector<Client*>& answe
   });
   return n;
 }
-/// A client as the FC Portugal code base writes it: (scene ...) alone, a message, (init ...), three times (syn) and a message; then a
-/// (syn) for every message.
+/// A client as the FC Portugal code base writes it: (scene ...) alone, a message, (init ...), three times (syn) and a
+/// message; then a (syn) for every message.
 class Portugal {
  public:
   Portugal(Arena& a, int unum) : client_(a.client()), unum_(unum) { client_.send("(scene robot)"); }
@@ -133,7 +134,8 @@ TEST_CASE("A client that has never sent (syn) is not waited for and is told what
   }
 }
 
-TEST_CASE("Clients that answer only when nothing more comes join also alone: cycles are paced until somebody sends (syn)") {
+TEST_CASE(
+    "Clients that answer only when nothing more comes join also alone: cycles are paced until somebody sends (syn)") {
   Arena a(true);
   a.set("joinPace", 3600.0);
   Client c = connect(a);
@@ -167,7 +169,8 @@ TEST_CASE("A newcomer that never sends (syn) slows a match for its first message
   a.until([&] { return play(), told >= 60; });
 }
 
-TEST_CASE("Eleven clients that send scene and init without (syn) and wait join a match in lockstep, whoever plays in it") {
+TEST_CASE(
+    "Eleven clients that send scene and init without (syn) and wait join a match in lockstep, whoever plays in it") {
   Arena a(true);
   a.set("joinPace", 0.0005);
   Client host = connect(a);
@@ -246,7 +249,9 @@ void playUntilTrusted(Arena& a, Client& player) {
 }
 }  // namespace
 
-TEST_CASE("Strangers who join a match in lockstep and do not answer, again and again, keep it waiting for joinBudget in sum") {
+TEST_CASE(
+    "Strangers who join a match in lockstep and do not answer, again and again, keep it waiting for joinBudget in "
+    "sum") {
   Arena a(true);
   a.set("joinBudget", 0.02);
   a.set("joinPace", 3600.0);  // new agents that have not sent (syn) would stop it, too
@@ -280,7 +285,8 @@ TEST_CASE("Without agents that have proved themselves nobody is kept waiting: th
   REQUIRE(a.cycles() == from);
 }
 
-TEST_CASE("In lockstep robots of strangers are built twice maxAgents at once and then few a second, expected ones always") {
+TEST_CASE(
+    "In lockstep robots of strangers are built twice maxAgents at once and then few a second, expected ones always") {
   const bool crowd = GENERATE(false, true);
   Arena a(true);
   if (crowd) a.set("maxAgents", 1000);

@@ -16,15 +16,16 @@ namespace spark::test {
 /// The league's house without its network: agents and monitors are fake connections.
 class League : public House {
  public:
-  /// `field`: its scene file; empty: the config's. `scenes`: a folder that holds rsg/..., asked first; empty: the project's own.
-  /// `settings`: as --set gives them.
+  /// `field`: its scene file; empty: the config's. `scenes`: a folder that holds rsg/..., asked first; empty: the
+  /// project's own. `settings`: as --set gives them.
   explicit League(const std::string& field = {}, const std::filesystem::path& scenes = {},
                   const std::vector<std::pair<std::string, Value>>& settings = {}) {
     const auto share = pluginFolder().parent_path() / "share" / "spark";
     kernel.lua().addFolder(share / "lua");
     const std::string paths = scenes.empty() ? "" : "'" + scenes.string() + "'";
     kernel.lua().run(fmt::format("host = {{ share = '{}', scenePaths = {{ {} }} }}", share.string(), paths), "test");
-    for (const char* port : {"agents", "monitors"}) kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+    for (const char* port : {"agents", "monitors"})
+      kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
     if (!field.empty()) kernel.lua().addOverride("scene", field);
     for (const char* noise : {"Soccer.BeamNoiseXY", "Soccer.BeamNoiseAngle"}) kernel.lua().addOverride(noise, 0);
     for (const auto& [key, value] : settings) kernel.lua().addOverride(key, value);
@@ -34,7 +35,8 @@ class League : public House {
   Leaf& at(std::string_view path) { return kernel.root().require<Leaf>(path); }
   void run(int cycles = 1) { callMethod(at("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles}); }
   FakeConnection& connect(const char* server, const char* port) {
-    connections_.push_back(std::make_unique<FakeConnection>(kernel.root().require<Node>(port), connections_.size() + 1));
+    connections_.push_back(
+        std::make_unique<FakeConnection>(kernel.root().require<Node>(port), connections_.size() + 1));
     kernel.root().require<IConnectionConsumer>(server).connected(*connections_.back());
     return *connections_.back();
   }

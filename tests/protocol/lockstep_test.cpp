@@ -20,8 +20,10 @@ Client joined(Arena& a, std::string_view scene = "(scene robot)(syn)") {
 int cyclesUntilBlocked(Arena& a) {
   int cycles = 0;
   for (int blocked = 0; blocked < 200;) {
-    if (a.step()) ++cycles, blocked = 0;
-    else ++blocked;
+    if (a.step())
+      ++cycles, blocked = 0;
+    else
+      ++blocked;
   }
   return cycles;
 }

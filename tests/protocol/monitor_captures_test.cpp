@@ -3,8 +3,8 @@
 #include "frame_text.h"
 #include "recorded_session.h"
 
-// What monitors get while recorded sessions are played again: the same messages at the same time, full or not, node by node, with the same
-// numbers to the last digit where nothing was random.
+// What monitors get while recorded sessions are played again: the same messages at the same time, full or not, node by
+// node, with the same numbers to the last digit where nothing was random.
 
 using namespace spark;
 using namespace spark::test;
@@ -30,14 +30,17 @@ struct Session {
   void paintGoals() {
     for (std::string& frame : recording.frames)
       for (const char* paint : {"naogoalnet yellow", "naogoalnet sky-blue"})
-        if (const std::size_t at = frame.find("naogoalnet white"); at != std::string::npos) frame.replace(at, 16, paint);
+        if (const std::size_t at = frame.find("naogoalnet white"); at != std::string::npos)
+          frame.replace(at, 16, paint);
   }
   const std::string& recorded(std::size_t i) const { return recording.frames.at(i); }
   /// What the first `count` messages differ in, with the message's number.
   std::string difference(std::size_t count, double tolerance) const {
     for (std::size_t i = 0; i < count; ++i) {
-      if (i >= frames.size() || i >= recording.frames.size()) return "there are only " + std::to_string(i) + " messages";
-      if (const std::string d = test::difference(recorded(i), frames[i], tolerance); !d.empty()) return "message " + std::to_string(i) + ", " + d;
+      if (i >= frames.size() || i >= recording.frames.size())
+        return "there are only " + std::to_string(i) + " messages";
+      if (const std::string d = test::difference(recorded(i), frames[i], tolerance); !d.empty())
+        return "message " + std::to_string(i) + ", " + d;
     }
     return {};
   }
@@ -116,15 +119,17 @@ TEST_CASE("sessions of one robot give the recorded messages from the first full 
     const char* name;
     std::size_t messages;
   };
-  const Row row = GENERATE(Row{"mainline/nao0-rest", 151}, Row{"mainline/nao0-all-joints", 147}, Row{"mainline/nao3-legs", 150},
-                           Row{"spl/nao0-rest", 150}, Row{"spl/nao0-all-joints", 150}, Row{"spl/nao3-legs", 150});
+  const Row row =
+      GENERATE(Row{"mainline/nao0-rest", 151}, Row{"mainline/nao0-all-joints", 147}, Row{"mainline/nao3-legs", 150},
+               Row{"spl/nao0-rest", 150}, Row{"spl/nao0-all-joints", 150}, Row{"spl/nao3-legs", 150});
   const bool ownScenes = GENERATE(true, false);
   const Session session(row.name, static_cast<int>(2 * row.messages), ownScenes);
   INFO(row.name << (ownScenes ? " with our own scenes" : " with the original scenes"));
   CHECK(session.difference(row.messages, 1e-5) == "");
 }
 
-TEST_CASE("a ball that a trainer throws takes the recorded way, begun at most one monitor period from the recorded time") {
+TEST_CASE(
+    "a ball that a trainer throws takes the recorded way, begun at most one monitor period from the recorded time") {
   skipWithoutReference();
   const Session session(GENERATE("mainline/ball-bounce-and-roll", "spl/ball-bounce-and-roll"));
   CHECK(session.difference(20, 1e-5) == "");
@@ -138,7 +143,8 @@ TEST_CASE("a ball that a trainer throws takes the recorded way, begun at most on
   const auto path = [](const std::vector<std::string>& frames) {
     std::vector<std::string> out;
     for (std::size_t i = 20; i < frames.size(); ++i)
-      if (const std::size_t at = frames[i].find("(SLT"); at != std::string::npos) out.push_back(frames[i].substr(at, frames[i].find(')', at) - at));
+      if (const std::size_t at = frames[i].find("(SLT"); at != std::string::npos)
+        out.push_back(frames[i].substr(at, frames[i].find(')', at) - at));
     return out;
   };
   const auto recorded = path(session.recording.frames), found = path(session.frames);
@@ -150,7 +156,8 @@ TEST_CASE("a ball that a trainer throws takes the recorded way, begun at most on
   }
 }
 
-TEST_CASE("four robots of two teams: the full messages of connecting, loading, joining and being killed, and a marker") {
+TEST_CASE(
+    "four robots of two teams: the full messages of connecting, loading, joining and being killed, and a marker") {
   skipWithoutReference();
   const Session session("mainline/four-agents");
   REQUIRE(session.frames.size() + 1 >= session.recording.frames.size());
@@ -204,10 +211,12 @@ TEST_CASE("each command of the recorded trainer has the recorded effect within e
     if (expected.moved.empty()) continue;
     const FrameText there(expected.moved), here(found.moved);
     REQUIRE(here.numbers.size() > 16);
-    // The torso. At a kick-off its height says only how it came to rest; when it is turned, its posture decides whether it is cleared
-    // from the circle.
-    const bool kickOff = command.starts_with("(kickOff"), turned = command.find("(move") != std::string::npos || command.find("(rot") != std::string::npos;
-    for (std::size_t i = turned ? 13 : 12; i < (kickOff ? 14u : 15u); ++i) CHECK(here.numbers[i] == Approx(there.numbers[i]).margin(0.06));
+    // The torso. At a kick-off its height says only how it came to rest; when it is turned, its posture decides whether
+    // it is cleared from the circle.
+    const bool kickOff = command.starts_with("(kickOff"),
+               turned = command.find("(move") != std::string::npos || command.find("(rot") != std::string::npos;
+    for (std::size_t i = turned ? 13 : 12; i < (kickOff ? 14u : 15u); ++i)
+      CHECK(here.numbers[i] == Approx(there.numbers[i]).margin(0.06));
   }
   CHECK(commands == 34);
 }

@@ -14,7 +14,8 @@ using namespace spark::test;
 namespace {
 
 struct TemporaryFile {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("spark-match-{}-{}.log", ::getpid(), next()++);
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / fmt::format("spark-match-{}-{}.log", ::getpid(), next()++);
   static int& next() {
     static int n = 0;
     return n;
@@ -34,8 +35,12 @@ struct Cinema : House {
     connection.emplace(kernel.root().require<Node>("/sys/server/net/monitors"), 1);
     kernel.root().require<IConnectionConsumer>("/sys/server/monitor").connected(*connection);
   }
-  void run(int cycles) { callMethod(kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles}); }
-  std::int64_t get(const char* property) { return getProperty(kernel.root().require<Leaf>("/sys/server/monitor/player"), property).toInteger(); }
+  void run(int cycles) {
+    callMethod(kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles});
+  }
+  std::int64_t get(const char* property) {
+    return getProperty(kernel.root().require<Leaf>("/sys/server/monitor/player"), property).toInteger();
+  }
   std::optional<FakeConnection> connection;
 };
 
@@ -43,8 +48,11 @@ struct Cinema : House {
 std::vector<std::string> record(const std::filesystem::path& log, const std::string& encoder = "SexpMonitor") {
   House house;
   house.kernel.lua().addFolder(pluginFolder().parent_path() / "share" / "spark" / "lua");
-  house.kernel.lua().run(fmt::format("host = {{ share = '{}', scenePaths = {{}} }}", (pluginFolder().parent_path() / "share" / "spark").string()), "test");
-  for (const char* port : {"agents", "monitors"}) house.kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+  house.kernel.lua().run(fmt::format("host = {{ share = '{}', scenePaths = {{}} }}",
+                                     (pluginFolder().parent_path() / "share" / "spark").string()),
+                         "test");
+  for (const char* port : {"agents", "monitors"})
+    house.kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
   house.kernel.lua().addOverride("team", "Red Blue");
   house.kernel.lua().addOverride("players", 3);
   house.kernel.lua().addOverride("monitor", encoder);
@@ -60,8 +68,8 @@ std::vector<std::string> record(const std::filesystem::path& log, const std::str
 
 bool sameNodes(const std::vector<StrictMonitor::Node>& a, const std::vector<StrictMonitor::Node>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) {
-           return x.type == y.type && x.matrix == y.matrix && x.mesh == y.mesh && x.materials == y.materials && x.visible == y.visible &&
-                  sameNodes(x.children, y.children);
+           return x.type == y.type && x.matrix == y.matrix && x.mesh == y.mesh && x.materials == y.materials &&
+                  x.visible == y.visible && sameNodes(x.children, y.children);
          });
 }
 

@@ -3,7 +3,8 @@
 #include "league.h"
 #include "roboviz.h"
 
-// What RoboViz needs of a server (it throws, or draws nothing, where it does not get it), as a checklist, in a match of Naos.
+// What RoboViz needs of a server (it throws, or draws nothing, where it does not get it), as a checklist, in a match of
+// Naos.
 
 using namespace spark;
 using namespace spark::test;
@@ -47,9 +48,27 @@ struct Match {
 TEST_CASE("the first message comes with the connection, is full, and tells all that the program asks for") {
   Match m;
   CHECK(m.monitor.fulls == 1);
-  for (const char* key : {"FieldLength", "FieldWidth", "FieldHeight", "GoalWidth", "GoalDepth", "GoalHeight", "FreeKickDistance", "WaitBeforeKickOff",
-                          "AgentRadius", "BallRadius", "BallMass", "RuleGoalPauseTime", "RuleKickInPauseTime", "RuleHalfTime",
-                          "PassModeMinOppBallDist", "PassModeDuration", "time", "half", "score_left", "score_right", "play_mode"})
+  for (const char* key : {"FieldLength",
+                          "FieldWidth",
+                          "FieldHeight",
+                          "GoalWidth",
+                          "GoalDepth",
+                          "GoalHeight",
+                          "FreeKickDistance",
+                          "WaitBeforeKickOff",
+                          "AgentRadius",
+                          "BallRadius",
+                          "BallMass",
+                          "RuleGoalPauseTime",
+                          "RuleKickInPauseTime",
+                          "RuleHalfTime",
+                          "PassModeMinOppBallDist",
+                          "PassModeDuration",
+                          "time",
+                          "half",
+                          "score_left",
+                          "score_right",
+                          "play_mode"})
     CHECK(m.monitor.env.count(key) == 1);
   CHECK(m.monitor.playModes.size() == 21);
   CHECK(m.monitor.env.count("team_left") == 0);
@@ -57,10 +76,13 @@ TEST_CASE("the first message comes with the connection, is full, and tells all t
   REQUIRE(ball);
   CHECK(ball->visible);
   CHECK(ball->scale[0] == Approx(0.042));
-  for (const char* own : {"field.obj", "skybox.obj", "leftsoccergoal.obj", "rightsoccergoal.obj"}) CHECK(m.monitor.mesh(own));
+  for (const char* own : {"field.obj", "skybox.obj", "leftsoccergoal.obj", "rightsoccergoal.obj"})
+    CHECK(m.monitor.mesh(own));
 }
 
-TEST_CASE("players show up with number, colour, head and body, each below a top-level node of its own, as soon as they have a team") {
+TEST_CASE(
+    "players show up with number, colour, head and body, each below a top-level node of its own, as soon as they have "
+    "a team") {
   Match m;
   int before = m.monitor.fulls;
   const auto grew = [&] { return std::exchange(before, m.monitor.fulls) < m.monitor.fulls; };
@@ -79,7 +101,9 @@ TEST_CASE("players show up with number, colour, head and body, each below a top-
       REQUIRE(top);
       CHECK(StrictMonitor::playersBelow(*top).size() == 1);
       const auto mesh = [&](const std::regex& name) {
-        return StrictMonitor::find({*top}, [&](const auto& n) { return StrictMonitor::isMesh(n) && n.visible && std::regex_match(n.mesh, name); }) != nullptr;
+        return StrictMonitor::find({*top}, [&](const auto& n) {
+                 return StrictMonitor::isMesh(n) && n.visible && std::regex_match(n.mesh, name);
+               }) != nullptr;
       };
       CHECK(mesh(std::regex(".*head\\.obj")));
       CHECK(mesh(std::regex("models/naobody" + std::to_string(type) + "\\.obj")));

@@ -3,7 +3,8 @@
 #include "frame_text.h"
 #include "stadium.h"
 
-// Every trainer command of the installed base with its effect, as it was recorded or as its users expect it, and what is no command.
+// Every trainer command of the installed base with its effect, as it was recorded or as its users expect it, and what
+// is no command.
 
 using namespace spark;
 using namespace spark::test;
@@ -18,10 +19,16 @@ struct Training {
     s.trainer("(playMode PlayOn)");
     s.trainer(Stadium::put(left, -3, 1) + Stadium::put(right, 5, 2));
   }
-  std::string name(const Player& p) const { return fmt::format("(unum {})(team {})", p.unum, p.side == Side::left ? "Left" : "Right"); }
+  std::string name(const Player& p) const {
+    return fmt::format("(unum {})(team {})", p.unum, p.side == Side::left ? "Left" : "Right");
+  }
   /// Sends a command about the left player.
-  void about(const std::string& command, const std::string& parts = {}) { s.trainer("(" + command + " " + name(left) + parts + ")"); }
-  Value state(const char* property, int agent = 1) { return s.get(fmt::format("/usr/scene/AgentAspect{}/body/AgentState", agent), property); }
+  void about(const std::string& command, const std::string& parts = {}) {
+    s.trainer("(" + command + " " + name(left) + parts + ")");
+  }
+  Value state(const char* property, int agent = 1) {
+    return s.get(fmt::format("/usr/scene/AgentAspect{}/body/AgentState", agent), property);
+  }
   /// Axis 0, 1 or 2 of what moved in the last message.
   Vec3 axis(int i) const {
     const std::string& m = s.monitor().lastMessage();
@@ -38,13 +45,32 @@ bool near(const Vec3& a, const Vec3& b, double d = 0.02) { return (a - b).norm()
 TEST_CASE("(playMode name) sets every mode by its exact name and leaves the ball where it is") {
   Training t;
   t.s.trainer(Stadium::ballTo(2, 3));
-  for (const char* mode : {"BeforeKickOff", "KickOff_Left", "KickOff_Right", "KickIn_Left", "KickIn_Right", "corner_kick_left", "corner_kick_right",
-                           "goal_kick_left", "goal_kick_right", "offside_left", "offside_right", "Goal_Left", "Goal_Right", "free_kick_left",
-                           "free_kick_right", "direct_free_kick_left", "direct_free_kick_right", "GameOver", "pass_left", "pass_right", "PlayOn"}) {
+  for (const char* mode : {"BeforeKickOff",
+                           "KickOff_Left",
+                           "KickOff_Right",
+                           "KickIn_Left",
+                           "KickIn_Right",
+                           "corner_kick_left",
+                           "corner_kick_right",
+                           "goal_kick_left",
+                           "goal_kick_right",
+                           "offside_left",
+                           "offside_right",
+                           "Goal_Left",
+                           "Goal_Right",
+                           "free_kick_left",
+                           "free_kick_right",
+                           "direct_free_kick_left",
+                           "direct_free_kick_right",
+                           "GameOver",
+                           "pass_left",
+                           "pass_right",
+                           "PlayOn"}) {
     t.s.trainer("(playMode " + std::string(mode) + ")");
     CHECK(t.s.mode() == mode);
   }
-  for (const char* wild : {"(playMode goal_left)", "(playMode)", "(playMode (PlayOn))", "(playMode 3)", "(playMode GameOver2)", "(playmode GameOver)"}) {
+  for (const char* wild : {"(playMode goal_left)", "(playMode)", "(playMode (PlayOn))", "(playMode 3)",
+                           "(playMode GameOver2)", "(playmode GameOver)"}) {
     t.s.trainer(wild);
     CHECK(t.s.mode() == "PlayOn");
   }
@@ -110,7 +136,9 @@ TEST_CASE("(agent ...) moves, turns and changes the player that is named") {
 
 TEST_CASE("(select ...) shows the marker, (agent) moves who is selected away, (repos) puts him outside") {
   Training t;
-  const auto selected = [&] { return std::pair(t.state("selected", 1) == Value(true), t.state("selected", 2) == Value(true)); };
+  const auto selected = [&] {
+    return std::pair(t.state("selected", 1) == Value(true), t.state("selected", 2) == Value(true));
+  };
   CHECK(selected() == std::pair(false, false));
   t.about("select");
   CHECK(selected() == std::pair(true, false));
@@ -195,7 +223,9 @@ TEST_CASE("(reqfullstate) makes the next message full, (init) and (getAck) do no
   CHECK(t.s.over());
 }
 
-TEST_CASE("what is malformed or wild changes nothing, costs the trainer nothing, and only a command that is none is answered") {
+TEST_CASE(
+    "what is malformed or wild changes nothing, costs the trainer nothing, and only a command that is none is "
+    "answered") {
   Training t;
   t.s.trainer("(select (unum 2)(team Right))" + Stadium::ballTo(1, 2));
   t.s.run(100);
@@ -207,22 +237,63 @@ TEST_CASE("what is malformed or wild changes nothing, costs the trainer nothing,
   const std::string before = scene();
   const Value battery = t.state("battery");
   const std::size_t said = t.s.log().size();
-  const std::string numbers[] = {"nan", "inf", "-inf", "1e30", "-1e30", "1e400", "x", "(1)", "0x10", "1.5.2", "\"\"", "1e"};
-  std::vector<std::string> wild = {
-      "(ball)", "(ball (pos))", "(ball (pos 1 2))", "(ball (vel 1))", "(ball pos 1 2 3)", "(ball (pos (1 2 3)))", "(agent (unum))", "(agent (team Left))",
-      "(agent (unum 1)(team Left))", "(agent (unum 1)(team left)(pos 0 0 0))", "(agent (unum 1)(pos 0 0 0))", "(agent (unum 7)(team Left)(pos 0 0 0))",
-      "(agent (unum 1.5)(team Left)(pos 0 0 0))", "(agent (unum one)(team Left)(pos 0 0 0))", "(agent x)", "(select (unum))", "(select (unum 99)(team Left))",
-      "(kill (unum))", "(kill (unum 0)(team Left))", "(kill (unum 1)(team None))", "(kill (team Right))", "(kill x)", "(repos (unum))", "(repos (unum 3)(team Right))",
-      "(repos x y)", "(time)", "(time -1)", "(time (1))", "(score)", "(score (left 1))", "(score (left 1)(right))", "(score (left -1)(right 1))",
-      "(score (left 1.5)(right 1))", "(playMode)", "(playMode x)", "(kickOff)", "(kickOff x)", "(nosuchcommand 1 2 3)", "garbage", "()", "((()))", "(",
-      ")", "(unbalanced (a", "\"", std::string(1, '\0'), std::string(60000, '('), "(agent " + std::string(50000, 'x') + ")"};
+  const std::string numbers[] = {"nan", "inf", "-inf", "1e30",  "-1e30", "1e400",
+                                 "x",   "(1)", "0x10", "1.5.2", "\"\"",  "1e"};
+  std::vector<std::string> wild = {"(ball)",
+                                   "(ball (pos))",
+                                   "(ball (pos 1 2))",
+                                   "(ball (vel 1))",
+                                   "(ball pos 1 2 3)",
+                                   "(ball (pos (1 2 3)))",
+                                   "(agent (unum))",
+                                   "(agent (team Left))",
+                                   "(agent (unum 1)(team Left))",
+                                   "(agent (unum 1)(team left)(pos 0 0 0))",
+                                   "(agent (unum 1)(pos 0 0 0))",
+                                   "(agent (unum 7)(team Left)(pos 0 0 0))",
+                                   "(agent (unum 1.5)(team Left)(pos 0 0 0))",
+                                   "(agent (unum one)(team Left)(pos 0 0 0))",
+                                   "(agent x)",
+                                   "(select (unum))",
+                                   "(select (unum 99)(team Left))",
+                                   "(kill (unum))",
+                                   "(kill (unum 0)(team Left))",
+                                   "(kill (unum 1)(team None))",
+                                   "(kill (team Right))",
+                                   "(kill x)",
+                                   "(repos (unum))",
+                                   "(repos (unum 3)(team Right))",
+                                   "(repos x y)",
+                                   "(time)",
+                                   "(time -1)",
+                                   "(time (1))",
+                                   "(score)",
+                                   "(score (left 1))",
+                                   "(score (left 1)(right))",
+                                   "(score (left -1)(right 1))",
+                                   "(score (left 1.5)(right 1))",
+                                   "(playMode)",
+                                   "(playMode x)",
+                                   "(kickOff)",
+                                   "(kickOff x)",
+                                   "(nosuchcommand 1 2 3)",
+                                   "garbage",
+                                   "()",
+                                   "((()))",
+                                   "(",
+                                   ")",
+                                   "(unbalanced (a",
+                                   "\"",
+                                   std::string(1, '\0'),
+                                   std::string(60000, '('),
+                                   "(agent " + std::string(50000, 'x') + ")"};
   for (const std::string& n : numbers) {
     wild.push_back("(ball (pos " + n + " 0 0))");
     wild.push_back("(ball (vel 0 0 " + n + "))");
     wild.push_back("(time " + n + ")");
     wild.push_back("(score (left " + n + ")(right 1))");
     wild.push_back("(agent (unum " + n + ")(team Left)(pos 0 0 0))");
-    for (const char* part : {"pos 0 " , "move 0 0 0 ", "rot 0 0 ", "battery ", "temperature "})
+    for (const char* part : {"pos 0 ", "move 0 0 0 ", "rot 0 0 ", "battery ", "temperature "})
       wild.push_back("(agent (unum 1)(team Left)(" + std::string(part) + n + (part[0] == 'p' ? " 0))" : "))"));
   }
   for (std::size_t i = 0; i < wild.size(); ++i) {

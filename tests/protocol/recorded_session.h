@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A recorded lockstep session, and a house in which it is played again in process: same cycles, same messages, no network, no timing.
+/// A recorded lockstep session, and a house in which it is played again in process: same cycles, same messages, no
+/// network, no timing.
 
 #include <cmath>
 #include <fstream>
@@ -16,12 +17,12 @@ namespace spark::test {
 
 /// What stands in a recording (`captures/*/*.jsonl`).
 struct Recording {
-  std::vector<std::string> agents;                                              ///< their names, in order of connection
-  std::map<int, std::vector<std::pair<std::size_t, std::string>>> sent;         ///< by cycle: agent's index, message
-  std::map<int, std::vector<std::string>> commands;                             ///< by cycle: what the monitor sent
-  std::vector<std::string> frames;                                              ///< what the monitor got, from its first message on
-  int start = 0;                                                                ///< the first answer tells of so many steps
-  int cycles = 0;                                                               ///< messages that the first agent got
+  std::vector<std::string> agents;                                       ///< their names, in order of connection
+  std::map<int, std::vector<std::pair<std::size_t, std::string>>> sent;  ///< by cycle: agent's index, message
+  std::map<int, std::vector<std::string>> commands;                      ///< by cycle: what the monitor sent
+  std::vector<std::string> frames;  ///< what the monitor got, from its first message on
+  int start = 0;                    ///< the first answer tells of so many steps
+  int cycles = 0;                   ///< messages that the first agent got
 
   explicit Recording(const std::filesystem::path& file) {
     std::ifstream in(file);
@@ -60,7 +61,8 @@ class Replay {
 
   /// `cycles`: so many answers of the first agent.
   void play(int cycles) {
-    const bool early = recording_.frames.front().find("(nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1)))") == std::string::npos;
+    const bool early =
+        recording_.frames.front().find("(nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1)))") == std::string::npos;
     league_.run(recording_.start - 3);
     if (early) watch();
     for (std::size_t i = 0; i < recording_.agents.size(); ++i) agents_.push_back(&league_.connectAgent());

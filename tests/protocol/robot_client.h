@@ -21,10 +21,12 @@ inline Client robot(Arena& a, std::string_view scene = "(scene robot)", const st
 
 /// Delivers what clients sent and realises it in one cycle.
 inline void realise(Arena& a, std::size_t deedsWanted) {
-  a.until([&] {
-    a.cycle();
-    return deeds().size() >= deedsWanted;
-  }, false);
+  a.until(
+      [&] {
+        a.cycle();
+        return deeds().size() >= deedsWanted;
+      },
+      false);
 }
 
 }  // namespace spark::test

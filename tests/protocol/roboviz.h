@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A monitor as strict as the most used one, RoboViz: what would throw there throws here, what it would not draw is not there.
+/// A monitor as strict as the most used one, RoboViz: what would throw there throws here, what it would not draw is not
+/// there.
 
 #include <algorithm>
 #include <array>
@@ -57,7 +58,9 @@ class StrictMonitor {
   }
 
   /// The first mesh whose name ends so, depth first; nullptr when there is none.
-  const Node* mesh(const std::string& ending) const { return find(scene, [&](const Node& n) { return isMesh(n) && n.mesh.ends_with(ending); }); }
+  const Node* mesh(const std::string& ending) const {
+    return find(scene, [&](const Node& n) { return isMesh(n) && n.mesh.ends_with(ending); });
+  }
   /// The top-level node of a player.
   const Node* player(bool left, int unum) const {
     const Node* found = nullptr;
@@ -91,7 +94,8 @@ class StrictMonitor {
     if (!holds) throw std::runtime_error("expected: " + what);
   }
   static int javaInt(std::string_view text) {
-    check(!text.empty() && text.size() < 10 && text.find_first_not_of("0123456789", text[0] == '-') == std::string_view::npos,
+    check(!text.empty() && text.size() < 10 &&
+              text.find_first_not_of("0123456789", text[0] == '-') == std::string_view::npos,
           "a whole number, found " + std::string(text));
     return std::stoi(std::string(text));
   }
@@ -101,7 +105,8 @@ class StrictMonitor {
     return std::stod(std::string(text));
   }
   void readEnvironment(const Element& list) {
-    static const std::set<std::string> whole{"half", "score_left", "score_right", "play_mode"}, words{"team_left", "team_right"};
+    static const std::set<std::string> whole{"half", "score_left", "score_right", "play_mode"},
+        words{"team_left", "team_right"};
     for (const Element e : list) {
       const std::string name(e.head());
       check(e.isList() && e.size() >= 2, "an entry with a value");
@@ -110,11 +115,13 @@ class StrictMonitor {
         for (std::size_t i = 1; i < e.size(); ++i) playModes.emplace_back(e.at(i).text());
       } else if (name == "foul") {
         check(e.size() == 5, "a foul with four arguments");
-        fouls.push_back({javaInt(e.at(1).text()), javaInt(e.at(2).text()), javaInt(e.at(3).text()), javaInt(e.at(4).text())});
+        fouls.push_back(
+            {javaInt(e.at(1).text()), javaInt(e.at(2).text()), javaInt(e.at(3).text()), javaInt(e.at(4).text())});
         check(fouls.back()[1] >= 0 && fouls.back()[1] <= 10, "a type of foul that is known");
       } else if (whole.count(name)) {
         const int value = javaInt(e.at(1).text());
-        if (name == "play_mode") check(value >= 0 && value < static_cast<int>(playModes.size()), "a play mode of the list");
+        if (name == "play_mode")
+          check(value >= 0 && value < static_cast<int>(playModes.size()), "a play mode of the list");
       } else if (!words.count(name)) {
         javaFloat(e.at(1).text());
       }
@@ -178,7 +185,9 @@ class StrictMonitor {
     patchChildren(e, node.children);
   }
   static bool wears(const Node& n, bool left, int unum) {
-    const auto has = [&n](const std::string& name) { return std::find(n.materials.begin(), n.materials.end(), name) != n.materials.end(); };
+    const auto has = [&n](const std::string& name) {
+      return std::find(n.materials.begin(), n.materials.end(), name) != n.materials.end();
+    };
     return n.type == "StaticMesh" && has(left ? "matLeft" : "matRight") && has("matNum" + std::to_string(unum));
   }
 };

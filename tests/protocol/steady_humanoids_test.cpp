@@ -7,8 +7,8 @@
 #include "api/agents.h"
 #include "test_support.h"
 
-// Two teams of humanoids in the house of lua/soccer.lua that move all their motors, and all that is sensed, encoded and sent meanwhile. They come
-// over connections as others do, but without sockets.
+// Two teams of humanoids in the house of lua/soccer.lua that move all their motors, and all that is sensed, encoded and
+// sent meanwhile. They come over connections as others do, but without sockets.
 
 using namespace spark;
 using namespace spark::test;
@@ -50,8 +50,8 @@ class Player : public IConnection {
     if (said_ == 1) say("(init (unum %d)(teamname %s))", n + 1, index_ < kTeam ? "A" : "B");
     if (said_ == 4) say("(beam %.1f %.1f 0)", -2 - 2.4 * (n % 4), 4.0 * (n / 4 - 1) + 0.3 * (n % 4));
     if (said_ > 20)
-      for (const char* motor : {"he1", "he2", "lae1", "lae2", "lae3", "lae4", "rae1", "rae2", "rae3", "rae4", "lle1", "lle2",
-                                "lle3", "lle4", "lle5", "lle6", "rle1", "rle2", "rle3", "rle4", "rle5", "rle6"})
+      for (const char* motor : {"he1",  "he2",  "lae1", "lae2", "lae3", "lae4", "rae1", "rae2", "rae3", "rae4", "lle1",
+                                "lle2", "lle3", "lle4", "lle5", "lle6", "rle1", "rle2", "rle3", "rle4", "rle5", "rle6"})
         say("(%s %.4f)", motor, 0.8 * std::sin(0.06 * static_cast<double>(said_) + 0.7 * size_));
     return {text_, static_cast<std::size_t>(size_)};
   }

@@ -41,16 +41,18 @@ struct Match : Arena {
   /// Cycles with every agent answering; only the host's part is counted.
   void play(int cycles) {
     const auto end = this->cycles() + cycles;
-    until([&] {
-      Allocations::on = false;
-      for (auto& c : clients)
-        for (std::size_t n = c.drain().size(); n > 0; --n) c.send("(idle 1.5)(idle -0.25)(syn)");
-      for (auto& c : clients) c.arrive();
-      Allocations::on = true;
-      step();
-      Allocations::on = false;
-      return this->cycles() >= end;
-    }, false);
+    until(
+        [&] {
+          Allocations::on = false;
+          for (auto& c : clients)
+            for (std::size_t n = c.drain().size(); n > 0; --n) c.send("(idle 1.5)(idle -0.25)(syn)");
+          for (auto& c : clients) c.arrive();
+          Allocations::on = true;
+          step();
+          Allocations::on = false;
+          return this->cycles() >= end;
+        },
+        false);
   }
 };
 

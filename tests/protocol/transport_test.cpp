@@ -19,7 +19,9 @@ class TestConsumer : public Node, public IConnectionConsumer {
     connections.push_back(&c);
     events.push_back(fmt::format("+{}", c.id()));
   }
-  void received(IConnection& c, std::string_view message) override { events.push_back(fmt::format("{}:{}", c.id(), message.size() > 40 ? "long" : message)); }
+  void received(IConnection& c, std::string_view message) override {
+    events.push_back(fmt::format("{}:{}", c.id(), message.size() > 40 ? "long" : message));
+  }
   void disconnected(IConnection& c) override {
     std::erase(connections, &c);
     events.push_back(fmt::format("-{}", c.id()));
@@ -84,7 +86,8 @@ TEST_CASE("A length over the limit closes that connection only, with one line") 
   Wire w;
   Client good = w.client();
   Client bad = w.client();
-  const std::string prefix = GENERATE(std::string("\x80\0\0\0", 4), std::string("\xff\xff\xff\xff", 4), std::string("\0\x01\0\x01", 4), std::string("GET / HTTP/1.1\r\n"));
+  const std::string prefix = GENERATE(std::string("\x80\0\0\0", 4), std::string("\xff\xff\xff\xff", 4),
+                                      std::string("\0\x01\0\x01", 4), std::string("GET / HTTP/1.1\r\n"));
   bad.raw(prefix);
   REQUIRE(bad.closed());
   REQUIRE(w.logged(bad.name() + " is closed: it announces a message of"));
@@ -151,7 +154,12 @@ TEST_CASE("200 clients come and go") {
     c.send("x");
     if (i % 7 == 0) w.net->poll();
   }
-  w.until([&] { return w.consumer->connections.empty() && getProperty(w.port(), "connections").toInteger() == 0 && w.consumer->events.size() > 3; }, false);
+  w.until(
+      [&] {
+        return w.consumer->connections.empty() && getProperty(w.port(), "connections").toInteger() == 0 &&
+               w.consumer->events.size() > 3;
+      },
+      false);
   Client c = w.client();
   c.send("match goes on");
   w.until([&] { return w.consumer->events.back().ends_with(":match goes on"); }, false);
@@ -207,7 +215,9 @@ int serverEnd(const Client& client) {
   for (int fd = 3; fd < 1024; ++fd) {
     sockaddr_in peer{};
     socklen_t n = sizeof peer;
-    if (::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &n) == 0 && "127.0.0.1:" + std::to_string(ntohs(peer.sin_port)) == client.name()) return fd;
+    if (::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &n) == 0 &&
+        "127.0.0.1:" + std::to_string(ntohs(peer.sin_port)) == client.name())
+      return fd;
   }
   return -1;
 }
@@ -233,7 +243,9 @@ TEST_CASE("Clients whose machine has gone are noticed by TCP keep-alive, which t
   CHECK(option(fd, IPPROTO_TCP, TCP_USER_TIMEOUT) == 0);
 }
 
-TEST_CASE("When a port is full, of the clients that do not read the quietest makes room, one that never spoke first; readers stay") {
+TEST_CASE(
+    "When a port is full, of the clients that do not read the quietest makes room, one that never spoke first; readers "
+    "stay") {
   Wire w;
   setProperty(w.port(), "maxConnections", 4);
   Client reader = w.client(), sender = w.client(), mute = w.client(), mute2 = w.client();
@@ -245,8 +257,15 @@ TEST_CASE("When a port is full, of the clients that do not read the quietest mak
   const auto knock = [&] {
     const auto seen = w.consumer->events.size();
     Client c = w.client();
-    w.until([&] { return w.consumer->events.size() > seen || c.drain().size() > 0 || w.logged(c.name() + " is closed: 4 clients are connected already"); }, false);
-    return std::pair(std::move(c), std::vector<std::string>(w.consumer->events.begin() + static_cast<std::ptrdiff_t>(seen), w.consumer->events.end()));
+    w.until(
+        [&] {
+          return w.consumer->events.size() > seen || c.drain().size() > 0 ||
+                 w.logged(c.name() + " is closed: 4 clients are connected already");
+        },
+        false);
+    return std::pair(std::move(c),
+                     std::vector<std::string>(w.consumer->events.begin() + static_cast<std::ptrdiff_t>(seen),
+                                              w.consumer->events.end()));
   };
 
   SECTION("unless nobody has to") { REQUIRE(knock().second.empty()); }
@@ -260,7 +279,11 @@ TEST_CASE("When a port is full, of the clients that do not read the quietest mak
     for (const char* gone : {"-3", "-4", "-2"}) {
       auto [guest, events] = knock();
       guests.push_back(std::move(guest));
-      w.until([&] { return std::find(w.consumer->events.begin(), w.consumer->events.end(), gone) != w.consumer->events.end(); }, false);
+      w.until(
+          [&] {
+            return std::find(w.consumer->events.begin(), w.consumer->events.end(), gone) != w.consumer->events.end();
+          },
+          false);
     }
     CHECK(w.logged(mute.name() + " is closed: it said nothing, and its place is needed."));
     CHECK(w.logged(sender.name() + " is closed: it neither reads nor sends, and its place is needed."));
@@ -323,7 +346,8 @@ TEST_CASE("A port that cannot listen says why") {
   };
   w.addPort("twin");
   setProperty(w.port("twin"), "port", w.portNumber());
-  REQUIRE_THAT(listen("twin"), Catch::Contains("cannot") && Catch::Contains("in use") && Catch::Contains("0 picks a free one"));
+  REQUIRE_THAT(listen("twin"),
+               Catch::Contains("cannot") && Catch::Contains("in use") && Catch::Contains("0 picks a free one"));
   w.addPort("astray");
   setProperty(w.port("astray"), "consumer", "/usr/nobody");
   REQUIRE_THAT(listen("astray"), Catch::Contains("/usr/nobody"));

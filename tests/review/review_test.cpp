@@ -6,8 +6,8 @@
 #include "../system/process.h"
 #include "test_support.h"
 
-// What newcomers and reviewers ran into, one config each: cases/NAME.lua is run as a child process and must end as its first lines say.
-// README.md lists what they may say.
+// What newcomers and reviewers ran into, one config each: cases/NAME.lua is run as a child process and must end as its
+// first lines say. README.md lists what they may say.
 
 using namespace spark::test;
 namespace fs = std::filesystem;
@@ -31,13 +31,20 @@ std::vector<std::string> words(const std::string& text) {
 }
 
 void take(Case& c, const std::string& key, const std::string& value) {
-  if (key == "expect") c.expected.push_back(value);
-  else if (key == "never") c.never.push_back(value);
-  else if (key == "exit") c.exit = std::stoi(value);
-  else if (key == "args") c.arguments = words(value);
-  else if (key == "program") c.program = value;
-  else if (key == "limit") c.limit = std::stod(value);
-  else throw std::runtime_error("expected expect, never, exit, args, program or limit, found '" + key + "'");
+  if (key == "expect")
+    c.expected.push_back(value);
+  else if (key == "never")
+    c.never.push_back(value);
+  else if (key == "exit")
+    c.exit = std::stoi(value);
+  else if (key == "args")
+    c.arguments = words(value);
+  else if (key == "program")
+    c.program = value;
+  else if (key == "limit")
+    c.limit = std::stod(value);
+  else
+    throw std::runtime_error("expected expect, never, exit, args, program or limit, found '" + key + "'");
 }
 
 /// Reads the lines `-- key: value` that a case begins with, and plain comments among them.
@@ -69,7 +76,8 @@ TEST_CASE("Every case of the review ends as its first lines say") {
     DYNAMIC_SECTION(file.stem().string()) {
       const Case c = readCase(file);
       REQUIRE_FALSE(c.expected.empty());
-      std::vector<std::string> command{(binFolder() / c.program).string(), "--config", file.string(), "--scene-path", SPARK_CASES "/scenes"};
+      std::vector<std::string> command{(binFolder() / c.program).string(), "--config", file.string(), "--scene-path",
+                                       SPARK_CASES "/scenes"};
       command.insert(command.end(), c.arguments.begin(), c.arguments.end());
       Process run(command, c.limit);
       std::string said = run.rest();

@@ -50,7 +50,8 @@ TEST_CASE("A player on the ground for 15 s rises into the air for half a second 
   Player& goalie = s.join("A", 1, kLying);
   Player& a = s.join("A", 4, kLying);
   Player& b = s.join("B", 4, kLying);
-  s.trainer("(playMode PlayOn)" + s.ballTo(0, -9) + s.put(goalie, -10, 0, 0.1) + s.put(a, -5, 3, 0.1) + s.put(b, 5, 3, 0.1));
+  s.trainer("(playMode PlayOn)" + s.ballTo(0, -9) + s.put(goalie, -10, 0, 0.1) + s.put(a, -5, 3, 0.1) +
+            s.put(b, 5, 3, 0.1));
   const double from = s.time();
   s.run(749);
   CHECK(s.fouls().empty());
@@ -81,7 +82,8 @@ TEST_CASE("Who does not stand for too long is taken away; half a second of stand
   Player& a = s.join("A", 2, kCrouching);
   Player& lucky = s.join("A", 3, kCrouching);
   Player& goalie = s.join("B", 1, kCrouching);
-  s.trainer("(playMode PlayOn)" + s.ballTo(0, -9) + s.put(goalie, 10, 0, 0.2) + s.put(a, -5, 3, 0.2) + s.put(lucky, -5, -3, 0.2));
+  s.trainer("(playMode PlayOn)" + s.ballTo(0, -9) + s.put(goalie, 10, 0, 0.2) + s.put(a, -5, 3, 0.2) +
+            s.put(lucky, -5, -3, 0.2));
   s.run(200);
   for (int i = 0; i < 27; ++i) s.trainer(s.put(lucky, -5, -3, 0.5));
   s.run(299 - 227);
@@ -100,12 +102,14 @@ TEST_CASE("Who does not stand for too long is taken away; half a second of stand
   CHECK(s.fouls() == Fouls{"51 4 2 1"});
 }
 
-TEST_CASE("The fourth player in the own area is put out over the nearest edge, and so is another when the goalie comes") {
+TEST_CASE(
+    "The fourth player in the own area is put out over the nearest edge, and so is another when the goalie comes") {
   FoulMatch s;
   std::deque<Player*> a;
   for (int n = 1; n <= 5; ++n) a.push_back(&s.join("A", n, kStanding));
   s.play();
-  s.trainer(s.put(*a[1], -13.6, 1) + s.put(*a[2], -14.5, 0) + s.put(*a[3], -14.5, -1.5) + s.put(*a[4], -10, 0) + s.put(*a[0], -10, 2));
+  s.trainer(s.put(*a[1], -13.6, 1) + s.put(*a[2], -14.5, 0) + s.put(*a[3], -14.5, -1.5) + s.put(*a[4], -10, 0) +
+            s.put(*a[0], -10, 2));
   s.seconds(1);
   CHECK(s.fouls().empty());
   s.trainer(s.put(*a[4], -13.5, -0.5));
@@ -128,7 +132,8 @@ TEST_CASE("The third in a group of touching players has to leave it") {
   Player& b2 = s.join("B", 2, kStanding);
   s.play();
   const auto stand = [&](Player* third) {
-    s.trainer(s.put(a2, 0, 0) + s.put(third == &b2 ? a3 : b2, 0.298, 0) + (third ? s.put(*third, -0.298, 0) : std::string()));
+    s.trainer(s.put(a2, 0, 0) + s.put(third == &b2 ? a3 : b2, 0.298, 0) +
+              (third ? s.put(*third, -0.298, 0) : std::string()));
   };
   SECTION("the last to join, whose team has two of three") {
     stand(nullptr), stand(nullptr), stand(&a3);

@@ -4,8 +4,7 @@
 using namespace spark;
 using namespace spark::test;
 
-namespace {
-}
+namespace {}
 
 TEST_CASE("A goal counts for the side that attacks that goal, whoever touched the ball") {
   Match m;
@@ -18,7 +17,9 @@ TEST_CASE("A goal counts for the side that attacks that goal, whoever touched th
   CHECK(m.b2.gs("sr") == (right ? "0" : "1"));
 }
 
-TEST_CASE("After a goal: 3 s in which the ball is free, teams take their halves, beams work; then the other side's kick-off") {
+TEST_CASE(
+    "After a goal: 3 s in which the ball is free, teams take their halves, beams work; then the other side's "
+    "kick-off") {
   Match m;
   m.touchThen(m.a1, kInRightGoal);
   REQUIRE(m.mode() == "Goal_Left");
@@ -50,15 +51,17 @@ TEST_CASE("A ball that flies through the goal line is a goal; above the bar or b
     double x, y, z;
     const char* mode;
   };
-  const Case c = GENERATE(Case{15, 0.5, 0.3, "Goal_Left"}, Case{-15, -0.5, 0.3, "Goal_Right"}, Case{15, 0.5, 1.2, "goal_kick_right"},
-                          Case{15, 1.5, 0.3, "goal_kick_right"}, Case{-15, -1.5, 0.3, "corner_kick_right"});
+  const Case c = GENERATE(Case{15, 0.5, 0.3, "Goal_Left"}, Case{-15, -0.5, 0.3, "Goal_Right"},
+                          Case{15, 0.5, 1.2, "goal_kick_right"}, Case{15, 1.5, 0.3, "goal_kick_right"},
+                          Case{-15, -1.5, 0.3, "corner_kick_right"});
   m.touchThen(m.a1, Match::ballTo(c.x, c.y, c.z, std::copysign(3, c.x)));
   CHECK(m.mode() == c.mode);
 }
 
 TEST_CASE("Straight from an indirect kick there is no goal, straight from a direct one only in the others' goal") {
   Match m;
-  const std::string kick = GENERATE("KickIn_Left", "free_kick_left", "direct_free_kick_left", "corner_kick_left", "goal_kick_left");
+  const std::string kick =
+      GENERATE("KickIn_Left", "free_kick_left", "direct_free_kick_left", "corner_kick_left", "goal_kick_left");
   INFO(kick);
   const bool direct = kick != "KickIn_Left" && kick != "free_kick_left";
   m.trainer("(playMode " + kick + ")");
@@ -86,7 +89,8 @@ TEST_CASE("Straight from an indirect kick there is no goal, straight from a dire
 
 TEST_CASE("In a mode without play nothing counts") {
   Match m;
-  const char* mode = GENERATE("BeforeKickOff", "KickOff_Left", "KickIn_Left", "goal_kick_right", "offside_left", "GameOver");
+  const char* mode =
+      GENERATE("BeforeKickOff", "KickOff_Left", "KickIn_Left", "goal_kick_right", "offside_left", "GameOver");
   INFO(mode);
   m.trainer(std::string("(playMode ") + mode + ")");
   m.trainer(kInRightGoal);

@@ -48,7 +48,8 @@ TEST_CASE("Before the kick-off nobody is moved when starts are free") {
 
 TEST_CASE("At a kick-off the others leave the half and the circle, the kicking team may stand in the circle") {
   Match m;
-  m.trainer("(time 0)(kickOff Left)" + Match::put(m.a1, 3, 1) + Match::put(m.a2, 0.5, 0.6) + Match::put(m.b1, -3, 2) + Match::put(m.b2, 1.2, -0.5));
+  m.trainer("(time 0)(kickOff Left)" + Match::put(m.a1, 3, 1) + Match::put(m.a2, 0.5, 0.6) + Match::put(m.b1, -3, 2) +
+            Match::put(m.b2, 1.2, -0.5));
   CHECK(m.mode() == "KickOff_Left");
   CHECK(m.time() == Approx(0.02));
   m.run(1);
@@ -65,7 +66,8 @@ TEST_CASE("At a kick-off the others leave the half and the circle, the kicking t
 
 TEST_CASE("The right team's kick-off is the mirror image") {
   Match m;
-  m.trainer("(kickOff Right)" + Match::put(m.b1, -3, 1) + Match::put(m.b2, -0.5, 0.6) + Match::put(m.a1, 3, 2) + Match::put(m.a2, -1.2, -0.5));
+  m.trainer("(kickOff Right)" + Match::put(m.b1, -3, 1) + Match::put(m.b2, -0.5, 0.6) + Match::put(m.a1, 3, 2) +
+            Match::put(m.a2, -1.2, -0.5));
   CHECK(m.mode() == "KickOff_Right");
   m.run(1);
   m.checkAt(m.b1, 2.5, 1);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A TCP client of a server in the same process and thread: what either side sent is known to have arrived, so nothing waits or guesses.
+/// A TCP client of a server in the same process and thread: what either side sent is known to have arrived, so nothing
+/// waits or guesses.
 
 #include <arpa/inet.h>
 #include <linux/sockios.h>
@@ -26,7 +27,8 @@ class LoopbackClient {
  public:
   explicit LoopbackClient(int port) : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in to = address(static_cast<std::uint16_t>(port));
-    if (::connect(fd_, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) throw Error(std::string("connect: ") + std::strerror(errno));
+    if (::connect(fd_, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0)
+      throw Error(std::string("connect: ") + std::strerror(errno));
     const int on = 1;
     ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   }
@@ -40,7 +42,9 @@ class LoopbackClient {
   bool accepted() {
     // Clients of two servers may have the same port: both ends count.
     for (int fd = 3; fd < 1024 && peer_ < 0; ++fd)
-      if (fd != fd_ && portOf(fd, ::getpeername) == portOf(fd_, ::getsockname) && portOf(fd, ::getsockname) == portOf(fd_, ::getpeername)) peer_ = fd;
+      if (fd != fd_ && portOf(fd, ::getpeername) == portOf(fd_, ::getsockname) &&
+          portOf(fd, ::getsockname) == portOf(fd_, ::getpeername))
+        peer_ = fd;
     return peer_ >= 0;
   }
   /// Sends a message behind its length, and returns when it is where the server's next read finds it.
@@ -48,7 +52,8 @@ class LoopbackClient {
     const auto n = htonl(static_cast<std::uint32_t>(message.size()));
     const std::string bytes = std::string(reinterpret_cast<const char*>(&n), 4) + std::string(message);
     const int before = count(peer_, FIONREAD);
-    if (::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(bytes.size())) throw Error("send: the server has closed");
+    if (::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(bytes.size()))
+      throw Error("send: the server has closed");
     while (count(peer_, FIONREAD) < before + static_cast<int>(bytes.size())) {
     }
   }

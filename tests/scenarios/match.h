@@ -6,7 +6,8 @@
 
 namespace spark::test {
 
-/// A1, A2 of the left team and B1, B2 of the right one, each in a corner of its half; PlayOn, the ball rests at the centre.
+/// A1, A2 of the left team and B1, B2 of the right one, each in a corner of its half; PlayOn, the ball rests at the
+/// centre.
 struct Match : Stadium {
   explicit Match(const Settings& settings = {})
       : Stadium(settings), a1(join("A", 1)), a2(join("A", 2)), b1(join("B", 1)), b2(join("B", 2)) {

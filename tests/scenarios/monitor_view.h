@@ -34,7 +34,8 @@ class MonitorView {
     }
     for (const Element e : frame_.update.events)
       if (e.head() == "foul")
-        fouls_.push_back({int(e.at(1).number()), int(e.at(2).number()), int(e.at(3).number()), int(e.at(4).number()), number("time")});
+        fouls_.push_back({int(e.at(1).number()), int(e.at(2).number()), int(e.at(3).number()), int(e.at(4).number()),
+                          number("time")});
   }
 
   /// Of an environment key, as last told; 0 when it never was.

@@ -21,8 +21,8 @@ TEST_CASE("Nobody is put as the fourth into his own penalty area") {
   Player& a4 = m.join("A", 4);
   m.trainer(Match::ballTo(-11.5, 0));
   m.run(1);
-  m.trainer("(playMode free_kick_right)" + Match::put(m.a1, -14.6, 2.5) + Match::put(m.a2, -14.6, -2.5) + Match::put(a3, -14.6, 1.5) +
-            Match::put(a4, -11, 0.5));
+  m.trainer("(playMode free_kick_right)" + Match::put(m.a1, -14.6, 2.5) + Match::put(m.a2, -14.6, -2.5) +
+            Match::put(a3, -14.6, 1.5) + Match::put(a4, -11, 0.5));
   m.run(53);
   const Vec3 p = m.at(a4);
   CHECK(Match::distance(p, m.ball()) > 2);

@@ -57,7 +57,8 @@ TEST_CASE("Pass mode is refused quietly") {
   CHECK(m.mode() == mode);
 }
 
-TEST_CASE("What was true at the last judging must still be true: a jump to the ball and a pass in one cycle are refused") {
+TEST_CASE(
+    "What was true at the last judging must still be true: a jump to the ball and a pass in one cycle are refused") {
   Pass m;
   m.trainer(Match::put(m.a1, -3, 0));
   m.command(Match::put(m.a1, -0.35, 0));

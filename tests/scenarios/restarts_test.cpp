@@ -6,7 +6,7 @@ using namespace spark::test;
 
 namespace {
 constexpr double kLine = 20.0 / 2 - 0.042, kEnd = 30.0 / 2 - 0.042;  // m: the ball just inside
-constexpr double kCorner = (20 + 2.1) / 4 - 0.042;                  // m
+constexpr double kCorner = (20 + 2.1) / 4 - 0.042;                   // m
 }  // namespace
 
 TEST_CASE("Over the touch line: a kick-in for the others, where the ball was last on the field") {
@@ -34,8 +34,8 @@ TEST_CASE("A kick-in: the pause, opponents, the kicking team, the touch") {
   m.checkAt(m.b2, 3.2, 9.8);
   m.run(2);
   CHECK(m.mode() == "KickIn_Right");
-  m.checkAt(m.a1, 0.5, 9);    // 2.5 m towards his own end
-  m.checkAt(m.a2, 3, 7.7);    // just outside
+  m.checkAt(m.a1, 0.5, 9);  // 2.5 m towards his own end
+  m.checkAt(m.a2, 3, 7.7);  // just outside
   CHECK(Match::distance(m.at(m.b2), Vec3(3, kLine, 0)) == Approx(0.5).margin(0.01));
   m.trainer(Match::put(m.b2, 3.25, 9.8));  // pushed only once
   m.run(2);
@@ -61,10 +61,11 @@ TEST_CASE("Restarts that a trainer sets: position, pause, drop ball after 15 s")
     const char* mode;
     double x, y;
   };
-  const Case c = GENERATE(Case{"KickIn_Left", 5, kLine}, Case{"KickIn_Right", 5, kLine}, Case{"corner_kick_left", kEnd, kCorner},
-                          Case{"corner_kick_right", -kEnd, kCorner}, Case{"goal_kick_left", -14, 0}, Case{"goal_kick_right", 14, 0},
-                          Case{"free_kick_left", 5, 2}, Case{"free_kick_right", 5, 2}, Case{"direct_free_kick_left", 5, 2},
-                          Case{"direct_free_kick_right", 5, 2});
+  const Case c =
+      GENERATE(Case{"KickIn_Left", 5, kLine}, Case{"KickIn_Right", 5, kLine}, Case{"corner_kick_left", kEnd, kCorner},
+               Case{"corner_kick_right", -kEnd, kCorner}, Case{"goal_kick_left", -14, 0},
+               Case{"goal_kick_right", 14, 0}, Case{"free_kick_left", 5, 2}, Case{"free_kick_right", 5, 2},
+               Case{"direct_free_kick_left", 5, 2}, Case{"direct_free_kick_right", 5, 2});
   INFO(c.mode);
   m.trainer(Match::ballTo(5, 2));
   m.run(1);
@@ -88,8 +89,8 @@ TEST_CASE("Restarts that a trainer sets: position, pause, drop ball after 15 s")
 
 TEST_CASE("Every restart ends with a touch by either team") {
   Match m;
-  const char* mode = GENERATE("KickIn_Left", "KickIn_Right", "corner_kick_left", "corner_kick_right", "free_kick_left", "free_kick_right",
-                              "direct_free_kick_left", "direct_free_kick_right");
+  const char* mode = GENERATE("KickIn_Left", "KickIn_Right", "corner_kick_left", "corner_kick_right", "free_kick_left",
+                              "free_kick_right", "direct_free_kick_left", "direct_free_kick_right");
   INFO(mode);
   const bool first = GENERATE(true, false);
   m.trainer(std::string("(playMode ") + mode + ")");
@@ -169,7 +170,8 @@ TEST_CASE("A free kick of a trainer is taken where the ball was, outside of pena
 
 TEST_CASE("The taker's second touch is a free kick for the others") {
   Match m;
-  const char* mode = GENERATE("KickOff_Left", "KickIn_Left", "corner_kick_left", "free_kick_left", "direct_free_kick_left");
+  const char* mode =
+      GENERATE("KickOff_Left", "KickIn_Left", "corner_kick_left", "free_kick_left", "direct_free_kick_left");
   INFO(mode);
   m.trainer(std::string("(playMode ") + mode + ")");
   m.run(55);

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// The house of lua/soccer.lua in this process, with players and a trainer who come over TCP as everybody else's do. The test drives the
-/// clock cycle by cycle; before a cycle everything sent has arrived, after it everybody has read what he was sent. Nothing here can be late.
+/// The house of lua/soccer.lua in this process, with players and a trainer who come over TCP as everybody else's do.
+/// The test drives the clock cycle by cycle; before a cycle everything sent has arrived, after it everybody has read
+/// what he was sent. Nothing here can be late.
 
 #include <catch2/catch.hpp>
 #include <deque>
@@ -45,10 +46,14 @@ class Stadium : House {
   explicit Stadium(const Settings& settings = {}) {
     Lua& lua = kernel.lua();
     lua.addFolder(SPARK_SOURCES "/lua");
-    lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = { '" SPARK_SOURCES "/tests/scenarios/scenes' } }", "stadium");
-    std::map<std::string, Value> all{{"/sys/server/simulation.rate", "max"},   {"/sys/server/net/agents.port", 0},
-                                     {"/sys/server/net/monitors.port", 0},     {"/sys/server/monitor.interval", 1},
-                                     {"Soccer.BeamNoiseXY", 0},                {"Soccer.BeamNoiseAngle", 0}};
+    lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = { '" SPARK_SOURCES "/tests/scenarios/scenes' } }",
+            "stadium");
+    std::map<std::string, Value> all{{"/sys/server/simulation.rate", "max"},
+                                     {"/sys/server/net/agents.port", 0},
+                                     {"/sys/server/net/monitors.port", 0},
+                                     {"/sys/server/monitor.interval", 1},
+                                     {"Soccer.BeamNoiseXY", 0},
+                                     {"Soccer.BeamNoiseAngle", 0}};
     for (const auto& [key, value] : settings) all[key] = value;
     for (const auto& [key, value] : all) lua.addOverride(key, value);
     lua.runConfig("soccer.lua");
@@ -69,7 +74,8 @@ class Stadium : House {
   }
   /// A player of team A or B, waiting beside the field line until somebody moves it. `height` of the robot [m].
   Player& join(const std::string& team, int unum, double height = 0.6, int type = -1) {
-    return join(team, unum, "rsg/agent/scenario.rsg " + std::to_string(height) + " " + std::to_string(type < 0 ? unum % 3 : type));
+    return join(team, unum,
+                "rsg/agent/scenario.rsg " + std::to_string(height) + " " + std::to_string(type < 0 ? unum % 3 : type));
   }
   /// A player with another robot: its scene file and arguments.
   Player& join(const std::string& team, int unum, const std::string& robot) {
@@ -79,7 +85,8 @@ class Stadium : House {
     p.client.send("(init (unum " + std::to_string(unum) + ")(teamname " + team + "))");
     run(3);
     for (const std::string& m : p.all)
-      if (m.find("(team ") != std::string::npos) p.side = m.find("(team left)") != std::string::npos ? Side::left : Side::right;
+      if (m.find("(team ") != std::string::npos)
+        p.side = m.find("(team left)") != std::string::npos ? Side::left : Side::right;
     if (p.side != Side::none) p.unum = unum;
     return p;
   }
@@ -96,14 +103,15 @@ class Stadium : House {
   }
   /// Puts players somewhere, upright where they stand; `z` of the torso [m].
   static std::string put(const Player& p, double x, double y, double z = 0.3) {
-    return "(agent (unum " + std::to_string(p.unum) + ")(team " + (p.side == Side::left ? "Left" : "Right") + ")(pos " + std::to_string(x) + " " +
-           std::to_string(y) + " " + std::to_string(z) + "))";
+    return "(agent (unum " + std::to_string(p.unum) + ")(team " + (p.side == Side::left ? "Left" : "Right") + ")(pos " +
+           std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "))";
   }
   static std::string ballTo(double x, double y, double z = 0.042, double vx = 0, double vy = 0, double vz = 0) {
-    return "(ball (pos " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + ") (vel " + std::to_string(vx) + " " +
-           std::to_string(vy) + " " + std::to_string(vz) + "))";
+    return "(ball (pos " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + ") (vel " +
+           std::to_string(vx) + " " + std::to_string(vy) + " " + std::to_string(vz) + "))";
   }
-  /// A command that puts a player against the ball, so that it touches it in the next cycle: at `side` -1 on its -x side, at 1 on its +x side.
+  /// A command that puts a player against the ball, so that it touches it in the next cycle: at `side` -1 on its -x
+  /// side, at 1 on its +x side.
   std::string against(const Player& p, double side = -1) const {
     const Vec3 b = ball();
     return put(p, b.x() + side * (0.15 + 0.042 - 0.01), b.y());
@@ -116,7 +124,9 @@ class Stadium : House {
   Vec3 ball() const { return view_.ball(); }
   Vec3 at(const Player& p) const {
     const auto place = view_.player(p.side, p.unum);
-    if (!place) throw Error("the monitor does not see number " + std::to_string(p.unum) + " of " + (p.side == Side::left ? "left" : "right"));
+    if (!place)
+      throw Error("the monitor does not see number " + std::to_string(p.unum) + " of " +
+                  (p.side == Side::left ? "left" : "right"));
     return *place;
   }
   /// Distance on the ground [m].

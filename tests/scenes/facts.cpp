@@ -26,16 +26,19 @@ void addBody(const IRigidBody& body, Line& line) {
   const engine::BodyState s = body.state();
   line.add("position", exactAll(s.position));
   line.add("rotation", exactAll(s.rotation));
-  // The inertia has no property of its own: it is the head of the saved state, and so is everything else that the engine remembers.
+  // The inertia has no property of its own: it is the head of the saved state, and so is everything else that the
+  // engine remembers.
   StateWriter state(false);
   saveTree(const_cast<IRigidBody&>(body).leaf(), state);
   line.add("state", fmt::format("{:x}", state.hash()));
 }
 
 void addJoint(IJoint& joint, Node& root, Line& line) {
-  const int axes = joint.jointType() == engine::JointType::hinge || joint.jointType() == engine::JointType::slider ? 1 : 3;
+  const int axes =
+      joint.jointType() == engine::JointType::hinge || joint.jointType() == engine::JointType::slider ? 1 : 3;
   for (int i = 0; i < 2; ++i)
-    line.add("body" + std::to_string(i), joint.body(i) ? joint.body(i)->leaf().path().substr(root.path().size()) : "world");
+    line.add("body" + std::to_string(i),
+             joint.body(i) ? joint.body(i)->leaf().path().substr(root.path().size()) : "world");
   if (axes == 1)
     for (const char* method : {"getAnchor", "getAxis"})
       if (joint.leaf().classObject()->method(method)) line.add(method, callMethod(joint.leaf(), method, {}).text());
@@ -48,7 +51,8 @@ void addVisual(const IVisual& visual, Line& line) {
   line.add("load", visual.load());
   line.add("scale", exactAll(visual.scale()));
   line.add("materials", fmt::format("{}", fmt::join(visual.materials(), ",")));
-  for (const Color& c : visual.lightColors()) line.add("light", exact(c.r) + " " + exact(c.g) + " " + exact(c.b) + " " + exact(c.a));
+  for (const Color& c : visual.lightColors())
+    line.add("light", exact(c.r) + " " + exact(c.g) + " " + exact(c.b) + " " + exact(c.a));
 }
 
 /// The surface as far as it is in effect: what is switched off does not count.
@@ -65,7 +69,8 @@ void describeNode(Node& root, Leaf& leaf, std::vector<std::string>& out) {
   auto* handler = leaf.as<CollisionHandler>();
   if (handler && handler->surface()) addSurface(*handler->surface(), line);
   for (const Property* p : leaf.classObject()->properties())
-    if (!(handler && handler->surface()) && p->name != "path" && p->name != "name") line.add(p->name, p->get(leaf).text());
+    if (!(handler && handler->surface()) && p->name != "path" && p->name != "name")
+      line.add(p->name, p->get(leaf).text());
   if (auto* body = leaf.as<IRigidBody>()) addBody(*body, line);
   if (auto* joint = leaf.as<IJoint>()) addJoint(*joint, root, line);
   if (auto* visual = leaf.as<IVisual>()) addVisual(*visual, line);
@@ -112,8 +117,8 @@ std::vector<std::string> motion(Node& root) {
     auto* body = leaf.as<IRigidBody>();
     if (!body) return;
     const engine::BodyState s = body->state();
-    out.push_back(leaf.path().substr(root.path().size()) + " " + exactAll(s.position) + " " + exactAll(s.rotation) + " " +
-                  exactAll(s.linearVelocity) + " " + exactAll(s.angularVelocity));
+    out.push_back(leaf.path().substr(root.path().size()) + " " + exactAll(s.position) + " " + exactAll(s.rotation) +
+                  " " + exactAll(s.linearVelocity) + " " + exactAll(s.angularVelocity));
   });
   return out;
 }

@@ -15,7 +15,8 @@ std::string printed(const Node& root) {
   std::string out;
   for (const auto& child : root.children()) {
     auto* visual = child->as<IVisual>();
-    if (visual) out += (out.empty() || out.back() == ']' ? "" : " ") + (visual->load().empty() ? "light" : visual->load());
+    if (visual)
+      out += (out.empty() || out.back() == ']' ? "" : " ") + (visual->load().empty() ? "light" : visual->load());
     if (!child->asNode()) continue;
     const std::string inner = printed(*child->asNode());
     out += child->as<Transform>() ? "[" + inner + "]" : inner;
@@ -29,16 +30,21 @@ std::string times(int n, const std::string& text) {
   return out;
 }
 
-Vec3 pointAt(League& league, const std::string& path) { return toPose(league.scene().require<Transform>(path).world()).position; }
+Vec3 pointAt(League& league, const std::string& path) {
+  return toPose(league.scene().require<Transform>(path).world()).position;
+}
 
 }  // namespace
 
 TEST_CASE("monitors get the field's parts in the order they know") {
   League league;
   league.import("rsg/soccer/field.rsg", league.scene());
-  const auto goal = [](const std::string& side) { return "[[models/" + side + "soccergoal.obj]" + times(6, "[]") + "]"; };
-  CHECK(printed(league.scene()) == "[light][light][models/naosoccerfield.obj][models/skybox.obj]" + goal("left") + goal("right") +
-                                       times(4, "[StdUnitBox]") + times(4, "[]") + times(21, "[]") + "[models/soccerball.obj]");
+  const auto goal = [](const std::string& side) {
+    return "[[models/" + side + "soccergoal.obj]" + times(6, "[]") + "]";
+  };
+  CHECK(printed(league.scene()) == "[light][light][models/naosoccerfield.obj][models/skybox.obj]" + goal("left") +
+                                       goal("right") + times(4, "[StdUnitBox]") + times(4, "[]") + times(21, "[]") +
+                                       "[models/soccerball.obj]");
 }
 
 TEST_CASE("goals, flags and walls stand where the league's sizes put them") {

@@ -42,7 +42,9 @@ soccerVariables{)" +
     importLoosely(file, root, arguments);
     if (!house.text.empty()) throw Error(file + " was imported, but: " + house.text);
   }
-  void run(int cycles) { callMethod(kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles}); }
+  void run(int cycles) {
+    callMethod(kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles});
+  }
 };
 
 }  // namespace spark::test

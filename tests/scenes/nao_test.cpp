@@ -100,7 +100,8 @@ void stretch(std::vector<Part>& parts, double elbowY, double hipX, double thighZ
   for (const char* side : {"r", "l"}) {
     const std::string s = side;
     const double x = s == "r" ? hipX : -hipX;
-    part(parts, s + "elbow").position.y() = part(parts, s + "elbow").anchor.y() = part(parts, s + "lowerarm").anchor.y() = elbowY;
+    part(parts, s + "elbow").position.y() = part(parts, s + "elbow").anchor.y() =
+        part(parts, s + "lowerarm").anchor.y() = elbowY;
     part(parts, s + "lowerarm").position.y() = elbowY + 0.05;
     for (const char* name : {"hip1", "hip2", "thigh", "shank", "ankle", "foot"})
       part(parts, s + name).position.x() = part(parts, s + name).anchor.x() = x;
@@ -175,7 +176,8 @@ std::string namesOf(const Node& root) {
   root.collect(all);
   std::string out;
   for (T* t : all)
-    out += (out.empty() ? "" : " ") + (t->name() == t->classObject()->name() ? t->name() : t->classObject()->name() + ":" + t->name());
+    out += (out.empty() ? "" : " ") +
+           (t->name() == t->classObject()->name() ? t->name() : t->classObject()->name() + ":" + t->name());
   return out;
 }
 
@@ -184,7 +186,8 @@ std::string meshesOf(const Node& root) {
   root.collect(all);
   std::string out;
   for (IVisual* v : all)
-    if (v->kind() == IVisual::Kind::mesh) out += fmt::format("{} {:g} {}\n", v->load(), v->scale().x(), fmt::join(v->materials(), ","));
+    if (v->kind() == IVisual::Kind::mesh)
+      out += fmt::format("{} {:g} {}\n", v->load(), v->scale().x(), fmt::join(v->materials(), ","));
   return out;
 }
 
@@ -226,10 +229,13 @@ TEST_CASE("the Nao senses in the order that agents know, and takes their command
     league.import("rsg/agent/nao/nao_hetero.rsg", robot, {type});
     const bool toes = type == 4;
     std::string senses =
-                    "TimePerceptor GameStatePerceptor HearPerceptor GyroRatePerceptor:torso Accelerometer:torso HingePerceptor:hj1 "
+                    "TimePerceptor GameStatePerceptor HearPerceptor GyroRatePerceptor:torso Accelerometer:torso "
+                    "HingePerceptor:hj1 "
                     "HingePerceptor:hj2 "
                     "RestrictedVisionPerceptor",
-                acts = "StaticMeshInitEffector BeamEffector SayEffector AgentSyncEffector PassEffector HingeEffector:he1 HingeEffector:he2";
+                acts =
+                    "StaticMeshInitEffector BeamEffector SayEffector AgentSyncEffector PassEffector HingeEffector:he1 "
+                    "HingeEffector:he2";
     for (const std::string side : {"r", "l"})
       for (int i = 1; i <= 4; ++i) {
         senses += fmt::format(" HingePerceptor:{}aj{}", side, i);
@@ -276,11 +282,14 @@ TEST_CASE("what the Nao's limbs may touch without a foul, and what is frozen whe
   std::string found;
   for (ICollider* c : colliders) {
     if (c->leaf().classObject()->name() != "BoxCollider") continue;
-    found += c->leaf().parent()->name() + " " + c->leaf().name() + " " + getProperty(c->leaf(), "notCollideWith").text() + " " +
+    found += c->leaf().parent()->name() + " " + c->leaf().name() + " " +
+             getProperty(c->leaf(), "notCollideWith").text() + " " +
              getProperty(c->leaf(), "freezeJointEffectors").text() + "\n";
   }
-  const std::string leg = R"({"rle1", "rle2", "rle3", "rle4", "rle5", "rle6", "rle7"})", arm = R"({"rae1", "rae2", "rae3", "rae4"})";
-  CHECK(found.starts_with("body TorsoCollider {} {}\nrupperarm BoxCollider {} " + arm + "\nrlowerarm BoxCollider {} " + arm + "\n"));
+  const std::string leg = R"({"rle1", "rle2", "rle3", "rle4", "rle5", "rle6", "rle7"})",
+                    arm = R"({"rae1", "rae2", "rae3", "rae4"})";
+  CHECK(found.starts_with("body TorsoCollider {} {}\nrupperarm BoxCollider {} " + arm + "\nrlowerarm BoxCollider {} " +
+                          arm + "\n"));
   for (const char* line : {"rthigh rThighCollider {\"TorsoCollider\"} ", "rshank rShankCollider {\"rThighCollider\"} ",
                            "rfoot rFootCollider {\"rShankCollider\"} ", "rtoe rToeCollider {\"rFootCollider\"} "})
     CHECK_THAT(found, Catch::Contains(line + leg + "\n"));

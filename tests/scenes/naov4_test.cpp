@@ -30,7 +30,8 @@ rankle     0.13416  0.05028 -0.99858 1.2223
 rfoot      0.16184  0.0533  -0.94511 1.1488
 )";
 
-// perceptor, effector, parts, anchor, axis, stops, greatest speed, torque, Ke, Kt, R, Tenv, and whether the left stops are mirrored
+// perceptor, effector, parts, anchor, axis, stops, greatest speed, torque, Ke, Kt, R, Tenv, and whether the left stops
+// are mirrored
 const char* const kMotors = R"(
 hj1  he1  neck      torso      0      -1     1.61     0       0 1       -119.5   119.5  8.29382 10   0.397936 2.5  6     38 0
 hj2  he2  head      neck       0      -1     1.61     1       0 0        -38.5    29.5  7.19426  2.6 0.345576 2.9 32.1   38 0
@@ -71,8 +72,9 @@ Joint leftOf(Joint j) {
 std::vector<Joint> jointsOf() {
   std::vector<Joint> right;
   std::istringstream in(kMotors);
-  for (Joint j; in >> j.perceptor >> j.effector >> j.child >> j.parent >> j.anchor >> j.axis >> j.min >> j.max >> j.speed >> j.torque >>
-                j.speedConstant >> j.torqueConstant >> j.resistance >> j.environment >> j.mirrored;)
+  for (Joint j; in >> j.perceptor >> j.effector >> j.child >> j.parent >> j.anchor >> j.axis >> j.min >> j.max >>
+                j.speed >> j.torque >> j.speedConstant >> j.torqueConstant >> j.resistance >> j.environment >>
+                j.mirrored;)
     right.push_back(j);
   REQUIRE(right.size() == 12);
   std::vector<Joint> all(right.begin(), right.begin() + 6);
@@ -105,7 +107,8 @@ std::vector<std::string> classesAndNames(const Node& root) {
   std::vector<T*> all;
   root.collect(all);
   std::vector<std::string> out;
-  for (T* t : all) out.push_back(t->name() == t->classObject()->name() ? t->name() : t->classObject()->name() + ":" + t->name());
+  for (T* t : all)
+    out.push_back(t->name() == t->classObject()->name() ? t->name() : t->classObject()->name() + ":" + t->name());
   return out;
 }
 
@@ -113,7 +116,9 @@ struct Robot {
   League league;
   Node& agent;
   Robot() : agent(league.agent()) { league.import("rsg/agent/naov4/nao.rsg", agent); }
-  IJoint& motor(const std::string& part) { return agent.require<IJoint>("spacenao/" + part + "/HingeJoint/AngularMotor"); }
+  IJoint& motor(const std::string& part) {
+    return agent.require<IJoint>("spacenao/" + part + "/HingeJoint/AngularMotor");
+  }
   IJoint& hinge(const std::string& part) { return agent.require<IJoint>("spacenao/" + part + "/HingeJoint"); }
 };
 
@@ -174,7 +179,8 @@ TEST_CASE("the Nao V4 senses in the order of its page") {
   for (const Joint& j : jointsOf()) {
     if (j.perceptor.ends_with("lj6")) wanted.push_back("ForceResistancePerceptor:" + j.perceptor.substr(0, 1) + "f");
     wanted.push_back("AngularMotorPerceptor:" + j.perceptor);
-    if (j.perceptor == "hj2") wanted.insert(wanted.end(), {"RestrictedVisionPerceptor", "RestrictedVisionPerceptor", "GPS:head"});
+    if (j.perceptor == "hj2")
+      wanted.insert(wanted.end(), {"RestrictedVisionPerceptor", "RestrictedVisionPerceptor", "GPS:head"});
   }
   CHECK(classesAndNames<Perceptor>(robot.agent) == wanted);
   CHECK(classesAndNames<Effector>(robot.agent).size() == 4 + 2 * 22);

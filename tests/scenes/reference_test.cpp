@@ -1,4 +1,5 @@
-// Spark's own scenes against those of the installed base, where these are present: the same in every bit, and they stay so when they move.
+// Spark's own scenes against those of the installed base, where these are present: the same in every bit, and they stay
+// so when they move.
 
 #include <catch2/catch.hpp>
 #include <iostream>
@@ -34,7 +35,8 @@ void drive(Node& robot, int cycle) {
   robot.collect(joints);
   REQUIRE(joints.size() >= 22);
   for (std::size_t i = 0; i < joints.size(); ++i)
-    joints[i]->setParameter(engine::JointParameter::velocity, 0, 1.2 * std::sin(0.02 * cycle * (3.0 + 0.4 * double(i)) + 0.4 * double(i)));
+    joints[i]->setParameter(engine::JointParameter::velocity, 0,
+                            1.2 * std::sin(0.02 * cycle * (3.0 + 0.4 * double(i)) + 0.4 * double(i)));
 }
 
 struct Robot {
@@ -86,7 +88,8 @@ TEST_CASE("Spark's field for humanoids is the installed base's in every bit") {
   League own, wanted(reference());
   own.import("rsg/soccer/field.rsg", own.scene());
   wanted.importLoosely("rsg/agent/nao/soccer.rsg", wanted.scene());
-  // Known differences: two names, what may limit the ball's speed (it does not here), and goal marks that sonars hear too.
+  // Known differences: two names, what may limit the ball's speed (it does not here), and goal marks that sonars hear
+  // too.
   wanted.scene().require<Leaf>("Transform[4]").setName("sky");
   wanted.scene().require<Leaf>("Transform[3]").setName("ground");
   Leaf& limit = own.scene().require<Leaf>("Ball/physics/VelocityController");
@@ -94,7 +97,8 @@ TEST_CASE("Spark's field for humanoids is the installed base's in every bit") {
   limit.parent()->remove(limit);
   auto facts = nodeFacts(own.scene());
   for (std::string& line : facts)
-    for (auto at = line.find("GoalPost"); at != line.npos; at = line.find("GoalPost")) line.replace(at, 8, "ObjectState");
+    for (auto at = line.find("GoalPost"); at != line.npos; at = line.find("GoalPost"))
+      line.replace(at, 8, "ObjectState");
   checkEqual(facts, nodeFacts(wanted.scene()));
   checkEqual(creationOrder(own.scene()), creationOrder(wanted.scene()));
 }

@@ -1,7 +1,7 @@
-/// saveState and loadState of living objects. A world runs and is saved again and again; each time the state is loaded into a second kernel
-/// whose equal world is some cycles behind, so that a field that is not restored keeps an old value. Every node must then save the same
-/// bytes, and both worlds must go on with equal hashes. The state of each class that saves some must differ from the default's at least
-/// once.
+/// saveState and loadState of living objects. A world runs and is saved again and again; each time the state is loaded
+/// into a second kernel whose equal world is some cycles behind, so that a field that is not restored keeps an old
+/// value. Every node must then save the same bytes, and both worlds must go on with equal hashes. The state of each
+/// class that saves some must differ from the default's at least once.
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
@@ -74,7 +74,9 @@ void note(const std::vector<Own>& nodes, Seen& seen) {
 
 std::size_t firstDifference(const std::string& a, const std::string& b) {
   const std::size_t n = std::min(a.size(), b.size());
-  return static_cast<std::size_t>(std::mismatch(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(n), b.begin()).first - a.begin()) / 8;
+  return static_cast<std::size_t>(
+             std::mismatch(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(n), b.begin()).first - a.begin()) /
+         8;
 }
 
 /// Both worlds' nodes, one by one.
@@ -83,8 +85,10 @@ void checkEqual(World& one, World& other) {
   REQUIRE(found.size() == wanted.size());
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (found[i].properties == wanted[i].properties && found[i].hidden == wanted[i].hidden) continue;
-    FAIL_CHECK(found[i].path << " (" << found[i].type->name() << "): its state is not the saved one, from word "
-                             << firstDifference(wanted[i].properties + wanted[i].hidden, found[i].properties + found[i].hidden) << " on");
+    FAIL_CHECK(
+        found[i].path << " (" << found[i].type->name() << "): its state is not the saved one, from word "
+                      << firstDifference(wanted[i].properties + wanted[i].hidden, found[i].properties + found[i].hidden)
+                      << " on");
   }
 }
 
@@ -126,7 +130,10 @@ TEST_CASE("Living worlds are restored in another kernel, node by node, and go on
   std::string unseen;
   for (Plugin* plugin : pluginsOf(house.kernel))
     for (ClassObject* type : house.classesOf(*plugin))
-      if (!type->isAbstract() && !seen.contains(type->name()) && !defaultState(*type).empty()) unseen += " " + type->name();
-  INFO("Classes whose saveState was not seen with another state than the default; add them to tests/state/scenarios.cpp:" << unseen);
+      if (!type->isAbstract() && !seen.contains(type->name()) && !defaultState(*type).empty())
+        unseen += " " + type->name();
+  INFO(
+      "Classes whose saveState was not seen with another state than the default; add them to tests/state/scenarios.cpp:"
+      << unseen);
   CHECK(unseen.empty());
 }

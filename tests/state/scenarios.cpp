@@ -50,7 +50,8 @@ void inputFouls(World& w, int cycle) {
   if (at(1)) w.trainer("(playMode PlayOn)" + apart() + ball(0, -9)), w.player(kA2).next = "(say hello)";
   // one too many in the own area
   if (at(20))
-    w.trainer(put("Left", 1, -13.5, 1.5) + put("Left", 2, -13.6, 0.5) + put("Left", 3, -14.5, -0.5) + put("Left", 4, -14.5, -1.5));
+    w.trainer(put("Left", 1, -13.5, 1.5) + put("Left", 2, -13.6, 0.5) + put("Left", 3, -14.5, -0.5) +
+              put("Left", 4, -14.5, -1.5));
   // three touch one another
   if (at(80)) w.trainer(apart() + put("Left", 2, 0, 0) + put("Right", 2, 0.298, 0));
   if (at(84)) w.trainer(put("Left", 3, -0.298, 0));
@@ -145,7 +146,9 @@ void inputSpl(World& w, int cycle) {
 
 // ---- joints, controllers and sensors by themselves ----
 
-Leaf& make(World& w, const std::string& type, const std::string& path) { return w.kernel.create(type, "/usr/scene/" + path); }
+Leaf& make(World& w, const std::string& type, const std::string& path) {
+  return w.kernel.create(type, "/usr/scene/" + path);
+}
 
 void call(Leaf& leaf, const char* method, const List& arguments) { callMethod(leaf, method, arguments); }
 
@@ -191,7 +194,8 @@ void inputPieces(World& w, int cycle) {
         Leaf& j = at((std::string(joint) + "Joint2/joint").c_str());
         call(j, "setMaxMotorForce", {axis, 2.0 + axis});
       }
-  if (cycle == 10) setProperty(at("walker/body/legs"), "HAngle", 30.0), setProperty(at("walker/body/legs"), "forward", 0.5);
+  if (cycle == 10)
+    setProperty(at("walker/body/legs"), "HAngle", 30.0), setProperty(at("walker/body/legs"), "forward", 0.5);
   if (cycle == 20) call(at("flag"), "setLocalPos", {1.0, 2.0, 0.0}), call(at("mark"), "setMaterial", {"matYellow"});
 }
 
@@ -219,8 +223,9 @@ void inputReplay(World&, int) {}
 
 const std::vector<Scenario>& scenarios() {
   static const std::vector<Scenario> all{
-      {"fouls", makeFouls, inputFouls, 900}, {"robots", makeRobots, inputRobots, 150}, {"spheres", makeSpheres, inputSpheres, 200},
-      {"spl", makeSpl, inputSpl, 100},       {"pieces", makePieces, inputPieces, 150}, {"replay", makeReplay, inputReplay, 100},
+      {"fouls", makeFouls, inputFouls, 900},       {"robots", makeRobots, inputRobots, 150},
+      {"spheres", makeSpheres, inputSpheres, 200}, {"spl", makeSpl, inputSpl, 100},
+      {"pieces", makePieces, inputPieces, 150},    {"replay", makeReplay, inputReplay, 100},
   };
   return all;
 }

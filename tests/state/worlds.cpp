@@ -20,7 +20,8 @@ void World::configureByText(const std::string& text) {
 
 void World::prepare() {
   kernel.lua().addFolder(SPARK_SOURCES "/lua");
-  kernel.lua().run("host = { share = '" SPARK_SOURCES "', scenePaths = { '" SPARK_SOURCES "/tests/scenarios/scenes' }, alone = true }",
+  kernel.lua().run("host = { share = '" SPARK_SOURCES "', scenePaths = { '" SPARK_SOURCES
+                   "/tests/scenarios/scenes' }, alone = true }",
                    "host");
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Worlds that are made and moved by scripts of the test alone: built twice and given the same inputs, they do the same.
+/// Worlds that are made and moved by scripts of the test alone: built twice and given the same inputs, they do the
+/// same.
 
 #include <functional>
 #include <string>

@@ -19,7 +19,8 @@ namespace spark::test {
 /// A player of his own who only watches. In lockstep it answers as long as it is asked what it sees.
 class Witness {
  public:
-  Witness(unsigned short port, const std::string& team, int number, const std::string& robot = "rsg/agent/sphere.rsg") : client_(port) {
+  Witness(unsigned short port, const std::string& team, int number, const std::string& robot = "rsg/agent/sphere.rsg")
+      : client_(port) {
     client_.send("(scene " + robot + ")(syn)");
     client_.receive();
     client_.send("(init (unum " + std::to_string(number) + ")(teamname " + team + "))(syn)");
@@ -57,17 +58,28 @@ struct Arena {
   unsigned short agentPort = 0, monitorPort = 0, webPort = 0;
   std::unique_ptr<Witness> witness;
 
-  explicit Arena(std::vector<std::string> more = {}, const std::string& config = "soccer-sphere.lua") : host(command(std::move(more), config), 60) {
+  explicit Arena(std::vector<std::string> more = {}, const std::string& config = "soccer-sphere.lua")
+      : host(command(std::move(more), config), 60) {
     const nlohmann::json ports = nlohmann::json::parse(host.line());
     agentPort = ports["agentPort"];
     monitorPort = ports["monitorPort"];
-    if (ports["web"].is_string()) webPort = static_cast<unsigned short>(std::stoi(ports["web"].get<std::string>().substr(std::string("http://127.0.0.1:").size())));
-    witness = std::make_unique<Witness>(agentPort, "Calm", 1, config == "soccer-sphere.lua" ? "rsg/agent/sphere.rsg" : "rsg/agent/nao/nao.rsg");
+    if (ports["web"].is_string())
+      webPort = static_cast<unsigned short>(
+          std::stoi(ports["web"].get<std::string>().substr(std::string("http://127.0.0.1:").size())));
+    witness = std::make_unique<Witness>(
+        agentPort, "Calm", 1, config == "soccer-sphere.lua" ? "rsg/agent/sphere.rsg" : "rsg/agent/nao/nao.rsg");
     witness->mustSeeTimePass();
   }
   static std::vector<std::string> command(std::vector<std::string> more, const std::string& config) {
-    std::vector<std::string> c{
-        (binFolder() / "sparkhost").string(), "--config", config, "--agent-port", "0", "--monitor-port", "0", "--web-port", "0"};
+    std::vector<std::string> c{(binFolder() / "sparkhost").string(),
+                               "--config",
+                               config,
+                               "--agent-port",
+                               "0",
+                               "--monitor-port",
+                               "0",
+                               "--web-port",
+                               "0"};
     c.insert(c.end(), more.begin(), more.end());
     return c;
   }

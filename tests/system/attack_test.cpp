@@ -1,7 +1,7 @@
 #include "attack.h"
 
-// Bad input against a host with a match going on. After every attack a player who did nothing wrong is still told of a clock that runs, the
-// host has said what was wrong, and in the end its memory has not grown.
+// Bad input against a host with a match going on. After every attack a player who did nothing wrong is still told of a
+// clock that runs, the host has said what was wrong, and in the end its memory has not grown.
 
 using namespace spark;
 using namespace spark::test;
@@ -50,7 +50,8 @@ TEST_CASE("Deep nesting, unknown effectors, NaN and infinity harm nobody") {
   for (const std::string& message :
        {std::string(60000, '('), std::string(30000, '(') + std::string(30000, ')'),
         std::string("(fly 1 2 3)(drive nan inf -inf)(drive 1e999 -1e999 nan)(kick nan nan)"),
-        std::string("(beam nan inf 0)(pantilt nan nan)(say \"\x01\xff\")(say ;)"), std::string(")))((("), std::string(1, '\0')}) {
+        std::string("(beam nan inf 0)(pantilt nan nan)(say \"\x01\xff\")(say ;)"), std::string(")))((("),
+        std::string(1, '\0')}) {
     Witness other(a.agentPort, "Strange", 0);
     other.client().send(message);
     other.client().send("(syn)");
@@ -64,12 +65,13 @@ TEST_CASE("Deep nesting, unknown effectors, NaN and infinity harm nobody") {
 
 TEST_CASE("Scenes that are missing, folders, absolute or climbing are refused by name") {
   Arena a;
-  const std::vector<std::pair<std::string, std::string>> scenes{{"rsg/agent/none.rsg", "no resource 'rsg/agent/none.rsg'"},
-                                                                {"rsg/agent", "found a folder"},
-                                                                {"rsg/agent/", "found a folder"},
-                                                                {"rsg/soccer/field.rsg", "robots are files below rsg/agent/"},
-                                                                {"/etc/passwd", "it is absolute"},
-                                                                {"rsg/../../../../etc/passwd", "'..'"}};
+  const std::vector<std::pair<std::string, std::string>> scenes{
+      {"rsg/agent/none.rsg", "no resource 'rsg/agent/none.rsg'"},
+      {"rsg/agent", "found a folder"},
+      {"rsg/agent/", "found a folder"},
+      {"rsg/soccer/field.rsg", "robots are files below rsg/agent/"},
+      {"/etc/passwd", "it is absolute"},
+      {"rsg/../../../../etc/passwd", "'..'"}};
   for (const auto& [scene, complaint] : scenes) {
     Client other(a.agentPort);
     other.send("(scene " + scene + ")(syn)");
@@ -83,8 +85,10 @@ TEST_CASE("Scenes that are missing, folders, absolute or climbing are refused by
 TEST_CASE("A 23rd player gets no place") {
   Arena a;
   std::vector<std::unique_ptr<Witness>> players;
-  for (int number = 2; number <= 11; ++number) players.push_back(std::make_unique<Witness>(a.agentPort, "Calm", number));
-  for (int number = 1; number <= 11; ++number) players.push_back(std::make_unique<Witness>(a.agentPort, "Other", number));
+  for (int number = 2; number <= 11; ++number)
+    players.push_back(std::make_unique<Witness>(a.agentPort, "Calm", number));
+  for (int number = 1; number <= 11; ++number)
+    players.push_back(std::make_unique<Witness>(a.agentPort, "Other", number));
   for (const auto& p : players) REQUIRE(p->hasTeam(50));
   for (const char* team : {"Calm", "Other", "Third"}) {
     Witness late(a.agentPort, team, 0);
@@ -123,7 +127,8 @@ TEST_CASE("Monitors that never read stay, cost a bounded amount, and their comma
   for (int i = 0; i < 5; ++i) monitors.push_back(std::make_unique<Client>(a.monitorPort));
   a.witness->mustSeeTimePass();
   const double before = a.memory();
-  for (int i = 0; i < 1000; ++i) a.witness->mustSeeTimePass();  // 100 s: far more frames than fit into the system's buffers
+  for (int i = 0; i < 1000; ++i)
+    a.witness->mustSeeTimePass();  // 100 s: far more frames than fit into the system's buffers
   CAPTURE(before, a.memory());
   REQUIRE(a.memory() < before + 16);
   REQUIRE(a.host.errors().find("monitors") == a.host.errors().rfind("monitors"));  // it listens; nothing else was said

@@ -1,6 +1,7 @@
 #include "attack.h"
 
-// Players, and trainers, that do not keep to the order or the measure of things (protocol sections 1.6, 1.7, 2.2 and 4.5).
+// Players, and trainers, that do not keep to the order or the measure of things (protocol sections 1.6, 1.7, 2.2
+// and 4.5).
 
 using namespace spark;
 using namespace spark::test;
@@ -14,7 +15,9 @@ struct Robot : Client {
     receive();
   }
 };
-std::string init(const std::string& team, const std::string& unum) { return "(init (unum " + unum + ")(teamname " + team + "))(syn)"; }
+std::string init(const std::string& team, const std::string& unum) {
+  return "(init (unum " + unum + ")(teamname " + team + "))(syn)";
+}
 
 /// Messages in which an accepted init would long have been answered.
 constexpr int kSome = 25;
@@ -66,7 +69,9 @@ TEST_CASE("init before scene, or beside it, is lost and takes no number") {
     c.send("(init (unum 3)(teamname Calm))");
     c.send("(scene rsg/agent/sphere.rsg)(syn)");
   }
-  SECTION("in the same message") { c.send("(init (unum 3)(teamname Calm))(scene rsg/agent/sphere.rsg)(syn)(init (unum 3)(teamname Calm))"); }
+  SECTION("in the same message") {
+    c.send("(init (unum 3)(teamname Calm))(scene rsg/agent/sphere.rsg)(syn)(init (unum 3)(teamname Calm))");
+  }
   REQUIRE(numberIn(c, kSome) == 0);
   Robot other(a);
   REQUIRE(ask(other, "Calm", "3") == 3);
@@ -98,9 +103,12 @@ TEST_CASE("Third teams and numbers that do not exist are refused, number 0, none
   Robot other(a);
   REQUIRE(ask(other, "Other", "1") == 1);
   Robot c(a);
-  for (const auto& [team, unum] : {std::pair{"Third", "1"}, {"Calm", "12"}, {"Calm", "-1"}, {"Calm", "99999999999999999999"}, {"\"\"", "2"}})
+  for (const auto& [team, unum] :
+       {std::pair{"Third", "1"}, {"Calm", "12"}, {"Calm", "-1"}, {"Calm", "99999999999999999999"}, {"\"\"", "2"}})
     REQUIRE(ask(c, team, unum) == 0);
-  c.send("(init)(init (unum))(init (unum 2))(init (teamname))(init (unum 2)(teamname (Calm)))(init (unum (2))(teamname))(syn)");
+  c.send(
+      "(init)(init (unum))(init (unum 2))(init (teamname))(init (unum 2)(teamname (Calm)))(init (unum "
+      "(2))(teamname))(syn)");
   REQUIRE(numberIn(c, kSome) == 0);
   REQUIRE(ask(c, "Calm", "0") == 2);
   Robot word(a), none(a);
@@ -148,8 +156,10 @@ TEST_CASE("Who is killed loses robot, number and connection, and may go on sendi
 TEST_CASE("Trainers' commands with missing and wild arguments end nothing and show nobody a strange number") {
   Arena a({"--set", "/sys/server/monitor.interval=1"});
   Trainer trainer(a);
-  for (const char* name : {"playMode", "kickOff", "ball", "agent", "kill", "repos", "select", "time", "score", "nonsense", "init", "getAck"})
-    for (const char* arguments : {"", " nan", " ()", " (unum)", " (unum x)(team)", " (pos)", " (unum 99)(team Left)", " (left)(right)", " (((("})
+  for (const char* name : {"playMode", "kickOff", "ball", "agent", "kill", "repos", "select", "time", "score",
+                           "nonsense", "init", "getAck"})
+    for (const char* arguments : {"", " nan", " ()", " (unum)", " (unum x)(team)", " (pos)", " (unum 99)(team Left)",
+                                  " (left)(right)", " (((("})
       trainer.command("(" + std::string(name) + arguments + ")");
   trainer.command("(agent (unum 1)(team Left)(pos)(move)(battery)(temperature))(ball (pos 1)(vel))");
   for (const char* x : {"nan", "-nan", "inf", "-inf", "1e30", "-1e30", "1e308", "1e999", "x", "9e5", "-9e5"}) {
@@ -159,7 +169,8 @@ TEST_CASE("Trainers' commands with missing and wild arguments end nothing and sh
           "(agent (unum 1)(team Left)(pos" + three + "))", "(agent (unum 1)(team Left)(move" + three + " " + n + "))",
           "(agent (unum 1)(team Left)(move 0 0 1 " + n + "))", "(agent (unum 1)(team Left)(rot" + three + "))",
           "(agent (unum 1)(team Left)(battery " + n + "))", "(agent (unum 1)(team Left)(temperature " + n + "))",
-          "(agent (unum " + n + ")(team Left)(pos 0 0 1))", "(select (unum " + n + ")(team Left))", "(score (left " + n + ")(right 0))"}) {
+          "(agent (unum " + n + ")(team Left)(pos 0 0 1))", "(select (unum " + n + ")(team Left))",
+          "(score (left " + n + ")(right 0))"}) {
       trainer.command(command);
       trainer.command("(playMode PlayOn)(dropBall)(repos (unum 1)(team Left))(playMode BeforeKickOff)");
     }
@@ -172,8 +183,9 @@ TEST_CASE("Trainers' commands with missing and wild arguments end nothing and sh
 TEST_CASE("Beams to nowhere stay on the field") {
   Arena a;
   Trainer trainer(a);
-  for (const char* beam : {"(beam 1e30 1e30 1e30)", "(beam -1e30 -1e30 -1e30)", "(beam nan nan nan)", "(beam inf -inf inf)", "(beam 1e999 0 1e308)",
-                           "(beam)", "(beam 1)", "(beam x y z)", "(beam (1) (2) (3))"}) {
+  for (const char* beam :
+       {"(beam 1e30 1e30 1e30)", "(beam -1e30 -1e30 -1e30)", "(beam nan nan nan)", "(beam inf -inf inf)",
+        "(beam 1e999 0 1e308)", "(beam)", "(beam 1)", "(beam x y z)", "(beam (1) (2) (3))"}) {
     a.witness->client().send(beam);
     a.witness->mustSeeTimePass();
     trainer.command("");

@@ -25,14 +25,16 @@ include "soccer-sphere.lua"
 results{ pushes = 0 }
 get("/usr/agent"):on("act", function() Result.pushes = Result.pushes + math.random(3) end)
 )";
-const std::vector<std::string> kTwoTeams{"--set", "team=Red Blue", "--set", "players=2", "--set", "Soccer.WaitBeforeKickOff=0.2"};
+const std::vector<std::string> kTwoTeams{"--set",     "team=Red Blue", "--set",
+                                         "players=2", "--set",         "Soccer.WaitBeforeKickOff=0.2"};
 
 std::vector<std::string> with(std::vector<std::string> command, const std::vector<std::string>& more) {
   command.insert(command.end(), more.begin(), more.end());
   return command;
 }
 
-std::vector<std::string> batch(const std::string& config, const std::string& results, const std::vector<std::string>& more = {}) {
+std::vector<std::string> batch(const std::string& config, const std::string& results,
+                               const std::vector<std::string>& more = {}) {
   return with({program("sparkbatch"), "--config", config, "--results", results}, more);
 }
 
@@ -50,8 +52,8 @@ std::vector<Json> timelessRowsOf(const std::string& file) {
   return rows;
 }
 
-/// mpirun for a machine that is alone, also as root and in a container: no other machine, network or privilege is asked for, and more
-/// processes than processors are fine.
+/// mpirun for a machine that is alone, also as root and in a container: no other machine, network or privilege is asked
+/// for, and more processes than processors are fine.
 std::vector<std::string> mpirun(int processes) {
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
@@ -64,8 +66,9 @@ std::vector<std::string> mpirun(int processes) {
 TEST_CASE("A batch gives what sparkhost gives for each of its runs, whatever the number of threads") {
   TemporaryFolder folder;
   const std::string config = folder.write("match.lua", kMatch);
-  const std::vector<std::string> sweep = with(kTwoTeams, {"--runs", "2", "--seed", "5", "--duration", "4", "--sweep",
-                                                       "Soccer.RuleHalfTime=1,120", "--report", "goal=/sys/variables/Soccer.GoalWidth"});
+  const std::vector<std::string> sweep =
+      with(kTwoTeams, {"--runs", "2", "--seed", "5", "--duration", "4", "--sweep", "Soccer.RuleHalfTime=1,120",
+                       "--report", "goal=/sys/variables/Soccer.GoalWidth"});
   const std::string one = (folder.path() / "one.jsonl").string(), three = (folder.path() / "three.jsonl").string();
   const Finished alone = runToEnd(batch(config, one, with(sweep, {"--threads", "1"})));
   CAPTURE(alone.errors);
@@ -93,8 +96,9 @@ TEST_CASE("A batch gives what sparkhost gives for each of its runs, whatever the
     REQUIRE(row["goal"] == 7.32);
     REQUIRE(row["pushes"] >= 200);
     const Finished host =
-        runToEnd(with({program("sparkhost"), "--config", config, "--rate", "max", "--duration", "4", "--agent-port", "0", "--monitor-port",
-                       "0", "--seed", std::to_string(5 + i / 2), "--set", "Soccer.RuleHalfTime=" + std::string(i % 2 ? "120" : "1")},
+        runToEnd(with({program("sparkhost"), "--config", config, "--rate", "max", "--duration", "4", "--agent-port",
+                       "0", "--monitor-port", "0", "--seed", std::to_string(5 + i / 2), "--set",
+                       "Soccer.RuleHalfTime=" + std::string(i % 2 ? "120" : "1")},
                       kTwoTeams));
     REQUIRE(Json::parse(host.out.substr(host.out.find('\n') + 1))["stateHash"] == row["stateHash"]);
   }
@@ -140,7 +144,8 @@ end)
 )");
   for (const char* level : {"error", "off"}) {
     const std::string table = (folder.path() / (std::string(level) + ".jsonl")).string();
-    const Finished f = runToEnd(batch(config, table, {"--duration", "1", "--sweep", "n=1,2,3", "--threads", "1", "--log-level", level}));
+    const Finished f = runToEnd(
+        batch(config, table, {"--duration", "1", "--sweep", "n=1,2,3", "--threads", "1", "--log-level", level}));
     CAPTURE(level, f.errors);
     CHECK(f.code == 1);
     CHECK(Json::parse(f.out)["failed"] == 2);
@@ -148,11 +153,14 @@ end)
     REQUIRE(rows.size() == 3);
     CHECK(rows[0]["end"] == "duration");
     CHECK_FALSE(rows[0].contains("error"));
-    for (const auto& [row, words] : {std::pair{rows[1], "50 faults of plugins or scripts; "}, std::pair{rows[2], "1 fault of plugins or scripts; "}}) {
+    for (const auto& [row, words] : {std::pair{rows[1], "50 faults of plugins or scripts; "},
+                                     std::pair{rows[2], "1 fault of plugins or scripts; "}}) {
       CHECK(row["end"] == "error");
       CHECK(row["cycles"] == 50);
       CHECK_THAT(row["error"].get<std::string>(), Contains(words));
-      if (std::string(level) == "error") CHECK_THAT(row["error"].get<std::string>(), Contains("rule.lua:6: attempt to call a nil value (global 'nosuch')"));
+      if (std::string(level) == "error")
+        CHECK_THAT(row["error"].get<std::string>(),
+                   Contains("rule.lua:6: attempt to call a nil value (global 'nosuch')"));
     }
   }
 }
@@ -169,7 +177,8 @@ TEST_CASE("What is wrong with the command line or the first world is said before
       {batch(config, table, {"--sweep", "answer=1,2", "--sweep", "answer=3"}), "twice"},
       {batch(config, table, {"--report", "score"}), "/path.property"},
       {batch(config, table, {"--retry"}), "--resume"},
-      {batch(config, table, {"--seed", "-1"}), "--seed: expected a whole number from 0 to 18446744073709551615 (64 bits), found '-1'"},
+      {batch(config, table, {"--seed", "-1"}),
+       "--seed: expected a whole number from 0 to 18446744073709551615 (64 bits), found '-1'"},
       {batch(config, (folder.path() / "t.txt").string()), ".csv or .jsonl"},
       {batch(folder.write("none.lua", "include 'house.lua'\n"), table), "there is no /sys/server/simulation"}};
   for (const auto& [command, text] : wrong) {
@@ -185,7 +194,8 @@ TEST_CASE("What is wrong with the command line or the first world is said before
 TEST_CASE("An interrupted batch ends what runs, keeps its rows, and goes on where it was") {
   TemporaryFolder folder;
   const std::string config = folder.write("match.lua", kMatch);
-  const std::string straight = (folder.path() / "straight.jsonl").string(), broken = (folder.path() / "broken.jsonl").string();
+  const std::string straight = (folder.path() / "straight.jsonl").string(),
+                    broken = (folder.path() / "broken.jsonl").string();
   const std::vector<std::string> few = with(kTwoTeams, {"--duration", "4", "--threads", "2", "--runs", "6"});
   REQUIRE(runToEnd(batch(config, straight, few)).code == 0);
   {
@@ -217,7 +227,8 @@ TEST_CASE("An interrupted batch ends what runs, keeps its rows, and goes on wher
 
 TEST_CASE("SIGTERM abandons what runs") {
   TemporaryFolder folder;
-  const std::string config = folder.write("endless.lua", "include 'house.lua'\nfiles() simulation()\nlog.info('begins')\n");
+  const std::string config =
+      folder.write("endless.lua", "include 'house.lua'\nfiles() simulation()\nlog.info('begins')\n");
   const std::string table = (folder.path() / "t.csv").string();
   Process p(batch(config, table, {"--threads", "2", "--runs", "4", "--log-level", "info"}));
   p.waitForError("run 2: begins");

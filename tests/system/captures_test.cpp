@@ -11,8 +11,9 @@
 #include "spark/predicates.h"
 #include "test_support.h"
 
-// The openings of recorded sessions, replayed against the default league with its own robots and with the original scene files: agents are
-// answered in every cycle with the same percepts, in the same order, and the host has nothing to complain about.
+// The openings of recorded sessions, replayed against the default league with its own robots and with the original
+// scene files: agents are answered in every cycle with the same percepts, in the same order, and the host has nothing
+// to complain about.
 
 using namespace spark;
 using namespace spark::test;
@@ -46,8 +47,8 @@ Session load(const std::filesystem::path& file) {
   return s;
 }
 
-/// Names of the percepts in order: "time GS GYR:torso HJ:hj1 ...". The foot's pressure is left out: it is there while the foot touches
-/// something, and robots that are made inside each other burst apart in another way each time.
+/// Names of the percepts in order: "time GS GYR:torso HJ:hj1 ...". The foot's pressure is left out: it is there while
+/// the foot touches something, and robots that are made inside each other burst apart in another way each time.
 std::string order(const std::string& message) {
   Predicates p;
   readSexp(message, p);
@@ -94,8 +95,8 @@ void replay(const std::filesystem::path& file, const std::filesystem::path& scen
     if (const auto at = session.sent.find(cycle); at != session.sent.end())
       for (const auto& [name, message] : at->second) clients[name]->send(message);
   };
-  // An agent is waited for from the message on that names its robot: its number comes in the message in which it was recorded. Of several
-  // agents one may come a cycle before another, and be told more while that one joins.
+  // An agent is waited for from the message on that names its robot: its number comes in the message in which it was
+  // recorded. Of several agents one may come a cycle before another, and be told more while that one joins.
   const bool alone = session.agents.size() == 1;
   std::map<std::string, std::vector<std::pair<int, std::int64_t>>> given, recorded;
   const auto note = [alone](auto& numbers, int cycle, const std::string& message) {
@@ -123,7 +124,8 @@ void replay(const std::filesystem::path& file, const std::filesystem::path& scen
 TEST_CASE("The openings of recorded sessions replay without an error") {
   const auto reference = referenceFolder();
   if (reference.empty()) std::exit(77);
-  for (const char* name : {"nao0-rest", "nao0-all-joints", "nao0-squat-after-beam", "nao3-legs", "four-agents", "ball-bounce-and-roll"}) {
+  for (const char* name :
+       {"nao0-rest", "nao0-all-joints", "nao0-squat-after-beam", "nao3-legs", "four-agents", "ball-bounce-and-roll"}) {
     const auto file = reference / "captures" / "mainline" / (std::string(name) + ".jsonl");
     DYNAMIC_SECTION(name) { replay(file, {}); }
     DYNAMIC_SECTION(name << " with the original robots") { replay(file, reference / "scenes-reference"); }

@@ -10,8 +10,8 @@
 
 namespace spark::test {
 
-/// One connection. Waits without limit: ctest ends a test that stalls, and with it the host. Functions throw boost::system::system_error
-/// when the host closed the connection, unless they say otherwise.
+/// One connection. Waits without limit: ctest ends a test that stalls, and with it the host. Functions throw
+/// boost::system::system_error when the host closed the connection, unless they say otherwise.
 class Client {
  public:
   explicit Client(unsigned short port) { socket_.connect({boost::asio::ip::address_v4::loopback(), port}); }
@@ -27,8 +27,9 @@ class Client {
   std::string receive() {
     unsigned char p[4];
     boost::asio::read(socket_, boost::asio::buffer(p));
-    std::string message(
-        static_cast<std::size_t>(p[0]) << 24 | static_cast<std::size_t>(p[1]) << 16 | static_cast<std::size_t>(p[2]) << 8 | p[3], ' ');
+    std::string message(static_cast<std::size_t>(p[0]) << 24 | static_cast<std::size_t>(p[1]) << 16 |
+                            static_cast<std::size_t>(p[2]) << 8 | p[3],
+                        ' ');
     boost::asio::read(socket_, boost::asio::buffer(message));
     return message;
   }

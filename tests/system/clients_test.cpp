@@ -9,8 +9,9 @@
 #include "spark/client/expression.h"
 #include "test_support.h"
 
-// Clients of the installed base, written from descriptions of how they behave on the wire: players of two code bases, a program that makes its
-// agents one after the other, a robot that is no soccer player, a utility that only sends, a viewer that pauses, a learner.
+// Clients of the installed base, written from descriptions of how they behave on the wire: players of two code bases, a
+// program that makes its agents one after the other, a robot that is no soccer player, a utility that only sends, a
+// viewer that pauses, a learner.
 
 using namespace spark::test;
 using spark::client::Connection;
@@ -29,7 +30,8 @@ struct ServingHost {
     monitorPort = ports["monitorPort"];
   }
   static std::vector<std::string> command(std::vector<std::string> more) {
-    std::vector<std::string> c{(binFolder() / "sparkhost").string(), "--agent-port", "0", "--monitor-port", "0", "--set", "web=false"};
+    std::vector<std::string> c{
+        (binFolder() / "sparkhost").string(), "--agent-port", "0", "--monitor-port", "0", "--set", "web=false"};
     c.insert(c.end(), more.begin(), more.end());
     return c;
   }
@@ -42,13 +44,19 @@ struct ServingHost {
 
 const char* const kNao = "(scene rsg/agent/nao/nao_hetero.rsg 0)";
 
-std::string init(const std::string& team, int unum) { return "(init (unum " + std::to_string(unum) + ")(teamname " + team + "))"; }
+std::string init(const std::string& team, int unum) {
+  return "(init (unum " + std::to_string(unum) + ")(teamname " + team + "))";
+}
 
-/// A player that says one thing after the other, each when it has got a message, and then answers every message with the last one.
+/// A player that says one thing after the other, each when it has got a message, and then answers every message with
+/// the last one.
 class ScriptedPlayer {
  public:
-  ScriptedPlayer(int port, std::vector<std::string> words) : connection_("127.0.0.1", port), words_(std::move(words)) { say(); }
-  /// Answers one message, if there is one: a host that is fast has the next one at once. False when the server has closed.
+  ScriptedPlayer(int port, std::vector<std::string> words) : connection_("127.0.0.1", port), words_(std::move(words)) {
+    say();
+  }
+  /// Answers one message, if there is one: a host that is fast has the next one at once. False when the server has
+  /// closed.
   bool play() try {
     if (const auto message = connection_.receive(0.001)) {
       ++heard_;
@@ -77,16 +85,21 @@ class ScriptedPlayer {
 
 /// How the two big code bases, a small one and a robot of another game begin.
 std::vector<std::string> stepByStep(int unum) { return {kNao, init("Porto", unum), "(syn)"}; }
-std::vector<std::string> inTurn(int unum) { return {std::string(kNao) + "(syn)", init("Austin", unum) + "(syn)", "(he1 0.5)(syn)"}; }
+std::vector<std::string> inTurn(int unum) {
+  return {std::string(kNao) + "(syn)", init("Austin", unum) + "(syn)", "(he1 0.5)(syn)"};
+}
 std::vector<std::string> atOnce(int unum) { return {kNao + init("Small", unum) + "(syn)", "(syn)"}; }
 std::vector<std::string> plain(int) { return {"(scene rsg/agent/sphere.rsg)(syn)", "(syn)"}; }
 
 /// A match that starts when its players, which come in this order, are there; what it comes to.
 std::string match(const std::vector<int>& order) {
-  const std::vector<std::vector<std::string>> kinds{stepByStep(1), stepByStep(2), inTurn(1), inTurn(9), atOnce(4), plain(0)};
-  ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", std::to_string(order.size()), "--duration", "2", "--set", "/sys/server/gamecontrol.holdWait=0.02"});
+  const std::vector<std::vector<std::string>> kinds{stepByStep(1), stepByStep(2), inTurn(1),
+                                                    inTurn(9),     atOnce(4),     plain(0)};
+  ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", std::to_string(order.size()),
+                    "--duration", "2", "--set", "/sys/server/gamecontrol.holdWait=0.02"});
   std::vector<std::unique_ptr<ScriptedPlayer>> players;
-  for (const int kind : order) players.push_back(std::make_unique<ScriptedPlayer>(host.agentPort, kinds[static_cast<std::size_t>(kind)]));
+  for (const int kind : order)
+    players.push_back(std::make_unique<ScriptedPlayer>(host.agentPort, kinds[static_cast<std::size_t>(kind)]));
   for (bool on = true; on;)
     for (auto& p : players) on &= p->play();
   const auto result = host.result();
@@ -98,7 +111,8 @@ std::string match(const std::vector<int>& order) {
 
 /// A sphere that keeps the clock of a match in lockstep running for `seconds`.
 struct Pacemaker : ScriptedPlayer {
-  explicit Pacemaker(int port) : ScriptedPlayer(port, {"(scene rsg/agent/sphere.rsg)(syn)", init("Pace", 1) + "(syn)", "(syn)"}) {}
+  explicit Pacemaker(int port)
+      : ScriptedPlayer(port, {"(scene rsg/agent/sphere.rsg)(syn)", init("Pace", 1) + "(syn)", "(syn)"}) {}
   void run(double seconds) {
     while (heard() < 3) REQUIRE(play());
     for (const double begin = time(); time() < begin + seconds;) REQUIRE(play());
@@ -110,15 +124,18 @@ std::string kindOf(const std::string& message) { return read(message)[1].name();
 
 }  // namespace
 
-TEST_CASE("Players that wait for messages at different places, and a robot without init, are expected: the same match in any order") {
+TEST_CASE(
+    "Players that wait for messages at different places, and a robot without init, are expected: the same match in any "
+    "order") {
   const std::string first = match({0, 1, 2, 3, 4, 5});
   REQUIRE(match({5, 4, 3, 2, 1, 0}) == first);
   REQUIRE(match({2, 5, 0, 4, 1, 3}) == first);
 }
 
-TEST_CASE("A program that makes its agents one after the other plays with --expect: the match starts when no more comes") {
-  ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "3", "--set", "/sys/server/gamecontrol.holdWait=0.02", "--set",
-             "/sys/server/gamecontrol.joinWait=0.5"});
+TEST_CASE(
+    "A program that makes its agents one after the other plays with --expect: the match starts when no more comes") {
+  ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "3", "--set",
+                    "/sys/server/gamecontrol.holdWait=0.02", "--set", "/sys/server/gamecontrol.joinWait=0.5"});
   std::vector<std::unique_ptr<ScriptedPlayer>> players;
   for (int unum = 1; unum <= 3; ++unum) {
     players.push_back(std::make_unique<ScriptedPlayer>(host.agentPort, stepByStep(unum)));
@@ -127,7 +144,9 @@ TEST_CASE("A program that makes its agents one after the other plays with --expe
   }
   for (const double begin = players.back()->time(); players.back()->time() < begin + 1;)
     for (auto& p : players) REQUIRE(p->play());
-  CHECK_THAT(host.process.errors(), Catch::Contains("Of 3 expected agents 1 are ready, and nothing more came for 0.5 s (joinWait): the match starts."));
+  CHECK_THAT(host.process.errors(),
+             Catch::Contains(
+                 "Of 3 expected agents 1 are ready, and nothing more came for 0.5 s (joinWait): the match starts."));
   Connection("127.0.0.1", host.monitorPort).send("(killsim)");
   while (players.front()->play()) {
   }
@@ -135,7 +154,8 @@ TEST_CASE("A program that makes its agents one after the other plays with --expe
 }
 
 TEST_CASE("The host says whom it waits for") {
-  ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "2", "--set", "/sys/server/gamecontrol.holdReport=0.05"});
+  ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "2", "--set",
+                    "/sys/server/gamecontrol.holdReport=0.05"});
   Connection half("127.0.0.1", host.agentPort);
   half.send(kNao);
   host.process.waitForError(" has named its robot, owes (init ...) and (syn); 1 is not connected; ");
@@ -144,8 +164,10 @@ TEST_CASE("The host says whom it waits for") {
   host.result();
 }
 
-TEST_CASE("A utility that opens the monitor port only to send commands, and never reads, is served as long as it likes") {
-  ServingHost host({"--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "Soccer.AutomaticKickOff=false"});
+TEST_CASE(
+    "A utility that opens the monitor port only to send commands, and never reads, is served as long as it likes") {
+  ServingHost host(
+      {"--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "Soccer.AutomaticKickOff=false"});
   Connection utility("127.0.0.1", host.monitorPort);
   Pacemaker player(host.agentPort);
   player.run(0.1);
@@ -165,7 +187,8 @@ TEST_CASE("A utility that opens the monitor port only to send commands, and neve
 
 TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene when it asks for it") {
   // the player keeps the match waiting while the viewer reads
-  ServingHost host({"--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "/sys/server/gamecontrol.syncTimeout=0"});
+  ServingHost host(
+      {"--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "/sys/server/gamecontrol.syncTimeout=0"});
   Connection viewer("127.0.0.1", host.monitorPort);
   REQUIRE(kindOf(*viewer.receive()) == "RSG");
   Pacemaker player(host.agentPort);
@@ -173,7 +196,8 @@ TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene w
   const double now = player.last().find("GS").find("t")[1].number();  // monitors are told the match's clock
   REQUIRE(now > 60);
   // What was under way when its buffers were full, a gap, and then what is now.
-  constexpr double kPatience = 0.1;  // s of wall time; TCP takes seconds until a full connection flows again, and the match is not to end meanwhile
+  constexpr double kPatience = 0.1;  // s of wall time; TCP takes seconds until a full connection flows again, and the
+                                     // match is not to end meanwhile
   double last = 0, gap = 0;
   int messages = 0;
   while (last < now - 0.5) {
@@ -195,8 +219,10 @@ TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene w
   viewer.send("(reqfullstate)");
   std::string kind;
   while (kind != "RSG") {
-    if (auto message = viewer.receive(kPatience)) kind = kindOf(*message);
-    else player.run(0.04);
+    if (auto message = viewer.receive(kPatience))
+      kind = kindOf(*message);
+    else
+      player.run(0.04);
   }
   viewer.send("(killsim)");
   while (player.play()) {
@@ -206,7 +232,8 @@ TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene w
 
 TEST_CASE("A learner sees the truth with --set cheats=true, beside what a trainer that never reads does to it") {
   const std::string config = GENERATE("training.lua", "soccer-sphere.lua");
-  ServingHost host({"--config", config, "--sync", "--rate", "max", "--expect", "1", "--set", "cheats=true", "--set", "Soccer.AutomaticKickOff=false"});
+  ServingHost host({"--config", config, "--sync", "--rate", "max", "--expect", "1", "--set", "cheats=true", "--set",
+                    "Soccer.AutomaticKickOff=false"});
   const bool sphere = config == "soccer-sphere.lua";
   const std::string scene = sphere ? "(scene rsg/agent/sphere.rsg)" : kNao;
   ScriptedPlayer player(host.agentPort, {scene + init("Learner", 1) + "(syn)", "(syn)"});
@@ -215,8 +242,9 @@ TEST_CASE("A learner sees the truth with --set cheats=true, beside what a traine
   trainer.send("(playMode PlayOn)(agent (unum 1)(team Left)(move -4 2 0.5 0))(ball (pos 3 1 0.05)(vel 0 0 0))");
   const auto number = [&](const char* name, std::size_t i) { return player.last().find("See").find(name)[i].number(); };
   // It acts soon, and vision looks in every third cycle.
-  while (!(player.last().find("See").size() > 1 && std::abs(number("mypos", 1) + 4) < 0.3 && std::abs(number("mypos", 2) - 2) < 0.3 &&
-           std::abs(number("ballpos", 1) - 3) < 0.1 && std::abs(number("ballpos", 2) - 1) < 0.1))
+  while (!(player.last().find("See").size() > 1 && std::abs(number("mypos", 1) + 4) < 0.3 &&
+           std::abs(number("mypos", 2) - 2) < 0.3 && std::abs(number("ballpos", 1) - 3) < 0.1 &&
+           std::abs(number("ballpos", 2) - 1) < 0.1))
     REQUIRE(player.play());
   CHECK(player.last().find("See").find("myorien").size() == 2);
   trainer.send("(killsim)");

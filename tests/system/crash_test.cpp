@@ -17,9 +17,10 @@ std::string plugins() { return (binFolder().parent_path() / "tests" / "crash-plu
 struct Crashing {
   TemporaryFolder folder;
   std::vector<std::string> command(const std::string& config, std::vector<std::string> more = {}) const {
-    const std::string text = "include \"house.lua\"\nfiles() scene() simulation()\nplugin \"gamecontrol\"\nplugin \"crashing\"\n";
-    std::vector<std::string> out{(binFolder() / "sparkhost").string(), "--config", folder.write("crash.lua", text + config),
-                                 "--plugin-path", plugins()};
+    const std::string text =
+        "include \"house.lua\"\nfiles() scene() simulation()\nplugin \"gamecontrol\"\nplugin \"crashing\"\n";
+    std::vector<std::string> out{(binFolder() / "sparkhost").string(), "--config",
+                                 folder.write("crash.lua", text + config), "--plugin-path", plugins()};
     out.insert(out.end(), more.begin(), more.end());
     return out;
   }
@@ -28,15 +29,20 @@ struct Crashing {
     return runToEnd(command(config, std::move(more)));
   }
   std::string hook(const std::string& how) const {
-    return "local h = new('CrashHook', '/usr/thing/h')\nh.how = '" + how + "'\nh.stopFile = '" + folder.file("go") + "'\n";
+    return "local h = new('CrashHook', '/usr/thing/h')\nh.how = '" + how + "'\nh.stopFile = '" + folder.file("go") +
+           "'\n";
   }
   /// An agent in the host whose robot has the sensor.
   std::string agent(const std::string& how) const {
-    folder.write("rsg/agent/robot.rsg", "(RSG 0 1)\n((nd TRF (nd CrashSensor (setName eye) (setHow " + how + ") (setStopFile " + folder.file("go") + "))))\n");
+    folder.write("rsg/agent/robot.rsg", "(RSG 0 1)\n((nd TRF (nd CrashSensor (setName eye) (setHow " + how +
+                                            ") (setStopFile " + folder.file("go") + "))))\n");
     return "agents{ port = 0 }\n"
-           "new('ScriptBehavior', '/usr/agent/b'):on('start', function(self) self.actions = '(scene rsg/agent/robot.rsg)' end)\n";
+           "new('ScriptBehavior', '/usr/agent/b'):on('start', function(self) self.actions = '(scene "
+           "rsg/agent/robot.rsg)' end)\n";
   }
-  std::vector<std::string> scenes() const { return {"--scene-path", folder.path().string(), "--agent-port", "0", "--duration", "2"}; }
+  std::vector<std::string> scenes() const {
+    return {"--scene-path", folder.path().string(), "--agent-port", "0", "--duration", "2"};
+  }
 };
 }  // namespace
 
@@ -47,17 +53,21 @@ TEST_CASE("A sensor that crashes is named by the host's last words, and the host
     more.insert(more.end(), {"--set", std::string("/sys/server/simulation.threads=") + threads});
     const Finished f = c.run(c.agent("null"), more);
     CHECK(f.code == 128 + SIGSEGV);
-    CHECK_THAT(f.errors, Contains("sparkhost: crashed by SIGSEGV at address 0x0 in sense of /usr/scene/AgentAspect1/TRF/eye (class CrashSensor of "
+    CHECK_THAT(f.errors, Contains("sparkhost: crashed by SIGSEGV at address 0x0 in sense of "
+                                  "/usr/scene/AgentAspect1/TRF/eye (class CrashSensor of "
                                   "plugin crashing). A debugger (gdb) shows the line.\n") ||
-                             Contains("sparkhost: crashed by SIGSEGV at address 0x0 in sense of /usr/scene/AgentAspect1/Transform/eye (class CrashSensor of "
+                             Contains("sparkhost: crashed by SIGSEGV at address 0x0 in sense of "
+                                      "/usr/scene/AgentAspect1/Transform/eye (class CrashSensor of "
                                       "plugin crashing). A debugger (gdb) shows the line.\n"));
   }
 }
 
 TEST_CASE("A handler that crashes is named, whatever kills it") {
   const Crashing c;
-  const std::vector<std::tuple<const char*, int, const char*>> ways{
-      {"null", SIGSEGV, "SIGSEGV at address 0x0"}, {"divide", SIGFPE, "SIGFPE"}, {"abort", SIGABRT, "SIGABRT"}, {"deep", SIGSEGV, "SIGSEGV at address 0x"}};
+  const std::vector<std::tuple<const char*, int, const char*>> ways{{"null", SIGSEGV, "SIGSEGV at address 0x0"},
+                                                                    {"divide", SIGFPE, "SIGFPE"},
+                                                                    {"abort", SIGABRT, "SIGABRT"},
+                                                                    {"deep", SIGSEGV, "SIGSEGV at address 0x"}};
   for (const auto& [how, number, words] : ways) {
     CAPTURE(how);
     const Finished f = c.run(c.hook(how), {"--duration", "1"});
@@ -94,7 +104,9 @@ TEST_CASE("kernel() in a constructor and what a constructor throws are errors th
                                Contains("kernel() is not there in a constructor") && Contains("onLink()"));
   const Finished throwing = c.run("new('ThrowingNode', '/usr/n')\n");
   CHECK(throwing.code == 2);
-  CHECK_THAT(throwing.errors, Contains("crash.lua:5: the constructor of class ThrowingNode of plugin crashing failed\n  because: no hardware"));
+  CHECK_THAT(
+      throwing.errors,
+      Contains("crash.lua:5: the constructor of class ThrowingNode of plugin crashing failed\n  because: no hardware"));
 }
 
 TEST_CASE("A hook that throws in every cycle is logged once and counted") {
@@ -124,7 +136,8 @@ TEST_CASE("What hangs is named while it hangs, and once") {
     more.insert(more.end(), {"--rate", "max", "--set", "/sys/host/watchdog.after=0.5"});
     Process p(c.command(sensor ? c.agent("hang") : c.hook("hang"), more), 60);
     p.line();
-    p.waitForError(sensor ? "/eye (class CrashSensor of plugin crashing)." : "it has been in prepare of /usr/thing/h (class CrashHook of plugin crashing).");
+    p.waitForError(sensor ? "/eye (class CrashSensor of plugin crashing)."
+                          : "it has been in prepare of /usr/thing/h (class CrashHook of plugin crashing).");
     p.signal(SIGTERM);
     p.waitForError("It was asked to end; a second signal ends it at once.");
     std::ofstream(c.folder.file("go")) << "";

@@ -9,9 +9,9 @@
 #include "temporary_folder.h"
 #include "test_support.h"
 
-// What a plugin author does: installs Spark, builds a plugin with the installed headers and find_package(Spark), drops it into a folder.
-// The installed tree is moved in between, because it may be. What a team does: links its agent with the installed client library. What the
-// documentation shows is taken out of the installed pages.
+// What a plugin author does: installs Spark, builds a plugin with the installed headers and find_package(Spark), drops
+// it into a folder. The installed tree is moved in between, because it may be. What a team does: links its agent with
+// the installed client library. What the documentation shows is taken out of the installed pages.
 
 using namespace spark::test;
 using Catch::Contains;
@@ -59,42 +59,48 @@ TEST_CASE("A plugin built outside of the tree is found, described and used") {
   fs::copy(work / "build" / "metronome.so", plugins);
 
   const std::string host = spark.program("sparkhost");
-  REQUIRE_THAT(must({host, "--list-plugins", "--plugin-path", plugins.string()}).out, Contains("metronome 0.1") && Contains("Metronome"));
+  REQUIRE_THAT(must({host, "--list-plugins", "--plugin-path", plugins.string()}).out,
+               Contains("metronome 0.1") && Contains("Metronome"));
   const Finished described = must({host, "--describe", "Metronome", "--plugin-path", plugins.string()});
-  REQUIRE_THAT(described.out,
-               Contains("beats") && Contains("integer") && Contains("Cycles between two beats.") && Contains("handles: rule"));
+  REQUIRE_THAT(described.out, Contains("beats") && Contains("integer") && Contains("Cycles between two beats.") &&
+                                  Contains("handles: rule"));
 
-  const Finished run =
-      must({host, "--config", (work / "metronome.lua").string(), "--plugin-path", plugins.string(), "--rate", "max", "--duration", "1"});
+  const Finished run = must({host, "--config", (work / "metronome.lua").string(), "--plugin-path", plugins.string(),
+                             "--rate", "max", "--duration", "1"});
   REQUIRE_THAT(run.errors, Contains("beat 5") && !Contains("beat 6"));
   REQUIRE_THAT(run.out, Contains("\"cycles\":50"));
-  REQUIRE_THAT(runToEnd({host, "--config", (work / "metronome.lua").string()}).errors, Contains("there is no plugin 'metronome'"));
+  REQUIRE_THAT(runToEnd({host, "--config", (work / "metronome.lua").string()}).errors,
+               Contains("there is no plugin 'metronome'"));
 }
 
 TEST_CASE("An agent built outside of the tree with the client library alone plays, and needs no other package") {
   const Installed spark;
   const fs::path prefix = spark.prefix, work = spark.folder.path() / "client";
   fs::copy(SPARK_FIXTURES "/client", work, fs::copy_options::recursive);
-  must({"cmake", "-S", work.string(), "-B", (work / "build").string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON",
-        "-DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_Boost=ON"});
+  must({"cmake", "-S", work.string(), "-B", (work / "build").string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(),
+        "-DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON",
+        "-DCMAKE_DISABLE_FIND_PACKAGE_Boost=ON"});
   must({"cmake", "--build", (work / "build").string()});
 
-  Process host({(prefix / "bin" / "sparkhost").string(), "--config", "training.lua", "--expect", "1", "--agent-port", "0", "--monitor-port", "0", "--set",
-                "web=false"},
+  Process host({(prefix / "bin" / "sparkhost").string(), "--config", "training.lua", "--expect", "1", "--agent-port",
+                "0", "--monitor-port", "0", "--set", "web=false"},
                120);
   const auto ports = nlohmann::json::parse(host.line());
-  const Finished played = must({(work / "build" / "client").string(), "127.0.0.1", std::to_string(ports["agentPort"].get<int>()),
-                                std::to_string(ports["monitorPort"].get<int>())});
+  const Finished played =
+      must({(work / "build" / "client").string(), "127.0.0.1", std::to_string(ports["agentPort"].get<int>()),
+            std::to_string(ports["monitorPort"].get<int>())});
   CHECK_THAT(played.out, Contains("0.98 s, head at") && Contains("the server closed the connection"));
   CHECK_THAT(played.out, !Contains("head at 0.0 degrees"));
   CHECK(nlohmann::json::parse(host.line())["agentsSeen"] == 1);
   CHECK(host.wait() == 0);
 }
 
-TEST_CASE("What the pages show builds from the installed tree as it stands: a plugin, a copied sensor, a program with a simulation in it") {
+TEST_CASE(
+    "What the pages show builds from the installed tree as it stands: a plugin, a copied sensor, a program with a "
+    "simulation in it") {
   const Installed spark;
-  const fs::path pages = spark.prefix / "share" / "doc" / "spark", readme = pages / "README.md", guide = pages / "docs" / "plugin-guide.md",
-                 embedding = pages / "docs" / "embedding.md";
+  const fs::path pages = spark.prefix / "share" / "doc" / "spark", readme = pages / "README.md",
+                 guide = pages / "docs" / "plugin-guide.md", embedding = pages / "docs" / "embedding.md";
   const TemporaryFolder& folder = spark.folder;
   folder.write("wind/CMakeLists.txt", block(readme, "cmake", "## A plugin of your own"));
   folder.write("wind/wind.cpp", block(readme, "cpp", "## A plugin of your own"));
@@ -102,19 +108,25 @@ TEST_CASE("What the pages show builds from the installed tree as it stands: a pl
   folder.write("gyro/my_sensors.cpp", block(guide, "cpp", "## A copy of one of ours"));
   // As the guide says: copied, and the class renamed.
   std::string header = textOf(pages / "plugins" / "sensors" / "gyro_rate_perceptor.h");
-  for (std::size_t at = header.find("GyroRatePerceptor"); at != header.npos; at = header.find("GyroRatePerceptor", at)) header.replace(at, 17, "MyGyro");
+  for (std::size_t at = header.find("GyroRatePerceptor"); at != header.npos; at = header.find("GyroRatePerceptor", at))
+    header.replace(at, 17, "MyGyro");
   folder.write("gyro/my_gyro.h", header);
   folder.write("learner/CMakeLists.txt", block(embedding, "cmake"));
   folder.write("learner/learner.cpp", block(embedding, "cpp"));
-  folder.write("CMakeLists.txt", "cmake_minimum_required(VERSION 3.25)\nproject(All CXX)\nadd_subdirectory(wind)\nadd_subdirectory(gyro)\nadd_subdirectory(learner)\n");
+  folder.write("CMakeLists.txt",
+               "cmake_minimum_required(VERSION 3.25)\nproject(All "
+               "CXX)\nadd_subdirectory(wind)\nadd_subdirectory(gyro)\nadd_subdirectory(learner)\n");
 
   const std::string build = folder.file("build");
-  const Finished configured = must({"cmake", "-S", folder.path().string(), "-B", build, "-DCMAKE_PREFIX_PATH=" + spark.prefix.string(), "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror"});
+  const Finished configured =
+      must({"cmake", "-S", folder.path().string(), "-B", build, "-DCMAKE_PREFIX_PATH=" + spark.prefix.string(),
+            "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror"});
   CHECK_THAT(configured.out, Contains("no build type was given, so it is Release"));
   CHECK_THAT(textOf(folder.path() / "build" / "CMakeCache.txt"), Contains("CMAKE_BUILD_TYPE:STRING=Release"));
   must({"cmake", "--build", build, "--parallel", "2"});
 
-  const std::vector<std::string> look{spark.program("sparkhost"), "--plugin-path", build + "/wind", "--plugin-path", build + "/gyro"};
+  const std::vector<std::string> look{spark.program("sparkhost"), "--plugin-path", build + "/wind", "--plugin-path",
+                                      build + "/gyro"};
   const auto describe = [&](const char* name) {
     std::vector<std::string> command = look;
     command.insert(command.end(), {"--describe", name});
@@ -135,8 +147,9 @@ TEST_CASE("What the pages show builds from the installed tree as it stands: a pl
 TEST_CASE("Documentation is installed where its links lead somewhere") {
   const Installed spark;
   const fs::path pages = spark.prefix / "share" / "doc" / "spark";
-  for (const char* page : {"README.md", "LICENSE", "docs/README.md", "docs/plugin-guide.md", "docs/first-robot.md", "docs/embedding.md", "lua/README.md", "scenes/README.md",
-                           "plugins/sensors/README.md", "plugins/soccer/README.md", "tools/sparkbatch/README.md"})
+  for (const char* page : {"README.md", "LICENSE", "docs/README.md", "docs/plugin-guide.md", "docs/first-robot.md",
+                           "docs/embedding.md", "lua/README.md", "scenes/README.md", "plugins/sensors/README.md",
+                           "plugins/soccer/README.md", "tools/sparkbatch/README.md"})
     CHECK(fs::is_regular_file(pages / page));
   CHECK_FALSE(fs::exists(pages / "plugins" / "monitor-web" / "viewer" / "node_modules"));
 }

@@ -39,8 +39,8 @@ TEST_CASE("--check loads and wires, steps nothing, prints nothing on stdout") {
   const Finished good = runToEnd(host({"--config", folder.write("good.lua", kSmall), "--check"}));
   REQUIRE(good.code == 0);
   REQUIRE(good.out.empty());
-  const Finished bad =
-      runToEnd(host({"--config", folder.write("bad.lua", std::string(kSmall) + "new('Simulatoin', '/sys/x')\n"), "--check"}));
+  const Finished bad = runToEnd(
+      host({"--config", folder.write("bad.lua", std::string(kSmall) + "new('Simulatoin', '/sys/x')\n"), "--check"}));
   REQUIRE(bad.code == 2);
   REQUIRE_THAT(bad.errors, Contains("bad.lua:7") && Contains("'Simulation'"));
 }
@@ -51,7 +51,8 @@ TEST_CASE("--check fails for what a run only logs: missing scene files and missp
   folder.write("rsg/wheel.rsg", "(RSG 0 1)\n((nd Transform\n  (importScene rsg/weel.rsg)))\n");
   folder.write("rsg/method.rsg", "(RSG 0 1)\n((nd Transform\n  (setLocalPso 0 0 1)))\n");
   const auto check = [&](const std::string& name, const std::string& more) {
-    const std::string config = folder.write(name + ".lua", "include \"house.lua\"\nfiles() scene() simulation()\n" + more);
+    const std::string config =
+        folder.write(name + ".lua", "include \"house.lua\"\nfiles() scene() simulation()\n" + more);
     return runToEnd(host({"--config", config, "--scene-path", folder.path().string(), "--check"}));
   };
   const auto scene = [](const std::string& file) { return "get(\"/usr/scene\"):importScene(\"" + file + "\")\n"; };
@@ -60,17 +61,20 @@ TEST_CASE("--check fails for what a run only logs: missing scene files and missp
   CHECK(whole.code == 0);
   const Finished wheel = check("wheel", scene("rsg/wheel.rsg"));
   CHECK(wheel.code == 2);
-  CHECK_THAT(wheel.errors, Contains("rsg/wheel.rsg:3") && Contains("rsg/weel.rsg") && Contains("the check failed: 1 error"));
+  CHECK_THAT(wheel.errors,
+             Contains("rsg/wheel.rsg:3") && Contains("rsg/weel.rsg") && Contains("the check failed: 1 error"));
   const Finished method = check("method", scene("rsg/method.rsg"));
   CHECK(method.code == 2);
-  CHECK_THAT(method.errors, Contains("rsg/method.rsg:3:4") && Contains("'setLocalPos'") && Contains("the check failed: 1 error"));
+  CHECK_THAT(method.errors,
+             Contains("rsg/method.rsg:3:4") && Contains("'setLocalPos'") && Contains("the check failed: 1 error"));
   const Finished gone = check("gone", scene("rsg/gone.rsg"));
   CHECK(gone.code == 2);
   CHECK_THAT(gone.errors, Contains("rsg/gone.rsg") && Contains("gone.lua:3"));
   const Finished config = check("config", "new(\"Transform\", \"/usr/scene/a\"):setLocalPso(0, 0, 1)\n");
   CHECK(config.code == 2);
   CHECK_THAT(config.errors, Contains("config.lua:3") && Contains("'setLocalPos'"));
-  const Finished quiet = runToEnd(host({"--config", (folder.path() / "wheel.lua").string(), "--scene-path", folder.path().string(), "--check", "--log-level", "off"}));
+  const Finished quiet = runToEnd(host({"--config", (folder.path() / "wheel.lua").string(), "--scene-path",
+                                        folder.path().string(), "--check", "--log-level", "off"}));
   CHECK(quiet.code == 2);
 }
 
@@ -83,7 +87,9 @@ TEST_CASE("A config that is not there is an error that says where it was looked 
 TEST_CASE("--set takes options and properties; an unknown name is an error with the nearest") {
   TemporaryFolder folder;
   const std::string config = folder.write("small.lua", kSmall);
-  REQUIRE(runToEnd(host({"--config", config, "--check", "--set", "answer=43", "--set", "/sys/server/simulation.step=0.01"})).code == 0);
+  REQUIRE(
+      runToEnd(host({"--config", config, "--check", "--set", "answer=43", "--set", "/sys/server/simulation.step=0.01"}))
+          .code == 0);
   const Finished unknown = runToEnd(host({"--config", config, "--check", "--set", "anwser=43"}));
   REQUIRE(unknown.code == 2);
   REQUIRE_THAT(unknown.errors, Contains("anwser") && Contains("'answer'"));
@@ -101,10 +107,14 @@ TEST_CASE("A flag for what a house does not have is an error in the user's words
     return f.errors;
   };
   CHECK_THAT(error({"--monitor-port", "3200"}),
-             Contains("--monitor-port 3200: the house of 'boxes.lua' has no port for monitors: add monitors{} of house.lua; or leave --monitor-port out."));
-  CHECK_THAT(error({"--agent-port", "0"}), Contains("--agent-port 0: the house of 'boxes.lua' has no agents and no port for them"));
-  CHECK_THAT(error({"--expect", "2"}), Contains("--expect 2: the house of 'boxes.lua' has no agents and no port for them"));
-  CHECK_THAT(error({"--set", "web=false", "--web-port", "0"}), Contains("--web-port 0: the house of 'boxes.lua' has no page for browsers"));
+             Contains("--monitor-port 3200: the house of 'boxes.lua' has no port for monitors: add monitors{} of "
+                      "house.lua; or leave --monitor-port out."));
+  CHECK_THAT(error({"--agent-port", "0"}),
+             Contains("--agent-port 0: the house of 'boxes.lua' has no agents and no port for them"));
+  CHECK_THAT(error({"--expect", "2"}),
+             Contains("--expect 2: the house of 'boxes.lua' has no agents and no port for them"));
+  CHECK_THAT(error({"--set", "web=false", "--web-port", "0"}),
+             Contains("--web-port 0: the house of 'boxes.lua' has no page for browsers"));
   REQUIRE(runToEnd(host({"--config", "boxes.lua", "--check", "--web-port", "0", "--rate", "max", "--sync"})).code == 0);
 }
 
@@ -115,9 +125,12 @@ TEST_CASE("A seed that is none, or needs more than 64 bits, is refused") {
     const Finished f = runToEnd(host({"--config", config, "--check", "--seed", seed}));
     INFO(f.errors);
     REQUIRE(f.code == 2);
-    REQUIRE_THAT(f.errors + f.out, Contains("--seed: expected a whole number from 0 to 18446744073709551615 (64 bits), found '" + std::string(seed) + "'"));
+    REQUIRE_THAT(f.errors + f.out,
+                 Contains("--seed: expected a whole number from 0 to 18446744073709551615 (64 bits), found '" +
+                          std::string(seed) + "'"));
   }
-  for (const char* seed : {"0", "18446744073709551615"}) REQUIRE(runToEnd(host({"--config", config, "--check", "--seed", seed})).code == 0);
+  for (const char* seed : {"0", "18446744073709551615"})
+    REQUIRE(runToEnd(host({"--config", config, "--check", "--seed", seed})).code == 0);
 }
 
 TEST_CASE("A wrong command line ends with exit code 2 and says what is wrong") {
@@ -136,8 +149,8 @@ TEST_CASE("A wrong command line ends with exit code 2 and says what is wrong") {
 
 TEST_CASE("stdout holds the ports first and the result last, and nothing else") {
   TemporaryFolder folder;
-  Process p(host(
-      {"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0", "--rate", "max", "--duration", "2"}));
+  Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0",
+                  "--rate", "max", "--duration", "2"}));
   const Json ports = Json::parse(p.line());
   REQUIRE(ports["agentPort"].get<int>() > 0);
   REQUIRE(ports["monitorPort"].get<int>() > 0);
@@ -176,8 +189,8 @@ TEST_CASE("SIGINT and SIGTERM end a run with its result") {
 
 TEST_CASE("A host that waits for agents ends when it is told to") {
   TemporaryFolder folder;
-  Process p(
-      host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0", "--sync", "--expect", "5"}));
+  Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0",
+                  "--sync", "--expect", "5"}));
   p.line();
   p.signal(SIGTERM);
   REQUIRE(Json::parse(p.line())["cycles"] == 0);
@@ -201,8 +214,8 @@ TEST_CASE("--list-plugins and --describe tell what is there") {
   REQUIRE_THAT(list.out, Contains("simulation 1.0") && Contains("ControlServer"));
   const Finished described = runToEnd(host({"--describe", "Simulation"}));
   REQUIRE(described.code == 0);
-  REQUIRE_THAT(described.out, Contains("number [s]") && Contains("default 0.02") && Contains("runCycles(count: integer)") &&
-                                  Contains("plugin: simulation"));
+  REQUIRE_THAT(described.out, Contains("number [s]") && Contains("default 0.02") &&
+                                  Contains("runCycles(count: integer)") && Contains("plugin: simulation"));
   const Finished unknown = runToEnd(host({"--describe", "Simulatoin"}));
   REQUIRE(unknown.code == 2);
   REQUIRE_THAT(unknown.errors, Contains("'Simulation'"));
@@ -212,8 +225,8 @@ TEST_CASE("--list-plugins and --describe tell what is there") {
 TEST_CASE("A folder of broken plugins is reported, and the host starts") {
   TemporaryFolder folder;
   folder.write("broken/broken.so", "this is no library");
-  const Finished f =
-      runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path", (folder.path() / "broken").string()}));
+  const Finished f = runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path",
+                                    (folder.path() / "broken").string()}));
   REQUIRE(f.code == 0);
   REQUIRE_THAT(f.errors, Contains("broken.so"));
 }
@@ -232,7 +245,8 @@ TEST_CASE("sparkctl shows the house and changes it") {
   p.line();
   const auto ctl = controlOf(p);
   REQUIRE_THAT(ctl({"tree", "/sys"}).out, Contains("simulation  (Simulation)") && Contains("run loop"));
-  REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out, Contains("step = 0.02 s") && Contains("Simulated time of one cycle."));
+  REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out,
+               Contains("step = 0.02 s") && Contains("Simulated time of one cycle."));
   REQUIRE_THAT(ctl({"plugins"}).out, Contains("* control"));
   REQUIRE(ctl({"set", "/sys/server/simulation.step", "0.01"}).code == 0);
   REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out, Contains("0.01 s"));
@@ -261,7 +275,8 @@ TEST_CASE("sparkctl loads and unloads plugins of a running house") {
   }
   const Finished used = ctl({"unload", "simulation"});
   CHECK(used.code == 1);
-  CHECK_THAT(used.errors, Contains("cannot unload plugin 'simulation' while its objects live") && Contains("/sys/server/simulation"));
+  CHECK_THAT(used.errors, Contains("cannot unload plugin 'simulation' while its objects live") &&
+                              Contains("/sys/server/simulation"));
   const Finished typo = ctl({"load", "drawin"});
   CHECK(typo.code == 1);
   CHECK_THAT(typo.errors, Contains("there is no plugin 'drawin'") && Contains("'drawing'"));
@@ -281,11 +296,12 @@ TEST_CASE("sparkctl refuses what would leave a running house without its servers
     CHECK(f.code == 1);
     return f.errors;
   };
-  for (const char* path :
-       {"/sys", "/sys/server", "/sys/server/gamecontrol", "/sys/server/simulation", "/sys/server/net", "/usr", "/usr/scene"})
-    CHECK_THAT(refused({"set", std::string(path) + ".name", "x"}), Contains(std::string("cannot name ") + path + " 'x' now"));
-  for (const char* call :
-       {"/sys/server/gamecontrol.unlinkLeaf", "/sys/server.unlinkChildren", "/sys/server/simulation.unlinkLeaf", "/sys.unlinkChildren"})
+  for (const char* path : {"/sys", "/sys/server", "/sys/server/gamecontrol", "/sys/server/simulation",
+                           "/sys/server/net", "/usr", "/usr/scene"})
+    CHECK_THAT(refused({"set", std::string(path) + ".name", "x"}),
+               Contains(std::string("cannot name ") + path + " 'x' now"));
+  for (const char* call : {"/sys/server/gamecontrol.unlinkLeaf", "/sys/server.unlinkChildren",
+                           "/sys/server/simulation.unlinkLeaf", "/sys.unlinkChildren"})
     CHECK_THAT(refused({"call", call}), Contains("cannot remove") && Contains("servers stay until its end"));
   p.signal(SIGTERM);
   CHECK(Json::parse(p.line())["cycles"].get<int>() > 0);

@@ -110,10 +110,12 @@ class Training {
     percepts_.clear();
     spark::readSexp(agent_.receive(), percepts_);
   }
-  /// Where the meshes of torso and ball hang. Every robot's body parts are children of a transform that stays where it is.
+  /// Where the meshes of torso and ball hang. Every robot's body parts are children of a transform that stays where it
+  /// is.
   static void collect(const Element& node, humanoid::Vec3 place, Look& found) {
     if (!node.isList()) return;
-    if (const Element m = node.named("SLT")) place += humanoid::Vec3(m.at(13).number(), m.at(14).number(), m.at(15).number());
+    if (const Element m = node.named("SLT"))
+      place += humanoid::Vec3(m.at(13).number(), m.at(14).number(), m.at(15).number());
     if (const Element mesh = node.named("load")) {
       if (mesh.at(1).text().starts_with("models/naobody")) found.torso = place;
       if (mesh.at(1).text() == "models/soccerball.obj") found.ball = place;
@@ -131,10 +133,12 @@ class Training {
 constexpr double kStanding = 0.3;  // m, least height of a standing torso
 }  // namespace
 
-/// Of so many attempts one must succeed: a walk over rough numbers may end in the wrong place on one machine and not on another.
+/// Of so many attempts one must succeed: a walk over rough numbers may end in the wrong place on one machine and not on
+/// another.
 constexpr int kAttempts = 6;
 
-/// "" when the robot that was thrown on its face (or back) got up, walked and pushed the ball; else what it failed to do.
+/// "" when the robot that was thrown on its face (or back) got up, walked and pushed the ball; else what it failed to
+/// do.
 std::string getUpWalkAndPush(int type, bool forward, int seed) {
   Training training(type, seed);
   HumanoidPlayer& player = training.player();
@@ -144,14 +148,17 @@ std::string getUpWalkAndPush(int type, bool forward, int seed) {
   REQUIRE(player.posture().lying() != humanoid::Lying::no);
   REQUIRE(training.look().torso.z() < kStanding);
 
-  if (!training.playUntil(150,
-                          [&] { return player.task() != Task::getUp && player.task() != Task::fall && player.posture().tilt() < 0.3; }))
+  if (!training.playUntil(150, [&] {
+        return player.task() != Task::getUp && player.task() != Task::fall && player.posture().tilt() < 0.3;
+      }))
     return "get up";
   const auto [stood, ball] = training.look();
   if (stood.z() < kStanding) return "stand";
   const humanoid::Vec3 from = stood, lay = ball;
-  if (!training.watchUntil(120, [&](const Look& now) { return (now.torso - from).head<2>().norm() > 1; })) return "walk";
-  if (!training.watchUntil(150, [&](const Look& now) { return (now.ball - lay).head<2>().norm() > 1; })) return "push the ball";
+  if (!training.watchUntil(120, [&](const Look& now) { return (now.torso - from).head<2>().norm() > 1; }))
+    return "walk";
+  if (!training.watchUntil(150, [&](const Look& now) { return (now.ball - lay).head<2>().norm() > 1; }))
+    return "push the ball";
   return "";
 }
 

@@ -36,8 +36,8 @@ std::unique_ptr<Process> startTeam(const char* name, const Json& ports, int play
 }  // namespace
 
 TEST_CASE("Twenty-two humanoids play a short match in lockstep to its end, and no line of the log is a warning") {
-  const auto server = startHost({"--sync", "--rate", "max", "--expect", "22", "--seed", "7", "--log-level", "warning", "--set",
-                            "Soccer.RuleHalfTime=20", "--duration", "52"});
+  const auto server = startHost({"--sync", "--rate", "max", "--expect", "22", "--seed", "7", "--log-level", "warning",
+                                 "--set", "Soccer.RuleHalfTime=20", "--duration", "52"});
   const Json ports = Json::parse(server->line());
   const auto red = startTeam("Red", ports, 11), blue = startTeam("Blue", ports, 11);
   const Json result = Json::parse(server->line());
@@ -54,7 +54,8 @@ TEST_CASE("Twenty-two humanoids play a short match in lockstep to its end, and n
 
 TEST_CASE("A team of humanoids plays the same match again") {
   const auto play = [] {
-    const auto server = startHost({"--sync", "--rate", "max", "--expect", "6", "--seed", "3", "--log-level", "error", "--duration", "15"});
+    const auto server = startHost(
+        {"--sync", "--rate", "max", "--expect", "6", "--seed", "3", "--log-level", "error", "--duration", "15"});
     const Json ports = Json::parse(server->line());
     const auto red = startTeam("Red", ports, 3), blue = startTeam("Blue", ports, 3);
     return Json::parse(server->line())["stateHash"].get<std::string>();
@@ -73,7 +74,8 @@ TEST_CASE("In real time the status line says whether the cycle was held") {
   const bool late = result["lateCycles"] > 0;
   REQUIRE(late == (result["lostSeconds"].get<double>() > 0));
   const std::string said = server->errors();
-  const bool held = said.find("x real time, on time") != std::string::npos, lost = said.find("late cycles") != std::string::npos;
+  const bool held = said.find("x real time, on time") != std::string::npos,
+             lost = said.find("late cycles") != std::string::npos;
   REQUIRE((held || lost));
   if (lost) REQUIRE(late);
 }

@@ -10,8 +10,8 @@
 #include "spark/predicates.h"
 #include "test_support.h"
 
-// Clients that behave, on the wire, as the programs of well-known teams do, join the default league: in lockstep and in real time, one
-// after the other or all at once, eleven on both sides.
+// Clients that behave, on the wire, as the programs of well-known teams do, join the default league: in lockstep and in
+// real time, one after the other or all at once, eleven on both sides.
 
 using namespace spark;
 using namespace spark::test;
@@ -22,10 +22,18 @@ struct Host {
   Process process;
   unsigned short port;
 
-  explicit Host(bool lockstep) : process(command(lockstep), 120), port(nlohmann::json::parse(process.line())["agentPort"]) {}
+  explicit Host(bool lockstep)
+      : process(command(lockstep), 120), port(nlohmann::json::parse(process.line())["agentPort"]) {}
   static std::vector<std::string> command(bool lockstep) {
-    std::vector<std::string> c{(binFolder() / "sparkhost").string(), "--config", "soccer.lua", "--agent-port", "0", "--monitor-port", "0",
-                               "--log-level", "warning"};
+    std::vector<std::string> c{(binFolder() / "sparkhost").string(),
+                               "--config",
+                               "soccer.lua",
+                               "--agent-port",
+                               "0",
+                               "--monitor-port",
+                               "0",
+                               "--log-level",
+                               "warning"};
     if (lockstep) c.insert(c.end(), {"--sync", "--rate", "max"});
     return c;
   }
@@ -78,8 +86,8 @@ class Player {
 };
 using Team = std::vector<std::unique_ptr<Player>>;
 
-/// Joins as an agent of the FC Portugal code base does, while the same program leads `others`: it keeps them in step as long as it waits for
-/// the newcomer.
+/// Joins as an agent of the FC Portugal code base does, while the same program leads `others`: it keeps them in step as
+/// long as it waits for the newcomer.
 std::unique_ptr<Player> joinPorto(unsigned short port, const std::string& team, int unum, Team& others) {
   auto p = std::make_unique<Player>(port, team, unum);
   const auto waitFor = [&] {
@@ -121,7 +129,9 @@ TEST_CASE("One program brings in eleven players one after the other: scene alone
   host.mustEndWell();
 }
 
-TEST_CASE("Players of two teams, each for itself, join at once: scene and (syn), init and (syn), then (syn) until they have a number") {
+TEST_CASE(
+    "Players of two teams, each for itself, join at once: scene and (syn), init and (syn), then (syn) until they have "
+    "a number") {
   const bool lockstep = GENERATE(true, false);
   Host host(lockstep);
   Team players;
@@ -129,7 +139,8 @@ TEST_CASE("Players of two teams, each for itself, join at once: scene and (syn),
     for (const char* team : {"Alpha", "Beta"}) {
       players.push_back(std::make_unique<Player>(host.port, team, unum));
       players.back()->send(players.back()->scene() + "(syn)");
-      if (players.size() == 1) players.back()->receiveOne(), players.back()->send(players.back()->init() + "(syn)");  // Alpha is left
+      if (players.size() == 1)
+        players.back()->receiveOne(), players.back()->send(players.back()->init() + "(syn)");  // Alpha is left
     }
   const auto done = [](const auto& p) { return !p->side().empty() && p->heard() >= 20; };
   while (!std::all_of(players.begin(), players.end(), done))
@@ -142,7 +153,8 @@ TEST_CASE("Players of two teams, each for itself, join at once: scene and (syn),
   host.mustEndWell();
 }
 
-TEST_CASE("Players that send scene and init and wait for the rest of both teams, without (syn), join a match in lockstep") {
+TEST_CASE(
+    "Players that send scene and init and wait for the rest of both teams, without (syn), join a match in lockstep") {
   Host host(true);
   Team players;
   Player& leader = *players.emplace_back(std::make_unique<Player>(host.port, "Alpha", 1));
@@ -155,8 +167,10 @@ TEST_CASE("Players that send scene and init and wait for the rest of both teams,
       if (!p->pending()) continue;
       p->receiveOne();
       const bool named = p->heard() > 1 || p.get() == &leader;
-      if (!named) p->send(p->init());
-      else if (all || p.get() == &leader) p->send("(syn)");
+      if (!named)
+        p->send(p->init());
+      else if (all || p.get() == &leader)
+        p->send("(syn)");
     }
   };
   for (int unum = 1; unum <= 11; ++unum)

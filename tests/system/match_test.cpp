@@ -75,7 +75,8 @@ struct Match {
 
  private:
   static std::string portOf(Process& host, const std::string& name) {
-    const Finished f = runToEnd({program("sparkctl"), "--pid", std::to_string(host.pid()), "get", "/sys/server/net/" + name + ".port"});
+    const Finished f = runToEnd(
+        {program("sparkctl"), "--pid", std::to_string(host.pid()), "get", "/sys/server/net/" + name + ".port"});
     const std::size_t at = f.out.find("= ");
     REQUIRE(at != std::string::npos);
     return f.out.substr(at + 2, f.out.find('\n') - at - 2);
@@ -155,9 +156,9 @@ TEST_CASE("Monitors hear JSON when the config says so") {
 
 TEST_CASE("A match of behaviours inside the host is repeatable, goals and all") {
   const auto play = [] {
-    const Finished f =
-        runToEnd({program("sparkhost"), "--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set", "players=4", "--rate", "max",
-                  "--duration", "20", "--seed", "3", "--agent-port", "0", "--monitor-port", "0", "--log-level", "warning"});
+    const Finished f = runToEnd({program("sparkhost"), "--config", "soccer-sphere.lua", "--set", "team=Red Blue",
+                                 "--set", "players=4", "--rate", "max", "--duration", "20", "--seed", "3",
+                                 "--agent-port", "0", "--monitor-port", "0", "--log-level", "warning"});
     REQUIRE(f.code == 0);
     return Json::parse(f.out.substr(f.out.find('\n') + 1));
   };

@@ -21,7 +21,8 @@ namespace spark::test {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-Process::Process(const std::vector<std::string>& command, double limit) : name_(fs::path(command.front()).filename()), limit_(limit) {
+Process::Process(const std::vector<std::string>& command, double limit)
+    : name_(fs::path(command.front()).filename()), limit_(limit) {
   char errorName[] = "/tmp/spark-stderr-XXXXXX";
   const int errors = mkostemp(errorName, O_CLOEXEC);
   errorFile_ = errorName;
@@ -76,7 +77,8 @@ bool Process::fill() {
 std::string Process::line() {
   std::size_t end;
   while ((end = buffer_.find('\n')) == std::string::npos)
-    if (!fill()) throw std::runtime_error(fmt::format("{} ended without a further line; it said:\n{}", name_, errors()));
+    if (!fill())
+      throw std::runtime_error(fmt::format("{} ended without a further line; it said:\n{}", name_, errors()));
   std::string out = buffer_.substr(0, end);
   buffer_.erase(0, end + 1);
   return out;

@@ -9,8 +9,8 @@
 
 namespace spark::test {
 
-/// A child process. Its stdout is read line by line, its stderr is kept. Killed when this object goes. Functions throw std::runtime_error,
-/// with what the program said, when it takes longer than the limit.
+/// A child process. Its stdout is read line by line, its stderr is kept. Killed when this object goes. Functions throw
+/// std::runtime_error, with what the program said, when it takes longer than the limit.
 class Process {
  public:
   /// Starts `command` (program and arguments). `limit`: for every wait [s].

@@ -65,8 +65,8 @@ TEST_CASE("Two servers with different port options run beside each other") {
 TEST_CASE("Start-up scripts stand for configs") {
   TemporaryFolder folder;
   const std::string own = folder.write("own.lua", "include \"soccer.lua\"\nprint(\"own config\")\n");
-  Process lua(
-      {program("rcssserver3d"), "--agent-port=0", "--server-port=0", "--script-path", own, "--init-script-prefix", "/usr/share/spark"});
+  Process lua({program("rcssserver3d"), "--agent-port=0", "--server-port=0", "--script-path", own,
+               "--init-script-prefix", "/usr/share/spark"});
   lua.line();
   lua.waitForError("own config");
   Process ruby({program("rcssserver3d"), "--agent-port=0", "--server-port=0", "--script-path", "rcssserver3d.rb"});

@@ -9,7 +9,8 @@
 #include "temporary_folder.h"
 #include "test_support.h"
 
-// People copy the first example of a README: it has to be a config that runs as it stands. What a README starts has to be there.
+// People copy the first example of a README: it has to be a config that runs as it stands. What a README starts has to
+// be there.
 
 using namespace spark::test;
 namespace fs = std::filesystem;
@@ -27,7 +28,8 @@ std::set<std::string> matches(const std::string& text, const char* pattern) {
 std::string exampleOf(const fs::path& file) {
   const std::string text = textOf(file), fence = "```lua\n";
   const auto begin = text.find(fence);
-  return begin == text.npos ? "" : text.substr(begin + fence.size(), text.find("\n```", begin) + 1 - begin - fence.size());
+  return begin == text.npos ? ""
+                            : text.substr(begin + fence.size(), text.find("\n```", begin) + 1 - begin - fence.size());
 }
 }  // namespace
 
@@ -48,7 +50,8 @@ TEST_CASE("The first example of every plugin's README, and of the scripts', is a
   }
 }
 
-TEST_CASE("The target that tools/play builds makes every program that the README starts and every file that is installed") {
+TEST_CASE(
+    "The target that tools/play builds makes every program that the README starts and every file that is installed") {
   const fs::path build = binFolder().parent_path();
   std::string listed;
   for (const char* tool : {"query", "inputs"}) {  // what the target names, and what that is made of
@@ -70,7 +73,8 @@ TEST_CASE("The target that tools/play builds makes every program that the README
   for (const auto& file : fs::recursive_directory_iterator(build)) {
     if (file.path().filename() != "cmake_install.cmake") continue;
     for (const std::string& product :
-         matches(textOf(file.path()), "TYPE (?:EXECUTABLE|MODULE|SHARED_LIBRARY|STATIC_LIBRARY) (?:OPTIONAL )?FILES \"([^\"]+)\"")) {
+         matches(textOf(file.path()),
+                 "TYPE (?:EXECUTABLE|MODULE|SHARED_LIBRARY|STATIC_LIBRARY) (?:OPTIONAL )?FILES \"([^\"]+)\"")) {
       INFO(product);
       CHECK(made.count(fs::relative(product, build).string()) == 1);
       ++installed;

@@ -79,7 +79,8 @@ std::string contentOf(const fs::path& file) {
 
 TEST_CASE("A config that never returns ends at the first signal, and says where it was") {
   TemporaryFolder folder;
-  const std::string loops[] = {"log.info('here')\nwhile true do end\n", "log.info('here')\nwhile true do pcall(function() while true do end end) end\n"};
+  const std::string loops[] = {"log.info('here')\nwhile true do end\n",
+                               "log.info('here')\nwhile true do pcall(function() while true do end end) end\n"};
   for (const std::string& loop : loops)
     for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
       Process p(host({"--config", folder.write("loop.lua", loop)}), 60);
@@ -104,7 +105,9 @@ TEST_CASE("A host whose terminal goes ends with its result and without its socke
 
 TEST_CASE("Under nohup a host stays when the terminal goes") {
   Runtime runtime;
-  Process p({"sh", "-c", "trap '' HUP; exec " + program("sparkhost") + " --config " + runtime.write("small.lua", kSmall)}, 60);
+  Process p(
+      {"sh", "-c", "trap '' HUP; exec " + program("sparkhost") + " --config " + runtime.write("small.lua", kSmall)},
+      60);
   p.line();
   p.signal(SIGHUP);
   p.signal(SIGTERM);
@@ -114,14 +117,17 @@ TEST_CASE("Under nohup a host stays when the terminal goes") {
 
 TEST_CASE("A result that cannot be written is on stderr, and the exit code says so") {
   TemporaryFolder folder;
-  const Finished f = shell(program("sparkhost") + " --config " + folder.write("small.lua", kSmall) + " --rate max --duration 1 > /dev/full");
+  const Finished f = shell(program("sparkhost") + " --config " + folder.write("small.lua", kSmall) +
+                           " --rate max --duration 1 > /dev/full");
   CHECK(f.code == 1);
-  CHECK_THAT(f.errors, Contains("cannot write to stdout (No space left on device); this line is lost there: {\"cycles\":50,"));
+  CHECK_THAT(f.errors,
+             Contains("cannot write to stdout (No space left on device); this line is lost there: {\"cycles\":50,"));
   CHECK(shell(program("sparkhost") + " --list-plugins > /dev/full").code != 0);
-  const Finished batch =
-      shell(program("sparkbatch") + " --config " + folder.file("small.lua") + " --results " + folder.file("t.csv") + " --duration 1 > /dev/full");
+  const Finished batch = shell(program("sparkbatch") + " --config " + folder.file("small.lua") + " --results " +
+                               folder.file("t.csv") + " --duration 1 > /dev/full");
   CHECK(batch.code == 1);
-  CHECK_THAT(batch.errors, Contains("cannot write to stdout (No space left on device); this line is lost there: {\"runs\":1,"));
+  CHECK_THAT(batch.errors,
+             Contains("cannot write to stdout (No space left on device); this line is lost there: {\"runs\":1,"));
 }
 
 TEST_CASE("An answer of a house that cannot be written is an error of sparkctl") {
@@ -138,16 +144,19 @@ TEST_CASE("sparkctl does not wait for ever for a house that is stopped, nor for 
   Process p(host({"--config", runtime.write("small.lua", kSmall)}), 60);
   p.line();
   const std::string pid = std::to_string(p.pid());
-  REQUIRE(runToEnd({program("sparkctl"), "--pid", pid, "--timeout", "60", "get", "/sys/server/simulation.step"}).code == 0);
+  REQUIRE(runToEnd({program("sparkctl"), "--pid", pid, "--timeout", "60", "get", "/sys/server/simulation.step"}).code ==
+          0);
   p.signal(SIGSTOP);
-  const Finished stopped = runToEnd({program("sparkctl"), "--pid", pid, "--timeout", "0.3", "get", "/sys/server/simulation.step"});
+  const Finished stopped =
+      runToEnd({program("sparkctl"), "--pid", pid, "--timeout", "0.3", "get", "/sys/server/simulation.step"});
   CHECK(stopped.code == 1);
   CHECK_THAT(stopped.errors, Contains("did not answer within 0.3 s"));
   p.signal(SIGCONT);
   const std::string file = (runtime.path() / "mute.sock").string();
   const Mute mute(file);
   REQUIRE(mute.good());
-  CHECK_THAT(runToEnd({program("sparkctl"), "--timeout", "0.3", "--socket", file, "tree"}).errors, Contains("did not answer within 0.3 s"));
+  CHECK_THAT(runToEnd({program("sparkctl"), "--timeout", "0.3", "--socket", file, "tree"}).errors,
+             Contains("did not answer within 0.3 s"));
 }
 
 TEST_CASE("sparkctl does not believe a folder that others could have made, nor another user's program") {
@@ -157,13 +166,16 @@ TEST_CASE("sparkctl does not believe a folder that others could have made, nor a
   chmod(folder.c_str(), 0755);
   const Mute mute((folder / "1.sock").string());
   REQUIRE(mute.good());
-  const Finished open = runToEnd({program("sparkctl"), "--pid", "1", "--timeout", "0.3", "set", "/sys/server/web.token", "secret"});
+  const Finished open =
+      runToEnd({program("sparkctl"), "--pid", "1", "--timeout", "0.3", "set", "/sys/server/web.token", "secret"});
   CHECK(open.code == 1);
-  CHECK_THAT(open.errors, Contains("spark is open to other users: it is not looked into") && Contains("process 1 has no house"));
+  CHECK_THAT(open.errors,
+             Contains("spark is open to other users: it is not looked into") && Contains("process 1 has no house"));
   if (geteuid() != 0) return;  // the rest needs a second user
   chmod(folder.c_str(), 0700);
   REQUIRE(chown(folder.c_str(), 65534, 65534) == 0);
-  CHECK_THAT(runToEnd({program("sparkctl"), "--pid", "1", "tree"}).errors, Contains("spark is another user's: it is not looked into"));
+  CHECK_THAT(runToEnd({program("sparkctl"), "--pid", "1", "tree"}).errors,
+             Contains("spark is another user's: it is not looked into"));
   chmod(runtime.path().c_str(), 0777);
   const std::string file = (runtime.path() / "other.sock").string();
   const Mute other(file, 65534);
@@ -184,7 +196,8 @@ TEST_CASE("What a config includes comes from beside it and from Spark, not from 
   const std::string mine = folder.write("mine.lua", "include 'house.lua'\ninclude 'parts/a.lua'\n");
   folder.write("parts/a.lua", "include 'b.lua'\n");
   folder.write("parts/b.lua", "log.info('b is beside a')\n");
-  for (const std::string& line : {cd + program("sparkhost") + " --config mine.lua --check", program("sparkhost") + " --config " + mine + " --check"}) {
+  for (const std::string& line : {cd + program("sparkhost") + " --config mine.lua --check",
+                                  program("sparkhost") + " --config " + mine + " --check"}) {
     const Finished f = shell(line);
     CHECK(f.code == 0);
     CHECK_THAT(f.errors, Contains("taken over") && Contains("b is beside a"));
@@ -198,14 +211,21 @@ TEST_CASE("A misspelt global and a misspelt channel are errors with the nearest 
     CHECK(f.code == 2);
     return f.errors;
   };
-  CHECK_THAT(failure("phsyics()\n"), Contains("typo.lua:3: attempt to call a nil value (global 'phsyics'). Did you mean 'physics'"));
-  CHECK_THAT(failure("on('actt', function() end)\n"), Contains("typo.lua:3: there is no event channel 'actt'") && Contains("Did you mean 'act'?"));
-  CHECK_THAT(failure("get('/sys'):on('sence', function() end)\n"), Contains("typo.lua:3: there is no event channel 'sence'") && Contains("'sense'"));
+  CHECK_THAT(failure("phsyics()\n"),
+             Contains("typo.lua:3: attempt to call a nil value (global 'phsyics'). Did you mean 'physics'"));
+  CHECK_THAT(failure("on('actt', function() end)\n"),
+             Contains("typo.lua:3: there is no event channel 'actt'") && Contains("Did you mean 'act'?"));
+  CHECK_THAT(failure("get('/sys'):on('sence', function() end)\n"),
+             Contains("typo.lua:3: there is no event channel 'sence'") && Contains("'sense'"));
   // Before the run loop is there nobody knows.
-  const Finished early = runToEnd(host({"--config", folder.write("early.lua", "include 'house.lua'\non('rule', function() end)\nfiles() simulation()\n"), "--check"}));
+  const Finished early = runToEnd(host(
+      {"--config", folder.write("early.lua", "include 'house.lua'\non('rule', function() end)\nfiles() simulation()\n"),
+       "--check"}));
   CHECK(early.code == 0);
-  const Finished earlyTypo =
-      runToEnd(host({"--config", folder.write("early.lua", "include 'house.lua'\non('rulle', function() end)\nfiles() simulation()\n"), "--check"}));
+  const Finished earlyTypo = runToEnd(
+      host({"--config",
+            folder.write("early.lua", "include 'house.lua'\non('rulle', function() end)\nfiles() simulation()\n"),
+            "--check"}));
   CHECK(earlyTypo.code == 2);
   CHECK_THAT(earlyTypo.errors, Contains("early.lua:2: there is no event channel 'rulle'"));
 }
@@ -215,7 +235,8 @@ TEST_CASE("A pipe in a plugin folder is refused and holds nobody") {
   const fs::path broken = folder.path() / "broken";
   fs::create_directory(broken);
   REQUIRE(mkfifo((broken / "x.so").c_str(), 0600) == 0);
-  const Finished f = runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path", broken.string()}));
+  const Finished f =
+      runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path", broken.string()}));
   CHECK(f.code == 0);
   CHECK_THAT(f.errors, Contains("x.so: it is no regular file"));
 }
@@ -245,7 +266,8 @@ TEST_CASE("Plugins with damaged headers are refused before the dynamic linker be
     }
     std::ofstream(broken / fmt::format("copy{}.so", copy), std::ios::binary) << bytes;
   }
-  const Finished f = runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path", broken.string()}));
+  const Finished f =
+      runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path", broken.string()}));
   CHECK(f.code == 0);
   for (int copy = 0; copy < kCopies; ++copy) CHECK_THAT(f.errors, Contains(fmt::format("copy{}.so", copy)));
 }

@@ -18,18 +18,21 @@ namespace {
 /// The list of that head, as `name` where it has one; throws when it is missing.
 Element find(const Predicates& message, std::string_view head, std::string_view name = {}) {
   for (const Element e : message)
-    if (e.head() == head && (name.empty() || (e.named("n") && e.named("n").at(1).text() == name) || e.at(1).text() == name)) return e;
+    if (e.head() == head &&
+        (name.empty() || (e.named("n") && e.named("n").at(1).text() == name) || e.at(1).text() == name))
+      return e;
   throw std::runtime_error("the message has no " + std::string(head) + " " + std::string(name));
 }
 
 }  // namespace
 
 TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and is told what its sensors say") {
-  Process host({(binFolder() / "sparkhost").string(), "--config", "soccer-spl.lua", "--rate", "max", "--agent-port", "0", "--monitor-port",
-                "0", "--log-level", "error"});
+  Process host({(binFolder() / "sparkhost").string(), "--config", "soccer-spl.lua", "--rate", "max", "--agent-port",
+                "0", "--monitor-port", "0", "--log-level", "error"});
   const Json ports = Json::parse(host.line());
   Client monitor(ports["monitorPort"].get<unsigned short>());
-  CHECK_THAT(monitor.receive(), Contains("(FieldLength 9)(FieldWidth 6)") && Contains("(GoalWidth 1.5)") && Contains("(BallRadius 0.05)"));
+  CHECK_THAT(monitor.receive(),
+             Contains("(FieldLength 9)(FieldWidth 6)") && Contains("(GoalWidth 1.5)") && Contains("(BallRadius 0.05)"));
 
   Client agent(ports["agentPort"].get<unsigned short>());
   agent.send("(scene rsg/agent/naov4/nao.rsg)(syn)");

@@ -7,8 +7,8 @@
 #include "temporary_folder.h"
 #include "web_client.h"
 
-// Bad input at the web port of a host with a match going on. After every attack a player who did nothing wrong is still told of a clock that
-// runs, and somebody who watches still gets frames.
+// Bad input at the web port of a host with a match going on. After every attack a player who did nothing wrong is still
+// told of a clock that runs, and somebody who watches still gets frames.
 
 using namespace spark::test;
 using Catch::Contains;
@@ -41,20 +41,24 @@ TEST_CASE("No path leads out of the folders that are served") {
   const bool hasLicense = license.status == 200;  // a file that every Debian has, to see that this folder is served
   CHECK((!hasLicense || license.body.find("GNU") != std::string::npos));
   for (const char* target :
-       {"/../../../../etc/passwd", "/logs/../../../etc/passwd", "/logs/..%2f..%2f..%2fetc%2fpasswd", "/logs/%2e%2e/%2e%2e/%2e%2e/etc/passwd", "/logs//etc/passwd",
-        "/logs/..\\..\\etc\\passwd", "/logs/.hidden", "/logs/", "/logs/.", "/assets/../../lua/house.lua", "/%2e%2e/lua/house.lua", "/logs/GPL-3%00.txt", "/logs/%", "/logs/%4",
-        "/./index.html", "//etc/passwd", "/logs/a/b/c/d/e/f", "/index.html/"}) {
+       {"/../../../../etc/passwd", "/logs/../../../etc/passwd", "/logs/..%2f..%2f..%2fetc%2fpasswd",
+        "/logs/%2e%2e/%2e%2e/%2e%2e/etc/passwd", "/logs//etc/passwd", "/logs/..\\..\\etc\\passwd", "/logs/.hidden",
+        "/logs/", "/logs/.", "/assets/../../lua/house.lua", "/%2e%2e/lua/house.lua", "/logs/GPL-3%00.txt", "/logs/%",
+        "/logs/%4", "/./index.html", "//etc/passwd", "/logs/a/b/c/d/e/f", "/index.html/"}) {
     INFO(target);
     const WebClient::Answer answer = s.client().get(target);
     CHECK(answer.status == 404);
     CHECK_THAT(answer.body, !Contains("root:") && !Contains("function"));
   }
-  for (const char* target : {"http://127.0.0.1/", "index.html", "*", "\\..\\x"}) CHECK(s.client().get(target).status == 400);
+  for (const char* target : {"http://127.0.0.1/", "index.html", "*", "\\..\\x"})
+    CHECK(s.client().get(target).status == 400);
   s.mustGoOn();
   s.mustEndWell();
 }
 
-TEST_CASE("Heads that are too long, bodies, unknown methods and bytes that are no request are refused, and the connection is closed") {
+TEST_CASE(
+    "Heads that are too long, bodies, unknown methods and bytes that are no request are refused, and the connection is "
+    "closed") {
   Stadium s;
   const std::vector<std::pair<std::string, int>> requests{
       {"GET /" + std::string(20000, 'a') + " HTTP/1.1\r\n" + local(s) + "\r\n", 431},
@@ -90,8 +94,12 @@ TEST_CASE("Who is slow to ask, or says nothing, is closed") {
 TEST_CASE("A name that is not ours, and a page from elsewhere, are turned away; a forwarded port is not") {
   Stadium s({"--set", "/sys/server/web.hosts={\"match.example\"}"});
   const auto page = [&](const std::string& host) { return s.client().get("/", "Host: " + host + "\r\n").status; };
-  for (const char* ours : {"localhost", "LOCALHOST:8080", "127.0.0.1:1", "[::1]:3280", "192.168.0.7:3280", "x.localhost", "match.example:80"}) CHECK(page(ours) == 200);
-  for (const char* strange : {"evil.example", "evil.example:3280", "127.0.0.1.evil.example", "localhost.evil.example", "[evil]", "", ":3280"}) CHECK(page(strange) == 421);
+  for (const char* ours : {"localhost", "LOCALHOST:8080", "127.0.0.1:1", "[::1]:3280", "192.168.0.7:3280",
+                           "x.localhost", "match.example:80"})
+    CHECK(page(ours) == 200);
+  for (const char* strange :
+       {"evil.example", "evil.example:3280", "127.0.0.1.evil.example", "localhost.evil.example", "[evil]", "", ":3280"})
+    CHECK(page(strange) == 421);
   CHECK(s.client().get("/", "X: y\r\n").status == 421);
   CHECK(s.client().get("/", "Host: localhost\r\nHost: localhost\r\n").status == 421);
 
@@ -100,7 +108,8 @@ TEST_CASE("A name that is not ours, and a page from elsewhere, are turned away; 
   };
   CHECK(stream("localhost:8080", "http://localhost:8080") == 101);
   CHECK(stream("match.example", "https://match.example") == 101);
-  for (const char* origin : {"http://evil.example", "http://localhost", "http://localhost:8081", "null", "", "http://localhost:8080.evil.example", "file://localhost:8080"})
+  for (const char* origin : {"http://evil.example", "http://localhost", "http://localhost:8081", "null", "",
+                             "http://localhost:8080.evil.example", "file://localhost:8080"})
     CHECK(stream("localhost:8080", origin) == (*origin ? 403 : 101));
   CHECK(stream("evil.example", "http://evil.example") == 421);
   CHECK(s.client().get("/stream").status == 426);
@@ -114,13 +123,20 @@ TEST_CASE("Frames that break the WebSocket's rules, and messages that are too lo
   std::string huge = WebClient::frame("x");
   huge.replace(1, 1, std::string("\xff\x7f\xff\xff\xff\xff\xff\xff\xff", 9));
   const std::vector<std::pair<const char*, std::string>> attacks{
-      {"no mask", WebClient::frame("{}", 1, false)},     {"reserved bits", std::string("\xf1") + WebClient::frame("{}").substr(1)},
-      {"unknown kind", WebClient::frame("{}", 3)},       {"unknown control", WebClient::frame("{}", 0xb)},
-      {"no UTF-8", WebClient::frame(invalid)},           {"too long", WebClient::frame(std::string(20000, ' '))},
-      {"announced", huge},                               {"long ping", WebClient::frame(std::string(200, 'x'), 9)},
-      {"rest of nothing", WebClient::frame("{}", 0)},    {"ping in pieces", WebClient::frame("x", 9, true, false)},
-      {"binary", WebClient::frame("{}", 2)},             {"HTTP", "GET / HTTP/1.1\r\n\r\n"},
-      {"in too many pieces", WebClient::frame(std::string(10000, ' '), 1, true, false) + WebClient::frame(std::string(10000, ' '), 0)},
+      {"no mask", WebClient::frame("{}", 1, false)},
+      {"reserved bits", std::string("\xf1") + WebClient::frame("{}").substr(1)},
+      {"unknown kind", WebClient::frame("{}", 3)},
+      {"unknown control", WebClient::frame("{}", 0xb)},
+      {"no UTF-8", WebClient::frame(invalid)},
+      {"too long", WebClient::frame(std::string(20000, ' '))},
+      {"announced", huge},
+      {"long ping", WebClient::frame(std::string(200, 'x'), 9)},
+      {"rest of nothing", WebClient::frame("{}", 0)},
+      {"ping in pieces", WebClient::frame("x", 9, true, false)},
+      {"binary", WebClient::frame("{}", 2)},
+      {"HTTP", "GET / HTTP/1.1\r\n\r\n"},
+      {"in too many pieces",
+       WebClient::frame(std::string(10000, ' '), 1, true, false) + WebClient::frame(std::string(10000, ' '), 0)},
   };
   for (const auto& [what, bytes] : attacks) {
     INFO(what);
@@ -136,8 +152,9 @@ TEST_CASE("Frames that break the WebSocket's rules, and messages that are too lo
 TEST_CASE("Messages that are nothing are answered with what was expected; too many of them end it") {
   Stadium s;
   for (const std::string& message :
-       {std::string("hello"), std::string("[]"), std::string("{}"), std::string("{\"do\":7}"), std::string("{\"do\":\"get\"}"), std::string(16000, '['),
-        std::string("{\"do\":\"view\",\"rate\":\"many\"}"), std::string("{\"do\":\"fly\",\"id\":1}"), std::string("{\"do\":\"get\",\"id\":1,\"path\":7}"),
+       {std::string("hello"), std::string("[]"), std::string("{}"), std::string("{\"do\":7}"),
+        std::string("{\"do\":\"get\"}"), std::string(16000, '['), std::string("{\"do\":\"view\",\"rate\":\"many\"}"),
+        std::string("{\"do\":\"fly\",\"id\":1}"), std::string("{\"do\":\"get\",\"id\":1,\"path\":7}"),
         std::string("{\"do\":\"get\",\"id\":1,\"path\":\"/nowhere\"}")}) {
     INFO(message.substr(0, 60));
     WebClient client(s.webPort);
@@ -235,7 +252,8 @@ TEST_CASE("Who asks for files and takes none of them leaves the host enough to o
     boost::asio::write(socket, boost::asio::buffer(request), ignored);
   }
   CHECK(s.client().get("/status.json").status == 200);
-  const auto open = std::distance(std::filesystem::directory_iterator("/proc/" + std::to_string(s.host.pid()) + "/fd"), {});
+  const auto open =
+      std::distance(std::filesystem::directory_iterator("/proc/" + std::to_string(s.host.pid()) + "/fd"), {});
   CHECK(static_cast<rlim_t>(open) < kFew - 100);
   Witness newcomer(s.agentPort, "Late", 2);
   newcomer.mustSeeTimePass();

@@ -29,8 +29,11 @@ unsigned short portOf(const Json& firstLine) {
 
 /// The last line of a match, during which somebody may watch and ask.
 Json played(bool watched) {
-  std::vector<std::string> match{"--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set", "players=3", "--rate", "max", "--duration", "400"};
-  const std::vector<std::string> web = watched ? std::vector<std::string>{"--web-port", "0"} : std::vector<std::string>{"--set", "web=false"};
+  std::vector<std::string> match{
+      "--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set", "players=3", "--rate",
+      "max",      "--duration",        "400"};
+  const std::vector<std::string> web =
+      watched ? std::vector<std::string>{"--web-port", "0"} : std::vector<std::string>{"--set", "web=false"};
   match.insert(match.end(), web.begin(), web.end());
   Process host(sparkhost(match), 120);
   const Json first = Json::parse(host.line());
@@ -63,7 +66,9 @@ TEST_CASE("A second host takes another port and says so; the page, the status an
   folder.write("game one.log", game);
   Process first(sparkhost({"--config", "soccer-sphere.lua", "--web-port", "0"}), 60);
   const unsigned short port = portOf(Json::parse(first.line()));
-  Process second(sparkhost({"--config", "soccer-sphere.lua", "--web-port", std::to_string(port), "--set", "webLogs=" + folder.path().string(), "--set", "team=Red"}), 60);
+  Process second(sparkhost({"--config", "soccer-sphere.lua", "--web-port", std::to_string(port), "--set",
+                            "webLogs=" + folder.path().string(), "--set", "team=Red"}),
+                 60);
   const unsigned short other = portOf(Json::parse(second.line()));
   CHECK(other != port);
   second.waitForError("port " + std::to_string(port) + " cannot be had");
@@ -93,7 +98,8 @@ TEST_CASE("The scene has the shapes of what touches") {
     if (node.value("path", "") != "/usr/scene/Ball") continue;
     ball = true;
     REQUIRE(node["shapes"].size() == 1);
-    CHECK(node["shapes"][0] == Json::parse(R"({"kind":"sphere","size":[0.111],"position":[0,0,0],"rotation":[0,0,0,1]})"));
+    CHECK(node["shapes"][0] ==
+          Json::parse(R"({"kind":"sphere","size":[0.111],"position":[0,0,0],"rotation":[0,0,0,1]})"));
   }
   CHECK(ball);
   CHECK(scene["local"].size() % 16 == 0);
@@ -101,10 +107,12 @@ TEST_CASE("The scene has the shapes of what touches") {
 }
 
 TEST_CASE("A token that could be guessed, and an address that is none, are refused at the start") {
-  const Finished weak = runToEnd(sparkhost({"--config", "soccer-sphere.lua", "--web-port", "0", "--set", "webToken=secret"}));
+  const Finished weak =
+      runToEnd(sparkhost({"--config", "soccer-sphere.lua", "--web-port", "0", "--set", "webToken=secret"}));
   CHECK(weak.code == 2);
   CHECK_THAT(weak.errors, Contains("at least 16"));
-  const Finished nowhere = runToEnd(sparkhost({"--config", "soccer-sphere.lua", "--web-port", "0", "--set", "webAddress=nowhere", "--duration", "0.1", "--rate", "max"}));
+  const Finished nowhere = runToEnd(sparkhost({"--config", "soccer-sphere.lua", "--web-port", "0", "--set",
+                                               "webAddress=nowhere", "--duration", "0.1", "--rate", "max"}));
   CHECK(nowhere.code == 0);
   CHECK(Json::parse(nowhere.out.substr(0, nowhere.out.find('\n')))["web"].is_null());
   CHECK_THAT(nowhere.errors, Contains("Nobody can watch in a browser") && Contains("found 'nowhere'"));

@@ -14,7 +14,9 @@ std::vector<std::string> namesOf(const std::vector<const Property*>& all) {
   for (const Property* p : all) out.push_back(p->name);
   return out;
 }
-Value call(Leaf& leaf, std::string_view method, std::vector<Value> arguments) { return callMethod(leaf, method, arguments); }
+Value call(Leaf& leaf, std::string_view method, std::vector<Value> arguments) {
+  return callMethod(leaf, method, arguments);
+}
 }  // namespace
 
 TEST_CASE("A class object knows its base, interfaces, properties and methods") {
@@ -78,11 +80,13 @@ TEST_CASE("Properties are read, written and checked") {
   CHECK(getProperty(t, "mass") == Value(2.5));
   setProperty(t, "mass", "100");
   CHECK(t.mass_ == 100);
-  CHECK_THROWS_WITH(setProperty(t, "mass", -1), Catch::Contains("/usr/t.mass") && Catch::Contains("expected 0.0 to 100.0 kg, found -1"));
+  CHECK_THROWS_WITH(setProperty(t, "mass", -1),
+                    Catch::Contains("/usr/t.mass") && Catch::Contains("expected 0.0 to 100.0 kg, found -1"));
   CHECK_THROWS_AS(setProperty(t, "mass", 100.5), Error);
   CHECK_THROWS_AS(setProperty(t, "mass", std::nan("")), Error);
   CHECK_THROWS_WITH(setProperty(t, "mass", Value()), Catch::Contains("expected number, found nil"));
-  CHECK_THROWS_WITH(setProperty(t, "masss", 1), Catch::Contains("has no property 'masss'") && Catch::Contains("'mass'"));
+  CHECK_THROWS_WITH(setProperty(t, "masss", 1),
+                    Catch::Contains("has no property 'masss'") && Catch::Contains("'mass'"));
   CHECK_THROWS_WITH(setProperty(t, "count", 1), Catch::Contains("/usr/t.count is read only"));
   CHECK(t.mass_ == 100);
 }
@@ -107,7 +111,8 @@ TEST_CASE("A range holds for numbers that come as text, and for each number of a
 TEST_CASE("Choices are the only texts taken") {
   Core core;
   setProperty(*core.top, "label", "green");
-  CHECK_THROWS_WITH(setProperty(*core.top, "label", "blue"), Catch::Contains("expected one of 'red', 'green', found \"blue\""));
+  CHECK_THROWS_WITH(setProperty(*core.top, "label", "blue"),
+                    Catch::Contains("expected one of 'red', 'green', found \"blue\""));
   CHECK(core.top->label_ == "green");
 }
 
@@ -149,9 +154,11 @@ TEST_CASE("Calls check number and type of their arguments") {
   CHECK_THROWS_WITH(call(t, "add", {1}), Catch::Contains("add(a: number, b: number) expected 2 arguments, found 1"));
   CHECK_THROWS_WITH(call(t, "add", {1, 2, 3}), Catch::Contains("expected 2 arguments, found 3"));
   CHECK_THROWS_WITH(call(t, "opt", {1, 2, 3}), Catch::Contains("expected 1 to 2 arguments"));
-  CHECK_THROWS_WITH(call(t, "add", {1, "x"}), Catch::Contains("cannot call add of /usr/t") && Catch::Contains("expected number"));
+  CHECK_THROWS_WITH(call(t, "add", {1, "x"}),
+                    Catch::Contains("cannot call add of /usr/t") && Catch::Contains("expected number"));
   CHECK_THROWS_WITH(call(t, "ad", {1, 2}), Catch::Contains("has no method 'ad'") && Catch::Contains("'add'"));
-  CHECK_THROWS_WITH(call(t, "fail", {}), Catch::Contains("cannot call fail of /usr/t") && Catch::Contains("because: it fails"));
+  CHECK_THROWS_WITH(call(t, "fail", {}),
+                    Catch::Contains("cannot call fail of /usr/t") && Catch::Contains("because: it fails"));
   CHECK(t.count_ == 2);
 }
 
@@ -159,7 +166,9 @@ TEST_CASE("Loose calls ignore what the installed base ignored and say why") {
   Core core;
   Thing& t = *core.top;
   std::string why;
-  const auto loosely = [&](const char* name, std::vector<Value> arguments) { return callLoosely(t, *t.classObject()->method(name), arguments, why); };
+  const auto loosely = [&](const char* name, std::vector<Value> arguments) {
+    return callLoosely(t, *t.classObject()->method(name), arguments, why);
+  };
   CHECK(loosely("add", {"1", "x"}));
   CHECK(why.empty());
   CHECK_FALSE(loosely("add", {1}));

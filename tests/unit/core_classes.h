@@ -37,7 +37,11 @@ class Thing : public Node, public ICounter {
     d.property("count", &Thing::count).doc("Calls so far.");
     d.property("noise", &Thing::noise_).state().doc("Its stream.");
     d.method("add", &Thing::addNumbers).parameters({"a", "b"}).doc("The sum.");
-    d.method("opt", &Thing::optional).parameters({"a", "b"}).optional(1).surplusIgnored().doc("The sum, b may be missing.");
+    d.method("opt", &Thing::optional)
+        .parameters({"a", "b"})
+        .optional(1)
+        .surplusIgnored()
+        .doc("The sum, b may be missing.");
     d.method("join", &Thing::join).doc("All texts.");
     d.method("fail", &Thing::fail).doc("Throws.");
     d.alias("plus", "add");

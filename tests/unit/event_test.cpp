@@ -158,8 +158,10 @@ TEST_CASE("A channel may be emitted within itself") {
   int depth = 0;
   a.onTick = [&](Thing& self, const Event& e) {
     t.order += "a";
-    if (++depth == 3) self.parent()->remove(self);
-    else t.tick.emit(e);
+    if (++depth == 3)
+      self.parent()->remove(self);
+    else
+      t.tick.emit(e);
   };
   CHECK(t.emit() == "aaabbb");
   CHECK(t.emit() == "b");
@@ -191,10 +193,12 @@ TEST_CASE("A handler that throws each time is reported once and counted each tim
   Ticking t;
   Thing &a = t.named(*t.top, "a"), &b = t.named(*t.top, "b");
   int n = 0;
-  for (Thing* thing : {&a, &b}) thing->onTick = [&](Thing&, const Event&) { throw Error(fmt::format("broken {}", ++n)); };
+  for (Thing* thing : {&a, &b})
+    thing->onTick = [&](Thing&, const Event&) { throw Error(fmt::format("broken {}", ++n)); };
   for (int i = 0; i < 5; ++i) t.emit();
   CHECK(t.kernel.faults() == 10);
-  CHECK_THAT(t.text, Catch::Contains("tick of /usr/t/a (class Thing) failed: broken 1\n  It stays; further faults of this handler are counted, not logged."));
+  CHECK_THAT(t.text, Catch::Contains("tick of /usr/t/a (class Thing) failed: broken 1\n  It stays; further faults of "
+                                     "this handler are counted, not logged."));
   CHECK_THAT(t.text, Catch::Contains("tick of /usr/t/b (class Thing) failed: broken 2"));
   CHECK(t.text.find("broken 3") == std::string::npos);
 }
@@ -241,7 +245,8 @@ TEST_CASE("Listeners may come before definers, and a second definition must agre
   core.kernel.events().channel("aaa");
   CHECK(&core.kernel.events().define("late", Order::childrenFirst, "Defined now.") == &late);
   CHECK(late.doc() == "Defined now.");
-  CHECK_THROWS_WITH(core.kernel.events().define("late", Order::parentsFirst, "Again."), Catch::Contains("'late' is defined already"));
+  CHECK_THROWS_WITH(core.kernel.events().define("late", Order::parentsFirst, "Again."),
+                    Catch::Contains("'late' is defined already"));
   std::vector<std::string> names;
   for (const Channel* c : core.kernel.events().all()) names.push_back(c->name());
   CHECK(names == std::vector<std::string>{"aaa", "late", "tick"});

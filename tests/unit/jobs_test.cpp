@@ -22,7 +22,8 @@ TEST_CASE("Every job runs once, for any number of threads") {
 }
 
 TEST_CASE("Rounds do not overlap") {
-  // With a core for each thread they look for the next round; with many more threads than cores they sleep at once and often come too late.
+  // With a core for each thread they look for the next round; with many more threads than cores they sleep at once and
+  // often come too late.
   const int threads = GENERATE(2, 4, 40);
   Jobs jobs;
   jobs.setThreads(threads);

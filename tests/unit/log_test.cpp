@@ -1,7 +1,8 @@
+#include "spark/log.h"
+
 #include <catch2/catch.hpp>
 
 #include "spark/error.h"
-#include "spark/log.h"
 
 using spark::Level;
 using spark::Log;
@@ -36,5 +37,6 @@ TEST_CASE("Text from outside cannot forge lines or control a terminal") {
 
 TEST_CASE("Levels have names") {
   CHECK(spark::levelFromName("debug") == Level::debug);
-  CHECK_THROWS_WITH(spark::levelFromName("warnin"), Catch::Contains("expected a log level") && Catch::Contains("'warning'"));
+  CHECK_THROWS_WITH(spark::levelFromName("warnin"),
+                    Catch::Contains("expected a log level") && Catch::Contains("'warning'"));
 }

@@ -57,8 +57,8 @@ TEST_CASE("a config that is not there says where it was sought and what is near"
   LuaHouse h;
   h.write("soccer.lua", "");
   const std::string text = LuaHouse::errorOf([&] { h.kernel.lua().runConfig("socer.lua"); });
-  CHECK_THAT(text, Contains("there is no config 'socer.lua'. Looked in: " + std::filesystem::current_path().string() + ", " + h.folder.string() +
-                            ". Did you mean 'soccer.lua'?"));
+  CHECK_THAT(text, Contains("there is no config 'socer.lua'. Looked in: " + std::filesystem::current_path().string() +
+                            ", " + h.folder.string() + ". Did you mean 'soccer.lua'?"));
   std::filesystem::create_directory(h.folder / "folder");
   CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().runConfig("folder"); }), Contains("is a folder"));
 }
@@ -68,7 +68,8 @@ TEST_CASE("include runs a file in the environment of who includes it and gives i
   h.write("rooms.lua", "function room(name) return new('Thing', '/usr/' .. name) end return 42");
   CHECK(h.configFailure("answer = include 'rooms.lua'\nroom('kitchen')") == "");
   CHECK(h.run("return {answer, get('/usr/kitchen').path}") == Value(List{42, "/usr/kitchen"}));
-  CHECK_THAT(h.configFailure("include 'room.lua'"), Contains("config.lua:1: there is no script 'room.lua'") && Contains("Did you mean 'rooms.lua'?"));
+  CHECK_THAT(h.configFailure("include 'room.lua'"),
+             Contains("config.lua:1: there is no script 'room.lua'") && Contains("Did you mean 'rooms.lua'?"));
 }
 
 TEST_CASE("include also looks beside the config that runs") {
@@ -114,48 +115,59 @@ TEST_CASE("a config that does not return ends when the kernel is asked to end, w
     LuaHouse h;
     h.kernel.requestStop();
     CHECK(h.configFailure("short = true") == "");
-    CHECK_THAT(h.configFailure(std::string("before = 1\n") + loop), Contains("config.lua:2: stopped before the config was done: the host was asked to end."));
+    CHECK_THAT(h.configFailure(std::string("before = 1\n") + loop),
+               Contains("config.lua:2: stopped before the config was done: the host was asked to end."));
   }
 }
 
-TEST_CASE("a handler of a channel whose name is nearly another's is an error: at the config's end, in what runs at once") {
+TEST_CASE(
+    "a handler of a channel whose name is nearly another's is an error: at the config's end, in what runs at once") {
   LuaHouse h;
   const auto define = [&] { h.kernel.events().define("prepare", Order::parentsFirst, "A phase."); };
   CHECK(h.configFailure("on('prepair', function() end)") == "");  // nobody knows of such a channel
   define();
   CHECK_THAT(h.configFailure("\non('prepair', function() end)"),
-             Contains("config.lua:2: there is no event channel 'prepair': nothing would ever run this handler. Did you mean 'prepare'?"));
+             Contains("config.lua:2: there is no event channel 'prepair': nothing would ever run this handler. Did you "
+                      "mean 'prepare'?"));
   CHECK_THAT(h.failure("on('prepair', function() end)"), Contains("test:1: there is no event channel 'prepair'"));
   CHECK(h.failure("on('prepare', function() end) on('of my own', function() end)") == "");
   LuaHouse late;
   late.kernel.registerClass<Definer>();
-  CHECK_THAT(late.configFailure("on('prepair', function() end)\nnew('Definer', '/usr/d')"), Contains("config.lua:1: there is no event channel 'prepair'"));
+  CHECK_THAT(late.configFailure("on('prepair', function() end)\nnew('Definer', '/usr/d')"),
+             Contains("config.lua:1: there is no event channel 'prepair'"));
   CHECK(late.configFailure("delete('/usr/d') on('prepare', function() end)\nnew('Definer', '/usr/d')") == "");
 }
 
-TEST_CASE("a class that hooks on a channel whose name is nearly another's is named at the config's end, once it lives") {
+TEST_CASE(
+    "a class that hooks on a channel whose name is nearly another's is named at the config's end, once it lives") {
   LuaHouse h;
   h.kernel.registerClass<Misspelt>();
   h.kernel.events().define("prepare", Order::parentsFirst, "A phase.");
   CHECK(h.configFailure("") == "");
   CHECK(h.text == "");
   CHECK(h.configFailure("new('Misspelt', '/usr/m')") == "");
-  CHECK(h.text == "class Misspelt has a hook on 'prepar', and there is no such channel: nothing runs it. Did you mean 'prepare'?\n");
+  CHECK(h.text ==
+        "class Misspelt has a hook on 'prepar', and there is no such channel: nothing runs it. Did you mean "
+        "'prepare'?\n");
 }
 
 TEST_CASE("a global that is nil is answered with the nearest") {
   LuaHouse h;
   h.write("rooms.lua", "function physics() end");
-  CHECK_THAT(h.configFailure("include 'rooms.lua'\nphsyics()"), Contains("config.lua:2: attempt to call a nil value (global 'phsyics'). Did you mean 'physics'?"));
-  CHECK_THAT(h.failure("local x = maths.pi"), Contains("attempt to index a nil value (global 'maths'). Did you mean 'math'?"));
+  CHECK_THAT(h.configFailure("include 'rooms.lua'\nphsyics()"),
+             Contains("config.lua:2: attempt to call a nil value (global 'phsyics'). Did you mean 'physics'?"));
+  CHECK_THAT(h.failure("local x = maths.pi"),
+             Contains("attempt to index a nil value (global 'maths'). Did you mean 'math'?"));
 }
 
 TEST_CASE("errors in configs name file and line, also through includes") {
   LuaHouse h;
   h.write("inner.lua", "function wrong()\n  new('Nothing', '/usr/x')\nend");
-  CHECK_THAT(h.configFailure("include 'inner.lua'\n\nwrong()"), Equals("inner.lua:2: there is no class 'Nothing'. Did you mean 'Thing'?\n  from config.lua:3"));
+  CHECK_THAT(h.configFailure("include 'inner.lua'\n\nwrong()"),
+             Equals("inner.lua:2: there is no class 'Nothing'. Did you mean 'Thing'?\n  from config.lua:3"));
   h.write("syntax.lua", "\nif");
-  CHECK_THAT(h.configFailure("include 'syntax.lua'"), Equals("syntax.lua:2: unexpected symbol near <eof>\n  from config.lua:1"));
+  CHECK_THAT(h.configFailure("include 'syntax.lua'"),
+             Equals("syntax.lua:2: unexpected symbol near <eof>\n  from config.lua:1"));
 }
 
 TEST_CASE("only text is run, no bytecode") {
@@ -175,7 +187,9 @@ TEST_CASE("an option gives its default or what was set, and is listed") {
                         "b = option{name = 'parser', default = 'SexpParser', choices = {'SexpParser', 'JsonParser'}}\n"
                         "c = option{name = 'free'}") == "");
   CHECK(h.run("return {a, b, c}") == Value(List{22, "SexpParser"}));
-  const std::vector<List> expected{{"agents", 11, "Players a side.", 22}, {"parser", "SexpParser", "", "SexpParser"}, {"free", Value(), "", Value()}};
+  const std::vector<List> expected{{"agents", 11, "Players a side.", 22},
+                                   {"parser", "SexpParser", "", "SexpParser"},
+                                   {"free", Value(), "", Value()}};
   CHECK(h.kernel.lua().options() == expected);
 }
 
@@ -184,17 +198,20 @@ TEST_CASE("an option's value takes the type of its default") {
   h.kernel.lua().addOverride("step", Value(1));
   h.kernel.lua().addOverride("team", Value(42));
   h.kernel.lua().addOverride("whole", Value(3.0));
-  CHECK(h.configFailure("v = {option{name = 'step', default = 0.02}, option{name = 'team', default = 'A'}, option{name = 'whole', default = 1}}") == "");
+  CHECK(h.configFailure("v = {option{name = 'step', default = 0.02}, option{name = 'team', default = 'A'}, option{name "
+                        "= 'whole', default = 1}}") == "");
   CHECK(h.run("return v") == Value(List{1.0, "42", 3}));
 }
 
 TEST_CASE("what a person types for an option or a property is text until its type is known") {
   LuaHouse h;
-  for (const char* key : {"team", "number", "list", "any", "/usr/a.label", "/usr/a.mass", "/usr/a.anything"}) h.kernel.lua().addOverride(key, Value::typed("007"));
+  for (const char* key : {"team", "number", "list", "any", "/usr/a.label", "/usr/a.mass", "/usr/a.anything"})
+    h.kernel.lua().addOverride(key, Value::typed("007"));
   h.kernel.lua().addOverride("list", Value::typed("{1, x}"));
   h.kernel.lua().addOverride("token", Value::typed("0123456789012345678"));
   CHECK(h.configFailure("new('Thing', '/usr/a')\n"
-                        "v = {option{name = 'team', default = 'A'}, option{name = 'token', default = ''}, option{name = 'number', default = 1},\n"
+                        "v = {option{name = 'team', default = 'A'}, option{name = 'token', default = ''}, option{name "
+                        "= 'number', default = 1},\n"
                         "  option{name = 'list', default = {}}, option{name = 'any'}}") == "");
   CHECK(h.run("return v") == Value(List{"007", "0123456789012345678", 7, List{1, "x"}, 7}));
   CHECK(h.run("a = get '/usr/a' return {a.label, a.mass, a.anything}") == Value(List{"007", 7.0, 7}));
@@ -204,16 +221,19 @@ TEST_CASE("an option refuses another type and what is not among its choices") {
   LuaHouse h;
   h.kernel.lua().addOverride("agents", Value("many"));
   CHECK_THAT(h.configFailure("option{name = 'agents', default = 11}"),
-             Equals("config.lua:1: cannot set option 'agents'\n  because: expected integer (its default is 11), found string \"many\""));
+             Equals("config.lua:1: cannot set option 'agents'\n  because: expected integer (its default is 11), found "
+                    "string \"many\""));
   h.kernel.lua().addOverride("parser", Value("XmlParser"));
   CHECK_THAT(h.configFailure("option{name = 'parser', default = 'a', choices = {'a', 'b'}}"),
              Contains("cannot set option 'parser'\n  because: expected one of \"a\", \"b\", found \"XmlParser\""));
-  CHECK_THAT(h.configFailure("option{name = 'x', default = 'c', choices = {'a', 'b'}}"), Contains("the default of option 'x' is not among its choices"));
+  CHECK_THAT(h.configFailure("option{name = 'x', default = 'c', choices = {'a', 'b'}}"),
+             Contains("the default of option 'x' is not among its choices"));
 }
 
 TEST_CASE("option checks how it is used") {
   LuaHouse h;
-  CHECK_THAT(h.failure("option{name = 'a', defualt = 1}"), Contains("option knows no field 'defualt'. Did you mean 'default'?"));
+  CHECK_THAT(h.failure("option{name = 'a', defualt = 1}"),
+             Contains("option knows no field 'defualt'. Did you mean 'default'?"));
   CHECK_THAT(h.failure("option('a')"), Contains("option expected a table"));
   CHECK_THAT(h.failure("option{default = 1}"), Contains("expected an option's name (a string), found nil"));
   CHECK_THAT(h.failure("option{name = 'a.b'}"), Contains("cannot declare option 'a.b'"));
@@ -242,7 +262,8 @@ TEST_CASE("what is set from outside also meets nodes made by node:new, made agai
   LuaHouse h;
   h.kernel.lua().addOverride("/usr/a.mass", Value(9));
   h.kernel.lua().addOverride("/usr/scene/ball.mass", Value(5));
-  CHECK(h.configFailure("get('/usr'):new('Thing', 'a') delete('/usr/a') again = get('/usr'):new('Thing', 'a').mass") == "unknown setting '/usr/scene/ball.mass': there is no /usr/scene/ball.");
+  CHECK(h.configFailure("get('/usr'):new('Thing', 'a') delete('/usr/a') again = get('/usr'):new('Thing', 'a').mass") ==
+        "unknown setting '/usr/scene/ball.mass': there is no /usr/scene/ball.");
   CHECK(h.run("return again") == Value(9.0));
   Thing& ball = h.thing("/usr/scene/ball");  // as an import would
   CHECK(h.configFailure("get('/usr/scene/ball').mass = 2") == "");
@@ -260,13 +281,19 @@ TEST_CASE("Namespace.Name is set as soon as the namespace exists") {
 }
 
 TEST_CASE("settings that meet nothing are errors with the nearest names") {
-  const std::string config = "option{name = 'agents', default = 11}\nnew('Thing', '/usr/ball')\nnew('Group', '/sys/variables/Soccer'):set('FieldLength', 30)";
+  const std::string config =
+      "option{name = 'agents', default = 11}\nnew('Thing', '/usr/ball')\nnew('Group', "
+      "'/sys/variables/Soccer'):set('FieldLength', 30)";
   const std::vector<std::pair<const char*, std::string>> cases{
       {"agnets", "unknown setting 'agnets': the config declares no option of that name. Did you mean 'agents'?"},
-      {"Soccer.FieldLenght", "unknown setting 'Soccer.FieldLenght': /sys/variables/Soccer has no variable of that name. Did you mean 'Soccer.FieldLength'?"},
-      {"Socer.FieldLength", "unknown setting 'Socer.FieldLength': there is no /sys/variables/Socer. Did you mean 'Soccer.FieldLength'?"},
+      {"Soccer.FieldLenght",
+       "unknown setting 'Soccer.FieldLenght': /sys/variables/Soccer has no variable of that name. Did you mean "
+       "'Soccer.FieldLength'?"},
+      {"Socer.FieldLength",
+       "unknown setting 'Socer.FieldLength': there is no /sys/variables/Socer. Did you mean 'Soccer.FieldLength'?"},
       {"/usr/bal.mass", "unknown setting '/usr/bal.mass': there is no /usr/bal. Did you mean '/usr/ball.mass'"},
-      {"/usr/ball.mas", "unknown setting '/usr/ball.mas': /usr/ball (class Thing) has no property 'mas'. Did you mean 'mass'?"}};
+      {"/usr/ball.mas",
+       "unknown setting '/usr/ball.mas': /usr/ball (class Thing) has no property 'mas'. Did you mean 'mass'?"}};
   for (const auto& [key, expected] : cases) {
     LuaHouse h;
     h.kernel.lua().addOverride(key, Value(1));
@@ -277,8 +304,10 @@ TEST_CASE("settings that meet nothing are errors with the nearest names") {
 TEST_CASE("a setting with a wrong value names the property and what was expected") {
   LuaHouse h;
   h.kernel.lua().addOverride("/usr/a.mass", Value(-1));
-  CHECK_THAT(h.configFailure("new('Thing', '/usr/a')"), Equals("config.lua:1: cannot set /usr/a.mass\n  because: expected 0.0 to inf kg, found -1"));
-  CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().addOverride("/usr/a", Value(1)); }), Contains("expected /path.property"));
+  CHECK_THAT(h.configFailure("new('Thing', '/usr/a')"),
+             Equals("config.lua:1: cannot set /usr/a.mass\n  because: expected 0.0 to inf kg, found -1"));
+  CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().addOverride("/usr/a", Value(1)); }),
+             Contains("expected /path.property"));
 }
 
 TEST_CASE("log and print write to the kernel's log") {

@@ -11,35 +11,43 @@ TEST_CASE("pairs goes by key: numbers, then strings, then booleans, then nodes b
   LuaHouse h;
   h.thing("/usr/second");
   h.thing("/usr/a");
-  CHECK(h.run("local t = {z = 1, [10] = 1, a = 1, [-2] = 1, [2.5] = 1, [true] = 1, [false] = 1, [get('/usr/a')] = 1, [get('/usr/second')] = 1}\n"
+  CHECK(h.run("local t = {z = 1, [10] = 1, a = 1, [-2] = 1, [2.5] = 1, [true] = 1, [false] = 1, [get('/usr/a')] = 1, "
+              "[get('/usr/second')] = 1}\n"
               "local k = {} for key, value in pairs(t) do k[#k + 1] = key end return k") ==
         Value(List{-2, 2.5, 10, "a", "z", false, true, "/usr/second", "/usr/a"}));
 }
 
 TEST_CASE("pairs goes on when the table changes, and leaves out what has gone") {
   LuaHouse h;
-  CHECK(h.run("local t, k = {a = 1, b = 2, c = 3}, {} for key in pairs(t) do k[#k + 1] = key t.b = nil t['x' .. key] = 1 end return k") == Value(List{"a", "c"}));
+  CHECK(h.run("local t, k = {a = 1, b = 2, c = 3}, {} for key in pairs(t) do k[#k + 1] = key t.b = nil t['x' .. key] = "
+              "1 end return k") == Value(List{"a", "c"}));
 }
 
 TEST_CASE("pairs honours __pairs and refuses keys without an order") {
   LuaHouse h;
-  CHECK(h.run("local t = setmetatable({}, {__pairs = function() return function(_, k) if not k then return 1, 2 end end end}) for k, v in pairs(t) do return {k, v} end") ==
-        Value(List{1, 2}));
-  CHECK_THAT(h.failure("for k in pairs({[{}] = 1}) do end"), Contains("cannot go through this table: a key is a table, which has no order"));
-  CHECK_THAT(h.failure("for k in pairs(get('/usr')) do end"), Contains("pairs expected a table, found a node: use ipairs(node:children())"));
+  CHECK(h.run("local t = setmetatable({}, {__pairs = function() return function(_, k) if not k then return 1, 2 end "
+              "end end}) for k, v in pairs(t) do return {k, v} end") == Value(List{1, 2}));
+  CHECK_THAT(h.failure("for k in pairs({[{}] = 1}) do end"),
+             Contains("cannot go through this table: a key is a table, which has no order"));
+  CHECK_THAT(h.failure("for k in pairs(get('/usr')) do end"),
+             Contains("pairs expected a table, found a node: use ipairs(node:children())"));
 }
 
 TEST_CASE("next goes by key as well") {
   LuaHouse h;
-  CHECK(h.run("local t, k = {c = 3, [1] = 'x', b = 2}, {} local key, value = next(t) while key do k[#k + 1] = {key, value} key, value = next(t, key) end return k") ==
+  CHECK(h.run("local t, k = {c = 3, [1] = 'x', b = 2}, {} local key, value = next(t) while key do k[#k + 1] = {key, "
+              "value} key, value = next(t, key) end return k") ==
         Value(List{List{1, "x"}, List{"b", 2}, List{"c", 3}}));
   CHECK(h.run("return next({}) == nil") == Value(true));
 }
 
 TEST_CASE("table.sort is stable and sorts") {
   LuaHouse h;
-  CHECK(h.run("local t = {} for i = 1, 500 do t[i] = {i % 3, i} end table.sort(t, function(a, b) return a[1] < b[1] end)\n"
-              "for i = 2, 500 do local a, b = t[i - 1], t[i] if a[1] > b[1] or (a[1] == b[1] and a[2] > b[2]) then return i end end return 'stable'") == Value("stable"));
+  CHECK(
+      h.run(
+          "local t = {} for i = 1, 500 do t[i] = {i % 3, i} end table.sort(t, function(a, b) return a[1] < b[1] end)\n"
+          "for i = 2, 500 do local a, b = t[i - 1], t[i] if a[1] > b[1] or (a[1] == b[1] and a[2] > b[2]) then return "
+          "i end end return 'stable'") == Value("stable"));
   CHECK(h.run("local t = {3, 1, 2} table.sort(t) return t") == Value(List{1, 2, 3}));
   CHECK(h.run("local t = {} table.sort(t) return t") == Value(List{}));
   CHECK_THAT(h.failure("table.sort({1, 'a'})"), Contains("attempt to compare"));
@@ -49,8 +57,10 @@ TEST_CASE("random numbers come from the kernel's seed, one stream for each scrip
   const auto draw = [](std::uint64_t seed) {
     LuaHouse h;
     h.kernel.setSeed(seed);
-    h.kernel.lua().attachText(h.thing("/usr/a"), "self.anything = {math.random(), math.random(6), math.random(0)}", "script", true);
-    return Value(List{h.run("return {math.random(), math.random(1, 1000000)}"), h.run("return get('/usr/a').anything")});
+    h.kernel.lua().attachText(h.thing("/usr/a"), "self.anything = {math.random(), math.random(6), math.random(0)}",
+                              "script", true);
+    return Value(
+        List{h.run("return {math.random(), math.random(1, 1000000)}"), h.run("return get('/usr/a').anything")});
   };
   const Value once = draw(5);
   CHECK(once == draw(5));
@@ -72,8 +82,10 @@ TEST_CASE("math.random keeps its ranges and randomseed repeats") {
   std::set<std::int64_t> seen;
   for (int i = 0; i < 300; ++i) seen.insert(h.run("return math.random(3, 5)").toInteger());
   CHECK(seen == std::set<std::int64_t>{3, 4, 5});
-  CHECK(h.run("for i = 1, 1000 do local r = math.random() if r < 0 or r >= 1 then return r end end return 'ok'") == Value("ok"));
-  CHECK(h.run("math.randomseed(7) local a = math.random() math.randomseed(7) return a == math.random()") == Value(true));
+  CHECK(h.run("for i = 1, 1000 do local r = math.random() if r < 0 or r >= 1 then return r end end return 'ok'") ==
+        Value("ok"));
+  CHECK(h.run("math.randomseed(7) local a = math.random() math.randomseed(7) return a == math.random()") ==
+        Value(true));
   CHECK(h.run("return math.type(math.random(math.mininteger, math.maxinteger))") == Value("integer"));
   CHECK_THAT(h.failure("math.random(2, 1)"), Contains("interval is empty"));
 }
@@ -87,7 +99,8 @@ TEST_CASE("a script whose node has gone has no stream") {
 
 TEST_CASE("no text shows an address") {
   LuaHouse h;
-  CHECK(h.run("return {tostring({}), tostring(print), tostring(coroutine.create(print)), string.format('%s %5s %d', {}, print, 3), ('%s'):format({})}") ==
+  CHECK(h.run("return {tostring({}), tostring(print), tostring(coroutine.create(print)), string.format('%s %5s %d', "
+              "{}, print, 3), ('%s'):format({})}") ==
         Value(List{"table", "function", "thread", "table function 3", "table"}));
   CHECK(h.run("return tostring(setmetatable({}, {__tostring = function() return 'mine' end}))") == Value("mine"));
   CHECK(h.run("return string.format('%5.1f%%|%s', 2.25, nil)") == Value("  2.2%|nil"));
@@ -97,7 +110,8 @@ TEST_CASE("no text shows an address") {
 
 TEST_CASE("there is nothing in a script that reads files, clocks or bytecode") {
   LuaHouse h;
-  CHECK(h.run("local found = {} for _, n in ipairs{'os', 'io', 'debug', 'package', 'require', 'dofile', 'loadfile', 'load', 'collectgarbage', 'warn'} do\n"
+  CHECK(h.run("local found = {} for _, n in ipairs{'os', 'io', 'debug', 'package', 'require', 'dofile', 'loadfile', "
+              "'load', 'collectgarbage', 'warn'} do\n"
               "if _G[n] ~= nil then found[#found + 1] = n end end return found") == Value(List{}));
   CHECK(h.run("return {string.dump, ('').dump}") == Value(List{}));
 }
@@ -113,5 +127,6 @@ TEST_CASE("a script cannot reach what other scripts share") {
   LuaHouse h;
   CHECK(h.run("return {getmetatable(''), getmetatable(get('/'))}") == Value(List{"string", "node"}));
   h.kernel.lua().attachText(h.thing("/usr/a"), "string.rep = nil pairs = nil math.floor = nil", "script", true);
-  CHECK(h.run("return {('x'):rep(2), string.rep('y', 2), math.floor(1.5), type(pairs)}") == Value(List{"xx", "yy", 1, "function"}));
+  CHECK(h.run("return {('x'):rep(2), string.rep('y', 2), math.floor(1.5), type(pairs)}") ==
+        Value(List{"xx", "yy", 1, "function"}));
 }

@@ -30,7 +30,8 @@ TEST_CASE("a handler gets its node and the event") {
 TEST_CASE("on without a node listens at the root in configs and at self in attached scripts") {
   LuaHouse h;
   h.run("on('tick', function(self) where = self.path end)");
-  h.kernel.lua().attachText(h.thing("/usr/a"), "on('tock', function(node, e) node.label = e.name self.count = 9 end)", "script", true);
+  h.kernel.lua().attachText(h.thing("/usr/a"), "on('tock', function(node, e) node.label = e.name self.count = 9 end)",
+                            "script", true);
   h.emit("tick");
   h.emit("tock");
   CHECK(h.run("return where") == Value("/"));
@@ -72,7 +73,8 @@ TEST_CASE("subscriptions go with their node") {
 TEST_CASE("what an attached script subscribes elsewhere goes with its own node") {
   LuaHouse h;
   Thing& b = h.thing("/usr/b");
-  h.kernel.lua().attachText(h.thing("/usr/a"), "get('/usr/b'):on('tick', function(b) b.count = b.count + 1 end)", "script", true);
+  h.kernel.lua().attachText(h.thing("/usr/a"), "get('/usr/b'):on('tick', function(b) b.count = b.count + 1 end)",
+                            "script", true);
   h.emit("tick");
   CHECK(b.count == 1);
   h.run("delete('/usr/a')");
@@ -92,7 +94,8 @@ TEST_CASE("a script file attaches to a node and runs at once in an environment o
   CHECK(a.count == 1);
   CHECK(b.count == 1);
   CHECK(h.run("return {counter, self, string.mine}") == Value(List{}));
-  CHECK_THAT(h.failure("get('/usr/b'):attach('marc.lua')"), Contains("test:1: there is no script 'marc.lua'") && Contains("Did you mean 'mark.lua'?"));
+  CHECK_THAT(h.failure("get('/usr/b'):attach('marc.lua')"),
+             Contains("test:1: there is no script 'marc.lua'") && Contains("Did you mean 'mark.lua'?"));
 }
 
 TEST_CASE("get in an attached script starts at its node") {
@@ -106,7 +109,8 @@ TEST_CASE("get in an attached script starts at its node") {
 TEST_CASE("a script that fails while it is attached leaves no handlers") {
   LuaHouse h;
   Thing& a = h.thing("/usr/a");
-  const std::string text = LuaHouse::errorOf([&] { h.kernel.lua().attachText(a, "on('tick', function() self.count = 1 end)\nerror('no')", "script", true); });
+  const std::string text = LuaHouse::errorOf(
+      [&] { h.kernel.lua().attachText(a, "on('tick', function() self.count = 1 end)\nerror('no')", "script", true); });
   CHECK_THAT(text, Equals("the script attached to /usr/a failed: script:2: no"));
   h.emit("tick");
   CHECK(a.count == 0);
@@ -124,7 +128,9 @@ TEST_CASE("an error in a handler is logged once for its line, and the handler st
 
 TEST_CASE("a handler's traceback shows who called whom") {
   LuaHouse h;
-  h.run("local function deep()\n  error('boom')\nend\nlocal function top()\n  deep()\nend\non('tick', function()\n  top()\nend)");
+  h.run(
+      "local function deep()\n  error('boom')\nend\nlocal function top()\n  deep()\nend\non('tick', function()\n  "
+      "top()\nend)");
   h.emit("tick");
   CHECK_THAT(h.text, Contains("test:2: boom\n  from test:5 in 'top'\n  from test:8\n"));
 }
@@ -134,13 +140,16 @@ TEST_CASE("an endless loop in a handler becomes an error that names script, line
   h.thing("/usr/a");
   h.run("get('/usr/a'):on('tick', function(self)\n  while true do end\nend)");
   h.emit("tick");
-  CHECK_THAT(h.text, Contains("handler of 'tick' at /usr/a failed: test:2: stopped after 50000000 instructions: is there an endless loop?"));
+  CHECK_THAT(h.text, Contains("handler of 'tick' at /usr/a failed: test:2: stopped after 50000000 instructions: is "
+                              "there an endless loop?"));
 }
 
 TEST_CASE("a handler that used up its budget is switched off, with a line for each") {
   LuaHouse h;
   Thing& a = h.thing("/usr/a");
-  h.run("n = 0\nfor i = 1, 2 do\n  get('/usr/a'):on('tick', function(self)\n    self.count = self.count + 1\n    while true do end\n  end)\nend");
+  h.run(
+      "n = 0\nfor i = 1, 2 do\n  get('/usr/a'):on('tick', function(self)\n    self.count = self.count + 1\n    while "
+      "true do end\n  end)\nend");
   h.run("get('/usr/a'):on('tick', function(self) n = n + 1 end)");
   for (int i = 0; i < 3; ++i) h.emit("tick");
   CHECK(a.count == 2);
@@ -157,8 +166,9 @@ TEST_CASE("what works on much at once pays for it") {
   for (const char* forever :
        {"string.find(long, '.-.-.-b')", "long:match('(a*)*(a*)(a*)(a*)b')", "long:gsub('.-.-.-b', '')",
         "for x in long:gmatch('a*a*a*b') do end", "while true do long:find(('a'):rep(10000) .. 'b', 1, true) end",
-        "while true do s = ('x'):rep(100000000) end", "while true do s = long:upper() end", "while true do s = long .. long end",
-        "while true do table.insert(many, 1, 0) end", "while true do table.sort(many) end", "while true do s = table.concat(many) end",
+        "while true do s = ('x'):rep(100000000) end", "while true do s = long:upper() end",
+        "while true do s = long .. long end", "while true do table.insert(many, 1, 0) end",
+        "while true do table.sort(many) end", "while true do s = table.concat(many) end",
         "while true do table.remove(many, 1) many[200000] = 1 end", "while true do table.move(many, 1, 200000, 2) end",
         "while true do s = select('#', table.unpack(many)) end", "while true do next(many) end",
         "while true do for k in pairs(many) do break end end", "while true do utf8.len(long) end"}) {
@@ -172,7 +182,8 @@ TEST_CASE("what works on much at once pays for it") {
 
 TEST_CASE("many small searches pay as much as a large one") {
   LuaHouse h;
-  for (const char* search : {"('aaaaaaaa'):find('.-.-b')", "('aaaaaaaa'):match('a*a*a*b')", "('aaaaaaaa'):gsub('.-.-b', '')"}) {
+  for (const char* search :
+       {"('aaaaaaaa'):find('.-.-b')", "('aaaaaaaa'):match('a*a*a*b')", "('aaaaaaaa'):gsub('.-.-b', '')"}) {
     INFO(search);
     h.run(std::string("n = 0 on('work', function() while true do n = n + 1 local x = ") + search + " end end)");
     h.emit("work");
@@ -185,7 +196,9 @@ TEST_CASE("neither pcall nor a coroutine saves an endless loop") {
   LuaHouse h;
   h.run("on('tick', function() while true do pcall(function() while true do end end) end end)");
   h.run("on('tick', function() while true do coroutine.wrap(function() while true do end end)() end end)");
-  h.run("on('tick', function() while true do coroutine.resume(coroutine.create(function() while true do end end)) end end)");
+  h.run(
+      "on('tick', function() while true do coroutine.resume(coroutine.create(function() while true do end end)) end "
+      "end)");
   h.run("on('tick', function() after = true end)");
   h.emit("tick");
   CHECK(h.run("return after") == Value(true));
@@ -220,9 +233,11 @@ TEST_CASE("a handler pays for the handlers of the events that it raises, and no 
   h.thing("/usr/a");
   h.kernel.events().define("outer", Order::parentsFirst, "");
   h.kernel.events().define("inner", Order::parentsFirst, "");
-  h.run("inner, done = 0, 0\n"
-        "get('/usr/a'):on('inner', function() for i = 1, work do end inner = inner + 1 end)\n"
-        "get('/usr/a'):on('outer', function(a) for k = 1, 100 do a:raise('inner') for i = 1, 5000 do end end done = done + 1 end)");
+  h.run(
+      "inner, done = 0, 0\n"
+      "get('/usr/a'):on('inner', function() for i = 1, work do end inner = inner + 1 end)\n"
+      "get('/usr/a'):on('outer', function(a) for k = 1, 100 do a:raise('inner') for i = 1, 5000 do end end done = done "
+      "+ 1 end)");
   h.run("work = 100");
   h.emit("outer");
   CHECK(h.run("return {inner, done}") == Value(List{100, 1}));
@@ -241,7 +256,8 @@ TEST_CASE("scripts end before the nodes: what nodes emit when they go reaches no
     kernel.create("Farewell", "/usr/first");
     kernel.create("Farewell", "/usr/second");
     kernel.lua().run("held = get('/usr/second') on('gone', function() log.info('ran') end)", "test");
-    kernel.lua().attachText(*kernel.root().find("/usr/second"), "self:on('gone', function() error('no') end)", "script", false);
+    kernel.lua().attachText(*kernel.root().find("/usr/second"), "self:on('gone', function() error('no') end)", "script",
+                            false);
     kernel.lua().run("delete('/usr/first')", "test");
     CHECK_THAT(text, Contains("ran") && Contains("script:1: no"));
     text.clear();

@@ -9,8 +9,8 @@
 #include <map>
 
 #include "spark/error.h"
-#include "test_support.h"
 #include "temporary_folder.h"
+#include "test_support.h"
 
 namespace spark::test {
 

@@ -7,7 +7,8 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-/// One script for both: draws patterns of all items, right and wrong ones, and gives a line for what each call returned or threw.
+/// One script for both: draws patterns of all items, right and wrong ones, and gives a line for what each call returned
+/// or threw.
 const char* kCompare = R"--(
 local state = 20261122
 local function draw(n)

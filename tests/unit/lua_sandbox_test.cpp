@@ -17,9 +17,11 @@ std::string sandbox(LuaHouse& h, std::string_view text) {
 
 TEST_CASE("an untrusted script computes and works on its own node") {
   LuaHouse h;
-  CHECK(sandbox(h, "local t = {} for i = 1, 10 do table.insert(t, i * 2) end\n"
-                   "self.count = #t; self.label = string.format('%02d', math.floor(7.5)) .. ('x'):upper():rep(2); self.mass = self:add(1, 2)\n"
-                   "self:on('tick', function(node, e) node.count = node.count + 1 end)") == "");
+  CHECK(sandbox(h,
+                "local t = {} for i = 1, 10 do table.insert(t, i * 2) end\n"
+                "self.count = #t; self.label = string.format('%02d', math.floor(7.5)) .. ('x'):upper():rep(2); "
+                "self.mass = self:add(1, 2)\n"
+                "self:on('tick', function(node, e) node.count = node.count + 1 end)") == "");
   h.emit("tick");
   Thing& a = *h.kernel.root().find<Thing>("/usr/a");
   CHECK(a.count == 11);
@@ -31,9 +33,12 @@ TEST_CASE("an untrusted script has pure functions and self, nothing else") {
   LuaHouse h;
   CHECK(sandbox(h, "local n = {} for k in pairs(_G) do n[#n + 1] = k end self.anything = n") == "");
   CHECK(h.kernel.root().find<Thing>("/usr/a")->anything ==
-        Value(List{"_G", "assert", "error", "ipairs", "math", "next", "on", "pairs", "pcall", "rawequal", "rawget", "rawlen", "rawset", "select", "self",
-                   "string", "table", "tonumber", "tostring", "type", "utf8"}));
-  CHECK(sandbox(h, "local n = {} for k in pairs(string) do n[#n + 1] = k end self.anything = {n, ('').find, ('').gsub}") == "");
+        Value(List{"_G",    "assert", "error",    "ipairs",   "math",     "next",   "on",
+                   "pairs", "pcall",  "rawequal", "rawget",   "rawlen",   "rawset", "select",
+                   "self",  "string", "table",    "tonumber", "tostring", "type",   "utf8"}));
+  CHECK(sandbox(h,
+                "local n = {} for k in pairs(string) do n[#n + 1] = k end self.anything = {n, ('').find, ('').gsub}") ==
+        "");
   CHECK(h.kernel.root().find<Thing>("/usr/a")->anything ==
         Value(List{List{"byte", "char", "format", "len", "lower", "rep", "reverse", "sub", "upper"}}));
 }
@@ -42,24 +47,29 @@ TEST_CASE("an untrusted script sees its own node and what is below") {
   LuaHouse h;
   h.thing("/usr/a").create("Thing", "below");
   h.thing("/usr/other");
-  CHECK(sandbox(h, "self.anything = {self:find('below').path, self:find('below').parent == self, self.parent == nil, self:find('../other') == nil, "
-                   "self:find('/') == nil, #self:children()}") == "");
+  CHECK(sandbox(h,
+                "self.anything = {self:find('below').path, self:find('below').parent == self, self.parent == nil, "
+                "self:find('../other') == nil, "
+                "self:find('/') == nil, #self:children()}") == "");
   CHECK(h.kernel.root().find<Thing>("/usr/a")->anything == Value(List{"/usr/a/below", true, true, true, true, 1}));
 }
 
 TEST_CASE("an untrusted script cannot make, delete or attach") {
   LuaHouse h;
-  CHECK_THAT(sandbox(h, "self:new('Thing')"), Equals("the script attached to /usr/a failed: guest:1: node:new is not for untrusted scripts"));
+  CHECK_THAT(sandbox(h, "self:new('Thing')"),
+             Equals("the script attached to /usr/a failed: guest:1: node:new is not for untrusted scripts"));
   CHECK_THAT(sandbox(h, "self:delete()"), Contains("guest:1: delete is not for untrusted scripts"));
   for (const char* name : {"attach", "attachScript"})
-    CHECK_THAT(sandbox(h, std::string("self:") + name + "('x.lua')"), Contains("guest:1: node:attachScript is not for untrusted scripts"));
+    CHECK_THAT(sandbox(h, std::string("self:") + name + "('x.lua')"),
+               Contains("guest:1: node:attachScript is not for untrusted scripts"));
 }
 
 TEST_CASE("an untrusted script that computes too long is stopped") {
   LuaHouse h;
-  CHECK_THAT(sandbox(h, "\nwhile true do end"),
-             Equals("the script attached to /usr/a failed: guest:2: stopped after 1000000 instructions: is there an endless loop?"));
-  CHECK_THAT(sandbox(h, "while true do pcall(function() while true do end end) end"), Contains("stopped after 1000000 instructions"));
+  CHECK_THAT(sandbox(h, "\nwhile true do end"), Equals("the script attached to /usr/a failed: guest:2: stopped after "
+                                                       "1000000 instructions: is there an endless loop?"));
+  CHECK_THAT(sandbox(h, "while true do pcall(function() while true do end end) end"),
+             Contains("stopped after 1000000 instructions"));
 }
 
 TEST_CASE("an untrusted handler that computes too long is stopped and logged") {
@@ -71,11 +81,12 @@ TEST_CASE("an untrusted handler that computes too long is stopped and logged") {
 
 TEST_CASE("library functions pay for the size of what they work on") {
   LuaHouse h;
-  const char* const loops[] = {"local s = ('x'):rep(500000) while true do local u = s:upper() end",
-                               "local s = ('x'):rep(500000) while true do local n = #s:sub(1, 2) end",
-                               "local t = {} for i = 1, 20000 do t[i] = i end while true do table.insert(t, 1, 0) table.remove(t, 1) end",
-                               "local t = {} for i = 1, 20000 do t[i] = i end while true do next(t, 5) end",
-                               "local s = ('x'):rep(500000) while true do local u = s .. 'y' end"};
+  const char* const loops[] = {
+      "local s = ('x'):rep(500000) while true do local u = s:upper() end",
+      "local s = ('x'):rep(500000) while true do local n = #s:sub(1, 2) end",
+      "local t = {} for i = 1, 20000 do t[i] = i end while true do table.insert(t, 1, 0) table.remove(t, 1) end",
+      "local t = {} for i = 1, 20000 do t[i] = i end while true do next(t, 5) end",
+      "local s = ('x'):rep(500000) while true do local u = s .. 'y' end"};
   for (const char* loop : loops) {
     INFO(loop);
     CHECK_THAT(sandbox(h, loop), Contains("stopped after 1000000 instructions"));
@@ -92,14 +103,20 @@ TEST_CASE("an untrusted script that hoards memory is stopped") {
   LuaHouse h;
   CHECK_THAT(sandbox(h, "local s = ('x'):rep(1000) while true do s = s .. s end"),
              Equals("the script attached to /usr/a failed: used up its memory: an untrusted script may hold 2 MiB"));
-  CHECK_THAT(sandbox(h, "local t = {} for i = 1, 1e9 do t[i] = {} end"), Contains("used up its memory: an untrusted script may hold 2 MiB"));
+  CHECK_THAT(sandbox(h, "local t = {} for i = 1, 1e9 do t[i] = {} end"),
+             Contains("used up its memory: an untrusted script may hold 2 MiB"));
   CHECK_THAT(sandbox(h, "local s = ('x'):rep(1e9)"), Contains("used up its memory"));
-  CHECK(h.run("local t = {} for i = 1, 1e5 do t[i] = {} end return #t") == Value(100000));  // the house's own scripts are not limited
+  CHECK(h.run("local t = {} for i = 1, 1e5 do t[i] = {} end return #t") ==
+        Value(100000));  // the house's own scripts are not limited
 }
 
 TEST_CASE("an untrusted script may grow and drop tables as long as it likes") {
   LuaHouse h;
-  CHECK(sandbox(h, "for i = 1, 400 do local t = {} for k = 1, 400 do t[k] = k end end self.count = collectgarbage and 0 or 1") == "");
+  CHECK(
+      sandbox(
+          h,
+          "for i = 1, 400 do local t = {} for k = 1, 400 do t[k] = k end end self.count = collectgarbage and 0 or 1") ==
+      "");
   CHECK(h.kernel.root().find<Thing>("/usr/a")->count == 1);
 }
 

@@ -30,7 +30,8 @@ TEST_CASE("every node has name, path, class, parent, alive, find and children") 
   CHECK(h.run("return get('/usr'):find('a/b').path") == Value("/usr/a/b"));
   CHECK(h.run("return get('/usr'):find('a/c')") == Value());
   CHECK(h.run("return get('/nowhere')") == Value());
-  CHECK(h.run("local n = {} for i, c in ipairs(get('/usr/a'):children()) do n[i] = c.name end return n") == Value(List{"b"}));
+  CHECK(h.run("local n = {} for i, c in ipairs(get('/usr/a'):children()) do n[i] = c.name end return n") ==
+        Value(List{"b"}));
   CHECK(h.run("return tostring(get('/usr/a/b'))") == Value("/usr/a/b"));
 }
 
@@ -66,13 +67,16 @@ TEST_CASE("a member of the class goes before a built-in of the same name") {
   CHECK(h.run("return get('/usr/c').path") == Value("straight"));
   h.run("get('/usr/c').path = 'round'");
   CHECK(c.track == "round");
-  CHECK(h.run("return {tostring(get('/usr/c')), get('/usr/c'):getFullPath(), get('/usr/c').name}") == Value(List{"/usr/c", "/usr/c", "c"}));
+  CHECK(h.run("return {tostring(get('/usr/c')), get('/usr/c'):getFullPath(), get('/usr/c').name}") ==
+        Value(List{"/usr/c", "/usr/c", "c"}));
 
-  h.run("get('/usr/c'):attachScript('mark.lua') get('/usr/a'):attachScript('mark.lua') get('/usr/a'):attach('mark.lua')");
+  h.run(
+      "get('/usr/c'):attachScript('mark.lua') get('/usr/a'):attachScript('mark.lua') get('/usr/a'):attach('mark.lua')");
   h.emit("tick");
   CHECK(h.kernel.root().find<Thing>("/usr/a")->count == 3);
   CHECK_THAT(h.failure("get('/usr/c'):attach('mark.lua')"),
-             Equals("test:1: attach is a method of class Coupling itself: write node:attachScript(\"mark.lua\") to attach a script to /usr/c"));
+             Equals("test:1: attach is a method of class Coupling itself: write node:attachScript(\"mark.lua\") to "
+                    "attach a script to /usr/c"));
 }
 
 TEST_CASE("nodes are equal by identity and work as table keys") {
@@ -96,7 +100,8 @@ TEST_CASE("scripts make and delete nodes") {
 TEST_CASE("what belongs to the kernel cannot be deleted") {
   LuaHouse h;
   for (const char* path : {"/", "/classes", "/classes/Thing", "/plugins"})
-    CHECK_THAT(h.failure(std::string("delete('") + path + "')"), Contains(std::string("cannot delete ") + path + ": it belongs to the kernel"));
+    CHECK_THAT(h.failure(std::string("delete('") + path + "')"),
+               Contains(std::string("cannot delete ") + path + ": it belongs to the kernel"));
 }
 
 TEST_CASE("a dead node says so and knows what it was") {
@@ -109,7 +114,8 @@ TEST_CASE("a dead node says so and knows what it was") {
     INFO(use);
     CHECK_THAT(h.failure(use), Contains("test:1: this node is gone"));
   }
-  CHECK_THAT(h.failure("return a.mass"), Equals("test:1: this node is gone: it was /usr/a and has been deleted. Ask node.alive before you use a node that may die."));
+  CHECK_THAT(h.failure("return a.mass"), Equals("test:1: this node is gone: it was /usr/a and has been deleted. Ask "
+                                                "node.alive before you use a node that may die."));
   h.thing("/usr/b");
   CHECK_THAT(h.failure("get('/usr/b').anything = a"), Contains("this node is gone"));
 }
@@ -146,8 +152,11 @@ TEST_CASE("patterns match as the reference manual says") {
       {"('$a $b'):gsub('%$(%w+)', {a = 'x'})", "x $b"},
       {"('abc'):gsub('%w', function(c) return c == 'b' and c:upper() end)", "aBc"},
       {"{('abc'):gsub('^a', 'x')}", List{"xbc", 1}},
-      {"(function() local t = {} for k, v in ('a=1, b=2'):gmatch('(%w+)=(%w+)') do t[#t + 1] = k .. v end return t end)()", List{"a1", "b2"}},
-      {"(function() local t = {} for w in ('one two'):gmatch('%a*') do t[#t + 1] = w end return t end)()", List{"one", "two"}},
+      {"(function() local t = {} for k, v in ('a=1, b=2'):gmatch('(%w+)=(%w+)') do t[#t + 1] = k .. v end return t "
+       "end)()",
+       List{"a1", "b2"}},
+      {"(function() local t = {} for w in ('one two'):gmatch('%a*') do t[#t + 1] = w end return t end)()",
+       List{"one", "two"}},
       {"(function() local t = {} for w in ('^a^'):gmatch('^a') do t[#t + 1] = w end return t end)()", List{"^a"}},
       {"{('a\\0b'):find('%z')}", List{2, 2}},
   };
@@ -164,17 +173,25 @@ TEST_CASE("patterns match as the reference manual says") {
   CHECK_THAT(h.failure("('a'):find('%1')"), Equals("test:1: invalid capture index %1"));
   CHECK_THAT(h.failure("('a'):gsub('a', '%2')"), Contains("test:1: invalid capture index %2"));
   CHECK_THAT(h.failure("('a'):gsub('a', '%x')"), Contains("test:1: invalid use of '%' in replacement string"));
-  CHECK_THAT(h.failure("('a'):gsub('a', function() return {} end)"), Contains("test:1: invalid replacement value (a table)"));
-  CHECK_THAT(h.failure("('a'):gsub('a')"), Contains("test:1: bad argument #2 to 'gsub' (string/function/table expected, got no value)"));
+  CHECK_THAT(h.failure("('a'):gsub('a', function() return {} end)"),
+             Contains("test:1: invalid replacement value (a table)"));
+  CHECK_THAT(h.failure("('a'):gsub('a')"),
+             Contains("test:1: bad argument #2 to 'gsub' (string/function/table expected, got no value)"));
   CHECK_THAT(h.failure("('x'):rep(300):find(('x?'):rep(300) .. ('x'):rep(300))"), Contains("pattern too complex"));
 }
 
 TEST_CASE("values keep their type both ways") {
   LuaHouse h;
   h.thing("/usr/a");
-  const std::vector<std::pair<const char*, Value>> cases{
-      {"nil", {}}, {"true", true}, {"3", 3}, {"3.0", 3.0}, {"0.1", 0.1}, {"'x\\0y'", std::string("x\0y", 3)}, {"9007199254740993", std::int64_t{9007199254740993}},
-      {"{}", List{}}, {"{1, 2.5, 'a', {true}}", List{1, 2.5, "a", List{true}}}};
+  const std::vector<std::pair<const char*, Value>> cases{{"nil", {}},
+                                                         {"true", true},
+                                                         {"3", 3},
+                                                         {"3.0", 3.0},
+                                                         {"0.1", 0.1},
+                                                         {"'x\\0y'", std::string("x\0y", 3)},
+                                                         {"9007199254740993", std::int64_t{9007199254740993}},
+                                                         {"{}", List{}},
+                                                         {"{1, 2.5, 'a', {true}}", List{1, 2.5, "a", List{true}}}};
   for (const auto& [text, value] : cases) {
     INFO(text);
     CHECK(h.run(std::string("return ") + text) == value);
@@ -186,7 +203,8 @@ TEST_CASE("values keep their type both ways") {
 
 TEST_CASE("a table that is no sequence becomes a list of pairs, sorted by key") {
   LuaHouse h;
-  CHECK(h.run("return {b = 1, a = 2, [3] = 'x', [1.5] = 'y'}") == Value(List{List{1.5, "y"}, List{3, "x"}, List{"a", 2}, List{"b", 1}}));
+  CHECK(h.run("return {b = 1, a = 2, [3] = 'x', [1.5] = 'y'}") ==
+        Value(List{List{1.5, "y"}, List{3, "x"}, List{"a", 2}, List{"b", 1}}));
   CHECK(h.run("return {1, nil, 3}") == Value(List{List{1, 1}, List{3, 3}}));
 }
 
@@ -201,15 +219,18 @@ TEST_CASE("what is no value is refused") {
   h.thing("/usr/a");
   CHECK_THAT(h.failure("get('/usr/a').anything = print"),
              Equals("test:1: expected a value (nil, boolean, number, string, table or node), found a function"));
-  CHECK_THAT(h.failure("local t = {} t[1] = t get('/usr/a').anything = t"), Contains("is nested more than 64 deep, or holds itself"));
+  CHECK_THAT(h.failure("local t = {} t[1] = t get('/usr/a').anything = t"),
+             Contains("is nested more than 64 deep, or holds itself"));
 }
 
 TEST_CASE("an unknown name is answered with the nearest") {
   LuaHouse h;
   h.thing("/usr/a");
-  CHECK_THAT(h.failure("return get('/usr/a').mas"), Equals("test:1: /usr/a (class Thing) has no property or method 'mas'. Did you mean 'mass'?"));
+  CHECK_THAT(h.failure("return get('/usr/a').mas"),
+             Equals("test:1: /usr/a (class Thing) has no property or method 'mas'. Did you mean 'mass'?"));
   CHECK_THAT(h.failure("get('/usr/a'):ad(1, 2)"), Contains("has no property or method 'ad'. Did you mean 'add'"));
-  CHECK_THAT(h.failure("get('/usr/a').lable = 'x'"), Equals("test:1: /usr/a (class Thing) has no property 'lable'. Did you mean 'label'?"));
+  CHECK_THAT(h.failure("get('/usr/a').lable = 'x'"),
+             Equals("test:1: /usr/a (class Thing) has no property 'lable'. Did you mean 'label'?"));
   CHECK_THAT(h.failure("get('/usr/a'):childen()"), Contains("Did you mean 'children'?"));
   CHECK_THAT(h.failure("new('Thin', '/usr/b')"), Contains("test:1: there is no class 'Thin'. Did you mean 'Thing'?"));
 }
@@ -217,13 +238,16 @@ TEST_CASE("an unknown name is answered with the nearest") {
 TEST_CASE("wrong values and arguments say what was expected") {
   LuaHouse h;
   h.thing("/usr/a");
-  CHECK_THAT(h.failure("get('/usr/a').mass = -1"), Equals("test:1: cannot set /usr/a.mass\n  because: expected 0.0 to inf kg, found -1"));
+  CHECK_THAT(h.failure("get('/usr/a').mass = -1"),
+             Equals("test:1: cannot set /usr/a.mass\n  because: expected 0.0 to inf kg, found -1"));
   CHECK_THAT(h.failure("get('/usr/a').mass = {}"), Contains("cannot set /usr/a.mass"));
   CHECK_THAT(h.failure("get('/usr/a').fixed = 1"), Contains("/usr/a.fixed is read only"));
   CHECK_THAT(h.failure("get('/usr/a').path = 'x'"), Contains("cannot set /usr/a.path: it is read only"));
   CHECK_THAT(h.failure("get('/usr/a'):add(1)"), Contains("expected 2 arguments, found 1"));
-  CHECK_THAT(h.failure("get('/usr/a').add(1, 2)"), Contains("expected a node before add, found number: write node:add(...), with a colon"));
-  CHECK_THAT(h.failure("get('/usr/a'):on('tick', 5)"), Contains("expected a function(self, event) to handle 'tick', found number"));
+  CHECK_THAT(h.failure("get('/usr/a').add(1, 2)"),
+             Contains("expected a node before add, found number: write node:add(...), with a colon"));
+  CHECK_THAT(h.failure("get('/usr/a'):on('tick', 5)"),
+             Contains("expected a function(self, event) to handle 'tick', found number"));
   CHECK_THAT(h.failure("get(5)"), Contains("expected a path (a string), found number"));
 }
 
@@ -240,7 +264,8 @@ TEST_CASE("the variables of a group read and write like properties") {
 TEST_CASE("a script's error has file, line and a short traceback") {
   LuaHouse h;
   CHECK_THAT(h.failure("local x = nil\nreturn x.y"), Equals("test:2: attempt to index a nil value (local 'x')"));
-  CHECK_THAT(h.failure("function f()\n  error('boom')\nend\nlocal function g()\n  f()\nend\ng()"), Equals("test:2: boom\n  from test:5 in 'g'\n  from test:7"));
+  CHECK_THAT(h.failure("function f()\n  error('boom')\nend\nlocal function g()\n  f()\nend\ng()"),
+             Equals("test:2: boom\n  from test:5 in 'g'\n  from test:7"));
   CHECK_THAT(h.failure("x ="), Equals("test:1: unexpected symbol near <eof>"));
   CHECK_THAT(h.failure("error({})"), Equals("table\n  from test:1"));
 }
@@ -248,10 +273,14 @@ TEST_CASE("a script's error has file, line and a short traceback") {
 TEST_CASE("an attached script gets arguments") {
   LuaHouse house;
   house.thing("/usr/a");
-  house.write("rule.lua", "local args, more = ...\nself.count = args and args.limit or -1\nself.label = tostring(args and args.who) .. tostring(more)\n"
-                          "if args and args.call then args.call(self) end");
+  house.write("rule.lua",
+              "local args, more = ...\nself.count = args and args.limit or -1\nself.label = tostring(args and "
+              "args.who) .. tostring(more)\n"
+              "if args and args.call then args.call(self) end");
   SECTION("from Lua, as they are: tables, nodes, functions") {
-    house.run("get('/usr/a'):attachScript('rule.lua', {limit = 3, who = get('/usr'), call = function(node) node.mass = 5 end}, 'x')");
+    house.run(
+        "get('/usr/a'):attachScript('rule.lua', {limit = 3, who = get('/usr'), call = function(node) node.mass = 5 "
+        "end}, 'x')");
     CHECK(house.kernel.root().require<Thing>("/usr/a").count == 3);
     CHECK(house.kernel.root().require<Thing>("/usr/a").label == "/usrx");
     CHECK(house.kernel.root().require<Thing>("/usr/a").mass == 5);
@@ -275,6 +304,7 @@ TEST_CASE("an attached script gets arguments") {
 
 TEST_CASE("a script unloads plugins and loads them again") {
   LuaHouse house;
-  CHECK_THAT(house.failure("unload 'nosuch'"), Catch::Contains("test:1: cannot unload plugin 'nosuch': there is none of that name"));
+  CHECK_THAT(house.failure("unload 'nosuch'"),
+             Catch::Contains("test:1: cannot unload plugin 'nosuch': there is none of that name"));
   CHECK_THAT(house.failure("unload(3)"), Catch::Contains("expected a plugin's name"));
 }

@@ -78,10 +78,12 @@ TEST_CASE("An absolute path is the kernel's also for what is not linked") {
 TEST_CASE("A missing path says where it ends and what is near") {
   Core core;
   core.make("wheel");
-  CHECK_THROWS_WITH(core.top->require<Thing>("/usr/t/wheal"),
-                    Catch::Contains("expected a Thing at '/usr/t/wheal'") && Catch::Contains("no 'wheal' in /usr/t") && Catch::Contains("'wheel'"));
+  CHECK_THROWS_WITH(core.top->require<Thing>("/usr/t/wheal"), Catch::Contains("expected a Thing at '/usr/t/wheal'") &&
+                                                                  Catch::Contains("no 'wheal' in /usr/t") &&
+                                                                  Catch::Contains("'wheel'"));
   core.top->create("Leaf", "plain");
-  CHECK_THROWS_WITH(core.top->require<Thing>("plain"), Catch::Contains("found a Leaf") && Catch::Contains("lacks interface Thing version 1"));
+  CHECK_THROWS_WITH(core.top->require<Thing>("plain"),
+                    Catch::Contains("found a Leaf") && Catch::Contains("lacks interface Thing version 1"));
   CHECK(&core.top->require<ICounter>("wheel").leaf() == core.top->child("wheel"));
 }
 
@@ -338,7 +340,8 @@ TEST_CASE("What is collected does not depend on whether the order is up to date"
     from.collect(out, deep);
     return out;
   };
-  const auto check = [&](const std::vector<Thing*>& all, const std::vector<Thing*>& shallow, const std::vector<Thing*>& belowA) {
+  const auto check = [&](const std::vector<Thing*>& all, const std::vector<Thing*>& shallow,
+                         const std::vector<Thing*>& belowA) {
     CHECK(collected(*core.top, true) == all);
     CHECK(collected(*core.top, false) == shallow);
     CHECK(collected(a, true) == belowA);
@@ -414,11 +417,13 @@ TEST_CASE("What is in use, and what is above it, can neither be removed nor move
   {
     const InUse use(b, "it holds the roof");
     CHECK_THROWS_WITH(a.remove(b), Catch::Equals("cannot remove /usr/t/a/b now: it is in use: it holds the roof"));
-    CHECK_THROWS_WITH(core.top->remove(a), Catch::Equals("cannot remove /usr/t/a now: /usr/t/a/b is in use: it holds the roof"));
+    CHECK_THROWS_WITH(core.top->remove(a),
+                      Catch::Equals("cannot remove /usr/t/a now: /usr/t/a/b is in use: it holds the roof"));
     CHECK_THROWS_WITH(core.top->removeChildren(), Catch::Contains("/usr/t/a/b is in use"));
     CHECK(core.top->children().size() == 2);
     CHECK_THROWS_WITH(core.top->reparent(a, other), Catch::Contains("cannot move /usr/t/a now"));
-    CHECK_THROWS_WITH(a.setName("x"), Catch::Equals("cannot name /usr/t/a 'x' now: /usr/t/a/b is in use: it holds the roof"));
+    CHECK_THROWS_WITH(a.setName("x"),
+                      Catch::Equals("cannot name /usr/t/a 'x' now: /usr/t/a/b is in use: it holds the roof"));
     CHECK_THROWS_WITH(callMethod(a, "unlinkLeaf", {}), Catch::Contains("it holds the roof"));
     CHECK_NOTHROW(a.setName("a"));
     c.setName("d");
@@ -434,7 +439,8 @@ TEST_CASE("Names below what is in use stay as far down as it says") {
   Core core;
   Thing &a = core.make("a"), &b = core.make(a, "b"), &c = core.make(b, "c");
   const InUse use(a, "paths lead there", 1);
-  CHECK_THROWS_WITH(b.setName("x"), Catch::Equals("cannot name /usr/t/a/b 'x' now: /usr/t/a is in use: paths lead there"));
+  CHECK_THROWS_WITH(b.setName("x"),
+                    Catch::Equals("cannot name /usr/t/a/b 'x' now: /usr/t/a is in use: paths lead there"));
   c.setName("x");
   a.remove(b);
 }
@@ -443,7 +449,8 @@ TEST_CASE("Uses end in any order, and with what was in use") {
   Core core;
   auto kernel = std::make_unique<spark::test::House>(false);
   Leaf& leaf = kernel->kernel.create("Node", "/usr/a");
-  auto first = std::make_unique<InUse>(leaf, "one"), second = std::make_unique<InUse>(leaf, "two"), third = std::make_unique<InUse>(leaf, "three");
+  auto first = std::make_unique<InUse>(leaf, "one"), second = std::make_unique<InUse>(leaf, "two"),
+       third = std::make_unique<InUse>(leaf, "three");
   second.reset();
   CHECK_THROWS_WITH(leaf.setName("b"), Catch::Contains("three"));
   third.reset();
@@ -489,7 +496,11 @@ TEST_CASE("The tree has a greatest depth") {
   Core core;
   Node* at = core.top;
   const auto deeper = [&] { at = at->create("Node", "n").asNode(); };
-  CHECK_THROWS_WITH([&] { for (;;) deeper(); }(), Catch::Equals("cannot add a Node here: the tree is at most 1000 levels deep"));
+  CHECK_THROWS_WITH(
+      [&] {
+        for (;;) deeper();
+      }(),
+      Catch::Equals("cannot add a Node here: the tree is at most 1000 levels deep"));
   CHECK(at->children().empty());
   int levels = 0;
   for (Node* up = at; up; up = up->parent()) ++levels;

@@ -1,3 +1,5 @@
+#include "spark/numbers.h"
+
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -5,8 +7,6 @@
 #include <cstdlib>
 #include <random>
 #include <vector>
-
-#include "spark/numbers.h"
 
 using namespace spark;
 
@@ -28,18 +28,21 @@ std::string general(double v) {
 /// A number and what is next to it, in both precisions.
 std::vector<double> around(double v) {
   const auto f = static_cast<float>(v);
-  return {v,  std::nextafter(v, INFINITY),  std::nextafter(v, -INFINITY), f, std::nextafterf(f, INFINITY), std::nextafterf(f, -INFINITY),
+  return {v,  std::nextafter(v, INFINITY),  std::nextafter(v, -INFINITY),
+          f,  std::nextafterf(f, INFINITY), std::nextafterf(f, -INFINITY),
           -v, std::nextafter(-v, INFINITY)};
 }
 
-/// Numbers of every kind: any bits; sizes that are usual in messages; ties of few binary places; decimal ties; steps of ten.
+/// Numbers of every kind: any bits; sizes that are usual in messages; ties of few binary places; decimal ties; steps of
+/// ten.
 std::vector<double> numbersOf(std::mt19937_64& random) {
   const std::uint64_t bits = random();
   const auto digits = static_cast<double>(static_cast<std::int64_t>(bits >> 20 & 0x1FFFFFF) - 0x1000000);
   const auto power = static_cast<int>(bits & 31);
   std::vector<double> out{std::bit_cast<double>(bits), std::bit_cast<float>(static_cast<std::uint32_t>(bits)),
                           std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())), -75 + power)};
-  for (const double v : {std::ldexp(digits, -power), digits / std::pow(10.0, power % 12), 5 * std::pow(10.0, power - 25), std::pow(10.0, power - 24),
+  for (const double v : {std::ldexp(digits, -power), digits / std::pow(10.0, power % 12),
+                         5 * std::pow(10.0, power - 25), std::pow(10.0, power - 24),
                          (digits + 0.5) * std::pow(10.0, power - 26), std::pow(10.0, power - 24) * (1 - 5e-7)})
     for (const double near : around(v)) out.push_back(near);
   return out;
@@ -55,7 +58,8 @@ TEST_CASE("Numbers with fixed decimals are byte for byte what printf makes of th
       const std::string found = fixed(v, decimals, false), expected = printed("%.*f", decimals, v);
       if (found != expected) FAIL("expected " << expected << ", found " << found);
       if (v >= 65536 && v < 1e9) continue;  // clocks stay in double precision
-      const std::string foundFloat = fixed(v, decimals, true), expectedFloat = printed("%.*f", decimals, static_cast<float>(v));
+      const std::string foundFloat = fixed(v, decimals, true),
+                        expectedFloat = printed("%.*f", decimals, static_cast<float>(v));
       if (foundFloat != expectedFloat) FAIL("expected " << expectedFloat << ", found " << foundFloat);
     }
   }
@@ -90,7 +94,8 @@ TEST_CASE("Numbers are read to the last bit as atof reads them") {
   std::mt19937_64 random(3);
   const auto check = [](const std::string& text) {
     const double found = readNumber(text), expected = std::atof(text.c_str());
-    if (std::bit_cast<std::uint64_t>(found) != std::bit_cast<std::uint64_t>(expected)) FAIL(text << ": expected " << expected << ", found " << found);
+    if (std::bit_cast<std::uint64_t>(found) != std::bit_cast<std::uint64_t>(expected))
+      FAIL(text << ": expected " << expected << ", found " << found);
   };
   for (int i = 0; i < 6000; ++i)
     for (const double v : numbersOf(random)) {
@@ -100,16 +105,37 @@ TEST_CASE("Numbers are read to the last bit as atof reads them") {
   constexpr std::string_view kLetters = "0123456789.-+ex ";
   for (int i = 0; i < 100000; ++i) {
     std::string text;
-    for (std::uint64_t bits = random(), n = bits % 18; n > 0; --n, bits >>= 3) text += kLetters[bits / 7 % kLetters.size()];
+    for (std::uint64_t bits = random(), n = bits % 18; n > 0; --n, bits >>= 3)
+      text += kLetters[bits / 7 % kLetters.size()];
     check(text);
   }
-  for (const char* text : {"", "-", ".", "-.", "-0", "+2", "1.", ".5", "-.5", "1..2", " 7", "7 ", "0x10", "1e3", "nan", "inf", "999999999999999", "9007199254740993",
-                           "0.000000000000001", "0.0000000000000001", "123456789012345.6"})
+  for (const char* text : {"",
+                           "-",
+                           ".",
+                           "-.",
+                           "-0",
+                           "+2",
+                           "1.",
+                           ".5",
+                           "-.5",
+                           "1..2",
+                           " 7",
+                           "7 ",
+                           "0x10",
+                           "1e3",
+                           "nan",
+                           "inf",
+                           "999999999999999",
+                           "9007199254740993",
+                           "0.000000000000001",
+                           "0.0000000000000001",
+                           "123456789012345.6"})
     check(text);
 }
 
 TEST_CASE("Whole numbers are told from what only begins with one") {
-  for (const char* text : {"0", "-0", "+2", "1.", ".5", "-.5", "0x10", "1e3", "1E-300", "nan", "-inf", "999999999999999", "9007199254740993", "123456789012345678901234567890"}) {
+  for (const char* text : {"0", "-0", "+2", "1.", ".5", "-.5", "0x10", "1e3", "1E-300", "nan", "-inf",
+                           "999999999999999", "9007199254740993", "123456789012345678901234567890"}) {
     CAPTURE(text);
     double v = -7;
     CHECK(readWholeNumber(text, v));

@@ -8,8 +8,8 @@
 #include "spark/error.h"
 #include "spark/event.h"
 #include "spark/state.h"
-#include "test_support.h"
 #include "temporary_folder.h"
+#include "test_support.h"
 
 // Plugins come and go; what is no good is refused with a sentence that names file and reason, and nothing else suffers.
 
@@ -74,28 +74,33 @@ TEST_CASE("Each bad file of a folder is refused by name and reason, and scanning
   // Those that fail only when their classes are registered are listed.
   std::vector<std::string> listed;
   for (const auto& p : house.kernel.root().child("plugins")->asNode()->children()) listed.push_back(p->name());
-  CHECK(listed == std::vector<std::string>{"duplicate-class", "own-base", "throws-no-exception", "throws-while-registering"});
+  CHECK(listed ==
+        std::vector<std::string>{"duplicate-class", "own-base", "throws-no-exception", "throws-while-registering"});
   for (const auto& [name, reason] : expected) CHECK_FALSE(isMapped(bad(name)));
 }
 
 TEST_CASE("One file alone is refused with the same words") {
   House house(false);
-  for (const char* name : {"bad-name", "missing-dependency", "missing-symbol", "newer-abi", "no-descriptor", "not-a-library", "older-abi", "other-headers",
-                           "other-sanitizer", "wrong-magic", "duplicate-class", "own-base", "throws-no-exception", "throws-while-registering"}) {
+  for (const char* name : {"bad-name", "missing-dependency", "missing-symbol", "newer-abi", "no-descriptor",
+                           "not-a-library", "older-abi", "other-headers", "other-sanitizer", "wrong-magic",
+                           "duplicate-class", "own-base", "throws-no-exception", "throws-while-registering"}) {
     CAPTURE(name);
     CHECK_THAT(refusal([&] { house.kernel.plugins().useFile(bad(name)); }), Catch::Contains(bad(name).string()));
     CHECK(house.kernel.root().child("plugins")->asNode()->children().empty());
     CHECK_FALSE(isMapped(bad(name)));
   }
-  CHECK_THAT(refusal([&] { house.kernel.plugins().useFile("/nowhere/x.so"); }), Catch::Contains("/nowhere/x.so") && Catch::Contains("No such file"));
+  CHECK_THAT(refusal([&] { house.kernel.plugins().useFile("/nowhere/x.so"); }),
+             Catch::Contains("/nowhere/x.so") && Catch::Contains("No such file"));
 }
 
 TEST_CASE("What fails while it registers leaves no class behind") {
   House house(false);
   house.kernel.plugins().scan(fixtures("bad-plugins"));
   const auto failure = [&](const char* name) { return refusal([&] { house.kernel.plugins().use(name); }); };
-  CHECK_THAT(failure("throws-while-registering"), Catch::Contains("throws-while-registering.so") && Catch::Contains("the flux is low"));
-  CHECK_THAT(failure("throws-no-exception"), Catch::Contains("throws-no-exception.so") && Catch::Contains("no std::exception"));
+  CHECK_THAT(failure("throws-while-registering"),
+             Catch::Contains("throws-while-registering.so") && Catch::Contains("the flux is low"));
+  CHECK_THAT(failure("throws-no-exception"),
+             Catch::Contains("throws-no-exception.so") && Catch::Contains("no std::exception"));
   CHECK_THAT(failure("duplicate-class"), Catch::Contains("class 'Node' is registered already, by the kernel"));
   CHECK_THAT(failure("own-base"), Catch::Contains("class 'Innocent' names itself as its base"));
   CHECK(house.kernel.findClass("Innocent") == nullptr);
@@ -120,7 +125,8 @@ TEST_CASE("A file that is cut off, empty or a folder is refused") {
   CHECK_THAT(problems[0], Catch::Contains("cut.so") && Catch::Contains("it is cut off"));
   CHECK_THAT(problems[1], Catch::Contains("empty.so") && Catch::Contains("it is no shared library"));
   CHECK_THAT(problems[2], Catch::Contains("folder.so"));
-  CHECK_THAT(house.kernel.plugins().scan(folder.path() / "nowhere").at(0), Catch::Contains("cannot read plugin folder"));
+  CHECK_THAT(house.kernel.plugins().scan(folder.path() / "nowhere").at(0),
+             Catch::Contains("cannot read plugin folder"));
 }
 
 TEST_CASE("A file one of whose segments lies where nothing is loaded is refused") {
@@ -152,7 +158,8 @@ TEST_CASE("Files of a folder are taken in the order of their names") {
   for (int i = 0; i < 20; ++i) std::ofstream(folder.path() / fmt::format("file{:02}.so", i * 7 % 20)).flush();
   const auto problems = house.kernel.plugins().scan(folder.path());
   REQUIRE(problems.size() == 20);
-  for (std::size_t i = 0; i < problems.size(); ++i) CHECK_THAT(problems[i], Catch::Contains(fmt::format("file{:02}.so", i)));
+  for (std::size_t i = 0; i < problems.size(); ++i)
+    CHECK_THAT(problems[i], Catch::Contains(fmt::format("file{:02}.so", i)));
 }
 
 TEST_CASE("Scanning lists, a config line registers") {
@@ -163,11 +170,13 @@ TEST_CASE("Scanning lists, a config line registers") {
   CHECK(p.classes() == std::vector<std::string>{"FixtureBase"});
   CHECK_FALSE(p.registered());
   CHECK(house.kernel.findClass("FixtureBase") == nullptr);
-  CHECK_THAT(refusal([&] { house.kernel.classOf("FixtureBase"); }), Catch::Contains("plugin 'fixture-base' provides it"));
+  CHECK_THAT(refusal([&] { house.kernel.classOf("FixtureBase"); }),
+             Catch::Contains("plugin 'fixture-base' provides it"));
   CHECK(&house.kernel.plugins().use("fixture-base") == &p);
   CHECK(&house.kernel.plugins().use("fixture-base") == &p);
   CHECK(house.kernel.classOf("FixtureBase").plugin() == &p);
-  CHECK_THAT(refusal([&] { house.kernel.plugins().use("fixture-bace"); }), Catch::Contains("'fixture-base'") && Catch::Contains("fixture-plugins"));
+  CHECK_THAT(refusal([&] { house.kernel.plugins().use("fixture-bace"); }),
+             Catch::Contains("'fixture-base'") && Catch::Contains("fixture-plugins"));
 }
 
 TEST_CASE("A folder may be scanned again, and a listed file be used by its path") {
@@ -180,7 +189,8 @@ TEST_CASE("A folder may be scanned again, and a listed file be used by its path"
   fs::copy_file(good("fixture-base"), folder.path() / "copy.so");
   const auto problems = house.kernel.plugins().scan(folder.path());
   REQUIRE(problems.size() == 1);
-  CHECK_THAT(problems[0], Catch::Contains("there is a plugin 'fixture-base' already, from " + good("fixture-base").string()));
+  CHECK_THAT(problems[0],
+             Catch::Contains("there is a plugin 'fixture-base' already, from " + good("fixture-base").string()));
 }
 
 TEST_CASE("The order in which plugins are registered does not matter") {
@@ -188,7 +198,8 @@ TEST_CASE("The order in which plugins are registered does not matter") {
   house.kernel.plugins().scan(fixtures("fixture-plugins"));
   house.kernel.plugins().use("fixture-derived");
   const std::string why = refusal([&] { house.kernel.create("FixtureDerived", "/usr/x"); });
-  CHECK_THAT(why, Catch::Contains("class FixtureDerived of plugin fixture-derived needs its base class FixtureBase") && Catch::Contains("plugin \"fixture-base\""));
+  CHECK_THAT(why, Catch::Contains("class FixtureDerived of plugin fixture-derived needs its base class FixtureBase") &&
+                      Catch::Contains("plugin \"fixture-base\""));
   house.kernel.plugins().use("fixture-base");
   Leaf& made = house.kernel.create("FixtureDerived", "/usr/x");
   CHECK(made.classObject()->isA("FixtureBase"));
@@ -200,7 +211,8 @@ TEST_CASE("The order in which plugins are registered does not matter") {
 TEST_CASE("A missing base that no plugin provides is said so") {
   House house(false);
   house.kernel.plugins().useFile(good("fixture-derived"));
-  CHECK_THAT(refusal([&] { house.kernel.create("FixtureDerived", "/usr/x"); }), Catch::Contains("No scanned plugin provides it"));
+  CHECK_THAT(refusal([&] { house.kernel.create("FixtureDerived", "/usr/x"); }),
+             Catch::Contains("No scanned plugin provides it"));
 }
 
 TEST_CASE("Unloading is refused while objects live, and lists them") {
@@ -210,7 +222,8 @@ TEST_CASE("Unloading is refused while objects live, and lists them") {
   Node& a = house.kernel.create<Node>("FixtureBase", "/usr/a");
   a.create("FixtureBase", "b");
   const std::string why = refusal([&] { loader.unload("fixture-base"); });
-  CHECK_THAT(why, Catch::Contains("while its objects live") && Catch::Contains("/usr/a (FixtureBase)") && Catch::Contains("/usr/a/b (FixtureBase)"));
+  CHECK_THAT(why, Catch::Contains("while its objects live") && Catch::Contains("/usr/a (FixtureBase)") &&
+                      Catch::Contains("/usr/a/b (FixtureBase)"));
   house.kernel.root().child("usr")->asNode()->remove(a);
   const auto loose = house.kernel.classOf("FixtureBase").create();
   CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }), Catch::Contains("1 outside the tree"));
@@ -223,7 +236,8 @@ TEST_CASE("Unloading is refused while classes of other plugins derive") {
   loader.scan(fixtures("fixture-plugins"));
   loader.use("fixture-derived");
   loader.use("fixture-base");
-  CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }), Catch::Contains("FixtureDerived of plugin 'fixture-derived'"));
+  CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }),
+             Catch::Contains("FixtureDerived of plugin 'fixture-derived'"));
   loader.unload("fixture-derived");
   loader.unload("fixture-base");
   CHECK(loader.providerOf("FixtureBase") == nullptr);
@@ -326,7 +340,8 @@ TEST_CASE("A file that is broken when it is to be loaded again is refused, and m
   loader.useFile(file);
   loader.unload("fixture-base");
   overwrite(file, whole.substr(0, 4000));  // of a file with debug information half would do
-  CHECK_THAT(refusal([&] { loader.use("fixture-base"); }), Catch::Contains(file.string()) && Catch::Contains("it is cut off"));
+  CHECK_THAT(refusal([&] { loader.use("fixture-base"); }),
+             Catch::Contains(file.string()) && Catch::Contains("it is cut off"));
   fs::remove(file);
   CHECK_THAT(refusal([&] { loader.use("fixture-base"); }), Catch::Contains("there is no plugin 'fixture-base'"));
   overwrite(file, whole);
@@ -337,7 +352,9 @@ TEST_CASE("Kernels share a file that is the same, and each keeps the version tha
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "fixture-base.so";
   fs::copy_file(good("fixture-base"), file);
-  const auto codeOf = [](House& house) { return reinterpret_cast<const void*>(house.kernel.classOf("FixtureBase").hooks().front()->run); };
+  const auto codeOf = [](House& house) {
+    return reinterpret_cast<const void*>(house.kernel.classOf("FixtureBase").hooks().front()->run);
+  };
   House a(false), b(false), c(false);
   a.kernel.plugins().useFile(file);
   b.kernel.plugins().useFile(file);
@@ -402,7 +419,8 @@ TEST_CASE("Scripts unload and load plugins, at once in a config and between two 
   lua.run("plugin 'fixture-base'  unload 'fixture-base'", "test");
   CHECK(house.kernel.findClass("FixtureBase") == nullptr);
   lua.run("plugin 'fixture-base'  new('FixtureBase', '/usr/a')", "test");
-  CHECK_THAT(refusal([&] { lua.run("unload 'fixture-base'", "test"); }), Catch::Contains("test:1:") && Catch::Contains("/usr/a (FixtureBase)"));
+  CHECK_THAT(refusal([&] { lua.run("unload 'fixture-base'", "test"); }),
+             Catch::Contains("test:1:") && Catch::Contains("/usr/a (FixtureBase)"));
   lua.run("on('knock', function() delete '/usr/a'  unload 'fixture-base' end)", "test");
   house.kernel.events().channel("knock").emit({"knock"});
   CHECK(house.text.empty());
@@ -415,7 +433,8 @@ TEST_CASE("A library that a plugin finds relative to its own file is found, and 
   const test::TemporaryFolder folder;
   fs::copy(fixtures("neighbour-plugins"), folder.path() / "elsewhere", fs::copy_options::recursive);
   House house(false);
-  const fs::path file = folder.path() / "elsewhere" / "with-neighbour.so", library = folder.path() / "elsewhere" / "lib" / "libfixture-neighbour.so";
+  const fs::path file = folder.path() / "elsewhere" / "with-neighbour.so",
+                 library = folder.path() / "elsewhere" / "lib" / "libfixture-neighbour.so";
   house.kernel.plugins().useFile(file);
   CHECK(getProperty(house.kernel.create("WithNeighbour", "/usr/a"), "answer") == Value(42));
   CHECK(isMapped(library));
@@ -424,5 +443,6 @@ TEST_CASE("A library that a plugin finds relative to its own file is found, and 
   CHECK_FALSE(isMapped(file));
   CHECK_FALSE(isMapped(library));
   fs::remove(library);
-  CHECK_THAT(refusal([&] { house.kernel.plugins().use("with-neighbour"); }), Catch::Contains(file.string()) && Catch::Contains("libfixture-neighbour.so: cannot open"));
+  CHECK_THAT(refusal([&] { house.kernel.plugins().use("with-neighbour"); }),
+             Catch::Contains(file.string()) && Catch::Contains("libfixture-neighbour.so: cannot open"));
 }

@@ -7,7 +7,8 @@
 using namespace spark;
 
 namespace {
-/// Reads and shows the tokens: lists in brackets, atoms with a mark for quoted ones. An error follows as line:column message.
+/// Reads and shows the tokens: lists in brackets, atoms with a mark for quoted ones. An error follows as line:column
+/// message.
 std::string shown(std::string_view text, ReadLimits limits = {}, std::size_t maxExpressions = 0) {
   Predicates p;
   const ReadResult r = readSexp(text, p, limits, maxExpressions);
@@ -99,9 +100,11 @@ TEST_CASE("In a file whose lines are indented the list that is not closed is fou
     const ReadResult r = readSexp(text, out, ReadLimits{64, 1 << 16, true});
     return fmt::format("{}:{} {}", r.line, r.column, r.message);
   };
-  CHECK(wrong("(RSG 0 1)\n(\n (nd A\n  (setX 1)\n  (nd B (setY 2)\n  (nd C)\n )\n)\n") == "5:3 the list is not closed: line 6 begins beside it");
+  CHECK(wrong("(RSG 0 1)\n(\n (nd A\n  (setX 1)\n  (nd B (setY 2)\n  (nd C)\n )\n)\n") ==
+        "5:3 the list is not closed: line 6 begins beside it");
   CHECK(wrong("(nd A\n  (nd B\n    (setX 1\n  (nd C))\n)") == "3:5 the list is not closed: line 4 begins beside it");
-  CHECK(wrong("(nd A ; (\n  (say \"a ( \\\" ;\n\")\n  (nd B\n  (nd C))") == "4:3 the list is not closed: line 5 begins beside it");
+  CHECK(wrong("(nd A ; (\n  (say \"a ( \\\" ;\n\")\n  (nd B\n  (nd C))") ==
+        "4:3 the list is not closed: line 5 begins beside it");
   // Bare brackets have what is in them below them; the last line cannot say anything; some do not indent.
   CHECK(wrong("(\n(nd A)\n(nd B (c)\n)") == "1:1 the list is not closed");
   CHECK(wrong("(nd A\n  (nd B)\n  (nd C (d)") == "1:1 the list is not closed");
@@ -233,7 +236,8 @@ TEST_CASE("Messages are written as the installed base expects them") {
   std::string out;
   writeSexp(p, 2, out);
   CHECK(out ==
-        "(See )(time (now 12.35))(GYR (n torso) (rt 0.00 -0.00 -1.00))(GS (sl 3) (pm BeforeKickOff))(empty (inner))(raw two words)");
+        "(See )(time (now 12.35))(GYR (n torso) (rt 0.00 -0.00 -1.00))(GS (sl 3) (pm BeforeKickOff))(empty "
+        "(inner))(raw two words)");
   out.clear();
   Predicates three;
   three.open("a").add(1.0f / 3.0).close();
@@ -282,7 +286,8 @@ TEST_CASE("What was read before stays as it was when the rest is cut off") {
   Predicates p;
   readSexp("(kept-and-longer-than-eight)", p);
   const auto size = static_cast<std::uint32_t>(p.size());
-  for (const char* rest : {"(abcdefgh as-long-as-the-first-one-was)", "(1 2 3 4 5 6 7 8 9 0 as-long-as-the-first-one-was)", "(a)"}) {
+  for (const char* rest :
+       {"(abcdefgh as-long-as-the-first-one-was)", "(1 2 3 4 5 6 7 8 9 0 as-long-as-the-first-one-was)", "(a)"}) {
     readSexp(rest, p);
     p.truncate(size);
     readSexp("(new-and-longer-than-eight)", p);

@@ -37,7 +37,8 @@ TEST_CASE("Random streams depend on seed, path, class and purpose") {
     RandomStream s(l, purpose);
     return s.bits();
   };
-  for (const auto& [cls, name, purpose] : {std::tuple{"Thing", "a", "x"}, {"Thing", "a2", "x"}, {"Thing", "a3", "y"}, {"HeavyThing", "a4", "x"}}) {
+  for (const auto& [cls, name, purpose] :
+       {std::tuple{"Thing", "a", "x"}, {"Thing", "a2", "x"}, {"Thing", "a3", "y"}, {"HeavyThing", "a4", "x"}}) {
     const std::uint64_t here = draw(core, cls, name, purpose);
     CHECK(here == draw(same, cls, name, purpose));
     CHECK(here != draw(other, cls, name, purpose));

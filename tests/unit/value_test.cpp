@@ -1,9 +1,10 @@
+#include "spark/value.h"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "spark/error.h"
-#include "spark/value.h"
 
 using spark::Args;
 using spark::Convert;
@@ -80,7 +81,8 @@ TEST_CASE("What a person types becomes the value it looks like") {
 
 TEST_CASE("What a person types is read when it is known what it is for") {
   const auto read = [](const char* text, const char* type) { return Value::typed(text).readAs(type); };
-  for (const char* text : {"007", "1e3", "0123456789012345678", "12345678901234567890", "nil", "true", "{a, b}", " x ", ""}) {
+  for (const char* text :
+       {"007", "1e3", "0123456789012345678", "12345678901234567890", "nil", "true", "{a, b}", " x ", ""}) {
     CAPTURE(text);
     CHECK(read(text, "string") == Value(text));
     CHECK(read(text, "number") == Value::fromText(text));

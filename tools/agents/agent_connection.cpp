@@ -63,12 +63,14 @@ void AgentConnection::send(const Predicates& predicates) {
 
 void AgentConnection::receive() {
   if (in_.size() - filled_ < kRoom) in_.resize(filled_ + kRoom);
-  socket_.async_read_some(asio::buffer(in_.data() + filled_, in_.size() - filled_), [this](const error_code& ec, std::size_t n) {
-    if (ec) return end(ec == asio::error::eof ? "the server closed the connection" : ec.message());
-    filled_ += n;
-    answerAll();
-    if (socket_.is_open()) receive();
-  });
+  socket_.async_read_some(asio::buffer(in_.data() + filled_, in_.size() - filled_),
+                          [this](const error_code& ec, std::size_t n) {
+                            if (ec)
+                              return end(ec == asio::error::eof ? "the server closed the connection" : ec.message());
+                            filled_ += n;
+                            answerAll();
+                            if (socket_.is_open()) receive();
+                          });
 }
 
 /// Every whole message that is there.
@@ -78,7 +80,8 @@ void AgentConnection::answerAll() {
   while (socket_.is_open() && all.size() - at >= kPrefix) {
     std::size_t n = 0;
     for (const unsigned char byte : all.substr(at, kPrefix)) n = n << 8 | byte;
-    if (n > kMaxMessage) return end(fmt::format("the server announced a message of {} bytes: it speaks another protocol", n));
+    if (n > kMaxMessage)
+      return end(fmt::format("the server announced a message of {} bytes: it speaks another protocol", n));
     if (all.size() - at - kPrefix < n) break;
     ++received_;
     answer(all.substr(at + kPrefix, n));

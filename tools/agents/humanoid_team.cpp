@@ -21,8 +21,8 @@ class Humanoid : public spark::agent::Player {
   std::string result() const override {
     const humanoid::Percepts& p = player_.percepts();
     const bool right = p.side == "right";
-    return fmt::format("{} ({}): {}:{} after {:.2f} s, {}", team_, p.side, right ? p.scoreRight : p.scoreLeft, right ? p.scoreLeft : p.scoreRight, p.gameTime,
-                       p.playMode);
+    return fmt::format("{} ({}): {}:{} after {:.2f} s, {}", team_, p.side, right ? p.scoreRight : p.scoreLeft,
+                       right ? p.scoreLeft : p.scoreRight, p.gameTime, p.playMode);
   }
 
  private:

@@ -7,8 +7,8 @@
 
 #include "team.h"
 
-// Load for a server: agents that take a robot and a place, and then only say that they are there; monitors that read and forget. One process,
-// one thread, and next to no work, so that what is measured is the server.
+// Load for a server: agents that take a robot and a place, and then only say that they are there; monitors that read
+// and forget. One process, one thread, and next to no work, so that what is measured is the server.
 
 namespace {
 namespace asio = boost::asio;
@@ -17,7 +17,8 @@ using spark::Predicates;
 
 class Idler : public spark::agent::Player {
  public:
-  Idler(std::string team, int unum, const std::string& robot, int type) : team_(std::move(team)), unum_(unum), robot_(robot), type_(type) {}
+  Idler(std::string team, int unum, const std::string& robot, int type)
+      : team_(std::move(team)), unum_(unum), robot_(robot), type_(type) {}
   void start(Predicates& actions) override {
     actions.open("scene").add(robot_);
     if (type_ >= 0) actions.add(type_);
@@ -61,19 +62,23 @@ class Watcher {
 
 int main(int argc, char** argv) {
   constexpr int kTeam = 11, kTypes = 5;
-  spark::agent::TeamProgram program("idle-team", "Load for a server: agents that stand about, and monitors that look on.", 2 * kTeam);
+  spark::agent::TeamProgram program(
+      "idle-team", "Load for a server: agents that stand about, and monitors that look on.", 2 * kTeam);
   const std::string nao = "rsg/agent/nao/nao_hetero.rsg";
   std::string robot = nao, other = "Idle";
   int type = -1, monitors = 0, monitorPort = 3200;
   program.addText("--robot", robot, "Scene file of the robot");
-  program.addNumber("--type", type, 0, 1000, "Argument of the robot's file; without it Naos are of types 0 to 4 in turn");
+  program.addNumber("--type", type, 0, 1000,
+                    "Argument of the robot's file; without it Naos are of types 0 to 4 in turn");
   program.addText("--other-team", other, "Name of the team of players 12 to 22");
   program.addNumber("--monitors", monitors, 0, 1000, "Monitors to connect");
   program.addNumber("--monitor-port", monitorPort, 1, 65535, "The server's monitor port");
   std::vector<std::unique_ptr<Watcher>> watchers;
   return program.run(argc, argv, [&](int number) {
-    while (static_cast<int>(watchers.size()) < monitors) watchers.push_back(std::make_unique<Watcher>(program.io(), program.options().host, monitorPort));
+    while (static_cast<int>(watchers.size()) < monitors)
+      watchers.push_back(std::make_unique<Watcher>(program.io(), program.options().host, monitorPort));
     const bool first = number <= kTeam, mixed = type < 0 && robot == nao;
-    return std::make_unique<Idler>(first ? program.options().team : other, first ? number : number - kTeam, robot, mixed ? number % kTypes : type);
+    return std::make_unique<Idler>(first ? program.options().team : other, first ? number : number - kTeam, robot,
+                                   mixed ? number % kTypes : type);
   });
 }

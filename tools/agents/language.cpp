@@ -25,7 +25,8 @@ class FromPlugin : public Language {
     if (const Plugin* p = kernel_.plugins().providerOf(parser)) kernel_.plugins().use(p->name());
     parser_ = &kernel_.create(parser, "/parser");
     for (const char* method : {"parse", "write"})
-      if (!parser_->classObject()->method(method)) throw Error(parser + " cannot be used by agents: it has no method '" + method + "'");
+      if (!parser_->classObject()->method(method))
+        throw Error(parser + " cannot be used by agents: it has no method '" + method + "'");
     if (parser_->classObject()->property("decimals")) setProperty(*parser_, "decimals", kDecimals);
   }
   void read(std::string_view message, Predicates& out) override {
@@ -43,7 +44,8 @@ class FromPlugin : public Language {
 };
 }  // namespace
 
-std::unique_ptr<Language> makeLanguage(const std::string& parser, const std::vector<std::filesystem::path>& pluginFolders) {
+std::unique_ptr<Language> makeLanguage(const std::string& parser,
+                                       const std::vector<std::filesystem::path>& pluginFolders) {
   if (parser == "SexpParser") return std::make_unique<Sexp>();
   return std::make_unique<FromPlugin>(parser, pluginFolders);
 }

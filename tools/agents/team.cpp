@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 /// A player and his connection.
 class Participant {
  public:
-  Participant(asio::io_context& io, Language& language, std::unique_ptr<Player> player, const TeamProgram::Options& options)
+  Participant(asio::io_context& io, Language& language, std::unique_ptr<Player> player,
+              const TeamProgram::Options& options)
       : player_(std::move(player)), connection_(io, language) {
     connection_.setListens(player_->listens());
     connection_.connect(options.host, options.port, options.patience);
@@ -50,14 +51,22 @@ std::vector<fs::path> pluginFolders() {
 }  // namespace
 
 TeamProgram::TeamProgram(std::string name, const std::string& description, int most)
-    : io_(std::make_unique<asio::io_context>(1)), name_(std::move(name)), app_(std::make_unique<CLI::App>(description, name_)) {
+    : io_(std::make_unique<asio::io_context>(1)),
+      name_(std::move(name)),
+      app_(std::make_unique<CLI::App>(description, name_)) {
   options_.players = most;
   app_->add_option("--host", options_.host, "The server")->capture_default_str();
   app_->add_option("--port", options_.port, "Its agent port")->check(CLI::Range(1, 65535))->capture_default_str();
   app_->add_option("--team", options_.team, "Name of the team")->capture_default_str();
-  app_->add_option("--players", options_.players, "Players; number 1 keeps the goal")->check(CLI::Range(1, most))->capture_default_str();
-  app_->add_option("--parser", options_.parser, "Class of the server's parser: SexpParser, JsonParser, or one of a plugin")->capture_default_str();
-  app_->add_option("--patience", options_.patience, "Wait so long for a server [s]")->check(CLI::NonNegativeNumber)->capture_default_str();
+  app_->add_option("--players", options_.players, "Players; number 1 keeps the goal")
+      ->check(CLI::Range(1, most))
+      ->capture_default_str();
+  app_->add_option("--parser", options_.parser,
+                   "Class of the server's parser: SexpParser, JsonParser, or one of a plugin")
+      ->capture_default_str();
+  app_->add_option("--patience", options_.patience, "Wait so long for a server [s]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app_->add_flag("--reverse", options_.reverse, "Connect the last player first");
   app_->add_flag("--quiet", options_.quiet, "Do not print the result");
 }
@@ -68,7 +77,8 @@ void TeamProgram::addText(const std::string& option, std::string& value, const s
   app_->add_option(option, value, description)->capture_default_str();
 }
 
-void TeamProgram::addNumber(const std::string& option, int& value, int least, int most, const std::string& description) {
+void TeamProgram::addNumber(const std::string& option, int& value, int least, int most,
+                            const std::string& description) {
   auto* const added = app_->add_option(option, value, description)->check(CLI::Range(least, most));
   if (value >= least) added->capture_default_str();
 }
@@ -92,7 +102,8 @@ bool TeamProgram::play(const std::function<std::unique_ptr<Player>(int unum)>& m
   const auto language = makeLanguage(options_.parser, pluginFolders());
   std::vector<std::unique_ptr<Participant>> team;
   for (int i = 1; i <= options_.players; ++i)
-    team.push_back(std::make_unique<Participant>(*io_, *language, make(options_.reverse ? options_.players + 1 - i : i), options_));
+    team.push_back(std::make_unique<Participant>(*io_, *language, make(options_.reverse ? options_.players + 1 - i : i),
+                                                 options_));
   for (const auto& p : team) p->start();
   io_->run();
   bool all = true;

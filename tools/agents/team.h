@@ -23,7 +23,8 @@ class Player {
   virtual ~Player() = default;
   /// The first message, to be sent once when connected.
   virtual void start(Predicates& actions) = 0;
-  /// Appends the answer to a sense message; (syn) is added to it. `percepts` are empty for a player that does not listen.
+  /// Appends the answer to a sense message; (syn) is added to it. `percepts` are empty for a player that does not
+  /// listen.
   virtual void think(const Predicates& percepts, Predicates& actions) = 0;
   /// False: what the server says need not be read.
   virtual bool listens() const { return true; }
@@ -34,8 +35,8 @@ class Player {
   virtual std::string result() const = 0;
 };
 
-/// A program that plays with a team. Exit codes: 0 the server closed the match; 1 it could not be reached or a player was turned away before
-/// he had a team; 2 the command line is wrong.
+/// A program that plays with a team. Exit codes: 0 the server closed the match; 1 it could not be reached or a player
+/// was turned away before he had a team; 2 the command line is wrong.
 class TeamProgram {
  public:
   /// What all teams have on their command line.

@@ -22,7 +22,7 @@ namespace spark::client {
 
 namespace {
 using Clock = std::chrono::steady_clock;
-constexpr std::size_t kPrefix = 4, kRoom = 65536;  // bytes
+constexpr std::size_t kPrefix = 4, kRoom = 65536;       // bytes
 constexpr auto kPause = std::chrono::milliseconds(50);  // between two attempts to connect
 
 [[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what + ": " + std::strerror(errno)); }
@@ -51,7 +51,8 @@ std::unique_ptr<addrinfo, void (*)(addrinfo*)> resolve(const std::string& host, 
 }
 }  // namespace
 
-Connection::Connection(Connection&& other) noexcept : socket_(std::exchange(other.socket_, -1)), in_(std::move(other.in_)) {}
+Connection::Connection(Connection&& other) noexcept
+    : socket_(std::exchange(other.socket_, -1)), in_(std::move(other.in_)) {}
 
 Connection& Connection::operator=(Connection&& other) noexcept {
   std::swap(socket_, other.socket_);
@@ -78,7 +79,8 @@ void Connection::close() {
 
 void Connection::send(std::string_view message) {
   const auto n = static_cast<std::uint32_t>(message.size());
-  std::string bytes{static_cast<char>(n >> 24), static_cast<char>(n >> 16), static_cast<char>(n >> 8), static_cast<char>(n)};
+  std::string bytes{static_cast<char>(n >> 24), static_cast<char>(n >> 16), static_cast<char>(n >> 8),
+                    static_cast<char>(n)};
   bytes += message;
   sendBytes(bytes);
 }
@@ -86,15 +88,19 @@ void Connection::send(std::string_view message) {
 void Connection::sendBytes(std::string_view bytes) {
   while (!bytes.empty()) {
     const auto n = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (n > 0) bytes.remove_prefix(static_cast<std::size_t>(n));
-    else if (errno != EINTR) fail("the server takes no message");
+    if (n > 0)
+      bytes.remove_prefix(static_cast<std::size_t>(n));
+    else if (errno != EINTR)
+      fail("the server takes no message");
   }
 }
 
 std::size_t Connection::announced() const {
   std::size_t n = 0;
   for (std::size_t i = 0; i < kPrefix; ++i) n = n << 8 | static_cast<unsigned char>(in_[i]);
-  if (n > kMostBytes) throw std::runtime_error("the server announced a message of " + std::to_string(n) + " bytes: it speaks another protocol");
+  if (n > kMostBytes)
+    throw std::runtime_error("the server announced a message of " + std::to_string(n) +
+                             " bytes: it speaks another protocol");
   return n;
 }
 
@@ -118,7 +124,8 @@ bool Connection::fill(double timeout) {
 std::optional<std::string> Connection::receive(double timeout) {
   const auto begin = Clock::now();
   while (!whole()) {
-    const double left = timeout < 0 ? -1 : std::max(timeout - std::chrono::duration<double>(Clock::now() - begin).count(), 0.0);
+    const double left =
+        timeout < 0 ? -1 : std::max(timeout - std::chrono::duration<double>(Clock::now() - begin).count(), 0.0);
     if (!fill(left) && left == 0) return std::nullopt;
   }
   const std::size_t n = announced();

@@ -20,8 +20,8 @@
 //     all helpers are done        ◄── bye ──                 no runs, no worlds
 //     ── home ──►                                            leaves
 //
-// MPI's own waiting spins, and the leader waits for threads and helpers at once: both look for messages every few milliseconds, which
-// beside runs of seconds is nothing. When a process dies mpirun ends all; what has a row stays.
+// MPI's own waiting spins, and the leader waits for threads and helpers at once: both look for messages every few
+// milliseconds, which beside runs of seconds is nothing. When a process dies mpirun ends all; what has a row stays.
 
 namespace sparkbatch {
 
@@ -64,7 +64,9 @@ Json batchOf(const Options& o) {
   return batch;
 }
 
-Table::Open opening(const Options& o) { return o.retry ? Table::Open::retry : o.resume ? Table::Open::resume : Table::Open::fresh; }
+Table::Open opening(const Options& o) {
+  return o.retry ? Table::Open::retry : o.resume ? Table::Open::resume : Table::Open::fresh;
+}
 
 /// A table that is begun is begun with a world that can be built: a slip in the command line is no row.
 const Options& checked(const Options& options, const Sweep& sweep) {
@@ -78,7 +80,8 @@ std::int64_t countThere(const Table& table, std::int64_t runs) {
   return n;
 }
 
-/// Keeps the plugins mapped: otherwise every world that ends alone would take them out of the process, and the next would load them anew.
+/// Keeps the plugins mapped: otherwise every world that ends alone would take them out of the process, and the next
+/// would load them anew.
 struct Keeper {
   explicit Keeper(const Options& o) {
     asked.pluginPaths = o.pluginPaths;
@@ -90,7 +93,9 @@ struct Keeper {
 };
 
 Workers::Work work(const Options& options) {
-  return [&options, plugins = std::make_shared<Keeper>(options)](const Run& run, Watch& watch) { return simulate(options, run, watch); };
+  return [&options, plugins = std::make_shared<Keeper>(options)](const Run& run, Watch& watch) {
+    return simulate(options, run, watch);
+  };
 }
 }  // namespace
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A batch from its options to its table: the leader hands out runs, to its own threads and to helpers, and writes what comes back.
+/// A batch from its options to its table: the leader hands out runs, to its own threads and to helpers, and writes what
+/// comes back.
 
 #include <atomic>
 #include <deque>

@@ -68,7 +68,8 @@ std::int64_t number(const std::string& text) {
 
 Row fromCsv(std::string_view line, const std::vector<std::string>& columns) {
   const std::vector<std::string> texts = cells(line);
-  if (texts.size() != columns.size()) throw Error(fmt::format("expected {} cells, found {}", columns.size(), texts.size()));
+  if (texts.size() != columns.size())
+    throw Error(fmt::format("expected {} cells, found {}", columns.size(), texts.size()));
   Row row;
   for (std::size_t i = 0; i < texts.size(); ++i)
     if (!texts[i].empty()) row[columns[i]] = texts[i];
@@ -88,7 +89,9 @@ std::string Format::line(const Row& row, const std::vector<std::string>& columns
   return joined(texts);
 }
 
-std::vector<std::string> Format::columns(std::string_view header) const { return csv_ ? cells(header) : std::vector<std::string>{}; }
+std::vector<std::string> Format::columns(std::string_view header) const {
+  return csv_ ? cells(header) : std::vector<std::string>{};
+}
 
 Row Format::row(std::string_view line, const std::vector<std::string>& columns) const {
   if (csv_) return fromCsv(line, columns);

@@ -11,8 +11,9 @@
 #include "batch.h"
 #include "spark/running.h"
 
-// Exit codes: 0 every run has a row; 1 some rows are errors, or the line is lost; 2 the command line, the config or the table is wrong, nothing was run;
-// 3 it was interrupted. stdout carries one JSON line at the end, everything else goes to stderr.
+// Exit codes: 0 every run has a row; 1 some rows are errors, or the line is lost; 2 the command line, the config or the
+// table is wrong, nothing was run; 3 it was interrupted. stdout carries one JSON line at the end, everything else goes
+// to stderr.
 
 namespace {
 using namespace sparkbatch;
@@ -26,9 +27,9 @@ extern "C" void endBatch(int number) {
   wish = number == SIGINT && wish == Wish::goOn ? Wish::finish : Wish::abandon;
 }
 
-/// The first SIGINT lets what runs come to its end, the second and SIGTERM abandon it; one more ends the process as the system does: a
-/// config that never returns hears of nothing. Under mpirun signals end all processes at once, as
-/// MPI has it; what has a row stays either way.
+/// The first SIGINT lets what runs come to its end, the second and SIGTERM abandon it; one more ends the process as the
+/// system does: a config that never returns hears of nothing. Under mpirun signals end all processes at once, as MPI
+/// has it; what has a row stays either way.
 void watchSignals() {
   struct sigaction action = {};
   action.sa_handler = endBatch;
@@ -49,8 +50,8 @@ void chooseThreads(Options& options, int neighbours) {
   if (options.threads == 0)
     options.threads = processors(neighbours);
   else if (neighbours > 1 && sched_getaffinity(0, sizeof mine, &mine) == 0 && options.threads > CPU_COUNT(&mine))
-    sayLine(fmt::format("{} threads share {} processors, to which mpirun binds this process: say mpirun --bind-to none", options.threads,
-                        CPU_COUNT(&mine)));
+    sayLine(fmt::format("{} threads share {} processors, to which mpirun binds this process: say mpirun --bind-to none",
+                        options.threads, CPU_COUNT(&mine)));
 }
 
 int lead(const Options& options, Cluster& cluster) {
@@ -66,7 +67,8 @@ int lead(const Options& options, Cluster& cluster) {
   const int code = leader->run(wish);
   const std::string summary = leader->summary();
   if (std::puts(summary.c_str()) >= 0 && std::fflush(stdout) == 0) return code;
-  fmt::print(stderr, "sparkbatch: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno), summary);
+  fmt::print(stderr, "sparkbatch: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno),
+             summary);
   return std::max(code, 1);
 }
 }  // namespace

@@ -14,8 +14,9 @@ constexpr int kUsageError = 2;
 std::pair<std::string, std::string> splitSetting(const char* option, const std::string& text) {
   const std::size_t at = text.find('=');
   if (at == 0 || at == std::string::npos)
-    throw CLI::ValidationError(
-        option, std::string("expected KEY=") + (std::string(option) == "--set" ? "VALUE" : "A,B,...") + ", found '" + text + "'");
+    throw CLI::ValidationError(option, std::string("expected KEY=") +
+                                           (std::string(option) == "--set" ? "VALUE" : "A,B,...") + ", found '" + text +
+                                           "'");
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
@@ -41,13 +42,16 @@ void makeAbsolute(std::vector<std::string>& folders) {
 void checkResults(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension();
   if (extension != ".csv" && extension != ".jsonl")
-    throw CLI::ValidationError("--results", "expected a file that ends in .csv or .jsonl (a JSON object a line), found '" + file + "'");
+    throw CLI::ValidationError(
+        "--results", "expected a file that ends in .csv or .jsonl (a JSON object a line), found '" + file + "'");
 }
 }  // namespace
 
 std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out) {
-  CLI::App app{"Runs many worlds of one Spark config: seeds, sweeps of settings; over threads, and over machines when mpirun starts it.",
-               "sparkbatch"};
+  CLI::App app{
+      "Runs many worlds of one Spark config: seeds, sweeps of settings; over threads, and over machines when mpirun "
+      "starts it.",
+      "sparkbatch"};
   std::vector<std::string> settings, sweep, reports;
   app.set_version_flag("--version", "sparkbatch " SPARK_VERSION);
   app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")
@@ -60,7 +64,8 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
   app.add_option("--seed", out.seed, "Seed of the first; the others count up (default 1)")
       ->type_name("N")
       ->check(sparkhost::seedProblem);
-  app.add_option("--duration", out.duration, "A run ends after that much simulated time [s]; 0: when the config ends it")
+  app.add_option("--duration", out.duration,
+                 "A run ends after that much simulated time [s]; 0: when the config ends it")
       ->type_name("SECONDS")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--set", settings, "As for sparkhost, the same in every run; {run} and {seed} in V become the run's")
@@ -79,19 +84,22 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
   app.add_flag("--retry", out.retry, "With --resume: rows with an error are dropped, and run again")->needs("--resume");
   sparkhost::addSurroundings(app, out.pluginPaths, out.scenePaths, out.logLevel, "What worlds may write to stderr");
   app.footer(
-      "stdout: one JSON line at the end. Exit code 0: every run has a row; 1: some rows are errors; 2: nothing was run; 3: it was "
+      "stdout: one JSON line at the end. Exit code 0: every run has a row; 1: some rows are errors; 2: nothing was "
+      "run; 3: it was "
       "interrupted.");
   try {
     app.parse(argc, argv);
     checkResults(out.results);
     if (out.seed + static_cast<std::uint64_t>(out.seeds - 1) < out.seed)
-      throw CLI::ValidationError("--seed", "expected seeds of 64 bits; " + std::to_string(out.seeds) + " runs from " + std::to_string(out.seed) + " on go beyond");
+      throw CLI::ValidationError("--seed", "expected seeds of 64 bits; " + std::to_string(out.seeds) + " runs from " +
+                                               std::to_string(out.seed) + " on go beyond");
     for (const std::string& s : settings) out.settings.push_back(splitSetting("--set", s));
     for (const std::string& s : sweep) {
       const auto [key, values] = splitSetting("--sweep", s);
       for (const Parameter& p : out.sweep)
         if (p.key == key)
-          throw CLI::ValidationError("--sweep", "expected each KEY once, found '" + key + "' twice: say all of its values at once");
+          throw CLI::ValidationError(
+              "--sweep", "expected each KEY once, found '" + key + "' twice: say all of its values at once");
       out.sweep.push_back({key, splitValues(values)});
     }
     for (const std::string& r : reports) out.reports.push_back(readReport(r));

@@ -17,13 +17,15 @@ bool onTerminal() { return isatty(STDERR_FILENO) != 0; }
 
 std::string bar(double part) {
   const int full = static_cast<int>(std::clamp(part, 0.0, 1.0) * kWidth);
-  return "[" + std::string(static_cast<std::size_t>(full), '=') + std::string(static_cast<std::size_t>(kWidth - full), ' ') + "] ";
+  return "[" + std::string(static_cast<std::size_t>(full), '=') +
+         std::string(static_cast<std::size_t>(kWidth - full), ' ') + "] ";
 }
 
 /// "1:02:03" or "2:03".
 std::string clockText(double seconds) {
   const auto s = static_cast<std::int64_t>(seconds + 0.5);
-  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60) : fmt::format("{}:{:02}", s / 60, s % 60);
+  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
+                   : fmt::format("{}:{:02}", s / 60, s % 60);
 }
 }  // namespace
 

@@ -15,7 +15,8 @@ void sayLine(std::string_view line);
 /// The bar. Speed and time left are reckoned from what this process has seen, not from rows that were there before.
 class Progress {
  public:
-  /// `runs`: how many the batch has; `there`: how many of them were done before; `duration`: simulated seconds of a run, 0: unknown.
+  /// `runs`: how many the batch has; `there`: how many of them were done before; `duration`: simulated seconds of a
+  /// run, 0: unknown.
   Progress(std::int64_t runs, std::int64_t there, double duration);
   /// A run has ended.
   void add(double simulatedSeconds, bool failed);

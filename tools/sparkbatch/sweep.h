@@ -25,8 +25,8 @@ struct Run {
 /// Cuts at commas, but not inside of brackets or quotes: "1,{2,3}" has two values.
 std::vector<std::string> splitValues(const std::string& text);
 
-/// Numbers the runs of a batch: all combinations with the first seed, then all with the second. So a batch that is to have more seeds
-/// later keeps the numbers that it has.
+/// Numbers the runs of a batch: all combinations with the first seed, then all with the second. So a batch that is to
+/// have more seeds later keeps the numbers that it has.
 class Sweep {
  public:
   Sweep(std::vector<Parameter> parameters, std::uint64_t firstSeed, std::int64_t seeds);

@@ -35,7 +35,8 @@ std::string textOf(const std::string& file) {
 
 Table::Table(std::string file, const Json& batch, Open open) : name_(std::move(file)), format_(name_) {
   if (open == Open::fresh && fs::exists(name_))
-    throw Error(name_ + " is there already. Go on with it with --resume, name another file with --results, or remove it.");
+    throw Error(name_ +
+                " is there already. Go on with it with --resume, name another file with --results, or remove it.");
   try {
     lock(batch, open);
     if (fs::exists(name_)) read(open == Open::retry);
@@ -61,7 +62,8 @@ void Table::lock(const Json& batch, Open open) {
   const std::string text = textOf(name);
   if (open != Open::fresh && fs::exists(name_)) {
     const Json before = Json::parse(text, nullptr, false);
-    if (!before.is_object()) throw Error(name_ + " cannot be resumed: " + name + ", which says what its batch is, is missing or damaged");
+    if (!before.is_object())
+      throw Error(name_ + " cannot be resumed: " + name + ", which says what its batch is, is missing or damaged");
     return compare(before, batch);
   }
   if (ftruncate(lock_, 0) != 0) fail("cannot write " + name);
@@ -70,13 +72,16 @@ void Table::lock(const Json& batch, Open open) {
 
 void Table::compare(const Json& before, const Json& batch) const {
   const auto shown = [](const Json& all, const std::string& key) {
-    return !all.contains(key) ? std::string("nothing") : all[key].is_string() ? all[key].get<std::string>() : all[key].dump();
+    return !all.contains(key)     ? std::string("nothing")
+           : all[key].is_string() ? all[key].get<std::string>()
+                                  : all[key].dump();
   };
   const auto check = [&](const std::string& key) {
     if (shown(before, key) == shown(batch, key)) return;
-    throw Error(fmt::format(
-        "{} is of another batch: its {} is {}, now it would be {}. Say the same as when it was begun, or name another file with --results.",
-        name_, key, shown(before, key), shown(batch, key)));
+    throw Error(
+        fmt::format("{} is of another batch: its {} is {}, now it would be {}. Say the same as when it was begun, or "
+                    "name another file with --results.",
+                    name_, key, shown(before, key), shown(batch, key)));
   };
   for (const auto& [key, value] : batch.items()) check(key);
   for (const auto& [key, value] : before.items()) check(key);
@@ -100,7 +105,9 @@ void Table::read(bool retry) {
       if (!retry || row.value("end", "") != "error") rows_.insert_or_assign(run, std::move(row));
     } catch (const std::exception& e) {
       throw Error(
-          fmt::format("{}:{} is no row of a batch's table. Repair it, or remove the line: its run is then run again.", name_, number), e);
+          fmt::format("{}:{} is no row of a batch's table. Repair it, or remove the line: its run is then run again.",
+                      name_, number),
+          e);
     }
   }
 }

@@ -12,15 +12,16 @@
 
 namespace sparkbatch {
 
-/// The table and its file. Rows are written as they come, each with one write; what is there at any moment is a whole table, but perhaps
-/// for its last line. Held by one process at a time.
+/// The table and its file. Rows are written as they come, each with one write; what is there at any moment is a whole
+/// table, but perhaps for its last line. Held by one process at a time.
 class Table {
  public:
   /// How to open a file that is there.
   enum class Open { fresh, resume, retry };
 
-  /// `batch`: what must be the same for rows of one table, an object with a sentence's worth of text a key. Throws spark::Error when the
-  /// file is there and it is to be fresh, when it is of another batch (says what differs), is no table, or is in use.
+  /// `batch`: what must be the same for rows of one table, an object with a sentence's worth of text a key. Throws
+  /// spark::Error when the file is there and it is to be fresh, when it is of another batch (says what differs), is no
+  /// table, or is in use.
   Table(std::string file, const Json& batch, Open open);
   ~Table();
   Table(const Table&) = delete;
@@ -30,7 +31,8 @@ class Table {
   std::size_t size() const { return rows_.size(); }
   /// Adds a row; when this returns it is in the file. Throws spark::Error.
   void add(Row row);
-  /// Puts the rows in order of number and the columns in the order of their first row. To be called when all rows are there.
+  /// Puts the rows in order of number and the columns in the order of their first row. To be called when all rows are
+  /// there.
   void sort();
 
  private:

@@ -6,8 +6,8 @@
 
 namespace sparkbatch {
 
-/// Memory in MB of 10^6 bytes: the most that the process had in memory, and how much of that came after this object was made, per thread
-/// that simulated.
+/// Memory in MB of 10^6 bytes: the most that the process had in memory, and how much of that came after this object was
+/// made, per thread that simulated.
 class Usage {
  public:
   explicit Usage(int threads);

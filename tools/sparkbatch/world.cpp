@@ -55,7 +55,8 @@ class Stopwatch {
 };
 
 std::string replaced(std::string text, std::string_view what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) text.replace(at, what.size(), by);
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
   return text;
 }
 
@@ -71,15 +72,16 @@ sparkhost::Options hostOptions(const Options& options, const Run& run) {
   out.overrides = {{"/sys/server/simulation.rate", "max"}, {"/sys/server/simulation.threads", 1}};
   if (options.duration > 0) out.overrides.emplace_back("/sys/server/simulation.duration", options.duration);
   const auto set = [&](const std::string& key, const std::string& text) {
-    out.overrides.emplace_back(
-        key, Value::typed(replaced(replaced(text, "{run}", std::to_string(run.number)), "{seed}", std::to_string(run.seed))));
+    out.overrides.emplace_back(key, Value::typed(replaced(replaced(text, "{run}", std::to_string(run.number)), "{seed}",
+                                                          std::to_string(run.seed))));
   };
   for (const auto& [key, text] : options.settings) set(key, text);
   for (const auto& [key, text] : run.point) set(key, text);
   return out;
 }
 
-/// The house, its log on stderr with the run's number. `fault` becomes what the log says of the first fault, when its level lets it.
+/// The house, its log on stderr with the run's number. `fault` becomes what the log says of the first fault, when its
+/// level lets it.
 std::unique_ptr<Host> makeHost(const sparkhost::Options& options, const Run& run, std::string* fault = nullptr) {
   auto host = std::make_unique<Host>(options);
   Kernel& kernel = host->kernel();
@@ -120,7 +122,8 @@ Json toJson(const Value& v) {
 /// Half a step of tolerance, as the run loop has it.
 std::string reason(const Leaf& root) {
   const double duration = numberAt(root, kSimulation, "duration");
-  const bool over = duration > 0 && numberAt(root, kSimulation, "time") > duration - 0.5 * numberAt(root, kSimulation, "step");
+  const bool over =
+      duration > 0 && numberAt(root, kSimulation, "time") > duration - 0.5 * numberAt(root, kSimulation, "step");
   return over ? "duration" : "stopped";
 }
 
@@ -132,7 +135,8 @@ void closeNetwork(Node& root) {
 
 /// A further column. Throws Error when there is one of that name.
 void put(Row& row, const std::string& column, const Value& value) {
-  if (row.contains(column)) throw Error(fmt::format("cannot report {0}: the table has another column {0}. Name it otherwise.", column));
+  if (row.contains(column))
+    throw Error(fmt::format("cannot report {0}: the table has another column {0}. Name it otherwise.", column));
   row[column] = toJson(value);
 }
 

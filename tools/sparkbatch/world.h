@@ -27,8 +27,8 @@ class Watch {
 /// Builds the world of `run` and throws it away. Throws spark::Error: what is wrong with the config or the settings.
 void check(const Options& options, const Run& run);
 
-/// Simulates `run` to its end and returns its row; whatever goes wrong is told in the row. The result depends on nothing but the options
-/// and the run (and the times cpuSeconds and wallSeconds).
+/// Simulates `run` to its end and returns its row; whatever goes wrong is told in the row. The result depends on
+/// nothing but the options and the run (and the times cpuSeconds and wallSeconds).
 Row simulate(const Options& options, const Run& run, Watch& watch);
 
 }  // namespace sparkbatch

@@ -15,8 +15,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-// A house in the temporary folder may be anybody's who was quick. What is asked and answered here is often secret (a referee's token): the
-// folder must be the user's own and closed to others, and the system says whose program answers. The house checks the same from its side.
+// A house in the temporary folder may be anybody's who was quick. What is asked and answered here is often secret (a
+// referee's token): the folder must be the user's own and closed to others, and the system says whose program answers.
+// The house checks the same from its side.
 
 namespace sparkctl {
 
@@ -26,7 +27,8 @@ namespace {
 /// Where houses put their sockets: see plugins/control.
 std::vector<fs::path> folders() {
   std::vector<fs::path> out;
-  if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime) out.push_back(fs::path(runtime) / "spark");
+  if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime)
+    out.push_back(fs::path(runtime) / "spark");
   out.push_back(fs::temp_directory_path() / fmt::format("spark-{}", geteuid()));
   return out;
 }
@@ -80,13 +82,15 @@ std::vector<std::string> houses(std::vector<std::string>& refused) {
 
 House::House(const std::string& socket, double timeout) : name_(socket), timeout_(timeout) {
   const auto until = deadline();
-  while ((socket_ = connectTo(socket)) < 0 && errno == EAGAIN && Clock::now() < until) poll(nullptr, 0, 20);  // its queue of callers is full
+  while ((socket_ = connectTo(socket)) < 0 && errno == EAGAIN && Clock::now() < until)
+    poll(nullptr, 0, 20);  // its queue of callers is full
   if (socket_ < 0) throw std::runtime_error(fmt::format("no house answers at {}: {}", socket, std::strerror(errno)));
   ucred peer = {};
   socklen_t size = sizeof peer;
   if (getsockopt(socket_, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0 || peer.uid != geteuid()) {
     close(socket_);
-    throw std::runtime_error(fmt::format("the program that answers at {} is another user's; it is told nothing", socket));
+    throw std::runtime_error(
+        fmt::format("the program that answers at {} is another user's; it is told nothing", socket));
   }
 }
 
@@ -101,8 +105,10 @@ void House::wait(short events, Clock::time_point until) {
   while (true) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
     if (left <= 0)
-      throw std::runtime_error(fmt::format("the house at {} did not answer within {:g} s: it is stopped, or in a very long cycle. --timeout waits longer.",
-                                           name_, timeout_));
+      throw std::runtime_error(
+          fmt::format("the house at {} did not answer within {:g} s: it is stopped, or in a very long cycle. --timeout "
+                      "waits longer.",
+                      name_, timeout_));
     if (poll(&p, 1, static_cast<int>(std::min<long long>(left, 1'000'000))) > 0) return;
   }
 }
@@ -112,9 +118,12 @@ Json House::ask(const Json& request) {
   const std::string line = request.dump() + "\n";
   for (std::size_t sent = 0; sent < line.size();) {
     const ssize_t n = send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
-    if (n > 0) sent += static_cast<std::size_t>(n);
-    else if (errno == EAGAIN) wait(POLLOUT, until);
-    else if (errno != EINTR) throw std::runtime_error(fmt::format("the house has ended: {}", std::strerror(errno)));
+    if (n > 0)
+      sent += static_cast<std::size_t>(n);
+    else if (errno == EAGAIN)
+      wait(POLLOUT, until);
+    else if (errno != EINTR)
+      throw std::runtime_error(fmt::format("the house has ended: {}", std::strerror(errno)));
   }
   return receive(until);
 }
@@ -126,9 +135,12 @@ Json House::receive(Clock::time_point until) {
   while ((end = received_.find('\n')) == std::string::npos) {
     char bytes[4096];
     const ssize_t n = recv(socket_, bytes, sizeof bytes, 0);
-    if (n > 0) received_.append(bytes, static_cast<std::size_t>(n));
-    else if (n < 0 && errno == EAGAIN) wait(POLLIN, until);
-    else if (n == 0 || errno != EINTR) throw std::runtime_error("the house has ended");
+    if (n > 0)
+      received_.append(bytes, static_cast<std::size_t>(n));
+    else if (n < 0 && errno == EAGAIN)
+      wait(POLLIN, until);
+    else if (n == 0 || errno != EINTR)
+      throw std::runtime_error("the house has ended");
   }
   const Json answer = Json::parse(received_.substr(0, end));
   received_.erase(0, end + 1);

@@ -11,7 +11,8 @@ namespace sparkctl {
 
 using Json = nlohmann::ordered_json;
 
-/// The control sockets of this user's living houses, by name. Folders that others could have made are left out; `refused` says why.
+/// The control sockets of this user's living houses, by name. Folders that others could have made are left out;
+/// `refused` says why.
 std::vector<std::string> houses(std::vector<std::string>& refused);
 
 /// Speaks to one house. Functions throw std::runtime_error with one sentence when it does not answer.

@@ -25,7 +25,8 @@ Target split(const std::string& text, bool memberNeeded) {
   const std::size_t dot = text.rfind('.');
   if (dot != std::string::npos && (slash == std::string::npos || dot > slash) && dot + 1 < text.size())
     return {text.substr(0, dot), text.substr(dot + 1)};
-  if (memberNeeded) throw std::runtime_error("expected PATH.NAME, such as /sys/server/simulation.step, found '" + text + "'");
+  if (memberNeeded)
+    throw std::runtime_error("expected PATH.NAME, such as /sys/server/simulation.step, found '" + text + "'");
   return {text, ""};
 }
 
@@ -35,12 +36,14 @@ std::string choose(const std::string& socket, int pid) {
   std::vector<std::string> refused;
   std::vector<std::string> all = houses(refused);
   for (const std::string& why : refused) fmt::print(stderr, "sparkctl: {}: it is not looked into\n", why);
-  if (pid > 0) std::erase_if(all, [&](const std::string& s) { return s.find(fmt::format("/{}.sock", pid)) == std::string::npos; });
+  if (pid > 0)
+    std::erase_if(all, [&](const std::string& s) { return s.find(fmt::format("/{}.sock", pid)) == std::string::npos; });
   if (all.empty())
     throw std::runtime_error(pid > 0 ? fmt::format("process {} has no house with a control socket", pid)
                                      : "no house is running that has a control socket (plugin \"control\")");
   if (all.size() == 1) return all.front();
-  throw std::runtime_error(fmt::format("several houses are running; say which with --socket:\n  {}", fmt::join(all, "\n  ")));
+  throw std::runtime_error(
+      fmt::format("several houses are running; say which with --socket:\n  {}", fmt::join(all, "\n  ")));
 }
 
 void print(const std::string& text) {
@@ -59,7 +62,8 @@ void get(House& house, const std::string& what) {
 
 void set(House& house, const std::string& what, const std::string& value) {
   const Target t = split(what, true);
-  for (const Json& p : house.ask({{"do", "set"}, {"path", t.path}, {"property", t.member}, {"value", value}})["properties"])
+  for (const Json& p :
+       house.ask({{"do", "set"}, {"path", t.path}, {"property", t.member}, {"value", value}})["properties"])
     print(propertyText(p));
 }
 
@@ -86,7 +90,9 @@ int main(int argc, char** argv) {
   bool all = false;
   app.add_option("--socket", socket, "The house's control socket, where several run");
   app.add_option("--pid", pid, "The house's process, where several run");
-  app.add_option("--timeout", timeout, "How long to wait for each answer [s]")->check(CLI::Range(0.01, 1e6))->capture_default_str();
+  app.add_option("--timeout", timeout, "How long to wait for each answer [s]")
+      ->check(CLI::Range(0.01, 1e6))
+      ->capture_default_str();
   app.require_subcommand(1);
   CLI::App* tree = app.add_subcommand("tree", "The tree below a path, with classes and what they are for");
   tree->add_option("PATH", path, "Where to begin")->capture_default_str();
@@ -103,9 +109,11 @@ int main(int argc, char** argv) {
   CLI::App* watches = app.add_subcommand("watch", "Prints a property now and whenever it changes");
   watches->add_option("PATH.PROPERTY", target)->required();
   CLI::App* plugins = app.add_subcommand("plugins", "The plugins that were found");
-  CLI::App* loads = app.add_subcommand("load", "Loads a plugin of the host's folders, as a config's line plugin \"NAME\" does");
+  CLI::App* loads =
+      app.add_subcommand("load", "Loads a plugin of the host's folders, as a config's line plugin \"NAME\" does");
   loads->add_option("NAME", target)->required();
-  CLI::App* unloads = app.add_subcommand("unload", "Unloads a plugin that has no objects; load then takes the file as it is by then");
+  CLI::App* unloads =
+      app.add_subcommand("unload", "Unloads a plugin that has no objects; load then takes the file as it is by then");
   unloads->add_option("NAME", target)->required();
   try {
     app.parse(argc, argv);

@@ -45,7 +45,8 @@ void children(const Json& node, const std::string& indent, bool all, std::string
     const std::size_t shown = all || run - i <= kBrothers ? run : i + 1;
     for (std::size_t k = i; k < shown; ++k) child(list[k], indent, k + 1 == list.size(), all, out);
     if (shown < run)
-      out += fmt::format("{}{}… {} more of class {}\n", indent, run == list.size() ? "└─ " : "├─ ", run - shown, text(list[i], "class"));
+      out += fmt::format("{}{}… {} more of class {}\n", indent, run == list.size() ? "└─ " : "├─ ", run - shown,
+                         text(list[i], "class"));
     i = run;
   }
 }
@@ -71,15 +72,15 @@ std::string treeText(const Json& node, const std::string& path, bool all) {
 
 std::string propertyText(const Json& p) {
   const std::string unit = text(p, "unit");
-  return fmt::format("{} = {}{}\n    {}{}{}. {}\n", text(p, "name"), text(p, "text"), unit.empty() ? "" : " " + unit, text(p, "type"),
-                     range(p), p.value("readOnly", false) ? ", read only" : "", text(p, "doc"));
+  return fmt::format("{} = {}{}\n    {}{}{}. {}\n", text(p, "name"), text(p, "text"), unit.empty() ? "" : " " + unit,
+                     text(p, "type"), range(p), p.value("readOnly", false) ? ", read only" : "", text(p, "doc"));
 }
 
 std::string pluginsText(const Json& plugins) {
   std::string out;
   for (const Json& p : plugins)
-    out +=
-        fmt::format("{} {:<16} {:<6} {}\n", p.value("registered", false) ? "*" : " ", text(p, "name"), text(p, "version"), text(p, "doc"));
+    out += fmt::format("{} {:<16} {:<6} {}\n", p.value("registered", false) ? "*" : " ", text(p, "name"),
+                       text(p, "version"), text(p, "doc"));
   return out + "* registered by the config\n";
 }
 

@@ -9,7 +9,8 @@ namespace sparkctl {
 
 using Json = nlohmann::ordered_json;
 
-/// A tree with classes and one sentence each. Unless `all`, runs of more than a few brothers of one class are shortened.
+/// A tree with classes and one sentence each. Unless `all`, runs of more than a few brothers of one class are
+/// shortened.
 std::string treeText(const Json& node, const std::string& path, bool all);
 /// `name = value unit`, with type, range and documentation below.
 std::string propertyText(const Json& property);

@@ -65,7 +65,8 @@ std::vector<const T*> added(const std::vector<const T*>& all, const std::vector<
   return out;
 }
 
-/// One section a class of the chain, the most derived first. A name that a derived class describes anew is not repeated.
+/// One section a class of the chain, the most derived first. A name that a derived class describes anew is not
+/// repeated.
 template <class T, class Print>
 std::string sections(ClassObject& c, const char* title, std::vector<const T*> (ClassObject::*list)(), Print print) {
   std::string out;
@@ -99,16 +100,19 @@ std::string classDescription(Kernel& kernel, std::string_view className) {
   for (ClassObject* at = &c; at; at = at->base()) {
     if (at != &c) chain += " < " + at->name();
     for (const auto& i : at->interfaces())
-      if (i.id.name != at->name()) interfaces += fmt::format("{}{} {}", interfaces.empty() ? "" : ", ", i.id.name, i.id.version);
+      if (i.id.name != at->name())
+        interfaces += fmt::format("{}{} {}", interfaces.empty() ? "" : ", ", i.id.name, i.id.version);
   }
   std::string out = fmt::format("{}{}\n  {}\n", chain, c.isAbstract() ? " (abstract)" : "", c.doc());
-  out += fmt::format("  plugin: {}\n",
-                     c.plugin() ? c.plugin()->name() + " " + c.plugin()->version() + ", " + c.plugin()->file() : "the kernel");
+  out += fmt::format(
+      "  plugin: {}\n",
+      c.plugin() ? c.plugin()->name() + " " + c.plugin()->version() + ", " + c.plugin()->file() : "the kernel");
   if (!interfaces.empty()) out += fmt::format("  interfaces: {}\n", interfaces);
   std::string phases;
   for (const Hook* h : c.hooks()) phases += (phases.empty() ? "" : ", ") + h->channel;
   if (!phases.empty()) out += fmt::format("  handles: {}\n", phases);
-  out += sections<Property>(c, "properties", &ClassObject::properties, [&](const Property& p) { return propertyLine(c, p); });
+  out += sections<Property>(c, "properties", &ClassObject::properties,
+                            [&](const Property& p) { return propertyLine(c, p); });
   out += sections<Method>(c, "methods", &ClassObject::methods,
                           [&](const Method& m) { return isAccessor(c, m.name) ? std::string() : methodLine(m); });
   return out + "\n  Every property x also has the methods getX and, unless it is read only, setX.\n";

@@ -47,7 +47,8 @@ void HangWatch::stop() {
 }
 
 void HangWatch::tellGoesOn() {
-  kernel().log().warning("The simulation goes on after {:.1f} s.", std::chrono::duration<double>(Clock::now() - last_).count());
+  kernel().log().warning("The simulation goes on after {:.1f} s.",
+                         std::chrono::duration<double>(Clock::now() - last_).count());
   told_ = toldEnd_ = false;
 }
 
@@ -73,8 +74,10 @@ void HangWatch::tell() {
   const bool ends = kernel().stopRequested();
   if (told_ && (toldEnd_ || !ends)) return;
   const char* words = dog_->words();
-  kernel().log().warning("The simulation stands still: for {:.1f} s it has been {}.{}", std::chrono::duration<double>(Clock::now() - last_).count(),
-                         *words ? words : "in a call that does not answer", ends ? " It was asked to end; a second signal ends it at once." : "");
+  kernel().log().warning("The simulation stands still: for {:.1f} s it has been {}.{}",
+                         std::chrono::duration<double>(Clock::now() - last_).count(),
+                         *words ? words : "in a call that does not answer",
+                         ends ? " It was asked to end; a second signal ends it at once." : "");
   told_ = true;
   toldEnd_ = ends;
 }

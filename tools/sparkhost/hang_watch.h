@@ -14,8 +14,9 @@
 
 namespace sparkhost {
 
-/// A thread that looks four times a second whether the simulation's thread gets on. Where one call of a node's code takes longer than `after`,
-/// the log says once in which; and again when it goes on. Nothing of it is in the step's way but the counter that the step counts up.
+/// A thread that looks four times a second whether the simulation's thread gets on. Where one call of a node's code
+/// takes longer than `after`, the log says once in which; and again when it goes on. Nothing of it is in the step's way
+/// but the counter that the step counts up.
 class HangWatch : public spark::Node {
   SPARK_CLASS(HangWatch, spark::Node)
  public:

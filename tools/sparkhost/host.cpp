@@ -17,8 +17,9 @@ namespace {
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text)
-    out += (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) ? fmt::format("\\{:03}", static_cast<unsigned char>(c))
-                                                                           : std::string(1, c);
+    out += (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20)
+               ? fmt::format("\\{:03}", static_cast<unsigned char>(c))
+               : std::string(1, c);
   return out + "\"";
 }
 
@@ -44,7 +45,9 @@ std::int64_t messagesDropped(const Leaf& root) {
 }  // namespace
 
 Host::Host(const Options& options)
-    : options_(options), bin_(fs::canonical("/proc/self/exe").parent_path()), share_(bin_.parent_path() / "share" / "spark") {
+    : options_(options),
+      bin_(fs::canonical("/proc/self/exe").parent_path()),
+      share_(bin_.parent_path() / "share" / "spark") {
   kernel_.log().setLevel(levelFromName(options.logLevel));
   if (options.seed) kernel_.setSeed(*options.seed);
   scanPlugins();
@@ -60,7 +63,9 @@ void Host::tellScripts() {
   std::string paths;
   for (const std::string& p : options_.scenePaths) paths += quoted(p) + ", ";
   const std::string share = fs::is_directory(share_) ? share_.string() : std::string();
-  kernel_.lua().run(fmt::format("host = {{ share = {}, scenePaths = {{ {} }}, alone = {} }}", quoted(share), paths, options_.alone), "sparkhost");
+  kernel_.lua().run(
+      fmt::format("host = {{ share = {}, scenePaths = {{ {} }}, alone = {} }}", quoted(share), paths, options_.alone),
+      "sparkhost");
 }
 
 void Host::build() {
@@ -70,15 +75,17 @@ void Host::build() {
   kernel_.lua().runConfig(options_.config);
   for (const Options::Switch& s : options_.switches) {
     Leaf* node = kernel_.root().find(s.path);
-    if (!node) throw Error(fmt::format("{}: the house of '{}' has no {}; or leave {} out.", s.flag, options_.config, s.missing, s.flag.substr(0, s.flag.find(' '))));
+    if (!node)
+      throw Error(fmt::format("{}: the house of '{}' has no {}; or leave {} out.", s.flag, options_.config, s.missing,
+                              s.flag.substr(0, s.flag.find(' '))));
     setProperty(*node, s.property, s.value);
   }
 }
 
 std::string Host::open() {
   if (!kernel_.root().find(kSimulation))
-    throw Error(
-        fmt::format("config '{}' has no run loop: expected a node {}. Add simulation() of house.lua.", options_.config, kSimulation));
+    throw Error(fmt::format("config '{}' has no run loop: expected a node {}. Add simulation() of house.lua.",
+                            options_.config, kSimulation));
   const Node& root = kernel_.root();
   for (const char* path : {kNet, kWeb})
     if (Leaf* server = root.find(path)) callMethod(*server, "listen", {});
@@ -88,7 +95,8 @@ std::string Host::open() {
 
 std::string Host::histogram() {
   Leaf& loop = kernel_.root().require<Leaf>(kSimulation);
-  return loop.classObject()->method("paceTable") ? callMethod(loop, "paceTable", {}).plain() : fmt::format("{} has no paceTable()\n", kSimulation);
+  return loop.classObject()->method("paceTable") ? callMethod(loop, "paceTable", {}).plain()
+                                                 : fmt::format("{} has no paceTable()\n", kSimulation);
 }
 
 std::string Host::run() {
@@ -99,12 +107,15 @@ std::string Host::run() {
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double time = numberAt(root, kSimulation, "time");
   return fmt::format(
-      "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"lostSeconds\":{:.3f},\"lateCycles\":{},\"playMode\":\"{}\","
+      "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"lostSeconds\":{:.3f},\"lateCycles\":{},"
+      "\"playMode\":\"{}\","
       "\"score\":[{},{}],"
       "\"agentsSeen\":{},\"messagesDropped\":{},\"faults\":{},\"stateHash\":\"{:016x}\"}}",
-      integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0, numberAt(root, kSimulation, "lostTime"),
-      integerAt(root, kSimulation, "lateCycles"), textAt(root, kGameState, "playMode"), elementAt(root, kGameState, "score", 0),
-      elementAt(root, kGameState, "score", 1), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root), root.kernel().faults(), stateHash(root));
+      integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0,
+      numberAt(root, kSimulation, "lostTime"), integerAt(root, kSimulation, "lateCycles"),
+      textAt(root, kGameState, "playMode"), elementAt(root, kGameState, "score", 0),
+      elementAt(root, kGameState, "score", 1), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root),
+      root.kernel().faults(), stateHash(root));
 }
 
 }  // namespace sparkhost

@@ -11,7 +11,8 @@ namespace {
 /// `K=V`; throws what CLI11 prints.
 std::pair<std::string, spark::Value> splitOverride(const std::string& text) {
   const std::size_t at = text.find('=');
-  if (at == 0 || at == std::string::npos) throw CLI::ValidationError("--set", "expected KEY=VALUE, found '" + text + "'");
+  if (at == 0 || at == std::string::npos)
+    throw CLI::ValidationError("--set", "expected KEY=VALUE, found '" + text + "'");
   return {text.substr(0, at), spark::Value::typed(std::string_view(text).substr(at + 1))};
 }
 
@@ -28,12 +29,14 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   std::optional<int> expect, agentPort, monitorPort, webPort;
   bool sync = false;
   app.set_version_flag("--version", "sparkhost " SPARK_VERSION);
-  app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")->type_name("FILE");
+  app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")
+      ->type_name("FILE");
   app.add_option("--set", sets, "Overrides an option of the config, a Soccer.* variable or /path.property")
       ->type_name("K=V")
       ->allow_extra_args(false);
   app.add_option("--seed", out.seed, "Seed of all random streams (default 1)")->type_name("N")->check(seedProblem);
-  app.add_option("--rate", rate, "real: paced to wall time (default); max: as fast as it goes")->check(CLI::IsMember({"real", "max"}));
+  app.add_option("--rate", rate, "real: paced to wall time (default); max: as fast as it goes")
+      ->check(CLI::IsMember({"real", "max"}));
   app.add_flag("--sync", sync, "Lockstep: a cycle starts when every agent has answered with (syn)");
   app.add_option("--expect", expect, "Hold the clock until N agents have named robot and team")
       ->type_name("N")
@@ -51,13 +54,19 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
       ->type_name("P")
       ->check(CLI::Range(0, 65535));
   addSurroundings(app, out.pluginPaths, out.scenePaths, out.logLevel, "What stderr shows");
-  app.add_flag("--check", out.check, "Load, wire and import, but step nothing: exit code 0, or 2 and the errors, those of scenes that a run only logs too");
+  app.add_flag("--check", out.check,
+               "Load, wire and import, but step nothing: exit code 0, or 2 and the errors, those of scenes that a run "
+               "only logs too");
   app.add_flag("--histogram", out.histogram, "At the end: how late and how long cycles were, as a table on stderr");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
-  app.add_option("--describe", out.describe, "Print what a class says about itself, and end")->type_name("CLASS")->excludes("--config");
+  app.add_option("--describe", out.describe, "Print what a class says about itself, and end")
+      ->type_name("CLASS")
+      ->excludes("--config");
   app.footer(
-      "stdout: a first JSON line with the ports and the page for browsers, a last one with the result; all else is on stderr.\n"
-      "Exit code 0: done; 1: it failed on the way, or a line could not be written to stdout; 2: the command line, the config or what "
+      "stdout: a first JSON line with the ports and the page for browsers, a last one with the result; all else is on "
+      "stderr.\n"
+      "Exit code 0: done; 1: it failed on the way, or a line could not be written to stdout; 2: the command line, the "
+      "config or what "
       "--check looks at "
       "is wrong.\nSIGINT, SIGTERM and SIGHUP end a run with its result, a second one ends it at once.");
   try {
@@ -71,14 +80,19 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
     const std::string text = std::string(flag) + (v.isBool() ? "" : " " + v.plain());
     out.switches.push_back({text, path, property, std::move(v), missing});
   };
-  constexpr const char *kLoop = "run loop: add simulation() of house.lua", *kAgents = "agents and no port for them: add agents{} of house.lua";
+  constexpr const char *kLoop = "run loop: add simulation() of house.lua",
+                       *kAgents = "agents and no port for them: add agents{} of house.lua";
   if (rate) put("--rate", "/sys/server/simulation", "rate", *rate, kLoop);
   if (sync) put("--sync", "/sys/server/simulation", "sync", true, kLoop);
   if (duration) put("--duration", "/sys/server/simulation", "duration", *duration, kLoop);
   if (expect) put("--expect", "/sys/server/gamecontrol", "expect", *expect, kAgents);
   if (agentPort) put("--agent-port", "/sys/server/net/agents", "port", *agentPort, kAgents);
-  if (monitorPort) put("--monitor-port", "/sys/server/net/monitors", "port", *monitorPort, "port for monitors: add monitors{} of house.lua");
-  if (webPort) put("--web-port", "/sys/server/web", "port", *webPort, "page for browsers: add web() of house.lua, and no --set web=false");
+  if (monitorPort)
+    put("--monitor-port", "/sys/server/net/monitors", "port", *monitorPort,
+        "port for monitors: add monitors{} of house.lua");
+  if (webPort)
+    put("--web-port", "/sys/server/web", "port", *webPort,
+        "page for browsers: add web() of house.lua, and no --set web=false");
   makeAbsolute(out.pluginPaths);
   makeAbsolute(out.scenePaths);
   return std::nullopt;

@@ -35,8 +35,8 @@ struct Options {
   bool alone = false;  ///< nobody looks in: no control socket
 };
 
-/// Reads the command line. When the program is to end at once (help, version, an error, which it has printed) returns the exit code
-/// instead: 0, or 2 for an error.
+/// Reads the command line. When the program is to end at once (help, version, an error, which it has printed) returns
+/// the exit code instead: 0, or 2 for an error.
 std::optional<int> readOptions(int argc, char** argv, Options& out);
 
 }  // namespace sparkhost

@@ -15,8 +15,9 @@
 #include "spark/running.h"
 #include "status_line.h"
 
-// Exit codes: 0 as asked; 1 the run itself failed, or its result could not be written; 2 the command line, the config, a plugin or a scene is wrong (stderr says how).
-// stdout carries JSON lines (or the text of --list-plugins and --describe), everything else goes to stderr.
+// Exit codes: 0 as asked; 1 the run itself failed, or its result could not be written; 2 the command line, the config,
+// a plugin or a scene is wrong (stderr says how). stdout carries JSON lines (or the text of --list-plugins and
+// --describe), everything else goes to stderr.
 
 namespace {
 
@@ -24,8 +25,8 @@ spark::Kernel* stopOnSignal = nullptr;
 
 extern "C" void onSignal(int) { stopOnSignal->requestStop(); }
 
-/// The first SIGINT, SIGTERM or SIGHUP (the terminal is gone) ends the run cleanly, a second one as the system does. Under nohup there is no
-/// SIGHUP.
+/// The first SIGINT, SIGTERM or SIGHUP (the terminal is gone) ends the run cleanly, a second one as the system does.
+/// Under nohup there is no SIGHUP.
 void watchSignals(spark::Kernel& kernel) {
   stopOnSignal = &kernel;
   struct sigaction action = {}, before = {};
@@ -42,7 +43,8 @@ void watchSignals(spark::Kernel& kernel) {
 bool printLine(const std::string& line) {
   errno = 0;
   if (std::puts(line.c_str()) >= 0 && std::fflush(stdout) == 0) return true;
-  fmt::print(stderr, "sparkhost: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno), line);
+  fmt::print(stderr, "sparkhost: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno),
+             line);
   std::clearerr(stdout);
   return false;
 }
@@ -67,7 +69,8 @@ void printDescriptions(spark::Kernel& kernel, const sparkhost::Options& options)
 /// What a run only logs, and goes on without, fails a check.
 void checkLog(spark::Kernel& kernel) {
   if (const auto n = kernel.log().errors(); n > 0)
-    throw spark::Error(fmt::format("the check failed: {} in the log above (--log-level error shows them alone).", n == 1 ? "1 error" : fmt::format("{} errors", n)));
+    throw spark::Error(fmt::format("the check failed: {} in the log above (--log-level error shows them alone).",
+                                   n == 1 ? "1 error" : fmt::format("{} errors", n)));
 }
 
 /// False when the result is lost.

@@ -35,8 +35,9 @@ void StatusLine::install(Kernel& kernel, bool terminal) {
   line.last_ = Clock::now();
   line.next_ = line.last_ + kTerminalPeriod;
   if (terminal)
-    kernel.log().setSink(
-        [](Level level, std::string_view text) { fmt::print(stderr, "\r\033[K{:<7} {}\n", kNames[static_cast<int>(level)], text); });
+    kernel.log().setSink([](Level level, std::string_view text) {
+      fmt::print(stderr, "\r\033[K{:<7} {}\n", kNames[static_cast<int>(level)], text);
+    });
 }
 
 std::string StatusLine::text(double time, double factor) const {
@@ -44,8 +45,10 @@ std::string StatusLine::text(double time, double factor) const {
   std::string out = fmt::format("{:.2f} s, {:.1f} x real time", time, factor);
   if (textAt(root, kSimulation, "rate") == "real") out += lossText(root);
   if (const std::string mode = textAt(root, kGameState, "playMode"); !mode.empty())
-    out += fmt::format(", {} {}:{}", mode, elementAt(root, kGameState, "score", 0), elementAt(root, kGameState, "score", 1));
-  if (const std::int64_t faults = kernel().faults(); faults > 0) out += fmt::format(", {} fault{}", faults, faults == 1 ? "" : "s");
+    out += fmt::format(", {} {}:{}", mode, elementAt(root, kGameState, "score", 0),
+                       elementAt(root, kGameState, "score", 1));
+  if (const std::int64_t faults = kernel().faults(); faults > 0)
+    out += fmt::format(", {} fault{}", faults, faults == 1 ? "" : "s");
   if (root.find(kGameControl)) out += fmt::format(", {} agents", integerAt(root, kGameControl, "agentCount"));
   return out;
 }

@@ -9,8 +9,8 @@
 
 namespace sparkhost {
 
-/// Shows clock, real-time factor, what was lost against real time, play mode, score and agents. Has no state: what it shows never
-/// influences the simulation.
+/// Shows clock, real-time factor, what was lost against real time, play mode, score and agents. Has no state: what it
+/// shows never influences the simulation.
 class StatusLine : public spark::Node {
   SPARK_CLASS(StatusLine, spark::Node)
  public:

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Values that the host shows and reports, read from the tree by path: the host knows no plugin. Where a house has no such node, the
-/// value is empty or 0.
+/// Values that the host shows and reports, read from the tree by path: the host knows no plugin. Where a house has no
+/// such node, the value is empty or 0.
 
 #include <string>
 

@@ -11,8 +11,8 @@
 
 #include "spectator.h"
 
-// Many spectators of a match, some of whom do not read: what a web server is measured with. Prints {"connected":N} when all watch, and what
-// each of them got at the end.
+// Many spectators of a match, some of whom do not read: what a web server is measured with. Prints {"connected":N} when
+// all watch, and what each of them got at the end.
 
 namespace {
 using spectators::Settings;
@@ -31,10 +31,18 @@ int usage(int argc, char** argv, Options& o) {
   app.add_option("--host", o.settings.host, "IP address of the host")->capture_default_str();
   app.add_option("--port", o.settings.port, "Its web port")->capture_default_str();
   app.add_option("--count", o.count, "Spectators that read")->check(CLI::Range(0, 100000))->capture_default_str();
-  app.add_option("--stalled", o.stalled, "Further ones that do not read")->check(CLI::Range(0, 100000))->capture_default_str();
-  app.add_option("--seconds", o.seconds, "How long, from when all watch; 0: until SIGTERM")->check(CLI::NonNegativeNumber)->capture_default_str();
-  app.add_option("--rate", o.settings.rate, "Frames a second; 0: as the host gives")->check(CLI::NonNegativeNumber)->capture_default_str();
-  app.add_option("--detail", o.settings.detail, "With --rate")->check(CLI::IsMember({"fine", "coarse"}))->capture_default_str();
+  app.add_option("--stalled", o.stalled, "Further ones that do not read")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  app.add_option("--seconds", o.seconds, "How long, from when all watch; 0: until SIGTERM")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--rate", o.settings.rate, "Frames a second; 0: as the host gives")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--detail", o.settings.detail, "With --rate")
+      ->check(CLI::IsMember({"fine", "coarse"}))
+      ->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -46,7 +54,8 @@ int usage(int argc, char** argv, Options& o) {
 std::string spread(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   if (values.empty()) values.push_back(0);
-  return fmt::format("{{\"min\":{:.1f},\"median\":{:.1f},\"max\":{:.1f}}}", values.front(), values[values.size() / 2], values.back());
+  return fmt::format("{{\"min\":{:.1f},\"median\":{:.1f},\"max\":{:.1f}}}", values.front(), values[values.size() / 2],
+                     values.back());
 }
 
 void printLine(const std::string& line) {
@@ -69,9 +78,11 @@ void report(const Options& o, const std::vector<Tally>& before, const std::vecto
     sum.keys += keys;
     sum.deltas += deltas;
   }
-  printLine(fmt::format("{{\"spectators\":{},\"stalled\":{},\"seconds\":{:.3f},\"bytesPerSecond\":{},\"framesPerSecond\":{},\"keys\":{},\"deltas\":{},"
-                        "\"badFrames\":{},\"closed\":{}}}",
-                        o.count, o.stalled, seconds, spread(bytes), spread(frames), sum.keys, sum.deltas, sum.bad, closed));
+  printLine(
+      fmt::format("{{\"spectators\":{},\"stalled\":{},\"seconds\":{:.3f},\"bytesPerSecond\":{},\"framesPerSecond\":{},"
+                  "\"keys\":{},\"deltas\":{},"
+                  "\"badFrames\":{},\"closed\":{}}}",
+                  o.count, o.stalled, seconds, spread(bytes), spread(frames), sum.keys, sum.deltas, sum.bad, closed));
 }
 }  // namespace
 

@@ -24,17 +24,19 @@ std::size_t headOf(std::size_t size) { return size < kLongHead ? 2 : size < kLon
 
 class Watching : public Spectator, public std::enable_shared_from_this<Watching> {
  public:
-  Watching(asio::io_context& io, const Settings& settings, bool stalled) : settings_(settings), stalled_(stalled), socket_(io) {}
+  Watching(asio::io_context& io, const Settings& settings, bool stalled)
+      : settings_(settings), stalled_(stalled), socket_(io) {}
 
   const Tally& tally() const override { return tally_; }
 
   void start(std::function<void()> watching) override {
     watching_ = std::move(watching);
     auto& plain = socket_.next_layer();
-    plain.async_connect({asio::ip::make_address(settings_.host), settings_.port}, [self = shared_from_this()](error_code ec) {
-      if (ec) return self->end();
-      self->shake();
-    });
+    plain.async_connect({asio::ip::make_address(settings_.host), settings_.port},
+                        [self = shared_from_this()](error_code ec) {
+                          if (ec) return self->end();
+                          self->shake();
+                        });
   }
 
  private:
@@ -44,12 +46,13 @@ class Watching : public Spectator, public std::enable_shared_from_this<Watching>
       socket_.next_layer().set_option(tcp::socket::receive_buffer_size(4096), ignored);
     }
     socket_.read_message_max(kLongest);
-    socket_.async_handshake(fmt::format("{}:{}", settings_.host, settings_.port), "/stream", [self = shared_from_this()](error_code ec) {
-      if (ec) return self->end();
-      if (self->stalled_) return self->seen();
-      if (self->settings_.rate > 0) return self->ask();
-      self->read();
-    });
+    socket_.async_handshake(fmt::format("{}:{}", settings_.host, settings_.port), "/stream",
+                            [self = shared_from_this()](error_code ec) {
+                              if (ec) return self->end();
+                              if (self->stalled_) return self->seen();
+                              if (self->settings_.rate > 0) return self->ask();
+                              self->read();
+                            });
   }
 
   void ask() {

@@ -15,16 +15,16 @@ namespace spectators {
 struct Settings {
   std::string host = "127.0.0.1";
   unsigned short port = 3280;
-  double rate = 0;        ///< frames a second; 0: what the host gives
+  double rate = 0;  ///< frames a second; 0: what the host gives
   std::string detail = "fine";
 };
 
 /// What came.
 struct Tally {
-  std::uint64_t bytes = 0;   ///< of messages and their heads
+  std::uint64_t bytes = 0;  ///< of messages and their heads
   std::uint64_t keys = 0, deltas = 0, texts = 0;
-  std::uint64_t bad = 0;     ///< frames that do not follow the one before, and no frames at all
-  bool closed = false;       ///< the host ended it
+  std::uint64_t bad = 0;  ///< frames that do not follow the one before, and no frames at all
+  bool closed = false;    ///< the host ended it
 };
 
 class Spectator {

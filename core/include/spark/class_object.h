@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Class objects: reflective factories in the tree (`/classes/<Name>`) that know base, interfaces, properties, methods and hooks.
+/// Class objects: reflective factories in the tree (`/classes/<Name>`) that know base, interfaces, properties, methods
+/// and hooks.
 ///
 /// One table serves Lua, scene files, sparkctl, `--describe` and state. It is filled by `describe()` (see describe.h).
 
@@ -23,14 +24,14 @@ class Description;
 /// One readable, usually writable value of a class. A writable property `x` also gives the methods `setX` and `getX`.
 struct Property {
   std::string name;
-  std::string type;          ///< "number", "string", "vec3 [m]", ... as Convert<T>::typeName says
-  std::string unit;          ///< "m", "rad/s", "" when it has none
-  std::string doc;           ///< one sentence
-  std::optional<double> min, max;  ///< inclusive range of every number in it
+  std::string type;                  ///< "number", "string", "vec3 [m]", ... as Convert<T>::typeName says
+  std::string unit;                  ///< "m", "rad/s", "" when it has none
+  std::string doc;                   ///< one sentence
+  std::optional<double> min, max;    ///< inclusive range of every number in it
   std::vector<std::string> choices;  ///< when not empty: the only texts allowed
-  int scalars = 1;           ///< plain arguments that set takes, -1 for any number
+  int scalars = 1;                   ///< plain arguments that set takes, -1 for any number
   bool readOnly = false;
-  bool state = false;        ///< part of the state hash and of saved state
+  bool state = false;  ///< part of the state hash and of saved state
   std::function<Value(const Leaf&)> get;
   std::function<void(Leaf&, Args&)> set;  ///< empty when read only
 };
@@ -86,7 +87,8 @@ class ClassObject : public Leaf {
   /// Number of objects of exactly this class that live now.
   std::size_t living() const { return living_; }
 
-  /// Makes an unlinked object. Throws Error when the class is abstract or a base is not registered (and names the plugin that has it).
+  /// Makes an unlinked object. Throws Error when the class is abstract or a base is not registered (and names the
+  /// plugin that has it).
   std::unique_ptr<Leaf> create();
   /// The base's class object; nullptr for Leaf. Throws Error when it is not registered.
   ClassObject* base();
@@ -123,7 +125,8 @@ class ClassObject : public Leaf {
   std::int64_t livingCount() const;
   std::string pluginName() const;
 
-  /// Own and inherited interfaces by id, in open addressing with room for misses: queries are what tree walks spend their time on.
+  /// Own and inherited interfaces by id, in open addressing with room for misses: queries are what tree walks spend
+  /// their time on.
   struct Cast {
     std::uint64_t id = 0;
     void* (*to)(Leaf*) = nullptr;
@@ -141,12 +144,13 @@ class ClassObject : public Leaf {
   std::size_t living_ = 0;
 };
 
-/// Reads or writes a property by name, calls a method by name. Throws Error: unknown name (with the nearest), wrong type or count, out of range.
+/// Reads or writes a property by name, calls a method by name. Throws Error: unknown name (with the nearest), wrong
+/// type or count, out of range.
 Value getProperty(const Leaf& leaf, std::string_view name);
 void setProperty(Leaf& leaf, std::string_view name, const Value& value);
 Value callMethod(Leaf& leaf, std::string_view name, std::span<const Value> arguments);
-/// As callMethod for a method already found. `loose`: conversions and counts as the installed base's scene files have them; returns
-/// false (and does nothing) where the original silently ignored the call.
+/// As callMethod for a method already found. `loose`: conversions and counts as the installed base's scene files have
+/// them; returns false (and does nothing) where the original silently ignored the call.
 bool callLoosely(Leaf& leaf, const Method& method, std::span<const Value> arguments, std::string& whyNot);
 
 }  // namespace spark

@@ -9,8 +9,8 @@
 ///       d.on<&DragController::prepare>("prepare");
 ///     }
 
-#include <type_traits>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "spark/class_object.h"
@@ -62,6 +62,13 @@ class MethodBuilder {
 
 namespace detail {
 template <class F>
+concept MemberFunction = std::is_member_function_pointer_v<F>;
+template <class M>
+concept ObjectType = std::is_object_v<M>;
+template <class C, class T>
+concept BaseOf = std::is_base_of_v<C, T>;
+
+template <class F>
 struct Signature;
 template <class C, class R, class... A>
 struct Signature<R (C::*)(A...)> {
@@ -86,7 +93,8 @@ struct Pack {
   static std::tuple<A...> read(Args& args) { return std::tuple<A...>{one<A>(args)...}; }
   template <class T>
   static T one(Args& args) {
-    static const T kNone{};  // static, so that it is all zeros before: a vector's constructor may leave its numbers as they are
+    // Static, so that it is all zeros before: a vector's constructor may leave its numbers as they are.
+    static const T kNone{};
     if (args.atEnd() && Convert<T>::kScalars > 0) return kNone;
     return Convert<T>::from(args);
   }
@@ -103,35 +111,34 @@ class Description {
   void doc(std::string text) { d_.doc = std::move(text); }
 
   /// A data member (also an inherited one).
-  template <class M, class C>
-    requires(std::is_base_of_v<C, T> && std::is_object_v<M>)
+  template <detail::ObjectType M, detail::BaseOf<T> C>
   PropertyBuilder property(std::string name, M C::*member) {
     return addProperty(
-        std::move(name), Convert<M>::typeName(), Convert<M>::kScalars, [member](const Leaf& l) { return Convert<M>::to(static_cast<const T&>(l).*member); },
+        std::move(name), Convert<M>::typeName(), Convert<M>::kScalars,
+        [member](const Leaf& l) { return Convert<M>::to(static_cast<const T&>(l).*member); },
         [member](Leaf& l, Args& a) { static_cast<T&>(l).*member = Convert<M>::from(a); });
   }
   /// A getter alone: read only.
-  template <class G>
-    requires std::is_member_function_pointer_v<G>
+  template <detail::MemberFunction G>
   PropertyBuilder property(std::string name, G getter) {
     using V = std::decay_t<typename detail::Signature<G>::Result>;
     return addProperty(
-        std::move(name), Convert<V>::typeName(), Convert<V>::kScalars, [getter](const Leaf& l) { return Convert<V>::to((const_cast<T&>(static_cast<const T&>(l)).*getter)()); },
+        std::move(name), Convert<V>::typeName(), Convert<V>::kScalars,
+        [getter](const Leaf& l) { return Convert<V>::to((const_cast<T&>(static_cast<const T&>(l)).*getter)()); },
         nullptr);
   }
   /// A getter and a setter of one argument.
-  template <class G, class S>
-    requires(std::is_member_function_pointer_v<G> && std::is_member_function_pointer_v<S>)
+  template <detail::MemberFunction G, detail::MemberFunction S>
   PropertyBuilder property(std::string name, G getter, S setter) {
     using V = std::decay_t<typename detail::Signature<G>::Result>;
     return addProperty(
-        std::move(name), Convert<V>::typeName(), Convert<V>::kScalars, [getter](const Leaf& l) { return Convert<V>::to((const_cast<T&>(static_cast<const T&>(l)).*getter)()); },
+        std::move(name), Convert<V>::typeName(), Convert<V>::kScalars,
+        [getter](const Leaf& l) { return Convert<V>::to((const_cast<T&>(static_cast<const T&>(l)).*getter)()); },
         [setter](Leaf& l, Args& a) { (static_cast<T&>(l).*setter)(Convert<V>::from(a)); });
   }
 
   /// A member function; its parameters and result are converted, their count is checked.
-  template <class F>
-    requires std::is_member_function_pointer_v<F>
+  template <detail::MemberFunction F>
   MethodBuilder method(std::string name, F function) {
     using S = detail::Signature<F>;
     using P = typename S::template Arguments<detail::Pack>;
@@ -140,7 +147,8 @@ class Description {
     m.parameters = P::typeNames();
     m.minScalars = P::kScalars;
     m.maxScalars = P::kRest ? -1 : P::kScalars;
-    if constexpr (!std::is_void_v<typename S::Result>) m.returns = Convert<std::decay_t<typename S::Result>>::typeName();
+    if constexpr (!std::is_void_v<typename S::Result>)
+      m.returns = Convert<std::decay_t<typename S::Result>>::typeName();
     m.call = [function](Leaf& l, Args& a) -> Value {
       auto bound = P::read(a);
       return std::apply(
@@ -184,7 +192,8 @@ class Description {
   void abstract() { d_.make = nullptr; }
 
  private:
-  PropertyBuilder addProperty(std::string name, std::string type, int scalars, std::function<Value(const Leaf&)> get, std::function<void(Leaf&, Args&)> set) {
+  PropertyBuilder addProperty(std::string name, std::string type, int scalars, std::function<Value(const Leaf&)> get,
+                              std::function<void(Leaf&, Args&)> set) {
     Property p;
     p.name = std::move(name);
     p.type = std::move(type);
@@ -202,7 +211,8 @@ class Description {
 template <class T>
 ClassDescription describeClass() {
   static_assert(std::is_same_v<typename T::ClassSelf, T>, "the class lacks SPARK_CLASS(Self, Base)");
-  static_assert(std::is_base_of_v<typename T::ClassBase, T>, "SPARK_CLASS names a base that the class does not derive from");
+  static_assert(std::is_base_of_v<typename T::ClassBase, T>,
+                "SPARK_CLASS names a base that the class does not derive from");
   ClassDescription d;
   d.name = T::kClassName;
   d.base = T::ClassBase::kClassName;

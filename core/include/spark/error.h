@@ -31,7 +31,8 @@ class RefusedValue : public Error {
   using Error::Error;
 };
 
-/// The up to three `candidates` nearest to `wanted` as a sentence (" Did you mean 'a' or 'b'?"), or "" when nothing is near.
+/// The up to three `candidates` nearest to `wanted` as a sentence (" Did you mean 'a' or 'b'?"), or "" when nothing is
+/// near.
 std::string didYouMean(std::string_view wanted, const std::vector<std::string>& candidates);
 
 }  // namespace spark

@@ -16,9 +16,9 @@ namespace spark {
 /// What a handler gets. `data` lives during the call only and may be nullptr.
 struct Event {
   std::string_view name;
-  double time = 0;          ///< s, the emitter's clock
-  double step = 0;          ///< s since the last event of this kind
-  std::int64_t cycle = 0;   ///< the emitter's counter
+  double time = 0;         ///< s, the emitter's clock
+  double step = 0;         ///< s since the last event of this kind
+  std::int64_t cycle = 0;  ///< the emitter's counter
   const Value* data = nullptr;
 };
 
@@ -29,7 +29,8 @@ enum class Order { parentsFirst, childrenFirst };
 class Channel {
  public:
   using Handler = std::function<void(Leaf&, const Event&)>;
-  /// Runs all handlers in tree order. A handler may add and remove nodes and handlers; what is added runs from the next time on.
+  /// Runs all handlers in tree order. A handler may add and remove nodes and handlers; what is added runs from the next
+  /// time on.
   void emit(const Event& event);
   /// Runs only the handlers of this very node.
   void emitAt(Leaf& node, const Event& event);
@@ -44,11 +45,11 @@ class Channel {
  private:
   friend class Events;
   struct Entry {
-    Leaf* node;             // nullptr once removed
+    Leaf* node;  // nullptr once removed
     void (*plain)(Leaf&, const Event&);
     Handler handler;
     std::uint64_t number;
-    bool faulty = false;    // it threw once, and the log says so
+    bool faulty = false;  // it threw once, and the log says so
   };
   void sort();
   void settle();
@@ -69,7 +70,8 @@ class Channel {
 class Events {
  public:
   explicit Events(Kernel& kernel) : kernel_(kernel) {}
-  /// Defines a channel (or documents one that was already listened to). Throws Error when it was defined with another order.
+  /// Defines a channel (or documents one that was already listened to). Throws Error when it was defined with another
+  /// order.
   Channel& define(std::string_view name, Order order, std::string doc);
   /// The channel of that name; made on demand, so that listeners may come before definers.
   Channel& channel(std::string_view name);

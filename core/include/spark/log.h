@@ -31,16 +31,27 @@ class Log {
   void setSink(Sink sink);
 
   template <class... A>
-  void trace(fmt::format_string<A...> f, A&&... a) { if (enabled(Level::trace)) write(Level::trace, fmt::format(f, std::forward<A>(a)...)); }
+  void trace(fmt::format_string<A...> f, A&&... a) {
+    if (enabled(Level::trace)) write(Level::trace, fmt::format(f, std::forward<A>(a)...));
+  }
   template <class... A>
-  void debug(fmt::format_string<A...> f, A&&... a) { if (enabled(Level::debug)) write(Level::debug, fmt::format(f, std::forward<A>(a)...)); }
+  void debug(fmt::format_string<A...> f, A&&... a) {
+    if (enabled(Level::debug)) write(Level::debug, fmt::format(f, std::forward<A>(a)...));
+  }
   template <class... A>
-  void info(fmt::format_string<A...> f, A&&... a) { if (enabled(Level::info)) write(Level::info, fmt::format(f, std::forward<A>(a)...)); }
+  void info(fmt::format_string<A...> f, A&&... a) {
+    if (enabled(Level::info)) write(Level::info, fmt::format(f, std::forward<A>(a)...));
+  }
   template <class... A>
-  void warning(fmt::format_string<A...> f, A&&... a) { if (enabled(Level::warning)) write(Level::warning, fmt::format(f, std::forward<A>(a)...)); }
+  void warning(fmt::format_string<A...> f, A&&... a) {
+    if (enabled(Level::warning)) write(Level::warning, fmt::format(f, std::forward<A>(a)...));
+  }
   template <class... A>
-  void error(fmt::format_string<A...> f, A&&... a) { write(Level::error, fmt::format(f, std::forward<A>(a)...)); }
-  /// One line, or several of which all but the first are indented (control characters are escaped: the text may come from a client).
+  void error(fmt::format_string<A...> f, A&&... a) {
+    write(Level::error, fmt::format(f, std::forward<A>(a)...));
+  }
+  /// One line, or several of which all but the first are indented (control characters are escaped: the text may come
+  /// from a client).
   void write(Level level, std::string_view line);
   /// Errors so far, whether the level lets them pass or not. No state.
   std::int64_t errors() const { return errors_.load(std::memory_order_relaxed); }

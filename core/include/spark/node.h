@@ -3,8 +3,8 @@
 /// The tree: everything that exists at run time is a Leaf with a name, a parent, a class object and a path.
 ///
 /// One owner per object (its parent). Everybody else holds a Ref, which turns empty when the object dies.
-/// Paths: components separated by '/', absolute or relative, '.' and '..'; `name[k]` is the k-th sibling of that name, from 1.
-/// The tree is changed by the simulation's thread only.
+/// Paths: components separated by '/', absolute or relative, '.' and '..'; `name[k]` is the k-th sibling of that name,
+/// from 1. The tree is changed by the simulation's thread only.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,8 +25,9 @@ class Node;
 class StateReader;
 class StateWriter;
 
-/// Asks for memory that will be read soon; what it holds and whether it is there does not matter. For loops over nodes in the step: a solver
-/// leaves nothing of them in the caches, and those that come next can be on their way while one is worked on.
+/// Asks for memory that will be read soon; what it holds and whether it is there does not matter. For loops over nodes
+/// in the step: a solver leaves nothing of them in the caches, and those that come next can be on their way while one
+/// is worked on.
 inline void prefetch(const void* begin, std::size_t bytes) {
   constexpr std::size_t kLine = 64;
   for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(static_cast<const char*>(begin) + at);
@@ -44,16 +45,18 @@ struct InterfaceId {
 };
 
 /// In an interface's definition: gives it its id.
-#define SPARK_INTERFACE(Name, Version) static constexpr ::spark::InterfaceId kInterface{#Name, Version}
+#define SPARK_INTERFACE(Name, Version) \
+  static constexpr ::spark::InterfaceId kInterface { #Name, Version }
 
-/// In a class's definition: its name in the tree and its base. The compiler checks the rest when the plugin registers it.
-#define SPARK_CLASS(Self, Base)                                   \
- public:                                                          \
-  static constexpr const char* kClassName = #Self;                \
-  using ClassSelf = Self;                                         \
-  using ClassBase = Base;                                         \
-  static constexpr ::spark::InterfaceId kInterface{#Self, 1};     \
-                                                                  \
+/// In a class's definition: its name in the tree and its base. The compiler checks the rest when the plugin registers
+/// it.
+#define SPARK_CLASS(Self, Base)                               \
+ public:                                                      \
+  static constexpr const char* kClassName = #Self;            \
+  using ClassSelf = Self;                                     \
+  using ClassBase = Base;                                     \
+  static constexpr ::spark::InterfaceId kInterface{#Self, 1}; \
+                                                              \
  private:
 
 namespace detail {
@@ -64,7 +67,8 @@ struct Life {
 };
 }  // namespace detail
 
-/// A checked, non-owning reference: empty once the object died. Copy and assign it on the simulation's thread; read it anywhere.
+/// A checked, non-owning reference: empty once the object died. Copy and assign it on the simulation's thread; read it
+/// anywhere.
 template <class T>
 class Ref {
  public:
@@ -73,7 +77,8 @@ class Ref {
   Ref(const Ref& other) noexcept : life_(other.life_), object_(other.object_) {
     if (life_) ++life_->references;
   }
-  Ref(Ref&& other) noexcept : life_(std::exchange(other.life_, nullptr)), object_(std::exchange(other.object_, nullptr)) {}
+  Ref(Ref&& other) noexcept
+      : life_(std::exchange(other.life_, nullptr)), object_(std::exchange(other.object_, nullptr)) {}
   Ref& operator=(const Ref& other) {
     if (other.life_) ++other.life_->references;
     release();
@@ -109,8 +114,9 @@ class Leaf {
   Leaf& operator=(const Leaf&) = delete;
 
   const std::string& name() const { return name_; }
-  /// Renames; siblings may share a name (the first is found by it, the others as `name[k]`). Throws Error for names that no path can
-  /// hold ("", ".", "..", with '/' or '\\'), for classes and plugins, whose names are fixed, and for what is in use (InUse).
+  /// Renames; siblings may share a name (the first is found by it, the others as `name[k]`). Throws Error for names
+  /// that no path can hold ("", ".", "..", with '/' or '\\'), for classes and plugins, whose names are fixed, and for
+  /// what is in use (InUse).
   void setName(std::string name);
   /// The owner, nullptr for the root and for what is not linked.
   Node* parent() const { return parent_; }
@@ -152,7 +158,8 @@ class Leaf {
   std::uint64_t id() const { return id_; }
 
  protected:
-  /// Runs when the object (and its parents) hang in the tree, before its children are linked. May throw Error: it is then not added.
+  /// Runs when the object (and its parents) hang in the tree, before its children are linked. May throw Error: it is
+  /// then not added.
   virtual void onLink() {}
   /// Runs when a parent further up changed (Node::reparent): look up again what onLink looked up.
   virtual void onMoved() {}
@@ -190,13 +197,15 @@ class Leaf {
   bool changing_ = false;  ///< is being linked, moved or unlinked: it must stay where it is
 };
 
-/// Says that a leaf is in use: code of it is at work, or others live in it. While one of these lives, the leaf and what is above it can
-/// neither be removed nor moved nor renamed: that throws Error with `why`. The simulation's thread only.
+/// Says that a leaf is in use: code of it is at work, or others live in it. While one of these lives, the leaf and what
+/// is above it can neither be removed nor moved nor renamed: that throws Error with `why`. The simulation's thread
+/// only.
 class InUse {
  public:
   /// What is below keeps its name, too: for servers, which are found by their paths.
   static constexpr int kAllBelow = 1 << 20;
-  /// `why` finishes the sentence "it is in use: ..." and outlives this object. `namesBelow`: how many levels below keep their names.
+  /// `why` finishes the sentence "it is in use: ..." and outlives this object. `namesBelow`: how many levels below keep
+  /// their names.
   InUse(const Leaf& leaf, std::string_view why, int namesBelow = 0);
   ~InUse();
   InUse(const InUse&) = delete;
@@ -224,8 +233,8 @@ class Node : public Leaf {
 
   /// The children in order; owned by this node, valid until the tree changes.
   const std::vector<std::unique_ptr<Leaf>>& children() const { return children_; }
-  /// The kernel's structureVersion() when somebody came, went, or got another name below this node last: who looks only at what is below
-  /// looks again when this grew.
+  /// The kernel's structureVersion() when somebody came, went, or got another name below this node last: who looks only
+  /// at what is below looks again when this grew.
   std::uint64_t changedAt() const { return changedAt_; }
   /// The first child of that name, nullptr when there is none. Takes `name[k]`.
   Leaf* child(std::string_view name) const;
@@ -242,19 +251,23 @@ class Node : public Leaf {
     if (T* t = leaf.as<T>()) return *t;
     throwLacks(leaf, T::kInterface);
   }
-  /// Unlinks and destroys a child with all below it. References to them are empty before the first destructor runs. Throws Error for what
-  /// is being linked or unlinked at that moment or in use (InUse), and for classes and plugins (unload the plugin).
+  /// Unlinks and destroys a child with all below it. References to them are empty before the first destructor runs.
+  /// Throws Error for what is being linked or unlinked at that moment or in use (InUse), and for classes and plugins
+  /// (unload the plugin).
   void remove(Leaf& child);
   /// Unlinks and destroys all children, first to last. Throws as `remove`.
   void removeChildren();
-  /// Moves a child to another parent (appended) without destroying anything; onMoved runs for all that moved (between linked parents;
-  /// else they are linked or unlinked). Throws what onMoved and onLink throw; the child is then back, as the last one.
+  /// Moves a child to another parent (appended) without destroying anything; onMoved runs for all that moved (between
+  /// linked parents; else they are linked or unlinked). Throws what onMoved and onLink throw; the child is then back,
+  /// as the last one.
   void reparent(Leaf& child, Node& newParent);
-  /// All descendants that are a T, depth first, in child order; `deep` false: do not look below a match. Costs little where the kernel's
-  /// order is up to date (Kernel::updateOrder), a walk elsewhere.
+  /// All descendants that are a T, depth first, in child order; `deep` false: do not look below a match. Costs little
+  /// where the kernel's order is up to date (Kernel::updateOrder), a walk elsewhere.
   template <class T>
   void collect(std::vector<T*>& out, bool deep = true) const {
-    collectAs(T::kInterface, deep, [](void* list, void* match) { static_cast<std::vector<T*>*>(list)->push_back(static_cast<T*>(match)); }, &out);
+    collectAs(
+        T::kInterface, deep,
+        [](void* list, void* match) { static_cast<std::vector<T*>*>(list)->push_back(static_cast<T*>(match)); }, &out);
   }
   /// The first child that is a T, nullptr when there is none.
   template <class T>
@@ -308,8 +321,10 @@ T* Leaf::ancestor() const {
 template <class T>
 Ref<T>::Ref(T* object) : object_(object) {
   Leaf* leaf = nullptr;
-  if constexpr (std::is_base_of_v<Leaf, T>) leaf = object;
-  else leaf = object ? &object->leaf() : nullptr;
+  if constexpr (std::is_base_of_v<Leaf, T>)
+    leaf = object;
+  else
+    leaf = object ? &object->leaf() : nullptr;
   if (leaf) {
     life_ = leaf->life();
     ++life_->references;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Numbers as text and back, exactly as C's printf and atof have them, at a tenth of their cost: messages are mostly numbers.
+/// Numbers as text and back, exactly as C's printf and atof have them, at a tenth of their cost: messages are mostly
+/// numbers.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +14,8 @@ namespace spark {
 /// Bytes that putFixed() and putGeneral() need.
 inline constexpr std::size_t kFixedRoom = 400, kGeneralRoom = 32;
 
-/// Writes a number with 0 to 60 fixed decimals as C prints it (single precision when `asFloat`): -0.00, inf, and nan without a sign. `to` has
-/// room for kFixedRoom bytes. Returns the end.
+/// Writes a number with 0 to 60 fixed decimals as C prints it (single precision when `asFloat`): -0.00, inf, and nan
+/// without a sign. `to` has room for kFixedRoom bytes. Returns the end.
 char* putFixed(char* to, double v, int decimals, bool asFloat = true);
 /// Writes a number with six significant digits as C's %g: 0.04, 1e-07, -0, -nan. `to` has room for
 /// kGeneralRoom bytes. Returns the end.
@@ -24,11 +25,12 @@ void appendFixed(std::string& out, double v, int decimals, bool asFloat = true);
 
 /// Reads a number as C's atof: garbage is 0, trailing junk is ignored, nan, inf and hexadecimal digits are known.
 double readNumber(std::string_view text);
-/// Reads a number that is all of the text: as readNumber, but false, and `v` untouched, where that would pass over something or make 0 of
-/// garbage.
+/// Reads a number that is all of the text: as readNumber, but false, and `v` untouched, where that would pass over
+/// something or make 0 of garbage.
 bool readWholeNumber(std::string_view text, double& v);
 
-/// Appends to a string in large pieces: short writes cost no test for room each. What was written is there when the writer ends.
+/// Appends to a string in large pieces: short writes cost no test for room each. What was written is there when the
+/// writer ends.
 class ByteWriter {
  public:
   /// `out` must outlive the writer and not be touched meanwhile.

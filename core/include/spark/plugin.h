@@ -15,11 +15,11 @@ namespace spark {
 
 /// What must agree between a plugin and its host. Debug and Release mix; the rest is said in the refusal.
 struct AbiWord {
-  std::uint32_t version;       ///< SPARK_ABI_VERSION, raised when the descriptor or a header changes incompatibly
-  std::uint32_t alignment;     ///< alignof(max_align_t)
-  std::uint32_t compiler;      ///< __GXX_ABI_VERSION
-  std::uint32_t sanitizer;     ///< 0 none, 1 address, 2 thread
-  char headers[17];            ///< hash of core's and api's headers
+  std::uint32_t version;    ///< SPARK_ABI_VERSION, raised when the descriptor or a header changes incompatibly
+  std::uint32_t alignment;  ///< alignof(max_align_t)
+  std::uint32_t compiler;   ///< __GXX_ABI_VERSION
+  std::uint32_t sanitizer;  ///< 0 none, 1 address, 2 thread
+  char headers[17];         ///< hash of core's and api's headers
 };
 
 /// The AbiWord of the code that includes this header.
@@ -52,8 +52,8 @@ class Registrar {
 
 /// The descriptor, exported as `sparkPlugin`. Its first two members never move.
 struct PluginDescriptor {
-  char magic[8];               ///< "SPARKPLG"
-  std::uint32_t size;          ///< sizeof(PluginDescriptor) of the plugin
+  char magic[8];       ///< "SPARKPLG"
+  std::uint32_t size;  ///< sizeof(PluginDescriptor) of the plugin
   AbiWord abi;
   const char* name;
   const char* version;
@@ -71,9 +71,15 @@ struct ClassList {
 }  // namespace detail
 
 /// Defines the descriptor. The rest of the arguments are the plugin's classes.
-#define SPARK_PLUGIN(Name, Version, Doc, ...)                                                                            \
-  extern "C" __attribute__((visibility("default"))) const ::spark::PluginDescriptor sparkPlugin = {                     \
-      {'S', 'P', 'A', 'R', 'K', 'P', 'L', 'G'}, sizeof(::spark::PluginDescriptor), ::spark::thisAbi(), Name, Version, Doc, \
-      ::spark::detail::ClassList<__VA_ARGS__>::kNames.data(), &::spark::detail::ClassList<__VA_ARGS__>::registerAll};
+#define SPARK_PLUGIN(Name, Version, Doc, ...)                                                            \
+  extern "C" __attribute__((visibility("default")))                                                      \
+  const ::spark::PluginDescriptor sparkPlugin = {{'S', 'P', 'A', 'R', 'K', 'P', 'L', 'G'},               \
+                                                 sizeof(::spark::PluginDescriptor),                      \
+                                                 ::spark::thisAbi(),                                     \
+                                                 Name,                                                   \
+                                                 Version,                                                \
+                                                 Doc,                                                    \
+                                                 ::spark::detail::ClassList<__VA_ARGS__>::kNames.data(), \
+                                                 &::spark::detail::ClassList<__VA_ARGS__>::registerAll};
 
 }  // namespace spark

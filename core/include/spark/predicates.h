@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Nested lists of atoms in one flat buffer: what parsers make of bytes, what effectors read and perceptors write. Reused from cycle to
-/// cycle, it allocates nothing in steady state. And the S-expression reader that scene files, agents and monitors share.
+/// Nested lists of atoms in one flat buffer: what parsers make of bytes, what effectors read and perceptors write.
+/// Reused from cycle to cycle, it allocates nothing in steady state. And the S-expression reader that scene files,
+/// agents and monitors share.
 
 #include <cstdint>
 #include <optional>
@@ -14,19 +15,20 @@
 
 namespace spark {
 
-/// One token of the buffer. Lists hold sizes and short texts stand in the token itself, so that a list means the same wherever it is copied.
+/// One token of the buffer. Lists hold sizes and short texts stand in the token itself, so that a list means the same
+/// wherever it is copied.
 struct Token {
   enum class Kind : std::uint8_t { list, text, number, integer };
   static constexpr std::uint32_t kShort = 8;  ///< bytes of text that a token has room for
   Kind kind = Kind::text;
-  bool quoted = false;       ///< text only: was written in quotes
-  std::uint32_t size = 0;    ///< list: tokens in it, itself included; text: bytes
+  bool quoted = false;     ///< text only: was written in quotes
+  std::uint32_t size = 0;  ///< list: tokens in it, itself included; text: bytes
   union {
     double number;
     std::int64_t integer = 0;
-    char letters[kShort];    ///< text of at most kShort bytes
-    std::size_t begin;       ///< longer text: offset into the text store
-    std::uint32_t outer;     ///< list that is still open: index of the open list around it
+    char letters[kShort];  ///< text of at most kShort bytes
+    std::size_t begin;     ///< longer text: offset into the text store
+    std::uint32_t outer;   ///< list that is still open: index of the open list around it
   };
 };
 static_assert(sizeof(Token) == 16);
@@ -46,8 +48,8 @@ class Element {
   std::string_view text() const;
   /// A number: as written, or as C atof reads the text (garbage is 0, trailing junk ignored). Lists are 0.
   double number() const;
-  /// The number when it is one: written as such, or a text that C's strtod reads to its end (with inf and nan, without blanks). Else nothing, where
-  /// number() would be 0 or ignore what follows.
+  /// The number when it is one: written as such, or a text that C's strtod reads to its end (with inf and nan, without
+  /// blanks). Else nothing, where number() would be 0 or ignore what follows.
   std::optional<double> asNumber() const;
   bool isNumber() const { return asNumber().has_value(); }
   /// The number truncated; out of range is clamped, NaN is 0.
@@ -99,8 +101,8 @@ class Predicates {
   void clear();
   bool empty() const { return tokens_.empty(); }
 
-  /// Writing: open a list with a name (or none), add atoms, close it. Lists left open at the end, and closing what is not open, are programming
-  /// errors: see isUnbalanced().
+  /// Writing: open a list with a name (or none), add atoms, close it. Lists left open at the end, and closing what is
+  /// not open, are programming errors: see isUnbalanced().
   Predicates& open(std::string_view name = {}) {
     Token t;
     t.kind = Token::Kind::list;
@@ -121,8 +123,10 @@ class Predicates {
     Token t;
     t.quoted = quoted;
     t.size = static_cast<std::uint32_t>(text.size());
-    if (text.size() <= Token::kShort) text.copy(t.letters, Token::kShort);
-    else t.begin = store(text);
+    if (text.size() <= Token::kShort)
+      text.copy(t.letters, Token::kShort);
+    else
+      t.begin = store(text);
     tokens_.push_back(t);
     return *this;
   }
@@ -149,7 +153,8 @@ class Predicates {
   }
   /// True when lists are open, or more were closed than were open, since the last clear() or balance().
   bool isUnbalanced() const { return open_ != kNone || surplus_; }
-  /// Closes the lists that are open. Returns what had been wrong: so many lists open, -1 when too many were closed, 0 when all was well.
+  /// Closes the lists that are open. Returns what had been wrong: so many lists open, -1 when too many were closed, 0
+  /// when all was well.
   int balance();
   /// Sets where the token just added was read.
   void mark(std::uint32_t line, std::uint32_t column);
@@ -162,7 +167,9 @@ class Predicates {
   Element::Iterator end() const { return {*this, size()}; }
   const std::vector<Token>& tokens() const { return tokens_; }
   /// The text of a token of this buffer; it may stand in the token.
-  std::string_view textOf(const Token& t) const { return {t.size <= Token::kShort ? t.letters : text_.data() + t.begin, t.size}; }
+  std::string_view textOf(const Token& t) const {
+    return {t.size <= Token::kShort ? t.letters : text_.data() + t.begin, t.size};
+  }
   std::string_view textOf(Token&&) const = delete;
   std::uint32_t size() const { return static_cast<std::uint32_t>(tokens_.size()); }
 
@@ -175,10 +182,10 @@ class Predicates {
   std::size_t store(std::string_view text);
 
   std::vector<Token> tokens_;
-  std::string text_;           ///< what does not stand in tokens
-  std::vector<Place> places_;  ///< of the tokens up to the last that was marked
-  std::uint32_t open_ = kNone; ///< the innermost open list
-  bool surplus_ = false;       ///< close() was called without one
+  std::string text_;            ///< what does not stand in tokens
+  std::vector<Place> places_;   ///< of the tokens up to the last that was marked
+  std::uint32_t open_ = kNone;  ///< the innermost open list
+  bool surplus_ = false;        ///< close() was called without one
 };
 
 inline const Token& Element::token() const { return owner_->tokens_[index_]; }
@@ -188,7 +195,10 @@ inline std::string_view Element::text() const {
 }
 inline double Element::number() const {
   const Token& t = token();
-  return t.kind == Token::Kind::number ? t.number : t.kind == Token::Kind::text ? numberInText() : t.kind == Token::Kind::integer ? static_cast<double>(t.integer) : 0;
+  return t.kind == Token::Kind::number    ? t.number
+         : t.kind == Token::Kind::text    ? numberInText()
+         : t.kind == Token::Kind::integer ? static_cast<double>(t.integer)
+                                          : 0;
 }
 inline Element Element::at(std::size_t i) const {
   if (!isList()) return {};
@@ -211,7 +221,7 @@ void append(const List& values, Predicates& out);
 struct ReadResult {
   std::string message;
   std::uint32_t line = 0, column = 0;
-  std::size_t consumed = 0;    ///< bytes read
+  std::size_t consumed = 0;  ///< bytes read
 };
 
 /// Limits of a reader of outside bytes.
@@ -221,13 +231,15 @@ struct ReadLimits {
   bool places = true;  ///< elements know where they were read
 };
 
-/// Reads top-level expressions of the sfsexp dialect (atoms, "..." and '...' quoting, backslash escapes, ';' comments where a token may
-/// start) and appends them to `out`; at most `maxExpressions` (0: all). At an error what was complete before stays, the rest is dropped.
-/// Never throws on bad bytes. Text becomes tokens of kind text; numbers are not recognised.
-ReadResult readSexp(std::string_view bytes, Predicates& out, const ReadLimits& limits = {}, std::size_t maxExpressions = 0);
+/// Reads top-level expressions of the sfsexp dialect (atoms, "..." and '...' quoting, backslash escapes, ';' comments
+/// where a token may start) and appends them to `out`; at most `maxExpressions` (0: all). At an error what was complete
+/// before stays, the rest is dropped. Never throws on bad bytes. Text becomes tokens of kind text; numbers are not
+/// recognised.
+ReadResult readSexp(std::string_view bytes, Predicates& out, const ReadLimits& limits = {},
+                    std::size_t maxExpressions = 0);
 
-/// Writes all top-level elements as S-expressions as agents and monitors of the installed base expect them: `(name a b)`, one blank
-/// after the name even without arguments, `decimals` fixed decimals for numbers.
+/// Writes all top-level elements as S-expressions as agents and monitors of the installed base expect them: `(name a
+/// b)`, one blank after the name even without arguments, `decimals` fixed decimals for numbers.
 void writeSexp(const Predicates& predicates, int decimals, std::string& out);
 
 }  // namespace spark

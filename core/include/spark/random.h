@@ -13,8 +13,9 @@ namespace spark {
 
 class Leaf;
 
-/// A stream of random numbers that belongs to one node and one purpose. Keyed at its first draw by the kernel's seed, the node's path and
-/// class, the purpose, and an ordinal among equals. Draws are made by one thread at a time. Generator: xoshiro256** (Blackman, Vigna 2018).
+/// A stream of random numbers that belongs to one node and one purpose. Keyed at its first draw by the kernel's seed,
+/// the node's path and class, the purpose, and an ordinal among equals. Draws are made by one thread at a time.
+/// Generator: xoshiro256** (Blackman, Vigna 2018).
 class RandomStream {
  public:
   /// `purpose` must outlive the stream (a literal).

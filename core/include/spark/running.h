@@ -1,9 +1,11 @@
 #pragma once
 /// \file
-/// What the threads of this process run at this instant: node and phase, for the last words of a program that crashes and for watchdogs.
+/// What the threads of this process run at this instant: node and phase, for the last words of a program that crashes
+/// and for watchdogs.
 ///
-/// Who calls the code of plugins says so with a NowRunning: a few relaxed stores to a record of the calling thread, no lock, no memory, no
-/// text. Names and paths are made from it when they are needed, in a signal handler on the very thread: nothing can change meanwhile.
+/// Who calls the code of plugins says so with a NowRunning: a few relaxed stores to a record of the calling thread, no
+/// lock, no memory, no text. Names and paths are made from it when they are needed, in a signal handler on the very
+/// thread: nothing can change meanwhile.
 
 #include <atomic>
 #include <cstddef>
@@ -15,7 +17,8 @@ class Leaf;
 
 /// One thread's record. Written by that thread only.
 struct Running {
-  std::atomic<const Leaf*> node{nullptr};   ///< whose code runs; a class object while it makes an object; nullptr: no node's
+  std::atomic<const Leaf*> node{
+      nullptr};  ///< whose code runs; a class object while it makes an object; nullptr: no node's
   std::atomic<const char*> phase{nullptr};  ///< "sense", "onLink", "constructor", ...: a text that outlives the call
   std::atomic<const char*> file{nullptr};   ///< the plugin's file that is being loaded
   std::atomic<std::uint64_t> beats{0};      ///< grows as long as the thread gets on
@@ -31,7 +34,9 @@ Running& running();
 class NowRunning {
  public:
   explicit NowRunning(const char* phase, const Leaf* node = nullptr)
-      : now_(running()), node_(now_.node.load(std::memory_order_relaxed)), phase_(now_.phase.load(std::memory_order_relaxed)) {
+      : now_(running()),
+        node_(now_.node.load(std::memory_order_relaxed)),
+        phase_(now_.phase.load(std::memory_order_relaxed)) {
     at(node);
     now_.phase.store(phase, std::memory_order_relaxed);
   }
@@ -50,12 +55,13 @@ class NowRunning {
   const char* phase_;
 };
 
-/// Writes what a thread runs as words: "in sense of /usr/scene/x (class Gyro of plugin sensors)". Returns their length, at most `size`.
-/// Safe in signal handlers of that very thread.
+/// Writes what a thread runs as words: "in sense of /usr/scene/x (class Gyro of plugin sensors)". Returns their length,
+/// at most `size`. Safe in signal handlers of that very thread.
 std::size_t describeRunning(const Running& now, char* words, std::size_t size);
 
-/// From here on a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT) of any thread that runs nodes is told on stderr before it ends the process
-/// as it would have: `program` (a literal), the signal, and what the thread ran. Call it once, at the start of main().
+/// From here on a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT) of any thread that runs nodes is told on stderr
+/// before it ends the process as it would have: `program` (a literal), the signal, and what the thread ran. Call it
+/// once, at the start of main().
 void installLastWords(const char* program);
 
 /// Looks whether the thread that made it gets on. One object a process at a time; for another thread, every `period`.
@@ -69,7 +75,8 @@ class Watchdog {
   Watchdog& operator=(const Watchdog&) = delete;
   /// True when it did something new since the last call, or runs no node's code.
   bool gotOn();
-  /// What it runs, or the thread that it waits for; "" when it gets no answer within some 0.1 s. Interrupts that thread for a moment.
+  /// What it runs, or the thread that it waits for; "" when it gets no answer within some 0.1 s. Interrupts that thread
+  /// for a moment.
   const char* words();
 
  private:

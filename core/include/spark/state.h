@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// State: every property marked `state()` and what `saveState` writes, in tree order. Hash: 64 bits, raw bits of doubles, no names.
+/// State: every property marked `state()` and what `saveState` writes, in tree order. Hash: 64 bits, raw bits of
+/// doubles, no names.
 ///
-/// Saved form: for each node, bases first, its state properties as Values, then what saveState wrote. Shape (classes, names, children) is
-/// not part of it: it is loaded into a tree of the same shape.
+/// Saved form: for each node, bases first, its state properties as Values, then what saveState wrote. Shape (classes,
+/// names, children) is not part of it: it is loaded into a tree of the same shape.
 
 #include <cstdint>
 #include <string>

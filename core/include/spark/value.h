@@ -32,7 +32,8 @@ class Value {
   Value(std::string v) : data_(std::move(v)) {}
   Value(std::string_view v) : data_(std::string(v)) {}
   Value(List v) : data_(std::move(v)) {}
-  /// Text as a person typed it (`--set K=TEXT`, sparkctl): a string that is not read before it is known what it is for. See readAs.
+  /// Text as a person typed it (`--set K=TEXT`, sparkctl): a string that is not read before it is known what it is for.
+  /// See readAs.
   static Value typed(std::string_view text);
 
   Type type() const { return isTyped() ? Type::string : static_cast<Type>(data_.index()); }
@@ -65,8 +66,9 @@ class Value {
   std::string plain() const;
   /// Reads what a person types after `--set K=`: true, false, nil, numbers, `{...}` or `[...]`; all else is a string.
   static Value fromText(std::string_view text);
-  /// What typed text means where a type is expected (named as Convert<T>::typeName() does): for a string the text itself, without quotes around
-  /// all of it; for a list of strings its texts; for anything else, an unknown type included, as fromText reads it. Other values are what they are.
+  /// What typed text means where a type is expected (named as Convert<T>::typeName() does): for a string the text
+  /// itself, without quotes around all of it; for a list of strings its texts; for anything else, an unknown type
+  /// included, as fromText reads it. Other values are what they are.
   Value readAs(std::string_view typeName) const;
 
   bool operator==(const Value&) const = default;
@@ -95,18 +97,18 @@ struct Args {
   const Value& take();
 };
 
-/// How a C++ type is made from arguments and turned into a value. Specialise it for types of your own; `kScalars` is the number of
-/// plain arguments it reads (a list of that length is taken as well), -1 for "the rest".
+/// How a C++ type is made from arguments and turned into a value. Specialise it for types of your own; `kScalars` is
+/// the number of plain arguments it reads (a list of that length is taken as well), -1 for "the rest".
 template <class T>
 struct Convert;
 
-#define SPARK_CONVERT(Type, Name)               \
-  template <>                                   \
-  struct Convert<Type> {                        \
-    static constexpr int kScalars = 1;          \
+#define SPARK_CONVERT(Type, Name)                  \
+  template <>                                      \
+  struct Convert<Type> {                           \
+    static constexpr int kScalars = 1;             \
     static std::string typeName() { return Name; } \
-    static Type from(Args& args);               \
-    static Value to(const Type& v);             \
+    static Type from(Args& args);                  \
+    static Value to(const Type& v);                \
   }
 SPARK_CONVERT(bool, "bool");
 SPARK_CONVERT(int, "integer");

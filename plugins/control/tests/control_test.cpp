@@ -1,3 +1,5 @@
+#include "api/control.h"
+
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,11 +12,10 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "api/control.h"
 #include "api/phases.h"
 #include "spark/error.h"
-#include "test_support.h"
 #include "temporary_folder.h"
+#include "test_support.h"
 
 using namespace spark;
 using Json = nlohmann::json;
@@ -87,7 +88,8 @@ TEST_CASE("Sockets of houses that are gone are swept when one starts, others sta
   if (gone == 0) _exit(0);
   waitpid(gone, nullptr, 0);  // now no process has this number
   const fs::path dead = sockets / fmt::format("{}.sock", gone), second = sockets / fmt::format("{}-2.sock", gone),
-                 starting = sockets / fmt::format("{}.sock", getppid()), container = sockets / fmt::format("{}-3.sock", gone);
+                 starting = sockets / fmt::format("{}.sock", getppid()),
+                 container = sockets / fmt::format("{}-3.sock", gone);
   bind(dead), bind(second), bind(starting);
   auto listening = bind(container);
   listening.listen();
@@ -145,7 +147,8 @@ TEST_CASE("A node without a property lists them all") {
 TEST_CASE("set changes a property, also from typed text; wrong values are refused with the reason") {
   Fixture f;
   f.connect();
-  REQUIRE(f.ask({{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", "0.01"}})["ok"] == true);
+  REQUIRE(f.ask({{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", "0.01"}})["ok"] ==
+          true);
   REQUIRE(getProperty(*f.simulation, "step").toNumber() == 0.01);
   const Json bad = f.ask({{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", -1}});
   REQUIRE(bad["ok"] == false);
@@ -217,7 +220,9 @@ TEST_CASE("Other servers' clients are answered too; who may not change the match
   Fixture f;
   auto& requests = *f.control->as<IRequests>();
   control::Watch watch;
-  const auto ask = [&](const Json& request, bool mayChange) { return Json::parse(requests.answer(request.dump(), watch, mayChange)); };
+  const auto ask = [&](const Json& request, bool mayChange) {
+    return Json::parse(requests.answer(request.dump(), watch, mayChange));
+  };
   const Json set = {{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", 0.01}};
   const Json call = {{"do", "call"}, {"path", "/sys/server/simulation"}, {"method", "setStep"}, {"arguments", {0.03}}};
   for (const Json& request : {set, call}) {
@@ -240,15 +245,16 @@ TEST_CASE("Plugins are listed with what they provide") {
   f.connect();
   const Json a = f.ask({{"do", "plugins"}});
   bool found = false;
-  for (const Json& p : a["plugins"]) found |= p["name"] == "simulation" && p["registered"] == true && p["classes"][0] == "Simulation";
+  for (const Json& p : a["plugins"])
+    found |= p["name"] == "simulation" && p["registered"] == true && p["classes"][0] == "Simulation";
   REQUIRE(found);
 }
 
 TEST_CASE("Bad requests get an error and harm nobody") {
   Fixture f;
   f.connect();
-  for (const char* line : {"garbage", "[]", "{}", R"({"do":"dance"})", R"({"do":"get"})", R"({"do":"get","path":"/nowhere"})",
-                           R"({"do":"get","path":7})", "\xff\xfe"}) {
+  for (const char* line : {"garbage", "[]", "{}", R"({"do":"dance"})", R"({"do":"get"})",
+                           R"({"do":"get","path":"/nowhere"})", R"({"do":"get","path":7})", "\xff\xfe"}) {
     f.send(line);
     f.cycle();
     CAPTURE(line);

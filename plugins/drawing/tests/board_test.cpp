@@ -29,7 +29,8 @@ using Shown = std::multiset<std::pair<std::string, float>>;
 Shown shown(const DrawBoard& board) {
   Shown all;
   for (const auto& set : board.sets())
-    for (const Drawing& d : set.shapes) all.emplace(set.name, d.points.empty() ? static_cast<float>(d.number) : d.points[0].x());
+    for (const Drawing& d : set.shapes)
+      all.emplace(set.name, d.points.empty() ? static_cast<float>(d.number) : d.points[0].x());
   return all;
 }
 
@@ -115,8 +116,10 @@ TEST_CASE("agents' texts come and go in any order") {
     Drawing d = label(i * 37 % 128 + 1, i * 11 % 3 == 0 ? "" : "text");
     d.right = i % 5 == 0;
     const int agent = d.number + 1000 * d.right;
-    if (d.text.empty()) there.erase(agent);
-    else there.insert(agent);
+    if (d.text.empty())
+      there.erase(agent);
+    else
+      there.insert(agent);
     board.setAgentText(d);
   }
   std::multiset<int> found;

@@ -67,7 +67,9 @@ TEST_CASE("each command of the drawing port is read as the installed base's view
   CHECK(d.kind == Kind::sphere);
   CHECK(d.points == std::vector<Vec3f>{{1, 2, 3}});
   CHECK(d.size == 0.5f);
-  d = readOne(bytes({1, 4, 3}) + rgb + bytes({128}) + "0.00000.00000.00001.00000.00000.00000.00001.00000.0000" + zero("n")).drawing;
+  d = readOne(bytes({1, 4, 3}) + rgb + bytes({128}) + "0.00000.00000.00001.00000.00000.00000.00001.00000.0000" +
+              zero("n"))
+          .drawing;
   CHECK(d.kind == Kind::polygon);
   CHECK(d.points.size() == 3);
   CHECK(d.color.a == Approx(0.502).margin(0.001));
@@ -92,15 +94,19 @@ TEST_CASE("each command of the drawing port is read as the installed base's view
 }
 
 TEST_CASE("what is written is read again as it was") {
-  const std::string commands = sphere("a.b") + swap("a") + bytes({1, 0}) + "-5.0002.50000.75002.0000" + bytes({1, 2, 3}) + zero("a.b") + bytes({1, 4, 2, 9, 8, 7, 6}) +
-                               "0.0000-1.500099999" + "1.00000.00000.0001" + zero("c") + bytes({2, 0}) + "0.00001.00002.0000" + bytes({0, 0, 0}) + zero("text") + zero("t") +
-                               bytes({2, 1, 130, 0, 0, 0}) + zero("x") + bytes({2, 2, 3});
+  const std::string commands = sphere("a.b") + swap("a") + bytes({1, 0}) + "-5.0002.50000.75002.0000" +
+                               bytes({1, 2, 3}) + zero("a.b") + bytes({1, 4, 2, 9, 8, 7, 6}) + "0.0000-1.500099999" +
+                               "1.00000.00000.0001" + zero("c") + bytes({2, 0}) + "0.00001.00002.0000" +
+                               bytes({0, 0, 0}) + zero("text") + zero("t") + bytes({2, 1, 130, 0, 0, 0}) + zero("x") +
+                               bytes({2, 2, 3});
   bool failed = true;
   const auto first = readAll(commands, &failed);
   REQUIRE_FALSE(failed);
   REQUIRE(first.size() == 7);
   std::string written;
-  for (const Command& c : first) c.kind == Command::Kind::swap ? drawing::writeSwap(c.set, written) : drawing::writeDrawing(c.drawing, c.set, written);
+  for (const Command& c : first)
+    c.kind == Command::Kind::swap ? drawing::writeSwap(c.set, written)
+                                  : drawing::writeDrawing(c.drawing, c.set, written);
   const auto second = readAll(written, &failed);
   REQUIRE_FALSE(failed);
   REQUIRE(second.size() == first.size());
@@ -117,10 +123,12 @@ TEST_CASE("what is written is read again as it was") {
 
 TEST_CASE("bad bytes end their packet, what came before them counts") {
   const std::string good = sphere("a");
-  for (const std::string& bad :
-       {bytes({1}), bytes({9, 9}), bytes({1, 5}), bytes({2, 3}), bytes({3, 1, 0}), bytes({1, 3}) + "nan   0.00000.00000.0000" + bytes({0, 0, 0}) + zero("n"),
-        bytes({1, 3}) + "1e9999" + "0.00000.00000.0000" + bytes({0, 0, 0}) + zero("n"), bytes({1, 3}) + "1 2   0.00000.00000.0000" + bytes({0, 0, 0}) + zero("n"),
-        bytes({1, 3}) + "1e30  0.00000.00000.0000" + bytes({0, 0, 0}) + zero("n"), bytes({1, 4, 255, 0, 0, 0, 0}) + "0.0000", bytes({0, 0}) + "endless"}) {
+  for (const std::string& bad : {bytes({1}), bytes({9, 9}), bytes({1, 5}), bytes({2, 3}), bytes({3, 1, 0}),
+                                 bytes({1, 3}) + "nan   0.00000.00000.0000" + bytes({0, 0, 0}) + zero("n"),
+                                 bytes({1, 3}) + "1e9999" + "0.00000.00000.0000" + bytes({0, 0, 0}) + zero("n"),
+                                 bytes({1, 3}) + "1 2   0.00000.00000.0000" + bytes({0, 0, 0}) + zero("n"),
+                                 bytes({1, 3}) + "1e30  0.00000.00000.0000" + bytes({0, 0, 0}) + zero("n"),
+                                 bytes({1, 4, 255, 0, 0, 0, 0}) + "0.0000", bytes({0, 0}) + "endless"}) {
     bool failed = false;
     CHECK(readAll(good + bad, &failed).size() == 1);
     CHECK(failed);
@@ -135,10 +143,10 @@ TEST_CASE("bad bytes end their packet, what came before them counts") {
 TEST_CASE("names and texts come out short, in valid UTF-8, without control characters") {
   CHECK(drawing::cleanText("a\nb\x7f", 10) == "a b ");
   CHECK(drawing::cleanText("\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80", 100) == "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80");
-  CHECK(drawing::cleanText("\xff\xc3", 100) == "??");                      // no character, half of one
-  CHECK(drawing::cleanText("\xc0\x80|\xed\xa0\x80", 100) == "??|???");     // longer than needed, half of a pair
-  CHECK(drawing::cleanText("\xf5\x80\x80\x80", 100) == "????");            // beyond the last character
-  CHECK(drawing::cleanText("aaa\xe2\x82\xac", 5) == "aaa");                // cut between characters
+  CHECK(drawing::cleanText("\xff\xc3", 100) == "??");                   // no character, half of one
+  CHECK(drawing::cleanText("\xc0\x80|\xed\xa0\x80", 100) == "??|???");  // longer than needed, half of a pair
+  CHECK(drawing::cleanText("\xf5\x80\x80\x80", 100) == "????");         // beyond the last character
+  CHECK(drawing::cleanText("aaa\xe2\x82\xac", 5) == "aaa");             // cut between characters
   CHECK(readOne(bytes({0, 0}) + zero(std::string(500, 'x'))).set.size() == PacketReader::kLongestName);
 }
 

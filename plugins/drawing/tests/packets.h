@@ -14,10 +14,14 @@ inline std::string bytes(std::initializer_list<int> values) {
 }
 inline std::string zero(std::string text) { return text += '\0'; }
 
-inline std::span<const std::byte> packet(const std::string& text) { return std::as_bytes(std::span(text.data(), text.size())); }
+inline std::span<const std::byte> packet(const std::string& text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
 
 /// A sphere of radius 0.5 at (1, 2, 3), red, in a set.
-inline std::string sphere(const std::string& set) { return bytes({1, 3}) + "1.00002.00003.00000.5000" + bytes({255, 0, 0}) + zero(set); }
+inline std::string sphere(const std::string& set) {
+  return bytes({1, 3}) + "1.00002.00003.00000.5000" + bytes({255, 0, 0}) + zero(set);
+}
 inline std::string swap(const std::string& prefix) { return bytes({0, 0}) + zero(prefix); }
 
 }  // namespace spark::test

@@ -135,7 +135,8 @@ TEST_CASE("a port or a viewer that cannot be had is told, and the house goes on"
   setProperty(*second.node, "port", first.get("port"));
   setProperty(*second.node, "forward", "nowhere");
   second.poll();
-  CHECK_THAT(second.text, Catch::Contains("drawings cannot come in at 127.0.0.1:") && Catch::Contains("cannot be forwarded to 'nowhere'"));
+  CHECK_THAT(second.text, Catch::Contains("drawings cannot come in at 127.0.0.1:") &&
+                              Catch::Contains("cannot be forwarded to 'nowhere'"));
   const auto said = second.text.size();
   second.poll();
   CHECK(second.text.size() == said);
@@ -159,12 +160,14 @@ TEST_CASE("an agent's effector shows its shapes at once, in place of those befor
   CHECK(artist.draw("(draw (set plan))").empty());
   CHECK(artist.shapesIn("plan") == 0);
   const auto version = artist.server->version();
-  CHECK_THAT(artist.draw("(draw (set plan) (point (at 1 2 0)) (cube))"), Catch::Contains("expected a circle") && Catch::Contains("found 'cube'"));
+  CHECK_THAT(artist.draw("(draw (set plan) (point (at 1 2 0)) (cube))"),
+             Catch::Contains("expected a circle") && Catch::Contains("found 'cube'"));
   CHECK(artist.server->version() == version);
 }
 
 TEST_CASE("a config's drawing() opens a port only when it is named, and a house of a batch just knows the effector") {
-  const auto furnish = [](House& house, const char* host, std::initializer_list<std::pair<const char*, Value>> settings) {
+  const auto furnish = [](House& house, const char* host,
+                          std::initializer_list<std::pair<const char*, Value>> settings) {
     Lua& lua = house.kernel.lua();
     lua.addFolder(SPARK_SOURCES "/lua");
     for (const auto& [name, value] : settings) lua.addOverride(name, value);

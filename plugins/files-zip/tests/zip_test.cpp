@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "api/files.h"
-#include "test_support.h"
 #include "temporary_folder.h"
+#include "test_support.h"
 
 namespace fs = std::filesystem;
 using namespace spark;
@@ -37,7 +37,8 @@ struct Archive {
         zip_dir_add(zip, name.c_str(), ZIP_FL_ENC_UTF_8);
         continue;
       }
-      const auto index = zip_file_add(zip, name.c_str(), zip_source_buffer(zip, text.data(), text.size(), 0), ZIP_FL_ENC_UTF_8);
+      const auto index =
+          zip_file_add(zip, name.c_str(), zip_source_buffer(zip, text.data(), text.size(), 0), ZIP_FL_ENC_UTF_8);
       if (encrypt) zip_file_set_encryption(zip, static_cast<zip_uint64_t>(index), ZIP_EM_AES_128, "secret");
     }
     REQUIRE(zip_close(zip) == 0);

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "test_support.h"
 #include "temporary_folder.h"
+#include "test_support.h"
 
 namespace fs = std::filesystem;
 using namespace spark;
@@ -69,7 +69,8 @@ TEST_CASE("a missing resource says where it was looked for") {
 TEST_CASE("names that are absolute, climb out or are no names are refused") {
   Files f;
   f.folder.write("a", "a");
-  for (const char* name : {"/etc/passwd", "../a", "x/../../a", "x/..", "..", ".", "", "./", "\\\\host\\a", "..\\a", "C:/a", "a\nb"}) {
+  for (const char* name :
+       {"/etc/passwd", "../a", "x/../../a", "x/..", "..", ".", "", "./", "\\\\host\\a", "..\\a", "C:/a", "a\nb"}) {
     INFO(name);
     CHECK(f.errorOf(name).find("expected") != std::string::npos);
     CHECK_THROWS_AS(f.server->exists(name), Error);

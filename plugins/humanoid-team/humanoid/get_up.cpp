@@ -42,11 +42,13 @@ void GetUp::step(const Percepts& percepts, const Posture& posture, Pose& pose) {
   const double seconds = movement_->frames[frame_].seconds;
   time_ += kCycle;
   const double share = std::min(1.0, time_ / seconds);
-  for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i) pose.at(i) = from_.at(i) + (to_.at(i) - from_.at(i)) * share;
+  for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i)
+    pose.at(i) = from_.at(i) + (to_.at(i) - from_.at(i)) * share;
 
   // the ankles keep the torso's lean where it should be
   if (frame_ + 2 >= count) {
-    const double wanted = movement_->squatLean + (frame_ + 1 == count ? (movement_->endLean - movement_->squatLean) * share : 0);
+    const double wanted =
+        movement_->squatLean + (frame_ + 1 == count ? (movement_->endLean - movement_->squatLean) * share : 0);
     const double off = degrees(posture.forward()) - wanted, rate = -degrees(percepts.gyro.x());
     const double correction = radians(std::clamp(movement_->straighten * off + movement_->damp * rate, -kMost, kMost));
     pose[Joint::rAnklePitch] -= correction;

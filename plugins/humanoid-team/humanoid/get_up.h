@@ -18,7 +18,9 @@ struct Keyframe {
 /// The first frame is held for a moment, so that what follows begins at rest.
 struct Movement {
   std::span<const Keyframe> frames;
-  double straighten = 0, damp = 0;    ///< of the ankles in the last two frames, for a degree of lean beyond what is wanted, for a degree/s
+  double straighten = 0,
+         damp =
+             0;  ///< of the ankles in the last two frames, for a degree of lean beyond what is wanted, for a degree/s
   double squatLean = 0, endLean = 0;  ///< wanted in the last but one, and at the end [deg]
 };
 

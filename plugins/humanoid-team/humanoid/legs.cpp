@@ -6,7 +6,9 @@
 
 // A leg is hip yaw (about a slanted axis), roll and pitch in one point, a knee, an ankle with pitch and roll:
 //
-//     foot = Ry(-s 45) Rz(s yaw) Ry(s 45) . Ry(hip roll) Rx(hip pitch) Rx(knee) Rx(ankle pitch) Ry(ankle roll)      s = 1 right, -1 left
+//     foot = Ry(-s 45) Rz(s yaw) Ry(s 45) . Ry(hip roll) Rx(hip pitch) Rx(knee) Rx(ankle pitch) Ry(ankle roll)
+//
+// with s = 1 for the right leg, -1 for the left.
 //
 // Seen from the sole, the way to the hip fixes ankle and knee; the rest of the rotation is the hip's.
 

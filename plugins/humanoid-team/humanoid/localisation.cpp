@@ -21,7 +21,8 @@ Vec3 Localisation::level(const Vec3& inHead, const Percepts& percepts, const Pos
   return Eigen::AngleAxisd(nod_, Vec3::UnitX()) * (posture.level() * (head * inHead + Vec3(0, 0, kCameraHeight)));
 }
 
-/// While a player walks, the lean from its accelerometer is wrong by several degrees; landmarks of known height correct it.
+/// While a player walks, the lean from its accelerometer is wrong by several degrees; landmarks of known height correct
+/// it.
 void Localisation::findHorizon(const Percepts& percepts, const Posture& posture) {
   double across = 0, along = 0;
   for (const Sighting& s : percepts.sightings) {
@@ -29,7 +30,8 @@ void Localisation::findHorizon(const Percepts& percepts, const Posture& posture)
     across += place.y() * (s.landmark->place.z() - kTorsoHeight - place.z());
     along += place.y() * place.y();
   }
-  if (along > 1 && posture.lying() == Lying::no) nod_ = std::clamp(nod_ + kNod * std::atan2(across, along), -kMostNod, kMostNod);
+  if (along > 1 && posture.lying() == Lying::no)
+    nod_ = std::clamp(nod_ + kNod * std::atan2(across, along), -kMostNod, kMostNod);
 }
 
 Vec2 Localisation::toField(const Vec2& fromRobot) const { return place_ + rotation(heading_) * fromRobot; }
@@ -42,7 +44,8 @@ void Localisation::update(const Percepts& percepts, const Posture& posture, cons
   if (percepts.seeing && !percepts.side.empty()) match(percepts, posture);
 }
 
-// With two marks or more, the turn and shift that fit them best; with one, the heading is believed and the place is moved.
+// With two marks or more, the turn and shift that fit them best; with one, the heading is believed and the place is
+// moved.
 void Localisation::match(const Percepts& percepts, const Posture& posture) {
   findHorizon(percepts, posture);
   const double flip = percepts.side == "right" ? -1 : 1;

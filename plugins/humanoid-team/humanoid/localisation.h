@@ -9,8 +9,8 @@ namespace humanoid {
 /// The field as a team sees it: the opponents' goal at +x, y to the left, origin in the middle [m].
 class Localisation {
  public:
-  /// To be called for every message, after the posture's. `moved`: the way walked since the last one, x to the robot's right, y forward
-  /// [m].
+  /// To be called for every message, after the posture's. `moved`: the way walked since the last one, x to the robot's
+  /// right, y forward [m].
   void update(const Percepts& percepts, const Posture& posture, const Vec2& moved);
   /// True when it has found itself, and seen enough since to trust it.
   bool known() const { return age_ < kTrust; }

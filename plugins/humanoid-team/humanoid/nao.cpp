@@ -16,12 +16,14 @@ constexpr JointFacts joint(std::string_view perceptor, std::string_view effector
 }  // namespace
 
 const std::array<JointFacts, kJoints> kJointFacts{{
-    joint("hj1", "he1", -120, 120),   joint("hj2", "he2", -45, 45),   joint("raj1", "rae1", -120, 120), joint("raj2", "rae2", -95, 1),
-    joint("raj3", "rae3", -120, 120), joint("raj4", "rae4", -1, 90),  joint("laj1", "lae1", -120, 120), joint("laj2", "lae2", -1, 95),
-    joint("laj3", "lae3", -120, 120), joint("laj4", "lae4", -90, 1),  joint("rlj1", "rle1", -90, 1),    joint("rlj2", "rle2", -45, 25),
-    joint("rlj3", "rle3", -25, 100),  joint("rlj4", "rle4", -130, 1), joint("rlj5", "rle5", -45, 75),   joint("rlj6", "rle6", -25, 45),
-    joint("rlj7", "rle7", -1, 70),    joint("llj1", "lle1", -90, 1),  joint("llj2", "lle2", -25, 45),   joint("llj3", "lle3", -25, 100),
-    joint("llj4", "lle4", -130, 1),   joint("llj5", "lle5", -45, 75), joint("llj6", "lle6", -45, 25),   joint("llj7", "lle7", -1, 70),
+    joint("hj1", "he1", -120, 120),   joint("hj2", "he2", -45, 45),     joint("raj1", "rae1", -120, 120),
+    joint("raj2", "rae2", -95, 1),    joint("raj3", "rae3", -120, 120), joint("raj4", "rae4", -1, 90),
+    joint("laj1", "lae1", -120, 120), joint("laj2", "lae2", -1, 95),    joint("laj3", "lae3", -120, 120),
+    joint("laj4", "lae4", -90, 1),    joint("rlj1", "rle1", -90, 1),    joint("rlj2", "rle2", -45, 25),
+    joint("rlj3", "rle3", -25, 100),  joint("rlj4", "rle4", -130, 1),   joint("rlj5", "rle5", -45, 75),
+    joint("rlj6", "rle6", -25, 45),   joint("rlj7", "rle7", -1, 70),    joint("llj1", "lle1", -90, 1),
+    joint("llj2", "lle2", -25, 45),   joint("llj3", "lle3", -25, 100),  joint("llj4", "lle4", -130, 1),
+    joint("llj5", "lle5", -45, 75),   joint("llj6", "lle6", -45, 25),   joint("llj7", "lle7", -1, 70),
 }};
 
 const Build& buildOf(int type) {

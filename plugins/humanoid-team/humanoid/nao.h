@@ -20,7 +20,8 @@ double normalized(double rad);
 /// `from` moved towards `to` by at most `by`.
 inline double towards(double from, double to, double by) { return from + std::clamp(to - from, -by, by); }
 
-/// All joints of all types; the toes exist with type 4 only. Arms and legs of the right side first, in the order of the percepts.
+/// All joints of all types; the toes exist with type 4 only. Arms and legs of the right side first, in the order of the
+/// percepts.
 enum class Joint : std::size_t {
   headYaw,
   headPitch,
@@ -78,8 +79,8 @@ constexpr double kSole = 0.05;           ///< m from the ankle down to the sole
 constexpr double kKneeForward = 0.005;   ///< m that the knee is before the hip when the leg is straight
 constexpr double kCameraHeight = 0.155;  ///< m from the torso's middle up to the head's, where the camera is
 
-/// Robot types of a team of eleven, by uniform number 1..11: within the league's limits (at most 7 of a type, 9 of two, at least 3 types).
-/// All five types play; the widest, which others knock over most easily, keeps the goal.
+/// Robot types of a team of eleven, by uniform number 1..11: within the league's limits (at most 7 of a type, 9 of two,
+/// at least 3 types). All five types play; the widest, which others knock over most easily, keeps the goal.
 int robotType(int unum);
 
 }  // namespace humanoid

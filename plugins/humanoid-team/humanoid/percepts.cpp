@@ -61,14 +61,15 @@ void readVision(const Element& see, Percepts& out) {
 
 /// `(hear TEAM TIME self|DIRECTION TEXT)`.
 void readHearing(const Element& hear, std::string_view team, Percepts& out) {
-  if (hear.size() == 5 && hear.at(1).text() == team && hear.at(3).text() != "self") out.heard.emplace_back(hear.at(4).text());
+  if (hear.size() == 5 && hear.at(1).text() == team && hear.at(3).text() != "self")
+    out.heard.emplace_back(hear.at(4).text());
 }
 }  // namespace
 
 const std::vector<Landmark>& landmarks() {
-  static const std::vector<Landmark> all{{"F1L", {-15, 10, 0}},    {"F2L", {-15, -10, 0}},    {"F1R", {15, 10, 0}},
-                                         {"F2R", {15, -10, 0}},    {"G1L", {-15, 1.05, 0.8}}, {"G2L", {-15, -1.05, 0.8}},
-                                         {"G1R", {15, 1.05, 0.8}}, {"G2R", {15, -1.05, 0.8}}};
+  static const std::vector<Landmark> all{
+      {"F1L", {-15, 10, 0}},     {"F2L", {-15, -10, 0}},     {"F1R", {15, 10, 0}},     {"F2R", {15, -10, 0}},
+      {"G1L", {-15, 1.05, 0.8}}, {"G2L", {-15, -1.05, 0.8}}, {"G1R", {15, 1.05, 0.8}}, {"G2R", {15, -1.05, 0.8}}};
   return all;
 }
 

@@ -36,7 +36,8 @@ void armsDown(const Build& build, Pose& pose) {
   pose[Joint::rShoulderPitch] = pose[Joint::lShoulderPitch] = radians(-100);
   pose[Joint::rShoulderYaw] = -build.armsOut;
   pose[Joint::lShoulderYaw] = build.armsOut;
-  for (const Joint j : {Joint::rArmRoll, Joint::rElbow, Joint::lArmRoll, Joint::lElbow, Joint::rToe, Joint::lToe}) pose[j] = 0;
+  for (const Joint j : {Joint::rArmRoll, Joint::rElbow, Joint::lArmRoll, Joint::lElbow, Joint::rToe, Joint::lToe})
+    pose[j] = 0;
 }
 }  // namespace
 
@@ -112,7 +113,8 @@ void HumanoidPlayer::senseOthers() {
   for (const SeenPlayer& p : percepts_.players) {
     if (p.team == team_ && p.unum == unum_) continue;  // his own arms
     const Vec2 place = localisation_.toField(localisation_.level(p.place, percepts_, posture_).head<2>());
-    const auto known = std::find_if(others_.begin(), others_.end(), [&](const Other& o) { return o.unum == p.unum && o.team == p.team; });
+    const auto known = std::find_if(others_.begin(), others_.end(),
+                                    [&](const Other& o) { return o.unum == p.unum && o.team == p.team; });
     if (known != others_.end())
       *known = {p.team, p.unum, percepts_.now, place};
     else
@@ -122,14 +124,16 @@ void HumanoidPlayer::senseOthers() {
 
 /// A player that took a restart may not touch the ball again before another player has.
 void HumanoidPlayer::watchRestart() {
-  const bool ours = !pausedMode(percepts_.playMode) && percepts_.playMode != "PlayOn" && !theirBall(percepts_.playMode, percepts_.side);
+  const bool ours = !pausedMode(percepts_.playMode) && percepts_.playMode != "PlayOn" &&
+                    !theirBall(percepts_.playMode, percepts_.side);
   const bool atBall = percepts_.now - ballAt_ < 1 && (ball_ - localisation_.place()).norm() < kAtBall;
   if (restart_ && percepts_.playMode == "PlayOn" && atBall) barredSince_ = percepts_.now;
   restart_ = ours;
   if (barredSince_ < 0) return;
-  const bool touched =
-      std::any_of(others_.begin(), others_.end(), [this](const Other& o) { return (o.place - ball_).norm() < kTouch; }) ||
-      std::any_of(mates_.begin(), mates_.end(), [this](const Mate& m) { return m.heardAt > barredSince_ && m.toBall < kTouch; });
+  const bool touched = std::any_of(others_.begin(), others_.end(),
+                                   [this](const Other& o) { return (o.place - ball_).norm() < kTouch; }) ||
+                       std::any_of(mates_.begin(), mates_.end(),
+                                   [this](const Mate& m) { return m.heardAt > barredSince_ && m.toBall < kTouch; });
   if (touched || percepts_.now - barredSince_ > kBarred || percepts_.playMode != "PlayOn") barredSince_ = -1;
 }
 
@@ -148,7 +152,8 @@ void HumanoidPlayer::hear() {
 
 /// Adds distance for a player that lies, and puts one that may not touch the ball out of the running.
 double HumanoidPlayer::toBall() const {
-  return wayToBall(localisation_.place(), ball_) + (lyingSince_ >= 0 || getUp_.playing() ? 2 : 0) + (barredSince_ >= 0 ? 20 : 0);
+  return wayToBall(localisation_.place(), ball_) + (lyingSince_ >= 0 || getUp_.playing() ? 2 : 0) +
+         (barredSince_ >= 0 ? 20 : 0);
 }
 
 Situation HumanoidPlayer::situation() const {
@@ -164,12 +169,13 @@ Situation HumanoidPlayer::situation() const {
   s.heading = localisation_.heading();
   s.ball = ball_;
   s.barred = barredSince_ >= 0;
-  s.contested =
-      std::any_of(others_.begin(), others_.end(), [this](const Other& o) { return o.team != team_ && (o.place - ball_).norm() < kDuel; });
+  s.contested = std::any_of(others_.begin(), others_.end(),
+                            [this](const Other& o) { return o.team != team_ && (o.place - ball_).norm() < kDuel; });
   s.nearest = true;
   for (int i = 1; i <= 11; ++i) {
     const Mate& mate = mates_[static_cast<std::size_t>(i)];
-    if (i != unum_ && percepts_.now - mate.heardAt < kMateMemory && (mate.toBall < toBall() - 0.1 * (i > unum_))) s.nearest = false;
+    if (i != unum_ && percepts_.now - mate.heardAt < kMateMemory && (mate.toBall < toBall() - 0.1 * (i > unum_)))
+      s.nearest = false;
   }
   return s;
 }
@@ -207,7 +213,8 @@ void HumanoidPlayer::act(const Decision& decision, spark::Predicates& actions) {
       return walk({s.forward, s.right, s.turn});
     }
     case Task::push: {
-      const Steering s = push(localisation_.toRobot(decision.target), normalized(decision.facing - localisation_.heading()));
+      const Steering s =
+          push(localisation_.toRobot(decision.target), normalized(decision.facing - localisation_.heading()));
       return walk({s.forward, s.right, s.turn});
     }
   }
@@ -276,7 +283,8 @@ void HumanoidPlayer::settle() {
   Pose stance = pose_;
   armsDown(build_, stance);
   walk_.stand(stance);
-  for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i) pose_.at(i) = towards(pose_.at(i), stance.at(i), kSettling);
+  for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i)
+    pose_.at(i) = towards(pose_.at(i), stance.at(i), kSettling);
 }
 
 /// Turns the head to the ball; sweeps while it does not know where that is.

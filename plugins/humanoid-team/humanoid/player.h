@@ -12,7 +12,8 @@
 
 namespace humanoid {
 
-/// Plays one Nao. Knows nothing of sockets; deterministic: the same messages give the same answers. One object plays one agent.
+/// Plays one Nao. Knows nothing of sockets; deterministic: the same messages give the same answers. One object plays
+/// one agent.
 class HumanoidPlayer {
  public:
   /// `unum`: 1..11, number 1 keeps the goal; `type`: robot type 0..4.
@@ -80,13 +81,13 @@ class HumanoidPlayer {
   Pose pose_{};
   Task task_ = Task::stand;
   bool walking_ = false;
-  int attempts_ = 0;                                                         ///< to get up, one soon after the other
-  double roseAt_ = -100, triedAt_ = -100;                                    ///< s, when he stood up, and began to get up
-  double uprightAt_ = 0, footAt_ = 0;                                        ///< s, when he was upright, and had a foot on the ground, last
+  int attempts_ = 0;                       ///< to get up, one soon after the other
+  double roseAt_ = -100, triedAt_ = -100;  ///< s, when he stood up, and began to get up
+  double uprightAt_ = 0, footAt_ = 0;      ///< s, when he was upright, and had a foot on the ground, last
   double initAt_ = -10, beamAt_ = -10, lyingSince_ = -1, pausedSince_ = -1;  ///< s
-  Vec2 ballFromHere_ = Vec2::Zero();                                         ///< the ball from the robot, x to its right, y forward [m]
-  Vec2 ball_ = Vec2::Zero();                                                 ///< on the field [m]
-  double ballAt_ = -100;                                                     ///< s, when it was last seen or told of
+  Vec2 ballFromHere_ = Vec2::Zero();  ///< the ball from the robot, x to its right, y forward [m]
+  Vec2 ball_ = Vec2::Zero();          ///< on the field [m]
+  double ballAt_ = -100;              ///< s, when it was last seen or told of
   std::array<Mate, 12> mates_;
   std::vector<Other> others_;
   bool restart_ = false;     ///< the last message told of a restart of ours

@@ -16,20 +16,20 @@
 namespace humanoid {
 
 namespace {
-constexpr double kTipping = radians(50);      // of tilt: no step saves him
-constexpr double kKeepAway = 2.4;             // m from the ball at the others' restarts
-constexpr double kBehind = 0.35;              // m behind the ball: there he turns towards it
-constexpr double kAround = 0.5;               // m from the ball when he has to get round it
-constexpr double kFurther = radians(55);      // that he goes round it at a time
-constexpr double kAtHand = 0.8;               // m from the ball: he steps to its back, or pushes it
-constexpr double kFar = 2;                    // m from the ball: he does not go round it yet
-constexpr double kTurned = radians(40);       // from the ball's way: he does not push it before he has turned
-constexpr double kFoot = 0.05;                // m beside the middle of a player, where his foot meets the ball
-constexpr double kToes = 0.1;                 // m that his foot is ahead then
-constexpr double kExact = 0.03;               // m beside that which do not matter
-constexpr double kAhead = 0.5;                // m ahead on his line that he walks to
-constexpr double kMouth = 0.3, kShot = 3;     // m beside the goal's middle at which he aims at most, up to that distance
-constexpr double kWiden = 0.25;               // m further aside for each m further away
+constexpr double kTipping = radians(50);   // of tilt: no step saves him
+constexpr double kKeepAway = 2.4;          // m from the ball at the others' restarts
+constexpr double kBehind = 0.35;           // m behind the ball: there he turns towards it
+constexpr double kAround = 0.5;            // m from the ball when he has to get round it
+constexpr double kFurther = radians(55);   // that he goes round it at a time
+constexpr double kAtHand = 0.8;            // m from the ball: he steps to its back, or pushes it
+constexpr double kFar = 2;                 // m from the ball: he does not go round it yet
+constexpr double kTurned = radians(40);    // from the ball's way: he does not push it before he has turned
+constexpr double kFoot = 0.05;             // m beside the middle of a player, where his foot meets the ball
+constexpr double kToes = 0.1;              // m that his foot is ahead then
+constexpr double kExact = 0.03;            // m beside that which do not matter
+constexpr double kAhead = 0.5;             // m ahead on his line that he walks to
+constexpr double kMouth = 0.3, kShot = 3;  // m beside the goal's middle at which he aims at most, up to that distance
+constexpr double kWiden = 0.25;            // m further aside for each m further away
 constexpr double kAsideInDuel = radians(60);  // further aside when an opponent is at the ball
 constexpr double kStraight = 4;               // m from the goal: there he aims at it, duel or not
 constexpr double kRound = 2;                  // m that getting round the whole ball counts as
@@ -54,8 +54,18 @@ constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
                                                             {-2.4, -2.5}}};
 
 /// Where the field players wait, from the ball. Two are behind it, ready to go on where the first one loses it.
-constexpr std::array<std::array<double, 2>, 12> kFromBall{
-    {{0, 0}, {0, 0}, {-4, 4.5}, {-5, 1}, {-2, -1.2}, {-4, -4.5}, {-1, 5}, {-1.6, 1}, {-1, -5}, {0.8, 2.2}, {3.5, 0}, {0.8, -2.2}}};
+constexpr std::array<std::array<double, 2>, 12> kFromBall{{{0, 0},
+                                                           {0, 0},
+                                                           {-4, 4.5},
+                                                           {-5, 1},
+                                                           {-2, -1.2},
+                                                           {-4, -4.5},
+                                                           {-1, 5},
+                                                           {-1.6, 1},
+                                                           {-1, -5},
+                                                           {0.8, 2.2},
+                                                           {3.5, 0},
+                                                           {0.8, -2.2}}};
 
 double angleOf(const Vec2& v) { return std::atan2(v.y(), v.x()); }
 
@@ -68,7 +78,8 @@ Decision keepAway(const Situation& s) {
   return walkTo(s.ball + back.normalized() * kKeepAway, angleOf(-back));
 }
 
-/// Where the ball is to go: between the posts; from further away as far aside as the player comes from aside, and there more so in a duel.
+/// Where the ball is to go: between the posts; from further away as far aside as the player comes from aside, and there
+/// more so in a duel.
 Vec2 aim(const Situation& s) {
   const Vec2 from = s.ball - s.place;
   const double distance = (kTheirGoal - s.ball).norm(), width = kMouth + kWiden * std::max(0.0, distance - kShot);
@@ -87,7 +98,8 @@ Decision attack(const Situation& s) {
   const bool near = from.norm() < kAtHand, turned = std::abs(normalized(s.heading - facing)) < kTurned;
   const Vec2 meet = s.ball + across * (side * kFoot);
   if (near && turned && behind > 0.04 && std::abs(beside) < 0.1 + 0.35 * behind) return {Task::push, meet, facing};
-  if (!near && behind > 0 && std::abs(beside) < 0.09 + 0.4 * behind) return {Task::run, meet + way * (kAhead - behind), facing};
+  if (!near && behind > 0 && std::abs(beside) < 0.09 + 0.4 * behind)
+    return {Task::run, meet + way * (kAhead - behind), facing};
   const Vec2 back = s.ball - way * kBehind;
   const double at = angleOf(from), left = normalized(angleOf(-way) - at);
   if (std::abs(left) < kFurther) return near ? walkTo(back, facing) : Decision{Task::run, back, facing};
@@ -134,7 +146,9 @@ Vec2 waitingPlace(int unum, const Vec2& ball) {
   return place;
 }
 
-bool pausedMode(std::string_view playMode) { return playMode == "BeforeKickOff" || playMode == "Goal_Left" || playMode == "Goal_Right"; }
+bool pausedMode(std::string_view playMode) {
+  return playMode == "BeforeKickOff" || playMode == "Goal_Left" || playMode == "Goal_Right";
+}
 
 bool theirBall(std::string_view playMode, std::string_view side) {
   if (playMode == "PlayOn" || playMode == "GameOver" || pausedMode(playMode)) return false;
@@ -162,7 +176,8 @@ Steering steer(const Vec2& target, double facing) {
   const double along = target.y() > 0 ? target.y() / kForward : -target.y() / kBackward;
   const double straight = std::max({along, std::abs(target.x()) / kSideways, std::abs(facing) / kTurn});
   const double turned = (std::abs(bearing) + std::abs(normalized(facing - bearing))) / kTurn + distance / kForward;
-  if (straight > turned) return {std::abs(bearing) > radians(60) ? 0 : std::cos(bearing) * std::min(distance, 1.0), 0, 2 * bearing};
+  if (straight > turned)
+    return {std::abs(bearing) > radians(60) ? 0 : std::cos(bearing) * std::min(distance, 1.0), 0, 2 * bearing};
   const Vec2 speed = 1.8 * target;
   const double slower = std::max({1.0, std::abs(speed.x()) / kMostSideways, speed.y(), -speed.y() / kMostBackward});
   return {speed.y() / slower, speed.x() / slower, 1.8 * facing};

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What a player decides to do, from what he knows. No memory but what is handed in: the same situation gives the same decision.
+/// What a player decides to do, from what he knows. No memory but what is handed in: the same situation gives the same
+/// decision.
 
 #include <string>
 #include <vector>
@@ -14,10 +15,11 @@ struct Situation {
   std::string playMode, side;  ///< side: "left", "right"
   int unum = 1;
   Lying lying = Lying::no;
-  double tilt = 0;                                           ///< rad, of the torso
-  bool located = false, ballKnown = false, nearest = false;  ///< nearest: no team-mate says that his way to the ball is shorter
-  bool barred = false;                                       ///< he took the restart: another one must touch the ball before he does
-  bool contested = false;                                    ///< an opponent is at the ball
+  double tilt = 0;  ///< rad, of the torso
+  bool located = false, ballKnown = false,
+       nearest = false;    ///< nearest: no team-mate says that his way to the ball is shorter
+  bool barred = false;     ///< he took the restart: another one must touch the ball before he does
+  bool contested = false;  ///< an opponent is at the ball
   Vec2 place = Vec2::Zero(), ball = Vec2::Zero();
   double heading = 0;  ///< rad
 };
@@ -43,16 +45,16 @@ Vec2 waitingPlace(int unum, const Vec2& ball);
 bool pausedMode(std::string_view playMode);
 /// True when only the other team may touch the ball. `side`: of the own team.
 bool theirBall(std::string_view playMode, std::string_view side);
-/// How to walk to a point: straight, or turned towards it, which is sooner. `target`: from the robot, x to its right, y forward [m];
-/// `facing`: turn to make at the target [rad]. Unlimited: the gait cuts it.
+/// How to walk to a point: straight, or turned towards it, which is sooner. `target`: from the robot, x to its right, y
+/// forward [m]; `facing`: turn to make at the target [rad]. Unlimited: the gait cuts it.
 struct Steering {
   double forward, right, turn;
 };
 Steering steer(const Vec2& target, double facing);
 /// The same without stopping there.
 Steering run(const Vec2& target);
-/// How to push the ball with a foot. `target`: where the middle of the robot is to pass, so that a foot meets the ball; `facing`: as above. It walks
-/// on no faster than it gets rid of its sideways error.
+/// How to push the ball with a foot. `target`: where the middle of the robot is to pass, so that a foot meets the ball;
+/// `facing`: as above. It walks on no faster than it gets rid of its sideways error.
 Steering push(const Vec2& target, double facing);
 /// Where to go instead when others are in the way. All from the robot, x to its right, y forward [m].
 Vec2 pass(const Vec2& target, const std::vector<Vec2>& others);

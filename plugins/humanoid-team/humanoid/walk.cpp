@@ -46,7 +46,8 @@ bool Walk::mayStop() const {
 
 void Walk::stand(Pose& pose) const {
   for (const bool right : {true, false}) {
-    Foot foot = leant({(right ? 1 : -1) * kStanceSpread, kStanceForward, -kStanceHeight * legLength(build_)}, kStanceLean);
+    Foot foot =
+        leant({(right ? 1 : -1) * kStanceSpread, kStanceForward, -kStanceHeight * legLength(build_)}, kStanceLean);
     placeFoot(build_, right, foot, pose);
   }
 }
@@ -66,8 +67,9 @@ Foot Walk::footOf(bool right, double lift, double way, const Vec2& shift) const 
 void Walk::step(const Velocity& wanted, const Percepts& percepts, const Posture& posture, Pose& pose) {
   const double gain = gait_.change * kCycle;
   const double forwardWanted = std::clamp(wanted.forward, -0.6 * gait_.maxForward, gait_.maxForward);
-  now_.forward = towards(now_.forward, forwardWanted,
-                         (std::abs(forwardWanted) < std::abs(now_.forward) ? gait_.brake * kCycle : gain) * gait_.maxForward);
+  now_.forward =
+      towards(now_.forward, forwardWanted,
+              (std::abs(forwardWanted) < std::abs(now_.forward) ? gait_.brake * kCycle : gain) * gait_.maxForward);
   now_.right = towards(now_.right, std::clamp(wanted.right, -gait_.maxSide, gait_.maxSide), gain * gait_.maxSide);
   now_.turn = towards(now_.turn, std::clamp(wanted.turn, -gait_.maxTurn, gait_.maxTurn), 2 * gain * gait_.maxTurn);
   strength_ = std::min(1.0, strength_ + kCycle / kStartTime);
@@ -82,7 +84,8 @@ void Walk::step(const Velocity& wanted, const Percepts& percepts, const Posture&
     placeFoot(build_, isRight, footOf(isRight, leg.lift, leg.way, shift), pose);
   }
   blended_ = std::min(1.0, blended_ + kCycle / kBlend);
-  for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i) pose.at(i) = from_.at(i) + (pose.at(i) - from_.at(i)) * blended_;
+  for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i)
+    pose.at(i) = from_.at(i) + (pose.at(i) - from_.at(i)) * blended_;
   phase_ += kCycle / gait_.period;
   if (phase_ >= 1) phase_ -= 1;
 }

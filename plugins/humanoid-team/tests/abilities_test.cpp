@@ -7,8 +7,8 @@
 #include "humanoid/nao.h"
 #include "test_support.h"
 
-// What one player of each type can do, alone on the field of lua/soccer.lua. Physics by the articulated solver, no clock, no sockets: the
-// same in every run.
+// What one player of each type can do, alone on the field of lua/soccer.lua. Physics by the articulated solver, no
+// clock, no sockets: the same in every run.
 
 using namespace spark;
 
@@ -26,7 +26,8 @@ class Solo : public test::House {
     lua.addOverride("/sys/server/simulation.rate", "max");
     lua.addOverride("solver", "articulated");
     lua.runConfig("soccer.lua");
-    lua.run(fmt::format("plugin 'humanoid-team' local p = new('HumanoidBehavior', '/usr/agent/one') p.team, p.unum, p.type = 'Red', 10, {}",
+    lua.run(fmt::format("plugin 'humanoid-team' local p = new('HumanoidBehavior', '/usr/agent/one') p.team, p.unum, "
+                        "p.type = 'Red', 10, {}",
                         type),
             "abilities");
     run(1);  // it has found its place

@@ -18,11 +18,12 @@ Mat3 about(const Vec3& axis, double rad) { return Eigen::AngleAxisd(rad, axis.no
 std::pair<Vec3, Mat3> soleOf(const Build& build, bool right, const Pose& pose) {
   const std::size_t first = index(right ? Joint::rHipYaw : Joint::lHipYaw);
   const double side = right ? 1 : -1;
-  const Mat3 hip =
-      about(Vec3(-1, 0, side), pose.at(first)) * about(Vec3::UnitY(), pose.at(first + 1)) * about(Vec3::UnitX(), pose.at(first + 2));
+  const Mat3 hip = about(Vec3(-1, 0, side), pose.at(first)) * about(Vec3::UnitY(), pose.at(first + 1)) *
+                   about(Vec3::UnitX(), pose.at(first + 2));
   const Mat3 shank = hip * about(Vec3::UnitX(), pose.at(first + 3));
   const Mat3 foot = shank * about(Vec3::UnitX(), pose.at(first + 4)) * about(Vec3::UnitY(), pose.at(first + 5));
-  return {hip * Vec3(0, kKneeForward, -build.thigh) + shank * Vec3(0, 0, -build.shank) + foot * Vec3(0, 0, -kSole), foot};
+  return {hip * Vec3(0, kKneeForward, -build.thigh) + shank * Vec3(0, 0, -build.shank) + foot * Vec3(0, 0, -kSole),
+          foot};
 }
 
 spark::Predicates message(const std::string& text) {
@@ -122,9 +123,11 @@ TEST_CASE("Joints arrive, counting the command under way, and within their speed
 
 TEST_CASE("A sense message is read: game, joints, feet, marks, ball, players, hearing") {
   Percepts p;
-  read(message("(time (now 12.34))(GS (unum 7) (team right) (sl 1) (sr 2) (t 5.00) (pm KickOff_Left))(hear Red 5.00 self 1:2:3:4)"
+  read(message("(time (now 12.34))(GS (unum 7) (team right) (sl 1) (sr 2) (t 5.00) (pm KickOff_Left))(hear Red 5.00 "
+               "self 1:2:3:4)"
                "(hear Red 5.00 -12.00 2:100:-50:33)(hear Blue 5.00 3.00 secret)(GYR (n torso) (rt 90.00 0.00 -0.09))"
-               "(ACC (n torso) (a 0.00 0.10 9.81))(HJ (n hj1) (ax 45.00))(See (G2R (pol 10.00 90.00 0.00)) (B (pol 2.00 0.00 -30.00)) "
+               "(ACC (n torso) (a 0.00 0.10 9.81))(HJ (n hj1) (ax 45.00))(See (G2R (pol 10.00 90.00 0.00)) (B (pol "
+               "2.00 0.00 -30.00)) "
                "(P (team Blue) (id 3) (head (pol 1.00 0.00 0.00))) (L (pol 1.00 2.00 3.00) (pol 1.00 2.00 3.00)))"
                "(HJ (n llj6) (ax -3.00))(FRP (n lf) (c 0.00 0.00 0.00) (f 0.00 0.00 20.00))"),
        "Red", p);
@@ -198,7 +201,8 @@ TEST_CASE("The posture tells on which side the robot lies") {
 }
 
 TEST_CASE("A movement plays its frames in time, alike on both sides, and holds the first") {
-  static constexpr std::array<Keyframe, 2> frames{{{0.2, -40, 30, 10, 20, -15, 5, 60, -90, 30}, {0.1, 0, 0, 0, 0, 0, 0, 0, -20, 0}}};
+  static constexpr std::array<Keyframe, 2> frames{
+      {{0.2, -40, 30, 10, 20, -15, 5, 60, -90, 30}, {0.1, 0, 0, 0, 0, 0, 0, 0, -20, 0}}};
   const Movement movement{frames};
   GetUp getUp;
   Percepts percepts;
@@ -224,7 +228,8 @@ TEST_CASE("A movement plays its frames in time, alike on both sides, and holds t
 }
 
 TEST_CASE("Near the end of a movement the ankles keep the torso's lean") {
-  static constexpr std::array<Keyframe, 2> frames{{{0.1, 0, 0, 0, 0, 0, 0, 0, 0, 10}, {0.1, 0, 0, 0, 0, 0, 0, 0, 0, 10}}};
+  static constexpr std::array<Keyframe, 2> frames{
+      {{0.1, 0, 0, 0, 0, 0, 0, 0, 0, 10}, {0.1, 0, 0, 0, 0, 0, 0, 0, 0, 10}}};
   const Movement movement{frames, 0.5, 0, 20, 20};
   GetUp getUp;
   Percepts percepts;
@@ -241,9 +246,11 @@ TEST_CASE("All types have movements for all lies, within the stops of their join
       for (const Keyframe& k : movementOf(type, lying).frames) {
         CAPTURE(type, static_cast<int>(lying));
         REQUIRE(k.seconds > 0.03);
-        REQUIRE((std::abs(k.shoulderPitch) <= 120 && std::abs(k.armRoll) <= 120 && k.shoulderOut >= 0 && k.shoulderOut <= 95));
+        REQUIRE((std::abs(k.shoulderPitch) <= 120 && std::abs(k.armRoll) <= 120 && k.shoulderOut >= 0 &&
+                 k.shoulderOut <= 95));
         REQUIRE((k.elbow >= -1 && k.elbow <= 90 && k.hipYaw <= 1 && k.hipYaw >= -90 && std::abs(k.legOut) <= 25));
-        REQUIRE((k.hipPitch >= -25 && k.hipPitch <= 100 && k.knee >= -130 && k.knee <= 1 && k.ankle >= -45 && k.ankle <= 75));
+        REQUIRE((k.hipPitch >= -25 && k.hipPitch <= 100 && k.knee >= -130 && k.knee <= 1 && k.ankle >= -45 &&
+                 k.ankle <= 75));
       }
 }
 
@@ -384,7 +391,8 @@ TEST_CASE("A player asks for robot and team, beams itself, and answers every mes
     spark::writeSexp(actions, 2, out);
     REQUIRE(out.starts_with("(init (unum 9) (teamname Red))"));
     actions.clear();
-    player.think(message("(time (now 1.02))(GS (unum 9) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))"), actions);
+    player.think(message("(time (now 1.02))(GS (unum 9) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))"),
+                 actions);
     out.clear();
     spark::writeSexp(actions, 2, out);
     REQUIRE(out.starts_with("(beam -2.40 2.50 0)"));

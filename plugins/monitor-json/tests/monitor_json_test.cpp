@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -50,7 +49,8 @@ TEST_CASE("a diff names only what changed") {
   f.update.events.open("foul").add(1).add("x").close();
   f.update.changed = {0, 0, 0, 1, 1};
   CHECK(e.encode(f.update) ==
-        "[[[\"time\",0.42],[\"foul\",1,\"x\"]],[\"RDS\",0,1],[[\"nd\"],[\"nd\",[\"nd\",\"StaticMesh\"],[\"nd\",[\"SLT\",1,-8.74228e-08,0,0,0,1,0,0,0,0,1,0,"
+        "[[[\"time\",0.42],[\"foul\",1,\"x\"]],[\"RDS\",0,1],[[\"nd\"],[\"nd\",[\"nd\",\"StaticMesh\"],[\"nd\",["
+        "\"SLT\",1,-8.74228e-08,0,0,0,1,0,0,0,0,1,0,"
         "0,0,0,1]]],[\"nd\",\"SMN\",[\"setVisible\",0]]]]");
 }
 

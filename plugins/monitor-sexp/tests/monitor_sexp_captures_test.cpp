@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -27,7 +26,8 @@ TEST_CASE("every recorded monitor message, read and encoded again, is the same t
       recorded.read(message);
       std::string written;
       encoder.encode(recorded.update, written);
-      if (written != message) FAIL("in message " << messages << " of " << name << "\nexpected " << message << "\nfound    " << written);
+      if (written != message)
+        FAIL("in message " << messages << " of " << name << "\nexpected " << message << "\nfound    " << written);
       ++messages;
     }
     CHECK(messages > 50);

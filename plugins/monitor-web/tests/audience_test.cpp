@@ -1,14 +1,15 @@
+#include "../audience.h"
+
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "../audience.h"
 #include "frame_reader.h"
 #include "spark/log.h"
 
 using namespace spark;
 using namespace spark::web;
-using spark::web::test::FrameReader;
 using Catch::Contains;
+using spark::web::test::FrameReader;
 using std::chrono::milliseconds;
 
 namespace {
@@ -20,8 +21,10 @@ class FakeViewer : public Viewer {
   /// Takes one message that waits.
   void takeOne() {
     ++(leaving.binary() ? frames : texts);
-    if (leaving.binary()) lastFrame = *leaving.bytes;
-    else said += *leaving.bytes + "\n";
+    if (leaving.binary())
+      lastFrame = *leaving.bytes;
+    else
+      said += *leaving.bytes + "\n";
     leaving.bytes.reset();
     sent();
   }
@@ -229,7 +232,8 @@ TEST_CASE("Each viewer has one question with the simulation at a time, and is no
   Theatre t;
   auto eager = t.enter(), other = t.enter();
   t.questions(Question::Kind::request);
-  for (int i = 1; i <= 20; ++i) t.audience.said(*eager, R"({"do":"get","id":)" + std::to_string(i) + R"(,"path":"/"})", t.now);
+  for (int i = 1; i <= 20; ++i)
+    t.audience.said(*eager, R"({"do":"get","id":)" + std::to_string(i) + R"(,"path":"/"})", t.now);
   t.audience.said(*other, R"({"do":"plugins","id":1})", t.now);
   CHECK_FALSE(eager->mayRead());
   for (int i = 1; i <= 20; ++i) {
@@ -268,7 +272,8 @@ TEST_CASE("Only who knows the token gives commands; who guesses is closed") {
   say(R"~({"do":"command","id":1,"text":"(killsim)"})~");
   CHECK_THAT(viewer->said, Contains("only the referee"));
   CHECK(t.questions(Question::Kind::command).empty());
-  for (const char* wrong : {"", "0123456789abcde", "0123456789abcdeF", "0123456789abcdef0"}) say(std::string(R"({"do":"login","token":")") + wrong + "\"}");
+  for (const char* wrong : {"", "0123456789abcde", "0123456789abcdeF", "0123456789abcdef0"})
+    say(std::string(R"({"do":"login","token":")") + wrong + "\"}");
   CHECK(viewer->why.empty());
   CHECK_FALSE(viewer->referee);
   say(R"({"do":"login","token":"0123456789abcdef"})");

@@ -138,7 +138,7 @@ TEST_CASE("what an agent sees is shown beside what is true, as both were when it
   CHECK_FALSE(seeing["cones"][0].contains("range"));
   CHECK(seeing["head"] == seeing["cones"][0]["matrix"]);
   REQUIRE(seeing["head"].size() == 16);
-  CHECK(seeing["head"][0].get<double>() > 0.9);   // it looks along x
+  CHECK(seeing["head"][0].get<double>() > 0.9);  // it looks along x
   CHECK(seeing["head"][12].get<double>() == Approx(-2).margin(0.3));
 
   // The robot falls and the ball goes elsewhere: what was seen stays what it was.

@@ -25,12 +25,16 @@ TEST_CASE("What viewers say is understood, or refused with what was expected") {
   CHECK(readViewerMessage(R"({"do":"unwatch","id":8})").what == What::unwatch);
   const ViewerMessage watch = readViewerMessage(R"({"do":"watch","id":-3,"path":"/x","property":"p"})");
   CHECK((watch.what == What::request && watch.id == -3));
-  for (const char* bad : {"", "x", "7", "[]", "{}", R"({"do":1})", R"({"do":"view","rate":"x"})", R"({"do":"view","detail":"rough"})", R"({"do":"login"})", R"({"do":"get"})",
-                          R"({"do":"get","id":1.5})", R"({"do":"drawings"})", R"({"do":"command","id":1})", "{\"do\":\"get\",\"id\":1,\"x\":\"\xff\"}"}) {
+  for (const char* bad :
+       {"", "x", "7", "[]", "{}", R"({"do":1})", R"({"do":"view","rate":"x"})", R"({"do":"view","detail":"rough"})",
+        R"({"do":"login"})", R"({"do":"get"})", R"({"do":"get","id":1.5})", R"({"do":"drawings"})",
+        R"({"do":"command","id":1})", "{\"do\":\"get\",\"id\":1,\"x\":\"\xff\"}"}) {
     INFO(bad);
     CHECK_THROWS_AS(readViewerMessage(bad), Error);
   }
-  const auto nested = [](int depth) { return R"({"do":"get","id":1,"x":)" + std::string(depth, '[') + std::string(depth, ']') + "}"; };
+  const auto nested = [](int depth) {
+    return R"({"do":"get","id":1,"x":)" + std::string(depth, '[') + std::string(depth, ']') + "}";
+  };
   CHECK_NOTHROW(readViewerMessage(nested(30)));
   CHECK_THROWS_WITH(readViewerMessage(nested(40)), Contains("32 deep"));
 }
@@ -72,7 +76,8 @@ TEST_CASE("Paths below a folder are plain names") {
   CHECK(plainComponents("assets/index-1.js") == Names{"assets", "index-1.js"});
   CHECK(plainComponents("Red%20vs%20Blue.log") == Names{"Red vs Blue.log"});
   CHECK(plainComponents("%41%e2%82%ac") == Names{"A\xe2\x82\xac"});
-  for (const char* bad : {"", "/", "a/", "/a", "a//b", ".", "..", "../a", "a/..", ".a", "%2e%2e", "%2e", "a%2fb", "a\\b", "a%5cb", "a%00b", "a%0a", "%", "%4", "%4g", "a/b/c/d/e"}) {
+  for (const char* bad : {"",    "/",     "a/",   "/a",    "a//b",  ".",    "..", "../a", "a/..", ".a",       "%2e%2e",
+                          "%2e", "a%2fb", "a\\b", "a%5cb", "a%00b", "a%0a", "%",  "%4",   "%4g",  "a/b/c/d/e"}) {
     INFO(bad);
     CHECK(plainComponents(bad).empty());
   }
@@ -113,14 +118,18 @@ TEST_CASE("Files are served with their type, by names that are there; without a 
 
 TEST_CASE("Names that nobody else can point here are ours; pages of this server may watch") {
   const Site site({"", "", "", {"Match.Example"}});
-  for (const char* ours : {"127.0.0.1", "127.0.0.1:80", "[::1]:80", "[fe80::1]", "10.1.2.3:5", "localhost", "LocalHost:9", "a.localhost", "match.example:443"}) CHECK(site.isOurs(ours));
-  for (const char* strange : {"", ":80", "evil.example", "127.0.0.1.evil.example", "127.0.0.1x", "notlocalhost", "[::1", "[]", "xmatch.example", "localhost."}) {
+  for (const char* ours : {"127.0.0.1", "127.0.0.1:80", "[::1]:80", "[fe80::1]", "10.1.2.3:5", "localhost",
+                           "LocalHost:9", "a.localhost", "match.example:443"})
+    CHECK(site.isOurs(ours));
+  for (const char* strange : {"", ":80", "evil.example", "127.0.0.1.evil.example", "127.0.0.1x", "notlocalhost", "[::1",
+                              "[]", "xmatch.example", "localhost."}) {
     INFO(strange);
     CHECK_FALSE(site.isOurs(strange));
   }
   CHECK(Site({"", "", "", {"*"}}).isOurs("any.example"));
   CHECK(isSameOrigin("http://localhost:80", "localhost:80"));
   CHECK(isSameOrigin("https://MATCH.example", "match.example"));
-  for (const char* origin : {"http://localhost", "http://localhost:81", "null", "ftp://localhost:80", "localhost:80", "http://localhost:80/", "http://x.localhost:80"})
+  for (const char* origin : {"http://localhost", "http://localhost:81", "null", "ftp://localhost:80", "localhost:80",
+                             "http://localhost:80/", "http://x.localhost:80"})
     CHECK_FALSE(isSameOrigin(origin, "localhost:80"));
 }

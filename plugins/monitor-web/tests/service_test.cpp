@@ -64,7 +64,8 @@ struct Running : House {
     kernel.plugins().use("monitor-web");
     auto& root = kernel.root().require<Node>("/usr/scene");
     robot = &root.create<Transform>("Transform", "robot");
-    robot->create<Transform>("Transform", "head").create<FakeVisual>("FakeVisual", "mesh").names = {"matLeft", "naowhite"};
+    robot->create<Transform>("Transform", "head").create<FakeVisual>("FakeVisual", "mesh").names = {"matLeft",
+                                                                                                    "naowhite"};
     kernel.create<Node>("MonitorServer", "/sys/server/monitor").create("Match", "match");
     Leaf& server = kernel.create<Leaf>("WebServer", "/sys/server/web");
     setProperty(server, "port", std::int64_t{0});
@@ -129,7 +130,10 @@ TEST_CASE("Viewers see the scene move, ask, and a referee changes it") {
   REQUIRE(scene["nodes"].size() == 3);
   CHECK(scene["nodes"][0]["path"] == "/usr/scene/robot");
   CHECK(scene["nodes"][1]["parent"] == 0);
-  CHECK(scene["nodes"][2] == Json::parse(R"({"parent":1,"kind":"mesh","load":"models/thing.obj","scale":[1,1,1],"materials":["matLeft","naowhite"],"visible":true})"));
+  CHECK(
+      scene["nodes"][2] ==
+      Json::parse(
+          R"({"parent":1,"kind":"mesh","load":"models/thing.obj","scale":[1,1,1],"materials":["matLeft","naowhite"],"visible":true})"));
   CHECK(scene["local"].size() == 32);
   CHECK_THAT(viewer.textWith("\"full\":true"), Contains("[\"FieldLength\",30]") && Contains("[\"score_left\",0]"));
 
@@ -155,7 +159,8 @@ TEST_CASE("Viewers see the scene move, ask, and a referee changes it") {
   CHECK_THAT(viewer.textWith("\"id\":4"), Contains("no control server"));
 }
 
-TEST_CASE("An event has the time of its frame, however late that is shown; one that comes between frames that of the last") {
+TEST_CASE(
+    "An event has the time of its frame, however late that is shown; one that comes between frames that of the last") {
   Running house;
   WebClient viewer(house.port);
   REQUIRE(viewer.watch() == 101);

@@ -16,7 +16,8 @@ namespace {
 
 /// A file that goes with the object.
 struct TemporaryFile {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("spark-log-{}-{}", ::getpid(), next()++);
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / fmt::format("spark-log-{}-{}", ::getpid(), next()++);
   TemporaryFile() = default;
   explicit TemporaryFile(const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
   ~TemporaryFile() { std::filesystem::remove(path); }
@@ -99,10 +100,13 @@ struct Player : House {
 };
 
 /// A small log: three records full, diff, diff, the mesh 1, 2, 3 m up.
-const char* const kFull = "((FieldLength 30)(time 0)(score_left 0))(RSG 0 1)((nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1)"
-                          "(nd StaticMesh (setVisible 1) (load models/a.obj) (sSc 1 1 1)(resetMaterials x y))))";
-const char* const kSecond = "((time 0.2)(foul 1 2 1 7))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 2 1)(nd StaticMesh (setVisible 0))))";
-const char* const kThird = "((time 0.4)(score_left 1))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 3 1)(nd StaticMesh (setVisible 1))))";
+const char* const kFull =
+    "((FieldLength 30)(time 0)(score_left 0))(RSG 0 1)((nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1)"
+    "(nd StaticMesh (setVisible 1) (load models/a.obj) (sSc 1 1 1)(resetMaterials x y))))";
+const char* const kSecond =
+    "((time 0.2)(foul 1 2 1 7))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 2 1)(nd StaticMesh (setVisible 0))))";
+const char* const kThird =
+    "((time 0.4)(score_left 1))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 3 1)(nd StaticMesh (setVisible 1))))";
 
 std::string join(std::initializer_list<std::string> lines) {
   std::string out;
@@ -112,7 +116,9 @@ std::string join(std::initializer_list<std::string> lines) {
 
 }  // namespace
 
-TEST_CASE("a log has a record every 0.2 s, the first one full, and a full one when the last is older than 3 s or the scene changed") {
+TEST_CASE(
+    "a log has a record every 0.2 s, the first one full, and a full one when the last is older than 3 s or the scene "
+    "changed") {
   Recorded stage;
   for (int i = 0; i < 1000; ++i) {
     if (i == 600) stage.scene.markModified();
@@ -164,9 +170,9 @@ TEST_CASE("what agents drew stands in front of a record: all of it before a full
   for (std::size_t i = 0; i < lines.size(); ++i)
     if (lines[i].front() == '[') drawn.emplace_back(i, lines[i].substr(0, lines[i].find('(')));
   REQUIRE(drawn.size() == 3);
-  CHECK(drawn[0] == std::pair<std::size_t, std::string>(10, "[0, 2]"));   // from none to two
+  CHECK(drawn[0] == std::pair<std::size_t, std::string>(10, "[0, 2]"));  // from none to two
   CHECK(drawn[1] == std::pair<std::size_t, std::string>(15, "[2, 3]"));
-  CHECK(drawn[2] == std::pair<std::size_t, std::string>(16, "[0, 3]"));   // the full one
+  CHECK(drawn[2] == std::pair<std::size_t, std::string>(16, "[0, 3]"));  // the full one
   CHECK(isFull(lines[16]));
 
   // The player takes the records, drawings or not.
@@ -212,7 +218,8 @@ TEST_CASE("a log that cannot be written says so once, and the server goes on") {
   monitor.read();
   for (int i = 0; i < 100; ++i) stage.cycle();
   CHECK(!monitor.idle());
-  const auto first = stage.text.find("the log '/nonexistent/folder/x.log' cannot be opened for writing (No such file or directory)");
+  const auto first =
+      stage.text.find("the log '/nonexistent/folder/x.log' cannot be opened for writing (No such file or directory)");
   REQUIRE(first != std::string::npos);
   CHECK(stage.text.find("the log '/nonexistent", first + 1) == std::string::npos);
 }
@@ -262,7 +269,8 @@ TEST_CASE("a player is stopped, stepped, turned, hurried and sent elsewhere") {
   std::string text = join({kFull});
   for (int i = 1; i < 60; ++i) {
     std::string line = i % 15 == 0 ? kFull : i % 2 ? kSecond : kThird;
-    line.replace(line.find("(time"), line.find(')', line.find("(time")) - line.find("(time"), fmt::format("(time {:g}", 0.2 * i));
+    line.replace(line.find("(time"), line.find(')', line.find("(time")) - line.find("(time"),
+                 fmt::format("(time {:g}", 0.2 * i));
     text += line + "\n";
   }
   const TemporaryFile file(text);
@@ -299,7 +307,8 @@ TEST_CASE("a player is stopped, stepped, turned, hurried and sent elsewhere") {
   player.records(100);
   CHECK(player.at() == 0);
   CHECK(height() == 1);
-  for (const char* wild : {"(speed nan)", "(speed -1)", "(speed)", "(record)", "(record 1e30)", "(record (a))", "(nosuch 1)", "(speed inf)", "garbage"})
+  for (const char* wild : {"(speed nan)", "(speed -1)", "(speed)", "(record)", "(record 1e30)", "(record (a))",
+                           "(nosuch 1)", "(speed inf)", "garbage"})
     player.command(monitor, wild);
   CHECK(player.at() <= 59);
   CHECK(getProperty(*player.player, "speed") == Value(1.0));
@@ -309,8 +318,10 @@ TEST_CASE("in a log with one full record every place is shown as it was recorded
   std::string text = join({kFull});
   constexpr int kRecords = 5000;
   for (int i = 1; i < kRecords; ++i)
-    text += fmt::format("((time {:g})(score_left {}))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 {} 1)(nd StaticMesh (setVisible {}))))\n", 0.2 * i, i / 100,
-                        i, i % 2);
+    text += fmt::format(
+        "((time {:g})(score_left {}))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 {} 1)(nd StaticMesh (setVisible "
+        "{}))))\n",
+        0.2 * i, i / 100, i, i % 2);
   const TemporaryFile file(text);
   Player player(file.path);
   setProperty(*player.player, "paused", true);
@@ -324,8 +335,10 @@ TEST_CASE("in a log with one full record every place is shown as it was recorded
   FakeConnection& monitor = player.connect();
   for (const int place : {4999, 4998, 4997, 100, 4000, 3999, 3998, 31, 32, 33, 4999, 2500, 2499, 1})
     for (const bool command : {false, true}) {
-      if (command) player.command(monitor, fmt::format("(record {})", place).c_str());
-      else setProperty(*player.player, "record", std::int64_t{place});
+      if (command)
+        player.command(monitor, fmt::format("(record {})", place).c_str());
+      else
+        setProperty(*player.player, "record", std::int64_t{place});
       for (int i = 0; i < (command ? 100 : 3); ++i) player.cycle();  // a long way takes several frames
       CAPTURE(place, command);
       REQUIRE(player.at() == place);
@@ -387,11 +400,12 @@ TEST_CASE("a log on a pipe that is read is written there") {
 
 TEST_CASE("damaged lines of a log are passed over, draw commands are skipped") {
   const std::string cut(kSecond, 60), huge(9u << 20, 'x'), deep(200, '(');
-  const TemporaryFile file(join({"[1, 0, 3, 4][2, 1]", "", kSecond, std::string("[1, 0]") + kFull, cut, "garbage", "(())", deep, "(" + huge,
-                                 "((time 0.1))(RDS 0 1)((nd)(nd))", "((time 0.1))(RSG 0 1)((nd BN))", "((time 0.1))(RSG 0 1)((nd StaticMesh (setVisible 1)))",
-                                 "((time 0.1))(RSG 0 1)((nd SMN (load \"a) (b\")))", std::string("((time \0 0.1))(RDS 0 1)((nd(nd)))", 31), kSecond,
-                                 "[1, 0][2]" + std::string(kThird)}) +
-                           std::string(kThird).substr(0, 70));
+  const TemporaryFile file(
+      join({"[1, 0, 3, 4][2, 1]", "", kSecond, std::string("[1, 0]") + kFull, cut, "garbage", "(())", deep, "(" + huge,
+            "((time 0.1))(RDS 0 1)((nd)(nd))", "((time 0.1))(RSG 0 1)((nd BN))",
+            "((time 0.1))(RSG 0 1)((nd StaticMesh (setVisible 1)))", "((time 0.1))(RSG 0 1)((nd SMN (load \"a) (b\")))",
+            std::string("((time \0 0.1))(RDS 0 1)((nd(nd)))", 31), kSecond, "[1, 0][2]" + std::string(kThird)}) +
+      std::string(kThird).substr(0, 70));
   Player player(file.path);
   FakeConnection& monitor = player.connect();
   Replica seen;
@@ -409,7 +423,8 @@ TEST_CASE("damaged lines of a log are passed over, draw commands are skipped") {
 
 TEST_CASE("what is no log is refused with a sentence") {
   const TemporaryFile empty(""), garbage("hello\nworld\n");
-  for (const std::string& name : {std::string("/nonexistent.log"), std::string("/tmp"), empty.path.string(), garbage.path.string()}) {
+  for (const std::string& name :
+       {std::string("/nonexistent.log"), std::string("/tmp"), empty.path.string(), garbage.path.string()}) {
     INFO(name);
     CHECK_THROWS_WITH(Player(name), Catch::Contains("The log '"));
   }

@@ -61,7 +61,8 @@ TEST_CASE("a diff holds only what changed") {
   stage.item->score = 2;
   CHECK(publish() == "((time 0)(score 2))(RDS 0 1)((nd)(nd(nd(nd StaticMesh (setVisible 0))))(nd(nd SMN)))");
   stage.parts[1]->setLocalPos({0, 0.0051f, 0});
-  CHECK(publish() == "((time 0))(RDS 0 1)((nd)(nd(nd(nd StaticMesh)))(nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0.0051 0 1)(nd SMN)))");
+  CHECK(publish() ==
+        "((time 0))(RDS 0 1)((nd)(nd(nd(nd StaticMesh)))(nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0.0051 0 1)(nd SMN)))");
   stage.parts[1]->setLocalPos({0, 0.01f, 0});  // the reference is what was sent
   CHECK(publish() == "((time 0))(RDS 0 1)((nd)(nd(nd(nd StaticMesh)))(nd(nd SMN)))");
 }
@@ -151,7 +152,9 @@ TEST_CASE("a monitor that never reads holds one message, costs no more and is ne
   CHECK(getProperty(stage.node(), "clients") == Value(1));
 }
 
-TEST_CASE("a monitor that pauses gets whole messages again, and what it then shows is the scene; of very many events the newest are told") {
+TEST_CASE(
+    "a monitor that pauses gets whole messages again, and what it then shows is the scene; of very many events the "
+    "newest are told") {
   Stage stage;
   FakeConnection& viewer = stage.connect();
   Replica replica;
@@ -170,7 +173,8 @@ TEST_CASE("a monitor that pauses gets whole messages again, and what it then sho
   CHECK(replica.events.back() == "30000");
   CHECK(replica.events.size() > 1000);
   CHECK(replica.events.size() < 8192 / 2);
-  for (std::size_t i = 1; i < replica.events.size(); ++i) REQUIRE(std::stoi(replica.events[i]) == std::stoi(replica.events[i - 1]) + 1);
+  for (std::size_t i = 1; i < replica.events.size(); ++i)
+    REQUIRE(std::stoi(replica.events[i]) == std::stoi(replica.events[i - 1]) + 1);
 }
 
 TEST_CASE("commands act in the cycle after a due one, in order of arrival, and bad ones are ignored with a line") {
@@ -219,7 +223,7 @@ TEST_CASE("commands from inside the host act as those of monitors, and what is w
   stage.node().create("WordParser", "parser");  // for monitors
   CHECK(stage.server->command("the browser", "(push 1)(push 2)") == "");
   stage.monitor->received(a, "word");
-  CHECK(stage.server->command("the browser", "(push 3) (oh") .starts_with("1:"));
+  CHECK(stage.server->command("the browser", "(push 3) (oh").starts_with("1:"));
   CHECK(stage.trainer->pushed.empty());
   stage.nextFrame();
   CHECK(stage.trainer->pushed == std::vector<std::int64_t>{1, 2, 4, 3});
@@ -232,20 +236,25 @@ TEST_CASE("commands from inside the host act as those of monitors, and what is w
 TEST_CASE("a command that no trainer takes is answered with the nearest one, and monitors' with a line now and then") {
   Stage stage;
   FakeConnection& a = stage.connect();
-  CHECK(stage.server->command("the browser", "(pusch 3)") == "");  // a trainer that does not say what it takes may take anything
+  CHECK(stage.server->command("the browser", "(pusch 3)") ==
+        "");  // a trainer that does not say what it takes may take anything
   stage.kernel.registerClass<FrankTrainer>();
   stage.node().create("FrankTrainer", "trainer2");
   CHECK(stage.server->command("the browser", "(pusch 3)") == "");
   stage.node().remove(*stage.node().child("trainer"));
   CHECK(stage.server->command("the browser", "(pull 1)(reqfullstate)") == "");
-  CHECK(stage.server->command("the browser", "(pull 1)(pul 2)") == "there is no command 'pul' here. Did you mean 'pull'?");
-  CHECK(stage.server->command("the browser", "(killSim)") == "there is no command 'killSim' here. Did you mean 'killsim'?");
+  CHECK(stage.server->command("the browser", "(pull 1)(pul 2)") ==
+        "there is no command 'pul' here. Did you mean 'pull'?");
+  CHECK(stage.server->command("the browser", "(killSim)") ==
+        "there is no command 'killSim' here. Did you mean 'killsim'?");
   const Value text = "(pul 2)";
   CHECK_THROWS_WITH(callMethod(stage.node(), "command", std::span(&text, 1)), Catch::Contains("Did you mean 'pull'?"));
   stage.nextFrame();
   const auto lines = [&] {
     int n = 0;
-    for (auto at = stage.text.find("from client1: there is no command"); at != std::string::npos; at = stage.text.find("from client1: there is no command", at + 1)) ++n;
+    for (auto at = stage.text.find("from client1: there is no command"); at != std::string::npos;
+         at = stage.text.find("from client1: there is no command", at + 1))
+      ++n;
     return n;
   };
   for (int i = 0; i < 400; ++i) stage.cycle();

@@ -100,7 +100,8 @@ struct Stage : House {
     const Event event{"", 0.02 * cycles, 0.02, cycles, nullptr};
     kernel.events().channel("act").emit(event);
     item->time = event.time;
-    for (std::size_t i = 0; i < parts.size(); ++i) parts[i]->setLocalPos({0.004f * (cycles % 7), 0.01f * i * cycles, -1.f / cycles});
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      parts[i]->setLocalPos({0.004f * (cycles % 7), 0.01f * i * cycles, -1.f / cycles});
     kernel.events().channel("publish").emit(event);
   }
   void nextFrame() {
@@ -133,7 +134,9 @@ inline bool same(const Replica& a, const Replica& b, double precision) {
   if (a.nodes.size() != b.nodes.size() || a.score != b.score) return false;
   for (std::size_t i = 0; i < a.nodes.size(); ++i) {
     const auto &x = a.nodes[i], &y = b.nodes[i];
-    if (x.depth != y.depth || x.type != y.type || x.visible != y.visible || x.rest != y.rest || x.matrix.size() != y.matrix.size()) return false;
+    if (x.depth != y.depth || x.type != y.type || x.visible != y.visible || x.rest != y.rest ||
+        x.matrix.size() != y.matrix.size())
+      return false;
     for (std::size_t k = 0; k < x.matrix.size(); ++k)
       if (std::abs(x.matrix[k] - y.matrix[k]) > precision) return false;
   }

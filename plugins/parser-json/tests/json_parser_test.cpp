@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "api/agents.h"
@@ -19,8 +18,10 @@ struct Fixture {
   std::string read(std::string_view text, std::string* error = nullptr) {
     Predicates p;
     const auto result = parser->parse(text, p);
-    if (error) *error = result.message;
-    else CHECK(result.message == "");
+    if (error)
+      *error = result.message;
+    else
+      CHECK(result.message == "");
     std::string out;
     writeSexp(p, 2, out);
     return out;

@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "api/agents.h"
@@ -46,8 +45,12 @@ TEST_CASE("Not-a-number and infinity keep C's spelling") {
 
 TEST_CASE("A message with an error keeps what was complete before it") {
   SexpFixture f;
-  const auto [text, kept] = GENERATE(table<std::string, std::string>({
-      {"(a 1)(b 2", "(a 1)"}, {"(a 1))(b 2)", "(a 1)"}, {")(he1 2)", ""}, {"(a \"x", ""}, {"(a 1)(say ;zz)(he1 1)", "(a 1)"}, {"(a 1)\x01(b 2)", "(a 1)"}}));
+  const auto [text, kept] = GENERATE(table<std::string, std::string>({{"(a 1)(b 2", "(a 1)"},
+                                                                      {"(a 1))(b 2)", "(a 1)"},
+                                                                      {")(he1 2)", ""},
+                                                                      {"(a \"x", ""},
+                                                                      {"(a 1)(say ;zz)(he1 1)", "(a 1)"},
+                                                                      {"(a 1)\x01(b 2)", "(a 1)"}}));
   Predicates p;
   CAPTURE(text);
   REQUIRE(!f.parser->parse(text, p).message.empty());

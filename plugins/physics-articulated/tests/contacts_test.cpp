@@ -13,9 +13,11 @@ void addBoxes(Twins& t, int count, double apart) {
     const Vec3 lengths = {t.uniform(0.2, 0.4), t.uniform(0.2, 0.4), t.uniform(0.2, 0.4)};
     const double mass = t.uniform(0.2, 3);
     const Vec3 squares = lengths.cwiseProduct(lengths);
-    const Mat3 inertia = (mass / 12 * Vec3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y())).asDiagonal();
-    const std::size_t b =
-        t.body({apart * (i % 5), 0.1 * t.uniform(-1, 1), 0.25 + (apart < 0.5 ? 0.3 * i : 0.0)}, mass, inertia, t.anyRotation());
+    const Mat3 inertia =
+        (mass / 12 * Vec3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
+            .asDiagonal();
+    const std::size_t b = t.body({apart * (i % 5), 0.1 * t.uniform(-1, 1), 0.25 + (apart < 0.5 ? 0.3 * i : 0.0)}, mass,
+                                 inertia, t.anyRotation());
     t.box(lengths, b);
   }
 }
@@ -79,7 +81,9 @@ TEST_CASE("no room is made for islands that the engine's own limit leaves to it"
   Twins t;
   setProperty(t.kernel.root().require<Leaf>("/sys/solved/solver"), "mostRows", 1000000000);
   t.ground();
-  for (int i = 0; i < 1000; ++i) t.box({0.2, 0.2, 0.2}, t.body({0.19 * (i % 10), 0.19 * (i / 10 % 10), 0.1 + 0.19 * (i / 100)}, 1, Mat3::Identity()));
+  for (int i = 0; i < 1000; ++i)
+    t.box({0.2, 0.2, 0.2},
+          t.body({0.19 * (i % 10), 0.19 * (i / 10 % 10), 0.1 + 0.19 * (i / 100)}, 1, Mat3::Identity()));
   t.touch(t.solved);
   t.solved.engine.step(t.solved.world, t.solved.contacts, t.dt);
   CHECK(t.counted("leftIslands") > 0);

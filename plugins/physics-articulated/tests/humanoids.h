@@ -20,11 +20,13 @@ struct Humanoids {
     const std::size_t neck = part(torso, {0, 0, 0.47}, {0.03, 0.03, 0.06}, 0.05, {0, 0, 0.45}, {0, 0, 1});
     part(neck, {0, 0, 0.53}, {0.12, 0.12, 0.11}, 0.35, {0, 0, 0.48}, {0, 1, 0});
     for (const double side : {-1.0, 1.0}) {
-      std::size_t arm = part(torso, {0, 0.098 * side, 0.42}, {0.05, 0.05, 0.05}, 0.07, {0, 0.09 * side, 0.42}, {0, 1, 0});
+      std::size_t arm =
+          part(torso, {0, 0.098 * side, 0.42}, {0.05, 0.05, 0.05}, 0.07, {0, 0.09 * side, 0.42}, {0, 1, 0});
       arm = part(arm, {0.02, 0.108 * side, 0.42}, {0.08, 0.05, 0.06}, 0.15, {0, 0.1 * side, 0.42}, {0, 0, 1});
       arm = part(arm, {0.09, 0.108 * side, 0.425}, {0.04, 0.04, 0.04}, 0.04, {0.09, 0.108 * side, 0.42}, {1, 0, 0});
       part(arm, {0.14, 0.108 * side, 0.42}, {0.1, 0.05, 0.05}, 0.1, {0.09, 0.108 * side, 0.42}, {0, 0, 1});
-      std::size_t leg = part(torso, {0, 0.055 * side, 0.285}, {0.05, 0.05, 0.05}, 0.09, {0, 0.055 * side, 0.285}, {-0.7, 0.7 * side, 0});
+      std::size_t leg = part(torso, {0, 0.055 * side, 0.285}, {0.05, 0.05, 0.05}, 0.09, {0, 0.055 * side, 0.285},
+                             {-0.7, 0.7 * side, 0});
       leg = part(leg, {0, 0.055 * side, 0.28}, {0.05, 0.05, 0.05}, 0.12, {0, 0.055 * side, 0.28}, {1, 0, 0});
       leg = part(leg, {0.01, 0.055 * side, 0.22}, {0.07, 0.07, 0.12}, 0.3, {0, 0.055 * side, 0.28}, {0, 1, 0});
       leg = part(leg, {0.005, 0.055 * side, 0.11}, {0.07, 0.07, 0.1}, 0.25, {0, 0.055 * side, 0.165}, {0, 1, 0});
@@ -45,7 +47,9 @@ struct Humanoids {
  private:
   std::size_t part(int parent, const Vec3& at, const Vec3& lengths, double mass, const Vec3& anchor, const Vec3& axis) {
     const Vec3 squares = lengths.cwiseProduct(lengths);
-    const Mat3 inertia = (mass / 12 * Vec3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y())).asDiagonal();
+    const Mat3 inertia =
+        (mass / 12 * Vec3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
+            .asDiagonal();
     const std::size_t body = twins.body(at_ + at, mass, inertia);
     // Hands and what is inside touches nothing.
     if (lengths.minCoeff() > 0.05 || lengths.x() >= 0.1 || parent < 0) twins.box(lengths, body);
@@ -61,7 +65,8 @@ struct Humanoids {
     joints.push_back(joint);
     return body;
   }
-  std::size_t part(std::size_t parent, const Vec3& at, const Vec3& lengths, double mass, const Vec3& anchor, const Vec3& axis) {
+  std::size_t part(std::size_t parent, const Vec3& at, const Vec3& lengths, double mass, const Vec3& anchor,
+                   const Vec3& axis) {
     return part(static_cast<int>(parent), at, lengths, mass, anchor, axis);
   }
   Vec3 at_ = Vec3::Zero();

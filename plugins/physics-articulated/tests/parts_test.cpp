@@ -66,7 +66,8 @@ TEST_CASE("Dantzig's way keeps every row's conditions") {
       const Eigen::VectorXd rest = a * x + b;
       for (Eigen::Index i = 0; i < m; ++i) {
         right[i] = -rest[holding[static_cast<std::size_t>(i)]];
-        for (Eigen::Index j = 0; j < m; ++j) h(i, j) = a(holding[static_cast<std::size_t>(i)], holding[static_cast<std::size_t>(j)]);
+        for (Eigen::Index j = 0; j < m; ++j)
+          h(i, j) = a(holding[static_cast<std::size_t>(i)], holding[static_cast<std::size_t>(j)]);
       }
       const Eigen::VectorXd found = h.ldlt().solve(right);
       for (Eigen::Index i = 0; i < m; ++i) x[holding[static_cast<std::size_t>(i)]] = found[i];

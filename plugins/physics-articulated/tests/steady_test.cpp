@@ -9,7 +9,8 @@ TEST_CASE("a world that repeats itself allocates nothing") {
   t.ground();
   Humanoids humanoids(t);
   for (int i = 0; i < 2; ++i) humanoids.add({0.15 * i, 0, 0});
-  for (int i = 0; i < 5; ++i) t.box({0.2, 0.2, 0.2}, t.body({2 + 0.01 * i, 0, 0.1 + 0.2 * i}, 1, Mat3::Identity() * 0.01));
+  for (int i = 0; i < 5; ++i)
+    t.box({0.2, 0.2, 0.2}, t.body({2 + 0.01 * i, 0, 0.1 + 0.2 * i}, 1, Mat3::Identity() * 0.01));
   int taken = 0;
   for (int i = 0; i < 60; ++i) {
     t.touch(t.solved);

@@ -1,6 +1,7 @@
-// Prints what a step costs by ODE's dense solver and by this one, both through the engine, with the same contacts: CPU time of this thread,
-// medians (dense: the engine with ODE; engine: with this solver, of which solver: the solver itself; times: dense / solver), in
-// microseconds for each robot and step. Nothing is asserted; runs only when asked for: test-physics-articulated [timing].
+// Prints what a step costs by ODE's dense solver and by this one, both through the engine, with the same contacts: CPU
+// time of this thread, medians (dense: the engine with ODE; engine: with this solver, of which solver: the solver
+// itself; times: dense / solver), in microseconds for each robot and step. Nothing is asserted; runs only when asked
+// for: test-physics-articulated [timing].
 
 #include <fmt/format.h>
 
@@ -71,7 +72,8 @@ struct Timing {
     (&scene == &twins.plain ? dense : whole).push_back(now() - start);
     if (&scene == &twins.solved) alone.push_back(timed.spent);
   }
-  /// In blocks: a step finds in the caches what the same world's last step left there, as it does in a run. `before(scene, step)` drives.
+  /// In blocks: a step finds in the caches what the same world's last step left there, as it does in a run.
+  /// `before(scene, step)` drives.
   template <class F>
   void run(int steps, F&& before) {
     constexpr int kBlock = 10;
@@ -86,10 +88,11 @@ struct Timing {
   void print(const char* name, int things) const {
     const double d = median(dense) / things, e = median(whole) / things, solver = median(alone) / things;
     const articulated::Stepper& s = timed.stepper;
-    fmt::print("{:<28} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6}\n", "", "contacts", "dense", "engine", "solver", "times", "passes",
-               "exact", "left");
-    fmt::print("{:<28} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.2f} {:>8.1f} {:>8.2f} {:>6} {:>6}\n", name, contacts / things, d, e, solver,
-               d / solver, static_cast<double>(s.passes()) / static_cast<double>(s.islands()), s.exactSolutions(), s.leftIslands());
+    fmt::print("{:<28} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6}\n", "", "contacts", "dense", "engine", "solver",
+               "times", "passes", "exact", "left");
+    fmt::print("{:<28} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.2f} {:>8.1f} {:>8.2f} {:>6} {:>6}\n", name, contacts / things, d,
+               e, solver, d / solver, static_cast<double>(s.passes()) / static_cast<double>(s.islands()),
+               s.exactSolutions(), s.leftIslands());
   }
 };
 
@@ -108,7 +111,8 @@ void timeHumanoids(const Doing& what, int steps) {
   for (int i = 0; i < what.robots; ++i) humanoids.add({what.apart * (i % 6), what.apart * (i / 6), what.height});
   timing.run(steps, [&](Scene& scene, int i) {
     const auto speed = [&](std::size_t j) {
-      return what.random ? timing.twins.uniform(-what.speed, what.speed) : what.speed * std::sin(0.1 * i + 0.3 * static_cast<double>(j));
+      return what.random ? timing.twins.uniform(-what.speed, what.speed)
+                         : what.speed * std::sin(0.1 * i + 0.3 * static_cast<double>(j));
     };
     humanoids.drive(scene, speed, what.strength);
   });
@@ -118,8 +122,8 @@ void timeHumanoids(const Doing& what, int steps) {
 void timeBoxes(int count, int steps) {
   Timing timing;
   for (int i = 0; i < count; ++i)
-    timing.twins.box({0.3, 0.3, 0.3},
-                     timing.twins.body({0.5 * (i % 32), 0.5 * (i / 32), 0.2 + 0.001 * (i % 40)}, 1, Mat3::Identity() * 0.015));
+    timing.twins.box({0.3, 0.3, 0.3}, timing.twins.body({0.5 * (i % 32), 0.5 * (i / 32), 0.2 + 0.001 * (i % 40)}, 1,
+                                                        Mat3::Identity() * 0.015));
   timing.run(steps, [](Scene&, int) {});
   timing.print("boxes on the ground", count);
 }

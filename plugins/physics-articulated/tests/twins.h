@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The same scene in two engines: one steps by ODE alone, the other by the solver. Before every step the second takes over the first one's
-/// state; after it, what they say must agree.
+/// The same scene in two engines: one steps by ODE alone, the other by the solver. Before every step the second takes
+/// over the first one's state; after it, what they say must agree.
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -13,9 +13,9 @@
 namespace spark::test {
 
 /// Every type of joint.
-inline constexpr engine::JointType kTypes[] = {engine::JointType::ball,      engine::JointType::hinge, engine::JointType::hinge2,
-                                               engine::JointType::slider,    engine::JointType::universal, engine::JointType::fixed,
-                                               engine::JointType::angularMotor};
+inline constexpr engine::JointType kTypes[] = {
+    engine::JointType::ball,      engine::JointType::hinge, engine::JointType::hinge2,      engine::JointType::slider,
+    engine::JointType::universal, engine::JointType::fixed, engine::JointType::angularMotor};
 
 /// One engine's world with what was put into it.
 struct Scene {
@@ -25,7 +25,8 @@ struct Scene {
   engine::Contacts contacts;
   std::vector<engine::Body> bodies;
   std::vector<engine::Joint> joints;
-  explicit Scene(engine::IEngine& e) : engine(e), world(e.createWorld()), space(e.createSpace(world, engine::Space::none)) {}
+  explicit Scene(engine::IEngine& e)
+      : engine(e), world(e.createWorld()), space(e.createSpace(world, engine::Space::none)) {}
 };
 
 /// Largest differences found.
@@ -41,7 +42,8 @@ class Twins : public House {
   double dt = 0.02;
   std::mt19937 random;
 
-  explicit Twins(unsigned seed = 1) : plain(make(kernel, "/sys/plain")), solved(make(kernel, "/sys/solved")), random(seed) {
+  explicit Twins(unsigned seed = 1)
+      : plain(make(kernel, "/sys/plain")), solved(make(kernel, "/sys/solved")), random(seed) {
     kernel.plugins().use("physics-articulated");
     newSolver();
     parameters.autoDisable = false;
@@ -72,7 +74,9 @@ class Twins : public House {
     const Mat3 r = anyRotation();
     const Vec3 sizes(uniform(0.5, 1), uniform(0.5, 1), uniform(0.5, 1));
     const Vec3 squares = sizes.cwiseProduct(sizes) * size * size;
-    return r * (mass / 12 * Vec3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y())).asDiagonal() *
+    return r *
+           (mass / 12 * Vec3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
+               .asDiagonal() *
            r.transpose();
   }
 

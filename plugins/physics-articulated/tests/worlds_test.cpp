@@ -7,7 +7,8 @@ using engine::JointType;
 
 namespace {
 
-/// Bodies near each other and joints of any type between any of them and the world: trees, loops, several between the same two.
+/// Bodies near each other and joints of any type between any of them and the world: trees, loops, several between the
+/// same two.
 void addJungle(Twins& t, int bodies, int joints, double cfm, bool boxes = true) {
   for (int i = 0; i < bodies; ++i) {
     const std::size_t b = t.anyBody({0.3 * (i % 4), 0.3 * (i / 4), 0.4 + 0.1 * t.uniform(0, 1)});
@@ -105,7 +106,8 @@ TEST_CASE("humanoids stand, walk, fall and push each other as with ODE") {
     for (int i = 0; i < 15; ++i) {
       t.each([&](Scene& s) {
         humanoids.drive(
-            s, [&](std::size_t j) { return 3.0 * (seed - 1.0) * std::sin(0.2 * i + static_cast<double>(j)); }, seed == 4 ? 0.8 : 25);
+            s, [&](std::size_t j) { return 3.0 * (seed - 1.0) * std::sin(0.2 * i + static_cast<double>(j)); },
+            seed == 4 ? 0.8 : 25);
       });
       t.checkSteps(2);
     }
@@ -123,7 +125,8 @@ TEST_CASE("where the search began has no say in what is found, to the last digit
       humanoids.drive(
           s, [](std::size_t j) { return j % 3 - 1.0; }, 0.8);
     });
-    for (int i = 0; i < 4; ++i) t->box({0.2, 0.2, 0.2}, t->body({1 + 0.02 * i, 0, 0.1 + 0.19 * i}, 1, Mat3::Identity() * 0.01));
+    for (int i = 0; i < 4; ++i)
+      t->box({0.2, 0.2, 0.2}, t->body({1 + 0.02 * i, 0, 0.1 + 0.19 * i}, 1, Mat3::Identity() * 0.01));
   }
   for (int i = 0; i < 60; ++i) {
     fresh.newSolver();

@@ -1,8 +1,8 @@
-#include "engine_fixture.h"
-
 #include <ode/ode.h>
 
 #include <Eigen/Geometry>
+
+#include "engine_fixture.h"
 
 using namespace spark;
 using namespace spark::test;

@@ -21,8 +21,8 @@ struct Heap : EngineHouse {
       const Body b = body({0.13 * (i % 3), 0.17 * (i % 2), 0.6 + 0.55 * i});
       ode.setRotation(b, Mat3(Eigen::AngleAxisd(0.3 * i, Vec3(1, 2, 3).normalized())));
       ode.setMass(b, {1.0, Vec3::Zero(), Mat3::Identity() * 0.05});
-      const engine::ShapeDescription shapes[] = {box(0.5, 0.4, 0.3), round(Shape::sphere, 0.25), round(Shape::capsule, 0.15, 0.3),
-                                                 round(Shape::cylinder, 0.2, 0.3)};
+      const engine::ShapeDescription shapes[] = {box(0.5, 0.4, 0.3), round(Shape::sphere, 0.25),
+                                                 round(Shape::capsule, 0.15, 0.3), round(Shape::cylinder, 0.2, 0.3)};
       geom(shapes[i % 4], b);
       bodies.push_back(b);
     }
@@ -71,7 +71,8 @@ TEST_CASE("a heap goes on bit for bit from a saved state, in the same house and 
   a.load(middle);
   a.run(400);
   CHECK(a.saved() == end);
-  CHECK_THROWS_WITH(a.ode.loadBody(a.bodies[0], std::span(middle).subspan(0, 5)), Catch::Contains("saved state, found 5"));
+  CHECK_THROWS_WITH(a.ode.loadBody(a.bodies[0], std::span(middle).subspan(0, 5)),
+                    Catch::Contains("saved state, found 5"));
 }
 
 TEST_CASE("sleeping is ODE's: a box dropped by plain ODE calls falls asleep in the same step at the same place") {

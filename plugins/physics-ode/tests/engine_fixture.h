@@ -30,7 +30,8 @@ struct EngineHouse : House {
     ode.setPosition(b, at);
     return b;
   }
-  engine::Geom geom(const engine::ShapeDescription& shape, engine::Body b = engine::Body::none, const Pose& offset = {}) {
+  engine::Geom geom(const engine::ShapeDescription& shape, engine::Body b = engine::Body::none,
+                    const Pose& offset = {}) {
     const engine::Geom g = ode.createGeom(space, shape, nullptr);
     ode.setBody(g, b, offset);
     return g;
@@ -78,7 +79,8 @@ inline engine::ShapeDescription mesh(double e) {
   s.shape = engine::Shape::mesh;
   const double h = e / 2;
   s.vertices = {-h, -h, -h, h, -h, -h, h, h, -h, -h, h, -h, -h, -h, h, h, -h, h, h, h, h, -h, h, h};
-  s.triangles = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+  s.triangles = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
   return s;
 }
 

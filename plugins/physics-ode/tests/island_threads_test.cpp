@@ -11,8 +11,8 @@ using engine::JointType;
 
 namespace {
 
-/// Dolls of a trunk and four motorised limbs of two parts, each in a space of its own, that fall on a ground and on each other; between
-/// them balls, in the space around. All of it is the same each time.
+/// Dolls of a trunk and four motorised limbs of two parts, each in a space of its own, that fall on a ground and on
+/// each other; between them balls, in the space around. All of it is the same each time.
 struct Crowd : EngineHouse {
   std::vector<Body> bodies;
   std::vector<Joint> motors;
@@ -24,7 +24,8 @@ struct Crowd : EngineHouse {
   void next() {
     ++steps;
     for (std::size_t i = 0; i < motors.size(); ++i)
-      ode.setParameter(motors[i], JointParameter::velocity, 0, 2 * std::sin(0.1 * steps + 0.7 * static_cast<double>(i)));
+      ode.setParameter(motors[i], JointParameter::velocity, 0,
+                       2 * std::sin(0.1 * steps + 0.7 * static_cast<double>(i)));
     engine::Surface s;
     s.softErpOn = s.slipOn = true;
     s.softErp = 0.4;
@@ -35,7 +36,8 @@ struct Crowd : EngineHouse {
   std::vector<double> all() const {
     std::vector<double> out;
     for (const Body b : bodies) ode.saveBody(b, out);
-    for (const engine::Contact& c : contacts) out.insert(out.end(), {c.position.x(), c.position.y(), c.position.z(), c.depth});
+    for (const engine::Contact& c : contacts)
+      out.insert(out.end(), {c.position.x(), c.position.y(), c.position.z(), c.depth});
     return out;
   }
 

@@ -156,9 +156,9 @@ TEST_CASE("every parameter of every axis reads back what was set") {
     two.ode.attach(j, two.child, two.parent);
     if (type == JointType::angularMotor) two.ode.setAngularMotor(j, 3, false);
     for (int axis = 0; axis < axes; ++axis)
-      for (const auto p :
-           {JointParameter::lowStop, JointParameter::highStop, JointParameter::velocity, JointParameter::maxForce,
-            JointParameter::fudgeFactor, JointParameter::bounce, JointParameter::cfm, JointParameter::stopErp, JointParameter::stopCfm}) {
+      for (const auto p : {JointParameter::lowStop, JointParameter::highStop, JointParameter::velocity,
+                           JointParameter::maxForce, JointParameter::fudgeFactor, JointParameter::bounce,
+                           JointParameter::cfm, JointParameter::stopErp, JointParameter::stopCfm}) {
         const double v = 0.01 * (static_cast<int>(p) + 1) + 0.1 * axis;
         INFO("type " << int(type) << " axis " << axis << " parameter " << int(p));
         two.ode.setParameter(j, p, axis, v);
@@ -287,8 +287,8 @@ TEST_CASE("feedback tells what a joint carries, whichever body comes first") {
 
 TEST_CASE("a joint whose body died does nothing and asks nothing") {
   Two two;
-  for (const auto type : {JointType::ball, JointType::hinge, JointType::hinge2, JointType::slider, JointType::universal, JointType::fixed,
-                          JointType::angularMotor}) {
+  for (const auto type : {JointType::ball, JointType::hinge, JointType::hinge2, JointType::slider, JointType::universal,
+                          JointType::fixed, JointType::angularMotor}) {
     const Body gone = two.body({0, 0, 0});
     const Joint j = two.ode.createJoint(two.world, type);
     CHECK(two.ode.angle(j, 0) == 0);
@@ -303,7 +303,8 @@ TEST_CASE("a joint whose body died does nothing and asks nothing") {
     CHECK(two.ode.anchor(j).isZero(0));
     two.step();
   }
-  CHECK_THROWS_WITH(two.ode.attach(two.ode.createJoint(two.world, JointType::ball), two.child, two.child), Catch::Contains("with itself"));
+  CHECK_THROWS_WITH(two.ode.attach(two.ode.createJoint(two.world, JointType::ball), two.child, two.child),
+                    Catch::Contains("with itself"));
 }
 
 TEST_CASE("a wheel without a chassis is refused with a sentence; an axis makes room for one parallel to it") {

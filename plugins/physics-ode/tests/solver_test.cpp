@@ -1,7 +1,8 @@
+#include "api/solver.h"
+
 #include <Eigen/Geometry>
 #include <functional>
 
-#include "api/solver.h"
 #include "engine_fixture.h"
 
 using namespace spark;
@@ -47,7 +48,8 @@ struct Things : EngineHouse {
     }
     bodies.push_back(body({20, 0, 0.4995}));  // soon asleep
     geom(box(1, 1, 1), bodies.back());
-    const JointType types[] = {JointType::ball, JointType::hinge, JointType::hinge2, JointType::slider, JointType::universal, JointType::fixed};
+    const JointType types[] = {JointType::ball,   JointType::hinge,     JointType::hinge2,
+                               JointType::slider, JointType::universal, JointType::fixed};
     Body last = Body::none;
     for (int i = 0; i < 6; ++i) {
       const Body b = body({10.0 + i, 0, 5});
@@ -183,7 +185,8 @@ TEST_CASE("a solver's wanted feedback is what the engine tells, with the joint's
   house.kernel.registerClass<TestSolver>();
   auto& solver = house.kernel.create<TestSolver>("TestSolver", "/sys/server/physics/engine/solver");
   const Body b = house.body({0, 0, 1});
-  const Joint wanted = house.ode.createJoint(house.world, JointType::ball), unwanted = house.ode.createJoint(house.world, JointType::ball);
+  const Joint wanted = house.ode.createJoint(house.world, JointType::ball),
+              unwanted = house.ode.createJoint(house.world, JointType::ball);
   house.ode.attach(wanted, Body::none, b);
   house.ode.attach(unwanted, b, Body::none);
   house.ode.setFeedback(wanted, true);
@@ -207,7 +210,9 @@ TEST_CASE("a solver's wanted feedback is what the engine tells, with the joint's
   CHECK(f1.isZero(0));
 }
 
-TEST_CASE("structure changes its number when bodies and joints come, go or are attached, and else does not; a world's end is told") {
+TEST_CASE(
+    "structure changes its number when bodies and joints come, go or are attached, and else does not; a world's end is "
+    "told") {
   EngineHouse house;
   house.kernel.registerClass<TestSolver>();
   auto& solver = house.kernel.create<TestSolver>("TestSolver", "/sys/server/physics/engine/solver");

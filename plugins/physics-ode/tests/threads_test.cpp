@@ -51,7 +51,8 @@ TEST_CASE("states are read by several threads between steps") {
     {
       std::vector<std::jthread> threads;
       for (double& h : heights)
-        threads.emplace_back([&] { h = house.ode.state(a).position.z() + house.ode.pose(g).position.z() + house.ode.angle(joint, 0); });
+        threads.emplace_back(
+            [&] { h = house.ode.state(a).position.z() + house.ode.pose(g).position.z() + house.ode.angle(joint, 0); });
     }
     for (double h : heights) CHECK(h == heights[0]);
   }

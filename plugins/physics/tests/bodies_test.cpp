@@ -124,12 +124,14 @@ TEST_CASE("added masses move the body's origin to the common centre, and what is
   house.step();
   CHECK(house.world(visible).x() == Approx(0).margin(1e-6));
   // Inertia: two boxes and a sphere, by Steiner's rule about 0.55.
-  const double expected = 1 * (2 * 0.04 / 12 + 0.55 * 0.55) + 3 * (2 * 0.04 / 12 + 0.15 * 0.15) + 4 * (0.4 * 0.01 + 0.25 * 0.25);
+  const double expected =
+      1 * (2 * 0.04 / 12 + 0.55 * 0.55) + 3 * (2 * 0.04 / 12 + 0.15 * 0.15) + 4 * (0.4 * 0.01 + 0.25 * 0.25);
   house.body(t).addTorque({0, 1, 0});
   house.step();
   CHECK(house.body(t).state().angularVelocity.y() == Approx(0.02 / expected).epsilon(1e-6));
   CHECK_THROWS_WITH(house.call(body, "addBoxTotal", {1.0, 1.0, 1.0, 1.0, 2.0}), Catch::Contains("6 numbers"));
-  CHECK_THROWS_WITH(house.call(body, "addCapsuleTotal", {1.0, 1.0, 1.0, 0, 0, 0, 0, 0, 0}), Catch::Contains("addCapsuleTotal"));
+  CHECK_THROWS_WITH(house.call(body, "addCapsuleTotal", {1.0, 1.0, 1.0, 0, 0, 0, 0, 0, 0}),
+                    Catch::Contains("addCapsuleTotal"));
 }
 
 TEST_CASE("drag: a body slows by k v over m in each step, and turns slower by k w over I") {
@@ -191,8 +193,9 @@ TEST_CASE("the world's parameters are in effect, and read back") {
   Leaf& world = *house.scene.find("world");
   Node& t = house.thing("thing", {0, 0, 10});
   house.call(world, "setGravity", {1.0, 0.0, 0.0});
-  for (const auto& [set, get, value] :
-       {std::tuple{"setERP", "getERP", 0.3}, {"setCFM", "getCFM", 1e-4}, {"setContactSurfaceLayer", "getContactSurfaceLayer", 0.002}}) {
+  for (const auto& [set, get, value] : {std::tuple{"setERP", "getERP", 0.3},
+                                        {"setCFM", "getCFM", 1e-4},
+                                        {"setContactSurfaceLayer", "getContactSurfaceLayer", 0.002}}) {
     house.call(world, set, {value});
     CHECK(house.call(world, get).toNumber() == value);
   }
@@ -267,8 +270,8 @@ TEST_CASE("without a world, bodies are refused with a sentence; without an engin
 }
 
 TEST_CASE("the tree may be torn down in any order") {
-  for (const std::string first : {"/usr/scene/world", "/usr/scene/space", "/sys/server/physics/engine", "/sys/server/physics", "/usr/scene/box",
-                                  "/usr/scene/box/body"}) {
+  for (const std::string first : {"/usr/scene/world", "/usr/scene/space", "/sys/server/physics/engine",
+                                  "/sys/server/physics", "/usr/scene/box", "/usr/scene/box/body"}) {
     PhysicsHouse house;
     INFO(first);
     Node& t = house.box("box", {0, 0, 0.4}, {1, 1, 1});
@@ -278,8 +281,10 @@ TEST_CASE("the tree may be torn down in any order") {
     house.step();
     Leaf& gone = *house.kernel.root().find(first);
     const bool inUse = first.starts_with("/sys/server/physics");
-    if (inUse) CHECK_THROWS_WITH(gone.parent()->remove(gone), Catch::Contains("is in use: /usr/scene/world"));
-    else gone.parent()->remove(gone);
+    if (inUse)
+      CHECK_THROWS_WITH(gone.parent()->remove(gone), Catch::Contains("is in use: /usr/scene/world"));
+    else
+      gone.parent()->remove(gone);
     house.step(2);
     for (const auto& child : house.scene.children())
       if (auto* body = child->find<IRigidBody>("body")) CHECK(body->state().position.allFinite());

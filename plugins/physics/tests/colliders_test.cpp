@@ -16,7 +16,8 @@ void make(Node& at, const std::string& name) {
     Leaf& m = at.create("TriMeshCollider", "collider");
     const double h = 0.5;
     call(m, "setVertices", {-h, -h, -h, h, -h, -h, h, h, -h, -h, h, -h, -h, -h, h, h, -h, h, h, h, h, -h, h, h});
-    call(m, "setTriangles", {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7});
+    call(m, "setTriangles",
+         {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7});
   }
 }
 const std::vector<std::string> kSolids{"box", "sphere", "capsule", "cylinder", "mesh"};
@@ -24,7 +25,9 @@ const std::vector<std::string> kSolids{"box", "sphere", "capsule", "cylinder", "
 ICollider& collider(Node& t) { return t.require<ICollider>("collider"); }
 
 /// A recorder at the thing's collider.
-ICollisionRecorder& record(Node& t) { return *t.find("collider")->asNode()->create("RecorderHandler").as<ICollisionRecorder>(); }
+ICollisionRecorder& record(Node& t) {
+  return *t.find("collider")->asNode()->create("RecorderHandler").as<ICollisionRecorder>();
+}
 
 }  // namespace
 
@@ -180,7 +183,8 @@ TEST_CASE("a collider belongs to the body before it, not to one after it") {
   CHECK(after.as<ICollider>()->body() == t.find<IRigidBody>("body"));
 }
 
-TEST_CASE("positions: in the transform's frame, in the world for a static collider's local position, offsets on bodies") {
+TEST_CASE(
+    "positions: in the transform's frame, in the world for a static collider's local position, offsets on bodies") {
   PhysicsHouse house;
   Node& t = house.transform(house.scene, "t", {1, 0, 0});
   Leaf& c = t.create("SphereCollider", "collider");
@@ -207,7 +211,8 @@ TEST_CASE("positions: in the transform's frame, in the world for a static collid
 TEST_CASE("colliders join the nearest space above, else the scene's first, else the world's own") {
   for (const bool nested : {true, false}) {
     PhysicsHouse house;
-    Node& group = nested ? *house.scene.create("Space", "group").asNode() : house.transform(house.scene, "group", {0, 0, 0});
+    Node& group =
+        nested ? *house.scene.create("Space", "group").asNode() : house.transform(house.scene, "group", {0, 0, 0});
     if (nested) house.call(group, "disableInnerCollision", {true});
     for (const char* name : {"a", "b"}) {
       Node& t = house.transform(group, name, {0, 0, 0});
@@ -325,11 +330,14 @@ TEST_CASE("a detached group alone on the ground moves as it would without one, t
     Node& ground = house.transform(house.scene, "ground", {0, 0, 0});
     house.call(ground.create("PlaneCollider", "collider"), "setParams", {0.0, 0.0, 1.0, 0.0});
     Crowd c(house, "c", 2);
-    if (grouped) setProperty(*c.group, "detached", true);
-    else c.node.remove(*c.group);
+    if (grouped)
+      setProperty(*c.group, "detached", true);
+    else
+      c.node.remove(*c.group);
     house.step(100);
     const engine::BodyState s = house.body(*c.boxes[1]).state();
-    return std::vector<double>{s.position.x(), s.position.y(), s.position.z(), s.rotation(0, 1), s.rotation(1, 2), s.linearVelocity.z()};
+    return std::vector<double>{s.position.x(),   s.position.y(),   s.position.z(),
+                               s.rotation(0, 1), s.rotation(1, 2), s.linearVelocity.z()};
   };
   CHECK(fall(true) == fall(false));
 }

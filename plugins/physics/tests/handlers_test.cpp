@@ -99,7 +99,8 @@ TEST_CASE("a recorder remembers each collider once, from either side, until it i
   CHECK(upper.colliders()[0].get() == &g.ground);
   REQUIRE(lower.colliders().size() == 1);
   CHECK(lower.colliders()[0].get() == &g.collider());
-  CHECK(getProperty(*g.ground.find("RecorderHandler"), "colliders").toList().at(0).toString() == "/usr/scene/box/collider");
+  CHECK(getProperty(*g.ground.find("RecorderHandler"), "colliders").toList().at(0).toString() ==
+        "/usr/scene/box/collider");
   Ground::call(*g.ground.find("RecorderHandler"), "clear");
   CHECK(lower.colliders().empty());
   g.step();
@@ -132,7 +133,9 @@ TEST_CASE("a handler is told direct and symmetric contacts, and afterwards the f
   CHECK(upper.force.z() > 0);
 }
 
-TEST_CASE("contacts of the last step can be looked at, all with their force when it is measured, and handlers hear no more for that") {
+TEST_CASE(
+    "contacts of the last step can be looked at, all with their force when it is measured, and handlers hear no more "
+    "for that") {
   Ground g;
   g.kernel.registerClass<CountingHandler>();
   auto& upper = static_cast<CountingHandler&>(g.collider().create("CountingHandler"));
@@ -162,7 +165,8 @@ TEST_CASE("contacts of the last step can be looked at, all with their force when
   CHECK(indifferent.solved == 0);
   setProperty(*g.kernel.root().find("/sys/server/physics"), "measureForces", false);
   g.step();
-  CHECK(std::count_if(server.contacts().begin(), server.contacts().end(), [](const engine::Contact& c) { return c.feedback; }) == 4);
+  CHECK(std::count_if(server.contacts().begin(), server.contacts().end(),
+                      [](const engine::Contact& c) { return c.feedback; }) == 4);
   g.scene.remove(other);
   CHECK(server.contacts().empty());
 }
@@ -186,7 +190,8 @@ TEST_CASE("a handler that changes the tree in the middle of a step is named, and
   CHECK_THAT(g.text, Catch::Contains("changed the tree") && Catch::Contains("/usr/scene/box/collider"));
 }
 
-TEST_CASE("a transform collider without a handler of its own bounces by default, or takes the inner one's when switched") {
+TEST_CASE(
+    "a transform collider without a handler of its own bounces by default, or takes the inner one's when switched") {
   for (const bool fallback : {true, false}) {
     PhysicsHouse house;
     setProperty(*house.kernel.root().find("/sys/server/physics"), "defaultHandlerOnTransformCollider", fallback);
@@ -204,7 +209,8 @@ TEST_CASE("a transform collider without a handler of its own bounces by default,
 
 TEST_CASE("a transform collider reports itself") {
   PhysicsHouse house;
-  auto& seen = *house.scene.create("PlaneCollider", "ground").asNode()->create("RecorderHandler").as<ICollisionRecorder>();
+  auto& seen =
+      *house.scene.create("PlaneCollider", "ground").asNode()->create("RecorderHandler").as<ICollisionRecorder>();
   Node& t = house.thing("thing", {0, 0, 0.49});
   Leaf& outer = t.create("TransformCollider", "outer");
   outer.asNode()->create("BoxCollider", "inner");
@@ -268,7 +274,8 @@ TEST_CASE("Lua reacts to collisions") {
   )",
                             "test", true);
   g.step();
-  CHECK_THAT(g.text, Catch::Contains("ScriptHandler") && Catch::Contains("met") && Catch::Contains("/usr/scene/ground"));
+  CHECK_THAT(g.text,
+             Catch::Contains("ScriptHandler") && Catch::Contains("met") && Catch::Contains("/usr/scene/ground"));
 }
 
 TEST_CASE("joined bodies do not collide") {

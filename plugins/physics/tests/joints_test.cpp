@@ -26,7 +26,9 @@ struct Pair : PhysicsHouse {
   IRigidBody& childBody() { return body(child); }
 };
 
-double number(Leaf& leaf, const char* method, const List& arguments = {}) { return callMethod(leaf, method, arguments).toNumber(); }
+double number(Leaf& leaf, const char* method, const List& arguments = {}) {
+  return callMethod(leaf, method, arguments).toNumber();
+}
 
 }  // namespace
 
@@ -37,10 +39,14 @@ TEST_CASE("anchors and axes that are set before the bodies are attached count, a
     int axes;
   } cases[] = {
       {"HingeJoint", {{"setAnchor", {0.1, 0.2, 0.5}}, {"setAxis", {0.0, 0.0, 1.0}}, {"setAxis", {1}}}, 1},
-      {"UniversalJoint", {{"setAnchor", {0.1, 0.2, 0.5}}, {"setAxis1", {0.0, 0.0, 1.0}}, {"setAxis2", {1.0, 0.0, 0.0}}}, 2},
+      {"UniversalJoint",
+       {{"setAnchor", {0.1, 0.2, 0.5}}, {"setAxis1", {0.0, 0.0, 1.0}}, {"setAxis2", {1.0, 0.0, 0.0}}},
+       2},
       {"Hinge2Joint", {{"setAnchor", {0.1, 0.2, 0.5}}}, 2},
       {"BallJoint", {{"setAnchor", {0.1, 0.2, 0.5}}}, 0},
-      {"AngularMotor", {{"setNumAxes", {2}}, {"setMotorAxis", {0, 1, 0.0, 1.0, 0.0}}, {"setMotorAxis", {1, 2, 0.0, 0.0, 1.0}}}, 2},
+      {"AngularMotor",
+       {{"setNumAxes", {2}}, {"setMotorAxis", {0, 1, 0.0, 1.0, 0.0}}, {"setMotorAxis", {1, 2, 0.0, 0.0, 1.0}}},
+       2},
   };
   for (const auto& c : cases) {
     INFO(c.className);
@@ -72,7 +78,8 @@ TEST_CASE("what no axis and no anchor can be is refused before the bodies are at
   Pair p;
   Leaf& j = p.child.create("HingeJoint", "joint");
   CHECK_THROWS_WITH(p.call(j, "setAxis", {0.0, 0.0, 0.0}), Catch::Contains("expected an axis longer than 0"));
-  CHECK_THROWS_WITH(p.call(j, "setAnchor", {0.0, std::nan(""), 0.0}), Catch::Contains("expected finite numbers for the anchor"));
+  CHECK_THROWS_WITH(p.call(j, "setAnchor", {0.0, std::nan(""), 0.0}),
+                    Catch::Contains("expected finite numbers for the anchor"));
 }
 
 TEST_CASE("a hinge: anchor and axis in the joint's frame, angles in degrees, motor in degrees, stops") {
@@ -112,8 +119,8 @@ TEST_CASE("a hinge: anchor and axis in the joint's frame, angles in degrees, mot
 TEST_CASE("every setting of a joint has a getter that gives what was set") {
   Pair p;
   Leaf& j = p.joint("UniversalJoint");
-  for (const char* name : {"LowStopPos", "HighStopPos", "LowStopDeg", "HighStopDeg", "FudgeFactor", "Bounce", "CFM", "StopCFM", "StopERP",
-                           "LinearMotorVelocity", "AngularMotorVelocity", "MaxMotorForce"})
+  for (const char* name : {"LowStopPos", "HighStopPos", "LowStopDeg", "HighStopDeg", "FudgeFactor", "Bounce", "CFM",
+                           "StopCFM", "StopERP", "LinearMotorVelocity", "AngularMotorVelocity", "MaxMotorForce"})
     for (int axis : {0, 1}) {
       INFO(name);
       p.call(j, (std::string("set") + name).c_str(), {axis, 0.25 + 0.5 * axis});
@@ -202,7 +209,8 @@ TEST_CASE("a path that leads nowhere is told and means the static world") {
   Pair p;
   Leaf& j = p.child.create("BallJoint", "joint");
   p.call(j, "attach", {"../body", "../../nobody/body"});
-  CHECK_THAT(p.text, Catch::Contains("/usr/scene/child/joint") && Catch::Contains("../../nobody/body") && Catch::Contains("static world"));
+  CHECK_THAT(p.text, Catch::Contains("/usr/scene/child/joint") && Catch::Contains("../../nobody/body") &&
+                         Catch::Contains("static world"));
   CHECK(j.as<IJoint>()->body(1) == nullptr);
   CHECK(j.as<IJoint>()->body(0) == &p.childBody());
   CHECK_THROWS_WITH(p.call(j, "attach", {"../body", "../body"}), Catch::Contains("with itself"));
@@ -249,15 +257,16 @@ TEST_CASE("an angular motor drives its hinge and holds the numbers of a real mot
   p.call(m, "setEulerMode");
   CHECK(p.call(m, "getMode").toString() == "euler");
   p.call(m, "setUserMode");
-  for (const auto& [name, standard] : std::initializer_list<std::pair<const char*, double>>{{"SpeedConstant", 4.3},
-                                                                                            {"TorqueConstant", 4.3},
-                                                                                            {"Resistance", 6.44},
-                                                                                            {"EnvironmentTempeature", 20},
-                                                                                            {"ThermalConductivity", 0.025},
-                                                                                            {"HeatCapacity", 26},
-                                                                                            {"ProtectionTempeature", 80},
-                                                                                            {"ProtectionStiffness", 0.8},
-                                                                                            {"MaxTorque", 0}}) {
+  for (const auto& [name, standard] :
+       std::initializer_list<std::pair<const char*, double>>{{"SpeedConstant", 4.3},
+                                                             {"TorqueConstant", 4.3},
+                                                             {"Resistance", 6.44},
+                                                             {"EnvironmentTempeature", 20},
+                                                             {"ThermalConductivity", 0.025},
+                                                             {"HeatCapacity", 26},
+                                                             {"ProtectionTempeature", 80},
+                                                             {"ProtectionStiffness", 0.8},
+                                                             {"MaxTorque", 0}}) {
     INFO(name);
     CHECK(number(m, (std::string("get") + name).c_str()) == standard);
     p.call(m, (std::string("set") + name).c_str(), {0.5});

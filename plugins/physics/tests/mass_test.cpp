@@ -36,14 +36,17 @@ void checkNear(const engine::Mass& a, const engine::Mass& b, double part) {
 TEST_CASE("mass: solids have the mass and inertia of their substance") {
   const double density = 700;
   const Vec3 edges(0.2, 0.4, 0.6);
-  checkNear(boxMass(density * boxVolume(edges), edges), sum(density, edges / 2, [](const Vec3&) { return true; }), 0.002);
-  checkNear(sphereMass(density * sphereVolume(0.3), 0.3), sum(density, Vec3::Constant(0.3), [](const Vec3& p) { return p.norm() < 0.3; }),
-            0.01);
+  checkNear(boxMass(density * boxVolume(edges), edges), sum(density, edges / 2, [](const Vec3&) { return true; }),
+            0.002);
+  checkNear(sphereMass(density * sphereVolume(0.3), 0.3),
+            sum(density, Vec3::Constant(0.3), [](const Vec3& p) { return p.norm() < 0.3; }), 0.01);
   checkNear(cylinderMass(density * cylinderVolume(0.2, 0.5), 0.2, 0.5),
             sum(density, {0.2, 0.2, 0.25}, [](const Vec3& p) { return std::hypot(p.x(), p.y()) < 0.2; }), 0.01);
   checkNear(capsuleMass(density * capsuleVolume(0.2, 0.5), 0.2, 0.5),
             sum(density, {0.2, 0.2, 0.45},
-                [](const Vec3& p) { return std::hypot(std::hypot(p.x(), p.y()), std::max(0.0, std::abs(p.z()) - 0.25)) < 0.2; }),
+                [](const Vec3& p) {
+                  return std::hypot(std::hypot(p.x(), p.y()), std::max(0.0, std::abs(p.z()) - 0.25)) < 0.2;
+                }),
             0.01);
 }
 

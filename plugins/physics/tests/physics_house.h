@@ -54,7 +54,9 @@ struct PhysicsHouse : House {
     call(t.create("BoxCollider", "collider"), "setBoxLengths", {edges.x(), edges.y(), edges.z()});
     return t;
   }
-  static Value call(Leaf& leaf, const char* method, const List& arguments = {}) { return callMethod(leaf, method, arguments); }
+  static Value call(Leaf& leaf, const char* method, const List& arguments = {}) {
+    return callMethod(leaf, method, arguments);
+  }
   static IRigidBody& body(Node& thing) { return thing.require<IRigidBody>("body"); }
   static Vec3f world(Node& transform) { return positionOf(transform.as<Transform>()->world()); }
 };

@@ -24,7 +24,8 @@ const Surface kBall = surface(true, 0.8, 0.8, 0.5, 0.05, 0.6);
 const Surface kFoot = surface(false, 0, 0, 0.6, 1e-4, 5e-3);
 const Surface kGoal = defaultSurface();
 
-void check(const Surface& a, const Surface& b, bool bounce, double value, double velocity, double erp, double cfm, double slip) {
+void check(const Surface& a, const Surface& b, bool bounce, double value, double velocity, double erp, double cfm,
+           double slip) {
   for (const Surface& s : {physics::combine(a, b), physics::combine(b, a)}) {
     CHECK(s.mu == HUGE_VAL);
     CHECK(s.bounceOn == bounce);

@@ -63,12 +63,15 @@ void check(const Row& row, const Inventory& found, const ReferenceHouse& h) {
   CHECK(h.count("imports") == row.imports);
   CHECK(h.count("evals") == row.evals);
   CHECK(h.count("calls") == row.calls);
-  if (h.house.text.find("failed") != std::string::npos || h.house.text.find("no method") != std::string::npos) FAIL(h.house.text);
+  if (h.house.text.find("failed") != std::string::npos || h.house.text.find("no method") != std::string::npos)
+    FAIL(h.house.text);
 }
 
 using Match = std::smatch;
 double number(const std::string& text) { return std::stod(text); }
-Vec3 vector(const Match& m, std::size_t first) { return {number(m[first]), number(m[first + 1]), number(m[first + 2])}; }
+Vec3 vector(const Match& m, std::size_t first) {
+  return {number(m[first]), number(m[first + 1]), number(m[first + 2])};
+}
 /// The facts are written with five significant digits.
 bool fits(const Vec3& found, const Vec3& fact) {
   for (int i = 0; i < 3; ++i) {
@@ -109,9 +112,10 @@ void checkBodies(const Facts& facts, const Node& robot) {
 
 void checkParameters(const IJoint& joint, const std::string& line) {
   using P = engine::JointParameter;
-  const std::pair<const char*, P> kNames[] = {
-      {"setMaxMotorForce", P::maxForce},  {"setCFM", P::cfm},       {"setStopCFM", P::stopCfm},    {"setStopERP", P::stopErp},
-      {"setFudgeFactor", P::fudgeFactor}, {"setBounce", P::bounce}, {"setLowStopDeg", P::lowStop}, {"setHighStopDeg", P::highStop}};
+  const std::pair<const char*, P> kNames[] = {{"setMaxMotorForce", P::maxForce},  {"setCFM", P::cfm},
+                                              {"setStopCFM", P::stopCfm},         {"setStopERP", P::stopErp},
+                                              {"setFudgeFactor", P::fudgeFactor}, {"setBounce", P::bounce},
+                                              {"setLowStopDeg", P::lowStop},      {"setHighStopDeg", P::highStop}};
   for (const auto& [name, parameter] : kNames) {
     INFO(name);
     Match m;
@@ -140,7 +144,8 @@ void checkJoints(const Facts& facts, const Node& robot) {
                              CHECK(joint.leaf().find(m[10].str())->as<Effector>());
                              checkParameters(joint, line);
                              Args anchor{}, axis{};
-                             const Value at = callMethod(joint.leaf(), "getAnchor", {}), along = callMethod(joint.leaf(), "getAxis", {});
+                             const Value at = callMethod(joint.leaf(), "getAnchor", {}),
+                                         along = callMethod(joint.leaf(), "getAxis", {});
                              anchor.values = {&at, 1};
                              axis.values = {&along, 1};
                              CHECK(fits(Convert<Vec3>::from(anchor), vector(m, 3)));
@@ -156,7 +161,8 @@ void checkClasses(const Facts& facts, Inventory found) {
   CHECK(facts.each("^  classes ", [&](const Match&, const std::string& line) {
     const std::regex entry("'([A-Za-z0-9]+)': ([0-9]+)");
     std::map<std::string, int> wanted;
-    for (std::sregex_iterator m(line.begin(), line.end(), entry), end; m != end; ++m) wanted[(*m)[1]] = std::stoi((*m)[2]);
+    for (std::sregex_iterator m(line.begin(), line.end(), entry), end; m != end; ++m)
+      wanted[(*m)[1]] = std::stoi((*m)[2]);
     CHECK(found.classes == wanted);
   }) == 1);
 }

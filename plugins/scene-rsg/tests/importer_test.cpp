@@ -7,13 +7,15 @@ using namespace spark::test;
 
 TEST_CASE("the header decides: magic, version 0 1") {
   SceneHouse h;
-  for (const char* good : {"(RSG 0 1)(nd Probe)", "(RubySceneGraph 0 1)((nd Probe))", "; first\n(RSG 0 1) (nd Probe (setName x))"}) {
+  for (const char* good :
+       {"(RSG 0 1)(nd Probe)", "(RubySceneGraph 0 1)((nd Probe))", "; first\n(RSG 0 1) (nd Probe (setName x))"}) {
     INFO(good);
     h.write("a.rsg", good);
     CHECK_NOTHROW(h.import("a.rsg"));
   }
   CHECK(h.scene->children().size() == 3);
-  for (const char* bad : {"(RSG 0 2)(nd Probe)", "(RSG 1 1)()", "(RSG 0)()", "(XSG 0 1)()", "RSG", "()()", "", "<xml/>", "((RSG) 0 1)()"}) {
+  for (const char* bad : {"(RSG 0 2)(nd Probe)", "(RSG 1 1)()", "(RSG 0)()", "(XSG 0 1)()", "RSG", "()()", "", "<xml/>",
+                          "((RSG) 0 1)()"}) {
     INFO(bad);
     h.write("a.rsg", bad);
     CHECK_THROWS_WITH(h.import("a.rsg"), Catch::StartsWith("a.rsg:") && Catch::Contains("expected"));
@@ -52,11 +54,12 @@ TEST_CASE("a second import of a file reads and parses nothing, a changed file is
 
 TEST_CASE("errors say file, line and column, and what is near") {
   SceneHouse h;
-  CHECK(h.failure("(nd\n  Transfrom)").find("test.rsg:2:3: there is no class 'Transfrom'. Did you mean 'Transform'") == 0);
+  CHECK(h.failure("(nd\n  Transfrom)").find("test.rsg:2:3: there is no class 'Transfrom'. Did you mean 'Transform'") ==
+        0);
   CHECK(h.failure("\n\n   (nd Probe (tell $what))").find("test.rsg:4:20: there is no variable $what here") == 0);
   CHECK(h.failure("(def $size 1)(nd Probe (tell $sise))").find("Did you mean '$size'") != std::string::npos);
-  CHECK(h.failure("(templ $a $b)(nd Probe (tell $b))", {1}).find("parameter $b was not given: the import passed 1 arguments") !=
-        std::string::npos);
+  CHECK(h.failure("(templ $a $b)(nd Probe (tell $b))", {1})
+            .find("parameter $b was not given: the import passed 1 arguments") != std::string::npos);
   CHECK(h.failure("(nd Probe (tell (eval 1 +)))").find("test.rsg:2:18: expected a number") == 0);
   CHECK(h.failure("(nd Probe (tell (evil 1)))").find("begins with 'evil'") != std::string::npos);
   CHECK(h.failure("(nd (Probe))").find("expected a name after 'node'") != std::string::npos);
@@ -100,8 +103,8 @@ TEST_CASE("template parameters and definitions have values of their own when arg
 TEST_CASE("without defineByName, definitions drift onto other places as in the installed base") {
   SceneHouse h;
   h.set("defineByName", false);
-  CHECK(h.failure("(templ $a $b)(def $c 3)(def $d 4)(nd Probe (tell $b)(tell $c)(tell $d))", {"1"}).find("$d was not given") !=
-        std::string::npos);
+  CHECK(h.failure("(templ $a $b)(def $c 3)(def $d 4)(nd Probe (tell $b)(tell $c)(tell $d))", {"1"})
+            .find("$d was not given") != std::string::npos);
   CHECK(deeds() == Texts{"link 0 0 0", "3", "4"});
   deeds().clear();
   h.run("(templ $a)(def $b 5)(def $a 6)(nd Probe (tell $a)(tell $b))", {"1", "surplus"});
@@ -119,7 +122,8 @@ TEST_CASE("arguments are texts: numbers and bools from scripts are written as te
 TEST_CASE("join concatenates, eval inside join and join inside eval") {
   SceneHouse h;
   h.run(
-      "(def $n 2)(nd Probe (tell (join ../ a $n /b))(tell (join x (eval $n * 2)))(tell (eval (join 1 0) + 1))(tell (join))(tell a$n)(tell "
+      "(def $n 2)(nd Probe (tell (join ../ a $n /b))(tell (join x (eval $n * 2)))(tell (eval (join 1 0) + 1))(tell "
+      "(join))(tell a$n)(tell "
       "'$n'))");
   CHECK(deeds() == Texts{"link 0 0 0", "../a2/b", "x4", "11", "", "a$n", "2"});
 }
@@ -139,7 +143,9 @@ TEST_CASE("class names may have a path in front") {
 
 TEST_CASE("calls of nodes that are gone are logged, and a scene cannot remove its root") {
   SceneHouse h;
-  h.run("(nd Transform (nd Probe (tell never)) (unlinkChildren)) (nd Probe (tell before)(unlinkLeaf)) (nd Probe (tell after))");
+  h.run(
+      "(nd Transform (nd Probe (tell never)) (unlinkChildren)) (nd Probe (tell before)(unlinkLeaf)) (nd Probe (tell "
+      "after))");
   CHECK(h.timesLogged("was removed before it was made") == 2);
   CHECK(deeds() == Texts{"link 0 0 0", "link 0 0 0", "link 0 0 0", "after"});
   CHECK(h.failure("(nd Transform (unlinkLeaf) (nd Probe))").find("was removed") != std::string::npos);
@@ -150,7 +156,8 @@ TEST_CASE("delta scenes change the existing children in order") {
   SceneHouse h;
   h.run("(nd Transform (setName a)(nd Probe (setName p)))(nd Transform (setName b)(nd Probe))");
   h.write("delta.rsg",
-          "(RDS 0 1)((nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1)(nd (setNumber 5)))(nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 2 0 0 1)))");
+          "(RDS 0 1)((nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1)(nd (setNumber 5)))(nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 "
+          "2 0 0 1)))");
   h.import("delta.rsg");
   CHECK(h.scene->require<Transform>("a").localPos().x() == 1);
   CHECK(h.scene->require<Transform>("b").localPos().x() == 2);

@@ -84,9 +84,11 @@ TEST_CASE("numbers from outside are finite and of a sane size, names that look l
   SceneHouse h;
   for (const char* bad : {"nan", "inf", "-inf", "infinity", "+inf", "1e999", "-1e999", "1e12", "nan(7)"}) {
     INFO(bad);
-    CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {bad}).find("argument 1 is '" + std::string(bad) + "'") != std::string::npos);
+    CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {bad}).find("argument 1 is '" + std::string(bad) + "'") !=
+          std::string::npos);
   }
-  CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {std::string(5000, 'x')}).find("at most 4096 bytes") != std::string::npos);
+  CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {std::string(5000, 'x')}).find("at most 4096 bytes") !=
+        std::string::npos);
   CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {"nano"}).empty());
   CHECK(deeds().back() == "nano");
   CHECK(h.failure("(templ $x)(nd Probe (tell (eval $x)))", {"1; os.exit()"}).find("test.rsg:2:") == 0);

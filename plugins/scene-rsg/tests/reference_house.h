@@ -12,13 +12,16 @@ namespace spark::test {
 
 /// What is below a node.
 struct Inventory {
-  int nodes = 0, transforms = 0, bodies = 0, colliders = 0, joints = 0, angularMotors = 0, perceptors = 0, effectors = 0;
+  int nodes = 0, transforms = 0, bodies = 0, colliders = 0, joints = 0, angularMotors = 0, perceptors = 0,
+      effectors = 0;
   double mass = 0;
   std::map<std::string, int> classes;
 
   void add(const Node& root) {
     for (const auto& child : root.children()) {
-      if (child->classObject()->name() == "World" || (child->classObject()->name() == "Space" && child->name() == "space")) continue;
+      if (child->classObject()->name() == "World" ||
+          (child->classObject()->name() == "Space" && child->name() == "space"))
+        continue;
       ++nodes;
       ++classes[child->classObject()->name()];
       transforms += child->as<Transform>() != nullptr;
@@ -26,7 +29,8 @@ struct Inventory {
       effectors += child->as<Effector>() != nullptr;
       colliders += child->as<ICollider>() != nullptr;
       if (auto* body = child->as<IRigidBody>()) ++bodies, mass += body->mass();
-      if (auto* joint = child->as<IJoint>()) ++(joint->jointType() == engine::JointType::angularMotor ? angularMotors : joints);
+      if (auto* joint = child->as<IJoint>())
+        ++(joint->jointType() == engine::JointType::angularMotor ? angularMotors : joints);
       if (const Node* inner = child->asNode()) add(*inner);
     }
   }
@@ -40,10 +44,12 @@ struct ReferenceHouse {
   Leaf* importer = nullptr;
 
   explicit ReferenceHouse(const std::filesystem::path& reference) {
-    for (const char* plugin : {"files", "scene", "scene-rsg", "physics", "physics-ode", "gamecontrol", "sensors", "effectors", "soccer"})
+    for (const char* plugin :
+         {"files", "scene", "scene-rsg", "physics", "physics-ode", "gamecontrol", "sensors", "effectors", "soccer"})
       kernel.plugins().use(plugin);
     kernel.create("FileServer", "/sys/server/file");
-    setProperty(kernel.create("DirectoryFileSystem", "/sys/server/file/reference"), "path", (reference / "scenes-reference").string());
+    setProperty(kernel.create("DirectoryFileSystem", "/sys/server/file/reference"), "path",
+                (reference / "scenes-reference").string());
     kernel.create("SceneServer", "/sys/server/scene");
     importer = &kernel.create("RsgImporter", "/sys/server/scene/rsg");
     kernel.create("PhysicsServer", "/sys/server/physics");
@@ -64,7 +70,8 @@ struct ReferenceHouse {
                          {"BallRadius", 0.042},
                          {"BallMass", 0.026}});
     variables("Nao", {{"UseTexture", "true"}});
-    const double thigh[] = {-0.04, -0.05832, -0.04, -0.067868424, -0.04}, ankle[] = {-0.055, -0.07332, -0.055, -0.082868424, -0.055};
+    const double thigh[] = {-0.04, -0.05832, -0.04, -0.067868424, -0.04},
+                 ankle[] = {-0.055, -0.07332, -0.055, -0.082868424, -0.055};
     const double elbow[] = {0.07, 0.10664, 0.07, 0.125736848, 0.07};
     List types;
     for (int i = 0; i < 5; ++i) {

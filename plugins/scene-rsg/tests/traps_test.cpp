@@ -44,7 +44,9 @@ TEST_CASE("a definition is used with the value of its time, in queued calls too"
 
 TEST_CASE("calls wait for the end of the file, those of Transform act at once") {
   SceneHouse h;
-  h.run("(nd Probe (tell first)(setName a)(attach ../b)) (nd Transform (setLocalPos 1 2 3)(nd Probe (setName b))) (nd Probe (setName b))");
+  h.run(
+      "(nd Probe (tell first)(setName a)(attach ../b)) (nd Transform (setLocalPos 1 2 3)(nd Probe (setName b))) (nd "
+      "Probe (setName b))");
   CHECK(deeds() == Texts{"link 0 0 0", "link 1 2 3", "link 0 0 0", "first", "../b is there"});
 }
 
@@ -59,7 +61,8 @@ TEST_CASE("an imported file makes its calls at its own end, before those of the 
   SceneHouse h;
   h.write("inner.rsg", "(RSG 0 1)((nd Probe (tell inner)(attach ../before)(attach ../after)))");
   h.run("(nd Probe (setName before)(tell outer)) (importScene inner.rsg) (nd Probe (setName after))");
-  CHECK(deeds() == Texts{"link 0 0 0", "link 0 0 0", "inner", "../before is there", "../after is missing", "link 0 0 0", "outer"});
+  CHECK(deeds() ==
+        Texts{"link 0 0 0", "link 0 0 0", "inner", "../before is there", "../after is missing", "link 0 0 0", "outer"});
 }
 
 TEST_CASE("a node is linked where its transform is at that point of the text") {
@@ -83,8 +86,11 @@ TEST_CASE("every eval rounds to six digits, and that can be switched off") {
 TEST_CASE("lists of variables are read from 0, with texts as values") {
   SceneHouse h;
   Leaf& types = h.kernel.create("Variables", "/sys/variables/NaoType");
-  setProperty(types, "value", List{List{List{"UseToe", "false"}}, List{List{"UseToe", "true"}, List{"Length", 0.0477}}});
-  h.run("(templ $type)(nd Probe (tell (eval \"NaoType[\"$type\"]['UseToe']\"))(tell (eval NaoType[ 1 \"]['Length']\")))", {1});
+  setProperty(types, "value",
+              List{List{List{"UseToe", "false"}}, List{List{"UseToe", "true"}, List{"Length", 0.0477}}});
+  h.run(
+      "(templ $type)(nd Probe (tell (eval \"NaoType[\"$type\"]['UseToe']\"))(tell (eval NaoType[ 1 \"]['Length']\")))",
+      {1});
   CHECK(deeds() == Texts{"link 0 0 0", "true", "0.0477"});
 }
 
@@ -112,14 +118,17 @@ TEST_CASE("a call with a wrong number of arguments is skipped, with one warning 
 
 TEST_CASE("the first case that matches runs, only the first list in it, and no match ends the file") {
   SceneHouse h;
-  h.run("(def $v b)(switch $v (a (nd Probe (setName a))) (b (nd Probe (setName b)) (nd Probe (setName c))) (b (nd Probe (setName d))))");
+  h.run(
+      "(def $v b)(switch $v (a (nd Probe (setName a))) (b (nd Probe (setName b)) (nd Probe (setName c))) (b (nd Probe "
+      "(setName d))))");
   CHECK(h.scene->child("b"));
   CHECK_FALSE(h.scene->child("a"));
   CHECK_FALSE(h.scene->child("c"));
   CHECK_FALSE(h.scene->child("d"));
   h.run("(switch 1 (1))(switch x)(switch (eval 1 + 1) ((join 2) (nd Probe (setName two))))");
   CHECK(h.scene->child("two"));
-  CHECK(h.failure("(switch 1 (1.0 (nd Probe)))(nd Probe (setName never))") == "test.rsg:2:3: no case matches '1', there are '1.0'");
+  CHECK(h.failure("(switch 1 (1.0 (nd Probe)))(nd Probe (setName never))") ==
+        "test.rsg:2:3: no case matches '1', there are '1.0'");
   CHECK_FALSE(h.scene->child("never"));
   CHECK(h.failure("(switch x y)").find("expected a case") != std::string::npos);
 }
@@ -135,7 +144,8 @@ TEST_CASE("a failing case does not fail its file, unless strict") {
 
 TEST_CASE("a file that fails keeps its nodes and makes the calls that were queued") {
   SceneHouse h;
-  CHECK(h.failure("(nd Probe (setName kept)(tell queued)) (nd Transform (nd Missing)) (nd Probe (tell never))").find("test.rsg:2:") == 0);
+  CHECK(h.failure("(nd Probe (setName kept)(tell queued)) (nd Transform (nd Missing)) (nd Probe (tell never))")
+            .find("test.rsg:2:") == 0);
   CHECK(h.scene->child("kept"));
   CHECK(deeds() == Texts{"link 0 0 0", "queued"});
 }
@@ -144,7 +154,8 @@ TEST_CASE("transforms that place nothing but transforms go, world poses stay") {
   SceneHouse h;
   h.run(
       "(nd Transform (setName outer)(setLocalPos 0 0 1)(setLocalRotation 0 0 90)"
-      " (nd Transform (setName a)(setLocalPos 1 0 0)(nd Probe)) (nd Transform (setName b)(setLocalPos 2 0 0)(nd Probe)) (nd Transform "
+      " (nd Transform (setName a)(setLocalPos 1 0 0)(nd Probe)) (nd Transform (setName b)(setLocalPos 2 0 0)(nd "
+      "Probe)) (nd Transform "
       "(setName empty)))"
       "(nd Transform (setName alone))");
   CHECK(h.scene->children().size() == 2);
@@ -169,7 +180,9 @@ TEST_CASE("an import below a transform moves its transforms up while the outer f
 
 TEST_CASE("groups that were there before an import stay, with what is imported into them") {
   SceneHouse h;
-  h.write("room.rsg", "(RSG 0 1)((nd Transform (nd Transform (setName chair)(nd Probe))) (nd Transform (setName table)(setLocalPos 2 0 0)(nd Probe)))");
+  h.write("room.rsg",
+          "(RSG 0 1)((nd Transform (nd Transform (setName chair)(nd Probe))) (nd Transform (setName table)(setLocalPos "
+          "2 0 0)(nd Probe)))");
   auto& room = h.scene->create<Transform>("Transform", "room");
   h.scene->create("Transform", "marker");
   callMethod(room, "importScene", List{"room.rsg"});
@@ -191,14 +204,17 @@ TEST_CASE("a place that is none ends the import with file, line and column, leni
   h.write("nowhere.rsg", "(RSG 0 1)\n((nd Transform (setName t)\n  (setLocalPos nan 0 1)))");
   h.write("far.rsg", "(RSG 0 1)\n((nd Transform (setLocalPos 1e300 0 0)))");
   CHECK_THROWS_WITH(callMethod(*h.scene, "importScene", List{"nowhere.rsg"}),
-                    Catch::Contains("nowhere.rsg:3:4: ") && Catch::Contains("expected a position of finite numbers from -1e9 to 1e9, found nan 0.0 1.0"));
-  CHECK_THROWS_WITH(callMethod(*h.scene, "importScene", List{"far.rsg"}), Catch::Contains("far.rsg:2:17: ") && Catch::Contains("found inf 0.0 0.0"));
+                    Catch::Contains("nowhere.rsg:3:4: ") &&
+                        Catch::Contains("expected a position of finite numbers from -1e9 to 1e9, found nan 0.0 1.0"));
+  CHECK_THROWS_WITH(callMethod(*h.scene, "importScene", List{"far.rsg"}),
+                    Catch::Contains("far.rsg:2:17: ") && Catch::Contains("found inf 0.0 0.0"));
 }
 
 TEST_CASE("methods and classes have short names") {
   SceneHouse h;
   h.run(
-      "(nd Probe (sSc 2)(sMat matRed)(att ../x)) (node TRF (setName t)(SLT 1 0 0 0 0 1 0 0 0 0 1 0 7 8 9 1)(nd Probe)) (nd BN (setName b)) "
+      "(nd Probe (sSc 2)(sMat matRed)(att ../x)) (node TRF (setName t)(SLT 1 0 0 0 0 1 0 0 0 0 1 0 7 8 9 1)(nd Probe)) "
+      "(nd BN (setName b)) "
       "(nd SMN (setName s))");
   CHECK(deeds() == Texts{"link 0 0 0", "link 7 8 9", "scale 2", "material matRed", "../x is missing"});
   CHECK(h.scene->require<Transform>("t").localPos() == Vec3f(7, 8, 9));

@@ -34,7 +34,9 @@ class OneFile : public Leaf, public IFileSystem {
     d.doc("One file.");
     d.implements<IFileSystem>();
   }
-  std::optional<std::string> read(const std::string& name) override { return name == "models/x.obj" ? std::optional(text) : std::nullopt; }
+  std::optional<std::string> read(const std::string& name) override {
+    return name == "models/x.obj" ? std::optional(text) : std::nullopt;
+  }
   std::uint64_t stamp(const std::string& name) override { return name == "models/x.obj" ? 1 + text.size() : 0; }
   std::string where() const override { return "here"; }
   std::string text;
@@ -166,8 +168,10 @@ TEST_CASE("a position or matrix that is no place is refused") {
   refused("setLocalRotation", {0.0, 0.0, nan}, "expected angles of finite numbers from -1e9 to 1e9");
   List matrix(16, Value(0.0));
   matrix[5] = HUGE_VAL;
-  for (const char* method : {"setLocalTransform", "SLT"}) refused(method, matrix, "expected a matrix of finite numbers");
-  CHECK_THROWS_WITH(setProperty(t, "localPos", List{0.0, nan, 0.0}), Catch::Contains("cannot set /usr/scene/t.localPos") && Catch::Contains("found 0.0 nan 0.0"));
+  for (const char* method : {"setLocalTransform", "SLT"})
+    refused(method, matrix, "expected a matrix of finite numbers");
+  CHECK_THROWS_WITH(setProperty(t, "localPos", List{0.0, nan, 0.0}),
+                    Catch::Contains("cannot set /usr/scene/t.localPos") && Catch::Contains("found 0.0 nan 0.0"));
 }
 
 TEST_CASE("another active scene counts as a change of the tree") {
@@ -224,7 +228,8 @@ TEST_CASE("a mesh has the materials of its file in alphabetical order, or those 
   Fixture f;
   auto& file = f.kernel.create<OneFile>("OneFile", "/sys/server/file/one");
   file.text =
-      "# a\n# b\nmtllib x.mtl\no x\nv 0 0 0\nusemtl white\r\nf 1/1/1 1/1/1 1/1/1\nusemtl matTeam\r\nf 1//1 1//1 1//1\nusemtl "
+      "# a\n# b\nmtllib x.mtl\no x\nv 0 0 0\nusemtl white\r\nf 1/1/1 1/1/1 1/1/1\nusemtl matTeam\r\nf 1//1 1//1 "
+      "1//1\nusemtl "
       "unused\nusemtl white\nf 1//1 1//1 1//1\n";
   Leaf& mesh = f.scene->create("StaticMesh");
   callMethod(mesh, "load", List{"models/x.obj"});

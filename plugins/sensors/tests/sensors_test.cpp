@@ -93,7 +93,8 @@ TEST_CASE("the angular motor's sensor says what is switched on, and a temperatur
   motor.current = 0.25;
   Leaf& sensor = motor.create("AngularMotorPerceptor", "hj1");
   CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00))");
-  for (const char* item : {"senseRate", "senseTorque", "senseTemperature", "senseCurrent"}) setProperty(sensor, item, true);
+  for (const char* item : {"senseRate", "senseTorque", "senseTemperature", "senseCurrent"})
+    setProperty(sensor, item, true);
   CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00) (rt 30.00) (tq 1.50) (tp 23.00) (ct 250.00))");
   motor.temperature = 24;
   CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00) (rt 30.00) (tq 1.50) (ct 250.00))");
@@ -236,7 +237,8 @@ TEST_CASE("the battery's sensor is named as its node") {
 
 TEST_CASE("sensors that are only accepted keep their settings and are silent") {
   Robot robot;
-  for (const char* name : {"ImagePerceptor", "HMDPPerceptor"}) CHECK(robot.sense(robot.transform->create(name, name)).empty());
+  for (const char* name : {"ImagePerceptor", "HMDPPerceptor"})
+    CHECK(robot.sense(robot.transform->create(name, name)).empty());
   Leaf& image = *robot.transform->find("ImagePerceptor");
   callMethod(image, "setResolution", std::vector<Value>{640, 480});
   callMethod(image, "setFOV", std::vector<Value>{45.0});

@@ -11,7 +11,8 @@
 using namespace spark;
 
 namespace {
-/// A source that plays a list of batches: each wait() takes the next one, poll() takes those marked as already received.
+/// A source that plays a list of batches: each wait() takes the next one, poll() takes those marked as already
+/// received.
 class Batches : public Node, public IInputSource, public IInputGate {
   SPARK_CLASS(Batches, Node)
  public:
@@ -69,7 +70,8 @@ class Slow : public Node {
  public:
   static void describe(Description<Slow>& d) { d.on<&Slow::act>(phase::kAct); }
   void act(const Event&) {
-    for (const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(3); std::chrono::steady_clock::now() < end;) {
+    for (const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(3);
+         std::chrono::steady_clock::now() < end;) {
     }
   }
 };
@@ -97,7 +99,8 @@ TEST_CASE("A cycle runs its phases in the order of the design") {
   LoopFixture f;
   std::string order;
   for (const char* name : {"publish", "sense", "rule", "place", "physics", "prepare", "act"})
-    f.house.kernel.events().channel(name).add(f.house.kernel.root(), [&](Leaf&, const Event& e) { order += std::string(e.name) + " "; });
+    f.house.kernel.events().channel(name).add(f.house.kernel.root(),
+                                              [&](Leaf&, const Event& e) { order += std::string(e.name) + " "; });
   f.runCycles(1);
   REQUIRE(order == "act prepare physics place rule sense publish ");
 }
@@ -107,8 +110,8 @@ TEST_CASE("Time is the sum of executed steps, and phases after the solver see th
   double act = -1, sense = -1, step = 0;
   std::int64_t cycle = 0;
   f.house.kernel.events().channel("act").add(f.house.kernel.root(), [&](Leaf&, const Event& e) { act = e.time; });
-  f.house.kernel.events().channel("sense").add(f.house.kernel.root(),
-                                               [&](Leaf&, const Event& e) { sense = e.time, step = e.step, cycle = e.cycle; });
+  f.house.kernel.events().channel("sense").add(
+      f.house.kernel.root(), [&](Leaf&, const Event& e) { sense = e.time, step = e.step, cycle = e.cycle; });
   REQUIRE(f.loop->cycle() == 0);
   f.runCycles(1);
   REQUIRE(act == 0);

@@ -6,10 +6,13 @@
 
 namespace spark::test {
 
-/// Teams A (left) and B (right) of spheres on the league's field, in PlayOn, with the ball far from everybody. Agents are numbered A1, A2,
-/// ..., B1, B2, ... `radius` is what makes them lie (below 0.25 m) or stand. Players wait in a row at y = 8, 2 m from each other.
+/// Teams A (left) and B (right) of spheres on the league's field, in PlayOn, with the ball far from everybody. Agents
+/// are numbered A1, A2,
+/// ..., B1, B2, ... `radius` is what makes them lie (below 0.25 m) or stand. Players wait in a row at y = 8, 2 m from
+/// each other.
 struct FoulMatch : MatchHouse {
-  FoulMatch(std::initializer_list<const char*> fouls, int left, int right, double radius = 0.4) : MatchHouse(false), left_(left) {
+  FoulMatch(std::initializer_list<const char*> fouls, int left, int right, double radius = 0.4)
+      : MatchHouse(false), left_(left) {
     set("AgentRadius", radius);
     set("AgentMass", 10);
     set("MaxRobotTypeCount", 11), set("MinRobotTypesCount", 1), set("MaxSumTwoRobotTypes", 22);
@@ -41,7 +44,8 @@ struct FoulMatch : MatchHouse {
     kernel.root().require<IMonitorItem>("/sys/fouls").contribute(env);
     std::vector<std::string> out;
     for (const Element e : env.predicates) {
-      out.push_back(fmt::format("{} {} {} {}", e.at(1).integer(), e.at(2).integer(), e.at(3).integer(), e.at(4).integer()));
+      out.push_back(
+          fmt::format("{} {} {} {}", e.at(1).integer(), e.at(2).integer(), e.at(3).integer(), e.at(4).integer()));
       CHECK(e.head() == "foul");
     }
     return out;

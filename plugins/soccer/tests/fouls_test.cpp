@@ -124,7 +124,8 @@ TEST_CASE("a goal sets free who is held", "[fouls]") {
   CHECK(h.position(2).y() == Approx(8).margin(0.01));
 }
 
-TEST_CASE("with an opponent at the ball the second and the third of a team must keep away, but for the goalie", "[fouls]") {
+TEST_CASE("with an opponent at the ball the second and the third of a team must keep away, but for the goalie",
+          "[fouls]") {
   FoulMatch h({"CrowdingFoulAspect"}, 4, 1, 0.1);
   h.set("MinOppDistance", 0.8), h.set("Min2PlDistance", 0.4), h.set("Min3PlDistance", 1.0);
   h.put(h.b(1), 0.7, -9);
@@ -340,7 +341,8 @@ TEST_CASE("a harmless contact stays harmless until it has ended for 0.2 s", "[fo
   CHECK(h.countFouls() == 1);
 }
 
-TEST_CASE("players who just played the ball, and those they push, are spared; so is the goalie in his area", "[fouls]") {
+TEST_CASE("players who just played the ball, and those they push, are spared; so is the goalie in his area",
+          "[fouls]") {
   FoulMatch h({"ChargingFoulAspect"}, 2, 2);
   SECTION("the ball") {
     h.placeBall(5, 0, 0.042);

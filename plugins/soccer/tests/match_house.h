@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A house with a match in it, without a network: sphere players whose actions the test writes and whose percepts it reads.
+/// A house with a match in it, without a network: sphere players whose actions the test writes and whose percepts it
+/// reads.
 
 #include <catch2/catch.hpp>
 
@@ -41,8 +42,8 @@ class Puppet : public Behavior {
 /// The house. Values of the 2004 field unless `league` is false.
 struct MatchHouse : House {
   explicit MatchHouse(bool sphere = true) {
-    for (const char* p : {"files", "scene", "scene-rsg", "physics", "physics-ode", "simulation", "parser-sexp", "gamecontrol", "sensors",
-                          "effectors", "monitor", "soccer"})
+    for (const char* p : {"files", "scene", "scene-rsg", "physics", "physics-ode", "simulation", "parser-sexp",
+                          "gamecontrol", "sensors", "effectors", "monitor", "soccer"})
       kernel.plugins().use(p);
     kernel.registerClass<Puppet>();
     kernel.create("FileServer", "/sys/server/file");
@@ -68,10 +69,11 @@ struct MatchHouse : House {
   }
   void sphereLeague() {
     const std::pair<const char*, double> values[] = {
-        {"FieldLength", 104},     {"FieldWidth", 68},    {"GoalWidth", 7.32},        {"GoalDepth", 2},         {"GoalHeight", 0.5},
-        {"PenaltyLength", 16.5},  {"PenaltyWidth", 33},  {"FreeKickDistance", 9.15}, {"FreeKickMoveDist", 10}, {"AgentRadius", 0.22},
-        {"AgentLinearDrag", 600}, {"BallRadius", 0.111}, {"BallMass", 0.425878},     {"BallLinearDrag", 0.1},  {"BallAngularDrag", 0.001},
-        {"BallMaxSpeed", 40},     {"BeamNoiseXY", 0},    {"BeamNoiseAngle", 0}};
+        {"FieldLength", 104},     {"FieldWidth", 68},      {"GoalWidth", 7.32},        {"GoalDepth", 2},
+        {"GoalHeight", 0.5},      {"PenaltyLength", 16.5}, {"PenaltyWidth", 33},       {"FreeKickDistance", 9.15},
+        {"FreeKickMoveDist", 10}, {"AgentRadius", 0.22},   {"AgentLinearDrag", 600},   {"BallRadius", 0.111},
+        {"BallMass", 0.425878},   {"BallLinearDrag", 0.1}, {"BallAngularDrag", 0.001}, {"BallMaxSpeed", 40},
+        {"BeamNoiseXY", 0},       {"BeamNoiseAngle", 0}};
     for (const auto& [name, value] : values) set(name, value);
     set("MaxRobotTypeCount", 11);
     set("MinRobotTypesCount", 1);

@@ -19,7 +19,8 @@ struct OffsideMatch : MatchHouse {
   }
   /// B's second-last player stands at x = 30; A2 at the given x; the ball and A1 at 20.
   void formation(double attacker) {
-    placeAgent(1, 18, 0), placeAgent(2, attacker, 10), placeAgent(3, -10, 0), placeAgent(4, 50, 0), placeAgent(5, 30, -10);
+    placeAgent(1, 18, 0), placeAgent(2, attacker, 10), placeAgent(3, -10, 0), placeAgent(4, 50, 0),
+        placeAgent(5, 30, -10);
     placeBall(20, 0);
     run(1);
   }

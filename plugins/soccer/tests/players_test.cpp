@@ -29,8 +29,9 @@ TEST_CASE("number 0, none or a word is the lowest free one", "[soccer]") {
   MatchHouse h;
   h.importField();
   h.join("A", 1);
-  for (const auto& [name, action, unum] :
-       {std::tuple{"x", "(init (unum 0)(teamname A))", 2}, {"y", "(init (teamname A))", 3}, {"z", "(init (unum seven)(teamname A))", 4}}) {
+  for (const auto& [name, action, unum] : {std::tuple{"x", "(init (unum 0)(teamname A))", 2},
+                                           {"y", "(init (teamname A))", 3},
+                                           {"z", "(init (unum seven)(teamname A))", 4}}) {
     h.act(h.connect(name), action);
     h.run(1);
     CHECK(getProperty(h.stateOf(unum), "unum").toInteger() == unum);
@@ -74,7 +75,9 @@ TEST_CASE("an agent that sends init in every cycle does not fill the log", "[soc
   Puppet& b = h.connect("B");
   h.text.clear();
   for (int i = 0; i < 100; ++i) {
-    h.act(b, i % 2 ? "(init (unum 1)(teamname A))" : i % 4 ? "(init (unum 2)(teamname A))" : "(init (unum 3)(teamname A))");
+    h.act(b, i % 2   ? "(init (unum 1)(teamname A))"
+             : i % 4 ? "(init (unum 2)(teamname A))"
+                     : "(init (unum 3)(teamname A))");
     h.run(1);
   }
   CHECK(h.text.find("told no more") != std::string::npos);
@@ -103,7 +106,8 @@ TEST_CASE("init again moves to the next start position before kick-offs, and not
   Puppet& a = h.join("A", 1);
   const bool before = GENERATE(true, false);
   if (!before) h.setMode("PlayOn");
-  const std::string again = GENERATE("(init (unum 1)(teamname A))", "(init (teamname A))", "(init (unum 12)(teamname A))", "(init (unum 3)(teamname A))");
+  const std::string again = GENERATE("(init (unum 1)(teamname A))", "(init (teamname A))",
+                                     "(init (unum 12)(teamname A))", "(init (unum 3)(teamname A))");
   const Vec3 old = h.bodyOf(1).state().position;
   h.act(a, again);
   h.run(1);
@@ -204,7 +208,8 @@ TEST_CASE("a drive pushes until the next one, mirrored for the right team, and e
   h.setMode("PlayOn");
   h.placeAgent(1, -20, 0);
   h.placeAgent(2, 20, 0);
-  for (int agent : {1, 2}) setProperty(h.at("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/DriveEffector"), "sigma", 0);
+  for (int agent : {1, 2})
+    setProperty(h.at("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/DriveEffector"), "sigma", 0);
   a.next = b.next = "(drive 1000 0 0)";
   h.runSeconds(2);
   CHECK(getProperty(h.at("/usr/scene/AgentAspect1/body/DriveEffector"), "force").text() == "{6000.0, 0.0, 0.0}");

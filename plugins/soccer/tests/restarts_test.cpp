@@ -6,7 +6,8 @@ using namespace spark::test;
 
 namespace {
 
-/// Two players a side: A1 A2 are agents 1 and 2, B1 B2 agents 3 and 4; the match is in PlayOn, everybody far from the ball.
+/// Two players a side: A1 A2 are agents 1 and 2, B1 B2 agents 3 and 4; the match is in PlayOn, everybody far from the
+/// ball.
 struct Match : MatchHouse {
   Match() {
     importField();

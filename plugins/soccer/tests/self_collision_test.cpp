@@ -117,7 +117,8 @@ TEST_CASE("self-collisions may be penalised by a beam, or not at all", "[fouls]"
     CHECK_FALSE(h.frozen("lae1"));
     h.run(25);
     CHECK(h.countFouls() == 24);
-    const Vec3 torso = h.kernel.root().require<IRigidBody>("/usr/scene/AgentAspect2/robot/body/physics").state().position;
+    const Vec3 torso =
+        h.kernel.root().require<IRigidBody>("/usr/scene/AgentAspect2/robot/body/physics").state().position;
     CHECK(torso.x() == Approx(-3.0));
     CHECK(torso.y() == Approx(-10.5));
     h.run(500 - 26);

@@ -10,7 +10,8 @@ namespace {
 
 void quiet(MatchHouse& h, int agent) {
   const Value off(false);
-  callMethod(h.at("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/VisionPerceptor"), "addNoise", std::span(&off, 1));
+  callMethod(h.at("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/VisionPerceptor"), "addNoise",
+             std::span(&off, 1));
 }
 
 }  // namespace
@@ -37,7 +38,8 @@ TEST_CASE("vision is along the field's axes as the team sees them, all around, w
   // behind: the own corner flag, 42 m back and 34 m to the left
   CHECK(a.all.find("(F1L (pol 54.04 141.01 -0.23))") != std::string::npos);
   CHECK(b.all.find("(F2R (pol 54.04 141.01 -0.23))") != std::string::npos);
-  for (const char* mark : {"F1L", "F2L", "F1R", "F2R", "G1L", "G2L", "G1R", "G2R"}) CHECK(a.all.find(mark) != std::string::npos);
+  for (const char* mark : {"F1L", "F2L", "F1R", "F2R", "G1L", "G2L", "G1R", "G2R"})
+    CHECK(a.all.find(mark) != std::string::npos);
   CHECK(count(a.all, "(See ") == 2);  // every third cycle
 }
 
@@ -75,7 +77,8 @@ std::string seen(const std::string& percepts) {
   std::string out;
   for (const Element e : p)
     for (const Element object : e)
-      if (object.head() == "P") out += fmt::format("{}{} ", object.named("team").at(1).text(), object.named("id").at(1).text());
+      if (object.head() == "P")
+        out += fmt::format("{}{} ", object.named("team").at(1).text(), object.named("id").at(1).text());
   return out;
 }
 }  // namespace
@@ -88,7 +91,8 @@ TEST_CASE("who sees no farther than his range sees all that is nearer, in scene 
     const char* team;
     int unum;
     double x, y;
-  } const places[] = {{"A", 1, 0, 0}, {"B", 9, -9, 0}, {"A", 7, 40, 30}, {"B", 2, 0, 11}, {"A", 4, 5, 5}, {"B", 3, 9.5, -0.5}, {"A", 5, -40, -30}};
+  } const places[] = {{"A", 1, 0, 0}, {"B", 9, -9, 0},     {"A", 7, 40, 30},  {"B", 2, 0, 11},
+                      {"A", 4, 5, 5}, {"B", 3, 9.5, -0.5}, {"A", 5, -40, -30}};
   std::vector<Puppet*> puppets;
   for (const auto& p : places) puppets.push_back(&h.join(p.team, p.unum));
   h.setMode("PlayOn");
@@ -216,10 +220,13 @@ std::size_t checkedSights(MatchHouse& h, IEye& eye, int agent) {
       check(std::string(e.head()), e.at(1));
       continue;
     }
-    const std::string name = "P " + std::string(e.named("team").at(1).text()) + " " + std::to_string(e.named("id").at(1).integer());
+    const std::string name =
+        "P " + std::string(e.named("team").at(1).text()) + " " + std::to_string(e.named("id").at(1).integer());
     for (const Element part : e)
-      if (part.isList() && part.head() == "pol") check(name, part);
-      else if (part.isList() && part.named("pol")) check(name + " " + std::string(part.head()), part.named("pol"));
+      if (part.isList() && part.head() == "pol")
+        check(name, part);
+      else if (part.isList() && part.named("pol"))
+        check(name + " " + std::string(part.head()), part.named("pol"));
   }
   return checked;
 }

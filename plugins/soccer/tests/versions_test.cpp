@@ -29,8 +29,10 @@ TEST_CASE("GS tells who kicks off and all players' penalties where the league wa
   CHECK(a.heard.find(" (pm BeforeKickOff))") != std::string::npos);
   h.set("ExtraGameState", true);
   h.run(2);
-  CHECK(a.heard.find(" (pm BeforeKickOff) (k left) (ti ((2 penalty_none 0.00) (7 penalty_none 0.00)) ((3 penalty_none 0.00))))") !=
-        std::string::npos);
+  CHECK(
+      a.heard.find(
+          " (pm BeforeKickOff) (k left) (ti ((2 penalty_none 0.00) (7 penalty_none 0.00)) ((3 penalty_none 0.00))))") !=
+      std::string::npos);
   h.setMode("PlayOn");
   h.run(50);
   CHECK(a.heard.find("(t 0.98) (pm PlayOn) (k left) (ti ((2 penalty_none -0.98)") != std::string::npos);

@@ -16,14 +16,17 @@ struct World {
   static std::string pol(double dx, double dy) {
     return "(pol " + std::to_string(std::hypot(dx, dy)) + " " + std::to_string(std::atan2(dy, dx) * 180 / M_PI) + " 0)";
   }
-  std::string mark(const std::string& name, double mx, double my) const { return "(" + name + " " + pol(mx - x, my - y) + ")"; }
+  std::string mark(const std::string& name, double mx, double my) const {
+    return "(" + name + " " + pol(mx - x, my - y) + ")";
+  }
   void other(const std::string& team, int unum, double px, double py) {
     others += "(P (team " + team + ") (id " + std::to_string(unum) + ") " + pol(px - x, py - y) + ")";
   }
   std::string text() const {
     return "(time (now " + std::to_string(now) + "))(GS " + announce + "(sl 2) (sr 1) (t 1) (pm " + mode + "))(See " +
-           mark("F1L", -52, 34) + mark("F2L", -52, -34) + mark("F1R", 52, 34) + mark("F2R", 52, -34) + mark("G1L", -52, 3.66) +
-           mark("G2L", -52, -3.66) + mark("G1R", 52, 3.66) + mark("G2R", 52, -3.66) + mark("B", ballX, ballY) + others + ")";
+           mark("F1L", -52, 34) + mark("F2L", -52, -34) + mark("F1R", 52, 34) + mark("F2R", 52, -34) +
+           mark("G1L", -52, 3.66) + mark("G2L", -52, -3.66) + mark("G1R", 52, 3.66) + mark("G2R", 52, -3.66) +
+           mark("B", ballX, ballY) + others + ")";
   }
 };
 

@@ -128,8 +128,10 @@ TEST_CASE("Messages in pieces and several at once are answered one by one, wheth
       [](const std::string&) {});
   io.run();
   peer.join();
-  if (listens) CHECK(answers == std::vector<std::string>{"(a 1)", "(b 2)", "(c 3)"});
-  else CHECK(answers == std::vector<std::string>{"(nothing 1)", "(nothing 2)", "(nothing 3)"});
+  if (listens)
+    CHECK(answers == std::vector<std::string>{"(a 1)", "(b 2)", "(c 3)"});
+  else
+    CHECK(answers == std::vector<std::string>{"(nothing 1)", "(nothing 2)", "(nothing 3)"});
   CHECK(agent.received() == 3);
 }
 

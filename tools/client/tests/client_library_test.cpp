@@ -29,7 +29,9 @@ class Server {
     ::close(listener_);
   }
   void accept() { client_ = ::accept(listener_, nullptr, nullptr); }
-  void send(const std::string& bytes) { REQUIRE(::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size())); }
+  void send(const std::string& bytes) {
+    REQUIRE(::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size()));
+  }
   std::string read(std::size_t n) {
     std::string bytes(n, ' ');
     REQUIRE(::recv(client_, bytes.data(), n, MSG_WAITALL) == static_cast<ssize_t>(n));
@@ -45,7 +47,9 @@ class Server {
   int listener_ = ::socket(AF_INET, SOCK_STREAM, 0), client_ = -1;
 };
 
-std::string framed(const std::string& message) { return std::string{0, 0, static_cast<char>(message.size() >> 8), static_cast<char>(message.size())} + message; }
+std::string framed(const std::string& message) {
+  return std::string{0, 0, static_cast<char>(message.size() >> 8), static_cast<char>(message.size())} + message;
+}
 }  // namespace
 
 TEST_CASE("A client sends and receives whole messages, wherever segments end") {
@@ -86,7 +90,8 @@ TEST_CASE("A client says what is wrong with a server") {
     unused = gone.port;
   }
   CHECK_THROWS_WITH(Connection("127.0.0.1", unused), Catch::Contains("nobody can be reached at 127.0.0.1:"));
-  CHECK_THROWS_WITH(Connection("no.such.host.invalid", 3100), Catch::Contains("there is no host 'no.such.host.invalid'"));
+  CHECK_THROWS_WITH(Connection("no.such.host.invalid", 3100),
+                    Catch::Contains("there is no host 'no.such.host.invalid'"));
 }
 
 TEST_CASE("S-expressions are read into a tree") {

@@ -58,12 +58,14 @@ TEST_CASE("A column that comes later is added; error and times stay at the end")
   Table table(file, kBatch, Table::Open::fresh);
   table.add({{"run", 2}, {"end", "error"}, {"cpuSeconds", 1}, {"error", "no, \"that\"\nis wrong"}});
   table.add(row(1, 3));
-  REQUIRE(textOf(file) == "run,end,speed,cpuSeconds,error\n1,duration,3,0.5,\n2,error,,1,\"no, \"\"that\"\"\\nis wrong\"\n");
+  REQUIRE(textOf(file) ==
+          "run,end,speed,cpuSeconds,error\n1,duration,3,0.5,\n2,error,,1,\"no, \"\"that\"\"\\nis wrong\"\n");
 }
 
 TEST_CASE("Columns are in the order of their first run, whichever came first") {
   const spark::test::TemporaryFolder folder;
-  Table table(folder.file("t.csv"), kBatch, Table::Open::fresh), other(folder.file("u.csv"), kBatch, Table::Open::fresh);
+  Table table(folder.file("t.csv"), kBatch, Table::Open::fresh),
+      other(folder.file("u.csv"), kBatch, Table::Open::fresh);
   const Row first{{"run", 1}, {"a", 1}, {"b", 2}}, second{{"run", 2}, {"b", 3}, {"a", 4}, {"c", 5}};
   table.add(first), table.add(second), table.sort();
   other.add(second), other.add(first), other.sort();
@@ -122,13 +124,15 @@ TEST_CASE("What a table cannot be taken for is refused with a sentence") {
   REQUIRE_THAT(errorOf([&] { Table(file, kBatch, Table::Open::fresh); }), Contains("--resume"));
   Json other = kBatch;
   other["duration"] = 6.0;
-  REQUIRE_THAT(errorOf([&] { Table(file, other, Table::Open::resume); }), Contains("duration is 5.0, now it would be 6.0"));
+  REQUIRE_THAT(errorOf([&] { Table(file, other, Table::Open::resume); }),
+               Contains("duration is 5.0, now it would be 6.0"));
   {
     Table holds(file, kBatch, Table::Open::resume);
     REQUIRE_THAT(errorOf([&] { Table(file, kBatch, Table::Open::resume); }), Contains("in use"));
   }
   append(file, "no number,a,b,c\n");
-  REQUIRE_THAT(errorOf([&] { Table(file, kBatch, Table::Open::resume); }), Contains("t.csv:3") && Contains("no number"));
+  REQUIRE_THAT(errorOf([&] { Table(file, kBatch, Table::Open::resume); }),
+               Contains("t.csv:3") && Contains("no number"));
   fs::remove(file + ".batch");
   REQUIRE_THAT(errorOf([&] { Table(file, kBatch, Table::Open::resume); }), Contains("t.csv.batch"));
 }

@@ -12,7 +12,8 @@ namespace {
 Options match() {
   Options options;
   options.config = "soccer.lua";
-  options.settings = {{"team", "Red Blue"}, {"players", "1"}, {"Soccer.AutomaticKickOff", "true"}, {"Soccer.WaitBeforeKickOff", "0.4"}};
+  options.settings = {
+      {"team", "Red Blue"}, {"players", "1"}, {"Soccer.AutomaticKickOff", "true"}, {"Soccer.WaitBeforeKickOff", "0.4"}};
   options.duration = 1.6;
   return options;
 }
@@ -23,7 +24,8 @@ std::map<int, Row> simulateAll(const Options& options, int n, int threads) {
   std::map<int, Row> rows;
   int begun = 0;
   while (static_cast<int>(rows.size()) < n) {
-    for (; begun < n && workers.idle() > 0; ++begun) workers.begin({begun + 1, static_cast<std::uint64_t>(begun) + 1, {}});
+    for (; begun < n && workers.idle() > 0; ++begun)
+      workers.begin({begun + 1, static_cast<std::uint64_t>(begun) + 1, {}});
     for (auto& result : workers.take(std::chrono::seconds(1))) {
       REQUIRE(result);
       result->erase("cpuSeconds");

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A connection to a server of the RoboCup 3D simulation league (agents' port or monitors' port): whole messages behind a 4-byte big-endian
-/// length, over TCP. Needs POSIX sockets and the standard library, nothing else.
+/// A connection to a server of the RoboCup 3D simulation league (agents' port or monitors' port): whole messages behind
+/// a 4-byte big-endian length, over TCP. Needs POSIX sockets and the standard library, nothing else.
 
 #include <cstddef>
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace spark::client {
 
-/// One connection. Owns its socket; moves, does not copy. Not thread safe. Functions throw std::runtime_error with one sentence when the
-/// connection cannot be used any more.
+/// One connection. Owns its socket; moves, does not copy. Not thread safe. Functions throw std::runtime_error with one
+/// sentence when the connection cannot be used any more.
 class Connection {
  public:
   /// Longest message that is taken from a server [bytes]: more means that it speaks another protocol.
@@ -31,13 +31,14 @@ class Connection {
 
   /// Sends one message; waits until the system has taken it.
   void send(std::string_view message);
-  /// Takes the next message. Waits for it at most `timeout` [s], for ever when it is negative; nothing when none came in time. What came of an
-  /// unfinished message stays for the next call.
+  /// Takes the next message. Waits for it at most `timeout` [s], for ever when it is negative; nothing when none came
+  /// in time. What came of an unfinished message stays for the next call.
   std::optional<std::string> receive(double timeout = -1);
   /// True when receive(0) would give a message.
   bool pending();
 
-  /// The socket, for select() or poll() with others; -1 when closed. pending() first: a message may have been read already.
+  /// The socket, for select() or poll() with others; -1 when closed. pending() first: a message may have been read
+  /// already.
   int descriptor() const { return socket_; }
 
  private:

@@ -41,8 +41,8 @@ class Expression {
   bool isAtom_ = false;
 };
 
-/// Reads a message: a list of its top-level expressions. Atoms may be "quoted"; what cannot be read (a bracket too many, an open list, more than
-/// 256 levels) ends the message there, and what was complete before stays.
+/// Reads a message: a list of its top-level expressions. Atoms may be "quoted"; what cannot be read (a bracket too
+/// many, an open list, more than 256 levels) ends the message there, and what was complete before stays.
 Expression read(std::string_view message);
 
 }  // namespace spark::client
