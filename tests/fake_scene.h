@@ -41,6 +41,7 @@ class FakeSceneServer : public Node, public ISceneServer {
  public:
   static void describe(Description<FakeSceneServer>& d) { d.implements<ISceneServer>(); }
   Leaf& leaf() override { return *this; }
+  Node* activeScene() override { return kernel().root().find<Node>("/usr/scene"); }
   Node& scene() override { return kernel().root().require<Node>("/usr/scene"); }
   void importScene(std::string_view, Node&, const List&) override {}
   void markModified() override { ++modified; }

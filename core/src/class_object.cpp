@@ -137,8 +137,13 @@ ClassObject* ClassObject::base() {
 
 void ClassObject::resolve() {
   if (resolved_) return;
-  if (ClassObject* b = base()) hooks_ = b->hooks();
+  if (ClassObject* b = base()) {
+    hooks_ = b->hooks();
+    links_ = b->links();
+  }
   for (const Hook& h : description_.hooks) hooks_.push_back(&h);
+  for (const LinkDescription& l : description_.links) links_.push_back(&l);
+  for (const LinkDescription* l : links_) sites_.push_back({&kernel().structureVersion(), &l->route});
   for (const Property* p : properties())
     if (p->state) stateProperties_.push_back(p);
   fillCasts();
@@ -168,7 +173,31 @@ std::unique_ptr<Leaf> ClassObject::create() {
   leaf->id_ = kernel().nextId_++;
   ++living_;
   if (leaf->name_.empty()) leaf->name_ = name();
+  bindLinks(*leaf);
   return leaf;
+}
+
+void ClassObject::bindLinks(Leaf& leaf) {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    detail::LinkBase& link = links_[i]->member(leaf);
+    sites_[i].offset = reinterpret_cast<const char*>(&link) - reinterpret_cast<const char*>(&leaf);
+    link.bind(sites_[i]);
+  }
+}
+
+std::vector<Found<void>> LinkDescription::targets(const Leaf& owner) const {
+  std::vector<Found<void>> out;
+  if (all)
+    route.findAll(owner, out);
+  else if (const Found<void> found = route.find(owner))
+    out.push_back(found);
+  return out;
+}
+
+void ClassObject::warnOfMissing(const Leaf& leaf) const {
+  for (const LinkDescription* l : links_)
+    if (!l->lacks.empty() && !l->route.find(leaf))
+      kernel().log().warning("{}: expected {}, found none. {}", leaf.path(), l->route.text(), l->lacks);
 }
 
 bool ClassObject::isA(std::string_view className) {
@@ -235,6 +264,11 @@ std::vector<const Method*> ClassObject::methods() {
 const std::vector<const Hook*>& ClassObject::hooks() {
   resolve();
   return hooks_;
+}
+
+const std::vector<const LinkDescription*>& ClassObject::links() {
+  resolve();
+  return links_;
 }
 
 const std::vector<const Property*>& ClassObject::stateProperties() {

@@ -237,7 +237,7 @@ Leaf* Node::numbered(std::string_view name, std::size_t n) const {
 void Node::walk(const InterfaceId& id, bool deep, Take take, void* list) const {
   for (const auto& c : children_) {
     void* match = c->query(id);
-    if (match) take(list, match);
+    if (match) take(list, match, *c);
     if (Node* node = !match || deep ? c->asNode() : nullptr) node->walk(id, deep, take, list);
   }
 }
@@ -249,7 +249,7 @@ void Node::collectAs(const InterfaceId& id, bool deep, Take take, void* list) co
   for (std::size_t i = preOrder_ + 1; i <= lastBelow_; ++i) {
     void* match = order[i]->query(id);
     if (!match) continue;
-    take(list, match);
+    take(list, match, *order[i]);
     if (!deep) i = order[i]->lastBelow_;
   }
 }
@@ -362,6 +362,7 @@ void Node::link(Leaf& leaf) {
     entered = true;
     kernel.events().hook(leaf);
     if (Node* node = leaf.asNode()) linkChildren(*node);
+    leaf.class_->warnOfMissing(leaf);
   } catch (...) {
     unlinkChildren(leaf);
     if (entered) leave(leaf);
@@ -478,6 +479,7 @@ void Node::moved(Leaf& leaf) {
     const NowRunning now("onMoved", &leaf);
     leaf.onMoved();
   }
+  leaf.class_->warnOfMissing(leaf);
   if (Node* node = leaf.asNode())
     for (std::size_t i = 0; i < node->children_.size(); ++i) moved(*node->children_[i]);
 }

@@ -162,6 +162,7 @@ class Behavior : public Node {
 class IGameControl {
  public:
   SPARK_INTERFACE(IGameControl, 1);
+  static constexpr const char* kPath = "/sys/server/gamecontrol";
   virtual ~IGameControl() = default;
   /// The agents in order of number. Valid until an agent comes or goes.
   virtual const std::vector<AgentAspect*>& agents() const = 0;

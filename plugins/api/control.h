@@ -28,6 +28,7 @@ struct Watch {
 class IRequests {
  public:
   SPARK_INTERFACE(IRequests, 1);
+  static constexpr const char* kPath = "/sys/server/control";
   virtual ~IRequests() = default;
   /// The answer to one request, in one line: `{"ok":true,...}` or `{"ok":false,"error":"..."}`. Nothing is thrown. A
   /// request "watch" fills `watch` in, and the answer is its first value. `mayChange` false refuses "set" and "call".

@@ -30,6 +30,7 @@ struct Drawing {
 class IDrawings {
  public:
   SPARK_INTERFACE(IDrawings, 1);
+  static constexpr const char* kPath = "/sys/server/drawing";
   virtual ~IDrawings() = default;
 
   /// What is shown under one name.

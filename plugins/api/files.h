@@ -28,6 +28,7 @@ class IFileSystem {
 class IFileServer {
  public:
   SPARK_INTERFACE(IFileServer, 1);
+  static constexpr const char* kPath = "/sys/server/file";
   virtual ~IFileServer() = default;
   /// The content from the first file system that has it. Throws Error: bad name, is a folder, not found (says where it
   /// looked), too large.

@@ -119,6 +119,7 @@ class IFrameTaker {
 class IMonitorServer {
  public:
   SPARK_INTERFACE(IMonitorServer, 1);
+  static constexpr const char* kPath = "/sys/server/monitor";
   virtual ~IMonitorServer() = default;
   /// The next message to every client is full.
   virtual void requestFullState() = 0;

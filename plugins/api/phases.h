@@ -25,6 +25,7 @@ namespace spark {
 class ISimulation {
  public:
   SPARK_INTERFACE(ISimulation, 1);
+  static constexpr const char* kPath = "/sys/server/simulation";
   virtual ~ISimulation() = default;
   /// Simulated time [s] since start: sum of executed steps.
   virtual double time() const = 0;

@@ -185,32 +185,24 @@ class BodyController : public SceneNode {
   static void describe(Description<BodyController>& d) {
     d.doc("Acts on the body above it before each step.");
     d.abstract();
+    d.link(&BodyController::body_, Above<IRigidBody>());
     d.on<&BodyController::prepare>("prepare");
   }
   /// `event.step` seconds will be integrated next.
   virtual void control(IRigidBody& body, const Event& event) = 0;
 
- protected:
-  void onLink() override {
-    SceneNode::onLink();
-    body_ = ancestor<IRigidBody>();
-  }
-  void onMoved() override {
-    SceneNode::onMoved();
-    body_ = ancestor<IRigidBody>();
-  }
-
  private:
   void prepare(const Event& event) {
-    if (body_) control(*body_, event);
+    if (IRigidBody* body = body_.get()) control(*body, event);
   }
-  IRigidBody* body_ = nullptr;
+  Link<IRigidBody> body_;
 };
 
 /// The physics server, at /sys/server/physics.
 class IPhysicsServer {
  public:
   SPARK_INTERFACE(IPhysicsServer, 1);
+  static constexpr const char* kPath = "/sys/server/physics";
   virtual ~IPhysicsServer() = default;
   virtual engine::IEngine& engine() = 0;
   /// The world of the active scene; throws Error when there is none.

@@ -16,10 +16,13 @@ class SceneNode;
 /// The scene server, at /sys/server/scene. The active scene is /usr/scene unless set otherwise.
 class ISceneServer {
  public:
-  SPARK_INTERFACE(ISceneServer, 1);
+  SPARK_INTERFACE(ISceneServer, 2);
+  static constexpr const char* kPath = "/sys/server/scene";
   virtual ~ISceneServer() = default;
   virtual Leaf& leaf() = 0;
-  /// Root of the active scene (class Scene); throws Error when there is none.
+  /// Root of the active scene (class Scene); nullptr when there is none.
+  virtual Node* activeScene() = 0;
+  /// The same; throws Error when there is none.
   virtual Node& scene() = 0;
   /// Imports a file below `root` through the first importer that knows it. Throws Error with file:line:column; see the
   /// importer for what stays in the tree.
@@ -59,24 +62,15 @@ class SceneNode : public Node {
   using ClassBase = Node;
   static constexpr InterfaceId kInterface{"BaseNode", 1};
 
-  static void describe(Description<SceneNode>& d) {
-    d.doc("Base of all scene nodes.");
-    d.method("importScene", &SceneNode::importScene)
-        .parameters({"file", "arguments"})
-        .doc("Imports a scene file below this node; the arguments bind to its template.");
-  }
-  /// The nearest transform above, nullptr at the scene's root. Valid while linked.
-  Transform* transform() const { return transform_; }
+  static void describe(Description<SceneNode>& d);
+  /// The nearest transform above, nullptr at the scene's root.
+  Transform* transform() const { return transform_.get(); }
   void importScene(std::string file, std::vector<Value> arguments) {
-    kernel().root().require<ISceneServer>("/sys/server/scene").importScene(file, *this, arguments);
+    kernel().root().require<ISceneServer>().importScene(file, *this, arguments);
   }
-
- protected:
-  void onLink() override;
-  void onMoved() override;
 
  private:
-  Transform* transform_ = nullptr;
+  Link<Transform, true> transform_;
 };
 
 /// Places what is below it. Local and world matrix; the world matrix is brought up to date in the place phase and by
@@ -140,10 +134,7 @@ class Transform : public SceneNode {
   bool dirty() const { return dirty_; }
 
  protected:
-  void onLink() override {
-    SceneNode::onLink();
-    world_ = worldNow();
-  }
+  void onLink() override { world_ = worldNow(); }
   /// The local matrix is state; a restored one does not pull bodies along, they are restored themselves.
   void saveState(StateWriter& out) const override {
     for (int i = 0; i < 16; ++i) out.write(double(local_.data()[i]));
@@ -184,8 +175,13 @@ class Transform : public SceneNode {
   bool moved_ = false, dirty_ = true;
 };
 
-inline void SceneNode::onLink() { transform_ = ancestor<Transform>(); }
-inline void SceneNode::onMoved() { transform_ = ancestor<Transform>(); }
+inline void SceneNode::describe(Description<SceneNode>& d) {
+  d.doc("Base of all scene nodes.");
+  d.link(&SceneNode::transform_, Above<Transform>());
+  d.method("importScene", &SceneNode::importScene)
+      .parameters({"file", "arguments"})
+      .doc("Imports a scene file below this node; the arguments bind to its template.");
+}
 
 /// What follows when a transform above it is moved by hand: bodies (and static colliders).
 class IFollowsTransform {

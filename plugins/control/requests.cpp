@@ -75,22 +75,33 @@ Json describe(const Leaf& leaf, const Property& p) {
   return out;
 }
 
+Json describeLinks(const Leaf& leaf) {
+  Json out = Json::array();
+  for (const LinkDescription* link : leaf.classObject()->links()) {
+    Json paths = Json::array();
+    for (const Found<void>& target : link->targets(leaf)) paths.push_back(target.leaf->path());
+    out.push_back({{"to", link->route.text()}, {"paths", std::move(paths)}});
+  }
+  return out;
+}
+
 /// What `left` nodes do not suffice for is told as what is too deep is: how many there are.
-Json describeTree(const Leaf& leaf, int depth, std::size_t& left) {
+Json describeTree(const Leaf& leaf, int depth, bool links, std::size_t& left) {
   Json out{{"name", leaf.name()}, {"class", leaf.classObject()->name()}, {"doc", leaf.classObject()->doc()}};
+  if (links && !leaf.classObject()->links().empty()) out["links"] = describeLinks(leaf);
   const Node* node = leaf.asNode();
   if (!node || node->children().empty()) return out;
   Json& children = out["children"] = Json::array();
   if (depth == 0 || node->children().size() > left) return out["more"] = node->children().size(), out;
   left -= node->children().size();
-  for (const auto& c : node->children()) children.push_back(describeTree(*c, depth - 1, left));
+  for (const auto& c : node->children()) children.push_back(describeTree(*c, depth - 1, links, left));
   return out;
 }
 
 Json tree(Kernel& kernel, const Json& request, std::size_t most) {
   const Leaf& top = nodeOf(kernel, request);
   std::size_t left = std::max(most, top.asNode() ? top.asNode()->children().size() : 0);
-  return {{"ok", true}, {"tree", describeTree(top, request.value("depth", -1), left)}};
+  return {{"ok", true}, {"tree", describeTree(top, request.value("depth", -1), request.value("links", false), left)}};
 }
 
 Json get(Kernel& kernel, const Json& request) {
@@ -161,7 +172,7 @@ std::string failure(const std::exception& e) { return dump({{"ok", false}, {"err
 
 std::string watchLine(Kernel& kernel, const Watch& watch) {
   Json out{{"ok", true}, {"text", watch.last.plain()}, {"value", toJson(watch.last)}, {"unit", watch.unit}};
-  if (const auto* clock = kernel.root().find<ISimulation>("/sys/server/simulation")) {
+  if (const auto* clock = kernel.root().find<ISimulation>()) {
     out["cycle"] = clock->cycle();
     out["time"] = clock->time();
   }

@@ -3,7 +3,8 @@
 /// What sparkctl and other clients may ask: JSON in, JSON out, answered from the tree's own descriptions.
 ///
 ///     {"do":"tree","path":"/sys","depth":2}         {"ok":true,"tree":{"name","class","doc","children":[...]}};
-///                                                   "more": number of children left out, for depth or number
+///                                                   "more": number of children left out, for depth or number;
+///                                                   with "links":true also "links":[{"to","paths"}, ...]
 ///     {"do":"get","path":"/x","property":"step"}    {"ok":true,"properties":[{"name","value","text","type",...}]}
 ///     {"do":"get","path":"/x"}                      all properties of the node
 ///     {"do":"set","path","property","value"}        as get, after the change

@@ -16,13 +16,14 @@ class DrawEffector : public Effector {
     d.doc(
         "Draws for those who watch: (draw (set name) shapes ...) replaces what was drawn under that name; without "
         "shapes it is taken away.");
+    d.link(&DrawEffector::server_, At<DrawingServer>());
     d.property("defaultSet", &DrawEffector::defaultSet_)
         .doc("Name of the set that a message does not name; empty: agent and its number.");
   }
   std::string predicate() const override { return "draw"; }
 
   std::string act(const Element& action) override {
-    DrawingServer* server = this->server();
+    DrawingServer* const server = server_.get();
     if (!server) return {};
     std::vector<Drawing> shapes;
     for (const Element e : action) {
@@ -44,15 +45,9 @@ class DrawEffector : public Effector {
     AgentAspect* aspect = agent();
     return fmt::format("agent{}", aspect ? aspect->outermost().number() : 0);
   }
-  DrawingServer* server() {
-    if (std::exchange(serverAt_, kernel().structureVersion()) != kernel().structureVersion())
-      server_ = kernel().root().find<DrawingServer>("/sys/server/drawing");
-    return server_;
-  }
 
   std::string defaultSet_;
-  DrawingServer* server_ = nullptr;
-  std::uint64_t serverAt_ = 0;
+  Link<DrawingServer> server_;
 };
 
 }  // namespace spark

@@ -13,6 +13,8 @@ class ForceEffector : public Effector {
     d.doc(
         "Pushes the body above or beside it during one step: (force x y z) in N, world frame. The last command of a "
         "cycle counts.");
+    d.link(&ForceEffector::above_, Above<IRigidBody>());
+    d.link(&ForceEffector::beside_, Above<Transform>().child<IRigidBody>());
     d.on<&ForceEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "force"; }
@@ -30,12 +32,12 @@ class ForceEffector : public Effector {
   void prepare(const Event&) {
     if (!pending_) return;
     pending_ = false;
-    auto* body = ancestor<IRigidBody>();
-    if (!body && transform()) body = transform()->childOf<IRigidBody>();
+    IRigidBody* const body = above_ ? above_.get() : beside_.get();
     if (!body) return;
     body->enable();
     body->addForce(force_);
   }
+  Link<IRigidBody> above_, beside_;
   Vec3 force_ = Vec3::Zero();
   bool pending_ = false;
 };

@@ -11,27 +11,19 @@ class Hinge2Effector : public Effector {
  public:
   static void describe(Description<Hinge2Effector>& d) {
     d.doc("Drives the second axis of the hinge2 joint above it: (name speed) in deg/s.");
+    d.link(&Hinge2Effector::joint_, JointAbove<engine::JointType::hinge2>("Hinge2Joint")).required(kNoJointAbove);
   }
   std::string act(const Element& action) override {
-    if (!joint_) return "there is no Hinge2Joint above it";
+    IJoint* const joint = joint_.get();
+    if (!joint) return "there is no Hinge2Joint above it";
     NumberArguments read(action);
     double speedDeg = 0;
-    if (read(0, speedDeg)) joint_->drive(1, degToRad(speedDeg));
+    if (read(0, speedDeg)) joint->drive(1, degToRad(speedDeg));
     return read.remark();
   }
 
- protected:
-  void onLink() override {
-    Effector::onLink();
-    joint_ = jointAbove(*this, engine::JointType::hinge2, "Hinge2Joint");
-  }
-  void onMoved() override {
-    Effector::onMoved();
-    joint_ = jointAbove(*this, engine::JointType::hinge2, "Hinge2Joint");
-  }
-
  private:
-  IJoint* joint_ = nullptr;
+  Link<IJoint> joint_;
 };
 
 }  // namespace spark

@@ -11,6 +11,7 @@ class HingeEffector : public Effector, public IFreezable {
  public:
   static void describe(Description<HingeEffector>& d) {
     d.doc("Drives the hinge joint above it: (name speed) in rad/s, within the joint's greatest speed.");
+    d.link(&HingeEffector::joint_, JointAbove<engine::JointType::hinge>("HingeJoint")).required(kNoJointAbove);
     d.implements<IFreezable>();
     d.property("frozen", &HingeEffector::frozen_)
         .state()
@@ -21,12 +22,13 @@ class HingeEffector : public Effector, public IFreezable {
             "exploding feet.");
   }
   std::string act(const Element& action) override {
-    if (!joint_) return "there is no HingeJoint above it";
+    IJoint* const joint = joint_.get();
+    if (!joint) return "there is no HingeJoint above it";
     NumberArguments read(action);
     double speed = 0;
     if (read(0, speed)) {
-      const bool ignored = ignoreCommandAtStop_ && joint_->atStop(0);
-      if (!ignored) joint_->drive(0, frozen_ ? 0 : clampSpeed(*joint_, 0, speed));
+      const bool ignored = ignoreCommandAtStop_ && joint->atStop(0);
+      if (!ignored) joint->drive(0, frozen_ ? 0 : clampSpeed(*joint, 0, speed));
       // A command wakes the body even where it does not reach the motor, as in the installed base.
       if (speed != 0 && (ignored || frozen_)) wakeFirstBody();
     }
@@ -35,21 +37,11 @@ class HingeEffector : public Effector, public IFreezable {
   Leaf& leaf() override { return *this; }
   void freeze(bool on) override { frozen_ = on; }
 
- protected:
-  void onLink() override {
-    Effector::onLink();
-    joint_ = jointAbove(*this, engine::JointType::hinge, "HingeJoint");
-  }
-  void onMoved() override {
-    Effector::onMoved();
-    joint_ = jointAbove(*this, engine::JointType::hinge, "HingeJoint");
-  }
-
  private:
   void wakeFirstBody() {
     if (IRigidBody* body = joint_->body(0); body && !body->enabled()) body->enable();
   }
-  IJoint* joint_ = nullptr;
+  Link<IJoint> joint_;
   bool ignoreCommandAtStop_ = true, frozen_ = false;
 };
 

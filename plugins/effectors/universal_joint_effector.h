@@ -10,28 +10,21 @@ class UniversalJointEffector : public Effector {
  public:
   static void describe(Description<UniversalJointEffector>& d) {
     d.doc("Drives the universal joint above it: (name speed1 speed2) in rad/s, within the joint's greatest speeds.");
+    d.link(&UniversalJointEffector::joint_, JointAbove<engine::JointType::universal>("UniversalJoint"))
+        .required(kNoJointAbove);
   }
   std::string act(const Element& action) override {
-    if (!joint_) return "there is no UniversalJoint above it";
+    IJoint* const joint = joint_.get();
+    if (!joint) return "there is no UniversalJoint above it";
     NumberArguments read(action);
     double speed[2] = {0, 0};
     if (!read(0, speed[0]) || !read(1, speed[1])) return read.remark();
-    for (int axis = 0; axis < 2; ++axis) joint_->drive(axis, clampSpeed(*joint_, axis, speed[axis]));
+    for (int axis = 0; axis < 2; ++axis) joint->drive(axis, clampSpeed(*joint, axis, speed[axis]));
     return read.remark();
   }
 
- protected:
-  void onLink() override {
-    Effector::onLink();
-    joint_ = jointAbove(*this, engine::JointType::universal, "UniversalJoint");
-  }
-  void onMoved() override {
-    Effector::onMoved();
-    joint_ = jointAbove(*this, engine::JointType::universal, "UniversalJoint");
-  }
-
  private:
-  IJoint* joint_ = nullptr;
+  Link<IJoint> joint_;
 };
 
 }  // namespace spark

@@ -279,7 +279,7 @@ bool GameControl::mayLoad(const AgentAspect& agent) {
 }
 
 bool GameControl::realTime() const {
-  const auto* simulation = kernel().root().find<ISimulation>("/sys/server/simulation");
+  const auto* simulation = kernel().root().find<ISimulation>();
   return !sync_ && simulation && simulation->paced() && !simulation->lockstep();
 }
 
@@ -322,7 +322,7 @@ void GameControl::takeTurn(const Event& event) {
 
 void GameControl::sense(const Event& event) {
   if (!isTurn_) return;
-  if (const auto now = kernel().structureVersion(); std::exchange(perceptorsAt_, now) != now)
+  if (perceptorsTree_.changed(*this))
     for (const auto& p : participants_) p->forgetTheDead();
   ++round_;
   for (std::size_t i = 0; i < participants_.size(); ++i) {
@@ -367,7 +367,7 @@ void GameControl::removeLeaving() {
 }
 
 void GameControl::joinBehaviors() {
-  if (behaviorsAt_ == kernel().structureVersion()) return;
+  if (!behaviorsTree_.isStale(*this)) return;
   std::vector<Behavior*> behaviors;
   if (auto* home = kernel().root().find<Node>("/usr/agent")) home->collect(behaviors);
   const auto known = [this](Behavior* b) {
@@ -376,7 +376,7 @@ void GameControl::joinBehaviors() {
   };
   for (Behavior* b : behaviors)
     if (!known(b) && !join(std::make_unique<Participant>(*b))) refusedBehaviors_.push_back(b->id());
-  behaviorsAt_ = kernel().structureVersion();
+  behaviorsTree_.changed(*this);  // what joining made does not count
 }
 
 void GameControl::joinNewcomers() {
@@ -394,7 +394,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
   participants_.push_back(std::move(participant));
   AgentAspect* aspect = nullptr;
   try {
-    auto* server = kernel().root().find<ISceneServer>("/sys/server/scene");
+    auto* server = kernel().root().find<ISceneServer>();
     Node& scene = server ? server->scene() : kernel().root().require<Node>("/usr/scene");
     aspect = &scene.create<AgentAspect>("AgentAspect", fmt::format("AgentAspect{}", number));
     aspect->setNumber(number);
@@ -417,8 +417,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
 
 /// Anybody may remove an aspect at any time: it must not be found here until the next act notices.
 const std::vector<AgentAspect*>& GameControl::agents() const {
-  if (agentsAt_ == kernel().structureVersion()) return agents_;
-  agentsAt_ = kernel().structureVersion();
+  if (!agentsTree_.changed(*this)) return agents_;
   agents_.clear();
   for (const auto& p : participants_)
     if (AgentAspect* a = p->aspect(); a && a->isLinked()) agents_.push_back(a);
@@ -442,21 +441,19 @@ double GameControl::latency(const AgentAspect& agent) const {
 }
 
 void GameControl::agentsChanged() {
-  agentsAt_ = 0;
-  if (auto* server = kernel().root().find<ISceneServer>("/sys/server/scene")) server->markModified();
+  agentsTree_.lookAgain();
+  if (auto* server = kernel().root().find<ISceneServer>()) server->markModified();
 }
 
 void GameControl::resolveParsers() {
-  if (parsersAt_ == kernel().structureVersion()) return;
-  parsersAt_ = kernel().structureVersion();
+  if (!parsersTree_.changed(*this)) return;
   for (const auto* list : {&participants_, &newcomers_})
     for (const auto& p : *list) p->resolveParser(*this);
 }
 
 /// After the cycle's actions: what a scene brought in the last cycle answers and senses from here on.
 void GameControl::resolveRobots() {
-  if (robotsAt_ == kernel().structureVersion()) return;
-  robotsAt_ = kernel().structureVersion();
+  if (!robotsTree_.changed(*this)) return;
   for (const auto& p : participants_)
     if (p->resolveRobot()) {
       ++agentsSeen_;

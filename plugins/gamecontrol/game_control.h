@@ -79,7 +79,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   std::vector<std::unique_ptr<Participant>> newcomers_;     ///< in order of arrival
   std::vector<std::uint64_t> refusedBehaviors_;  ///< ids of those that could not be made an agent; not tried again
   mutable std::vector<AgentAspect*> agents_;     ///< of participants_; asked in the simulation's thread only
-  mutable std::uint64_t agentsAt_ = 0;
+  mutable TreeWatch agentsTree_;
   mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
   std::optional<gamecontrol::AgentLines> lines_;
@@ -99,7 +99,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   int cyclesToTurn_ = 0;     ///< between the next cycle and the agents' next turn
   bool isTurn_ = true;       ///< they have it in this cycle
   std::uint64_t round_ = 0;  ///< of sensing
-  std::uint64_t parsersAt_ = 0, robotsAt_ = 0, perceptorsAt_ = 0, behaviorsAt_ = 0;
+  TreeWatch parsersTree_, robotsTree_, perceptorsTree_, behaviorsTree_;
   bool waiting_ = false;
   Clock::time_point waitingSince_{}, actedAt_{};
 };

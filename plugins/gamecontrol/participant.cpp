@@ -37,15 +37,9 @@ void Participant::join(int number, AgentAspect& aspect) {
 
 void Participant::resolveParser(Node& gameControl) {
   if (inside_ || !connection_) return;
-  parser_ = connection_->port().childOf<IParser>();
-  Node* home = &connection_->port();
-  if (!parser_) parser_ = gameControl.childOf<IParser>(), home = &gameControl;
-  parserLeaf_ = {};
-  for (const auto& child : home->children())
-    if (parser_ && child->as<IParser>() == parser_) {
-      parserLeaf_ = child.get();
-      break;
-    }
+  const Route<IParser> child = Child<IParser>();
+  const Found<IParser> own = child.find(connection_->port());
+  parser_ = own ? own : child.find(gameControl);
 }
 
 void Participant::warn(AgentLines& log, std::int64_t cycle, std::string_view text) {

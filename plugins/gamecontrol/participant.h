@@ -56,7 +56,7 @@ class Participant {
   void join(int number, AgentAspect& aspect);
   /// Looks its parser up again.
   void resolveParser(Node& gameControl);
-  IParser* parser() const { return parserLeaf_ ? parser_ : nullptr; }
+  IParser* parser() const { return parser_.get(); }
 
   /// A message came: parsed at once, realised in the next act. Returns "" or why the connection has to be closed.
   std::string receive(std::string_view message, std::size_t maxPending, AgentLines& log, std::int64_t cycle);
@@ -179,8 +179,7 @@ class Participant {
   IConnection* connection_ = nullptr;
   Ref<Behavior> behavior_;
   Ref<AgentAspect> aspect_;
-  Ref<Leaf> parserLeaf_;
-  IParser* parser_ = nullptr;
+  Ref<IParser> parser_;
   const bool inside_;
   bool leaving_ = false, skipCycle_ = true, heardFrom_ = false, hadRobot_ = false, expected_ = false,
        holdingBack_ = false;

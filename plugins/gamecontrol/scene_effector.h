@@ -84,7 +84,7 @@ class SceneEffector : public Effector {
     AgentAspect& root = inner->outermost();
     const std::size_t before = root.children().size();
     try {
-      auto& server = kernel().root().require<ISceneServer>("/sys/server/scene");
+      auto& server = kernel().root().require<ISceneServer>();
       server.importScene(file, root, arguments_);
       loaded_ = true;
       server.markModified();

@@ -88,7 +88,7 @@ void Desk::tell(Answer::Kind kind, std::uint64_t viewer, std::string text) {
 }
 
 std::string Desk::command(const Question& question) {
-  auto* monitor = kernel_.root().find<IMonitorServer>("/sys/server/monitor");
+  auto* monitor = kernel_.root().find<IMonitorServer>();
   const std::string why = monitor ? monitor->command("the web's referee", question.text)
                                   : "this house has no monitor server, which takes commands";
   return reply("answer", question.id, why.empty() ? "{\"ok\":true}" : failure(why));
@@ -100,7 +100,7 @@ std::string Desk::answer(const Question& question, const Settings& settings) {
   const auto request = nlohmann::json::parse(question.text);  // it was read before
   const std::string what = request.at("do");
   if (Inspection::knows(what)) return reply("answer", question.id, inspection_.answer(request));
-  auto* requests = kernel_.root().find<IRequests>("/sys/server/control");
+  auto* requests = kernel_.root().find<IRequests>();
   if (!requests) return reply("answer", question.id, failure("this house has no control server, /sys/server/control"));
   control::Watch watch;
   const std::string line = requests->answer(question.text, watch, question.referee && settings.refereeChanges);
@@ -123,7 +123,7 @@ void Desk::startWatch(const Question& question, control::Watch watch) {
 
 /// In turn, from where the account ran out the last time.
 void Desk::lookAtWatches(Clock::time_point now) {
-  auto* requests = watches_.empty() ? nullptr : kernel_.root().find<IRequests>("/sys/server/control");
+  auto* requests = watches_.empty() ? nullptr : kernel_.root().find<IRequests>();
   if (!requests) return watches_.clear();
   for (std::size_t n = watches_.size(); n > 0 && account_ > 0 && !watches_.empty(); --n) {
     nextWatch_ = nextWatch_ < watches_.size() ? nextWatch_ : 0;
@@ -145,7 +145,7 @@ void Desk::lookAtWatches(Clock::time_point now) {
 
 void Desk::tellDrawings(Clock::time_point now) {
   drawingsDue_ = now + kDrawingsApart;
-  const auto* drawings = kernel_.root().find<IDrawings>("/sys/server/drawing");
+  const auto* drawings = kernel_.root().find<IDrawings>();
   if (!drawings) return;
   while (account_ > 0) {
     std::optional<std::uint64_t> since;

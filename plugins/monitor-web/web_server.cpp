@@ -133,7 +133,7 @@ void WebServer::open() {
   s.audience.token = token_;
   s.audience.rate = rate_;
   s.audience.stallTimeout = stallTimeout_;
-  if (const auto* clock = kernel().root().find<ISimulation>("/sys/server/simulation")) s.audience.step = clock->step();
+  if (const auto* clock = kernel().root().find<ISimulation>()) s.audience.step = clock->step();
   service_ = std::make_unique<web::Service>(std::move(s), exchange_, kernel().log());
   desk_ = std::make_unique<web::Desk>(kernel(), exchange_);
 }
@@ -148,7 +148,7 @@ void WebServer::poll() {
 /// While the clock stands still, as it does for agents that are waited for, no publish phase comes: who begins to watch
 /// sees what there is.
 void WebServer::handOverAgain() {
-  const auto* clock = kernel().root().find<ISimulation>("/sys/server/simulation");
+  const auto* clock = kernel().root().find<ISimulation>();
   const auto now = std::chrono::steady_clock::now();
   if (!clock || std::exchange(cycle_, clock->cycle()) != clock->cycle()) {
     cycleAt_ = now;

@@ -64,7 +64,7 @@ void LogPlayer::take(std::size_t record) {
 /// Packets as bytes with their sign: `[0, 0, 97, 0][2, 2, -128]`.
 void LogPlayer::draw(std::size_t record) {
   const std::string& text = log_->readDrawings(record);
-  auto* drawings = text.empty() ? nullptr : kernel().root().find<IDrawings>("/sys/server/drawing");
+  auto* drawings = text.empty() ? nullptr : kernel().root().find<IDrawings>();
   if (!drawings) return;
   std::vector<std::byte> packet;
   int value = 0;
@@ -80,7 +80,7 @@ void LogPlayer::draw(std::size_t record) {
 
 /// As a log's full records do; agents' texts each.
 void LogPlayer::takeDrawingsAway() {
-  auto* drawings = kernel().root().find<IDrawings>("/sys/server/drawing");
+  auto* drawings = kernel().root().find<IDrawings>();
   if (!drawings || drawings->version() == 0) return;
   constexpr std::byte kNone{0}, kText{2};
   std::vector<std::byte> packet(6, kNone);  // two swaps of everything

@@ -13,6 +13,7 @@ namespace spark {
 void MonitorLog::describe(Description<MonitorLog>& d) {
   using L = MonitorLog;
   d.doc("Writes a log of the match that log players and monitors can play: one monitor message a line.");
+  d.link(&MonitorLog::drawings_, At<IDrawings>());
   d.property("file", &L::file_).doc("The file; what it held is replaced. Read when the first record is written.");
   d.property("interval", &L::interval_)
       .unit("s")
@@ -70,8 +71,6 @@ void MonitorLog::take(const NewestFrame& newest, IMonitorEncoder* encoder, const
 /// A full record says all that is drawn, others what changed. Records in other languages have no place for it.
 void MonitorLog::recordDrawings() {
   drawn_.clear();
-  if (std::exchange(drawingsAt_, kernel().structureVersion()) != kernel().structureVersion())
-    drawings_ = kernel().root().find<IDrawings>("/sys/server/drawing");
   if (!drawings_ || !record_.starts_with('(')) return;
   drawings_->record(view_->wasFull() ? 0 : drawnVersion_, drawn_);
   drawnVersion_ = drawings_->version();

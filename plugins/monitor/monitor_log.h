@@ -37,8 +37,7 @@ class MonitorLog : public Node, public IFrameTaker {
   };
   std::unique_ptr<std::FILE, Close> out_;
   std::string record_, drawn_;
-  const IDrawings* drawings_ = nullptr;
-  std::uint64_t drawingsAt_ = 0;  ///< the tree's version when they were looked up
+  Link<IDrawings> drawings_;
   std::uint64_t drawnVersion_ = 0;
   std::int64_t next_ = 0, records_ = 0;
   double lastFull_ = 0;

@@ -19,6 +19,12 @@ constexpr std::int64_t kComplainEvery = 250;
 void MonitorServer::describe(Description<MonitorServer>& d) {
   using M = MonitorServer;
   d.doc("Sends frames of the scene to monitors and takes trainer commands. Children: an encoder, items, trainers.");
+  d.link(&M::encoder_, Child<IMonitorEncoder>());
+  d.link(&M::source_, Child<IFrameSource>());
+  d.link(&M::scene_, At<ISceneServer>());
+  d.link(&M::takers_, Child<IFrameTaker>());
+  d.link(&M::items_, Child<IMonitorItem>());
+  d.link(&M::trainers_, Child<ITrainer>());
   d.property("interval", &M::interval_)
       .unit("cycles")
       .min(1)
@@ -44,7 +50,6 @@ void MonitorServer::requestFullState() {
 // ---- connections (the simulation's thread, between cycles) ----
 
 void MonitorServer::connected(IConnection& connection) {
-  lookUpHelpers();
   if (newest_.frame.shape == 0 || (!source_ && !nodes_.fresh(kernel()))) makeFrame(last_);
   clients_.push_back(std::make_unique<MonitorClient>(connection, newest_));
   sendTo({clients_.back().get()});
@@ -60,7 +65,7 @@ std::string MonitorServer::command(std::string_view from, std::string_view messa
 }
 
 std::string MonitorServer::keepCommands(IParser* parser, std::string_view from, std::string_view message) {
-  lookUpHelpers();
+  learnCommands();
   if (commands_.size() >= kMostWaiting) return dropMessage(from);
   const std::uint32_t before = commands_.size();
   const ReadResult result = parser ? parser->parse(message, commands_) : readSexp(message, commands_);
@@ -116,7 +121,6 @@ void MonitorServer::disconnected(IConnection& connection) {
 // ---- commands ----
 
 void MonitorServer::act(const Event& event) {
-  lookUpHelpers();
   if (due(event)) atAct_ = version();
   if (!takesCommands(event)) return;
   for (const Element command : commands_) execute(command);
@@ -133,7 +137,7 @@ void MonitorServer::execute(const Element& command) {
   }
   std::string why;
   if (!name.empty())
-    for (ITrainer* trainer : trainers_)
+    for (const Found<ITrainer>& trainer : trainers_)
       if (trainer->command(command, why)) {
         if (!why.empty()) kernel().log().debug("{}: command '{}' ignored: {}", path(), name, why);
         return;
@@ -146,28 +150,14 @@ void MonitorServer::execute(const Element& command) {
 
 // ---- frames ----
 
-void MonitorServer::lookUpHelpers() {
-  if (helpersAt_ == kernel().structureVersion()) return;
-  items_.clear();
-  trainers_.clear();
+void MonitorServer::learnCommands() {
+  if (!tree_.changed(*this)) return;
   known_ = {"init", "getAck", "reqfullstate", "killsim"};
-  bool allSay = true;
-  takers_.clear();
-  encoder_ = childOf<IMonitorEncoder>();
-  source_ = childOf<IFrameSource>();
-  scene_ = kernel().root().find<ISceneServer>("/sys/server/scene");
-  for (const auto& child : children()) {
-    if (auto* item = child->as<IMonitorItem>()) items_.push_back(item);
-    if (auto* trainer = child->as<ITrainer>()) {
-      trainers_.push_back(trainer);
-      allSay &= child->classObject()->property("commands") != nullptr;
-      const Value names = allSay ? getProperty(*child, "commands") : Value(List{});
-      for (const Value& name : names.toList()) known_.push_back(name.toString());
-    }
-    if (auto* taker = child->as<IFrameTaker>()) takers_.push_back(taker);
+  for (const Found<ITrainer>& trainer : trainers_) {
+    if (!trainer.leaf->classObject()->property("commands")) return known_.clear();
+    const Value names = getProperty(*trainer.leaf, "commands");
+    for (const Value& name : names.toList()) known_.push_back(name.toString());
   }
-  if (!allSay) known_.clear();
-  helpersAt_ = kernel().structureVersion();
 }
 
 MonitorServer::Version MonitorServer::version() const {
@@ -197,7 +187,7 @@ void MonitorServer::makeFrame(const Event& event) {
     if (entry.policy != EnvPolicy::once) continue;
     const Element once(frame.env.predicates, entry.token);
     for (auto& client : clients_) client->view.addEvent(once);
-    for (IFrameTaker* taker : takers_) taker->event(once);
+    for (const Found<IFrameTaker>& taker : takers_) taker->event(once);
   }
 }
 
@@ -205,15 +195,14 @@ void MonitorServer::fillFromScene() {
   changed_ = nodes_.refresh(kernel());
   nodes_.copyTo(newest_.frame.nodes);
   newest_.ids = nodes_.ids();
-  for (IMonitorItem* item : items_) item->contribute(newest_.frame.env);
+  for (const Found<IMonitorItem>& item : items_) item->contribute(newest_.frame.env);
 }
 
 void MonitorServer::publish(const Event& event) {
   last_ = {{}, event.time, event.step, event.cycle, nullptr};
   if (!due(event)) return;
-  lookUpHelpers();
   makeFrame(event);
-  for (IFrameTaker* taker : takers_) taker->take(newest_, encoder_, event);
+  for (const Found<IFrameTaker>& taker : takers_) taker->take(newest_, encoder_.get(), event);
   leftOut_ = changed_ && !source_ && !leftOut_ && version() != atAct_;
   if (leftOut_) return;
   ready_.clear();
@@ -224,7 +213,7 @@ void MonitorServer::publish(const Event& event) {
 
 IMonitorEncoder* MonitorServer::encoderFor(const MonitorClient& client) const {
   auto* own = client.connection().port().childOf<IMonitorEncoder>();
-  return own ? own : encoder_;
+  return own ? own : encoder_.get();
 }
 
 void MonitorServer::sendTo(const std::vector<MonitorClient*>& clients) {

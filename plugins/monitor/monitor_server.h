@@ -51,7 +51,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   bool takesCommands(const Event& event) const { return event.cycle % interval_ == 1 % interval_; }
   int clientCount() const { return static_cast<int>(clients_.size()); }
 
-  void lookUpHelpers();
+  void learnCommands();
   void makeFrame(const Event& event);
   void fillFromScene();
   void sendTo(const std::vector<MonitorClient*>& clients);
@@ -90,13 +90,13 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   std::int64_t dropped_ = 0;  ///< messages since the last line about it
   std::optional<std::int64_t> toldDroppedAt_, toldUnknownAt_;
 
-  std::uint64_t helpersAt_ = 0;
-  IMonitorEncoder* encoder_ = nullptr;
-  IFrameSource* source_ = nullptr;
-  const ISceneServer* scene_ = nullptr;
-  std::vector<IFrameTaker*> takers_;
-  std::vector<IMonitorItem*> items_;
-  std::vector<ITrainer*> trainers_;
+  Link<IMonitorEncoder> encoder_;
+  Link<IFrameSource> source_;
+  Link<ISceneServer> scene_;
+  Links<IFrameTaker> takers_;
+  Links<IMonitorItem> items_;
+  Links<ITrainer> trainers_;
+  TreeWatch tree_;                  ///< in which known_ was learnt
   std::vector<std::string> known_;  ///< commands; empty when a trainer does not say what it takes
   Event last_;                      ///< of the last publish phase
   bool toldNoEncoder_ = false;

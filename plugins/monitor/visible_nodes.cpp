@@ -3,27 +3,23 @@
 namespace spark {
 
 bool VisibleNodes::fresh(Kernel& kernel) const {
-  return structure_ == kernel.structureVersion() && (!server_ || server_->modifiedCount() == modified_);
+  return !tree_.isStale(kernel.root()) && (!server_ || server_->modifiedCount() == modified_);
 }
 
 bool VisibleNodes::refresh(Kernel& kernel) {
   if (fresh(kernel)) return false;
-  auto* server = kernel.root().find<ISceneServer>("/sys/server/scene");
+  auto* server = kernel.root().find<ISceneServer>();
   std::swap(ids_, lastIds_);
   std::swap(depths_, lastDepths_);
   entries_.clear();
   ids_.clear();
   depths_.clear();
-  try {
-    if (server) collect(server->scene(), 0);
-  } catch (const Error&) {
-    // There is no active scene: monitors see an empty one.
-  }
+  if (Node* scene = server ? server->activeScene() : nullptr) collect(*scene, 0);
   const std::uint64_t modified = server ? server->modifiedCount() : 0;
   const bool changed = modified != modified_ || ids_ != lastIds_ || depths_ != lastDepths_;
   server_ = server;
   modified_ = modified;
-  structure_ = kernel.structureVersion();
+  tree_.changed(kernel.root());
   return changed;
 }
 

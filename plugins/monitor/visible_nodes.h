@@ -32,7 +32,8 @@ class VisibleNodes {
   std::vector<std::uint64_t> ids_, lastIds_;
   std::vector<int> depths_, lastDepths_;
   const ISceneServer* server_ = nullptr;
-  std::uint64_t structure_ = 0, modified_ = 0;
+  TreeWatch tree_;
+  std::uint64_t modified_ = 0;
 };
 
 }  // namespace spark

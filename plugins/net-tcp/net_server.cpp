@@ -20,29 +20,21 @@ NetServer::NetServer() = default;
 void NetServer::describe(Description<NetServer>& d) {
   d.doc("Network server: ports below it bring input to the run loop.");
   d.implements<IInputSource>();
+  d.link(&NetServer::ports_, Below<TcpPort>());
   d.property("open", &NetServer::open_).doc("False: no port is opened, nobody comes in.");
   d.method("listen", &NetServer::listen).doc("Opens all ports below; otherwise the first poll does.");
 }
 
-void NetServer::resolve() {
-  if (resolvedAt_ == kernel().structureVersion()) return;
-  ports_.clear();
-  collect(ports_);
-  resolvedAt_ = kernel().structureVersion();
-}
-
 void NetServer::listen() {
   if (!open_) return;
-  resolve();
-  for (TcpPort* port : ports_) port->listen();
+  for (const Found<TcpPort>& port : ports_) port->listen();
 }
 
 void NetServer::poll() { round(); }
 
 bool NetServer::round() {
   if (!open_) return false;
-  resolve();
-  if (!std::all_of(ports_.begin(), ports_.end(), [](TcpPort* p) { return p->listening(); })) {
+  if (!std::all_of(ports_.begin(), ports_.end(), [](const Found<TcpPort>& p) { return p->listening(); })) {
     try {
       listen();
     } catch (const Error& e) {
@@ -54,7 +46,7 @@ bool NetServer::round() {
   io_->restart();
   io_->poll();
   bool any = false;
-  for (TcpPort* port : ports_) any |= port->poll();
+  for (const Found<TcpPort>& port : ports_) any |= port->poll();
   return any;
 }
 

@@ -34,14 +34,12 @@ class NetServer : public Node, public IInputSource {
 
  private:
   bool round();
-  void resolve();
 
   std::shared_ptr<boost::asio::io_context> io_ = std::make_shared<boost::asio::io_context>(1);
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_->get_executor()};
   boost::asio::steady_timer timer_{*io_};
   net::HandlerMemory timerMemory_;
-  std::vector<TcpPort*> ports_;
-  std::uint64_t resolvedAt_ = 0;
+  Links<TcpPort> ports_;
   bool open_ = true;
 };
 

@@ -28,6 +28,8 @@ void TcpPort::describe(Description<TcpPort>& d) {
       .range(0, 65535)
       .doc("Port number; 0 picks a free one, which is read back once it listens.");
   d.property("address", &TcpPort::address_).doc("Address to listen on.");
+  d.link(&TcpPort::framing_, Child<IFraming>());
+  d.link(&TcpPort::named_, At<IConnectionConsumer>(&TcpPort::consumerPath_));
   d.property("consumer", &TcpPort::consumer, &TcpPort::setConsumer)
       .doc("Path of the node that gets connections and messages.");
   d.property("maxMessage", &TcpPort::maxMessage_)
@@ -89,7 +91,7 @@ void TcpPort::setPort(int port) {
 
 void TcpPort::setConsumer(std::string path) {
   consumerPath_ = std::move(path);
-  resolvedAt_ = 0;
+  named_.lookAgain();
 }
 
 void TcpPort::complain(Level level, std::string_view what) {
@@ -97,24 +99,19 @@ void TcpPort::complain(Level level, std::string_view what) {
   if (log.enabled(level)) complaints_.write(log, level, fmt::format("Port {} ({}): {}", name(), port_, what));
 }
 
-void TcpPort::resolve() {
-  if (resolvedAt_ == kernel().structureVersion()) return;
-  framing_ = childOf<IFraming>();
-  Leaf* leaf = find(consumerPath_);
-  auto* consumer = leaf ? leaf->as<IConnectionConsumer>() : nullptr;
-  const bool changed = consumerLeaf_.get() != leaf || consumer != consumer_;
-  if (changed && !connections_.empty()) {
+void TcpPort::followConsumer() {
+  const Found<IConnectionConsumer> now = named_.found();
+  if (now.object == consumer_.get()) return;
+  if (!connections_.empty()) {
     complain(Level::warning, "its consumer changed, all clients are closed.");
     closeSilent();
   }
-  consumerLeaf_ = leaf;
-  consumer_ = consumer;
-  resolvedAt_ = kernel().structureVersion();
+  consumer_ = now;
 }
 
 void TcpPort::listen() {
   if (listening()) return;
-  resolve();
+  followConsumer();
   if (!framing_)
     throw Error(fmt::format("{} has no framing below it. Add one, e.g. new(\"LengthPrefixFraming\", \"{}/framing\").",
                             path(), path()));
@@ -154,7 +151,7 @@ void TcpPort::watchAccept() {
 }
 
 bool TcpPort::poll() {
-  resolve();
+  followConsumer();
   bool any = false;
   for (std::size_t i = 0; i < connections_.size(); ++i) any |= serve(*connections_[i]);
   any |= reap();
@@ -197,7 +194,7 @@ void TcpPort::take(tcp::socket socket) {
   socket.set_option(tcp::socket::send_buffer_size(sendBuffer_), ignored);
   auto connection =
       std::make_shared<TcpConnection>(std::move(socket), static_cast<std::uint64_t>(connectionsSeen_ + 1), *this);
-  if (!consumer_ || !consumerLeaf_) {
+  if (!consumer_) {
     connection->close(fmt::format("nothing at '{}' takes connections", consumerPath_));
   } else if (full()) {
     connection->close(fmt::format("{} clients are connected already (maxConnections)", maxConnections_));
@@ -285,7 +282,7 @@ bool TcpPort::reap() {
   if (leaving_.empty()) return false;
   std::erase_if(connections_, [](const Connection& c) { return c->closing(); });
   for (auto& c : leaving_)
-    if (consumerLeaf_) consumer_->disconnected(*c);
+    if (consumer_) consumer_->disconnected(*c);
   leaving_.clear();
   return true;
 }

@@ -47,7 +47,7 @@ class TcpPort : public Node {
 
  private:
   using Connection = std::shared_ptr<net::TcpConnection>;
-  void resolve();
+  void followConsumer();
   void watchAccept();
   bool acceptAll();
   void take(net::tcp::socket socket);
@@ -80,10 +80,9 @@ class TcpPort : public Node {
   double messageTimeout_ = 30, makeRoomAfter_ = 0;
   std::int64_t messagesDropped_ = 0, connectionsSeen_ = 0;
 
-  IFraming* framing_ = nullptr;
-  Ref<Leaf> consumerLeaf_;
-  IConnectionConsumer* consumer_ = nullptr;
-  std::uint64_t resolvedAt_ = 0;
+  Link<IFraming> framing_;
+  Link<IConnectionConsumer> named_;    ///< by the property
+  Ref<IConnectionConsumer> consumer_;  ///< whom all connections belong to
 };
 
 }  // namespace spark

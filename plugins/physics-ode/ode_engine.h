@@ -377,8 +377,8 @@ class OdeEngine : public Node, public engine::IEngine {
   std::string said_;
   std::int64_t messages_ = 0, approximateSteps_ = 0;
   engine::ISolver* solver_ = nullptr;
-  std::uint64_t treeVersion_ = 0;  ///< the tree's structure in which solver_ was found
-  std::uint64_t structures_ = 0;   ///< numbers given to structures of worlds so far
+  TreeWatch tree_;                ///< in which solver_ was found
+  std::uint64_t structures_ = 0;  ///< numbers given to structures of worlds so far
   int directRows_ = 1200;
   bool exactReplay_ = false;
 };

@@ -9,8 +9,7 @@ namespace spark {
 using namespace ode;
 
 engine::ISolver* OdeEngine::solver() {
-  if (treeVersion_ == kernel().structureVersion()) return solver_;
-  treeVersion_ = kernel().structureVersion();
+  if (!tree_.changed(*this)) return solver_;
   solver_ = childOf<engine::ISolver>();
   for (const auto& w : worlds_) {
     w->solved.clear();

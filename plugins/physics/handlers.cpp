@@ -36,7 +36,6 @@ void ScriptHandler::describe(Description<ScriptHandler>& d) {
 }
 
 void ScriptHandler::onLink() {
-  CollisionHandler::onLink();
   kernel().events().define("collide", Order::parentsFirst, "At a ScriptHandler: something touches its collider.");
 }
 

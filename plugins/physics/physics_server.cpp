@@ -11,6 +11,7 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
   using S = PhysicsServer;
   d.doc("Steps the world of the active scene with the engine below it.");
   d.implements<IPhysicsServer>();
+  d.link(&S::scene_, At<ISceneServer>());
   d.property("jointHeating", &S::jointHeating_).doc("Motors that model heat get warm.");
   d.property("batteryDischarge", &S::batteryDischarge_).doc("Motors draw from their batteries.");
   d.property("defaultHandlerOnTransformCollider", &S::defaultOnTransform, &S::setDefaultOnTransform)
@@ -37,13 +38,7 @@ engine::IEngine& PhysicsServer::engine() {
 }
 
 World* PhysicsServer::findWorld() {
-  auto* server = kernel().root().find<ISceneServer>("/sys/server/scene");
-  Node* scene = nullptr;
-  try {
-    scene = server ? &server->scene() : kernel().root().find<Node>("/usr/scene");
-  } catch (const Error&) {
-    return nullptr;  // no scene, nothing to step
-  }
+  Node* scene = scene_ ? scene_->activeScene() : kernel().root().find<Node>("/usr/scene");
   auto* world = scene ? scene->childOf<World>() : nullptr;
   return world && world->handle() && world->handle()->engine() ? world : nullptr;
 }
@@ -60,7 +55,7 @@ void PhysicsServer::bodies(Node& root, std::vector<IRigidBody*>& out) {
 
 void PhysicsServer::setDefaultOnTransform(bool on) {
   defaultOnTransform_ = on;
-  version_ = 0;
+  tree_.lookAgain();
 }
 
 void PhysicsServer::collect(const Node& scene) {
@@ -102,11 +97,9 @@ void PhysicsServer::formGroups(const Node& scene, std::vector<CollisionGroup*>& 
 }
 
 bool PhysicsServer::refresh() {
-  if (version_ == kernel().structureVersion()) return world_ != nullptr;
-  version_ = kernel().structureVersion();
+  if (!tree_.changed(*this)) return world_ != nullptr;
   bodies_.clear();
   scripts_.clear();
-  scene_ = kernel().root().find<ISceneServer>("/sys/server/scene");
   world_ = findWorld();
   if (!world_) return false;
   collect(*world_->parent());

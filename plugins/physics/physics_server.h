@@ -52,9 +52,9 @@ class PhysicsServer : public Node, public IPhysicsServer {
   bool jointHeating_ = false, batteryDischarge_ = false, defaultOnTransform_ = true, measureForces_ = false;
   int contactsPerPair_ = 4;
 
-  std::uint64_t version_ = 0;
+  TreeWatch tree_;
   World* world_ = nullptr;
-  ISceneServer* scene_ = nullptr;
+  Link<ISceneServer> scene_;
   std::vector<Placed> bodies_;
   std::vector<Ref<ScriptHandler>> scripts_;
   engine::Contacts contacts_;

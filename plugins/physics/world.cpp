@@ -50,7 +50,7 @@ World& World::of(const Leaf& node) {
 
 void World::onLink() {
   PhysicsObject::onLink();
-  auto& server = kernel().root().require<IPhysicsServer>("/sys/server/physics");
+  auto& server = kernel().root().require<IPhysicsServer>();
   engine::IEngine& e = server.engine();
   // The engine is an interface without a leaf of its own: the server's child that offers it is what may die.
   Leaf* engineLeaf = kernel().root().find("/sys/server/physics/engine");

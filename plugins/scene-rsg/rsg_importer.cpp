@@ -55,7 +55,7 @@ std::shared_ptr<const rsg::Program> RsgImporter::load(const std::string& file, N
   // One import sees one version of a file, however often it needs it.
   const auto cached = cache_.find(file);
   if (cached != cache_.end() && cached->second.checked == outermost_) return cached->second.program;
-  auto& files = kernel().root().require<IFileServer>("/sys/server/file");
+  auto& files = kernel().root().require<IFileServer>();
   const std::uint64_t stamp = files.stamp(file);
   if (cached != cache_.end() && stamp != 0 && cached->second.stamp == stamp) {
     cached->second.checked = outermost_;

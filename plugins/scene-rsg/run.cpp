@@ -164,10 +164,8 @@ void Run::import(const Statement& s, Node& node, const List& arguments) {
   if (!methodOf(s, node) || arguments.empty()) return invoke(s, node, arguments);  // says what is wrong
   const std::string& file = arguments.front().toString();
   try {
-    importer_.kernel()
-        .root()
-        .require<ISceneServer>("/sys/server/scene")
-        .importScene(file, node, List(arguments.begin() + 1, arguments.end()));
+    importer_.kernel().root().require<ISceneServer>().importScene(file, node,
+                                                                  List(arguments.begin() + 1, arguments.end()));
   } catch (const std::exception& e) {
     if (importer_.rules_.strict || importer_.budget_.exhausted)
       throw Located(where(program_, s.site) + ": the import of '" + file + "' failed", e);

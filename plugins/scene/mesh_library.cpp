@@ -36,7 +36,7 @@ const std::vector<std::string>& MeshLibrary::materials(Kernel& kernel, const std
   static const std::vector<std::string> kNone;
   const auto declared = declared_.find(mesh);
   const auto& otherwise = declared == declared_.end() ? kNone : declared->second;
-  auto* files = mesh.ends_with(".obj") ? kernel.root().find<IFileServer>("/sys/server/file") : nullptr;
+  auto* files = mesh.ends_with(".obj") ? kernel.root().find<IFileServer>() : nullptr;
   if (!files) return otherwise;
   try {
     const std::uint64_t stamp = files->stamp(mesh);

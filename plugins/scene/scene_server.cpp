@@ -8,6 +8,8 @@ namespace spark {
 void SceneServer::describe(Description<SceneServer>& d) {
   d.doc("Holds the active scene, imports scene files, keeps world matrices up to date.");
   d.implements<ISceneServer>();
+  d.link(&SceneServer::scene_, At<Node>(&SceneServer::scenePath_));
+  d.link(&SceneServer::importers_, Child<ISceneImporter>());
   d.property("activeScene", &SceneServer::scenePath, &SceneServer::setScenePath)
       .doc("Path of the active scene's root.");
   d.property("flattenTransforms", &SceneServer::flattenTransforms_)
@@ -25,21 +27,14 @@ void SceneServer::describe(Description<SceneServer>& d) {
 }
 
 Node& SceneServer::scene() {
-  if (!scene_ || sceneVersion_ != kernel().structureVersion()) {
-    scene_ = nullptr;
-    Leaf* found = kernel().root().find(scenePath_);
-    if (!found || !found->asNode())
-      throw Error("there is no scene at '" + scenePath_ + "': make one, new(\"Scene\", \"" + scenePath_ +
-                  "\"), or set " + path() + ".activeScene");
-    scene_ = found->asNode();
-    sceneVersion_ = kernel().structureVersion();
-  }
-  return *scene_;
+  if (Node* scene = scene_.get()) return *scene;
+  throw Error("there is no scene at '" + scenePath_ + "': make one, new(\"Scene\", \"" + scenePath_ + "\"), or set " +
+              path() + ".activeScene");
 }
 
 void SceneServer::setScenePath(std::string path) {
   scenePath_ = std::move(path);
-  scene_ = nullptr;
+  scene_.lookAgain();
   kernel().markChanged(*this);  // whoever remembers what is in the active scene looks again, in this very cycle
 }
 
@@ -49,28 +44,24 @@ void SceneServer::createScene(std::string path) {
 }
 
 ISceneImporter& SceneServer::importerFor(const std::string& file) {
-  ISceneImporter* first = nullptr;
-  int importers = 0;
-  for (const auto& child : children())
-    if (auto* importer = child->as<ISceneImporter>(); importer && importers++ == 0) first = importer;
-  if (!first)
+  if (importers_.empty())
     throw Error(path() + " has no importer below it: add one, for instance new(\"RsgImporter\", \"" + path() +
                 "/rsg\")");
-  if (importers == 1) return *first;
+  if (importers_.size() == 1) return *importers_.all().front();
 
-  auto& files = kernel().root().require<IFileServer>("/sys/server/file");
+  auto& files = kernel().root().require<IFileServer>();
   const std::uint64_t stamp = files.stamp(file);
   if (const auto known = known_.find(file);
       known != known_.end() && known->second.stamp == stamp && known->second.importer)
-    return *known->second.importer->as<ISceneImporter>();
+    return *known->second.importer;
   const std::string text = files.read(file);
-  for (const auto& child : children())
-    if (auto* importer = child->as<ISceneImporter>(); importer && importer->recognises(text)) {
-      known_.insert_or_assign(file, Known{stamp, Ref<Leaf>(child.get())});
+  for (const Found<ISceneImporter>& importer : importers_)
+    if (importer->recognises(text)) {
+      known_.insert_or_assign(file, Known{stamp, importer});
       return *importer;
     }
-  throw Error("none of the " + std::to_string(importers) + " importers below " + path() + " knows the format of '" +
-              file + "'");
+  throw Error("none of the " + std::to_string(importers_.size()) + " importers below " + path() +
+              " knows the format of '" + file + "'");
 }
 
 void SceneServer::importScene(std::string_view file, Node& root, const List& arguments) {
@@ -98,12 +89,7 @@ void SceneServer::importScene(std::string_view file, Node& root, const List& arg
 }
 
 void SceneServer::place() {
-  if (Leaf* found = scene_ && sceneVersion_ == kernel().structureVersion() ? scene_ : kernel().root().find(scenePath_);
-      found && found->asNode()) {
-    scene_ = found->asNode();
-    sceneVersion_ = kernel().structureVersion();
-    placement_.place(*scene_);
-  }
+  if (Node* scene = scene_.get()) placement_.place(*scene);
 }
 
 void Placement::collect(Node& node, int parent) {
@@ -120,11 +106,10 @@ void Placement::collect(Node& node, int parent) {
 }
 
 void Placement::place(Node& scene) {
-  if (version_ != scene.kernel().structureVersion() || scene_ != &scene) {
+  if (tree_.changed(scene) || scene_ != &scene) {
     entries_.clear();
     collect(scene, -1);
     scene_ = &scene;
-    version_ = scene.kernel().structureVersion();
   }
   for (Entry& e : entries_) {
     const Entry* above = e.parent < 0 ? nullptr : &entries_[static_cast<std::size_t>(e.parent)];

@@ -34,7 +34,7 @@ class Placement {
   void collect(Node& node, int parent);
   std::vector<Entry> entries_;
   Node* scene_ = nullptr;
-  std::uint64_t version_ = 0;
+  TreeWatch tree_;
 };
 
 /// Holds the active scene, imports scene files through the importers below it, and keeps world matrices up to date.
@@ -44,6 +44,7 @@ class SceneServer : public Node, public ISceneServer {
   static void describe(Description<SceneServer>& d);
 
   Leaf& leaf() override { return *this; }
+  Node* activeScene() override { return scene_.get(); }
   Node& scene() override;
   void importScene(std::string_view file, Node& root, const List& arguments) override;
   void markModified() override { ++modified_; }
@@ -56,7 +57,7 @@ class SceneServer : public Node, public ISceneServer {
  private:
   struct Known {
     std::uint64_t stamp;
-    Ref<Leaf> importer;
+    Ref<ISceneImporter> importer;
   };
   ISceneImporter& importerFor(const std::string& file);
   void createScene(std::string path);
@@ -69,9 +70,10 @@ class SceneServer : public Node, public ISceneServer {
 
   std::string scenePath_ = "/usr/scene";
   bool flattenTransforms_ = true;
-  std::uint64_t modified_ = 0, sceneVersion_ = 0;
+  std::uint64_t modified_ = 0;
   std::uint64_t firstImported_ = 0;  ///< id from which on nodes are those of the import under way; 0: none is
-  Node* scene_ = nullptr;
+  Link<Node> scene_;
+  Links<ISceneImporter> importers_;
   Placement placement_;
   MeshLibrary meshes_;
   std::map<std::string, Known, std::less<>> known_;

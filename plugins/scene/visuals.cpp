@@ -11,7 +11,7 @@ SceneServer* serverOf(const Leaf& leaf) {
 }
 void modified(const Leaf& leaf) {
   if (!leaf.isLinked()) return;
-  if (auto* server = leaf.kernel().root().find<ISceneServer>("/sys/server/scene")) server->markModified();
+  if (auto* server = leaf.kernel().root().find<ISceneServer>()) server->markModified();
 }
 }  // namespace
 

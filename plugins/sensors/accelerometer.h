@@ -1,7 +1,6 @@
 #pragma once
 
 #include "api/agents.h"
-#include "api/cached_lookup.h"
 #include "api/local_frame.h"
 #include "api/physics.h"
 
@@ -23,10 +22,11 @@ class Accelerometer : public Perceptor {
         .state()
         .doc("The body's velocity at the last sample, world frame.");
     d.property("acceleration", &Accelerometer::acceleration_).unit("m/s^2").state().doc("The last sample, body frame.");
+    d.link(&Accelerometer::body_, Above<Transform>().child<IRigidBody>());
     d.on<&Accelerometer::prepare>(phase::kPrepare);
   }
   void sense(Predicates& out, const Event&) override {
-    if (!body()) return;
+    if (!body_) return;
     out.open("ACC").pair("n", name()).open("a");
     for (const float a : acceleration_) out.add(a);
     out.close().close();
@@ -34,16 +34,14 @@ class Accelerometer : public Perceptor {
 
  private:
   void prepare(const Event& event) {
-    if (!body() || event.step <= 0) return;
-    const Vec3f velocity = body()->state().linearVelocity.cast<float>();
+    const IRigidBody* const body = body_.get();
+    if (!body || event.step <= 0) return;
+    const Vec3f velocity = body->state().linearVelocity.cast<float>();
     const Vec3f felt = (velocity - lastVelocity_) / static_cast<float>(event.step) - gravity_;
     acceleration_ = intoFrame(transform()->world(), felt);
     lastVelocity_ = velocity;
   }
-  IRigidBody* body() {
-    return body_.get(kernel(), [this] { return transform() ? transform()->childOf<IRigidBody>() : nullptr; });
-  }
-  CachedLookup<IRigidBody> body_;
+  Link<IRigidBody> body_;
   Vec3f gravity_{0, 0, -9.81f};
   Vec3f lastVelocity_ = Vec3f::Zero(), acceleration_ = Vec3f::Zero();
 };

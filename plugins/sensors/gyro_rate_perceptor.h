@@ -1,7 +1,6 @@
 #pragma once
 
 #include "api/agents.h"
-#include "api/cached_lookup.h"
 #include "api/local_frame.h"
 #include "api/physics.h"
 
@@ -16,12 +15,11 @@ class GyroRatePerceptor : public Perceptor {
     d.doc(
         "Senses the angular velocity of its transform's body, in the body's frame: (GYR (n name) (rt x y z)) in "
         "deg/s.");
+    d.link(&GyroRatePerceptor::body_, Above<Transform>().child<IRigidBody>());
   }
 
   void sense(Predicates& out, const Event&) override {
-    // Looked up anew only after the tree changed; transform() is the nearest one above.
-    IRigidBody* body =
-        body_.get(kernel(), [this] { return transform() ? transform()->childOf<IRigidBody>() : nullptr; });
+    const IRigidBody* const body = body_.get();
     if (!body) return;
 
     const Vec3f world = body->state().angularVelocity.cast<float>();
@@ -33,7 +31,7 @@ class GyroRatePerceptor : public Perceptor {
   }
 
  private:
-  CachedLookup<IRigidBody> body_;
+  Link<IRigidBody> body_;
 };
 
 }  // namespace spark

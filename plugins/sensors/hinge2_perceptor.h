@@ -10,25 +10,17 @@ class Hinge2Perceptor : public Perceptor {
  public:
   static void describe(Description<Hinge2Perceptor>& d) {
     d.doc("Senses the first angle of the hinge2 joint above it: (H2J (n name) (ax 0 deg)).");
+    d.link(&Hinge2Perceptor::joint_, JointAbove<engine::JointType::hinge2>("Hinge2Joint")).required(kNoJointAbove);
   }
   void sense(Predicates& out, const Event&) override {
-    if (!joint_) return;
+    IJoint* const joint = joint_.get();
+    if (!joint) return;
     out.open("H2J").pair("n", name());
-    out.open("ax").add(0).add(radToDeg(joint_->angle(0))).close().close();
-  }
-
- protected:
-  void onLink() override {
-    Perceptor::onLink();
-    joint_ = jointAbove(*this, engine::JointType::hinge2, "Hinge2Joint");
-  }
-  void onMoved() override {
-    Perceptor::onMoved();
-    joint_ = jointAbove(*this, engine::JointType::hinge2, "Hinge2Joint");
+    out.open("ax").add(0).add(radToDeg(joint->angle(0))).close().close();
   }
 
  private:
-  IJoint* joint_ = nullptr;
+  Link<IJoint> joint_;
 };
 
 }  // namespace spark

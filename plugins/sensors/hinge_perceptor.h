@@ -10,25 +10,17 @@ class HingePerceptor : public Perceptor {
  public:
   static void describe(Description<HingePerceptor>& d) {
     d.doc("Senses the angle of the hinge joint above it: (HJ (n name) (ax deg)).");
+    d.link(&HingePerceptor::joint_, JointAbove<engine::JointType::hinge>("HingeJoint")).required(kNoJointAbove);
   }
   /// Half of what robots sense: left to itself the compiler makes a call of each token.
   [[gnu::flatten]] void sense(Predicates& out, const Event&) override {
-    if (!joint_) return;
-    out.open("HJ").pair("n", name()).pair("ax", radToDeg(joint_->angle(0))).close();
-  }
-
- protected:
-  void onLink() override {
-    Perceptor::onLink();
-    joint_ = jointAbove(*this, engine::JointType::hinge, "HingeJoint");
-  }
-  void onMoved() override {
-    Perceptor::onMoved();
-    joint_ = jointAbove(*this, engine::JointType::hinge, "HingeJoint");
+    IJoint* const joint = joint_.get();
+    if (!joint) return;
+    out.open("HJ").pair("n", name()).pair("ax", radToDeg(joint->angle(0))).close();
   }
 
  private:
-  IJoint* joint_ = nullptr;
+  Link<IJoint> joint_;
 };
 
 }  // namespace spark

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "api/cached_lookup.h"
-#include "api/first_below.h"
 #include "collision_perceptor.h"
 
 namespace spark {
@@ -12,15 +10,14 @@ class PerceptorHandler : public CollisionHandler {
  public:
   static void describe(Description<PerceptorHandler>& d) {
     d.doc("Feeds the first CollisionPerceptor below its nearest transform.");
+    d.link(&PerceptorHandler::perceptor_, Above<Transform>().below<CollisionPerceptor>());
   }
   void onCollision(const Collision& collision) override {
-    auto* perceptor = perceptor_.get(
-        kernel(), [this] { return transform() ? firstBelow<CollisionPerceptor>(*transform()) : nullptr; });
-    if (perceptor) perceptor->touched(collision.other.leaf());
+    if (CollisionPerceptor* perceptor = perceptor_.get()) perceptor->touched(collision.other.leaf());
   }
 
  private:
-  CachedLookup<CollisionPerceptor> perceptor_;
+  Link<CollisionPerceptor> perceptor_;
 };
 
 }  // namespace spark

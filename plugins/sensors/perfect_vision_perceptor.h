@@ -19,7 +19,7 @@ class PerfectVisionPerceptor : public Perceptor {
   void setInversion(bool x, bool y, bool z) { signs_ = {x ? -1.f : 1.f, y ? -1.f : 1.f, z ? -1.f : 1.f}; }
 
   void sense(Predicates& out, const Event&) override {
-    if (version_ != kernel().structureVersion()) collect();
+    if (tree_.changed(*this)) collect();
     out.open("PerfectVision");
     for (const Transform* t : transforms_) {
       const Vec3f p = positionOf(t->world()).cwiseProduct(signs_);
@@ -31,11 +31,10 @@ class PerfectVisionPerceptor : public Perceptor {
  private:
   void collect() {
     transforms_.clear();
-    if (auto* server = kernel().root().find<ISceneServer>("/sys/server/scene")) server->scene().collect(transforms_);
-    version_ = kernel().structureVersion();
+    if (auto* server = kernel().root().find<ISceneServer>()) server->scene().collect(transforms_);
   }
   std::vector<Transform*> transforms_;
-  std::uint64_t version_ = 0;
+  TreeWatch tree_;
   Vec3f signs_{1, 1, 1};
 };
 

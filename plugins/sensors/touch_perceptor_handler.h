@@ -1,7 +1,5 @@
 #pragma once
 
-#include "api/cached_lookup.h"
-#include "api/first_below.h"
 #include "force_resistance_perceptor.h"
 
 namespace spark {
@@ -16,22 +14,19 @@ class TouchPerceptorHandler : public ContactJointHandler {
     d.doc(
         "Makes contacts solid and feeds their forces to the first ForceResistancePerceptor below its nearest "
         "transform.");
+    d.link(&TouchPerceptorHandler::perceptor_, Above<Transform>().below<ForceResistancePerceptor>());
   }
   void onCollision(const Collision& collision) override {
     ContactJointHandler::onCollision(collision);
-    if (collision.direct && perceptor()) collision.contact.feedback = true;
+    if (collision.direct && perceptor_) collision.contact.feedback = true;
   }
   void onSolved(const Collision& collision) override {
-    if (collision.direct && collision.contact.solve && perceptor())
-      perceptor()->touch(collision.contact.position, collision.contact.forceOnA);
+    if (collision.direct && collision.contact.solve && perceptor_)
+      perceptor_->touch(collision.contact.position, collision.contact.forceOnA);
   }
 
  private:
-  ForceResistancePerceptor* perceptor() {
-    return perceptor_.get(
-        kernel(), [this] { return transform() ? firstBelow<ForceResistancePerceptor>(*transform()) : nullptr; });
-  }
-  CachedLookup<ForceResistancePerceptor> perceptor_;
+  Link<ForceResistancePerceptor> perceptor_;
 };
 
 }  // namespace spark

@@ -10,25 +10,18 @@ class UniversalJointPerceptor : public Perceptor {
  public:
   static void describe(Description<UniversalJointPerceptor>& d) {
     d.doc("Senses both angles of the universal joint above it: (UJ (n name) (ax1 deg) (ax2 deg)).");
+    d.link(&UniversalJointPerceptor::joint_, JointAbove<engine::JointType::universal>("UniversalJoint"))
+        .required(kNoJointAbove);
   }
   void sense(Predicates& out, const Event&) override {
-    if (!joint_) return;
+    IJoint* const joint = joint_.get();
+    if (!joint) return;
     out.open("UJ").pair("n", name());
-    out.pair("ax1", radToDeg(joint_->angle(0))).pair("ax2", radToDeg(joint_->angle(1))).close();
-  }
-
- protected:
-  void onLink() override {
-    Perceptor::onLink();
-    joint_ = jointAbove(*this, engine::JointType::universal, "UniversalJoint");
-  }
-  void onMoved() override {
-    Perceptor::onMoved();
-    joint_ = jointAbove(*this, engine::JointType::universal, "UniversalJoint");
+    out.pair("ax1", radToDeg(joint->angle(0))).pair("ax2", radToDeg(joint->angle(1))).close();
   }
 
  private:
-  IJoint* joint_ = nullptr;
+  Link<IJoint> joint_;
 };
 
 }  // namespace spark

@@ -40,6 +40,8 @@ double secondsUntil(std::chrono::steady_clock::time_point t) {
 void Simulation::describe(Description<Simulation>& d) {
   d.doc("The run loop: names the phases and drives them.");
   d.implements<ISimulation>();
+  d.link(&Simulation::sources_, At<Node>("/sys/server").child<IInputSource>());
+  d.link(&Simulation::gates_, At<Node>("/").below<IInputGate>());
   d.property("step", &Simulation::step_).unit("s").range(1e-6, 1).doc("Simulated time of one cycle.");
   d.property("rate", &Simulation::rate_)
       .choices({"real", "max"})
@@ -142,52 +144,40 @@ void Simulation::loop(More more) {
 // Half a step of tolerance: the sum of steps is not exact.
 bool Simulation::finished() const { return stopping() || (duration_ > 0 && time_ > duration_ - 0.5 * step_); }
 
-void Simulation::resolve() {
-  if (resolvedAt_ == kernel().structureVersion()) return;
-  resolvedAt_ = kernel().structureVersion();
-  sources_.clear();
-  gates_.clear();
-  waiter_ = {};
-  if (Node* server = kernel().root().find<Node>("/sys/server"))
-    for (const auto& child : server->children())
-      if (auto* source = child->as<IInputSource>()) sources_.push_back({source, child.get()});
-  kernel().updateOrder();
-  kernel().root().collect(gates_);
-  for (const Source& s : sources_)
-    if (!waiter_.input && s.input->canWait()) waiter_ = s;
-}
-
 // Input changes the tree (agents come and go), so positions are looked up anew for every source.
 void Simulation::poll() {
   NowRunning now(kInput);
   now.beat();
   for (std::size_t i = 0;; ++i) {
-    resolve();
-    if (i >= sources_.size()) return;
-    const InUse polled(*sources_[i].leaf, kTakesInput);
-    now.at(sources_[i].leaf);
-    sources_[i].input->poll();
+    const std::vector<Found<IInputSource>>& sources = sources_.all();
+    if (i >= sources.size()) return;
+    const InUse polled(*sources[i].leaf, kTakesInput);
+    now.at(sources[i].leaf);
+    sources[i]->poll();
   }
 }
 
 bool Simulation::gatesOpen() {
   for (std::size_t i = 0;; ++i) {
-    resolve();
-    if (i >= gates_.size()) return true;
-    if (!gates_[i]->ready(sync_)) return false;
+    const std::vector<Found<IInputGate>>& gates = gates_.all();
+    if (i >= gates.size()) return true;
+    if (!gates[i]->ready(sync_)) return false;
   }
 }
 
 void Simulation::waitForInput(double seconds) {
-  resolve();
   const double slice = std::min(seconds, kSlice);
-  NowRunning now(kInput, waiter_.leaf);
+  const auto canWait = [](const Found<IInputSource>& s) { return s->canWait(); };
+  const auto waiter = std::find_if(sources_.begin(), sources_.end(), canWait);
+  const bool found = waiter != sources_.end();
+  NowRunning now(kInput, found ? waiter->leaf : nullptr);
   now.beat();
-  if (waiter_.input) {
-    const InUse waited(*waiter_.leaf, kTakesInput);
-    waiter_.input->wait(slice);
-  } else
+  if (found) {
+    const InUse waited(*waiter->leaf, kTakesInput);
+    (*waiter)->wait(slice);
+  } else {
     std::this_thread::sleep_for(std::chrono::duration<double>(slice));
+  }
   if (sources_.size() > 1) poll();
 }
 

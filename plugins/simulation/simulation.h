@@ -54,8 +54,6 @@ class Simulation : public Node, public ISimulation {
   void loop(More more);
   bool stopping() const { return stopped_ || kernel().stopRequested(); }
   bool finished() const;
-  /// Looks up sources and gates again when the tree's shape changed.
-  void resolve();
   void poll();
   bool gatesOpen();
   /// Waits for input or until `seconds` have passed, at most one slice, and takes what came.
@@ -72,14 +70,8 @@ class Simulation : public Node, public ISimulation {
   bool sync_ = false, stopped_ = false, running_ = false;
   int threads_ = 1;
 
-  struct Source {
-    IInputSource* input = nullptr;
-    Leaf* leaf = nullptr;  ///< the same
-  };
-  std::vector<Source> sources_;
-  std::vector<IInputGate*> gates_;
-  Source waiter_;  ///< the source to wait on; none: sleep
-  std::uint64_t resolvedAt_ = 0;
+  Links<IInputSource> sources_;
+  Links<IInputGate> gates_;
 
   Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr,
           *sense_ = nullptr, *publish_ = nullptr;

@@ -12,6 +12,7 @@ class AgentCollisionHandler : public CollisionHandler {
  public:
   static void describe(Description<AgentCollisionHandler>& d) {
     d.doc("Tells the rules of touching and charging which robots its collider meets; contacts are not changed.");
+    d.link(&AgentCollisionHandler::contacts_, At<Node>(IGameControl::kPath).child<PlayerContactAspect>());
   }
   void onCollision(const Collision& collision) override {
     if (!collision.other.body()) return;  // ground and goals
@@ -24,10 +25,7 @@ class AgentCollisionHandler : public CollisionHandler {
 
  private:
   void refresh() {
-    if (version_ == kernel().structureVersion()) return;
-    version_ = kernel().structureVersion();
-    auto* control = kernel().root().find<Node>("/sys/server/gamecontrol");
-    contacts_ = control ? control->childOf<PlayerContactAspect>() : nullptr;
+    if (!tree_.changed(*this)) return;
     self_ = outermost(*this);
     other_ = nullptr;
   }
@@ -42,8 +40,8 @@ class AgentCollisionHandler : public CollisionHandler {
     return agent ? &agent->outermost() : nullptr;
   }
 
-  std::uint64_t version_ = 0;
-  PlayerContactAspect* contacts_ = nullptr;
+  Link<PlayerContactAspect> contacts_;
+  TreeWatch tree_;
   const AgentAspect* self_ = nullptr;
   const ICollider* other_ = nullptr;
   const AgentAspect* otherAgent_ = nullptr;

@@ -14,7 +14,7 @@ void BallStateAspect::describe(Description<BallStateAspect>& d) {
 }
 
 void BallStateAspect::rule(const Event&) {
-  GameStateAspect* game = beside(game_, version_);
+  GameStateAspect* game = game_.get();
   if (!game) return;
   soccer::Pitch& pitch = game->pitch();
   if (!pitch.ready() || !pitch.ball()) return;
@@ -36,7 +36,7 @@ void BallStateAspect::rest(const Event&) {
   touched_ = false;
   touchedBy_.fill(false);
   inGoal_ = Side::none;
-  GameStateAspect* game = beside(game_, version_);
+  GameStateAspect* game = game_.get();
   if (game && game->pitch().ready())
     if (auto* r = game->pitch().ballRecorder()) r->clear();
 }

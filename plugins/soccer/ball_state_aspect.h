@@ -57,8 +57,6 @@ class BallStateAspect : public SoccerControlAspect {
   std::string lastTeam() const { return soccer::sideName(last_.side); }
   int lastUnum() const { return last_.unum; }
 
-  GameStateAspect* game_ = nullptr;
-  std::uint64_t version_ = 0;
   int kicker_ = 0;
   bool touched_ = false, fresh_ = false, onField_ = true;
   std::array<bool, 2> touchedBy_{};  ///< left, right

@@ -3,11 +3,6 @@
 namespace spark {
 
 void FoulAspect::judge(const Event& event) {
-  if (version_ != kernel().structureVersion()) {
-    version_ = kernel().structureVersion();
-    penalties_ = parent()->childOf<PenaltyAspect>();
-    contacts_ = parent()->childOf<PlayerContactAspect>();
-  }
   if (!penalties_) return;
   penalties_->follow(pitch());
   if (game().paused())

@@ -19,6 +19,8 @@ class FoulAspect : public SoccerRule {
   static void describe(Description<FoulAspect>& d) {
     d.doc("Base of the fouls that the automatic referee judges.");
     d.abstract();
+    d.link(&FoulAspect::penalties_, Beside<PenaltyAspect>());
+    d.link(&FoulAspect::contacts_, Beside<PlayerContactAspect>());
   }
 
  protected:
@@ -29,7 +31,7 @@ class FoulAspect : public SoccerRule {
 
   PenaltyAspect& penalties() const { return *penalties_; }
   /// nullptr when the config has none: then nobody touches anybody.
-  const PlayerContactAspect* contacts() const { return contacts_; }
+  const PlayerContactAspect* contacts() const { return contacts_.get(); }
   const std::vector<soccer::Player>& players() const { return pitch().players(); }
   /// Has a team and a body, and no penalty to serve.
   bool isJudged(std::size_t player) const {
@@ -46,16 +48,15 @@ class FoulAspect : public SoccerRule {
 
   template <class T>
   void follow(soccer::PlayerRecords<T>& records) const {
-    records.follow(pitch(), kernel().structureVersion());
+    records.follow(pitch(), *this);
   }
 
  private:
   void judge(const Event& event) final;
   void skip() final { reset(); }
 
-  PenaltyAspect* penalties_ = nullptr;
-  PlayerContactAspect* contacts_ = nullptr;
-  std::uint64_t version_ = 0;
+  Link<PenaltyAspect> penalties_;
+  Link<PlayerContactAspect> contacts_;
 };
 
 }  // namespace spark

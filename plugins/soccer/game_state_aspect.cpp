@@ -176,7 +176,7 @@ std::string GameStateAspect::join(AgentState& state, const std::string& name, st
 }
 
 int GameStateAspect::teamSize() const {
-  const auto* settings = kernel().root().find<SoccerSettings>("/sys/variables/Soccer");
+  const auto* settings = kernel().root().find<SoccerSettings>();
   return settings ? settings->teamSize : kTeamSize;
 }
 

@@ -12,10 +12,9 @@ class MatchLookup {
  public:
   /// What is missing is nullptr.
   void refresh(const Leaf& from) {
-    if (version_ == from.kernel().structureVersion()) return;
-    version_ = from.kernel().structureVersion();
+    if (!tree_.changed(from)) return;
     Node& root = from.kernel().root();
-    settings_ = root.find<SoccerSettings>("/sys/variables/Soccer");
+    settings_ = root.find<SoccerSettings>();
     Node* control = root.find<Node>("/sys/server/gamecontrol");
     game_ = control ? control->childOf<GameStateAspect>() : nullptr;
     ball_ = control ? control->childOf<BallStateAspect>() : nullptr;
@@ -48,7 +47,7 @@ class MatchLookup {
   }
 
  private:
-  std::uint64_t version_ = 0;
+  TreeWatch tree_;
   const SoccerSettings* settings_ = nullptr;
   GameStateAspect* game_ = nullptr;
   BallStateAspect* ball_ = nullptr;

@@ -7,9 +7,9 @@ using soccer::PlayMode;
 using soccer::Side;
 
 bool OffsideAspect::inPlay() {
-  GameStateAspect* game = beside(game_, gameVersion_);
-  BallStateAspect* ball = beside(ball_, ballVersion_);
-  SoccerRuleAspect* referee = beside(referee_, refereeVersion_);
+  GameStateAspect* game = game_.get();
+  BallStateAspect* ball = ball_.get();
+  SoccerRuleAspect* referee = referee_.get();
   if (!game || !ball || !referee) return false;
   soccer::Pitch& pitch = game->pitch();
   if (!pitch.ready()) return false;

@@ -35,10 +35,6 @@ class OffsideAspect : public SoccerControlAspect {
   void mark(const soccer::Pitch& pitch, Side side, int toucher);
   std::vector<int> markedUnums() const;
 
-  GameStateAspect* game_ = nullptr;
-  BallStateAspect* ball_ = nullptr;
-  SoccerRuleAspect* referee_ = nullptr;
-  std::uint64_t gameVersion_ = 0, ballVersion_ = 0, refereeVersion_ = 0;
   std::array<bool, GameStateAspect::kTeamSize + 1> marked_{};  ///< by number
   Side markedSide_ = Side::none;
   Vec3 spot_ = Vec3::Zero();

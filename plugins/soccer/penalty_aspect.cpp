@@ -7,8 +7,8 @@ using soccer::Pitch;
 using soccer::Player;
 
 void PenaltyAspect::rule(const Event& event) {
-  GameStateAspect* game = beside(game_, gameVersion_);
-  if (!game || !beside(referee_, refereeVersion_)) return;
+  GameStateAspect* game = game_.get();
+  if (!game || !referee_) return;
   const Pitch& pitch = game->pitch();
   if (!pitch.ready()) return;
   follow(pitch);
@@ -26,7 +26,7 @@ void PenaltyAspect::call(const Pitch& pitch, std::size_t player, Foul foul, Sent
 }
 
 void PenaltyAspect::report(const Player& player, Foul foul) {
-  if (SoccerRuleAspect* referee = beside(referee_, refereeVersion_))
+  if (SoccerRuleAspect* referee = referee_.get())
     referee->reportFoul(static_cast<int>(foul), soccer::sideName(player.side()), player.state->unum());
 }
 

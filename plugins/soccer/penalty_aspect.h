@@ -29,7 +29,7 @@ class PenaltyAspect : public SoccerControlAspect {
   void rest(const Event&) override { records_.reset(); }
 
   /// To be called by fouls before they judge.
-  void follow(const soccer::Pitch& pitch) { records_.follow(pitch, kernel().structureVersion()); }
+  void follow(const soccer::Pitch& pitch) { records_.follow(pitch, *this); }
   /// The player (an index) has no penalty to serve: only then he may be called.
   bool isFree(std::size_t player) const { return records_[player].sentence == Sentence::none; }
   /// He is held, and then placed outside.
@@ -66,9 +66,6 @@ class PenaltyAspect : public SoccerControlAspect {
   void call(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul, Sentence sentence, const Vec3& target);
   void serve(const soccer::Pitch& pitch, const soccer::Player& player, Record& record, double step);
 
-  GameStateAspect* game_ = nullptr;
-  SoccerRuleAspect* referee_ = nullptr;
-  std::uint64_t gameVersion_ = 0, refereeVersion_ = 0;
   soccer::PlayerRecords<Record> records_;
   std::int64_t count_ = 0;
 };

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <functional>
 
-#include "api/first_below.h"
-
 namespace spark::soccer {
 
 Bounds Player::bounds() const {
@@ -86,30 +84,29 @@ Player playerWith(AgentAspect& agent) {
   Player p;
   p.agent = &agent;
   p.changedAt = agent.changedAt();
-  p.state = firstBelow<AgentState>(agent);
+  p.state = Below<AgentState>().find(agent).object;
   if (!p.state) return p;
   agent.collect(p.bodies);
   agent.collect(p.colliders);
   auto* inner = p.state->ancestor<AgentAspect>();
-  p.torso = inner ? firstBelow<IRigidBody>(*inner) : nullptr;
+  p.torso = inner ? Below<IRigidBody>().find(*inner).object : nullptr;
   if (!p.torso && !p.bodies.empty()) p.torso = p.bodies.front();
   return p;
 }
 }  // namespace
 
 void Pitch::refresh(Kernel& kernel) {
-  if (version_ == kernel.structureVersion()) return;
-  version_ = kernel.structureVersion();
+  if (!tree_.changed(kernel.root())) return;
   Node& root = kernel.root();
-  settings_ = root.find<SoccerSettings>("/sys/variables/Soccer");
-  gameControl_ = root.find<IGameControl>("/sys/server/gamecontrol");
-  simulation_ = root.find<ISimulation>("/sys/server/simulation");
-  scene_ = root.find<ISceneServer>("/sys/server/scene");
+  settings_ = root.find<SoccerSettings>();
+  gameControl_ = root.find<IGameControl>();
+  simulation_ = root.find<ISimulation>();
+  scene_ = root.find<ISceneServer>();
   ball_ = nullptr;
   ballRecorder_ = leftGoal_ = rightGoal_ = nullptr;
   Node* field = scene_ ? root.find<Node>("/usr/scene") : nullptr;
   if (field && settings_) {
-    if (Node* ball = field->find<Node>("Ball")) ball_ = firstBelow<IRigidBody>(*ball);
+    if (Node* ball = field->find<Node>("Ball")) ball_ = Below<IRigidBody>().find(*ball).object;
     ballRecorder_ = field->find<ICollisionRecorder>(settings_->ballRecorder);
     leftGoal_ = field->find<ICollisionRecorder>(settings_->leftGoalRecorder);
     rightGoal_ = field->find<ICollisionRecorder>(settings_->rightGoalRecorder);

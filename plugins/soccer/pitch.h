@@ -143,7 +143,7 @@ class Pitch {
   /// Index of the player of an agent, players_.size() when there is none.
   std::size_t indexOf(const Leaf* agent) const;
 
-  std::uint64_t version_ = 0;
+  TreeWatch tree_;
   SoccerSettings* settings_ = nullptr;
   ISceneServer* scene_ = nullptr;
   IGameControl* gameControl_ = nullptr;

@@ -10,7 +10,7 @@ void PlayerContactAspect::rule(const Event&) {
   meetings_.clear();
   group_.clear();
   atBall_.clear();
-  GameStateAspect* game = beside(game_, version_);
+  GameStateAspect* game = game_.get();
   if (game && game->pitch().ready()) {
     pitch_ = &game->pitch();
     atBall_.resize(pitch_->players().size());

@@ -51,8 +51,6 @@ class PlayerContactAspect : public SoccerControlAspect {
   void join(int a, int b);
   void meet(int a, int b, const Vec3& point);
 
-  GameStateAspect* game_ = nullptr;
-  std::uint64_t version_ = 0;
   const soccer::Pitch* pitch_ = nullptr;  ///< of this cycle
   // kept between cycles for their capacity only
   std::vector<Told> told_;

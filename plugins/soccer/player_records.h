@@ -14,9 +14,8 @@ class PlayerRecords {
  public:
   /// Makes the records fit the players. To be called before they are used; costs a comparison while the tree's shape is
   /// the same.
-  void follow(const Pitch& pitch, std::uint64_t structureVersion) {
-    if (version_ == structureVersion) return;
-    version_ = structureVersion;
+  void follow(const Pitch& pitch, const Leaf& anyNode) {
+    if (!tree_.changed(anyNode)) return;
     std::vector<int> numbers;
     std::vector<T> records;
     for (const Player& p : pitch.players()) {
@@ -53,11 +52,11 @@ class PlayerRecords {
       numbers_[i] = static_cast<int>(in.readInteger());
       records_[i].load(in);
     }
-    version_ = 0;
+    tree_.lookAgain();
   }
 
  private:
-  std::uint64_t version_ = 0;
+  TreeWatch tree_;
   std::vector<int> numbers_;  ///< of the agents, ascending as players are
   std::vector<T> records_;
 };

@@ -39,8 +39,7 @@ void SelfCollisionAspect::reset() {
 }
 
 void SelfCollisionAspect::lookUp() {
-  if (version_ == kernel().structureVersion()) return;
-  version_ = kernel().structureVersion();
+  if (!tree_.changed(*this)) return;
   std::vector<Robot> now;
   for (const soccer::Player& p : players()) {
     const auto before =
@@ -174,7 +173,7 @@ void SelfCollisionAspect::loadState(StateReader& in) {
       j.since = in.readNumber();
     }
   }
-  version_ = 0;
+  tree_.lookAgain();
 }
 
 }  // namespace spark

@@ -62,7 +62,7 @@ class SelfCollisionAspect : public FoulAspect {
   bool freeze(Robot& robot, const Box& box, double now);
   void tell(const soccer::Player& player, const Box& a, const Box& b, double now);
 
-  std::uint64_t version_ = 0;
+  TreeWatch tree_;
   std::vector<Robot> robots_;  ///< by index of the player
 };
 

@@ -7,10 +7,7 @@
 namespace spark::soccer {
 
 void Sights::update(Kernel& kernel, float range) {
-  if (version_ != kernel.structureVersion()) {
-    version_ = kernel.structureVersion();
-    collect(kernel);
-  }
+  if (tree_.changed(kernel.root())) collect(kernel);
   place();
   cells_.clear();
   if (cell_ == kUnlimited) cell_ = std::max(range, kLeastCell);
@@ -19,7 +16,7 @@ void Sights::update(Kernel& kernel, float range) {
 
 void Sights::share(Kernel& kernel, std::uint64_t round, float range) {
   const bool wantsCells = range < kUnlimited && cell_ == kUnlimited;
-  if (round_ == round && version_ == kernel.structureVersion() && !wantsCells) return;
+  if (round_ == round && !tree_.isStale(kernel.root()) && !wantsCells) return;
   round_ = round;
   update(kernel, range);
 }

@@ -80,7 +80,8 @@ class Sights {
   std::uint32_t cellOf(float coordinate) const;
   void all(std::vector<std::uint32_t>& out) const;
 
-  std::uint64_t version_ = 0, round_ = 0;
+  TreeWatch tree_;
+  std::uint64_t round_ = 0;
   std::vector<Mark> field_, parts_;
   std::vector<Robot> robots_;
   std::vector<Stroke> lines_;

@@ -5,31 +5,23 @@
 
 namespace spark {
 
+class BallStateAspect;
 class GameStateAspect;
+class SoccerRuleAspect;
 
 /// Base of the rules of soccer: finds the match and says what is missing.
 class SoccerControlAspect : public ControlAspect {
   SPARK_CLASS(SoccerControlAspect, ControlAspect)
  public:
-  static void describe(Description<SoccerControlAspect>& d) {
-    d.doc("Base of the rules of soccer.");
-    d.abstract();
-  }
+  static void describe(Description<SoccerControlAspect>& d);
 
  protected:
-  /// The aspect of that class beside this one. Found again when the tree changed; throws nothing.
-  template <class T>
-  T* beside(T*& cache, std::uint64_t& version) {
-    if (version != kernel().structureVersion()) {
-      version = kernel().structureVersion();
-      cache = parent()->childOf<T>();
-    }
-    return cache;
-  }
-  void onLink() override {
-    ControlAspect::onLink();
-    kernel().root().require<SoccerSettings>("/sys/variables/Soccer");
-  }
+  void onLink() override { kernel().root().require<SoccerSettings>(); }
+
+  /// The aspects beside it that hold the match; empty where the config has none.
+  Link<GameStateAspect, true> game_;
+  Link<BallStateAspect, true> ball_;
+  Link<SoccerRuleAspect, true> referee_;
 };
 
 }  // namespace spark

@@ -16,6 +16,8 @@ class SoccerRule : public ControlAspect {
   static void describe(Description<SoccerRule>& d) {
     d.doc("Base of the rules of play.");
     d.abstract();
+    d.link(&SoccerRule::above_, Above<SoccerRuleAspect>());
+    d.link(&SoccerRule::beside_, Beside<SoccerRuleAspect>());
   }
   void rule(const Event& event) final {
     if (findReferee() && referee_->ready()) judge(event);
@@ -43,7 +45,6 @@ class SoccerRule : public ControlAspect {
   bool in(PlayMode left) const { return (mode() == left || mode() == forSide(left, Side::right)) && referee_->holds(); }
 
   void onLink() override {
-    ControlAspect::onLink();
     if (!findReferee())
       kernel().log().warning(
           "{} judges nothing: expected a SoccerRuleAspect above or beside it, found none. Create one before it.",
@@ -52,15 +53,12 @@ class SoccerRule : public ControlAspect {
 
  private:
   bool findReferee() {
-    if (version_ == kernel().structureVersion()) return referee_ != nullptr;
-    version_ = kernel().structureVersion();
-    referee_ = ancestor<SoccerRuleAspect>();
-    if (!referee_) referee_ = parent()->childOf<SoccerRuleAspect>();
+    referee_ = above_ ? above_.get() : beside_.get();
     return referee_ != nullptr;
   }
 
+  Link<SoccerRuleAspect> above_, beside_;
   SoccerRuleAspect* referee_ = nullptr;
-  std::uint64_t version_ = 0;
 };
 
 }  // namespace spark

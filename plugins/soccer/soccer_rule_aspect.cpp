@@ -21,6 +21,7 @@ void SoccerRuleAspect::describe(Description<SoccerRuleAspect>& d) {
   d.doc(
       "The referee: what the rules of play share. It makes the rules below itself: KickOffRule, GoalRule, "
       "PassModeRule, ...");
+  d.link(&SoccerRuleAspect::passMode_, Child<PassModeRule>());
   d.property("kickPosition", &R::kickPosition_)
       .unit("m")
       .readOnly()
@@ -37,19 +38,7 @@ void SoccerRuleAspect::onLink() {
   for (const char* name : kRules) create(name, name);
 }
 
-bool SoccerRuleAspect::findMatch() {
-  beside(game_, gameVersion_);
-  beside(ball_, ballVersion_);
-  return game_ && ball_ && game_->pitch().ready() && game_->pitch().ball();
-}
-
-PassModeRule* SoccerRuleAspect::passMode() {
-  if (passVersion_ != kernel().structureVersion()) {
-    passVersion_ = kernel().structureVersion();
-    passMode_ = childOf<PassModeRule>();
-  }
-  return passMode_;
-}
+bool SoccerRuleAspect::findMatch() { return game_ && ball_ && game_->pitch().ready() && game_->pitch().ball(); }
 
 void SoccerRuleAspect::rule(const Event&) {
   ready_ = findMatch();

@@ -54,7 +54,7 @@ class SoccerRuleAspect : public SoccerControlAspect {
   soccer::Pitch& pitch() const { return game_->pitch(); }
   const SoccerSettings& settings() const { return pitch().settings(); }
   /// nullptr when there is no such rule.
-  PassModeRule* passMode();
+  PassModeRule* passMode() const { return passMode_.get(); }
   /// The mode that this cycle began with.
   PlayMode mode() const { return mode_; }
   /// No rule has ended that mode yet.
@@ -104,10 +104,7 @@ class SoccerRuleAspect : public SoccerControlAspect {
   Vec3 cornerPosition(Side defending) const;
   Vec3 kickInPosition() const;
 
-  GameStateAspect* game_ = nullptr;
-  BallStateAspect* ball_ = nullptr;
-  PassModeRule* passMode_ = nullptr;
-  std::uint64_t gameVersion_ = 0, ballVersion_ = 0, passVersion_ = 0;
+  Link<PassModeRule, true> passMode_;
   bool ready_ = false;
 
   PlayMode mode_ = PlayMode::beforeKickOff;

@@ -14,6 +14,7 @@ namespace spark {
 class SoccerSettings : public Node, public IVariables {
   SPARK_CLASS(SoccerSettings, Node)
  public:
+  static constexpr const char* kPath = "/sys/variables/Soccer";
   static void describe(Description<SoccerSettings>& d);
   Value variable(std::string_view name) const override;
   /// Adds or replaces a variable that no rule knows, for scene files of other leagues.

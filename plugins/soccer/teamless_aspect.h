@@ -17,7 +17,7 @@ class TeamlessAspect : public SoccerControlAspect {
   void rest(const Event&) override { follow(); }
 
  protected:
-  void loadState(StateReader&) override { version_ = 0; }
+  void loadState(StateReader&) override { tree_.lookAgain(); }
 
  private:
   static constexpr const char *kGroup = "CollisionGroup", *kDetached = "detached";
@@ -27,7 +27,7 @@ class TeamlessAspect : public SoccerControlAspect {
     bool detached;
   };
   void follow() {
-    if (std::exchange(version_, kernel().structureVersion()) != kernel().structureVersion()) lookUp();
+    if (tree_.changed(*this)) lookUp();
     for (Robot& r : robots_)
       if (const bool wanted = enabled() && isTeamless(r); wanted != r.detached) detach(*r.group, r.detached = wanted);
   }
@@ -45,7 +45,7 @@ class TeamlessAspect : public SoccerControlAspect {
     }
   }
 
-  std::uint64_t version_ = 0;
+  TreeWatch tree_;
   std::vector<Robot> robots_;  ///< as of the last change of the tree
 };
 

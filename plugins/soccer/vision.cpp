@@ -42,19 +42,18 @@ void writePoint(Predicates& out, std::string_view name, const Vec3f& p) {
 
 void Outlook::refresh(const SceneNode& eye) {
   Kernel& kernel = eye.kernel();
-  if (version_ == kernel.structureVersion()) return;
-  version_ = kernel.structureVersion();
+  if (!tree_.changed(eye)) return;
+  stateFound_ = false;
   auto* aspect = eye.ancestor<AgentAspect>();
   agent_ = aspect ? &aspect->outermost() : nullptr;
   state_ = nullptr;
-  settings_ = kernel.root().find<SoccerSettings>("/sys/variables/Soccer");
+  settings_ = kernel.root().find<SoccerSettings>();
   if (!settings_ && !own_) own_ = std::make_unique<Sights>();
   sights_ = settings_ ? &settings_->sights() : own_.get();
 }
 
 void Outlook::findState() {
-  if (stateVersion_ == version_) return;
-  stateVersion_ = version_;
+  if (std::exchange(stateFound_, true)) return;
   state_ = sights_->stateOf(agent_);
 }
 

@@ -102,7 +102,8 @@ class Outlook {
     return settings_ && settings_->visionRange > 0 ? std::min(range, static_cast<float>(settings_->visionRange))
                                                    : range;
   }
-  std::uint64_t version_ = 0, stateVersion_ = 0;
+  TreeWatch tree_;
+  bool stateFound_ = false;
   bool shared_ = false;
   float range_ = Sights::kUnlimited;
   std::unique_ptr<Sights> own_;

@@ -102,6 +102,7 @@ class TestScenes : public Node, public ISceneServer {
     d.implements<ISceneServer>();
   }
   Leaf& leaf() override { return *this; }
+  Node* activeScene() override { return kernel().root().find<Node>("/usr/scene"); }
   Node& scene() override { return kernel().root().require<Node>("/usr/scene"); }
   void importScene(std::string_view file, Node& root, const List& arguments) override {
     root.create("TestClock", "clock");

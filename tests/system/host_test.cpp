@@ -245,6 +245,8 @@ TEST_CASE("sparkctl shows the house and changes it") {
   p.line();
   const auto ctl = controlOf(p);
   REQUIRE_THAT(ctl({"tree", "/sys"}).out, Contains("simulation  (Simulation)") && Contains("run loop"));
+  REQUIRE_THAT(ctl({"tree", "/sys/server/simulation", "--links"}).out,
+               Contains("an IInputSource among the children of the Node at /sys/server: /sys/server/control"));
   REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out,
                Contains("step = 0.02 s") && Contains("Simulated time of one cycle."));
   REQUIRE_THAT(ctl({"plugins"}).out, Contains("* control"));

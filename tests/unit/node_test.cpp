@@ -185,6 +185,13 @@ TEST_CASE("A node may add and remove others while it is linked, but not itself")
   auto suicidal = core.kernel.classOf("Thing").create();
   suicidal->as<Thing>()->atLink = [](Thing& self) { self.parent()->remove(self); };
   CHECK_THROWS_WITH(core.top->add(std::move(suicidal)), Catch::Contains("just being linked"));
+
+  Thing& outer = core.make("outer");
+  auto sawing = core.kernel.classOf("Thing").create();
+  sawing->as<Thing>()->atLink = [&](Thing&) { core.top->remove(outer); };
+  CHECK_THROWS_WITH(core.make(outer, "inner").add(std::move(sawing)),
+                    Catch::Contains("cannot remove /usr/t/outer now: /usr/t/outer/inner/Thing is just being linked"));
+  CHECK(core.top->child("outer") == &outer);
 }
 
 TEST_CASE("What onUnlink throws is logged, and the node goes all the same") {

@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> arguments;
   int pid = 0, depth = -1;
   double timeout = 10;
-  bool all = false;
+  bool all = false, links = false;
   app.add_option("--socket", socket, "The house's control socket, where several run");
   app.add_option("--pid", pid, "The house's process, where several run");
   app.add_option("--timeout", timeout, "How long to wait for each answer [s]")
@@ -98,6 +98,7 @@ int main(int argc, char** argv) {
   tree->add_option("PATH", path, "Where to begin")->capture_default_str();
   tree->add_option("--depth", depth, "Levels to show");
   tree->add_flag("--all", all, "Show every one of many brothers of one class");
+  tree->add_flag("--links", links, "Also what each node looks up, and where that is");
   CLI::App* gets = app.add_subcommand("get", "A property, or all properties of a node, with units and documentation");
   gets->add_option("PATH.PROPERTY", target)->required();
   CLI::App* sets = app.add_subcommand("set", "Sets a property between two cycles");
@@ -122,7 +123,9 @@ int main(int argc, char** argv) {
   }
   try {
     House house(choose(socket, pid), timeout);
-    if (*tree) print(treeText(house.ask({{"do", "tree"}, {"path", path}, {"depth", depth}})["tree"], path, all));
+    if (*tree)
+      print(
+          treeText(house.ask({{"do", "tree"}, {"path", path}, {"depth", depth}, {"links", links}})["tree"], path, all));
     if (*gets) get(house, target);
     if (*sets) set(house, target, value);
     if (*calls) call(house, target, arguments);

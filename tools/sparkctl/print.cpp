@@ -35,7 +35,16 @@ void child(const Json& node, const std::string& indent, bool last, bool all, std
   children(node, indent + (last ? "   " : "│  "), all, out);
 }
 
+void links(const Json& node, const std::string& indent, std::string& out) {
+  for (const Json& link : node.value("links", Json::array())) {
+    std::string paths;
+    for (const Json& path : link["paths"]) paths += (paths.empty() ? "" : ", ") + path.get<std::string>();
+    out += fmt::format("{}   {}: {}\n", indent, text(link, "to"), paths.empty() ? "none" : paths);
+  }
+}
+
 void children(const Json& node, const std::string& indent, bool all, std::string& out) {
+  links(node, indent, out);
   if (node.contains("more")) out += fmt::format("{}└─ … {} below\n", indent, node["more"].get<std::size_t>());
   if (!node.contains("children")) return;
   const Json& list = node["children"];

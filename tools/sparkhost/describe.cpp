@@ -56,6 +56,14 @@ std::string methodLine(const Method& m) {
   return fmt::format("    {}\n{:27}{}\n", signature, "", m.doc);
 }
 
+std::string linkLines(ClassObject& c) {
+  std::string out;
+  for (const LinkDescription* link : c.links())
+    out += fmt::format("    {}{}{}{}\n", link->all ? "all of: " : "", link->route.text(),
+                       link->lacks.empty() ? "" : ", needed", link->doc.empty() ? "" : ": " + link->doc);
+  return out.empty() ? out : "  looks up:\n" + out;
+}
+
 /// The entries that `c` adds to what its base has, or describes anew.
 template <class T>
 std::vector<const T*> added(const std::vector<const T*>& all, const std::vector<const T*>& inherited) {
@@ -111,6 +119,7 @@ std::string classDescription(Kernel& kernel, std::string_view className) {
   std::string phases;
   for (const Hook* h : c.hooks()) phases += (phases.empty() ? "" : ", ") + h->channel;
   if (!phases.empty()) out += fmt::format("  handles: {}\n", phases);
+  out += linkLines(c);
   out += sections<Property>(c, "properties", &ClassObject::properties,
                             [&](const Property& p) { return propertyLine(c, p); });
   out += sections<Method>(c, "methods", &ClassObject::methods,

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "spark/link.h"
 #include "spark/node.h"
 #include "spark/value.h"
 
@@ -54,6 +55,17 @@ struct Hook {
   void (*run)(Leaf&, const Event&) = nullptr;
 };
 
+/// A link that every object of the class has.
+struct LinkDescription {
+  AnyRoute route;
+  bool all = false;   ///< Links: it leads to all that the route finds
+  std::string doc;    ///< one sentence, may be empty
+  std::string lacks;  ///< not empty: without a target a warning says so, and this
+  std::function<detail::LinkBase&(Leaf&)> member;
+  /// Where it leads from an object of the class now.
+  std::vector<Found<void>> targets(const Leaf& owner) const;
+};
+
 /// What `describe()` fills in.
 struct ClassDescription {
   struct Interface {
@@ -65,6 +77,7 @@ struct ClassDescription {
   std::vector<Property> properties;
   std::vector<Method> methods;
   std::vector<Hook> hooks;
+  std::vector<LinkDescription> links;
   std::unique_ptr<Leaf> (*make)() = nullptr;  ///< nullptr: abstract
 };
 
@@ -101,6 +114,7 @@ class ClassObject : public Leaf {
   std::vector<const Property*> properties();
   std::vector<const Method*> methods();
   const std::vector<const Hook*>& hooks();
+  const std::vector<const LinkDescription*>& links();
   /// The properties that are state, own and inherited, in order of properties().
   const std::vector<const Property*>& stateProperties();
   /// Own interfaces only.
@@ -120,6 +134,8 @@ class ClassObject : public Leaf {
     return nullptr;
   }
   std::unique_ptr<Leaf> construct() const;
+  void bindLinks(Leaf& leaf);
+  void warnOfMissing(const Leaf& leaf) const;
   void fillCasts();
   void resolve();
   std::int64_t livingCount() const;
@@ -137,6 +153,8 @@ class ClassObject : public Leaf {
   std::uint64_t castMask_ = 0;
   Kernel* kernel_ = nullptr;
   std::vector<const Hook*> hooks_;
+  std::vector<const LinkDescription*> links_;
+  std::vector<detail::LinkSite> sites_;  ///< of each link
   std::vector<const Property*> stateProperties_;
   Plugin* plugin_;
   ClassObject* base_ = nullptr;

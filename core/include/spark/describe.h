@@ -6,6 +6,7 @@
 ///       d.doc("Slows its body in proportion to its speed.");
 ///       d.property("linearDrag", &DragController::linear_).unit("N s/m").min(0).doc("Force per speed.");
 ///       d.method("stop", &DragController::stop).doc("Takes the body's speed away.");
+///       d.link(&DragController::body_, Above<IRigidBody>());
 ///       d.on<&DragController::prepare>("prepare");
 ///     }
 
@@ -58,6 +59,18 @@ class MethodBuilder {
   Method& get() { return d_.methods[index_]; }
   ClassDescription& d_;
   std::size_t index_;
+};
+
+/// Refines the link just described.
+class LinkBuilder {
+ public:
+  explicit LinkBuilder(LinkDescription& link) : link_(link) {}
+  LinkBuilder& doc(std::string text) { return link_.doc = std::move(text), *this; }
+  /// The node is of no use without it: where it is missing a warning in the log says so and ends with `hint`.
+  LinkBuilder& required(std::string hint) { return link_.lacks = std::move(hint), *this; }
+
+ private:
+  LinkDescription& link_;
 };
 
 namespace detail {
@@ -182,6 +195,18 @@ class Description {
     d_.interfaces.push_back({I::kInterface, [](Leaf* l) -> void* { return static_cast<I*>(static_cast<T*>(l)); }});
   }
 
+  /// A member that the kernel looks up along a route (see link.h).
+  template <class L, bool kKnows, detail::BaseOf<T> C>
+  LinkBuilder link(Link<L, kKnows> C::*member, Route<L> route) {
+    return addLink(std::move(route), false,
+                   [member](Leaf& l) -> detail::LinkBase& { return static_cast<T&>(l).*member; });
+  }
+  template <class L, detail::BaseOf<T> C>
+  LinkBuilder link(Links<L> C::*member, Route<L> route) {
+    return addLink(std::move(route), true,
+                   [member](Leaf& l) -> detail::LinkBase& { return static_cast<T&>(l).*member; });
+  }
+
   /// Every object of the class handles this event while it is linked: `void T::f(const Event&)`.
   template <auto F>
   void on(std::string channel) {
@@ -203,6 +228,10 @@ class Description {
     p.set = std::move(set);
     d_.properties.push_back(std::move(p));
     return PropertyBuilder(d_, d_.properties.size() - 1);
+  }
+  LinkBuilder addLink(AnyRoute route, bool all, std::function<detail::LinkBase&(Leaf&)> member) {
+    d_.links.push_back({std::move(route), all, "", "", std::move(member)});
+    return LinkBuilder(d_.links.back());
   }
   ClassDescription& d_;
 };

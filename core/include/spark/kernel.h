@@ -155,7 +155,7 @@ class Kernel {
   std::uint64_t seed() const { return seed_; }
 
   /// Counts every change of the tree's shape and names: caches are valid while it stays.
-  std::uint64_t structureVersion() const { return structureVersion_; }
+  const std::uint64_t& structureVersion() const { return structureVersion_; }
   /// Lists and numbers all linked nodes in tree order if the shape changed since the last call; every emit begins with
   /// it. Whoever changes the tree and then collects from much of it calls it in between. The simulation's thread only.
   void updateOrder();

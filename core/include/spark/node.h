@@ -60,12 +60,28 @@ struct InterfaceId {
  private:
 
 namespace detail {
+/// An interface that one server offers, at a place where everybody finds it.
+template <class T>
+concept HasPath = requires {
+  T::kPath;
+};
+
 /// Outlives its leaf while references remain; `leaf` is nulled when the leaf dies.
 struct Life {
   Leaf* leaf;
   unsigned references;
 };
 }  // namespace detail
+
+/// An object of the tree, as the leaf that it is and as the T that it offers.
+template <class T>
+struct Found {
+  T* object = nullptr;
+  Leaf* leaf = nullptr;
+  T* operator->() const { return object; }
+  std::add_lvalue_reference_t<T> operator*() const { return *object; }
+  explicit operator bool() const { return object != nullptr; }
+};
 
 /// A checked, non-owning reference: empty once the object died. Copy and assign it on the simulation's thread; read it
 /// anywhere.
@@ -74,6 +90,7 @@ class Ref {
  public:
   Ref() = default;
   Ref(T* object);
+  Ref(const Found<T>& found);
   Ref(const Ref& other) noexcept : life_(other.life_), object_(other.object_) {
     if (life_) ++life_->references;
   }
@@ -147,6 +164,15 @@ class Leaf {
   T& require(std::string_view path) const {
     return *static_cast<T*>(requireInterface(path, T::kInterface));
   }
+  /// The server that offers T, at its well-known path `T::kPath`: nullptr when there is none, or Error.
+  template <detail::HasPath T>
+  T* find() const {
+    return find<T>(T::kPath);
+  }
+  template <detail::HasPath T>
+  T& require() const {
+    return require<T>(T::kPath);
+  }
   /// The nearest ancestor that is a T, nullptr when there is none.
   template <class T>
   T* ancestor() const;
@@ -161,7 +187,7 @@ class Leaf {
   /// Runs when the object (and its parents) hang in the tree, before its children are linked. May throw Error: it is
   /// then not added.
   virtual void onLink() {}
-  /// Runs when a parent further up changed (Node::reparent): look up again what onLink looked up.
+  /// Runs when a parent further up changed (Node::reparent). Links need nothing here (link.h).
   virtual void onMoved() {}
   /// Runs before the object leaves the tree, after its children's. What it throws is logged.
   virtual void onUnlink() {}
@@ -175,6 +201,7 @@ class Leaf {
   friend class ClassObject;
   friend class Events;
   friend class Channel;
+  friend class AnyRoute;
   template <class>
   friend class Ref;
   friend std::uint64_t stateHash(const Leaf&);
@@ -267,7 +294,8 @@ class Node : public Leaf {
   void collect(std::vector<T*>& out, bool deep = true) const {
     collectAs(
         T::kInterface, deep,
-        [](void* list, void* match) { static_cast<std::vector<T*>*>(list)->push_back(static_cast<T*>(match)); }, &out);
+        [](void* list, void* match, Leaf&) { static_cast<std::vector<T*>*>(list)->push_back(static_cast<T*>(match)); },
+        &out);
   }
   /// The first child that is a T, nullptr when there is none.
   template <class T>
@@ -278,6 +306,7 @@ class Node : public Leaf {
   }
 
  private:
+  friend class AnyRoute;
   friend class Leaf;
   friend class Kernel;
   friend class Loader;
@@ -286,7 +315,7 @@ class Node : public Leaf {
   Leaf& attach(std::unique_ptr<Leaf> leaf);
   void detach(Leaf& child);
   std::size_t indexOf(const Leaf& child) const;
-  using Take = void (*)(void* list, void* match);
+  using Take = void (*)(void* list, void* match, Leaf& leaf);
   void collectAs(const InterfaceId& id, bool deep, Take take, void* list) const;
   void walk(const InterfaceId& id, bool deep, Take take, void* list) const;
   static bool isFixed(const Leaf& leaf);
@@ -316,6 +345,13 @@ T* Leaf::ancestor() const {
   for (Leaf* p = parent_; p; p = p->parent_)
     if (T* match = p->as<T>()) return match;
   return nullptr;
+}
+
+template <class T>
+Ref<T>::Ref(const Found<T>& found) : object_(found.object) {
+  if (!found) return;
+  life_ = found.leaf->life();
+  ++life_->references;
 }
 
 template <class T>

@@ -64,7 +64,6 @@ class Probe : public SceneNode {
 
  protected:
   void onLink() override {
-    SceneNode::onLink();
     const Vec3f p = transform() ? positionOf(transform()->worldNow()) : Vec3f::Zero();
     deeds().push_back(fmt::format("link {:g} {:g} {:g}", p.x(), p.y(), p.z()));
   }
