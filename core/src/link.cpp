@@ -118,7 +118,10 @@ void AnyRoute::findAll(const Leaf& from, std::vector<Found<void>>& out) const {
   if (last.search == Search::below && !last.accepts && here->isLinked() && here->asNode()) {
     here->kernel().updateOrder();
     return here->asNode()->collectAs(
-        last.id, true, [](void* list, void* match, Leaf& leaf) { static_cast<std::vector<Found<void>>*>(list)->push_back({match, &leaf}); },
+        last.id, true,
+        [](void* list, void* match, Leaf& leaf) {
+          static_cast<std::vector<Found<void>>*>(list)->push_back({match, &leaf});
+        },
         &out);
   }
   Walk(steps_.back(), *here).run([&out](const Found<void>& match) {

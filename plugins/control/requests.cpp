@@ -104,8 +104,7 @@ Json tree(Kernel& kernel, const Json& request, std::size_t most) {
   return {{"ok", true}, {"tree", describeTree(top, request.value("depth", -1), request.value("links", false), left)}};
 }
 
-Json get(Kernel& kernel, const Json& request) {
-  Leaf& leaf = nodeOf(kernel, request);
+Json propertiesOf(const Leaf& leaf, const Json& request) {
   Json properties = Json::array();
   if (request.contains("property"))
     properties.push_back(describe(leaf, propertyOf(leaf, textOf(request, "property"))));
@@ -114,10 +113,13 @@ Json get(Kernel& kernel, const Json& request) {
   return {{"ok", true}, {"path", leaf.path()}, {"class", leaf.classObject()->name()}, {"properties", properties}};
 }
 
+Json get(Kernel& kernel, const Json& request) { return propertiesOf(nodeOf(kernel, request), request); }
+
 Json set(Kernel& kernel, const Json& request) {
   if (!request.contains("value")) throw Error("the request lacks a \"value\"");
-  setProperty(nodeOf(kernel, request), textOf(request, "property"), fromJson(request["value"]));
-  return get(kernel, request);
+  Leaf& leaf = nodeOf(kernel, request);
+  setProperty(leaf, textOf(request, "property"), fromJson(request["value"]));
+  return propertiesOf(leaf, request);  // its name may be what was set
 }
 
 /// The run loop and this server are at work while a request is answered: they cannot go.

@@ -241,7 +241,8 @@ static auto controlOf(const Process& p) {
 
 TEST_CASE("sparkctl shows the house and changes it") {
   TemporaryFolder folder;
-  Process p(host({"--config", folder.write("small.lua", kSmall)}));
+  Process p(
+      host({"--config", folder.write("small.lua", std::string(kSmall) + "new(\"Node\", \"/usr/thing/inner\")\n")}));
   p.line();
   const auto ctl = controlOf(p);
   REQUIRE_THAT(ctl({"tree", "/sys"}).out, Contains("simulation  (Simulation)") && Contains("run loop"));
@@ -253,10 +254,10 @@ TEST_CASE("sparkctl shows the house and changes it") {
   REQUIRE(ctl({"set", "/sys/server/simulation.step", "0.01"}).code == 0);
   REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out, Contains("0.01 s"));
   REQUIRE(ctl({"set", "/sys/server/simulation.step", "soon"}).code == 1);
-  REQUIRE(ctl({"set", "/sys/server/files.name", "007"}).code == 0);  // text stays text
-  REQUIRE_THAT(ctl({"get", "/sys/server/007.name"}).out, Contains("name = 007"));
-  REQUIRE(ctl({"call", "/sys/server/007.setName", "1e3"}).code == 0);
-  REQUIRE_THAT(ctl({"tree", "/sys"}).out, Contains("1e3  ("));
+  REQUIRE(ctl({"set", "/usr/thing/inner.name", "007"}).code == 0);  // text stays text
+  REQUIRE_THAT(ctl({"get", "/usr/thing/007.name"}).out, Contains("name = 007"));
+  REQUIRE(ctl({"call", "/usr/thing/007.setName", "1e3"}).code == 0);
+  REQUIRE_THAT(ctl({"tree", "/usr"}).out, Contains("1e3  ("));
   REQUIRE(ctl({"get", "/nowhere"}).code == 1);
   REQUIRE(ctl({"call", "/sys/server/simulation.stop"}).code == 0);
   REQUIRE(Json::parse(p.line())["cycles"].get<int>() > 0);
