@@ -1,4 +1,4 @@
-# Compiler settings of the project itself, and the ABI word's header hash.
+# Compiler settings of the project itself, and what is generated for its headers.
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
@@ -43,14 +43,7 @@ elseif(SPARK_SANITIZER STREQUAL "thread")
   add_link_options(-fsanitize=thread)
 endif()
 
-# The ABI word: any change of a public header makes old plugins refuse.
-file(GLOB abi_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/core/include/spark/*.h ${CMAKE_SOURCE_DIR}/plugins/api/*.h)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${abi_headers})
-set(abi_text "")
-foreach(header ${abi_headers})
-  file(SHA256 ${header} hash)
-  string(APPEND abi_text ${hash})
-endforeach()
-string(SHA256 abi_hash "${abi_text}")
-string(SUBSTRING ${abi_hash} 0 16 SPARK_ABI_HEADERS)
+# The generated headers: versions, and stamps of the public headers.
+include(SparkAbi)
 configure_file(${CMAKE_SOURCE_DIR}/core/abi.h.in ${CMAKE_BINARY_DIR}/generated/spark/abi.h)
+spark_stamp_headers(SPARK_HEADERS ${CMAKE_BINARY_DIR}/generated ${CMAKE_SOURCE_DIR}/core/include ${CMAKE_SOURCE_DIR}/plugins)

@@ -2,8 +2,10 @@
 #include <cctype>
 #include <cstddef>
 #include <cstring>
+#include <set>
 #include <utility>
 
+#include "host_headers.h"
 #include "library_file.h"
 #include "loaded_library.h"
 #include "spark/error.h"
@@ -12,9 +14,9 @@
 
 // How a plugin comes and goes.
 //
-//   scan(folder)   open every *.so (symbols resolved now, names local), read its descriptor, check magic and ABI word,
-//                  list it under /plugins. Nothing of the plugin runs: it has no constructors with effects, and
-//                  registering is a call.
+//   scan(folder)   open every *.so (symbols resolved now, names local), read its descriptor, check magic, ABI word and
+//                  headers, list it under /plugins. Nothing of the plugin runs: it has no constructors with effects,
+//                  and registering is a call.
 //   use(name)      call registerClasses: the classes appear under /classes. If it throws, what it registered so far is
 //                  removed again.
 //   unload(name)   refused while an object of its classes lives, a foreign class derives from them or handlers run
@@ -50,10 +52,30 @@ std::string abiProblem(const AbiWord& theirs) {
     return "it was built with " + sanitizerName(theirs.sanitizer) + ", this host with " + sanitizerName(ours.sanitizer);
   if (theirs.compiler != ours.compiler) return number("compiler ABI", theirs.compiler, ours.compiler);
   if (theirs.alignment != ours.alignment) return number("alignment", theirs.alignment, ours.alignment);
-  if (std::memcmp(theirs.headers, ours.headers, sizeof ours.headers) != 0)
-    return "its Spark headers (" + std::string(theirs.headers, strnlen(theirs.headers, 16)) +
-           ") are not this host's (" + ours.headers + ")";
   return {};
+}
+
+bool isHostHeader(std::string_view stamp) {
+  const char* const* ours = kHostHeaders;
+  while (*ours && stamp != *ours) ++ours;
+  return *ours;
+}
+
+/// "" when each header that the plugin was compiled with is this host's, else the names of those that are not. Headers
+/// that the plugin does not include may differ.
+std::string headersProblem(const PluginDescriptor& d) {
+  bool listed = false;
+  std::set<std::string> others;
+  for (const char* at = d.headers; at < d.headersEnd; ++at) {
+    const std::string stamp(at, strnlen(at, static_cast<std::size_t>(d.headersEnd - at)));
+    if (stamp.empty()) continue;
+    listed = true;
+    if (!isHostHeader(stamp)) others.insert(stamp.substr(0, stamp.find(' ')));
+    at += stamp.size();
+  }
+  if (!listed) return "it does not say which headers it was built with";
+  if (others.empty()) return {};
+  return fmt::format("this host has another version of {}, or none", fmt::join(others, ", "));
 }
 
 /// The linker believes what a file says. Where it is wrong, the host's last words are the file's name.
@@ -146,6 +168,8 @@ Plugin& Loader::open(const fs::path& file) {
   if (d->size != sizeof(PluginDescriptor))
     refuse("its descriptor has " + std::to_string(d->size) + " bytes, this host's " +
            std::to_string(sizeof(PluginDescriptor)));
+  if (const std::string problem = headersProblem(*d); !problem.empty())
+    refuse(problem + ". Build it again with this host's headers.");
   if (!isPluginName(d->name))
     refuse("its name '" + std::string(d->name ? d->name : "") +
            "' is none: letters, digits, '-', '_' and '.' make one");

@@ -8,6 +8,7 @@
 #include "api/net.h"
 #include "api/phases.h"
 #include "api/scene.h"
+#include "spark/abi/api/agents.h"
 #include "spark/predicates.h"
 
 namespace spark {

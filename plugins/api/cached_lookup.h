@@ -5,6 +5,7 @@
 ///     IRigidBody* body = body_.get(kernel(), [this] { return transform() ? transform()->childOf<IRigidBody>() :
 ///     nullptr; });
 
+#include "spark/abi/api/cached_lookup.h"
 #include "spark/kernel.h"
 
 namespace spark {

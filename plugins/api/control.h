@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "spark/abi/api/control.h"
 #include "spark/node.h"
 #include "spark/value.h"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/math.h"
+#include "spark/abi/api/drawing.h"
 #include "spark/node.h"
 
 namespace spark {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/math.h"
+#include "spark/abi/api/engine.h"
 #include "spark/node.h"
 
 namespace spark::engine {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "spark/abi/api/files.h"
 #include "spark/node.h"
 
 namespace spark {

@@ -3,6 +3,7 @@
 /// The joint that a sensor reads, or an effector drives: robots of the installed base put both below their joint.
 
 #include "api/physics.h"
+#include "spark/abi/api/joint_above.h"
 
 namespace spark {
 

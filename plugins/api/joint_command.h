@@ -15,6 +15,7 @@
 
 #include "api/agents.h"
 #include "api/joint_above.h"
+#include "spark/abi/api/joint_command.h"
 
 namespace spark {
 

@@ -3,6 +3,7 @@
 /// World vectors as sensors tell them: in the frame of their own transform.
 
 #include "api/math.h"
+#include "spark/abi/api/local_frame.h"
 
 namespace spark {
 

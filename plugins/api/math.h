@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "spark/abi/api/math.h"
 #include "spark/error.h"
 #include "spark/value.h"
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/scene.h"
+#include "spark/abi/api/monitor.h"
 #include "spark/event.h"
 #include "spark/predicates.h"
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "spark/abi/api/net.h"
 #include "spark/node.h"
 
 namespace spark {

@@ -3,6 +3,7 @@
 /// The phases of one simulated instant, as channels, and the run loop's services. The order within a phase is tree
 /// order as stated.
 
+#include "spark/abi/api/phases.h"
 #include "spark/event.h"
 #include "spark/node.h"
 

@@ -9,6 +9,7 @@
 
 #include "api/engine.h"
 #include "api/scene.h"
+#include "spark/abi/api/physics.h"
 
 namespace spark {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "api/math.h"
+#include "spark/abi/api/robot_parts.h"
 #include "spark/node.h"
 
 namespace spark {

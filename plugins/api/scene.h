@@ -3,6 +3,7 @@
 /// The scene: base of scene nodes, transforms, what a monitor sees of a visual node, and the scene server's services.
 
 #include "api/math.h"
+#include "spark/abi/api/scene.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
 #include "spark/node.h"

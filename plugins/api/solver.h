@@ -12,6 +12,7 @@
 #include <span>
 
 #include "api/engine.h"
+#include "spark/abi/api/solver.h"
 
 namespace spark::engine {
 

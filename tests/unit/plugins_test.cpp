@@ -60,9 +60,10 @@ TEST_CASE("Each bad file of a folder is refused by name and reason, and scanning
       {"missing-symbol", "undefined symbol: _Z30sparkFunctionThatNobodyDefinesv"},
       {"newer-abi", "it was built for the newer plugin ABI"},
       {"no-descriptor", "it has no symbol sparkPlugin"},
+      {"no-headers", "it does not say which headers it was built with"},
       {"not-a-library", "it is no shared library"},
       {"older-abi", "it was built for the older plugin ABI"},
-      {"other-headers", "its Spark headers (ffffffffffffffff) are not this host's"},
+      {"other-headers", "this host has another version of api/of_the_future.h, spark/node.h, or none"},
       {"other-sanitizer", "it was built with"},
       {"wrong-magic", "its descriptor lacks the magic word SPARKPLG"},
   };
@@ -81,9 +82,10 @@ TEST_CASE("Each bad file of a folder is refused by name and reason, and scanning
 
 TEST_CASE("One file alone is refused with the same words") {
   House house(false);
-  for (const char* name : {"bad-name", "missing-dependency", "missing-symbol", "newer-abi", "no-descriptor",
-                           "not-a-library", "older-abi", "other-headers", "other-sanitizer", "wrong-magic",
-                           "duplicate-class", "own-base", "throws-no-exception", "throws-while-registering"}) {
+  for (const char* name :
+       {"bad-name", "missing-dependency", "missing-symbol", "newer-abi", "no-descriptor", "no-headers", "not-a-library",
+        "older-abi", "other-headers", "other-sanitizer", "wrong-magic", "duplicate-class", "own-base",
+        "throws-no-exception", "throws-while-registering"}) {
     CAPTURE(name);
     CHECK_THAT(refusal([&] { house.kernel.plugins().useFile(bad(name)); }), Catch::Contains(bad(name).string()));
     CHECK(house.kernel.root().child("plugins")->asNode()->children().empty());
@@ -91,6 +93,18 @@ TEST_CASE("One file alone is refused with the same words") {
   }
   CHECK_THAT(refusal([&] { house.kernel.plugins().useFile("/nowhere/x.so"); }),
              Catch::Contains("/nowhere/x.so") && Catch::Contains("No such file"));
+}
+
+TEST_CASE("A plugin fits as long as the headers that it includes are the host's, whatever their comments say") {
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  const auto variant = [](const std::string& name) { return fixtures("abi-plugins") / (name + ".so"); };
+  CHECK(loader.useFile(variant("other-comments")).registered());
+  CHECK(loader.useFile(variant("other-unused")).registered());
+  CHECK_THAT(refusal([&] { loader.useFile(variant("other-layout")); }),
+             Catch::Contains(variant("other-layout").string()) &&
+                 Catch::Contains("this host has another version of api/drawing.h, or none") &&
+                 Catch::Contains("Build it again with this host's headers"));
 }
 
 TEST_CASE("What fails while it registers leaves no class behind") {

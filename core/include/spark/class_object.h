@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "spark/abi/spark/class_object.h"
 #include "spark/link.h"
 #include "spark/node.h"
 #include "spark/value.h"

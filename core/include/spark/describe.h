@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "spark/abi/spark/describe.h"
 #include "spark/class_object.h"
 #include "spark/error.h"
 

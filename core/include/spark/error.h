@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "spark/abi/spark/error.h"
+
 namespace spark {
 
 /// Thrown by everything that happens at set-up (configs, plugins, scenes, property access).

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "spark/abi/spark/event.h"
 #include "spark/node.h"
 #include "spark/value.h"
 

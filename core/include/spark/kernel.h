@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "spark/abi/spark/kernel.h"
 #include "spark/class_object.h"
 #include "spark/event.h"
 #include "spark/log.h"

@@ -29,6 +29,7 @@
 #include <utility>
 #include <vector>
 
+#include "spark/abi/spark/link.h"
 #include "spark/node.h"
 
 namespace spark {

@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "spark/abi/spark/log.h"
+
 namespace spark {
 
 enum class Level { trace, debug, info, warning, error, off };

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "spark/abi/spark/node.h"
+
 namespace spark {
 
 class ClassObject;

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "spark/abi/spark/numbers.h"
+
 namespace spark {
 
 /// Bytes that putFixed() and putGeneral() need.

@@ -9,22 +9,29 @@
 #include <cstdint>
 
 #include "spark/abi.h"
+#include "spark/abi/spark/plugin.h"
 #include "spark/describe.h"
 
 namespace spark {
 
-/// What must agree between a plugin and its host. Debug and Release mix; the rest is said in the refusal.
+/// The list of the public headers that this library was compiled with, which the linker joins from its object files:
+/// "api/physics.h 0123456789abcdef" each, with the hash of the header's text without comments, and zeros between them.
+extern "C" {
+[[gnu::visibility("hidden")]] extern const char __start_spark_headers[];
+[[gnu::visibility("hidden")]] extern const char __stop_spark_headers[];
+}
+
+/// What must agree between a plugin and its host, beside the headers. Debug and Release mix.
 struct AbiWord {
-  std::uint32_t version;    ///< SPARK_ABI_VERSION, raised when the descriptor or a header changes incompatibly
+  std::uint32_t version;    ///< SPARK_ABI_VERSION, raised when the descriptor changes
   std::uint32_t alignment;  ///< alignof(max_align_t)
   std::uint32_t compiler;   ///< __GXX_ABI_VERSION
   std::uint32_t sanitizer;  ///< 0 none, 1 address, 2 thread
-  char headers[17];         ///< hash of core's and api's headers
 };
 
 /// The AbiWord of the code that includes this header.
 constexpr AbiWord thisAbi() {
-  AbiWord w{SPARK_ABI_VERSION, alignof(std::max_align_t), __GXX_ABI_VERSION, 0, SPARK_ABI_HEADERS};
+  AbiWord w{SPARK_ABI_VERSION, alignof(std::max_align_t), __GXX_ABI_VERSION, 0};
 #if defined(__SANITIZE_ADDRESS__)
   w.sanitizer = 1;
 #elif defined(__SANITIZE_THREAD__)
@@ -55,6 +62,8 @@ struct PluginDescriptor {
   char magic[8];       ///< "SPARKPLG"
   std::uint32_t size;  ///< sizeof(PluginDescriptor) of the plugin
   AbiWord abi;
+  const char* headers;  ///< __start_spark_headers: of the headers that the plugin includes, and of no others
+  const char* headersEnd;
   const char* name;
   const char* version;
   const char* doc;
@@ -76,6 +85,8 @@ struct ClassList {
   const ::spark::PluginDescriptor sparkPlugin = {{'S', 'P', 'A', 'R', 'K', 'P', 'L', 'G'},               \
                                                  sizeof(::spark::PluginDescriptor),                      \
                                                  ::spark::thisAbi(),                                     \
+                                                 ::spark::__start_spark_headers,                         \
+                                                 ::spark::__stop_spark_headers,                          \
                                                  Name,                                                   \
                                                  Version,                                                \
                                                  Doc,                                                    \

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "spark/abi/spark/predicates.h"
 #include "spark/numbers.h"
 #include "spark/value.h"
 

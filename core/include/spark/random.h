@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "spark/abi/spark/random.h"
 #include "spark/value.h"
 
 namespace spark {

@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "spark/abi/spark/running.h"
+
 namespace spark {
 
 class Leaf;

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "spark/abi/spark/state.h"
 #include "spark/value.h"
 
 namespace spark {

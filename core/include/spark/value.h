@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "spark/abi/spark/value.h"
+
 namespace spark {
 
 class Value;
