@@ -1,6 +1,6 @@
 #include "drawings_message.h"
 
-#include <fmt/format.h>
+#include <array>
 
 #include "messages.h"
 
@@ -8,85 +8,72 @@ namespace spark::web {
 
 namespace {
 
-template <class... V>
-void putList(std::string& out, const char* key, V... values) {
-  out += fmt::format(",\"{}\":[", key);
-  ((putNumber(out, values), out += ','), ...);
-  out.back() = ']';
+void writePoint(JsonWriter& json, const char* key, const Vec3f& p) {
+  json.key(key).numbers(std::array{p.x(), p.y(), p.z()});
 }
 
-void putPoint(std::string& out, const char* key, const Vec3f& p) { putList(out, key, p.x(), p.y(), p.z()); }
-
-void putCorners(std::string& out, const std::vector<Vec3f>& points) {
-  out += ",\"points\":[";
-  for (const Vec3f& p : points) {
-    if (out.back() != '[') out += ',';
-    out += '[';
-    for (int i = 0; i < 3; ++i) putNumber(out, p[i]), out += ',';
-    out.back() = ']';
-  }
-  out += ']';
+void writeCorners(JsonWriter& json, const std::vector<Vec3f>& points) {
+  json.key("points").beginArray();
+  for (const Vec3f& p : points) json.numbers(std::array{p.x(), p.y(), p.z()});
+  json.endArray();
 }
 
-void putText(std::string& out, const std::string& text) {
-  out += ",\"text\":";
-  putQuoted(out, text);
-}
-
-void putNumberAs(std::string& out, const char* key, float value) {
-  out += fmt::format(",\"{}\":", key);
-  putNumber(out, value);
-}
-
-void putDrawing(std::string& out, const Drawing& d) {
+void writeDrawing(JsonWriter& json, const Drawing& d) {
   using Kind = Drawing::Kind;
   constexpr const char* kNames[] = {"circle", "line", "point", "sphere", "polygon", "text", "agentText"};
   const auto point = [&](std::size_t i) { return i < d.points.size() ? d.points[i] : Vec3f(0, 0, 0); };
-  out += fmt::format("{{\"kind\":\"{}\"", kNames[static_cast<int>(d.kind)]);
+  json.beginObject().member("kind", kNames[static_cast<int>(d.kind)]);
   switch (d.kind) {
     case Kind::circle:
-      putList(out, "centre", point(0).x(), point(0).y()), putNumberAs(out, "radius", d.size),
-          putNumberAs(out, "thickness", d.thickness);
+      json.key("centre").numbers(std::array{point(0).x(), point(0).y()});
+      json.member("radius", d.size).member("thickness", d.thickness);
       break;
     case Kind::line:
-      putPoint(out, "from", point(0)), putPoint(out, "to", point(1)), putNumberAs(out, "thickness", d.thickness);
+      writePoint(json, "from", point(0));
+      writePoint(json, "to", point(1));
+      json.member("thickness", d.thickness);
       break;
     case Kind::point:
-      putPoint(out, "at", point(0)), putNumberAs(out, "size", d.size);
+      writePoint(json, "at", point(0));
+      json.member("size", d.size);
       break;
     case Kind::sphere:
-      putPoint(out, "centre", point(0)), putNumberAs(out, "radius", d.size);
+      writePoint(json, "centre", point(0));
+      json.member("radius", d.size);
       break;
     case Kind::polygon:
-      putCorners(out, d.points);
+      writeCorners(json, d.points);
       break;
     case Kind::text:
-      putPoint(out, "at", point(0)), putText(out, d.text);
+      writePoint(json, "at", point(0));
+      json.member("text", d.text);
       break;
     case Kind::agentText:
-      out += fmt::format(",\"side\":\"{}\",\"number\":{}", d.right ? "right" : "left", d.number), putText(out, d.text);
+      json.member("side", d.right ? "right" : "left").member("number", d.number).member("text", d.text);
       break;
   }
-  putList(out, "colour", d.color.r, d.color.g, d.color.b, d.color.a);
-  out += '}';
+  json.key("colour").numbers(std::array{d.color.r, d.color.g, d.color.b, d.color.a}).endObject();
 }
 
 }  // namespace
 
 std::string drawingsMessage(std::span<const IDrawings::Set> sets, std::uint64_t since) {
-  std::string out = "{\"type\":\"drawings\",\"sets\":{";
+  std::string out;
+  JsonWriter json(out, kWebJson);
+  json.beginObject().member("type", "drawings").key("sets").beginObject();
   for (const auto& set : sets) {
     if (set.version <= since) continue;
-    if (out.back() != '{') out += ',';
-    putQuoted(out, set.name);
-    out += set.shapes.empty() ? ":null" : ":[";
-    for (const Drawing& d : set.shapes) {
-      if (out.back() != '[') out += ',';
-      putDrawing(out, d);
+    json.key(set.name);
+    if (set.shapes.empty()) {
+      json.null();
+      continue;
     }
-    if (!set.shapes.empty()) out += ']';
+    json.beginArray();
+    for (const Drawing& d : set.shapes) writeDrawing(json, d);
+    json.endArray();
   }
-  return out += "}}";
+  json.endObject().endObject();
+  return out;
 }
 
 }  // namespace spark::web

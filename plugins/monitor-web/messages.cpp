@@ -1,81 +1,62 @@
 #include "messages.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
+#include <array>
 #include <charconv>
-#include <cmath>
-#include <iterator>
-#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "spark/abi.h"
 
 namespace spark::web {
 
 namespace {
 
-template <class... A>
-void put(std::string& out, fmt::format_string<A...> f, A&&... a) {
-  fmt::format_to(std::back_inserter(out), f, std::forward<A>(a)...);
-}
+/// Significant digits of a number in an entry, such as the time of play.
+constexpr int kEntryDigits = 10;
 
-template <class List>
-void putNumbers(std::string& out, const List& numbers) {
-  out += '[';
-  for (const double v : numbers) putNumber(out, v), out += ',';
-  out.back() == ',' ? void(out.back() = ']') : out.push_back(']');
-}
-
-void putShape(std::string& out, const SceneShape& shape) {
+void writeShape(JsonWriter& json, const SceneShape& shape) {
   constexpr const char* kNames[] = {"box", "sphere", "capsule", "cylinder"};
-  put(out, "{{\"kind\":\"{}\",\"size\":", kNames[static_cast<int>(shape.kind)]);
-  putNumbers(out, shape.size);
-  out += ",\"position\":";
-  putNumbers(out, std::array{shape.position.x(), shape.position.y(), shape.position.z()});
-  out += ",\"rotation\":";
-  putNumbers(out, shape.rotation);
-  out += '}';
+  json.beginObject().member("kind", kNames[static_cast<int>(shape.kind)]);
+  json.key("size").numbers(shape.size);
+  json.key("position").numbers(std::array{shape.position.x(), shape.position.y(), shape.position.z()});
+  json.key("rotation").numbers(shape.rotation).endObject();
 }
 
-void putTransform(std::string& out, const NodeDescription& node) {
-  out += ",\"kind\":\"transform\"";
-  if (!node.path.empty()) {
-    out += ",\"path\":";
-    putQuoted(out, node.path);
-  }
+void writeTransform(JsonWriter& json, const NodeDescription& node) {
+  json.member("kind", "transform");
+  if (!node.path.empty()) json.member("path", node.path);
   if (node.shapes.empty()) return;
-  out += ",\"shapes\":[";
-  for (const SceneShape& shape : node.shapes) putShape(out, shape), out += ',';
-  out.back() = ']';
+  json.key("shapes").beginArray();
+  for (const SceneShape& shape : node.shapes) writeShape(json, shape);
+  json.endArray();
 }
 
-void putMesh(std::string& out, const NodeDescription& node, bool visible) {
-  out += ",\"kind\":\"mesh\",\"load\":";
-  putQuoted(out, node.load);
-  out += ",\"scale\":";
-  putNumbers(out, std::array<double, 3>{node.scale.x(), node.scale.y(), node.scale.z()});
+void writeMesh(JsonWriter& json, const NodeDescription& node, bool visible) {
+  json.member("kind", "mesh").member("load", node.load);
+  json.key("scale").numbers(std::array{node.scale.x(), node.scale.y(), node.scale.z()});
   if (!node.materials.empty()) {
-    out += ",\"materials\":[";
-    for (const std::string& name : node.materials) putQuoted(out, name), out += ',';
-    out.back() = ']';
+    json.key("materials").beginArray();
+    for (const std::string& name : node.materials) json.value(name);
+    json.endArray();
   }
-  if (node.transparent) out += ",\"transparent\":true";
-  put(out, ",\"visible\":{}", visible);
+  if (node.transparent) json.member("transparent", true);
+  json.member("visible", visible);
 }
 
-void putNode(std::string& out, const NodeDescription& node, bool visible) {
-  put(out, "{{\"parent\":{}", node.parent);
+void writeNode(JsonWriter& json, const NodeDescription& node, bool visible) {
+  json.beginObject().member("parent", node.parent);
   switch (node.kind) {
     case FrameNode::Kind::transform:
-      putTransform(out, node);
+      writeTransform(json, node);
       break;
     case FrameNode::Kind::light:
-      out += ",\"kind\":\"light\"";
+      json.member("kind", "light");
       break;
     case FrameNode::Kind::mesh:
     case FrameNode::Kind::singleMaterial:
-      putMesh(out, node, visible);
+      writeMesh(json, node, visible);
       break;
   }
-  out += '}';
+  json.endObject();
 }
 
 /// Recorded games know only texts.
@@ -87,71 +68,67 @@ bool isNumber(std::string_view text) {
 }
 
 std::string environment(const Snapshot& s, bool full, const std::vector<std::uint32_t>& tokens) {
-  std::string out = "{\"type\":\"environment\",\"time\":";
-  putNumber(out, s.time, 10);
-  if (full) out += ",\"full\":true";
-  out += ",\"entries\":[";
-  for (const std::uint32_t token : tokens) putElement(out, Element(s.environment.predicates, token)), out += ',';
-  if (!tokens.empty()) out.pop_back();
-  return out += "]}";
+  std::string out;
+  JsonWriter json(out, kWebJson);
+  json.beginObject().member("type", "environment").key("time").value(s.time, kEntryDigits);
+  if (full) json.member("full", true);
+  json.key("entries").beginArray();
+  for (const std::uint32_t token : tokens) writeElement(json, Element(s.environment.predicates, token));
+  json.endArray().endObject();
+  return out;
+}
+
+std::string jsonOf(const Element& element) {
+  std::string out;
+  JsonWriter json(out, kWebJson);
+  writeElement(json, element);
+  return out;
 }
 
 }  // namespace
 
-void putQuoted(std::string& out, std::string_view text) {
-  const auto plain = [](unsigned char c) { return c >= 0x20 && c < 0x7f && c != '"' && c != '\\'; };
-  if (std::all_of(text.begin(), text.end(), plain))
-    put(out, "\"{}\"", text);
-  else
-    out += nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
-void putNumber(std::string& out, double value, int digits) {
-  if (std::isfinite(value))
-    put(out, "{:.{}g}", value, digits);
-  else
-    out += '0';
-}
-
-void putElement(std::string& out, const Element& element) {
+void writeElement(JsonWriter& json, const Element& element) {
   const Token& token = element.token();
   switch (token.kind) {
     case Token::Kind::text:
-      return isNumber(element.text()) ? putNumber(out, element.number(), 10) : putQuoted(out, element.text());
+      if (isNumber(element.text()))
+        json.value(element.number(), kEntryDigits);
+      else
+        json.value(element.text());
+      return;
     case Token::Kind::number:
-      return putNumber(out, token.number, 10);
+      json.value(token.number, kEntryDigits);
+      return;
     case Token::Kind::integer:
-      return put(out, "{}", token.integer);
+      json.value(token.integer);
+      return;
     case Token::Kind::list:
       break;
   }
-  out += '[';
-  bool first = true;
-  for (const Element inner : element) {
-    if (!first) out += ',';
-    first = false;
-    putElement(out, inner);
-  }
-  out += ']';
+  json.beginArray();
+  for (const Element inner : element) writeElement(json, inner);
+  json.endArray();
 }
 
 std::string helloMessage(double step, double rate) {
-  return fmt::format("{{\"type\":\"hello\",\"protocol\":1,\"spark\":\"{}\",\"step\":{:g},\"rate\":{:g}}}",
-                     SPARK_VERSION, step, rate);
+  std::string out;
+  JsonWriter json(out, kWebJson);
+  json.beginObject().member("type", "hello").member("protocol", 1).member("spark", SPARK_VERSION);
+  json.member("step", step).member("rate", rate).endObject();
+  return out;
 }
 
 std::string sceneMessage(const Snapshot& s, std::uint32_t shape) {
-  std::string out = fmt::format("{{\"type\":\"scene\",\"shape\":{},\"nodes\":[", shape);
+  std::string out;
+  JsonWriter json(out, kWebJson);
+  json.beginObject().member("type", "scene").member("shape", shape).key("nodes").beginArray();
   const auto& nodes = s.scene->nodes;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (i > 0) out += ',';
-    putNode(out, nodes[i], s.visible[i]);
-  }
-  out += "],\"local\":[";
+  for (std::size_t i = 0; i < nodes.size(); ++i) writeNode(json, nodes[i], s.visible[i]);
+  json.endArray().key("local").beginArray();
   for (const Matrix& m : s.transforms)
-    for (int k = 0; k < 16; ++k) putNumber(out, m.data()[k]), out += ',';
-  if (!s.transforms.empty()) out.pop_back();
-  return out += "]}";
+    for (int k = 0; k < 16; ++k) json.value(m.data()[k]);
+  json.endArray().endObject();
+  return out;
 }
 
 std::string fullEnvironmentMessage(const Snapshot& s) {
@@ -162,21 +139,26 @@ std::string fullEnvironmentMessage(const Snapshot& s) {
 }
 
 std::string eventMessage(double time, const Element& event) {
-  std::string out = "{\"type\":\"event\",\"time\":";
-  putNumber(out, time, 10);
-  out += ",\"entry\":";
-  putElement(out, event);
-  return out += '}';
+  std::string out;
+  JsonWriter json(out, kWebJson);
+  json.beginObject().member("type", "event").key("time").value(time, kEntryDigits).key("entry");
+  writeElement(json, event);
+  json.endObject();
+  return out;
 }
 
 std::string reply(std::string_view type, std::int64_t id, std::string_view answer) {
-  return fmt::format("{{\"type\":\"{}\",\"id\":{},{}", type, id, answer.substr(1));
+  std::string out;
+  JsonWriter json(out, kWebJson);
+  json.beginObject().member("type", type).member("id", id).members(answer).endObject();
+  return out;
 }
 
 std::string failure(std::string_view why) {
-  std::string out = "{\"ok\":false,\"error\":";
-  putQuoted(out, why);
-  return out += '}';
+  std::string out;
+  JsonWriter json(out, kWebJson);
+  json.beginObject().member("ok", false).member("error", why).endObject();
+  return out;
 }
 
 bool EnvironmentDiary::changed(const EntryKey& key) {
@@ -199,9 +181,7 @@ std::string EnvironmentDiary::take(const Snapshot& s, bool always) {
     if (entries[i].policy == EnvPolicy::change) {
       differs = changed(s.keys[i]);
     } else if (entries[i].policy == EnvPolicy::always && always) {
-      std::string text;
-      putElement(text, Element(s.environment.predicates, entries[i].token));
-      differs = changed(i, std::move(text));
+      differs = changed(i, jsonOf(Element(s.environment.predicates, entries[i].token)));
     }
     if (differs) tokens.push_back(entries[i].token);
   }

@@ -6,15 +6,16 @@
 #include <string_view>
 
 #include "snapshot.h"
+#include "spark/json_writer.h"
 
 namespace spark::web {
 
-/// Appends a JSON string; bytes that are no UTF-8 become U+FFFD.
-void putQuoted(std::string& out, std::string_view text);
-/// Appends a number with `digits` significant digits; 0 when it is not finite.
-void putNumber(std::string& out, double value, int digits = 6);
-/// Appends an element: lists as arrays, texts that are numbers as numbers.
-void putElement(std::string& out, const Element& element);
+/// Of all messages. Bytes that are no UTF-8 become U+FFFD, numbers that are not finite 0.
+inline constexpr JsonStyle kWebJson{.ascii = true, .notFinite = "0"};
+/// Appends a JSON string.
+inline void putQuoted(std::string& out, std::string_view text) { JsonWriter(out, kWebJson).value(text); }
+/// Writes an element: lists as arrays, texts that are numbers as numbers.
+void writeElement(JsonWriter& json, const Element& element);
 
 /// `{"type":"hello",...}`. `step`: simulated seconds of a cycle; `rate`: frames a second that a viewer gets unless it
 /// asks for another.

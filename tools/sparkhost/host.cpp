@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 
 #include "spark/error.h"
+#include "spark/json_writer.h"
 #include "spark/state.h"
 #include "tree_values.h"
 
@@ -23,17 +25,21 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// A port's number as JSON: null where a house has no such port.
-std::string portText(const Leaf& root, const char* path) {
+/// A port's number; null where a house has no such port.
+void writePort(JsonWriter& json, const char* name, const Leaf& root, const char* path) {
   const Value v = valueAt(root, path, "port");
-  return v.isNil() ? "null" : v.plain();
+  json.key(name).raw(v.isNil() ? "null" : v.plain());
 }
 
-/// The link for browsers as JSON: null where a house has none.
-std::string webText(const Leaf& root) {
+/// The link for browsers; null where a house has none.
+void writeWeb(JsonWriter& json, const Leaf& root) {
   Leaf* web = root.find(kWeb);
   const std::string link = web ? callMethod(*web, "link", {}).plain() : std::string();
-  return link.empty() ? "null" : '"' + link + '"';
+  json.key("web");
+  if (link.empty())
+    json.null();
+  else
+    json.value(link);
 }
 
 std::int64_t messagesDropped(const Leaf& root) {
@@ -89,8 +95,14 @@ std::string Host::open() {
   const Node& root = kernel_.root();
   for (const char* path : {kNet, kWeb})
     if (Leaf* server = root.find(path)) callMethod(*server, "listen", {});
-  return fmt::format("{{\"agentPort\":{},\"monitorPort\":{},\"web\":{}}}", portText(root, "/sys/server/net/agents"),
-                     portText(root, "/sys/server/net/monitors"), webText(root));
+  std::string line;
+  JsonWriter json(line);
+  json.beginObject();
+  writePort(json, "agentPort", root, "/sys/server/net/agents");
+  writePort(json, "monitorPort", root, "/sys/server/net/monitors");
+  writeWeb(json, root);
+  json.endObject();
+  return line;
 }
 
 std::string Host::histogram() {
@@ -106,16 +118,19 @@ std::string Host::run() {
   callMethod(root.require<Leaf>(kSimulation), "run", {});
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double time = numberAt(root, kSimulation, "time");
-  return fmt::format(
-      "{{\"cycles\":{},\"simSeconds\":{:.2f},\"realTimeFactor\":{:.3f},\"lostSeconds\":{:.3f},\"lateCycles\":{},"
-      "\"playMode\":\"{}\","
-      "\"score\":[{},{}],"
-      "\"agentsSeen\":{},\"messagesDropped\":{},\"faults\":{},\"stateHash\":\"{:016x}\"}}",
-      integerAt(root, kSimulation, "cycle"), time, wall > 0 ? (time - start) / wall : 0.0,
-      numberAt(root, kSimulation, "lostTime"), integerAt(root, kSimulation, "lateCycles"),
-      textAt(root, kGameState, "playMode"), elementAt(root, kGameState, "score", 0),
-      elementAt(root, kGameState, "score", 1), integerAt(root, kGameControl, "agentsSeen"), messagesDropped(root),
-      root.kernel().faults(), stateHash(root));
+  std::string line;
+  JsonWriter json(line);
+  json.beginObject().member("cycles", integerAt(root, kSimulation, "cycle")).key("simSeconds").fixed(time, 2);
+  json.key("realTimeFactor").fixed(wall > 0 ? (time - start) / wall : 0.0, 3);
+  json.key("lostSeconds").fixed(numberAt(root, kSimulation, "lostTime"), 3);
+  json.member("lateCycles", integerAt(root, kSimulation, "lateCycles"));
+  json.member("playMode", textAt(root, kGameState, "playMode"));
+  json.key("score").numbers(
+      std::array{elementAt(root, kGameState, "score", 0), elementAt(root, kGameState, "score", 1)});
+  json.member("agentsSeen", integerAt(root, kGameControl, "agentsSeen"));
+  json.member("messagesDropped", messagesDropped(root)).member("faults", root.kernel().faults());
+  json.member("stateHash", fmt::format("{:016x}", stateHash(root))).endObject();
+  return line;
 }
 
 }  // namespace sparkhost

@@ -58,10 +58,10 @@ class ByteWriter {
   }
   void end(char* at) { at_ = at; }
   static constexpr std::size_t kMostRoom = 4096;
-
- private:
+  /// Appends what was written so far.
   void flush();
 
+ private:
   std::string& out_;
   char block_[kMostRoom];
   char* at_ = block_;

@@ -52,12 +52,16 @@ TEST_CASE("A token is 128 bits, another one each time, and only itself") {
 }
 
 TEST_CASE("Texts that are no UTF-8, and numbers that are none, give JSON all the same") {
-  std::string out = "[";
-  putQuoted(out, "plain"), out += ',';
-  putQuoted(out, "quote\" back\\ \n \xff \xe2\x82\xac </script>"), out += ',';
-  putNumber(out, std::nan("")), out += ',';
-  putNumber(out, HUGE_VAL), out += ',';
-  putNumber(out, 0.1), out += ']';
+  std::string out;
+  JsonWriter(out, kWebJson)
+      .beginArray()
+      .value("plain")
+      .value("quote\" back\\ \n \xff \xe2\x82\xac </script>")
+      .value(std::nan(""))
+      .value(HUGE_VAL)
+      .value(0.1)
+      .endArray();
+  CHECK(out.find_first_of("\x80\xe2\xff") == out.npos);
   const auto read = nlohmann::json::parse(out);
   CHECK(read[0] == "plain");
   CHECK(read[1] == "quote\" back\\ \n \xef\xbf\xbd \xe2\x82\xac </script>");
@@ -66,8 +70,11 @@ TEST_CASE("Texts that are no UTF-8, and numbers that are none, give JSON all the
   Predicates p;
   readSexp("(team_left nan)(time 1.5)(foul 1 left (x 2e3))(name inf -)", p);
   std::string elements;
-  for (const Element e : p) putElement(elements, e);
-  CHECK(elements == R"(["team_left","nan"]["time",1.5]["foul",1,"left",["x",2000]]["name","inf","-"])");
+  JsonWriter json(elements, kWebJson);
+  json.beginArray();
+  for (const Element e : p) writeElement(json, e);
+  json.endArray();
+  CHECK(elements == R"([["team_left","nan"],["time",1.5],["foul",1,"left",["x",2000]],["name","inf","-"]])");
 }
 
 TEST_CASE("Paths below a folder are plain names") {
