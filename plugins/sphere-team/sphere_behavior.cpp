@@ -1,6 +1,6 @@
 #include "api/agents.h"
-#include "player.h"
 #include "spark/plugin.h"
+#include "sphere/player.h"
 
 namespace spark {
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "player.h"
+#include "sphere/player.h"
 #include "team.h"
 
 // A team of spheres in one process: one connection and one brain a player.

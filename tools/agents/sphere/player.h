@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The brain of a sphere player: percepts in, actions out. It knows nothing of a host: the same source file is built
-/// into the in-process behaviour (`SphereBehavior`) and into the external demo team.
+/// The brain of a sphere player: percepts in, actions out. It knows nothing of a host: the behaviour node
+/// (`SphereBehavior`) and the external demo team have the same.
 
 #include <string>
 #include <vector>

@@ -1,8 +1,9 @@
-// The brain alone: percepts in, actions out.
-#include "../player.h"
+#include "sphere/player.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
+
+// The brain alone: percepts in, actions out.
 
 using namespace spark;
 
