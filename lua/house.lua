@@ -135,11 +135,15 @@ function web()
   return server
 end
 
---- The socket through which sparkctl looks at the running house; only the host's own user can open it. A house of a batch has none.
+--- The socket through which sparkctl looks at the running house; only the host's own user can open it. It and the page answer what touches, how
+--- joints stand and what agents sense. A house of a batch has none.
 function control()
   if host.alone then return end
   plugin "control"
-  return new("ControlServer", "/sys/server/control")
+  plugin "inspect"
+  local server = new("ControlServer", "/sys/server/control")
+  new("Inspector", "/sys/server/control/inspect")
+  return server
 end
 
 --- What agents draw for those who watch: --set drawings=32769 opens the UDP port of the installed base's viewer, --set

@@ -3,6 +3,7 @@
 /// Requests about the tree, as sparkctl and the browser make them: JSON in, JSON out, answered from the tree's own
 /// descriptions.
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -36,6 +37,20 @@ class IRequests {
   virtual std::string answer(std::string_view request, control::Watch& watch, bool mayChange) = 0;
   /// The next line of a watch, "" while the value is as before. An error when the property is gone: then `done` is set.
   virtual std::string nextOf(control::Watch& watch, bool& done) = 0;
+};
+
+/// Answers further kinds of requests; a child of the control server, which asks it between two cycles, in the
+/// simulation's thread.
+class IRequestHandler {
+ public:
+  SPARK_INTERFACE(IRequestHandler, 1);
+  virtual ~IRequestHandler() = default;
+  /// What "do" says in the requests that it answers. Valid as long as the handler.
+  virtual std::span<const std::string_view> requests() const = 0;
+  /// The answer to one of them, in one line as IRequests::answer(). Changes nothing in the match: spectators ask, too.
+  virtual std::string answer(std::string_view request) = 0;
+  /// Called between every two cycles.
+  virtual void poll() {}
 };
 
 }  // namespace spark

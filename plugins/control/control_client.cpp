@@ -37,7 +37,7 @@ bool ControlClient::read() {
 
 void ControlClient::say(const std::string& line) { out_ += line + "\n"; }
 
-bool ControlClient::serve(Kernel& kernel, const Leaf& self) {
+bool ControlClient::serve(Kernel& kernel, const Node& self) {
   if (!flush()) return false;
   if (!out_.empty()) return true;  // it does not read: nothing more for it
   if (!read()) return false;

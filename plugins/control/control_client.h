@@ -17,7 +17,7 @@ class ControlClient {
 
   /// Writes what waits, then answers at most one request and looks at its watch. Returns false when the client is gone
   /// or misbehaves.
-  bool serve(Kernel& kernel, const Leaf& self);
+  bool serve(Kernel& kernel, const Node& self);
 
  private:
   bool flush();

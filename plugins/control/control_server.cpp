@@ -58,7 +58,7 @@ void ControlServer::open() {
 void ControlServer::onUnlink() {
   clients_.clear();
   acceptor_.reset();
-  if (!socket_.empty()) unlink(socket_.c_str());
+  if (!socket_.empty()) ::unlink(socket_.c_str());
   socket_.clear();
 }
 
@@ -78,6 +78,8 @@ void ControlServer::accept() {
 }
 
 void ControlServer::poll() {
+  for (const auto& child : children())
+    if (auto* handler = child->as<IRequestHandler>()) handler->poll();
   accept();
   std::erase_if(clients_, [this](const auto& client) { return !client->serve(kernel(), *this); });
 }

@@ -16,9 +16,9 @@
 namespace spark {
 
 /// At /sys/server/control. Works only in the run loop's poll, between two cycles: what it changes is an input like any
-/// other. Other servers that hear clients let it answer for them.
-class ControlServer : public Leaf, public IInputSource, public IRequests {
-  SPARK_CLASS(ControlServer, Leaf)
+/// other. Other servers that hear clients let it answer for them; its children answer further requests.
+class ControlServer : public Node, public IInputSource, public IRequests {
+  SPARK_CLASS(ControlServer, Node)
  public:
   static void describe(Description<ControlServer>& d);
 

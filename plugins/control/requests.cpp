@@ -188,7 +188,27 @@ std::string startWatch(Kernel& kernel, const Json& request, Watch& watch) {
   return watchLine(kernel, watch);
 }
 
-std::string dispatch(Kernel& kernel, const Leaf& self, const Json& request, Watch& watch, bool mayChange) {
+/// All requests that are answered here, for people.
+std::string knownRequests(const Node& self) {
+  std::string out = "tree, get, set, call, watch, plugins, load, unload";
+  for (const auto& child : self.children())
+    if (const auto* handler = child->as<IRequestHandler>())
+      for (const std::string_view name : handler->requests()) out.append(", ").append(name);
+  return out.insert(out.rfind(", ") + 2, "or ");
+}
+
+/// The handler that answers a request, nullptr when there is none.
+IRequestHandler* handlerOf(const Node& self, std::string_view what) {
+  for (const auto& child : self.children())
+    if (auto* handler = child->as<IRequestHandler>())
+      if (const auto names = handler->requests(); std::find(names.begin(), names.end(), what) != names.end())
+        return handler;
+  return nullptr;
+}
+
+std::string dispatch(Kernel& kernel, const Node& self, std::string_view line, Watch& watch, bool mayChange) {
+  const Json request = Json::parse(line);
+  if (!request.is_object()) throw Error("expected one JSON object a line");
   const std::string what = textOf(request, "do");
   if (!mayChange && (what == "set" || what == "call" || what == "load" || what == "unload"))
     throw Error(
@@ -202,15 +222,14 @@ std::string dispatch(Kernel& kernel, const Leaf& self, const Json& request, Watc
   if (what == "unload") return dump(unload(kernel, request));
   if (what == "plugins") return dump(plugins(kernel));
   if (what == "watch") return startWatch(kernel, request, watch);
-  throw Error("expected tree, get, set, call, watch, plugins, load or unload, found '" + what + "'");
+  if (auto* handler = handlerOf(self, what)) return handler->answer(line);
+  throw Error("expected " + knownRequests(self) + ", found '" + what + "'");
 }
 }  // namespace
 
-std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch, bool mayChange) {
+std::string answer(Kernel& kernel, const Node& self, std::string_view line, Watch& watch, bool mayChange) {
   try {
-    const Json request = Json::parse(line);
-    if (!request.is_object()) throw Error("expected one JSON object a line");
-    return dispatch(kernel, self, request, watch, mayChange);
+    return dispatch(kernel, self, line, watch, mayChange);
   } catch (const std::exception& e) {
     return failure(e);
   }

@@ -15,6 +15,7 @@
 ///     first
 ///     {"do":"unload","name":"wind"}                 {"ok":true}
 ///     {"do":"plugins"} {"ok":true,"plugins":[{"name","version","doc","file","classes",...}]}
+///     whatever the children of the control server answer (IRequestHandler)
 ///
 /// Texts in "value" and "arguments" are read as people type them (true, 3, {1,2}, words). Errors:
 /// {"ok":false,"error":"..."}.
@@ -32,7 +33,7 @@ namespace spark::control {
 /// The answer to one line, without the line feed. Bad requests give an error answer; nothing is thrown. `self`: the
 /// server's own node, which requests must not saw off. When the request is a watch, `watch` is filled in and the answer
 /// is its first line. `mayChange` false refuses all that changes something.
-std::string answer(Kernel& kernel, const Leaf& self, std::string_view line, Watch& watch, bool mayChange = true);
+std::string answer(Kernel& kernel, const Node& self, std::string_view line, Watch& watch, bool mayChange = true);
 
 /// The next line of a watch, "" when the value is as before. An error answer when the property is gone (`done` is set).
 std::string nextOf(Kernel& kernel, Watch& watch, bool& done);

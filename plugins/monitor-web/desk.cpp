@@ -24,8 +24,7 @@ double secondsSince(std::chrono::steady_clock::time_point t) {
 }
 }  // namespace
 
-Desk::Desk(Kernel& kernel, Exchange& exchange)
-    : kernel_(kernel), exchange_(exchange), report_(kernel), inspection_(kernel) {}
+Desk::Desk(Kernel& kernel, Exchange& exchange) : kernel_(kernel), exchange_(exchange), report_(kernel) {}
 
 template <class F>
 void Desk::paid(F f) {
@@ -42,11 +41,10 @@ void Desk::refill(Clock::time_point now, double share) {
 void Desk::work(const Settings& settings, int spectators) {
   if (!exchange_.questions.empty())
     for (Question& question : exchange_.questions.takeAll()) receive(std::move(question), spectators);
-  if (requests_.empty() && watches_.empty() && artists_.empty() && !inspection_.watches() && !told_) return;
+  if (requests_.empty() && watches_.empty() && artists_.empty() && !told_) return;
 
   const auto now = Clock::now();
   refill(now, settings.share);
-  if (inspection_.watches() && account_ > 0) paid([&] { inspection_.look(); });
   while (!requests_.empty() && account_ > 0) {
     const Question question = std::move(requests_.front());
     requests_.pop_front();
@@ -99,7 +97,6 @@ std::string Desk::answer(const Question& question, const Settings& settings) {
     return reply("answer", question.id, failure("only the referee asks here"));
   const auto request = nlohmann::json::parse(question.text);  // it was read before
   const std::string what = request.at("do");
-  if (Inspection::knows(what)) return reply("answer", question.id, inspection_.answer(request));
   auto* requests = kernel_.root().find<IRequests>();
   if (!requests) return reply("answer", question.id, failure("this house has no control server, /sys/server/control"));
   control::Watch watch;

@@ -10,7 +10,6 @@
 #include "api/control.h"
 #include "api/drawing.h"
 #include "exchange.h"
-#include "inspection.h"
 #include "spark/kernel.h"
 #include "status_report.h"
 
@@ -56,7 +55,6 @@ class Desk {
   Kernel& kernel_;
   Exchange& exchange_;
   StatusReport report_;
-  Inspection inspection_;
   std::deque<Question> requests_;
   std::vector<std::unique_ptr<Watched>> watches_;
   std::size_t nextWatch_ = 0;

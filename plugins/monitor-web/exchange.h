@@ -21,7 +21,7 @@ namespace spark::web {
 /// Something that only the simulation's thread can know or do.
 struct Question {
   enum class Kind {
-    request,   ///< JSON, as the control plugin's and the inspection's; `referee`: may change things
+    request,   ///< JSON, for the control server; `referee`: may change things
     command,   ///< a trainer's, S-expressions; only of referees
     unwatch,   ///< ends watch `id`
     drawings,  ///< wants them from now on, or (`on` false) no longer

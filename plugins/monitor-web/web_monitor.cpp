@@ -11,14 +11,20 @@ constexpr std::uint32_t kMostEvents = 1u << 14;  // tokens of events that wait
 }
 
 void WebMonitor::describe(Description<WebMonitor>& d) {
-  d.doc("Hands frames of the scene to the web server, /sys/server/web, while browsers watch.");
+  d.doc("Hands frames of the scene to the web server while browsers watch.");
   d.implements<IFrameTaker>();
+  d.property("server", &WebMonitor::server, &WebMonitor::setServer).doc("Path of the web server.");
+}
+
+void WebMonitor::setServer(std::string path) {
+  serverPath_ = std::move(path);
+  lookedAt_ = 0;
 }
 
 web::Exchange* WebMonitor::exchange() {
   if (lookedAt_ != kernel().structureVersion()) {
-    auto* server = kernel().root().find<WebServer>("/sys/server/web");
-    exchange_ = server ? &server->exchange() : nullptr;
+    auto* server = find<WebServer>(serverPath_);
+    exchange_ = server ? &server->joinedBy(*this) : nullptr;
     lookedAt_ = kernel().structureVersion();
   }
   return exchange_;

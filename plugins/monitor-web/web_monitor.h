@@ -17,13 +17,17 @@ class WebMonitor : public Node, public IFrameTaker {
   void event(const Element& event) override;
   void take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) override;
 
-  /// The frame taken last is handed over again if somebody waits for one and no cycle comes. Between cycles.
+  /// The frame taken last is handed over again if somebody waits for one and no cycle comes. Called by the web server,
+  /// between cycles.
   void takeAgain();
 
  private:
+  const std::string& server() const { return serverPath_; }
+  void setServer(std::string path);
   web::Exchange* exchange();
   void fill(const NewestFrame& newest, double time, web::Snapshot& out);
 
+  std::string serverPath_ = "/sys/server/web";
   web::Exchange* exchange_ = nullptr;
   std::uint64_t lookedAt_ = 0;  ///< structure version when it was looked for
   Predicates events_;           ///< since the last snapshot

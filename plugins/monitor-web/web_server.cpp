@@ -75,6 +75,11 @@ void WebServer::mustNotListen(const char* what) const {
     throw Error(fmt::format("{}.{}: it listens on {} already. Set it before listen().", path(), what, port()));
 }
 
+web::Exchange& WebServer::joinedBy(WebMonitor& monitor) {
+  monitor_ = &monitor;
+  return exchange_;
+}
+
 int WebServer::port() const { return service_ ? service_->port() : port_; }
 
 void WebServer::setPort(int port) {
@@ -154,7 +159,7 @@ void WebServer::handOverAgain() {
     cycleAt_ = now;
   } else if (now - cycleAt_ > kStandsStill) {
     cycleAt_ = now;
-    if (auto* monitor = kernel().root().find<WebMonitor>("/sys/server/monitor/web")) monitor->takeAgain();
+    if (monitor_) monitor_->takeAgain();
   }
 }
 

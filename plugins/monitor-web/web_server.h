@@ -14,6 +14,7 @@
 
 namespace spark {
 
+class WebMonitor;
 namespace web {
 class Desk;
 class Service;
@@ -34,7 +35,8 @@ class WebServer : public Node, public IInputSource {
   bool wait(double) override { return false; }
   bool canWait() const override { return false; }
 
-  web::Exchange& exchange() { return exchange_; }
+  /// The monitor hands frames over to what it gets, until one of the two goes.
+  web::Exchange& joinedBy(WebMonitor& monitor);
 
  protected:
   void onUnlink() override;
@@ -62,6 +64,7 @@ class WebServer : public Node, public IInputSource {
   std::string token_;
 
   web::Exchange exchange_;
+  Ref<WebMonitor> monitor_;
   std::unique_ptr<web::Service> service_;
   std::unique_ptr<web::Desk> desk_;
   bool tried_ = false;

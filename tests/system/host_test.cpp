@@ -251,6 +251,10 @@ TEST_CASE("sparkctl shows the house and changes it") {
   REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out,
                Contains("step = 0.02 s") && Contains("Simulated time of one cycle."));
   REQUIRE_THAT(ctl({"plugins"}).out, Contains("* control"));
+  REQUIRE_THAT(ctl({"ask", "weather"}).errors,
+               Contains("expected tree, get,") && Contains("or percepts, found 'weather'"));
+  REQUIRE_THAT(ctl({"ask", "joints"}).errors, Contains("lacks a text \"path\""));
+  REQUIRE(Json::parse(ctl({"ask", "joints", "/sys/server"}).out) == Json{{"joints", Json::array()}});
   REQUIRE(ctl({"set", "/sys/server/simulation.step", "0.01"}).code == 0);
   REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out, Contains("0.01 s"));
   REQUIRE(ctl({"set", "/sys/server/simulation.step", "soon"}).code == 1);

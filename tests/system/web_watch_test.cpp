@@ -47,7 +47,7 @@ Json played(bool watched) {
   curious.say(R"({"do":"tree","id":1,"path":"/usr"})");
   curious.say(R"({"do":"watch","id":2,"path":"/usr/scene/Ball","property":"localPos"})");
   curious.say(R"({"do":"contacts","id":3})");
-  curious.textWith("\"id\":3");
+  CHECK_THAT(curious.textWith("\"id\":3"), Contains("\"ok\":true") && Contains("\"contacts\":["));
   curious.textWith("\"watched\"");
   for (int i = 0; i < 5; ++i) viewer.binary();
   return Json::parse(host.line());

@@ -74,6 +74,12 @@ void call(House& house, const std::string& what, const std::vector<std::string>&
   if (!result.empty()) print(result + "\n");
 }
 
+void ask(House& house, const std::string& what, const std::string& path) {
+  Json request{{"do", what}};
+  if (!path.empty()) request["path"] = path;
+  print(answerText(house.ask(request)));
+}
+
 void watch(House& house, const std::string& what) {
   const Target t = split(what, true);
   for (Json line = house.ask({{"do", "watch"}, {"path", t.path}, {"property", t.member}});; line = house.next())
@@ -109,6 +115,10 @@ int main(int argc, char** argv) {
   calls->add_option("ARGUMENTS", arguments);
   CLI::App* watches = app.add_subcommand("watch", "Prints a property now and whenever it changes");
   watches->add_option("PATH.PROPERTY", target)->required();
+  CLI::App* asks = app.add_subcommand(
+      "ask", "Asks for contacts, joints PATH, percepts PATH or what else a plugin answers; prints JSON");
+  asks->add_option("REQUEST", target)->required();
+  asks->add_option("PATH", value, "A node; of an agent: any of its own");
   CLI::App* plugins = app.add_subcommand("plugins", "The plugins that were found");
   CLI::App* loads =
       app.add_subcommand("load", "Loads a plugin of the host's folders, as a config's line plugin \"NAME\" does");
@@ -129,6 +139,7 @@ int main(int argc, char** argv) {
     if (*gets) get(house, target);
     if (*sets) set(house, target, value);
     if (*calls) call(house, target, arguments);
+    if (*asks) ask(house, target, value);
     if (*watches) watch(house, target);
     if (*loads) print(house.ask({{"do", "load"}, {"name", target}}).value("text", "") + "\n");
     if (*unloads) house.ask({{"do", "unload"}, {"name", target}});

@@ -85,6 +85,21 @@ std::string propertyText(const Json& p) {
                      text(p, "type"), range(p), p.value("readOnly", false) ? ", read only" : "", text(p, "doc"));
 }
 
+std::string answerText(const Json& answer) {
+  std::string out;
+  for (const auto& [name, value] : answer.items()) {
+    if (name == "ok") continue;
+    out += fmt::format("{}\n  {}: ", out.empty() ? "{" : ",", Json(name).dump());
+    if (!value.is_array() || value.empty()) {
+      out += value.dump();
+      continue;
+    }
+    for (const Json& part : value) out += fmt::format("{}\n    {}", &part == &value.front() ? "[" : ",", part.dump());
+    out += "\n  ]";
+  }
+  return out.empty() ? "{}\n" : out + "\n}\n";
+}
+
 std::string pluginsText(const Json& plugins) {
   std::string out;
   for (const Json& p : plugins)

@@ -14,6 +14,8 @@ using Json = nlohmann::ordered_json;
 std::string treeText(const Json& node, const std::string& path, bool all);
 /// `name = value unit`, with type, range and documentation below.
 std::string propertyText(const Json& property);
+/// JSON with a line for each part of a list.
+std::string answerText(const Json& answer);
 /// One line a plugin.
 std::string pluginsText(const Json& plugins);
 

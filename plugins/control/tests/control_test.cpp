@@ -61,6 +61,25 @@ struct Fixture {
     return receive();
   }
 };
+
+/// Answers a request of its own.
+class Weatherman : public Leaf, public IRequestHandler {
+  SPARK_CLASS(Weatherman, Leaf)
+ public:
+  static void describe(Description<Weatherman>& d) {
+    d.doc("Tells the weather.");
+    d.implements<IRequestHandler>();
+  }
+  std::span<const std::string_view> requests() const override { return kRequests; }
+  std::string answer(std::string_view request) override {
+    return Json{{"ok", true}, {"sky", Json::parse(request).value("place", "") + " is grey"}}.dump();
+  }
+  void poll() override { ++polls; }
+  int polls = 0;
+
+ private:
+  static constexpr std::array<std::string_view, 2> kRequests{"weather", "forecast"};
+};
 }  // namespace
 
 TEST_CASE("Only the user can reach the control socket") {
@@ -238,6 +257,22 @@ TEST_CASE("Other servers' clients are answered too; who may not change the match
   REQUIRE(requests.nextOf(watch, done).empty());
   REQUIRE_FALSE(done);
   REQUIRE(ask({{"do", "tree"}, {"path", "/sys"}}, false)["ok"] == true);
+}
+
+TEST_CASE("Children of the control server answer requests of their own, whoever asks") {
+  Fixture f;
+  f.connect();
+  REQUIRE(f.ask({{"do", "weather"}})["error"] ==
+          "expected tree, get, set, call, watch, plugins, load, or unload, found 'weather'");
+  f.house.kernel.registerClass<Weatherman>();
+  auto& handler = f.house.kernel.create<Weatherman>("Weatherman", "/sys/server/control/weather");
+  REQUIRE(f.ask({{"do", "weather"}, {"place", "Leipzig"}})["sky"] == "Leipzig is grey");
+  REQUIRE(handler.polls == 1);
+  control::Watch watch;
+  REQUIRE(f.control->as<IRequests>()->answer(R"({"do":"forecast"})", watch, false) ==
+          R"({"ok":true,"sky":" is grey"})");
+  REQUIRE(f.ask({{"do", "wether"}})["error"] ==
+          "expected tree, get, set, call, watch, plugins, load, unload, weather, or forecast, found 'wether'");
 }
 
 TEST_CASE("Plugins are listed with what they provide") {

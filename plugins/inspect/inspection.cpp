@@ -6,7 +6,7 @@
 #include "api/physics.h"
 #include "spark/error.h"
 
-namespace spark::web {
+namespace spark::inspect {
 
 using Json = nlohmann::json;
 
@@ -19,8 +19,10 @@ constexpr std::size_t kMostContacts = 1024, kMostJoints = 256, kMostSeen = 512, 
 /// longest ago.
 constexpr std::size_t kMostWatched = 4;
 constexpr auto kForgetAfter = 5s;
-/// No agent's sight is kept more often: a match that runs as fast as it can is not slowed down.
+/// No agent's sight is kept more often, and keeping takes one part in so many of wall time: a match that runs as fast
+/// as it can is not slowed down.
 constexpr auto kKeepEvery = 40ms;
+constexpr int kOneIn = 50;
 
 /// Short, and exact enough to be drawn.
 double rounded(double v) { return std::round(v * 1e4) / 1e4; }
@@ -185,8 +187,6 @@ AgentAspect* agentOf(Leaf& leaf) {
 
 }  // namespace
 
-bool Inspection::knows(std::string_view what) { return what == "contacts" || what == "joints" || what == "percepts"; }
-
 std::string Inspection::answer(const Json& request) {
   Json out;
   try {
@@ -281,12 +281,15 @@ Inspection::Watched& Inspection::watched(AgentAspect& agent) {
 }
 
 void Inspection::look() {
+  if (watched_.empty()) return;
   const auto* simulation = kernel_.root().find<ISimulation>("/sys/server/simulation");
   if (!simulation || std::exchange(lookedAt_, simulation->cycle()) == simulation->cycle()) return;
   const auto now = Clock::now();
+  if (now < lookDue_) return;
   std::erase_if(watched_, [&](const Watched& w) { return !w.agent || now - w.askedAt > kForgetAfter; });
   for (Watched& w : watched_)
     if (now - w.keptAt >= kKeepEvery) keepWhatItSees(w, now);
+  lookDue_ = now + (Clock::now() - now) * kOneIn;
 }
 
 void Inspection::keepWhatItSees(Watched& watch, Clock::time_point now) const {
@@ -306,4 +309,4 @@ void Inspection::keepWhatItSees(Watched& watch, Clock::time_point now) const {
     }
 }
 
-}  // namespace spark::web
+}  // namespace spark::inspect

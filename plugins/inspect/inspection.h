@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a viewer may ask to look into the match: what touches, how joints stand, what an agent senses.
+/// What clients may ask to look into the match: what touches, how joints stand, what an agent senses.
 ///
 ///     {"do":"contacts"}                {"contacts":[{"position","normal","depth","solved","force","a","b"}, ...]}
 ///     {"do":"joints","path":p}         {"joints":[{"path","type","anchor","axes","angles","rates",
@@ -14,20 +14,22 @@
 /// is left out: forces that nobody measures, joints without stops, sight without limit, the truth about what has no
 /// place.
 ///
-/// An agent sees in some cycles only, and what it saw is to be compared with what was true then. So who asked for
-/// percepts lately is watched:
+/// An agent sees in some cycles only, and what it saw is to be compared with what was true then. So an agent whose
+/// percepts were asked for lately is watched:
 ///
 ///     poll ─► look(): in a cycle in which a watched agent saw ─► keeps its percept with camera and true places
 ///     request ─► what it senses now, and what was kept
 
+#include <array>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "api/agents.h"
 
-namespace spark::web {
+namespace spark::inspect {
 
 /// Answers such requests. Used in the simulation's thread, between two cycles; changes nothing in the match.
 class Inspection {
@@ -35,13 +37,11 @@ class Inspection {
   using Json = nlohmann::json;
   explicit Inspection(Kernel& kernel) : kernel_(kernel) {}
 
-  /// True for the requests that it answers.
-  static bool knows(std::string_view what);
+  /// What "do" says in the requests that it answers.
+  static constexpr std::array<std::string_view, 3> kRequests{"contacts", "joints", "percepts"};
   /// `{"ok":true,...}` or `{"ok":false,"error":"..."}`. Nothing is thrown.
   std::string answer(const Json& request);
-  /// Somebody asked for percepts lately: look() has something to do.
-  bool watches() const { return !watched_.empty(); }
-  /// To be called in every poll while it watches, before requests are answered.
+  /// To be called between every two cycles, before requests are answered. Takes a fiftieth of wall time at most.
   void look();
 
  private:
@@ -62,7 +62,8 @@ class Inspection {
 
   Kernel& kernel_;
   std::vector<Watched> watched_;
-  std::int64_t lookedAt_ = -1;  ///< cycle
+  std::int64_t lookedAt_ = -1;   ///< cycle
+  Clock::time_point lookDue_{};  ///< not before: looking takes its share of wall time only
 };
 
-}  // namespace spark::web
+}  // namespace spark::inspect
