@@ -36,13 +36,15 @@ void keepAlive(tcp::socket& socket) {
 }
 }  // namespace
 
-TcpConnection::TcpConnection(tcp::socket socket, std::uint64_t id, Node& port)
+TcpConnection::TcpConnection(tcp::socket socket, std::uint64_t id, TcpPort& port)
     : socket_(std::move(socket)), port_(port), id_(id), peer_(describePeer(socket_)) {
   error_code ignored;
   socket_.non_blocking(true, ignored);
   socket_.set_option(tcp::no_delay(true), ignored);
   keepAlive(socket_);
 }
+
+Node& TcpConnection::port() { return port_; }
 
 void TcpConnection::watchRead() {
   readable_ = false;
@@ -72,19 +74,19 @@ void TcpConnection::shut() {
 
 void TcpConnection::close(std::string_view reason) {
   if (closing_) return;
-  static_cast<TcpPort&>(port_).complain(Level::warning, fmt::format("{} is closed: {}.", peer_, reason));
+  port_.complain(Level::warning, fmt::format("{} is closed: {}.", peer_, reason));
   shut();
 }
 
 bool TcpConnection::send(std::string_view message) {
   if (closing_) return false;
   if (!flush() || !idle()) {
-    static_cast<TcpPort&>(port_).countDropped();
+    port_.countDropped();
     return false;
   }
   out_.clear();
   written_ = 0;
-  static_cast<TcpPort&>(port_).frame(message, out_);
+  port_.frame(message, out_);
   stalledSince_ = Clock::now();
   return flush();
 }

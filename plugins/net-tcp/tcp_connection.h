@@ -14,6 +14,10 @@
 #include "api/net.h"
 #include "net-tcp/handler_memory.h"
 
+namespace spark {
+class TcpPort;
+}
+
 namespace spark::net {
 
 using boost::asio::ip::tcp;
@@ -25,11 +29,11 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   /// gone or the connection failed.
   enum class Read { nothing, some, all, ended };
 
-  TcpConnection(tcp::socket socket, std::uint64_t id, Node& port);
+  TcpConnection(tcp::socket socket, std::uint64_t id, TcpPort& port);
 
   std::uint64_t id() const override { return id_; }
   const std::string& peer() const override { return peer_; }
-  Node& port() override { return port_; }
+  Node& port() override;
   bool send(std::string_view message) override;
   bool idle() const override { return written_ == out_.size(); }
   double stalledSeconds() const override;
@@ -62,7 +66,7 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   bool flush();
 
   tcp::socket socket_;
-  Node& port_;
+  TcpPort& port_;
   const std::uint64_t id_;
   std::string peer_, input_, out_;
   std::size_t written_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <utility>
 
 #include "spark/error.h"
 #include "spark/predicates.h"
@@ -52,8 +53,8 @@ class Compiler {
 
  private:
   using Position = Element::Iterator;
-  /// Compiles what begins with the atom at `at` and says whether the rest of the list belongs to it.
-  bool atom(Position& at, const Position& end, const Element& list, Block& out);
+  /// Compiles the statement that begins with the atom at `at`, and moves `at` behind it.
+  Statement atom(Position& at, const Position& end, const Element& list);
   Statement parameters(Position at, const Position& end, const Site& site);
   Statement define(Position at, const Position& end, const Site& site);
   Statement choose(Position at, const Position& end, const Site& site);
@@ -74,45 +75,41 @@ Block Compiler::block(const Element& list) {
       s.blocks.push_back(block(e));
       out.statements.push_back(std::move(s));
       ++at;
-    } else if (atom(at, end, list, out)) {
-      break;
+    } else {
+      out.statements.push_back(atom(at, end, list));
     }
   }
   return out;
 }
 
-bool Compiler::atom(Position& at, const Position& end, const Element& list, Block& out) {
+Statement Compiler::atom(Position& at, const Position& end, const Element& list) {
   const std::string_view word = resolve(kHeadAliases, (*at).text());
-  const Site site = siteOf(*at).line ? siteOf(*at) : siteOf(list);
+  Statement s;
+  s.site = siteOf(*at).line ? siteOf(*at) : siteOf(list);
   ++at;
-  const auto add = [&](Statement s) { out.statements.push_back(std::move(s)); };
+  if (word == "pwd") {
+    s.kind = Statement::Kind::print;
+    return s;
+  }
   if (word == "node" && program_.delta) {
     while (at != end && !(*at).isList()) ++at;
-    Statement s;
     s.kind = Statement::Kind::nextNode;
-    s.site = site;
-    return add(std::move(s)), false;
+    return s;
   }
-  if (word == "node" || word == "select") {
-    if (!(at != end) || (*at).isList())
-      return add(failing(site, "expected a name after '" + std::string(word) + "'")), true;
-    Statement s;
+  const bool named = word == "node" || word == "select";
+  if (named && at != end && !(*at).isList()) {
     s.kind = word == "node" ? Statement::Kind::node : Statement::Kind::select;
-    s.site = site;
     s.text = word == "node" ? resolve(kClassAliases, (*at).text()) : (*at).text();
     ++at;
-    return add(std::move(s)), false;
+    return s;
   }
-  if (word == "pwd") {
-    Statement s;
-    s.kind = Statement::Kind::print;
-    s.site = site;
-    return add(std::move(s)), false;
-  }
-  if (word == "template") return add(parameters(at, end, site)), true;
-  if (word == "define") return add(define(at, end, site)), true;
-  if (word == "switch") return add(choose(at, end, site)), true;
-  return add(call(word, at, end, site)), true;
+  // All others take the rest of the list.
+  const Position rest = std::exchange(at, end);
+  if (named) return failing(s.site, "expected a name after '" + std::string(word) + "'");
+  if (word == "template") return parameters(rest, end, s.site);
+  if (word == "define") return define(rest, end, s.site);
+  if (word == "switch") return choose(rest, end, s.site);
+  return call(word, rest, end, s.site);
 }
 
 Statement Compiler::parameters(Position at, const Position& end, const Site& site) {
