@@ -158,6 +158,15 @@ function drawing()
   return server
 end
 
+--- How a game goes: Status.score = {2, 1}. The host's status line, the columns of a batch and the page show it. `values`: what it is at first;
+--- playMode (text), score (numbers) and teams (names) are understood, all others are shown by their names.
+function status(values)
+  plugin "scene"
+  local group = new("StatusVariables", "/sys/variables/Status")
+  for name, value in pairs(values or {}) do group:set(name, value) end
+  return group
+end
+
 --- What a run is about, in numbers: Result.falls = 3. sparkbatch makes a column of each. `values`: what they are at first.
 function results(values)
   plugin "scene"

@@ -35,16 +35,13 @@ class FakeBody : public SceneNode, public IRigidBody {
   bool awake = true;
 };
 
-/// A joint with parameters and angles as the test sets them.
-class FakeJoint : public SceneNode, public IJoint {
+/// A joint, and a modelled motor, with parameters and angles as the test sets them.
+class FakeJoint : public SceneNode, public IJoint, public IMotor {
   SPARK_CLASS(FakeJoint, SceneNode)
  public:
   static void describe(Description<FakeJoint>& d) {
     d.implements<IJoint>();
-    d.property("stiffness", &FakeJoint::stiffness);
-    d.property("temperature", &FakeJoint::temperature);
-    d.property("current", &FakeJoint::current);
-    d.property("disabled", &FakeJoint::disabled);
+    d.implements<IMotor>();
   }
   Leaf& leaf() override { return *this; }
   engine::JointType jointType() const override { return type; }
@@ -70,14 +67,24 @@ class FakeJoint : public SceneNode, public IJoint {
   }
   double maxSpeed(int axis) const override { return maxSpeeds[axis]; }
   double feedbackTorque() const override { return torque; }
+  bool feedback() const override { return measures; }
+  double stiffness() const override { return device.stiffness; }
+  void setStiffness(double fraction) override { device.stiffness = fraction; }
+  double temperature() const override { return device.temperature; }
+  double current() const override { return device.current; }
+  bool disabled() const override { return device.disabled; }
   double velocity(int axis) const { return parameter(engine::JointParameter::velocity, axis); }
 
   engine::JointType type = engine::JointType::hinge;
   std::array<IRigidBody*, 2> bodies{};
   std::array<double, 3> angles{}, rates{}, maxSpeeds{};
   std::map<std::pair<engine::JointParameter, int>, double> parameters;
-  double torque = 0, stiffness = 1, temperature = 23, current = 0;
-  bool disabled = false;
+  double torque = 0;
+  bool measures = false;
+  struct {
+    double stiffness = 1, temperature = 23, current = 0;
+    bool disabled = false;
+  } device;
 };
 
 /// A collider without a shape.
@@ -93,13 +100,12 @@ class FakeCollider : public SceneNode, public ICollider {
 };
 
 /// A battery that has lost a quarter of its energy.
-class Battery : public SceneNode {
-  SPARK_CLASS(Battery, SceneNode)
+class FakeBattery : public SceneNode, public IBattery {
+  SPARK_CLASS(FakeBattery, SceneNode)
  public:
-  static void describe(Description<Battery>& d) {
-    d.property("power", &Battery::power), d.property("capacity", &Battery::capacity);
-  }
-  double power = 750, capacity = 1000;
+  static void describe(Description<FakeBattery>& d) { d.implements<IBattery>(); }
+  double power() const override { return 750; }
+  double capacity() const override { return 1000; }
 };
 
 /// Registers the fakes and the bases that sensors and effectors derive from.
@@ -114,7 +120,7 @@ inline void registerFakePhysics(Kernel& kernel) {
   kernel.registerClass<FakeBody>();
   kernel.registerClass<FakeJoint>();
   kernel.registerClass<FakeCollider>();
-  kernel.registerClass<Battery>();
+  kernel.registerClass<FakeBattery>();
 }
 
 /// What an agent would be sent, with two decimals.

@@ -74,4 +74,13 @@ void JsonWriter::quote(std::string_view text) {
   out_.put('"');
 }
 
+JsonWriter& JsonWriter::anyValue(const Value& v) {
+  if (v.isString()) return value(std::string_view(v.toString()));
+  if (v.isNil() || (v.isNumber() && !std::isfinite(v.toNumber()))) return null();
+  if (!v.isList()) return raw(v.plain());
+  beginArray();
+  for (const Value& part : v.toList()) anyValue(part);
+  return endArray();
+}
+
 }  // namespace spark

@@ -85,7 +85,7 @@ class IEye {
  public:
   SPARK_INTERFACE(IEye, 1);
   virtual ~IEye() = default;
-  /// Something that may be seen. Its name is made of its percept's: "B", "F1L", "P Red 3", "P Red 3 head".
+  /// Something that may be seen. Its name is made of its percept's words: "B", "P Red 3", "P Red 3 head".
   struct Sight {
     std::string name;
     Vec3f place;  ///< in the world [m]

@@ -22,9 +22,9 @@ struct Drawing {
   float size = 0;       ///< circle, sphere: radius [m]; point: pixels
   float thickness = 1;  ///< circle, line: pixels
   Color color;
-  std::string text;    ///< text, agentText: UTF-8
-  bool right = false;  ///< agentText: of whose team
-  int number = 0;      ///< agentText: whose, 1..128
+  std::string text;  ///< text, agentText: UTF-8
+  int team = 0;      ///< agentText: of which team, 0 or 1; on the wire left and right
+  int number = 0;    ///< agentText: of which agent in it, 1..128
 };
 
 /// The drawings, at /sys/server/drawing; used in the simulation's thread.

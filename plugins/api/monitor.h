@@ -16,7 +16,7 @@ namespace spark {
 /// When an entry of the environment is sent.
 enum class EnvPolicy { full, change, always, once };
 
-/// The environment part of a frame: `(time 0.8)(play_mode 3)`, each with a policy.
+/// The environment part of a frame: `(time 0.8)(round 3)`, each with a policy.
 struct Environment {
   struct Entry {
     EnvPolicy policy;

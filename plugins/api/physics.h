@@ -49,7 +49,7 @@ class IRigidBody {
 /// A joint: what HingeJoint and the others offer to sensors and effectors.
 class IJoint {
  public:
-  SPARK_INTERFACE(IJoint, 1);
+  SPARK_INTERFACE(IJoint, 2);
   virtual ~IJoint() = default;
   virtual Leaf& leaf() = 0;
   virtual engine::JointType jointType() const = 0;
@@ -73,6 +73,36 @@ class IJoint {
   virtual double maxSpeed(int axis) const = 0;
   /// Sum of the torque's magnitudes on both bodies in the last step [Nm]; 0 without feedback.
   virtual double feedbackTorque() const = 0;
+  /// True when it measures that torque.
+  virtual bool feedback() const = 0;
+};
+
+/// What a motor is like that is modelled as a device. Offered beside IJoint by AngularMotor, for sensors and effectors.
+class IMotor {
+ public:
+  SPARK_INTERFACE(IMotor, 1);
+  virtual ~IMotor() = default;
+  /// The fraction of its greatest torque that it may use, from 0 to 1.
+  virtual double stiffness() const = 0;
+  /// `fraction`: 0 to 1. It holds from the next step on.
+  virtual void setStiffness(double fraction) = 0;
+  /// Of the winding [deg C].
+  virtual double temperature() const = 0;
+  /// In the last step [A].
+  virtual double current() const = 0;
+  /// It takes no commands: it is too hot, or its battery is empty.
+  virtual bool disabled() const = 0;
+};
+
+/// A store of energy. Offered by Battery, for sensors.
+class IBattery {
+ public:
+  SPARK_INTERFACE(IBattery, 1);
+  virtual ~IBattery() = default;
+  /// The energy that it holds now [J].
+  virtual double power() const = 0;
+  /// The energy that it holds when full [J]; 0: unknown.
+  virtual double capacity() const = 0;
 };
 
 /// Geometry that touches.

@@ -39,7 +39,7 @@ class Recorder {
   std::string packet_;
 };
 
-std::size_t byteOf(const Drawing& text) { return static_cast<std::size_t>(text.number - 1 + (text.right ? 128 : 0)); }
+std::size_t byteOf(const Drawing& text) { return static_cast<std::size_t>(text.number - 1 + 128 * text.team); }
 }  // namespace
 
 std::size_t DrawBoard::weight(const std::vector<Drawing>& shapes) {
@@ -172,7 +172,7 @@ void DrawBoard::record(std::uint64_t since, std::string& out) const {
     if (!labelled_[i]) continue;
     Drawing none;
     none.kind = Drawing::Kind::agentText;
-    none.right = i >= 128;
+    none.team = static_cast<int>(i / 128);
     none.number = static_cast<int>(i % 128) + 1;
     write(writeDrawing, place_[i] == 0 ? none : agents->shapes[place_[i] - 1u], "");
   }

@@ -85,12 +85,12 @@ class ShapeReader {
     out_.text = cleanText(e.at(1).text(), PacketReader::kLongestText);
   }
   void agent() {
-    const Element side = list_.named("side"), unum = list_.named("unum");
+    const Element side = list_.named("side"), index = list_.named("unum");
     const std::string_view where = side ? side.at(1).text() : std::string_view();
-    const std::int64_t number = unum ? unum.at(1).integer() : 0;
+    const std::int64_t number = index ? index.at(1).integer() : 0;
     if ((where != "left" && where != "right") || number < 1 || number > 128)
       return expect("(side left) or (side right), and (unum 1) to (unum 128)");
-    out_.right = where == "right";
+    out_.team = where == "right" ? 1 : 0;
     out_.number = static_cast<int>(number);
   }
   void color() {

@@ -173,7 +173,7 @@ std::string PacketReader::text(std::size_t longest) {
 
 void PacketReader::readAgent(Drawing& out) {
   const std::uint8_t agent = byte();
-  out.right = agent >= kRight;
+  out.team = agent / kRight;
   out.number = agent % kRight + 1;
 }
 
@@ -204,7 +204,7 @@ void putText(std::string& out, std::string_view text) { out.append(text.substr(0
 
 void putAgentText(std::string& out, const Drawing& d) {
   put(out, 2), put(out, d.text.empty() ? 2 : 1);
-  put(out, d.number - 1 + (d.right ? kRight : 0));
+  put(out, d.number - 1 + kRight * d.team);
   if (d.text.empty()) return;
   putColor(out, d.color);
   putText(out, d.text);

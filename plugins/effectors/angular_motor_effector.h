@@ -20,7 +20,7 @@ class AngularMotorEffector : public Effector {
     NumberArguments read(action);
     double speed = 0;
     if (!read(0, speed)) return read.remark();
-    if (disabled_ && disabled_->get(motor_->leaf()).toBool()) {
+    if (device_ && device_->disabled()) {
       motor_->drive(0, 0);
       return read.remark();
     }
@@ -43,11 +43,11 @@ class AngularMotorEffector : public Effector {
   void lookUp() {
     motor_ = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
     hinge_ = motor_ ? motor_->leaf().ancestor<IJoint>() : nullptr;
-    disabled_ = motor_ ? motor_->leaf().classObject()->property("disabled") : nullptr;
+    device_ = motor_ ? motor_->leaf().as<IMotor>() : nullptr;
   }
   IJoint* motor_ = nullptr;
   IJoint* hinge_ = nullptr;
-  const Property* disabled_ = nullptr;  ///< of motors that model one
+  const IMotor* device_ = nullptr;  ///< of motors that are modelled
 };
 
 }  // namespace spark

@@ -9,6 +9,7 @@
 #include "stiffness_effector.h"
 #include "universal_joint_effector.h"
 
-SPARK_PLUGIN("effectors", "1.0", "Effectors that are not soccer.", spark::HingeEffector, spark::UniversalJointEffector,
-             spark::Hinge2Effector, spark::AngularMotorEffector, spark::StiffnessEffector, spark::AgentSyncEffector,
-             spark::ForceEffector, spark::CreateEffector, spark::HMDPEffector)
+SPARK_PLUGIN("effectors", "1.0", "Effectors of robots: joints, motors, forces.", spark::HingeEffector,
+             spark::UniversalJointEffector, spark::Hinge2Effector, spark::AngularMotorEffector,
+             spark::StiffnessEffector, spark::AgentSyncEffector, spark::ForceEffector, spark::CreateEffector,
+             spark::HMDPEffector)

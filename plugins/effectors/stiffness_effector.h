@@ -18,11 +18,7 @@ class StiffnessEffector : public Effector {
     double stiffness = 0;
     if (!read(0, stiffness)) return read.remark();
     stiffness_ = std::clamp(stiffness, 0.0, 1.0);
-    if (motorStiffness_) {
-      const Value value = stiffness_;
-      Args args{{&value, 1}};
-      motorStiffness_->set(motor_->leaf(), args);
-    }
+    if (motor_) motor_->setStiffness(stiffness_);
     return read.remark();
   }
 
@@ -38,13 +34,10 @@ class StiffnessEffector : public Effector {
 
  private:
   void lookUp() {
-    motorStiffness_ = nullptr;
-    motor_ = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
-    const Property* p = motor_ ? motor_->leaf().classObject()->property("stiffness") : nullptr;
-    if (p && !p->readOnly && p->get(motor_->leaf()).isNumber()) motorStiffness_ = p;
+    IJoint* joint = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
+    motor_ = joint ? joint->leaf().as<IMotor>() : nullptr;
   }
-  IJoint* motor_ = nullptr;
-  const Property* motorStiffness_ = nullptr;
+  IMotor* motor_ = nullptr;
   double stiffness_ = 1;
 };
 

@@ -35,8 +35,9 @@ void GameControl::describe(Description<GameControl>& d) {
   d.property("expect", &GameControl::expect_)
       .range(0, 1000)
       .doc(
-          "Holds the clock at cycle 0 until so many agents have sent scene, init and syn; they are numbered by team "
-          "and number.");
+          "Holds the clock at cycle 0 until so many agents have named their robot and, where a game has names for "
+          "them, "
+          "themselves, and have sent syn; they are numbered by team and number.");
   d.property("maxAgents", &GameControl::maxAgents_)
       .range(0, 1000)
       .doc("Further agents are closed; clients that never said anything do not count.");
@@ -165,7 +166,7 @@ void GameControl::received(IConnection& connection, std::string_view message) {
                               ? fmt::format("there are {} agents already (maxAgents)", maxAgents_)
                               : p->receive(message, static_cast<std::size_t>(maxPending_), lines(), cycle_);
   if (why.empty()) {
-    if (holding()) gamecontrol::Hold::note(*p);
+    if (holding()) gamecontrol::Hold::note(*p, joinPolicy());
     return;
   }
   connection.close(why);
@@ -189,7 +190,8 @@ void GameControl::removeAgent(AgentAspect& agent, bool close) {
 
 bool GameControl::ready(bool lockstep) {
   resolveParsers();
-  if (holding()) return hold_.over(newcomers_, {expect_, holdWait_, joinWait_, holdReport_}, kernel().log());
+  if (holding())
+    return hold_.over(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy()}, kernel().log());
   if ((!lockstep && !sync_) || cyclesToTurn_ > 0) return true;
   const auto now = Clock::now();
   if (!std::exchange(waiting_, true)) waitingSince_ = now;
@@ -380,7 +382,7 @@ void GameControl::joinBehaviors() {
 }
 
 void GameControl::joinNewcomers() {
-  if (holding()) hold_.order(newcomers_, expect_);
+  if (holding()) hold_.order(newcomers_, expect_, joinPolicy());
   released_ = true;
   auto joining = std::move(newcomers_);
   newcomers_.clear();

@@ -65,6 +65,8 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   void closeIdle();
   bool realTime() const;
   bool holding() const { return expect_ > 0 && !released_; }
+  /// The game's, as long as the tree stays as it is; nullptr: it has none.
+  const IJoinPolicy* joinPolicy() const { return childOf<IJoinPolicy>(); }
   Participant* participantOf(const IConnection& connection) const;
   const Participant* participantOf(const AgentAspect& agent) const;
   void agentsChanged();

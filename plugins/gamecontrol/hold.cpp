@@ -8,8 +8,8 @@ namespace spark::gamecontrol {
 
 namespace {
 
-constexpr std::string_view kScene = "scene", kInit = "init";
-constexpr int kAnswersWithoutInit = 2;
+constexpr std::string_view kScene = "scene";
+constexpr int kAnswersWithoutName = 2;
 constexpr std::size_t kMostNamed = 12;  // clients in one line
 
 bool holds(const Predicates& predicates, std::string_view wanted) {
@@ -19,51 +19,50 @@ bool holds(const Predicates& predicates, std::string_view wanted) {
 }
 
 bool sent(const Participant& p, std::string_view predicate) { return holds(p.pending(), predicate); }
+bool named(const Participant& p, const IJoinPolicy* policy) { return policy && sent(p, policy->predicate()); }
 bool complete(const Participant& p) { return !p.leaving() && p.held().saidAll && sent(p, kScene); }
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-/// Team name and number from the first init; for those that have none, what they said of their robot.
-std::tuple<std::string_view, std::int64_t, std::string> whoIs(const Participant& p) {
+/// Team name and number as it said them first; for those that have none, what they said of their robot.
+std::tuple<std::string_view, std::int64_t, std::string> whoIs(const Participant& p, const IJoinPolicy* policy) {
   Predicates robot;
-  std::string_view team;
-  std::int64_t unum = 0;
-  bool named = false;
+  IJoinPolicy::Name name;
+  bool known = false;
   for (const Element e : p.pending()) {
     if (e.head() == kScene) robot.append(e);
-    if (e.head() != kInit || std::exchange(named, true)) continue;
-    const Element t = e.named("teamname"), u = e.named("unum");
-    if (t) team = t.at(1).text();
-    if (u) unum = u.at(1).integer();
+    if (policy && e.head() == policy->predicate() && !std::exchange(known, true)) name = policy->read(e);
   }
   std::string text;
   writeSexp(robot, 6, text);
-  return {team, unum, text};
+  return {name.team, name.number, text};
 }
 
 /// "agent at 127.0.0.1:4711 has named its robot, owes (init ...) and (syn)".
-std::string owes(const Participant& p) {
-  const bool scene = sent(p, kScene), init = sent(p, kInit), syn = sent(p, kSync);
+std::string owes(const Participant& p, const IJoinPolicy* policy) {
+  const bool scene = sent(p, kScene), isNamed = named(p, policy);
   if (!p.heardFrom()) return p.label() + " has said nothing";
-  if (!scene) return p.label() + " owes (scene ...)" + (init ? "" : ", (init ...)") + " and (syn)";
-  if (init) return p.label() + " has named its robot and its team, owes (syn)";
-  return p.label() + " has named its robot, owes (init ...) and (syn)" +
-         (syn ? "; if it has no init, (syn) to two messages" : "");
+  const std::string name = policy && !isNamed ? fmt::format("({} ...)", policy->predicate()) : std::string();
+  if (!scene) return p.label() + " owes (scene ...)" + (name.empty() ? "" : ", " + name) + " and (syn)";
+  if (isNamed) return p.label() + " has named its robot and its team, owes (syn)";
+  if (!policy) return p.label() + " has named its robot, owes (syn)";
+  return p.label() + " has named its robot, owes " + name + " and (syn)" +
+         (sent(p, kSync) ? fmt::format("; if it has no {}, (syn) to two messages", policy->predicate()) : "");
 }
 
 }  // namespace
 
-void Hold::note(Participant& p) {
+void Hold::note(Participant& p, const IJoinPolicy* policy) {
   const bool answers = std::exchange(p.held().greeted, false);
   if (!holds(p.lastMessage(), kSync)) return;
   p.held().answers += answers;
-  if (sent(p, kInit) || p.held().answers >= kAnswersWithoutInit) p.held().saidAll = true;
+  if (!policy || named(p, policy) || p.held().answers >= kAnswersWithoutName) p.held().saidAll = true;
 }
 
 bool Hold::isThere(const Participant& p) const { return complete(p) || (givenUp_ && !p.leaving() && sent(p, kScene)); }
 
 bool Hold::over(const List& newcomers, const Terms& terms, Log& log) {
   const auto now = Clock::now();
-  noteProgress(newcomers, now);
+  noteProgress(newcomers, terms.policy, now);
   const auto there =
       static_cast<int>(std::count_if(newcomers.begin(), newcomers.end(), [](const auto& p) { return complete(*p); }));
   if (std::exchange(reported_, there) != there) log.info("{} of {} expected agents are ready.", there, terms.agents);
@@ -95,9 +94,9 @@ void Hold::greet(const List& newcomers, double patience, Clock::time_point now) 
 }
 
 /// More was said than ever before. Those that come and go again are none.
-void Hold::noteProgress(const List& newcomers, Clock::time_point now) {
+void Hold::noteProgress(const List& newcomers, const IJoinPolicy* policy, Clock::time_point now) {
   int said = 0;
-  for (const auto& p : newcomers) said += sent(*p, kScene) + sent(*p, kInit) + p->held().saidAll;
+  for (const auto& p : newcomers) said += sent(*p, kScene) + named(*p, policy) + p->held().saidAll;
   if (said <= furthest_) return;
   furthest_ = said;
   progressAt_ = now;
@@ -112,7 +111,7 @@ void Hold::report(const List& newcomers, const Terms& terms, Clock::time_point n
   for (const auto& p : newcomers) {
     connected += !p->leaving();
     if (complete(*p) || p->leaving()) continue;
-    if (++left <= kMostNamed) line += owes(*p) + "; ";
+    if (++left <= kMostNamed) line += owes(*p, terms.policy) + "; ";
   }
   if (left > kMostNamed) line += fmt::format("{} more are not ready; ", left - kMostNamed);
   const auto missing = static_cast<std::int64_t>(terms.agents) - static_cast<std::int64_t>(connected);
@@ -125,14 +124,15 @@ void Hold::report(const List& newcomers, const Terms& terms, Clock::time_point n
   log.info("Waiting for {} of {} agents: {}.", terms.agents - reported_, terms.agents, line);
 }
 
-std::size_t Hold::order(List& newcomers, int expect) const {
+std::size_t Hold::order(List& newcomers, int expect, const IJoinPolicy* policy) const {
   int left = expect;
   // Those that are complete before those that are merely there.
   const auto whole = std::stable_partition(newcomers.begin(), newcomers.end(),
                                            [&](const auto& p) { return complete(*p) && left-- > 0; });
   const auto middle = std::stable_partition(whole, newcomers.end(),
                                             [&](const auto& p) { return left > 0 && isThere(*p) && left-- > 0; });
-  std::stable_sort(newcomers.begin(), middle, [](const auto& a, const auto& b) { return whoIs(*a) < whoIs(*b); });
+  std::stable_sort(newcomers.begin(), middle,
+                   [&](const auto& a, const auto& b) { return whoIs(*a, policy) < whoIs(*b, policy); });
   for (auto it = newcomers.begin(); it != middle; ++it) (*it)->holdBack(kScene, !givenUp_);
   return static_cast<std::size_t>(middle - newcomers.begin());
 }

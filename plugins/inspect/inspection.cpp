@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/match.h"
 #include "api/physics.h"
 #include "spark/error.h"
 
@@ -78,11 +79,6 @@ const char* nameOf(engine::JointType type) {
   return "";
 }
 
-bool measuresTorque(const Leaf& joint) {
-  const Property* feedback = joint.classObject()->property("feedback");
-  return feedback && feedback->get(joint) == Value(true);
-}
-
 Json describe(IJoint& joint) {
   const bool slides = joint.jointType() == engine::JointType::slider;
   const auto unit = [slides](double v) { return rounded(slides ? v : radToDeg(v)); };
@@ -94,7 +90,7 @@ Json describe(IJoint& joint) {
     angles.push_back(unit(joint.angle(axis)));
     rates.push_back(unit(joint.angleRate(axis)));
   }
-  if (measuresTorque(joint.leaf())) out["torque"] = rounded(joint.feedbackTorque());
+  if (joint.feedback()) out["torque"] = rounded(joint.feedbackTorque());
   if (joint.axes() == 0) return out;
   const double low = joint.parameter(engine::JointParameter::lowStop, 0),
                high = joint.parameter(engine::JointParameter::highStop, 0);
@@ -119,33 +115,19 @@ class Sighted {
                      [](const IEye::Sight& a, const IEye::Sight& b) { return a.name < b.name; });
   }
 
-  /// `(See (B (pol d h v)) (P (team Red) (id 3) (head (pol d h v))) (L (pol d h v) (pol d h v)))`.
-  void read(const Element& see) {
-    for (const Element e : see) {
-      if (e.head() == "P")
-        readPlayer(e);
-      else if (e.head() == "L")
-        addLine(e.at(1), e.at(2));
-      else if (e.named("pol"))
-        add(std::string(e.head()), e.named("pol"));
-    }
+  void take(const ISightReader::Sightings& sightings) {
+    for (const auto& thing : sightings.things) add(thing.name, thing.at);
+    for (const auto& line : sightings.lines) addLine(line);
   }
   Json seen = Json::array(), lines = Json::array();
 
  private:
-  void readPlayer(const Element& player) {
-    const Element team = player.named("team"), id = player.named("id");
-    const std::string name = fmt::format("P {} {}", team ? team.at(1).text() : "", id ? id.at(1).integer() : 0);
-    if (const Element whole = player.named("pol")) add(name, whole);
-    for (const Element part : player)
-      if (const Element polar = part.named("pol")) add(fmt::format("{} {}", name, part.head()), polar);
-  }
-  bool place(const Element& polar, Vec3f& out) const {
-    if (!polar || polar.head() != "pol" || polar.size() < 4) return false;
-    out = eye_.placeOf(polar.at(1).number(), polar.at(2).number(), polar.at(3).number());
+  using Polar = ISightReader::Polar;
+  bool place(const Polar& polar, Vec3f& out) const {
+    out = eye_.placeOf(polar.distance, polar.horizontalDeg, polar.verticalDeg);
     return out.allFinite();
   }
-  void add(const std::string& name, const Element& polar) {
+  void add(const std::string& name, const Polar& polar) {
     Vec3f where;
     if (seen.size() >= kMostSeen || !place(polar, where)) return;
     Json one{{"name", name}, {"seen", json(where)}};
@@ -154,9 +136,10 @@ class Sighted {
     if (at != truth_.end() && at->name == name) one["true"] = json(at->place);
     seen.push_back(std::move(one));
   }
-  void addLine(const Element& from, const Element& to) {
-    Vec3f a, b;
-    if (lines.size() < kMostLines && place(from, a) && place(to, b)) lines.push_back({json(a), json(b)});
+  void addLine(const ISightReader::Sightings::Line& line) {
+    Vec3f from, to;
+    if (lines.size() < kMostLines && place(line.from, from) && place(line.to, to))
+      lines.push_back({json(from), json(to)});
   }
 
   IEye& eye_;
@@ -296,17 +279,22 @@ void Inspection::keepWhatItSees(Watched& watch, Clock::time_point now) const {
   auto* control = kernel_.root().find<IGameControl>("/sys/server/gamecontrol");
   const Predicates* all = control ? control->percepts(*watch.agent) : nullptr;
   if (!all || all->size() > kMostTokens) return;
-  for (const Eye& e : eyesOf(*watch.agent))
+  for (const Eye& e : eyesOf(*watch.agent)) {
+    const auto* reader = e.perceptor->as<ISightReader>();
+    if (!reader) continue;
     for (const Element see : *all) {
       if (see.head() != e.perceptor->predicateName()) continue;
+      ISightReader::Sightings sightings;
+      reader->read(see, sightings);
       Sighted sighted(*e.eye);
-      sighted.read(see);
+      sighted.take(sightings);
       watch.keptAt = now;
       watch.see = json(see);
       watch.kept = {
           {"seenTime", rounded(time())}, {"seen", std::move(sighted.seen)}, {"lines", std::move(sighted.lines)}};
       return;
     }
+  }
 }
 
 }  // namespace spark::inspect

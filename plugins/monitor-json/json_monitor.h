@@ -6,7 +6,7 @@ namespace spark {
 
 /// Writes monitor messages as JSON that mirrors the S-expressions:
 ///
-///     [[["time",0.8],["play_mode",3]],["RDS",0,1],
+///     [[["time",0.8],["round",3]],["RDS",0,1],
 ///      [["nd",["nd"]],["nd",["SLT",1,0,...,1],["nd","StaticMesh",["setVisible",1]]]]]
 ///
 /// Numbers are numbers with six significant digits; what is not finite is null.

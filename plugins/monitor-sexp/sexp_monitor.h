@@ -7,7 +7,7 @@ namespace spark {
 /// Writes monitor messages as S-expressions, to the blank as the installed base's monitors (RoboViz, rcssmonitor3d)
 /// have been sent them:
 ///
-///     ((time 0.8)(play_mode 3))(RDS 0 1)((nd(nd))(nd (SLT 1 0 ... 1)(nd StaticMesh (setVisible 1))))
+///     ((time 0.8)(round 3))(RDS 0 1)((nd(nd))(nd (SLT 1 0 ... 1)(nd StaticMesh (setVisible 1))))
 ///
 /// Environment, header (RSG full, RDS diff), nodes; numbers with six significant digits.
 class SexpMonitor : public Node, public IMonitorEncoder {

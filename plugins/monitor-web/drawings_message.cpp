@@ -49,7 +49,7 @@ void writeDrawing(JsonWriter& json, const Drawing& d) {
       json.member("text", d.text);
       break;
     case Kind::agentText:
-      json.member("side", d.right ? "right" : "left").member("number", d.number).member("text", d.text);
+      json.member("side", d.team == 1 ? "right" : "left").member("number", d.number).member("text", d.text);
       break;
   }
   json.key("colour").numbers(std::array{d.color.r, d.color.g, d.color.b, d.color.a}).endObject();

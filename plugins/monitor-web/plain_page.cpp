@@ -53,7 +53,9 @@ const shown = {
 async function refresh() {
   try {
     const status = await (await fetch("status.json", { cache: "no-store" })).json();
-    const rows = Object.entries(shown).map(([name, text]) => {
+    const others = (status.status ?? []).map(([name, value]) => [name, () => [value].flat().join(" ")]);
+    if (status.teams) others.unshift(["teams", () => status.teams.join(" : ")]);
+    const rows = [...Object.entries(shown), ...others].map(([name, text]) => {
       const row = document.createElement("tr");
       for (const cell of [name, status.time === undefined ? "" : text(status)]) row.insertCell().textContent = cell;
       return row;

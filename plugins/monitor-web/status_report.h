@@ -7,11 +7,14 @@
 #include <vector>
 
 #include "api/agents.h"
+#include "api/match.h"
+#include "api/status.h"
+#include "spark/json_writer.h"
 
 namespace spark::web {
 
-/// Used in the simulation's thread, between cycles. Looks only at what nodes say about themselves: a house need not
-/// play soccer.
+/// Used in the simulation's thread, between cycles. It knows no game: what a game reports of itself (IStatus) is in it,
+/// and who the agents are in the game (IAgentIdentity).
 class StatusReport {
  public:
   explicit StatusReport(Kernel& kernel) : kernel_(kernel) {}
@@ -22,13 +25,14 @@ class StatusReport {
   struct Agent {
     const AgentAspect* aspect;
     std::string path;
-    const Leaf* state;  ///< which says its team and number; nullptr: nothing does
+    const IAgentIdentity* identity;  ///< nullptr: it has none
   };
   void lookUpAgents();
-  void putMatch(std::string& out) const;
-  void putAgents(std::string& out) const;
+  void writeGame(JsonWriter& json);
+  void writeAgents(JsonWriter& json) const;
 
   Kernel& kernel_;
+  StatusReporters reporters_;
   std::vector<Agent> agents_;
   std::uint64_t lookedUpAt_ = 0;  ///< structure version
   std::chrono::steady_clock::time_point madeAt_ = std::chrono::steady_clock::now();

@@ -25,7 +25,7 @@ class RecordedScene {
   void clear();
   /// Counts changes of nodes, meshes and materials.
   std::uint64_t shape() const { return shape_; }
-  /// Copies what it shows. `tellEvents`: also those of the last message (fouls).
+  /// Copies what it shows. `tellEvents`: also those of the last message.
   void copyTo(MonitorFrame& frame, std::vector<std::uint64_t>& ids, bool tellEvents) const;
 
   /// What diffs change since the last full message.

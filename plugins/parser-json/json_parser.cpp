@@ -57,7 +57,7 @@ void writeElement(const Element& e, int decimals, ByteWriter& out) {
 
 }  // namespace
 
-/// The same messages as JSON: `[["he1",1.2],["init",["unum",7],["teamname","A"]]]`.
+/// The same messages as JSON: `[["he1",1.2],["init",["number",7],["team","A"]]]`.
 class JsonParser : public Leaf, public IParser {
   SPARK_CLASS(JsonParser, Leaf)
  public:

@@ -11,8 +11,8 @@ using engine::Shape;
 namespace {
 
 /// Which of two geoms is the contact's first: one that can move before one that cannot, a plane always last, else the
-/// younger. So a robot's foot comes before the ground and before the ball, and handlers that only hear direct contacts
-/// hear them.
+/// younger. So a robot's foot comes before the ground and before what lies there, and handlers that only hear direct
+/// contacts hear them.
 bool comesFirst(const GeomData& a, const GeomData& b) {
   const auto rank = [](const GeomData& g) { return g.shape.shape == Shape::plane ? 0 : g.body ? 2 : 1; };
   const int ra = rank(a), rb = rank(b);

@@ -13,6 +13,7 @@ void AngularMotor::describe(Description<AngularMotor>& d) {
       "Drives the angles between two bodies; below a HingeJoint it drives the hinge's. With a maxTorque it is a "
       "modelled motor: current, "
       "heat and battery follow from its torque, and limit it.");
+  d.implements<IMotor>();
   d.property("numAxes", &M::numAxes, &M::setNumAxes).range(0, 3).doc("How many axes it drives.");
   d.method("setMotorAxis", &M::setMotorAxis)
       .parameters({"axis", "0 world, 1 first body, 2 second body", "direction"})

@@ -13,11 +13,16 @@ class PhysicsServer;
 /// modelled motor: the torque that it had in a step says the current, the current what it drew from its battery and how
 /// much warmer it got, and these how strong it is in the next step (scene-language section 3.5). Without one its force
 /// is what setMaxMotorForce says.
-class AngularMotor : public Joint {
+class AngularMotor : public Joint, public IMotor {
   SPARK_CLASS(AngularMotor, Joint)
  public:
   static void describe(Description<AngularMotor>& d);
   engine::JointType jointType() const override { return engine::JointType::angularMotor; }
+  double stiffness() const override { return stiffness_; }
+  void setStiffness(double fraction) override { stiffness_ = std::clamp(fraction, 0.0, 1.0); }
+  double temperature() const override { return temperature_; }
+  double current() const override { return current_; }
+  bool disabled() const override;
 
  protected:
   void attached() override { apply(); }
@@ -48,7 +53,6 @@ class AngularMotor : public Joint {
   const Surroundings& surroundings() const;
   bool modelled() const { return maxTorque_ > 0 && engine(); }
   bool tooHot() const { return temperature_ > protectionTemperature_; }
-  bool disabled() const;
   /// Before the step: as much torque as stiffness, heat and battery leave.
   void prepare(const Event&);
   /// After the step: what it has cost.

@@ -17,9 +17,9 @@ void BoxCollider::describe(Description<BoxCollider>& d) {
       .doc("How deep a point in its transform's frame is inside; below 0 outside.");
   d.method("addSCFreezeJointEffName", &BoxCollider::addFreezeJointEffector)
       .parameters({"effector"})
-      .doc("An effector that the self-collision rule of soccer freezes when this box touches its own robot.");
+      .doc("An effector that a rule about self-collisions may freeze when this box touches its own robot.");
   d.property("freezeJointEffectors", &BoxCollider::freezeJointEffectors)
-      .doc("Names of the effectors that the self-collision rule freezes.");
+      .doc("Names of the effectors that a rule about self-collisions may freeze.");
 }
 
 std::optional<ShapeDescription> BoxCollider::shape() const {

@@ -83,14 +83,17 @@ class FPSController : public BodyController {
 };
 
 /// A store of energy, for motors.
-class Battery : public PhysicsObject {
+class Battery : public PhysicsObject, public IBattery {
   SPARK_CLASS(Battery, PhysicsObject)
  public:
   static void describe(Description<Battery>& d) {
     d.doc("A store of energy, for motors.");
+    d.implements<IBattery>();
     d.property("capacity", &Battery::capacity_).unit("J").min(0).doc("What it holds when full.");
     d.property("power", &Battery::power_).unit("J").min(0).state().doc("What it holds now.");
   }
+  double power() const override { return power_; }
+  double capacity() const override { return capacity_; }
   bool empty() const { return power_ <= 0; }
   /// Takes energy [J], as far as it goes.
   void drain(double energy) { power_ = std::max(0.0, power_ - energy); }

@@ -32,6 +32,7 @@ class Joint : public PhysicsObject, public IJoint {
   bool atStop(int axis) const override { return engine() && engine()->atStop(joint_, axis); }
   double maxSpeed(int axis) const override { return axis == 0 || axis == 1 ? maxSpeed_[axis] : 0; }
   double feedbackTorque() const override;
+  bool feedback() const override { return feedback_; }
 
  protected:
   void onLink() override;
@@ -87,7 +88,6 @@ class Joint : public PhysicsObject, public IJoint {
   void attach(std::string first, std::string second);
   Ref<RigidBody> bodyAt(const std::string& path);
   void enableFeedback(bool on);
-  bool feedback() const { return feedback_; }
   double maxSpeed1() const { return maxSpeed_[0]; }
   double maxSpeed2() const { return maxSpeed_[1]; }
   void setMaxSpeed1(double v) { maxSpeed_[0] = std::abs(v); }

@@ -8,8 +8,8 @@
 
 namespace spark {
 
-/// A group of variables below /sys/variables: its name is the group's (`Soccer`), scene files read
-/// `Soccer.FieldLength`. What is read without a member (`NaoType[0]['UseToe']`) is the group's own `value`.
+/// A group of variables below /sys/variables: its name is the group's (`Robot`), scene files read `Robot.Mass`. What is
+/// read without a member (`NaoType[0]['UseToe']`) is the group's own `value`.
 class Variables : public Leaf, public IVariables {
   SPARK_CLASS(Variables, Leaf)
  public:
@@ -17,12 +17,17 @@ class Variables : public Leaf, public IVariables {
   /// The empty name is the group's own value.
   Value variable(std::string_view name) const override;
 
+ protected:
+  using Map = std::map<std::string, Value, std::less<>>;
+  const Map& all() const { return variables_; }
+  void replaceAll(Map variables) { variables_ = std::move(variables); }
+
  private:
   void set(std::string name, Value value);
   Value get(std::string name) const { return variable(name); }
   std::vector<std::string> names() const;
   Value value_;
-  std::map<std::string, Value, std::less<>> variables_;
+  Map variables_;
 };
 
 }  // namespace spark

@@ -29,11 +29,11 @@ class AngularMotorPerceptor : public Perceptor {
     if (senseAngle_) out.pair("ax", radToDeg(angles.angle(0)));
     if (senseRate_) out.pair("rt", radToDeg(angles.angleRate(0)));
     if (senseTorque_) out.pair("tq", motor_->feedbackTorque());
-    if (senseTemperature_ && temperature_) {
-      const double now = temperature_->get(motor_->leaf()).toNumber();
+    if (senseTemperature_ && device_) {
+      const double now = device_->temperature();
       if (std::abs(now - toldTemperature_) > 1) out.pair("tp", toldTemperature_ = now);
     }
-    if (senseCurrent_ && current_) out.pair("ct", 1000 * current_->get(motor_->leaf()).toNumber());
+    if (senseCurrent_ && device_) out.pair("ct", 1000 * device_->current());
     out.close();
   }
 
@@ -53,17 +53,11 @@ class AngularMotorPerceptor : public Perceptor {
     motor_ = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
     if (!motor_) return;
     hinge_ = motor_->leaf().ancestor<IJoint>();
-    temperature_ = number("temperature");
-    current_ = number("current");
-  }
-  const Property* number(const char* property) const {
-    const Property* p = motor_->leaf().classObject()->property(property);
-    return p && p->get(motor_->leaf()).isNumber() ? p : nullptr;
+    device_ = motor_->leaf().as<IMotor>();
   }
   IJoint* motor_ = nullptr;
   IJoint* hinge_ = nullptr;
-  const Property* temperature_ = nullptr;
-  const Property* current_ = nullptr;
+  const IMotor* device_ = nullptr;  ///< of motors that are modelled
   double toldTemperature_ = -1000;
   bool senseAngle_ = true, senseRate_ = false, senseTorque_ = false, senseCurrent_ = false, senseTemperature_ = false;
 };

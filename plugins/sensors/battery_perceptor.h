@@ -1,6 +1,7 @@
 #pragma once
 
 #include "api/agents.h"
+#include "api/physics.h"
 
 namespace spark {
 
@@ -12,9 +13,9 @@ class BatteryPerceptor : public Perceptor {
     d.doc("Senses the state of charge of the Battery above it: (name part), 0..1.");
   }
   void sense(Predicates& out, const Event&) override {
-    if (!power_ || !capacity_) return;
-    const double capacity = capacity_->get(*battery_).toNumber();
-    out.pair(name(), capacity > 0 ? power_->get(*battery_).toNumber() / capacity : 0.0);
+    if (!battery_) return;
+    const double capacity = battery_->capacity();
+    out.pair(name(), capacity > 0 ? battery_->power() / capacity : 0.0);
   }
 
  protected:
@@ -29,21 +30,12 @@ class BatteryPerceptor : public Perceptor {
 
  private:
   void lookUp() {
-    for (battery_ = parent(); battery_ && !battery_->classObject()->isA("Battery"); battery_ = battery_->parent()) {
-    }
-    power_ = number("power");
-    capacity_ = number("capacity");
-    if (!power_ || !capacity_)
+    battery_ = ancestor<IBattery>();
+    if (!battery_)
       kernel().log().warning(
           "{}: expected a Battery above it, found none; it senses nothing. Put it below the battery.", path());
   }
-  const Property* number(const char* property) const {
-    const Property* p = battery_ ? battery_->classObject()->property(property) : nullptr;
-    return p && p->get(*battery_).isNumber() ? p : nullptr;
-  }
-  const Leaf* battery_ = nullptr;
-  const Property* power_ = nullptr;
-  const Property* capacity_ = nullptr;
+  const IBattery* battery_ = nullptr;
 };
 
 }  // namespace spark

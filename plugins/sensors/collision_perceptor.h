@@ -8,7 +8,7 @@
 
 namespace spark {
 
-/// `(collision floor Ball)`: names of the colliders that touched since it last sensed, each once; says nothing when
+/// `(collision floor wall)`: names of the colliders that touched since it last sensed, each once; says nothing when
 /// there were none. A PerceptorHandler feeds it.
 class CollisionPerceptor : public Perceptor {
   SPARK_CLASS(CollisionPerceptor, Perceptor)

@@ -6,7 +6,7 @@
 
 namespace spark {
 
-/// `(PerfectVision (Ball (pos 1.00 2.00 0.04)) ...)`: world positions of all transforms of the scene. For demos.
+/// `(PerfectVision (box (pos 1.00 2.00 0.04)) ...)`: world positions of all transforms of the scene. For demos.
 class PerfectVisionPerceptor : public Perceptor {
   SPARK_CLASS(PerfectVisionPerceptor, Perceptor)
  public:

@@ -18,8 +18,8 @@
 #include "touch_perceptor_handler.h"
 #include "universal_joint_perceptor.h"
 
-SPARK_PLUGIN("sensors", "1.0", "Perceptors that are not soccer, and the collision handlers that feed them.",
-             spark::TimePerceptor, spark::HingePerceptor, spark::UniversalJointPerceptor, spark::Hinge2Perceptor,
+SPARK_PLUGIN("sensors", "1.0", "Perceptors of robots, and the collision handlers that feed them.", spark::TimePerceptor,
+             spark::HingePerceptor, spark::UniversalJointPerceptor, spark::Hinge2Perceptor,
              spark::AngularMotorPerceptor, spark::GyroRatePerceptor, spark::Accelerometer,
              spark::ForceResistancePerceptor, spark::CollisionPerceptor, spark::TouchPerceptor, spark::GPS,
              spark::BatteryPerceptor, spark::HMDPPerceptor, spark::PerfectVisionPerceptor, spark::SonarPerceptor,

@@ -7,19 +7,20 @@
 
 #include "api/agents.h"
 #include "api/cached_lookup.h"
+#include "api/match.h"
 #include "spark/random.h"
 
 namespace spark {
 
-/// `(US Left (0.87 2.31 5.00 ...))`: distances over the ground to other robots and to goal posts in a cone about its
-/// transform's y axis, the nearest first; what is missing is told as the greatest distance. A sonar looks level:
-/// heights do not count.
+/// `(US Left (0.87 2.31 5.00 ...))`: distances over the ground to echo targets (other robots, posts: IEchoTarget) in a
+/// cone about its transform's y axis, the nearest first; what is missing is told as the greatest distance. A sonar
+/// looks level: heights do not count.
 class SonarPerceptor : public Perceptor {
   SPARK_CLASS(SonarPerceptor, Perceptor)
  public:
   static void describe(Description<SonarPerceptor>& d) {
     using S = SonarPerceptor;
-    d.doc("Senses distances to other robots and goal posts in a cone before it: (US name (d1 d2 ...)) in m.");
+    d.doc("Senses distances to other robots and posts in a cone before it: (US name (d1 d2 ...)) in m.");
     d.property("maxEchoes", &S::maxEchoes_).range(0, 100).doc("Number of distances.");
     d.property("senseCone", &S::senseConeDeg_).unit("deg").range(0, 360).doc("Full opening angle, over the ground.");
     d.property("minRange", &S::minRange_).unit("m").min(0).doc("Nearest distance; what is nearer is told as this.");
@@ -61,7 +62,7 @@ class SonarPerceptor : public Perceptor {
       echo = std::max(minRange_, std::min(maxRange_, noise_ ? echo + random_.normal(0, kSigma) : echo));
   }
 
-  /// The transforms of all goal posts and robots of the scene but its own.
+  /// The transforms of all echo targets of the scene but those of its own agent.
   std::vector<const Transform*>& findTargets() {
     found_.clear();
     const Leaf* self = nullptr;
@@ -75,9 +76,7 @@ class SonarPerceptor : public Perceptor {
     for (const auto& child : node.children()) {
       if (child.get() == self || !child->asNode()) continue;
       const auto* mark = child->as<SceneNode>();
-      if (mark && mark->transform() &&
-          (child->classObject()->isA("AgentState") || child->classObject()->isA("GoalPost")))
-        found_.push_back(mark->transform());
+      if (mark && mark->transform() && child->as<IEchoTarget>()) found_.push_back(mark->transform());
       collect(*child->asNode(), self);
     }
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "api/match.h"
 #include "api/phases.h"
 #include "field_nodes.h"
 #include "play_mode.h"
@@ -15,7 +16,7 @@ namespace spark {
 
 /// What the match knows of a player: team, number, battery, where it looks, what it heard. Must be named AgentState and
 /// stand below the robot's agent aspect. Visible itself: agents see it as `P`.
-class AgentState : public ObjectState {
+class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget {
   SPARK_CLASS(AgentState, ObjectState)
  public:
   static constexpr double kFullBattery = 100;                      ///< %
@@ -33,6 +34,8 @@ class AgentState : public ObjectState {
   static void describe(Description<AgentState>& d) {
     using S = AgentState;
     d.doc("What the match knows of a player.");
+    d.implements<IAgentIdentity>();
+    d.implements<IEchoTarget>();
     d.property("robotType", &S::robotType_).min(0).doc("Type of a heterogeneous robot.");
     d.property("team", &S::team_).state().readOnly().doc("Name of its team, \"\" before it was initialised.");
     d.property("side", &S::sideText).state().doc("left, right or none.");
@@ -47,7 +50,8 @@ class AgentState : public ObjectState {
 
   soccer::Side side() const { return side_; }
   int unum() const { return unum_; }
-  const std::string& team() const { return team_; }
+  const std::string& team() const override { return team_; }
+  int number() const override { return unum_; }
   int robotType() const { return robotType_; }
   /// Game state gives (and at half time swaps) sides; `announce`: the agent is told with its next GS.
   void assign(soccer::Side side, int unum, const std::string& team, bool announce) {

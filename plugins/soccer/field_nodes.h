@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "api/match.h"
 #include "api/scene.h"
 
 namespace spark {
@@ -52,10 +53,13 @@ class ObjectState : public SoccerNode {
 };
 
 /// A goal post that sonars see too.
-class GoalPost : public ObjectState {
+class GoalPost : public ObjectState, public IEchoTarget {
   SPARK_CLASS(GoalPost, ObjectState)
  public:
-  static void describe(Description<GoalPost>& d) { d.doc("A goal post: visible, and seen by sonars."); }
+  static void describe(Description<GoalPost>& d) {
+    d.doc("A goal post: visible, and seen by sonars.");
+    d.implements<IEchoTarget>();
+  }
 };
 
 /// A straight line on the field.

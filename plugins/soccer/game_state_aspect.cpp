@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "init_action.h"
 #include "team_material.h"
 
 namespace spark {
@@ -17,6 +18,8 @@ constexpr double kQuitAfter = 10;  // s after the match
 void GameStateAspect::describe(Description<GameStateAspect>& d) {
   using G = GameStateAspect;
   d.doc("Clock, half, play mode, score, teams and their numbers.");
+  d.implements<IStatus>();
+  d.implements<IJoinPolicy>();
   d.property("playMode", &G::modeText, &G::setModeText)
       .choices({soccer::kPlayModeNames.begin(), soccer::kPlayModeNames.end()})
       .state()
@@ -62,6 +65,14 @@ bool GameStateAspect::mayTell() {
   --linesAboutAgents_;
   return true;
 }
+
+void GameStateAspect::report(std::vector<StatusEntry>& out) const {
+  out.push_back({"playMode", modeText(), {}});
+  out.push_back({"score", List{teams_[0].score, teams_[1].score}, {"Left", "Right"}});
+}
+
+std::string_view GameStateAspect::predicate() const { return soccer::kInit; }
+IJoinPolicy::Name GameStateAspect::read(const Element& action) const { return soccer::readInit(action); }
 
 void GameStateAspect::setScores(int left, int right) {
   teams_[0].score = std::max(0, left);

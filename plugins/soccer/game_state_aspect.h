@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "api/match.h"
+#include "api/status.h"
 #include "soccer_control_aspect.h"
 
 namespace spark {
 
-/// Clock, half, play mode, score, teams and their numbers. The first of the soccer aspects in child order.
-class GameStateAspect : public SoccerControlAspect {
+/// Clock, half, play mode, score, teams and their numbers. The first of the soccer aspects in child order. Reports mode
+/// and score, and reads for game control who joins.
+class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoinPolicy {
   SPARK_CLASS(GameStateAspect, SoccerControlAspect)
  public:
   using Side = soccer::Side;
@@ -21,6 +24,9 @@ class GameStateAspect : public SoccerControlAspect {
   static void describe(Description<GameStateAspect>& d);
   void rule(const Event& event) override;
   void agentLeaving(AgentAspect& agent) override;
+  void report(std::vector<StatusEntry>& out) const override;
+  std::string_view predicate() const override;
+  Name read(const Element& action) const override;
 
   /// Refreshed; for rules and effectors.
   soccer::Pitch& pitch() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "init_action.h"
 #include "match_lookup.h"
 #include "team_material.h"
 
@@ -15,11 +16,11 @@ class InitEffector : public Effector {
     d.doc("Takes the agent into a team: (init (unum n)(teamname t)); unum 0 or none is the lowest free number.");
     d.on<&InitEffector::prepare>(phase::kPrepare);
   }
-  std::string predicate() const override { return "init"; }
+  std::string predicate() const override { return std::string(soccer::kInit); }
   std::string act(const Element& action) override {
-    const Element unum = action.named("unum"), team = action.named("teamname");
-    unum_ = unum ? unum.at(1).integer() : 0;
-    team_ = team ? team.at(1).text() : std::string_view();
+    const IJoinPolicy::Name name = soccer::readInit(action);
+    unum_ = name.number;
+    team_ = name.team;
     pending_ = true;
     return {};
   }

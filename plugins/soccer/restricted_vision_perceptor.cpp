@@ -44,6 +44,7 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
   d.doc("Sees within a cone: flags, goals, ball, parts of players, lines.");
   d.implements<ISharedView>();
   d.implements<IEye>();
+  d.implements<ISightReader>();
   d.on<&V::prepare>(phase::kPrepare);
   d.property("range", &V::range_)
       .unit("m")

@@ -2,13 +2,14 @@
 
 #include <array>
 
+#include "see_reader.h"
 #include "vision.h"
 
 namespace spark {
 
 /// Sees within a cone, in the frame of the head or along the field's axes:
 /// `(See (G1R (pol ...)) (B (pol ...)) (P (team A) (id 3) (rlowerarm (pol ...)) ...))`.
-class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public IEye {
+class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public IEye, public soccer::SeeReader {
   SPARK_CLASS(RestrictedVisionPerceptor, Perceptor)
  public:
   RestrictedVisionPerceptor() { predicateName_ = "See"; }

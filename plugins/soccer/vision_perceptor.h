@@ -1,12 +1,13 @@
 #pragma once
 
+#include "see_reader.h"
 #include "vision.h"
 
 namespace spark {
 
 /// Sees everything around, by default along the field's axes as the team sees them:
 /// `(See (F1L (pol 12.1 30.4 -0.3)) ... (B (pol ...)) (P (team A) (id 1) (pol ...)))`.
-class VisionPerceptor : public Perceptor, public ISharedView, public IEye {
+class VisionPerceptor : public Perceptor, public ISharedView, public IEye, public soccer::SeeReader {
   SPARK_CLASS(VisionPerceptor, Perceptor)
  public:
   VisionPerceptor() { predicateName_ = "See"; }
@@ -15,6 +16,7 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye {
     d.doc("Sees everything around: flags, goals, ball, players.");
     d.implements<ISharedView>();
     d.implements<IEye>();
+    d.implements<ISightReader>();
     d.property("range", &V::range_).unit("m").min(0).doc("What is farther away is not seen; infinite by default.");
     d.property("staticSenseAxis", &V::staticAxis_)
         .doc("Angles from the field's x axis as the team sees it; else in the frame of the transform above.");

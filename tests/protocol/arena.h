@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "api/agents.h"
+#include "api/match.h"
 #include "test_support.h"
 
 namespace spark::test {
@@ -77,6 +78,21 @@ class TestInit : public Effector {
     deeds().push_back(fmt::format("{} init {} {}", agent()->outermost().number(), team ? team.at(1).text() : "",
                                   unum ? unum.at(1).integer() : 0));
     return {};
+  }
+};
+
+/// Reads who joins from `(init ...)`.
+class TestNames : public Node, public IJoinPolicy {
+  SPARK_CLASS(TestNames, Node)
+ public:
+  static void describe(Description<TestNames>& d) {
+    d.doc("Reads who joins.");
+    d.implements<IJoinPolicy>();
+  }
+  std::string_view predicate() const override { return "init"; }
+  Name read(const Element& action) const override {
+    const Element team = action.named("teamname"), unum = action.named("unum");
+    return {team ? team.at(1).text() : std::string_view(), unum ? unum.at(1).integer() : 0};
   }
 };
 
@@ -184,6 +200,7 @@ class Arena {
     kernel.registerClass<TestNoise>();
     kernel.registerClass<TestMotor>();
     kernel.registerClass<TestInit>();
+    kernel.registerClass<TestNames>();
     kernel.registerClass<TestSync>();
     kernel.registerClass<TestScenes>();
     auto& events = kernel.events();
@@ -197,6 +214,7 @@ class Arena {
     gate = server.as<IInputGate>();
     control = server.as<IGameControl>();
     kernel.create("SexpParser", "/sys/server/gamecontrol/parser");
+    kernel.create("TestNames", "/sys/server/gamecontrol/names");
     net = &kernel.create<IInputSource>("NetServer", "/sys/server/net");
     addPort("agents");
   }

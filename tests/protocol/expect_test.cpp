@@ -191,6 +191,35 @@ TEST_CASE("While it waits the host says whom it waits for and what each owes") {
   CHECK_FALSE(a.logged(ready.name()));
 }
 
+TEST_CASE("Where no game reads names, expected agents need none: their robot decides who is first") {
+  Arena a(true);
+  auto& control = a.kernel.root().require<Node>("/sys/server/gamecontrol");
+  control.remove(*control.find("names"));
+  a.set("expect", 2);
+  a.set("holdReport", 0.01);
+  Client second = a.client(), first = a.client();
+  second.send("(scene robot Bravo)");
+  first.send("(scene robot Alpha)" + init("A", 9) + "(syn)");
+  second.arrive(), first.arrive();
+  a.until([&] { return a.gate->ready(true) || a.logged("has named its robot"); }, false);
+  CHECK(a.logged("agent at " + second.name() + " has named its robot, owes (syn); "));
+  CHECK_FALSE(a.logged("init"));
+  REQUIRE_FALSE(a.gate->ready(true));
+  second.send("(syn)");
+  a.until([&] { return a.gate->ready(true); }, false);
+  a.cycle();
+  REQUIRE(a.agents() == 2);
+  a.until([&] {
+    for (auto* c : {&first, &second})
+      for (std::size_t n = c->drain().size(); n > 0; --n) c->send("(he1 1)(syn)");
+    return std::count(deeds().begin(), deeds().end(), "2 he1 1") > 0;
+  });
+  REQUIRE(deeds().size() > 3);
+  CHECK(deeds()[0] == "argument \"Alpha\"");
+  CHECK(deeds()[1] == "argument \"Bravo\"");
+  CHECK(deeds()[2] == "1 init A 9");  // what it said during the hold
+}
+
 TEST_CASE("What agents are told does not depend on the number of threads") {
   REQUIRE(match({0, 1, 2, 3, 4}, Style::atOnce, 4) == match({0, 1, 2, 3, 4}, Style::atOnce, 1));
 }

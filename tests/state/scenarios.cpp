@@ -183,6 +183,7 @@ void makePieces(World& w) {
   make(w, "PerceptorHandler", "toucher/shape/feels"), make(w, "TouchPerceptor", "toucher/sensor");
   makeBox(w, "stone", {2.1, 4, 1});
   make(w, "FieldFlag", "flag"), make(w, "SingleMatNode", "mark");
+  w.kernel.create("StatusVariables", "/sys/variables/Status");
 }
 
 void inputPieces(World& w, int cycle) {
@@ -194,6 +195,7 @@ void inputPieces(World& w, int cycle) {
         Leaf& j = at((std::string(joint) + "Joint2/joint").c_str());
         call(j, "setMaxMotorForce", {axis, 2.0 + axis});
       }
+  if (cycle % 30 == 7) call(w.at("/sys/variables/Status"), "set", {"score", List{cycle, 1}});
   if (cycle == 10)
     setProperty(at("walker/body/legs"), "HAngle", 30.0), setProperty(at("walker/body/legs"), "forward", 0.5);
   if (cycle == 20) call(at("flag"), "setLocalPos", {1.0, 2.0, 0.0}), call(at("mark"), "setMaterial", {"matYellow"});

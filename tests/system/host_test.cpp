@@ -159,7 +159,7 @@ TEST_CASE("stdout holds the ports first and the result last, and nothing else") 
   REQUIRE(result["cycles"] == 100);
   REQUIRE(result["simSeconds"] == 2.0);
   REQUIRE(result["realTimeFactor"].get<double>() > 1);
-  REQUIRE(result["score"] == Json::array({0, 0}));
+  REQUIRE_FALSE(result.contains("score"));  // nothing reports one
   REQUIRE(result["agentsSeen"] == 0);
   REQUIRE(result["messagesDropped"] == 0);
   REQUIRE(result["stateHash"].get<std::string>().size() == 16);

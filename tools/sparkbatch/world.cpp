@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "api/status.h"
 #include "host.h"
 #include "progress.h"
 #include "spark/describe.h"
@@ -157,10 +158,19 @@ void addOutcome(const Leaf& root, Row& row) {
   row["cycles"] = integerAt(root, kSimulation, "cycle");
   row["simSeconds"] = numberAt(root, kSimulation, "time");
   row["stateHash"] = fmt::format("{:016x}", stateHash(root));
-  if (!root.find(kGameState)) return;
-  row["playMode"] = textAt(root, kGameState, "playMode");
-  row["scoreLeft"] = elementAt(root, kGameState, "score", 0);
-  row["scoreRight"] = elementAt(root, kGameState, "score", 1);
+}
+
+/// What the game reports: a column for each entry, or for each element of a list.
+void addStatus(Kernel& kernel, Row& row) {
+  for (const StatusEntry& entry : StatusReporters().read(kernel)) {
+    if (!entry.value.isList()) {
+      put(row, entry.name, entry.value);
+      continue;
+    }
+    const List& elements = entry.value.toList();
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      put(row, entry.name + (i < entry.parts.size() ? entry.parts[i] : std::to_string(i + 1)), elements[i]);
+  }
 }
 }  // namespace
 
@@ -185,6 +195,7 @@ Row simulate(const Options& options, const Run& run, Watch& watch) {
     Node& root = host->kernel().root();
     callMethod(root.require<Leaf>(kSimulation), "run", {});
     addOutcome(root, row);
+    addStatus(host->kernel(), row);
     addReports(root, options.reports, row);
     addResults(root, row);
     if (host->kernel().faults() > 0) error = faultsOf(host->kernel(), fault);

@@ -8,6 +8,7 @@
 #include "spark/error.h"
 #include "spark/json_writer.h"
 #include "spark/state.h"
+#include "status_text.h"
 #include "tree_values.h"
 
 namespace sparkhost {
@@ -124,9 +125,7 @@ std::string Host::run() {
   json.key("realTimeFactor").fixed(wall > 0 ? (time - start) / wall : 0.0, 3);
   json.key("lostSeconds").fixed(numberAt(root, kSimulation, "lostTime"), 3);
   json.member("lateCycles", integerAt(root, kSimulation, "lateCycles"));
-  json.member("playMode", textAt(root, kGameState, "playMode"));
-  json.key("score").numbers(
-      std::array{elementAt(root, kGameState, "score", 0), elementAt(root, kGameState, "score", 1)});
+  writeStatus(json, StatusReporters().read(kernel_));
   json.member("agentsSeen", integerAt(root, kGameControl, "agentsSeen"));
   json.member("messagesDropped", messagesDropped(root)).member("faults", root.kernel().faults());
   json.member("stateHash", fmt::format("{:016x}", stateHash(root))).endObject();

@@ -31,7 +31,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.set_version_flag("--version", "sparkhost " SPARK_VERSION);
   app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")
       ->type_name("FILE");
-  app.add_option("--set", sets, "Overrides an option of the config, a Soccer.* variable or /path.property")
+  app.add_option("--set", sets, "Overrides an option of the config, a variable GROUP.NAME or /path.property")
       ->type_name("K=V")
       ->allow_extra_args(false);
   app.add_option("--seed", out.seed, "Seed of all random streams (default 1)")->type_name("N")->check(seedProblem);

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "status_text.h"
 #include "tree_values.h"
 
 namespace sparkhost {
@@ -40,13 +41,11 @@ void StatusLine::install(Kernel& kernel, bool terminal) {
     });
 }
 
-std::string StatusLine::text(double time, double factor) const {
+std::string StatusLine::text(double time, double factor) {
   const Leaf& root = kernel().root();
   std::string out = fmt::format("{:.2f} s, {:.1f} x real time", time, factor);
   if (textAt(root, kSimulation, "rate") == "real") out += lossText(root);
-  if (const std::string mode = textAt(root, kGameState, "playMode"); !mode.empty())
-    out += fmt::format(", {} {}:{}", mode, elementAt(root, kGameState, "score", 0),
-                       elementAt(root, kGameState, "score", 1));
+  out += statusText(reporters_.read(kernel()));
   if (const std::int64_t faults = kernel().faults(); faults > 0)
     out += fmt::format(", {} fault{}", faults, faults == 1 ? "" : "s");
   if (root.find(kGameControl)) out += fmt::format(", {} agents", integerAt(root, kGameControl, "agentCount"));

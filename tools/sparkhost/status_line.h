@@ -4,13 +4,14 @@
 
 #include <chrono>
 
+#include "api/status.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
 
 namespace sparkhost {
 
-/// Shows clock, real-time factor, what was lost against real time, play mode, score and agents. Has no state: what it
-/// shows never influences the simulation.
+/// Shows clock, real-time factor, what was lost against real time, what the game reports, and agents. Has no state:
+/// what it shows never influences the simulation.
 class StatusLine : public spark::Node {
   SPARK_CLASS(StatusLine, spark::Node)
  public:
@@ -21,8 +22,9 @@ class StatusLine : public spark::Node {
  private:
   using Clock = std::chrono::steady_clock;
   void show(const spark::Event& event);
-  std::string text(double time, double factor) const;
+  std::string text(double time, double factor);
 
+  spark::StatusReporters reporters_;
   Clock::time_point next_{}, last_{};
   double lastTime_ = 0;
   bool terminal_ = false;

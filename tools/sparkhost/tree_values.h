@@ -14,7 +14,6 @@ inline constexpr const char* kSimulation = "/sys/server/simulation";
 inline constexpr const char* kNet = "/sys/server/net";
 inline constexpr const char* kWeb = "/sys/server/web";
 inline constexpr const char* kGameControl = "/sys/server/gamecontrol";
-inline constexpr const char* kGameState = "/sys/server/gamecontrol/GameStateAspect";
 
 /// A property's value, nil when there is no such node or property.
 inline spark::Value valueAt(const spark::Leaf& root, const char* path, const char* property) {
@@ -29,12 +28,6 @@ inline std::int64_t integerAt(const spark::Leaf& root, const char* path, const c
 inline double numberAt(const spark::Leaf& root, const char* path, const char* property) {
   const spark::Value v = valueAt(root, path, property);
   return v.isNumber() ? v.toNumber() : 0;
-}
-/// Element `index` of a list of numbers.
-inline std::int64_t elementAt(const spark::Leaf& root, const char* path, const char* property, std::size_t index) {
-  const spark::Value v = valueAt(root, path, property);
-  const spark::Value* e = v.isList() ? v.at(index) : nullptr;
-  return e && e->isNumber() ? static_cast<std::int64_t>(e->toNumber()) : 0;
 }
 inline std::string textAt(const spark::Leaf& root, const char* path, const char* property) {
   const spark::Value v = valueAt(root, path, property);

@@ -13,6 +13,7 @@
 
 #include "spark/abi/spark/json_writer.h"
 #include "spark/numbers.h"
+#include "spark/value.h"
 
 namespace spark {
 
@@ -49,6 +50,11 @@ class JsonWriter {
   JsonWriter& value(double v, int digits = 6);
   /// With so many decimals.
   JsonWriter& fixed(double v, int decimals);
+  /// Lists as arrays; nil and numbers that are not finite as null.
+  template <std::same_as<Value> V>
+  JsonWriter& value(const V& v) {
+    return anyValue(v);
+  }
   JsonWriter& null() { return raw("null"); }
   /// A value that is JSON already.
   JsonWriter& raw(std::string_view json);
@@ -76,6 +82,7 @@ class JsonWriter {
     comma_ = true;
   }
   void quote(std::string_view text);
+  JsonWriter& anyValue(const Value& v);
 
   ByteWriter out_;
   JsonStyle style_;

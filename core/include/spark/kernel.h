@@ -215,7 +215,7 @@ class Kernel {
 /// The script side, Lua 5.4. Configs and trusted scripts share one state; every untrusted script has a limited one of
 /// its own.
 ///
-/// Globals of a config: plugin, new, get, delete, option, include, log, on, Soccer-like namespaces (see lua/README.md).
+/// Globals of a config: plugin, new, get, delete, option, include, log, on, groups of variables (see lua/README.md).
 /// Deterministic: `pairs` goes by key, `math.random` draws from a kernel stream, no clock, no io; only text chunks.
 class Lua {
  public:

@@ -143,7 +143,7 @@ class Leaf {
   ClassObject* classObject() const { return class_; }
   /// The kernel this object lives in. Not to be called in constructors.
   Kernel& kernel() const;
-  /// "/usr/scene/Ball"; the root is "/". What is not linked starts with its own name.
+  /// "/usr/scene/robot"; the root is "/". What is not linked starts with its own name.
   std::string path() const;
   /// True when this object hangs below the kernel's root.
   bool isLinked() const;

@@ -2,7 +2,7 @@
 /// \file
 /// What a plugin exports: one C descriptor. A plugin does nothing at load; registering is an explicit call by the host.
 ///
-///     SPARK_PLUGIN("sensors", "1.0", "Perceptors that are not soccer.", GyroRatePerceptor, Accelerometer)
+///     SPARK_PLUGIN("sensors", "1.0", "Perceptors of robots.", GyroRatePerceptor, Accelerometer)
 
 #include <array>
 #include <cstddef>

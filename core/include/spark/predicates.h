@@ -96,7 +96,7 @@ class Element {
   std::uint32_t index_ = 0;
 };
 
-/// A sequence of top-level elements, usually lists: `(he1 1.2)(init (unum 7))`.
+/// A sequence of top-level elements, usually lists: `(he1 1.2)(init (name red))`.
 class Predicates {
  public:
   void clear();

@@ -114,8 +114,8 @@ TEST_CASE("agents' texts come and go in any order") {
   std::set<int> there;
   for (int i = 0; i < 3000; ++i) {
     Drawing d = label(i * 37 % 128 + 1, i * 11 % 3 == 0 ? "" : "text");
-    d.right = i % 5 == 0;
-    const int agent = d.number + 1000 * d.right;
+    d.team = i % 5 == 0;
+    const int agent = d.number + 1000 * d.team;
     if (d.text.empty())
       there.erase(agent);
     else
@@ -123,7 +123,7 @@ TEST_CASE("agents' texts come and go in any order") {
     board.setAgentText(d);
   }
   std::multiset<int> found;
-  for (const Drawing& d : board.sets()[0].shapes) found.insert(d.number + 1000 * d.right);
+  for (const Drawing& d : board.sets()[0].shapes) found.insert(d.number + 1000 * d.team);
   CHECK(found == std::multiset<int>(there.begin(), there.end()));
   CHECK(found.size() > 20);
   board.clear();

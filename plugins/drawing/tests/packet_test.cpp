@@ -80,12 +80,12 @@ TEST_CASE("each command of the drawing port is read as the installed base's view
   CHECK(text.drawing.text == "h\u00e4llo");
   const Command label = readOne(bytes({2, 1, 128 + 4}) + rgb + zero("keeper"));
   CHECK(label.kind == Command::Kind::agentText);
-  CHECK(label.drawing.right);
+  CHECK(label.drawing.team == 1);
   CHECK(label.drawing.number == 5);
   CHECK(label.drawing.text == "keeper");
   const Command none = readOne(bytes({2, 2, 0}));
   CHECK(none.drawing.text.empty());
-  CHECK_FALSE(none.drawing.right);
+  CHECK(none.drawing.team == 0);
   CHECK(none.drawing.number == 1);
   CHECK(readOne(bytes({3, 0, 7})).kind == Command::Kind::none);
   const Command swapped = readOne(swap("a"));
@@ -170,7 +170,7 @@ TEST_CASE("agents write shapes as lists") {
   CHECK(shapeOf("(text (at 0 0 1) (say \"two words\"))").text == "two words");
   d = shapeOf("(agent (side right) (unum 7) (say hello))");
   CHECK(d.kind == Kind::agentText);
-  CHECK(d.right);
+  CHECK(d.team == 1);
   CHECK(d.number == 7);
 }
 

@@ -175,15 +175,15 @@ TEST_CASE("the other joints have their own units and limits") {
     auto& stiffness = motor.create<Effector>("StiffnessEffector", "he1s");
     CHECK(robot.act(effector, "(he1 50)").empty());
     CHECK(motor.velocity(0) == 2);
-    motor.disabled = true;
+    motor.device.disabled = true;
     CHECK(robot.act(effector, "(he1 1)").empty());
     CHECK(motor.velocity(0) == 0);
     CHECK(robot.act(stiffness, "(he1s 1.5)").empty());
-    CHECK(motor.stiffness == 1);
+    CHECK(motor.device.stiffness == 1);
     CHECK(robot.act(stiffness, "(he1s 0.25)").empty());
-    CHECK(motor.stiffness == 0.25);
+    CHECK(motor.device.stiffness == 0.25);
     CHECK(robot.act(stiffness, "(he1s nan)") == "expected a finite number as argument 1, found nan");
-    CHECK(motor.stiffness == 0.25);
+    CHECK(motor.device.stiffness == 0.25);
   }
 }
 

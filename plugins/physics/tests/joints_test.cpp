@@ -330,6 +330,35 @@ TEST_CASE("a modelled motor gets warm, drains its battery, and is weaker or disa
   CHECK(value(battery, "power") == 0);
 }
 
+TEST_CASE("sensors and effectors of any plugin find motor and battery by their interfaces") {
+  Pair p;
+  Leaf& store = p.scene.create("Battery", "battery");
+  p.call(store, "setCapacity", {1000.0});
+  p.call(store, "setPower", {250.0});
+  const auto* battery = store.as<IBattery>();
+  REQUIRE(battery);
+  CHECK(battery->power() == 250);
+  CHECK(battery->capacity() == 1000);
+
+  Leaf& node = p.joint("AngularMotor");
+  auto* motor = node.as<IMotor>();
+  REQUIRE(motor);
+  CHECK_FALSE(p.joint("HingeJoint").as<IMotor>());
+  CHECK(motor->current() == 0);
+  CHECK_FALSE(motor->disabled());
+  motor->setStiffness(0.25);
+  CHECK(getProperty(node, "stiffness").toNumber() == 0.25);
+  motor->setStiffness(7);
+  CHECK(motor->stiffness() == 1);
+  p.call(node, "setMaxTorque", {2.0});
+  p.call(node, "setTemperature", {81.0});
+  CHECK(motor->temperature() == 81);
+  CHECK(motor->disabled());
+  CHECK_FALSE(node.as<IJoint>()->feedback());
+  p.call(node, "enableFeedback", {true});
+  CHECK(node.as<IJoint>()->feedback());
+}
+
 TEST_CASE("a cone twist joint is accepted and holds nothing") {
   Pair p;
   Leaf& j = p.joint("ConeTwistJoint");

@@ -4,6 +4,8 @@
 
 #include "api/files.h"
 #include "api/phases.h"
+#include "api/status.h"
+#include "spark/state.h"
 #include "test_support.h"
 
 using namespace spark;
@@ -283,6 +285,31 @@ TEST_CASE("lights and cameras hold their values") {
   callMethod(camera, "lookAt", numbers({1, 2, 3}));
   CHECK(callMethod(camera, "getViewportWidth", {}) == Value(320));
   CHECK(callMethod(camera, "getFOV", {}) == Value(90.0));
+}
+
+TEST_CASE("a game in Lua reports by a group of variables, which are state") {
+  Fixture f;
+  f.kernel.create("StatusVariables", "/sys/variables/Status");
+  f.kernel.lua().run("Status.round = 3 Status.teams = {'East', 'West'} Status.playMode = 'Push' Status.score = {2, 1}",
+                     "test");
+  const auto reported = [&] {
+    std::string text;
+    for (const StatusEntry& e : StatusReporters().read(f.kernel)) text += e.name + " " + e.value.text() + "; ";
+    return text;
+  };
+  const std::string all = "playMode \"Push\"; score {2, 1}; teams {\"East\", \"West\"}; round 3; ";
+  CHECK(reported() == all);
+  auto& group = f.kernel.root().require<Leaf>("/sys/variables/Status");
+  StateWriter saved(true);
+  saveTree(group, saved);
+  const std::uint64_t hash = stateHash(group);
+  f.kernel.lua().run("Status.score = {5, 5} Status.round = nil Status.wind = 0.5", "test");
+  CHECK(reported() == "playMode \"Push\"; score {5, 5}; teams {\"East\", \"West\"}; wind 0.5; ");
+  CHECK(stateHash(group) != hash);
+  StateReader read(saved.bytes());
+  loadTree(group, read);
+  CHECK(reported() == all);
+  CHECK(stateHash(group) == hash);
 }
 
 TEST_CASE("variables are read by name, lists by the bare group") {

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "api/match.h"
 #include "fake_physics.h"
 #include "spark/state.h"
 #include "test_support.h"
@@ -9,16 +10,11 @@ using namespace spark::test;
 
 namespace {
 
-/// What sonars hear, by the names that soccer gives it.
-class GoalPost : public SceneNode {
-  SPARK_CLASS(GoalPost, SceneNode)
+/// What sonars hear.
+class Post : public SceneNode, public IEchoTarget {
+  SPARK_CLASS(Post, SceneNode)
  public:
-  static void describe(Description<GoalPost>&) {}
-};
-class AgentState : public SceneNode {
-  SPARK_CLASS(AgentState, SceneNode)
- public:
-  static void describe(Description<AgentState>&) {}
+  static void describe(Description<Post>& d) { d.implements<IEchoTarget>(); }
 };
 
 /// A robot of one transform `/usr/robot` with a body, to which tests add sensors.
@@ -90,15 +86,15 @@ TEST_CASE("the angular motor's sensor says what is switched on, and a temperatur
   auto& motor = hinge.create<FakeJoint>("FakeJoint", "motor");
   motor.type = engine::JointType::angularMotor;
   motor.torque = 1.5;
-  motor.current = 0.25;
+  motor.device.current = 0.25;
   Leaf& sensor = motor.create("AngularMotorPerceptor", "hj1");
   CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00))");
   for (const char* item : {"senseRate", "senseTorque", "senseTemperature", "senseCurrent"})
     setProperty(sensor, item, true);
   CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00) (rt 30.00) (tq 1.50) (tp 23.00) (ct 250.00))");
-  motor.temperature = 24;
+  motor.device.temperature = 24;
   CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00) (rt 30.00) (tq 1.50) (ct 250.00))");
-  motor.temperature = 24.5;
+  motor.device.temperature = 24.5;
   CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00) (rt 30.00) (tq 1.50) (tp 24.50) (ct 250.00))");
 }
 
@@ -229,7 +225,7 @@ TEST_CASE("the satellite receiver says the world matrix row by row") {
 
 TEST_CASE("the battery's sensor is named as its node") {
   Robot robot;
-  auto& battery = robot.transform->create<Battery>("Battery", "battery");
+  auto& battery = robot.transform->create<FakeBattery>("FakeBattery", "battery");
   CHECK(robot.sense(battery.create("BatteryPerceptor", "BAT")) == "(BAT 0.75)");
   CHECK(robot.sense(robot.transform->create("BatteryPerceptor", "BAT")).empty());
   CHECK(robot.text.find("expected a Battery above it") != std::string::npos);
@@ -246,10 +242,9 @@ TEST_CASE("sensors that are only accepted keep their settings and are silent") {
   CHECK(getProperty(image, "fov") == Value(45.0));
 }
 
-TEST_CASE("a sonar hears other robots and goal posts in its cone, the nearest first") {
+TEST_CASE("a sonar hears the echo targets in its cone that are not its own robot's, the nearest first") {
   Robot robot;
-  robot.kernel.registerClass<GoalPost>();
-  robot.kernel.registerClass<AgentState>();
+  robot.kernel.registerClass<Post>();
   const auto put = [&](const char* aspect, const char* name, const Vec3f& at, const char* mark) -> Node& {
     auto& place = robot.kernel.create<Transform>(aspect, std::string("/usr/") + name);
     place.setLocalPos(at);
@@ -257,18 +252,18 @@ TEST_CASE("a sonar hears other robots and goal posts in its cone, the nearest fi
     return place;
   };
   auto& self = robot.kernel.create<Transform>("AgentAspect", "/usr/self");
-  self.create("AgentState", "AgentState");
+  self.create("Post", "torso");
   auto& chest = self.create<Transform>("Transform", "chest");
   chest.setLocalPos({0, 0, 0.4f});
   Leaf& sonar = chest.create("SonarPerceptor", "Left");
   setProperty(sonar, "maxEchoes", 4);
   CHECK(robot.sense(sonar) == "(US Left (5.00 5.00 5.00 5.00))");
-  put("Transform", "post", {0, 3, 0.8f}, "GoalPost");
-  put("AgentAspect", "near", {1, 2, 0}, "AgentState");
-  put("AgentAspect", "touching", {0, 0.1f, 0}, "AgentState");
-  put("Transform", "beside", {2, 2, 0}, "GoalPost");
-  put("Transform", "behind", {0, -1, 0}, "GoalPost");
-  put("Transform", "far", {0, 5.1f, 0}, "GoalPost");
+  put("Transform", "post", {0, 3, 0.8f}, "Post");
+  put("AgentAspect", "near", {1, 2, 0}, "Post");
+  put("AgentAspect", "touching", {0, 0.1f, 0}, "Post");
+  put("Transform", "beside", {2, 2, 0}, "Post");
+  put("Transform", "behind", {0, -1, 0}, "Post");
+  put("Transform", "far", {0, 5.1f, 0}, "Post");
   CHECK(robot.sense(sonar) == "(US Left (0.25 2.24 3.00 5.00))");
   chest.setLocalRotationDeg(0, 0, 180);
   CHECK(robot.sense(sonar) == "(US Left (1.00 5.00 5.00 5.00))");

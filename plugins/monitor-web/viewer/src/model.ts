@@ -102,6 +102,8 @@ export interface Status {
   spectators: number;
   /// For each agent: its path, and the wall time from its percepts to its answer [ms]; null when not known.
   agents: { path: string; team: string; number: number; latency: number | null }[];
+  /// What the game reports besides mode, score and teams: name and value.
+  facts: [string, string][];
 }
 
 /// Where a World comes from.

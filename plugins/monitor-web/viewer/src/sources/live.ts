@@ -37,6 +37,10 @@ export class Live implements LiveSource {
   private logins: ((ok: boolean) => void)[] = [];
   private view: { rate: number; detail: string } | null = null;
   private drawings = false;
+  /// Names of the entries that the host's environment has; null before it came.
+  private told: Set<string> | null = null;
+  /// Mode, score and teams as the status has them, in the environment's words.
+  private words: Entry[] = [];
 
   constructor(url: string, connect: Connect = connectSocket) {
     this.connection = new Connection(url, connect);
@@ -190,12 +194,28 @@ export class Live implements LiveSource {
     const time = Number(message.time) || 0;
     // The host began anew.
     if (message.full === true && time < world.time - 1) this.forget();
-    takeEntries(world.environment, entries, message.full === true);
+    if (message.full === true) this.told = new Set();
+    for (const [name] of entries) this.told?.add(name);
+    this.change(entries, time, message.full === true);
+    this.fillIn(time);
+    return true;
+  }
+
+  private change(entries: Entry[], time: number, full: boolean): void {
+    const { world } = this;
+    takeEntries(world.environment, entries, full);
     ++world.versions.environment;
     this.addEvents(this.events.take(world.environment, entries, time));
     this.free = /^(playon|pass)/i.test(modeName(world.environment));
     if (entries.some(([name]) => name === "team_left" || name === "team_right")) this.nameRobots();
-    return true;
+  }
+
+  /// A game without an item of the monitor server tells mode, score and teams in its status only.
+  private fillIn(time: number): void {
+    const { told, words, world } = this;
+    if (!told || words.length === 0) return;
+    const entries = [...words, ["time", time] as Entry].filter(([name, value]) => !told.has(name) && world.environment.get(name) !== value);
+    if (entries.length > 0) this.change(entries, time, false);
   }
 
   private takeEvent(message: Record<string, unknown>): boolean {
@@ -205,14 +225,18 @@ export class Live implements LiveSource {
   }
 
   private takeStatus(message: Record<string, unknown>): boolean {
-    const { agents } = message;
+    const { agents, status } = message;
     if (!Array.isArray(agents) || !agents.every(isRecord)) return false;
+    const facts = Array.isArray(status) ? status.filter(isEntry) : [];
     this.status = {
       realTimeFactor: Number(message.realTimeFactor ?? NaN),
       cycle: Number(message.cycle ?? 0),
       spectators: Number(message.spectators ?? 0),
       agents: agents.map((a) => ({ path: String(a.path), team: String(a.team ?? ""), number: Number(a.number ?? 0), latency: typeof a.latency === "number" ? a.latency : null })),
+      facts: facts.map(([name, value]) => [name, [value].flat().join(" ")]),
     };
+    this.words = wordsOf(message);
+    this.fillIn(Number(message.time) || 0);
     this.nameRobots();
     this.onchange?.();
     return true;
@@ -271,6 +295,17 @@ export class Live implements LiveSource {
     this.world.robots = robots;
     ++this.world.versions.scene;
   }
+}
+
+/// playMode, score and teams of a status, as entries of the environment.
+function wordsOf({ playMode, score, teams }: Record<string, unknown>): Entry[] {
+  const words: Entry[] = [];
+  if (typeof playMode === "string") words.push(["play_mode", playMode]);
+  (["left", "right"] as const).forEach((side, i) => {
+    if (Array.isArray(score) && typeof score[i] === "number") words.push([`score_${side}`, score[i]]);
+    if (Array.isArray(teams) && typeof teams[i] === "string") words.push([`team_${side}`, teams[i]]);
+  });
+  return words;
 }
 
 function isEntry(from: unknown): from is Entry {

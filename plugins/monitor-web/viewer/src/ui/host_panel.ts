@@ -41,6 +41,7 @@ export class HostPanel {
     this.fact("Cycle", status ? status.cycle.toLocaleString("en") : "–");
     this.fact("Robots", String(this.app.world.robots.length));
     this.fact("Drawn here", `${frameRate.toFixed(0)} pictures/s`);
+    for (const [name, value] of status?.facts ?? []) this.fact(name, value);
     this.agents(status?.agents ?? []);
   }
 

@@ -28,7 +28,8 @@ export class Scoreboard {
     this.world = world;
     this.seen = world.versions.environment;
     const environment = world.environment;
-    const known = environment.has("play_mode");
+    const hasMode = environment.has("play_mode");
+    const known = hasMode || environment.has("score_left");
     const mode = modeName(environment);
     setText(this.left, teamTitle(environment, "left"));
     setText(this.right, teamTitle(environment, "right"));
@@ -36,7 +37,7 @@ export class Scoreboard {
     setText(this.goalsRight, known ? String(numberOf(environment, "score_right", 0)) : "–");
     setText(this.clock, clock(numberOf(environment, "time", 0)));
     setText(this.half, half(numberOf(environment, "half", 0)));
-    setText(this.mode, known ? modeWords(mode, environment) : "No match yet");
+    setText(this.mode, hasMode ? modeWords(mode, environment) : known ? "" : "No match yet");
     setAttribute(this.mode, "data-mode", mode);
     setAttribute(this.mode, "data-side", modeSide(mode) ?? "none");
   }

@@ -96,6 +96,29 @@ test("environment and events tell what happens", () => {
   ]);
 });
 
+test("a game that has no items in the environment tells mode, score and teams in its status", () => {
+  begin();
+  const status = { type: "status", realTimeFactor: 1, cycle: 5, spectators: 1, agents: [], playMode: "Push", score: [1, 0], teams: ["East", "West"], status: [["round", 3], ["grip", [0.5, "belt"]]] };
+  host.say({ ...status, time: 2 });
+  expect(live.world.environment.size).toBe(0); // what the environment has is not known yet
+  expect(live.status?.facts).toEqual([["round", "3"], ["grip", "0.5 belt"]]);
+  host.say({ type: "environment", time: 2, full: true, entries: [["FieldLength", 4]] });
+  const { environment } = live.world;
+  expect(Object.fromEntries(environment)).toEqual({ FieldLength: 4, play_mode: "Push", score_left: 1, score_right: 0, team_left: "East", team_right: "West", time: 2 });
+  host.say({ ...status, time: 3, score: [1, 1] });
+  expect(environment.get("score_right")).toBe(1);
+  expect(live.world.events).toEqual([{ time: 3, kind: "goal", text: "Goal for West", side: "right" }]);
+});
+
+test("what the environment tells is not changed by the status", () => {
+  begin();
+  host.say({ type: "environment", time: 1, full: true, entries: [["play_mode", 0], ["team_left", "Red"], ["team_right", "Blue"], ["score_left", 2], ["score_right", 0], ["time", 0]] });
+  const before = Object.fromEntries(live.world.environment), version = live.world.versions.environment;
+  host.say({ type: "status", realTimeFactor: 1, cycle: 5, spectators: 1, agents: [], time: 3, playMode: "PlayOn", score: [0, 1], teams: ["a", "b"] });
+  expect(Object.fromEntries(live.world.environment)).toEqual(before);
+  expect(live.world.versions.environment).toBe(version);
+});
+
 test("robots without numbers get those that the host knows", () => {
   begin();
   host.say({ type: "environment", time: 1, full: true, entries: [["team_left", "Red"], ["team_right", "Blue"]] });

@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// What a game reports of itself. The host's status line, the columns of a batch and the page in browsers show it; they
+/// know no game.
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "spark/kernel.h"
+#include "spark/node.h"
+#include "spark/value.h"
+
+namespace spark {
+
+/// One value that a node reports.
+struct StatusEntry {
+  std::string name;                ///< a word of letters, digits and '_'
+  Value value;                     ///< a text, number or boolean, or a list of these
+  std::vector<std::string> parts;  ///< of a list: what its elements are called in columns; without: 1, 2, ...
+};
+
+/// Reports how a game goes. Any node below /sys or /usr may offer it.
+///
+/// Three words are understood by all that show a status:
+///
+///     playMode   text              how the game stands: "PlayOn", "round_2"
+///     score      list of numbers   of each team; the page's score board shows the first two
+///     teams      list of texts     names of the teams, in the order of the score
+///
+/// Every other entry is shown as `name value`. In a batch an entry is a column of that name; a list is one column for
+/// each element, named `name` + part: `scoreLeft`, or `score1`.
+class IStatus {
+ public:
+  SPARK_INTERFACE(IStatus, 1);
+  virtual ~IStatus() = default;
+  /// Appends what there is to report: the same names in the same order every time, so that a batch's rows have the same
+  /// columns. Called in the publish phase or between two cycles, in the simulation's thread. Must not throw.
+  virtual void report(std::vector<StatusEntry>& out) const = 0;
+};
+
+/// True when `entry` is one of the words that are understood, with a value of its type.
+inline bool isStatusWord(const StatusEntry& entry) {
+  if (entry.name == "playMode") return entry.value.isString();
+  return (entry.name == "score" || entry.name == "teams") && entry.value.isList();
+}
+
+/// The nodes that report, found again when the shape of the tree changed. A member of the one that shows the status;
+/// used in the simulation's thread.
+class StatusReporters {
+ public:
+  /// What they report, in tree order. Of entries with the same name the first counts.
+  std::vector<StatusEntry> read(Kernel& kernel) {
+    if (version_ != kernel.structureVersion()) find(kernel);
+    std::vector<StatusEntry> out;
+    for (const IStatus* reporter : reporters_) reporter->report(out);
+    for (std::size_t i = 1; i < out.size();)
+      if (std::any_of(out.begin(), out.begin() + i, [&](const StatusEntry& e) { return e.name == out[i].name; }))
+        out.erase(out.begin() + i);
+      else
+        ++i;
+    return out;
+  }
+
+ private:
+  void find(Kernel& kernel) {
+    version_ = kernel.structureVersion();
+    reporters_.clear();
+    for (const char* path : {"/sys", "/usr"})
+      if (const Node* top = kernel.root().find<Node>(path)) top->collect(reporters_);
+  }
+  std::uint64_t version_ = 0;
+  std::vector<IStatus*> reporters_;
+};
+
+}  // namespace spark

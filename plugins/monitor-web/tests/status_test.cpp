@@ -1,0 +1,105 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "../messages.h"
+#include "../status_report.h"
+#include "spark/describe.h"
+#include "test_support.h"
+
+using namespace spark;
+using namespace spark::test;
+using web::StatusReport;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A game that is not soccer.
+class SumoGame : public Node, public IStatus {
+  SPARK_CLASS(SumoGame, Node)
+ public:
+  static void describe(Description<SumoGame>& d) { d.implements<IStatus>(); }
+  void report(std::vector<StatusEntry>& out) const override { out.insert(out.end(), entries.begin(), entries.end()); }
+  std::vector<StatusEntry> entries;
+};
+
+class Wrestler : public Node, public IAgentIdentity {
+  SPARK_CLASS(Wrestler, Node)
+ public:
+  static void describe(Description<Wrestler>& d) { d.implements<IAgentIdentity>(); }
+  const std::string& team() const override { return name_; }
+  int number() const override { return 4; }
+
+ private:
+  std::string name_ = "East \"1\"";
+};
+
+class TwoAgents : public Node, public IGameControl {
+  SPARK_CLASS(TwoAgents, Node)
+ public:
+  static void describe(Description<TwoAgents>& d) { d.implements<IGameControl>(); }
+  const std::vector<AgentAspect*>& agents() const override { return all; }
+  void removeAgent(AgentAspect&, bool) override {}
+  int agentsSeen() const override { return 2; }
+  const Predicates* percepts(const AgentAspect&) const override { return nullptr; }
+  double latency(const AgentAspect& agent) const override { return &agent == all[0] ? 0.0125 : std::nan(""); }
+  std::vector<AgentAspect*> all;
+};
+
+struct Dohyo : House {
+  Dohyo() : House(false), report(kernel) {
+    kernel.registerClass<SceneNode>();
+    kernel.registerClass<Transform>();
+    kernel.registerClass<AgentAspect>();
+    kernel.registerClass<SumoGame>();
+    kernel.registerClass<Wrestler>();
+    kernel.registerClass<TwoAgents>();
+  }
+  SumoGame& game(std::vector<StatusEntry> entries) {
+    auto& game = kernel.create<SumoGame>("SumoGame", "/usr/sumo");
+    game.entries = std::move(entries);
+    return game;
+  }
+  Json status() { return Json::parse(report.make(1)); }
+  StatusReport report;
+};
+
+}  // namespace
+
+TEST_CASE("the status of a game without soccer: its words by name, all else as name and value") {
+  Dohyo house;
+  SECTION("with all words") {
+    house.game({{"round", 3, {}},
+                {"playMode", "Push", {}},
+                {"score", List{2, 1, 0}, {}},
+                {"teams", List{"East", "We\"st"}, {}},
+                {"wind", List{0.5, HUGE_VAL, true}, {}}});
+    const Json status = house.status();
+    CHECK(status["playMode"] == "Push");
+    CHECK(status["score"] == Json({2, 1, 0}));
+    CHECK(status["teams"] == Json({"East", "We\"st"}));
+    CHECK(status["status"] == Json::parse(R"([["round",3],["wind",[0.5,null,true]]])"));
+    CHECK(status["agents"].empty());
+  }
+  SECTION("without any") {
+    const Json nothing = house.status();
+    for (const char* word : {"playMode", "score", "teams", "status"}) CHECK_FALSE(nothing.contains(word));
+    // names of the message's own members are no harm, nor is a word with another type
+    house.game({{"time", "late", {}}, {"score", 7, {}}, {"empty", List{}, {}}});
+    const Json status = house.status();
+    CHECK(status["time"] == 0);
+    CHECK_FALSE(status.contains("score"));
+    CHECK(status["status"] == Json::parse(R"([["time","late"],["score",7],["empty",[]]])"));
+  }
+}
+
+TEST_CASE("team and number of an agent are those that a node below it says, at any depth") {
+  Dohyo house;
+  auto& control = house.kernel.create<TwoAgents>("TwoAgents", "/sys/server/gamecontrol");
+  for (const char* name : {"one", "two"})
+    control.all.push_back(&house.kernel.create<AgentAspect>("AgentAspect", std::string("/usr/scene/") + name));
+  control.all[0]->create<Transform>("Transform", "body").create("Wrestler", "anything");
+  CHECK(house.status()["agents"] ==
+        Json::parse(R"([{"path":"/usr/scene/one","team":"East \"1\"","number":4,"latency":12.5},
+                        {"path":"/usr/scene/two","team":"","number":0,"latency":null}])"));
+}

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "api/match.h"
+
+namespace spark::soccer {
+
+inline constexpr std::string_view kInit = "init";
+
+/// Reads `(init (unum 7)(teamname A))`; what is missing is 0 and "". The name leads into `action`.
+inline IJoinPolicy::Name readInit(const Element& action) {
+  const Element unum = action.named("unum"), team = action.named("teamname");
+  return {team ? team.at(1).text() : std::string_view(), unum ? unum.at(1).integer() : 0};
+}
+
+}  // namespace spark::soccer

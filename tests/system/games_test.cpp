@@ -1,0 +1,98 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "process.h"
+#include "temporary_folder.h"
+#include "test_support.h"
+#include "web_client.h"
+
+// A game that is not soccer shows its score wherever a match of soccer does.
+
+using namespace spark::test;
+using Json = nlohmann::json;
+using Catch::Contains;
+
+namespace {
+const char* kSumo = R"(
+include "house.lua"
+files() scene() simulation()
+agents{} monitors{} web() control()
+plugin "sumo"
+new("SumoBoard", "/usr/sumo")
+)";
+
+/// `program` with the sumo config and the plugin it needs.
+std::vector<std::string> sumo(const char* name, const TemporaryFolder& folder, std::vector<std::string> more) {
+  const std::string plugins = (binFolder().parent_path() / "tests" / "game-plugins").string();
+  more.insert(more.begin(), {program(name), "--config", folder.write("sumo.lua", kSumo), "--plugin-path", plugins});
+  return more;
+}
+}  // namespace
+
+TEST_CASE("Another game's score is in the status line, in the page's status, and in the host's last line") {
+  TemporaryFolder folder;
+  Process host(
+      sumo("sparkhost", folder, {"--agent-port", "0", "--monitor-port", "0", "--web-port", "0", "--duration", "6"}),
+      60);
+  const Json ports = Json::parse(host.line());
+  const std::string link = ports["web"];
+  WebClient client(static_cast<unsigned short>(std::stoi(link.substr(link.rfind(':') + 1))));
+  const Json status = Json::parse(client.get("/status.json").body);
+  CHECK(status["playMode"] == "Push");
+  CHECK(status["teams"] == Json({"East", "West"}));
+  REQUIRE(status["score"].size() == 2);
+  const Json others = status["status"];
+  CHECK(others[0][0] == "round");
+  CHECK(others[0][1] == status["score"][0].get<int>() + status["score"][1].get<int>());
+  CHECK(others[1] == Json::parse(R"(["grip",[0.5,"belt"]])"));
+
+  host.waitForError(", Push ");
+  CHECK_THAT(host.errors(), Contains(", teams East West, round ") && Contains(", grip 0.5 belt, 0 agents"));
+  const Json result = Json::parse(host.line());
+  CHECK(result["playMode"] == "Push");
+  CHECK(result["score"] == Json({15, 15}));
+  CHECK(result["status"] == Json::parse(R"({"round":30,"grip":[0.5,"belt"]})"));
+  CHECK(host.wait() == 0);
+}
+
+TEST_CASE("A batch of another game has its score in the table's columns") {
+  TemporaryFolder folder;
+  const std::string table = (folder.path() / "sumo.csv").string();
+  const Finished run = runToEnd(sumo("sparkbatch", folder, {"--runs", "2", "--duration", "1", "--results", table}));
+  CAPTURE(run.errors);
+  REQUIRE(run.code == 0);
+  std::ifstream file(table);
+  std::string head, row;
+  std::getline(file, head), std::getline(file, row);
+  CHECK_THAT(head, Contains(",stateHash,playMode,score1,score2,teams1,teams2,round,gripStrength,gripPlace,"));
+  CHECK_THAT(row, Contains(",Push,3,2,East,West,5,0.5,belt,"));
+}
+
+TEST_CASE("A game in Lua alone has its score in a batch's columns and in the host's last line") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("lua.lua", R"(
+include "house.lua"
+files() scene() simulation()
+status{ score = {0, 0}, teams = {"East", "West"} }
+on("rule", function(self, event) if event.cycle % 10 == 0 then Status.score = {Status.score[1] + 1, 0} end end)
+)"),
+                    table = (folder.path() / "lua.jsonl").string();
+  const Finished run = runToEnd(
+      {program("sparkbatch"), "--config", config, "--runs", "1", "--seed", "3", "--duration", "1", "--results", table});
+  CAPTURE(run.errors);
+  REQUIRE(run.code == 0);
+  std::ifstream file(table);
+  std::string line;
+  std::getline(file, line);
+  const Json row = Json::parse(line);
+  CHECK(row["score1"] == 5);
+  CHECK(row["score2"] == 0);
+  CHECK(row["teams2"] == "West");
+  const Finished host =
+      runToEnd({program("sparkhost"), "--config", config, "--rate", "max", "--seed", "3", "--duration", "1"});
+  const Json result = Json::parse(host.out.substr(host.out.find('\n') + 1));
+  CHECK(result["score"] == Json({5, 0}));
+  CHECK(result["teams"] == Json({"East", "West"}));
+  CHECK(result["stateHash"] == row["stateHash"]);
+}
