@@ -20,16 +20,8 @@ Route<IJoint> JointAbove(const char* className) {
   return Above<IJoint>().where<isOfType<kType>>(className);
 }
 
-/// The nearest joint of that type above `part`; nullptr, with a line in the log, when there is none. For onLink and
-/// onMoved: keep the pointer, which is valid until one of them runs again.
-inline IJoint* jointAbove(const SceneNode& part, engine::JointType type, const char* typeName) {
-  for (Leaf* up = part.parent(); up; up = up->parent())
-    if (auto* joint = up->as<IJoint>(); joint && joint->jointType() == type) return joint;
-  part.kernel().log().warning(
-      "{}: expected a {} above it, found none; it does nothing. Put it below the joint it belongs to.", part.path(),
-      typeName);
-  return nullptr;
-}
+/// To the nearest angular motor above.
+inline Route<IJoint> AngularMotorAbove() { return JointAbove<engine::JointType::angularMotor>("AngularMotor"); }
 
 inline constexpr const char* kNoJointAbove = "It does nothing. Put it below the joint it belongs to.";
 

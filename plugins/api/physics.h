@@ -77,7 +77,8 @@ class IJoint {
   virtual bool feedback() const = 0;
 };
 
-/// What a motor is like that is modelled as a device. Offered beside IJoint by AngularMotor, for sensors and effectors.
+/// A motor that is modelled as a device, with current, heat and stiffness. Offered beside IJoint by AngularMotor, for
+/// sensors and effectors.
 class IMotor {
  public:
   SPARK_INTERFACE(IMotor, 1);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "spark/kernel.h"
+#include "spark/link.h"
 #include "spark/node.h"
 #include "spark/value.h"
 
@@ -52,7 +53,7 @@ class StatusReporters {
  public:
   /// What they report, in tree order. Of entries with the same name the first counts.
   std::vector<StatusEntry> read(Kernel& kernel) {
-    if (version_ != kernel.structureVersion()) find(kernel);
+    if (tree_.changed(kernel.root())) find(kernel);
     std::vector<StatusEntry> out;
     for (const IStatus* reporter : reporters_) reporter->report(out);
     for (std::size_t i = 1; i < out.size();)
@@ -65,12 +66,11 @@ class StatusReporters {
 
  private:
   void find(Kernel& kernel) {
-    version_ = kernel.structureVersion();
     reporters_.clear();
     for (const char* path : {"/sys", "/usr"})
       if (const Node* top = kernel.root().find<Node>(path)) top->collect(reporters_);
   }
-  std::uint64_t version_ = 0;
+  TreeWatch tree_;
   std::vector<IStatus*> reporters_;
 };
 

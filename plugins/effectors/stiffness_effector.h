@@ -11,6 +11,7 @@ class StiffnessEffector : public Effector {
  public:
   static void describe(Description<StiffnessEffector>& d) {
     d.doc("Sets the stiffness of the angular motor above it: (name part), 0..1.");
+    d.link(&StiffnessEffector::motor_, Above<IMotor>()).required("It does nothing. Put it below an AngularMotor.");
     d.property("stiffness", &StiffnessEffector::stiffness_).range(0, 1).state().doc("What was commanded last.");
   }
   std::string act(const Element& action) override {
@@ -22,22 +23,8 @@ class StiffnessEffector : public Effector {
     return read.remark();
   }
 
- protected:
-  void onLink() override {
-    Effector::onLink();
-    lookUp();
-  }
-  void onMoved() override {
-    Effector::onMoved();
-    lookUp();
-  }
-
  private:
-  void lookUp() {
-    IJoint* joint = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
-    motor_ = joint ? joint->leaf().as<IMotor>() : nullptr;
-  }
-  IMotor* motor_ = nullptr;
+  Link<IMotor> motor_;
   double stiffness_ = 1;
 };
 

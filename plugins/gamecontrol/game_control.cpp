@@ -30,6 +30,7 @@ double seconds(std::chrono::steady_clock::duration d) { return std::chrono::dura
 
 void GameControl::describe(Description<GameControl>& d) {
   d.doc("Makes agents of connections and behaviours, dispatches their actions, asks their perceptors.");
+  d.link(&GameControl::joinPolicy_, Child<IJoinPolicy>()).doc("Reads who joins; without it agents have no names.");
   d.property("createEffector", &GameControl::createEffector_)
       .doc("Class of the effector with which an agent asks for its robot.");
   d.property("expect", &GameControl::expect_)
@@ -166,7 +167,7 @@ void GameControl::received(IConnection& connection, std::string_view message) {
                               ? fmt::format("there are {} agents already (maxAgents)", maxAgents_)
                               : p->receive(message, static_cast<std::size_t>(maxPending_), lines(), cycle_);
   if (why.empty()) {
-    if (holding()) gamecontrol::Hold::note(*p, joinPolicy());
+    if (holding()) gamecontrol::Hold::note(*p, joinPolicy_.get());
     return;
   }
   connection.close(why);
@@ -191,7 +192,7 @@ void GameControl::removeAgent(AgentAspect& agent, bool close) {
 bool GameControl::ready(bool lockstep) {
   resolveParsers();
   if (holding())
-    return hold_.over(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy()}, kernel().log());
+    return hold_.over(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy_.get()}, kernel().log());
   if ((!lockstep && !sync_) || cyclesToTurn_ > 0) return true;
   const auto now = Clock::now();
   if (!std::exchange(waiting_, true)) waitingSince_ = now;
@@ -382,7 +383,7 @@ void GameControl::joinBehaviors() {
 }
 
 void GameControl::joinNewcomers() {
-  if (holding()) hold_.order(newcomers_, expect_, joinPolicy());
+  if (holding()) hold_.order(newcomers_, expect_, joinPolicy_.get());
   released_ = true;
   auto joining = std::move(newcomers_);
   newcomers_.clear();

@@ -65,8 +65,6 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   void closeIdle();
   bool realTime() const;
   bool holding() const { return expect_ > 0 && !released_; }
-  /// The game's, as long as the tree stays as it is; nullptr: it has none.
-  const IJoinPolicy* joinPolicy() const { return childOf<IJoinPolicy>(); }
   Participant* participantOf(const IConnection& connection) const;
   const Participant* participantOf(const AgentAspect& agent) const;
   void agentsChanged();
@@ -84,6 +82,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   mutable TreeWatch agentsTree_;
   mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
+  Link<IJoinPolicy> joinPolicy_;
   std::optional<gamecontrol::AgentLines> lines_;
   // What clients that are not trusted yet may take of a match in lockstep.
   gamecontrol::Allowance waits_{30, 0.1};  ///< s, and s a second

@@ -190,12 +190,12 @@ std::string Inspection::answer(const Json& request) {
 }
 
 double Inspection::time() const {
-  const auto* simulation = kernel_.root().find<ISimulation>("/sys/server/simulation");
+  const auto* simulation = kernel_.root().find<ISimulation>();
   return simulation ? simulation->time() : 0;
 }
 
 Json Inspection::contacts() const {
-  auto& physics = kernel_.root().require<IPhysicsServer>("/sys/server/physics");
+  auto& physics = kernel_.root().require<IPhysicsServer>();
   Json list = Json::array();
   for (const engine::Contact& c : physics.contacts()) {
     if (list.size() >= kMostContacts) break;
@@ -237,7 +237,7 @@ Json Inspection::percepts(const Json& request) {
            {"seen", Json::array()},
            {"lines", Json::array()},
            {"cones", Json::array()}};
-  auto& control = kernel_.root().require<IGameControl>("/sys/server/gamecontrol");
+  auto& control = kernel_.root().require<IGameControl>();
   bool sees = false;
   if (const Predicates* all = control.percepts(*agent); all && all->size() <= kMostTokens)
     for (const Element e : *all) {
@@ -265,7 +265,7 @@ Inspection::Watched& Inspection::watched(AgentAspect& agent) {
 
 void Inspection::look() {
   if (watched_.empty()) return;
-  const auto* simulation = kernel_.root().find<ISimulation>("/sys/server/simulation");
+  const auto* simulation = kernel_.root().find<ISimulation>();
   if (!simulation || std::exchange(lookedAt_, simulation->cycle()) == simulation->cycle()) return;
   const auto now = Clock::now();
   if (now < lookDue_) return;
@@ -276,7 +276,7 @@ void Inspection::look() {
 }
 
 void Inspection::keepWhatItSees(Watched& watch, Clock::time_point now) const {
-  auto* control = kernel_.root().find<IGameControl>("/sys/server/gamecontrol");
+  auto* control = kernel_.root().find<IGameControl>();
   const Predicates* all = control ? control->percepts(*watch.agent) : nullptr;
   if (!all || all->size() > kMostTokens) return;
   for (const Eye& e : eyesOf(*watch.agent)) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "api/first_below.h"
 #include "api/phases.h"
 #include "messages.h"
 
@@ -41,11 +40,11 @@ void StatusReport::writeGame(JsonWriter& json) {
 }
 
 void StatusReport::lookUpAgents() {
-  if (std::exchange(lookedUpAt_, kernel_.structureVersion()) == kernel_.structureVersion()) return;
+  if (!tree_.changed(kernel_.root())) return;
   agents_.clear();
   if (const auto* control = kernel_.root().find<IGameControl>())
     for (const AgentAspect* agent : control->agents())
-      agents_.push_back({agent, agent->path(), firstBelow<IAgentIdentity>(*agent)});
+      agents_.push_back({agent, agent->path(), Below<IAgentIdentity>().find(*agent).object});
 }
 
 void StatusReport::writeAgents(JsonWriter& json) const {

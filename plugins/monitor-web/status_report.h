@@ -34,7 +34,7 @@ class StatusReport {
   Kernel& kernel_;
   StatusReporters reporters_;
   std::vector<Agent> agents_;
-  std::uint64_t lookedUpAt_ = 0;  ///< structure version
+  TreeWatch tree_;
   std::chrono::steady_clock::time_point madeAt_ = std::chrono::steady_clock::now();
   double time_ = 0;  ///< s, simulated, when one was made last
 };

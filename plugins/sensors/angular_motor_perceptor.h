@@ -14,6 +14,9 @@ class AngularMotorPerceptor : public Perceptor {
     using P = AngularMotorPerceptor;
     d.doc(
         "Senses the angular motor above it: (HJ (n name) (ax deg) (rt deg/s) (tq Nm) (tp C) (ct mA)), as switched on.");
+    d.link(&P::motor_, AngularMotorAbove()).required(kNoJointAbove);
+    d.link(&P::hinge_, AngularMotorAbove().above<IJoint>());
+    d.link(&P::device_, Above<IMotor>());
     d.property("senseAngle", &P::senseAngle_).doc("Says the hinge's angle.");
     d.property("senseRate", &P::senseRate_).doc("Says the hinge's speed.");
     d.property("senseTorque", &P::senseTorque_).doc("Says the motor's torque; the motor must have feedback enabled.");
@@ -23,41 +26,25 @@ class AngularMotorPerceptor : public Perceptor {
     d.property("toldTemperature", &P::toldTemperature_).unit("C").state().doc("The temperature that was said last.");
   }
   void sense(Predicates& out, const Event&) override {
-    if (!motor_) return;
-    const IJoint& angles = hinge_ ? *hinge_ : *motor_;
+    const IJoint* const motor = motor_.get();
+    if (!motor) return;
+    const IJoint& angles = hinge_ ? *hinge_ : *motor;
+    const IMotor* const device = device_.get();
     out.open("HJ").pair("n", name());
     if (senseAngle_) out.pair("ax", radToDeg(angles.angle(0)));
     if (senseRate_) out.pair("rt", radToDeg(angles.angleRate(0)));
-    if (senseTorque_) out.pair("tq", motor_->feedbackTorque());
-    if (senseTemperature_ && device_) {
-      const double now = device_->temperature();
+    if (senseTorque_) out.pair("tq", motor->feedbackTorque());
+    if (senseTemperature_ && device) {
+      const double now = device->temperature();
       if (std::abs(now - toldTemperature_) > 1) out.pair("tp", toldTemperature_ = now);
     }
-    if (senseCurrent_ && device_) out.pair("ct", 1000 * device_->current());
+    if (senseCurrent_ && device) out.pair("ct", 1000 * device->current());
     out.close();
   }
 
- protected:
-  void onLink() override {
-    Perceptor::onLink();
-    lookUp();
-  }
-  void onMoved() override {
-    Perceptor::onMoved();
-    lookUp();
-  }
-
  private:
-  void lookUp() {
-    hinge_ = nullptr;
-    motor_ = jointAbove(*this, engine::JointType::angularMotor, "AngularMotor");
-    if (!motor_) return;
-    hinge_ = motor_->leaf().ancestor<IJoint>();
-    device_ = motor_->leaf().as<IMotor>();
-  }
-  IJoint* motor_ = nullptr;
-  IJoint* hinge_ = nullptr;
-  const IMotor* device_ = nullptr;  ///< of motors that are modelled
+  Link<IJoint> motor_, hinge_;
+  Link<IMotor> device_;  ///< of motors that are modelled
   double toldTemperature_ = -1000;
   bool senseAngle_ = true, senseRate_ = false, senseTorque_ = false, senseCurrent_ = false, senseTemperature_ = false;
 };

@@ -11,31 +11,17 @@ class BatteryPerceptor : public Perceptor {
  public:
   static void describe(Description<BatteryPerceptor>& d) {
     d.doc("Senses the state of charge of the Battery above it: (name part), 0..1.");
+    d.link(&BatteryPerceptor::battery_, Above<IBattery>()).required("It senses nothing. Put it below a Battery.");
   }
   void sense(Predicates& out, const Event&) override {
-    if (!battery_) return;
-    const double capacity = battery_->capacity();
-    out.pair(name(), capacity > 0 ? battery_->power() / capacity : 0.0);
-  }
-
- protected:
-  void onLink() override {
-    Perceptor::onLink();
-    lookUp();
-  }
-  void onMoved() override {
-    Perceptor::onMoved();
-    lookUp();
+    const IBattery* const battery = battery_.get();
+    if (!battery) return;
+    const double capacity = battery->capacity();
+    out.pair(name(), capacity > 0 ? battery->power() / capacity : 0.0);
   }
 
  private:
-  void lookUp() {
-    battery_ = ancestor<IBattery>();
-    if (!battery_)
-      kernel().log().warning(
-          "{}: expected a Battery above it, found none; it senses nothing. Put it below the battery.", path());
-  }
-  const IBattery* battery_ = nullptr;
+  Link<IBattery> battery_;
 };
 
 }  // namespace spark

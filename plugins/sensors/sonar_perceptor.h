@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "api/agents.h"
-#include "api/cached_lookup.h"
 #include "api/match.h"
 #include "spark/random.h"
 
@@ -48,7 +47,8 @@ class SonarPerceptor : public Perceptor {
     const Matrix& here = transform()->world();
     const Vec3f forward = here.block<3, 1>(0, 1);
     echoes_.clear();
-    for (const Transform* target : *targets_.get(kernel(), [this] { return &findTargets(); })) {
+    if (tree_.changed(*this)) findTargets();
+    for (const Transform* target : targets_) {
       const Vec3f to = positionOf(target->world()) - positionOf(here);
       const double distance = std::hypot(to.x(), to.y());
       const double cross = forward.x() * to.y() - forward.y() * to.x(),
@@ -63,20 +63,19 @@ class SonarPerceptor : public Perceptor {
   }
 
   /// The transforms of all echo targets of the scene but those of its own agent.
-  std::vector<const Transform*>& findTargets() {
-    found_.clear();
+  void findTargets() {
+    targets_.clear();
     const Leaf* self = nullptr;
     Node* top = parent();
     for (; top->parent() && top->as<SceneNode>(); top = top->parent())
       if (top->as<AgentAspect>()) self = top;
     collect(*top, self);
-    return found_;
   }
   void collect(const Node& node, const Leaf* self) {
     for (const auto& child : node.children()) {
       if (child.get() == self || !child->asNode()) continue;
       const auto* mark = child->as<SceneNode>();
-      if (mark && mark->transform() && child->as<IEchoTarget>()) found_.push_back(mark->transform());
+      if (mark && mark->transform() && child->as<IEchoTarget>()) targets_.push_back(mark->transform());
       collect(*child->asNode(), self);
     }
   }
@@ -85,8 +84,8 @@ class SonarPerceptor : public Perceptor {
   double senseConeDeg_ = 60, minRange_ = 0.25, maxRange_ = 5.0;
   bool noise_ = false;
   RandomStream random_{*this, "sonar"};
-  CachedLookup<std::vector<const Transform*>> targets_;
-  std::vector<const Transform*> found_;
+  TreeWatch tree_;
+  std::vector<const Transform*> targets_;
   std::vector<double> echoes_;
 };
 

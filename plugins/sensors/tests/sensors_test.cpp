@@ -228,7 +228,7 @@ TEST_CASE("the battery's sensor is named as its node") {
   auto& battery = robot.transform->create<FakeBattery>("FakeBattery", "battery");
   CHECK(robot.sense(battery.create("BatteryPerceptor", "BAT")) == "(BAT 0.75)");
   CHECK(robot.sense(robot.transform->create("BatteryPerceptor", "BAT")).empty());
-  CHECK(robot.text.find("expected a Battery above it") != std::string::npos);
+  CHECK(robot.text.find("expected an IBattery above it, found none. It senses nothing.") != std::string::npos);
 }
 
 TEST_CASE("sensors that are only accepted keep their settings and are silent") {
