@@ -4,6 +4,7 @@
 
 #include "log_player.h"
 #include "monitor_log.h"
+#include "script_item.h"
 #include "spark/error.h"
 #include "spark/plugin.h"
 
@@ -253,4 +254,4 @@ void MonitorServer::sendTo(const std::vector<MonitorClient*>& clients) {
 
 SPARK_PLUGIN("monitor", "1.0",
              "The monitor server: frames of the scene for monitors, commands from trainers; logs and their player.",
-             spark::MonitorServer, spark::MonitorLog, spark::LogPlayer)
+             spark::MonitorServer, spark::MonitorLog, spark::LogPlayer, spark::ScriptItem)

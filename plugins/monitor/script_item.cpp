@@ -1,0 +1,117 @@
+#include "script_item.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "spark/describe.h"
+#include "spark/kernel.h"
+
+namespace spark {
+
+namespace {
+/// Monitors read words up to a blank or a bracket, and know no quotes.
+bool isWord(std::string_view text) {
+  const auto fits = [](unsigned char c) { return c > ' ' && c != 0x7f && !std::strchr("()\"'\\;", c); };
+  return !text.empty() && std::all_of(text.begin(), text.end(), fits);
+}
+
+void checkName(const std::string& name) {
+  if (!isWord(name))
+    throw RefusedValue("expected the name of an entry: one word without blanks, brackets and quotes, found \"" + name +
+                       "\"");
+}
+
+/// Throws RefusedValue unless monitors can read the value.
+void checkValue(const Value& value) {
+  if (value.isList())
+    for (const Value& v : value.toList()) checkValue(v);
+  else if (value.isString() && !isWord(value.toString()))
+    throw RefusedValue("expected text of one word without blanks, brackets and quotes, found " + value.text());
+  else if (value.isNil() || (value.isNumber() && !std::isfinite(value.toNumber())))
+    throw RefusedValue("expected a finite number, a word, a bool, or a list of these, found " + value.text());
+}
+
+/// `(name value)`; of a list each element: `(play_modes Wait Fight)`.
+void put(Environment& env, EnvPolicy policy, const std::string& name, const Value& value) {
+  Predicates& out = env.open(policy, name);
+  append(value.isList() ? value.toList() : List{value}, out);
+  out.close();
+}
+}  // namespace
+
+void ScriptItem::describe(Description<ScriptItem>& d) {
+  d.doc("Tells monitors what a script sets: item.score_left = 3 is the entry (score_left 3).");
+  d.implements<IMonitorItem>();
+  d.method("set", &ScriptItem::set)
+      .parameters({"name", "value"})
+      .doc("Sets an entry: a number, a word, a bool, or a list of these; nil takes it away.");
+  d.method("get", &ScriptItem::get).parameters({"name"}).doc("An entry's value, nil when there is none.");
+  d.property("names", &ScriptItem::names).doc("Names of all entries, sorted.");
+  d.property("entries", &ScriptItem::entries, &ScriptItem::setEntries)
+      .state()
+      .doc("All entries at once: a table, or a list of {name, value}.");
+  d.method("event", &ScriptItem::event)
+      .parameters({"name", "values"})
+      .doc("Tells every monitor once, with the next frame: event(\"fell\", \"Red\", 3) is (fell Red 3).");
+  d.method("script", &ScriptItem::script)
+      .parameters({"file", "arguments"})
+      .optional(1)
+      .doc("Attaches the script, which reads the arguments as `local args = ...`.");
+}
+
+void ScriptItem::contribute(Environment& env) {
+  // The server says its own time unless an item does.
+  for (const auto& [name, value] : entries_)
+    put(env, name == "time" ? EnvPolicy::always : EnvPolicy::change, name, value);
+  for (const Value& event : std::exchange(events_, {}))
+    put(env, EnvPolicy::once, event.toList()[0].toString(), event.toList()[1]);
+}
+
+void ScriptItem::set(std::string name, Value value) {
+  checkName(name);
+  if (value.isNil()) return static_cast<void>(entries_.erase(name));
+  checkValue(value);
+  entries_.insert_or_assign(std::move(name), std::move(value));
+}
+
+Value ScriptItem::get(std::string name) const {
+  const auto found = entries_.find(name);
+  return found == entries_.end() ? Value() : found->second;
+}
+
+std::vector<std::string> ScriptItem::names() const {
+  std::vector<std::string> out;
+  for (const auto& [name, value] : entries_) out.push_back(name);
+  return out;
+}
+
+Value ScriptItem::entries() const {
+  List out;
+  for (const auto& [name, value] : entries_) out.push_back(List{name, value});
+  return out;
+}
+
+void ScriptItem::setEntries(Value pairs) {
+  std::map<std::string, Value, std::less<>> taken;
+  if (!pairs.isList()) throw RefusedValue("expected a table of entries, found " + pairs.text());
+  for (const Value& pair : pairs.toList()) {
+    if (!pair.isList() || pair.toList().size() != 2 || !pair.toList()[0].isString())
+      throw RefusedValue("expected {name, value}, found " + pair.text());
+    checkName(pair.toList()[0].toString());
+    checkValue(pair.toList()[1]);
+    taken.insert_or_assign(pair.toList()[0].toString(), pair.toList()[1]);
+  }
+  entries_ = std::move(taken);
+}
+
+void ScriptItem::event(std::string name, std::vector<Value> values) {
+  checkName(name);
+  for (const Value& v : values) checkValue(v);
+  events_.push_back(List{name, values});
+}
+
+void ScriptItem::script(std::string file, Value arguments) { kernel().lua().attach(*this, file, arguments); }
+
+}  // namespace spark
