@@ -34,6 +34,8 @@ Value Lua::run(std::string_view text, std::string_view chunkName) {
   return impl_->run(text, "=" + std::string(chunkName));
 }
 
+void Lua::setGlobal(std::string_view name, const Value& value) { impl_->setGlobal(name, value); }
+
 void Lua::attach(Leaf& node, std::string_view file, const Value& arguments) {
   impl_->attachFile(node, file, nullptr, [&](lua_State* L) { script::pushArguments(L, arguments); });
 }
@@ -131,6 +133,16 @@ Value Runtime::run(std::string_view text, std::string_view chunkName) {
   });
   if (failure) throw Error(failure->text);
   return result;
+}
+
+void Runtime::setGlobal(std::string_view name, const Value& value) {
+  const auto failure = trusted->run(kUnlimited, [&](lua_State* L) {
+    pushConfigEnvironment(L);
+    lua_pushlstring(L, name.data(), name.size());
+    pushTables(L, value);
+    lua_settable(L, -3);
+  });
+  if (failure) throw Error(failure->text);
 }
 
 void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted,

@@ -196,6 +196,8 @@ class Runtime {
   static void load(lua_State* L, std::string_view text, std::string_view chunkName, int environment);
   /// Leaves the environment that configs share on the stack of a trusted thread.
   void pushConfigEnvironment(lua_State* L);
+  /// Lists of pairs whose keys are words become tables with these keys.
+  void setGlobal(std::string_view name, const Value& value);
   /// Runs a chunk in the config's environment. Throws Error.
   Value run(std::string_view text, std::string_view chunkName);
   /// Runs a chunk in an environment of its own. `pushArguments` leaves on the stack what the chunk reads as `...`;
@@ -247,8 +249,9 @@ std::string_view checkString(lua_State* L, int index, const char* what);
 
 // Values (lua_value.cpp).
 void pushValue(lua_State* L, const Value& value);
-/// As pushValue for what a script is given: lists of pairs whose keys are words become tables with these keys. Nothing
-/// for nil.
+/// As pushValue for what a script is given: lists of pairs whose keys are words become tables with these keys.
+void pushTables(lua_State* L, const Value& value);
+/// As pushTables; nothing for nil.
 void pushArguments(lua_State* L, const Value& arguments);
 /// Throws Error when it is a function or too deep.
 Value toValue(lua_State* L, int index);

@@ -166,6 +166,7 @@ bool isTable(const Value& v) {
            return p.isList() && p.toList().size() == 2 && p.toList()[0].isString();
          });
 }
+}  // namespace
 
 void pushTables(lua_State* L, const Value& value) {
   if (!value.isList()) return pushValue(L, value);
@@ -182,7 +183,6 @@ void pushTables(lua_State* L, const Value& value) {
     lua_rawset(L, -3);
   }
 }
-}  // namespace
 
 void pushArguments(lua_State* L, const Value& arguments) {
   if (!arguments.isNil()) pushTables(L, arguments);

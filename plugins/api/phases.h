@@ -25,11 +25,21 @@ namespace spark {
 /// The run loop, at /sys/server/simulation.
 class ISimulation {
  public:
-  SPARK_INTERFACE(ISimulation, 1);
+  SPARK_INTERFACE(ISimulation, 2);
   static constexpr const char* kPath = "/sys/server/simulation";
   virtual ~ISimulation() = default;
+  /// Runs cycles until the simulation's `duration` is reached, stop() or Kernel::requestStop(). Not to be called from
+  /// within a cycle: throws Error.
+  virtual void run() = 0;
+  /// Runs `count` cycles, fewer after stop() or Kernel::requestStop(); waits for the clock and for agents as run()
+  /// does. Not to be called from within a cycle: throws Error.
+  virtual void runCycles(std::int64_t count) = 0;
+  /// The current run() or runCycles() returns after the cycle it is in. For rules; other threads and signal handlers
+  /// use Kernel::requestStop(), which is for good.
+  virtual void stop() = 0;
   /// Simulated time [s] since start: sum of executed steps.
   virtual double time() const = 0;
+  /// Number of the current cycle, from 1; 0 before the first.
   virtual std::int64_t cycle() const = 0;
   /// Simulated seconds per cycle.
   virtual double step() const = 0;
@@ -37,6 +47,8 @@ class ISimulation {
   virtual bool lockstep() const = 0;
   /// True when cycles are paced to wall time: a long one is seen by everybody.
   virtual bool paced() const = 0;
+  /// True: cycles are paced to wall time; false: as fast as it goes.
+  virtual void setPaced(bool on) = 0;
 };
 
 /// Something the clock waits for: agents that have not answered. Any node in the tree may offer it.

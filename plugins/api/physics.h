@@ -180,7 +180,9 @@ class ContactJointHandler : public CollisionHandler {
     d.property("contactSoftCFM", &H::cfm, &H::setCfm).min(0).doc("Constraint force mixing of contacts.");
     d.property("contactSlipMode", &H::slipMode, &H::setSlipMode).doc("Force-dependent slip in both directions.");
     d.property("contactSlip", &H::slip, &H::setSlip).min(0).doc("Slip of contacts, both directions.");
-    d.property("contactMu", &H::mu, &H::setMu).min(0).doc("Friction coefficient; infinite by default.");
+    d.property("contactMu", &H::mu, &H::setMu)
+        .min(0)
+        .doc("Greatest friction along each tangent [N]; infinite by default.");
   }
   void onCollision(const Collision&) override {}
   const engine::Surface* surface() const override { return &surface_; }

@@ -25,13 +25,10 @@ class Simulation : public Node, public ISimulation {
   double step() const override { return step_; }
   bool lockstep() const override { return sync_; }
   bool paced() const override { return rate_ == "real"; }
-
-  /// Runs cycles until `duration` is reached, stop() or Kernel::requestStop().
-  void run();
-  /// Runs `count` cycles, or fewer when asked to stop; for tests and benches. Waits as run() does.
-  void runCycles(std::int64_t count);
-  /// Lets the current run() return after the cycle it is in.
-  void stop() { stopped_ = true; }
+  void setPaced(bool on) override { rate_ = on ? "real" : "max"; }
+  void run() override;
+  void runCycles(std::int64_t count) override;
+  void stop() override { stopped_ = true; }
 
  protected:
   void onLink() override;

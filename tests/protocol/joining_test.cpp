@@ -418,11 +418,15 @@ class TestLoop : public Node, public ISimulation {
     d.doc("Tells how its cycles come.");
     d.implements<ISimulation>();
   }
+  void run() override {}
+  void runCycles(std::int64_t) override {}
+  void stop() override {}
   double time() const override { return 0; }
   std::int64_t cycle() const override { return 0; }
   double step() const override { return 0.02; }
   bool lockstep() const override { return waits; }
   bool paced() const override { return isPaced; }
+  void setPaced(bool on) override { isPaced = on; }
   bool isPaced = true, waits = false;
 };
 

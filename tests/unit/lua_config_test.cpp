@@ -53,6 +53,17 @@ TEST_CASE("a config is found in the working folder first, then in the added fold
   CHECK(h.run("return found") == Value("second"));
 }
 
+TEST_CASE("a program sets globals of configs, tables of words and sequences among them") {
+  LuaHouse h;
+  h.kernel.lua().setGlobal("host", List{List{"share", "/usr/share"}, List{"paths", List{"a", "b"}},
+                                        List{"empty", List{}}, List{"alone", true}});
+  h.write("c.lua", "found = host.share .. #host.paths .. host.paths[2] .. #host.empty .. tostring(host.alone)");
+  h.kernel.lua().runConfig("c.lua");
+  CHECK(h.run("return found") == Value("/usr/share2b0true"));
+  h.kernel.lua().setGlobal("host", {});
+  CHECK(h.run("return host").isNil());
+}
+
 TEST_CASE("a config that is not there says where it was sought and what is near") {
   LuaHouse h;
   h.write("soccer.lua", "");

@@ -48,11 +48,15 @@ class StillClock : public Node, public ISimulation {
   SPARK_CLASS(StillClock, Node)
  public:
   static void describe(Description<StillClock>& d) { d.implements<ISimulation>(); }
+  void run() override {}
+  void runCycles(std::int64_t) override {}
+  void stop() override {}
   double time() const override { return 0; }
   std::int64_t cycle() const override { return 0; }
   double step() const override { return 0.02; }
   bool lockstep() const override { return false; }
   bool paced() const override { return false; }
+  void setPaced(bool) override {}
 };
 
 /// A house with a moving robot, whose cycles run in a thread of their own until it is stopped.

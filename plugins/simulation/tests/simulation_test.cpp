@@ -144,6 +144,26 @@ TEST_CASE("run ends when the kernel or a script asks for it") {
   REQUIRE(f.loop->cycle() == 9);
 }
 
+TEST_CASE("A program steps, paces and stops the loop by its interface") {
+  LoopFixture f;
+  f.loop->setPaced(true);
+  REQUIRE(f.loop->paced());
+  REQUIRE(getProperty(*f.simulation, "rate") == Value("real"));
+  f.loop->setPaced(false);
+  REQUIRE_FALSE(f.loop->paced());
+  f.house.kernel.events().channel("rule").add(f.house.kernel.root(), [&](Leaf&, const Event& e) {
+    if (e.cycle == 3) f.loop->stop();
+    if (e.cycle == 5) REQUIRE_THROWS_WITH(f.loop->runCycles(1), Catch::Contains("runs already"));
+  });
+  f.loop->runCycles(10);
+  REQUIRE(f.loop->cycle() == 3);
+  f.loop->runCycles(10);
+  REQUIRE(f.loop->cycle() == 13);
+  setProperty(*f.simulation, "duration", 0.4);
+  f.loop->run();
+  REQUIRE(f.loop->cycle() == 20);
+}
+
 TEST_CASE("The clock waits for closed gates, then reads once more what was received meanwhile") {
   LoopFixture f;
   auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");

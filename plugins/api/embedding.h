@@ -1,0 +1,38 @@
+#pragma once
+/// \file
+/// For programs that run simulations of their own: makes a kernel know the plugins, configs and scenes of a Spark
+/// folder. docs/embedding.md is a whole program.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "spark/kernel.h"
+
+namespace spark {
+
+/// Where a Spark is, and what configs read of the program that runs them.
+struct Installation {
+  std::filesystem::path plugins;  ///< folder of the plugins' files
+  std::filesystem::path share;    ///< folder with lua/ and scenes/
+  /// Folders with scenes of your own in rsg/, looked at before Spark's.
+  std::vector<std::string> scenePaths;
+  /// The simulation serves nobody: configs open no web page and no control socket.
+  bool alone = true;
+};
+
+#ifdef SPARK_PLUGIN_DIR
+/// The Spark that find_package(Spark) found.
+inline Installation installed() { return {.plugins = SPARK_PLUGIN_DIR, .share = SPARK_SHARE_DIR, .scenePaths = {}}; }
+#endif
+
+/// Makes `kernel` know the plugins, configs and scenes there: then kernel.lua().runConfig("boxes.lua") works.
+inline void use(Kernel& kernel, const Installation& from) {
+  kernel.plugins().scan(from.plugins);
+  kernel.lua().addFolder(from.share / "lua");
+  List paths(from.scenePaths.begin(), from.scenePaths.end());
+  kernel.lua().setGlobal("host", List{List{"share", from.share.string()}, List{"scenePaths", std::move(paths)},
+                                      List{"alone", from.alone}});
+}
+
+}  // namespace spark
