@@ -1,8 +1,10 @@
 #include "script_item.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "spark/describe.h"
@@ -33,6 +35,16 @@ void checkValue(const Value& value) {
     throw RefusedValue("expected a finite number, a word, a bool, or a list of these, found " + value.text());
 }
 
+/// Entries that a status has in words of its own, or not at all.
+constexpr std::string_view kMonitorWords[] = {"play_mode", "play_modes", "score_left", "score_right",
+                                              "team_left", "team_right", "time"};
+
+bool isStatusName(std::string_view name) {
+  const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+  return std::all_of(name.begin(), name.end(), fits) &&
+         std::find(std::begin(kMonitorWords), std::end(kMonitorWords), name) == std::end(kMonitorWords);
+}
+
 /// `(name value)`; of a list each element: `(play_modes Wait Fight)`.
 void put(Environment& env, EnvPolicy policy, const std::string& name, const Value& value) {
   Predicates& out = env.open(policy, name);
@@ -44,6 +56,7 @@ void put(Environment& env, EnvPolicy policy, const std::string& name, const Valu
 void ScriptItem::describe(Description<ScriptItem>& d) {
   d.doc("Tells monitors what a script sets: item.score_left = 3 is the entry (score_left 3).");
   d.implements<IMonitorItem>();
+  d.implements<IStatus>();
   d.method("set", &ScriptItem::set)
       .parameters({"name", "value"})
       .doc("Sets an entry: a number, a word, a bool, or a list of these; nil takes it away.");
@@ -67,6 +80,28 @@ void ScriptItem::contribute(Environment& env) {
     put(env, name == "time" ? EnvPolicy::always : EnvPolicy::change, name, value);
   for (const Value& event : std::exchange(events_, {}))
     put(env, EnvPolicy::once, event.toList()[0].toString(), event.toList()[1]);
+}
+
+void ScriptItem::report(std::vector<StatusEntry>& out) const {
+  if (const Value mode = playMode(); mode.isString()) out.push_back({"playMode", mode, {}});
+  reportPair(out, "score", "score_left", "score_right");
+  reportPair(out, "teams", "team_left", "team_right");
+  for (const auto& [name, value] : entries_)
+    if (isStatusName(name)) out.push_back({name, value, {}});
+}
+
+/// A mode's name, or its index in `play_modes`.
+Value ScriptItem::playMode() const {
+  const Value mode = get("play_mode"), names = get("play_modes");
+  if (!mode.isInteger() || !names.isList() || mode.toInteger() < 0) return mode;
+  const Value* name = names.at(static_cast<std::size_t>(mode.toInteger()));
+  return name ? *name : mode;
+}
+
+void ScriptItem::reportPair(std::vector<StatusEntry>& out, const char* name, const char* left,
+                            const char* right) const {
+  const Value a = get(left), b = get(right);
+  if (!a.isNil() && !b.isNil()) out.push_back({name, List{a, b}, {"Left", "Right"}});
 }
 
 void ScriptItem::set(std::string name, Value value) {

@@ -95,12 +95,10 @@ TEST_CASE("An agent built outside of the tree with the client library alone play
   CHECK(host.wait() == 0);
 }
 
-TEST_CASE(
-    "What the pages show builds from the installed tree as it stands: a plugin, a copied sensor, a program with a "
-    "simulation in it") {
+TEST_CASE("What the pages show builds from the installed tree as it stands: a plugin, and a copied sensor") {
   const Installed spark;
   const fs::path pages = spark.prefix / "share" / "doc" / "spark", readme = pages / "README.md",
-                 guide = pages / "docs" / "plugin-guide.md", embedding = pages / "docs" / "embedding.md";
+                 guide = pages / "docs" / "plugin-guide.md";
   const TemporaryFolder& folder = spark.folder;
   folder.write("wind/CMakeLists.txt", block(readme, "cmake", "## A plugin of your own"));
   folder.write("wind/wind.cpp", block(readme, "cpp", "## A plugin of your own"));
@@ -111,11 +109,9 @@ TEST_CASE(
   for (std::size_t at = header.find("GyroRatePerceptor"); at != header.npos; at = header.find("GyroRatePerceptor", at))
     header.replace(at, 17, "MyGyro");
   folder.write("gyro/my_gyro.h", header);
-  folder.write("learner/CMakeLists.txt", block(embedding, "cmake"));
-  folder.write("learner/learner.cpp", block(embedding, "cpp"));
   folder.write("CMakeLists.txt",
                "cmake_minimum_required(VERSION 3.25)\nproject(All "
-               "CXX)\nadd_subdirectory(wind)\nadd_subdirectory(gyro)\nadd_subdirectory(learner)\n");
+               "CXX)\nadd_subdirectory(wind)\nadd_subdirectory(gyro)\n");
 
   const std::string build = folder.file("build");
   const Finished configured =
@@ -134,22 +130,14 @@ TEST_CASE(
   };
   CHECK_THAT(describe("Wind"), Contains("force") && Contains("N"));
   CHECK_THAT(describe("MyGyro"), Contains("plugin: my-sensors") && Contains("angular velocity"));
-
-  // Both lines of the program are equal, and it is a world in which something falls.
-  const std::string out = must({build + "/learner/learner"}).out;
-  CAPTURE(out);
-  const auto end = out.find('\n');
-  REQUIRE(end != out.npos);
-  CHECK_THAT(out, Contains("a crate is at"));
-  CHECK(out.substr(0, end + 1) == out.substr(end + 1));
 }
 
 TEST_CASE("Documentation is installed where its links lead somewhere") {
   const Installed spark;
   const fs::path pages = spark.prefix / "share" / "doc" / "spark";
   for (const char* page : {"README.md", "LICENSE", "docs/README.md", "docs/plugin-guide.md", "docs/first-robot.md",
-                           "docs/embedding.md", "lua/README.md", "scenes/README.md", "plugins/sensors/README.md",
-                           "plugins/soccer/README.md", "tools/sparkbatch/README.md"})
+                           "docs/embedding.md", "docs/tutorial.md", "lua/README.md", "scenes/README.md",
+                           "plugins/sensors/README.md", "plugins/soccer/README.md", "tools/sparkbatch/README.md"})
     CHECK(fs::is_regular_file(pages / page));
   CHECK_FALSE(fs::exists(pages / "plugins" / "monitor-web" / "viewer" / "node_modules"));
 }

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "api/status.h"
 #include "spark/state.h"
 #include "stage.h"
 #include "temporary_folder.h"
@@ -81,6 +82,26 @@ TEST_CASE("What monitors could not read is refused with a sentence, and changes 
   }
   FakeConnection& monitor = stage.connect();
   CHECK_THAT(monitor.read(), Contains("((team_left Red)(time 0))"));
+}
+
+TEST_CASE("What a script says to monitors is the game's status, in the words of a status") {
+  ScriptStage stage;
+  stage.run(
+      "item.entries = { play_modes = {'Wait', 'Fight'}, play_mode = 1, score_left = 2, score_right = 0, team_left = "
+      "'Red', team_right = 'Blue', time = 3, bout = 4, ['no-status'] = 5 }");
+  const auto status = [&] {
+    List out;
+    for (const StatusEntry& e : StatusReporters().read(stage.kernel)) {
+      out.push_back(List{e.name, e.value});
+      if (e.name == "score") CHECK((e.parts == std::vector<std::string>{"Left", "Right"}));
+    }
+    return Value(out).text();
+  };
+  CHECK(status() == R"({{"playMode", "Fight"}, {"score", {2, 0}}, {"teams", {"Red", "Blue"}}, {"bout", 4}})");
+  stage.run("item.entries = { play_mode = 'Over', score_left = 1 }");
+  CHECK(status() == R"({{"playMode", "Over"}})");
+  stage.run("item.entries = { play_modes = {'Wait'}, play_mode = 7 }");
+  CHECK(status() == "{}");
 }
 
 TEST_CASE("A script attached to its item keeps the score in it, which is restored with the world") {

@@ -1,0 +1,79 @@
+"""follow.py notices what a page promises and does not keep."""
+import contextlib
+import io
+import tempfile
+import unittest
+from pathlib import Path
+
+import follow
+
+
+def page(*parts):
+    """The exit code for a page of these blocks, (first line, text), and what went to stderr."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "page.md"
+        file.write_text("".join(f"Some text.\n```{first}\n{text}\n```\n" for first, text in parts))
+        home = Path(folder) / "home"
+        home.mkdir()
+        errors = io.StringIO()
+        with contextlib.redirect_stderr(errors), contextlib.redirect_stdout(io.StringIO()):
+            code = follow.follow(file, "/some/build", home)
+        return code, errors.getvalue()
+
+
+MOVE = ("sh", "mkdir ~/game && cd ~/game && export WORD=red")
+
+
+class Pages(unittest.TestCase):
+    def holds(self, *parts):
+        code, errors = page(MOVE, *parts)
+        self.assertEqual(code, 0, errors)
+
+    def breaks(self, why, *parts):
+        code, errors = page(MOVE, *parts)
+        self.assertEqual(code, 1)
+        self.assertIn(why, errors)
+
+    def test_files_are_written_where_commands_are(self):
+        self.holds(("lua a/b.lua", "one"), ("lua >>a/b.lua", "two"), ("sh", "cat ~/game/a/b.lua; echo $WORD"), ("text", "one\ntwo\nred"))
+
+    def test_the_build_tree_is_the_one_that_is_tested(self):
+        self.holds(("sh", "echo build/release/bin"), ("text", "/some/build/bin"))
+
+    def test_lines_come_in_order_with_others_between_them(self):
+        self.holds(("sh", "echo one; echo two; echo three"), ("text", "one\n...\nthree"))
+        self.breaks("the page promises\none", ("sh", "echo one; echo two"), ("text", "two\none"))
+        self.breaks("the page promises\ntwo", ("sh", "echo one two"), ("text", "one\ntwo"))
+
+    def test_text_is_compared_to_the_letter(self):
+        self.holds(("sh", "echo 'a (b) 12 ms'"), ("text", "a (b) ... ms"))
+        self.breaks("the page promises\ntook 3 s", ("sh", "echo took 4 s"), ("text", "took 3 s"))
+
+    def test_alike_are_other_numbers_and_hashes_only(self):
+        self.holds(("sh", "echo 'score [3, 0] -1.5 http://127.0.0.1:80/ 0123456789abcdef'"),
+                   ("text like", "score [12, 4] 0 http://127.0.0.1:40871/ fedcba9876543210"))
+        self.breaks("the page promises\nwon 3", ("sh", "echo lost 3"), ("text like", "won 3"))
+        self.breaks("the page promises\nscore 3", ("sh", "echo score None"), ("text like", "score 3"))
+
+    def test_bars_rise(self):
+        wanted = "1  ####......oooo  20 %\n2  ########oooo  60 %"
+        self.holds(("sh", "echo '1  #######oooo  7 %'; echo '2  ##########  8 %'"), ("text rising", wanted))
+        self.breaks("the last bar is not the longest", ("sh", "echo '1  #######oooo  9 %'; echo '2  ##########  8 %'"), ("text rising", wanted))
+
+    def test_a_command_that_fails_ends_it(self):
+        self.breaks("exit code 1", ("sh", "false; echo more"))
+        self.breaks("exit code 1", ("sh", "false | cat"))
+
+    def test_a_page_without_commands_is_none(self):
+        code, errors = page(("lua", "one"))
+        self.assertEqual(code, 1)
+        self.assertIn("there are no commands", errors)
+
+    def test_nothing_is_written_into_the_sources(self):
+        code, errors = page(("lua a.lua", "one"))
+        self.assertEqual(code, 1)
+        self.assertIn("Spark's own folder", errors)
+
+
+if __name__ == "__main__":
+    unittest.main()
