@@ -24,8 +24,13 @@ export function temporaryFolder(t) {
 
 /** Starts a host that ends with the test. `url` is the spectators' link, `refereeUrl` the one with the token. */
 export async function startHost(t, ...options) {
+  return startHostIn(undefined, t, ...options);
+}
+
+/** The same in another working folder. */
+export async function startHostIn(cwd, t, ...options) {
   const log = [];
-  const child = spawn(program("sparkhost"), [...options, "--agent-port", "0", "--monitor-port", "0", "--web-port", "0"], { stdio: ["ignore", "pipe", "pipe"] });
+  const child = spawn(program("sparkhost"), [...options, "--agent-port", "0", "--monitor-port", "0", "--web-port", "0"], { stdio: ["ignore", "pipe", "pipe"], cwd });
   createInterface({ input: child.stderr }).on("line", (line) => log.push(line));
   const lines = createInterface({ input: child.stdout });
   const ended = new Promise((done) => child.once("exit", done));

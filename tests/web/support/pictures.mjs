@@ -1,7 +1,7 @@
 // Screenshots: kept as files, and as pixels that can be compared.
-import { writeFileSync } from "node:fs";
+import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { inflateSync } from "node:zlib";
+import { deflateSync, inflateSync } from "node:zlib";
 import { screenshots } from "./places.mjs";
 
 /** The pixels of a PNG as Chromium writes it: 8 bits a channel, RGB or RGBA, not interlaced. */
@@ -66,4 +66,46 @@ export async function shoot(what, name) {
   const png = await what.screenshot();
   writeFileSync(join(screenshots, `${name}.png`), png);
   return decode(png);
+}
+
+/** Takes a picture for a page of the documentation: colours of 5 bits a channel, a third of the bytes. Returns pixels and bytes. */
+export async function shootForPage(what, name, folder = screenshots) {
+  const pixels = decode(await what.screenshot());
+  const data = pixels.data.map((value) => Math.min(255, (value + 4) & ~7));
+  const png = encode({ ...pixels, data });
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(join(folder, `${name}.png`), png);
+  return { pixels, bytes: png.length };
+}
+
+/** A PNG of 8 bits a channel, its rows as they are. */
+export function encode({ width, height, channels, data }) {
+  const row = width * channels;
+  const raw = Buffer.alloc(height * (row + 1));
+  for (let y = 0; y < height; y++) raw.set(data.subarray(y * row, (y + 1) * row), y * (row + 1) + 1);
+  const head = Buffer.alloc(13);
+  head.writeUInt32BE(width, 0);
+  head.writeUInt32BE(height, 4);
+  head.set([8, channels === 4 ? 6 : 2], 8);
+  const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 13, 10, 26, 10]);
+  return Buffer.concat([signature, chunk("IHDR", head), chunk("IDAT", deflateSync(raw, { level: 9 })), chunk("IEND", Buffer.alloc(0))]);
+}
+
+function chunk(kind, body) {
+  const out = Buffer.alloc(12 + body.length);
+  out.writeUInt32BE(body.length, 0);
+  out.write(kind, 4, "latin1");
+  out.set(body, 8);
+  out.writeUInt32BE(crc(out.subarray(4, 8 + body.length)), 8 + body.length);
+  return out;
+}
+
+/** CRC-32 as PNG has it (ISO 3309). */
+function crc(bytes) {
+  let sum = 0xffffffff;
+  for (const byte of bytes) {
+    sum ^= byte;
+    for (let bit = 0; bit < 8; bit++) sum = (sum >>> 1) ^ (sum & 1 ? 0xedb88320 : 0);
+  }
+  return ~sum >>> 0;
 }

@@ -3,6 +3,8 @@ import { accessSync, constants, existsSync, mkdirSync } from "node:fs";
 import { createRequire } from "node:module";
 import { delimiter, join } from "node:path";
 
+/** Spark's sources. */
+export const sources = new URL("../../..", import.meta.url).pathname.replace(/\/$/, "");
 /** The build tree whose host and viewer are tested. */
 export const build = process.env.SPARK_BUILD ?? new URL("../../../build/release", import.meta.url).pathname;
 export const viewer = join(build, "share/spark/viewer");

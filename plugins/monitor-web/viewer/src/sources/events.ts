@@ -57,6 +57,12 @@ export function modeWords(name: string, environment: Environment): string {
   return `${words} ${words === "Offside" ? "of" : "for"} ${teamName(environment, side)}`;
 }
 
+/// What a team scores: a goal, unless the game brings modes of its own and none is about goals and kicks.
+function pointWord(environment: Environment): string {
+  const names = environment.get("play_modes");
+  return Array.isArray(names) && !names.some((name) => /goal|kick/i.test(String(name))) ? "Point" : "Goal";
+}
+
 /// "Red", or "left" as long as the team has no name.
 export function teamName(environment: Environment, side: Side): string {
   const name = environment.get(`team_${side}`);
@@ -79,7 +85,7 @@ export class EventReader {
       if (typeof score !== "number") continue;
       const before = this.score[side];
       this.score[side] = score;
-      if (before !== null && score > before) events.push({ time, kind: "goal", text: `Goal for ${teamName(environment, side)}`, side });
+      if (before !== null && score > before) events.push({ time, kind: "goal", text: `${pointWord(environment)} for ${teamName(environment, side)}`, side });
     }
     const mode = modeName(environment);
     const changed = this.mode !== null && mode !== "" && mode !== this.mode;
