@@ -181,6 +181,7 @@ class ContactJointHandler : public CollisionHandler {
     d.property("contactSlipMode", &H::slipMode, &H::setSlipMode).doc("Force-dependent slip in both directions.");
     d.property("contactSlip", &H::slip, &H::setSlip).min(0).doc("Slip of contacts, both directions.");
     d.property("contactMu", &H::mu, &H::setMu)
+        .unit("N")
         .min(0)
         .doc("Greatest friction along each tangent [N]; infinite by default.");
   }
