@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "spark/abi/api/embedding.h"
 #include "spark/kernel.h"
 
 namespace spark {

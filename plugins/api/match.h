@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "spark/abi/api/match.h"
 #include "spark/node.h"
 #include "spark/predicates.h"
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "spark/abi/api/status.h"
 #include "spark/kernel.h"
 #include "spark/link.h"
 #include "spark/node.h"

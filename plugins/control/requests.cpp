@@ -104,7 +104,7 @@ Json tree(Kernel& kernel, const Json& request, std::size_t most) {
   return {{"ok", true}, {"tree", describeTree(top, request.value("depth", -1), request.value("links", false), left)}};
 }
 
-Json propertiesOf(const Leaf& leaf, const Json& request) {
+Json propertiesOf(Leaf& leaf, const Json& request) {
   Json properties = Json::array();
   if (request.contains("property"))
     properties.push_back(describe(leaf, propertyOf(leaf, textOf(request, "property"))));
