@@ -261,7 +261,7 @@ TEST_CASE("sparkctl shows the house and changes it") {
   REQUIRE(ctl({"set", "/usr/thing/inner.name", "007"}).code == 0);  // text stays text
   REQUIRE_THAT(ctl({"get", "/usr/thing/007.name"}).out, Contains("name = 007"));
   REQUIRE(ctl({"call", "/usr/thing/007.setName", "1e3"}).code == 0);
-  REQUIRE_THAT(ctl({"tree", "/usr"}).out, Contains("1e3  ("));
+  REQUIRE_THAT(ctl({"tree", "/usr"}).out, Contains("─ 1e3\n"));
   REQUIRE(ctl({"get", "/nowhere"}).code == 1);
   REQUIRE(ctl({"call", "/sys/server/simulation.stop"}).code == 0);
   REQUIRE(Json::parse(p.line())["cycles"].get<int>() > 0);
