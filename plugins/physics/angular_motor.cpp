@@ -14,6 +14,9 @@ void AngularMotor::describe(Description<AngularMotor>& d) {
       "modelled motor: current, "
       "heat and battery follow from its torque, and limit it.");
   d.implements<IMotor>();
+  d.link(&M::hinge_, Above<HingeJoint>());
+  d.link(&M::battery_, At<Battery>(&M::batteryPath_));
+  d.link(&M::server_, At<PhysicsServer>());
   d.property("numAxes", &M::numAxes, &M::setNumAxes).range(0, 3).doc("How many axes it drives.");
   d.method("setMotorAxis", &M::setMotorAxis)
       .parameters({"axis", "0 world, 1 first body, 2 second body", "direction"})
@@ -32,7 +35,8 @@ void AngularMotor::describe(Description<AngularMotor>& d) {
       .parameters({"axis"})
       .doc("What an axis turns with: 0 world, 1 first body, 2 second body.");
 
-  d.property("battery", &M::battery_).doc("Path of the Battery it draws from, relative to the motor.");
+  d.property("battery", &M::batteryPath, &M::setBatteryPath)
+      .doc("Path of the Battery it draws from, relative to the motor.");
   d.property("speedConstant", &M::speedConstant_).unit("V s/rad").doc("Back electromotive force per speed.");
   d.property("torqueConstant", &M::torqueConstant_).unit("Nm/A").doc("Torque per current.");
   d.property("resistance", &M::resistance_).unit("Ohm").min(0).doc("Resistance of the winding.");
@@ -59,25 +63,15 @@ void AngularMotor::describe(Description<AngularMotor>& d) {
   d.on<&M::measure>("place");
 }
 
-const AngularMotor::Surroundings& AngularMotor::surroundings() const {
-  Surroundings& s = surroundings_;
-  if (s.version == kernel().structureVersion()) return s;
-  s.version = kernel().structureVersion();
-  s.hinge = ancestor<HingeJoint>();
-  s.battery = battery_.empty() ? nullptr : find<Battery>(battery_);
-  s.server = kernel().root().find<PhysicsServer>("/sys/server/physics");
-  return s;
-}
-
 bool AngularMotor::disabled() const {
   if (maxTorque_ <= 0) return false;
-  const Battery* battery = surroundings().battery;
+  const Battery* battery = battery_.get();
   return tooHot() || (battery && battery->empty());
 }
 
 void AngularMotor::prepare(const Event&) {
   if (!modelled()) return;
-  const Battery* battery = surroundings().battery;
+  const Battery* battery = battery_.get();
   const double stiffness = battery && battery->empty() ? 0.0
                            : tooHot()                  ? std::min(stiffness_, protectionStiffness_)
                                                        : stiffness_;
@@ -86,13 +80,12 @@ void AngularMotor::prepare(const Event&) {
 
 void AngularMotor::measure(const Event& event) {
   if (!modelled()) return;
-  const Surroundings& s = surroundings();
   current_ = torqueConstant_ != 0 ? feedbackTorque() / torqueConstant_ : 0;
   const double heat = current_ * current_ * resistance_;  // W
-  const double speed = std::abs(s.hinge ? s.hinge->angleRate(0) : angleRate(0));
-  if (s.battery && s.server && s.server->batteryDischarge())
-    s.battery->drain((speedConstant_ * speed * current_ + heat) * event.step);
-  if (s.server && s.server->jointHeating() && heatCapacity_ > 0)
+  const double speed = std::abs(hinge_ ? hinge_->angleRate(0) : angleRate(0));
+  if (battery_ && server_ && server_->batteryDischarge())
+    battery_->drain((speedConstant_ * speed * current_ + heat) * event.step);
+  if (server_ && server_->jointHeating() && heatCapacity_ > 0)
     temperature_ += (heat - conductivity_ * (temperature_ - environment_)) * event.step / heatCapacity_;
 }
 
@@ -130,13 +123,13 @@ void AngularMotor::setAxisAngle(int axis, double deg) {
 
 double AngularMotor::axisAngle(int axis) const {
   expectAxis(axis);
-  const auto* hinge = ancestor<HingeJoint>();
+  const HingeJoint* hinge = hinge_.get();
   return hinge ? radToDeg(hinge->angle(0)) : angleDeg(axis);
 }
 
 double AngularMotor::axisAngleRate(int axis) const {
   expectAxis(axis);
-  const auto* hinge = ancestor<HingeJoint>();
+  const HingeJoint* hinge = hinge_.get();
   return hinge ? radToDeg(hinge->angleRate(0)) : angleRateDeg(axis);
 }
 

@@ -30,14 +30,6 @@ class AngularMotor : public Joint, public IMotor {
   void loadState(StateReader& in) override;
 
  private:
-  /// What it works with; looked up when the tree's shape changed.
-  struct Surroundings {
-    std::uint64_t version = 0;
-    HingeJoint* hinge = nullptr;
-    Battery* battery = nullptr;
-    const PhysicsServer* server = nullptr;
-  };
-
   void apply();
   int numAxes() const { return axes_; }
   void setNumAxes(int n);
@@ -50,7 +42,11 @@ class AngularMotor : public Joint, public IMotor {
   double axisAngleRate(int axis) const;
   int axisAnchor(int axis) const;
 
-  const Surroundings& surroundings() const;
+  const std::string& batteryPath() const { return batteryPath_; }
+  void setBatteryPath(std::string path) {
+    batteryPath_ = std::move(path);
+    battery_.lookAgain();
+  }
   bool modelled() const { return maxTorque_ > 0 && engine(); }
   bool tooHot() const { return temperature_ > protectionTemperature_; }
   /// Before the step: as much torque as stiffness, heat and battery leave.
@@ -60,12 +56,14 @@ class AngularMotor : public Joint, public IMotor {
 
   int axes_ = 0, anchors_[3] = {0, 0, 0};
   bool euler_ = false;
-  std::string battery_;
+  std::string batteryPath_;
+  Link<HingeJoint, true> hinge_;
+  Link<Battery, true> battery_;
+  Link<PhysicsServer, true> server_;
   double speedConstant_ = 4.3, torqueConstant_ = 4.3, resistance_ = 6.44, environment_ = 20, conductivity_ = 0.025,
          heatCapacity_ = 26;
   double protectionTemperature_ = 80, protectionStiffness_ = 0.8, maxTorque_ = 0, stiffness_ = 1, temperature_ = 20;
   double current_ = 0;  ///< A, in the last step
-  mutable Surroundings surroundings_;
 };
 
 }  // namespace spark
