@@ -328,6 +328,13 @@ TEST_CASE("a modelled motor gets warm, drains its battery, and is weaker or disa
   p.step();
   CHECK(strength() == 0);
   CHECK(value(battery, "power") == 0);
+  Leaf& full = p.scene.create("Battery", "full");
+  p.call(full, "setPower", {1000.0});
+  p.call(m, "setBattery", {"/usr/scene/full"});
+  p.call(battery, "setPower", {0.0});
+  CHECK(getProperty(m, "disabled") == Value(false));
+  p.call(m, "setBattery", {"/usr/scene/battery"});  // counts at once
+  CHECK(getProperty(m, "disabled") == Value(true));
 }
 
 TEST_CASE("sensors and effectors of any plugin find motor and battery by their interfaces") {
