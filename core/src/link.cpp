@@ -10,7 +10,9 @@ namespace spark {
 namespace {
 using Search = AnyRoute::Search;
 
-std::string_view nameOf(const AnyRoute::Step& step) { return step.what.empty() ? step.id.name : step.what; }
+std::string_view nameOf(const AnyRoute::Step& step) {
+  return step.what.empty() ? std::string_view(step.id.name) : step.what;
+}
 
 std::string withArticle(std::string_view name) {
   const bool vowel = !name.empty() && std::string_view("AEIOUaeiou").find(name.front()) != std::string_view::npos;
