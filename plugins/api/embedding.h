@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// For programs that run simulations of their own: makes a kernel know the plugins, configs and scenes of a Spark
-/// folder. docs/embedding.md is a whole program.
+/// For programs that run simulations of their own: gives a kernel the plugins, configs and scenes of a Spark
+/// installation. docs/embedding.md is a whole program.
 
 #include <filesystem>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace spark {
 
-/// Where a Spark is, and what configs read of the program that runs them.
+/// Where a Spark is, and what configs read about the program that runs them.
 struct Installation {
   std::filesystem::path plugins;  ///< folder of the plugins' files
   std::filesystem::path share;    ///< folder with lua/ and scenes/
@@ -27,8 +27,8 @@ struct Installation {
 inline Installation installed() { return {.plugins = SPARK_PLUGIN_DIR, .share = SPARK_SHARE_DIR, .scenePaths = {}}; }
 #endif
 
-/// Makes `kernel` know the plugins, configs and scenes there: then kernel.lua().runConfig("boxes.lua") works.
-inline void use(Kernel& kernel, const Installation& from) {
+/// Gives `kernel` the plugins, configs and scenes of an installation: then kernel.lua().runConfig("boxes.lua") works.
+inline void useInstallation(Kernel& kernel, const Installation& from) {
   kernel.plugins().scan(from.plugins);
   kernel.lua().addFolder(from.share / "lua");
   List paths(from.scenePaths.begin(), from.scenePaths.end());

@@ -54,7 +54,7 @@ void put(Environment& env, EnvPolicy policy, const std::string& name, const Valu
 }  // namespace
 
 void ScriptItem::describe(Description<ScriptItem>& d) {
-  d.doc("Tells monitors what a script sets: item.score_left = 3 is the entry (score_left 3).");
+  d.doc("Sends monitors the entries that a script sets: item.score_left = 3 is (score_left 3).");
   d.implements<IMonitorItem>();
   d.implements<IStatus>();
   d.method("set", &ScriptItem::set)
@@ -67,7 +67,7 @@ void ScriptItem::describe(Description<ScriptItem>& d) {
       .doc("All entries at once: a table, or a list of {name, value}.");
   d.method("event", &ScriptItem::event)
       .parameters({"name", "values"})
-      .doc("Tells every monitor once, with the next frame: event(\"fell\", \"Red\", 3) is (fell Red 3).");
+      .doc("Sends every monitor an entry once, with the next frame: event(\"fell\", \"Red\", 3) is (fell Red 3).");
   d.method("script", &ScriptItem::script)
       .parameters({"file", "arguments"})
       .optional(1)

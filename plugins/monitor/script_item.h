@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a script says to monitors: a game in Lua has its score on the page.
+/// Monitor entries that a script sets: a game in Lua shows its score on the page.
 
 #include <map>
 #include <string>

@@ -226,8 +226,8 @@ class Lua {
   /// What `--set KEY=VALUE` gives: an option, `Namespace.Name` or `/path.property`. An override wins over what the
   /// config sets.
   void addOverride(std::string key, Value value);
-  /// Sets a global of configs before one runs: what the program says of itself, as `host` of house.lua. A list of pairs
-  /// whose keys are words is a table there ({{"limit", 3}} is {limit = 3}), at any depth.
+  /// Sets a global of configs before one runs, such as `host` of house.lua, which describes the program. A list of
+  /// pairs whose keys are words is a table there ({{"limit", 3}} is {limit = 3}), at any depth.
   void setGlobal(std::string_view name, const Value& value);
   /// Runs a config: a file name, looked up as said. Throws Error with the script's file:line. Afterwards all overrides
   /// must have met their target, else Error with the nearest names.
