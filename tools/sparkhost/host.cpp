@@ -17,15 +17,6 @@ using namespace spark;
 namespace fs = std::filesystem;
 
 namespace {
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text)
-    out += (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20)
-               ? fmt::format("\\{:03}", static_cast<unsigned char>(c))
-               : std::string(1, c);
-  return out + "\"";
-}
-
 /// A port's number; null where a house has no such port.
 void writePort(JsonWriter& json, const char* name, const Leaf& root, const char* path) {
   const Value v = valueAt(root, path, "port");
@@ -67,12 +58,9 @@ void Host::scanPlugins() {
 }
 
 void Host::tellScripts() {
-  std::string paths;
-  for (const std::string& p : options_.scenePaths) paths += quoted(p) + ", ";
-  const std::string share = fs::is_directory(share_) ? share_.string() : std::string();
-  kernel_.lua().run(
-      fmt::format("host = {{ share = {}, scenePaths = {{ {} }}, alone = {} }}", quoted(share), paths, options_.alone),
-      "sparkhost");
+  List scenePaths(options_.scenePaths.begin(), options_.scenePaths.end());
+  kernel_.lua().setGlobal("host", List{List{"share", fs::is_directory(share_) ? share_.string() : ""},
+                                       List{"scenePaths", std::move(scenePaths)}, List{"alone", options_.alone}});
 }
 
 void Host::build() {
