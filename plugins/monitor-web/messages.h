@@ -12,8 +12,6 @@ namespace spark::web {
 
 /// Of all messages. Bytes that are no UTF-8 become U+FFFD, numbers that are not finite 0.
 inline constexpr JsonStyle kWebJson{.ascii = true, .notFinite = "0"};
-/// Appends a JSON string.
-inline void putQuoted(std::string& out, std::string_view text) { JsonWriter(out, kWebJson).value(text); }
 /// Writes an element: lists as arrays, texts that are numbers as numbers.
 void writeElement(JsonWriter& json, const Element& element);
 

@@ -2,7 +2,6 @@
 
 #include "scene_capture.h"
 #include "spark/kernel.h"
-#include "web_server.h"
 
 namespace spark {
 
@@ -13,25 +12,12 @@ constexpr std::uint32_t kMostEvents = 1u << 14;  // tokens of events that wait
 void WebMonitor::describe(Description<WebMonitor>& d) {
   d.doc("Hands frames of the scene to the web server while browsers watch.");
   d.implements<IFrameTaker>();
-  d.property("server", &WebMonitor::server, &WebMonitor::setServer).doc("Path of the web server.");
-}
-
-void WebMonitor::setServer(std::string path) {
-  serverPath_ = std::move(path);
-  lookedAt_ = 0;
-}
-
-web::Exchange* WebMonitor::exchange() {
-  if (lookedAt_ != kernel().structureVersion()) {
-    auto* server = find<WebServer>(serverPath_);
-    exchange_ = server ? &server->joinedBy(*this) : nullptr;
-    lookedAt_ = kernel().structureVersion();
-  }
-  return exchange_;
+  d.link(&WebMonitor::server_, At<WebServer>());
 }
 
 void WebMonitor::event(const Element& event) {
-  if (!exchange() || !exchange_->watched.load(std::memory_order_relaxed) || events_.size() > kMostEvents) return;
+  const web::Exchange* exchange = this->exchange();
+  if (!exchange || !exchange->watched.load(std::memory_order_relaxed) || events_.size() > kMostEvents) return;
   events_.append(event);
   ++eventCount_;
 }
@@ -40,9 +26,10 @@ void WebMonitor::take(const NewestFrame& newest, IMonitorEncoder*, const Event& 
   newest_ = &newest;
   time_ = event.time;
   takenAt_ = kernel().structureVersion();
-  if (!exchange()) return;
+  const web::Exchange* exchange = this->exchange();
+  if (!exchange) return;
   eventTimes_.resize(eventCount_, event.time);
-  if (!exchange_->watched.load(std::memory_order_relaxed)) {
+  if (!exchange->watched.load(std::memory_order_relaxed)) {
     events_.clear();
     eventTimes_.clear();
     eventCount_ = 0;
@@ -51,13 +38,14 @@ void WebMonitor::take(const NewestFrame& newest, IMonitorEncoder*, const Event& 
 }
 
 void WebMonitor::takeAgain() {
-  if (!newest_ || !exchange_ || !exchange_->wanted.load(std::memory_order_relaxed)) return;
+  web::Exchange* exchange = this->exchange();
+  if (!newest_ || !exchange || !exchange->wanted.load(std::memory_order_relaxed)) return;
   if (takenAt_ != kernel().structureVersion() || newest_->frame.shape == 0) return;  // what it points to may be gone
-  web::Snapshot* snapshot = exchange_->wanted.exchange(nullptr, std::memory_order_acquire);
+  web::Snapshot* snapshot = exchange->wanted.exchange(nullptr, std::memory_order_acquire);
   if (!snapshot) return;
   fill(*newest_, time_, *snapshot);
-  exchange_->ready.store(snapshot, std::memory_order_release);
-  exchange_->wake();
+  exchange->ready.store(snapshot, std::memory_order_release);
+  exchange->wake();
 }
 
 void WebMonitor::fill(const NewestFrame& newest, double time, web::Snapshot& out) {

@@ -2,8 +2,9 @@
 /// \file
 /// The viewer inside the host that all browsers look through.
 
-#include "exchange.h"
+#include "api/monitor.h"
 #include "spark/describe.h"
+#include "web_server.h"
 
 namespace spark {
 
@@ -22,15 +23,11 @@ class WebMonitor : public Node, public IFrameTaker {
   void takeAgain();
 
  private:
-  const std::string& server() const { return serverPath_; }
-  void setServer(std::string path);
-  web::Exchange* exchange();
+  web::Exchange* exchange() const { return server_ ? &server_->exchange() : nullptr; }
   void fill(const NewestFrame& newest, double time, web::Snapshot& out);
 
-  std::string serverPath_ = "/sys/server/web";
-  web::Exchange* exchange_ = nullptr;
-  std::uint64_t lookedAt_ = 0;  ///< structure version when it was looked for
-  Predicates events_;           ///< since the last snapshot
+  Link<WebServer> server_;
+  Predicates events_;  ///< since the last snapshot
   std::vector<double> eventTimes_;
   std::size_t eventCount_ = 0;
   const NewestFrame* newest_ = nullptr;  ///< the monitor server's

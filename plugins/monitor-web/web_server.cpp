@@ -25,6 +25,7 @@ void WebServer::describe(Description<WebServer>& d) {
   d.doc(
       "Shows the match in browsers: serves the viewer, streams frames, answers questions, takes a referee's commands.");
   d.implements<IInputSource>();
+  d.link(&WebServer::monitor_, At<IMonitorServer>().child<WebMonitor>());
   d.property("address", &W::address_).doc("Where it listens; 0.0.0.0: for the whole network, unencrypted.");
   d.property("port", &W::port, &W::setPort)
       .range(0, 65535)
@@ -73,11 +74,6 @@ void WebServer::describe(Description<WebServer>& d) {
 void WebServer::mustNotListen(const char* what) const {
   if (service_)
     throw Error(fmt::format("{}.{}: it listens on {} already. Set it before listen().", path(), what, port()));
-}
-
-web::Exchange& WebServer::joinedBy(WebMonitor& monitor) {
-  monitor_ = &monitor;
-  return exchange_;
 }
 
 int WebServer::port() const { return service_ ? service_->port() : port_; }

@@ -25,6 +25,7 @@ class Service;
 class WebServer : public Node, public IInputSource {
   SPARK_CLASS(WebServer, Node)
  public:
+  static constexpr const char* kPath = "/sys/server/web";
   WebServer();
   ~WebServer() override;
   static void describe(Description<WebServer>& d);
@@ -35,8 +36,8 @@ class WebServer : public Node, public IInputSource {
   bool wait(double) override { return false; }
   bool canWait() const override { return false; }
 
-  /// The monitor hands frames over to what it gets, until one of the two goes.
-  web::Exchange& joinedBy(WebMonitor& monitor);
+  /// Where its monitor hands frames over.
+  web::Exchange& exchange() { return exchange_; }
 
  protected:
   void onUnlink() override;
@@ -64,7 +65,7 @@ class WebServer : public Node, public IInputSource {
   std::string token_;
 
   web::Exchange exchange_;
-  Ref<WebMonitor> monitor_;
+  Link<WebMonitor, true> monitor_;
   std::unique_ptr<web::Service> service_;
   std::unique_ptr<web::Desk> desk_;
   bool tried_ = false;
