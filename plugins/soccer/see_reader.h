@@ -4,8 +4,8 @@
 
 namespace spark::soccer {
 
-/// Reads `(See (B (pol d h v)) (P (team Red) (id 3) (head (pol d h v))) (L (pol d h v) (pol d h v)))` for those who
-/// show it. A base of both eyes.
+/// Reads `(See (B (pol d h v)) (P (team Red) (id 3) (head (pol d h v))) (L (pol d h v) (pol d h v)))` for
+/// viewers. A base of both vision perceptors.
 class SeeReader : public ISightReader {
  public:
   void read(const Element& see, Sightings& out) const override;
