@@ -3,7 +3,7 @@ if(NOT TARGET programs)
   add_custom_target(programs)
 endif()
 
-# spark_program(<target>...): programs that are installed, and find libspark beside them.
+# spark_program(<target>...): programs that are installed, and find the libraries of core/ beside them.
 function(spark_program)
   foreach(target ${ARGN})
     set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")

@@ -45,5 +45,8 @@ endif()
 
 # The generated headers: versions, and stamps of the public headers.
 include(SparkAbi)
-configure_file(${CMAKE_SOURCE_DIR}/core/abi.h.in ${CMAKE_BINARY_DIR}/generated/spark/abi.h)
-spark_stamp_headers(SPARK_HEADERS ${CMAKE_BINARY_DIR}/generated ${CMAKE_SOURCE_DIR}/core/include ${CMAKE_SOURCE_DIR}/plugins)
+set(SPARK_FLOORS base message kernel script)  # the libraries of core/
+configure_file(${CMAKE_SOURCE_DIR}/core/kernel/abi.h.in ${CMAKE_BINARY_DIR}/generated/spark/abi.h)
+set(SPARK_HEADER_FOLDERS ${SPARK_FLOORS})
+list(TRANSFORM SPARK_HEADER_FOLDERS REPLACE "(.+)" "${CMAKE_SOURCE_DIR}/core/\\1/include")
+spark_stamp_headers(SPARK_HEADERS ${CMAKE_BINARY_DIR}/generated ${SPARK_HEADER_FOLDERS} ${CMAKE_SOURCE_DIR}/plugins)

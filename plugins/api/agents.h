@@ -13,6 +13,10 @@
 
 namespace spark {
 
+/// Numbers of messages that parsers write in double precision, all others in single: a clock of single precision stands
+/// still for some cycles after 18 hours, and clients end at two messages of one time.
+inline constexpr DoubleRange kLateClocks{65536, 1e9};
+
 /// Bytes to predicates and back. Below game control, or below a port to speak another language there.
 class IParser {
  public:

@@ -9,6 +9,7 @@
 
 #include "spark/abi/api/embedding.h"
 #include "spark/kernel.h"
+#include "spark/script_server.h"
 
 namespace spark {
 
@@ -27,12 +28,12 @@ struct Installation {
 inline Installation installed() { return {.plugins = SPARK_PLUGIN_DIR, .share = SPARK_SHARE_DIR, .scenePaths = {}}; }
 #endif
 
-/// Gives `kernel` the plugins, configs and scenes of an installation: then kernel.lua().runConfig("boxes.lua") works.
+/// Gives `kernel` the plugins, configs and scenes of an installation: then scripts(kernel).runConfig("boxes.lua") works.
 inline void useInstallation(Kernel& kernel, const Installation& from) {
   kernel.plugins().scan(from.plugins);
-  kernel.lua().addFolder(from.share / "lua");
+  scripts(kernel).addFolder(from.share / "lua");
   List paths(from.scenePaths.begin(), from.scenePaths.end());
-  kernel.lua().setGlobal("host", List{List{"share", from.share.string()}, List{"scenePaths", std::move(paths)},
+  scripts(kernel).setGlobal("host", List{List{"share", from.share.string()}, List{"scenePaths", std::move(paths)},
                                       List{"alone", from.alone}});
 }
 

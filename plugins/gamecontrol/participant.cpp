@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gamecontrol/scene_effector.h"
+#include "spark/prefetch.h"
 #include "spark/running.h"
 
 namespace spark::gamecontrol {

@@ -9,6 +9,7 @@
 
 #include "spark/describe.h"
 #include "spark/kernel.h"
+#include "spark/script_server.h"
 
 namespace spark {
 
@@ -147,6 +148,6 @@ void ScriptItem::event(std::string name, std::vector<Value> values) {
   events_.push_back(List{name, values});
 }
 
-void ScriptItem::script(std::string file, Value arguments) { kernel().lua().attach(*this, file, arguments); }
+void ScriptItem::script(std::string file, Value arguments) { require<IScriptServer>().attach(*this, file, arguments); }
 
 }  // namespace spark

@@ -28,7 +28,7 @@ void writeText(std::string_view text, ByteWriter& out) {
 
 void writeNumber(double v, int decimals, ByteWriter& out) {
   if (!std::isfinite(decimals < 0 ? v : static_cast<float>(v))) return out.put("null");
-  if (decimals >= 0) return out.fixed(v, decimals);
+  if (decimals >= 0) return out.fixed(v, decimals, kLateClocks);
   char* to = out.room(kGeneralRoom);
   out.end(std::to_chars(to, to + kGeneralRoom, v).ptr);
 }

@@ -28,7 +28,9 @@ class SexpParser : public Leaf, public IParser {
     return readSexp(message, out,
                     {static_cast<std::uint32_t>(maxDepth_), static_cast<std::uint32_t>(maxTokens_), false});
   }
-  void write(const Predicates& predicates, std::string& out) override { writeSexp(predicates, decimals_, out); }
+  void write(const Predicates& predicates, std::string& out) override {
+    writeSexp(predicates, decimals_, out, kLateClocks);
+  }
 
  private:
   List parseText(std::string text) {

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 
 #include "ode_engine.h"
+#include "spark/prefetch.h"
 
 namespace spark {
 

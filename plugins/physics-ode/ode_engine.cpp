@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "spark/plugin.h"
+#include "spark/prefetch.h"
 
 namespace spark {
 

@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 
 #include "ode_engine.h"
+#include "spark/prefetch.h"
 
 namespace spark {
 

@@ -1,6 +1,7 @@
 #include "handlers.h"
 
 #include <algorithm>
+#include "spark/script_server.h"
 
 namespace spark {
 
@@ -56,7 +57,7 @@ void ScriptHandler::emit(const Event& physics) {
 }
 
 void ScriptHandler::setScript(std::string file) {
-  if (!file.empty()) kernel().lua().attach(*this, file);
+  if (!file.empty()) require<IScriptServer>().attach(*this, file);
   script_ = std::move(file);
 }
 

@@ -4,6 +4,7 @@
 
 #include "colliders.h"
 #include "contact_loop.h"
+#include "spark/prefetch.h"
 
 namespace spark {
 

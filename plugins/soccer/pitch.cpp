@@ -1,4 +1,5 @@
 #include "pitch.h"
+#include "spark/prefetch.h"
 
 #include <algorithm>
 #include <cmath>

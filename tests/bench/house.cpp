@@ -5,6 +5,7 @@
 #include "api/agents.h"
 #include "heap.h"
 #include "spark/error.h"
+#include "spark/script_server.h"
 #include "spark/state.h"
 
 namespace spark::bench {
@@ -59,7 +60,7 @@ House::~House() = default;
 
 void House::build() {
   const fs::path share = bin() / ".." / "share" / "spark";
-  Lua& lua = kernel_.lua();
+  ScriptServer& lua = scripts(kernel_);
   lua.addFolder(share / "lua");
   lua.run(fmt::format("host = {{ share = \"{}\", scenePaths = {{}} }}", fs::weakly_canonical(share).string()),
           "sparkbench");

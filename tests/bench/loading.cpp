@@ -11,6 +11,7 @@
 
 #include "api/agents.h"
 #include "spark/error.h"
+#include "spark/script_server.h"
 
 // A match is deterministic, so the n-th cycle of every repetition does the same work, and the least of its times is
 // what that work costs. A quiet cycle is one with as many robots, all asleep, in which the same eyes are open (they see
@@ -68,13 +69,13 @@ class Match {
     const auto share = std::filesystem::weakly_canonical(bin / ".." / "share" / "spark");
     kernel_.log().setLevel(Level::error);
     kernel_.plugins().scan(bin / ".." / "plugins");
-    kernel_.lua().addFolder(share / "lua");
-    kernel_.lua().run(fmt::format("host = {{ share = \"{}\", scenePaths = {{}} }}", share.string()), "bench");
+    scripts(kernel_).addFolder(share / "lua");
+    scripts(kernel_).run(fmt::format("host = {{ share = \"{}\", scenePaths = {{}} }}", share.string()), "bench");
     for (const char* port : {"agents", "monitors"})
-      kernel_.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
-    kernel_.lua().addOverride("webPort", 0);
-    kernel_.lua().addOverride("monitorLog", "/dev/null");
-    kernel_.lua().runConfig("soccer.lua");
+      scripts(kernel_).addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+    scripts(kernel_).addOverride("webPort", 0);
+    scripts(kernel_).addOverride("monitorLog", "/dev/null");
+    scripts(kernel_).runConfig("soccer.lua");
     simulation_ = &kernel_.root().require<Leaf>("/sys/server/simulation");
     setProperty(*simulation_, "rate", "max");
     kernel_.registerClass<Newcomer>();

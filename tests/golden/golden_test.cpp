@@ -14,6 +14,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "spark/script_server.h"
 #include "spark/state.h"
 #include "test_support.h"
 
@@ -53,7 +54,7 @@ std::uint64_t mathHash() {
 std::uint64_t worldHash(const std::string& config, const std::vector<std::pair<std::string, Value>>& settings,
                         int cycles) {
   test::House house;
-  Lua& lua = house.kernel.lua();
+  ScriptServer& lua = scripts(house.kernel);
   lua.addFolder(SPARK_SOURCES "/lua");
   lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = {}, alone = true }", "golden");
   for (const auto& [key, value] : settings) lua.addOverride(key, value);

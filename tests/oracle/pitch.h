@@ -10,6 +10,7 @@
 #include "api/agents.h"
 #include "api/physics.h"
 #include "shadow_solver.h"
+#include "spark/script_server.h"
 #include "spark/state.h"
 #include "test_support.h"
 
@@ -51,7 +52,7 @@ class Pitch : test::House {
 
   /// Robots stand at `places`, each seen from its own team, after this.
   explicit Pitch(const std::vector<Place>& places, const Settings& settings = {}) {
-    Lua& lua = kernel.lua();
+    ScriptServer& lua = scripts(kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
     lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = {} }", "pitch");
     std::map<std::string, Value> all{{"/sys/server/simulation.rate", "max"},

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "arena.h"
+#include "spark/script_server.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -115,7 +116,7 @@ TEST_CASE("A removed behaviour takes its agent along") {
 TEST_CASE("A behaviour written in Lua hears percepts and acts") {
   Arena a;
   Leaf& b = a.kernel.create("ScriptBehavior", "/usr/agent/lua");
-  a.kernel.lua().attachText(b, R"lua(
+  scripts(a.kernel).attachText(b, R"lua(
     on("start", function(self) self.actions = "(scene robot)" end)
     on("think", function(self, event)
       local time = event.data[1]          -- {"time", {"now", t}}

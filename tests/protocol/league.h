@@ -8,6 +8,7 @@
 
 #include "api/agents.h"
 #include "fake_scene.h"
+#include "spark/script_server.h"
 #include "spark/state.h"
 #include "test_support.h"
 
@@ -21,15 +22,15 @@ class League : public House {
   explicit League(const std::string& field = {}, const std::filesystem::path& scenes = {},
                   const std::vector<std::pair<std::string, Value>>& settings = {}) {
     const auto share = pluginFolder().parent_path() / "share" / "spark";
-    kernel.lua().addFolder(share / "lua");
+    scripts(kernel).addFolder(share / "lua");
     const std::string paths = scenes.empty() ? "" : "'" + scenes.string() + "'";
-    kernel.lua().run(fmt::format("host = {{ share = '{}', scenePaths = {{ {} }} }}", share.string(), paths), "test");
+    scripts(kernel).run(fmt::format("host = {{ share = '{}', scenePaths = {{ {} }} }}", share.string(), paths), "test");
     for (const char* port : {"agents", "monitors"})
-      kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
-    if (!field.empty()) kernel.lua().addOverride("scene", field);
-    for (const char* noise : {"Soccer.BeamNoiseXY", "Soccer.BeamNoiseAngle"}) kernel.lua().addOverride(noise, 0);
-    for (const auto& [key, value] : settings) kernel.lua().addOverride(key, value);
-    kernel.lua().runConfig("soccer.lua");
+      scripts(kernel).addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+    if (!field.empty()) scripts(kernel).addOverride("scene", field);
+    for (const char* noise : {"Soccer.BeamNoiseXY", "Soccer.BeamNoiseAngle"}) scripts(kernel).addOverride(noise, 0);
+    for (const auto& [key, value] : settings) scripts(kernel).addOverride(key, value);
+    scripts(kernel).runConfig("soccer.lua");
     setProperty(at("/sys/server/simulation"), "rate", "max");
   }
   Leaf& at(std::string_view path) { return kernel.root().require<Leaf>(path); }

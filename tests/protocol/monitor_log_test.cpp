@@ -5,6 +5,7 @@
 
 #include "league.h"
 #include "roboviz.h"
+#include "spark/script_server.h"
 
 // A match is recorded by one house and played by another: a monitor of the second sees what the first one logged.
 
@@ -27,10 +28,10 @@ struct TemporaryFile {
 struct Cinema : House {
   explicit Cinema(const std::filesystem::path& log) {
     const auto share = pluginFolder().parent_path() / "share" / "spark";
-    kernel.lua().addFolder(share / "lua");
-    kernel.lua().addOverride("file", log.string());
-    kernel.lua().addOverride("/sys/server/net/monitors.port", 0);
-    kernel.lua().runConfig("logplayer.lua");
+    scripts(kernel).addFolder(share / "lua");
+    scripts(kernel).addOverride("file", log.string());
+    scripts(kernel).addOverride("/sys/server/net/monitors.port", 0);
+    scripts(kernel).runConfig("logplayer.lua");
     setProperty(kernel.root().require<Leaf>("/sys/server/simulation"), "rate", "max");
     connection.emplace(kernel.root().require<Node>("/sys/server/net/monitors"), 1);
     kernel.root().require<IConnectionConsumer>("/sys/server/monitor").connected(*connection);
@@ -47,18 +48,18 @@ struct Cinema : House {
 /// A short match of spheres, logged.
 std::vector<std::string> record(const std::filesystem::path& log, const std::string& encoder = "SexpMonitor") {
   House house;
-  house.kernel.lua().addFolder(pluginFolder().parent_path() / "share" / "spark" / "lua");
-  house.kernel.lua().run(fmt::format("host = {{ share = '{}', scenePaths = {{}} }}",
+  scripts(house.kernel).addFolder(pluginFolder().parent_path() / "share" / "spark" / "lua");
+  scripts(house.kernel).run(fmt::format("host = {{ share = '{}', scenePaths = {{}} }}",
                                      (pluginFolder().parent_path() / "share" / "spark").string()),
                          "test");
   for (const char* port : {"agents", "monitors"})
-    house.kernel.lua().addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
-  house.kernel.lua().addOverride("team", "Red Blue");
-  house.kernel.lua().addOverride("players", 3);
-  house.kernel.lua().addOverride("monitor", encoder);
-  house.kernel.lua().addOverride("monitorLog", log.string());
-  house.kernel.lua().addOverride("/sys/server/simulation.rate", "max");
-  house.kernel.lua().runConfig("soccer-sphere.lua");
+    scripts(house.kernel).addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+  scripts(house.kernel).addOverride("team", "Red Blue");
+  scripts(house.kernel).addOverride("players", 3);
+  scripts(house.kernel).addOverride("monitor", encoder);
+  scripts(house.kernel).addOverride("monitorLog", log.string());
+  scripts(house.kernel).addOverride("/sys/server/simulation.rate", "max");
+  scripts(house.kernel).runConfig("soccer-sphere.lua");
   callMethod(house.kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{1002});
   std::ifstream in(log);
   std::vector<std::string> lines;

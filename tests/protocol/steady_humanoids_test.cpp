@@ -6,6 +6,7 @@
 #include "allocations.h"
 #include "api/agents.h"
 #include "test_support.h"
+#include "spark/script_server.h"
 
 // Two teams of humanoids in the house of lua/soccer.lua that move all their motors, and all that is sensed, encoded and
 // sent meanwhile. They come over connections as others do, but without sockets.
@@ -97,7 +98,7 @@ struct Match : House {
   explicit Match(int threads) {
     kernel.log().setLevel(Level::warning);
     kernel.registerClass<TestPlayers>();
-    Lua& lua = kernel.lua();
+    ScriptServer& lua = scripts(kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
     lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = {} }", "match");
     for (const char* port : {"agents", "monitors"}) lua.addOverride(fmt::format("/sys/server/net/{}.port", port), 0);

@@ -10,6 +10,7 @@
 #include "api/phases.h"
 #include "loopback_client.h"
 #include "monitor_view.h"
+#include "spark/script_server.h"
 #include "spark/state.h"
 #include "test_support.h"
 
@@ -44,7 +45,7 @@ class Stadium : House {
 
   /// `settings`: as --set gives them. Monitors get a message in every cycle, beams have no noise.
   explicit Stadium(const Settings& settings = {}) {
-    Lua& lua = kernel.lua();
+    ScriptServer& lua = scripts(kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
     lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = { '" SPARK_SOURCES "/tests/scenarios/scenes' } }",
             "stadium");

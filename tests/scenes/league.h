@@ -4,6 +4,7 @@
 
 #include "api/agents.h"
 #include "test_support.h"
+#include "spark/script_server.h"
 
 namespace spark::test {
 
@@ -13,7 +14,7 @@ struct League {
   Kernel& kernel = house.kernel;
 
   explicit League(const std::filesystem::path& scenes = {}, const std::string& variables = "") {
-    kernel.lua().addFolder(std::filesystem::path(SPARK_SOURCES) / "lua");
+    scripts(kernel).addFolder(std::filesystem::path(SPARK_SOURCES) / "lua");
     std::string text = "host = { share = [[" SPARK_SOURCES "]], scenePaths = {";
     if (!scenes.empty()) text += "[[" + scenes.string() + "]]";
     text += R"(} }
@@ -29,7 +30,7 @@ plugin "effectors"
 naoVariables()
 soccerVariables{)" +
             variables + "}";
-    kernel.lua().run(text, "league");
+    scripts(kernel).run(text, "league");
   }
   Node& scene() { return kernel.root().require<Node>("/usr/scene"); }
   Node& agent(const std::string& name = "AgentAspect1") { return scene().create<Node>("AgentAspect", name); }

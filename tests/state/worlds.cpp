@@ -2,25 +2,26 @@
 
 #include "api/monitor.h"
 #include "spark/error.h"
+#include "spark/script_server.h"
 
 namespace spark::test {
 
 void World::configure(const std::string& config, const Settings& settings) {
   prepare();
-  for (const auto& [key, value] : settings) kernel.lua().addOverride(key, value);
-  kernel.lua().runConfig(config);
+  for (const auto& [key, value] : settings) scripts(kernel).addOverride(key, value);
+  scripts(kernel).runConfig(config);
   finish();
 }
 
 void World::configureByText(const std::string& text) {
   prepare();
-  kernel.lua().run(text, "world");
+  scripts(kernel).run(text, "world");
   finish();
 }
 
 void World::prepare() {
-  kernel.lua().addFolder(SPARK_SOURCES "/lua");
-  kernel.lua().run("host = { share = '" SPARK_SOURCES "', scenePaths = { '" SPARK_SOURCES
+  scripts(kernel).addFolder(SPARK_SOURCES "/lua");
+  scripts(kernel).run("host = { share = '" SPARK_SOURCES "', scenePaths = { '" SPARK_SOURCES
                    "/tests/scenarios/scenes' }, alone = true }",
                    "host");
 }

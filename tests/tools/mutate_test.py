@@ -56,8 +56,8 @@ class Draw(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = Path(folder.name)
-        (self.root / "core/src").mkdir(parents=True)
-        self.file = "core/src/a.cpp"
+        (self.root / "core/kernel/src").mkdir(parents=True)
+        self.file = "core/kernel/src/a.cpp"
         self.write("".join(f"  x{i} = y + {i};\n" for i in range(20)))
 
     def write(self, text):
@@ -84,13 +84,13 @@ class Judge(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.tree = Path(folder.name)
-        (self.tree / "core/src").mkdir(parents=True)
-        self.file = self.tree / "core/src/a.cpp"
+        (self.tree / "core/kernel/src").mkdir(parents=True)
+        self.file = self.tree / "core/kernel/src/a.cpp"
         self.file.write_text("one < 1;\nok();\nlast();\n")
-        self.bench = mutate.Bench(["core/src"], tree=self.tree, build=self.tree / "build")
+        self.bench = mutate.Bench(["core/kernel/src"], tree=self.tree, build=self.tree / "build")
         tests = self.tree / "build/tests"
         tests.mkdir(parents=True)
-        for i, name in enumerate(mutate.NEAREST["core/src"][1]):
+        for i, name in enumerate(mutate.NEAREST["core/kernel/src"][1]):
             self.bench.seconds[name] = i + 1.0
             self.program(name, "exit 0")
         self.bench.build = lambda folder: "broken" not in self.file.read_text()
@@ -102,7 +102,7 @@ class Judge(unittest.TestCase):
 
     def judge(self, after):
         before = self.file.read_text()
-        verdict = self.bench.judge(mutate.Mutant("core/src/a.cpp", 1, "one < 1;", after))
+        verdict = self.bench.judge(mutate.Mutant("core/kernel/src/a.cpp", 1, "one < 1;", after))
         self.assertEqual(self.file.read_text(), before)
         return verdict
 
@@ -127,10 +127,10 @@ class Judge(unittest.TestCase):
 
     def test_what_does_not_compile_is_not_counted_and_another_is_drawn(self):
         texts = ["broken;", "one <= 1;", "one > 1;", "never reached;"]
-        drawn = [mutate.Mutant("core/src/a.cpp", 1, "one < 1;", t) for t in texts]
-        rows = mutate.judged(self.bench, drawn, 1, {("core/src/a.cpp", "one < 1;", "one <= 1;")})
+        drawn = [mutate.Mutant("core/kernel/src/a.cpp", 1, "one < 1;", t) for t in texts]
+        rows = mutate.judged(self.bench, drawn, 1, {("core/kernel/src/a.cpp", "one < 1;", "one <= 1;")})
         self.assertEqual([r["verdict"] for r in rows], ["broken", "equivalent", "survived"])
-        self.assertEqual(mutate.summary(rows), {"core/src": [0, 1], "all": [0, 1]})
+        self.assertEqual(mutate.summary(rows), {"core/kernel/src": [0, 1], "all": [0, 1]})
 
 
 class Lists(unittest.TestCase):

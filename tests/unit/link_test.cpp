@@ -60,20 +60,20 @@ class MoreLinked : public Linked {
   Link<Node> root;
 };
 
-struct Tree : Core {
-  Tree() {
+struct Forest : Core {
+  Forest() {
     kernel.log().setSink([this](Level, std::string_view line) { text.append(line).append("\n"); });
     kernel.registerClass<Linked>();
     kernel.registerClass<MoreLinked>();
   }
-  ~Tree() { kernel.log().setSink({}); }
+  ~Forest() { kernel.log().setSink({}); }
   Linked& linked(Node& parent) { return static_cast<Linked&>(parent.create("Linked", "linked")); }
   std::string text;
 };
 }  // namespace
 
 TEST_CASE("A link leads up, down, beside or along a path") {
-  Tree t;
+  Forest t;
   Thing& heavy = t.make("heavy");
   Thing& outer = t.make(heavy, "outer");
   Thing& before = t.make(outer, "before");
@@ -99,7 +99,7 @@ TEST_CASE("A link leads up, down, beside or along a path") {
 }
 
 TEST_CASE("A link is empty as soon as its target has left, and finds the next one") {
-  Tree t;
+  Forest t;
   Thing& outer = t.make("outer");
   Linked& l = t.linked(outer);
   Thing& a = t.make(l, "a");
@@ -113,7 +113,7 @@ TEST_CASE("A link is empty as soon as its target has left, and finds the next on
 }
 
 TEST_CASE("What leaves has no links to what has left already, and still those to what is above") {
-  Tree t;
+  Forest t;
   Thing& outer = t.make("outer");
   Linked& l = t.linked(outer);
   t.make(l, "a");
@@ -124,7 +124,7 @@ TEST_CASE("What leaves has no links to what has left already, and still those to
 }
 
 TEST_CASE("A link follows when its owner moves and when names change") {
-  Tree t;
+  Forest t;
   Thing &one = t.make("one"), &two = t.make("two");
   Linked& l = t.linked(one);
   CHECK(l.above.get() == &one);
@@ -136,7 +136,7 @@ TEST_CASE("A link follows when its owner moves and when names change") {
 }
 
 TEST_CASE("A link along a property's path goes by what it says now") {
-  Tree t;
+  Forest t;
   Linked& l = t.linked(t.make("outer"));
   CHECK_FALSE(l.named);
   setProperty(l, "path", "..");
@@ -146,7 +146,7 @@ TEST_CASE("A link along a property's path goes by what it says now") {
 }
 
 TEST_CASE("Links lead to all in tree order") {
-  Tree t;
+  Forest t;
   Linked& l = t.linked(t.make("outer"));
   CHECK(l.all.empty());
   Thing& a = t.make(l, "a");
@@ -162,7 +162,7 @@ TEST_CASE("Links lead to all in tree order") {
 }
 
 TEST_CASE("Links are there before their owner is linked, and go by the tree as it is then") {
-  Tree t;
+  Forest t;
   auto made = t.kernel.classOf("Linked").create();
   auto& l = static_cast<Linked&>(*made);
   CHECK_FALSE(l.child);
@@ -175,7 +175,7 @@ TEST_CASE("Links are there before their owner is linked, and go by the tree as i
 }
 
 TEST_CASE("A class has the links of its bases") {
-  Tree t;
+  Forest t;
   Thing& outer = t.make("outer");
   auto& l = static_cast<MoreLinked&>(outer.create("MoreLinked"));
   CHECK(l.above.get() == &outer);
@@ -184,7 +184,7 @@ TEST_CASE("A class has the links of its bases") {
 }
 
 TEST_CASE("A missing target is said in words") {
-  Tree t;
+  Forest t;
   Linked& l = t.linked(*t.kernel.root().find<Node>("/usr"));
   CHECK_THAT(t.text, Catch::Contains("/usr/linked: expected a Thing above it, found none. It hangs in the air."));
   const auto problem = [](const auto& link) -> std::string {
@@ -202,7 +202,7 @@ TEST_CASE("A missing target is said in words") {
 }
 
 TEST_CASE("A link that is no member of a node is looked up from the one that it names") {
-  Tree t;
+  Forest t;
   const FreeLink<Thing> link(t.kernel.root(), At<Thing>("/usr/t/at"));
   CHECK_FALSE(link);
   Thing& at = t.make("at");

@@ -1,5 +1,6 @@
 // Config files: lookup, include, options, and what is set from outside.
 #include "lua_fixture.h"
+#include "spark/script_server.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -38,40 +39,40 @@ class Misspelt : public Leaf {
 TEST_CASE("a config is found in the working folder first, then in the added folders in order") {
   LuaHouse h;
   for (const char* sub : {"work", "second"}) std::filesystem::create_directory(h.folder / sub);
-  h.kernel.lua().addFolder(h.folder / "second");
+  scripts(h.kernel).addFolder(h.folder / "second");
   h.write("second/c.lua", "found = 'second'");
-  h.kernel.lua().runConfig("c.lua");
+  scripts(h.kernel).runConfig("c.lua");
   CHECK(h.run("return found") == Value("second"));
   h.write("c.lua", "found = 'first'");
-  h.kernel.lua().runConfig("c.lua");
+  scripts(h.kernel).runConfig("c.lua");
   CHECK(h.run("return found") == Value("first"));
   const WorkingFolder there(h.folder / "work");
   h.write("work/c.lua", "found = 'work'");
-  h.kernel.lua().runConfig("c.lua");
+  scripts(h.kernel).runConfig("c.lua");
   CHECK(h.run("return found") == Value("work"));
-  h.kernel.lua().runConfig((h.folder / "second/c.lua").string());
+  scripts(h.kernel).runConfig((h.folder / "second/c.lua").string());
   CHECK(h.run("return found") == Value("second"));
 }
 
 TEST_CASE("a program sets globals of configs, tables of words and sequences among them") {
   LuaHouse h;
-  h.kernel.lua().setGlobal("host", List{List{"share", "/usr/share"}, List{"paths", List{"a", "b"}},
+  scripts(h.kernel).setGlobal("host", List{List{"share", "/usr/share"}, List{"paths", List{"a", "b"}},
                                         List{"empty", List{}}, List{"alone", true}});
   h.write("c.lua", "found = host.share .. #host.paths .. host.paths[2] .. #host.empty .. tostring(host.alone)");
-  h.kernel.lua().runConfig("c.lua");
+  scripts(h.kernel).runConfig("c.lua");
   CHECK(h.run("return found") == Value("/usr/share2b0true"));
-  h.kernel.lua().setGlobal("host", {});
+  scripts(h.kernel).setGlobal("host", {});
   CHECK(h.run("return host").isNil());
 }
 
 TEST_CASE("a config that is not there says where it was sought and what is near") {
   LuaHouse h;
   h.write("soccer.lua", "");
-  const std::string text = LuaHouse::errorOf([&] { h.kernel.lua().runConfig("socer.lua"); });
+  const std::string text = LuaHouse::errorOf([&] { scripts(h.kernel).runConfig("socer.lua"); });
   CHECK_THAT(text, Contains("there is no config 'socer.lua'. Looked in: " + std::filesystem::current_path().string() +
                             ", " + h.folder.string() + ". Did you mean 'soccer.lua'?"));
   std::filesystem::create_directory(h.folder / "folder");
-  CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().runConfig("folder"); }), Contains("is a folder"));
+  CHECK_THAT(LuaHouse::errorOf([&] { scripts(h.kernel).runConfig("folder"); }), Contains("is a folder"));
 }
 
 TEST_CASE("include runs a file in the environment of who includes it and gives its results") {
@@ -88,7 +89,7 @@ TEST_CASE("include also looks beside the config that runs") {
   std::filesystem::create_directory(h.folder / "mine");
   h.write("mine/a.lua", "include 'b.lua'");
   h.write("mine/b.lua", "b = 1");
-  h.kernel.lua().runConfig((h.folder / "mine/a.lua").string());
+  scripts(h.kernel).runConfig((h.folder / "mine/a.lua").string());
   CHECK(h.run("return b") == Value(1));
 }
 
@@ -100,10 +101,10 @@ TEST_CASE("what is included is found beside the file that includes it, and never
   h.write("mine/parts/b.lua", "b = 'beside'");
   h.write("work/b.lua", "b = 'taken over'");
   const WorkingFolder there(h.folder / "work");
-  h.kernel.lua().runConfig((h.folder / "mine/a.lua").string());
+  scripts(h.kernel).runConfig((h.folder / "mine/a.lua").string());
   CHECK(h.run("return b") == Value("beside"));
   std::filesystem::remove(h.folder / "mine/parts/b.lua");
-  const std::string text = LuaHouse::errorOf([&] { h.kernel.lua().runConfig((h.folder / "mine/a.lua").string()); });
+  const std::string text = LuaHouse::errorOf([&] { scripts(h.kernel).runConfig((h.folder / "mine/a.lua").string()); });
   CHECK_THAT(text, Contains("there is no script 'b.lua'. Looked in: ") && !Contains((h.folder / "work").string()));
   CHECK(h.run("return b") == Value("beside"));
 }
@@ -114,10 +115,10 @@ TEST_CASE("a script that is attached may lie in the working folder, when it is n
   const WorkingFolder there(h.folder / "work");
   h.write("work/s.lua", "self.label = 'work'");
   Thing& a = h.thing("/usr/a");
-  h.kernel.lua().attach(a, "s.lua");
+  scripts(h.kernel).attach(a, "s.lua");
   CHECK(a.label == "work");
   h.write("s.lua", "self.label = 'folder'");
-  h.kernel.lua().attach(a, "s.lua");
+  scripts(h.kernel).attach(a, "s.lua");
   CHECK(a.label == "folder");
 }
 
@@ -193,7 +194,7 @@ TEST_CASE("plugin names the nearest when there is none of that name") {
 
 TEST_CASE("an option gives its default or what was set, and is listed") {
   LuaHouse h;
-  h.kernel.lua().addOverride("agents", Value(22));
+  scripts(h.kernel).addOverride("agents", Value(22));
   CHECK(h.configFailure("a = option{name = 'agents', default = 11, doc = 'Players a side.'}\n"
                         "b = option{name = 'parser', default = 'SexpParser', choices = {'SexpParser', 'JsonParser'}}\n"
                         "c = option{name = 'free'}") == "");
@@ -201,14 +202,14 @@ TEST_CASE("an option gives its default or what was set, and is listed") {
   const std::vector<List> expected{{"agents", 11, "Players a side.", 22},
                                    {"parser", "SexpParser", "", "SexpParser"},
                                    {"free", Value(), "", Value()}};
-  CHECK(h.kernel.lua().options() == expected);
+  CHECK(scripts(h.kernel).options() == expected);
 }
 
 TEST_CASE("an option's value takes the type of its default") {
   LuaHouse h;
-  h.kernel.lua().addOverride("step", Value(1));
-  h.kernel.lua().addOverride("team", Value(42));
-  h.kernel.lua().addOverride("whole", Value(3.0));
+  scripts(h.kernel).addOverride("step", Value(1));
+  scripts(h.kernel).addOverride("team", Value(42));
+  scripts(h.kernel).addOverride("whole", Value(3.0));
   CHECK(h.configFailure("v = {option{name = 'step', default = 0.02}, option{name = 'team', default = 'A'}, option{name "
                         "= 'whole', default = 1}}") == "");
   CHECK(h.run("return v") == Value(List{1.0, "42", 3}));
@@ -217,9 +218,9 @@ TEST_CASE("an option's value takes the type of its default") {
 TEST_CASE("what a person types for an option or a property is text until its type is known") {
   LuaHouse h;
   for (const char* key : {"team", "number", "list", "any", "/usr/a.label", "/usr/a.mass", "/usr/a.anything"})
-    h.kernel.lua().addOverride(key, Value::typed("007"));
-  h.kernel.lua().addOverride("list", Value::typed("{1, x}"));
-  h.kernel.lua().addOverride("token", Value::typed("0123456789012345678"));
+    scripts(h.kernel).addOverride(key, Value::typed("007"));
+  scripts(h.kernel).addOverride("list", Value::typed("{1, x}"));
+  scripts(h.kernel).addOverride("token", Value::typed("0123456789012345678"));
   CHECK(h.configFailure("new('Thing', '/usr/a')\n"
                         "v = {option{name = 'team', default = 'A'}, option{name = 'token', default = ''}, option{name "
                         "= 'number', default = 1},\n"
@@ -230,11 +231,11 @@ TEST_CASE("what a person types for an option or a property is text until its typ
 
 TEST_CASE("an option refuses another type and what is not among its choices") {
   LuaHouse h;
-  h.kernel.lua().addOverride("agents", Value("many"));
+  scripts(h.kernel).addOverride("agents", Value("many"));
   CHECK_THAT(h.configFailure("option{name = 'agents', default = 11}"),
              Equals("config.lua:1: cannot set option 'agents'\n  because: expected integer (its default is 11), found "
                     "string \"many\""));
-  h.kernel.lua().addOverride("parser", Value("XmlParser"));
+  scripts(h.kernel).addOverride("parser", Value("XmlParser"));
   CHECK_THAT(h.configFailure("option{name = 'parser', default = 'a', choices = {'a', 'b'}}"),
              Contains("cannot set option 'parser'\n  because: expected one of \"a\", \"b\", found \"XmlParser\""));
   CHECK_THAT(h.configFailure("option{name = 'x', default = 'c', choices = {'a', 'b'}}"),
@@ -254,7 +255,7 @@ TEST_CASE("option checks how it is used") {
 
 TEST_CASE("what is set from outside wins over the config, by assignment or by setter") {
   LuaHouse h;
-  h.kernel.lua().addOverride("/usr/a.mass", Value(9));
+  scripts(h.kernel).addOverride("/usr/a.mass", Value(9));
   CHECK(h.configFailure("a = new('Thing', '/usr/a')\natOnce = a.mass\na.mass = 3\na:setMass(4)\na.count = 5") == "");
   CHECK(h.run("return {atOnce, a.mass, a.count}") == Value(List{9.0, 9.0, 5}));
   h.run("a.mass = 6");  // after the config, scripts are free
@@ -264,15 +265,15 @@ TEST_CASE("what is set from outside wins over the config, by assignment or by se
 TEST_CASE("an ignored assignment is said at debug level") {
   LuaHouse h;
   h.kernel.log().setLevel(Level::debug);
-  h.kernel.lua().addOverride("/usr/a.mass", Value(9));
+  scripts(h.kernel).addOverride("/usr/a.mass", Value(9));
   CHECK(h.configFailure("new('Thing', '/usr/a').mass = 3") == "");
   CHECK_THAT(h.text, Contains("/usr/a.mass stays 9: it was set from outside the config"));
 }
 
 TEST_CASE("what is set from outside also meets nodes made by node:new, made again, or made by others") {
   LuaHouse h;
-  h.kernel.lua().addOverride("/usr/a.mass", Value(9));
-  h.kernel.lua().addOverride("/usr/scene/ball.mass", Value(5));
+  scripts(h.kernel).addOverride("/usr/a.mass", Value(9));
+  scripts(h.kernel).addOverride("/usr/scene/ball.mass", Value(5));
   CHECK(h.configFailure("get('/usr'):new('Thing', 'a') delete('/usr/a') again = get('/usr'):new('Thing', 'a').mass") ==
         "unknown setting '/usr/scene/ball.mass': there is no /usr/scene/ball.");
   CHECK(h.run("return again") == Value(9.0));
@@ -283,8 +284,8 @@ TEST_CASE("what is set from outside also meets nodes made by node:new, made agai
 
 TEST_CASE("Namespace.Name is set as soon as the namespace exists") {
   LuaHouse h;
-  h.kernel.lua().addOverride("Field.mass", Value(12));
-  h.kernel.lua().addOverride("Soccer.FieldLength", Value(30));
+  scripts(h.kernel).addOverride("Field.mass", Value(12));
+  scripts(h.kernel).addOverride("Soccer.FieldLength", Value(30));
   CHECK(h.configFailure("f = new('Thing', '/sys/variables/Field')\natOnce = {f.mass}\n"
                         "s = new('Group', '/sys/variables/Soccer')\natOnce[2] = s.FieldLength\n"
                         "f.mass = 1\nSoccer.FieldLength = 20\ns:set('FieldLength', 21)") == "");
@@ -307,17 +308,17 @@ TEST_CASE("settings that meet nothing are errors with the nearest names") {
        "unknown setting '/usr/ball.mas': /usr/ball (class Thing) has no property 'mas'. Did you mean 'mass'?"}};
   for (const auto& [key, expected] : cases) {
     LuaHouse h;
-    h.kernel.lua().addOverride(key, Value(1));
+    scripts(h.kernel).addOverride(key, Value(1));
     CHECK_THAT(h.configFailure(config), Contains(expected));
   }
 }
 
 TEST_CASE("a setting with a wrong value names the property and what was expected") {
   LuaHouse h;
-  h.kernel.lua().addOverride("/usr/a.mass", Value(-1));
+  scripts(h.kernel).addOverride("/usr/a.mass", Value(-1));
   CHECK_THAT(h.configFailure("new('Thing', '/usr/a')"),
              Equals("config.lua:1: cannot set /usr/a.mass\n  because: expected 0.0 to inf kg, found -1"));
-  CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().addOverride("/usr/a", Value(1)); }),
+  CHECK_THAT(LuaHouse::errorOf([&] { scripts(h.kernel).addOverride("/usr/a", Value(1)); }),
              Contains("expected /path.property"));
 }
 

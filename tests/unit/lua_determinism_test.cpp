@@ -2,6 +2,7 @@
 #include <set>
 
 #include "lua_fixture.h"
+#include "spark/script_server.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -57,7 +58,7 @@ TEST_CASE("random numbers come from the kernel's seed, one stream for each scrip
   const auto draw = [](std::uint64_t seed) {
     LuaHouse h;
     h.kernel.setSeed(seed);
-    h.kernel.lua().attachText(h.thing("/usr/a"), "self.anything = {math.random(), math.random(6), math.random(0)}",
+    scripts(h.kernel).attachText(h.thing("/usr/a"), "self.anything = {math.random(), math.random(6), math.random(0)}",
                               "script", true);
     return Value(
         List{h.run("return {math.random(), math.random(1, 1000000)}"), h.run("return get('/usr/a').anything")});
@@ -71,7 +72,7 @@ TEST_CASE("random numbers come from the kernel's seed, one stream for each scrip
 TEST_CASE("another script's draws do not change a script's own") {
   const auto draw = [](bool other) {
     LuaHouse h;
-    if (other) h.kernel.lua().attachText(h.thing("/usr/other"), "math.random()", "script", true);
+    if (other) scripts(h.kernel).attachText(h.thing("/usr/other"), "math.random()", "script", true);
     return h.run("return math.random()");
   };
   CHECK(draw(false) == draw(true));
@@ -93,7 +94,7 @@ TEST_CASE("math.random keeps its ranges and randomseed repeats") {
 TEST_CASE("a script whose node has gone has no stream") {
   LuaHouse h;
   Thing& a = h.thing("/usr/a");
-  CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().attachText(a, "self:delete() math.random()", "script", true); }),
+  CHECK_THAT(LuaHouse::errorOf([&] { scripts(h.kernel).attachText(a, "self:delete() math.random()", "script", true); }),
              Contains("math.random has no stream: the script's node is gone"));
 }
 
@@ -126,7 +127,7 @@ TEST_CASE("metatables cannot watch the garbage collector") {
 TEST_CASE("a script cannot reach what other scripts share") {
   LuaHouse h;
   CHECK(h.run("return {getmetatable(''), getmetatable(get('/'))}") == Value(List{"string", "node"}));
-  h.kernel.lua().attachText(h.thing("/usr/a"), "string.rep = nil pairs = nil math.floor = nil", "script", true);
+  scripts(h.kernel).attachText(h.thing("/usr/a"), "string.rep = nil pairs = nil math.floor = nil", "script", true);
   CHECK(h.run("return {('x'):rep(2), string.rep('y', 2), math.floor(1.5), type(pairs)}") ==
         Value(List{"xx", "yy", 1, "function"}));
 }

@@ -1,5 +1,6 @@
 // Events, attached scripts, and what happens when nodes die.
 #include "lua_fixture.h"
+#include "spark/script_server.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -30,7 +31,7 @@ TEST_CASE("a handler gets its node and the event") {
 TEST_CASE("on without a node listens at the root in configs and at self in attached scripts") {
   LuaHouse h;
   h.run("on('tick', function(self) where = self.path end)");
-  h.kernel.lua().attachText(h.thing("/usr/a"), "on('tock', function(node, e) node.label = e.name self.count = 9 end)",
+  scripts(h.kernel).attachText(h.thing("/usr/a"), "on('tock', function(node, e) node.label = e.name self.count = 9 end)",
                             "script", true);
   h.emit("tick");
   h.emit("tock");
@@ -73,7 +74,7 @@ TEST_CASE("subscriptions go with their node") {
 TEST_CASE("what an attached script subscribes elsewhere goes with its own node") {
   LuaHouse h;
   Thing& b = h.thing("/usr/b");
-  h.kernel.lua().attachText(h.thing("/usr/a"), "get('/usr/b'):on('tick', function(b) b.count = b.count + 1 end)",
+  scripts(h.kernel).attachText(h.thing("/usr/a"), "get('/usr/b'):on('tick', function(b) b.count = b.count + 1 end)",
                             "script", true);
   h.emit("tick");
   CHECK(b.count == 1);
@@ -89,7 +90,7 @@ TEST_CASE("a script file attaches to a node and runs at once in an environment o
   Thing& a = h.thing("/usr/a");
   Thing& b = h.thing("/usr/b");
   h.write("mark.lua", "counter = (counter or 0) + 1; self.count = counter; string.mine = true");
-  h.kernel.lua().attach(a, "mark.lua");
+  scripts(h.kernel).attach(a, "mark.lua");
   h.run("get('/usr/b'):attach('mark.lua')");
   CHECK(a.count == 1);
   CHECK(b.count == 1);
@@ -102,7 +103,7 @@ TEST_CASE("get in an attached script starts at its node") {
   LuaHouse h;
   Thing& a = h.thing("/usr/a");
   h.thing("/usr/b").label = "neighbour";
-  h.kernel.lua().attachText(a, "self.label = get('../b').label", "script", true);
+  scripts(h.kernel).attachText(a, "self.label = get('../b').label", "script", true);
   CHECK(a.label == "neighbour");
 }
 
@@ -110,7 +111,7 @@ TEST_CASE("a script that fails while it is attached leaves no handlers") {
   LuaHouse h;
   Thing& a = h.thing("/usr/a");
   const std::string text = LuaHouse::errorOf(
-      [&] { h.kernel.lua().attachText(a, "on('tick', function() self.count = 1 end)\nerror('no')", "script", true); });
+      [&] { scripts(h.kernel).attachText(a, "on('tick', function() self.count = 1 end)\nerror('no')", "script", true); });
   CHECK_THAT(text, Equals("the script attached to /usr/a failed: script:2: no"));
   h.emit("tick");
   CHECK(a.count == 0);
@@ -212,7 +213,7 @@ TEST_CASE("neither pcall nor a coroutine saves an endless loop") {
 TEST_CASE("an attached script that never ends is stopped") {
   LuaHouse h;
   Thing& a = h.thing("/usr/a");
-  CHECK_THAT(LuaHouse::errorOf([&] { h.kernel.lua().attachText(a, "while true do end", "script", true); }),
+  CHECK_THAT(LuaHouse::errorOf([&] { scripts(h.kernel).attachText(a, "while true do end", "script", true); }),
              Contains("the script attached to /usr/a failed: script:1: stopped after"));
 }
 
@@ -255,10 +256,10 @@ TEST_CASE("scripts end before the nodes: what nodes emit when they go reaches no
     kernel.registerClass<Farewell>();
     kernel.create("Farewell", "/usr/first");
     kernel.create("Farewell", "/usr/second");
-    kernel.lua().run("held = get('/usr/second') on('gone', function() log.info('ran') end)", "test");
-    kernel.lua().attachText(*kernel.root().find("/usr/second"), "self:on('gone', function() error('no') end)", "script",
+    scripts(kernel).run("held = get('/usr/second') on('gone', function() log.info('ran') end)", "test");
+    scripts(kernel).attachText(*kernel.root().find("/usr/second"), "self:on('gone', function() error('no') end)", "script",
                             false);
-    kernel.lua().run("delete('/usr/first')", "test");
+    scripts(kernel).run("delete('/usr/first')", "test");
     CHECK_THAT(text, Contains("ran") && Contains("script:1: no"));
     text.clear();
   }

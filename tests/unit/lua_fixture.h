@@ -9,6 +9,7 @@
 #include <map>
 
 #include "spark/error.h"
+#include "spark/script_server.h"
 #include "temporary_folder.h"
 #include "test_support.h"
 
@@ -66,10 +67,10 @@ struct LuaHouse : House {
   LuaHouse() : House(false) {
     kernel.registerClass<Thing>();
     kernel.registerClass<Group>();
-    kernel.lua().addFolder(folder);
+    scripts(kernel).addFolder(folder);
   }
   void write(const std::string& name, const std::string& text) { home.write(name, text); }
-  Value run(std::string_view text) { return kernel.lua().run(text, "test"); }
+  Value run(std::string_view text) { return scripts(kernel).run(text, "test"); }
   /// The text of the error that running `text` raises; "" when there is none.
   std::string failure(std::string_view text) {
     return errorOf([&] { run(text); });
@@ -77,7 +78,7 @@ struct LuaHouse : House {
   /// As failure, for a config file that holds `text`.
   std::string configFailure(const std::string& text) {
     write("config.lua", text);
-    return errorOf([&] { kernel.lua().runConfig("config.lua"); });
+    return errorOf([&] { scripts(kernel).runConfig("config.lua"); });
   }
   template <class F>
   static std::string errorOf(F f) {

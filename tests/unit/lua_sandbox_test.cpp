@@ -1,5 +1,6 @@
 // Untrusted scripts: what they have, what they have not, and their limits.
 #include "lua_fixture.h"
+#include "spark/script_server.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -11,7 +12,7 @@ namespace {
 std::string sandbox(LuaHouse& h, std::string_view text) {
   Leaf* a = h.kernel.root().find("/usr/a");
   Thing& node = a ? *a->as<Thing>() : h.thing("/usr/a");
-  return LuaHouse::errorOf([&] { h.kernel.lua().attachText(node, text, "guest", false); });
+  return LuaHouse::errorOf([&] { scripts(h.kernel).attachText(node, text, "guest", false); });
 }
 }  // namespace
 
@@ -124,7 +125,7 @@ TEST_CASE("untrusted scripts do not share anything with each other") {
   LuaHouse h;
   Thing& b = h.thing("/usr/b");
   CHECK(sandbox(h, "mine = 1 string.rep = nil") == "");
-  h.kernel.lua().attachText(b, "self.label = type(mine) .. type(string.rep)", "other", false);
+  scripts(h.kernel).attachText(b, "self.label = type(mine) .. type(string.rep)", "other", false);
   CHECK(b.label == "nilfunction");
 }
 

@@ -1,5 +1,6 @@
 // Nodes and values as a script sees them.
 #include "lua_fixture.h"
+#include "spark/script_server.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -292,11 +293,11 @@ TEST_CASE("an attached script gets arguments") {
   }
   SECTION("from C++, as values") {
     Thing& a = house.kernel.root().require<Thing>("/usr/a");
-    house.kernel.lua().attach(a, "rule.lua", List{List{"limit", 4}, List{"who", "me"}});
+    scripts(house.kernel).attach(a, "rule.lua", List{List{"limit", 4}, List{"who", "me"}});
     CHECK(a.count == 4);
     CHECK(a.label == "menil");
     house.write("list.lua", "local args = ...\nself.count = #args  self.anything = args");
-    house.kernel.lua().attach(a, "list.lua", List{1, 2, List{3}});
+    scripts(house.kernel).attach(a, "list.lua", List{1, 2, List{3}});
     CHECK(a.count == 3);
     CHECK(a.anything == Value(List{1, 2, List{3}}));
   }

@@ -7,6 +7,7 @@
 
 #include "spark/error.h"
 #include "spark/event.h"
+#include "spark/script_server.h"
 #include "spark/state.h"
 #include "temporary_folder.h"
 #include "test_support.h"
@@ -429,7 +430,7 @@ TEST_CASE("While handlers run a plugin is not unloaded; what asked for it then g
 TEST_CASE("Scripts unload and load plugins, at once in a config and between two cycles in a handler") {
   House house(false);
   house.kernel.plugins().scan(fixtures("fixture-plugins"));
-  Lua& lua = house.kernel.lua();
+  ScriptServer& lua = scripts(house.kernel);
   lua.run("plugin 'fixture-base'  unload 'fixture-base'", "test");
   CHECK(house.kernel.findClass("FixtureBase") == nullptr);
   lua.run("plugin 'fixture-base'  new('FixtureBase', '/usr/a')", "test");

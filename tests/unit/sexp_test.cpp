@@ -246,23 +246,25 @@ TEST_CASE("Messages are written as the installed base expects them") {
 }
 
 TEST_CASE("Fixed numbers look as C prints them") {
-  const auto text = [](double v, int decimals, bool single = true) {
+  const auto text = [](double v, int decimals, DoubleRange doubles = {}) {
     std::string out;
-    appendFixed(out, v, decimals, single);
+    appendFixed(out, v, decimals, doubles);
     return out;
   };
   CHECK(text(-0.0, 2) == "-0.00");
   CHECK(text(-0.004, 2) == "-0.00");
   CHECK(text(1e6, 2) == "1000000.00");
   CHECK(text(0.1, 9) == "0.100000001");
-  CHECK(text(0.1, 9, false) == "0.100000000");
+  CHECK(text(0.1, 9, kAllDouble) == "0.100000000");
   CHECK(text(std::nan(""), 2) == "nan");
   CHECK(text(-std::nan(""), 2) == "nan");
-  CHECK(text(300000.02, 2) == "300000.02");  // not 300000.03, as of 300000.04
-  CHECK(text(300000.04, 2) == "300000.04");
+  CHECK(text(300000.02, 2) == "300000.03");  // single precision
+  CHECK(text(300000.02, 2, {300000, 300001}) == "300000.02");
+  CHECK(text(299999.98, 2, {300000, 300001}) == "299999.97");
+  CHECK(text(300001.04, 2, {300000, 300001.04}) == "300001.03");
   CHECK(text(-std::numeric_limits<double>::infinity(), 2) == "-inf");
   CHECK(text(1e308, 2) == "inf");
-  CHECK(text(1e308, 1000, false).size() == 309 + 1 + 60);
+  CHECK(text(1e308, 1000, kAllDouble).size() == 309 + 1 + 60);
 }
 
 TEST_CASE("Predicates copy, cut and reuse their memory") {

@@ -22,7 +22,7 @@ class Language {
   virtual void write(const Predicates& predicates, std::string& out) = 0;
 };
 
-/// The language of a server whose parser is of class `parser`. "SexpParser" needs nothing but libspark; any other class
+/// The language of a server whose parser is of class `parser`. "SexpParser" needs nothing but core/; any other class
 /// comes from a plugin in one of the folders and needs the methods parse and write. Throws spark::Error when there is
 /// no such class.
 std::unique_ptr<Language> makeLanguage(const std::string& parser,

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "batch.h"
-#include "spark/running.h"
+#include "crash_report.h"
 
 // Exit codes: 0 every run has a row; 1 some rows are errors, or the line is lost; 2 the command line, the config or the
 // table is wrong, nothing was run; 3 it was interrupted. stdout carries one JSON line at the end, everything else goes
@@ -74,7 +74,7 @@ int lead(const Options& options, Cluster& cluster) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  spark::installLastWords("sparkbatch");
+  sparkhost::installCrashReport("sparkbatch");
   std::unique_ptr<Cluster> cluster;
   try {
     cluster = Cluster::join();

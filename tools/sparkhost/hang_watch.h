@@ -10,7 +10,7 @@
 
 #include "spark/describe.h"
 #include "spark/kernel.h"
-#include "spark/running.h"
+#include "watchdog.h"
 
 namespace sparkhost {
 
@@ -41,7 +41,7 @@ class HangWatch : public spark::Node {
   void tellGoesOn();
 
   std::atomic<double> after_ = 2;
-  std::optional<spark::Watchdog> dog_;
+  std::optional<Watchdog> dog_;
   std::thread thread_;
   std::mutex mutex_;
   std::condition_variable wake_;

@@ -7,6 +7,7 @@
 
 #include "spark/error.h"
 #include "spark/json_writer.h"
+#include "spark/script_server.h"
 #include "spark/state.h"
 #include "status_text.h"
 #include "tree_values.h"
@@ -59,15 +60,15 @@ void Host::scanPlugins() {
 
 void Host::tellScripts() {
   List scenePaths(options_.scenePaths.begin(), options_.scenePaths.end());
-  kernel_.lua().setGlobal("host", List{List{"share", fs::is_directory(share_) ? share_.string() : ""},
-                                       List{"scenePaths", std::move(scenePaths)}, List{"alone", options_.alone}});
+  scripts(kernel_).setGlobal("host", List{List{"share", fs::is_directory(share_) ? share_.string() : ""},
+                                          List{"scenePaths", std::move(scenePaths)}, List{"alone", options_.alone}});
 }
 
 void Host::build() {
-  kernel_.lua().addFolder(share_ / "lua");
+  scripts(kernel_).addFolder(share_ / "lua");
   tellScripts();
-  for (const auto& [key, value] : options_.overrides) kernel_.lua().addOverride(key, value);
-  kernel_.lua().runConfig(options_.config);
+  for (const auto& [key, value] : options_.overrides) scripts(kernel_).addOverride(key, value);
+  scripts(kernel_).runConfig(options_.config);
   for (const Options::Switch& s : options_.switches) {
     Leaf* node = kernel_.root().find(s.path);
     if (!node)

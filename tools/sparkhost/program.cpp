@@ -8,11 +8,11 @@
 #include <cstdio>
 #include <cstring>
 
+#include "crash_report.h"
 #include "describe.h"
 #include "hang_watch.h"
 #include "host.h"
 #include "spark/error.h"
-#include "spark/running.h"
 #include "status_line.h"
 
 // Exit codes: 0 as asked; 1 the run itself failed, or its result could not be written; 2 the command line, the config,
@@ -87,7 +87,7 @@ bool runHouse(sparkhost::Host& host, const std::string& firstLine, bool histogra
 }  // namespace
 
 int sparkhost::runProgram(int argc, char** argv) {
-  spark::installLastWords("sparkhost");
+  installCrashReport("sparkhost");
   Options options;
   if (const auto code = readOptions(argc, argv, options)) return *code;
   std::optional<Host> host;

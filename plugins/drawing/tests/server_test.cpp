@@ -7,6 +7,7 @@
 #include "api/phases.h"
 #include "packets.h"
 #include "test_support.h"
+#include "spark/script_server.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -168,7 +169,7 @@ TEST_CASE("an agent's effector shows its shapes at once, in place of those befor
 TEST_CASE("a config's drawing() opens a port only when it is named, and a house of a batch just knows the effector") {
   const auto furnish = [](House& house, const char* host,
                           std::initializer_list<std::pair<const char*, Value>> settings) {
-    Lua& lua = house.kernel.lua();
+    ScriptServer& lua = scripts(house.kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
     for (const auto& [name, value] : settings) lua.addOverride(name, value);
     lua.run(std::string("host = { share = '', scenePaths = {}") + host + " } include 'house.lua' drawing()", "test");

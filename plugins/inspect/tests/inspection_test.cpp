@@ -3,6 +3,7 @@
 #include "../../soccer/tests/match_house.h"
 #include "api/control.h"
 #include "api/phases.h"
+#include "spark/script_server.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -14,7 +15,7 @@ namespace {
 /// The house of lua/soccer.lua with a humanoid in it, without a network.
 struct League : House {
   explicit League(bool noise = false) : inspection(kernel) {
-    Lua& lua = kernel.lua();
+    ScriptServer& lua = scripts(kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
     lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = {}, alone = true }", "league");
     lua.addOverride("/sys/server/simulation.rate", "max");

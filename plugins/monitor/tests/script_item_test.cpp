@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "api/status.h"
+#include "spark/script_server.h"
 #include "spark/state.h"
 #include "stage.h"
 #include "temporary_folder.h"
@@ -15,10 +16,10 @@ namespace {
 /// A stage with a ScriptItem in place of the test item.
 struct ScriptStage : Stage {
   ScriptStage() {
-    kernel.lua().run("delete '/sys/server/monitor/item' item = new('ScriptItem', '/sys/server/monitor/game')", "test");
+    scripts(kernel).run("delete '/sys/server/monitor/item' item = new('ScriptItem', '/sys/server/monitor/game')", "test");
   }
   void act() { kernel.events().channel("act").emit({"", 0, 0.02, 1, nullptr}); }
-  void run(const std::string& text) { kernel.lua().run(text, "test"); }
+  void run(const std::string& text) { scripts(kernel).run(text, "test"); }
   /// The next message to a monitor.
   std::string next(FakeConnection& connection) {
     for (Transform* part : parts) part->setLocalPos({0, 0, 0});

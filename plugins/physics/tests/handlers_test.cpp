@@ -1,4 +1,5 @@
 #include "physics_house.h"
+#include "spark/script_server.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -266,7 +267,7 @@ TEST_CASE("a ScriptHandler tells of every point until it is removed") {
 
 TEST_CASE("Lua reacts to collisions") {
   Ground g;
-  g.kernel.lua().attachText(g.collider().create("ScriptHandler"), R"(
+  scripts(g.kernel).attachText(g.collider().create("ScriptHandler"), R"(
     self:on("collide", function(self, event)
       local other, position, depth = table.unpack(event.data)
       print(self.path, "met", other, depth > 0)

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "api/physics.h"
+#include "spark/script_server.h"
 #include "spark/state.h"
 #include "test_support.h"
 
@@ -18,9 +19,9 @@ struct Boxes {
 
   Boxes() {
     const auto share = test::binFolder().parent_path() / "share" / "spark";
-    kernel.lua().addFolder(share / "lua");
-    kernel.lua().run("host = { share = [[" + share.string() + "]], scenePaths = {} }", "test");
-    kernel.lua().runConfig("boxes.lua");
+    scripts(kernel).addFolder(share / "lua");
+    scripts(kernel).run("host = { share = [[" + share.string() + "]], scenePaths = {} }", "test");
+    scripts(kernel).runConfig("boxes.lua");
     scene = kernel.root().find<Node>("/usr/scene");
     scene->collect(bodies);
     setProperty(simulation(), "rate", "max");

@@ -5,6 +5,7 @@
 #include "api/files.h"
 #include "api/phases.h"
 #include "api/status.h"
+#include "spark/script_server.h"
 #include "spark/state.h"
 #include "test_support.h"
 
@@ -290,7 +291,7 @@ TEST_CASE("lights and cameras hold their values") {
 TEST_CASE("a game in Lua reports by a group of variables, which are state") {
   Fixture f;
   f.kernel.create("StatusVariables", "/sys/variables/Status");
-  f.kernel.lua().run("Status.round = 3 Status.teams = {'East', 'West'} Status.playMode = 'Push' Status.score = {2, 1}",
+  scripts(f.kernel).run("Status.round = 3 Status.teams = {'East', 'West'} Status.playMode = 'Push' Status.score = {2, 1}",
                      "test");
   const auto reported = [&] {
     std::string text;
@@ -303,7 +304,7 @@ TEST_CASE("a game in Lua reports by a group of variables, which are state") {
   StateWriter saved(true);
   saveTree(group, saved);
   const std::uint64_t hash = stateHash(group);
-  f.kernel.lua().run("Status.score = {5, 5} Status.round = nil Status.wind = 0.5", "test");
+  scripts(f.kernel).run("Status.score = {5, 5} Status.round = nil Status.wind = 0.5", "test");
   CHECK(reported() == "playMode \"Push\"; score {5, 5}; teams {\"East\", \"West\"}; wind 0.5; ");
   CHECK(stateHash(group) != hash);
   StateReader read(saved.bytes());

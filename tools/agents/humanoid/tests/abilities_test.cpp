@@ -6,6 +6,7 @@
 #include "api/physics.h"
 #include "humanoid/nao.h"
 #include "test_support.h"
+#include "spark/script_server.h"
 
 // What one player of each type can do, alone on the field of lua/soccer.lua. Physics by the articulated solver, no
 // clock, no sockets: the same in every run.
@@ -19,7 +20,7 @@ class Solo : public test::House {
  public:
   explicit Solo(int type) {
     kernel.log().setLevel(Level::warning);
-    Lua& lua = kernel.lua();
+    ScriptServer& lua = scripts(kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
     lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = {}, alone = true }", "abilities");
     for (const char* port : {"agents", "monitors"}) lua.addOverride(fmt::format("/sys/server/net/{}.port", port), 0);

@@ -1,0 +1,233 @@
+#include "spark/class_object.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+#include "spark/error.h"
+#include "spark/kernel.h"
+#include "spark/running.h"
+#include "tree.h"
+
+namespace spark {
+
+namespace {
+std::string capitalised(std::string_view prefix, std::string_view name) {
+  std::string out(prefix);
+  out += name;
+  if (char& c = out[prefix.size()]; c >= 'a' && c <= 'z') c = static_cast<char>(c - 32);
+  return out;
+}
+}  // namespace
+
+ClassObject::ClassObject(Kernel& kernel, ClassDescription description, Plugin* plugin)
+    : kernel_(kernel), description_(std::move(description)), plugin_(plugin) {
+  setName(description_.name);
+  // A property x gives setX and getX, unless the class has methods of those names.
+  const auto has = [&](const std::string& n) {
+    return std::any_of(description_.methods.begin(), description_.methods.end(),
+                       [&](const Method& m) { return m.name == n; });
+  };
+  std::vector<Method> generated;
+  for (const Property& p : description_.properties) {
+    const int scalars = p.scalars;
+    if (!p.readOnly && !has(capitalised("set", p.name))) {
+      Method m;
+      m.name = capitalised("set", p.name);
+      m.doc = "Sets " + p.name + ". " + p.doc;
+      m.parameters = {p.name + ": " + p.type + (p.unit.empty() ? "" : " [" + p.unit + "]")};
+      m.minScalars = scalars < 0 ? 0 : scalars;
+      m.maxScalars = scalars;
+      m.call = [p](Leaf& l, Args& a) -> Value {
+        writeProperty(p, l, a);
+        return {};
+      };
+      generated.push_back(std::move(m));
+    }
+    if (!has(capitalised("get", p.name))) {
+      Method m;
+      m.name = capitalised("get", p.name);
+      m.doc = "Gives " + p.name + ". " + p.doc;
+      m.returns = p.type;
+      m.call = [get = p.get](Leaf& l, Args&) { return get(l); };
+      generated.push_back(std::move(m));
+    }
+  }
+  for (Method& m : generated) description_.methods.push_back(std::move(m));
+  fillCasts();  // class objects are queried before they are resolved
+}
+
+ClassObject::~ClassObject() { detail::Tree::disown(*this); }
+
+void ClassObject::describe(Description<ClassObject>& d) {
+  d.doc("A class: makes objects and knows what they can do.");
+  d.property("doc", &ClassObject::doc).doc("What the class is.");
+  d.property("base", &ClassObject::baseName).doc("Name of the base class.");
+  d.property("living", &ClassObject::livingCount).doc("Number of objects of exactly this class.");
+  d.property("providedBy", &ClassObject::pluginName).doc("The plugin that registered it; empty for the kernel's own.");
+}
+
+std::int64_t ClassObject::livingCount() const { return static_cast<std::int64_t>(living_); }
+std::string ClassObject::pluginName() const { return plugin_ ? plugin_->name() : std::string(); }
+
+ClassObject* ClassObject::base() {
+  if (base_ || description_.base.empty()) return base_;
+  base_ = kernel_.findClass(description_.base);
+  if (!base_) {
+    Plugin* provider = kernel_.plugins().providerOf(description_.base);
+    throw Error("class " + name() + (plugin_ ? " of plugin " + plugin_->name() : "") + " needs its base class " +
+                description_.base + ", which is not registered. " +
+                (provider ? "Plugin '" + provider->name() + "' provides it: add plugin \"" + provider->name() +
+                                "\" to the config."
+                          : "No scanned plugin provides it."));
+  }
+  return base_;
+}
+
+void ClassObject::resolve() {
+  if (resolved_) return;
+  if (ClassObject* b = base()) {
+    hooks_ = b->hooks();
+    links_ = b->links();
+  }
+  for (const Hook& h : description_.hooks) hooks_.push_back(&h);
+  for (const LinkDescription& l : description_.links) links_.push_back(&l);
+  for (const LinkDescription* l : links_) sites_.push_back({&kernel_.structureVersion(), &l->route});
+  for (const Property* p : properties())
+    if (p->state) stateProperties_.push_back(p);
+  fillCasts();
+  resolved_ = true;
+}
+
+/// Runs the constructor, which knows neither class nor place.
+std::unique_ptr<Leaf> ClassObject::construct() const {
+  const NowRunning now("the constructor", this);
+  const auto failed = [this] {
+    return "the constructor of class " + name() + (plugin_ ? " of plugin " + plugin_->name() : "") + " failed";
+  };
+  try {
+    return description_.make();
+  } catch (const std::exception& e) {
+    throw Error(failed(), e);
+  } catch (...) {
+    throw Error(failed() + ": it threw something that is no std::exception");
+  }
+}
+
+std::unique_ptr<Leaf> ClassObject::create() {
+  if (isAbstract()) throw Error("class " + name() + " is a base for others and cannot be made itself");
+  resolve();
+  std::unique_ptr<Leaf> leaf = construct();
+  kernel_.tree().adopt(*leaf, *this);
+  ++living_;
+  bindLinks(*leaf);
+  return leaf;
+}
+
+void ClassObject::bindLinks(Leaf& leaf) {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    detail::LinkBase& link = links_[i]->member(leaf);
+    sites_[i].offset = reinterpret_cast<const char*>(&link) - reinterpret_cast<const char*>(&leaf);
+    link.bind(sites_[i]);
+  }
+}
+
+std::vector<Found<void>> LinkDescription::targets(const Leaf& owner) const {
+  std::vector<Found<void>> out;
+  if (all)
+    route.findAll(owner, out);
+  else if (const Found<void> found = route.find(owner))
+    out.push_back(found);
+  return out;
+}
+
+void ClassObject::warnOfMissing(const Leaf& leaf) const {
+  for (const LinkDescription* l : links_)
+    if (!l->lacks.empty() && !l->route.find(leaf))
+      kernel_.log().warning("{}: expected {}, found none. {}", leaf.path(), l->route.text(), l->lacks);
+}
+
+bool ClassObject::isA(std::string_view className) {
+  for (ClassObject* c = this; c; c = c->base())
+    if (c->name() == className) return true;
+  return false;
+}
+
+void ClassObject::fillCasts() {
+  std::vector<Cast> all;
+  for (const ClassObject* c = this; c; c = c->base_)
+    for (const auto& i : c->description_.interfaces)
+      if (std::none_of(all.begin(), all.end(), [&](const Cast& known) { return known.id == i.id.id; }))
+        all.push_back({i.id.id, i.cast});
+  castMask_ = std::bit_ceil(4 * all.size() + 1) - 1;
+  casts_.assign(castMask_ + 1, Cast{});
+  for (const Cast& cast : all) {
+    std::size_t i = cast.id & castMask_;
+    while (casts_[i].id) i = (i + 1) & castMask_;
+    casts_[i] = cast;
+  }
+}
+
+const Property* ClassObject::property(std::string_view name) {
+  for (ClassObject* c = this; c; c = c->base())
+    for (const Property& p : c->description_.properties)
+      if (p.name == name) return &p;
+  return nullptr;
+}
+
+const Method* ClassObject::method(std::string_view name) {
+  for (ClassObject* c = this; c; c = c->base())
+    for (const Method& m : c->description_.methods)
+      if (m.name == name) return m.call ? &m : method(m.returns.substr(1));
+  return nullptr;
+}
+
+std::vector<const Property*> ClassObject::properties() {
+  std::vector<const Property*> out;
+  if (ClassObject* b = base()) out = b->properties();
+  for (const Property& p : description_.properties) {
+    const auto same = std::find_if(out.begin(), out.end(), [&](const Property* q) { return q->name == p.name; });
+    if (same == out.end())
+      out.push_back(&p);
+    else
+      *same = &p;
+  }
+  return out;
+}
+
+std::vector<const Method*> ClassObject::methods() {
+  std::vector<const Method*> out;
+  if (ClassObject* b = base()) out = b->methods();
+  for (const Method& m : description_.methods) {
+    const auto same = std::find_if(out.begin(), out.end(), [&](const Method* q) { return q->name == m.name; });
+    if (same == out.end())
+      out.push_back(&m);
+    else
+      *same = &m;
+  }
+  return out;
+}
+
+const std::vector<const Hook*>& ClassObject::hooks() {
+  resolve();
+  return hooks_;
+}
+
+const std::vector<const LinkDescription*>& ClassObject::links() {
+  resolve();
+  return links_;
+}
+
+const std::vector<const Property*>& ClassObject::stateProperties() {
+  resolve();
+  return stateProperties_;
+}
+
+Value ClassObject::defaultOf(const Property& property) {
+  if (isAbstract()) return {};
+  const auto fresh = create();
+  return property.get(*fresh);
+}
+
+}  // namespace spark

@@ -1,0 +1,142 @@
+#include "spark/kernel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+
+#include "class_registry.h"
+#include "spark/error.h"
+#include "spark/random.h"
+#include "tree.h"
+
+namespace spark {
+
+struct Kernel::Parts {
+  explicit Parts(Kernel& kernel) : events(kernel), tree(kernel), classes(kernel) {}
+  Log log;
+  Jobs jobs;
+  Events events;
+  detail::Tree tree;
+  detail::ClassRegistry classes;
+  std::unique_ptr<Loader> loader;
+  std::uint64_t seed = 1;
+  std::map<std::uint64_t, std::uint32_t> streamOrdinals;
+  std::mutex streamMutex;
+  std::atomic<bool> stop{false}, ending{false};
+  std::atomic<std::int64_t> faults{0};
+};
+
+Kernel::Kernel() : parts_(std::make_unique<Parts>(*this)) {
+  registerClass<Leaf>();
+  registerClass<Node>();
+  registerClass<ClassObject>();
+  registerClass<Plugin>();
+  parts_->tree.plant(classOf("Node").create());
+  root().create<Node>("Node", "sys").create("Node", "server");
+  root().create("Node", "usr");
+  parts_->classes.hang();
+  parts_->loader = std::make_unique<Loader>(*this);
+}
+
+// Order of the end: the tree but for classes and plugins, then class objects, then the plugins' files.
+Kernel::~Kernel() {
+  parts_->ending = true;
+  parts_->tree.fell();
+  parts_->loader.reset();
+  // Class objects count their products; the nodes that remain go before their classes.
+  const std::vector<std::unique_ptr<Leaf>> classes = parts_->classes.takeAll();
+  parts_->tree.uproot();
+}
+
+Node& Kernel::root() { return *parts_->tree.root(); }
+Events& Kernel::events() { return parts_->events; }
+Log& Kernel::log() { return parts_->log; }
+Loader& Kernel::plugins() { return *parts_->loader; }
+Jobs& Kernel::jobs() { return parts_->jobs; }
+detail::Tree& Kernel::tree() { return parts_->tree; }
+detail::ClassRegistry& Kernel::registry() { return parts_->classes; }
+
+ClassObject& Kernel::addClass(ClassDescription description) {
+  return parts_->classes.add(std::move(description), nullptr);
+}
+
+ClassObject* Kernel::findClass(std::string_view name) const { return parts_->classes.find(name); }
+
+ClassObject& Kernel::classOf(std::string_view name) {
+  if (ClassObject* c = findClass(name)) return *c;
+  if (parts_->loader)
+    if (Plugin* p = parts_->loader->providerOf(name))
+      throw Error("there is no class '" + std::string(name) + "' yet: plugin '" + p->name() +
+                  "' provides it. Add plugin \"" + p->name() + "\" to the config.");
+  std::vector<std::string> names;
+  for (const auto& [n, c] : parts_->classes.all()) names.push_back(n);
+  for (const auto& p : parts_->tree.plugins->children())
+    for (const std::string& n : static_cast<Plugin&>(*p).classes()) names.push_back(n);
+  throw Error("there is no class '" + std::string(name) + "'." + didYouMean(name, names));
+}
+
+std::vector<ClassObject*> Kernel::classes() const {
+  std::vector<ClassObject*> out;
+  for (const auto& [n, c] : parts_->classes.all()) out.push_back(c);
+  return out;
+}
+
+Leaf& Kernel::create(std::string_view className, std::string_view path) {
+  if (path.empty() || path.front() != '/')
+    throw Error("expected an absolute path for a new " + std::string(className) + ", found '" + std::string(path) +
+                "'");
+  ClassObject& c = classOf(className);
+  Node* at = parts_->tree.root();
+  const std::size_t last = path.rfind('/');
+  std::string_view above = path.substr(0, last);
+  while (!above.empty()) {
+    above.remove_prefix(1);
+    const std::size_t n = std::min(above.find('/'), above.size());
+    const std::string_view part = above.substr(0, n);
+    above.remove_prefix(n);
+    if (part.empty()) continue;
+    Leaf* next = at->child(part);
+    if (!next) next = &at->create("Node", part);
+    if (!next->asNode())
+      throw Error("cannot make " + std::string(path) + ": " + next->path() + " cannot have children");
+    at = next->asNode();
+  }
+  const std::string_view name = path.substr(last + 1);
+  if (name.empty()) throw Error("expected a name at the end of '" + std::string(path) + "'");
+  if (at->child(name))
+    throw Error("cannot make " + std::string(path) + ": it exists already, as " +
+                at->child(name)->classObject()->name());
+  auto leaf = c.create();
+  leaf->setName(std::string(name));
+  return at->add(std::move(leaf));
+}
+
+const std::uint64_t& Kernel::structureVersion() const { return parts_->tree.version(); }
+void Kernel::updateOrder() { parts_->tree.updateOrder(); }
+std::uint64_t Kernel::lastId() const { return parts_->tree.lastId(); }
+
+void Kernel::markChanged(Leaf& leaf) {
+  if (leaf.isLinked()) parts_->tree.markChanged(leaf.parent());
+}
+
+void Kernel::setSeed(std::uint64_t seed) { parts_->seed = seed; }
+std::uint64_t Kernel::seed() const { return parts_->seed; }
+
+std::uint64_t Kernel::streamSeed(const Leaf& owner, std::string_view purpose) {
+  static_assert(sizeof(std::size_t) == 8);
+  const std::string key =
+      owner.path() + "\n" + (owner.classObject() ? owner.classObject()->name() : "") + "\n" + std::string(purpose);
+  const std::uint64_t h = hashBytes(key);
+  const std::lock_guard lock(parts_->streamMutex);
+  const std::uint32_t ordinal = parts_->streamOrdinals[h]++;
+  return hashBytes(key, parts_->seed ^ (static_cast<std::uint64_t>(ordinal) << 32));
+}
+
+void Kernel::requestStop() { parts_->stop.store(true); }
+bool Kernel::stopRequested() const { return parts_->stop.load(); }
+bool Kernel::isEnding() const { return parts_->ending.load(); }
+void Kernel::countFault() { parts_->faults.fetch_add(1, std::memory_order_relaxed); }
+std::int64_t Kernel::faults() const { return parts_->faults.load(std::memory_order_relaxed); }
+
+}  // namespace spark

@@ -1,0 +1,337 @@
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "spark/predicates.h"
+
+namespace spark {
+
+namespace {
+
+/// What a byte may be, by its value.
+enum Class : std::uint8_t { kBlank = 1, kAtom = 2, kPlain = 4 };
+constexpr auto kClasses = [] {
+  std::array<std::uint8_t, 256> out{};
+  for (const unsigned char c : {' ', '\t', '\r', '\n'}) out[c] = kBlank;
+  for (unsigned c = 0; c < out.size(); ++c)
+    if ((c >= 0x2A && c <= 0x7E) || c == '!' || (c >= 0x23 && c <= 0x26) || c > 0x7F)
+      out[c] = c == '\\' ? kAtom : kAtom | kPlain;
+  return out;
+}();
+bool is(Class what, char c) { return kClasses[static_cast<unsigned char>(c)] & what; }
+bool isEscapable(char c) { return c == '"' || c == '\'' || c == '(' || c == ')' || c == '\\'; }
+
+/// A list that lacks its ')', and the line that says so.
+struct Unclosed {
+  std::uint32_t line = 0, column = 0, siblingLine = 0;
+};
+
+/// Reads the indentation of a text in which some list is not closed: the first line that begins with '(' no further
+/// right than the list that is open there must have been meant as its sibling. Nothing where people do not indent.
+class Indentation {
+ public:
+  explicit Indentation(std::string_view bytes) : bytes_(bytes) {}
+
+  std::optional<Unclosed> read() {
+    for (at_ = 0; at_ < bytes_.size() && !flat_; ++at_) {
+      const char c = bytes_[at_];
+      if (c == '\n') {
+        ++line_;
+        lineStart_ = at_ + 1;
+        fresh_ = true;
+        continue;
+      }
+      if (c == ';')
+        skipTo('\n');
+      else if (c == '"')
+        skipTo('"');
+      else if (c == '(')
+        open();
+      else if (c == ')')
+        close();
+      fresh_ = fresh_ && is(kBlank, c);
+    }
+    return flat_ ? std::nullopt : found_;
+  }
+
+ private:
+  struct List {
+    std::uint32_t line, column;
+    bool first;  ///< begins its line, and says something there
+    bool flat;   ///< has lines that begin beside it
+  };
+  std::uint32_t column() const { return static_cast<std::uint32_t>(at_ - lineStart_) + 1; }
+  /// To the byte, or in front of a line's end.
+  void skipTo(char end) {
+    while (at_ + 1 < bytes_.size() && (bytes_[at_ + 1] != end || (end == '"' && bytes_[at_] == '\\'))) {
+      ++at_;
+      if (bytes_[at_] == '\n') ++line_, lineStart_ = at_ + 1;
+    }
+    if (end == '"') ++at_;
+  }
+  void open() {
+    if (fresh_)
+      for (std::size_t i = lists_.size(); i-- > 0;) {
+        List& outer = lists_[i];
+        if (!outer.first) continue;
+        if (outer.column >= column()) {
+          outer.flat = true;
+          if (!found_) found_ = Unclosed{outer.line, outer.column, line_};
+        }
+        break;
+      }
+    const std::size_t next = bytes_.find_first_not_of(" \t\r", at_ + 1);
+    lists_.push_back({line_, column(), fresh_ && next != std::string_view::npos && bytes_[next] != '\n', false});
+  }
+  void close() {
+    if (lists_.empty()) return;
+    flat_ = fresh_ && lists_.back().flat && lists_.back().column == column();
+    lists_.pop_back();
+  }
+
+  std::string_view bytes_;
+  std::size_t at_ = 0, lineStart_ = 0;
+  std::uint32_t line_ = 1;
+  bool fresh_ = true;  ///< nothing but blanks on this line so far
+  bool flat_ = false;  ///< lists and what is in them begin in the same column, and it is meant so
+  std::vector<List> lists_;
+  std::optional<Unclosed> found_;
+};
+
+std::optional<Unclosed> findUnclosed(std::string_view bytes) { return Indentation(bytes).read(); }
+
+/// One pass over the bytes with an explicit depth: no recursion, whatever the nesting.
+class Reader {
+ public:
+  Reader(std::string_view bytes, Predicates& out, const ReadLimits& limits)
+      : bytes_(bytes), out_(out), limits_(limits) {}
+
+  ReadResult read(std::size_t maxExpressions) {
+    std::size_t complete = 0;
+    const std::uint32_t firstToken = out_.size();
+    std::uint32_t expressionStart = firstToken;
+    Place expressionPlace;
+    while (!failed_) {
+      if (depth_ == 0 && maxExpressions && complete == maxExpressions) break;
+      skipBlanksAndComments();
+      if (at_ >= bytes_.size()) break;
+      const char c = bytes_[at_];
+      const Place place = here();
+      if (depth_ == 0) expressionStart = out_.size(), expressionPlace = place;
+      if (c != ')' && out_.size() - firstToken >= limits_.maxTokens) {
+        fail("more than " + std::to_string(limits_.maxTokens) + " tokens", place);
+        break;
+      }
+      if (c == '(') {
+        if (depth_ == limits_.maxDepth) {
+          fail("lists nested deeper than " + std::to_string(limits_.maxDepth), place);
+          break;
+        }
+        out_.open();
+        mark(place);
+        ++depth_;
+        ++at_;
+      } else if (c == ')') {
+        if (depth_ == 0) {
+          fail("')' without '('", place);
+          break;
+        }
+        out_.close();
+        --depth_;
+        ++at_;
+      } else {
+        atom();
+        if (failed_) break;
+        mark(place);
+      }
+      if (depth_ == 0) {
+        ++complete;
+        expressionStart = out_.size();
+      }
+    }
+    if (!failed_ && depth_ > 0) failUnclosed(expressionPlace);
+    if (failed_) out_.truncate(expressionStart);
+    result_.consumed = at_;
+    return std::move(result_);
+  }
+
+ private:
+  struct Place {
+    std::uint32_t line = 1, column = 1;
+  };
+  Place here() const { return {line_, static_cast<std::uint32_t>(at_ - lineStart_) + 1}; }
+  void fail(std::string message, Place place) {
+    failed_ = true;
+    result_.message = std::move(message);
+    result_.line = place.line;
+    result_.column = place.column;
+  }
+  /// Files that people wrote: their lines say where the list should have ended.
+  void failUnclosed(Place place) {
+    const std::optional<Unclosed> guilty = limits_.places ? findUnclosed(bytes_) : std::nullopt;
+    if (!guilty) return fail("the list is not closed", place);
+    fail("the list is not closed: line " + std::to_string(guilty->siblingLine) + " begins beside it",
+         {guilty->line, guilty->column});
+  }
+  void mark(Place place) {
+    if (limits_.places) out_.mark(place.line, place.column);
+  }
+  /// Over a byte that may end a line.
+  void step() {
+    if (bytes_[at_++] == '\n') ++line_, lineStart_ = at_;
+  }
+  void skipBlanksAndComments() {
+    while (at_ < bytes_.size()) {
+      if (is(kBlank, bytes_[at_])) {
+        step();
+      } else if (bytes_[at_] == ';') {
+        while (at_ < bytes_.size() && bytes_[at_] != '\n') ++at_;
+      } else {
+        return;
+      }
+    }
+  }
+  void escapeOrByte() {
+    if (bytes_[at_] == '\\' && at_ + 1 < bytes_.size() && isEscapable(bytes_[at_ + 1])) step();
+    text_ += bytes_[at_];
+    step();
+  }
+  void atom() {
+    const char c = bytes_[at_];
+    if (is(kPlain, c)) return plainAtom();
+    text_.clear();
+    const Place place = here();
+    if (c == '"') {
+      step();
+      while (at_ < bytes_.size() && bytes_[at_] != '"') escapeOrByte();
+      if (at_ >= bytes_.size()) return fail("the string is not closed", place);
+      step();
+      out_.add(text_, true);
+    } else if (c == '\'') {
+      step();
+      if (at_ < bytes_.size() && bytes_[at_] == '(') {
+        quotedList(place);
+      } else {
+        while (at_ < bytes_.size() && is(kAtom, bytes_[at_])) escapeOrByte();
+        if (at_ < bytes_.size() && bytes_[at_] == '\'') step();
+      }
+      if (!failed_) out_.add(text_, true);
+    } else if (is(kAtom, c)) {
+      escapedAtom();
+    } else {
+      constexpr char kHex[] = "0123456789abcdef";
+      const auto byte = static_cast<unsigned char>(c);
+      fail(std::string("byte 0x") + kHex[byte >> 4] + kHex[byte & 15] + " is no part of an atom", place);
+    }
+  }
+  /// Nearly every atom: its bytes are its text.
+  void plainAtom() {
+    std::size_t end = at_ + 1;
+    while (end < bytes_.size() && is(kPlain, bytes_[end])) ++end;
+    if (end < bytes_.size() && is(kAtom, bytes_[end])) return text_.clear(), escapedAtom();
+    out_.add(bytes_.substr(at_, end - at_));
+    at_ = end;
+  }
+  void escapedAtom() {
+    while (at_ < bytes_.size() && is(kAtom, bytes_[at_])) escapeOrByte();
+    out_.add(text_);
+  }
+  /// `'(...)`: kept as text.
+  void quotedList(Place place) {
+    std::size_t depth = 0;
+    do {
+      if (at_ >= bytes_.size()) return fail("the quoted list is not closed", place);
+      if (bytes_[at_] == '(') ++depth;
+      if (bytes_[at_] == ')') --depth;
+      text_ += bytes_[at_];
+      step();
+    } while (depth > 0);
+  }
+
+  std::string_view bytes_;
+  Predicates& out_;
+  const ReadLimits& limits_;
+  ReadResult result_;
+  std::string text_;
+  std::size_t at_ = 0, lineStart_ = 0;
+  std::uint32_t line_ = 1, depth_ = 0;
+  bool failed_ = false;
+};
+
+/// More than any token takes, and what stands before and behind it.
+constexpr std::size_t kTokenRoom = kFixedRoom + 16;
+
+struct Style {
+  int decimals;
+  DoubleRange doubles;
+};
+
+/// Writes the elements of tokens [t, end), a blank between them. `at` has room for a token, and so has what is
+/// returned: the place to write stays in a register, where a writer's own would be stored and loaded again for each
+/// byte.
+char* writeElements(const Predicates& from, const Token* t, const Token* end, const Style& style, ByteWriter& out,
+                    char* at) {
+  const auto more = [&out](char* to) { return out.end(to), out.room(kTokenRoom); };
+  while (t < end) {
+    const Token* const next = t + (t->kind == Token::Kind::list ? t->size : 1);
+    switch (t->kind) {
+      case Token::Kind::text:
+        if (t->size <= Token::kShort) {
+          std::memcpy(at, t->letters, Token::kShort);
+          at += t->size;
+        } else {
+          out.end(at);
+          out.put(from.textOf(*t));
+          at = out.room(kTokenRoom);
+        }
+        break;
+      case Token::Kind::number:
+        at = putFixed(at, t->number, style.decimals, style.doubles);
+        break;
+      case Token::Kind::integer:
+        out.end(at);
+        out.integer(t->integer);
+        at = out.room(kTokenRoom);
+        break;
+      case Token::Kind::list:
+        *at++ = '(';
+        at = writeElements(from, t + 1, next, style, out, at);
+        *at++ = ')';
+        break;
+    }
+    t = next;
+    if (t < end) *at++ = ' ';
+    at = more(at);
+  }
+  return at;
+}
+
+}  // namespace
+
+ReadResult readSexp(std::string_view bytes, Predicates& out, const ReadLimits& limits, std::size_t maxExpressions) {
+  return Reader(bytes, out, limits).read(maxExpressions);
+}
+
+void writeSexp(const Predicates& predicates, int decimals, std::string& bytes, DoubleRange doubles) {
+  const Style style{decimals, doubles};
+  ByteWriter out(bytes);
+  char* at = out.room(kTokenRoom);
+  const Token* const end = predicates.tokens().data() + predicates.size();
+  for (const Token* t = predicates.tokens().data(); t < end;) {
+    const bool list = t->kind == Token::Kind::list;
+    const Token* const next = t + (list ? t->size : 1);
+    if (list && t->size == 2) {
+      *at++ = '(';
+      at = writeElements(predicates, t + 1, next, style, out, at);
+      std::memcpy(at, " )", 2);
+      at += 2;
+    } else {
+      at = writeElements(predicates, t, next, style, out, at);
+    }
+    t = next;
+  }
+  out.end(at);
+}
+
+}  // namespace spark

@@ -1,0 +1,254 @@
+#include "runtime.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+namespace fs = std::filesystem;
+
+namespace spark::script {
+
+Runtime::Runtime(Leaf& s)
+    : server(s),
+      kernel(s.kernel()),
+      settings(kernel),
+      trusted(std::make_shared<State>(*this, nullptr)),
+      scriptNode(&kernel.root()) {}
+
+Runtime::~Runtime() { close(); }
+
+void Runtime::close() {
+  trusted->close();
+  for (const auto& weak : sandboxes)
+    if (const auto state = weak.lock()) state->close();
+}
+
+/// A config is what the user names: in the working folder first.
+Script Runtime::readConfig(std::string_view file) {
+  std::vector<fs::path> places{fs::current_path()};
+  if (!configFolder.empty()) places.push_back(configFolder);
+  places.insert(places.end(), folders.begin(), folders.end());
+  return read(file, "config", places);
+}
+
+/// A working folder may be anybody's: what is only included is not taken from there, unless the config itself was.
+Script Runtime::readInclude(std::string_view file, lua_State* includer) {
+  std::vector<fs::path> places;
+  if (const auto beside = folderOf(includer); !beside.empty()) places.push_back(beside);
+  if (!configFolder.empty() && std::find(places.begin(), places.end(), configFolder) == places.end())
+    places.push_back(configFolder);
+  places.insert(places.end(), folders.begin(), folders.end());
+  return read(file, "script", places);
+}
+
+/// The folder of the script that called the running C function; empty when it is none, or no file.
+fs::path Runtime::folderOf(lua_State* L) const {
+  lua_Debug ar{};
+  if (!L || !lua_getstack(L, 1, &ar) || !lua_getinfo(L, "S", &ar)) return {};
+  const auto known = origins_.find(ar.source);
+  return known == origins_.end() ? fs::path() : known->second;
+}
+
+Script Runtime::read(std::string_view file, std::string_view what, std::vector<fs::path> places) {
+  if (fs::path(file).is_absolute()) places = {fs::path(file).parent_path()};
+  std::string looked;
+  std::vector<std::string> names;
+  for (const fs::path& place : places) {
+    const fs::path path = place / file;  // an absolute file stays what it is
+    std::error_code ec;
+    if (fs::is_directory(path, ec))
+      throw Error("cannot read " + std::string(what) + " '" + std::string(file) + "': " + path.string() +
+                  " is a folder");
+    if (fs::exists(path, ec)) {
+      std::ifstream in(path, std::ios::binary);
+      std::string text{std::istreambuf_iterator<char>(in), {}};
+      if (!in) throw Error("cannot read " + std::string(what) + " " + path.string() + ": no permission?");
+      origins_["@" + std::string(file)] = path.parent_path();
+      return {path, std::move(text)};
+    }
+    looked += (looked.empty() ? "" : ", ") + place.string();
+    for (fs::directory_iterator it(path.parent_path(), ec), end; !ec && it != end; it.increment(ec))
+      if (it->path().extension() == ".lua") names.push_back(it->path().filename().string());
+  }
+  throw Error("there is no " + std::string(what) + " '" + std::string(file) + "'. Looked in: " + looked + "." +
+              didYouMean(fs::path(file).filename().string(), names));
+}
+
+void Runtime::load(lua_State* L, std::string_view text, std::string_view chunkName, int environment) {
+  if (luaL_loadbufferx(L, text.data(), text.size(), std::string(chunkName).c_str(), "t") != LUA_OK) lua_error(L);
+  lua_pushvalue(L, environment);
+  lua_setupvalue(L, -2, 1);
+}
+
+void Runtime::pushConfigEnvironment(lua_State* L) {
+  if (configEnvironment_ == LUA_NOREF) {
+    pushEnvironment(L, kernel.root(), true);
+    configEnvironment_ = luaL_ref(L, LUA_REGISTRYINDEX);
+  }
+  lua_rawgeti(L, LUA_REGISTRYINDEX, configEnvironment_);
+}
+
+Value Runtime::run(std::string_view text, std::string_view chunkName) {
+  const Restore asConfig(scriptNode, Ref<Leaf>(&kernel.root()));
+  Value result;
+  const auto failure = trusted->run(kUnlimited, [&](lua_State* L) {
+    pushConfigEnvironment(L);
+    load(L, text, chunkName, lua_gettop(L));
+    lua_call(L, 0, 1);
+    result = toValue(L, -1);
+  });
+  if (failure) throw Error(failure->text);
+  return result;
+}
+
+void Runtime::setGlobal(std::string_view name, const Value& value) {
+  const auto failure = trusted->run(kUnlimited, [&](lua_State* L) {
+    pushConfigEnvironment(L);
+    lua_pushlstring(L, name.data(), name.size());
+    pushTables(L, value);
+    lua_settable(L, -3);
+  });
+  if (failure) throw Error(failure->text);
+}
+
+void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted,
+                     const State::Body& pushArguments) {
+  const std::string path = node.path();
+  if (!node.isLinked()) throw Error("cannot attach a script to " + path + ": it is not linked into the tree");
+  std::shared_ptr<State> state = trusted;
+  if (!isTrusted) {
+    state = std::make_shared<State>(*this, &node);
+    std::erase_if(sandboxes, [](const auto& weak) { return weak.expired(); });
+    sandboxes.push_back(state);
+  }
+  std::vector<std::weak_ptr<Subscription>> subscribed;
+  std::optional<Failure> failure;
+  {
+    const Restore running(scriptNode, Ref<Leaf>(&node));
+    const Restore collecting(made, &subscribed);
+    failure = state->run(isTrusted ? kHandlerBudget : kSandboxBudget, [&](lua_State* L) {
+      pushEnvironment(L, node, false);
+      load(L, text, chunkName, lua_gettop(L));
+      const int function = lua_gettop(L);
+      if (pushArguments) pushArguments(L);
+      lua_call(L, lua_gettop(L) - function, 0);
+    });
+  }
+  if (!failure) return;
+  for (const auto& weak : subscribed)
+    if (const auto s = weak.lock()) s->remove();
+  throw Error("the script attached to " + path + " failed: " + failure->text);
+}
+
+/// Scripts that are attached may lie where the user is: they are named by the user, or by a config that expects them
+/// there.
+void Runtime::attachFile(Leaf& node, std::string_view file, lua_State* from, const State::Body& pushArguments) {
+  std::vector<fs::path> places;
+  if (const auto beside = folderOf(from); !beside.empty()) places.push_back(beside);
+  if (!configFolder.empty()) places.push_back(configFolder);
+  places.insert(places.end(), folders.begin(), folders.end());
+  places.push_back(fs::current_path());
+  attach(node, read(file, "script", places).text, "@" + std::string(file), true, pushArguments);
+}
+
+bool Runtime::isChannel(std::string_view name) const {
+  for (const Channel* c : kernel.events().all())
+    if (c->name() == name) return !c->doc().empty();
+  return false;
+}
+
+/// What is near the name of a channel that nobody defined, as a sentence.
+std::string Runtime::nearChannels(std::string_view name) const {
+  std::vector<std::string> names;
+  if (isChannel(name)) return {};
+  for (const Channel* c : kernel.events().all())
+    if (!c->doc().empty()) names.push_back(c->name());
+  return didYouMean(name, names);
+}
+
+/// Channels may be defined after a config listens to them. At its end they are there, or the name is wrong.
+void Runtime::checkChannels() {
+  const auto listened = std::exchange(listened_, {});
+  for (const auto& [channel, where] : listened)
+    if (const std::string near = nearChannels(channel); !near.empty())
+      throw Error(where + "there is no event channel '" + channel + "': nothing would ever run this handler." + near);
+  std::vector<ClassObject*> classes;
+  kernel.root().require<Node>("/classes").collect(classes);
+  for (ClassObject* c : classes) {
+    if (c->living() == 0) continue;
+    for (const Hook* hook : c->hooks())
+      if (const std::string near = nearChannels(hook->channel); !near.empty())
+        kernel.log().warning("class {} has a hook on '{}', and there is no such channel: nothing runs it.{}", c->name(),
+                             hook->channel, near);
+  }
+}
+
+std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::string_view channel) {
+  if (inConfig && !isChannel(channel)) {  // its definer may be created later in the config
+    luaL_where(L, 1);
+    listened_.emplace_back(channel, lua_tostring(L, -1));
+    lua_pop(L, 1);
+  } else if (const std::string near = nearChannels(channel); !near.empty()) {
+    throw Error("there is no event channel '" + std::string(channel) + "': nothing would ever run this handler." +
+                near);
+  }
+  auto s = std::make_shared<Subscription>();
+  State& state = State::of(L);
+  s->state = state.shared_from_this();
+  s->node = Ref<Leaf>(&node);
+  s->owner = scriptNode;
+  s->channel = &kernel.events().channel(channel);
+  s->function = luaL_ref(L, LUA_REGISTRYINDEX);
+  s->number = s->channel->add(node, [s](Leaf&, const Event& event) { s->run(event); });
+  if (made) made->push_back(s);
+  return s;
+}
+
+void Runtime::report(const Failure& failure, const Subscription& s) {
+  kernel.countFault();
+  const bool isNew = reported_.insert(failure.where.empty() ? failure.text : failure.where).second;
+  if (!isNew && !failure.exhausted) return;
+  kernel.log().error("handler of '{}' at {} failed: {}\n  {}", s.channel->name(),
+                     s.node ? s.node->path() : "a deleted node", failure.text,
+                     failure.exhausted ? "It is switched off: it would take as long every time."
+                                       : "It stays; further errors of this line are not logged.");
+}
+
+Subscription::~Subscription() { state->release(function); }
+
+void Subscription::remove() {
+  if (!removed && node) channel->remove(number);
+  removed = true;
+}
+
+void Subscription::run(const Event& event) {
+  if (removed || state->closed() || !node || node->kernel().isEnding()) return;
+  if (!owner) return remove();  // the script's own node has gone
+  Runtime& runtime = state->runtime();
+  const Restore running(runtime.scriptNode, owner);
+  const auto failure = state->run(state->trusted() ? kHandlerBudget : kSandboxBudget, [&](lua_State* L) {
+    lua_rawgeti(L, LUA_REGISTRYINDEX, function);
+    pushNode(L, node.get());
+    lua_createtable(L, 0, 5);
+    lua_pushlstring(L, event.name.data(), event.name.size());
+    lua_setfield(L, -2, "name");
+    lua_pushnumber(L, event.time);
+    lua_setfield(L, -2, "time");
+    lua_pushnumber(L, event.step);
+    lua_setfield(L, -2, "step");
+    lua_pushinteger(L, event.cycle);
+    lua_setfield(L, -2, "cycle");
+    if (event.data)
+      pushValue(L, *event.data);
+    else
+      lua_pushnil(L);
+    lua_setfield(L, -2, "data");
+    lua_call(L, 2, 0);
+  });
+  if (!failure) return;
+  runtime.report(*failure, *this);
+  if (failure->exhausted) remove();
+}
+
+}  // namespace spark::script

@@ -1,0 +1,60 @@
+#include "spark/script_server.h"
+
+#include "runtime.h"
+
+namespace fs = std::filesystem;
+
+namespace spark {
+
+struct ScriptServer::Impl : script::Runtime {
+  using Runtime::Runtime;
+};
+
+ScriptServer& scripts(Kernel& kernel) {
+  if (auto* known = kernel.root().find<ScriptServer>(ScriptServer::kPath)) return *known;
+  if (!kernel.findClass(ScriptServer::kClassName)) kernel.registerClass<ScriptServer>();
+  return kernel.create<ScriptServer>(ScriptServer::kClassName, ScriptServer::kPath);
+}
+
+void ScriptServer::describe(Description<ScriptServer>& d) {
+  d.doc("Runs configs, and scripts that are attached to nodes.");
+  d.implements<IScriptServer>();
+}
+
+ScriptServer::ScriptServer() = default;
+ScriptServer::~ScriptServer() = default;
+
+void ScriptServer::onLink() { impl_ = std::make_unique<Impl>(*this); }
+void ScriptServer::onUnlink() { impl_->close(); }
+
+void ScriptServer::addFolder(fs::path folder) { impl_->folders.push_back(std::move(folder)); }
+void ScriptServer::addOverride(std::string key, Value value) { impl_->settings.add(std::move(key), std::move(value)); }
+
+void ScriptServer::runConfig(std::string_view file) {
+  const script::Script config = impl_->readConfig(file);
+  const script::Restore keepFolder(impl_->configFolder, config.path.parent_path());
+  {
+    const script::Restore shielding(impl_->inConfig, true);
+    impl_->run(config.text, "@" + std::string(file));
+  }
+  impl_->checkChannels();
+  impl_->settings.finish();
+}
+
+Value ScriptServer::run(std::string_view text, std::string_view chunkName) {
+  return impl_->run(text, "=" + std::string(chunkName));
+}
+
+void ScriptServer::setGlobal(std::string_view name, const Value& value) { impl_->setGlobal(name, value); }
+
+void ScriptServer::attach(Leaf& node, std::string_view file, const Value& arguments) {
+  impl_->attachFile(node, file, nullptr, [&](lua_State* L) { script::pushArguments(L, arguments); });
+}
+
+void ScriptServer::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) {
+  impl_->attach(node, text, "=" + std::string(chunkName), trusted);
+}
+
+std::vector<List> ScriptServer::options() const { return impl_->settings.options(); }
+
+}  // namespace spark

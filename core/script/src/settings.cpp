@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+
+#include "runtime.h"
+
+// An override is `option`, `Namespace.Name` (which is /sys/variables/Namespace.Name) or `/path.property`. Those of
+// nodes are set as soon as the node exists, so that a scene imported next already reads them, and shield their property
+// from what the config assigns.
+
+namespace spark::script {
+
+namespace {
+/// The value as the default's type; throws Error that says what would be right.
+Value fitted(const Value& given, const Value& defaultValue) {
+  using Type = Value::Type;
+  const Value value = given.readAs(defaultValue.isNil() ? std::string_view() : typeName(defaultValue.type()));
+  if (defaultValue.isNil() || value.type() == defaultValue.type()) return value;
+  switch (defaultValue.type()) {
+    case Type::number:
+      if (value.isInteger()) return value.toNumber();
+      break;
+    case Type::integer:
+      if (value.isNumber() && std::floor(value.toNumber()) == value.toNumber() && std::fabs(value.toNumber()) < 0x1p62)
+        return static_cast<std::int64_t>(value.toNumber());
+      break;
+    case Type::string:
+      if (!value.isList() && !value.isNil()) return value.plain();
+      break;
+    default:
+      break;
+  }
+  throw Error("expected " + std::string(typeName(defaultValue.type())) + " (its default is " + defaultValue.text() +
+              "), found " + std::string(typeName(value.type())) + " " + value.text());
+}
+
+void checkChoice(const Value& value, const List& choices) {
+  if (choices.empty() || std::find(choices.begin(), choices.end(), value) != choices.end()) return;
+  std::string all;
+  for (const Value& c : choices) all += (all.empty() ? "" : ", ") + c.text();
+  throw Error("expected one of " + all + ", found " + value.text());
+}
+
+void collectPaths(const Leaf& leaf, std::vector<std::string>& out) {
+  out.push_back(leaf.path());
+  if (const Node* node = leaf.asNode())
+    for (const auto& c : node->children()) collectPaths(*c, out);
+}
+}  // namespace
+
+void Settings::add(std::string key, Value value) {
+  Override o;
+  o.key = std::move(key);
+  o.value = std::move(value);
+  const std::size_t dot = o.key.rfind('.');
+  if (!o.key.empty() && o.key.front() == '/') {
+    if (dot == std::string::npos || dot < o.key.rfind('/') || dot + 1 == o.key.size())
+      throw Error("cannot set '" + o.key + "': expected /path.property, as in /sys/server/simulation.step");
+    o.path = o.key.substr(0, dot);
+    if (o.path.empty()) o.path = "/";
+    o.member = o.key.substr(dot + 1);
+  } else if (dot != std::string::npos) {
+    o.path = "/sys/variables/" + o.key.substr(0, dot);
+    o.member = o.key.substr(dot + 1);
+  }
+  std::erase_if(overrides_, [&](const Override& other) { return other.key == o.key; });
+  overrides_.push_back(std::move(o));
+}
+
+Value Settings::declare(const std::string& name, const Value& defaultValue, const std::string& doc,
+                        const List& choices) {
+  if (name.empty() || name.find_first_of("./= ") != std::string::npos)
+    throw Error("cannot declare option '" + name +
+                "': a name must be there and must not hold '.', '/', '=' or a blank");
+  const auto same = std::find_if(options_.begin(), options_.end(), [&](const Option& o) { return o.name == name; });
+  if (same != options_.end()) {
+    if (same->defaultValue == defaultValue && same->choices == choices) return same->value;
+    throw Error("option '" + name + "' is declared already, with another default or other choices (its default was " +
+                same->defaultValue.text() + ")");
+  }
+  Option option{name, doc, defaultValue, defaultValue, choices};
+  try {
+    if (!defaultValue.isNil()) checkChoice(defaultValue, choices);
+  } catch (const Error& e) {
+    throw Error("the default of option '" + name + "' is not among its choices", e);
+  }
+  for (Override& o : overrides_) {
+    if (!o.path.empty() || o.key != name) continue;
+    try {
+      option.value = fitted(o.value, defaultValue);
+      checkChoice(option.value, choices);
+    } catch (const Error& e) {
+      throw Error("cannot set option '" + name + "'", e);
+    }
+    o.met = true;
+  }
+  options_.push_back(option);
+  return option.value;
+}
+
+void Settings::set(Override& o, Leaf& target) {
+  if (isGroup(target)) {
+    o.met = o.met || hasMember(target, o.member);
+  } else if (!hasMember(target, o.member)) {
+    throw Error("unknown setting '" + o.key + "': " + target.path() + " (class " + target.classObject()->name() +
+                ") has no property '" + o.member + "'." + didYouMean(o.member, memberNames(target)));
+  } else {
+    o.met = true;
+  }
+  setMember(target, o.member, o.value);
+  o.target = Ref<Leaf>(&target);
+}
+
+void Settings::apply() {
+  for (Override& o : overrides_) {
+    if (o.path.empty()) continue;
+    Leaf* target = kernel_.root().find(o.path);
+    if (target && target != o.target.get()) set(o, *target);
+  }
+}
+
+bool Settings::shields(const Leaf& leaf, std::string_view member) {
+  for (Override& o : overrides_) {
+    if (o.path.empty() || o.member != member) continue;
+    Leaf* target = kernel_.root().find(o.path);
+    if (target != &leaf) continue;
+    if (target != o.target.get()) set(o, *target);
+    o.met = true;
+    kernel_.log().debug("{} stays {}: it was set from outside the config", o.key, o.value.text());
+    return true;
+  }
+  return false;
+}
+
+/// The names nearest to one that met nothing.
+std::string Settings::hint(const Override& o) const {
+  std::vector<std::string> names;
+  if (o.key.empty() || o.key.front() != '/') {
+    for (const Option& option : options_) names.push_back(option.name);
+    if (const auto* groups = kernel_.root().find<Node>("/sys/variables"))
+      for (const auto& g : groups->children())
+        for (const std::string& n : memberNames(*g)) names.push_back(g->name() + "." + n);
+    std::erase(names, o.key);
+    return didYouMean(o.key, names);
+  }
+  collectPaths(kernel_.root(), names);
+  for (std::string& n : names) n += "." + o.member;
+  return didYouMean(o.key, names);
+}
+
+void Settings::finish() {
+  apply();
+  std::string text;
+  for (const Override& o : overrides_) {
+    if (o.met) continue;
+    std::string what = "the config declares no option of that name.";
+    if (!o.path.empty()) what = (o.target ? o.path + " has no variable of that name." : "there is no " + o.path + ".");
+    text += (text.empty() ? "" : "\n") + ("unknown setting '" + o.key + "': " + what + hint(o));
+  }
+  if (!text.empty()) throw Error(text);
+}
+
+std::vector<List> Settings::options() const {
+  std::vector<List> out;
+  for (const Option& o : options_) out.push_back({o.name, o.defaultValue, o.doc, o.value});
+  return out;
+}
+
+}  // namespace spark::script
