@@ -134,7 +134,7 @@ class ControlAspect : public Node {
     d.doc("A rule of the simulation.");
     d.abstract();
     d.property("enabled", &ControlAspect::enabled_).doc("It takes part; false: as if it were not there.");
-    d.on<&ControlAspect::run>("rule");
+    d.on<&ControlAspect::run>(phase::kRule);
   }
   virtual void rule(const Event& event) = 0;
   /// Instead of rule() while it is switched off: forgets what must not count when it is switched on again.

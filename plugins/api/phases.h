@@ -9,15 +9,13 @@
 
 namespace spark::phase {
 // Defined by `simulation`, in this order each cycle. Event: time [s] of the simulated clock, step [s], cycle.
-inline constexpr const char* kAct = "act";  ///< parents first. Agents' messages are realised.
-inline constexpr const char* kPrepare =
-    "prepare";  ///< children first. Deferred actions, controllers, sampling before the step.
-inline constexpr const char* kPhysics =
-    "physics";  ///< parents first. Contacts, collision handlers, joints, one solver step.
-inline constexpr const char* kPlace = "place";      ///< parents first. Bodies write transforms; world matrices.
-inline constexpr const char* kRule = "rule";        ///< parents first. Control aspects.
-inline constexpr const char* kSense = "sense";      ///< parents first. Perceptors.
-inline constexpr const char* kPublish = "publish";  ///< parents first. Monitors, recorders.
+inline constexpr ChannelName kAct{"act"};          ///< parents first. Agents' messages are realised.
+inline constexpr ChannelName kPrepare{"prepare"};  ///< children first. Deferred actions, controllers, sampling.
+inline constexpr ChannelName kPhysics{"physics"};  ///< parents first. Contacts, handlers, joints, one solver step.
+inline constexpr ChannelName kPlace{"place"};      ///< parents first. Bodies write transforms; world matrices.
+inline constexpr ChannelName kRule{"rule"};        ///< parents first. Control aspects.
+inline constexpr ChannelName kSense{"sense"};      ///< parents first. Perceptors.
+inline constexpr ChannelName kPublish{"publish"};  ///< parents first. Monitors, recorders.
 }  // namespace spark::phase
 
 namespace spark {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "api/engine.h"
+#include "api/phases.h"
 #include "api/scene.h"
 #include "spark/abi/api/physics.h"
 
@@ -221,7 +222,7 @@ class BodyController : public SceneNode {
     d.doc("Acts on the body above it before each step.");
     d.abstract();
     d.link(&BodyController::body_, Above<IRigidBody>());
-    d.on<&BodyController::prepare>("prepare");
+    d.on<&BodyController::prepare>(phase::kPrepare);
   }
   /// `event.step` seconds will be integrated next.
   virtual void control(IRigidBody& body, const Event& event) = 0;

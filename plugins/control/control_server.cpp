@@ -79,7 +79,7 @@ void ControlServer::accept() {
 
 void ControlServer::poll() {
   for (const auto& child : children())
-    if (auto* handler = child->as<IRequestHandler>()) handler->poll();
+    if (auto handler = child->as<IRequestHandler>()) handler->poll();
   accept();
   std::erase_if(clients_, [this](const auto& client) { return !client->serve(kernel(), *this); });
 }

@@ -192,7 +192,7 @@ std::string startWatch(Kernel& kernel, const Json& request, Watch& watch) {
 std::string knownRequests(const Node& self) {
   std::string out = "tree, get, set, call, watch, plugins, load, unload";
   for (const auto& child : self.children())
-    if (const auto* handler = child->as<IRequestHandler>())
+    if (const auto handler = child->as<IRequestHandler>())
       for (const std::string_view name : handler->requests()) out.append(", ").append(name);
   return out.insert(out.rfind(", ") + 2, "or ");
 }
@@ -200,7 +200,7 @@ std::string knownRequests(const Node& self) {
 /// The handler that answers a request, nullptr when there is none.
 IRequestHandler* handlerOf(const Node& self, std::string_view what) {
   for (const auto& child : self.children())
-    if (auto* handler = child->as<IRequestHandler>())
+    if (auto handler = child->as<IRequestHandler>())
       if (const auto names = handler->requests(); std::find(names.begin(), names.end(), what) != names.end())
         return handler;
   return nullptr;

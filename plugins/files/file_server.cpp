@@ -49,7 +49,7 @@ void FileServer::describe(Description<FileServer>& d) {
 template <class F>
 void FileServer::forEach(F visit) const {
   for (const auto& child : children())
-    if (auto* system = child->as<IFileSystem>())
+    if (auto system = child->as<IFileSystem>())
       if (visit(*system)) return;
 }
 

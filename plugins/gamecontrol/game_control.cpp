@@ -359,7 +359,7 @@ void GameControl::removeLeaving() {
     note(fmt::format("{} leaves.", p.label()));
     if (AgentAspect* aspect = p.aspect()) {
       for (const auto& child : children())
-        if (auto* rule = child->as<ControlAspect>()) rule->agentLeaving(*aspect);
+        if (auto rule = child->as<ControlAspect>()) rule->agentLeaving(*aspect);
       aspect->parent()->remove(*aspect);
     } else if (p.connection()) {
       p.connection()->close("its agent was removed from the scene");
@@ -401,7 +401,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
     Node& scene = server ? server->scene() : kernel().root().require<Node>("/usr/scene");
     aspect = &scene.create<AgentAspect>("AgentAspect", fmt::format("AgentAspect{}", number));
     aspect->setNumber(number);
-    if (auto* scene = aspect->create(createEffector_, "_CreateEffector").as<SceneEffector>())
+    if (auto scene = aspect->create(createEffector_, "_CreateEffector").as<SceneEffector>())
       scene->setFolder(robotFolder_);
     p.join(number, *aspect);
   } catch (const std::exception& e) {
@@ -414,7 +414,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
   agentsChanged();
   note(fmt::format("{} joins.", p.label()));
   for (const auto& child : children())
-    if (auto* rule = child->as<ControlAspect>()) rule->agentConnected(*aspect);
+    if (auto rule = child->as<ControlAspect>()) rule->agentConnected(*aspect);
   return true;
 }
 

@@ -116,7 +116,7 @@ bool Participant::resolveRobot() {
   root->collect(perceptors);
   perceptors_.assign(perceptors.begin(), perceptors.end());
   for (Perceptor* p : perceptors)
-    if (auto* view = p->as<ISharedView>()) shared_.push_back({p, view, p});
+    if (auto view = p->as<ISharedView>()) shared_.push_back({p, view, p});
   forgetTheDead();
   const bool first = !hadRobot_ && (!perceptors_.empty() || effectors > 1);
   hadRobot_ |= first;
@@ -161,7 +161,7 @@ Participant::Slot* Participant::slot(std::string_view predicate, std::size_t& gu
 
 bool Participant::loading() const {
   return !hadRobot_ && std::any_of(effectors_.begin(), effectors_.end(), [](const Slot& s) {
-    const auto* scene = s.effector ? s.effector->as<SceneEffector>() : nullptr;
+    const auto scene = s.effector ? s.effector->as<SceneEffector>() : nullptr;
     return scene && scene->late();
   });
 }

@@ -1,7 +1,7 @@
 #include "gamecontrol/script_behavior.h"
 
 #include "spark/kernel.h"
-#include "spark/script_server.h"
+#include "spark/script.h"
 
 namespace spark {
 
@@ -20,7 +20,9 @@ void ScriptBehavior::onLink() {
   kernel().events().define("think", Order::parentsFirst, "At a ScriptBehavior: here is what it perceives.");
 }
 
-void ScriptBehavior::script(std::string file, Value arguments) { require<IScriptServer>().attach(*this, file, arguments); }
+void ScriptBehavior::script(std::string file, Value arguments) {
+  require<IScriptServer>().attach(*this, file, arguments);
+}
 
 void ScriptBehavior::start(Predicates& actions) { run("start", nullptr, actions); }
 

@@ -156,7 +156,7 @@ std::vector<Eye> eyesOf(AgentAspect& agent) {
   agent.collect(all);
   std::vector<Eye> eyes;
   for (Perceptor* p : all)
-    if (auto* eye = p->as<IEye>()) eyes.push_back({p, eye});
+    if (auto eye = p->as<IEye>()) eyes.push_back({p, eye});
   return eyes;
 }
 
@@ -164,7 +164,7 @@ std::vector<Eye> eyesOf(AgentAspect& agent) {
 AgentAspect* agentOf(Leaf& leaf) {
   AgentAspect* found = nullptr;
   for (Leaf* up = &leaf; up; up = up->parent())
-    if (auto* aspect = up->as<AgentAspect>()) found = aspect;
+    if (auto aspect = up->as<AgentAspect>()) found = aspect;
   return found;
 }
 
@@ -280,7 +280,7 @@ void Inspection::keepWhatItSees(Watched& watch, Clock::time_point now) const {
   const Predicates* all = control ? control->percepts(*watch.agent) : nullptr;
   if (!all || all->size() > kMostTokens) return;
   for (const Eye& e : eyesOf(*watch.agent)) {
-    const auto* reader = e.perceptor->as<ISightReader>();
+    const auto reader = e.perceptor->as<ISightReader>();
     if (!reader) continue;
     for (const Element see : *all) {
       if (see.head() != e.perceptor->predicateName()) continue;

@@ -28,7 +28,7 @@ std::optional<SceneShape> shapeOf(const engine::ShapeDescription& s) {
 void collectShapes(const Node& above, std::vector<SceneShape>& out) {
   for (const auto& child : above.children()) {
     if (child->as<Transform>() || !child->asNode()) continue;
-    if (const auto* collider = child->as<ICollider>())
+    if (const auto collider = child->as<ICollider>())
       if (const auto description = collider->shape())
         if (auto shape = shapeOf(*description)) {
           const Pose pose = collider->poseInTransform();

@@ -9,7 +9,7 @@
 
 #include "spark/describe.h"
 #include "spark/kernel.h"
-#include "spark/script_server.h"
+#include "spark/script.h"
 
 namespace spark {
 

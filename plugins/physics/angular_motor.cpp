@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "api/phases.h"
 #include "physics_server.h"
 #include "spark/state.h"
 
@@ -59,8 +60,8 @@ void AngularMotor::describe(Description<AngularMotor>& d) {
   d.property("temperature", &M::temperature_).unit("C").state().doc("Temperature of the winding.");
   d.property("current", &M::current_).unit("A").readOnly().doc("Current in the last step.");
   d.property("disabled", &M::disabled).doc("It takes no commands: its battery is empty or it is too hot.");
-  d.on<&M::prepare>("prepare");
-  d.on<&M::measure>("place");
+  d.on<&M::prepare>(phase::kPrepare);
+  d.on<&M::measure>(phase::kPlace);
 }
 
 bool AngularMotor::disabled() const {

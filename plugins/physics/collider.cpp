@@ -97,7 +97,7 @@ void Collider::attach(const Pose& base) {
     }
   }
   for (const auto& child : children())
-    if (auto* inner = child->as<Collider>(); inner && inner->outer_ == this) inner->attach(base);
+    if (auto inner = child->as<Collider>(); inner && inner->outer_ == this) inner->attach(base);
 }
 
 void Collider::follow(const Matrix& world) {
@@ -158,14 +158,14 @@ void Collider::findHandlers(bool defaultOnTransform) {
   handlers_.active.clear();
   bool any = false;
   for (const auto& child : children()) {
-    auto* handler = child->as<CollisionHandler>();
+    auto handler = child->as<CollisionHandler>();
     if (!handler) continue;
     any = true;
     if (!handlers_.contact && handler->surface()) handlers_.contact = handler;
     // The plain handler has nothing to do but to be there.
     if (handler->classObject()->name() != ContactJointHandler::kClassName) handlers_.active.push_back(handler);
   }
-  auto* inner = as<TransformCollider>() ? childOf<Collider>() : nullptr;
+  auto inner = as<TransformCollider>() ? childOf<Collider>() : nullptr;
   if (!any && inner && !defaultOnTransform) {
     inner->refreshHandlers(defaultOnTransform);
     handlers_ = inner->handlers_;
@@ -218,7 +218,7 @@ const std::vector<const Collider*>& Collider::inner() const {
   if (std::exchange(innerAt_, changedAt()) == changedAt()) return inner_;
   inner_.clear();
   for (const auto& child : children())
-    if (const auto* collider = child->as<Collider>()) inner_.push_back(collider);
+    if (const auto collider = child->as<Collider>()) inner_.push_back(collider);
   return inner_;
 }
 

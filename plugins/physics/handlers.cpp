@@ -1,7 +1,8 @@
 #include "handlers.h"
 
 #include <algorithm>
-#include "spark/script_server.h"
+
+#include "spark/script.h"
 
 namespace spark {
 

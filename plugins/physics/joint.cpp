@@ -117,7 +117,7 @@ double Joint::feedbackTorque() const {
 Ref<RigidBody> Joint::bodyAt(const std::string& path) {
   if (path.empty()) return {};
   Leaf* found = find(path);
-  if (auto* body = found ? found->as<RigidBody>() : nullptr; body && body->world() == world_)
+  if (auto body = found ? found->as<RigidBody>() : nullptr; body && body->world() == world_)
     return Ref<RigidBody>(body);
   kernel().log().warning(
       "{}: expected a RigidBody at '{}', found {}; it is attached to the static world instead. Paths are relative to "

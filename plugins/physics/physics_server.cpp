@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/phases.h"
 #include "colliders.h"
 #include "contact_loop.h"
 #include "spark/prefetch.h"
@@ -26,8 +27,8 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
           "solver computes may differ "
           "from a run without.");
   d.property("contactsPerPair", &S::contactsPerPair_).range(1, 16).doc("Contact points of two colliders at most.");
-  d.on<&PhysicsServer::physics>("physics");
-  d.on<&PhysicsServer::place>("place");
+  d.on<&PhysicsServer::physics>(phase::kPhysics);
+  d.on<&PhysicsServer::place>(phase::kPlace);
 }
 
 engine::IEngine& PhysicsServer::engine() {
@@ -50,7 +51,7 @@ engine::World PhysicsServer::world() {
 }
 
 void PhysicsServer::bodies(Node& root, std::vector<IRigidBody*>& out) {
-  if (auto* self = root.as<IRigidBody>()) out.push_back(self);
+  if (auto self = root.as<IRigidBody>()) out.push_back(self);
   root.collect(out);
 }
 
@@ -64,13 +65,13 @@ void PhysicsServer::collect(const Node& scene) {
   std::vector<CollisionGroup*> groups;
   scene.collect(objects);
   for (PhysicsObject* object : objects) {
-    if (auto* body = object->as<RigidBody>()) {
+    if (auto body = object->as<RigidBody>()) {
       if (body->transform() && body->world() == world_->handle())
         bodies_.push_back({body, body->transform(), body->transform()->transform(), 0});
-    } else if (auto* collider = object->as<Collider>()) {
+    } else if (auto collider = object->as<Collider>()) {
       collider->refreshHandlers(defaultOnTransform_);
       collider->setGroup(nullptr);
-    } else if (auto* group = object->as<CollisionGroup>()) {
+    } else if (auto group = object->as<CollisionGroup>()) {
       groups.push_back(group);
     }
   }
@@ -125,9 +126,9 @@ void PhysicsServer::shiftSurroundings() {
     p.body->transform()->collect(transforms, false);
     for (Transform* t : transforms) t->setLocalFromBody(translation(by.cast<float>()) * t->local());
     for (const auto& sibling : p.body->parent()->children())
-      if (auto* outer = sibling->as<TransformCollider>())
+      if (auto outer = sibling->as<TransformCollider>())
         for (const auto& child : outer->children())
-          if (auto* inner = child->as<Collider>()) inner->shift(by);
+          if (auto inner = child->as<Collider>()) inner->shift(by);
   }
 }
 

@@ -113,7 +113,7 @@ Node& Run::nextNode(Cursor& cursor) {
   if (i >= children.size())
     throw Error("expected at most " + std::to_string(children.size()) + " nodes below " + cursor.node->path() +
                 ", found one more");
-  if (auto* node = children[i]->as<SceneNode>()) return *node;
+  if (auto node = children[i]->as<SceneNode>()) return *node;
   throw Error("expected a scene node, found " + children[i]->path());
 }
 
@@ -254,7 +254,7 @@ std::string Run::textOf(const Operand& o) {
 
 Value Run::variable(std::string_view group, std::string_view member) const {
   Node* groups = importer_.kernel().root().find<Node>("/sys/variables");
-  auto* found = groups && groups->child(group) ? groups->child(group)->as<IVariables>() : nullptr;
+  auto found = groups && groups->child(group) ? groups->child(group)->as<IVariables>() : nullptr;
   if (!found) {
     std::vector<std::string> names;
     if (groups)

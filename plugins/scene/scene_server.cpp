@@ -1,6 +1,7 @@
 #include "scene_server.h"
 
 #include "api/files.h"
+#include "api/phases.h"
 #include "spark/error.h"
 
 namespace spark {
@@ -23,7 +24,7 @@ void SceneServer::describe(Description<SceneServer>& d) {
   d.method("defineMesh", &SceneServer::defineMesh)
       .parameters({"mesh", "materials"})
       .doc("Says which materials a mesh has, for meshes whose file is not there.");
-  d.on<&SceneServer::onPlace>("place");
+  d.on<&SceneServer::onPlace>(phase::kPlace);
 }
 
 Node& SceneServer::scene() {
@@ -95,10 +96,10 @@ void SceneServer::place() {
 void Placement::collect(Node& node, int parent) {
   for (const auto& child : node.children()) {
     int above = parent;
-    if (auto* transform = child->as<Transform>()) {
+    if (auto transform = child->as<Transform>()) {
       above = static_cast<int>(entries_.size());
       entries_.push_back({transform, parent, false, false, {}});
-    } else if (auto* follower = child->as<IFollowsTransform>(); follower && parent >= 0) {
+    } else if (auto follower = child->as<IFollowsTransform>(); follower && parent >= 0) {
       entries_[static_cast<std::size_t>(parent)].followers.push_back(follower);
     }
     if (Node* inner = child->asNode()) collect(*inner, above);
@@ -133,7 +134,7 @@ void flattenTransforms(Node& root, std::uint64_t firstId) {
     }
     ++i;
   }
-  auto* transform = root.id() >= firstId ? root.as<Transform>() : nullptr;
+  auto transform = root.id() >= firstId ? root.as<Transform>() : nullptr;
   if (!transform || root.children().empty() || !root.parent() || !root.parent()->as<SceneNode>()) return;
   for (const auto& child : root.children())
     if (!child->as<Transform>()) return;

@@ -74,7 +74,7 @@ class SonarPerceptor : public Perceptor {
   void collect(const Node& node, const Leaf* self) {
     for (const auto& child : node.children()) {
       if (child.get() == self || !child->asNode()) continue;
-      const auto* mark = child->as<SceneNode>();
+      const auto mark = child->as<SceneNode>();
       if (mark && mark->transform() && child->as<IEchoTarget>()) targets_.push_back(mark->transform());
       collect(*child->asNode(), self);
     }

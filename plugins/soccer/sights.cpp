@@ -44,7 +44,7 @@ void Sights::collect(Kernel& kernel) {
     if (robots_.empty() || robots_.back().agent != agent)
       robots_.push_back({.agent = agent, .firstPart = static_cast<std::uint32_t>(parts_.size())});
     Robot& robot = robots_.back();
-    if (auto* state = o->as<AgentState>()) {
+    if (auto state = o->as<AgentState>()) {
       robot.state = state;
       robot.frame = state->transform();
     } else if (!o->id().empty()) {

@@ -142,7 +142,7 @@ class PanTiltEffector : public Effector {
   }
   static RestrictedVisionPerceptor* eyeOf(const Node& node) {
     for (const auto& c : node.children()) {
-      if (auto* eye = c->as<RestrictedVisionPerceptor>()) return eye;
+      if (auto eye = c->as<RestrictedVisionPerceptor>()) return eye;
       if (Node* inner = c->asNode())
         if (auto* eye = eyeOf(*inner)) return eye;
     }

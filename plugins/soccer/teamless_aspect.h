@@ -35,7 +35,7 @@ class TeamlessAspect : public SoccerControlAspect {
   static void detach(Leaf& group, bool on) { setProperty(group, kDetached, on); }
   void lookUp() {
     robots_.clear();
-    const auto* control = parent()->as<IGameControl>();
+    const auto control = parent()->as<IGameControl>();
     if (!control) return;
     for (AgentAspect* agent : control->agents()) {
       std::vector<AgentState*> states;

@@ -1,6 +1,7 @@
 #include "shadow_solver.h"
 
 #include "../../plugins/physics-ode/ode_engine.h"
+#include "api/phases.h"
 
 namespace spark::oracle {
 
@@ -9,7 +10,7 @@ using engine::SolverBody;
 void ShadowSolver::describe(Description<ShadowSolver>& d) {
   d.doc("Compares a solver with ODE.");
   d.implements<engine::ISolver>();
-  d.on<&ShadowSolver::placed>("place");
+  d.on<&ShadowSolver::placed>(phase::kPlace);
 }
 
 ShadowSolver& watch(Kernel& kernel, const std::string& path) {

@@ -66,15 +66,15 @@ void addSurface(const engine::Surface& s, Line& line) {
 
 void describeNode(Node& root, Leaf& leaf, std::vector<std::string>& out) {
   Line line{leaf.path().substr(root.path().size()) + " " + leaf.classObject()->name()};
-  auto* handler = leaf.as<CollisionHandler>();
+  auto handler = leaf.as<CollisionHandler>();
   if (handler && handler->surface()) addSurface(*handler->surface(), line);
   for (const Property* p : leaf.classObject()->properties())
     if (!(handler && handler->surface()) && p->name != "path" && p->name != "name")
       line.add(p->name, p->get(leaf).text());
-  if (auto* body = leaf.as<IRigidBody>()) addBody(*body, line);
-  if (auto* joint = leaf.as<IJoint>()) addJoint(*joint, root, line);
-  if (auto* visual = leaf.as<IVisual>()) addVisual(*visual, line);
-  if (auto* collider = leaf.as<ICollider>()) {
+  if (auto body = leaf.as<IRigidBody>()) addBody(*body, line);
+  if (auto joint = leaf.as<IJoint>()) addJoint(*joint, root, line);
+  if (auto visual = leaf.as<IVisual>()) addVisual(*visual, line);
+  if (auto collider = leaf.as<ICollider>()) {
     Vec3 low, high;
     collider->bounds(low, high);
     line.add("low", exactAll(low));
@@ -114,7 +114,7 @@ std::vector<std::string> creationOrder(Node& root) {
 std::vector<std::string> motion(Node& root) {
   std::vector<std::string> out;
   visit(root, [&](Leaf& leaf) {
-    auto* body = leaf.as<IRigidBody>();
+    auto body = leaf.as<IRigidBody>();
     if (!body) return;
     const engine::BodyState s = body->state();
     out.push_back(leaf.path().substr(root.path().size()) + " " + exactAll(s.position) + " " + exactAll(s.rotation) +

@@ -14,7 +14,7 @@ namespace {
 std::string printed(const Node& root) {
   std::string out;
   for (const auto& child : root.children()) {
-    auto* visual = child->as<IVisual>();
+    auto visual = child->as<IVisual>();
     if (visual)
       out += (out.empty() || out.back() == ']' ? "" : " ") + (visual->load().empty() ? "light" : visual->load());
     if (!child->asNode()) continue;

@@ -45,7 +45,7 @@ class Thing : public Node, public ICounter {
     d.method("join", &Thing::join).doc("All texts.");
     d.method("fail", &Thing::fail).doc("Throws.");
     d.alias("plus", "add");
-    d.on<&Thing::tick>("tick");
+    d.on<&Thing::tick>(ChannelName("tick"));
   }
   int count() const override { return count_; }
   Leaf& leaf() override { return *this; }

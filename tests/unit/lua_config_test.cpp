@@ -29,8 +29,8 @@ class Misspelt : public Leaf {
  public:
   static void describe(Description<Misspelt>& d) {
     d.doc("Hooks on what nobody defines.");
-    d.on<&Misspelt::prepare>("prepar");
-    d.on<&Misspelt::prepare>("of my own");
+    d.on<&Misspelt::prepare>(ChannelName("prepar"));
+    d.on<&Misspelt::prepare>(ChannelName("of my own"));
   }
   void prepare(const Event&) {}
 };
@@ -57,7 +57,7 @@ TEST_CASE("a config is found in the working folder first, then in the added fold
 TEST_CASE("a program sets globals of configs, tables of words and sequences among them") {
   LuaHouse h;
   scripts(h.kernel).setGlobal("host", List{List{"share", "/usr/share"}, List{"paths", List{"a", "b"}},
-                                        List{"empty", List{}}, List{"alone", true}});
+                                           List{"empty", List{}}, List{"alone", true}});
   h.write("c.lua", "found = host.share .. #host.paths .. host.paths[2] .. #host.empty .. tostring(host.alone)");
   scripts(h.kernel).runConfig("c.lua");
   CHECK(h.run("return found") == Value("/usr/share2b0true"));

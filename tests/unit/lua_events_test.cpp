@@ -31,8 +31,8 @@ TEST_CASE("a handler gets its node and the event") {
 TEST_CASE("on without a node listens at the root in configs and at self in attached scripts") {
   LuaHouse h;
   h.run("on('tick', function(self) where = self.path end)");
-  scripts(h.kernel).attachText(h.thing("/usr/a"), "on('tock', function(node, e) node.label = e.name self.count = 9 end)",
-                            "script", true);
+  scripts(h.kernel).attachText(h.thing("/usr/a"),
+                               "on('tock', function(node, e) node.label = e.name self.count = 9 end)", "script", true);
   h.emit("tick");
   h.emit("tock");
   CHECK(h.run("return where") == Value("/"));
@@ -75,7 +75,7 @@ TEST_CASE("what an attached script subscribes elsewhere goes with its own node")
   LuaHouse h;
   Thing& b = h.thing("/usr/b");
   scripts(h.kernel).attachText(h.thing("/usr/a"), "get('/usr/b'):on('tick', function(b) b.count = b.count + 1 end)",
-                            "script", true);
+                               "script", true);
   h.emit("tick");
   CHECK(b.count == 1);
   h.run("delete('/usr/a')");
@@ -110,8 +110,9 @@ TEST_CASE("get in an attached script starts at its node") {
 TEST_CASE("a script that fails while it is attached leaves no handlers") {
   LuaHouse h;
   Thing& a = h.thing("/usr/a");
-  const std::string text = LuaHouse::errorOf(
-      [&] { scripts(h.kernel).attachText(a, "on('tick', function() self.count = 1 end)\nerror('no')", "script", true); });
+  const std::string text = LuaHouse::errorOf([&] {
+    scripts(h.kernel).attachText(a, "on('tick', function() self.count = 1 end)\nerror('no')", "script", true);
+  });
   CHECK_THAT(text, Equals("the script attached to /usr/a failed: script:2: no"));
   h.emit("tick");
   CHECK(a.count == 0);
@@ -257,11 +258,27 @@ TEST_CASE("scripts end before the nodes: what nodes emit when they go reaches no
     kernel.create("Farewell", "/usr/first");
     kernel.create("Farewell", "/usr/second");
     scripts(kernel).run("held = get('/usr/second') on('gone', function() log.info('ran') end)", "test");
-    scripts(kernel).attachText(*kernel.root().find("/usr/second"), "self:on('gone', function() error('no') end)", "script",
-                            false);
+    scripts(kernel).attachText(*kernel.root().find("/usr/second"), "self:on('gone', function() error('no') end)",
+                               "script", false);
     scripts(kernel).run("delete('/usr/first')", "test");
     CHECK_THAT(text, Contains("ran") && Contains("script:1: no"));
     text.clear();
   }
   CHECK(text == "");
+}
+
+TEST_CASE("a script may remove the script server: it runs to its end, later ones need another server") {
+  LuaHouse h;
+  h.thing("/usr/a");
+  h.run("get('/usr/a'):on('bell', function(a) delete('/sys/server/script') a.count = a.count + 1 end)");
+  h.emit("bell");
+  h.emit("bell");  // its handlers are gone
+  CHECK(h.kernel.root().require<Thing>("/usr/a").count == 1);
+  CHECK(!h.kernel.root().find<IScriptServer>());
+  CHECK(h.run("delete('/sys/server/script') return 1 + 1") == Value(2));
+  CHECK(h.run("return 3") == Value(3));
+  h.write("last.lua", "delete('/sys/server/script')\nget('/usr/a').count = 9\n");
+  scripts(h.kernel).addFolder(h.folder);
+  scripts(h.kernel).runConfig("last.lua");
+  CHECK(h.kernel.root().require<Thing>("/usr/a").count == 9);
 }

@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "api/phases.h"
 #include "api/status.h"
 #include "host.h"
 #include "progress.h"
@@ -27,7 +28,7 @@ class Pulse : public Node {
  public:
   static void describe(Description<Pulse>& d) {
     d.doc("Tells the batch how far this world is.");
-    d.on<&Pulse::beat>("publish");
+    d.on<&Pulse::beat>(phase::kPublish);
   }
   Watch* watch = nullptr;
 

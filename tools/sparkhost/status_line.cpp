@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "api/phases.h"
 #include "status_text.h"
 #include "tree_values.h"
 
@@ -26,7 +27,7 @@ std::string lossText(const Leaf& root) {
 
 void StatusLine::describe(Description<StatusLine>& d) {
   d.doc("Shows on stderr how the run goes.");
-  d.on<&StatusLine::show>("publish");
+  d.on<&StatusLine::show>(phase::kPublish);
 }
 
 void StatusLine::install(Kernel& kernel, bool terminal) {

@@ -6,17 +6,17 @@
 #include <thread>
 
 // A cycle has a handful of rounds, some of a few dozen microseconds: what a round costs beside its jobs matters. So
-//  - who has nothing to do looks for a next round a little while before it sleeps, where every thread can have a core
-//  of its own; a host
-//    that waits for input has long gone to sleep;
-//  - a round is over when its jobs are done, not when everybody has seen it: who wakes up too late finds it closed and
-//  goes back to sleep.
+//  - an idle thread spins for a next round before it sleeps, where every thread can have a core of its own; a host that
+//    waits for input finds its threads asleep;
+//  - a round is over when its jobs are done, not when every thread has seen it: a thread that wakes up too late finds
+//  it
+//    closed and goes back to sleep.
 
 namespace spark {
 namespace {
 
-/// About what falling asleep and being woken costs: who looks in vain loses as much again, and no more.
-constexpr std::chrono::microseconds kPatience{20};
+/// About what falling asleep and being woken costs: spinning in vain at most doubles it.
+constexpr std::chrono::microseconds kSpin{20};
 
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -24,10 +24,10 @@ void pause() {
 #endif
 }
 
-/// Looks whether `come()` holds, for kPatience at most.
+/// Spins until `come()` holds, for kSpin at most.
 template <class Condition>
-void lookFor(const Condition& come) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+void spinUntil(const Condition& come) {
+  const auto end = std::chrono::steady_clock::now() + kSpin;
   do {
     for (int i = 0; i < 16; ++i, pause())
       if (come()) return;
@@ -54,7 +54,7 @@ struct Jobs::Impl {
   }
   void loop(std::uint64_t seen) {
     while (true) {
-      if (patient) lookFor([&] { return round != seen; });
+      if (patient) spinUntil([&] { return round != seen; });
       std::unique_lock lock(mutex);
       ++asleep;
       start.wait(lock, [&] { return ending || round != seen; });
@@ -85,7 +85,7 @@ struct Jobs::Impl {
       open = false;
     }
     if (inside == 0) return;
-    if (patient) lookFor([&] { return inside == 0; });
+    if (patient) spinUntil([&] { return inside == 0; });
     std::unique_lock lock(mutex);
     done.wait(lock, [&] { return inside == 0; });
   }
@@ -105,6 +105,7 @@ Jobs::Jobs() : impl_(std::make_unique<Impl>()) {}
 Jobs::~Jobs() { impl_->stop(); }
 
 void Jobs::setThreads(int count) {
+  SPARK_ASSERT(count >= 1);
   impl_->stop();
   count = std::min(count, 64);
   impl_->patient = count <= static_cast<int>(std::thread::hardware_concurrency());

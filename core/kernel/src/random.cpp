@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "spark/assert.h"
 #include "spark/error.h"
 #include "spark/kernel.h"
 
@@ -59,6 +60,7 @@ double RandomStream::normal(double mean, double sigma) {
 }
 
 std::uint64_t RandomStream::below(std::uint64_t n) {
+  SPARK_ASSERT(n > 0);
   // Lemire's rejection on the high half of the product.
   std::uint64_t x = bits();
   __extension__ typedef unsigned __int128 Wide;

@@ -265,16 +265,13 @@ void Tree::refuseUsed(const Leaf& leaf, bool rename, const std::string& doing) c
       if (low == high) return n;
     return -1;
   };
-  const InUse* oldest = nullptr;  // what the others work for, such as the run loop
   for (const InUse* use = inUse_; use; use = use->next_) {
     const Leaf* used = use->leaf_.get();
     if (!used) continue;
     const int below = levels(&leaf, used);
-    if (levels(used, &leaf) >= 0 || (rename && below > 0 && below <= use->namesBelow_)) oldest = use;
+    if (levels(used, &leaf) < 0 && !(rename && below > 0 && below <= use->namesBelow_)) continue;
+    throw Error(doing + ": " + (used == &leaf ? "it" : used->path()) + " is in use: " + std::string(use->why_));
   }
-  if (!oldest) return;
-  const Leaf* used = oldest->leaf_.get();
-  throw Error(doing + ": " + (used == &leaf ? "it" : used->path()) + " is in use: " + std::string(oldest->why_));
 }
 
 bool Tree::isFixed(const Leaf& leaf) const {

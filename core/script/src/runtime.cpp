@@ -9,12 +9,8 @@ namespace fs = std::filesystem;
 
 namespace spark::script {
 
-Runtime::Runtime(Leaf& s)
-    : server(s),
-      kernel(s.kernel()),
-      settings(kernel),
-      trusted(std::make_shared<State>(*this, nullptr)),
-      scriptNode(&kernel.root()) {}
+Runtime::Runtime(Kernel& k)
+    : kernel(k), settings(k), trusted(std::make_shared<State>(*this, nullptr)), scriptNode(&k.root()) {}
 
 Runtime::~Runtime() { close(); }
 
@@ -226,6 +222,7 @@ void Subscription::run(const Event& event) {
   if (removed || state->closed() || !node || node->kernel().isEnding()) return;
   if (!owner) return remove();  // the script's own node has gone
   Runtime& runtime = state->runtime();
+  const auto keep = runtime.shared_from_this();  // the handler may remove the script server
   const Restore running(runtime.scriptNode, owner);
   const auto failure = state->run(state->trusted() ? kHandlerBudget : kSandboxBudget, [&](lua_State* L) {
     lua_rawgeti(L, LUA_REGISTRYINDEX, function);

@@ -96,9 +96,9 @@ class State : public std::enable_shared_from_this<State> {
   }
   /// Frees a reference of luaL_ref. Never fails.
   void release(int reference);
-  /// Ends the Lua state; what still refers to it finds it closed.
+  /// Ends the Lua state, after the script that runs; what still refers to it finds it closed.
   void close();
-  bool closed() const { return !main_; }
+  bool closed() const { return ending_ || !main_; }
 
  private:
   static void* allocate(void* self, void* block, std::size_t oldSize, std::size_t newSize);
@@ -115,6 +115,7 @@ class State : public std::enable_shared_from_this<State> {
   std::array<lua_State*, kMaxDepth> threads_{};
   std::size_t depth_ = 0;
   std::size_t memory_ = 0, memoryLimit_ = 0;  // 0: none
+  bool ending_ = false;
   std::int64_t left_ = kUnlimited, budget_ = kUnlimited;
   std::optional<Failure> failure_;
 };
@@ -174,10 +175,9 @@ struct Script {
 };
 
 /// All of a kernel's scripting.
-class Runtime {
+class Runtime : public std::enable_shared_from_this<Runtime> {
  public:
-  /// `server`: the node that it belongs to, which cannot go while a script runs.
-  explicit Runtime(Leaf& server);
+  explicit Runtime(Kernel& kernel);
   ~Runtime();
   /// Ends all Lua states.
   void close();
@@ -212,7 +212,6 @@ class Runtime {
   /// Logs a handler's failure, once for each line of a script, and that it is switched off always.
   void report(const Failure& failure, const Subscription& subscription);
 
-  Leaf& server;
   Kernel& kernel;
   Settings settings;
   std::vector<std::filesystem::path> folders;

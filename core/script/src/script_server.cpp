@@ -24,35 +24,41 @@ void ScriptServer::describe(Description<ScriptServer>& d) {
 ScriptServer::ScriptServer() = default;
 ScriptServer::~ScriptServer() = default;
 
-void ScriptServer::onLink() { impl_ = std::make_unique<Impl>(*this); }
+void ScriptServer::onLink() { impl_ = std::make_shared<Impl>(kernel()); }
 void ScriptServer::onUnlink() { impl_->close(); }
+
+// A script may remove the script server: what runs it holds it until it ends.
 
 void ScriptServer::addFolder(fs::path folder) { impl_->folders.push_back(std::move(folder)); }
 void ScriptServer::addOverride(std::string key, Value value) { impl_->settings.add(std::move(key), std::move(value)); }
 
 void ScriptServer::runConfig(std::string_view file) {
-  const script::Script config = impl_->readConfig(file);
-  const script::Restore keepFolder(impl_->configFolder, config.path.parent_path());
+  const auto running = impl_;
+  const script::Script config = running->readConfig(file);
+  const script::Restore keepFolder(running->configFolder, config.path.parent_path());
   {
-    const script::Restore shielding(impl_->inConfig, true);
-    impl_->run(config.text, "@" + std::string(file));
+    const script::Restore shielding(running->inConfig, true);
+    running->run(config.text, "@" + std::string(file));
   }
-  impl_->checkChannels();
-  impl_->settings.finish();
+  running->checkChannels();
+  running->settings.finish();
 }
 
 Value ScriptServer::run(std::string_view text, std::string_view chunkName) {
-  return impl_->run(text, "=" + std::string(chunkName));
+  const auto running = impl_;
+  return running->run(text, "=" + std::string(chunkName));
 }
 
 void ScriptServer::setGlobal(std::string_view name, const Value& value) { impl_->setGlobal(name, value); }
 
 void ScriptServer::attach(Leaf& node, std::string_view file, const Value& arguments) {
-  impl_->attachFile(node, file, nullptr, [&](lua_State* L) { script::pushArguments(L, arguments); });
+  const auto running = impl_;
+  running->attachFile(node, file, nullptr, [&](lua_State* L) { script::pushArguments(L, arguments); });
 }
 
 void ScriptServer::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) {
-  impl_->attach(node, text, "=" + std::string(chunkName), trusted);
+  const auto running = impl_;
+  running->attach(node, text, "=" + std::string(chunkName), trusted);
 }
 
 std::vector<List> ScriptServer::options() const { return impl_->settings.options(); }

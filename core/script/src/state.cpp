@@ -45,6 +45,8 @@ State::State(Runtime& runtime, Leaf* sandbox) : runtime_(runtime), sandbox_(sand
 State::~State() { close(); }
 
 void State::close() {
+  ending_ = true;
+  if (depth_ > 0) return;
   if (main_) lua_close(main_);
   main_ = nullptr;
 }
@@ -166,7 +168,7 @@ int State::describeError(lua_State* L) {
 }
 
 std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
-  if (!main_) return Failure{"the scripts have ended", ""};
+  if (closed()) return Failure{"the scripts have ended", ""};
   if (depth_ == kMaxDepth)
     return Failure{"scripts entered each other more than " + std::to_string(kMaxDepth) +
                        " deep: does a handler raise its own event?",
@@ -182,9 +184,7 @@ std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
   lua_pushcfunction(L, &guarded<callBody>);
   lua_pushlightuserdata(L, const_cast<Body*>(&body));
   failure_.reset();
-  const InUse busy(runtime_.server, "a script of it runs");
   const int status = lua_pcall(L, 1, 0, 1);
-  if (!main_) return std::nullopt;
   std::optional<Failure> result;
   if (status != LUA_OK) result = std::move(failure_).value_or(Failure{});
   if (result) result->exhausted = left_ <= 0;
@@ -197,6 +197,7 @@ std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
   memoryLimit_ = outerLimit;
   left_ = outerLeft - (budget - left_);
   budget_ = outerBudget;
+  if (ending_ && depth_ == 0) close();
   return result;
 }
 

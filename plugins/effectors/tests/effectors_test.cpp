@@ -106,7 +106,7 @@ TEST_CASE("a frozen hinge goes on until a command comes, which sets speed 0") {
   Robot robot;
   auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
   robot.act(he1, "(he1 2)");
-  auto* freezable = he1.as<IFreezable>();
+  auto freezable = he1.as<IFreezable>();
   REQUIRE(freezable);
   freezable->freeze(true);
   CHECK(getProperty(he1, "frozen") == Value(true));

@@ -236,7 +236,7 @@ TEST_CASE("a child of the control server answers the same") {
   house.importField();
   house.join("A", 1);
   house.kernel.plugins().use("inspect");
-  auto* handler = house.kernel.create("Inspector", "/usr/inspect").as<IRequestHandler>();
+  auto handler = house.kernel.create("Inspector", "/usr/inspect").as<IRequestHandler>();
   Inspection inspection(house.kernel);
   handler->poll();
   for (const std::string_view what : handler->requests()) {

@@ -342,13 +342,13 @@ TEST_CASE("sensors and effectors of any plugin find motor and battery by their i
   Leaf& store = p.scene.create("Battery", "battery");
   p.call(store, "setCapacity", {1000.0});
   p.call(store, "setPower", {250.0});
-  const auto* battery = store.as<IBattery>();
+  const auto battery = store.as<IBattery>();
   REQUIRE(battery);
   CHECK(battery->power() == 250);
   CHECK(battery->capacity() == 1000);
 
   Leaf& node = p.joint("AngularMotor");
-  auto* motor = node.as<IMotor>();
+  auto motor = node.as<IMotor>();
   REQUIRE(motor);
   CHECK_FALSE(p.joint("HingeJoint").as<IMotor>());
   CHECK(motor->current() == 0);

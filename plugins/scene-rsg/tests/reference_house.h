@@ -28,8 +28,8 @@ struct Inventory {
       perceptors += child->as<Perceptor>() != nullptr;
       effectors += child->as<Effector>() != nullptr;
       colliders += child->as<ICollider>() != nullptr;
-      if (auto* body = child->as<IRigidBody>()) ++bodies, mass += body->mass();
-      if (auto* joint = child->as<IJoint>())
+      if (auto body = child->as<IRigidBody>()) ++bodies, mass += body->mass();
+      if (auto joint = child->as<IJoint>())
         ++(joint->jointType() == engine::JointType::angularMotor ? angularMotors : joints);
       if (const Node* inner = child->asNode()) add(*inner);
     }

@@ -72,7 +72,7 @@ TEST_CASE("eyes read their own percepts: things, parts of players, lines; what m
       percept);
   for (const char* eye : {"VisionPerceptor", "RestrictedVisionPerceptor"}) {
     INFO(eye);
-    const auto* reader = agent.create(eye, eye).as<ISightReader>();
+    const auto reader = agent.create(eye, eye).as<ISightReader>();
     REQUIRE(reader);
     ISightReader::Sightings seen;
     reader->read(*percept.begin(), seen);

@@ -7,7 +7,7 @@
 ///       d.property("linearDrag", &DragController::linear_).unit("N s/m").min(0).doc("Force per speed.");
 ///       d.method("stop", &DragController::stop).doc("Takes the body's speed away.");
 ///       d.link(&DragController::body_, Above<IRigidBody>());
-///       d.on<&DragController::prepare>("prepare");
+///       d.on<&DragController::prepare>(phase::kPrepare);
 ///     }
 
 #include <tuple>
@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "spark/abi/spark/describe.h"
+#include "spark/channel_name.h"
 #include "spark/class_object.h"
 #include "spark/error.h"
 
@@ -210,8 +211,8 @@ class Description {
 
   /// Every object of the class handles this event while it is linked: `void T::f(const Event&)`.
   template <auto F>
-  void on(std::string channel) {
-    d_.hooks.push_back({std::move(channel), [](Leaf& l, const Event& e) { (static_cast<T&>(l).*F)(e); }});
+  void on(ChannelName channel) {
+    d_.hooks.push_back({channel.text(), [](Leaf& l, const Event& e) { (static_cast<T&>(l).*F)(e); }});
   }
 
   /// The class is only a base: scenes and scripts cannot make one.

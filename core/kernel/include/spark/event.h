@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "spark/abi/spark/event.h"
+#include "spark/channel_name.h"
 #include "spark/node.h"
 #include "spark/value.h"
 

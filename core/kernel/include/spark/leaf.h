@@ -59,10 +59,12 @@ class Leaf {
   /// True when this object hangs below the kernel's root.
   bool isLinked() const;
 
-  /// This object as class or interface T, through the class object's table; nullptr when it is none.
+  /// This object as class or interface T, through the class object's table, together with itself; empty when it is
+  /// none.
   template <class T>
-  T* as() const {
-    return static_cast<T*>(query(T::kInterface));
+  Found<T> as() const {
+    T* object = static_cast<T*>(query(T::kInterface));
+    return {object, object ? const_cast<Leaf*>(this) : nullptr};
   }
   /// As `as` where only the id of T is known.
   void* query(const InterfaceId& id) const;

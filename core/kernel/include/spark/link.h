@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "spark/abi/spark/link.h"
+#include "spark/assert.h"
 #include "spark/node.h"
 
 namespace spark {
@@ -223,8 +224,13 @@ class Link : public detail::LinkBase {
     if (T* object = get()) return *object;
     throwMissing();
   }
-  T* operator->() const { return get(); }
-  T& operator*() const { return *get(); }
+  /// Precondition of -> and *: it is not empty.
+  T* operator->() const {
+    T* object = get();
+    SPARK_ASSERT(object);
+    return object;
+  }
+  T& operator*() const { return *operator->(); }
   explicit operator bool() const { return get() != nullptr; }
 
  private:

@@ -2,10 +2,12 @@
 /// \file
 /// References to objects of the tree.
 
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
 #include "spark/abi/spark/ref.h"
+#include "spark/assert.h"
 #include "spark/interface.h"
 
 namespace spark {
@@ -25,11 +27,15 @@ Life* shareLife(const Leaf& leaf);
 /// An object of the tree, as the leaf that it is and as the T that it offers.
 template <class T>
 struct Found {
+  Found(std::nullptr_t = nullptr) {}
+  Found(T* o, Leaf* l) : object(o), leaf(l) {}
   T* object = nullptr;
   Leaf* leaf = nullptr;
-  T* operator->() const { return object; }
-  std::add_lvalue_reference_t<T> operator*() const { return *object; }
+  /// Precondition of -> and *: it is not empty.
+  T* operator->() const { return SPARK_ASSERT(object), object; }
+  std::add_lvalue_reference_t<T> operator*() const { return SPARK_ASSERT(object), *object; }
   explicit operator bool() const { return object != nullptr; }
+  operator T*() const { return object; }
 };
 
 /// A checked, non-owning reference: empty once the object died. Copy and assign it on the simulation's thread; read it
@@ -56,8 +62,9 @@ class Ref {
 
   /// The object, or nullptr when it is dead or was never set.
   T* get() const { return life_ && life_->leaf ? object_ : nullptr; }
-  T* operator->() const { return get(); }
-  T& operator*() const { return *get(); }
+  /// Precondition of -> and *: it is not empty.
+  T* operator->() const { return SPARK_ASSERT(get()), get(); }
+  T& operator*() const { return SPARK_ASSERT(get()), *get(); }
   explicit operator bool() const { return get() != nullptr; }
 
  private:

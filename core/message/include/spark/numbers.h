@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "spark/abi/spark/numbers.h"
+#include "spark/assert.h"
 
 namespace spark {
 
@@ -64,6 +65,7 @@ class ByteWriter {
 
   /// Where `n` bytes can be written, at most kMostRoom; then end() says up to where they were.
   char* room(std::size_t n) {
+    SPARK_ASSERT(n <= kMostRoom);
     if (static_cast<std::size_t>(block_ + sizeof block_ - at_) < n) flush();
     return at_;
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "spark/abi/spark/predicates.h"
+#include "spark/assert.h"
 #include "spark/numbers.h"
 #include "spark/value.h"
 
@@ -189,7 +190,10 @@ class Predicates {
   bool surplus_ = false;        ///< close() was called without one
 };
 
-inline const Token& Element::token() const { return owner_->tokens_[index_]; }
+inline const Token& Element::token() const {
+  SPARK_ASSERT(owner_ && index_ < owner_->size());
+  return owner_->tokens_[index_];
+}
 inline std::string_view Element::text() const {
   const Token& t = token();
   return t.kind == Token::Kind::text ? owner_->textOf(t) : std::string_view();

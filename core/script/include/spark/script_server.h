@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Scripts: Lua 5.4.
+/// The script server: Lua 5.4.
 
 #include <filesystem>
 #include <memory>
@@ -10,20 +10,9 @@
 
 #include "spark/abi/spark/script_server.h"
 #include "spark/kernel.h"
+#include "spark/script.h"
 
 namespace spark {
-
-/// What nodes ask for that run scripts of their own. Plugins link it: `Link<IScriptServer>`, At<IScriptServer>().
-class IScriptServer {
- public:
-  SPARK_INTERFACE(IScriptServer, 1);
-  static constexpr const char* kPath = "/sys/server/script";
-  virtual ~IScriptServer() = default;
-  /// Attaches a script file to a node: it runs at once with `self` set to the node, in an environment of its own, and
-  /// may subscribe to events with on(). It goes with the node. `arguments`: what the script reads with `local args =
-  /// ...`; a list of pairs whose keys are words is a table there ({{"limit", 3}} is {limit = 3}). Throws Error.
-  virtual void attach(Leaf& node, std::string_view file, const Value& arguments = {}) = 0;
-};
 
 /// The scripts of one kernel, at /sys/server/script. Configs and trusted scripts share one Lua state; every untrusted
 /// script has a limited one of its own.
@@ -61,7 +50,7 @@ class ScriptServer : public Leaf, public IScriptServer {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;  ///< kept by a script that runs
 };
 
 /// The kernel's script server; the first call makes it.
