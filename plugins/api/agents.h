@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Agents: the aspect that makes a subtree an agent, its perceptors and effectors, control aspects, parsers, and game
-/// control's services.
+/// Agents: the aspect that turns a subtree into an agent, its perceptors and effectors, control aspects, parsers, and
+/// the services of game control.
 
 #include <array>
 
@@ -17,19 +17,20 @@ namespace spark {
 /// still for some cycles after 18 hours, and clients end at two messages of one time.
 inline constexpr DoubleRange kLateClocks{65536, 1e9};
 
-/// Bytes to predicates and back. Below game control, or below a port to speak another language there.
+/// Converts between message bytes and predicates. A child of game control, or of a port that speaks another language.
 class IParser {
  public:
   SPARK_INTERFACE(IParser, 1);
   virtual ~IParser() = default;
-  /// Appends what the message holds. What was complete before an error stays. Never throws on bad bytes.
+  /// Appends the predicates of `message` to `out`. Lists that were complete before an error stay in `out`. Does not
+  /// throw on malformed bytes: the result says where and why.
   virtual ReadResult parse(std::string_view message, Predicates& out) = 0;
-  /// Appends the message for `predicates`. Called by several threads at once in the sense phase.
+  /// Appends the message for `predicates` to `out`. Called by several threads at once in the sense phase.
   virtual void write(const Predicates& predicates, std::string& out) = 0;
 };
 
-/// Turns a subtree into an agent. Game control makes one per connection (`/usr/scene/AgentAspect<n>`); robots of the
-/// installed base nest a second one. Registered by `gamecontrol`.
+/// Turns a subtree into an agent. Game control creates one per connection (`/usr/scene/AgentAspect<n>`); robots of the
+/// installed base nest a second one in it. Registered by `gamecontrol`.
 class AgentAspect : public Transform {
   SPARK_CLASS(AgentAspect, Transform)
  public:
@@ -37,10 +38,11 @@ class AgentAspect : public Transform {
     d.doc("Root of an agent: collects the perceptors and effectors below it.");
     d.property("number", &AgentAspect::number).doc("Game control's number of the agent; 0 for nested aspects.");
   }
-  /// Agents act and are numbered in this order. 0: nested, not an agent of its own.
+  /// The agent's number, from 1; agents act in this order. 0: a nested aspect, no agent of its own.
   int number() const { return number_; }
+  /// Called once by game control.
   void setNumber(int n) { number_ = n; }
-  /// The outermost aspect above (or this).
+  /// The outermost aspect above, or this one.
   AgentAspect& outermost() {
     AgentAspect* top = this;
     for (auto* up = ancestor<AgentAspect>(); up; up = up->ancestor<AgentAspect>()) top = up;
@@ -51,20 +53,22 @@ class AgentAspect : public Transform {
   int number_ = 0;
 };
 
-/// Writes what it senses. Called in the sense phase, possibly by several threads, one agent a thread: reads the world,
-/// changes only itself. Registered by `gamecontrol`.
+/// Writes a percept. It runs in the sense phase, where several threads may each handle one agent: it may read the world
+/// and change only itself. Registered by `gamecontrol`.
 class Perceptor : public SceneNode {
   SPARK_CLASS(Perceptor, SceneNode)
  public:
   static void describe(Description<Perceptor>& d) {
     d.doc("A sensor of the agent above it.");
     d.property("interval", &Perceptor::interval_).min(1).doc("Senses in every n-th cycle of its agent.");
-    d.property("predicateName", &Perceptor::predicateName_).doc("Name of its percept where the class allows another.");
+    d.property("predicateName", &Perceptor::predicateName_).doc("Name of the percept, where the class allows another.");
     d.abstract();
   }
+  /// Cycles of the agent from one percept to the next, at least 1.
   int interval() const { return interval_; }
+  /// Name of the percept; "": the class's own.
   const std::string& predicateName() const { return predicateName_; }
-  /// Appends zero or more top-level lists. `event`: the sense phase.
+  /// Appends zero or more top-level lists to `out`. `event` is that of the sense phase. Must not throw.
   virtual void sense(Predicates& out, const Event& event) = 0;
 
  protected:
@@ -72,41 +76,42 @@ class Perceptor : public SceneNode {
   std::string predicateName_;
 };
 
-/// Something that several perceptors look at, as eyes look at one scene: it is brought up to date once, before the
-/// first of them senses. Offered by perceptors.
+/// Data that several perceptors share, such as the visible objects of the scene: it is updated once, before the first
+/// of them senses. Offered by perceptors.
 class ISharedView {
  public:
   SPARK_INTERFACE(ISharedView, 1);
   virtual ~ISharedView() = default;
-  /// The sense phase, in the simulation's thread: this perceptor will be asked, and none was asked yet. `round` differs
-  /// from phase to phase.
+  /// Updates the shared data. Called at the start of the sense phase, in the simulation's thread, for each perceptor
+  /// that will sense, before any of them does. `round` differs from one sense phase to the next: the first call with a
+  /// new `round` updates, later ones return at once.
   virtual void share(std::uint64_t round) = 0;
 };
 
-/// An eye, for those who show what an agent sees beside what is true. Offered by perceptors that tell polar
-/// coordinates. Used between two cycles, in the simulation's thread; it looks anew at where things are.
+/// A vision sensor, for viewers that show what an agent sees beside the ground truth. Offered by perceptors that report
+/// polar coordinates. Used between two cycles, in the simulation's thread; poses are those of the moment of the call.
 class IEye {
  public:
   SPARK_INTERFACE(IEye, 1);
   virtual ~IEye() = default;
-  /// Something that may be seen. Its name is made of its percept's words: "B", "P Red 3", "P Red 3 head".
+  /// An object that can be seen.
   struct Sight {
-    std::string name;
-    Vec3f place;  ///< in the world [m]
+    std::string name;  ///< the words of its percept: "B", "P Red 3", "P Red 3 head"
+    Vec3f place;       ///< true position, world frame [m]
   };
-  /// Where it is and looks, in the world: x forward, y to the left, z up.
+  /// Pose of the sensor, world frame: x forward, y to the left, z up.
   virtual Matrix view() = 0;
-  /// Full horizontal (at most 360) and vertical (at most 180) angle in which it sees [deg].
+  /// Full horizontal (at most 360) and vertical (at most 180) field of view [deg].
   virtual std::array<double, 2> cone() = 0;
-  /// How far it sees [m]; infinite: no limit.
+  /// Largest distance that it sees [m]; infinite: no limit.
   virtual double range() = 0;
-  /// The place in the world that polar coordinates of its percept mean.
+  /// Position in the world frame [m] of a point given in the percept's polar coordinates [m, deg, deg].
   virtual Vec3f placeOf(double distance, double horizontalDeg, double verticalDeg) = 0;
-  /// Appends all there is to be seen in the scene, within its cone or not, and where it truly is.
+  /// Appends all objects of the scene that can be seen, inside the field of view or not.
   virtual void sights(std::vector<Sight>& out) = 0;
 };
 
-/// Acts for its agent. Registered by `gamecontrol`.
+/// Executes the actions of its agent that carry its predicate. Registered by `gamecontrol`.
 class Effector : public SceneNode {
   SPARK_CLASS(Effector, SceneNode)
  public:
@@ -115,17 +120,18 @@ class Effector : public SceneNode {
     d.property("predicate", &Effector::predicate).doc("The predicate it answers to.");
     d.abstract();
   }
-  /// The predicate it answers to: the node's name for joints, a fixed word for others. Asked when the tree changed.
+  /// The predicate it answers to: the node's name for joints, a fixed word for others. Read again when the tree
+  /// changed.
   virtual std::string predicate() const { return name(); }
-  /// The act phase: a list `(predicate arguments...)` came. Immediate effectors act now; others keep it and act in
-  /// prepare. Returns "" or one line that says what was wrong (expected, found); nothing is thrown.
+  /// Executes `(predicate arguments...)`, in the act phase. Immediate effectors act now; others store the command and
+  /// act in the prepare phase. Returns "" or one line that says what was wrong (expected, found). Must not throw.
   virtual std::string act(const Element& action) = 0;
 
   /// The innermost agent aspect above; nullptr outside of agents.
   AgentAspect* agent() const { return ancestor<AgentAspect>(); }
 };
 
-/// A rule of the simulation, child of game control; runs in the rule phase, in child order. Registered by
+/// A rule of the simulation; a child of game control. Rules run in the rule phase, in child order. Registered by
 /// `gamecontrol`.
 class ControlAspect : public Node {
   SPARK_CLASS(ControlAspect, Node)
@@ -133,15 +139,18 @@ class ControlAspect : public Node {
   static void describe(Description<ControlAspect>& d) {
     d.doc("A rule of the simulation.");
     d.abstract();
-    d.property("enabled", &ControlAspect::enabled_).doc("It takes part; false: as if it were not there.");
+    d.property("enabled", &ControlAspect::enabled_).doc("False: the rule has no effect, as if it were not there.");
     d.on<&ControlAspect::run>(phase::kRule);
   }
+  /// Applies the rule, once in each cycle while it is enabled.
   virtual void rule(const Event& event) = 0;
-  /// Instead of rule() while it is switched off: forgets what must not count when it is switched on again.
+  /// Called instead of rule() while the rule is disabled: clears what must not count when it is enabled again.
   virtual void rest(const Event&) {}
+  /// False: rule() is not called.
   bool enabled() const { return enabled_; }
-  /// Game control tells of agents: after the aspect is linked, before it is removed.
+  /// Called by game control after an agent's aspect was linked.
   virtual void agentConnected(AgentAspect&) {}
+  /// Called by game control before an agent's aspect is removed.
   virtual void agentLeaving(AgentAspect&) {}
 
  private:
@@ -149,7 +158,8 @@ class ControlAspect : public Node {
   bool enabled_ = true;
 };
 
-/// An agent that thinks inside the host: C++ classes or Lua. Below /usr/agent. Registered by `gamecontrol`.
+/// The program of an agent that runs inside the host: a C++ class or Lua. Below /usr/agent. Registered by
+/// `gamecontrol`.
 class Behavior : public Node {
   SPARK_CLASS(Behavior, Node)
  public:
@@ -157,33 +167,34 @@ class Behavior : public Node {
     d.doc("A program that drives an agent from inside the host.");
     d.abstract();
   }
-  /// Once, when the agent exists: the first actions, e.g. `(scene ...)`.
+  /// Appends the first actions, such as `(scene ...)`. Called once, when the agent exists.
   virtual void start(Predicates& actions) = 0;
-  /// The percepts of the last cycle came; append the actions for the next.
+  /// Appends the actions for the next cycle. `percepts` are those of the last cycle, valid during the call.
   virtual void think(const Predicates& percepts, Predicates& actions) = 0;
 };
 
-/// Game control, at /sys/server/gamecontrol.
+/// Game control: connects agents to the simulation. At /sys/server/gamecontrol.
 class IGameControl {
  public:
   SPARK_INTERFACE(IGameControl, 1);
   static constexpr const char* kPath = "/sys/server/gamecontrol";
   virtual ~IGameControl() = default;
-  /// The agents in order of number. Valid until an agent comes or goes.
+  /// The agents, sorted by number. Valid until an agent is added or removed.
   virtual const std::vector<AgentAspect*>& agents() const = 0;
-  /// Removes the agent at the start of the next act phase; its connection is closed when `close`.
+  /// Removes the agent at the start of the next act phase; `close`: closes its connection, too.
   virtual void removeAgent(AgentAspect& agent, bool close) = 0;
   /// Number of agents that ever had a robot.
   virtual int agentsSeen() const = 0;
-  /// What an agent sensed last; nullptr when that is nothing yet or it is no agent. Valid until the next sense phase,
-  /// in which perceptors that are not due say nothing.
+  /// The agent's last percepts; nullptr before the first and for an aspect that is no agent. Valid until the next sense
+  /// phase. Perceptors that were not due in the last one are missing.
   virtual const Predicates* percepts(const AgentAspect& agent) const = 0;
-  /// Wall time from the agent's percepts being sent to the next message from it [s], smoothed over some 16 of them; NaN
-  /// when not known: it lives inside the host, has not answered yet, or is no agent.
+  /// Wall time from sending percepts to the agent's next message [s], smoothed over some 16 messages. NaN when it is
+  /// not known: the agent runs inside the host, has not answered yet, or is no agent.
   virtual double latency(const AgentAspect& agent) const = 0;
 };
 
-/// Marks an agent as having answered in lockstep. Offered by the `syn` effector.
+/// Marks the effector whose command says that the agent has finished its cycle in lockstep. Offered by the `syn`
+/// effector.
 class ISyncEffector {
  public:
   SPARK_INTERFACE(ISyncEffector, 1);

@@ -19,7 +19,7 @@ struct Installation {
   std::filesystem::path share;    ///< folder with lua/ and scenes/
   /// Folders with scenes of your own in rsg/, looked at before Spark's.
   std::vector<std::string> scenePaths;
-  /// The simulation serves nobody: configs open no web page and no control socket.
+  /// True: configs open no web page and no control socket.
   bool alone = true;
 };
 

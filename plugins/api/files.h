@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Files: a server that asks the file systems below it, in order.
+/// Files: the file server searches the file systems below it, in order.
 
 #include <optional>
 #include <string>
@@ -10,32 +10,34 @@
 
 namespace spark {
 
-/// Below the file server: a folder, an archive.
+/// A source of files, such as a folder or an archive. A child of the file server.
 class IFileSystem {
  public:
   SPARK_INTERFACE(IFileSystem, 1);
   virtual ~IFileSystem() = default;
-  /// The content of a resource ("rsg/agent/sphere.rsg"), nothing when it has none of that name. Throws Error when it
-  /// cannot be read.
+  /// The content of a resource ("rsg/agent/sphere.rsg"); nullopt when it does not exist. Throws Error when it exists
+  /// but cannot be read.
   virtual std::optional<std::string> read(const std::string& resource) = 0;
-  /// Changes when the resource's content may have changed (modification time, archive identity); 0 when it does not
-  /// exist.
+  /// A number that differs when the resource's content may have changed (modification time, identity of the archive);
+  /// 0 when it does not exist.
   virtual std::uint64_t stamp(const std::string& resource) = 0;
-  /// For messages: where it looks.
+  /// The place that it searches, for messages: "folder '/usr/share/spark'".
   virtual std::string where() const = 0;
 };
 
-/// The file server, at /sys/server/file. Resource names are relative, with '/', never climbing out: others throw Error.
+/// The file server, at /sys/server/file. A resource name is a relative path with '/' as separator and without "..". All
+/// functions throw Error for other names.
 class IFileServer {
  public:
   SPARK_INTERFACE(IFileServer, 1);
   static constexpr const char* kPath = "/sys/server/file";
   virtual ~IFileServer() = default;
-  /// The content from the first file system that has it. Throws Error: bad name, is a folder, not found (says where it
-  /// looked), too large.
+  /// The content from the first file system that has the resource. Throws Error for a bad name, a folder, a file that
+  /// is too large, and when no file system has it; then the text names the places that were searched.
   virtual std::string read(std::string_view resource) = 0;
+  /// True when a file system has the resource.
   virtual bool exists(std::string_view resource) = 0;
-  /// Changes when read() may give something else; for caches.
+  /// A number that differs when read() may return another content, for caches; 0 when the resource does not exist.
   virtual std::uint64_t stamp(std::string_view resource) = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What effectors share: numbers out of a message, joints' speeds within their limits.
+/// Helpers of effectors: reading numbers from an action, clamping joint speeds.
 ///
 ///     std::string act(const Element& action) override {
 ///       NumberArguments read(action);
@@ -19,15 +19,15 @@
 
 namespace spark {
 
-/// Reads the arguments of `(predicate arguments...)` as finite numbers, and remembers what was wrong with the first
-/// that is none. Lives in one call of act(). Allocates only when something is wrong.
+/// Reads the arguments of `(predicate arguments...)` as finite numbers and keeps a remark on the first that is not one.
+/// Lives during one call of act(); `action` must outlive it. Allocates only for a remark.
 class NumberArguments {
  public:
   explicit NumberArguments(const Element& action) : action_(action) {}
 
-  /// Argument `index` (from 0). False when it is missing, a list or not finite: `out` is then untouched, and the
-  /// command should have no effect. Text that is no number counts as the installed base counts it, by C's atof ("abc"
-  /// is 0, "1.5x" is 1.5), and is remarked on.
+  /// Reads argument `index`, from 0, into `out`. Returns false when the argument is missing, a list or not finite:
+  /// `out` is then unchanged, and the command should have no effect. Text that is no number is converted as C's atof
+  /// does, as in the installed base ("abc" is 0, "1.5x" is 1.5), and causes a remark.
   bool operator()(std::size_t index, double& out) {
     const Element argument = action_.at(index + 1);
     if (!argument || argument.isList())
@@ -42,11 +42,12 @@ class NumberArguments {
     out = v;
     return true;
   }
-  /// What act() returns: "" when all was well.
+  /// The return value of act(): the remark, or "" when all arguments were numbers. Call it once.
   std::string remark() { return std::move(remark_); }
 
  private:
-  static constexpr std::size_t kShown = 60;  // characters
+  static constexpr std::size_t kShown = 60;  // bytes of a bad argument in the remark
+  /// Keeps the first remark. Returns false.
   bool refuse(std::string text) {
     if (remark_.empty()) remark_ = std::move(text);
     return false;
@@ -55,10 +56,10 @@ class NumberArguments {
   std::string remark_;
 };
 
-/// `speed` within the joint's greatest, IJoint::maxSpeed (0: unlimited) [rad/s].
+/// `speed` [rad/s] clamped to the joint's IJoint::maxSpeed(); 0 there: not clamped.
 inline double clampSpeed(const IJoint& joint, int axis, double speed) {
-  const double most = joint.maxSpeed(axis);
-  return most > 0 ? std::clamp(speed, -most, most) : speed;
+  const double max = joint.maxSpeed(axis);
+  return max > 0 ? std::clamp(speed, -max, max) : speed;
 }
 
 }  // namespace spark

@@ -1,14 +1,15 @@
 #pragma once
 /// \file
-/// World vectors as sensors tell them: in the frame of their own transform.
+/// Conversion of world vectors into the frame of a sensor.
 
 #include "api/math.h"
 #include "spark/abi/api/local_frame.h"
 
 namespace spark {
 
-/// A vector of the world in the frame whose world matrix is `frame` (Transform::world(); only its rotation counts). Any
-/// unit; it stays the same. Summed from left to right in single precision, which gives the installed base's digits.
+/// Rotates the world vector `v` into the frame with the world matrix `frame` (Transform::world()): R^T v, the
+/// translation is ignored. The unit of `v` is kept. Summed from left to right in single precision, as the installed
+/// base does, so that the digits agree.
 inline Vec3f intoFrame(const Matrix& frame, const Vec3f& v) {
   Vec3f out;
   for (int axis = 0; axis < 3; ++axis)

@@ -1,12 +1,15 @@
 #pragma once
 /// \file
-/// Vectors, rotations, matrices, and how they cross into Lua and scene files.
+/// Vectors, rotations, matrices, and their conversion to and from the values of Lua and scene files.
 ///
-/// Physics is double precision. Transforms are single precision, as the installed base's scenes and monitors have them.
-/// Frames: right-handed, z up, metres and radians; degrees only where a name says so.
+/// Physics is double precision. Transforms are single precision, as in the scenes and monitors of the installed base.
+/// Frames are right-handed with z up; units are metres and radians, degrees only where a name says so.
+
+#include <fmt/format.h>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -18,15 +21,15 @@ namespace spark {
 
 using Vec3 = Eigen::Vector3d;
 using Vec3f = Eigen::Vector3f;
-/// 3x3 rotation, columns are the body's axes in the outer frame.
+/// 3x3 matrix. As a rotation: columns are the body's axes in the outer frame.
 using Mat3 = Eigen::Matrix3d;
-/// 4x4 homogeneous transform, column-major, single precision; carries no alignment.
+/// 4x4 homogeneous transform, column-major, single precision, not aligned.
 using Matrix = Eigen::Matrix<float, 4, 4, Eigen::ColMajor | Eigen::DontAlign>;
 /// RGBA, each 0..1.
 struct Color {
   float r = 0, g = 0, b = 0, a = 1;
 };
-/// Position and orientation in the world.
+/// Position [m] and rotation of a frame in an outer frame, the world's unless said otherwise.
 struct Pose {
   Vec3 position = Vec3::Zero();
   Mat3 rotation = Mat3::Identity();
@@ -35,13 +38,13 @@ struct Pose {
 constexpr double kPi = std::numbers::pi;
 inline double degToRad(double deg) { return deg * (kPi / 180.0); }
 inline double radToDeg(double rad) { return rad * (180.0 / kPi); }
-/// The angle in degrees brought into [-180, 180).
+/// The angle [deg] normalised to [-180, 180).
 inline double normalizeDeg(double deg) {
   const double r = std::fmod(deg + 180.0, 360.0);
   return (r < 0 ? r + 360.0 : r) - 180.0;
 }
 
-/// Rotation by degrees about x, y, z: R = Rx Ry Rz, computed in single precision (scene-language section 2.3).
+/// Rotation by angles [deg] about x, y, z: R = Rx Ry Rz, computed in single precision (scene-language section 2.3).
 inline Matrix rotationDeg(float ax, float ay, float az) {
   const auto axis = [](int a, int b, float deg) {
     const float rad = deg * (std::numbers::pi_v<float> / 180.0f), c = std::cos(rad), s = std::sin(rad);
@@ -53,20 +56,24 @@ inline Matrix rotationDeg(float ax, float ay, float az) {
   const Matrix xy = x * y;
   return xy * z;
 }
+/// Translation by `p` [m].
 inline Matrix translation(const Vec3f& p) {
   Matrix m = Matrix::Identity();
   m.block<3, 1>(0, 3) = p;
   return m;
 }
-/// Inverse of a rotation with translation.
+/// Inverse of a rigid transform: rotation and translation, no scale.
 inline Matrix rigidInverse(const Matrix& m) {
   Matrix out = Matrix::Identity();
   out.block<3, 3>(0, 0) = m.block<3, 3>(0, 0).transpose();
   out.block<3, 1>(0, 3) = -(out.block<3, 3>(0, 0) * m.block<3, 1>(0, 3));
   return out;
 }
+/// The translation of a transform.
 inline Vec3f positionOf(const Matrix& m) { return m.block<3, 1>(0, 3); }
+/// A rigid transform as pose.
 inline Pose toPose(const Matrix& m) { return {positionOf(m).cast<double>(), m.block<3, 3>(0, 0).cast<double>()}; }
+/// A pose as transform, rounded to single precision.
 inline Matrix toMatrix(const Pose& p) {
   Matrix m = Matrix::Identity();
   m.block<3, 3>(0, 0) = p.rotation.cast<float>();
@@ -75,14 +82,13 @@ inline Matrix toMatrix(const Pose& p) {
 }
 
 namespace detail {
-/// Reads n numbers from n scalars or one list of n.
+/// Reads N numbers from N scalars or one list of N. Throws Error otherwise.
 template <int N>
 inline std::array<double, N> numbers(Args& args) {
   std::array<double, N> out{};
   if (!args.atEnd() && args.values[args.next].isList()) {
     Args inner{args.values[args.next].toList(), args.loose};
-    if (inner.left() != N)
-      throw Error("expected " + std::to_string(N) + " numbers, found a list of " + std::to_string(inner.left()));
+    if (inner.left() != N) throw Error(fmt::format("expected {} numbers, found a list of {}", N, inner.left()));
     ++args.next;
     for (double& v : out) v = Convert<double>::from(inner);
   } else {
@@ -91,6 +97,9 @@ inline std::array<double, N> numbers(Args& args) {
   return out;
 }
 }  // namespace detail
+
+// Conversions for properties and method arguments: a vector is 3 numbers, a colour 4 (RGBA), a matrix 16 (column-major),
+// each as scalars or as one list.
 
 template <>
 struct Convert<Vec3> {
@@ -119,7 +128,6 @@ struct Convert<Color> {
   }
   static Value to(const Color& c) { return List{double(c.r), double(c.g), double(c.b), double(c.a)}; }
 };
-/// 16 numbers, column-major.
 template <>
 struct Convert<Matrix> {
   static constexpr int kScalars = 16;

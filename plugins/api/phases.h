@@ -1,21 +1,30 @@
 #pragma once
 /// \file
-/// The phases of one simulated instant, as channels, and the run loop's services. The order within a phase is tree
-/// order as stated.
+/// The phases of a cycle, as event channels, and the interfaces of the run loop. Within a phase listeners run in tree
+/// order, parents or children first as stated below.
 
 #include "spark/abi/api/phases.h"
 #include "spark/event.h"
 #include "spark/node.h"
 
 namespace spark::phase {
-// Defined by `simulation`, in this order each cycle. Event: time [s] of the simulated clock, step [s], cycle.
-inline constexpr ChannelName kAct{"act"};          ///< parents first. Agents' messages are realised.
-inline constexpr ChannelName kPrepare{"prepare"};  ///< children first. Deferred actions, controllers, sampling.
-inline constexpr ChannelName kPhysics{"physics"};  ///< parents first. Contacts, handlers, joints, one solver step.
-inline constexpr ChannelName kPlace{"place"};      ///< parents first. Bodies write transforms; world matrices.
-inline constexpr ChannelName kRule{"rule"};        ///< parents first. Control aspects.
-inline constexpr ChannelName kSense{"sense"};      ///< parents first. Perceptors.
-inline constexpr ChannelName kPublish{"publish"};  ///< parents first. Monitors, recorders.
+// Defined by `simulation`; a cycle runs them in this order. The event carries the simulated time [s], the step [s] and
+// the number of the cycle.
+
+/// Parents first. Agents' messages are executed.
+inline constexpr ChannelName kAct{"act"};
+/// Children first. Deferred actions, controllers, sampling before the step.
+inline constexpr ChannelName kPrepare{"prepare"};
+/// Parents first. Contacts, collision handlers, joints, one solver step.
+inline constexpr ChannelName kPhysics{"physics"};
+/// Parents first. Bodies write transforms; world matrices are updated.
+inline constexpr ChannelName kPlace{"place"};
+/// Parents first. Control aspects.
+inline constexpr ChannelName kRule{"rule"};
+/// Parents first. Perceptors.
+inline constexpr ChannelName kSense{"sense"};
+/// Parents first. Monitors, recorders.
+inline constexpr ChannelName kPublish{"publish"};
 }  // namespace spark::phase
 
 namespace spark {
@@ -26,50 +35,50 @@ class ISimulation {
   SPARK_INTERFACE(ISimulation, 2);
   static constexpr const char* kPath = "/sys/server/simulation";
   virtual ~ISimulation() = default;
-  /// Runs cycles until the simulation's `duration` is reached, stop() or Kernel::requestStop(). Not to be called from
-  /// within a cycle: throws Error.
+  /// Runs cycles until the property `duration` is reached, stop() or Kernel::requestStop(). Throws Error when called
+  /// within a cycle.
   virtual void run() = 0;
   /// Runs `count` cycles, fewer after stop() or Kernel::requestStop(); waits for the clock and for agents as run()
-  /// does. Not to be called from within a cycle: throws Error.
+  /// does. Throws Error when called within a cycle.
   virtual void runCycles(std::int64_t count) = 0;
-  /// The current run() or runCycles() returns after the cycle it is in. For rules; other threads and signal handlers
-  /// use Kernel::requestStop(), which is for good.
+  /// Makes the current run() or runCycles() return after the current cycle; a later one runs again. For rules, in the
+  /// simulation's thread; other threads and signal handlers use Kernel::requestStop(), which is permanent.
   virtual void stop() = 0;
-  /// Simulated time [s] since start: sum of executed steps.
+  /// Simulated time since the start [s]: the sum of the executed steps.
   virtual double time() const = 0;
   /// Number of the current cycle, from 1; 0 before the first.
   virtual std::int64_t cycle() const = 0;
-  /// Simulated seconds per cycle.
+  /// Simulated time of one cycle [s].
   virtual double step() const = 0;
-  /// True when the clock waits for all agents of a cycle.
+  /// True when each cycle waits for the answers of all agents.
   virtual bool lockstep() const = 0;
-  /// True when cycles are paced to wall time: a long one is seen by everybody.
+  /// True when cycles are paced to wall time.
   virtual bool paced() const = 0;
-  /// True: cycles are paced to wall time; false: as fast as it goes.
+  /// True: paces cycles to wall time; false: runs them as fast as possible.
   virtual void setPaced(bool on) = 0;
 };
 
-/// Something the clock waits for: agents that have not answered. Any node in the tree may offer it.
+/// Holds the start of a cycle, for instance until all agents have answered. Any node in the tree may offer it.
 class IInputGate {
  public:
   SPARK_INTERFACE(IInputGate, 1);
   virtual ~IInputGate() = default;
-  /// False: the next cycle must not start yet. Asked after every batch of input. `lockstep`: the clock waits for every
-  /// agent; otherwise only what holds the very first cycle (agents that are expected) counts.
+  /// False: the next cycle must not start yet. Called after every batch of input. `lockstep` true: the cycle waits for
+  /// every agent; false: only conditions on the first cycle count, such as agents that are expected.
   virtual bool ready(bool lockstep) = 0;
 };
 
-/// Something that brings input: the network. Found by the run loop as children of /sys/server.
+/// A source of input, such as the network. The run loop finds it among the children of /sys/server.
 class IInputSource {
  public:
   SPARK_INTERFACE(IInputSource, 1);
   virtual ~IInputSource() = default;
-  /// Takes all input that is there without waiting: ports in tree order.
+  /// Processes all input that has arrived, ports in tree order. Does not wait.
   virtual void poll() = 0;
-  /// Waits for input until a deadline (s from now) or a stop request, takes what came. Returns false when the time ran
+  /// Waits at most `seconds` for input, or until a stop is requested, and processes it. Returns false when the time ran
   /// out.
   virtual bool wait(double seconds) = 0;
-  /// False: it has no wait worth calling; the run loop waits on another source and polls this one now and then.
+  /// False: wait() cannot wait for this source; the run loop waits on another one and polls this one regularly.
   virtual bool canWait() const { return true; }
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What other plugins see of bodies, colliders and joints, and the bases of collision handlers and body controllers.
-/// Double precision, SI, radians, world frame unless a name says otherwise. Used in the simulation's thread; readers in
-/// the sense phase may be several.
+/// Interfaces of bodies, joints and colliders for other plugins, and the base classes of collision handlers and body
+/// controllers. Double precision, SI units, radians, world frame unless a name says otherwise. Used in the simulation's
+/// thread; in the sense phase several threads may call the const functions.
 
 #include <optional>
 #include <span>
@@ -14,133 +14,141 @@
 
 namespace spark {
 
-/// A body: what RigidBody offers. Found by `childOf<IRigidBody>()` of its transform, or as ancestor of controllers.
+/// A rigid body. Offered by RigidBody. Find it as `childOf<IRigidBody>()` of its transform, or as ancestor of a body
+/// controller.
 class IRigidBody {
  public:
   SPARK_INTERFACE(IRigidBody, 2);
   virtual ~IRigidBody() = default;
+  /// The node that offers it.
   virtual Leaf& leaf() = 0;
-  /// The engine's state now: after physics the new one.
+  /// The current state in the engine; after the physics phase that of the new step.
   virtual engine::BodyState state() const = 0;
   /// kg.
   virtual double mass() const = 0;
-  /// Immediately; the transform follows at the next place phase.
+  /// Moves the body at once and wakes it; its transform follows in the next place phase.
   virtual void setPose(const Pose& pose) = 0;
-  /// m, the centre of mass in the world; as setPose, but its rotation stays as it is, to the last bit.
+  /// Moves the centre of mass [m], like setPose(). The rotation is unchanged, to the last bit.
   virtual void setPosition(const Vec3& position) = 0;
-  /// m/s of the centre of mass, at once. Not zero: wakes the body.
+  /// Sets the velocity of the centre of mass [m/s]. A velocity other than 0 wakes the body.
   virtual void setVelocity(const Vec3& v) = 0;
-  /// rad/s, at once. Not zero: wakes the body.
+  /// Sets the angular velocity [rad/s]. A velocity other than 0 wakes the body.
   virtual void setAngularVelocity(const Vec3& w) = 0;
-  /// N at the centre of mass, for the next step only, added to what others add. Not zero: wakes the body.
+  /// Adds a force at the centre of mass for the next step [N]. A force other than 0 wakes the body.
   virtual void addForce(const Vec3& f) = 0;
-  /// Nm, likewise.
+  /// Adds a torque for the next step [Nm]. A torque other than 0 wakes the body.
   virtual void addTorque(const Vec3& t) = 0;
-  /// Force -linear v and torque -angular w for the next step, of its speeds now [N s/m, N m s]; nothing while it
-  /// sleeps.
+  /// Adds the force -linear v and the torque -angular w for the next step, with the current velocities v and w
+  /// [N s/m, N m s]; nothing while the body sleeps.
   virtual void addDrag(double linear, double angular) = 0;
-  /// False while it sleeps: nothing moved it for a while, and the solver leaves it out.
+  /// False while the body sleeps: it has been at rest for a while, and the solver skips it.
   virtual bool enabled() const = 0;
-  /// Wakes it.
+  /// Wakes the body.
   virtual void enable() = 0;
-  /// The transform that the body moves: its nearest.
+  /// The transform that the body moves, the nearest above it.
   virtual Transform* bodyTransform() const = 0;
 };
 
-/// A joint: what HingeJoint and the others offer to sensors and effectors.
+/// A joint, for sensors and effectors. Offered by HingeJoint and all other joint classes.
 class IJoint {
  public:
   SPARK_INTERFACE(IJoint, 2);
   virtual ~IJoint() = default;
+  /// The node that offers it.
   virtual Leaf& leaf() = 0;
   virtual engine::JointType jointType() const = 0;
-  /// 0: child link, 1: parent link; nullptr is the static world.
+  /// Body 0 (child link) or 1 (parent link); nullptr: the static world.
   virtual IRigidBody* body(int index) const = 0;
-  /// Axes that have a motor and stops, 0 to 3.
+  /// Number of axes with motor and stops, 0 to 3.
   virtual int axes() const = 0;
-  /// Where it holds its bodies together, in the world [m]; zero for joints without such a point.
+  /// The common point of both bodies, world frame [m]; zero for joints without one.
   virtual Vec3 anchor() const = 0;
-  /// Direction of an axis in the world, of length 1; zero when there is none.
+  /// Unit vector along an axis, world frame; zero when there is no such axis.
   virtual Vec3 axisNow(int axis) const = 0;
-  virtual double angle(int axis) const = 0;      ///< rad; slider m
-  virtual double angleRate(int axis) const = 0;  ///< rad/s; slider m/s
+  virtual double angle(int axis) const = 0;      ///< rad; slider: m
+  virtual double angleRate(int axis) const = 0;  ///< rad/s; slider: m/s
+  /// A parameter of an axis; 0 where the joint does not have it.
   virtual double parameter(engine::JointParameter p, int axis) const = 0;
+  /// Sets a parameter of an axis; ignored where the joint does not have it.
   virtual void setParameter(engine::JointParameter p, int axis, double v) = 0;
-  /// Sets the motor's speed [rad/s; slider m/s]; the child link wakes when it is to move.
+  /// Sets the target speed of the motor [rad/s; slider: m/s]. A speed other than 0 wakes the child link.
   virtual void drive(int axis, double speed) = 0;
-  /// The axis is at its least or greatest angle, or beyond.
+  /// True when the axis is at its lower or upper stop, or beyond.
   virtual bool atStop(int axis) const = 0;
-  /// rad/s; 0 when unlimited. Clamps effector commands only.
+  /// Largest speed that effectors may command [rad/s]; 0: unlimited.
   virtual double maxSpeed(int axis) const = 0;
-  /// Sum of the torque's magnitudes on both bodies in the last step [Nm]; 0 without feedback.
+  /// Sum of the magnitudes of the torques on both bodies in the last step [Nm]; 0 without feedback.
   virtual double feedbackTorque() const = 0;
-  /// True when it measures that torque.
+  /// True when the joint measures that torque.
   virtual bool feedback() const = 0;
 };
 
-/// A motor that is modelled as a device, with current, heat and stiffness. Offered beside IJoint by AngularMotor, for
-/// sensors and effectors.
+/// A motor modelled as a device, with current, heat and stiffness. Offered beside IJoint by AngularMotor, for sensors
+/// and effectors.
 class IMotor {
  public:
   SPARK_INTERFACE(IMotor, 1);
   virtual ~IMotor() = default;
-  /// The fraction of its greatest torque that it may use, from 0 to 1.
+  /// Fraction of its maximum torque that the motor may use, 0..1.
   virtual double stiffness() const = 0;
-  /// `fraction`: 0 to 1. It holds from the next step on.
+  /// Sets that fraction, clamped to 0..1, from the next step on.
   virtual void setStiffness(double fraction) = 0;
-  /// Of the winding [deg C].
+  /// Temperature of the winding [deg C].
   virtual double temperature() const = 0;
-  /// In the last step [A].
+  /// Current in the last step [A].
   virtual double current() const = 0;
-  /// It takes no commands: it is too hot, or its battery is empty.
+  /// True when the motor accepts no commands: it is too hot, or its battery is empty.
   virtual bool disabled() const = 0;
 };
 
-/// A store of energy. Offered by Battery, for sensors.
+/// A battery, for sensors. Offered by Battery.
 class IBattery {
  public:
   SPARK_INTERFACE(IBattery, 1);
   virtual ~IBattery() = default;
-  /// The energy that it holds now [J].
+  /// Stored energy [J].
   virtual double power() const = 0;
-  /// The energy that it holds when full [J]; 0: unknown.
+  /// Stored energy when full [J]; 0: unknown.
   virtual double capacity() const = 0;
 };
 
-/// Geometry that touches.
+/// Collision geometry. Offered by all collider classes.
 class ICollider {
  public:
   SPARK_INTERFACE(ICollider, 1);
   virtual ~ICollider() = default;
+  /// The node that offers it.
   virtual Leaf& leaf() = 0;
-  /// nullptr when static.
+  /// The body that it moves with; nullptr: static.
   virtual IRigidBody* body() const = 0;
-  /// World axis-aligned bounds; infinite for planes.
+  /// Axis-aligned bounding box, world frame [m]; infinite for planes.
   virtual void bounds(Vec3& low, Vec3& high) const = 0;
-  /// The shape it has; nothing for colliders that only group or are not supported.
+  /// The shape; nullopt for colliders that only contain others or have no geometry.
   virtual std::optional<engine::ShapeDescription> shape() const = 0;
-  /// Where that shape is in the frame of the nearest transform above, wherever that is now; planes are in the world's.
+  /// Pose of that shape in the frame of the nearest transform above; of a plane in the world frame.
   virtual Pose poseInTransform() const = 0;
 };
 
-/// Lists the colliders that touched the handler's own since clear(). Offered by RecorderHandler.
+/// A list of the colliders that touched. Offered by RecorderHandler.
 class ICollisionRecorder {
  public:
   SPARK_INTERFACE(ICollisionRecorder, 1);
   virtual ~ICollisionRecorder() = default;
+  /// The colliders that touched the handler's collider since clear(), each once. References to removed ones are empty.
   virtual const std::vector<Ref<Leaf>>& colliders() const = 0;
+  /// Empties the list.
   virtual void clear() = 0;
 };
 
-/// One contact point as a handler sees it.
+/// One contact point, from the point of view of one of its colliders.
 struct Collision {
-  ICollider& self;
-  ICollider& other;
+  ICollider& self;   ///< the collider of the handler
+  ICollider& other;  ///< the collider that it touches
   engine::Contact& contact;
-  bool direct;  ///< self is the contact's A
+  bool direct;  ///< true: `self` is A of the contact
 };
 
-/// Child of a collider; runs for each contact point, before the solver. Registered by `physics`.
+/// Base of collision handlers, children of a collider. Registered by `physics`.
 class CollisionHandler : public SceneNode {
   SPARK_CLASS(CollisionHandler, SceneNode)
  public:
@@ -148,14 +156,17 @@ class CollisionHandler : public SceneNode {
     d.doc("Reacts to the contacts of the collider above it.");
     d.abstract();
   }
+  /// Called before the solver for each contact point of the collider, in the physics phase. It may change the contact,
+  /// but not the tree.
   virtual void onCollision(const Collision& collision) = 0;
-  /// Runs after the solver for handlers that asked for feedback.
+  /// Called after the solver for each contact point with feedback.
   virtual void onSolved(const Collision&) {}
-  /// The surface it wants contacts to have; nullptr: contacts are not solved for its sake.
+  /// The contact surface of the collider; nullptr: this handler does not make contacts solid.
   virtual const engine::Surface* surface() const { return nullptr; }
 };
 
-/// Makes contacts solid. Both colliders need one (or none at all: a bouncy default). Registered by `physics`.
+/// Makes contacts solid and holds the surface. A contact is solid when both colliders have one, or no handler at all
+/// (a bouncy default). Registered by `physics`.
 class ContactJointHandler : public CollisionHandler {
   SPARK_CLASS(ContactJointHandler, CollisionHandler)
  public:
@@ -167,27 +178,30 @@ class ContactJointHandler : public CollisionHandler {
   }
   static void describe(Description<ContactJointHandler>& d) {
     using H = ContactJointHandler;
-    d.doc("Makes contacts of its collider solid; holds the surface.");
+    d.doc("Makes the contacts of its collider solid and holds the surface.");
     d.property("contactBounceMode", &H::bounceMode, &H::setBounceMode).doc("Contacts bounce.");
-    d.property("contactBounceValue", &H::bounce, &H::setBounce).min(0).doc("Restitution.");
+    d.property("contactBounceValue", &H::bounce, &H::setBounce).min(0).doc("Coefficient of restitution.");
     d.property("minBounceVel", &H::bounceVelocity, &H::setBounceVelocity)
         .unit("m/s")
         .min(0)
-        .doc("Least speed at which contacts bounce.");
-    d.property("contactSoftERPMode", &H::erpMode, &H::setErpMode).doc("Contacts have their own error reduction.");
-    d.property("contactSoftERP", &H::erp, &H::setErp).range(0, 1).doc("Error reduction of contacts.");
+        .doc("Smallest approach speed at which contacts bounce.");
+    d.property("contactSoftERPMode", &H::erpMode, &H::setErpMode)
+        .doc("Contacts use contactSoftERP instead of the world's ERP.");
+    d.property("contactSoftERP", &H::erp, &H::setErp).range(0, 1).doc("Error reduction parameter of contacts.");
     d.property("contactSoftCFMMode", &H::cfmMode, &H::setCfmMode)
-        .doc("Contacts have their own constraint force mixing.");
+        .doc("Contacts use contactSoftCFM instead of the world's CFM.");
     d.property("contactSoftCFM", &H::cfm, &H::setCfm).min(0).doc("Constraint force mixing of contacts.");
-    d.property("contactSlipMode", &H::slipMode, &H::setSlipMode).doc("Force-dependent slip in both directions.");
-    d.property("contactSlip", &H::slip, &H::setSlip).min(0).doc("Slip of contacts, both directions.");
+    d.property("contactSlipMode", &H::slipMode, &H::setSlipMode)
+        .doc("Contacts slip in proportion to the force, along both tangents.");
+    d.property("contactSlip", &H::slip, &H::setSlip).min(0).doc("Slip per force, along both tangents [m/(N s)].");
     d.property("contactMu", &H::mu, &H::setMu)
         .unit("N")
         .min(0)
-        .doc("Greatest friction along each tangent [N]; infinite by default.");
+        .doc("Maximum friction force along each tangent [N]; infinite by default.");
   }
   void onCollision(const Collision&) override {}
   const engine::Surface* surface() const override { return &surface_; }
+  /// The surface, to be changed in place.
   engine::Surface& editSurface() { return surface_; }
 
  private:
@@ -214,7 +228,7 @@ class ContactJointHandler : public CollisionHandler {
   engine::Surface surface_;
 };
 
-/// Acts on the body above it in the prepare phase. Registered by `physics`.
+/// Base of nodes that act on the body above them in the prepare phase. Registered by `physics`.
 class BodyController : public SceneNode {
   SPARK_CLASS(BodyController, SceneNode)
  public:
@@ -224,7 +238,7 @@ class BodyController : public SceneNode {
     d.link(&BodyController::body_, Above<IRigidBody>());
     d.on<&BodyController::prepare>(phase::kPrepare);
   }
-  /// `event.step` seconds will be integrated next.
+  /// Acts on the body. The next step integrates `event.step` seconds.
   virtual void control(IRigidBody& body, const Event& event) = 0;
 
  private:
@@ -240,16 +254,17 @@ class IPhysicsServer {
   SPARK_INTERFACE(IPhysicsServer, 1);
   static constexpr const char* kPath = "/sys/server/physics";
   virtual ~IPhysicsServer() = default;
+  /// The engine below the server. Throws Error when there is none.
   virtual engine::IEngine& engine() = 0;
-  /// The world of the active scene; throws Error when there is none.
+  /// The world of the active scene. Throws Error when there is none.
   virtual engine::World world() = 0;
-  /// All bodies of a subtree in tree order.
+  /// Appends all bodies of a subtree, `root` included, in tree order.
   virtual void bodies(Node& root, std::vector<IRigidBody*>& out) = 0;
-  /// The contacts of the last step, whether they were solved or not; owners are ICollider (see colliderOf). `forceOnA`
-  /// counts where `feedback` says so: property measureForces asks for all. Valid until the next step or change of the
-  /// tree; empty since such a change.
+  /// All contacts of the last step, solved or not. `forceOnA` is valid where `feedback` is set; the property
+  /// measureForces sets it for every solved contact. Valid until the next step or change of the tree; empty after such
+  /// a change.
   virtual std::span<const engine::Contact> contacts() const = 0;
-  /// The collider that an owner of these contacts is.
+  /// The collider that is the `owner` of a contact.
   virtual ICollider& colliderOf(void* owner) const = 0;
 };
 

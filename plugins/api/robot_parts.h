@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What rules ask of a robot's parts: boxes that may run into each other, effectors that can be frozen.
+/// Parts of a robot as rules of a game see them: boxes that may collide with each other, effectors that can be frozen.
 
 #include <string>
 #include <vector>
@@ -11,29 +11,32 @@
 
 namespace spark {
 
-/// A box of a robot, as the rule of self-collisions sees it. Offered by BoxCollider.
+/// A box of a robot, for the rule about self-collisions. Offered by BoxCollider.
 class IRobotBox {
  public:
   SPARK_INTERFACE(IRobotBox, 1);
   virtual ~IRobotBox() = default;
+  /// The node that offers it.
   virtual Leaf& leaf() = 0;
-  /// Of its centre in the world, now.
+  /// Current pose of the box centre, world frame.
   virtual Pose pose() const = 0;
-  /// Full edges [m].
+  /// Full edge lengths [m].
   virtual Vec3 boxLengths() const = 0;
-  /// The scene told it never to collide with colliders of that name.
+  /// True when the scene excludes collisions with colliders of that name.
   virtual bool ignores(const std::string& collider) const = 0;
-  /// Names of the effectors to be frozen when it runs into another box of its robot.
+  /// Names of the effectors to freeze when this box collides with another box of its robot.
   virtual const std::vector<std::string>& freezeJointEffectors() const = 0;
 };
 
-/// An effector that a rule can freeze: while it is frozen, a command sets speed 0. What was commanded before goes on
-/// until then. Offered by HingeEffector.
+/// An effector that a rule can freeze. While it is frozen, the next command sets speed 0; until that command the joint
+/// keeps its speed. Offered by HingeEffector.
 class IFreezable {
  public:
   SPARK_INTERFACE(IFreezable, 1);
   virtual ~IFreezable() = default;
+  /// The node that offers it.
   virtual Leaf& leaf() = 0;
+  /// Freezes or releases the effector.
   virtual void freeze(bool on) = 0;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a game reports of itself. The host's status line, the columns of a batch and the page in browsers show it; they
-/// know no game.
+/// The status of a game: mode, score, teams and further values. The host's status line, the columns of a batch and the
+/// page in browsers show it without knowing the game.
 
 #include <algorithm>
 #include <string>
@@ -20,39 +20,39 @@ namespace spark {
 struct StatusEntry {
   std::string name;                ///< a word of letters, digits and '_'
   Value value;                     ///< a text, number or boolean, or a list of these
-  std::vector<std::string> parts;  ///< of a list: what its elements are called in columns; without: 1, 2, ...
+  std::vector<std::string> parts;  ///< column suffixes of a list's elements; empty: 1, 2, ...
 };
 
-/// Reports how a game goes. Any node below /sys or /usr may offer it.
+/// Reports the status of a game. Any node below /sys or /usr may offer it.
 ///
-/// Three words are understood by all that show a status:
+/// All displays know three names:
 ///
-///     playMode   text              how the game stands: "PlayOn", "round_2"
-///     score      list of numbers   of each team; the page's score board shows the first two
+///     playMode   text              mode of the game: "PlayOn", "round_2"
+///     score      list of numbers   points of each team; the page's score board shows the first two
 ///     teams      list of texts     names of the teams, in the order of the score
 ///
 /// Every other entry is shown as `name value`. In a batch an entry is a column of that name; a list is one column for
-/// each element, named `name` + part: `scoreLeft`, or `score1`.
+/// each element, named `name` + suffix: `scoreLeft`, or `score1`.
 class IStatus {
  public:
   SPARK_INTERFACE(IStatus, 1);
   virtual ~IStatus() = default;
-  /// Appends what there is to report: the same names in the same order every time, so that a batch's rows have the same
+  /// Appends the entries: the same names in the same order every time, so that all rows of a batch have the same
   /// columns. Called in the publish phase or between two cycles, in the simulation's thread. Must not throw.
   virtual void report(std::vector<StatusEntry>& out) const = 0;
 };
 
-/// True when `entry` is one of the words that are understood, with a value of its type.
+/// True when `entry` has one of the three known names and a value of its type.
 inline bool isStatusWord(const StatusEntry& entry) {
   if (entry.name == "playMode") return entry.value.isString();
   return (entry.name == "score" || entry.name == "teams") && entry.value.isList();
 }
 
-/// The nodes that report, found again when the shape of the tree changed. A member of the one that shows the status;
-/// used in the simulation's thread.
+/// All nodes that offer IStatus, looked up again when the shape of the tree changed. A member of a class that displays
+/// the status; used in the simulation's thread.
 class StatusReporters {
  public:
-  /// What they report, in tree order. Of entries with the same name the first counts.
+  /// All entries, in tree order. Of entries with the same name only the first is kept.
   std::vector<StatusEntry> read(Kernel& kernel) {
     if (tree_.changed(kernel.root())) find(kernel);
     std::vector<StatusEntry> out;
