@@ -98,8 +98,8 @@ inline std::array<double, N> numbers(Args& args) {
 }
 }  // namespace detail
 
-// Conversions for properties and method arguments: a vector is 3 numbers, a colour 4 (RGBA), a matrix 16 (column-major),
-// each as scalars or as one list.
+// Conversions for properties and method arguments: a vector is 3 numbers, a colour 4 (RGBA), a matrix 16
+// (column-major), each as scalars or as one list.
 
 template <>
 struct Convert<Vec3> {

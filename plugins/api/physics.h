@@ -77,7 +77,8 @@ class IJoint {
   virtual bool atStop(int axis) const = 0;
   /// Largest speed that effectors may command [rad/s]; 0: unlimited.
   virtual double maxSpeed(int axis) const = 0;
-  /// Sum of the magnitudes of the torques on both bodies in the last step [Nm]; 0 without feedback.
+  /// Sum of the magnitudes of the torques on both bodies in the last step [Nm]; of an angular motor on the first body
+  /// alone. 0 without feedback.
   virtual double feedbackTorque() const = 0;
   /// True when the joint measures that torque.
   virtual bool feedback() const = 0;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The angular motor of scene files: what drives a joint as a real motor does.
+/// The angular motor of scene files, with an optional model of a real motor.
 
 #include "controllers.h"
 #include "joints.h"
@@ -9,10 +9,12 @@ namespace spark {
 
 class PhysicsServer;
 
-/// Drives the angles between two bodies; below a HingeJoint it drives the hinge's. With a greatest torque it is a
-/// modelled motor: the torque that it had in a step says the current, the current what it drew from its battery and how
-/// much warmer it got, and these how strong it is in the next step (scene-language section 3.5). Without one its force
-/// is what setMaxMotorForce says.
+/// Drives the angles between two bodies; below a HingeJoint it drives the hinge's angle.
+///
+/// With a `maxTorque` above 0 it models a DC motor (scene-language section 3.5). After each step the measured torque
+/// gives the current, and the current gives the energy drawn from the battery and the heating of the winding. Before
+/// the next step stiffness, temperature and battery limit the torque. Without a `maxTorque` its torque is limited by
+/// setMaxMotorForce alone.
 class AngularMotor : public Joint, public IMotor {
   SPARK_CLASS(AngularMotor, Joint)
  public:
@@ -30,6 +32,7 @@ class AngularMotor : public Joint, public IMotor {
   void loadState(StateReader& in) override;
 
  private:
+  /// Passes number of axes and mode to the engine.
   void apply();
   int numAxes() const { return axes_; }
   void setNumAxes(int n);
@@ -49,21 +52,30 @@ class AngularMotor : public Joint, public IMotor {
   }
   bool modelled() const { return maxTorque_ > 0 && engine(); }
   bool tooHot() const { return temperature_ > protectionTemperature_; }
-  /// Before the step: as much torque as stiffness, heat and battery leave.
+  /// Before the step: sets the maximum torque from stiffness, temperature and battery.
   void prepare(const Event&);
-  /// After the step: what it has cost.
+  /// After the step: updates current, battery and temperature.
   void measure(const Event& event);
 
-  int axes_ = 0, anchors_[3] = {0, 0, 0};
+  int axes_ = 0;
+  int frames_[3] = {0, 0, 0};  ///< of each axis: 0 world, 1 first body, 2 second body
   bool euler_ = false;
   std::string batteryPath_;
   Link<HingeJoint, true> hinge_;
   Link<Battery, true> battery_;
   Link<PhysicsServer, true> server_;
-  double speedConstant_ = 4.3, torqueConstant_ = 4.3, resistance_ = 6.44, environment_ = 20, conductivity_ = 0.025,
-         heatCapacity_ = 26;
-  double protectionTemperature_ = 80, protectionStiffness_ = 0.8, maxTorque_ = 0, stiffness_ = 1, temperature_ = 20;
-  double current_ = 0;  ///< A, in the last step
+  double speedConstant_ = 4.3;         ///< back EMF per speed [V s/rad]
+  double torqueConstant_ = 4.3;        ///< Nm/A
+  double resistance_ = 6.44;           ///< Ohm
+  double environment_ = 20;            ///< deg C
+  double conductivity_ = 0.025;        ///< W/K
+  double heatCapacity_ = 26;           ///< J/K
+  double protectionTemperature_ = 80;  ///< deg C
+  double protectionStiffness_ = 0.8;   ///< limit of the stiffness above that temperature, 0..1
+  double maxTorque_ = 0;               ///< Nm; 0: not modelled
+  double stiffness_ = 1;               ///< 0..1
+  double temperature_ = 20;            ///< deg C
+  double current_ = 0;                 ///< in the last step [A]
 };
 
 }  // namespace spark

@@ -15,7 +15,7 @@ const engine::Surface& defaultSurface() {
 }
 
 void Collider::describe(Description<Collider>& d) {
-  d.doc("Geometry that touches. Its children say what happens then.");
+  d.doc("Collision geometry. Its child handlers define what a contact does.");
   d.implements<ICollider>();
   d.implements<IFollowsTransform>();
   d.method("setPosition", &Collider::setPosition)
@@ -31,12 +31,12 @@ void Collider::describe(Description<Collider>& d) {
       .doc("Rotation inside a TransformCollider or on a body; in the world for a static collider.");
   d.method("addCollisionHandler", &Collider::addCollisionHandler)
       .parameters({"class"})
-      .doc("Makes a handler of that class below it.");
+      .doc("Creates a handler of that class below it.");
   d.method("addNotCollideWithColliderName", &Collider::addNotCollideWithColliderName)
       .parameters({"name", "on"})
-      .doc("Within its space: never collide with colliders of that name (true), or do so again (false).");
+      .doc("true: excludes collisions with colliders of that name in the same space; false: allows them again.");
   d.property("notCollideWith", &Collider::notCollideWith)
-      .doc("Names of colliders of its space that it does not collide with.");
+      .doc("Names of the colliders of its space that it does not collide with.");
   d.abstract();
 }
 
@@ -46,7 +46,7 @@ void Collider::onLink() {
   outer_ = parent()->as<TransformCollider>();
   auto* above = ancestor<Space>();
   space_ = above ? above->handle() : world.space();
-  // A body must stand before its colliders: what is linked later is not seen.
+  // Only a body that is linked before its colliders is found.
   body_ = outer_ ? outer_->body_ : Ref<RigidBody>(parent()->childOf<RigidBody>());
   if (body_ && body_->handle() == engine::Body::none) body_ = {};
   reshape();
@@ -59,12 +59,12 @@ void Collider::onMoved() {
 }
 
 void Collider::onUnlink() {
-  dropGeom();
+  destroyGeom();
   space_.reset();
   PhysicsObject::onUnlink();
 }
 
-void Collider::dropGeom() {
+void Collider::destroyGeom() {
   if (engine() && geom_ != engine::Geom::none) engine()->destroyGeom(geom_);
   geom_ = engine::Geom::none;
 }
@@ -72,7 +72,7 @@ void Collider::dropGeom() {
 void Collider::reshape() {
   if (!engine()) return;
   const auto s = shape();
-  if (!s) return dropGeom();
+  if (!s) return destroyGeom();
   try {
     if (geom_ != engine::Geom::none) return engine()->setShape(geom_, *s);
     geom_ = engine()->createGeom(space_->id(), *s, &outermost());
@@ -104,8 +104,8 @@ void Collider::follow(const Matrix& world) {
   if (!body_ && !outer_) attach(toPose(world));
 }
 
-void Collider::shift(const Vec3& by) {
-  local_.position += by;
+void Collider::shift(const Vec3& offset) {
+  local_.position += offset;
   attach();
 }
 
@@ -135,15 +135,18 @@ void Collider::addNotCollideWithColliderName(std::string name, bool on) {
 }
 
 bool Collider::mayCollideWith(const Collider& other) const {
+  // A detached group collides only with itself and with static colliders.
   const auto detached = [](const CollisionGroup* group) { return group && group->detached(); };
   if (group_ != other.group_ && hasBody_ && other.hasBody_ && (detached(group_) || detached(other.group_)))
     return false;
+
+  // Colliders exclude each other by name within one space.
   if (notCollideWith_.empty() && other.notCollideWith_.empty()) return true;
   if (space_ != other.space_) return true;
-  const auto names = [](const Collider& a, const Collider& b) {
+  const auto excludes = [](const Collider& a, const Collider& b) {
     return std::find(a.notCollideWith_.begin(), a.notCollideWith_.end(), b.name()) != a.notCollideWith_.end();
   };
-  return !names(*this, other) && !names(other, *this);
+  return !excludes(*this, other) && !excludes(other, *this);
 }
 
 void Collider::refreshHandlers(bool defaultOnTransform) {
@@ -162,9 +165,11 @@ void Collider::findHandlers(bool defaultOnTransform) {
     if (!handler) continue;
     any = true;
     if (!handlers_.contact && handler->surface()) handlers_.contact = handler;
-    // The plain handler has nothing to do but to be there.
+    // A plain ContactJointHandler only holds a surface: it need not be called.
     if (handler->classObject()->name() != ContactJointHandler::kClassName) handlers_.active.push_back(handler);
   }
+
+  // A TransformCollider without a handler may take over those of its inner collider.
   auto inner = as<TransformCollider>() ? childOf<Collider>() : nullptr;
   if (!any && inner && !defaultOnTransform) {
     inner->refreshHandlers(defaultOnTransform);
@@ -172,7 +177,7 @@ void Collider::findHandlers(bool defaultOnTransform) {
     return;
   }
   handlers_.fallback = !any;
-  // A ray is a probe: it hears of what it meets and is never in its way.
+  // A ray is a probe: its handlers are called, but its contacts are never solid.
   if (const auto s = shape(); s && s->shape == Shape::ray) {
     handlers_.contact = nullptr;
     handlers_.fallback = false;
@@ -198,10 +203,10 @@ void widen(Vec3& low, Vec3& high, const Vec3& p) {
   high = high.cwiseMax(p);
 }
 
-/// Of a plane, a ray or a mesh.
+/// Widens an empty box (`low` infinite, `high` minus infinite) to the bounds of a plane, a ray or a mesh.
 void boundsOf(const ShapeDescription& s, const Pose& p, Vec3& low, Vec3& high) {
   if (s.shape == Shape::plane) {
-    std::swap(low, high);
+    std::swap(low, high);  // unbounded
   } else if (s.shape == Shape::ray) {
     const Vec3 from = p.position + p.rotation * s.rayOrigin;
     widen(low, high, from);
@@ -223,6 +228,7 @@ const std::vector<const Collider*>& Collider::inner() const {
 }
 
 void Collider::bounds(Vec3& low, Vec3& high) const {
+  // Start with an empty box.
   low = Vec3::Constant(HUGE_VAL);
   high = -low;
   if (engine() && geom_ != engine::Geom::none) {
@@ -234,11 +240,11 @@ void Collider::bounds(Vec3& low, Vec3& high) const {
       boundsOf(*s, p, low, high);
     }
   }
-  for (const Collider* part : inner()) {
-    Vec3 l, h;
-    part->bounds(l, h);
-    low = low.cwiseMin(l);
-    high = high.cwiseMax(h);
+  for (const Collider* collider : inner()) {
+    Vec3 innerLow, innerHigh;
+    collider->bounds(innerLow, innerHigh);
+    low = low.cwiseMin(innerLow);
+    high = high.cwiseMax(innerHigh);
   }
 }
 

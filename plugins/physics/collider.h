@@ -1,22 +1,22 @@
 #pragma once
 /// \file
-/// Colliders: geometry that touches, with collision handlers as children.
+/// Colliders: collision geometry, with collision handlers as children.
 
 #include "collision_group.h"
 #include "rigid_body.h"
 
 namespace spark {
 
-/// Base of colliders. Belongs to the RigidBody that stands before it among its siblings; without one it is static,
-/// where its nearest transform is. A collider inside a TransformCollider is part of that.
+/// Base of colliders. A collider moves with the RigidBody before it among its siblings; without one it is static, at
+/// the pose of its nearest transform. A collider inside a TransformCollider is part of that one.
 class Collider : public PhysicsObject, public ICollider, public IFollowsTransform {
   SPARK_CLASS(Collider, PhysicsObject)
  public:
-  /// What a contact needs to know of a collider; made anew when the tree's shape changed.
+  /// The collision handlers of a collider; collected again when the shape of the tree changed.
   struct Handlers {
-    const CollisionHandler* contact = nullptr;  ///< the first child with a surface
-    bool fallback = false;                      ///< no handler at all: the bouncy default
-    std::vector<CollisionHandler*> active;      ///< those that want to hear of contacts
+    const CollisionHandler* contact = nullptr;  ///< the first handler with a surface
+    bool fallback = false;                      ///< there is no handler: defaultSurface() applies
+    std::vector<CollisionHandler*> active;      ///< handlers to call for each contact point
   };
 
   static void describe(Description<Collider>& d);
@@ -24,35 +24,38 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   IRigidBody* body() const override { return body_.get(); }
   void bounds(Vec3& low, Vec3& high) const override;
   std::optional<engine::ShapeDescription> shape() const override { return std::nullopt; }
-  /// Half of the shape's extent along the world's axes when it is turned so [m]; nothing for shapes that are not alike
-  /// on both sides.
-  virtual std::optional<Vec3> halfExtent(const Mat3&) const { return std::nullopt; }
+  /// Half of the shape's extent along the world axes when it has the rotation `rotation` [m]; nullopt for shapes that
+  /// are not symmetric about their origin.
+  virtual std::optional<Vec3> halfExtent(const Mat3& /*rotation*/) const { return std::nullopt; }
   Pose poseInTransform() const override { return offset(); }
   void follow(const Matrix& world) override;
 
-  /// As of the last change of the tree.
+  /// As of the last refreshHandlers().
   const Handlers& handlers() const { return handlers_; }
-  /// As of the last change of the tree: the answers for each close pair of a step.
+  /// As of the last refreshHandlers(): contacts can be solid. Cached, because the pair filter runs for each close pair.
   bool solid() const { return solid_; }
+  /// As of the last refreshHandlers(): it has active handlers.
   bool listens() const { return listens_; }
+  /// As of the last refreshHandlers(): it is not static.
   bool hasBody() const { return hasBody_; }
-  /// Looks at the children again. `defaultOnTransform`: a TransformCollider without a handler of its own gets the
-  /// default one.
+  /// Collects the handlers among the children. `defaultOnTransform`: a TransformCollider without a handler of its own
+  /// gets the default surface; false: it takes over the handlers of its inner collider.
   void refreshHandlers(bool defaultOnTransform);
-  /// False when the two are told not to collide: same space, and one names the other; or one is in a detached group.
+  /// False when collisions of the two are excluded: they are in the same space and one lists the other's name, or one
+  /// is in a detached group that the other is not in.
   bool mayCollideWith(const Collider& other) const;
-  /// The innermost group around it; nullptr: none. As of the last change of the tree.
+  /// Sets the innermost group around the collider; nullptr: none.
   void setGroup(const CollisionGroup* group) { group_ = group; }
-  /// The body's centre of mass moved: a part of a TransformCollider stays where it is.
-  void shift(const Vec3& by);
+  /// Moves the collider by `offset` in the body's frame [m], to keep its world pose when the body's origin has moved.
+  void shift(const Vec3& offset);
 
  protected:
   void onLink() override;
   void onMoved() override;
   void onUnlink() override;
-  /// After a change of shape. Throws Error when the engine refuses it.
+  /// Passes a changed shape to the engine. Throws Error when the engine rejects it.
   void reshape();
-  /// Sets what the shape is made of; it stays as it was when the engine refuses the new one.
+  /// Sets a parameter of the shape. When the engine rejects the new shape, restores the old value and throws Error.
   template <class T>
   void change(T& member, T value) {
     std::swap(member, value);
@@ -63,24 +66,26 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
       throw;
     }
   }
+  /// The engine of its world; nullptr when it is not linked or the engine is gone.
   engine::IEngine* engine() const { return space_ ? space_->world()->engine() : nullptr; }
-  /// Of the shape in the world.
+  /// World pose of the shape.
   Pose geomPose() const;
-  /// Colliders among its children, looked up again when something changed below.
+  /// Colliders among its children; cached until something changes below.
   const std::vector<const Collider*>& inner() const;
-  /// A point in the frame of the nearest transform, seen from the shape's own frame.
+  /// Transforms a point from the frame of the nearest transform into the shape's own frame [m].
   Vec3 toShape(const Vec3& p) const;
   const std::vector<std::string>& notCollideWith() const { return notCollideWith_; }
 
  private:
-  /// The collider that is reported in contacts: the outermost around it.
+  /// The outermost collider around it (or this), which contacts are reported for.
   Collider& outermost();
+  /// Pose in the frame of the body, or of the nearest transform when static.
   Pose offset() const { return outer_ ? physics::compose(outer_->offset(), local_) : local_; }
-  /// Puts the geom, and those of the colliders inside, where it belongs; static ones relative to `base`.
+  /// Passes the pose of the geom, and of those of inner colliders, to the engine; static ones are relative to `base`.
   void attach(const Pose& base);
-  void dropGeom();
-  void findHandlers(bool defaultOnTransform);
   void attach() { attach(body_ ? Pose{} : physics::frameOf(*this)); }
+  void destroyGeom();
+  void findHandlers(bool defaultOnTransform);
   void setPosition(const Vec3& p);
   void setLocalPosition(const Vec3& p);
   void setRotation(std::vector<double> matrix);
@@ -101,7 +106,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   mutable std::uint64_t innerAt_ = 0;
 };
 
-/// The surface of colliders that have no handler: bouncy.
+/// The surface of colliders without a handler, which is bouncy.
 const engine::Surface& defaultSurface();
 
 }  // namespace spark

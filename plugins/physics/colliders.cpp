@@ -10,14 +10,17 @@ using engine::ShapeDescription;
 void BoxCollider::describe(Description<BoxCollider>& d) {
   d.doc("A box.");
   d.implements<IRobotBox>();
-  d.property("boxLengths", &BoxCollider::boxLengths, &BoxCollider::setLengths).unit("m").min(0).doc("Its full edges.");
-  d.method("getBoxLength", &BoxCollider::length).parameters({"axis"}).doc("One edge, by axis 0, 1 or 2 [m].");
+  d.property("boxLengths", &BoxCollider::boxLengths, &BoxCollider::setLengths)
+      .unit("m")
+      .min(0)
+      .doc("Full edge lengths.");
+  d.method("getBoxLength", &BoxCollider::length).parameters({"axis"}).doc("Edge length along axis 0, 1 or 2 [m].");
   d.method("getPointDepth", &BoxCollider::pointDepth)
       .parameters({"point [m]"})
-      .doc("How deep a point in its transform's frame is inside; below 0 outside.");
+      .doc("Depth of a point, given in the frame of its transform, below the surface [m]; negative outside.");
   d.method("addSCFreezeJointEffName", &BoxCollider::addFreezeJointEffector)
       .parameters({"effector"})
-      .doc("An effector that a rule about self-collisions may freeze when this box touches its own robot.");
+      .doc("Adds an effector that a rule about self-collisions may freeze when this box touches its own robot.");
   d.property("freezeJointEffectors", &BoxCollider::freezeJointEffectors)
       .doc("Names of the effectors that a rule about self-collisions may freeze.");
 }
@@ -34,11 +37,12 @@ bool BoxCollider::ignores(const std::string& collider) const {
 }
 
 double BoxCollider::length(int axis) const {
-  if (axis < 0 || axis > 2) throw Error(where() + ": expected an axis 0, 1 or 2, found " + std::to_string(axis));
+  if (axis < 0 || axis > 2) throw Error(fmt::format("{}: expected an axis 0, 1 or 2, found {}", where(), axis));
   return lengths_[axis];
 }
 
 double BoxCollider::pointDepth(const Vec3& at) const {
+  // Inside: the distance to the nearest face. Outside: that to the nearest point of the box.
   const Vec3 beyond = toShape(at).cwiseAbs() - lengths_ / 2;
   return (beyond.array() <= 0).all() ? -beyond.maxCoeff() : -beyond.cwiseMax(0).norm();
 }
@@ -48,7 +52,7 @@ void SphereCollider::describe(Description<SphereCollider>& d) {
   d.property("radius", &SphereCollider::radius, &SphereCollider::setRadius).unit("m").min(0).doc("Radius.");
   d.method("getPointDepth", &SphereCollider::pointDepth)
       .parameters({"point [m]"})
-      .doc("How deep a point in its transform's frame is inside; below 0 outside.");
+      .doc("Depth of a point, given in the frame of its transform, below the surface [m]; negative outside.");
 }
 
 std::optional<ShapeDescription> SphereCollider::shape() const {
@@ -65,7 +69,7 @@ void PlaneCollider::describe(Description<PlaneCollider>& d) {
       .doc("The plane as 4 numbers, or as a point and a normal (6 numbers).");
   d.method("getPointDepth", &PlaneCollider::pointDepth)
       .parameters({"point [m]"})
-      .doc("How deep a point in its transform's frame is below the plane; below 0 above it.");
+      .doc("Depth of a point, given in the frame of its transform, below the plane [m]; negative above it.");
 }
 
 std::optional<ShapeDescription> PlaneCollider::shape() const {
@@ -78,7 +82,7 @@ std::optional<ShapeDescription> PlaneCollider::shape() const {
 void PlaneCollider::setParams(std::vector<double> n) {
   if (n.size() == 4) return change(plane_, {n[0], n[1], n[2], n[3]});
   if (n.size() != 6)
-    throw Error(where() + ": expected 4 numbers (a b c d) or 6 (point, normal), found " + std::to_string(n.size()));
+    throw Error(fmt::format("{}: expected 4 numbers (a b c d) or 6 (point, normal), found {}", where(), n.size()));
   const Vec3 point(n[0], n[1], n[2]), normal(n[3], n[4], n[5]);
   change(plane_, {normal.x(), normal.y(), normal.z(), normal.dot(point)});
 }
@@ -90,7 +94,7 @@ double PlaneCollider::pointDepth(const Vec3& at) const {
 }
 
 void RayCollider::describe(Description<RayCollider>& d) {
-  d.doc("A probe: hears of what it meets, and is in nothing's way. A contact's depth is the distance from its origin.");
+  d.doc("A probe: its contacts call handlers and are never solid. Their depth is the distance from the ray's origin.");
   d.method("setParams", &RayCollider::setParams)
       .parameters({"origin [m]", "direction", "length [m]"})
       .doc("The ray, in the frame of its body or transform.");
@@ -106,14 +110,14 @@ void RayCollider::setParams(const Vec3& origin, const Vec3& direction, double le
 
 void TriMeshCollider::describe(Description<TriMeshCollider>& d) {
   d.doc(
-      "Triangles; it collides once it has vertices and triangles. Static is best: two meshes find each other only "
-      "roughly.");
+      "A triangle mesh; it collides once it has vertices and triangles. Best used static: contacts of two meshes are "
+      "only approximate.");
   d.property("vertices", &TriMeshCollider::vertices, &TriMeshCollider::setVertices)
       .unit("m")
-      .doc("x y z of each vertex; new ones take the triangles away.");
+      .doc("x y z of each vertex. Setting it removes all triangles.");
   d.property("triangles", &TriMeshCollider::triangles, &TriMeshCollider::setTriangles)
       .min(0)
-      .doc("Three vertex numbers each, from 0, counter-clockwise seen from outside.");
+      .doc("Three vertex indices of each triangle, from 0, counter-clockwise seen from outside.");
 }
 
 std::optional<ShapeDescription> TriMeshCollider::shape() const {
@@ -124,8 +128,8 @@ std::optional<ShapeDescription> TriMeshCollider::shape() const {
 void TriMeshCollider::setMesh(std::vector<double> vertices, std::vector<std::int64_t> triangles) {
   for (std::int64_t t : triangles)
     if (t < 0 || 3 * t + 2 >= static_cast<std::int64_t>(vertices.size()))
-      throw Error(where() + ": a triangle names vertex " + std::to_string(t) + ", there are " +
-                  std::to_string(vertices.size() / 3) + ". Set the vertices first");
+      throw Error(fmt::format("{}: a triangle names vertex {}, there are {}. Set the vertices first", where(), t,
+                              vertices.size() / 3));
   ShapeDescription s = mesh_;
   s.vertices = std::move(vertices);
   s.triangles.assign(triangles.begin(), triangles.end());

@@ -7,50 +7,56 @@
 
 namespace spark {
 
-/// Encapsulates the collider below it, which may stand at an offset. Contacts are reported for this one.
+/// Holds the collider below it, which may have an offset. Contacts are reported for this one.
 class TransformCollider : public Collider {
   SPARK_CLASS(TransformCollider, Collider)
  public:
   static void describe(Description<TransformCollider>& d) {
     d.doc(
-        "Holds a collider at an offset from its body; contacts are reported for it, so handlers are its own children.");
+        "Holds a collider at an offset from its body. Contacts are reported for it, so handlers are its own children.");
   }
 };
 
-/// Accepted for old scenes; it has no geometry.
+/// Base of the colliders with convex shapes. On its own, as in old scenes, it has no geometry.
 class ConvexCollider : public Collider {
   SPARK_CLASS(ConvexCollider, Collider)
  public:
   static void describe(Description<ConvexCollider>& d) { d.doc("Base of convex colliders; has no geometry itself."); }
 };
+/// Base of the colliders with other shapes. On its own, as in old scenes, it has no geometry.
 class ConcaveCollider : public Collider {
   SPARK_CLASS(ConcaveCollider, Collider)
  public:
   static void describe(Description<ConcaveCollider>& d) { d.doc("Base of concave colliders; has no geometry itself."); }
 };
+/// Accepted for old scenes; has no geometry.
 class ConeCollider : public ConvexCollider {
   SPARK_CLASS(ConeCollider, ConvexCollider)
  public:
   static void describe(Description<ConeCollider>& d) { d.doc("Accepted for old scenes; has no geometry."); }
 };
+/// Accepted for old scenes; has no geometry.
 class CompoundCollider : public Collider {
   SPARK_CLASS(CompoundCollider, Collider)
  public:
   static void describe(Description<CompoundCollider>& d) { d.doc("Accepted for old scenes; has no geometry."); }
 };
+/// A collider without geometry.
 class EmptyCollider : public Collider {
   SPARK_CLASS(EmptyCollider, Collider)
  public:
   static void describe(Description<EmptyCollider>& d) { d.doc("Touches nothing."); }
 };
 
-/// A box, 1 m wide unless set.
+/// A box; each edge is 1 m long by default.
 class BoxCollider : public ConvexCollider, public IRobotBox {
   SPARK_CLASS(BoxCollider, ConvexCollider)
  public:
   static void describe(Description<BoxCollider>& d);
   std::optional<engine::ShapeDescription> shape() const override;
-  std::optional<Vec3> halfExtent(const Mat3& turned) const override { return Vec3(turned.cwiseAbs() * (lengths_ / 2)); }
+  std::optional<Vec3> halfExtent(const Mat3& rotation) const override {
+    return Vec3(rotation.cwiseAbs() * (lengths_ / 2));
+  }
 
   Leaf& leaf() override { return *this; }
   Pose pose() const override { return geomPose(); }
@@ -63,11 +69,11 @@ class BoxCollider : public ConvexCollider, public IRobotBox {
   double length(int axis) const;
   double pointDepth(const Vec3& p) const;
   void addFreezeJointEffector(std::string name) { freezes_.push_back(std::move(name)); }
-  Vec3 lengths_{1, 1, 1};
+  Vec3 lengths_{1, 1, 1};  ///< full edges [m]
   std::vector<std::string> freezes_;
 };
 
-/// A sphere, radius 1 m unless set.
+/// A sphere; its radius is 1 m by default.
 class SphereCollider : public ConvexCollider {
   SPARK_CLASS(SphereCollider, ConvexCollider)
  public:
@@ -79,10 +85,10 @@ class SphereCollider : public ConvexCollider {
   double radius() const { return radius_; }
   void setRadius(double r) { change(radius_, r); }
   double pointDepth(const Vec3& p) const { return radius_ - toShape(p).norm(); }
-  double radius_ = 1;
+  double radius_ = 1;  ///< m
 };
 
-/// Radius and length along z, 1 m each unless set.
+/// Base of capsule and cylinder: a radius and a length along z, 1 m each by default.
 template <class Self, engine::Shape S>
 class LongCollider : public ConvexCollider {
  public:
@@ -93,11 +99,11 @@ class LongCollider : public ConvexCollider {
     s.length = length();
     return s;
   }
-  std::optional<Vec3> halfExtent(const Mat3& turned) const override {
-    const Vec3 z = turned.col(2).cwiseAbs();
+  std::optional<Vec3> halfExtent(const Mat3& rotation) const override {
+    const Vec3 z = rotation.col(2).cwiseAbs();
     if constexpr (S == engine::Shape::capsule)
       return Vec3(z * (length() / 2) + Vec3::Constant(radius()));
-    else
+    else  // A disk with the unit normal z reaches radius * sqrt(1 - z_i^2) along axis i.
       return Vec3(z * (length() / 2) + radius() * (Vec3::Ones() - z.cwiseProduct(z)).cwiseMax(0).cwiseSqrt());
   }
 
@@ -108,7 +114,7 @@ class LongCollider : public ConvexCollider {
     d.method("setParams", &Self::setParams).parameters({"radius [m]", "length [m]"}).doc("Radius and length at once.");
     d.method("getPointDepth", &Self::pointDepth)
         .parameters({"point [m]"})
-        .doc("How deep a point in its transform's frame is inside; below 0 outside.");
+        .doc("Depth of a point, given in the frame of its transform, below the surface [m]; negative outside.");
   }
   double radius() const { return size_[0]; }
   double length() const { return size_[1]; }
@@ -117,6 +123,7 @@ class LongCollider : public ConvexCollider {
   void setParams(double r, double l) { change(size_, {r, l}); }
   double pointDepth(const Vec3& at) const {
     const Vec3 p = toShape(at);
+    // How far the point is outside of the mantle, and beyond the ends.
     const double outside = std::hypot(p.x(), p.y()) - radius(), beyond = std::abs(p.z()) - length() / 2;
     if constexpr (S == engine::Shape::capsule) return radius() - std::hypot(outside + radius(), std::max(0.0, beyond));
     if (outside <= 0 && beyond <= 0) return -std::max(outside, beyond);
@@ -124,7 +131,7 @@ class LongCollider : public ConvexCollider {
   }
 
  private:
-  std::array<double, 2> size_{1, 1};
+  std::array<double, 2> size_{1, 1};  ///< radius and length [m]
 };
 
 /// A cylinder with a half sphere at each end.
@@ -157,10 +164,10 @@ class PlaneCollider : public Collider {
  private:
   void setParams(std::vector<double> numbers);
   double pointDepth(const Vec3& p) const;
-  std::array<double, 4> plane_{0, 0, 1, 0};
+  std::array<double, 4> plane_{0, 0, 1, 0};  ///< a b c d of ax + by + cz = d; the normal may have any length above 0
 };
 
-/// A probe: hears of what it meets, and is in nothing's way.
+/// A probe: its contacts call handlers and are never solid.
 class RayCollider : public Collider {
   SPARK_CLASS(RayCollider, Collider)
  public:
@@ -172,7 +179,7 @@ class RayCollider : public Collider {
   engine::ShapeDescription ray_{.shape = engine::Shape::ray};
 };
 
-/// Triangles.
+/// A triangle mesh.
 class TriMeshCollider : public ConcaveCollider {
   SPARK_CLASS(TriMeshCollider, ConcaveCollider)
  public:

@@ -1,21 +1,21 @@
 #pragma once
 /// \file
-/// Colliders that belong together.
+/// Groups of colliders that can be detached from all others.
 
 #include "world.h"
 
 namespace spark {
 
-/// Makes one group of the colliders below the node it stands in. While the group is detached what moves in it touches
-/// only itself and what does not move: robots that are created at one spot do not burst apart.
+/// Makes a group of all colliders below its parent. While the group is detached, its bodies collide only with each
+/// other and with static colliders: robots that are created at the same spot do not burst apart.
 class CollisionGroup : public PhysicsObject {
   SPARK_CLASS(CollisionGroup, PhysicsObject)
  public:
   static void describe(Description<CollisionGroup>& d) {
-    d.doc("Makes one group of the colliders below the node it stands in.");
+    d.doc("Makes a group of all colliders below its parent.");
     d.property("detached", &CollisionGroup::detached_)
         .state()
-        .doc("What moves in the group touches only itself and what does not move.");
+        .doc("The bodies of the group collide only with each other and with static colliders.");
   }
   bool detached() const { return detached_; }
 

@@ -3,6 +3,7 @@
 namespace spark::physics {
 namespace {
 
+/// Combines one parameter of two surfaces: the mean if both have it switched on, else that of the one which has.
 void mix(bool& on, double& value, bool onA, double a, bool onB, double b) {
   on = onA || onB;
   value = onA && onB ? (a + b) / 2 : onA ? a : onB ? b : 0;
@@ -12,7 +13,7 @@ const engine::Surface* surfaceOf(const Collider::Handlers& h) {
   return h.contact ? h.contact->surface() : h.fallback ? &defaultSurface() : nullptr;
 }
 
-/// The contact points from `i` on that belong to one pair.
+/// One past the last of the contact points from `i` on that belong to the same pair.
 std::size_t endOfPair(const engine::Contacts& contacts, std::size_t i) {
   std::size_t end = i + 1;
   while (end < contacts.size() && contacts[end].geomA == contacts[i].geomA && contacts[end].geomB == contacts[i].geomB)
@@ -47,6 +48,8 @@ void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
     end = endOfPair(contacts, i);
     Collider& a = *static_cast<Collider*>(contacts[i].ownerA);
     Collider& b = *static_cast<Collider*>(contacts[i].ownerB);
+
+    // All points of a solid pair share one surface.
     if (a.solid() && b.solid() && (a.hasBody() || b.hasBody())) {
       const engine::Surface surface = combine(*surfaceOf(a.handlers()), *surfaceOf(b.handlers()));
       for (std::size_t k = i; k < end; ++k) {
@@ -54,6 +57,7 @@ void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
         contacts[k].surface = surface;
       }
     }
+
     if (!a.listens() && !b.listens()) continue;
     for (std::size_t k = i; k < end; ++k) {
       for (CollisionHandler* h : a.handlers().active) h->onCollision({a, b, contacts[k], true});
@@ -62,8 +66,7 @@ void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
     if (kernel.structureVersion() == version) continue;
     kernel.log().error(
         "a collision handler of {} or {} changed the tree while contacts were handled; this step has no contacts. "
-        "Change it in another "
-        "phase.",
+        "Change it in another phase.",
         a.path(), b.path());
     contacts.clear();
     return;
@@ -79,7 +82,7 @@ void measure(engine::Contacts& contacts, std::vector<std::size_t>& added) {
 }
 
 void runSolved(engine::Contacts& contacts) {
-  // The last first: sensors sum forces in single precision, and the installed base's digits come from that order.
+  // From last to first: sensors sum forces in single precision, and this order gives the digits of the installed base.
   for (std::size_t i = contacts.size(); i-- > 0;) {
     engine::Contact& c = contacts[i];
     if (!c.feedback) continue;

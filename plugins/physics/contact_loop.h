@@ -1,29 +1,31 @@
 #pragma once
 /// \file
-/// One round of contacts: which pairs count, whose handlers run, what surface two colliders have together.
+/// The handling of the contacts of a step: the pair filter, the combined surface of two colliders, the calls of
+/// collision handlers.
 ///
 /// For each contact point the handlers of the first collider run as direct, those of the second as symmetric. A contact
-/// becomes solid when a body is involved and both colliders have a handler with a surface (ContactJointHandler and what
-/// derives from it; the first counts) or no handler at all (a bouncy default). Plain ContactJointHandlers are not
-/// called: they have nothing to do but to be there.
+/// is solid when a body is involved and each of the two colliders has a handler with a surface (a ContactJointHandler
+/// or a class derived from it; the first counts) or no handler at all (a bouncy default). Plain ContactJointHandlers
+/// are not called: they only hold a surface.
 
 #include "collider.h"
 
 namespace spark::physics {
 
-/// The surface of a contact of `a` with `b`: friction is the mean; each other item that one has is taken, that both
-/// have averaged.
+/// The surface of a contact of `a` with `b` (scene-language section 3.3): mu is the mean of both; every other parameter
+/// is taken from the surface that has it switched on, and is the mean where both have.
 engine::Surface combine(const engine::Surface& a, const engine::Surface& b);
 
-/// For the engine: owners are Colliders. False for pairs that are told not to collide and for those nobody would hear
-/// of.
+/// The pair filter of the engine; owners are Colliders. False for pairs whose collisions are excluded, and for pairs
+/// whose contacts would have no effect.
 bool pairCounts(void* ownerA, void* ownerB);
 
-/// Runs the handlers, decides what is solved. Stops early (and drops all contacts) when a handler changed the tree.
+/// Sets `solve` and `surface` of the contacts and calls the handlers before the solver. When a handler changes the
+/// tree, it logs an error, removes all contacts and returns.
 void runHandlers(engine::Contacts& contacts, Kernel& kernel);
-/// Asks for the force of every contact that is solved; appends the indices of those that no handler asked for.
+/// Sets `feedback` of every contact that is solved; appends the indices of those that did not have it to `added`.
 void measure(engine::Contacts& contacts, std::vector<std::size_t>& added);
-/// Tells the handlers that asked for feedback what the solver did.
+/// Calls the handlers after the solver, for contacts with `feedback`.
 void runSolved(engine::Contacts& contacts);
 
 }  // namespace spark::physics

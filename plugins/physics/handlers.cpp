@@ -7,10 +7,10 @@
 namespace spark {
 
 void RecorderHandler::describe(Description<RecorderHandler>& d) {
-  d.doc("Remembers which colliders touched the one above it.");
+  d.doc("Records which colliders touched the one above it.");
   d.implements<ICollisionRecorder>();
   d.property("colliders", &RecorderHandler::paths).doc("Paths of the colliders that touched since clear().");
-  d.method("clear", &RecorderHandler::clear).doc("Forgets them.");
+  d.method("clear", &RecorderHandler::clear).doc("Empties the record.");
 }
 
 void RecorderHandler::onCollision(const Collision& collision) {
@@ -30,9 +30,9 @@ std::vector<std::string> RecorderHandler::paths() const {
 
 void ScriptHandler::describe(Description<ScriptHandler>& d) {
   d.doc(
-      "Emits the event 'collide' at itself for each contact point of the collider above it, its data being {path of "
-      "the other collider, "
-      "{x, y, z} [m], depth [m]}; runs after the step.");
+      "Emits the event 'collide' at itself for each contact point of the collider above it, after the step. The data "
+      "is "
+      "{path of the other collider, {x, y, z} [m], depth [m]}.");
   d.property("script", &ScriptHandler::script, &ScriptHandler::setScript)
       .doc("A Lua file that is attached to this node; it calls self:on(\"collide\", function(self, event) ... end).");
 }
@@ -46,6 +46,7 @@ void ScriptHandler::onCollision(const Collision& collision) {
 }
 
 void ScriptHandler::emit(const Event& physics) {
+  // A script may remove colliders and this handler itself.
   const std::vector<Touch> touches = std::exchange(touches_, {});
   const Ref<ScriptHandler> self(this);
   Channel& channel = kernel().events().channel("collide");

@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// Collision handlers that need nothing but a contact.
+/// Collision handlers that record contacts or pass them to scripts.
 
 #include "collider.h"
 
 namespace spark {
 
-/// Remembers what touched its collider until it is asked to forget.
+/// Records which colliders touched its collider, until clear().
 class RecorderHandler : public CollisionHandler, public ICollisionRecorder {
   SPARK_CLASS(RecorderHandler, CollisionHandler)
  public:
@@ -20,24 +20,28 @@ class RecorderHandler : public CollisionHandler, public ICollisionRecorder {
   std::vector<Ref<Leaf>> colliders_;
 };
 
-/// Lets a script react: after each step, each contact point of its collider is an event `collide` at this node.
+/// Passes contacts to scripts: after each step it emits an event `collide` at this node for each contact point of its
+/// collider.
 class ScriptHandler : public CollisionHandler {
   SPARK_CLASS(ScriptHandler, CollisionHandler)
  public:
   static void describe(Description<ScriptHandler>& d);
   void onCollision(const Collision& collision) override;
+  /// True when the last step had contact points.
   bool hasEvents() const { return !touches_.empty(); }
-  /// Emits what the last step brought. Scripts may change the tree, so nothing of the step is in use any more.
+  /// Emits the events of the last step. `physics` is the event of the physics phase. Called after the step, because
+  /// scripts may change the tree.
   void emit(const Event& physics);
 
  protected:
   void onLink() override;
 
  private:
+  /// A contact point.
   struct Touch {
-    Ref<Leaf> other;
-    Vec3 position;
-    double depth;
+    Ref<Leaf> other;  ///< the other collider
+    Vec3 position;    ///< world frame [m]
+    double depth;     ///< m
   };
   const std::string& script() const { return script_; }
   void setScript(std::string file);

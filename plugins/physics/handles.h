@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Shared ownership of engine worlds and spaces: the tree may drop a world before the bodies in it, and an engine
-/// before both.
+/// Shared ownership of engine worlds and spaces. The tree may remove a world node before the bodies in it, and the
+/// engine before both.
 
 #include <memory>
 #include <string>
@@ -10,18 +10,19 @@
 
 namespace spark::physics {
 
-/// An engine that may be gone before those who use it.
+/// A reference to an engine that may be removed earlier than its users.
 struct EngineUse {
-  Ref<Leaf> leaf;
+  Ref<Leaf> leaf;  ///< the engine's node
   engine::IEngine* engine = nullptr;
-  /// The engine, nullptr once it died.
+  /// The engine; nullptr after it was removed.
   engine::IEngine* get() const { return leaf ? engine : nullptr; }
 };
 
-/// An engine's world; lives as long as anything in it, and keeps the engine in the tree.
+/// A world of the engine. Shared by all that is in it, and destroyed with the last of them. While it lives, the engine
+/// cannot be removed from the tree.
 class WorldHandle {
  public:
-  /// `path`: of the world's node.
+  /// Creates the world. `path` is that of the world's node, for messages.
   WorldHandle(const EngineUse& use, const std::string& path)
       : use_(use),
         why_(path + " and the bodies, colliders and joints in it live in the engine; remove them all first"),
@@ -32,6 +33,7 @@ class WorldHandle {
   }
   WorldHandle(const WorldHandle&) = delete;
   WorldHandle& operator=(const WorldHandle&) = delete;
+  /// The engine; nullptr after it was removed.
   engine::IEngine* engine() const { return use_.get(); }
   engine::World id() const { return id_; }
 
@@ -42,10 +44,10 @@ class WorldHandle {
   engine::World id_;
 };
 
-/// A collision space; lives as long as anything in it.
+/// A collision space of the engine. Shared by all that is in it, and destroyed with the last of them.
 class SpaceHandle {
  public:
-  /// `parent` empty: a top-level space.
+  /// Creates the space. `parent` nullptr: a top-level space.
   SpaceHandle(std::shared_ptr<WorldHandle> world, std::shared_ptr<SpaceHandle> parent)
       : world_(std::move(world)),
         parent_(std::move(parent)),
@@ -64,18 +66,19 @@ class SpaceHandle {
   engine::Space id_;
 };
 
-/// The pose `inner` (in the frame of `outer`), seen from where `outer` is.
+/// The composition outer * inner: `inner` is given in the frame of `outer`, the result in that of which `outer` is
+/// given.
 inline Pose compose(const Pose& outer, const Pose& inner) {
   return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
-/// The pose that `world` is in the frame of `outer`.
+/// The pose `world` in the frame of `outer`: outer^-1 * world.
 inline Pose relative(const Pose& outer, const Pose& world) {
   return {outer.rotation.transpose() * (world.position - outer.position), outer.rotation.transpose() * world.rotation};
 }
-/// The pose of the nearest transform above a node, computed now.
+/// The current world pose of the nearest transform above a node; identity without one.
 inline Pose frameOf(const SceneNode& node) { return node.transform() ? toPose(node.transform()->worldNow()) : Pose{}; }
-/// A pose from 6 numbers (position, rotation in degrees) or 16 (a column-major matrix); nothing given: identity. Throws
-/// Error otherwise.
+/// A pose from 6 numbers (position [m], rotation [deg]) or 16 (a column-major matrix); identity from none. Throws Error
+/// for another number of numbers, or when one is not finite.
 Pose poseFrom(const std::vector<double>& numbers);
 
 }  // namespace spark::physics

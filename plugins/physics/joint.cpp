@@ -9,8 +9,8 @@ using engine::JointType;
 
 namespace {
 
-constexpr int kParameters = 11;
-constexpr double kShortestAxis = 1e-9;
+constexpr int kParameters = 11;         // number of JointParameter values
+constexpr double kShortestAxis = 1e-9;  // shorter axes are refused
 static_assert(static_cast<int>(JointParameter::suspensionCfm) == kParameters - 1);
 
 }  // namespace
@@ -18,50 +18,51 @@ static_assert(static_cast<int>(JointParameter::suspensionCfm) == kParameters - 1
 void Joint::describe(Description<Joint>& d) {
   using J = Joint;
   using P = JointParameter;
-  d.doc("Connects two bodies, or one with the world.");
+  d.doc("Connects two bodies, or a body with the world.");
   d.implements<IJoint>();
   d.abstract();
   d.method("attach", &J::attach)
       .parameters({"path of the first body", "path of the second"})
       .optional(1)
-      .doc("Paths are relative to the joint; without a second the static world is meant.");
+      .doc("Connects two bodies by paths relative to the joint; without a second path, a body with the static world.");
 
   const auto axis = [&](const char* name, auto set, auto get, const char* unit, const char* doc) {
-    const std::string value = std::string("value") + (*unit ? std::string(" [") + unit + "]" : "");
+    const std::string value = *unit ? fmt::format("value [{}]", unit) : "value";
     d.method(std::string("set") + name, set).parameters({"axis", value}).doc(doc);
     d.method(std::string("get") + name, get).parameters({"axis"}).doc(doc);
   };
-  axis("LowStopDeg", &J::setDeg<P::lowStop>, &J::getDeg<P::lowStop>, "deg", "Least angle.");
-  axis("HighStopDeg", &J::setDeg<P::highStop>, &J::getDeg<P::highStop>, "deg", "Greatest angle.");
-  axis("LowStopPos", &J::set<P::lowStop>, &J::get<P::lowStop>, "m or rad", "Least position.");
-  axis("HighStopPos", &J::set<P::highStop>, &J::get<P::highStop>, "m or rad", "Greatest position.");
+  // Meanings as in the ODE manual, "Stop and motor parameters".
+  axis("LowStopDeg", &J::setDeg<P::lowStop>, &J::getDeg<P::lowStop>, "deg", "Lower stop.");
+  axis("HighStopDeg", &J::setDeg<P::highStop>, &J::getDeg<P::highStop>, "deg", "Upper stop.");
+  axis("LowStopPos", &J::set<P::lowStop>, &J::get<P::lowStop>, "m or rad", "Lower stop.");
+  axis("HighStopPos", &J::set<P::highStop>, &J::get<P::highStop>, "m or rad", "Upper stop.");
   axis("FudgeFactor", &J::set<P::fudgeFactor>, &J::get<P::fudgeFactor>, "",
-       "Scales excess force at a stop when a motor pushes against it, 0..1.");
-  axis("Bounce", &J::set<P::bounce>, &J::get<P::bounce>, "", "Restitution of the stops, 0..1.");
-  axis("CFM", &J::set<P::cfm>, &J::get<P::cfm>, "", "How much the motor yields.");
-  axis("StopCFM", &J::set<P::stopCfm>, &J::get<P::stopCfm>, "", "How much the stops yield.");
+       "Scales the excess force of a motor that moves the joint away from a stop, 0..1.");
+  axis("Bounce", &J::set<P::bounce>, &J::get<P::bounce>, "", "Coefficient of restitution of the stops, 0..1.");
+  axis("CFM", &J::set<P::cfm>, &J::get<P::cfm>, "", "Constraint force mixing of the motor.");
+  axis("StopCFM", &J::set<P::stopCfm>, &J::get<P::stopCfm>, "", "Constraint force mixing of the stops.");
   axis("StopERP", &J::set<P::stopErp>, &J::get<P::stopErp>, "",
-       "Part of the excess over a stop that is put right in one step.");
+       "Error reduction parameter of the stops: the fraction of the error that one step corrects.");
   axis("SuspensionERP", &J::set<P::suspensionErp>, &J::get<P::suspensionErp>, "",
-       "Error reduction of a wheel's suspension.");
+       "Error reduction parameter of a wheel's suspension.");
   axis("SuspensionCFM", &J::set<P::suspensionCfm>, &J::get<P::suspensionCfm>, "",
-       "How much a wheel's suspension yields.");
-  axis("LinearMotorVelocity", &J::set<P::velocity>, &J::get<P::velocity>, "m/s", "Wanted speed of the motor.");
-  axis("AngularMotorVelocity", &J::setDeg<P::velocity>, &J::getDeg<P::velocity>, "deg/s", "Wanted speed of the motor.");
+       "Constraint force mixing of a wheel's suspension.");
+  axis("LinearMotorVelocity", &J::set<P::velocity>, &J::get<P::velocity>, "m/s", "Target speed of the motor.");
+  axis("AngularMotorVelocity", &J::setDeg<P::velocity>, &J::getDeg<P::velocity>, "deg/s", "Target speed of the motor.");
   axis("MaxMotorForce", &J::set<P::maxForce>, &J::get<P::maxForce>, "N or Nm",
-       "Greatest force of the motor; 0: no motor.");
+       "Maximum force or torque of the motor; 0: no motor.");
 
   d.property("jointMaxSpeed1", &J::maxSpeed1, &J::setMaxSpeed1)
       .unit("rad/s")
-      .doc("Greatest speed that effectors may command on the first axis; 0: no limit.");
+      .doc("Maximum speed that effectors may command on the first axis; 0: no limit.");
   d.property("jointMaxSpeed2", &J::maxSpeed2, &J::setMaxSpeed2)
       .unit("rad/s")
-      .doc("Greatest speed that effectors may command on the second axis; 0: no limit.");
-  d.method("enableFeedback", &J::enableFeedback).parameters({"on"}).doc("Torques are measured from now on.");
+      .doc("Maximum speed that effectors may command on the second axis; 0: no limit.");
+  d.method("enableFeedback", &J::enableFeedback).parameters({"on"}).doc("Switches the measurement of torques.");
   d.property("feedback", &J::feedback, &J::enableFeedback).doc("Torques are measured.");
   d.property("torque", &J::feedbackTorque)
       .unit("Nm")
-      .doc("Sum of the torques on both bodies in the last step; 0 without feedback.");
+      .doc("Torque on both bodies, summed, in the last step; of an AngularMotor on the first. 0 without feedback.");
 }
 
 void Joint::onLink() {
@@ -74,7 +75,7 @@ void Joint::onUnlink() {
   if (engine()) engine()->destroyJoint(joint_);
   joint_ = engine::Joint::none;
   attached_ = false;
-  waiting_.clear();
+  pending_.clear();
   world_.reset();
   PhysicsObject::onUnlink();
 }
@@ -98,8 +99,8 @@ void Joint::expectAxis(int axis) const {
   if (axis >= 0 && axis < axes()) return;
   const std::string range = axes() == 0   ? "no axis: this joint has neither motor nor stops"
                             : axes() == 1 ? "axis 0"
-                                          : "an axis from 0 to " + std::to_string(axes() - 1);
-  throw Error(where() + ": expected " + range + ", found axis " + std::to_string(axis));
+                                          : fmt::format("an axis from 0 to {}", axes() - 1);
+  throw Error(fmt::format("{}: expected {}, found axis {}", where(), range, axis));
 }
 
 void Joint::setParameter(JointParameter p, int axis, double v) {
@@ -111,6 +112,7 @@ double Joint::feedbackTorque() const {
   if (!feedback_ || !engine()) return 0;
   Vec3 force1, torque1, force2, torque2;
   engine()->feedback(joint_, force1, torque1, force2, torque2);
+  // The torque of an angular motor is that on its first body.
   return jointType() == JointType::angularMotor ? torque1.norm() : torque1.norm() + torque2.norm();
 }
 
@@ -121,8 +123,7 @@ Ref<RigidBody> Joint::bodyAt(const std::string& path) {
     return Ref<RigidBody>(body);
   kernel().log().warning(
       "{}: expected a RigidBody at '{}', found {}; it is attached to the static world instead. Paths are relative to "
-      "the joint, and the "
-      "body must stand before the joint.",
+      "the joint, and the body must stand before the joint.",
       where(), path, found ? "a " + found->classObject()->name() : "nothing");
   return {};
 }
@@ -136,11 +137,13 @@ void Joint::attach(std::string first, std::string second) {
     engine()->attach(joint_, handle(bodies_[0]), handle(bodies_[1]));
   } catch (const Error& e) {
     bodies_[0] = bodies_[1] = {};
-    throw Error(where() + ": cannot attach '" + first + "' and '" + second + "'", e);
+    throw Error(fmt::format("{}: cannot attach '{}' and '{}'", where(), first, second), e);
   }
+
+  // Apply what needed bodies, in the order in which it was set.
   attached_ = true;
   attached();
-  for (const auto& set : std::exchange(waiting_, {})) set();
+  for (const auto& set : std::exchange(pending_, {})) set();
 }
 
 void Joint::setAnchor(const Vec3& local) {

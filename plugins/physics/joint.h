@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Joints.
+/// The base of joints.
 
 #include <functional>
 
@@ -8,8 +8,8 @@
 
 namespace spark {
 
-/// Base of joints. Anchors and axes are given in the frame of the nearest transform, as it is when they are set, or,
-/// when they are set before the bodies are attached, as it is then; bodies by paths relative to the joint.
+/// Base of joints. Bodies are given by paths relative to the joint. Anchors and axes are given in the frame of the
+/// nearest transform. It is evaluated when they are set, or at attach() when they are set before.
 class Joint : public PhysicsObject, public IJoint {
   SPARK_CLASS(Joint, PhysicsObject)
  public:
@@ -39,29 +39,30 @@ class Joint : public PhysicsObject, public IJoint {
   void onUnlink() override;
   void saveState(StateWriter& out) const override;
   void loadState(StateReader& in) override;
-  /// The bodies are attached: what the joint takes from how they stand now.
+  /// Called after the bodies were attached, for settings that depend on their current poses.
   virtual void attached() {}
 
-  /// False: the joint is accepted, but holds nothing.
+  /// False: the class is accepted in scenes, but the engine has no such joint.
   virtual bool acts() const { return true; }
-  /// The engine that has the joint; nullptr when there is none.
+  /// The engine of the joint; nullptr when it is not linked, does not act, or the engine was removed.
   engine::IEngine* engine() const { return joint_ != engine::Joint::none ? world_->engine() : nullptr; }
   engine::Joint handle() const { return joint_; }
-  /// Does now, or as soon as the bodies are attached, what an engine can only do with bodies.
+  /// Calls `f` now, or as soon as bodies are attached. For settings that an engine can only store with bodies.
   template <class F>
   void withBodies(F f) {
     if (!engine()) return;
     if (attached_)
       f();
     else
-      waiting_.push_back(std::move(f));
+      pending_.push_back(std::move(f));
   }
+  /// Sets the anchor, in the frame of the nearest transform [m]. Throws RefusedValue when it is not finite.
   void setAnchor(const Vec3& local);
-  /// `direction` in the joint's frame.
+  /// Sets the direction of an axis, in the frame of the nearest transform. Throws Error when its length is 0.
   void setAxisLocal(int axis, const Vec3& direction);
   double angleDeg(int axis) const { return radToDeg(angle(axis)); }
   double angleRateDeg(int axis) const { return radToDeg(angleRate(axis)); }
-  /// Throws Error unless the joint has that axis.
+  /// Throws Error unless the joint has the axis.
   void expectAxis(int axis) const;
 
  private:
@@ -86,6 +87,7 @@ class Joint : public PhysicsObject, public IJoint {
     return radToDeg(parameter(P, axis));
   }
   void attach(std::string first, std::string second);
+  /// The body at a path relative to the joint; empty, with a warning, when there is none.
   Ref<RigidBody> bodyAt(const std::string& path);
   void enableFeedback(bool on);
   double maxSpeed1() const { return maxSpeed_[0]; }
@@ -96,9 +98,9 @@ class Joint : public PhysicsObject, public IJoint {
   std::shared_ptr<physics::WorldHandle> world_;
   engine::Joint joint_{};
   Ref<RigidBody> bodies_[2];
-  std::vector<std::function<void()>> waiting_;  ///< anchors and axes that were set before attach, in that order
+  std::vector<std::function<void()>> pending_;  ///< anchors and axes that were set before attach(), in that order
   bool attached_ = false;
-  double maxSpeed_[2] = {0, 0};
+  double maxSpeed_[2] = {0, 0};  ///< rad/s; 0: unlimited
   bool feedback_ = false;
 };
 

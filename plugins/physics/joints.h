@@ -16,21 +16,21 @@ class Generic6DOFJoint : public Joint {
   }
 };
 
-/// Turns about one axis.
+/// Allows rotation about one axis.
 class HingeJoint : public Generic6DOFJoint {
   SPARK_CLASS(HingeJoint, Generic6DOFJoint)
  public:
   static void describe(Description<HingeJoint>& d) {
-    d.doc("Turns about one axis.");
+    d.doc("Allows rotation about one axis.");
     d.method("setAnchor", &HingeJoint::setAnchor)
         .parameters({"point [m]"})
         .surplusIgnored()
-        .doc("Where the axis passes, in the joint's frame.");
+        .doc("Sets a point on the axis, in the joint's frame.");
     d.method("setAxis", &HingeJoint::setAxis)
         .parameters({"0, 1 or 2, or a direction"})
-        .doc("The axis, in the joint's frame.");
-    d.method("getAnchor", &HingeJoint::anchor).doc("Where the axis passes, in the world [m].");
-    d.method("getAxis", &HingeJoint::worldAxis).doc("The axis, in the world.");
+        .doc("Sets the direction of the axis, in the joint's frame: x, y, z as 0, 1, 2, or a vector.");
+    d.method("getAnchor", &HingeJoint::anchor).doc("A point on the axis, in the world [m].");
+    d.method("getAxis", &HingeJoint::worldAxis).doc("Direction of the axis, in the world.");
     d.method("getAngle", &HingeJoint::degrees).doc("Angle of the first body relative to the second [deg].");
     d.method("getAngleRate", &HingeJoint::degreesPerSecond).doc("Its rate [deg/s].");
   }
@@ -40,8 +40,8 @@ class HingeJoint : public Generic6DOFJoint {
   void setAxis(std::vector<double> v) {
     if (v.size() == 1 && v[0] >= 0 && v[0] < 3) return setAxisLocal(0, Vec3::Unit(static_cast<int>(v[0])));
     if (v.size() != 3)
-      throw Error(where() + ": expected an axis 0, 1 or 2, or a direction of 3 numbers, found " +
-                  std::to_string(v.size()) + " numbers");
+      throw Error(fmt::format("{}: expected an axis 0, 1 or 2, or a direction of 3 numbers, found {} numbers", where(),
+                              v.size()));
     setAxisLocal(0, {v[0], v[1], v[2]});
   }
   Vec3 worldAxis() const { return axisNow(0); }
@@ -49,25 +49,25 @@ class HingeJoint : public Generic6DOFJoint {
   double degreesPerSecond() const { return angleRateDeg(0); }
 };
 
-/// Turns about two axes that stay at a right angle.
+/// Allows rotation about two axes that stay perpendicular.
 class UniversalJoint : public Generic6DOFJoint {
   SPARK_CLASS(UniversalJoint, Generic6DOFJoint)
  public:
   static void describe(Description<UniversalJoint>& d) {
-    d.doc("Turns about two axes that stay at a right angle.");
+    d.doc("Allows rotation about two axes that stay perpendicular.");
     d.method("setAnchor", &UniversalJoint::setAnchor)
         .parameters({"point [m]"})
         .surplusIgnored()
-        .doc("Where the axes meet, in the joint's frame.");
-    d.method("getAnchor", &UniversalJoint::anchor).doc("Where the axes meet, in the world [m].");
+        .doc("Sets the intersection of the axes, in the joint's frame.");
+    d.method("getAnchor", &UniversalJoint::anchor).doc("Intersection of the axes, in the world [m].");
     d.method("setAxis1", &UniversalJoint::setAxis1)
         .parameters({"direction"})
         .surplusIgnored()
-        .doc("The first body's axis, in the joint's frame.");
+        .doc("Sets the first body's axis, in the joint's frame.");
     d.method("setAxis2", &UniversalJoint::setAxis2)
         .parameters({"direction"})
         .surplusIgnored()
-        .doc("The second body's axis, in the joint's frame.");
+        .doc("Sets the second body's axis, in the joint's frame.");
     d.method("getAngle", &UniversalJoint::angleDeg)
         .parameters({"axis"})
         .optional(1)
@@ -81,17 +81,17 @@ class UniversalJoint : public Generic6DOFJoint {
   void setAxis2(const Vec3& v) { setAxisLocal(1, v); }
 };
 
-/// A wheel: steers about z of the joint's frame, turns about x.
+/// Connects a wheel to a chassis: it steers about z of the joint's frame and rolls about x.
 class Hinge2Joint : public Generic6DOFJoint {
   SPARK_CLASS(Hinge2Joint, Generic6DOFJoint)
  public:
   static void describe(Description<Hinge2Joint>& d) {
-    d.doc("A wheel with steering and suspension.");
+    d.doc("Connects a wheel to a chassis, with steering and suspension.");
     d.method("setAnchor", &Hinge2Joint::setWheel)
         .parameters({"point [m]"})
         .surplusIgnored()
-        .doc("The wheel's centre, in the joint's frame; sets the axes as well: steering about z, rolling about x.");
-    d.method("getAnchor", &Hinge2Joint::anchor).doc("The wheel's centre, in the world [m].");
+        .doc("Sets the wheel's centre, in the joint's frame, and the axes: steering about z, rolling about x.");
+    d.method("getAnchor", &Hinge2Joint::anchor).doc("Centre of the wheel, in the world [m].");
     d.method("getAngle", &Hinge2Joint::angleDeg)
         .parameters({"axis"})
         .optional(1)
@@ -108,28 +108,28 @@ class Hinge2Joint : public Generic6DOFJoint {
   }
 };
 
-/// Turns freely about a point.
+/// Allows rotation about a point.
 class BallJoint : public Generic6DOFJoint {
   SPARK_CLASS(BallJoint, Generic6DOFJoint)
  public:
   static void describe(Description<BallJoint>& d) {
-    d.doc("Turns freely about a point.");
+    d.doc("Allows rotation about a point.");
     d.method("setAnchor", &BallJoint::setAnchor)
         .parameters({"point [m]"})
         .surplusIgnored()
-        .doc("The point, in the joint's frame.");
+        .doc("Sets the point, in the joint's frame.");
     d.method("getAnchor", &BallJoint::anchor).doc("The point, in the world [m].");
   }
   engine::JointType jointType() const override { return engine::JointType::ball; }
 };
 
-/// Slides along z of the joint's frame, as it is when the bodies are attached.
+/// Allows translation along z of the joint's frame, as it is when the bodies are attached.
 class SliderJoint : public Generic6DOFJoint {
   SPARK_CLASS(SliderJoint, Generic6DOFJoint)
  public:
   static void describe(Description<SliderJoint>& d) {
-    d.doc("Slides along z of the joint's frame.");
-    d.method("getPosition", &SliderJoint::position).doc("How far the first body slid relative to the second [m].");
+    d.doc("Allows translation along z of the joint's frame.");
+    d.method("getPosition", &SliderJoint::position).doc("Position of the first body relative to the second [m].");
     d.method("getPositionRate", &SliderJoint::positionRate).doc("Its rate [m/s].");
   }
   engine::JointType jointType() const override { return engine::JointType::slider; }
@@ -142,13 +142,13 @@ class SliderJoint : public Generic6DOFJoint {
   double positionRate() const { return angleRate(0); }
 };
 
-/// Holds two bodies as they stand when they are attached, or at setFixed.
+/// Holds two bodies in their relative pose at the time of attach, or of setFixed.
 class FixedJoint : public Generic6DOFJoint {
   SPARK_CLASS(FixedJoint, Generic6DOFJoint)
  public:
   static void describe(Description<FixedJoint>& d) {
-    d.doc("Holds two bodies as they stand.");
-    d.method("setFixed", &FixedJoint::attached).doc("Takes the bodies' relative pose as it is now.");
+    d.doc("Holds two bodies in their relative pose.");
+    d.method("setFixed", &FixedJoint::attached).doc("Makes the bodies' current relative pose the one to hold.");
   }
   engine::JointType jointType() const override { return engine::JointType::fixed; }
 
@@ -158,11 +158,11 @@ class FixedJoint : public Generic6DOFJoint {
   }
 };
 
-/// Accepted for old scenes; holds nothing.
+/// Accepted for old scenes; has no effect.
 class ConeTwistJoint : public Generic6DOFJoint {
   SPARK_CLASS(ConeTwistJoint, Generic6DOFJoint)
  public:
-  static void describe(Description<ConeTwistJoint>& d) { d.doc("Accepted for old scenes; holds nothing."); }
+  static void describe(Description<ConeTwistJoint>& d) { d.doc("Accepted for old scenes; has no effect."); }
   engine::JointType jointType() const override { return engine::JointType::fixed; }
 
  protected:

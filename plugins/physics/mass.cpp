@@ -3,18 +3,20 @@
 namespace spark::physics {
 namespace {
 
+/// A mass centred in the origin, with x, y, z as principal moments of inertia [kg m^2].
 engine::Mass diagonal(double mass, double x, double y, double z) {
   return {mass, Vec3::Zero(), Mat3(Vec3(x, y, z).asDiagonal())};
 }
 
-/// What a point mass at `p` adds to the inertia about the origin.
+/// Inertia of a point mass at `p` about the origin: the term of the parallel axis theorem (Steiner).
 Mat3 pointInertia(double mass, const Vec3& p) {
   return mass * (p.squaredNorm() * Mat3::Identity() - p * p.transpose());
 }
 
 }  // namespace
 
-// The order of operations is ODE's (dMassSet...Total), so that masses agree to the last bit.
+// The order of operations is that of ODE's dMassSet...Total, so that masses agree with the installed base to the last
+// bit.
 
 engine::Mass boxMass(double m, const Vec3& e) {
   const Vec3 s = e.cwiseProduct(e);

@@ -1,29 +1,30 @@
 #pragma once
 /// \file
-/// Masses of simple solids of even density, about their own centre, and how they add up.
+/// Mass distributions of solids of uniform density about their own centre, and their addition.
 
 #include "api/engine.h"
 
 namespace spark::physics {
 
-/// kg; full edges [m].
+/// A box of `mass` [kg] with full edge lengths `edges` [m].
 engine::Mass boxMass(double mass, const Vec3& edges);
+/// A sphere of `mass` [kg] and `radius` [m].
 engine::Mass sphereMass(double mass, double radius);
-/// Along z; `length` without the caps [m].
+/// A capsule along z of `mass` [kg], `radius` and `length` without the caps [m].
 engine::Mass capsuleMass(double mass, double radius, double length);
-/// Along z.
+/// A cylinder along z of `mass` [kg], `radius` and `length` [m].
 engine::Mass cylinderMass(double mass, double radius, double length);
 
-/// Volumes [m^3].
+// Volumes of the same solids [m^3]; lengths in m.
 double boxVolume(const Vec3& edges);
 double sphereVolume(double radius);
 double capsuleVolume(double radius, double length);
 double cylinderVolume(double radius, double length);
 
-/// `part` (about its own centre) turned and moved to `at`, added to `whole`; the sum's `center` is its centre of mass
-/// and its inertia is about the origin.
+/// `whole` plus `part`, whose own centre is at the pose `at` in the frame of `whole`. The sum's `center` is the common
+/// centre of mass; its inertia is about the origin.
 engine::Mass addMass(const engine::Mass& whole, const engine::Mass& part, const Pose& at);
-/// The same mass with its centre of mass moved to the origin.
+/// The same mass with the origin moved to its centre of mass.
 engine::Mass centred(const engine::Mass& mass);
 
 }  // namespace spark::physics

@@ -14,19 +14,20 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
   d.doc("Steps the world of the active scene with the engine below it.");
   d.implements<IPhysicsServer>();
   d.link(&S::scene_, At<ISceneServer>());
-  d.property("jointHeating", &S::jointHeating_).doc("Motors that model heat get warm.");
-  d.property("batteryDischarge", &S::batteryDischarge_).doc("Motors draw from their batteries.");
+  d.property("jointHeating", &S::jointHeating_).doc("Modelled motors change their temperature.");
+  d.property("batteryDischarge", &S::batteryDischarge_).doc("Modelled motors drain their batteries.");
   d.property("defaultHandlerOnTransformCollider", &S::defaultOnTransform, &S::setDefaultOnTransform)
       .doc(
-          "A TransformCollider without a handler of its own bounces by default, whatever its inner collider has; "
-          "false: it takes the inner "
-          "one's handlers.");
+          "A TransformCollider without a handler of its own has the default, bouncy surface, whatever handlers its "
+          "inner "
+          "collider has; false: it takes over those handlers.");
   d.property("measureForces", &S::measureForces_)
       .doc(
-          "Every solved contact tells its force, for those who look at contacts; the last digits of what the dense "
-          "solver computes may differ "
-          "from a run without.");
-  d.property("contactsPerPair", &S::contactsPerPair_).range(1, 16).doc("Contact points of two colliders at most.");
+          "Measures the force of every solved contact, for plugins that read contacts. The last digits of the dense "
+          "solver's results may differ from a run without.");
+  d.property("contactsPerPair", &S::contactsPerPair_)
+      .range(1, 16)
+      .doc("Maximum number of contact points of two colliders.");
   d.on<&PhysicsServer::physics>(phase::kPhysics);
   d.on<&PhysicsServer::place>(phase::kPlace);
 }
@@ -34,8 +35,8 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
 engine::IEngine& PhysicsServer::engine() {
   Leaf* found = find("engine");
   if (!found)
-    throw Error(path() + " has no engine below it: add one, for instance new(\"OdeEngine\", \"" + path() +
-                "/engine\")");
+    throw Error(
+        fmt::format("{0} has no engine below it: add one, for instance new(\"OdeEngine\", \"{0}/engine\")", path()));
   return require<engine::IEngine>("engine");
 }
 
@@ -61,6 +62,7 @@ void PhysicsServer::setDefaultOnTransform(bool on) {
 }
 
 void PhysicsServer::collect(const Node& scene) {
+  // Bodies and colliders of this world, in tree order.
   std::vector<PhysicsObject*> objects;
   std::vector<CollisionGroup*> groups;
   scene.collect(objects);
@@ -81,7 +83,8 @@ void PhysicsServer::collect(const Node& scene) {
   scripts_.assign(scripts.begin(), scripts.end());
 }
 
-/// A collider's group is the nearest: outer ones are set first. Of several in one node the first counts.
+/// A collider belongs to the innermost group: outer groups are set first, inner ones overwrite them. Of several groups
+/// in one node the first counts.
 void PhysicsServer::formGroups(const Node& scene, std::vector<CollisionGroup*>& groups) {
   const auto depth = [&](const CollisionGroup* group) {
     int n = 0;
@@ -105,10 +108,13 @@ bool PhysicsServer::refresh() {
   world_ = findWorld();
   if (!world_) return false;
   collect(*world_->parent());
+
+  // Outer transforms first: the local matrix of an inner one depends on their new poses.
   for (Placed& p : bodies_)
     for (const Transform* t = p.above; t; t = t->transform()) ++p.depth;
-  // Outer transforms first: an inner one's local matrix needs where they are now.
   std::stable_sort(bodies_.begin(), bodies_.end(), [](const Placed& a, const Placed& b) { return a.depth < b.depth; });
+
+  // The arrays of IEngine::posesOfAwake().
   handles_.clear();
   for (const Placed& p : bodies_) handles_.push_back(p.body->handle());
   awake_.resize(bodies_.size());
@@ -116,19 +122,20 @@ bool PhysicsServer::refresh() {
   return true;
 }
 
-/// Colliders and transforms around a body whose origin went to its centre of mass stay where they were.
 void PhysicsServer::shiftSurroundings() {
   if (!world_->takeRecentred()) return;
   for (const Placed& p : bodies_) {
-    const Vec3 by = p.body->takeShift();
-    if (by.isZero(0)) continue;
+    const Vec3 offset = p.body->takeShift();
+    if (offset.isZero(0)) continue;
+    // The outermost transforms below that of the body.
     std::vector<Transform*> transforms;
     p.body->transform()->collect(transforms, false);
-    for (Transform* t : transforms) t->setLocalFromBody(translation(by.cast<float>()) * t->local());
+    for (Transform* t : transforms) t->setLocalFromBody(translation(offset.cast<float>()) * t->local());
+    // Colliders inside the body's transform colliders.
     for (const auto& sibling : p.body->parent()->children())
       if (auto outer = sibling->as<TransformCollider>())
         for (const auto& child : outer->children())
-          if (auto inner = child->as<Collider>()) inner->shift(by);
+          if (auto inner = child->as<Collider>()) inner->shift(offset);
   }
 }
 
@@ -146,20 +153,24 @@ void PhysicsServer::physics(const Event& event) {
 void PhysicsServer::solve(const Event& event) {
   const std::shared_ptr<physics::WorldHandle> world = world_->handle();
   engine::IEngine& e = *world->engine();
+
+  // Contacts and their handlers.
   contacts_.clear();
   contactsAt_ = kernel().structureVersion();
   e.detect(world->id(), physics::pairCounts, contactsPerPair_, contacts_);
   physics::runHandlers(contacts_, kernel());
+
+  // One step. Handlers must not see feedback that only measureForces requested.
   measured_.clear();
   if (measureForces_) physics::measure(contacts_, measured_);
   e.step(world->id(), contacts_, event.step);
-  for (const std::size_t i : measured_) contacts_[i].feedback = false;  // no handler asked
+  for (const std::size_t i : measured_) contacts_[i].feedback = false;
   physics::runSolved(contacts_);
   for (const std::size_t i : measured_) contacts_[i].feedback = true;
 }
 
 std::span<const engine::Contact> PhysicsServer::contacts() const {
-  if (contactsAt_ != kernel().structureVersion()) return {};  // owners may be gone
+  if (contactsAt_ != kernel().structureVersion()) return {};  // owners may have been removed
   return contacts_;
 }
 
@@ -169,34 +180,37 @@ void PhysicsServer::reportFaults() {
       if (p.body->handle() == handle && p.body->countFault())
         kernel().log().error(
             "{}: its position or speed was no number after the step; it was put back to its last good place, at rest. "
-            "Look for extreme "
-            "forces, masses or joint parameters.",
+            "Look for extreme forces, masses or joint parameters.",
             p.body->path());
 }
 
 namespace {
-constexpr std::size_t kAhead = 6;        // nodes
-constexpr std::size_t kTransform = 384;  // bytes that are looked at
+constexpr std::size_t kAhead = 6;        // prefetch distance [bodies]
+constexpr std::size_t kTransform = 384;  // bytes of a transform that place() reads and writes
 }  // namespace
 
 void PhysicsServer::place(const Event&) {
   if (!refresh()) return;
   world_->handle()->engine()->posesOfAwake(handles_, awake_, poses_);
 
-  // Bodies of one robot share the transform above: its inverse is made once.
-  const Transform* known = nullptr;
+  // The bodies of a robot share the transform above: its inverse is computed once.
+  const Transform* inverted = nullptr;
   Matrix inverse;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (i + kAhead < bodies_.size() && awake_[i + kAhead]) prefetch(bodies_[i + kAhead].transform, kTransform);
     Placed& p = bodies_[i];
+
+    // Skip bodies that sleep and whose transform is up to date. One that was awake at the last placing and still is
+    // needs no check.
     if (!awake_[i] || !p.moving) {
       p.moving = awake_[i];
       if (!p.body->takeUnplaced()) continue;
       if (!awake_[i]) poses_[i] = p.body->pose();
     }
-    if (p.above && p.above != known) {
+
+    if (p.above && p.above != inverted) {
       inverse = rigidInverse(p.above->worldNow());
-      known = p.above;
+      inverted = p.above;
     }
     p.transform->setLocalFromBody(p.above ? Matrix(inverse * poses_[i]) : poses_[i]);
   }

@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// The physics server: steps the active scene's world and brings bodies and transforms together.
+/// The physics server: steps the world of the active scene and keeps bodies and transforms in agreement.
 ///
-///     physics  place what was moved by hand (bodies follow) -> shift what surrounds re-centred bodies
-///              -> detect -> handlers -> solve -> feedback -> faults -> script handlers
-///     place    poses of what is awake in one call -> transforms, outer ones first -> world matrices
+///     physics  place transforms that were moved by hand (bodies follow) -> shift the surroundings of re-centred bodies
+///              -> detect contacts -> handlers -> step -> feedback -> faults -> script handlers
+///     place    poses of awake bodies, read in one call -> transforms, outer ones first -> world matrices
 
 #include "collider.h"
 #include "handlers.h"
@@ -21,30 +21,36 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void bodies(Node& root, std::vector<IRigidBody*>& out) override;
   std::span<const engine::Contact> contacts() const override;
   ICollider& colliderOf(void* owner) const override { return *static_cast<Collider*>(owner); }
-  /// Motors that model heat get warm.
+  /// True: modelled motors change their temperature.
   bool jointHeating() const { return jointHeating_; }
-  /// Motors draw from their batteries.
+  /// True: modelled motors drain their batteries.
   bool batteryDischarge() const { return batteryDischarge_; }
 
  private:
-  /// A body with what its placing needs.
+  /// A body and the transform that it moves.
   struct Placed {
     RigidBody* body;
-    Transform* transform;  ///< that it moves
-    Transform* above;      ///< the transform around that, nullptr for none
-    int depth;             ///< transforms above the body
-    bool moving =
-        false;  ///< was awake when it was placed last: what the body itself keeps for placing need not be looked at
+    Transform* transform;  ///< the transform that the body moves
+    Transform* above;      ///< the transform above that one; nullptr: none
+    int depth;             ///< number of transforms above the body
+    bool moving = false;   ///< awake at the last placing: RigidBody::takeUnplaced() need not be called
   };
+  /// The world of the active scene; nullptr when there is none, or no engine.
   World* findWorld();
-  /// Looks at the scene again when its shape changed. False when there is nothing to step.
+  /// Collects bodies, colliders and handlers again when the shape of the scene changed. False when there is no world.
   bool refresh();
   void collect(const Node& scene);
+  /// Gives each collider its collision group.
   void formGroups(const Node& scene, std::vector<CollisionGroup*>& groups);
+  /// The physics phase.
   void physics(const Event& event);
+  /// Detects contacts, calls handlers and steps the world.
   void solve(const Event& event);
+  /// The place phase: writes the poses of bodies to their transforms.
   void place(const Event& event);
+  /// Keeps the world poses of colliders and transforms around bodies whose origin moved to their centre of mass.
   void shiftSurroundings();
+  /// Logs the bodies that the engine had to reset.
   void reportFaults();
   bool defaultOnTransform() const { return defaultOnTransform_; }
   void setDefaultOnTransform(bool on);
@@ -58,11 +64,11 @@ class PhysicsServer : public Node, public IPhysicsServer {
   std::vector<Placed> bodies_;
   std::vector<Ref<ScriptHandler>> scripts_;
   engine::Contacts contacts_;
-  std::uint64_t contactsAt_ = 0;       ///< the tree's version when they were found
-  std::vector<std::size_t> measured_;  ///< contacts whose force only measureForces asked for
-  std::vector<engine::Body> handles_;  ///< of bodies_
-  std::vector<std::uint8_t> awake_;
-  std::vector<Matrix> poses_;
+  std::uint64_t contactsAt_ = 0;       ///< version of the tree when they were detected
+  std::vector<std::size_t> measured_;  ///< indices of contacts that have feedback only because of measureForces
+  std::vector<engine::Body> handles_;  ///< of bodies_, in the same order
+  std::vector<std::uint8_t> awake_;    ///< of bodies_: 1 for an awake one
+  std::vector<Matrix> poses_;          ///< of bodies_
 };
 
 }  // namespace spark

@@ -6,10 +6,10 @@ namespace spark {
 
 void RigidBody::describe(Description<RigidBody>& d) {
   using B = RigidBody;
-  d.doc("A rigid body: moves the transform it hangs in.");
+  d.doc("A rigid body: it moves the nearest transform above it.");
   d.implements<IRigidBody>();
   d.implements<IFollowsTransform>();
-  d.property("mass", &B::mass, &B::setMass).unit("kg").doc("Total mass; setting it scales the inertia as well.");
+  d.property("mass", &B::mass, &B::setMass).unit("kg").doc("Total mass. Setting it scales the inertia as well.");
   d.property("position", &B::position, &B::setPosition).unit("m").doc("Centre of mass in the world.");
   d.property("velocity", &B::velocity, &B::setVelocity)
       .unit("m/s")
@@ -21,25 +21,21 @@ void RigidBody::describe(Description<RigidBody>& d) {
 
   const auto solid = [&](const char* shape, auto set, auto setTotal, std::vector<std::string> lengths) {
     lengths.insert(lengths.begin(), "density [kg/m^3]");
-    d.method(std::string("set") + shape, set)
+    d.method(fmt::format("set{}", shape), set)
         .parameters(lengths)
-        .doc(std::string("Mass and inertia of a solid ") + shape + " of even density.");
+        .doc(fmt::format("Sets mass and inertia to those of a solid {} of uniform density.", shape));
     lengths.front() = "mass [kg]";
-    d.method(std::string("set") + shape + "Total", setTotal)
+    d.method(fmt::format("set{}Total", shape), setTotal)
         .parameters(lengths)
-        .doc(std::string("Mass and inertia of a solid ") + shape + ".");
+        .doc(fmt::format("Sets mass and inertia to those of a solid {}.", shape));
   };
   const auto added = [&](const char* shape, auto add, auto addTotal, std::vector<std::string> lengths) {
+    const std::string doc =
+        fmt::format("Adds the mass of a solid {} and moves the body's origin to the common centre of mass.", shape);
     lengths.insert(lengths.begin(), "density [kg/m^3]");
-    d.method(std::string("add") + shape, add)
-        .parameters(lengths)
-        .doc(std::string("Adds a solid ") + shape +
-             " to what the body has, and moves its origin to the common centre.");
+    d.method(fmt::format("add{}", shape), add).parameters(lengths).doc(doc);
     lengths.front() = "mass [kg]";
-    d.method(std::string("add") + shape + "Total", addTotal)
-        .parameters(lengths)
-        .doc(std::string("Adds a solid ") + shape +
-             " to what the body has, and moves its origin to the common centre.");
+    d.method(fmt::format("add{}Total", shape), addTotal).parameters(lengths).doc(doc);
   };
   solid("Box", &B::setBox, &B::setBoxTotal, {"edges [m]"});
   solid("Sphere", &B::setSphere, &B::setSphereTotal, {"radius [m]"});
@@ -55,19 +51,21 @@ void RigidBody::describe(Description<RigidBody>& d) {
   d.method("setMassParameters", &B::setMassParameters)
       .parameters({"mass [kg]", "centre [m]", "I11 I22 I33 [kg m^2]", "I12 I13 I23 [kg m^2]"})
       .surplusIgnored()
-      .doc("Mass and inertia as numbers. The centre must be 0: another one is ignored, with a line in the log.");
+      .doc("Sets mass and inertia. The centre must be 0; another one is ignored, with a warning in the log.");
   d.method("translateMass", &B::translateMass)
       .parameters({"offset [m]"})
-      .doc("Accepted for old scenes; does nothing, as it always did.");
+      .doc("Accepted for old scenes; has no effect, as in the installed base.");
 
   d.method("addForce", &B::addForceBy)
       .parameters({"force [N]"})
-      .doc("For the next step, at the centre of mass, in the world.");
-  d.method("addTorque", &B::addTorque).parameters({"torque [Nm]"}).doc("For the next step, in the world.");
+      .doc("Adds a force at the centre of mass for the next step, in the world frame.");
+  d.method("addTorque", &B::addTorque)
+      .parameters({"torque [Nm]"})
+      .doc("Adds a torque for the next step, in the world frame.");
   d.method("enable", &B::enable).doc("Wakes the body.");
   d.method("disable", &B::disable).doc("Puts the body to sleep.");
   d.method("isEnabled", &B::enabled).doc("False while the body sleeps.");
-  d.method("useGravity", &B::useGravity).parameters({"on"}).doc("Whether the world's gravity acts on it.");
+  d.method("useGravity", &B::useGravity).parameters({"on"}).doc("Switches the world's gravity for this body.");
 }
 
 void RigidBody::onLink() {
@@ -158,7 +156,7 @@ void RigidBody::useGravity(bool on) {
 }
 
 void RigidBody::follow(const Matrix& world) {
-  // The transform does not know yet how far the centre of mass moved.
+  // The transform still has the origin before the pending shift.
   setPose(physics::compose(toPose(world), {-pendingShift_, Mat3::Identity()}));
 }
 
@@ -167,25 +165,28 @@ void RigidBody::applyMass(const engine::Mass& mass) {
     try {
       engine()->setMass(body_, mass);
     } catch (const Error& e) {
-      throw Error(where() + ": cannot set the mass; it stays " + std::to_string(mass_.mass) + " kg", e);
+      throw Error(fmt::format("{}: cannot set the mass; it stays {:f} kg", where(), mass_.mass), e);
     }
   }
   mass_ = mass;
 }
 
 void RigidBody::add(const engine::Mass& part, const std::vector<double>& matrix) {
+  // `matrix` is relative to the original origin.
   Pose at = physics::poseFrom(matrix);
   at.position += shift_;
   const engine::Mass sum = physics::addMass(mass_, part, at);
   applyMass(physics::centred(sum));
-  const Vec3 c = sum.center;
+
+  // The engine's origin is the centre of mass: move it there, and the surroundings back by the same offset.
+  const Vec3 center = sum.center;
   if (engine()) {
     const engine::BodyState s = engine()->state(body_);
-    engine()->setPosition(body_, s.position + s.rotation * c);
+    engine()->setPosition(body_, s.position + s.rotation * center);
     placed_ = false;
   }
-  shift_ -= c;
-  pendingShift_ -= c;
+  shift_ -= center;
+  pendingShift_ -= center;
   if (worldNode_) worldNode_->markRecentred();
 }
 
@@ -202,8 +203,7 @@ void RigidBody::setMassParameters(double m, const Vec3& center, const Vec3& diag
   if (!center.isZero(1e-9))
     kernel().log().warning(
         "{}: setMassParameters was given the centre ({}, {}, {}); a body's centre of mass is its origin, so 0 was "
-        "taken. Move the "
-        "transform there.",
+        "taken. Move the transform there.",
         where(), center.x(), center.y(), center.z());
   engine::Mass mass{m, Vec3::Zero(), Mat3(diagonal.asDiagonal())};
   mass.inertia(0, 1) = mass.inertia(1, 0) = products.x();
@@ -249,8 +249,8 @@ void RigidBody::loadState(StateReader& in) {
   for (int i = 0; i < 3; ++i) pendingShift_[i] = in.readNumber();
   const std::int64_t count = in.readInteger();
   if (count < 0 || count > 1024)
-    throw Error(where() + ": expected the saved numbers of a body, found a count of " + std::to_string(count));
-  std::vector<double> numbers(static_cast<std::size_t>(count));
+    throw Error(fmt::format("{}: expected the saved numbers of a body, found a count of {}", where(), count));
+  std::vector<double> numbers(count);
   for (double& v : numbers) v = in.readNumber();
   applyMass(mass);
   if (engine()) engine()->loadBody(body_, numbers);

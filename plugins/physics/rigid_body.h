@@ -1,24 +1,24 @@
 #pragma once
 /// \file
-/// Bodies.
+/// Rigid bodies.
 
 #include "mass.h"
 #include "world.h"
 
 namespace spark {
 
-/// Base of what moves.
+/// Base of bodies.
 class Body : public PhysicsObject {
   SPARK_CLASS(Body, PhysicsObject)
  public:
   static void describe(Description<Body>& d) {
-    d.doc("Base of what moves.");
+    d.doc("Base of bodies.");
     d.abstract();
   }
 };
 
-/// A rigid body. Takes its pose from the nearest transform when it is linked; after each step the transform takes its
-/// pose.
+/// A rigid body. It takes its pose from the nearest transform when it is linked; after each step that transform takes
+/// the pose of the body.
 class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   SPARK_CLASS(RigidBody, Body)
  public:
@@ -39,19 +39,21 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   Transform* bodyTransform() const override { return transform(); }
   void follow(const Matrix& world) override;
 
+  /// The engine's body; none while the node is not linked.
   engine::Body handle() const { return body_; }
-  /// The world it is in; empty before it is linked.
+  /// The world of the body; empty while the node is not linked.
   const std::shared_ptr<physics::WorldHandle>& world() const { return world_; }
   const engine::Mass& massDistribution() const { return mass_; }
 
-  /// For the physics server's place: true when its transform must be written (it is awake, or was changed in its
-  /// sleep).
+  /// For the place phase: returns true when the transform must be written, because the body is awake or was moved while
+  /// it slept, and clears that mark for a sleeping body.
   bool takeUnplaced();
-  /// Where it stands now.
+  /// Current world pose as a matrix.
   Matrix pose() const;
-  /// How far the centre of mass moved since the last call: colliders and transforms around it move by it in its frame.
+  /// Returns and clears the offset by which colliders and transforms around the body must move, in its frame [m],
+  /// because its origin moved to the centre of mass.
   Vec3 takeShift();
-  /// Counts a repair by the engine; true for the 1st, 2nd, 4th ... of this body.
+  /// Counts a reset by the engine. Returns true for the 1st, 2nd, 4th, 8th ... of this body, which are logged.
   bool countFault();
 
  protected:
@@ -62,8 +64,11 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
 
  private:
   engine::IEngine* engine() const { return world_ ? world_->engine() : nullptr; }
+  /// Wakes the body and marks its transform as out of date.
   void wake();
+  /// Sets the mass. Throws Error, and keeps the old mass, when the engine rejects it.
   void applyMass(const engine::Mass& mass);
+  /// Adds a mass at the pose given by `matrix` and moves the origin to the common centre of mass.
   void add(const engine::Mass& part, const std::vector<double>& matrix);
 
   void setBox(double density, const Vec3& e) { applyMass(physics::boxMass(density * physics::boxVolume(e), e)); }
@@ -112,10 +117,11 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   engine::Body body_ = engine::Body::none;
   engine::Mass mass_;
   Ref<World> worldNode_;
-  Vec3 shift_ = Vec3::Zero();         ///< where the first origin is in the body's frame
-  Vec3 pendingShift_ = Vec3::Zero();  ///< the part of it that the surroundings do not know yet
-  bool gravity_ = true, placed_ = false;
-  unsigned faults_ = 0;
+  Vec3 shift_ = Vec3::Zero();         ///< position of the original origin in the body's frame [m]
+  Vec3 pendingShift_ = Vec3::Zero();  ///< the part of it that takeShift() has not returned yet [m]
+  bool gravity_ = true;
+  bool placed_ = false;  ///< the body sleeps and its transform is up to date
+  unsigned faults_ = 0;  ///< resets by the engine
 };
 
 }  // namespace spark

@@ -12,32 +12,35 @@ Pose physics::poseFrom(const std::vector<double>& n) {
     return p;
   }
   if (n.size() != 16)
-    throw Error("expected a matrix as 6 numbers (position, rotation in degrees) or 16 (column-major), found " +
-                std::to_string(n.size()));
+    throw Error(fmt::format(
+        "expected a matrix as 6 numbers (position, rotation in degrees) or 16 (column-major), found {}", n.size()));
   Pose p;
   p.position = {n[12], n[13], n[14]};
   for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row) p.rotation(row, column) = n[static_cast<std::size_t>(4 * column + row)];
+    for (int row = 0; row < 3; ++row) p.rotation(row, column) = n[4 * column + row];
   return p;
 }
 
 void World::describe(Description<World>& d) {
   d.doc("The physical world of a scene: gravity and the solver's parameters.");
-  d.property("gravity", &World::gravity, &World::setGravity).unit("m/s^2").state().doc("Acceleration of all bodies.");
+  d.property("gravity", &World::gravity, &World::setGravity)
+      .unit("m/s^2")
+      .state()
+      .doc("Gravitational acceleration, world frame.");
   d.property("ERP", &World::erp, &World::setErp)
       .range(0, 1)
       .state()
-      .doc("Part of a joint's error that is put right in one step.");
+      .doc("Error reduction parameter: the fraction of a constraint's error that one step corrects.");
   d.property("CFM", &World::cfm, &World::setCfm)
       .min(0)
       .state()
-      .doc("Constraint force mixing: how much all constraints yield.");
+      .doc("Constraint force mixing (compliance / time step) of all constraints.");
   d.property("autoDisableFlag", &World::autoDisable, &World::setAutoDisable).state().doc("Bodies at rest fall asleep.");
   d.property("contactSurfaceLayer", &World::surfaceLayer, &World::setSurfaceLayer)
       .unit("m")
       .min(0)
       .state()
-      .doc("Depth to which contacts are let sink.");
+      .doc("Allowed penetration depth of contacts.");
 }
 
 World& World::of(const Leaf& node) {
@@ -52,7 +55,7 @@ void World::onLink() {
   PhysicsObject::onLink();
   auto& server = kernel().root().require<IPhysicsServer>();
   engine::IEngine& e = server.engine();
-  // The engine is an interface without a leaf of its own: the server's child that offers it is what may die.
+  // IEngine has no node of its own: the handle refers to the child of the server that offers it.
   Leaf* engineLeaf = kernel().root().find("/sys/server/physics/engine");
   if (!engineLeaf) engineLeaf = kernel().root().find("/sys/server/physics");
   handle_ = std::make_shared<physics::WorldHandle>(physics::EngineUse{Ref<Leaf>(engineLeaf), &e}, path());
@@ -78,17 +81,19 @@ void World::apply() {
 }
 
 void Space::describe(Description<Space>& d) {
-  d.doc("A collision space: colliders below it are in it.");
+  d.doc("A collision space: it holds the colliders below it.");
   d.method("disableInnerCollision", &Space::disableInnerCollision)
       .parameters({"off"})
-      .doc("true: colliders directly in this space never collide with each other.");
+      .doc("true: colliders directly in this space do not collide with each other.");
   d.property("innerCollisionDisabled", &Space::innerOff, &Space::disableInnerCollision)
-      .doc("True when colliders directly in this space never collide with each other.");
+      .doc("Colliders directly in this space do not collide with each other.");
 }
 
 void Space::onLink() {
   PhysicsObject::onLink();
   World& world = World::of(*this);
+
+  // A space inside another is nested. The first beside the world is a top-level space, others are nested in it.
   if (auto* above = ancestor<Space>())
     handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), above->handle());
   else if (world.parent()->childOf<Space>() == this)

@@ -6,17 +6,17 @@
 
 namespace spark {
 
-/// Base of everything physical in a scene.
+/// Base of all physics nodes of a scene.
 class PhysicsObject : public SceneNode {
   SPARK_CLASS(PhysicsObject, SceneNode)
  public:
   static void describe(Description<PhysicsObject>& d) {
-    d.doc("Base of everything physical in a scene.");
+    d.doc("Base of all physics nodes of a scene.");
     d.abstract();
   }
 
  protected:
-  /// A name for messages.
+  /// Path and class, for messages: "/usr/scene/box/body (RigidBody)".
   std::string where() const { return path() + " (" + classObject()->name() + ")"; }
 };
 
@@ -26,16 +26,18 @@ class World : public PhysicsObject {
  public:
   static void describe(Description<World>& d);
 
-  /// The engine's world; made when the node is linked.
+  /// The engine's world; created when the node is linked.
   const std::shared_ptr<physics::WorldHandle>& handle() const { return handle_; }
-  /// The space of colliders that have none above them: the scene's first Space, else one of its own.
+  /// The space of colliders without a Space above them: the scene's first Space, else one that the world owns.
   const std::shared_ptr<physics::SpaceHandle>& space();
   const engine::WorldParameters& parameters() const { return parameters_; }
-  /// The world that a node belongs to: the child of its nearest ancestor that has one. Throws Error when there is none.
+  /// The world of a node: a child of its nearest ancestor that has one. Throws Error when there is none.
   static World& of(const Leaf& node);
 
-  /// A body's centre of mass moved: transforms and colliders around it follow in the next physics phase.
+  /// Marks that the origin of a body moved to its centre of mass: the next physics phase shifts the transforms and
+  /// colliders around it.
   void markRecentred() { recentred_ = true; }
+  /// Returns and clears that mark.
   bool takeRecentred() { return std::exchange(recentred_, false); }
 
  protected:
@@ -52,6 +54,7 @@ class World : public PhysicsObject {
   void setAutoDisable(bool on) { parameters_.autoDisable = on, apply(); }
   double surfaceLayer() const { return parameters_.contactSurfaceLayer; }
   void setSurfaceLayer(double v) { parameters_.contactSurfaceLayer = v, apply(); }
+  /// Passes the parameters to the engine.
   void apply();
 
   engine::WorldParameters parameters_;
@@ -60,11 +63,12 @@ class World : public PhysicsObject {
   bool recentred_ = false;
 };
 
-/// A collision space: colliders below it are in it.
+/// A collision space: it holds the colliders below it.
 class Space : public PhysicsObject {
   SPARK_CLASS(Space, PhysicsObject)
  public:
   static void describe(Description<Space>& d);
+  /// The engine's space; created when the node is linked.
   const std::shared_ptr<physics::SpaceHandle>& handle() const { return handle_; }
 
  protected:
