@@ -4,13 +4,12 @@
 
 namespace spark {
 
-/// `(syn)`: the agent has said all it wants to say in this cycle. Game control sees the message; there is nothing to do
-/// here.
+/// `(syn)`: the agent has finished its cycle. Game control reads the message itself, so act() has nothing to do.
 class AgentSyncEffector : public Effector, public ISyncEffector {
   SPARK_CLASS(AgentSyncEffector, Effector)
  public:
   static void describe(Description<AgentSyncEffector>& d) {
-    d.doc("Takes (syn), by which an agent says in lockstep that the cycle may go on. Arguments are ignored.");
+    d.doc("Accepts (syn), with which an agent ends its cycle in lockstep. Arguments are ignored.");
     d.implements<ISyncEffector>();
   }
   std::string predicate() const override { return "syn"; }

@@ -4,16 +4,16 @@
 
 namespace spark {
 
-/// `(he1 1.5)`: speed of the angular motor above it, rad/s, at once and until the next command. A motor that is
-/// disabled (too hot, without energy) stands still instead.
+/// `(he1 1.5)`: sets the speed of the angular motor above it [rad/s], at once and until the next command. A motor that
+/// is disabled (too hot, without energy) gets speed 0 instead.
 class AngularMotorEffector : public Effector {
   SPARK_CLASS(AngularMotorEffector, Effector)
  public:
   static void describe(Description<AngularMotorEffector>& d) {
     d.doc(
-        "Drives the angular motor above it: (name speed) in rad/s, within the greatest speed of the motor or of the "
-        "hinge that holds it; a "
-        "disabled motor stands still.");
+        "Drives the angular motor above it: (name speed) in rad/s, clamped to the maximum speeds of the motor and of "
+        "the "
+        "hinge above it. A disabled motor stops.");
     d.link(&AngularMotorEffector::motor_, AngularMotorAbove()).required(kNoJointAbove);
     d.link(&AngularMotorEffector::hinge_, AngularMotorAbove().above<IJoint>());
     d.link(&AngularMotorEffector::device_, Above<IMotor>());
@@ -35,7 +35,7 @@ class AngularMotorEffector : public Effector {
 
  private:
   Link<IJoint> motor_, hinge_;
-  Link<IMotor> device_;  ///< of motors that are modelled
+  Link<IMotor> device_;  ///< the motor's model; empty for motors without one
 };
 
 }  // namespace spark

@@ -4,14 +4,15 @@
 
 namespace spark {
 
-/// `(create)`: builds a fixed scene file below the agent, before the next step. Without a file it has no effect.
+/// `(create)`: imports a fixed scene file below the agent, before the next step. Without a file it has no effect.
 class CreateEffector : public Effector {
   SPARK_CLASS(CreateEffector, Effector)
  public:
   static void describe(Description<CreateEffector>& d) {
     d.doc(
-        "Builds the agent from a fixed scene file: (create). Arguments are ignored; without a file it has no effect.");
-    d.property("scene", &CreateEffector::scene_).doc("The scene file that is built.");
+        "Imports a fixed scene file below the agent: (create). Arguments are ignored; without a file it has no "
+        "effect.");
+    d.property("scene", &CreateEffector::scene_).doc("The scene file to import.");
     d.on<&CreateEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "create"; }

@@ -4,15 +4,14 @@
 
 namespace spark {
 
-/// `(force 0 0 10)`: a force on the body above it (or beside it, below its transform), N in the world's frame, for the
-/// next step.
+/// `(force 0 0 10)`: applies a force to the body above it, or else beside it, during the next step [N, world frame].
 class ForceEffector : public Effector {
   SPARK_CLASS(ForceEffector, Effector)
  public:
   static void describe(Description<ForceEffector>& d) {
     d.doc(
-        "Pushes the body above or beside it during one step: (force x y z) in N, world frame. The last command of a "
-        "cycle counts.");
+        "Applies a force to the body above or beside it during one step: (force x y z) in N, world frame. The last "
+        "command of a cycle counts.");
     d.link(&ForceEffector::above_, Above<IRigidBody>());
     d.link(&ForceEffector::beside_, Above<Transform>().child<IRigidBody>());
     d.on<&ForceEffector::prepare>(phase::kPrepare);
@@ -22,7 +21,7 @@ class ForceEffector : public Effector {
     NumberArguments read(action);
     Vec3 force;
     for (int i = 0; i < 3; ++i)
-      if (!read(static_cast<std::size_t>(i), force[i])) return read.remark();
+      if (!read(i, force[i])) return read.remark();
     force_ = force;
     pending_ = true;
     return read.remark();

@@ -4,8 +4,8 @@
 
 namespace spark {
 
-/// `(wheel 90)`: speed of the second axis (the wheel) of the hinge2 above it, in degrees per second as the installed
-/// base has it; no limit.
+/// `(wheel 90)`: sets the speed of the second axis (rolling) of the hinge2 above it, in deg/s as in the installed base,
+/// without limit.
 class Hinge2Effector : public Effector {
   SPARK_CLASS(Hinge2Effector, Effector)
  public:

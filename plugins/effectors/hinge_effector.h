@@ -5,21 +5,19 @@
 
 namespace spark {
 
-/// `(he1 1.5)`: speed of the hinge above it, rad/s, at once and until the next command.
+/// `(he1 1.5)`: sets the speed of the hinge above it [rad/s], at once and until the next command.
 class HingeEffector : public Effector, public IFreezable {
   SPARK_CLASS(HingeEffector, Effector)
  public:
   static void describe(Description<HingeEffector>& d) {
-    d.doc("Drives the hinge joint above it: (name speed) in rad/s, within the joint's greatest speed.");
+    d.doc("Drives the hinge joint above it: (name speed) in rad/s, clamped to the joint's maximum speed.");
     d.link(&HingeEffector::joint_, JointAbove<engine::JointType::hinge>("HingeJoint")).required(kNoJointAbove);
     d.implements<IFreezable>();
     d.property("frozen", &HingeEffector::frozen_)
         .state()
-        .doc("Commands set speed 0: the rule of self-collisions has frozen it.");
+        .doc("Commands set speed 0: the rule about self-collisions has frozen the effector.");
     d.property("ignoreCommandAtStop", &HingeEffector::ignoreCommandAtStop_)
-        .doc(
-            "At or beyond a stop commands are ignored and the speed stays, as the installed base does against "
-            "exploding feet.");
+        .doc("At or beyond a stop commands are ignored and the speed is unchanged, as in the installed base.");
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();
@@ -29,7 +27,7 @@ class HingeEffector : public Effector, public IFreezable {
     if (read(0, speed)) {
       const bool ignored = ignoreCommandAtStop_ && joint->atStop(0);
       if (!ignored) joint->drive(0, frozen_ ? 0 : clampSpeed(*joint, 0, speed));
-      // A command wakes the body even where it does not reach the motor, as in the installed base.
+      // As in the installed base, a command wakes the body even if it does not reach the motor.
       if (speed != 0 && (ignored || frozen_)) wakeFirstBody();
     }
     return read.remark();

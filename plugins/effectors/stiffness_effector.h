@@ -4,15 +4,15 @@
 
 namespace spark {
 
-/// `(he1s 0.8)`: which part of its greatest torque the angular motor above it may use, 0..1, at once and until the next
-/// command.
+/// `(he1s 0.8)`: sets the fraction of its maximum torque that the angular motor above it may use, 0..1, at once and
+/// until the next command.
 class StiffnessEffector : public Effector {
   SPARK_CLASS(StiffnessEffector, Effector)
  public:
   static void describe(Description<StiffnessEffector>& d) {
-    d.doc("Sets the stiffness of the angular motor above it: (name part), 0..1.");
+    d.doc("Sets the stiffness of the angular motor above it: (name fraction), 0..1.");
     d.link(&StiffnessEffector::motor_, Above<IMotor>()).required("It does nothing. Put it below an AngularMotor.");
-    d.property("stiffness", &StiffnessEffector::stiffness_).range(0, 1).state().doc("What was commanded last.");
+    d.property("stiffness", &StiffnessEffector::stiffness_).range(0, 1).state().doc("The last command.");
   }
   std::string act(const Element& action) override {
     NumberArguments read(action);

@@ -4,12 +4,13 @@
 
 namespace spark {
 
-/// `(lae1_2 0.5 -0.5)`: speeds of both axes of the universal joint above it, rad/s, at once and until the next command.
+/// `(lae1_2 0.5 -0.5)`: sets the speeds of both axes of the universal joint above it [rad/s], at once and until the
+/// next command.
 class UniversalJointEffector : public Effector {
   SPARK_CLASS(UniversalJointEffector, Effector)
  public:
   static void describe(Description<UniversalJointEffector>& d) {
-    d.doc("Drives the universal joint above it: (name speed1 speed2) in rad/s, within the joint's greatest speeds.");
+    d.doc("Drives the universal joint above it: (name speed1 speed2) in rad/s, clamped to the joint's maximum speeds.");
     d.link(&UniversalJointEffector::joint_, JointAbove<engine::JointType::universal>("UniversalJoint"))
         .required(kNoJointAbove);
   }

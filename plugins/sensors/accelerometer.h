@@ -6,17 +6,17 @@
 
 namespace spark {
 
-/// `(ACC (n torso) (a 0.00 0.00 9.81))`: what a real accelerometer feels, in its body's frame: at rest upright (0
-/// 0 9.81), in free fall 0.
+/// `(ACC (n torso) (a 0.00 0.00 9.81))`: proper acceleration as a real accelerometer measures it, in the frame of its
+/// body [m/s^2]: (0 0 9.81) upright at rest, 0 in free fall.
 ///
-/// It samples in the prepare phase, before the step, from the velocities after the two steps before: its percept is one
-/// cycle older than the rest of the message. The installed base's robots were tuned with this delay.
+/// It samples in the prepare phase, before the step, from the velocities after the two previous steps: its percept is
+/// one cycle older than the rest of the message. The robots of the installed base were tuned with this delay.
 class Accelerometer : public Perceptor {
   SPARK_CLASS(Accelerometer, Perceptor)
  public:
   static void describe(Description<Accelerometer>& d) {
     d.doc("Senses the specific force on its transform's body, in the body's frame: (ACC (n name) (a x y z)) in m/s^2.");
-    d.property("gravity", &Accelerometer::gravity_).unit("m/s^2").doc("What it takes for gravity.");
+    d.property("gravity", &Accelerometer::gravity_).unit("m/s^2").doc("Gravitational acceleration that it assumes.");
     d.property("lastVelocity", &Accelerometer::lastVelocity_)
         .unit("m/s")
         .state()
@@ -37,8 +37,8 @@ class Accelerometer : public Perceptor {
     const IRigidBody* const body = body_.get();
     if (!body || event.step <= 0) return;
     const Vec3f velocity = body->state().linearVelocity.cast<float>();
-    const Vec3f felt = (velocity - lastVelocity_) / static_cast<float>(event.step) - gravity_;
-    acceleration_ = intoFrame(transform()->world(), felt);
+    const Vec3f proper = (velocity - lastVelocity_) / static_cast<float>(event.step) - gravity_;
+    acceleration_ = intoFrame(transform()->world(), proper);
     lastVelocity_ = velocity;
   }
   Link<IRigidBody> body_;

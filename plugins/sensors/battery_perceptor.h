@@ -5,12 +5,12 @@
 
 namespace spark {
 
-/// `(BAT 0.75)`, named as the node: state of charge of the battery above it, its energy over its capacity.
+/// `(BAT 0.75)`, with the node's name as predicate: state of charge of the battery above it, energy / capacity.
 class BatteryPerceptor : public Perceptor {
   SPARK_CLASS(BatteryPerceptor, Perceptor)
  public:
   static void describe(Description<BatteryPerceptor>& d) {
-    d.doc("Senses the state of charge of the Battery above it: (name part), 0..1.");
+    d.doc("Senses the state of charge of the Battery above it: (name fraction), 0..1.");
     d.link(&BatteryPerceptor::battery_, Above<IBattery>()).required("It senses nothing. Put it below a Battery.");
   }
   void sense(Predicates& out, const Event&) override {

@@ -8,7 +8,7 @@
 
 namespace spark {
 
-/// `(collision floor wall)`: names of the colliders that touched since it last sensed, each once; says nothing when
+/// `(collision floor wall)`: names of the colliders that touched since the last percept, each once; no percept when
 /// there were none. A PerceptorHandler feeds it.
 class CollisionPerceptor : public Perceptor {
   SPARK_CLASS(CollisionPerceptor, Perceptor)
@@ -17,7 +17,7 @@ class CollisionPerceptor : public Perceptor {
     d.doc("Senses what touched its transform's colliders: (collision names...).");
   }
 
-  /// The physics phase: this collider touched.
+  /// Records that `collider` touched. Called in the physics phase.
   void touched(const Leaf& collider) {
     if (std::find(ids_.begin(), ids_.end(), collider.id()) != ids_.end()) return;
     if (isRestored(collider)) return;
@@ -30,27 +30,28 @@ class CollisionPerceptor : public Perceptor {
     out.open("collision");
     for (const Element name : names_) out.append(name);
     out.close();
-    forget();
+    clear();
   }
 
  protected:
+  /// True when a collider touched since the last clear().
   bool wasTouched() const { return !names_.empty(); }
-  void forget() {
+  void clear() {
     names_.clear();
     ids_.clear();
   }
-  /// What it has not reported yet, by name: ids belong to one kernel.
+  /// Saves the names that were not reported yet. Ids are not saved: they belong to one kernel.
   void saveState(StateWriter& out) const override { out.write(Value(toList(names_))); }
   void loadState(StateReader& in) override {
-    forget();
+    clear();
     const List names = in.readValue().toList();
     append(names, names_);
     ids_.assign(names.size(), kRestored);
   }
 
  private:
-  static constexpr std::uint64_t kRestored = 0;  ///< id of a collider of which only the name is known
-  /// True when a restored name is this collider's, which has its id from now on.
+  static constexpr std::uint64_t kRestored = 0;  ///< id of a collider of which only the name was restored
+  /// True when a restored name is that of `collider`; the entry takes its id then.
   bool isRestored(const Leaf& collider) {
     std::size_t i = 0;
     for (const Element name : names_) {
@@ -62,8 +63,8 @@ class CollisionPerceptor : public Perceptor {
     }
     return false;
   }
-  Predicates names_;
-  std::vector<std::uint64_t> ids_;
+  Predicates names_;                ///< of the colliders that touched
+  std::vector<std::uint64_t> ids_;  ///< of the same colliders
 };
 
 }  // namespace spark

@@ -6,40 +6,40 @@
 
 namespace spark {
 
-/// `(FRP (n rf) (c 0.00 -0.02 -0.01) (f 0.00 0.00 22.59))`: where and how strongly the collider beside it was pressed
-/// in the last step; says nothing when nothing touched. A TouchPerceptorHandler feeds it after the solver; it is
-/// emptied in the prepare phase, before the contacts of the step are found. Point and force are in the frame of its
-/// transform (by the local matrix: robots' parts hang in an identity).
+/// `(FRP (n rf) (c 0.00 -0.02 -0.01) (f 0.00 0.00 22.59))`: centre of pressure [m] and total contact force [N] of the
+/// collider beside it in the last step; no percept when nothing touched. A TouchPerceptorHandler adds contacts after
+/// the solver; the prepare phase clears them before the next step. Point and force are in the frame of its transform.
+/// The local matrix is used for that, as in the installed base: the transforms above a robot's parts are identities.
 class ForceResistancePerceptor : public Perceptor {
   SPARK_CLASS(ForceResistancePerceptor, Perceptor)
  public:
   static void describe(Description<ForceResistancePerceptor>& d) {
     d.doc(
-        "Senses the force on the collider beside it and its mean point: (FRP (n name) (c x y z) (f x y z)) in m and N, "
-        "only when touched.");
+        "Senses the contact force on the collider beside it and the centre of pressure: (FRP (n name) (c x y z) (f x y "
+        "z)) in m and N, only when touched.");
     d.property("point", &ForceResistancePerceptor::point_)
         .unit("m")
         .state()
-        .doc("Mean point that was felt last, world frame.");
+        .doc("The last measured centre of pressure, world frame.");
     d.property("force", &ForceResistancePerceptor::force_)
         .unit("N")
         .state()
-        .doc("Force that was felt last, world frame.");
+        .doc("The last measured force, world frame.");
     d.on<&ForceResistancePerceptor::prepare>(phase::kPrepare);
   }
 
-  /// A contact of the step that was just solved: point [m] and force on the body [N], world frame.
+  /// Adds a contact of the step that was just solved: point [m] and force on the body [N], world frame.
   void touch(const Vec3& point, const Vec3& force) {
-    const auto size = static_cast<float>(force.norm());
+    const auto weight = static_cast<float>(force.norm());
     touched_ = true;
-    weight_ += size;
-    weightedPoint_ += point.cast<float>() * size;
+    weight_ += weight;
+    weightedPoint_ += point.cast<float>() * weight;
     sum_ += force.cast<float>();
   }
 
   void sense(Predicates& out, const Event&) override {
     if (!touched_) return;
-    // Contacts of sleeping bodies carry no force: what was felt last is repeated.
+    // Contacts of sleeping bodies carry no force: the last measured values are repeated.
     if (weight_ > 0) point_ = weightedPoint_ / weight_, force_ = sum_;
 
     const Matrix local = transform() ? transform()->local() : Matrix(Matrix::Identity());
@@ -61,9 +61,12 @@ class ForceResistancePerceptor : public Perceptor {
     for (const float x : v) out.add(x);
     out.close();
   }
+  // Contacts of the last step.
   bool touched_ = false;
-  float weight_ = 0;
-  Vec3f weightedPoint_ = Vec3f::Zero(), sum_ = Vec3f::Zero();
+  float weight_ = 0;                     ///< sum of the magnitudes of the forces [N]
+  Vec3f weightedPoint_ = Vec3f::Zero();  ///< sum of magnitude times point [N m]
+  Vec3f sum_ = Vec3f::Zero();            ///< sum of the forces [N]
+  // The last measured values.
   Vec3f point_ = Vec3f::Zero(), force_ = Vec3f::Zero();
 };
 

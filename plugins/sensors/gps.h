@@ -4,12 +4,12 @@
 
 namespace spark {
 
-/// `(GPS (n torso) (tf m00 m01 ... m33))`: world matrix of its transform, row by row.
+/// `(GPS (n torso) (tf m00 m01 ... m33))`: world matrix of its transform, row-major.
 class GPS : public Perceptor {
   SPARK_CLASS(GPS, Perceptor)
  public:
   static void describe(Description<GPS>& d) {
-    d.doc("Senses its transform's world matrix, row by row: (GPS (n name) (tf m00 m01 ... m33)).");
+    d.doc("Senses the world matrix of its transform, row-major: (GPS (n name) (tf m00 m01 ... m33)).");
   }
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;

@@ -6,8 +6,7 @@
 
 namespace spark {
 
-/// `(GYR (n torso) (rt 0.01 0.00 -0.09))`: how fast the body beside it turns, in the body's own frame, degrees per
-/// second.
+/// `(GYR (n torso) (rt 0.01 0.00 -0.09))`: angular velocity of the body beside it, in the body's frame [deg/s].
 class GyroRatePerceptor : public Perceptor {
   SPARK_CLASS(GyroRatePerceptor, Perceptor)
  public:

@@ -4,7 +4,7 @@
 
 namespace spark {
 
-/// `(H2J (n wheel) (ax 0 12.50))`: steering angle of the hinge2 above it, degrees. The 0 is the axis.
+/// `(H2J (n wheel) (ax 0 12.50))`: steering angle of the hinge2 above it [deg]. The 0 is the number of the axis.
 class Hinge2Perceptor : public Perceptor {
   SPARK_CLASS(Hinge2Perceptor, Perceptor)
  public:

@@ -4,7 +4,7 @@
 
 namespace spark {
 
-/// `(HJ (n hj1) (ax -1.15))`: angle of the hinge above it, degrees.
+/// `(HJ (n hj1) (ax -1.15))`: angle of the hinge above it [deg].
 class HingePerceptor : public Perceptor {
   SPARK_CLASS(HingePerceptor, Perceptor)
  public:
@@ -12,7 +12,7 @@ class HingePerceptor : public Perceptor {
     d.doc("Senses the angle of the hinge joint above it: (HJ (n name) (ax deg)).");
     d.link(&HingePerceptor::joint_, JointAbove<engine::JointType::hinge>("HingeJoint")).required(kNoJointAbove);
   }
-  /// Half of what robots sense: left to itself the compiler makes a call of each token.
+  /// Flattened, because half of all percepts of a robot are made here and the compiler would not inline the tokens.
   [[gnu::flatten]] void sense(Predicates& out, const Event&) override {
     IJoint* const joint = joint_.get();
     if (!joint) return;

@@ -4,12 +4,13 @@
 
 namespace spark {
 
-/// Answers of the emulated motor chip of the installed base. No chip is emulated: it is accepted and stays silent.
+/// In the installed base: the answers of an emulated motor chip. This chip is not emulated here; the class is accepted
+/// in scenes and has no percepts.
 class HMDPPerceptor : public Perceptor {
   SPARK_CLASS(HMDPPerceptor, Perceptor)
  public:
   static void describe(Description<HMDPPerceptor>& d) {
-    d.doc("Accepted in scenes; no motor chip is emulated, so it never has anything to say.");
+    d.doc("Accepted in scenes; the motor chip is not emulated, so there are no percepts.");
   }
   void sense(Predicates&, const Event&) override {}
 };

@@ -4,13 +4,14 @@
 
 namespace spark {
 
-/// A rendered camera image. Nothing is rendered in the host: accepted, with its settings; it senses nothing.
+/// In the installed base: a rendered camera image. The host does not render; the class is accepted in scenes, keeps its
+/// settings and has no percepts.
 class ImagePerceptor : public Perceptor {
   SPARK_CLASS(ImagePerceptor, Perceptor)
  public:
   static void describe(Description<ImagePerceptor>& d) {
     using I = ImagePerceptor;
-    d.doc("Accepted in scenes with its settings; nothing is rendered in the host, so it senses nothing.");
+    d.doc("Accepted in scenes with its settings; the host does not render, so there are no percepts.");
     d.property("width", &I::width_).unit("px").min(1).doc("Width of the image.");
     d.property("height", &I::height_).unit("px").min(1).doc("Height of the image.");
     d.property("fov", &I::fovDeg_).unit("deg").range(0, 180).doc("Vertical field of view.");

@@ -4,7 +4,8 @@
 
 namespace spark {
 
-/// Tells the first collision perceptor below its transform what touched the collider above it, in either role.
+/// Reports the contacts of the collider above it, direct and symmetric, to the first collision perceptor below its
+/// transform.
 class PerceptorHandler : public CollisionHandler {
   SPARK_CLASS(PerceptorHandler, CollisionHandler)
  public:

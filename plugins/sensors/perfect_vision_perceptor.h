@@ -6,7 +6,7 @@
 
 namespace spark {
 
-/// `(PerfectVision (box (pos 1.00 2.00 0.04)) ...)`: world positions of all transforms of the scene. For demos.
+/// `(PerfectVision (box (pos 1.00 2.00 0.04)) ...)`: world positions of all transforms of the scene [m]. For demos.
 class PerfectVisionPerceptor : public Perceptor {
   SPARK_CLASS(PerfectVisionPerceptor, Perceptor)
  public:
@@ -14,8 +14,9 @@ class PerfectVisionPerceptor : public Perceptor {
     d.doc("Senses the positions of all transforms of the scene: (PerfectVision (name (pos x y z)) ...) in m.");
     d.method("setInversion", &PerfectVisionPerceptor::setInversion)
         .parameters({"x", "y", "z"})
-        .doc("Mirrors these axes.");
+        .doc("Inverts the sign of the coordinates that are true.");
   }
+  /// True inverts the sign of a coordinate.
   void setInversion(bool x, bool y, bool z) { signs_ = {x ? -1.f : 1.f, y ? -1.f : 1.f, z ? -1.f : 1.f}; }
 
   void sense(Predicates& out, const Event&) override {

@@ -4,9 +4,9 @@
 
 namespace spark {
 
-/// A contact joint handler that also measures: the force of each contact goes to the first force resistance perceptor
-/// below its transform. It feels only contacts in which its collider comes first, as in the installed base (a foot on
-/// the ground does).
+/// Makes contacts solid, like ContactJointHandler, and passes their forces to the first force resistance perceptor
+/// below its transform. As in the installed base it measures only contacts in which its collider comes first, such as
+/// those of a foot with the ground.
 class TouchPerceptorHandler : public ContactJointHandler {
   SPARK_CLASS(TouchPerceptorHandler, ContactJointHandler)
  public:

@@ -4,7 +4,7 @@
 
 namespace spark {
 
-/// `(UJ (n laj1_2) (ax1 0.50) (ax2 -3.20))`: both angles of the universal joint above it, degrees.
+/// `(UJ (n laj1_2) (ax1 0.50) (ax2 -3.20))`: both angles of the universal joint above it [deg].
 class UniversalJointPerceptor : public Perceptor {
   SPARK_CLASS(UniversalJointPerceptor, Perceptor)
  public:
