@@ -26,7 +26,7 @@ class ArticulatedSolver : public Leaf, public engine::ISolver {
         .doc("Passes that these took to find which bounds hold; one each is the least.");
     d.property("exactSolutions", &ArticulatedSolver::exactSolutions)
         .doc("How often passes ran out, and the bounds were found in the exact, slow way.");
-    d.property("leftIslands", &ArticulatedSolver::leftIslands).doc("Islands that were left to the engine.");
+    d.property("deferredIslands", &ArticulatedSolver::deferredIslands).doc("Islands that were left to the engine.");
   }
   std::size_t step(engine::SolverStep& step) override;
   void forget(engine::World world) override { stepper_.forget(world); }
@@ -37,7 +37,7 @@ class ArticulatedSolver : public Leaf, public engine::ISolver {
   std::int64_t islands() const { return stepper_.islands(); }
   std::int64_t passes() const { return stepper_.passes(); }
   std::int64_t exactSolutions() const { return stepper_.exactSolutions(); }
-  std::int64_t leftIslands() const { return stepper_.leftIslands(); }
+  std::int64_t deferredIslands() const { return stepper_.deferredIslands(); }
   articulated::Stepper stepper_;
 };
 

@@ -59,7 +59,7 @@ void Island::readBodies(WorldView& world, const IslandPlan& plan) {
       n.changed = true;
       n.held = false;
       Frame& f = n.frame;
-      f.position = vec(body.position), f.velocity = vec(body.velocity), f.spin = vec(body.spin);
+      f.position = vec(body.position), f.velocity = vec(body.linearVelocity), f.spin = vec(body.angularVelocity);
       f.rotation = matrix(body.rotation);
       f.turn = Turn::of(body.quaternion);
       f.force = vec(body.force), f.torque = vec(body.torque);
@@ -214,7 +214,7 @@ bool Island::step(WorldView& world, const IslandPlan& plan) {
   readBodies(world, plan);
   readJoints(world, plan);
   readContacts(world, plan);
-  if (system_.coupling.size() > static_cast<std::size_t>(step.mostRows)) return false;
+  if (system_.coupling.size() > static_cast<std::size_t>(step.maxCouplingRows)) return false;
   gatherForces();
   if (!settle()) return false;
   write(world);

@@ -55,7 +55,7 @@ struct JointWriter {
     return a.turn.inverse() * second * Turn::of(before).inverse();
   }
   void addSameRotation() {
-    const Turn t = turned(joint.relativeA);
+    const Turn t = turned(joint.initialRotationA);
     const Vec3 error = inWorldA(t.w < 0 ? Vec3(-t.v) : t.v);
     for (int i = 0; i < 3; ++i) addTurning(Vec3::Unit(i), 2 * correction() * error[i], scale.cfm);
   }
@@ -128,7 +128,7 @@ struct JointWriter {
     addTurning(q, correction() * error.dot(q), scale.cfm);
     double beyond = 0;
     const int stop = stopsTurn(joint.axes[0])
-                         ? stopAt(joint.axes[0], hingeAngle(turned(joint.relativeA), joint.axisA[0]), beyond)
+                         ? stopAt(joint.axes[0], hingeAngle(turned(joint.initialRotationA), joint.axisA[0]), beyond)
                          : 0;
     addTurningAxis(0, axis, stop, beyond);
   }
@@ -162,8 +162,9 @@ struct JointWriter {
     if (stops1 || stops2) {
       const Turn cross = Turn::of(crossOf(axis1, axis2));
       const Turn halfRound{0, (axis1 + axis2).normalized()};
-      const Turn first = a.turn.inverse() * cross * Turn::of(joint.relativeA).inverse();
-      const Turn second = (b ? b->turn.inverse() : Turn{}) * (halfRound * cross) * Turn::of(joint.relativeB).inverse();
+      const Turn first = a.turn.inverse() * cross * Turn::of(joint.initialRotationA).inverse();
+      const Turn second =
+          (b ? b->turn.inverse() : Turn{}) * (halfRound * cross) * Turn::of(joint.initialRotationB).inverse();
       if (stops1) stop1 = stopAt(joint.axes[0], hingeAngle(first, joint.axisA[0]), beyond1);
       if (stops2) stop2 = stopAt(joint.axes[1], -hingeAngle(second, joint.axisB[1]), beyond2);
     }
@@ -182,12 +183,12 @@ struct JointWriter {
     addPoint(q, a1, a2, correction() * q.dot(apart), scale.cfm);
     const Vec3 normal = axis1.cross(axis2);
     const double sine = normal.norm(), cosine = axis1.dot(axis2);
-    addTurning(normal.normalized(), correction() * (joint.c0 * sine - joint.s0 * cosine), scale.cfm);
+    addTurning(normal.normalized(), correction() * (joint.cosAxes * sine - joint.sinAxes * cosine), scale.cfm);
     double beyond = 0;
     int stop = 0;
     if (stopsTurn(joint.axes[0])) {
       const Vec3 seen = a.rotation.transpose() * axis2;
-      stop = stopAt(joint.axes[0], -angleOf(joint.v2.dot(seen), joint.v1.dot(seen)), beyond);
+      stop = stopAt(joint.axes[0], -angleOf(joint.planeA[1].dot(seen), joint.planeA[0].dot(seen)), beyond);
     }
     addTurningAxis(0, axis1, stop, beyond);
     addTurningAxis(1, axis2, 0, 0);

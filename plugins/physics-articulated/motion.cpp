@@ -35,8 +35,8 @@ void rotationOf(const double* q, double* rows) {
 
 void integrate(engine::SolverBody& body, const Vec3& velocity, const Vec3& spin, double dt) {
   for (int i = 0; i < 3; ++i) {
-    body.velocity[i] = velocity[i];
-    body.spin[i] = spin[i];
+    body.linearVelocity[i] = velocity[i];
+    body.angularVelocity[i] = spin[i];
     body.position[i] += dt * velocity[i];
   }
   double* q = body.quaternion;

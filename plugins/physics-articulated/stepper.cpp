@@ -5,10 +5,10 @@ namespace spark::articulated {
 Stepper::Kept& Stepper::keptOf(const engine::SolverStep& step) {
   Kept* kept = nullptr;
   for (const auto& world : worlds_)
-    if (world->id == step.id) kept = world.get();
+    if (world->id == step.world) kept = world.get();
   if (!kept) kept = worlds_.emplace_back(std::make_unique<Kept>()).get();
   if (kept->known && kept->structure == step.structure) return *kept;
-  kept->id = step.id;
+  kept->id = step.world;
   kept->known = true;
   kept->structure = step.structure;
   kept->topology.find(step);
@@ -34,13 +34,14 @@ std::size_t Stepper::countLeft(const engine::SolverStep& step, const Kept& kept)
   std::size_t bodies = 0;
   for (std::size_t i = 0; i < kept.plan.size(); ++i) {
     if (!kept.left[i]) continue;
-    ++leftIslands_;
+    ++deferredIslands_;
     const IslandPlan island = kept.plan[i];
     bodies += island.bodies;
     for (const int t : island.trees) {
       const Tree& tree = kept.topology.trees[static_cast<std::size_t>(t)];
       for (int b = tree.start; b < tree.end; ++b)
-        step.bodies[static_cast<std::size_t>(kept.topology.branches[static_cast<std::size_t>(b)].body)]->left = true;
+        step.bodies[static_cast<std::size_t>(kept.topology.branches[static_cast<std::size_t>(b)].body)]->deferred =
+            true;
     }
   }
   return bodies;
@@ -48,12 +49,12 @@ std::size_t Stepper::countLeft(const engine::SolverStep& step, const Kept& kept)
 
 std::size_t Stepper::step(engine::SolverStep& step, std::size_t threads, const Spread& spread) {
   Kept& kept = keptOf(step);
-  for (engine::SolverBody* body : step.bodies) body->left = false;
+  for (engine::SolverBody* body : step.bodies) body->deferred = false;
   kept.plan.find(step, kept.topology);
   const std::size_t n = kept.plan.size();
   if (n == 0) return 0;
-  step.mostRows = std::min(step.mostRows, mostRows);
-  makeRoom(kept, threads, step.mostRows);
+  step.maxCouplingRows = std::min(step.maxCouplingRows, mostRows);
+  makeRoom(kept, threads, step.maxCouplingRows);
   kept.left.assign(n, 0);
   islands_ += static_cast<std::int64_t>(n);
   kept.contacts.match(step.contacts);

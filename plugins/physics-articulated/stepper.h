@@ -27,7 +27,7 @@ class Stepper {
   std::int64_t islands() const { return islands_; }
   std::int64_t passes() const;
   std::int64_t exactSolutions() const;
-  std::int64_t leftIslands() const { return leftIslands_; }
+  std::int64_t deferredIslands() const { return deferredIslands_; }
 
  private:
   /// What a world keeps between steps.
@@ -48,7 +48,7 @@ class Stepper {
   std::size_t countLeft(const engine::SolverStep& step, const Kept& kept);
   std::vector<std::unique_ptr<Kept>> worlds_;
   std::vector<std::unique_ptr<Island>> islandsOfThreads_;
-  std::int64_t islands_ = 0, leftIslands_ = 0;
+  std::int64_t islands_ = 0, deferredIslands_ = 0;
 };
 
 }  // namespace spark::articulated

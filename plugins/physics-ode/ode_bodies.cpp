@@ -22,11 +22,11 @@ Body OdeEngine::createBody(engine::World world) {
   b->position = const_cast<dReal*>(dBodyGetPosition(b->id));
   b->quaternion = const_cast<dReal*>(dBodyGetQuaternion(b->id));
   b->rotation = const_cast<dReal*>(dBodyGetRotation(b->id));
-  b->velocity = const_cast<dReal*>(dBodyGetLinearVel(b->id));
-  b->spin = const_cast<dReal*>(dBodyGetAngularVel(b->id));
+  b->linearVelocity = const_cast<dReal*>(dBodyGetLinearVel(b->id));
+  b->angularVelocity = const_cast<dReal*>(dBodyGetAngularVel(b->id));
   b->force = const_cast<dReal*>(dBodyGetForce(b->id));
   b->torque = const_cast<dReal*>(dBodyGetTorque(b->id));
-  b->left = !solver_;
+  b->deferred = !solver_;
   b->world = &w;
   b->stepsLeft = kIdleSteps;
   b->good = {{0, 0, 0}, {1, 0, 0, 0}};
@@ -36,7 +36,7 @@ Body OdeEngine::createBody(engine::World world) {
   if (w.bodies.size() > kAhead) {
     BodyData& before = **(w.bodies.rbegin() + kAhead);
     before.ahead = w.bodies.back().get();
-    before.odeAhead = w.bodies.back()->velocity;
+    before.odeAhead = w.bodies.back()->linearVelocity;
   }
   w.repaired.reserve(w.bodies.size());
   w.sleepers.reserve(w.bodies.size());
@@ -91,7 +91,7 @@ void OdeEngine::setMass(Body body, const engine::Mass& mass) {
 engine::BodyState OdeEngine::state(Body body) const {
   const BodyData& b = *data(body);
   const WorldData& w = *b.world;
-  return {crossing(w, toVec(b.position)), crossing(w, toVec(b.velocity)), crossing(w, toVec(b.spin)),
+  return {crossing(w, toVec(b.position)), crossing(w, toVec(b.linearVelocity)), crossing(w, toVec(b.angularVelocity)),
           crossing(w, toMat(b.rotation))};
 }
 
@@ -179,8 +179,8 @@ void OdeEngine::addDrag(Body body, double linear, double angular) {
   prefetch(b.ahead, 2 * kCacheLine);
   prefetch(b.odeAhead, kMotion);
   if (!b.awake) return;
-  OdeEngine::addForce(body, crossing(*b.world, toVec(b.velocity)) * -linear);
-  OdeEngine::addTorque(body, crossing(*b.world, toVec(b.spin)) * -angular);
+  OdeEngine::addForce(body, crossing(*b.world, toVec(b.linearVelocity)) * -linear);
+  OdeEngine::addTorque(body, crossing(*b.world, toVec(b.angularVelocity)) * -angular);
 }
 
 Vec3 OdeEngine::force(Body body) const { return toVec(dBodyGetForce(data(body)->id)); }

@@ -130,7 +130,7 @@ void OdeEngine::pairUp(WorldData& w, const engine::Contacts& contacts) {
 
 namespace {
 
-bool isLeft(const engine::SolverPair& pair) { return pair.a && (pair.a->left || (pair.b && pair.b->left)); }
+bool isDeferred(const engine::SolverPair& pair) { return pair.a && (pair.a->deferred || (pair.b && pair.b->deferred)); }
 
 }  // namespace
 
@@ -141,7 +141,7 @@ void OdeEngine::addContactJoints(WorldData& w, const engine::Contacts& contacts)
   dContact contact{};
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const engine::SolverPair& pair = w.contactPairs[i];
-    if (!isLeft(pair)) continue;
+    if (!isDeferred(pair)) continue;
     const engine::Contact& c = contacts[i];
     setSurface(contact.surface, c.surface, w);
     for (int k = 0; k < 3; ++k) contact.geom.pos[k] = c.position[k], contact.geom.normal[k] = c.normal[k];
@@ -167,7 +167,7 @@ void OdeEngine::readFeedback(WorldData& w, engine::Contacts& contacts) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     engine::Contact& c = contacts[i];
     const engine::SolverPair& pair = w.contactPairs[i];
-    if (!c.feedback || !isLeft(pair)) continue;
+    if (!c.feedback || !isDeferred(pair)) continue;
     const Vec3 onFirst = toVec(w.feedback[next++].f1);
     // A joint whose first body is the world is turned round by ODE.
     c.forceOnA = pair.reversed ? Vec3(-onFirst) : onFirst;
@@ -189,8 +189,8 @@ void OdeEngine::sleep(WorldData& w, double dt) {
     BodyData& b = *body;
     // Nothing sleeps in mid-air.
     if ((b.joints == 0 && b.touchedAt != w.steps) || !b.awake) continue;
-    if (dCalcVectorDot3(b.velocity, b.velocity) > kIdleSpeedSquared ||
-        dCalcVectorDot3(b.spin, b.spin) > kIdleSpeedSquared) {
+    if (dCalcVectorDot3(b.linearVelocity, b.linearVelocity) > kIdleSpeedSquared ||
+        dCalcVectorDot3(b.angularVelocity, b.angularVelocity) > kIdleSpeedSquared) {
       b.stepsLeft = kIdleSteps;
       b.timeLeft = 0;
       continue;
@@ -207,7 +207,7 @@ void OdeEngine::sleep(WorldData& w, double dt) {
 /// ODE's solver leaves nothing of bodies in the caches: the next ones' memory is under way meanwhile.
 void OdeEngine::lookAfterStep(WorldData& w, bool byOde) {
   constexpr std::size_t kFar = 8, kNear = 4;
-  constexpr std::size_t kLooked = 224;  // bytes of ODE's from a body's position to its spin
+  constexpr std::size_t kLooked = 224;  // bytes of ODE's from a body's position to its angular velocity
   const std::size_t n = w.bodies.size();
   for (std::size_t i = 0; i < n; ++i) {
     if (i + kFar < n) prefetch(w.bodies[i + kFar].get(), sizeof(BodyData));
@@ -216,7 +216,7 @@ void OdeEngine::lookAfterStep(WorldData& w, bool byOde) {
     // Nobody falls asleep in ODE's step, but it wakes what hangs on something awake.
     if (!b.awake && byOde) b.awake = dBodyIsEnabled(b.id) != 0;
     if (!b.awake) continue;
-    if (sane(b.position, 3) && sane(b.quaternion, 4) && sane(b.velocity, 3) && sane(b.spin, 3)) {
+    if (sane(b.position, 3) && sane(b.quaternion, 4) && sane(b.linearVelocity, 3) && sane(b.angularVelocity, 3)) {
       std::copy(b.position, b.position + 3, b.good.position);
       std::copy(b.quaternion, b.quaternion + 4, b.good.quaternion);
       continue;

@@ -15,13 +15,13 @@
 ///    take minutes. Islands of more than `directRows` rows are solved by ODE's iterative solver (see ode_islands.cpp).
 ///  - Solver: a child that offers engine::ISolver steps the islands that it knows how to step; ODE keeps bodies, joints
 ///  and geoms, finds
-///    contacts, and steps the islands that are left, all of them where there is no such child (see ode_solver.cpp).
+///    contacts, and steps the deferred islands, all of them where there is no such child (see ode_solver.cpp).
 ///  - Faults: a body whose state is no number after a step is put back to its last good pose, at rest. Numbers that are
 ///  no numbers do
 ///    not get in.
 ///
 ///     detect:  sweep and prune -> close pairs -> filters -> sort -> narrow phase -> contacts
-///     step:    contacts -> pairs of bodies -> auto-disable -> solver -> what is left: contact joints, dWorldStep
+///     step:    contacts -> pairs of bodies -> auto-disable -> solver -> what it defers: contact joints, dWorldStep
 ///              (knots: dWorldQuickStep), feedback -> faults
 
 #include <ode/ode.h>
@@ -63,7 +63,7 @@ struct BodyBasics {
   const void *ahead = nullptr, *odeAhead = nullptr;
 };
 
-/// What a solver sees of a body leads into ODE's memory. `awake` is what ODE says, `left` is true where no solver
+/// What a solver sees of a body leads into ODE's memory. `awake` is what ODE says, `deferred` is true where no solver
 /// steps.
 struct alignas(kCacheLine) BodyData : BodyBasics, engine::SolverBody {
   GoodPose good;
@@ -353,11 +353,12 @@ class OdeEngine : public Node, public engine::IEngine {
   /// Finds the bodies of each contact.
   void pairUp(ode::WorldData& w, const engine::Contacts& contacts);
   void sleep(ode::WorldData& w, double dt);
-  /// The child that offers a solver, as of the last change of the tree; nullptr: none, and all bodies are left to ODE.
+  /// The child that offers a solver, as of the last change of the tree; nullptr: none, and all bodies are deferred to
+  /// ODE.
   engine::ISolver* solver();
-  /// Steps what the solver knows how to step. Returns how many bodies are left.
+  /// Steps what the solver knows how to step. Returns the number of deferred bodies.
   std::size_t stepBySolver(ode::WorldData& w, engine::ISolver& solver, engine::Contacts& contacts, double dt);
-  /// Steps all bodies that are left.
+  /// Steps all deferred bodies.
   void stepByOde(ode::WorldData& w, engine::Contacts& contacts, double dt);
   void addContactJoints(ode::WorldData& w, const engine::Contacts& contacts);
   void readFeedback(ode::WorldData& w, engine::Contacts& contacts);

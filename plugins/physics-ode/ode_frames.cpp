@@ -51,8 +51,8 @@ Quaternion cross(const Vec3& x, const Vec3& y) {
 
 void noteCross(JointData& j) {
   const Vec3 first = toWorld(j.a, j.axisA[0]), second = toWorld(j.b, j.axisB[1]);
-  j.relativeA = fromBody(j.a, cross(first, second));
-  j.relativeB = fromBody(j.b, cross(second, first));
+  j.initialRotationA = fromBody(j.a, cross(first, second));
+  j.initialRotationB = fromBody(j.b, cross(second, first));
 }
 
 /// A wheel's angles are counted from the other axis, made perpendicular to its own.
@@ -60,22 +60,22 @@ void noteWheel(JointData& j) {
   const Vec3 first = toWorld(j.a, j.axisA[0]), second = toWorld(j.b, j.axisB[1]);
   const Vec3 fromFirst = (second - first.dot(second) * first).normalized(),
              fromSecond = (first - first.dot(second) * second).normalized();
-  j.v1 = toBody(j.a, fromFirst);
-  j.v2 = toBody(j.a, first.cross(fromFirst));
-  j.w1 = toBody(j.b, fromSecond);
-  j.w2 = toBody(j.b, second.cross(fromSecond));
+  j.planeA[0] = toBody(j.a, fromFirst);
+  j.planeA[1] = toBody(j.a, first.cross(fromFirst));
+  j.planeB[0] = toBody(j.b, fromSecond);
+  j.planeB[1] = toBody(j.b, second.cross(fromSecond));
 }
 
 void noteWheelAxes(JointData& j) {
   const Vec3 first = toWorld(j.a, j.axisA[0]), second = toWorld(j.b, j.axisB[1]);
-  j.s0 = first.cross(second).norm();
-  j.c0 = first.dot(second);
+  j.sinAxes = first.cross(second).norm();
+  j.cosAxes = first.dot(second);
   noteWheel(j);
 }
 
 void noteSlider(JointData& j) {
   j.anchorB = pointToBody(j.b, toVec(j.a->position));
-  j.relativeA = betweenBodies(j);
+  j.initialRotationA = betweenBodies(j);
 }
 
 /// Euler angles are counted from where the other body's axis was.
@@ -90,7 +90,7 @@ void noteEuler(JointData& j) {
 void noteRotation(JointData& j) {
   switch (j.type) {
     case JointType::hinge:
-      j.relativeA = betweenBodies(j);
+      j.initialRotationA = betweenBodies(j);
       break;
     case JointType::universal:
       noteCross(j);
@@ -115,10 +115,10 @@ void frames::created(JointData& j) {
   j.cfm = j.suspensionCfm = p.cfm;
   j.axisA.fill(Vec3::Zero());
   j.axisB.fill(Vec3::Zero());
-  if (j.type == JointType::fixed) j.relativeA.fill(0);
+  if (j.type == JointType::fixed) j.initialRotationA.fill(0);
   if (j.type == JointType::angularMotor) return;
-  j.axisA[0] = j.axisB[0] = j.v1 = Vec3::UnitX();
-  j.axisB[1] = j.v2 = Vec3::UnitY();
+  j.axisA[0] = j.axisB[0] = j.planeA[0] = Vec3::UnitX();
+  j.axisB[1] = j.planeA[1] = Vec3::UnitY();
 }
 
 void frames::worldChanged(JointData& j) {
@@ -196,7 +196,7 @@ void frames::motorChosen(JointData& j, int axes, bool euler) {
 void frames::fixed(JointData& j) {
   j.anchorA = j.b ? pointToBody(j.a, toVec(j.b->position)) : Vec3(Vec3::Zero());
   j.anchorB = j.b ? Vec3(Vec3::Zero()) : toVec(j.a->position);
-  j.relativeA = betweenBodies(j);
+  j.initialRotationA = betweenBodies(j);
 }
 
 }  // namespace spark::ode

@@ -37,7 +37,7 @@ int odeParameter(JointParameter p, int axis) {
 }
 static_assert(static_cast<int>(JointParameter::stopErp) == 7 && static_cast<int>(JointParameter::suspensionCfm) == 10);
 
-Vec3 angularVelocity(const engine::SolverBody* b) { return b ? toVec(b->spin) : Vec3(Vec3::Zero()); }
+Vec3 angularVelocity(const engine::SolverBody* b) { return b ? toVec(b->angularVelocity) : Vec3(Vec3::Zero()); }
 
 /// Where a solver sees a parameter.
 double& told(JointData& j, JointParameter p, int axis) {

@@ -2,7 +2,7 @@
 
 // A solver below the engine works on the engine's own memory: bodies and joints say what ODE says (see ode_bodies.cpp,
 // ode_frames.cpp), and what it integrates stands where ODE keeps it. So ODE goes on with any body as if it had stepped
-// it. What a solver leaves, ODE steps.
+// it. What a solver defers, ODE steps.
 
 namespace spark {
 
@@ -13,7 +13,7 @@ engine::ISolver* OdeEngine::solver() {
   solver_ = childOf<engine::ISolver>();
   for (const auto& w : worlds_) {
     w->solved.clear();
-    for (const auto& b : w->bodies) b->left = !solver_;
+    for (const auto& b : w->bodies) b->deferred = !solver_;
   }
   return solver_;
 }
@@ -36,7 +36,7 @@ void listAll(WorldData& w) {
 void tellOde(WorldData& w) {
   w.solved.clear();
   for (const auto& b : w.bodies) {
-    if (!b->awake || b->left) continue;
+    if (!b->awake || b->deferred) continue;
     w.solved.push_back(b.get());
     if (!dBodyIsEnabled(b->id)) dBodyEnable(b->id);
     dBodySetPosition(b->id, b->position[0], b->position[1], b->position[2]);
@@ -56,7 +56,7 @@ void copyFeedback(const engine::SolverJoint& from, dJointFeedback& to) {
 
 std::size_t OdeEngine::stepBySolver(WorldData& w, engine::ISolver& solver, engine::Contacts& contacts, double dt) {
   listAll(w);
-  engine::SolverStep step{.id = engine::World{reinterpret_cast<std::uintptr_t>(&w)},
+  engine::SolverStep step{.world = engine::World{reinterpret_cast<std::uintptr_t>(&w)},
                           .bodies = w.solverBodies,
                           .joints = w.solverJoints,
                           .contacts = contacts,
@@ -64,12 +64,12 @@ std::size_t OdeEngine::stepBySolver(WorldData& w, engine::ISolver& solver, engin
                           .parameters = w.parameters,
                           .dt = dt,
                           .structure = w.structure,
-                          .mostRows = directRows_};
-  const std::size_t left = solver.step(step);
+                          .maxCouplingRows = directRows_};
+  const std::size_t deferred = solver.step(step);
   tellOde(w);
   for (const auto& j : w.joints)
-    if (j->wantsFeedback && j->a && j->a->awake && !j->a->left) copyFeedback(*j, j->feedback);
-  return left;
+    if (j->wantsFeedback && j->a && j->a->awake && !j->a->deferred) copyFeedback(*j, j->feedback);
+  return deferred;
 }
 
 }  // namespace spark

@@ -77,7 +77,7 @@ TEST_CASE("one word of the config says which solver steps") {
     p.move();
     p.run(20);
     CHECK(solved() > before);
-    CHECK(getProperty(*solver, "leftIslands").toInteger() == 0);
+    CHECK(getProperty(*solver, "deferredIslands").toInteger() == 0);
   }
 }
 

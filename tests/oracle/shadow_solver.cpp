@@ -28,8 +28,8 @@ void copyState(const From& from, To& to) {
   std::copy_n(from.position, 3, to.position);
   std::copy_n(from.quaternion, 4, to.quaternion);
   std::copy_n(from.rotation, 12, to.rotation);
-  std::copy_n(from.velocity, 3, to.velocity);
-  std::copy_n(from.spin, 3, to.spin);
+  std::copy_n(from.linearVelocity, 3, to.linearVelocity);
+  std::copy_n(from.angularVelocity, 3, to.angularVelocity);
   std::copy_n(from.force, 3, to.force);
   std::copy_n(from.torque, 3, to.torque);
   to.awake = from.awake;
@@ -44,7 +44,7 @@ ShadowSolver::State ShadowSolver::stateOf(const SolverBody& b) {
 
 void ShadowSolver::restore(const State& s, SolverBody& b) {
   copyState(s, b);
-  b.left = true;
+  b.deferred = true;
 }
 
 std::size_t ShadowSolver::step(engine::SolverStep& step) {
@@ -54,11 +54,12 @@ std::size_t ShadowSolver::step(engine::SolverStep& step) {
   pairs_ = step.pairs;
   before_.clear();
   for (const SolverBody* b : bodies_) before_.push_back(stateOf(*b));
-  agreement_.left += childOf<engine::ISolver>()->step(step);
+  agreement_.deferred += childOf<engine::ISolver>()->step(step);
   answers_.clear();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     SolverBody& b = *bodies_[i];
-    answers_.push_back({ode::toVec(b.velocity), ode::toVec(b.spin), ode::toVec(b.position), b.awake, b.left});
+    answers_.push_back(
+        {ode::toVec(b.linearVelocity), ode::toVec(b.angularVelocity), ode::toVec(b.position), b.awake, b.deferred});
     restore(before_[i], b);
   }
   jointForces_.clear();
@@ -82,13 +83,13 @@ void ShadowSolver::compare() {
   ++agreement_.steps;
   double speed = 0.01, spin = 0.01;
   for (const SolverBody* b : bodies_) {
-    speed = std::max(speed, ode::toVec(b->velocity).norm());
-    spin = std::max(spin, ode::toVec(b->spin).norm());
+    speed = std::max(speed, ode::toVec(b->linearVelocity).norm());
+    spin = std::max(spin, ode::toVec(b->angularVelocity).norm());
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const SolverBody& b = *bodies_[i];
     const Answer& a = answers_[i];
-    if (a.left) continue;
+    if (a.deferred) continue;
     if (a.awake != b.awake) ++agreement_.disagreedOnSleep;
     if (!b.awake) continue;
     ++agreement_.compared;
@@ -98,8 +99,8 @@ void ShadowSolver::compare() {
       worst = error;
       agreement_.worstStep = agreement_.steps;
     };
-    worse((a.velocity - ode::toVec(b.velocity)).norm() / speed, agreement_.speed);
-    worse((a.spin - ode::toVec(b.spin)).norm() / spin, agreement_.spin);
+    worse((a.velocity - ode::toVec(b.linearVelocity)).norm() / speed, agreement_.speed);
+    worse((a.spin - ode::toVec(b.angularVelocity)).norm() / spin, agreement_.spin);
     worse((a.position - ode::toVec(b.position)).norm(), agreement_.place);
   }
   compareForces();
@@ -109,13 +110,13 @@ void ShadowSolver::compareForces() {
   std::vector<std::pair<Vec3, Vec3>> both;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const auto& j = *static_cast<const ode::JointData*>(joints_[i]);
-    if (!j.wantsFeedback || !j.a || !j.a->awake || answers_[j.a->index].left) continue;
+    if (!j.wantsFeedback || !j.a || !j.a->awake || answers_[j.a->index].deferred) continue;
     const auto& [forceA, torqueA, forceB, torqueB] = jointForces_[i];
     both.insert(both.end(), {{forceA, ode::toVec(j.feedback.f1)}, {torqueA, ode::toVec(j.feedback.t1)}});
     if (j.b) both.insert(both.end(), {{forceB, ode::toVec(j.feedback.f2)}, {torqueB, ode::toVec(j.feedback.t2)}});
   }
   for (std::size_t i = 0; i < contacts_.size(); ++i)
-    if (contacts_[i].feedback && pairs_[i].a && !answers_[pairs_[i].a->index].left)
+    if (contacts_[i].feedback && pairs_[i].a && !answers_[pairs_[i].a->index].deferred)
       both.emplace_back(contactForces_[i], contacts_[i].forceOnA);
   double greatest = 1;
   for (const auto& [ours, odes] : both) greatest = std::max(greatest, odes.norm());

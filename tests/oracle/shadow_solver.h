@@ -17,7 +17,7 @@ namespace spark::oracle {
 /// Nm as that.
 struct Agreement {
   std::size_t steps = 0, compared = 0;  ///< compared: bodies, once for each step
-  std::size_t left = 0;                 ///< bodies that were left to ODE
+  std::size_t deferred = 0;             ///< bodies that were deferred to ODE
   std::size_t feedbacks = 0;            ///< forces of joints and contacts
   std::size_t disagreedOnSleep = 0;
   double speed = 0, spin = 0, place = 0, force = 0;
@@ -25,7 +25,7 @@ struct Agreement {
 };
 
 /// A solver that asks the solver below it (its child `tested`), notes the answer, puts the world back as it was and
-/// leaves it all to ODE. So the world goes on as ODE says, and no step inherits another's error. Compares in the phase
+/// defers it all to ODE. So the world goes on as ODE says, and no step inherits another's error. Compares in the phase
 /// after the engine's step where the house has phases; else somebody calls compare().
 class ShadowSolver : public Node, public engine::ISolver {
   SPARK_CLASS(ShadowSolver, Node)
@@ -40,12 +40,12 @@ class ShadowSolver : public Node, public engine::ISolver {
 
  private:
   struct State {
-    double position[3], quaternion[4], rotation[12], velocity[3], spin[3], force[3], torque[3];
+    double position[3], quaternion[4], rotation[12], linearVelocity[3], angularVelocity[3], force[3], torque[3];
     bool awake;
   };
   struct Answer {
     Vec3 velocity, spin, position;
-    bool awake, left;
+    bool awake, deferred;
   };
   static State stateOf(const engine::SolverBody& b);
   static void restore(const State& from, engine::SolverBody& to);

@@ -92,7 +92,7 @@ struct Timing {
                "times", "passes", "exact", "left");
     fmt::print("{:<28} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.2f} {:>8.1f} {:>8.2f} {:>6} {:>6}\n", name, contacts / things, d,
                e, solver, d / solver, static_cast<double>(s.passes()) / static_cast<double>(s.islands()),
-               s.exactSolutions(), s.leftIslands());
+               s.exactSolutions(), s.deferredIslands());
   }
 };
 

@@ -161,7 +161,7 @@ class Twins : public House {
     CHECK(worst.place < 1e-8);
     CHECK(worst.feedback < forces);
     CHECK(counted("islands") > 0);
-    CHECK(counted("leftIslands") == 0);
+    CHECK(counted("deferredIslands") == 0);
   }
 
   /// One step of both from the state of the plain one.

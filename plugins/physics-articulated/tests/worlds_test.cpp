@@ -156,7 +156,7 @@ TEST_CASE("islands that several threads solve move as with one thread, to the la
       for (const engine::Body b : t.solved.bodies) t.solved.engine.saveBody(b, out);
     }
     CHECK(t.counted("islands") == 12 * 20);
-    CHECK(t.counted("leftIslands") == 0);
+    CHECK(t.counted("deferredIslands") == 0);
     return out;
   };
   const auto one = states(1);

@@ -15,7 +15,7 @@ using engine::SolverStep;
 
 namespace {
 
-/// A solver that does what the test says; without a word it leaves everything.
+/// A solver that does what the test says; by default it defers everything.
 class TestSolver : public Leaf, public engine::ISolver {
   SPARK_CLASS(TestSolver, Leaf)
  public:
@@ -30,7 +30,7 @@ class TestSolver : public Leaf, public engine::ISolver {
   std::size_t step(SolverStep& s) override {
     ++steps;
     if (does) return does(s);
-    for (SolverBody* b : s.bodies) b->left = true;
+    for (SolverBody* b : s.bodies) b->deferred = true;
     return s.bodies.size();
   }
   void forget(engine::World w) override { forgotten.push_back(w); }
@@ -76,16 +76,16 @@ struct Things : EngineHouse {
 
 /// A step without any constraint: places follow speeds.
 void drift(SolverBody& b, double dt) {
-  for (int i = 0; i < 3; ++i) b.position[i] += dt * b.velocity[i];
+  for (int i = 0; i < 3; ++i) b.position[i] += dt * b.linearVelocity[i];
   std::fill(b.force, b.force + 3, 0);
   std::fill(b.torque, b.torque + 3, 0);
   b.awake = true;
-  b.left = false;
+  b.deferred = false;
 }
 
 }  // namespace
 
-TEST_CASE("a solver that leaves everything changes nothing, bit for bit, through falls, joints and sleep") {
+TEST_CASE("a solver that defers everything changes nothing, bit for bit, through falls, joints and sleep") {
   Things alone, watched;
   const TestSolver& solver = watched.addSolver();
   for (int i = 0; i < 250; ++i) {
@@ -108,7 +108,7 @@ TEST_CASE("a solver comes and goes with the tree") {
   CHECK((a.saved() == b.saved()));
 }
 
-TEST_CASE("what a solver steps is awake and collides where it went; what it leaves goes on as if alone") {
+TEST_CASE("what a solver steps is awake and collides where it went; what it defers goes on as if alone") {
   Things a, alone;
   TestSolver& solver = a.addSolver();
   const Body mine = a.body({-20, 0, 0.4995}), asleep = a.body({-30, 0, 0.4995});
@@ -119,7 +119,7 @@ TEST_CASE("what a solver steps is awake and collides where it went; what it leav
   solver.does = [&](SolverStep& s) {
     const std::size_t n = s.bodies.size();
     for (std::size_t i = 0; i < n; ++i) {
-      s.bodies[i]->left = i < n - 2;
+      s.bodies[i]->deferred = i < n - 2;
       CHECK(s.bodies[i]->index == i);
     }
     drift(*s.bodies[n - 2], s.dt);
@@ -162,7 +162,7 @@ TEST_CASE("a solver is given the bodies of each contact, the world last") {
         CHECK(p.reversed == (s.contacts[i].normal.z() < 0));
       }
     }
-    for (SolverBody* b : s.bodies) b->left = true;
+    for (SolverBody* b : s.bodies) b->deferred = true;
     return s.bodies.size();
   };
   house.step();
@@ -219,7 +219,7 @@ TEST_CASE(
   std::uint64_t seen = 0;
   solver.does = [&](SolverStep& s) {
     seen = s.structure;
-    for (SolverBody* b : s.bodies) b->left = true;
+    for (SolverBody* b : s.bodies) b->deferred = true;
     return s.bodies.size();
   };
   const auto changed = [&] {
@@ -271,7 +271,7 @@ TEST_CASE("a solver sees anchors, axes and parameters as ODE keeps them, whateve
       const engine::SolverJoint* seen = nullptr;
       solver.does = [&](SolverStep& s) {
         seen = s.joints[0];
-        for (SolverBody* body : s.bodies) body->left = true;
+        for (SolverBody* body : s.bodies) body->deferred = true;
         return s.bodies.size();
       };
       for (int i = 0; i < 40; ++i) house.step();
