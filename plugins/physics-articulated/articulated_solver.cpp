@@ -12,5 +12,5 @@ std::size_t ArticulatedSolver::step(engine::SolverStep& step) {
 
 }  // namespace spark
 
-SPARK_PLUGIN("physics-articulated", "1.0", "A solver for articulated bodies, to stand below an engine.",
+SPARK_PLUGIN("physics-articulated", "1.0", "A constraint solver for articulated bodies, as the child of an engine.",
              spark::ArticulatedSolver)

@@ -9,31 +9,35 @@
 
 namespace spark {
 
-/// Steps trees of bodies by elimination, in place of the engine's own solver.
+/// Solves joints and contacts in place of the engine's own solver, in time linear in the bodies of each tree of joints.
+/// Uses the threads of the kernel's jobs.
 class ArticulatedSolver : public Leaf, public engine::ISolver {
   SPARK_CLASS(ArticulatedSolver, Leaf)
  public:
   static void describe(Description<ArticulatedSolver>& d) {
     d.doc(
-        "Solves joints and contacts along the trees that joints make of bodies; stands below an engine as its child "
-        "`solver`.");
+        "Solves joints and contacts along the trees that joints make of bodies, in place of the engine's own solver. "
+        "Created below an engine as its child `solver`.");
     d.implements<engine::ISolver>();
-    d.property("mostRows", &ArticulatedSolver::mostRows, &ArticulatedSolver::setMostRows)
+    d.property("mostRows", &ArticulatedSolver::maxCouplingRows, &ArticulatedSolver::setMaxCouplingRows)
         .min(0)
-        .doc("Islands with more rows of contacts between bodies and of loops of joints are left to the engine.");
-    d.property("islands", &ArticulatedSolver::islands).doc("Islands solved since the node was made.");
+        .doc(
+            "Islands with more rows of contacts between bodies and of joints that close loops are deferred to the "
+            "engine.");
+    d.property("islands", &ArticulatedSolver::islands).doc("Number of islands since the node was created.");
     d.property("passes", &ArticulatedSolver::passes)
-        .doc("Passes that these took to find which bounds hold; one each is the least.");
+        .doc("Number of passes to find which bounds are active, at least one for each island.");
     d.property("exactSolutions", &ArticulatedSolver::exactSolutions)
-        .doc("How often passes ran out, and the bounds were found in the exact, slow way.");
-    d.property("deferredIslands", &ArticulatedSolver::deferredIslands).doc("Islands that were left to the engine.");
+        .doc("Number of searches that ran out of passes and used the exact, slow algorithm.");
+    d.property("deferredIslands", &ArticulatedSolver::deferredIslands)
+        .doc("Number of islands that were deferred to the engine.");
   }
   std::size_t step(engine::SolverStep& step) override;
   void forget(engine::World world) override { stepper_.forget(world); }
 
  private:
-  int mostRows() const { return stepper_.mostRows; }
-  void setMostRows(int rows) { stepper_.mostRows = rows; }
+  int maxCouplingRows() const { return stepper_.maxCouplingRows; }
+  void setMaxCouplingRows(int rows) { stepper_.maxCouplingRows = rows; }
   std::int64_t islands() const { return stepper_.islands(); }
   std::int64_t passes() const { return stepper_.passes(); }
   std::int64_t exactSolutions() const { return stepper_.exactSolutions(); }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The exact way to find which bounds hold, for the rare steps in which the quick way (pivoting.h) does not come to an
-/// end.
+/// A direct solver of linear complementarity problems with bounds, for the rare steps in which block pivoting
+/// (pivoting.h) does not end.
 
 #include <vector>
 
@@ -9,22 +9,30 @@
 
 namespace spark::articulated {
 
-/// Find x with  w = A x + b,  low <= x <= high,  w >= 0 where x = low,  w <= 0 where x = high,  else w = 0.  A is
-/// symmetric positive semidefinite; low <= 0 <= high.
+/// Finds x with
 ///
-/// Dantzig's way: one row after the other is driven from 0 to where its conditions are met, while those before it keep
-/// theirs. Whenever one of these runs into a bound or leaves it, it changes sides. All that is asked of A at any time
-/// is the matrix "swept" on the rows that hold, A_CC^-1 and what follows from it, and one change of side is one sweep:
-/// rows^2 operations.
+///     w = A x + b,  low <= x <= high,  w >= 0 where x = low,  w <= 0 where x = high,  w = 0 elsewhere.
+///
+/// A is symmetric positive semidefinite and low <= 0 <= high.
+///
+/// The algorithm is Dantzig's (Cottle and Dantzig 1968; for contact forces Baraff 1994, "Fast contact force computation
+/// for nonpenetrating rigid bodies"). One row after the other is driven from x = 0 to where its conditions hold, while
+/// the rows before it keep theirs; whenever one of these reaches a bound or leaves it, it changes sides. The matrix is
+/// kept swept on the set C of rows with w = 0 (Goodnight 1979, "A tutorial on the SWEEP operator"), so a change of side
+/// costs one sweep: rows^2 operations.
 class BoxedLcp {
  public:
-  std::vector<double> a, b, low, high;  ///< a: row by row, all of it
+  std::vector<double> a;             ///< A by rows, in full; solve() overwrites it
+  std::vector<double> b, low, high;  ///< by row; bounds may be infinite
 
+  /// Sets the number of rows. Fills all inputs with 0.
   void resize(std::size_t rows);
-  /// Which rows hold and at which bounds the others stand; false when rounding does not let it end. Uses up a.
-  bool solve(std::vector<State>& states);
+  /// Finds which rows hold (w = 0) and at which bounds the others are. Returns false if no end was found, because of
+  /// rounding or an A that is not positive semidefinite; `states` is then meaningless.
+  bool solve(std::vector<RowState>& states);
 
  private:
+  /// What ends a step of the driven row: itself, or a row before it.
   enum class Event { none, settled, atLow, atHigh, leaves, reachesLow, reachesHigh };
   struct Step {
     Event event = Event::none;
@@ -32,11 +40,13 @@ class BoxedLcp {
     double size = HUGE_VAL;
   };
   void sweep(std::size_t k);
-  bool drive(std::size_t i, std::vector<State>& states, std::size_t& changes);
-  Step longest(std::size_t i, double direction, const std::vector<State>& states) const;
+  bool drive(std::size_t i, std::vector<RowState>& states, std::size_t& changes);
+  Step ratioTest(std::size_t i, double direction, const std::vector<RowState>& states) const;
   std::size_t rows_ = 0;
-  std::vector<double> original_, x_, column_;
-  std::vector<double> w_;  ///< of rows that stand at a bound; those that hold have none
+  std::vector<double> original_;  ///< A, not swept
+  std::vector<double> x_;
+  std::vector<double> w_;       ///< of rows at a bound; meaningless for rows that hold
+  std::vector<double> column_;  ///< scratch of sweep()
 };
 
 }  // namespace spark::articulated

@@ -4,6 +4,7 @@ namespace spark::articulated {
 
 namespace {
 
+/// The scalar product, with even and odd elements summed apart.
 double dot(const double* a, const double* b, std::size_t n) {
   double even = 0, odd = 0;
   std::size_t i = 0;
@@ -17,75 +18,76 @@ double dot(const double* a, const double* b, std::size_t n) {
 
 }  // namespace
 
-void Coupling::reserve(std::size_t rows, std::size_t reach) {
-  reaches_.reserve(rows * reach);
+void Coupling::reserve(std::size_t rows, std::size_t pathLength) {
+  pathTerms_.reserve(rows * pathLength);
   members_.reserve(rows);
-  touching_.reserve(rows * rows);
+  delassus_.reserve(rows * rows);
   lower_.reserve(rows * rows);
-  for (auto* v : {&inverse_, &forces_}) v->reserve(rows);
-  holding_.reserve(rows);
+  for (auto* v : {&inverseD_, &forces_}) v->reserve(rows);
+  active_.reserve(rows);
 }
 
-void Coupling::form(const Elimination& trees, const Rows& rows) {
-  reaches_.clear();
+void Coupling::assemble(const Elimination& trees, const Rows& rows) {
+  pathTerms_.clear();
   for (Member& m : members_) {
-    m.start = static_cast<int>(reaches_.size());
-    trees.reach(rows[m.row], reaches_);
-    m.end = static_cast<int>(reaches_.size());
+    m.begin = toIndex(pathTerms_.size());
+    trees.appendPathResponse(rows[m.row], pathTerms_);
+    m.end = toIndex(pathTerms_.size());
   }
   const std::size_t n = members_.size();
-  touching_.resize(n * n);
-  const Reach* all = reaches_.data();
+  delassus_.resize(n * n);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j <= i; ++j)
-      touching_[i * n + j] = Elimination::touch(all + members_[i].start, all + members_[i].end, all + members_[j].start,
-                                                all + members_[j].end);
+      delassus_[i * n + j] = Elimination::delassusTerm(pathOf(members_[i]), pathOf(members_[j]));
 }
 
+/// LDL^T factorisation of the Delassus matrix of the active rows plus their softness, row by row.
 void Coupling::factor(const Rows& rows) {
-  // What elimination leaves of a row that says what others say is rounding.
+  // A pivot below this fraction of its diagonal element is rounding: the row is redundant and gets no force.
   constexpr double kRounding = 1e-13;
-  const std::size_t n = members_.size(), m = holding_.size();
+  const std::size_t n = members_.size(), m = active_.size();
   lower_.resize(m * m);
-  inverse_.resize(m);
+  inverseD_.resize(m);
   for (std::size_t i = 0; i < m; ++i) {
-    const auto row = static_cast<std::size_t>(holding_[i]);
+    const std::size_t row = active_[i];
     double* li = lower_.data() + i * m;
-    // L_i D first, then L_i.
-    for (std::size_t j = 0; j < i; ++j)
-      li[j] = touching_[row * n + static_cast<std::size_t>(holding_[j])] - dot(li, lower_.data() + j * m, j);
-    double pivot = touching_[row * n + row] + rows[members_[row].row].softness;
+    // First L_ij D_j = A_ij - sum over k < j of (L_ik D_k) L_jk.
+    for (std::size_t j = 0; j < i; ++j) li[j] = delassus_[row * n + active_[j]] - dot(li, lower_.data() + j * m, j);
+    // Then D_i = A_ii - sum over j of L_ij D_j L_ij, and L_ij.
+    double pivot = delassus_[row * n + row] + rows[members_[row].row].softness;
     const double least = kRounding * pivot;
     for (std::size_t j = 0; j < i; ++j) {
-      const double scaled = li[j] * inverse_[j];
+      const double scaled = li[j] * inverseD_[j];
       pivot -= li[j] * scaled;
       li[j] = scaled;
     }
-    inverse_[i] = pivot > least ? 1 / pivot : 0;
+    inverseD_[i] = pivot > least ? 1 / pivot : 0;
   }
 }
 
-void Coupling::solve(Elimination& trees, Rows& rows, bool targets) {
-  holding_.clear();
+void Coupling::solve(Elimination& trees, Rows& rows, bool useTargets) {
+  active_.clear();
   for (std::size_t i = 0; i < members_.size(); ++i)
-    if (rows[members_[i].row].holds()) holding_.push_back(static_cast<int>(i));
-  if (holding_.empty()) return;
+    if (rows[members_[i].row].holds()) active_.push_back(toIndex(i));
+  if (active_.empty()) return;
   factor(rows);
-  const std::size_t m = holding_.size();
+  const std::size_t m = active_.size();
   forces_.resize(m);
+  // L^-1 (r - J u0).
   for (std::size_t i = 0; i < m; ++i) {
-    const Member& member = members_[static_cast<std::size_t>(holding_[i])];
-    const double target = targets ? rows[member.row].target : 0;
-    forces_[i] = target - trees.touchLoads(reaches_.data() + member.start, reaches_.data() + member.end);
+    const Member& member = members_[active_[i]];
+    const double target = useTargets ? rows[member.row].target : 0;
+    forces_[i] = target - trees.predictedMotion(pathOf(member));
     forces_[i] -= dot(lower_.data() + i * m, forces_.data(), i);
   }
-  for (std::size_t i = 0; i < m; ++i) forces_[i] *= inverse_[i];
+  // x = L^-T D^-1 L^-1 (r - J u0).
+  for (std::size_t i = 0; i < m; ++i) forces_[i] *= inverseD_[i];
   for (std::size_t i = m; i-- > 0;)
     for (std::size_t j = 0; j < i; ++j) forces_[j] -= lower_[i * m + j] * forces_[i];
   for (std::size_t i = 0; i < m; ++i) {
-    const Member& member = members_[static_cast<std::size_t>(holding_[i])];
+    const Member& member = members_[active_[i]];
     rows[member.row].force = forces_[i];
-    trees.push(reaches_.data() + member.start, reaches_.data() + member.end, forces_[i]);
+    trees.applyForce(pathOf(member), forces_[i]);
   }
 }
 

@@ -1,42 +1,43 @@
 #pragma once
 /// \file
-/// Trees of bodies, eliminated from the leaves to the roots.
+/// Forward dynamics of trees of bodies by elimination from the leaves to the roots, in time linear in their number.
 ///
-/// A body with nothing but forces on it moves by   M u = f.   Held to a parent by rows   J u + K u_p + D x = r   with
-/// forces x it moves by
+/// A free body moves by M u = f. A body that the rows J u + K u_p + D x = r connect to its parent moves by
 ///
 ///     M u - J^T x = f                      u    motion (velocity / dt)          M    inertia, 6 x 6
 ///     J u + D x + K u_p = r                x    forces of the joint's rows      D    softness, diagonal, may be 0
+///                                          u_p  the parent's motion             f    force, momentum / dt included
 ///
-/// Eliminating u and then x leaves to the parent more inertia and more force, as if the child were a part of it that
-/// gives a little:
+/// Eliminating u and then x leaves the parent with more inertia and more force:
 ///
-///     W = J M^-1 J^T + D                           how much the child gives where it is held
-///     M_p += K^T W^-1 K                            inertia that the parent feels
-///     f_p += K^T W^-1 (r - J M^-1 f)               force that the parent feels
+///     W = J M^-1 J^T + D                           Delassus matrix of the joint
+///     M_p += K^T W^-1 K                            inertia of the child that the parent feels
+///     f_p += K^T W^-1 (r - J M^-1 f)               force of the child that the parent feels
 ///
-///          torso                 factor, forward:   leaves first, each hands its K^T W^-1 K and force to the one above
+///          torso                 factor, forward:    from the leaves: each body hands K^T W^-1 K and its force up
 ///         /  |  \                                         |
 ///      arm  head  thigh                                   v
-///       |           |            backward:          roots first: from the parent's motion the joint's forces,
-///      hand       shank                             from them the child's motion
+///       |           |            backward:           from the roots: the parent's motion gives the joint's forces,
+///      hand       shank                              and these give the child's motion
 ///                   |
 ///                  foot ~~~~~
 ///
-/// Every block is 6 x 6. Rows that do not hold (a motor at its bound, a stop that is left) are 0 in J and K and 1 in D:
-/// the block stays 6 x 6 and the row's force is 0; a force at a bound acts as a given force.
+/// This is the block LDL^T factorisation of the sparse system of equations in maximal coordinates along the tree
+/// (Baraff 1996, "Linear-time dynamics using Lagrange multipliers"). With the terms of all children added, M is the
+/// articulated-body inertia of the body, and f corresponds to its bias force (Featherstone 2008, chapter 7).
 ///
-/// Where the world is in place of the parent, K is not there. Rows of a contact with the static world concern one body
-/// alone: with D > 0 their forces are (r - J u) / D, which makes them part of M and f of that body:   M += J^T J / D,
-/// f += J^T r / D.
+/// Every block is 6 x 6. A row that does not hold (a motor at its bound, a stop that opens) has 0 in J and K and 1 in
+/// D, so that its force is 0; a force at a bound is part of f. A root that is connected to the world has no K.
 ///
-/// M is positive definite, W is positive semidefinite: no order of rows matters, nothing is divided by a softness that
-/// could be 0, and rows that say the same twice with D = 0 get their force once.
+/// Rows of a contact with the static world concern one body alone. With D > 0 their forces are (r - J u) / D, which can
+/// be folded into that body: M += J^T D^-1 J, f += J^T D^-1 r. They are "folded rows".
 ///
-/// With what is eliminated it is cheap to ask how a single row reaches through the tree (Reach): only the bodies
-/// between it and the root answer. Two rows touch each other through what their reaches have in common:
+/// M is positive definite and W positive semidefinite, so no pivoting is needed. Nothing is divided by a D that could
+/// be 0; of redundant rows with D = 0, one gets the whole force (SpatialLdlt).
 ///
-///     R_i . R_j = J_i T^-1 J_j^T     with T the whole tree.   coupling.h needs nothing else.
+/// After factorisation, the path from a row's bodies to the root answers how that row acts on the tree (PathTerm). With
+/// T the equations of the whole tree and J_i, J_j two rows outside of it, the products of their path responses are the
+/// Delassus terms J_i T^-1 J_j^T, from which coupling.h solves for the rows' forces.
 
 #include <span>
 #include <vector>
@@ -45,73 +46,83 @@
 
 namespace spark::articulated {
 
+/// A body in the system of equations, with its connection to its parent. Symbols are those of the head of this file.
 struct Node {
-  engine::SolverBody* body = nullptr;
-  int parent = -1;
-  int joint = -1;                  ///< that holds it to its parent or the world, index in SolverStep::joints; -1: none
-  int firstRow = 0, rowCount = 0;  ///< of that joint, not more than 6
-  int groundRow = -1;              ///< first of the rows that are part of its inertia, see Row::next
-  Frame frame;
-  Mat3 inertia;         ///< kg m^2, world frame
-  bool changed = true;  ///< one of its rows began to hold or ceased to, or a child changed: to be eliminated anew
+  engine::SolverBody* body = nullptr;  ///< owned by the engine
+  Index parent = kNone;                ///< node, before this one; kNone: root
+  Index joint = kNone;                 ///< tree joint, index in SolverStep::joints; kNone: a free root
+  Index firstRow = 0, rowCount = 0;    ///< rows of that joint, at most 6
+  Index firstFolded = kNone;           ///< first folded row, see Row::nextFolded
+  RigidBodyState state;
+  Mat3 worldInertia;    ///< kg m^2, about the centre of mass, world axes
+  bool changed = true;  ///< a row of it or of a node below began or ceased to hold: factor() has to renew it
 
-  Block gathered;     ///< M: its own and what its children handed up
-  Factor own;         ///< of M
-  bool held = false;  ///< some row to the parent or the world holds
-  Block across;       ///< own.L^-1 J^T, a column for each row
-  Block up;           ///< hold.L^-1 K, a row for each row
-  Factor hold;        ///< of W
-  Block handed;       ///< K^T W^-1 K
-  Six target;         ///< r
+  // Factorisation.
+  SpatialMatrix inertia;        ///< M: of the body, its folded rows and its children
+  SpatialLdlt inertiaFactor;    ///< of M
+  bool connected = false;       ///< a row of the tree joint holds; else the blocks below are invalid
+  SpatialMatrix halfJ;          ///< L_M^-1 J^T, one column per row of the joint
+  SpatialMatrix halfK;          ///< L_W^-1 K, one row per row of the joint; only with a parent
+  SpatialLdlt delassusFactor;   ///< of W
+  SpatialMatrix parentInertia;  ///< K^T W^-1 K; only with a parent
+  SpatialVector target;         ///< r
 
-  Six given;   ///< f without what rows add
-  Six load;    ///< f
-  Six z, q;    ///< f and r after the forward pass
-  Six motion;  ///< u
-  Six joined;  ///< x
+  // Solution.
+  SpatialVector externalForce;  ///< f without rows: forces of the step, and momentum / dt
+  SpatialVector force;          ///< f
+  SpatialVector z;              ///< L_M^-1 f
+  SpatialVector q;              ///< L_W^-1 (r - J M^-1 f)
+  SpatialVector motion;         ///< u
+  SpatialVector jointForces;    ///< x
 };
 
-/// What a force along a row of size 1 does on the way to the root: the z and q of the bodies it passes.
-struct Reach {
-  int node;
-  Six z, q;
-  Six scaledZ, scaledQ;  ///< divided by the pivots
+/// How a unit force along a row acts on one node of the path to the root: the node's z and q for this force alone.
+struct PathTerm {
+  Index node;
+  SpatialVector z, q;
+  SpatialVector scaledZ, scaledQ;  ///< D^-1 z and D^-1 q, with the D of the two factorisations
 };
 
+/// The path response of a row: nodes in falling order, from its bodies to the roots.
+using PathResponse = std::span<const PathTerm>;
+
+/// The trees of an island. Memory is kept from step to step.
 class Elimination {
  public:
   std::span<Node> nodes;  ///< parents before children
 
-  /// Makes room for `count` bodies; what stands in them is left over.
+  /// Sets the number of nodes. Their content is that of an earlier step.
   void begin(std::size_t count) {
     if (storage_.size() < count) storage_.resize(count);
     nodes = std::span(storage_.data(), count);
   }
 
-  /// Eliminates the bodies that changed and those above them; returns whether there were any.
+  /// Factorises the nodes that changed and all above them. Returns whether there were any.
   bool factor(const Rows& rows);
-  /// Takes the nodes' loads to z and q. `targets` false: as if all rows wanted 0.
-  void forward(bool targets);
-  /// From z and q to motion and the joints' forces.
+  /// Computes z and q from the nodes' `force`, which the children's forces are added to. With `useTargets` false, r is
+  /// 0 in all rows.
+  void forward(bool useTargets);
+  /// Computes motion and joint forces from z and q.
   void backward();
-  /// Appends how the row reaches through its tree or trees.
-  void reach(const Row& row, std::vector<Reach>& out) const;
-  /// How far two rows or a row and all loads after the forward pass touch each other.
-  static double touch(const Reach* a, const Reach* aEnd, const Reach* b, const Reach* bEnd);
-  double touchLoads(const Reach* a, const Reach* aEnd) const;
-  /// Adds what a force along a row does.
-  void push(const Reach* a, const Reach* aEnd, double force);
+  /// Appends the path response of a row, whose bodies may be in two trees.
+  void appendPathResponse(const Row& row, std::vector<PathTerm>& out) const;
+  /// The Delassus term J_i T^-1 J_j^T of two rows.
+  static double delassusTerm(PathResponse i, PathResponse j);
+  /// J_i u of the motion u that backward() would compute now, after forward().
+  double predictedMotion(PathResponse i) const;
+  /// Adds the effect of a force along a row to z and q, between forward() and backward().
+  void applyForce(PathResponse i, double force);
 
-  /// The equation's left side without softness.
-  double along(const Row& row) const {
-    double sum = dot(row.a, nodes[static_cast<std::size_t>(row.nodeA)].motion);
-    if (row.nodeB >= 0) sum += dot(row.b, nodes[static_cast<std::size_t>(row.nodeB)].motion);
+  /// J u of a row.
+  double motionAlong(const Row& row) const {
+    double sum = dot(row.jacobianA, nodes[row.nodeA].motion);
+    if (row.nodeB != kNone) sum += dot(row.jacobianB, nodes[row.nodeB].motion);
     return sum;
   }
 
  private:
   std::vector<Node> storage_;
-  void eliminate(Node& node, const Rows& rows);
+  void factorNode(Node& node, const Rows& rows);
 };
 
 }  // namespace spark::articulated

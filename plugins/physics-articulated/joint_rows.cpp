@@ -1,7 +1,15 @@
 #include "rows.h"
 
-// Rows by joint type. Both bodies' velocities meet in a row with opposite signs, at the same point or about the same
-// axis; the target pushes back what has drifted apart. a1 and a2 are the anchors seen from the bodies' centres.
+// The rows of each joint type, as ODE has them (Smith, ODE manual, "Joint Types and Functions").
+//
+// A row constrains the velocity of body a relative to body b, at one point or about one axis. With r_a and r_b the
+// anchor relative to the bodies' centres, the Jacobians are
+//
+//     point, along d:     J_A = (d, r_a x d)      J_B = (-d, -r_b x d)
+//     rotation about d:   J_A = (0, d)            J_B = (0, -d)
+//
+// and the target velocity is erp / dt times the position error, which moves a fraction erp of the error away in one
+// step.
 
 namespace spark::articulated {
 
@@ -11,187 +19,236 @@ using engine::JointType;
 using engine::SolverAxis;
 using engine::SolverJoint;
 
+/// Whether an axis is at a stop, and by how much it is beyond it [rad or m]: negative at the low stop.
+struct StopContact {
+  Stop stop = Stop::none;
+  double excess = 0;
+};
+
+/// Writes the rows of one joint, from `next` on.
 struct JointWriter {
   const SolverJoint& joint;
-  Frame& a;
-  Frame* b;
-  const RowScale& scale;
+  RigidBodyState& a;
+  RigidBodyState* b;
+  const StepConstants& constants;
   Row* next;
 
-  Vec3 inWorldA(const Vec3& v) const { return a.rotation * v; }
-  Vec3 inWorldB(const Vec3& v) const { return b ? Vec3(b->rotation * v) : v; }
-  Vec3 placeB() const { return b ? b->position : Vec3(Vec3::Zero()); }
-  double correction() const { return scale.perSecond * scale.erp; }
-  double softness(double cfm) const { return cfm * scale.perSecond; }
+  // ---- frames and constants ----
 
-  /// A row that wants the velocity `wanted`.
-  Row& add(const Six& onA, const Six& onB, double wanted, double cfm) {
+  Vec3 fromA(const Vec3& v) const { return a.rotation * v; }
+  Vec3 fromB(const Vec3& v) const { return b ? Vec3(b->rotation * v) : v; }
+  Vec3 positionB() const { return b ? b->position : Vec3(Vec3::Zero()); }
+  /// Velocity per position error, with the world's ERP [1/s].
+  double errorGain() const { return constants.inverseDt * constants.erp; }
+  /// D of a row.
+  double softness(double cfm) const { return cfm * constants.inverseDt; }
+
+  // ---- single rows; `velocity` is the target velocity [m/s or rad/s] ----
+
+  Row& add(const SpatialVector& jacobianA, const SpatialVector& jacobianB, double velocity, double cfm) {
     Row& row = *next++;
     row = {};
-    row.a = onA;
-    row.b = onB;
-    row.target = wanted * scale.perSecond;
+    row.jacobianA = jacobianA;
+    row.jacobianB = jacobianB;
+    row.target = velocity * constants.inverseDt;
     row.softness = softness(cfm);
     return row;
   }
-  Row& addTurning(const Vec3& axis, double wanted, double cfm) {
-    return add(Six::of(Vec3::Zero(), axis), Six::of(Vec3::Zero(), -axis), wanted, cfm);
+  /// Rotation about `axis`.
+  Row& addAngular(const Vec3& axis, double velocity, double cfm) {
+    return add(SpatialVector::of(Vec3::Zero(), axis), SpatialVector::of(Vec3::Zero(), -axis), velocity, cfm);
+  }
+  /// Translation of the anchor along `direction`; armA and armB are the anchor relative to the bodies' centres.
+  void addPoint(const Vec3& direction, const Vec3& armA, const Vec3& armB, double velocity, double cfm) {
+    add(SpatialVector::of(direction, armA.cross(direction)), SpatialVector::of(-direction, direction.cross(armB)),
+        velocity, cfm);
   }
 
-  /// Two points meet, seen along a direction.
-  void addPoint(const Vec3& direction, const Vec3& a1, const Vec3& a2, double wanted, double cfm) {
-    add(Six::of(direction, a1.cross(direction)), Six::of(-direction, direction.cross(a2)), wanted, cfm);
+  // ---- groups of rows ----
+
+  /// Anchor relative to b's centre, world axes; zero for the world.
+  Vec3 armOfB() const { return b ? Vec3(b->rotation * joint.anchorB) : Vec3(Vec3::Zero()); }
+  /// From a's anchor point to b's.
+  Vec3 anchorError(const Vec3& armA, const Vec3& armB) const {
+    return (b ? Vec3(b->position + armB) : joint.anchorB) - a.position - armA;
   }
+  /// Three rows that keep the anchor points together.
   void addBall(double erp, double cfm) {
-    const Vec3 a1 = inWorldA(joint.anchorA), a2 = b ? Vec3(b->rotation * joint.anchorB) : Vec3(Vec3::Zero());
-    const Vec3 apart = (b ? Vec3(b->position + a2) : joint.anchorB) - a.position - a1;
-    const double k = scale.perSecond * erp;
-    for (int i = 0; i < 3; ++i) addPoint(Vec3::Unit(i), a1, a2, k * apart[i], cfm);
+    const Vec3 armA = fromA(joint.anchorA), armB = armOfB();
+    const Vec3 error = anchorError(armA, armB);
+    const double gain = constants.inverseDt * erp;
+    for (int i = 0; i < 3; ++i) addPoint(Vec3::Unit(i), armA, armB, gain * error[i], cfm);
   }
 
-  /// Second body's rotation in the first, relative to what it was.
-  Turn turned(const std::array<double, 4>& before) const {
-    const Turn second = b ? b->turn : Turn{};
-    return a.turn.inverse() * second * Turn::of(before).inverse();
+  /// b's rotation relative to a, as a change since the joint was set: q_a^* q_b q_0^*.
+  Quaternion rotationSince(const std::array<double, 4>& initial) const {
+    const Quaternion rotationB = b ? b->orientation : Quaternion{};
+    return a.orientation.conjugate() * rotationB * Quaternion::of(initial).conjugate();
   }
+  /// Three rows that keep the relative rotation.
   void addSameRotation() {
-    const Turn t = turned(joint.initialRotationA);
-    const Vec3 error = inWorldA(t.w < 0 ? Vec3(-t.v) : t.v);
-    for (int i = 0; i < 3; ++i) addTurning(Vec3::Unit(i), 2 * correction() * error[i], scale.cfm);
+    // A small rotation q = (w, v) has the rotation vector 2 v, with the sign of q that makes w positive.
+    const Quaternion q = rotationSince(joint.initialRotationA);
+    const Vec3 error = fromA(q.w < 0 ? Vec3(-q.v) : q.v);
+    for (int i = 0; i < 3; ++i) addAngular(Vec3::Unit(i), 2 * errorGain() * error[i], constants.cfm);
   }
 
-  /// At which stop an axis stands, and how far beyond it.
-  static int stopAt(const SolverAxis& axis, double position, double& beyond) {
-    if (position <= axis.lowStop) return beyond = position - axis.lowStop, 1;
-    if (position >= axis.highStop) return beyond = position - axis.highStop, 2;
-    return 0;
+  // ---- motors and stops ("Stops and motor parameters") ----
+
+  /// The stop that an axis at `position` has reached.
+  static StopContact stopAt(const SolverAxis& axis, double position) {
+    if (position <= axis.lowStop) return {Stop::low, position - axis.lowStop};
+    if (position >= axis.highStop) return {Stop::high, position - axis.highStop};
+    return {};
   }
-  static bool stopsTurn(const SolverAxis& axis) {
+  /// Whether a rotational axis has stops that it can reach.
+  static bool hasAngularStops(const SolverAxis& axis) {
     return (axis.lowStop >= -kPi || axis.highStop <= kPi) && axis.lowStop <= axis.highStop;
   }
 
-  /// What a motor does that presses against a stop: its whole force, or a part of it away from the stop, acts besides
-  /// the stop's row.
-  double pressing(const SolverAxis& axis, int stop) const {
+  /// The force of a motor at a stop. It presses with its full force, or drives away from the stop with a fraction of it
+  /// (the fudge factor), which avoids a jump off the stop.
+  static double motorForceAtStop(const SolverAxis& axis, Stop stop) {
     double force = axis.maxForce;
-    if (axis.velocity > 0 || (axis.velocity == 0 && stop == 2)) force = -force;
-    if ((stop == 1 && axis.velocity > 0) || (stop == 2 && axis.velocity < 0)) force *= axis.fudgeFactor;
+    if (axis.velocity > 0 || (axis.velocity == 0 && stop == Stop::high)) force = -force;
+    if ((stop == Stop::low && axis.velocity > 0) || (stop == Stop::high && axis.velocity < 0))
+      force *= axis.fudgeFactor;
     return force;
   }
-  void press(const Six& onA, const Six& onB, double force) {
-    a.force -= force * onA.linear();
-    a.torque -= force * onA.angular();
+  /// Adds -force along the row to the forces on the bodies.
+  void subtractForce(const SpatialVector& jacobianA, const SpatialVector& jacobianB, double force) {
+    a.force -= force * jacobianA.linear();
+    a.torque -= force * jacobianA.angular();
     if (!b) return;
-    b->force -= force * onB.linear();
-    b->torque -= force * onB.angular();
+    b->force -= force * jacobianB.linear();
+    b->torque -= force * jacobianB.angular();
   }
 
-  /// The row of a motor, or of the stop that the axis has reached. `velocity`: of a relative to b along the axis, for
-  /// bounce.
-  void addAxis(int index, const Six& onA, const Six& onB, int stop, double beyond, double velocity) {
+  /// The row of axis `index`: its stop's if it has reached one, else its motor's if it has one, else none. `velocity`
+  /// is the present velocity of a relative to b along the axis, for bounce.
+  void addAxis(int index, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const StopContact& contact,
+               double velocity) {
     const SolverAxis& axis = joint.axes[static_cast<std::size_t>(index)];
-    const bool locked = stop && axis.lowStop == axis.highStop;
+    const Stop stop = contact.stop;
+    const bool stopped = stop != Stop::none;
+    const bool locked = stopped && axis.lowStop == axis.highStop;
     const bool powered = axis.maxForce > 0 && !locked;
-    if (!powered && !stop) return;
-    if (powered && stop) press(onA, onB, pressing(axis, stop));
-    Row& row = add(onA, onB, axis.velocity, axis.cfm);
-    row.axis = static_cast<std::int8_t>(index);
-    row.stop = static_cast<std::int8_t>(stop);
-    if (!stop) {
+    if (!powered && !stopped) return;
+    // At a stop the motor acts as a given force: the row belongs to the stop.
+    if (powered && stopped) subtractForce(jacobianA, jacobianB, motorForceAtStop(axis, stop));
+    Row& row = add(jacobianA, jacobianB, axis.velocity, axis.cfm);
+    row.axis = static_cast<std::uint8_t>(index);
+    row.stop = stop;
+    // A motor reaches its target velocity with a force of at most maxForce.
+    if (!stopped) {
       row.low = -axis.maxForce, row.high = axis.maxForce;
       return;
     }
+    // A stop pushes only away from itself; equal stops push both ways and do not bounce.
     row.softness = softness(axis.stopCfm);
-    double wanted = -scale.perSecond * axis.stopErp * beyond;
+    double target = -constants.inverseDt * axis.stopErp * contact.excess;
     if (!locked) {
-      (stop == 1 ? row.low : row.high) = 0;
+      (stop == Stop::low ? row.low : row.high) = 0;
       const double rebound = -axis.bounce * velocity;
-      if (axis.bounce > 0 && stop == 1 && velocity < 0) wanted = std::max(wanted, rebound);
-      if (axis.bounce > 0 && stop == 2 && velocity > 0) wanted = std::min(wanted, rebound);
+      if (axis.bounce > 0 && stop == Stop::low && velocity < 0) target = std::max(target, rebound);
+      if (axis.bounce > 0 && stop == Stop::high && velocity > 0) target = std::min(target, rebound);
     }
-    row.target = wanted * scale.perSecond;
+    row.target = target * constants.inverseDt;
   }
-  void addTurningAxis(int index, const Vec3& axis, int stop, double beyond) {
-    const double velocity = a.spin.dot(axis) - (b ? b->spin.dot(axis) : 0);
-    addAxis(index, Six::of(Vec3::Zero(), axis), Six::of(Vec3::Zero(), -axis), stop, beyond, velocity);
+  /// The same for rotation about `axis`.
+  void addAngularAxis(int index, const Vec3& axis, const StopContact& contact) {
+    const double velocity = a.angularVelocity.dot(axis) - (b ? b->angularVelocity.dot(axis) : 0);
+    addAxis(index, SpatialVector::of(Vec3::Zero(), axis), SpatialVector::of(Vec3::Zero(), -axis), contact, velocity);
   }
+
+  // ---- joint types ----
 
   void writeBall() { addBall(joint.erp, joint.cfm); }
 
   void writeHinge() {
-    addBall(scale.erp, scale.cfm);
-    const Vec3 axis = inWorldA(joint.axisA[0]);
+    addBall(constants.erp, constants.cfm);
+    // No rotation about the two directions perpendicular to the axis. The error is the cross product of the axis as
+    // fixed in a and as fixed in b.
+    const Vec3 axis = fromA(joint.axisA[0]);
     Vec3 p, q;
-    planeSpace(axis, p, q);
-    const Vec3 error = axis.cross(inWorldB(joint.axisB[0]));
-    addTurning(p, correction() * error.dot(p), scale.cfm);
-    addTurning(q, correction() * error.dot(q), scale.cfm);
-    double beyond = 0;
-    const int stop = stopsTurn(joint.axes[0])
-                         ? stopAt(joint.axes[0], hingeAngle(turned(joint.initialRotationA), joint.axisA[0]), beyond)
-                         : 0;
-    addTurningAxis(0, axis, stop, beyond);
+    perpendicularBasis(axis, p, q);
+    const Vec3 error = axis.cross(fromB(joint.axisB[0]));
+    addAngular(p, errorGain() * error.dot(p), constants.cfm);
+    addAngular(q, errorGain() * error.dot(q), constants.cfm);
+    // The angle is needed only for stops.
+    StopContact contact;
+    if (hasAngularStops(joint.axes[0]))
+      contact = stopAt(joint.axes[0], hingeAngle(rotationSince(joint.initialRotationA), joint.axisA[0]));
+    addAngularAxis(0, axis, contact);
   }
 
   void writeSlider() {
     addSameRotation();
-    Vec3 axis = inWorldA(joint.axisA[0]), p, q;
-    planeSpace(axis, p, q);
-    // Forces act halfway between the centres, so that they do not turn the pair.
-    const Vec3 half = b ? Vec3(0.5 * (b->position - a.position)) : Vec3(Vec3::Zero());
-    const Vec3 apart = placeB() + inWorldB(joint.anchorB) - a.position;
+    Vec3 axis = fromA(joint.axisA[0]), p, q;
+    perpendicularBasis(axis, p, q);
+    // Forces act halfway between the centres: both bodies get the same torque, and the pair none.
+    const Vec3 arm = b ? Vec3(0.5 * (b->position - a.position)) : Vec3(Vec3::Zero());
+    // From a's centre to where it was when set, carried along by b. No component perpendicular to the axis.
+    const Vec3 offset = positionB() + fromB(joint.anchorB) - a.position;
     for (const Vec3& d : {p, q})
-      add(Six::of(d, half.cross(d)), Six::of(-d, half.cross(d)), correction() * d.dot(apart), scale.cfm);
+      add(SpatialVector::of(d, arm.cross(d)), SpatialVector::of(-d, arm.cross(d)), errorGain() * d.dot(offset),
+          constants.cfm);
+    // Motor and stops along the axis.
     if (!b && joint.reversed) axis = -axis;
     const SolverAxis& limits = joint.axes[0];
-    double beyond = 0;
-    const bool stops = (limits.lowStop > -HUGE_VAL || limits.highStop < HUGE_VAL) && limits.lowStop <= limits.highStop;
-    const int stop = stops ? stopAt(limits, -axis.dot(apart), beyond) : 0;
-    const double velocity = a.velocity.dot(axis) - (b ? b->velocity.dot(axis) : 0);
-    addAxis(0, Six::of(axis, half.cross(axis)), Six::of(-axis, half.cross(axis)), stop, beyond, velocity);
+    const bool hasStops =
+        (limits.lowStop > -HUGE_VAL || limits.highStop < HUGE_VAL) && limits.lowStop <= limits.highStop;
+    const StopContact contact = hasStops ? stopAt(limits, -axis.dot(offset)) : StopContact{};
+    const double velocity = a.linearVelocity.dot(axis) - (b ? b->linearVelocity.dot(axis) : 0);
+    addAxis(0, SpatialVector::of(axis, arm.cross(axis)), SpatialVector::of(-axis, arm.cross(axis)), contact, velocity);
   }
 
   void writeUniversal() {
-    addBall(scale.erp, scale.cfm);
-    const Vec3 axis1 = inWorldA(joint.axisA[0]), axis2 = inWorldB(joint.axisB[1]);
-    const double leaning = axis1.dot(axis2);
-    addTurning(axis1.cross(axis2 - leaning * axis1).normalized(), -correction() * leaning, scale.cfm);
-    const bool stops1 = stopsTurn(joint.axes[0]), stops2 = stopsTurn(joint.axes[1]);
-    int stop1 = 0, stop2 = 0;
-    double beyond1 = 0, beyond2 = 0;
-    if (stops1 || stops2) {
-      const Turn cross = Turn::of(crossOf(axis1, axis2));
-      const Turn halfRound{0, (axis1 + axis2).normalized()};
-      const Turn first = a.turn.inverse() * cross * Turn::of(joint.initialRotationA).inverse();
-      const Turn second =
-          (b ? b->turn.inverse() : Turn{}) * (halfRound * cross) * Turn::of(joint.initialRotationB).inverse();
-      if (stops1) stop1 = stopAt(joint.axes[0], hingeAngle(first, joint.axisA[0]), beyond1);
-      if (stops2) stop2 = stopAt(joint.axes[1], -hingeAngle(second, joint.axisB[1]), beyond2);
+    addBall(constants.erp, constants.cfm);
+    // The axes stay perpendicular: no rotation about axis 1 x axis 2, where the error is the cosine between them.
+    const Vec3 axis1 = fromA(joint.axisA[0]), axis2 = fromB(joint.axisB[1]);
+    const double cosine = axis1.dot(axis2);
+    addAngular(axis1.cross(axis2 - cosine * axis1).normalized(), -errorGain() * cosine, constants.cfm);
+    const bool hasStops1 = hasAngularStops(joint.axes[0]), hasStops2 = hasAngularStops(joint.axes[1]);
+    StopContact contact1, contact2;
+    if (hasStops1 || hasStops2) {
+      // The joint is two hinges in series with a cross between them: a turns about axis 1 relative to the cross, the
+      // cross about axis 2 relative to b. Half a turn about the bisector exchanges the two arms of the cross.
+      const Quaternion cross = Quaternion::of(orthonormalFrame(axis1, axis2));
+      const Quaternion exchange{0, (axis1 + axis2).normalized()};
+      const Quaternion crossInA =
+          a.orientation.conjugate() * cross * Quaternion::of(joint.initialRotationA).conjugate();
+      const Quaternion crossInB = (b ? b->orientation.conjugate() : Quaternion{}) * (exchange * cross) *
+                                  Quaternion::of(joint.initialRotationB).conjugate();
+      if (hasStops1) contact1 = stopAt(joint.axes[0], hingeAngle(crossInA, joint.axisA[0]));
+      if (hasStops2) contact2 = stopAt(joint.axes[1], -hingeAngle(crossInB, joint.axisB[1]));
     }
-    addTurningAxis(0, axis1, stop1, beyond1);
-    addTurningAxis(1, axis2, stop2, beyond2);
+    addAngularAxis(0, axis1, contact1);
+    addAngularAxis(1, axis2, contact2);
   }
 
   void writeHinge2() {
-    const Vec3 axis1 = inWorldA(joint.axisA[0]), axis2 = inWorldB(joint.axisB[1]);
-    const Vec3 a1 = inWorldA(joint.anchorA), a2 = b ? Vec3(b->rotation * joint.anchorB) : Vec3(Vec3::Zero());
-    const Vec3 apart = (b ? Vec3(b->position + a2) : joint.anchorB) - a.position - a1;
+    // The anchor, with the suspension along axis 1.
+    const Vec3 axis1 = fromA(joint.axisA[0]), axis2 = fromB(joint.axisB[1]);
+    const Vec3 armA = fromA(joint.anchorA), armB = armOfB();
+    const Vec3 error = anchorError(armA, armB);
     Vec3 p, q;
-    planeSpace(axis1, p, q);
-    addPoint(axis1, a1, a2, scale.perSecond * joint.suspensionErp * axis1.dot(apart), joint.suspensionCfm);
-    addPoint(p, a1, a2, correction() * p.dot(apart), scale.cfm);
-    addPoint(q, a1, a2, correction() * q.dot(apart), scale.cfm);
+    perpendicularBasis(axis1, p, q);
+    addPoint(axis1, armA, armB, constants.inverseDt * joint.suspensionErp * axis1.dot(error), joint.suspensionCfm);
+    addPoint(p, armA, armB, errorGain() * p.dot(error), constants.cfm);
+    addPoint(q, armA, armB, errorGain() * q.dot(error), constants.cfm);
+    // The angle between the axes stays as set; the error is the sine of the difference of the two angles.
     const Vec3 normal = axis1.cross(axis2);
     const double sine = normal.norm(), cosine = axis1.dot(axis2);
-    addTurning(normal.normalized(), correction() * (joint.cosAxes * sine - joint.sinAxes * cosine), scale.cfm);
-    double beyond = 0;
-    int stop = 0;
-    if (stopsTurn(joint.axes[0])) {
-      const Vec3 seen = a.rotation.transpose() * axis2;
-      stop = stopAt(joint.axes[0], -angleOf(joint.planeA[1].dot(seen), joint.planeA[0].dot(seen)), beyond);
+    addAngular(normal.normalized(), errorGain() * (joint.cosAxes * sine - joint.sinAxes * cosine), constants.cfm);
+    // Steering angle: of axis 2 in the plane perpendicular to axis 1. Axis 2 has a motor and no stops.
+    StopContact contact;
+    if (hasAngularStops(joint.axes[0])) {
+      const Vec3 axis2InA = a.rotation.transpose() * axis2;
+      contact = stopAt(joint.axes[0], -portableAtan2(joint.planeA[1].dot(axis2InA), joint.planeA[0].dot(axis2InA)));
     }
-    addTurningAxis(0, axis1, stop, beyond);
-    addTurningAxis(1, axis2, 0, 0);
+    addAngularAxis(0, axis1, contact);
+    addAngularAxis(1, axis2, {});
   }
 
   void writeFixed() {
@@ -199,35 +256,36 @@ struct JointWriter {
     addSameRotation();
   }
 
+  /// Angular motor in user mode: axes and angles are the caller's.
   void writeUserMotor() {
     for (int i = 0; i < joint.motorAxes; ++i) {
       const auto n = static_cast<std::size_t>(i);
       const Vec3& v = joint.axisA[n];
-      const Vec3 axis = joint.frame[n] == 1 ? inWorldA(v) : joint.frame[n] == 2 ? inWorldB(v) : v;
-      double beyond = 0;
-      const int stop = stopAt(joint.axes[n], joint.angle[n], beyond);
-      addTurningAxis(i, axis, stop, beyond);
+      const Vec3 axis = joint.frame[n] == 1 ? fromA(v) : joint.frame[n] == 2 ? fromB(v) : v;
+      addAngularAxis(i, axis, stopAt(joint.axes[n], joint.angle[n]));
     }
   }
+
+  /// Angular motor in Euler mode.
   void writeEulerMotor() {
-    // The first body turns about the first axis, the second about the last; reversed, the other way round.
-    const std::size_t mine = joint.reversed ? 2 : 0, other = 2 - mine;
+    // Axis 0 is fixed in the first body, axis 2 in the second, axis 1 is perpendicular to both. In a reversed joint, a
+    // is the second body.
+    const std::size_t ofA = joint.reversed ? 2 : 0, ofB = 2 - ofA;
     std::array<Vec3, 3> axis;
-    axis[mine] = inWorldA(joint.axisA[mine]);
-    axis[other] = inWorldB(joint.axisA[other]);
+    axis[ofA] = fromA(joint.axisA[ofA]);
+    axis[ofB] = fromB(joint.axisA[ofB]);
     axis[1] = axis[2].cross(axis[0]).normalized();
-    Vec3 first = inWorldA(joint.reference1), last = inWorldB(joint.reference2);
-    if (joint.reversed) std::swap(first, last);
-    const Vec3 upon = axis[0].cross(axis[1]);
-    const double angles[] = {-angleOf(axis[2].dot(axis[0].cross(first)), axis[2].dot(first)),
-                             -angleOf(axis[2].dot(axis[0]), axis[2].dot(upon)),
-                             -angleOf(last.dot(axis[1]), last.dot(axis[1].cross(axis[2])))};
-    const Vec3 held[] = {axis[1].cross(axis[2]), axis[1], upon};
-    for (int i = 0; i < 3; ++i) {
-      double beyond = 0;
-      const int stop = stopAt(joint.axes[static_cast<std::size_t>(i)], angles[i], beyond);
-      addTurningAxis(i, held[i], stop, beyond);
-    }
+    // Where axes 2 and 0 were when set, carried along by the other body: angles 0 and 2 are counted from there.
+    Vec3 zero2 = fromA(joint.reference1), zero0 = fromB(joint.reference2);
+    if (joint.reversed) std::swap(zero2, zero0);
+    const Vec3 normal = axis[0].cross(axis[1]);
+    const double angles[] = {-portableAtan2(axis[2].dot(axis[0].cross(zero2)), axis[2].dot(zero2)),
+                             -portableAtan2(axis[2].dot(axis[0]), axis[2].dot(normal)),
+                             -portableAtan2(zero0.dot(axis[1]), zero0.dot(axis[1].cross(axis[2])))};
+    // The velocity about direction i depends on the rate of angle i alone: it is perpendicular to the other two axes.
+    const Vec3 directions[] = {axis[1].cross(axis[2]), axis[1], normal};
+    for (int i = 0; i < 3; ++i)
+      addAngularAxis(i, directions[i], stopAt(joint.axes[static_cast<std::size_t>(i)], angles[i]));
   }
 
   void write() {
@@ -252,10 +310,11 @@ struct JointWriter {
 
 }  // namespace
 
-int jointRows(const SolverJoint& joint, Frame& a, Frame* b, const RowScale& scale, Row* out) {
-  JointWriter writer{joint, a, b, scale, out};
+Index writeJointRows(const SolverJoint& joint, RigidBodyState& a, RigidBodyState* b, const StepConstants& constants,
+                     Row* out) {
+  JointWriter writer{joint, a, b, constants, out};
   writer.write();
-  return static_cast<int>(writer.next - out);
+  return toIndex(static_cast<std::size_t>(writer.next - out));
 }
 
 }  // namespace spark::articulated

@@ -4,24 +4,25 @@ namespace spark::articulated {
 
 namespace {
 
-/// The state that a row's conditions want, given what was found for the one it is in.
-State wanted(const System& system, const Row& row, const Bounded& limits) {
+/// The state that is consistent with the force or residual that was computed in the row's present state.
+RowState consistentState(const System& system, const Row& row, const BoundedRow& limits) {
   switch (row.state) {
-    case State::holds:
-      if (row.force <= row.low + limits.force) return State::low;
-      if (row.force >= row.high - limits.force) return State::high;
-      return State::holds;
-    case State::low:
-      return system.residual(row) < -limits.motion ? State::holds : State::low;
-    case State::high:
-      return system.residual(row) > limits.motion ? State::holds : State::high;
+    case RowState::holds:
+      if (row.force <= row.low + limits.forceTolerance) return RowState::atLow;
+      if (row.force >= row.high - limits.forceTolerance) return RowState::atHigh;
+      return RowState::holds;
+    case RowState::atLow:
+      return system.residual(row) < -limits.motionTolerance ? RowState::holds : RowState::atLow;
+    case RowState::atHigh:
+      return system.residual(row) > limits.motionTolerance ? RowState::holds : RowState::atHigh;
     default:
-      return State::holds;
+      return RowState::holds;
   }
 }
 
-/// Even or odd, with no pattern that a cycle could follow.
-bool chance(std::uint64_t pass, std::uint64_t row) {
+/// A pseudo-random bit of a pass and a row: a hash, so that it is repeatable and has no pattern for a cycle to follow.
+bool randomBit(std::uint64_t pass, std::uint64_t row) {
+  // The finaliser of SplitMix64 (Steele, Lea and Flood 2014).
   std::uint64_t z = (pass * 0x9e3779b97f4a7c15u) ^ (row * 0xbf58476d1ce4e5b9u);
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
@@ -30,63 +31,73 @@ bool chance(std::uint64_t pass, std::uint64_t row) {
 
 }  // namespace
 
-void Pivoting::findBroken(const System& system) {
-  broken_.clear();
+void Pivoting::findViolated(const System& system) {
+  violated_.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = system.rows[rows[i].row];
-    if (wanted(system, row, rows[i]) != row.state) broken_.push_back(static_cast<int>(i));
+    if (consistentState(system, row, rows[i]) != row.state) violated_.push_back(toIndex(i));
   }
 }
 
-void Pivoting::turn(System& system, int pass, bool half) {
-  bool turned = false;
-  for (std::size_t k = 0; k < broken_.size(); ++k) {
-    const bool last = k + 1 == broken_.size();
-    if (half && !(last && !turned) && !chance(static_cast<std::uint64_t>(pass), k)) continue;
-    const Bounded& limits = rows[static_cast<std::size_t>(broken_[k])];
+/// Flips all violated rows, or about half of them and at least one.
+void Pivoting::flip(System& system, std::uint32_t pass, bool half) {
+  bool flipped = false;
+  for (std::size_t k = 0; k < violated_.size(); ++k) {
+    const bool last = k + 1 == violated_.size();
+    if (half && !(last && !flipped) && !randomBit(pass, k)) continue;
+    const BoundedRow& limits = rows[violated_[k]];
     Row& row = system.rows[limits.row];
-    row.state = wanted(system, row, limits);
-    system.changed(row);
-    turned = true;
+    row.state = consistentState(system, row, limits);
+    system.stateChanged(row);
+    flipped = true;
   }
 }
 
-bool Pivoting::settle(System& system) {
+bool Pivoting::solve(System& system) {
+  // Passes that may fail to reduce the number of violations before only halves are flipped.
+  constexpr int kMaxFailures = 1;
   std::size_t fewest = SIZE_MAX;
-  int retries = 0;
-  for (int pass = 0; pass < mostPasses; ++pass) {
+  int failuresLeft = 0;
+  for (std::uint32_t pass = 0; pass < maxPasses; ++pass) {
     system.solve();
     ++passes;
-    findBroken(system);
-    if (broken_.empty()) return true;
-    constexpr int kRetries = 1;
-    const bool fewer = broken_.size() < fewest;
-    if (fewer) fewest = broken_.size();
-    retries = fewer ? kRetries : retries - 1;
-    turn(system, pass, retries < 0);
+    findViolated(system);
+    if (violated_.empty()) return true;
+    const bool fewer = violated_.size() < fewest;
+    if (fewer) fewest = violated_.size();
+    failuresLeft = fewer ? kMaxFailures : failuresLeft - 1;
+    flip(system, pass, failuresLeft < 0);
   }
   return solveExactly(system);
 }
 
 bool Pivoting::solveExactly(System& system) {
   const std::size_t n = rows.size();
-  if (n > static_cast<std::size_t>(mostExactRows)) return false;
+  if (n > maxExactRows) return false;
   ++exactSolutions;
   const auto at = [&](std::size_t i) -> Row& { return system.rows[rows[i].row]; };
-  for (std::size_t i = 0; i < n; ++i) at(i).state = State::off, system.changed(at(i));
+  // w = A x + b of the bounded rows, with all other rows as equations. b is their residual without any of their forces.
+  for (std::size_t i = 0; i < n; ++i) {
+    at(i).state = RowState::off;
+    system.stateChanged(at(i));
+  }
   system.solve();
-  exact_.resize(n);
+  lcp_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    exact_.b[i] = system.residual(at(i));
-    exact_.low[i] = at(i).low, exact_.high[i] = at(i).high;
+    lcp_.b[i] = system.residual(at(i));
+    lcp_.low[i] = at(i).low, lcp_.high[i] = at(i).high;
   }
+  // A is their Delassus matrix plus D, one column (or row: it is symmetric) per unit force.
   for (std::size_t i = 0; i < n; ++i) {
-    system.respond(at(i));
-    for (std::size_t j = 0; j < n; ++j) exact_.a[i * n + j] = system.trees.along(at(j));
-    exact_.a[i * n + i] += at(i).softness;
+    system.respondTo(at(i));
+    for (std::size_t j = 0; j < n; ++j) lcp_.a[i * n + j] = system.trees.motionAlong(at(j));
+    lcp_.a[i * n + i] += at(i).softness;
   }
-  const bool found = exact_.solve(states_);
-  for (std::size_t i = 0; i < n; ++i) at(i).state = states_[i], system.changed(at(i));
+  const bool found = lcp_.solve(states_);
+  for (std::size_t i = 0; i < n; ++i) {
+    at(i).state = states_[i];
+    system.stateChanged(at(i));
+  }
   system.solve();
   return found;
 }

@@ -1,54 +1,55 @@
 #pragma once
 /// \file
-/// Which rows hold, and which stand at a bound: motors that give all they have, stops that are left, contacts that
-/// part, friction that slips.
+/// Finds which bounded rows hold and which are at a bound: motors at their maximal force, stops and contacts that open,
+/// friction that slips.
 
 #include "boxed_lcp.h"
 #include "system.h"
 
 namespace spark::articulated {
 
-/// A row with bounds, and how far from them it counts as being at them.
-struct Bounded {
-  int row = 0;
-  double motion = 0;  ///< of the equation, m/s^2 or rad/s^2
-  double force = 0;   ///< N, Nm
+/// A row with bounds, and the tolerances within which it counts as being at one of them.
+struct BoundedRow {
+  Index row = 0;               ///< in System::rows
+  double motionTolerance = 0;  ///< of the row's residual [m/s^2 or rad/s^2]
+  double forceTolerance = 0;   ///< of its force [N or Nm]
 };
 
-/// Finds the states in which every row keeps its conditions. There is only one such solution: with softness > 0 the
-/// matrix is positive definite, however the search began.
+/// Finds the states in which all rows meet their conditions. With D > 0 the matrix of the problem is positive definite,
+/// and the solution is unique (Cottle, Pang and Stone 1992, chapter 3).
 ///
-/// Block principal pivoting: solve, turn all rows over that break their conditions, solve again. Mostly there is
-/// nothing to turn, since it begins with the states of the step before. When the number of broken rows does not fall,
-/// only a (repeatable) random half of them is turned, which breaks cycles; when passes run out, the rows with bounds
-/// are solved exactly (BoxedLcp).
+/// The algorithm is block principal pivoting (Júdice and Pires 1994, "A block principal pivoting algorithm for
+/// large-scale strictly monotone linear complementarity problems"): solve, flip the states of all rows that violate
+/// their conditions, solve again. Mostly nothing is to be flipped, because the search begins with the states of the
+/// last step. When the number of violations does not fall, a repeatable pseudo-random half of the rows is flipped
+/// instead, which breaks cycles. (Júdice and Pires flip single rows then, as in Murty's algorithm.) After `maxPasses`
+/// passes Dantzig's algorithm (BoxedLcp) solves for the bounded rows.
 ///
-/// A row within rounding of a bound stands at it, whatever its state was before: so the outcome depends on the island
-/// alone and not on where the search began, and a world that was saved and restored goes on with the same digits.
+/// A row within its tolerance of a bound is put at that bound, whatever its state was. So the result depends on the
+/// island alone and not on where the search began, and a saved and restored world continues with the same digits.
 class Pivoting {
  public:
-  int mostPasses = 30;
-  /// Rows that are solved exactly at most.
-  int mostExactRows = 400;
-  std::vector<Bounded> rows;
+  std::uint32_t maxPasses = 30;                 ///< of block pivoting, in each search
+  std::size_t maxExactRows = 400;               ///< searches with more bounded rows do not use Dantzig's algorithm
+  std::vector<BoundedRow> rows;                 ///< the bounded rows; to be filled before solve()
+  std::int64_t passes = 0, exactSolutions = 0;  ///< passes and uses of Dantzig's algorithm since construction
 
-  void reserve(std::size_t most) {
-    rows.reserve(most);
-    broken_.reserve(most);
+  /// Allocates memory for `count` bounded rows.
+  void reserve(std::size_t count) {
+    rows.reserve(count);
+    violated_.reserve(count);
   }
-  /// False: no states were found, the motions mean nothing.
-  bool settle(System& system);
-  /// Counted since the object was made.
-  std::int64_t passes = 0, exactSolutions = 0;
+  /// Finds the states of `rows` and solves the system with them. Returns false if no states were found; motions and
+  /// forces are then meaningless.
+  bool solve(System& system);
 
  private:
-  /// Rows that break their conditions, in `broken_`.
-  void findBroken(const System& system);
-  void turn(System& system, int pass, bool half);
+  void findViolated(const System& system);
+  void flip(System& system, std::uint32_t pass, bool half);
   bool solveExactly(System& system);
-  std::vector<int> broken_;
-  BoxedLcp exact_;
-  std::vector<State> states_;
+  std::vector<Index> violated_;  ///< indices in `rows` of those that violate their conditions
+  BoxedLcp lcp_;
+  std::vector<RowState> states_;
 };
 
 }  // namespace spark::articulated

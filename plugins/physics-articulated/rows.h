@@ -1,63 +1,78 @@
 #pragma once
 /// \file
-/// Constraints as scalar rows: what a joint or a contact asks of the motion of one or two bodies, in one direction.
+/// Constraints as scalar rows: what a joint or a contact demands of the motion of one or two bodies in one direction.
 ///
-/// With `motion` a body's new velocity divided by the step (so that a force changes it by force / mass), a row is
+/// Let u be a body's motion: its new velocity divided by the step, so that a force changes it by M^-1 force. A row is
 ///
-///     a . motion(nodeA) + b . motion(nodeB) + softness * force = target,     low <= force <= high,
+///     J_A u_A + J_B u_B + D x = r,     low <= x <= high,     D = cfm / dt,     r = target velocity / dt,
 ///
-/// and at a bound the equation gives way in the direction in which the bound holds: at `low` the left side may be
-/// larger, at `high` smaller. The force acts on the bodies along a and b. softness = cfm / dt, target = wanted velocity
-/// / dt.
+/// with the force x. At a bound the equation becomes an inequality: at `low` the left side may be larger than r, at
+/// `high` it may be smaller. Together the rows are a linear complementarity problem with bounds (Cottle, Pang and Stone
+/// 1992, The Linear Complementarity Problem). The row's force on the bodies is J_A^T x and J_B^T x.
+///
+/// CFM and ERP are those of ODE (Smith, ODE manual, "Joint error and the Error Reduction Parameter" and "Soft
+/// constraint and Constraint Force Mixing").
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "angles.h"
 #include "api/solver.h"
-#include "six.h"
+#include "index.h"
+#include "rotation.h"
+#include "spatial.h"
 
 namespace spark::articulated {
 
-/// Whether a row's equation holds or its force stands at a bound. `off`: neither, there is no force.
-enum class State : std::uint8_t { holds, low, high, off };
+/// Which of a row's conditions is active. `holds`: the equation. `atLow`, `atHigh`: the force is at that bound. `off`:
+/// none; the force is 0.
+enum class RowState : std::uint8_t { holds, atLow, atHigh, off };
 
+/// The stop of a joint's axis that a row belongs to.
+enum class Stop : std::uint8_t { none, low, high };
+
+/// Row::axis of a row that is neither a motor's nor a stop's.
+inline constexpr std::uint8_t kNoAxis = 0xff;
+
+/// One scalar row. Forces are in N or Nm; u and r in m/s^2 or rad/s^2.
 struct Row {
-  Six a = Six::zero(), b = Six::zero();
-  double target = 0, softness = 0;
-  double low = -HUGE_VAL, high = HUGE_VAL;
-  double force = 0;            ///< N, Nm: out
-  int nodeA = -1, nodeB = -1;  ///< of the island; -1: none
-  State state = State::holds;
-  std::int8_t axis = -1;  ///< motor or stop of this axis of its joint
-  std::int8_t stop = 0;   ///< 1 at the low stop, 2 at the high one
-  int frictionOf = -1;    ///< the bounds are times the force of this row
-  bool inBody = false;    ///< is part of body A's inertia
-  int next = -1;          ///< the next row of the same body that is
+  SpatialVector jacobianA = SpatialVector::zero(), jacobianB = SpatialVector::zero();
+  double target = 0;                        ///< r
+  double softness = 0;                      ///< D, at least 0
+  double low = -HUGE_VAL, high = HUGE_VAL;  ///< low <= 0 <= high
+  double force = 0;                         ///< x; set by System::solve()
+  Index nodeA = kNone, nodeB = kNone;       ///< nodes of the island's trees; nodeB kNone: the static world
+  RowState state = RowState::holds;
+  std::uint8_t axis = kNoAxis;  ///< of the joint, 0..2, for the row of a motor or stop
+  Stop stop = Stop::none;
+  Index normalRow = kNone;   ///< friction: `low` and `high` are multiples of this row's force
+  bool folded = false;       ///< is part of body A's inertia and force, see elimination.h
+  Index nextFolded = kNone;  ///< next folded row of the same body
 
-  bool holds() const { return state == State::holds; }
+  bool holds() const { return state == RowState::holds; }
   bool bounded() const { return low != -HUGE_VAL || high != HUGE_VAL; }
-  /// The force while the equation does not hold.
-  double bound() const { return state == State::low ? low : state == State::high ? high : 0; }
+  /// The force while the equation does not hold; infinite where the state's bound is.
+  double bound() const { return state == RowState::atLow ? low : state == RowState::atHigh ? high : 0; }
 };
 
-/// Rows of an island. Memory stays; what is begun anew is written over.
+/// The rows of an island. Memory is kept from step to step; pointers and references end with the next prepare().
 class Rows {
  public:
+  /// Removes all rows.
   void clear() { count_ = 0; }
-  int size() const { return count_; }
-  /// Room for `most` more rows, of which take() keeps some.
-  Row* offer(int most) {
-    if (rows_.size() < static_cast<std::size_t>(count_ + most)) rows_.resize(static_cast<std::size_t>(count_ + most));
+  Index size() const { return count_; }
+  /// Returns memory for up to `max` rows after the last one. Its content is that of an earlier step.
+  Row* prepare(Index max) {
+    if (rows_.size() < count_ + max) rows_.resize(count_ + max);
     return rows_.data() + count_;
   }
-  void take(int count) { count_ += count; }
+  /// Appends the first `count` of the rows that prepare() returned.
+  void commit(Index count) { count_ += count; }
+  /// Allocates memory for `rows` rows.
   void reserve(std::size_t rows) {
     if (rows_.size() < rows) rows_.resize(rows);
   }
-  Row& operator[](int i) { return rows_[static_cast<std::size_t>(i)]; }
-  const Row& operator[](int i) const { return rows_[static_cast<std::size_t>(i)]; }
+  Row& operator[](Index i) { return rows_[i]; }
+  const Row& operator[](Index i) const { return rows_[i]; }
   Row* begin() { return rows_.data(); }
   Row* end() { return rows_.data() + count_; }
   const Row* begin() const { return rows_.data(); }
@@ -65,33 +80,39 @@ class Rows {
 
  private:
   std::vector<Row> rows_;
-  int count_ = 0;
+  Index count_ = 0;
 };
 
-/// A body while its island is solved: its state, and the forces on it.
-struct Frame {
-  Vec3 position, velocity, spin;
+/// State of a body at the start of the step, and the forces on it; world frame.
+struct RigidBodyState {
+  Vec3 position;         ///< m, of the centre of mass
+  Vec3 linearVelocity;   ///< m/s
+  Vec3 angularVelocity;  ///< rad/s
   Mat3 rotation;
-  Turn turn;
-  Vec3 force, torque;
+  Quaternion orientation;  ///< the same as `rotation`
+  Vec3 force, torque;      ///< N, Nm, without those of rows
 };
 
 /// What all rows of a step share.
-struct RowScale {
-  double perSecond;            ///< 1 / dt
+struct StepConstants {
+  double inverseDt;            ///< 1 / dt [1/s]
   double erp, cfm;             ///< the world's
-  double contactSurfaceLayer;  ///< m
+  double contactSurfaceLayer;  ///< allowed penetration [m]
 };
 
-/// Most rows that a joint and a contact have.
-inline constexpr int kJointRows = 6, kContactRows = 3;
+/// Largest number of rows of a joint and of a contact.
+inline constexpr Index kMaxJointRows = 6, kMaxContactRows = 3;
 
-/// Writes a joint's rows for bodies `a` and `b` (nullptr: the world) and returns how many. Motors that press against a
-/// stop add their force to the bodies instead. Fills a, b, target, softness, bounds, axis and stop.
-int jointRows(const engine::SolverJoint& joint, Frame& a, Frame* b, const RowScale& scale, Row* out);
+/// Writes the rows of a joint between bodies `a` and `b` (nullptr: the world) to `out`, which has room for
+/// kMaxJointRows. Returns their number. Sets Jacobians, target, softness, bounds, axis and stop. A motor at a stop has
+/// no row of its own: its force is added to `force` and `torque` of the bodies.
+Index writeJointRows(const engine::SolverJoint& joint, RigidBodyState& a, RigidBodyState* b,
+                     const StepConstants& constants, Row* out);
 
-/// The same for a contact, at most 3: the normal first. `reversed`: the normal counts the other way round.
-int contactRows(const engine::Contact& contact, bool reversed, const Frame& a, const Frame* b, const RowScale& scale,
-                Row* out);
+/// Writes the rows of a contact to `out`, which has room for kMaxContactRows: the normal, then two of friction unless
+/// mu is 0. Returns their number. Sets Jacobians, target, softness, bounds and normalRow (0, counted from `out`).
+/// `reversed`: the contact's normal points out of `a`.
+Index writeContactRows(const engine::Contact& contact, bool reversed, const RigidBodyState& a, const RigidBodyState* b,
+                       const StepConstants& constants, Row* out);
 
 }  // namespace spark::articulated

@@ -1,53 +1,55 @@
 #pragma once
 /// \file
-/// Steps whole worlds: keeps what outlives a step, and spreads islands over threads.
+/// Steps whole worlds: keeps what outlives a step, and distributes islands over threads.
 
-#include <atomic>
+#include <functional>
 #include <memory>
 
-#include "plan.h"
+#include "island_builder.h"
 
 namespace spark::articulated {
 
-/// Calls work(i) for all i in [0, n), in any threads.
-using Spread = std::function<void(std::size_t n, const std::function<void(std::size_t)>& work)>;
+/// Calls work(i) once for each i in [0, n), each in any thread, and returns when all calls have returned.
+using ParallelFor = std::function<void(std::size_t n, const std::function<void(std::size_t)>& work)>;
 
+/// Steps worlds. One thread at a time calls it.
 class Stepper {
  public:
-  int mostPasses = 30;
-  /// Islands with more rows that are no part of a tree are left to the engine.
-  int mostRows = 600;
+  std::uint32_t maxPasses = 30;  ///< see Pivoting; to be set before the first step
+  int maxCouplingRows = 600;     ///< islands with more coupling rows are deferred to the engine; at least 0
 
-  /// Steps the world with up to `threads` threads; the result is the same with any number. Returns how many bodies are
-  /// left to the engine.
-  std::size_t step(engine::SolverStep& step, std::size_t threads, const Spread& spread);
+  /// Steps the world (see ISolver::step) with up to `threads` threads, at least 1; results do not depend on their
+  /// number. `parallelFor` may be empty if `threads` is 1. Lowers step.maxCouplingRows to this stepper's. Returns the
+  /// number of deferred bodies.
+  std::size_t step(engine::SolverStep& step, std::size_t threads, const ParallelFor& parallelFor);
+  /// Drops what is kept for a world.
   void forget(engine::World world);
-  /// Since the stepper was made: searches for what holds, their passes, searches that needed the exact way, islands
-  /// left.
+
+  /// Counts since construction: awake islands, deferred ones included; passes of pivoting; solutions by Dantzig's
+  /// algorithm; deferred islands.
   std::int64_t islands() const { return islands_; }
   std::int64_t passes() const;
   std::int64_t exactSolutions() const;
   std::int64_t deferredIslands() const { return deferredIslands_; }
 
  private:
-  /// What a world keeps between steps.
-  struct Kept {
+  /// What is kept for a world between steps, and memory that its steps use.
+  struct WorldData {
     engine::World id = engine::World::none;
-    bool known = false;
-    std::uint64_t structure = 0;
+    bool built = false;           ///< topology is that of `structure`
+    std::uint64_t structure = 0;  ///< SolverStep::structure
     Topology topology;
-    std::vector<JointMemory> memory;
-    ContactMemory contacts;
-    std::vector<int> firstNode;
-    Plan plan;
-    std::vector<char> left;  ///< by island of the step
+    std::vector<JointWarmStart> joints;
+    ContactWarmStart contacts;
+    std::vector<Index> firstNode;  ///< see WorldView
+    IslandBuilder islands;
+    std::vector<char> deferred;  ///< by island of the step
   };
-  Kept& keptOf(const engine::SolverStep& step);
-  /// `most`: coupling rows of an island that is not left.
-  void makeRoom(const Kept& kept, std::size_t threads, int most);
-  std::size_t countLeft(const engine::SolverStep& step, const Kept& kept);
-  std::vector<std::unique_ptr<Kept>> worlds_;
-  std::vector<std::unique_ptr<Island>> islandsOfThreads_;
+  WorldData& worldOf(const engine::SolverStep& step);
+  void reserve(const WorldData& world, std::size_t threads, int couplingRows);
+  std::size_t markDeferred(const engine::SolverStep& step, const WorldData& world);
+  std::vector<std::unique_ptr<WorldData>> worlds_;
+  std::vector<std::unique_ptr<IslandSolver>> solvers_;  ///< by thread
   std::int64_t islands_ = 0, deferredIslands_ = 0;
 };
 

@@ -2,50 +2,55 @@
 
 namespace spark::articulated {
 
-void System::changed(const Row& row) {
-  // The body that the row is a part of. Rows of the dense system change no body.
-  const auto a = static_cast<std::size_t>(row.nodeA);
-  const auto index = static_cast<int>(&row - rows.begin());
-  const auto isEdgeOf = [&](const Node& node) {
+void System::stateChanged(const Row& row) {
+  // A folded row and a row of a tree joint are part of one node: body A's, or that of the joint's child. A coupling row
+  // is part of none.
+  const Index index = toIndex(static_cast<std::size_t>(&row - rows.begin()));
+  const auto isTreeJointOf = [&](const Node& node) {
     return index >= node.firstRow && index < node.firstRow + node.rowCount;
   };
-  if (row.inBody || isEdgeOf(trees.nodes[a]))
-    trees.nodes[a].changed = true;
-  else if (row.nodeB >= 0 && isEdgeOf(trees.nodes[static_cast<std::size_t>(row.nodeB)]))
-    trees.nodes[static_cast<std::size_t>(row.nodeB)].changed = true;
+  Node& nodeA = trees.nodes[row.nodeA];
+  if (row.folded || isTreeJointOf(nodeA))
+    nodeA.changed = true;
+  else if (row.nodeB != kNone && isTreeJointOf(trees.nodes[row.nodeB]))
+    trees.nodes[row.nodeB].changed = true;
 }
 
 void System::factor() {
-  if (trees.factor(rows) && coupling.size() > 0) coupling.form(trees, rows);
+  if (trees.factor(rows) && coupling.size() > 0) coupling.assemble(trees, rows);
 }
 
-void System::push(const Row& row, double force) {
-  trees.nodes[static_cast<std::size_t>(row.nodeA)].load.add(row.a, force);
-  if (row.nodeB >= 0) trees.nodes[static_cast<std::size_t>(row.nodeB)].load.add(row.b, force);
+/// f += J^T force for both bodies.
+void System::addForce(const Row& row, double force) {
+  trees.nodes[row.nodeA].force.addScaled(row.jacobianA, force);
+  if (row.nodeB != kNone) trees.nodes[row.nodeB].force.addScaled(row.jacobianB, force);
 }
 
 void System::readForces() {
+  // Rows of tree joints.
   for (const Node& node : trees.nodes)
-    for (int i = 0; i < node.rowCount; ++i) {
+    for (Index i = 0; i < node.rowCount; ++i) {
       Row& row = rows[node.firstRow + i];
-      if (row.holds()) row.force = node.joined[i];
+      if (row.holds()) row.force = node.jointForces[static_cast<int>(i)];
     }
+  // Rows at bounds, and folded rows: x = D^-1 (r - J u). Coupling wrote its own.
   for (Row& row : rows) {
     if (!row.holds())
       row.force = row.bound();
-    else if (row.inBody)
-      row.force = (row.target - trees.along(row)) / row.softness;
+    else if (row.folded)
+      row.force = (row.target - trees.motionAlong(row)) / row.softness;
   }
 }
 
 void System::solve() {
   factor();
-  for (Node& node : trees.nodes) node.load = node.given;
+  // f: external forces, forces at bounds, and J^T D^-1 r of folded rows.
+  for (Node& node : trees.nodes) node.force = node.externalForce;
   for (const Row& row : rows) {
     if (!row.holds()) {
-      if (const double force = row.bound(); force != 0) push(row, force);
-    } else if (row.inBody) {
-      push(row, row.target / row.softness);
+      if (const double force = row.bound(); force != 0) addForce(row, force);
+    } else if (row.folded) {
+      addForce(row, row.target / row.softness);
     }
   }
   trees.forward(true);
@@ -54,10 +59,10 @@ void System::solve() {
   readForces();
 }
 
-void System::respond(const Row& row) {
+void System::respondTo(const Row& row) {
   factor();
-  for (Node& node : trees.nodes) node.load = Six::zero();
-  push(row, 1);
+  for (Node& node : trees.nodes) node.force = SpatialVector::zero();
+  addForce(row, 1);
   trees.forward(false);
   if (coupling.size() > 0) coupling.solve(trees, rows, false);
   trees.backward();

@@ -4,83 +4,90 @@
 
 namespace spark::articulated {
 
-namespace {
+/// The joints of each body, in order of creation, as a compressed adjacency list: those of body i are
+/// joints[start[i]] .. joints[start[i + 1] - 1].
+struct Topology::JointsOfBodies {
+  std::vector<Index> start, joints;
 
-/// Joints by body, each in order of creation.
-struct JointsOfBodies {
-  std::vector<int> start, joints;
   explicit JointsOfBodies(const engine::SolverStep& step) : start(step.bodies.size() + 2, 0) {
-    const auto each = [&](auto&& what) {
+    const auto forEachEnd = [&](auto&& visit) {
       for (std::size_t j = 0; j < step.joints.size(); ++j)
         for (const engine::SolverBody* body : {step.joints[j]->a, step.joints[j]->b})
-          if (body) what(body->index, static_cast<int>(j));
+          if (body) visit(body->index, toIndex(j));
     };
-    each([&](std::uint32_t body, int) { ++start[body + 2]; });
+    // Counting sort. start is shifted by one, so that filling the list moves it to its final place.
+    forEachEnd([&](Index body, Index) { ++start[body + 2]; });
     for (std::size_t i = 2; i < start.size(); ++i) start[i] += start[i - 1];
-    joints.resize(static_cast<std::size_t>(start.back()));
-    each([&](std::uint32_t body, int joint) { joints[static_cast<std::size_t>(start[body + 1]++)] = joint; });
+    joints.resize(start.back());
+    forEachEnd([&](Index body, Index joint) { joints[start[body + 1]++] = joint; });
+  }
+  std::span<const Index> of(Index body) const {
+    return std::span(joints).subspan(start[body], start[body + 1] - start[body]);
   }
 };
 
-int heldToWorldBy(const engine::SolverStep& step, const JointsOfBodies& of, std::size_t body) {
-  for (int i = of.start[body]; i < of.start[body + 1]; ++i) {
-    const int joint = of.joints[static_cast<std::size_t>(i)];
-    if (!step.joints[static_cast<std::size_t>(joint)]->b) return joint;
+/// Adds the tree of `root`, breadth first. `worldJoint` connects the root to the world, unless it is kNone.
+void Topology::growTree(const engine::SolverStep& step, const JointsOfBodies& joints, Index root, Index worldJoint,
+                        std::vector<bool>& used) {
+  Tree tree{toIndex(treeBodies.size()), 0, toIndex(loopJoints.size()), 0};
+  const auto add = [&](Index body, Index parent, Index joint) {
+    treeBodyOf[body] = toIndex(treeBodies.size());
+    treeOf[body] = toIndex(trees.size());
+    treeBodies.push_back({body, parent, joint});
+    if (joint != kNone) used[joint] = true;
+  };
+  add(root, kNone, worldJoint);
+  for (Index parent = tree.begin; parent < treeBodies.size(); ++parent) {
+    const Index body = treeBodies[parent].body;
+    for (const Index joint : joints.of(body)) {
+      if (used[joint]) continue;
+      const engine::SolverJoint& j = *step.joints[joint];
+      const engine::SolverBody* other = j.a->index == body ? j.b : j.a;
+      // A joint to a new body makes it a child; a joint to the world or to a body of this tree closes a loop.
+      if (other && treeBodyOf[other->index] == kNone) {
+        add(other->index, parent, joint);
+        continue;
+      }
+      used[joint] = true;
+      loopJoints.push_back(joint);
+    }
   }
-  return -1;
+  tree.end = toIndex(treeBodies.size());
+  tree.loopEnd = toIndex(loopJoints.size());
+  trees.push_back(tree);
 }
 
-}  // namespace
-
-void Topology::find(const engine::SolverStep& step) {
-  const JointsOfBodies of(step);
-  const std::size_t n = step.bodies.size();
-  branches.clear();
-  trees.clear();
-  extraJoints.clear();
-  branchOf.assign(n, -1);
-  treeOf.assign(n, -1);
-  std::vector<bool> used(step.joints.size(), false);
-  const auto grow = [&](std::size_t root, int worldJoint) {
-    Tree tree{static_cast<int>(branches.size()), 0, static_cast<int>(extraJoints.size()), 0};
-    const auto add = [&](std::size_t body, int parent, int joint) {
-      branchOf[body] = static_cast<int>(branches.size());
-      treeOf[body] = static_cast<int>(trees.size());
-      branches.push_back({static_cast<int>(body), parent, joint});
-      if (joint >= 0) used[static_cast<std::size_t>(joint)] = true;
-    };
-    add(root, -1, worldJoint);
-    for (int at = tree.start; at < static_cast<int>(branches.size()); ++at) {
-      const auto body = static_cast<std::size_t>(branches[static_cast<std::size_t>(at)].body);
-      for (int i = of.start[body]; i < of.start[body + 1]; ++i) {
-        const int joint = of.joints[static_cast<std::size_t>(i)];
-        if (used[static_cast<std::size_t>(joint)]) continue;
-        const engine::SolverJoint& j = *step.joints[static_cast<std::size_t>(joint)];
-        const engine::SolverBody* other = j.a->index == body ? j.b : j.a;
-        if (other && branchOf[other->index] < 0) {
-          add(other->index, at, joint);
-          continue;
-        }
-        used[static_cast<std::size_t>(joint)] = true;
-        extraJoints.push_back(joint);
-      }
-    }
-    tree.end = static_cast<int>(branches.size());
-    tree.extraEnd = static_cast<int>(extraJoints.size());
-    trees.push_back(tree);
-  };
-  for (const bool held : {true, false})
-    for (std::size_t body = 0; body < n; ++body) {
-      if (branchOf[body] >= 0) continue;
-      const int joint = heldToWorldBy(step, of, body);
-      if (!held || joint >= 0) grow(body, joint);
-    }
-  std::vector<std::size_t> depths(branches.size(), 1);
-  depth = 0;
-  for (std::size_t i = 0; i < branches.size(); ++i) {
-    if (branches[i].parent >= 0) depths[i] = depths[static_cast<std::size_t>(branches[i].parent)] + 1;
-    depth = std::max(depth, depths[i]);
+void Topology::findMaxDepth() {
+  std::vector<std::size_t> depths(treeBodies.size(), 1);
+  maxDepth = 0;
+  for (std::size_t i = 0; i < treeBodies.size(); ++i) {
+    if (treeBodies[i].parent != kNone) depths[i] = depths[treeBodies[i].parent] + 1;
+    maxDepth = std::max(maxDepth, depths[i]);
   }
+}
+
+void Topology::build(const engine::SolverStep& step) {
+  const JointsOfBodies joints(step);
+  const std::size_t n = step.bodies.size();
+  treeBodies.clear();
+  trees.clear();
+  loopJoints.clear();
+  treeBodyOf.assign(n, kNone);
+  treeOf.assign(n, kNone);
+  std::vector<bool> used(step.joints.size(), false);
+  const auto worldJointOf = [&](Index body) {
+    for (const Index joint : joints.of(body))
+      if (!step.joints[joint]->b) return joint;
+    return kNone;
+  };
+  // Bodies with a joint to the world are roots if they can be: their joint is then part of the tree, not a loop.
+  for (const bool connectedToWorld : {true, false})
+    for (Index body = 0; body < n; ++body) {
+      if (treeBodyOf[body] != kNone) continue;
+      const Index joint = worldJointOf(body);
+      if (!connectedToWorld || joint != kNone) growTree(step, joints, body, joint, used);
+    }
+  findMaxDepth();
 }
 
 }  // namespace spark::articulated

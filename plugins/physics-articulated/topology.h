@@ -1,36 +1,45 @@
 #pragma once
 /// \file
-/// The trees that joints make of bodies. Found once for each structure of a world.
+/// The spanning trees that joints make of bodies. They are found anew only when the structure of a world changes.
 
 #include <vector>
 
 #include "api/solver.h"
+#include "index.h"
 
 namespace spark::articulated {
 
-/// A body's place in its tree. `joint` holds it to `parent`, or to the world where there is none; -1: it hangs on
-/// nothing.
-struct Branch {
-  int body = 0;     ///< index in SolverStep::bodies
-  int parent = -1;  ///< branch, before this one
-  int joint = -1;   ///< index in SolverStep::joints
+/// A body in its tree.
+struct TreeBody {
+  Index body = 0;           ///< index in SolverStep::bodies
+  Index parent = kNone;     ///< index in Topology::treeBodies, below this one's own; kNone: root
+  Index treeJoint = kNone;  ///< index in SolverStep::joints: connects to the parent, a root to the world; kNone: none
 };
 
-/// Branches start..end, parents first, and the joints (extraStart..extraEnd) that close loops in it.
+/// A tree: ranges of Topology::treeBodies (parents before children) and of Topology::loopJoints.
 struct Tree {
-  int start = 0, end = 0, extraStart = 0, extraEnd = 0;
+  Index begin = 0, end = 0, loopBegin = 0, loopEnd = 0;
 };
 
+/// The trees of a world. Tree joints form them; the remaining joints are loop joints (Featherstone 2008, chapter 4):
+/// each closes a loop through its tree or through the world.
 struct Topology {
-  std::vector<Branch> branches;
+  std::vector<TreeBody> treeBodies;  ///< tree by tree
   std::vector<Tree> trees;
-  std::vector<int> extraJoints;
-  std::vector<int> branchOf, treeOf;  ///< by body
-  std::size_t depth = 0;              ///< bodies from a root to the farthest leaf
+  std::vector<Index> loopJoints;  ///< tree by tree, indices in SolverStep::joints
+  std::vector<Index> treeBodyOf;  ///< by body, index in treeBodies
+  std::vector<Index> treeOf;      ///< by body, index in trees
+  std::size_t maxDepth = 0;       ///< largest number of bodies from a root to a leaf
 
-  /// Throws away what was there and finds the trees anew. Bodies that a joint holds to the world become roots where
-  /// they can.
-  void find(const engine::SolverStep& step);
+  /// Replaces the content by the trees of the world. Where joints connect bodies of a tree to the world, the first of
+  /// these bodies in order of creation is the root.
+  void build(const engine::SolverStep& step);
+
+ private:
+  struct JointsOfBodies;
+  void growTree(const engine::SolverStep& step, const JointsOfBodies& joints, Index root, Index worldJoint,
+                std::vector<bool>& used);
+  void findMaxDepth();
 };
 
 }  // namespace spark::articulated

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "angles.h"
 #include "boxed_lcp.h"
+#include "rotation.h"
 
 using namespace spark;
 using namespace spark::articulated;
@@ -11,19 +11,19 @@ TEST_CASE("angles are those of the mathematical library, all round") {
   for (int i = -2000; i <= 2000; ++i) {
     const double angle = kPi * i / 2000, size = 1e-6 + std::abs(i);
     const double y = size * std::sin(angle), x = size * std::cos(angle);
-    CHECK(std::abs(angleOf(y, x) - std::atan2(y, x)) <= 1e-15);
+    CHECK(std::abs(portableAtan2(y, x) - std::atan2(y, x)) <= 1e-15);
   }
-  CHECK(angleOf(0, 0) == 0);
-  CHECK(angleOf(0, -1) == Approx(kPi));
-  CHECK(std::isnan(angleOf(std::nan(""), 1)));
+  CHECK(portableAtan2(0, 0) == 0);
+  CHECK(portableAtan2(0, -1) == Approx(kPi));
+  CHECK(std::isnan(portableAtan2(std::nan(""), 1)));
 }
 
 TEST_CASE("a rotation's turn gives it back") {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int i = 0; i < 200; ++i) {
-    const Mat3 m = crossOf({any(random), any(random), any(random)}, {any(random), any(random), any(random)});
-    const Turn t = Turn::of(m);
+    const Mat3 m = orthonormalFrame({any(random), any(random), any(random)}, {any(random), any(random), any(random)});
+    const Quaternion t = Quaternion::of(m);
     const Eigen::Quaterniond q(t.w, t.v.x(), t.v.y(), t.v.z());
     CHECK((q.toRotationMatrix() - m).norm() < 1e-14);
   }
@@ -49,15 +49,15 @@ TEST_CASE("Dantzig's way keeps every row's conditions") {
       lcp.low[k] = i % 3 == 0 ? 0 : i % 3 == 1 ? -0.5 : -0.1;
       lcp.high[k] = i % 3 == 0 ? HUGE_VAL : i % 3 == 1 ? 0.5 : 0.1;
     }
-    std::vector<State> states;
+    std::vector<RowState> states;
     REQUIRE(lcp.solve(states));
     // Solve for the rows that hold, and look.
     Eigen::VectorXd x(n);
     std::vector<Eigen::Index> holding;
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      x[i] = states[k] == State::low ? lcp.low[k] : states[k] == State::high ? lcp.high[k] : 0;
-      if (states[k] == State::holds) holding.push_back(i);
+      x[i] = states[k] == RowState::atLow ? lcp.low[k] : states[k] == RowState::atHigh ? lcp.high[k] : 0;
+      if (states[k] == RowState::holds) holding.push_back(i);
     }
     const auto m = static_cast<Eigen::Index>(holding.size());
     if (m > 0) {
@@ -77,8 +77,8 @@ TEST_CASE("Dantzig's way keeps every row's conditions") {
       const auto k = static_cast<std::size_t>(i);
       CHECK(x[i] >= lcp.low[k] - 1e-7);
       CHECK(x[i] <= lcp.high[k] + 1e-7);
-      if (states[k] == State::low) CHECK(w[i] >= -1e-7);
-      if (states[k] == State::high) CHECK(w[i] <= 1e-7);
+      if (states[k] == RowState::atLow) CHECK(w[i] >= -1e-7);
+      if (states[k] == RowState::atHigh) CHECK(w[i] <= 1e-7);
     }
   }
 }

@@ -1,0 +1,301 @@
+#include "island_solver.h"
+
+#include "integration.h"
+
+namespace spark::articulated {
+
+namespace {
+
+/// Contact rows whose 1 / D exceeds the inverse of their mobility by this factor are not folded: the body's inertia
+/// would be lost in rounding.
+constexpr double kMaxFoldedStiffness = 1e8;
+/// Lower bound of the D of coupling rows, as a fraction of their mobility. Redundant rows then share their force, and
+/// velocities change by less than rounding does.
+constexpr double kMinSoftness = 1e-11;
+/// Velocities that differ by less count as equal in pivoting [m/s, rad/s; or this fraction of the island's largest].
+constexpr double kVelocityTolerance = 1e-11;
+
+Vec3 toVec(const double* v) { return {v[0], v[1], v[2]}; }
+
+/// From 3 rows of 4 elements.
+Mat3 toMat(const double* r) {
+  Mat3 m;
+  m << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
+  return m;
+}
+
+}  // namespace
+
+void IslandSolver::reserve(std::size_t bodies, std::size_t rows, std::size_t couplingRows, std::size_t depth) {
+  system_.trees.begin(bodies);
+  system_.rows.reserve(rows + kMaxJointRows);
+  // A row between two bodies has a path of up to `depth` nodes on each side.
+  system_.coupling.reserve(couplingRows, 2 * depth);
+  pivoting_.reserve(rows);
+  joints_.reserve(rows);
+  contacts_.reserve(rows);
+}
+
+void IslandSolver::clear() {
+  system_.rows.clear();
+  system_.coupling.begin();
+  pivoting_.rows.clear();
+  joints_.clear();
+  contacts_.clear();
+  pyramidRows_.clear();
+}
+
+/// The node of a body; kNone for the world (nullptr).
+Index IslandSolver::nodeOf(const WorldView& world, const engine::SolverBody* body) const {
+  if (!body) return kNone;
+  const Index tree = world.topology.treeOf[body->index];
+  return world.firstNode[tree] + world.topology.treeBodyOf[body->index] - world.topology.trees[tree].begin;
+}
+
+/// Makes the nodes, tree by tree, and computes what does not depend on rows.
+void IslandSolver::readBodies(WorldView& world, const IslandContents& island) {
+  system_.trees.begin(island.bodies);
+  Index next = 0;
+  for (const Index t : island.trees) {
+    const Tree& tree = world.topology.trees[t];
+    const Index first = next;
+    world.firstNode[t] = first;
+    for (Index i = tree.begin; i < tree.end; ++i, ++next) {
+      const TreeBody& treeBody = world.topology.treeBodies[i];
+      engine::SolverBody& body = *world.step.bodies[treeBody.body];
+      Node& n = node(next);
+      n.body = &body;
+      n.parent = treeBody.parent == kNone ? kNone : treeBody.parent - tree.begin + first;
+      n.joint = treeBody.treeJoint;
+      n.rowCount = 0;
+      n.firstFolded = kNone;
+      n.changed = true;
+      n.connected = false;
+      RigidBodyState& s = n.state;
+      s.position = toVec(body.position);
+      s.linearVelocity = toVec(body.linearVelocity), s.angularVelocity = toVec(body.angularVelocity);
+      s.rotation = toMat(body.rotation);
+      s.orientation = Quaternion::of(body.quaternion);
+      s.force = toVec(body.force), s.torque = toVec(body.torque);
+    }
+  }
+  // A loop of its own: the one above waits for memory, of many bodies at a time as long as it computes nothing.
+  double fastest = 1;
+  for (Node& n : system_.trees.nodes) {
+    const engine::SolverBody& body = *n.body;
+    RigidBodyState& s = n.state;
+    n.worldInertia.noalias() = s.rotation * body.inertia * s.rotation.transpose();
+    if (body.gravity) s.force += body.mass * world.step.parameters.gravity;
+    if (body.gyroscopic) s.torque += gyroscopicTorque(n.worldInertia, s.angularVelocity, world.step.dt);
+    fastest = std::max({fastest, s.linearVelocity.cwiseAbs().maxCoeff(), s.angularVelocity.cwiseAbs().maxCoeff()});
+  }
+  motionTolerance_ = kVelocityTolerance * fastest * constants_.inverseDt;
+}
+
+/// Appends the rows of a joint, with the states of the last step.
+IslandSolver::RowRange IslandSolver::addJoint(WorldView& world, Index index) {
+  const engine::SolverJoint& joint = *world.step.joints[index];
+  const Index a = nodeOf(world, joint.a), b = nodeOf(world, joint.b);
+  Rows& rows = system_.rows;
+  RowRange range{index, rows.size(), 0};
+  range.count = writeJointRows(joint, node(a).state, b == kNone ? nullptr : &node(b).state, constants_,
+                               rows.prepare(kMaxJointRows));
+  rows.commit(range.count);
+  const JointWarmStart& last = world.joints[index];
+  for (Index i = range.first; i < range.end(); ++i) {
+    Row& row = rows[i];
+    row.nodeA = a, row.nodeB = b;
+    if (!row.bounded()) continue;
+    if (last.stop[row.axis] == row.stop) row.state = last.state[row.axis];
+    // A row cannot be at an infinite bound.
+    if (std::isinf(row.bound())) row.state = RowState::holds;
+    addBounded(i);
+  }
+  joints_.push_back(range);
+  return range;
+}
+
+/// The row becomes a coupling row.
+void IslandSolver::addCoupling(Index index) {
+  Row& row = system_.rows[index];
+  row.softness = std::max(row.softness, kMinSoftness * freeMobility(row));
+  system_.coupling.add(index);
+}
+
+void IslandSolver::readJoints(WorldView& world, const IslandContents& island) {
+  // Tree joints, in order of the nodes.
+  for (Node& n : system_.trees.nodes) {
+    if (n.joint == kNone) continue;
+    const RowRange range = addJoint(world, n.joint);
+    n.firstRow = range.first, n.rowCount = range.count;
+  }
+  // Loop joints.
+  for (const Index t : island.trees) {
+    const Tree& tree = world.topology.trees[t];
+    for (Index i = tree.loopBegin; i < tree.loopEnd; ++i) {
+      const RowRange range = addJoint(world, world.topology.loopJoints[i]);
+      for (Index r = range.first; r < range.end(); ++r) addCoupling(r);
+    }
+  }
+}
+
+/// J M^-1 J^T of one body.
+double IslandSolver::freeMobility(const SpatialVector& jacobian, Index index) const {
+  const Node& n = system_.trees.nodes[index];
+  // The inverse inertia is in the body's frame.
+  const Vec3 angular = n.state.rotation.transpose() * jacobian.angular();
+  return jacobian.linear().squaredNorm() / n.body->mass + angular.dot(n.body->inverseInertia * angular);
+}
+
+/// Mobility (inverse effective mass) of a row if its bodies were free: J M^-1 J^T, without joints and contacts.
+double IslandSolver::freeMobility(const Row& row) const {
+  return freeMobility(row.jacobianA, row.nodeA) + (row.nodeB != kNone ? freeMobility(row.jacobianB, row.nodeB) : 0);
+}
+
+/// The row becomes one of those whose states pivoting finds.
+void IslandSolver::addBounded(Index index) {
+  const Row& row = system_.rows[index];
+  pivoting_.rows.push_back({index, motionTolerance_, motionTolerance_ / (freeMobility(row) + row.softness)});
+}
+
+/// The row becomes part of body A's inertia and force.
+void IslandSolver::fold(Index index) {
+  Row& row = system_.rows[index];
+  Node& n = node(row.nodeA);
+  row.folded = true;
+  row.nextFolded = n.firstFolded;
+  n.firstFolded = index;
+}
+
+/// Appends the rows of a contact, with the states of the last step.
+void IslandSolver::readContact(WorldView& world, Index index) {
+  Rows& rows = system_.rows;
+  const engine::Contact& contact = world.step.contacts[index];
+  const engine::SolverPair& pair = world.step.pairs[index];
+  const Index a = nodeOf(world, pair.a), b = nodeOf(world, pair.b);
+  RowRange range{index, rows.size(), 0};
+  range.count = writeContactRows(contact, pair.reversed, node(a).state, b == kNone ? nullptr : &node(b).state,
+                                 constants_, rows.prepare(kMaxContactRows));
+  rows.commit(range.count);
+  const ContactWarmStart::States* last = world.contacts.last(index);
+  for (Index i = range.first; i < range.end(); ++i) {
+    Row& row = rows[i];
+    row.nodeA = a, row.nodeB = b;
+    if (last) row.state = (*last)[i - range.first];
+    if (std::isinf(row.bound())) row.state = RowState::holds;
+    if (b == kNone && row.softness * kMaxFoldedStiffness > freeMobility(row.jacobianA, a))
+      fold(i);
+    else
+      addCoupling(i);
+    // The bounds of a friction pyramid are known only after a first solution.
+    if (row.normalRow != kNone) {
+      row.normalRow += range.first;
+      pyramidRows_.push_back(i);
+    } else if (row.bounded()) {
+      addBounded(i);
+    }
+  }
+  contacts_.push_back(range);
+}
+
+void IslandSolver::readContacts(WorldView& world, const IslandContents& island) {
+  for (const Index c : island.contacts) readContact(world, c);
+}
+
+/// M v / dt plus the forces of the step, with those of motors at stops.
+void IslandSolver::setExternalForces() {
+  for (Node& n : system_.trees.nodes) {
+    const RigidBodyState& s = n.state;
+    n.externalForce = SpatialVector::of(n.body->mass * constants_.inverseDt * s.linearVelocity + s.force,
+                                        n.worldInertia * (constants_.inverseDt * s.angularVelocity) + s.torque);
+  }
+}
+
+bool IslandSolver::solve() {
+  // A friction pyramid is bounded by mu times the normal force that acts without this friction (ODE's dContactApprox1):
+  // solve without it first.
+  for (const Index i : pyramidRows_) system_.rows[i].state = RowState::off;
+  if (!pivoting_.solve(system_)) return false;
+  if (pyramidRows_.empty()) return true;
+  for (const Index i : pyramidRows_) {
+    Row& row = system_.rows[i];
+    const double normalForce = std::abs(system_.rows[row.normalRow].force);
+    // The coefficient may be infinite, and infinity times 0 is no number.
+    row.high = normalForce == 0 ? 0 : row.high * normalForce;
+    row.low = -row.high;
+    if (row.high == 0) continue;
+    row.state = RowState::holds;
+    system_.stateChanged(row);
+    if (row.bounded()) addBounded(i);
+  }
+  return pivoting_.solve(system_);
+}
+
+bool IslandSolver::step(WorldView& world, const IslandContents& island) {
+  const engine::SolverStep& step = world.step;
+  constants_ = {1 / step.dt, step.parameters.erp, step.parameters.cfm, step.parameters.contactSurfaceLayer};
+  clear();
+  readBodies(world, island);
+  readJoints(world, island);
+  readContacts(world, island);
+  if (system_.coupling.size() > static_cast<std::size_t>(step.maxCouplingRows)) return false;
+  setExternalForces();
+  if (!solve()) return false;
+  writeResult(world);
+  return true;
+}
+
+void IslandSolver::writeResult(WorldView& world) {
+  writeWarmStart(world);
+  // The new velocity is dt u.
+  for (Node& n : system_.trees.nodes) {
+    const double dt = world.step.dt;
+    integrate(*n.body, dt * n.motion.linear(), dt * n.motion.angular(), dt);
+    n.body->awake = true;
+  }
+  writeFeedback(world);
+}
+
+void IslandSolver::writeWarmStart(WorldView& world) const {
+  for (const RowRange& range : joints_) {
+    JointWarmStart& warmStart = world.joints[range.source];
+    for (Index i = range.first; i < range.end(); ++i) {
+      const Row& row = system_.rows[i];
+      if (row.axis == kNoAxis) continue;
+      warmStart.state[row.axis] = row.state;
+      warmStart.stop[row.axis] = row.stop;
+    }
+  }
+  for (const RowRange& range : contacts_)
+    for (Index i = 0; i < range.count; ++i)
+      world.contacts.current(range.source)[i] = system_.rows[range.first + i].state;
+}
+
+/// The sum of J^T x of rows, for body A or B.
+SpatialVector IslandSolver::totalForce(const RowRange& range, SpatialVector Row::*jacobian) const {
+  SpatialVector sum = SpatialVector::zero();
+  for (Index i = range.first; i < range.end(); ++i) {
+    const Row& row = system_.rows[i];
+    sum.addScaled(row.*jacobian, row.force);
+  }
+  return sum;
+}
+
+void IslandSolver::writeFeedback(WorldView& world) const {
+  for (const RowRange& range : joints_) {
+    engine::SolverJoint& joint = *world.step.joints[range.source];
+    if (!joint.wantsFeedback) continue;
+    const SpatialVector onA = totalForce(range, &Row::jacobianA);
+    const SpatialVector onB = joint.b ? totalForce(range, &Row::jacobianB) : SpatialVector::zero();
+    joint.forceA = onA.linear(), joint.torqueA = onA.angular();
+    joint.forceB = onB.linear(), joint.torqueB = onB.angular();
+  }
+  for (const RowRange& range : contacts_) {
+    engine::Contact& contact = world.step.contacts[range.source];
+    if (!contact.feedback) continue;
+    const Vec3 onBodyA = totalForce(range, &Row::jacobianA).linear();
+    contact.forceOnA = world.step.pairs[range.source].reversed ? Vec3(-onBodyA) : onBodyA;
+  }
+}
+
+}  // namespace spark::articulated
