@@ -10,24 +10,24 @@ using engine::Shape;
 
 namespace {
 
-/// Which of two geoms is the contact's first: one that can move before one that cannot, a plane always last, else the
-/// younger. So a robot's foot comes before the ground and before what lies there, and handlers that only hear direct
-/// contacts hear them.
+/// True when `a` is the first geom of a contact with `b`: movable geoms come before static ones, planes come last;
+/// among equals the younger comes first. So a robot's foot comes before the ground and before older objects on it, and
+/// handlers that use only direct contacts get them.
 bool comesFirst(const GeomData& a, const GeomData& b) {
   const auto rank = [](const GeomData& g) { return g.shape.shape == Shape::plane ? 0 : g.body ? 2 : 1; };
   const int ra = rank(a), rb = rank(b);
   return ra != rb ? ra > rb : a.age > b.age;
 }
 
-/// Planes and rays among themselves have nothing to say to each other.
-bool meaningless(const GeomData& a, const GeomData& b) {
+/// True for two planes or two rays, which have no contacts.
+bool neverCollide(const GeomData& a, const GeomData& b) {
   const Shape s = a.shape.shape;
   return s == b.shape.shape && (s == Shape::plane || s == Shape::ray);
 }
 
 void near(void* world, dGeomID o1, dGeomID o2);
 
-/// Exact replay: a space's own geoms are collided when it first meets something.
+/// Exact replay: the geoms of a space are collided with each other when the space first overlaps something.
 void collideInside(WorldData& w, dGeomID o) {
   if (!dGeomIsSpace(o)) return;
   SpaceData& s = *static_cast<SpaceData*>(dGeomGetData(o));
@@ -36,7 +36,7 @@ void collideInside(WorldData& w, dGeomID o) {
   dSpaceCollide(s.id, &w, near);
 }
 
-/// ODE's callback for two geoms, or spaces, whose bounds overlap.
+/// ODE's callback for two geoms or spaces whose bounds overlap: collects pairs of geoms.
 void near(void* world, dGeomID o1, dGeomID o2) {
   WorldData& w = *static_cast<WorldData*>(world);
   if (dGeomIsSpace(o1) || dGeomIsSpace(o2)) {
@@ -46,7 +46,7 @@ void near(void* world, dGeomID o1, dGeomID o2) {
   }
   auto* a = static_cast<GeomData*>(dGeomGetData(o1));
   auto* b = static_cast<GeomData*>(dGeomGetData(o2));
-  if (meaningless(*a, *b)) return;
+  if (neverCollide(*a, *b)) return;
   if (a->body && b->body && a->body->joints > 0 && b->body->joints > 0 &&
       dAreConnectedExcluding(a->body->id, b->body->id, dJointTypeContact))
     return;
@@ -55,18 +55,21 @@ void near(void* world, dGeomID o1, dGeomID o2) {
   w.pairs.push_back({a, b});
 }
 
-int collide(const Pair& pair, int most, dContactGeom* found) {
+/// Narrow phase: writes at most `max` contact points to `found` and returns their number.
+int collide(const Pair& pair, int max, dContactGeom* found) {
   if (pair.a->shape.shape != Shape::mesh && pair.b->shape.shape != Shape::mesh)
-    return dCollide(pair.a->id, pair.b->id, most, found, sizeof(dContactGeom));
+    return dCollide(pair.a->id, pair.b->id, max, found, sizeof(dContactGeom));
   const std::lock_guard lock(meshMutex());
-  return dCollide(pair.a->id, pair.b->id, most, found, sizeof(dContactGeom));
+  return dCollide(pair.a->id, pair.b->id, max, found, sizeof(dContactGeom));
 }
 
 }  // namespace
 
 void OdeEngine::detect(engine::World world, engine::PairFilter filter, int perPair, engine::Contacts& out) {
   WorldData& w = *data(world);
-  const Listening listening(said_);
+  const MessageCapture capture(odeMessage_);
+
+  // Broad phase: the close pairs, in ODE's order (exact replay) or sorted by age.
   w.filter = filter;
   w.pairs.clear();
   if (w.exactReplay) {
@@ -79,17 +82,18 @@ void OdeEngine::detect(engine::World world, engine::PairFilter filter, int perPa
     std::sort(w.pairs.begin(), w.pairs.end());
   }
 
-  dContactGeom found[kMostPerPair];
-  const int most = std::clamp(perPair, 1, kMostPerPair);
+  // Narrow phase.
+  dContactGeom found[kMaxPerPair];
+  const int max = std::clamp(perPair, 1, kMaxPerPair);
   for (const Pair& pair : w.pairs) {
-    const int n = collide(pair, most, found);
+    const int n = collide(pair, max, found);
     for (int i = 0; i < n; ++i) {
       const dContactGeom& g = found[i];
-      // Degenerate shapes may give a normal of no direction.
-      if (!sane(g.pos, 3) || !sane(g.normal, 3) || !sane(&g.depth, 1)) continue;
+      // Degenerate shapes may give a normal that is not finite.
+      if (!inRange(g.pos, 3) || !inRange(g.normal, 3) || !inRange(&g.depth, 1)) continue;
       Contact& c = out.emplace_back();
-      c.geomA = engine::Geom{reinterpret_cast<std::uintptr_t>(pair.a)};
-      c.geomB = engine::Geom{reinterpret_cast<std::uintptr_t>(pair.b)};
+      c.geomA = handle(*pair.a);
+      c.geomB = handle(*pair.b);
       c.ownerA = pair.a->owner;
       c.ownerB = pair.b->owner;
       c.position = toVec(g.pos);
@@ -97,7 +101,7 @@ void OdeEngine::detect(engine::World world, engine::PairFilter filter, int perPa
       c.depth = g.depth;
     }
   }
-  if (!said_.empty()) report();
+  if (!odeMessage_.empty()) report();
 }
 
 }  // namespace spark

@@ -17,6 +17,7 @@ void expectLength(double v, const char* what) {
   if (!std::isfinite(v) || v < 0) throw Error(fmt::format("expected {} of 0 m or more, found {}", what, v));
 }
 
+/// Throws Error for a malformed mesh.
 void checkMesh(const ShapeDescription& s) {
   const std::size_t points = s.vertices.size() / 3;
   if (points == 0 || s.vertices.size() % 3 || s.triangles.empty() || s.triangles.size() % 3)
@@ -28,6 +29,7 @@ void checkMesh(const ShapeDescription& s) {
     if (i >= points) throw Error(fmt::format("a triangle of the mesh names vertex {} of {}", i, points));
 }
 
+/// Throws Error for a shape that ODE cannot represent.
 void check(const ShapeDescription& s) {
   switch (s.shape) {
     case Shape::box:
@@ -57,7 +59,7 @@ void check(const ShapeDescription& s) {
   }
 }
 
-/// A frame whose z axis is `direction`.
+/// A rotation that turns the z axis to `direction`.
 Mat3 alongZ(const Vec3& direction) {
   const Vec3 z = direction.normalized();
   const Vec3 x = z.unitOrthogonal();
@@ -68,8 +70,7 @@ Mat3 alongZ(const Vec3& direction) {
 
 }  // namespace
 
-/// Makes ODE's geom for g.shape; the caller places it.
-void OdeEngine::makeShape(GeomData& g) {
+void OdeEngine::createShape(GeomData& g) {
   const ShapeDescription& s = g.shape;
   g.base = Pose{};
   switch (s.shape) {
@@ -105,9 +106,8 @@ void OdeEngine::makeShape(GeomData& g) {
   dGeomSetData(g.id, &g);
 }
 
-/// Brings ODE's geom to where g says.
 void OdeEngine::place(GeomData& g) {
-  if (g.shape.shape == Shape::plane) return;
+  if (g.shape.shape == Shape::plane) return;  // a plane is given in the world frame
   const Pose p = compose(g.offset, g.base);
   dMatrix3 r;
   toOde(p.rotation, r);
@@ -125,8 +125,8 @@ void OdeEngine::place(GeomData& g) {
 
 namespace {
 
-/// Gives ODE's geom other measures where it keeps its kind, so that it keeps its place in its space. False: it must be
-/// made anew.
+/// Changes the dimensions of ODE's geom, so that it keeps its position in the space's list. Returns false when the geom
+/// must be created again.
 bool reshape(GeomData& g, const ShapeDescription& s) {
   if (s.shape != g.shape.shape) return false;
   switch (s.shape) {
@@ -150,7 +150,7 @@ bool reshape(GeomData& g, const ShapeDescription& s) {
 
 Geom OdeEngine::createGeom(engine::Space space, const ShapeDescription& shape, void* owner) {
   check(shape);
-  const Listening listening(said_);
+  const MessageCapture capture(odeMessage_);
   SpaceData& s = *data(space);
   auto g = std::make_unique<GeomData>();
   g->world = s.world;
@@ -158,35 +158,36 @@ Geom OdeEngine::createGeom(engine::Space space, const ShapeDescription& shape, v
   g->shape = shape;
   g->owner = owner;
   g->age = s.world->nextAge++;
-  makeShape(*g);
+  createShape(*g);
   place(*g);
-  const Geom handle{reinterpret_cast<std::uintptr_t>(g.get())};
+  const Geom created = handle(*g);
   s.world->geoms.push_back(std::move(g));
-  return handle;
+  return created;
 }
 
 void OdeEngine::destroyGeom(Geom geom) {
   GeomData* g = data(geom);
   dGeomDestroy(g->id);
-  forget(g->world->geoms, g);
+  removeFrom(g->world->geoms, g);
 }
 
 void OdeEngine::setShape(Geom geom, const ShapeDescription& shape) {
   check(shape);
-  const Listening listening(said_);
+  const MessageCapture capture(odeMessage_);
   GeomData& g = *data(geom);
   if (reshape(g, shape)) return;
   const bool collides = dGeomIsEnabled(g.id);
   dGeomDestroy(g.id);
   g.mesh.reset();
   g.shape = shape;
-  makeShape(g);
+  createShape(g);
   place(g);
   if (!collides) dGeomDisable(g.id);
 }
 
 void OdeEngine::setBody(Geom geom, engine::Body body, const Pose& offset) {
-  if (!sane(offset.position) || !sane(offset.rotation.data(), 9)) throw Error("expected a finite offset of a collider");
+  if (!inRange(offset.position) || !inRange(offset.rotation.data(), 9))
+    throw Error("expected a finite offset of a collider");
   GeomData& g = *data(geom);
   g.body = g.shape.shape == Shape::plane ? nullptr : data(body);
   g.offset = offset;
@@ -195,13 +196,13 @@ void OdeEngine::setBody(Geom geom, engine::Body body, const Pose& offset) {
 
 void OdeEngine::setPose(Geom geom, const Pose& pose) {
   GeomData& g = *data(geom);
-  if (g.body || !sane(pose.position) || !sane(pose.rotation.data(), 9)) return;
+  if (g.body || !inRange(pose.position) || !inRange(pose.rotation.data(), 9)) return;
   g.offset = pose;
   place(g);
 }
 
-/// From our own numbers: ODE brings a geom's pose up to date when asked, and getters run in several threads.
 Pose OdeEngine::pose(Geom geom) const {
+  // Computed here: getters run in several threads, and ODE's getters may update a geom's cached pose.
   const GeomData& g = *data(geom);
   if (!g.body) return g.offset;
   return compose({toVec(g.body->position), toMat(g.body->rotation)}, g.offset);

@@ -13,7 +13,7 @@ using engine::JointType;
 
 namespace {
 
-/// Axes that have motor and stops.
+/// Number of axes with motor and stops.
 int axesOf(JointType type) {
   switch (type) {
     case JointType::hinge:
@@ -29,6 +29,7 @@ int axesOf(JointType type) {
   }
 }
 
+/// ODE's name of a parameter of an axis. The table is in the order of JointParameter.
 int odeParameter(JointParameter p, int axis) {
   static constexpr int kNames[] = {dParamLoStop,      dParamHiStop,        dParamVel,          dParamFMax,
                                    dParamFudgeFactor, dParamBounce,        dParamCFM,          dParamStopERP,
@@ -37,27 +38,29 @@ int odeParameter(JointParameter p, int axis) {
 }
 static_assert(static_cast<int>(JointParameter::stopErp) == 7 && static_cast<int>(JointParameter::suspensionCfm) == 10);
 
+/// World frame [rad/s]; 0 for the static world.
 Vec3 angularVelocity(const engine::SolverBody* b) { return b ? toVec(b->angularVelocity) : Vec3(Vec3::Zero()); }
 
-/// Where a solver sees a parameter.
-double& told(JointData& j, JointParameter p, int axis) {
+/// The mirrored parameter, for getters and solvers.
+double& mirrored(JointData& j, JointParameter p, int axis) {
   using Axis = engine::SolverAxis;
-  static constexpr double Axis::*kPlaces[] = {&Axis::lowStop,  &Axis::highStop,    &Axis::velocity,
-                                              &Axis::maxForce, &Axis::fudgeFactor, &Axis::bounce,
-                                              &Axis::cfm,      &Axis::stopErp,     &Axis::stopCfm};
+  static constexpr double Axis::*kMembers[] = {&Axis::lowStop,  &Axis::highStop,    &Axis::velocity,
+                                               &Axis::maxForce, &Axis::fudgeFactor, &Axis::bounce,
+                                               &Axis::cfm,      &Axis::stopErp,     &Axis::stopCfm};
   if (p == JointParameter::suspensionErp) return j.suspensionErp;
   if (p == JointParameter::suspensionCfm) return j.suspensionCfm;
-  return j.axes[axis].*kPlaces[static_cast<int>(p)];
+  return j.axes[axis].*kMembers[static_cast<int>(p)];
 }
 
-/// The axis of an angular motor, in the world.
+/// An axis of an angular motor, world frame.
 Vec3 motorAxis(const JointData& j, int axis) {
   dVector3 v{};
   if (j.attached()) dJointGetAMotorAxis(j.id, axis, v);
   return toVec(v);
 }
 
-void tell(const JointData& j, int name, double v) {
+/// Sets a parameter in ODE.
+void setOde(const JointData& j, int name, double v) {
   switch (j.type) {
     case JointType::hinge:
       return dJointSetHingeParam(j.id, name, v);
@@ -72,8 +75,8 @@ void tell(const JointData& j, int name, double v) {
   }
 }
 
-/// What ODE says of a parameter.
-double asked(const JointData& j, int name) {
+/// Gets a parameter from ODE.
+double getOde(const JointData& j, int name) {
   switch (j.type) {
     case JointType::hinge:
       return dJointGetHingeParam(j.id, name);
@@ -88,43 +91,46 @@ double asked(const JointData& j, int name) {
   }
 }
 
+/// Suspension parameters belong to the first axis of hinge2.
 bool hasParameter(const JointData& j, JointParameter p, int axis) {
-  const bool ofWheel = p == JointParameter::suspensionErp || p == JointParameter::suspensionCfm;
-  return axis >= 0 && axis < axesOf(j.type) && (!ofWheel || (j.type == JointType::hinge2 && axis == 0));
+  const bool suspension = p == JointParameter::suspensionErp || p == JointParameter::suspensionCfm;
+  return axis >= 0 && axis < axesOf(j.type) && (!suspension || (j.type == JointType::hinge2 && axis == 0));
 }
 
-/// A hinge's angle in the caller's order of bodies [rad].
+/// The cached angle of a hinge, of the first body of attach() relative to the second [rad]. Several threads may compute
+/// it at the same time; they store the same number.
 double hingeAngle(const JointData& j) {
-  const std::uint64_t now = j.world->rotations;
-  if (j.angleAt.load(std::memory_order_acquire) != now) {
-    j.lastAngle.store(dJointGetHingeAngle(j.id), std::memory_order_relaxed);
-    j.angleAt.store(now, std::memory_order_release);
+  const std::uint64_t now = j.world->angleVersion;
+  if (j.angleVersion.load(std::memory_order_acquire) != now) {
+    j.cachedAngle.store(dJointGetHingeAngle(j.id), std::memory_order_relaxed);
+    j.angleVersion.store(now, std::memory_order_release);
   }
-  return j.lastAngle.load(std::memory_order_relaxed);
+  return j.cachedAngle.load(std::memory_order_relaxed);
 }
 
 }  // namespace
 
-/// The solver leaves nothing of joints and bodies in the caches. Sensors come to a joint from afar and would wait for
-/// each in turn; here the next ones' memory is under way meanwhile.
-void OdeEngine::tellAngles(WorldData& w) {
-  constexpr std::size_t kFar = 10, kNear = 5;
-  constexpr std::size_t kHinge = 448;  // bytes of ODE's
+void OdeEngine::cacheAngles(WorldData& w) {
+  // ODE's solver has evicted joints and bodies from the caches. Sensors read single joints and would wait for memory
+  // each time; this loop knows the next joints and prefetches them.
+  constexpr std::size_t kFar = 10, kNear = 5;  // prefetch distances [joints]
+  constexpr std::size_t kOdeHinge = 448;       // bytes of an ODE hinge
   const std::size_t n = w.joints.size();
   for (std::size_t i = 0; i < n; ++i) {
-    if (i + kFar < n) {
-      prefetch(w.joints[i + kFar].get(), kCacheLine);
-    }
-    if (i + kNear < n) prefetch(w.joints[i + kNear]->id, kHinge);
+    if (i + kFar < n) prefetch(w.joints[i + kFar].get(), kCacheLine);
+    if (i + kNear < n) prefetch(w.joints[i + kNear]->id, kOdeHinge);
+
+    // Only hinges whose angle was read since the last step.
     const JointData& j = *w.joints[i];
-    if (j.type == JointType::hinge && j.attached() && j.angleAt.load(std::memory_order_relaxed) >= w.anglesAt)
+    if (j.type == JointType::hinge && j.attached() &&
+        j.angleVersion.load(std::memory_order_relaxed) >= w.stepAngleVersion)
       hingeAngle(j);
   }
-  w.anglesAt = w.rotations;
+  w.stepAngleVersion = w.angleVersion;
 }
 
 Joint OdeEngine::createJoint(engine::World world, JointType type) {
-  const Listening listening(said_);
+  const MessageCapture capture(odeMessage_);
   WorldData& w = *data(world);
   auto j = std::make_unique<JointData>();
   j->world = &w;
@@ -152,11 +158,11 @@ Joint OdeEngine::createJoint(engine::World world, JointType type) {
       j->id = dJointCreateAMotor(w.id, nullptr);
       break;
   }
-  frames::created(*j);
+  mirror::created(*j);
   w.structure = ++structures_;
-  const Joint handle{reinterpret_cast<std::uintptr_t>(j.get())};
+  const Joint created = handle(*j);
   w.joints.push_back(std::move(j));
-  return handle;
+  return created;
 }
 
 void OdeEngine::destroyJoint(Joint joint) {
@@ -165,16 +171,16 @@ void OdeEngine::destroyJoint(Joint joint) {
   if (j->b) --data(j->b)->joints;
   j->world->structure = ++structures_;
   dJointDestroy(j->id);
-  forget(j->world->joints, j);
+  removeFrom(j->world->joints, j);
 }
 
 void OdeEngine::attach(Joint joint, engine::Body a, engine::Body b) {
   if (a == b && a != engine::Body::none)
     throw Error("a joint cannot connect a body with itself: name two bodies, or one and the world");
-  // ODE ends the process for it.
+  // ODE ends the process for a hinge2 with one body.
   if (data(joint)->type == JointType::hinge2 && (a == Body::none) != (b == Body::none))
     throw Error("a wheel's joint (hinge2) needs two bodies, found one: name the chassis and the wheel");
-  const Listening listening(said_);
+  const MessageCapture capture(odeMessage_);
   JointData& j = *data(joint);
   if (j.a) --data(j.a)->joints;
   if (j.b) --data(j.b)->joints;
@@ -187,14 +193,14 @@ void OdeEngine::attach(Joint joint, engine::Body a, engine::Body b) {
   j.a = first ? first : second;
   j.b = first ? second : nullptr;
   j.world->structure = ++structures_;
-  frames::attached(j);
+  mirror::attached(j);
 }
 
 void OdeEngine::setAnchor(Joint joint, const Vec3& wanted) {
-  const Listening listening(said_);
+  const MessageCapture capture(odeMessage_);
   JointData& j = *data(joint);
-  if (!j.attached() || !sane(wanted)) return;
-  const Vec3 p = crossing(*j.world, wanted);
+  if (!j.attached() || !inRange(wanted)) return;
+  const Vec3 p = rounded(*j.world, wanted);
   switch (j.type) {
     case JointType::ball:
       dJointSetBallAnchor(j.id, p.x(), p.y(), p.z());
@@ -211,15 +217,15 @@ void OdeEngine::setAnchor(Joint joint, const Vec3& wanted) {
     default:
       return;
   }
-  frames::anchored(j, p);
+  mirror::anchorSet(j, p);
 }
 
 void OdeEngine::setAxis(Joint joint, int axis, const Vec3& wanted, int frame) {
-  const Listening listening(said_);
+  const MessageCapture capture(odeMessage_);
   JointData& j = *data(joint);
   if (axis < 0 || axis >= axesOf(j.type) || !j.attached()) return;
-  const Vec3 v = crossing(*j.world, wanted);
-  if (!sane(v) || v.norm() < 1e-9) throw Error("expected an axis longer than 0");
+  const Vec3 v = rounded(*j.world, wanted);
+  if (!inRange(v) || v.norm() < 1e-9) throw Error("expected an axis longer than 0");
   const dReal direction[4] = {v.x(), v.y(), v.z(), 0};
   switch (j.type) {
     case JointType::hinge:
@@ -235,35 +241,36 @@ void OdeEngine::setAxis(Joint joint, int axis, const Vec3& wanted, int frame) {
         dJointSetUniversalAxis2(j.id, v.x(), v.y(), v.z());
       break;
     case JointType::hinge2: {
-      // ODE ends the process for parallel axes: the other one makes room, and is mostly set next.
+      // ODE ends the process for parallel axes. If the new axis is parallel to the other one, that one is moved to a
+      // perpendicular direction; the caller usually sets it next.
       const bool parallel = v.normalized().cross(OdeEngine::axis(joint, 1 - axis)).norm() < 1e-9;
-      const Vec3 aside = v.unitOrthogonal();
-      const dReal room[4] = {aside.x(), aside.y(), aside.z(), 0};
-      const dReal* const other = parallel ? room : nullptr;
+      const Vec3 lateral = v.unitOrthogonal();
+      const dReal lateralAxis[4] = {lateral.x(), lateral.y(), lateral.z(), 0};
+      const dReal* const other = parallel ? lateralAxis : nullptr;
       dJointSetHinge2Axes(j.id, axis == 0 ? direction : other, axis == 1 ? direction : other);
-      if (parallel) frames::turned(j, 1 - axis, aside, frame);
+      if (parallel) mirror::axisSet(j, 1 - axis, lateral, frame);
       break;
     }
     case JointType::angularMotor:
       if ((frame == 1 && j.reversed) || (frame == 2 && !j.b && !j.reversed) || frame < 0 || frame > 2)
-        frame = 0;  // the world is that body
+        frame = 0;  // that body is the world
       if (axis >= j.motorAxes) return;
       dJointSetAMotorAxis(j.id, axis, frame, v.x(), v.y(), v.z());
       break;
     default:
       return;
   }
-  frames::turned(j, axis, v, frame);
+  mirror::axisSet(j, axis, v, frame);
 }
 
 void OdeEngine::setAngularMotor(Joint joint, int axes, bool euler) {
-  const Listening listening(said_);
+  const MessageCapture capture(odeMessage_);
   JointData& j = *data(joint);
   if (j.type != JointType::angularMotor) return;
-  if (axes < 0 || axes > 3) throw Error("expected 0 to 3 axes of an angular motor, found " + std::to_string(axes));
+  if (axes < 0 || axes > 3) throw Error(fmt::format("expected 0 to 3 axes of an angular motor, found {}", axes));
   dJointSetAMotorMode(j.id, euler ? dAMotorEuler : dAMotorUser);
   if (!euler) dJointSetAMotorNumAxes(j.id, axes);
-  frames::motorChosen(j, axes, euler);
+  mirror::motorModeSet(j, axes, euler);
 }
 
 void OdeEngine::setMotorAngle(Joint joint, int axis, double angle) {
@@ -274,11 +281,11 @@ void OdeEngine::setMotorAngle(Joint joint, int axis, double angle) {
 }
 
 void OdeEngine::setFixed(Joint joint) {
-  const Listening listening(said_);
+  const MessageCapture capture(odeMessage_);
   JointData& j = *data(joint);
   if (j.type != JointType::fixed || !j.attached()) return;
   dJointSetFixed(j.id);
-  frames::fixed(j);
+  mirror::fixedSet(j);
 }
 
 Vec3 OdeEngine::anchor(Joint joint) const {
@@ -330,41 +337,42 @@ Vec3 OdeEngine::axis(Joint joint, int axis) const {
 void OdeEngine::setParameter(Joint joint, JointParameter p, int axis, double wanted) {
   JointData& j = *data(joint);
   if (!hasParameter(j, p, axis) || std::isnan(wanted)) return;
-  const bool nowhere =
-      std::isinf(wanted) && (p == JointParameter::lowStop || p == JointParameter::highStop);  // there is no such stop
-  const double v = crossing(*j.world, nowhere ? wanted : bounded(wanted));
+  // An infinite stop means that there is none.
+  const bool noStop = std::isinf(wanted) && (p == JointParameter::lowStop || p == JointParameter::highStop);
+  const double v = rounded(*j.world, noStop ? wanted : bounded(wanted));
   const int name = odeParameter(p, axis);
-  tell(j, name, v);
-  // ODE does not take every number.
-  told(j, p, axis) = asked(j, name);
+  setOde(j, name, v);
+  mirrored(j, p, axis) = getOde(j, name);  // ODE may reject or clamp a value
 }
 
 void OdeEngine::drive(Joint joint, int axis, double speed) {
   JointData& j = *data(joint);
   if (!hasParameter(j, JointParameter::velocity, axis) || std::isnan(speed)) return;
-  const double v = crossing(*j.world, bounded(speed));
-  tell(j, odeParameter(JointParameter::velocity, axis), v);
-  j.axes[static_cast<std::size_t>(axis)].velocity = v;
+  const double v = rounded(*j.world, bounded(speed));
+  setOde(j, odeParameter(JointParameter::velocity, axis), v);
+  j.axes[axis].velocity = v;
+
+  // Wake the first body of attach().
   if (speed == 0 || j.reversed || !j.a || j.a->awake) return;
-  OdeEngine::setEnabled(Body{reinterpret_cast<std::uintptr_t>(data(j.a))}, true);
+  OdeEngine::setEnabled(handle(*data(j.a)), true);
 }
 
 bool OdeEngine::atStop(Joint joint, int axis) const {
   const JointData& j = *data(joint);
   if (axis < 0 || axis >= axesOf(j.type)) return false;
-  const engine::SolverAxis& a = j.axes[static_cast<std::size_t>(axis)];
+  const engine::SolverAxis& a = j.axes[axis];
   const double angle = OdeEngine::angle(joint, axis);
   if (!j.world->exactReplay || j.type == JointType::slider) return angle <= a.lowStop || angle >= a.highStop;
-  // In degrees and rounded where the installed base rounds: a foot may rest at its stop for many cycles, and the last
-  // bit decides whether its motor hears commands. (Protocol, section 2.1.)
-  const double angleDeg = single(radToDeg(angle));
+  // Exact replay compares in degrees, rounded where the installed base rounds: a foot may rest at its stop for many
+  // cycles, and the last bit decides whether its motor accepts commands (protocol, section 2.1).
+  const double angleDeg = roundToFloat(radToDeg(angle));
   const auto stopDeg = [](double stop) { return stop * 180.0 / kPi; };
   return angleDeg <= stopDeg(a.lowStop) || angleDeg >= stopDeg(a.highStop);
 }
 
 double OdeEngine::parameter(Joint joint, JointParameter p, int axis) const {
   JointData& j = *data(joint);
-  return hasParameter(j, p, axis) ? told(j, p, axis) : 0;
+  return hasParameter(j, p, axis) ? mirrored(j, p, axis) : 0;
 }
 
 double OdeEngine::angle(Joint joint, int axis) const {
@@ -399,6 +407,7 @@ double OdeEngine::angleRate(Joint joint, int axis) const {
     default:
       break;
   }
+  // ODE does not compute the rates of angular motors: project the relative angular velocity on the axis.
   if (axis >= j.motorAxes) return 0;
   const double rate = motorAxis(j, axis).dot(angularVelocity(j.a) - angularVelocity(j.b));
   return j.reversed ? -rate : rate;
@@ -416,7 +425,7 @@ void OdeEngine::feedback(Joint joint, Vec3& force1, Vec3& torque1, Vec3& force2,
   force1 = toVec(j.feedback.f1), torque1 = toVec(j.feedback.t1);
   force2 = toVec(j.feedback.f2), torque2 = toVec(j.feedback.t2);
   if (!j.reversed) return;
-  // Attached to the world first, the joint is turned round by ODE.
+  // ODE reverses a joint whose first body is the world.
   std::swap(force1, force2);
   std::swap(torque1, torque2);
 }

@@ -1,5 +1,6 @@
 #include "ode_process.h"
 
+#include <fmt/format.h>
 #include <ode/ode.h>
 
 #include <atomic>
@@ -10,57 +11,58 @@
 namespace spark::ode {
 namespace {
 
-std::mutex useMutex;
-int users = 0;
-std::atomic<std::uint64_t> generation = 0;
-thread_local std::uint64_t threadGeneration = 0;
-thread_local std::string* listener = nullptr;
+std::mutex initMutex;
+int guards = 0;                                   // number of LibraryGuards
+std::atomic<std::uint64_t> generation = 0;        // number of initialisations of ODE so far
+thread_local std::uint64_t threadGeneration = 0;  // the one for which this thread's data was allocated
+thread_local std::string* receiver = nullptr;     // of messages in this thread
 
-void hear(int number, const char* format, va_list arguments) {
-  if (!listener) return;
+/// ODE's message handler.
+void onMessage(int number, const char* format, va_list arguments) {
+  if (!receiver) return;
   char line[256];
   std::vsnprintf(line, sizeof line, format, arguments);
-  *listener = std::string(line) + " (ODE message " + std::to_string(number) + ")";
+  *receiver = fmt::format("{} (ODE message {})", line, number);
 }
 
 }  // namespace
 
-ProcessUse::ProcessUse() {
-  const std::lock_guard lock(useMutex);
-  if (users++ > 0) return;
+LibraryGuard::LibraryGuard() {
+  const std::lock_guard lock(initMutex);
+  if (guards++ > 0) return;
   dInitODE2(0);
   ++generation;
-  dSetErrorHandler(hear);
-  dSetDebugHandler(hear);
-  dSetMessageHandler(hear);
+  dSetErrorHandler(onMessage);
+  dSetDebugHandler(onMessage);
+  dSetMessageHandler(onMessage);
 }
 
-ProcessUse::~ProcessUse() {
-  const std::lock_guard lock(useMutex);
-  if (--users > 0) return;
-  // The handlers are code of this plugin, which may be unmapped next.
+LibraryGuard::~LibraryGuard() {
+  const std::lock_guard lock(initMutex);
+  if (--guards > 0) return;
+  // The handlers are code of this plugin, which may be unloaded next.
   dSetErrorHandler(nullptr);
   dSetDebugHandler(nullptr);
   dSetMessageHandler(nullptr);
   dCloseODE();
 }
 
-Listening::Listening(std::string& text) : before_(listener) {
-  listener = &text;
+MessageCapture::MessageCapture(std::string& text) : previous_(receiver) {
+  receiver = &text;
   if (threadGeneration == generation) return;
-  const std::lock_guard lock(useMutex);
+  const std::lock_guard lock(initMutex);
   dAllocateODEDataForThread(dAllocateMaskAll);
   threadGeneration = generation;
 }
 
-Listening::~Listening() { listener = before_; }
+MessageCapture::~MessageCapture() { receiver = previous_; }
 
 std::mutex& meshMutex() {
   static std::mutex mutex;
   return mutex;
 }
 
-std::mutex& quickMutex() {
+std::mutex& quickStepMutex() {
   static std::mutex mutex;
   return mutex;
 }

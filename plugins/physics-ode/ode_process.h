@@ -1,39 +1,39 @@
 #pragma once
 /// \file
-/// What ODE keeps per process and per thread, shared by all engines of a process: initialisation, error handlers, the
-/// lock of meshes.
+/// ODE's state per process and per thread, shared by all engines of a process: initialisation, message handlers, locks.
 
 #include <mutex>
 #include <string>
 
 namespace spark::ode {
 
-/// Keeps ODE initialised while it lives. Any number of them, in any threads.
-class ProcessUse {
+/// Keeps ODE initialised while an object of this class exists, in any thread.
+class LibraryGuard {
  public:
-  ProcessUse();
-  ~ProcessUse();
-  ProcessUse(const ProcessUse&) = delete;
-  ProcessUse& operator=(const ProcessUse&) = delete;
+  LibraryGuard();
+  ~LibraryGuard();
+  LibraryGuard(const LibraryGuard&) = delete;
+  LibraryGuard& operator=(const LibraryGuard&) = delete;
 };
 
-/// While it lives, what ODE says in this thread (errors, assertions, messages) is appended to a text, and ODE neither
-/// ends the process nor prints. Allocates ODE's data for this thread at first use.
-class Listening {
+/// While it exists, messages from ODE in this thread (errors, assertions, warnings) are written to a string, and ODE
+/// neither ends the process nor prints. The constructor allocates ODE's data for this thread where needed.
+class MessageCapture {
  public:
-  explicit Listening(std::string& text);
-  ~Listening();
-  Listening(const Listening&) = delete;
-  Listening& operator=(const Listening&) = delete;
+  /// `text` receives the last message; it must outlive the capture. Captures may be nested: the innermost receives.
+  explicit MessageCapture(std::string& text);
+  ~MessageCapture();
+  MessageCapture(const MessageCapture&) = delete;
+  MessageCapture& operator=(const MessageCapture&) = delete;
 
  private:
-  std::string* before_;
+  std::string* previous_;
 };
 
-/// Triangle meshes use caches that Debian's ODE has once per process: pairs with a mesh are collided under this lock.
+/// Lock for collisions with triangle meshes: Debian's ODE has one set of mesh caches per process.
 std::mutex& meshMutex();
 
-/// The iterative solver shuffles with a random seed that ODE has once per process: it is set and used under this lock.
-std::mutex& quickMutex();
+/// Lock for the iterative solver: ODE has one random seed per process, which is set before each run.
+std::mutex& quickStepMutex();
 
 }  // namespace spark::ode

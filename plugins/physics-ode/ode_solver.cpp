@@ -1,8 +1,8 @@
 #include "ode_engine.h"
 
-// A solver below the engine works on the engine's own memory: bodies and joints say what ODE says (see ode_bodies.cpp,
-// ode_frames.cpp), and what it integrates stands where ODE keeps it. So ODE goes on with any body as if it had stepped
-// it. What a solver defers, ODE steps.
+// A solver below the engine works on ODE's memory: the pointers of a SolverBody refer to the state in ODE's body (see
+// ode_bodies.cpp), and SolverJoint mirrors ODE's joint (see ode_mirror.cpp). So ODE continues with any body as if it
+// had stepped it itself. ODE steps the islands that the solver defers.
 
 namespace spark {
 
@@ -20,7 +20,8 @@ engine::ISolver* OdeEngine::solver() {
 
 namespace {
 
-void listAll(WorldData& w) {
+/// Lists bodies and joints for the solver, when the structure changed.
+void listForSolver(WorldData& w) {
   if (w.listedAt == w.structure) return;
   w.listedAt = w.structure;
   w.solverBodies.clear();
@@ -32,8 +33,8 @@ void listAll(WorldData& w) {
   for (const auto& j : w.joints) w.solverJoints.push_back(j.get());
 }
 
-/// Lets ODE know what the solver did: who is awake, and that geoms moved.
-void tellOde(WorldData& w) {
+/// After the solver: enables the bodies that it stepped in ODE, and marks their geoms as moved.
+void updateOde(WorldData& w) {
   w.solved.clear();
   for (const auto& b : w.bodies) {
     if (!b->awake || b->deferred) continue;
@@ -55,8 +56,8 @@ void copyFeedback(const engine::SolverJoint& from, dJointFeedback& to) {
 }  // namespace
 
 std::size_t OdeEngine::stepBySolver(WorldData& w, engine::ISolver& solver, engine::Contacts& contacts, double dt) {
-  listAll(w);
-  engine::SolverStep step{.world = engine::World{reinterpret_cast<std::uintptr_t>(&w)},
+  listForSolver(w);
+  engine::SolverStep step{.world = handle(w),
                           .bodies = w.solverBodies,
                           .joints = w.solverJoints,
                           .contacts = contacts,
@@ -66,7 +67,7 @@ std::size_t OdeEngine::stepBySolver(WorldData& w, engine::ISolver& solver, engin
                           .structure = w.structure,
                           .maxCouplingRows = directRows_};
   const std::size_t deferred = solver.step(step);
-  tellOde(w);
+  updateOde(w);
   for (const auto& j : w.joints)
     if (j->wantsFeedback && j->a && j->a->awake && !j->a->deferred) copyFeedback(*j, j->feedback);
   return deferred;

@@ -8,55 +8,58 @@ namespace spark::ode {
 
 thread_local IslandThreads::Lane* IslandThreads::current = nullptr;
 
-void IslandThreads::serve(dWorldID world) {
+void IslandThreads::attachTo(dWorldID world) {
   dWorldSetStepThreadingImplementation(world, &functions(), reinterpret_cast<dThreadingImplementationID>(this));
 }
 
-void IslandThreads::hear(std::string& text) {
+void IslandThreads::takeMessage(std::string& text) {
   for (Lane& lane : lanes_) {
-    if (!lane.said.empty()) text = lane.said;
-    lane.said.clear();
+    if (!lane.message.empty()) text = lane.message;
+    lane.message.clear();
   }
 }
 
-IslandThreads::Call& IslandThreads::post(Call* then, int* fault, std::size_t waitsFor, dThreadedCallFunction* function,
-                                         void* context, dcallindex_t index) {
+IslandThreads::Call& IslandThreads::post(Call* dependent, int* fault, std::size_t dependencies,
+                                         dThreadedCallFunction* function, void* context, dcallindex_t index) {
   Lane& lane = current ? *current : outside_;
   if (lane.free.empty()) lane.free.push_back(&lane.memory.emplace_back());
   Call& call = *lane.free.back();
   lane.free.pop_back();
-  call.home = &lane;
+  call.owner = &lane;
   call.function = function;
   call.context = context;
   call.index = index;
-  call.then = then;
+  call.dependent = dependent;
   call.fault = fault;
-  call.waitsFor = static_cast<std::ptrdiff_t>(waitsFor);
+  call.dependencies = static_cast<std::ptrdiff_t>(dependencies);
   call.started = false;
   lane.posted.push_back(&call);
   return call;
 }
 
 void IslandThreads::runAll() {
-  if (parallel_) runStarts();
+  if (parallel_) runJobStarts();
   runPosted(outside_);
 }
 
-void IslandThreads::runStarts() {
+void IslandThreads::runJobStarts() {
+  // The posted calls without dependencies are the job starts.
   starts_.clear();
   for (Call* call : outside_.posted)
-    if (call->waitsFor == 0) starts_.push_back(call);
-  std::erase_if(outside_.posted, [](const Call* call) { return call->waitsFor == 0; });
+    if (call->dependencies == 0) starts_.push_back(call);
+  std::erase_if(outside_.posted, [](const Call* call) { return call->dependencies == 0; });
+
+  // Each job runs one start and the calls that it posts.
   while (lanes_.size() < starts_.size()) lanes_.emplace_back();
   jobs_.run(starts_.size(), [this](std::size_t i) {
     Lane& lane = lanes_[i];
-    const Listening listening(lane.said);
+    const MessageCapture capture(lane.message);
     current = &lane;
     run(lane, *starts_[i]);
     runPosted(lane);
     current = nullptr;
   });
-  // Who posted a call keeps its memory.
+  // The memory of a call goes back to the lane that posted it.
   outside_.free.insert(outside_.free.end(), starts_.begin(), starts_.end());
 }
 
@@ -66,7 +69,7 @@ void IslandThreads::runPosted(Lane& lane) {
     do {
       if (call == lane.posted.begin()) return;
       --call;
-    } while ((*call)->waitsFor != 0);
+    } while ((*call)->dependencies != 0);
     Call& ready = **call;
     lane.posted.erase(call);
     run(lane, ready);
@@ -74,18 +77,19 @@ void IslandThreads::runPosted(Lane& lane) {
 }
 
 void IslandThreads::run(Lane& lane, Call& call) {
+  // While it runs, the call depends on itself; it may add further calls as dependencies.
   call.started = true;
-  call.waitsFor = 1;
+  call.dependencies = 1;
   if (!call.function(call.context, call.index, reinterpret_cast<dCallReleaseeID>(&call))) failed_ = true;
-  done(lane, &call);
+  finishDependency(lane, &call);
 }
 
-void IslandThreads::done(Lane& lane, Call* call) {
-  while (call && call->waitsFor.fetch_sub(1) == 1 && call->started) {
+void IslandThreads::finishDependency(Lane& lane, Call* call) {
+  while (call && call->dependencies.fetch_sub(1) == 1 && call->started) {
     if (call->fault) *call->fault = failed_.exchange(false);
-    Call* const then = call->then;
-    if (call->home == &lane) lane.free.push_back(call);
-    call = then;
+    Call* const dependent = call->dependent;
+    if (call->owner == &lane) lane.free.push_back(call);
+    call = dependent;
   }
 }
 
@@ -102,16 +106,18 @@ const dThreadingFunctionsInfo& IslandThreads::functions() {
       [](Id id, dMutexGroupID group, dmutexindex_t i) {
         if (of(id).parallel_) mutexes(group)[i].unlock();
       },
-      // A world waits for one call at a time, and whoever waits runs it: there is nothing to keep.
+      // A world waits for one call at a time, and the waiting thread runs it: wait objects need no state.
       [](Id id) { return reinterpret_cast<dCallWaitID>(id); },
       [](Id, dCallWaitID) {},
       [](Id, dCallWaitID) {},
-      [](Id id, int* fault, dCallReleaseeID* out, ddependencycount_t waitsFor, dCallReleaseeID then, dCallWaitID,
-         dThreadedCallFunction* function, void* context, dcallindex_t index, const char*) {
-        Call& call = of(id).post(reinterpret_cast<Call*>(then), fault, waitsFor, function, context, index);
+      [](Id id, int* fault, dCallReleaseeID* out, ddependencycount_t dependencies, dCallReleaseeID dependent,
+         dCallWaitID, dThreadedCallFunction* function, void* context, dcallindex_t index, const char*) {
+        Call& call = of(id).post(reinterpret_cast<Call*>(dependent), fault, dependencies, function, context, index);
         if (out) *out = reinterpret_cast<dCallReleaseeID>(&call);
       },
-      [](Id, dCallReleaseeID call, ddependencychange_t change) { reinterpret_cast<Call*>(call)->waitsFor += change; },
+      [](Id, dCallReleaseeID call, ddependencychange_t change) {
+        reinterpret_cast<Call*>(call)->dependencies += change;
+      },
       [](Id id, int* done, dCallWaitID, const dThreadedWaitTime*, const char*) {
         of(id).runAll();
         if (done) *done = 1;

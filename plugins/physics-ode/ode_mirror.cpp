@@ -1,11 +1,14 @@
 #include <Eigen/Geometry>
 
-#include "ode_engine.h"
+#include "ode_world.h"
 
-// A joint remembers where its bodies stood when it was set: anchors, axes and relative rotations in the bodies' frames.
-// ODE keeps these numbers to itself, so they are noted here a second time, at the calls that make ODE note them, from
-// the same poses. Where a body is missing its frame is the world's. A joint that is attached keeps what stands in its
-// first body's frame and takes the rest from there, as ODE does; a fixed joint and an angular motor keep all they have.
+// ODE stores the anchors, axes and relative rotations of a joint in the frames of its bodies, from their poses at the
+// time when the joint is set. It gives no access to these numbers, but a solver needs them. So every call that sets a
+// joint in ODE is followed by a call here, which computes the same numbers from the same poses and stores them in the
+// SolverJoint.
+//
+// The frame of a missing body is the world frame. When a joint is attached again, it keeps the numbers in the frame of
+// its first body and computes the others from them, as ODE does. A fixed joint and an angular motor keep all numbers.
 
 namespace spark::ode {
 
@@ -13,6 +16,8 @@ using engine::JointType;
 using engine::SolverBody;
 
 namespace {
+
+// Directions and points between a body's frame and the world frame.
 
 Vec3 toWorld(const SolverBody* b, const Vec3& direction) {
   return b ? Vec3(toMat(b->rotation) * direction) : direction;
@@ -25,23 +30,23 @@ Vec3 pointToBody(const SolverBody* b, const Vec3& p) { return b ? toBody(b, p - 
 
 using Quaternion = std::array<double, 4>;
 
-/// `q` seen from a body.
-Quaternion fromBody(const SolverBody* b, const Quaternion& q) {
+/// The rotation `q`, given relative to the world, relative to a body.
+Quaternion relativeTo(const SolverBody* b, const Quaternion& q) {
   if (!b) return q;
   Quaternion out;
   dQMultiply1(out.data(), b->quaternion, q.data());
   return out;
 }
 
-/// The second body's rotation seen from the first.
-Quaternion betweenBodies(const JointData& j) {
+/// The rotation of the second body relative to the first.
+Quaternion relativeRotation(const JointData& j) {
   Quaternion second{1, 0, 0, 0};
   if (j.b) std::copy(j.b->quaternion, j.b->quaternion + 4, second.begin());
-  return fromBody(j.a, second);
+  return relativeTo(j.a, second);
 }
 
-/// The rotation of a cross whose first two directions are these.
-Quaternion cross(const Vec3& x, const Vec3& y) {
+/// The rotation of a frame whose first axis is `x` and whose second axis is `y`, made perpendicular to it.
+Quaternion frameOf(const Vec3& x, const Vec3& y) {
   dMatrix3 r;
   dRFrom2Axes(r, x.x(), x.y(), x.z(), y.x(), y.y(), y.z());
   Quaternion q;
@@ -49,14 +54,15 @@ Quaternion cross(const Vec3& x, const Vec3& y) {
   return q;
 }
 
-void noteCross(JointData& j) {
+/// Universal joint: the frames of the two axes, relative to each body.
+void setUniversalFrames(JointData& j) {
   const Vec3 first = toWorld(j.a, j.axisA[0]), second = toWorld(j.b, j.axisB[1]);
-  j.initialRotationA = fromBody(j.a, cross(first, second));
-  j.initialRotationB = fromBody(j.b, cross(second, first));
+  j.initialRotationA = relativeTo(j.a, frameOf(first, second));
+  j.initialRotationB = relativeTo(j.b, frameOf(second, first));
 }
 
-/// A wheel's angles are counted from the other axis, made perpendicular to its own.
-void noteWheel(JointData& j) {
+/// Hinge2: the zero direction of each angle is the other axis, made perpendicular to its own.
+void setHinge2Planes(JointData& j) {
   const Vec3 first = toWorld(j.a, j.axisA[0]), second = toWorld(j.b, j.axisB[1]);
   const Vec3 fromFirst = (second - first.dot(second) * first).normalized(),
              fromSecond = (first - first.dot(second) * second).normalized();
@@ -66,37 +72,38 @@ void noteWheel(JointData& j) {
   j.planeB[1] = toBody(j.b, second.cross(fromSecond));
 }
 
-void noteWheelAxes(JointData& j) {
+/// Hinge2: the angle between the axes, and the zero directions.
+void setHinge2Axes(JointData& j) {
   const Vec3 first = toWorld(j.a, j.axisA[0]), second = toWorld(j.b, j.axisB[1]);
   j.sinAxes = first.cross(second).norm();
   j.cosAxes = first.dot(second);
-  noteWheel(j);
+  setHinge2Planes(j);
 }
 
-void noteSlider(JointData& j) {
+void setSliderOffset(JointData& j) {
   j.anchorB = pointToBody(j.b, toVec(j.a->position));
-  j.initialRotationA = betweenBodies(j);
+  j.initialRotationA = relativeRotation(j);
 }
 
-/// Euler angles are counted from where the other body's axis was.
-void noteEuler(JointData& j) {
+/// Euler motor: the zero direction of each angle is the other body's axis.
+void setEulerReferences(JointData& j) {
   if (!j.a) return;
   const int first = j.reversed ? 2 : 0, second = 2 - first;
   j.reference2 = toBody(j.b, toWorld(j.a, j.axisA[first]));
   j.reference1 = toBody(j.a, toWorld(j.b, j.axisA[second]));
 }
 
-/// What depends on how the bodies are turned to each other.
-void noteRotation(JointData& j) {
+/// The numbers that depend on the relative rotation of the bodies.
+void setRelativeRotation(JointData& j) {
   switch (j.type) {
     case JointType::hinge:
-      j.initialRotationA = betweenBodies(j);
+      j.initialRotationA = relativeRotation(j);
       break;
     case JointType::universal:
-      noteCross(j);
+      setUniversalFrames(j);
       break;
     case JointType::hinge2:
-      noteWheel(j);
+      setHinge2Planes(j);
       break;
     default:
       break;
@@ -105,7 +112,8 @@ void noteRotation(JointData& j) {
 
 }  // namespace
 
-void frames::created(JointData& j) {
+void mirror::created(JointData& j) {
+  // ODE's initial values.
   const engine::WorldParameters& p = j.world->parameters;
   for (engine::SolverAxis& a : j.axes) {
     a.cfm = a.stopCfm = p.cfm;
@@ -121,45 +129,45 @@ void frames::created(JointData& j) {
   j.axisB[1] = j.planeA[1] = Vec3::UnitY();
 }
 
-void frames::worldChanged(JointData& j) {
-  // The others took theirs when they were made.
+void mirror::worldParametersSet(JointData& j) {
+  // Ball and fixed joints keep the values that the world had when they were created.
   if (j.type == JointType::ball || j.type == JointType::fixed) return;
   j.erp = j.world->parameters.erp;
   j.cfm = j.world->parameters.cfm;
 }
 
-void frames::attached(JointData& j) {
-  ++j.world->rotations;
+void mirror::attached(JointData& j) {
+  ++j.world->angleVersion;
   if (!j.attached()) return;
   switch (j.type) {
     case JointType::fixed:
     case JointType::angularMotor:
       return;
     case JointType::slider:
-      return noteSlider(j);
+      return setSliderOffset(j);
     case JointType::hinge:
       j.axisB[0] = toBody(j.b, toWorld(j.a, j.axisA[0]));
       break;
     case JointType::hinge2:
-      noteWheelAxes(j);
+      setHinge2Axes(j);
       break;
     default:
       break;
   }
-  anchored(j, j.reversed ? j.anchorB : pointToWorld(j.a, j.anchorA));
+  anchorSet(j, j.reversed ? j.anchorB : pointToWorld(j.a, j.anchorA));
 }
 
-void frames::anchored(JointData& j, const Vec3& world) {
-  ++j.world->rotations;
+void mirror::anchorSet(JointData& j, const Vec3& world) {
+  ++j.world->angleVersion;
   j.anchorA = pointToBody(j.a, world);
   j.anchorB = pointToBody(j.b, world);
-  noteRotation(j);
+  setRelativeRotation(j);
 }
 
-void frames::turned(JointData& j, int axis, const Vec3& world, int frame) {
-  ++j.world->rotations;
+void mirror::axisSet(JointData& j, int axis, const Vec3& world, int frame) {
+  ++j.world->angleVersion;
   const Vec3 direction = world.normalized();
-  // ODE does not bring an axis in the world to length 1.
+  // ODE does not normalise an axis in the world frame.
   const Vec3 second = j.b ? toBody(j.b, direction) : world;
   switch (j.type) {
     case JointType::hinge:
@@ -168,35 +176,35 @@ void frames::turned(JointData& j, int axis, const Vec3& world, int frame) {
       break;
     case JointType::slider:
       j.axisA[0] = toBody(j.a, direction);
-      return noteSlider(j);
+      return setSliderOffset(j);
     case JointType::universal:
       (axis == 0) == j.reversed ? j.axisB[1] = second : j.axisA[0] = toBody(j.a, direction);
       break;
     case JointType::hinge2:
       axis == 0 ? j.axisA[0] = toBody(j.a, direction) : j.axisB[1] = second;
-      return noteWheelAxes(j);
+      return setHinge2Axes(j);
     case JointType::angularMotor:
       if (frame != 0 && j.reversed) frame = 3 - frame;
       j.frame[axis] = frame;
       j.axisA[axis] = toBody(frame == 1 ? j.a : frame == 2 ? j.b : nullptr, world).normalized();
-      if (j.euler) noteEuler(j);
+      if (j.euler) setEulerReferences(j);
       return;
     default:
       break;
   }
-  noteRotation(j);
+  setRelativeRotation(j);
 }
 
-void frames::motorChosen(JointData& j, int axes, bool euler) {
+void mirror::motorModeSet(JointData& j, int axes, bool euler) {
   j.euler = euler;
   j.motorAxes = euler ? 3 : axes;
-  if (euler) noteEuler(j);
+  if (euler) setEulerReferences(j);
 }
 
-void frames::fixed(JointData& j) {
+void mirror::fixedSet(JointData& j) {
   j.anchorA = j.b ? pointToBody(j.a, toVec(j.b->position)) : Vec3(Vec3::Zero());
   j.anchorB = j.b ? Vec3(Vec3::Zero()) : toVec(j.a->position);
-  j.initialRotationA = betweenBodies(j);
+  j.initialRotationA = relativeRotation(j);
 }
 
 }  // namespace spark::ode
