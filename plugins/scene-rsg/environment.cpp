@@ -1,5 +1,7 @@
 #include "environment.h"
 
+#include <fmt/format.h>
+
 #include "spark/error.h"
 
 namespace spark::rsg {
@@ -8,52 +10,56 @@ Environment::Environment(const Program& program, std::vector<std::string> argume
     : program_(program),
       arguments_(std::move(arguments)),
       values_(program.variables.size()),
-      index_(program.variables.size(), -1),
+      index_(program.variables.size(), kUndeclared),
       given_(arguments_.size()),
       byName_(byName) {}
 
-void Environment::parameter(int slot) {
-  const auto s = static_cast<std::size_t>(slot);
-  if (index_[s] >= 0) throw Error("the name " + program_.variables[s] + " exists already");
-  index_[s] = names_++;
-  const auto position = static_cast<std::size_t>(parameters_++);
-  if (byName_ && position < arguments_.size()) values_[s] = arguments_[position];
+void Environment::parameter(std::size_t slot) {
+  if (index_[slot] != kUndeclared) throw Error(fmt::format("the name {} exists already", program_.variables[slot]));
+  index_[slot] = names_++;
+  const std::size_t position = parameters_++;
+  if (byName_ && position < arguments_.size()) values_[slot] = arguments_[position];
 }
 
-void Environment::define(int slot, std::string value) {
-  const auto s = static_cast<std::size_t>(slot);
+void Environment::define(std::size_t slot, std::string value) {
+  const bool declared = index_[slot] != kUndeclared;
   if (byName_) {
-    if (index_[s] < 0) index_[s] = names_++;
-    values_[s] = std::move(value);
-  } else if (index_[s] >= 0) {
-    const auto i = static_cast<std::size_t>(index_[s]);
+    if (!declared) index_[slot] = names_++;
+    values_[slot] = std::move(value);
+  } else if (declared) {
+    const std::size_t i = index_[slot];
     if (i >= arguments_.size()) missing(slot);
     arguments_[i] = std::move(value);
   } else {
+    // As in the installed base: the value goes to the end of the list, whatever position the name has.
     arguments_.push_back(std::move(value));
-    index_[s] = names_++;
+    index_[slot] = names_++;
   }
 }
 
-const std::string& Environment::value(int slot) const {
-  const auto s = static_cast<std::size_t>(slot);
-  if (byName_ && values_[s]) return *values_[s];
-  if (!byName_ && index_[s] >= 0 && static_cast<std::size_t>(index_[s]) < arguments_.size())
-    return arguments_[static_cast<std::size_t>(index_[s])];
-  missing(slot);
+const std::string& Environment::value(std::size_t slot) const {
+  if (byName_) {
+    if (!values_[slot]) missing(slot);
+    return *values_[slot];
+  }
+  // kUndeclared converts to a position beyond any list.
+  const std::size_t i = index_[slot];
+  if (i >= arguments_.size()) missing(slot);
+  return arguments_[i];
 }
 
-void Environment::missing(int slot) const {
-  const std::string& name = program_.variables[static_cast<std::size_t>(slot)];
-  if (index_[static_cast<std::size_t>(slot)] >= 0)
-    throw Error("parameter " + name + " was not given: the import passed " + std::to_string(given_) + " arguments");
+void Environment::missing(std::size_t slot) const {
+  const std::string& name = program_.variables[slot];
+  if (index_[slot] != kUndeclared)
+    throw Error(fmt::format("parameter {} was not given: the import passed {} arguments", name, given_));
+
+  // Not declared: suggest a similar name, or list all.
   std::vector<std::string> names;
   for (std::size_t i = 0; i < index_.size(); ++i)
-    if (index_[i] >= 0) names.push_back(program_.variables[i]);
+    if (index_[i] != kUndeclared) names.push_back(program_.variables[i]);
   const std::string near = didYouMean(name, names);
-  std::string all;
-  for (const std::string& n : names) all += (all.empty() ? " There are " : ", ") + n;
-  throw Error("there is no variable " + name + " here." + (near.empty() && !all.empty() ? all + "." : near));
+  const std::string all = names.empty() ? "" : fmt::format(" There are {}.", fmt::join(names, ", "));
+  throw Error(fmt::format("there is no variable {} here.{}", name, near.empty() ? all : near));
 }
 
 }  // namespace spark::rsg

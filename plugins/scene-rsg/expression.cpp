@@ -14,38 +14,54 @@ namespace {
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-/// Recursive descent; the depth of parentheses and indices is limited.
+/// A recursive descent parser that evaluates while it parses.
+///
+///     sum     = product { ("+" | "-") product }
+///     product = unary { ("*" | "/") unary }
+///     unary   = { "+" | "-" } indexed
+///     indexed = primary { "[" sum "]" }
+///     primary = number | name [ "." name ] | quoted text | "(" sum ")"
 class Expression {
  public:
   Expression(std::string_view text, const VariableLookup& lookup, bool integerDivision)
-      : text_(text), rest_(text), lookup_(lookup), floors_(integerDivision) {}
-  Value all() {
+      : text_(text), rest_(text), lookup_(lookup), integerDivision_(integerDivision) {}
+  /// Evaluates the whole text.
+  Value evaluate() {
     Value v = sum();
     if (next() != '\0') fail("an operator or the end");
     return v;
   }
 
  private:
+  static constexpr int kMaxDepth = 32;            // of parentheses and indices
+  static constexpr std::size_t kShown = 200;      // bytes of the expression in messages
+  static constexpr std::size_t kShownValue = 80;  // bytes of a value in messages
+  static constexpr double kMaxIndex = 1e6;
+
+  /// The next character that is no blank; 0 at the end.
   char next() {
     while (!rest_.empty() && (rest_.front() == ' ' || rest_.front() == '\t')) rest_.remove_prefix(1);
     return rest_.empty() ? '\0' : rest_.front();
   }
+  /// Consumes `c` if it is the next character.
   bool take(char c) {
     if (next() != c) return false;
     rest_.remove_prefix(1);
     return true;
   }
-  [[noreturn]] void fail(const std::string& expected) const {
-    throw Error("expected " + expected +
-                (rest_.empty() ? " at the end" : " at '" + std::string(rest_.substr(0, 20)) + "'") +
-                " of expression '" + std::string(text_.substr(0, 200)) + "'");
+  std::string_view shown() const { return text_.substr(0, kShown); }
+  [[noreturn]] void fail(std::string_view expected) const {
+    const std::string place = rest_.empty() ? "the end" : fmt::format("'{}'", rest_.substr(0, 20));
+    throw Error(fmt::format("expected {} at {} of expression '{}'", expected, place, shown()));
   }
+  /// Returns `v`. Throws Error unless it is a number.
   const Value& number(const Value& v) const {
     if (!v.isNumber())
-      throw Error("expected a number to calculate with, found " + std::string(typeName(v.type())) + " " +
-                  v.text().substr(0, 80) + " in expression '" + std::string(text_.substr(0, 200)) + "'");
+      throw Error(fmt::format("expected a number to calculate with, found {} {} in expression '{}'", typeName(v.type()),
+                              v.text().substr(0, kShownValue), shown()));
     return v;
   }
+  /// The result of `a op b`.
   Value apply(char op, const Value& a, const Value& b) const;
   Value sum();
   Value product();
@@ -55,26 +71,27 @@ class Expression {
   Value name();
   Value literal();
 
-  std::string_view text_, rest_;
+  std::string_view text_;  ///< the expression
+  std::string_view rest_;  ///< what is not parsed yet
   const VariableLookup& lookup_;
-  bool floors_;
+  bool integerDivision_;
   int depth_ = 0;
 };
 
 Value Expression::apply(char op, const Value& a, const Value& b) const {
+  // Integers stay integers unless the result overflows. A division rounds down.
   if (number(a).isInteger() && number(b).isInteger()) {
     const std::int64_t x = a.toInteger(), y = b.toInteger();
     std::int64_t r = 0;
     if (op == '+' && !__builtin_add_overflow(x, y, &r)) return r;
     if (op == '-' && !__builtin_sub_overflow(x, y, &r)) return r;
     if (op == '*' && !__builtin_mul_overflow(x, y, &r)) return r;
-    if (op == '/' && floors_ && y != 0 && y != -1) return x / y - (x % y != 0 && (x < 0) != (y < 0));
+    if (op == '/' && integerDivision_ && y != 0 && y != -1) return x / y - (x % y != 0 && (x < 0) != (y < 0));
   }
   const double x = a.toNumber(), y = number(b).toNumber();
-  if (op == '/' && y == 0)
-    throw Error("expected a divisor that is not 0 in expression '" + std::string(text_.substr(0, 200)) + "'");
+  if (op == '/' && y == 0) throw Error(fmt::format("expected a divisor that is not 0 in expression '{}'", shown()));
   const double r = op == '+' ? x + y : op == '-' ? x - y : op == '*' ? x * y : x / y;
-  if (!std::isfinite(r)) throw Error("the result of '" + std::string(text_.substr(0, 200)) + "' is too large");
+  if (!std::isfinite(r)) throw Error(fmt::format("the result of '{}' is too large", shown()));
   return r;
 }
 
@@ -109,21 +126,22 @@ Value Expression::unary() {
 }
 
 Value Expression::indexed() {
-  if (++depth_ > 32) fail("less nesting");
+  if (++depth_ > kMaxDepth) fail("less nesting");
   Value v = primary();
   while (take('[')) {
     const Value index = sum();
     if (!take(']')) fail("']'");
+
+    // A text is the key of a table, a whole number the index of a list.
     const Value* element = nullptr;
     if (index.isString())
       element = v.at(index.toString());
-    else if (index.isNumber() && index.toNumber() >= 0 && index.toNumber() < 1e6 &&
-             index.toNumber() == std::floor(index.toNumber()))
-      element = v.at(static_cast<std::size_t>(index.toNumber()));
+    else if (const double i = index.isNumber() ? index.toNumber() : -1; i >= 0 && i < kMaxIndex && i == std::floor(i))
+      element = v.at(static_cast<std::size_t>(i));
     if (!element)
-      throw Error("there is no element " + index.text().substr(0, 80) + " in expression '" +
-                  std::string(text_.substr(0, 200)) + "'" +
-                  (v.isList() ? ": found a list of " + std::to_string(v.toList().size()) : ": found no list"));
+      throw Error(fmt::format("there is no element {} in expression '{}': found {}",
+                              index.text().substr(0, kShownValue), shown(),
+                              v.isList() ? fmt::format("a list of {}", v.toList().size()) : "no list"));
     Value inner = *element;
     v = std::move(inner);
   }
@@ -153,9 +171,9 @@ Value Expression::literal() {
   double d = 0;
   const auto r = std::from_chars(begin, begin + rest_.size(), d);
   if (r.ec != std::errc()) fail("a number");
-  const std::string_view digits = rest_.substr(0, static_cast<std::size_t>(r.ptr - begin));
-  rest_.remove_prefix(digits.size());
+  rest_.remove_prefix(r.ptr - begin);
   if (!rest_.empty() && (isLetter(rest_.front()) || rest_.front() == '.')) fail("an operator");
+  // An integer if all its characters are digits and it fits.
   std::int64_t i = 0;
   const auto whole = std::from_chars(begin, r.ptr, i);
   if (whole.ec == std::errc() && whole.ptr == r.ptr) return i;
@@ -183,7 +201,7 @@ Value Expression::name() {
 }  // namespace
 
 Value evaluate(std::string_view text, const VariableLookup& lookup, bool integerDivision) {
-  return Expression(text, lookup, integerDivision).all();
+  return Expression(text, lookup, integerDivision).evaluate();
 }
 
 std::string resultText(const Value& value, bool digits6) {
@@ -196,11 +214,11 @@ std::string resultText(const Value& value, bool digits6) {
     case Value::Type::number: {
       const float narrow = static_cast<float>(value.toNumber());
       if (!std::isfinite(narrow))
-        throw Error("expected a finite number that fits single precision, found " + value.text());
+        throw Error(fmt::format("expected a finite number that fits single precision, found {}", value.text()));
       return digits6 ? fmt::format("{:.6g}", static_cast<double>(narrow)) : fmt::format("{}", value.toNumber());
     }
     default:
-      throw Error("expected a number or a text as result, found a " + std::string(typeName(value.type())));
+      throw Error(fmt::format("expected a number or a text as result, found a {}", typeName(value.type())));
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Expressions of `(eval ...)`: numbers, + - * /, parentheses, variables `Group.name`, `Group[index]['key']`. Computed
-/// here, never by an interpreter.
+/// Evaluation of the expressions in `(eval ...)`: numbers, + - * /, parentheses, variables `Group.name` and
+/// `Group[index]['key']`. No script interpreter is involved.
 
 #include <functional>
 #include <string>
@@ -11,16 +11,16 @@
 
 namespace spark::rsg {
 
-/// Gives the value of `group.member` (`member` empty: of the bare group). Throws Error when there is none.
+/// Returns the value of `group.member`; with an empty `member`, of the group itself. Throws Error when there is none.
 using VariableLookup = std::function<Value(std::string_view group, std::string_view member)>;
 
-/// Computes an expression. `integerDivision`: two integers divide to the floor, as in Ruby; otherwise division is real.
-/// Throws Error: what was expected, what was found. Results that are no finite numbers are errors.
+/// Evaluates an expression. `integerDivision` true: the quotient of two integers is rounded down, as in Ruby; false:
+/// division is real. Throws Error for malformed expressions and for results that are not finite.
 Value evaluate(std::string_view text, const VariableLookup& lookup, bool integerDivision);
 
-/// The text that a result becomes. `digits6`: numbers that are not integers are narrowed to single precision and
-/// written with six significant digits, as the installed base does at every level. Throws Error for values that have no
-/// text.
+/// Formats a result as text. `digits6` true: numbers that are not integers are rounded to single precision and to six
+/// significant digits, as in the installed base. Throws Error for numbers beyond single precision, and for lists,
+/// tables and nil.
 std::string resultText(const Value& value, bool digits6);
 
 }  // namespace spark::rsg

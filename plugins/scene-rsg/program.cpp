@@ -1,5 +1,7 @@
 #include "program.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -12,6 +14,7 @@ namespace spark::rsg {
 
 namespace {
 
+/// Abbreviations of keywords and methods.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kHeadAliases{{{"nd", "node"},
                                                                                      {"sel", "select"},
                                                                                      {"templ", "template"},
@@ -20,14 +23,15 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kHeadAlia
                                                                                      {"SLT", "setLocalTransform"},
                                                                                      {"sSc", "setScale"},
                                                                                      {"sMat", "setMaterial"}}};
+/// Abbreviations of classes.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kClassAliases{
     {{"BN", "BaseNode"}, {"SMN", "SingleMatNode"}, {"TRF", "Transform"}}};
-/// The methods of the original's class Transform: calls of these names are done at once, whatever the class of the
-/// node.
+/// The methods of Transform in the installed base. Calls with these names are immediate, whatever the node's class is.
 constexpr std::array<std::string_view, 10> kImmediate{
     "getFullPath",    "setName",     "getName",     "isLeaf",           "unlinkLeaf",
     "unlinkChildren", "importScene", "setLocalPos", "setLocalRotation", "setLocalTransform"};
 
+/// The full name of an abbreviation; other words unchanged.
 template <std::size_t N>
 std::string_view resolve(const std::array<std::pair<std::string_view, std::string_view>, N>& aliases,
                          std::string_view word) {
@@ -38,29 +42,35 @@ std::string_view resolve(const std::array<std::pair<std::string_view, std::strin
 
 Site siteOf(const Element& e) { return {e.line(), e.column()}; }
 
-Statement failing(const Site& site, std::string sentence) {
+/// A statement that throws an Error with the message `text`.
+Statement failing(const Site& site, std::string text) {
   Statement s;
   s.kind = Statement::Kind::error;
   s.site = site;
-  s.text = std::move(sentence);
+  s.text = std::move(text);
   return s;
 }
 
+/// Turns parsed lists into statements.
 class Compiler {
  public:
+  /// Adds variables to `program`.
   explicit Compiler(Program& program) : program_(program) {}
+  /// Compiles the elements of a list.
   Block block(const Element& list);
 
  private:
   using Position = Element::Iterator;
-  /// Compiles the statement that begins with the atom at `at`, and moves `at` behind it.
+  /// Compiles the statement that begins with the atom at `at`, and moves `at` past it.
   Statement atom(Position& at, const Position& end, const Element& list);
+  // Compile the rest of a list after its keyword.
   Statement parameters(Position at, const Position& end, const Site& site);
   Statement define(Position at, const Position& end, const Site& site);
   Statement choose(Position at, const Position& end, const Site& site);
   Statement call(std::string_view method, Position at, const Position& end, const Site& site);
   Operand operand(const Element& e);
-  int slot(std::string_view variable);
+  /// The slot of a variable; a new one for a new name.
+  std::size_t slot(std::string_view variable);
   Program& program_;
 };
 
@@ -87,6 +97,8 @@ Statement Compiler::atom(Position& at, const Position& end, const Element& list)
   Statement s;
   s.site = siteOf(*at).line ? siteOf(*at) : siteOf(list);
   ++at;
+
+  // Keywords that take one or two words: the rest of the list is further statements.
   if (word == "pwd") {
     s.kind = Statement::Kind::print;
     return s;
@@ -103,9 +115,10 @@ Statement Compiler::atom(Position& at, const Position& end, const Element& list)
     ++at;
     return s;
   }
-  // All others take the rest of the list.
+
+  // All others take the whole rest of the list.
   const Position rest = std::exchange(at, end);
-  if (named) return failing(s.site, "expected a name after '" + std::string(word) + "'");
+  if (named) return failing(s.site, fmt::format("expected a name after '{}'", word));
   if (word == "template") return parameters(rest, end, s.site);
   if (word == "define") return define(rest, end, s.site);
   if (word == "switch") return choose(rest, end, s.site);
@@ -119,8 +132,7 @@ Statement Compiler::parameters(Position at, const Position& end, const Site& sit
   for (; at != end && !(*at).isList(); ++at) {
     const std::string_view name = (*at).text();
     if (name.size() < 2 || name[0] != '$')
-      return failing(siteOf(*at),
-                     "expected a parameter such as '$size' in template, found '" + std::string(name) + "'");
+      return failing(siteOf(*at), fmt::format("expected a parameter such as '$size' in template, found '{}'", name));
     s.slots.push_back(slot(name));
   }
   return s;
@@ -132,9 +144,9 @@ Statement Compiler::define(Position at, const Position& end, const Site& site) {
   s.site = site;
   const std::string_view name = at != end ? (*at).text() : std::string_view();
   if (name.size() < 2 || name[0] != '$')
-    return failing(site, "expected a variable such as '$size' after define, found '" + std::string(name) + "'");
+    return failing(site, fmt::format("expected a variable such as '$size' after define, found '{}'", name));
   s.slots.push_back(slot(name));
-  if (!(++at != end)) return failing(site, "expected a value for " + std::string(name) + ", found nothing");
+  if (!(++at != end)) return failing(site, fmt::format("expected a value for {}, found nothing", name));
   s.operands.push_back(operand(*at));
   return s;
 }
@@ -145,6 +157,8 @@ Statement Compiler::choose(Position at, const Position& end, const Site& site) {
   s.site = site;
   if (!(at != end)) return failing(site, "expected a value after switch, found nothing");
   s.operands.push_back(operand(*at));
+
+  // Each case is a list of a label and a body.
   for (++at; at != end; ++at) {
     const Element label = (*at).at(0);
     Operand o;
@@ -153,8 +167,8 @@ Statement Compiler::choose(Position at, const Position& end, const Site& site) {
     } else {
       o.kind = Operand::Kind::bad;
       o.site = siteOf(*at);
-      o.text = "expected a case such as (true (nd Box)), found " +
-               ((*at).isList() ? "an empty list" : "'" + std::string((*at).text()) + "'");
+      o.text = fmt::format("expected a case such as (true (nd Box)), found {}",
+                           (*at).isList() ? "an empty list" : fmt::format("'{}'", (*at).text()));
     }
     s.operands.push_back(std::move(o));
     const Element body = (*at).isList() ? (*at).at(1) : Element();
@@ -191,8 +205,8 @@ Operand Compiler::operand(const Element& e) {
   const std::string_view head = e.head();
   if (head != "eval" && head != "join") {
     o.kind = Operand::Kind::bad;
-    o.text = "expected a text, a variable, (eval ...) or (join ...), found a list that begins with '" +
-             std::string(head) + "'";
+    o.text =
+        fmt::format("expected a text, a variable, (eval ...) or (join ...), found a list that begins with '{}'", head);
     return o;
   }
   o.kind = head == "eval" ? Operand::Kind::eval : Operand::Kind::join;
@@ -201,32 +215,38 @@ Operand Compiler::operand(const Element& e) {
   return o;
 }
 
-int Compiler::slot(std::string_view variable) {
+std::size_t Compiler::slot(std::string_view variable) {
   auto& names = program_.variables;
   const auto found = std::find(names.begin(), names.end(), variable);
-  if (found != names.end()) return static_cast<int>(found - names.begin());
+  if (found != names.end()) return found - names.begin();
   names.emplace_back(variable);
-  return static_cast<int>(names.size() - 1);
+  return names.size() - 1;
 }
 
+/// True for the first word of a header.
 bool isMagic(std::string_view word) {
   return word == "RSG" || word == "RubySceneGraph" || word == "RDS" || word == "RubyDeltaScene";
 }
 
-std::string place(std::string_view resource, std::uint32_t line, std::uint32_t column) {
-  return std::string(resource) + ":" + std::to_string(line) + ":" + std::to_string(column) + ": ";
+/// An Error at a place in a file.
+Error errorAt(std::string_view resource, std::uint32_t line, std::uint32_t column, std::string_view text) {
+  return Error(fmt::format("{}:{}:{}: {}", resource, line, column, text));
 }
 
+/// Throws Error unless `header` is that of a scene file in version 0.1.
 void checkHeader(std::string_view resource, const Element& header) {
   const auto number = [&](std::size_t i) {
     return header.at(i) && header.at(i).isText() ? std::atoi(std::string(header.at(i).text()).c_str()) : -1;
   };
   if (header.isList() && header.size() == 3 && isMagic(header.head()) && number(1) == 0 && number(2) == 1) return;
+
+  // The beginning of what was found instead.
   std::string found = header.isList() ? "(" : std::string(header.text());
   for (std::size_t i = 0; header.isList() && i < std::min<std::size_t>(header.size(), 4); ++i)
     found += (i ? " " : "") + (header.at(i).isList() ? "..." : std::string(header.at(i).text().substr(0, 32)));
-  throw Error(place(resource, header.line(), header.column()) + "expected the header (RSG 0 1) or (RDS 0 1), found " +
-              found.substr(0, 140) + (header.isList() ? ")" : ""));
+  throw errorAt(resource, header.line(), header.column(),
+                fmt::format("expected the header (RSG 0 1) or (RDS 0 1), found {}{}", found.substr(0, 140),
+                            header.isList() ? ")" : ""));
 }
 
 }  // namespace
@@ -238,38 +258,43 @@ bool looksLikeScene(std::string_view text) {
 }
 
 std::shared_ptr<const Program> compile(std::string_view resource, std::string_view text, const ReadingRules& rules) {
+  // The header and the body are two lists.
   Predicates read;
   const ReadLimits limits{rules.maxDepth, 1u << 20};
   ReadResult result = readSexp(text, read, limits, 2);
   auto at = read.begin();
+  const std::uint32_t endLine = std::max(result.line, 1u), endColumn = std::max(result.column, 1u);
   if (!(at != read.end()))
-    throw Error(place(resource, std::max(result.line, 1u), std::max(result.column, 1u)) +
-                (result.message.empty() ? "expected the header (RSG 0 1), found nothing" : result.message));
+    throw errorAt(resource, endLine, endColumn,
+                  result.message.empty() ? "expected the header (RSG 0 1), found nothing" : result.message);
   checkHeader(resource, *at);
   auto program = std::make_shared<Program>();
   program->resource = resource;
   program->delta = (*at).head() == "RDS" || (*at).head() == "RubyDeltaScene";
+
+  // The body.
   ++at;
-  if (!result.message.empty()) throw Error(place(resource, result.line, result.column) + result.message);
+  if (!result.message.empty()) throw errorAt(resource, result.line, result.column, result.message);
   if (!(at != read.end()))
-    throw Error(place(resource, std::max(result.line, 1u), std::max(result.column, 1u)) +
-                "expected the scene's body, a list, after the header, found nothing");
+    throw errorAt(resource, endLine, endColumn, "expected the scene's body, a list, after the header, found nothing");
   if (!(*at).isList())
-    throw Error(where(*program, siteOf(*at)) + ": expected the scene's body, a list, after the header, found '" +
-                std::string((*at).text()) + "'");
+    throw Error(fmt::format("{}: expected the scene's body, a list, after the header, found '{}'",
+                            where(*program, siteOf(*at)), (*at).text()));
+
+  // Text after the body.
   if (!rules.looseTrailingParen) {
     Predicates rest;
     const ReadResult more = readSexp(text.substr(result.consumed), rest, limits, 1);
     if (!rest.empty() || !more.message.empty())
-      throw Error(where(*program, siteOf(*at)) + ": expected nothing after the body that begins here, found " +
-                  (rest.empty() ? more.message : "more"));
+      throw Error(fmt::format("{}: expected nothing after the body that begins here, found {}",
+                              where(*program, siteOf(*at)), rest.empty() ? more.message : "more"));
   }
   program->body = Compiler(*program).block(*at);
   return program;
 }
 
 std::string where(const Program& program, const Site& site) {
-  return program.resource + ":" + std::to_string(site.line) + ":" + std::to_string(site.column);
+  return fmt::format("{}:{}:{}", program.resource, site.line, site.column);
 }
 
 }  // namespace spark::rsg

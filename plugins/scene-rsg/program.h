@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The compiled form of a scene file: what the importer runs, for every robot of a kind, without reading text again.
+/// The compiled form of a scene file, which the importer runs for every robot of a kind without parsing again.
 
 #include <cstdint>
 #include <memory>
@@ -12,80 +12,78 @@
 
 namespace spark::rsg {
 
-/// Where something stands in its file, from 1.
+/// Line and column in a file, from 1.
 struct Site {
   std::uint32_t line = 0, column = 0;
 };
 
-/// An argument: a text, a variable, `(eval ...)`, `(join ...)`; or what can be none of them, an error once it is
-/// reached.
+/// An argument: a text, a variable, `(eval ...)` or `(join ...)`. A malformed one is an error when it is evaluated.
 struct Operand {
   enum class Kind { text, variable, eval, join, bad };
   Kind kind = Kind::text;
-  std::string text;            ///< the text; bad: the sentence
-  int slot = 0;                ///< variable: its number in the file
-  std::vector<Operand> parts;  ///< eval, join
+  std::string text;            ///< text: the text; bad: the error message
+  std::size_t slot = 0;        ///< variable: index in Program::variables
+  std::vector<Operand> parts;  ///< eval, join: the operands in the list
   Site site;
 };
 
 struct Statement;
 
-/// The elements of one list, run in order with a current node of their own.
+/// The statements of one list. They run in order and share a current node.
 struct Block {
   std::vector<Statement> statements;
 };
 
-/// One step of a list.
+/// A statement.
 struct Statement {
   enum class Kind {
-    block,       ///< a list in the list
-    node,        ///< nd: make `text`, go on in it
-    nextNode,    ///< nd of a delta scene: go on in the next child
-    select,      ///< sel: go on in the child `text`
-    print,       ///< pwd
-    parameters,  ///< templ: `slots`
+    block,       ///< a nested list: `blocks[0]`
+    node,        ///< nd: creates a node of class `text` and makes it the current node
+    nextNode,    ///< nd in a delta scene: makes the next child the current node
+    select,      ///< sel: makes the child named `text` the current node
+    print,       ///< pwd: logs the path of the current node
+    parameters,  ///< templ: declares the parameters `slots`
     define,      ///< def: `slots[0]` := `operands[0]`
-    choose,      ///< switch: `operands[0]` against `operands[1 + i]`, then `blocks[i]`
-    call,        ///< method `text` with `operands`
-    error        ///< `text` is wrong with the file; ends it once it is reached
+    choose,      ///< switch: runs `blocks[i]` for the first i where `operands[1 + i]` equals `operands[0]`
+    call,        ///< calls the method `text` of the current node with `operands`
+    error        ///< throws an Error with the message `text`
   };
   Kind kind = Kind::block;
-  bool immediate = false;  ///< call: done while the file is read, not at its end
+  bool immediate = false;  ///< call: made at once, not queued to the end of the file
   std::string text;
-  std::vector<int> slots;
+  std::vector<std::size_t> slots;
   std::vector<Operand> operands;
-  bool constant = false;  ///< call: all operands are texts,
-  List arguments;         ///< these
+  bool constant = false;  ///< call: all operands are texts
+  List arguments;         ///< call, if constant: these texts
   std::vector<Block> blocks;
   Site site;
 
-  // What the last run found out. node: its class.
-  mutable Ref<ClassObject> made;
-  // call: its method; a class is told by its number, which is never used again.
-  mutable std::uint64_t classId = 0;
-  mutable const Method* method = nullptr;
-  mutable bool complained = false;
+  // Caches, filled when the statement runs.
+  mutable Ref<ClassObject> made;           ///< node: its class
+  mutable std::uint64_t classId = 0;       ///< call: id of the class for which `method` was looked up
+  mutable const Method* method = nullptr;  ///< call: the method of that class; nullptr: it has none
+  mutable bool complained = false;         ///< a problem of this statement was logged
 };
 
-/// A scene file.
+/// A compiled scene file. Immutable except for the caches of its statements.
 struct Program {
-  std::string resource;
-  bool delta = false;                  ///< RDS: changes of what is there
-  std::vector<std::string> variables;  ///< by slot, with '$'
+  std::string resource;                ///< name of the file
+  bool delta = false;                  ///< RDS: the file changes existing nodes
+  std::vector<std::string> variables;  ///< names by slot, with '$'
   Block body;
 };
 
-/// Limits of what is read.
+/// Options of compile().
 struct ReadingRules {
-  bool looseTrailingParen = true;  ///< what follows the body is ignored
-  std::uint32_t maxDepth = 256;
+  bool looseTrailingParen = true;  ///< text after the body is ignored; false: it is an error
+  std::uint32_t maxDepth = 256;    ///< of nested lists
 };
 
-/// True when the text begins with the header of a scene file, of whatever version.
+/// True when the text begins with the header of a scene file, in any version.
 bool looksLikeScene(std::string_view text);
 
-/// Compiles a file. Throws Error with file:line:column when it cannot be read at all: header, brackets. What is wrong
-/// inside becomes a statement that fails when it is reached, as the installed base has it.
+/// Compiles the text of the file `resource`. Throws Error with file:line:column when the header or the brackets are
+/// wrong. Other errors become statements that fail when they run, as in the installed base.
 std::shared_ptr<const Program> compile(std::string_view resource, std::string_view text, const ReadingRules& rules);
 
 /// "file:line:column".

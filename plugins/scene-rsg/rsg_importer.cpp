@@ -15,44 +15,49 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
   d.doc("Imports scene files of the RSG language.");
   d.implements<ISceneImporter>();
   d.property("strict", &I::rule<&R::strict>, &I::setRule<&R::strict>)
-      .doc("Whatever is otherwise only logged is an error; wins over the loose switches.");
+      .doc("Problems that are otherwise logged are errors; overrides the loose switches.");
   d.property("evalDigits6", &I::rule<&R::evalDigits6>, &I::setRule<&R::evalDigits6>)
-      .doc("Every eval rounds to six significant digits, as the installed base does.");
+      .doc("Every eval rounds to single precision and six significant digits, as in the installed base.");
   d.property("integerDivision", &I::rule<&R::integerDivision>, &I::setRule<&R::integerDivision>)
-      .doc("Two integers divide to the floor.");
+      .doc("The quotient of two integers is rounded down.");
   d.property("looseArguments", &I::rule<&R::looseArguments>, &I::setRule<&R::looseArguments>)
       .doc("Calls with wrong arguments are skipped with a warning, once for each place.");
   d.property("defineByName", &I::rule<&R::defineByName>, &I::setRule<&R::defineByName>)
       .doc(
-          "Each name has its own value; off: definitions and parameters share one list that drifts when arguments are "
-          "missing.");
+          "Each name has its own value. false: definitions and parameters share one list, in which names refer to "
+          "wrong "
+          "values when arguments are missing.");
   d.property("looseTrailingParen", &I::rule<&R::looseTrailingParen>, &I::setRule<&R::looseTrailingParen>)
-      .doc("What follows a file's body is ignored.");
+      .doc("Text after the body of a file is ignored.");
   d.property("unlinkOnCompleteScenes", &I::unlinkOnCompleteScenes_)
-      .doc("A complete scene replaces what is below its root; for monitors.");
+      .doc("A complete scene replaces all nodes below its root; for monitors.");
   d.property("unlinkOnUnreadable", &I::unlinkOnUnreadable_)
-      .doc("A file with broken brackets empties its root, as the original did.");
-  d.property("maxDepth", &I::maxDepth, &I::setMaxDepth).range(1, 256).doc("Imports within imports.");
-  d.property("maxImports", &I::maxImports, &I::setMaxImports).min(1).doc("Files that one import may import in all.");
-  d.property("maxNodes", &I::maxNodes, &I::setMaxNodes).min(1).doc("Nodes that one import may make in all.");
+      .doc("A file with broken brackets empties its root, as in the installed base.");
+  d.property("maxDepth", &I::maxDepth, &I::setMaxDepth).range(1, 256).doc("Maximum nesting of imports.");
+  d.property("maxImports", &I::maxImports, &I::setMaxImports)
+      .min(1)
+      .doc("Maximum number of files of one import, nested ones included.");
+  d.property("maxNodes", &I::maxNodes, &I::setMaxNodes)
+      .min(1)
+      .doc("Maximum number of nodes that one import creates, nested imports included.");
   d.property("argumentLimit", &I::argumentLimit_)
       .unit("1")
       .min(0)
-      .doc("Largest number that an import from outside may pass.");
+      .doc("Largest number that an import from outside may pass as argument.");
   d.property("keptBytes", &I::keptBytes_)
       .unit("bytes")
       .min(0)
-      .doc("Compiled files are kept for the next import up to so much text.");
+      .doc("Total length of the texts whose compiled form is cached.");
   d.property("filesParsed", &I::filesParsed_)
       .readOnly()
-      .doc("Files read and compiled so far; a second robot of a kind adds none.");
+      .doc("Files compiled so far. A second robot of the same kind adds none.");
   d.property("imports", &I::imports_).readOnly().doc("Files imported so far.");
   d.property("evals", &I::evals_).readOnly().doc("Expressions evaluated so far.");
   d.property("calls", &I::calls_).readOnly().doc("Method calls made so far.");
 }
 
 std::shared_ptr<const rsg::Program> RsgImporter::load(const std::string& file, Node& root) {
-  // One import sees one version of a file, however often it needs it.
+  // An outermost import compares the stamp of a file once, so it sees only one version of it.
   const auto cached = cache_.find(file);
   if (cached != cache_.end() && cached->second.checked == outermost_) return cached->second.program;
   auto& files = kernel().root().require<IFileServer>();
@@ -61,6 +66,8 @@ std::shared_ptr<const rsg::Program> RsgImporter::load(const std::string& file, N
     cached->second.checked = outermost_;
     return cached->second.program;
   }
+
+  // Not in the cache, or outdated.
   const std::string text = files.read(file);
   ++filesParsed_;
   std::shared_ptr<const rsg::Program> program;
@@ -74,11 +81,12 @@ std::shared_ptr<const rsg::Program> RsgImporter::load(const std::string& file, N
   return program;
 }
 
-/// Those that were not imported for the longest go first; what the import under way has seen stays.
 void RsgImporter::keep(const std::string& file, Cached cached) {
   if (const auto known = cache_.find(file); known != cache_.end()) kept_ -= known->second.bytes;
   kept_ += cached.bytes;
   cache_.insert_or_assign(file, std::move(cached));
+
+  // Remove the least recently used files, but none that the current import uses.
   while (kept_ > keptBytes_) {
     const auto oldest = std::min_element(
         cache_.begin(), cache_.end(), [](const auto& a, const auto& b) { return a.second.checked < b.second.checked; });
@@ -92,19 +100,21 @@ std::vector<std::string> RsgImporter::textsOf(std::string_view file, const List&
   std::vector<std::string> texts;
   for (const Value& v : arguments) {
     const auto refuse = [&](const std::string& why) {
-      throw Error("cannot import '" + std::string(file) + "': argument " + std::to_string(texts.size() + 1) + " is '" +
-                  v.plain().substr(0, 80) + "': " + why);
+      throw Error(fmt::format("cannot import '{}': argument {} is '{}': {}", file, texts.size() + 1,
+                              v.plain().substr(0, 80), why));
     };
     if (v.isList() || v.isNil()) refuse("expected a text, a number or a bool");
     std::string text = v.plain();
-    if (text.size() > rsg::kMaxText) refuse("expected at most " + std::to_string(rsg::kMaxText) + " bytes");
+    if (text.size() > rsg::kMaxText) refuse(fmt::format("expected at most {} bytes", rsg::kMaxText));
+
+    // An import from outside: limit the magnitude of numbers.
     if (frames_.empty()) {
       const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
       double number = 0;
       const auto r = std::from_chars(begin, text.data() + text.size(), number);
       const bool whole = r.ptr == text.data() + text.size() && !text.empty();
       if (whole && (r.ec == std::errc::result_out_of_range || !(std::abs(number) <= argumentLimit_)))
-        refuse("expected a number of at most " + Value(argumentLimit_).text());
+        refuse(fmt::format("expected a number of at most {}", Value(argumentLimit_).text()));
     }
     texts.push_back(std::move(text));
   }
@@ -118,25 +128,25 @@ std::string RsgImporter::chain() const {
   return out.empty() ? out : out + ")";
 }
 
-void RsgImporter::exhausted(const std::string& sentence) {
+void RsgImporter::exhausted(const std::string& message) {
   budget_.exhausted = true;
-  throw Error(sentence);
+  throw Error(message);
 }
 
 void RsgImporter::import(std::string_view file, Node& root, const List& arguments) {
+  // The outermost import starts with a full budget.
   const std::string name(file);
   if (frames_.empty()) {
     budget_.imports = budget_.nodes = 0;
     budget_.exhausted = false;
     ++outermost_;
   }
-  if (frames_.size() >= static_cast<std::size_t>(budget_.maxDepth))
-    throw Error("'" + name + "' is imported " + std::to_string(frames_.size()) +
-                " deep: does a file import itself? At most " + std::to_string(budget_.maxDepth) + " are allowed (" +
-                path() + ".maxDepth)");
+  if (const std::size_t maxDepth = budget_.maxDepth; frames_.size() >= maxDepth)
+    throw Error(fmt::format("'{}' is imported {} deep: does a file import itself? At most {} are allowed ({}.maxDepth)",
+                            name, frames_.size(), maxDepth, path()));
   if (++budget_.imports > budget_.maxImports)
-    exhausted("too many imports: at most " + std::to_string(budget_.maxImports) + " are allowed (" + path() +
-              ".maxImports)");
+    exhausted(fmt::format("too many imports: at most {} are allowed ({}.maxImports)", budget_.maxImports, path()));
+
   std::vector<std::string> texts = textsOf(name, arguments);
   const std::shared_ptr<const rsg::Program> program = load(name, root);
   if (unlinkOnCompleteScenes_ && !program->delta && frames_.empty()) root.removeChildren();

@@ -8,11 +8,13 @@
 namespace spark::rsg {
 
 namespace {
-/// An Error that says where.
+/// An Error whose message begins with file:line:column.
 class Located : public Error {
  public:
   using Error::Error;
 };
+
+Error tooLong() { return Error(fmt::format("expected a text of at most {} bytes, found a longer one", kMaxText)); }
 }  // namespace
 
 template <class F>
@@ -22,7 +24,7 @@ decltype(auto) Run::located(const Site& site, F f) const {
   } catch (const Located&) {
     throw;
   } catch (const std::exception& e) {
-    throw Located(where(program_, site) + ": " + e.what());
+    throw Located(fmt::format("{}: {}", where(program_, site), e.what()));
   }
 }
 
@@ -33,10 +35,10 @@ Run::Run(RsgImporter& importer, const Program& program, std::vector<std::string>
 
 void Run::execute(Node& root) {
   root_ = &root;
-  std::optional<Error> failure;
-  std::size_t passed = 0;
+  std::optional<Error> failure;  // the first error
+  std::size_t nextChild = 0;
   try {
-    walk(program_.body, {&root, &passed});
+    runBlock(program_.body, {&root, &nextChild});
   } catch (const Error& e) {
     failure = e;
   }
@@ -48,24 +50,24 @@ void Run::execute(Node& root) {
   if (failure) throw *failure;
 }
 
-void Run::walk(const Block& block, Cursor cursor) {
-  std::size_t passed = 0;
+void Run::runBlock(const Block& block, Cursor cursor) {
+  std::size_t nextChild = 0;
   for (const Statement& s : block.statements) {
     importer_.frames_.back().site = s.site;
-    located(s.site, [&] { step(s, cursor, passed); });
+    located(s.site, [&] { runStatement(s, cursor, nextChild); });
   }
 }
 
-void Run::step(const Statement& s, Cursor& cursor, std::size_t& passed) {
+void Run::runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChild) {
   if (!cursor.node) throw Error("the node that this belongs to was removed");
   Node& node = *cursor.node;
   const auto enter = [&](Node& inner) {
-    cursor = {&inner, &passed};
-    passed = 0;
+    cursor = {&inner, &nextChild};
+    nextChild = 0;
   };
   switch (s.kind) {
     case Statement::Kind::block:
-      return walk(s.blocks.front(), cursor);
+      return runBlock(s.blocks.front(), cursor);
     case Statement::Kind::node:
       return enter(makeNode(s, node));
     case Statement::Kind::nextNode:
@@ -75,7 +77,7 @@ void Run::step(const Statement& s, Cursor& cursor, std::size_t& passed) {
     case Statement::Kind::print:
       return importer_.kernel().log().debug("{}: {}", where(program_, s.site), node.path());
     case Statement::Kind::parameters:
-      for (const int slot : s.slots) environment_.parameter(slot);
+      for (const std::size_t slot : s.slots) environment_.parameter(slot);
       return;
     case Statement::Kind::define:
       return environment_.define(s.slots.front(), textOf(s.operands.front()));
@@ -92,8 +94,8 @@ ClassObject& Run::classOf(const Statement& s) const {
   if (s.made) return *s.made;
   ClassObject& made = importer_.kernel().classOf(s.text);
   if (!made.isA(SceneNode::kClassName))
-    throw Error("expected a class of scene nodes, found " + made.name() + ", which does not derive from " +
-                SceneNode::kClassName);
+    throw Error(fmt::format("expected a class of scene nodes, found {}, which does not derive from {}", made.name(),
+                            SceneNode::kClassName));
   s.made = &made;
   return made;
 }
@@ -102,19 +104,19 @@ Node& Run::makeNode(const Statement& s, Node& parent) {
   ClassObject& made = classOf(s);
   Budget& budget = importer_.budget_;
   if (++budget.nodes > budget.maxNodes)
-    importer_.exhausted("too many nodes: one import may make at most " + std::to_string(budget.maxNodes) + " (" +
-                        importer_.path() + ".maxNodes)");
+    importer_.exhausted(
+        fmt::format("too many nodes: one import may make at most {} ({}.maxNodes)", budget.maxNodes, importer_.path()));
   return *parent.add(made.create()).asNode();
 }
 
 Node& Run::nextNode(Cursor& cursor) {
   const auto& children = cursor.node->children();
-  const std::size_t i = (*cursor.passed)++;
+  const std::size_t i = (*cursor.nextChild)++;
   if (i >= children.size())
-    throw Error("expected at most " + std::to_string(children.size()) + " nodes below " + cursor.node->path() +
-                ", found one more");
+    throw Error(
+        fmt::format("expected at most {} nodes below {}, found one more", children.size(), cursor.node->path()));
   if (auto node = children[i]->as<SceneNode>()) return *node;
-  throw Error("expected a scene node, found " + children[i]->path());
+  throw Error(fmt::format("expected a scene node, found {}", children[i]->path()));
 }
 
 Node& Run::select(const Statement& s, Node& parent) {
@@ -122,26 +124,29 @@ Node& Run::select(const Statement& s, Node& parent) {
   if (found && found->as<SceneNode>()) return *found->asNode();
   std::vector<std::string> names;
   for (const auto& child : parent.children()) names.push_back(child->name());
-  throw Error("there is no scene node '" + s.text + "' in " + parent.path() + "." + didYouMean(s.text, names));
+  throw Error(fmt::format("there is no scene node '{}' in {}.{}", s.text, parent.path(), didYouMean(s.text, names)));
 }
 
 void Run::choose(const Statement& s, const Cursor& cursor) {
+  // The first matching case.
   const std::string value = textOf(s.operands.front());
   for (std::size_t i = 0; i < s.blocks.size(); ++i) {
     if (textOf(s.operands[i + 1]) != value) continue;
     try {
-      walk(s.blocks[i], cursor);
+      runBlock(s.blocks[i], cursor);
     } catch (const Error& e) {
       if (importer_.rules_.strict || importer_.budget_.exhausted) throw;
-      complain(s, Level::error, "the case '" + value + "' failed, the rest goes on: " + e.what());
+      complain(s, Level::error, fmt::format("the case '{}' failed, the rest goes on: {}", value, e.what()));
     }
     return;
   }
+
+  // None matches; a switch without cases has no effect.
   if (s.blocks.empty()) return;
   std::string labels;
   for (std::size_t i = 1; i < s.operands.size() && i < 10; ++i)
     labels += (i > 1 ? ", '" : "'") + textOf(s.operands[i]) + "'";
-  throw Error("no case matches '" + value + "', there are " + labels);
+  throw Error(fmt::format("no case matches '{}', there are {}", value, labels));
 }
 
 void Run::call(const Statement& s, Node& node) {
@@ -161,15 +166,15 @@ void Run::call(const Statement& s, Node& node) {
 }
 
 void Run::import(const Statement& s, Node& node, const List& arguments) {
-  if (!methodOf(s, node) || arguments.empty()) return invoke(s, node, arguments);  // says what is wrong
+  if (!methodOf(s, node) || arguments.empty()) return invoke(s, node, arguments);  // reports the problem
   const std::string& file = arguments.front().toString();
   try {
     importer_.kernel().root().require<ISceneServer>().importScene(file, node,
                                                                   List(arguments.begin() + 1, arguments.end()));
   } catch (const std::exception& e) {
     if (importer_.rules_.strict || importer_.budget_.exhausted)
-      throw Located(where(program_, s.site) + ": the import of '" + file + "' failed", e);
-    complain(s, Level::error, "the import of '" + file + "' failed, the rest goes on: " + e.what());
+      throw Located(fmt::format("{}: the import of '{}' failed", where(program_, s.site), file), e);
+    complain(s, Level::error, fmt::format("the import of '{}' failed, the rest goes on: {}", file, e.what()));
   }
 }
 
@@ -190,21 +195,21 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
     for (const Method* m : node.classObject()->methods()) names.push_back(m->name);
     return complain(
         s, Level::error,
-        "class " + node.classObject()->name() + " has no method '" + s.text + "'." + didYouMean(s.text, names));
+        fmt::format("class {} has no method '{}'.{}", node.classObject()->name(), s.text, didYouMean(s.text, names)));
   }
   if (s.text == "unlinkLeaf" && &node == root_) throw Error("a scene cannot remove the node that it is imported into");
   if (importer_.rules_.strict || !importer_.rules_.looseArguments) {
     callMethod(node, s.text, arguments);
     return;
   }
-  const ClassObject& called = *node.classObject();  // the node may go
+  const ClassObject& called = *node.classObject();  // the call may remove the node
   std::string whyNot;
   if (!callLoosely(node, *method, arguments, whyNot))
-    complain(s, Level::warning, s.text + " of " + called.name() + " is skipped: " + whyNot);
+    complain(s, Level::warning, fmt::format("{} of {} is skipped: {}", s.text, called.name(), whyNot));
 }
 
 void Run::flush() {
-  std::optional<Error> failure;
+  std::optional<Error> failure;  // the first error; the other calls are still made
   for (const Queued& q : queue_) {
     importer_.frames_.back().site = q.call->site;
     try {
@@ -233,21 +238,23 @@ std::string Run::textOf(const Operand& o) {
       default:
         break;
     }
+
+    // eval and join: the text of all parts; eval separates them by blanks.
     const bool eval = o.kind == Operand::Kind::eval;
     std::string text;
     for (const Operand& part : o.parts) {
       text += textOf(part);
       if (eval) text += ' ';
-      if (text.size() > kMaxText)
-        throw Error("expected a text of at most " + std::to_string(kMaxText) + " bytes, found a longer one");
+      if (text.size() > kMaxText) throw tooLong();
     }
     if (!eval) return text;
+
+    // eval: the value of that text.
     ++importer_.evals_;
     const auto lookup = [this](std::string_view group, std::string_view member) { return variable(group, member); };
     std::string result =
         resultText(evaluate(text, lookup, importer_.rules_.integerDivision), importer_.rules_.evalDigits6);
-    if (result.size() > kMaxText)
-      throw Error("expected a text of at most " + std::to_string(kMaxText) + " bytes, found a longer one");
+    if (result.size() > kMaxText) throw tooLong();
     return result;
   });
 }
@@ -259,20 +266,19 @@ Value Run::variable(std::string_view group, std::string_view member) const {
     std::vector<std::string> names;
     if (groups)
       for (const auto& child : groups->children()) names.push_back(child->name());
-    throw Error("there are no variables '" + std::string(group) + "' below /sys/variables." + didYouMean(group, names));
+    throw Error(fmt::format("there are no variables '{}' below /sys/variables.{}", group, didYouMean(group, names)));
   }
   Value value = found->variable(member);
   if (value.isNil())
-    throw Error("the variable " + std::string(group) + (member.empty() ? "" : "." + std::string(member)) +
-                " is not set");
+    throw Error(fmt::format("the variable {}{}{} is not set", group, member.empty() ? "" : ".", member));
   return value;
 }
 
-void Run::complain(const Statement& s, Level level, const std::string& sentence) {
-  if (importer_.rules_.strict) throw Error(sentence);
+void Run::complain(const Statement& s, Level level, const std::string& text) {
+  if (importer_.rules_.strict) throw Error(text);
   if (s.complained) return;
   s.complained = true;
-  importer_.kernel().log().write(level, where(program_, s.site) + ": " + sentence + importer_.chain());
+  importer_.kernel().log().write(level, fmt::format("{}: {}{}", where(program_, s.site), text, importer_.chain()));
 }
 
 }  // namespace spark::rsg

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One import of one file.
+/// Execution of a compiled scene file.
 
 #include <memory>
 
@@ -10,61 +10,70 @@
 
 namespace spark::rsg {
 
-/// Longest text that a variable or argument may become.
+/// Maximum length of the text of a variable or argument [bytes].
 inline constexpr std::size_t kMaxText = 4096;
 
-/// Walks a program's lists and builds what they say.
+/// Runs the statements of a program: one import of one file.
 ///
-///     (nd Transform            a node is made, hung in the tree and linked at once
-///       (setLocalPos 0 0 1)    Transform's own ten methods act at once
-///       (importScene x.rsg)    so does an import: x.rsg's queued calls run at x.rsg's end, before what follows here
+///     (nd Transform            a node is created, added to the tree and linked at once
+///       (setLocalPos 0 0 1)    the ten methods of Transform are called at once
+///       (importScene x.rsg)    an import, too: the calls that x.rsg queues are made at the end of x.rsg
 ///       (nd RigidBody
-///         (setMass 2)))        all other calls wait, with their arguments computed, until this file is read
+///         (setMass 2)))        all other calls are queued with evaluated arguments, and made at the end of the file
 ///
-/// So a joint may name bodies that come later in its file, and a body finds its transform in place. An error ends the
-/// walk; the queued calls run nevertheless, then it is thrown.
+/// So a joint may name bodies that come later in its file, and a body is linked below a transform that is in place.
+/// After an error no further statements run; the queued calls are still made, and then the error is thrown.
 class Run {
  public:
+  /// `importer` and `program` must outlive the run. `arguments` are those of the program's template.
   Run(RsgImporter& importer, const Program& program, std::vector<std::string> arguments);
-  /// Throws Error with file:line:column.
+  /// Creates the nodes below `root`. Throws Error with file:line:column.
   void execute(Node& root);
 
  private:
-  /// The current node of a list, and how many of its children a delta scene has passed.
+  /// The current node of a list.
   struct Cursor {
     Ref<Node> node;
-    std::size_t* passed;
+    std::size_t* nextChild;  ///< delta scenes: index of the child that the next nd selects
   };
+  /// A call that is made at the end of the file.
   struct Queued {
     Ref<Leaf> node;
     const Statement* call;
-    List computed;  ///< its arguments, when they are not constant
+    List computed;  ///< its arguments, unless they are constant
   };
-  void walk(const Block& block, Cursor cursor);
-  /// Runs one statement; `passed` counts for the node that it may enter.
-  void step(const Statement& s, Cursor& cursor, std::size_t& passed);
+  /// Runs the statements of a list, with the current node of the surrounding list at first.
+  void runBlock(const Block& block, Cursor cursor);
+  /// Runs a statement. When it enters a node, `cursor` refers to that node and to `nextChild`.
+  void runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChild);
   Node& makeNode(const Statement& s, Node& parent);
   ClassObject& classOf(const Statement& s) const;
   Node& nextNode(Cursor& cursor);
   Node& select(const Statement& s, Node& parent);
   void choose(const Statement& s, const Cursor& cursor);
+  /// Evaluates the arguments of a call, and makes or queues it.
   void call(const Statement& s, Node& node);
   void import(const Statement& s, Node& node, const List& arguments);
+  /// Makes a call.
   void invoke(const Statement& s, Leaf& node, const List& arguments);
+  /// The method that a call refers to; nullptr when the node's class has none of that name.
   const Method* methodOf(const Statement& s, Leaf& node) const;
+  /// Makes the queued calls.
   void flush();
+  /// Evaluates an operand. Throws Error with file:line:column.
   std::string textOf(const Operand& o);
   Value variable(std::string_view group, std::string_view member) const;
-  /// What the installed base passes over: an Error when strict, else a log line, once for each place.
-  void complain(const Statement& s, Level level, const std::string& sentence);
-  /// Runs `f`; an exception gets file:line:column in front, unless it has one of this run already.
+  /// Reports a problem that the installed base ignores: throws Error when `strict`, else logs it once per statement.
+  void complain(const Statement& s, Level level, const std::string& text);
+  /// Calls `f` and prefixes the message of an exception with file:line:column, unless it has a place of this run
+  /// already.
   template <class F>
   decltype(auto) located(const Site& site, F f) const;
 
   RsgImporter& importer_;
   const Program& program_;
   Environment environment_;
-  Leaf* root_ = nullptr;
+  Leaf* root_ = nullptr;  ///< the node that the file is imported into
   std::vector<Queued> queue_;
 };
 

@@ -7,17 +7,17 @@ void MaterialSolid::describe(Description<MaterialSolid>& d) {
   d.property("ambient", &MaterialSolid::ambient_).doc("Colour in ambient light.");
   d.property("diffuse", &MaterialSolid::diffuse_).doc("Colour in direct light.");
   d.property("specular", &MaterialSolid::specular_).doc("Colour of its highlights.");
-  d.property("emission", &MaterialSolid::emission_).doc("Colour it shines in by itself.");
-  d.property("shininess", &MaterialSolid::shininess_).unit("1").range(0, 128).doc("Sharpness of its highlights.");
-  d.property("depthCheck", &MaterialSolid::depthCheck_).doc("Hidden by what is in front of it.");
+  d.property("emission", &MaterialSolid::emission_).doc("Colour of emitted light.");
+  d.property("shininess", &MaterialSolid::shininess_).unit("1").range(0, 128).doc("Sharpness of highlights.");
+  d.property("depthCheck", &MaterialSolid::depthCheck_).doc("Hidden by objects in front of it.");
 }
 
 void MaterialServer::describe(Description<MaterialServer>& d) {
   d.doc("Holds the materials that scenes refer to by name.");
   d.method("define", &MaterialServer::define)
       .parameters({"name", "diffuse"})
-      .doc("Makes (or changes) a material of one colour.");
-  d.method("resetMaterials", &MaterialServer::reset).doc("Drops all materials but one, 'default'.");
+      .doc("Creates or changes a material of one colour.");
+  d.method("resetMaterials", &MaterialServer::reset).doc("Removes all materials and creates one named 'default'.");
 }
 
 void MaterialServer::define(std::string name, Color diffuse) {
@@ -33,7 +33,7 @@ void MaterialServer::reset() {
 
 void MaterialServer::warnUnlessKnown(const std::string& name, const Leaf& user) {
   if (child(name) || warned_.contains(name)) return;
-  if (warned_.size() < 1000) warned_.insert(name);  // names may come from a client
+  if (warned_.size() < 1000) warned_.insert(name);  // bounded, because names may come from a client
   std::vector<std::string> names;
   for (const auto& c : children()) names.push_back(c->name());
   kernel().log().warning("{} uses the material '{}', which {} does not have.{}", user.path(), name, path(),

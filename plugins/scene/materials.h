@@ -8,7 +8,7 @@
 
 namespace spark {
 
-/// A material of one colour.
+/// A material of one colour, for viewers.
 class MaterialSolid : public Leaf {
   SPARK_CLASS(MaterialSolid, Leaf)
  public:
@@ -20,18 +20,19 @@ class MaterialSolid : public Leaf {
   bool depthCheck_ = true;
 };
 
-/// The materials, its children, by name. At /sys/server/material.
+/// Holds materials by name, as children. At /sys/server/material.
 class MaterialServer : public Node {
   SPARK_CLASS(MaterialServer, Node)
  public:
   static void describe(Description<MaterialServer>& d);
-  /// Warns, once for each name, when there is no such material; viewers take their default for it.
+  /// Logs a warning, once for each name, when there is no such material; viewers use their default then. `user` is the
+  /// node that refers to it.
   void warnUnlessKnown(const std::string& name, const Leaf& user);
 
  private:
   void define(std::string name, Color diffuse);
   void reset();
-  std::set<std::string, std::less<>> warned_;
+  std::set<std::string, std::less<>> warned_;  ///< names that were warned about
 };
 
 }  // namespace spark

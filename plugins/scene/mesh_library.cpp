@@ -12,10 +12,12 @@ std::vector<std::string> objMaterials(std::string_view text) {
   std::set<std::string> names;
   std::string_view current;
   while (!text.empty()) {
+    // The next line, without leading blanks.
     const std::size_t n = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, n);
     text.remove_prefix(std::min(n + 1, text.size()));
     line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
+
     if (line.starts_with("usemtl ")) {
       line.remove_prefix(7);
       line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
@@ -32,7 +34,7 @@ void MeshLibrary::define(std::string mesh, std::vector<std::string> materials) {
 }
 
 const std::vector<std::string>& MeshLibrary::materials(Kernel& kernel, const std::string& mesh) {
-  // Mesh names may come from a client: only those that exist are remembered.
+  // Mesh names may come from a client: only meshes with a file are cached.
   static const std::vector<std::string> kNone;
   const auto declared = declared_.find(mesh);
   const auto& otherwise = declared == declared_.end() ? kNone : declared->second;

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Which materials a mesh has. Meshes themselves are never loaded: no part of the simulation looks at them, only
-/// viewers do.
+/// The materials of meshes. The meshes themselves are never loaded: only viewers need them.
 
 #include <map>
 #include <string>
@@ -11,12 +10,12 @@ namespace spark {
 
 class Kernel;
 
-/// Material lists by mesh name; those of OBJ files are read from the files' `usemtl` lines.
+/// Material lists by mesh name. Lists of OBJ files are read from the `usemtl` lines of the files.
 class MeshLibrary {
  public:
-  /// Names of the mesh's materials in alphabetical order, empty when nothing is known. Valid until the next call.
+  /// Names of the mesh's materials in alphabetical order; empty when the mesh is unknown. Valid until the next call.
   const std::vector<std::string>& materials(Kernel& kernel, const std::string& mesh);
-  /// Declares them, for a mesh whose file is not there. A file that is there wins.
+  /// Declares the materials of a mesh without a file. An existing file takes precedence.
   void define(std::string mesh, std::vector<std::string> materials);
 
  private:
@@ -28,7 +27,8 @@ class MeshLibrary {
   std::map<std::string, Entry, std::less<>> read_;
 };
 
-/// The names after `usemtl` in an OBJ file: each once, in alphabetical order; names that no face follows are left out.
+/// The names after `usemtl` in the text of an OBJ file, each once, in alphabetical order. Names without a face are left
+/// out.
 std::vector<std::string> objMaterials(std::string_view text);
 
 }  // namespace spark

@@ -7,7 +7,7 @@
 namespace spark {
 
 void SceneServer::describe(Description<SceneServer>& d) {
-  d.doc("Holds the active scene, imports scene files, keeps world matrices up to date.");
+  d.doc("Holds the active scene, imports scene files, updates world matrices.");
   d.implements<ISceneServer>();
   d.link(&SceneServer::scene_, At<Node>(&SceneServer::scenePath_));
   d.link(&SceneServer::importers_, Child<ISceneImporter>());
@@ -15,28 +15,29 @@ void SceneServer::describe(Description<SceneServer>& d) {
       .doc("Path of the active scene's root.");
   d.property("flattenTransforms", &SceneServer::flattenTransforms_)
       .doc(
-          "After an import, transforms of its own that hold nothing but transforms, and empty ones, go; their children "
-          "move up.");
-  d.property("modifiedCount", &SceneServer::modifiedCount).doc("How often nodes or materials of the scene changed.");
+          "After an import, removes imported transforms that are empty or contain only transforms; their children move "
+          "up.");
+  d.property("modifiedCount", &SceneServer::modifiedCount)
+      .doc("Number of changes of the scene's nodes and materials so far.");
   d.method("createScene", &SceneServer::createScene)
       .parameters({"path"})
-      .doc("Makes a scene root and the active scene of it.");
+      .doc("Creates a scene root and makes it the active scene.");
   d.method("defineMesh", &SceneServer::defineMesh)
       .parameters({"mesh", "materials"})
-      .doc("Says which materials a mesh has, for meshes whose file is not there.");
+      .doc("Declares the materials of a mesh without a file.");
   d.on<&SceneServer::onPlace>(phase::kPlace);
 }
 
 Node& SceneServer::scene() {
   if (Node* scene = scene_.get()) return *scene;
-  throw Error("there is no scene at '" + scenePath_ + "': make one, new(\"Scene\", \"" + scenePath_ + "\"), or set " +
-              path() + ".activeScene");
+  throw Error(fmt::format("there is no scene at '{0}': make one, new(\"Scene\", \"{0}\"), or set {1}.activeScene",
+                          scenePath_, path()));
 }
 
 void SceneServer::setScenePath(std::string path) {
   scenePath_ = std::move(path);
   scene_.lookAgain();
-  kernel().markChanged(*this);  // whoever remembers what is in the active scene looks again, in this very cycle
+  kernel().markChanged(*this);  // caches of the active scene are updated in this cycle
 }
 
 void SceneServer::createScene(std::string path) {
@@ -46,10 +47,11 @@ void SceneServer::createScene(std::string path) {
 
 ISceneImporter& SceneServer::importerFor(const std::string& file) {
   if (importers_.empty())
-    throw Error(path() + " has no importer below it: add one, for instance new(\"RsgImporter\", \"" + path() +
-                "/rsg\")");
+    throw Error(
+        fmt::format("{0} has no importer below it: add one, for instance new(\"RsgImporter\", \"{0}/rsg\")", path()));
   if (importers_.size() == 1) return *importers_.all().front();
 
+  // With several importers the beginning of the file decides, once for each version of the file.
   auto& files = kernel().root().require<IFileServer>();
   const std::uint64_t stamp = files.stamp(file);
   if (const auto known = known_.find(file);
@@ -61,14 +63,14 @@ ISceneImporter& SceneServer::importerFor(const std::string& file) {
       known_.insert_or_assign(file, Known{stamp, importer});
       return *importer;
     }
-  throw Error("none of the " + std::to_string(importers_.size()) + " importers below " + path() +
-              " knows the format of '" + file + "'");
+  throw Error(
+      fmt::format("none of the {} importers below {} knows the format of '{}'", importers_.size(), path(), file));
 }
 
 void SceneServer::importScene(std::string_view file, Node& root, const List& arguments) {
   const std::string name(file);
   const Ref<Node> rootAlive(&root);
-  // Files import files: what the outermost import found there is not its to dissolve.
+  // A file may import others. Only nodes that were created since the start of the outermost import may be flattened.
   struct Importing {
     Importing(std::uint64_t& f, std::uint64_t last) : first(f), outermost(f == 0) {
       if (outermost) first = last + 1;
@@ -82,7 +84,7 @@ void SceneServer::importScene(std::string_view file, Node& root, const List& arg
   try {
     importerFor(name).import(name, root, arguments);
   } catch (...) {
-    markModified();  // what it made before stays
+    markModified();  // nodes that were created before the error are kept
     throw;
   }
   if (flattenTransforms_ && rootAlive) spark::flattenTransforms(root, firstImported_);
@@ -100,7 +102,7 @@ void Placement::collect(Node& node, int parent) {
       above = static_cast<int>(entries_.size());
       entries_.push_back({transform, parent, false, false, {}});
     } else if (auto follower = child->as<IFollowsTransform>(); follower && parent >= 0) {
-      entries_[static_cast<std::size_t>(parent)].followers.push_back(follower);
+      entries_[parent].followers.push_back(follower);
     }
     if (Node* inner = child->asNode()) collect(*inner, above);
   }
@@ -112,8 +114,9 @@ void Placement::place(Node& scene) {
     collect(scene, -1);
     scene_ = &scene;
   }
+  // Parents come first: what happened to the transform above is known.
   for (Entry& e : entries_) {
-    const Entry* above = e.parent < 0 ? nullptr : &entries_[static_cast<std::size_t>(e.parent)];
+    const Entry* above = e.parent < 0 ? nullptr : &entries_[e.parent];
     e.changed = e.transform->dirty() || (above && above->changed);
     e.moved = e.changed && e.transform->updateWorld(above && above->moved);
     if (e.moved)
@@ -122,7 +125,7 @@ void Placement::place(Node& scene) {
 }
 
 void flattenTransforms(Node& root, std::uint64_t firstId) {
-  // Children that move up are appended to `root` and seen by the same loop.
+  // Children first. Grandchildren that move up are appended to the children of `root`, so the loop reaches them.
   for (std::size_t i = 0; i < root.children().size();) {
     Leaf& child = *root.children()[i];
     if (Node* node = child.asNode()) {
@@ -134,6 +137,8 @@ void flattenTransforms(Node& root, std::uint64_t firstId) {
     }
     ++i;
   }
+
+  // Then `root` itself, if it is a transform of the import that contains only transforms.
   auto transform = root.id() >= firstId ? root.as<Transform>() : nullptr;
   if (!transform || root.children().empty() || !root.parent() || !root.parent()->as<SceneNode>()) return;
   for (const auto& child : root.children())

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The scene server: the active scene, imports, transforms.
+/// The scene server: the active scene, imports, world matrices.
 
 #include <map>
 
@@ -13,22 +13,22 @@ namespace spark {
 class Scene : public SceneNode {
   SPARK_CLASS(Scene, SceneNode)
  public:
-  static void describe(Description<Scene>& d) {
-    d.doc("Root of a scene; what is below it is placed in the world frame.");
-  }
+  static void describe(Description<Scene>& d) { d.doc("Root of a scene: the world frame of all nodes below it."); }
 };
 
-/// All transforms of a scene, top-down, with what follows them; made anew when the tree's shape changed.
+/// A list of all transforms of a scene, parents first, with the nodes that follow them. It is built again when the
+/// shape of the tree changed.
 class Placement {
  public:
-  /// Brings the world matrices below `scene` up to date. Costs one look at each transform that did not change.
+  /// Updates the world matrices below `scene`. A transform that did not change costs one check.
   void place(Node& scene);
 
  private:
   struct Entry {
     Transform* transform;
-    int parent;  ///< index of the next transform above, -1 for none
-    bool changed = false, moved = false;
+    int parent;            ///< index of the nearest transform above; -1: none
+    bool changed = false;  ///< in this update: the world matrix was computed again
+    bool moved = false;    ///< in this update: moved by hand, or below one that was
     std::vector<IFollowsTransform*> followers;
   };
   void collect(Node& node, int parent);
@@ -51,14 +51,16 @@ class SceneServer : public Node, public ISceneServer {
   std::uint64_t modifiedCount() const override { return modified_; }
   void place() override;
 
-  /// Material lists of meshes.
+  /// The materials of meshes.
   MeshLibrary& meshes() { return meshes_; }
 
  private:
+  /// The importer of a file.
   struct Known {
-    std::uint64_t stamp;
+    std::uint64_t stamp;  ///< of the file when its format was recognised
     Ref<ISceneImporter> importer;
   };
+  /// The first importer that recognises the format of `file`. Throws Error when there is none.
   ISceneImporter& importerFor(const std::string& file);
   void createScene(std::string path);
   void defineMesh(std::string mesh, std::vector<std::string> materials) {
@@ -71,17 +73,17 @@ class SceneServer : public Node, public ISceneServer {
   std::string scenePath_ = "/usr/scene";
   bool flattenTransforms_ = true;
   std::uint64_t modified_ = 0;
-  std::uint64_t firstImported_ = 0;  ///< id from which on nodes are those of the import under way; 0: none is
+  std::uint64_t firstImported_ = 0;  ///< first id of the nodes of the current import; 0: there is none
   Link<Node> scene_;
   Links<ISceneImporter> importers_;
   Placement placement_;
   MeshLibrary meshes_;
-  std::map<std::string, Known, std::less<>> known_;
+  std::map<std::string, Known, std::less<>> known_;  ///< by file
 };
 
-/// Takes away, below and including `root`, transforms that place nothing but transforms (and empty ones): their
-/// children move up. World poses stay. (scene-language section 1.11) Those with an id below `firstId` stay: others made
-/// them, and may hold them.
+/// Removes the transforms at and below `root` that are empty or contain only transforms; their children move up. World
+/// poses are unchanged (scene-language section 1.11). Transforms with an id below `firstId` are kept: they existed
+/// before the import, and other code may refer to them.
 void flattenTransforms(Node& root, std::uint64_t firstId = 0);
 
 }  // namespace spark

@@ -12,8 +12,8 @@ constexpr std::string_view kWords[] = {"playMode", "score", "teams"};
 
 void StatusVariables::describe(Description<StatusVariables>& d) {
   d.doc(
-      "A group of variables that is what a game reports: the host's status line, the columns of a batch and the page "
-      "show them. playMode, score and teams are understood, all others are shown by their names.");
+      "A group of variables with the status of a game: the host's status line, the columns of a batch and the page "
+      "show them. playMode, score and teams have a meaning there, all others are shown as name and value.");
   d.implements<IStatus>();
 }
 

@@ -5,13 +5,13 @@
 
 namespace spark {
 
-/// A group whose variables are what a game reports: a game in Lua shows its score with `Status.score = {2, 1}`. They
-/// are state.
+/// A group whose variables are the status of a game (IStatus): a game in Lua reports its score by
+/// `Status.score = {2, 1}`. The variables are part of the saved state.
 class StatusVariables : public Variables, public IStatus {
   SPARK_CLASS(StatusVariables, Variables)
  public:
   static void describe(Description<StatusVariables>& d);
-  /// The words that are understood first, then all others, sorted by name.
+  /// Reports playMode, score and teams first, then all other variables, sorted by name.
   void report(std::vector<StatusEntry>& out) const override;
 
  protected:

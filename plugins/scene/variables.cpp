@@ -5,11 +5,11 @@ namespace spark {
 void Variables::describe(Description<Variables>& d) {
   d.doc("A group of named variables that scene files read as Group.name.");
   d.implements<IVariables>();
-  d.method("set", &Variables::set).parameters({"name", "value"}).doc("Sets a variable; nil takes it away.");
+  d.method("set", &Variables::set).parameters({"name", "value"}).doc("Sets a variable; nil removes it.");
   d.method("get", &Variables::get).parameters({"name"}).doc("The variable's value, nil when there is none.");
   d.property("names", &Variables::names).doc("Names of all variables, sorted.");
   d.property("value", &Variables::value_)
-      .doc("What scene files read as the bare group: a list, indexed from 0, or a table of names.");
+      .doc("Value of the group itself, without a member: a list, indexed from 0, or a table of names.");
 }
 
 Value Variables::variable(std::string_view name) const {

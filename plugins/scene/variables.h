@@ -8,17 +8,18 @@
 
 namespace spark {
 
-/// A group of variables below /sys/variables: its name is the group's (`Robot`), scene files read `Robot.Mass`. What is
-/// read without a member (`NaoType[0]['UseToe']`) is the group's own `value`.
+/// A group of variables, a child of /sys/variables. Its name is that of the group: scene files read `Robot.Mass` from
+/// the group `Robot`. Without a member, as in `NaoType[0]['UseToe']`, they read the group's own `value`.
 class Variables : public Leaf, public IVariables {
   SPARK_CLASS(Variables, Leaf)
  public:
   static void describe(Description<Variables>& d);
-  /// The empty name is the group's own value.
+  /// The value of a variable, nil when there is none; "" is the group's own value.
   Value variable(std::string_view name) const override;
 
  protected:
   using Map = std::map<std::string, Value, std::less<>>;
+  /// All variables, sorted by name.
   const Map& all() const { return variables_; }
   void replaceAll(Map variables) { variables_ = std::move(variables); }
 

@@ -6,9 +6,11 @@
 namespace spark {
 
 namespace {
+/// nullptr while `leaf` is not linked, or when there is none.
 SceneServer* serverOf(const Leaf& leaf) {
   return leaf.isLinked() ? leaf.kernel().root().find<SceneServer>("/sys/server/scene") : nullptr;
 }
+/// Marks the scene as modified.
 void modified(const Leaf& leaf) {
   if (!leaf.isLinked()) return;
   if (auto* server = leaf.kernel().root().find<ISceneServer>()) server->markModified();
@@ -21,21 +23,21 @@ void Light::describe(Description<Light>& d) {
   d.property("diffuse", &Light::diffuse_).doc("Diffuse colour.");
   d.property("ambient", &Light::ambient_).doc("Ambient colour.");
   d.property("specular", &Light::specular_).doc("Specular colour.");
-  d.property("radius", &Light::radius_).unit("m").min(0).doc("How far it shines.");
+  d.property("radius", &Light::radius_).unit("m").min(0).doc("Range of the light.");
 }
 
 void Camera::describe(Description<Camera>& d) {
-  d.doc("A view into the scene, for viewers.");
+  d.doc("A view of the scene, for viewers.");
   d.method("setViewport", &Camera::setViewport)
       .parameters({"x [px]", "y [px]", "width [px]", "height [px]"})
-      .doc("The part of the window it fills.");
+      .doc("Sets the part of the window that the view fills.");
   d.property("viewportX", &Camera::x_).unit("px").doc("Left edge.");
   d.property("viewportY", &Camera::y_).unit("px").doc("Lower edge.");
   d.property("viewportWidth", &Camera::width_).unit("px").min(0).doc("Width.");
   d.property("viewportHeight", &Camera::height_).unit("px").min(0).doc("Height.");
   d.property("FOV", &Camera::fovDeg_).unit("deg").range(0, 180).doc("Horizontal opening angle.");
-  d.property("zNear", &Camera::zNear_).unit("m").doc("Nothing nearer is seen.");
-  d.property("zFar", &Camera::zFar_).unit("m").doc("Nothing farther is seen.");
+  d.property("zNear", &Camera::zNear_).unit("m").doc("Distance of the near clipping plane.");
+  d.property("zFar", &Camera::zFar_).unit("m").doc("Distance of the far clipping plane.");
   d.method("adjustZNear", &Camera::adjustZNear).parameters({"by [m]"}).doc("Adds to zNear.");
   d.method("adjustZFar", &Camera::adjustZFar).parameters({"by [m]"}).doc("Adds to zFar.");
   d.property("target", &Camera::lookAt_).unit("m").doc("The point it looks at, world frame.");
@@ -43,7 +45,7 @@ void Camera::describe(Description<Camera>& d) {
 }
 
 void Axis::describe(Description<Axis>& d) {
-  d.doc("A cross that shows the axes of its transform, for viewers.");
+  d.doc("A visible coordinate frame at its transform, for viewers.");
   d.property("size", &Axis::size_).unit("m").min(0).doc("Length of the arms.");
 }
 
@@ -52,9 +54,9 @@ void RenderNode::describe(Description<RenderNode>& d) {
   d.property("visible", &RenderNode::visible_).state().doc("Viewers show it.");
   d.method("setVisible", &RenderNode::setVisibleValue)
       .parameters({"on"})
-      .doc("1 shows, 0 hides; a text counts as number, so that 'true' hides as in the installed base.");
-  d.property("transparent", &RenderNode::isTransparent).doc("Drawn with its material's opacity.");
-  d.method("setTransparent", &RenderNode::setTransparent).doc("Makes it transparent, for good.");
+      .doc("1 shows, 0 hides. A text is converted to a number, so that 'true' hides, as in the installed base.");
+  d.property("transparent", &RenderNode::isTransparent).doc("Drawn with the opacity of its material.");
+  d.method("setTransparent", &RenderNode::setTransparent).doc("Makes it transparent. This cannot be undone.");
   d.abstract();
 }
 
@@ -67,15 +69,15 @@ void RenderNode::setVisibleValue(Value v) {
 void StaticMesh::describe(Description<StaticMesh>& d) {
   d.doc("A mesh by name, for viewers; the simulation never loads it.");
   d.implements<IVisual>();
-  d.property("mesh", &StaticMesh::load_).readOnly().doc("Name and parameters.");
+  d.property("mesh", &StaticMesh::load_).readOnly().doc("Name and parameters of the mesh.");
   d.method("load", &StaticMesh::loadCall)
       .parameters({"mesh", "parameters"})
-      .doc("Takes another mesh: 'models/x.obj', or a standard one with parameters.");
-  d.property("scale", &StaticMesh::scale_).unit("1").readOnly().doc("Scale of what is shown.");
-  d.method("setScale", &StaticMesh::setScale).parameters({"scale"}).doc("Scales what is shown.");
+      .doc("Sets the mesh: 'models/x.obj', or a standard mesh with parameters.");
+  d.property("scale", &StaticMesh::scale_).unit("1").readOnly().doc("Scale of the mesh.");
+  d.method("setScale", &StaticMesh::setScale).parameters({"scale"}).doc("Sets the scale of the mesh.");
   d.property("materials", &StaticMesh::materials_)
       .readOnly()
-      .doc("Material of each face group, in the mesh's alphabetical order.");
+      .doc("Material of each face group, in alphabetical order of the mesh's own names.");
   d.method("resetMaterials", &StaticMesh::resetMaterials).parameters({"materials"}).doc("Replaces all materials.");
   d.property("castShadows", &StaticMesh::castShadows_).doc("Viewers let it cast shadows.");
   d.property("useExternalMesh", &StaticMesh::useExternalMesh_).doc("Viewers show the external mesh instead.");
@@ -128,12 +130,12 @@ void StaticMesh::setMaterialName(std::size_t i, std::string name) {
 
 void SingleMatNode::describe(Description<SingleMatNode>& d) {
   d.doc("A mesh with one material.");
-  d.method("setMaterial", &SingleMatNode::setMaterial).parameters({"material"}).doc("Gives it a material by name.");
+  d.method("setMaterial", &SingleMatNode::setMaterial).parameters({"material"}).doc("Sets the material, by name.");
 }
 
 void Box::describe(Description<Box>& d) {
   d.doc("A visible box.");
-  d.method("setExtents", &Box::setScale).parameters({"edges [m]"}).doc("Full edge lengths.");
+  d.method("setExtents", &Box::setScale).parameters({"edges [m]"}).doc("Sets the full edge lengths.");
 }
 
 void Sphere::describe(Description<Sphere>& d) {
@@ -145,7 +147,7 @@ void Capsule::describe(Description<Capsule>& d) {
   d.doc("A visible capsule along z.");
   d.method("setParams", &Capsule::setParams)
       .parameters({"radius [m]", "length [m]"})
-      .doc("Radius, and length without the caps.");
+      .doc("Sets the radius, and the length without the caps.");
   d.property("radius", &Capsule::radius_).unit("m").readOnly().doc("Radius.");
   d.property("length", &Capsule::length_).unit("m").readOnly().doc("Length without the caps.");
 }
@@ -159,7 +161,7 @@ void Cylinder::describe(Description<Cylinder>& d) {
   d.doc("A visible cylinder along z.");
   d.method("setParams", &Cylinder::setParams)
       .parameters({"radius [m]", "length [m]"})
-      .doc("Radius and length; viewers draw a unit cylinder, so scale it as well.");
+      .doc("Sets radius and length. Viewers draw a unit cylinder, so set the scale as well.");
   d.property("radius", &Cylinder::radius_).unit("m").readOnly().doc("Radius.");
   d.property("length", &Cylinder::length_).unit("m").readOnly().doc("Length.");
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a viewer sees: lights, meshes, cameras. The simulation itself only keeps their values.
+/// Lights, meshes and cameras, for viewers. The simulation only stores their values.
 
 #include "api/scene.h"
 
@@ -25,11 +25,12 @@ class Light : public SceneNode, public IVisual {
  private:
   Color diffuse_{1, 1, 1, 1}, ambient_{0, 0, 0, 1}, specular_{1, 1, 1, 1};
   double radius_ = 1000;
+  // Empty results of load() and materials().
   std::string nothing_;
   std::vector<std::string> none_;
 };
 
-/// A view into the scene.
+/// A view of the scene.
 class Camera : public SceneNode {
   SPARK_CLASS(Camera, SceneNode)
  public:
@@ -44,7 +45,7 @@ class Camera : public SceneNode {
   Vec3 lookAt_ = Vec3::Zero();
 };
 
-/// A cross that shows the axes of its transform.
+/// A visible coordinate frame at its transform.
 class Axis : public SceneNode {
   SPARK_CLASS(Axis, SceneNode)
  public:
@@ -60,7 +61,7 @@ class RenderNode : public SceneNode {
  public:
   static void describe(Description<RenderNode>& d);
   bool isVisible() const { return visible_; }
-  /// Viewers are told of it without a full message.
+  /// Shows or hides the shape. Monitors send this without a full message.
   void show(bool on) { visible_ = on; }
   bool isTransparent() const { return transparent_; }
 
@@ -86,13 +87,14 @@ class StaticMesh : public RenderNode, public IVisual {
   void setMaterialName(std::size_t i, std::string name) override;
 
  protected:
-  /// Takes another mesh: its name and parameters as monitors get them.
+  /// Sets the mesh: its name and parameters as monitors send them.
   void loadMesh(std::string load);
-  /// Takes what the mesh has for materials.
+  /// Called when the mesh changed: takes over its materials.
   virtual void meshChanged();
   void setScale(Vec3f scale);
+  /// Replaces all materials. Logs a warning for unknown names.
   void resetMaterials(std::vector<std::string> names);
-  /// Materials change while the simulation runs: teams dress their robots.
+  /// Materials are state: robots get the colours of their team while the simulation runs.
   void saveState(StateWriter& out) const override;
   void loadState(StateReader& in) override;
 
@@ -138,7 +140,7 @@ class Sphere : public SingleMatNode {
   void setRadius(double r) { setScale(Vec3f::Constant(static_cast<float>(r))); }
 };
 
-/// A cylinder with half spheres at its ends, along z.
+/// A capsule along z: a cylinder with a half sphere at each end.
 class Capsule : public SingleMatNode {
   SPARK_CLASS(Capsule, SingleMatNode)
  public:
