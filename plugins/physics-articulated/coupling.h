@@ -38,7 +38,7 @@ class Coupling {
     Index row;
     Index begin, end;  ///< of its path response, in pathTerms_
   };
-  PathResponse pathOf(const Member& m) const { return {pathTerms_.data() + m.begin, m.end - m.begin}; }
+  PathResponse pathOf(const Member& m) const { return {pathTerms_.data() + m.begin, pathTerms_.data() + m.end}; }
   void factor(const Rows& rows);
   std::vector<Member> members_;
   std::vector<PathTerm> pathTerms_;

@@ -181,7 +181,7 @@ void Elimination::appendPathResponse(const Row& row, std::vector<PathTerm>& out)
 // from the pivots of T, which are M > 0 for the motions and -W < 0 for the forces.
 double Elimination::delassusTerm(PathResponse i, PathResponse j) {
   double sum = 0;
-  auto a = i.begin(), b = j.begin();
+  const PathTerm *a = i.begin(), *b = j.begin();
   while (a != i.end() && b != j.end()) {
     if (a->node > b->node) {
       ++a;

@@ -83,8 +83,13 @@ struct PathTerm {
   SpatialVector scaledZ, scaledQ;  ///< D^-1 z and D^-1 q, with the D of the two factorisations
 };
 
-/// The path response of a row: nodes in falling order, from its bodies to the roots.
-using PathResponse = std::span<const PathTerm>;
+/// The path response of a row: its terms, nodes in falling order from the row's bodies to the roots. Valid as long as
+/// the array of the terms.
+struct PathResponse {
+  const PathTerm *first, *last;
+  const PathTerm* begin() const { return first; }
+  const PathTerm* end() const { return last; }
+};
 
 /// The trees of an island. Memory is kept from step to step.
 class Elimination {

@@ -259,25 +259,22 @@ void IslandSolver::writeResult(WorldView& world) {
 void IslandSolver::writeWarmStart(WorldView& world) const {
   for (const RowRange& range : joints_) {
     JointWarmStart& warmStart = world.joints[range.source];
-    for (Index i = range.first; i < range.end(); ++i) {
-      const Row& row = system_.rows[i];
+    for (const Row& row : system_.rows.range(range.first, range.count)) {
       if (row.axis == kNoAxis) continue;
       warmStart.state[row.axis] = row.state;
       warmStart.stop[row.axis] = row.stop;
     }
   }
-  for (const RowRange& range : contacts_)
-    for (Index i = 0; i < range.count; ++i)
-      world.contacts.current(range.source)[i] = system_.rows[range.first + i].state;
+  for (const RowRange& range : contacts_) {
+    ContactWarmStart::States& states = world.contacts.current(range.source);
+    for (Index i = 0; i < range.count; ++i) states[i] = system_.rows[range.first + i].state;
+  }
 }
 
 /// The sum of J^T x of rows, for body A or B.
 SpatialVector IslandSolver::totalForce(const RowRange& range, SpatialVector Row::*jacobian) const {
   SpatialVector sum = SpatialVector::zero();
-  for (Index i = range.first; i < range.end(); ++i) {
-    const Row& row = system_.rows[i];
-    sum.addScaled(row.*jacobian, row.force);
-  }
+  for (const Row& row : system_.rows.range(range.first, range.count)) sum.addScaled(row.*jacobian, row.force);
   return sum;
 }
 

@@ -71,6 +71,9 @@ class Rows {
   void reserve(std::size_t rows) {
     if (rows_.size() < rows) rows_.resize(rows);
   }
+  /// Rows first .. first + count - 1.
+  std::span<Row> range(Index first, Index count) { return {rows_.data() + first, count}; }
+  std::span<const Row> range(Index first, Index count) const { return {rows_.data() + first, count}; }
   Row& operator[](Index i) { return rows_[i]; }
   const Row& operator[](Index i) const { return rows_[i]; }
   Row* begin() { return rows_.data(); }

@@ -29,9 +29,9 @@ void System::addForce(const Row& row, double force) {
 void System::readForces() {
   // Rows of tree joints.
   for (const Node& node : trees.nodes)
-    for (Index i = 0; i < node.rowCount; ++i) {
-      Row& row = rows[node.firstRow + i];
-      if (row.holds()) row.force = node.jointForces[static_cast<int>(i)];
+    for (int i = 0; Row & row : rows.range(node.firstRow, node.rowCount)) {
+      if (row.holds()) row.force = node.jointForces[i];
+      ++i;
     }
   // Rows at bounds, and folded rows: x = D^-1 (r - J u). Coupling wrote its own.
   for (Row& row : rows) {

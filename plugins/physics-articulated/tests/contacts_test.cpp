@@ -7,8 +7,8 @@ using engine::JointType;
 
 namespace {
 
-/// Boxes above the ground, side by side or one above the other.
-void addBoxes(Twins& t, int count, double apart) {
+/// Random boxes above the ground, `spacing` [m] apart, and one above the other if that is below 0.5.
+void addBoxes(Twins& t, int count, double spacing) {
   for (int i = 0; i < count; ++i) {
     const Vec3 lengths = {t.uniform(0.2, 0.4), t.uniform(0.2, 0.4), t.uniform(0.2, 0.4)};
     const double mass = t.uniform(0.2, 3);
@@ -16,28 +16,28 @@ void addBoxes(Twins& t, int count, double apart) {
     const Mat3 inertia =
         (mass / 12 * Vec3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
             .asDiagonal();
-    const std::size_t b = t.body({apart * (i % 5), 0.1 * t.uniform(-1, 1), 0.25 + (apart < 0.5 ? 0.3 * i : 0.0)}, mass,
-                                 inertia, t.anyRotation());
+    const std::size_t b = t.body({spacing * (i % 5), 0.1 * t.uniform(-1, 1), 0.25 + (spacing < 0.5 ? 0.3 * i : 0.0)},
+                                 mass, inertia, t.randomRotation());
     t.box(lengths, b);
   }
 }
 
-/// A chain of boxes, each held to the one before by a hinge with a motor.
-void addChain(Twins& t, int length, const Vec3& at, double strength) {
+/// A chain of boxes along x from `origin`, connected by hinges with motors of `maxForce` [Nm].
+void addChain(Twins& t, int length, const Vec3& origin, double maxForce) {
   std::size_t last = 0;
   for (int i = 0; i < length; ++i) {
-    const Vec3 here = at + Vec3(0.22 * i, 0, 0);
-    const std::size_t b = t.body(here, 0.5, t.anyInertia(0.5, 0.2));
+    const Vec3 position = origin + Vec3(0.22 * i, 0, 0);
+    const std::size_t b = t.body(position, 0.5, t.randomInertia(0.5, 0.2));
     t.box({0.2, 0.1, 0.1}, b);
     if (i > 0) {
       const std::size_t j = i % 2 ? t.joint(JointType::hinge, static_cast<int>(last), static_cast<int>(b))
                                   : t.joint(JointType::hinge, static_cast<int>(b), static_cast<int>(last));
-      const Vec3 axis = t.anyVector(1);
-      t.eachJoint(j, [&](engine::IEngine& e, engine::Joint joint) {
-        e.setAnchor(joint, here - Vec3(0.11, 0, 0));
+      const Vec3 axis = t.randomVector(1);
+      t.forBothJoints(j, [&](engine::IEngine& e, engine::Joint joint) {
+        e.setAnchor(joint, position - Vec3(0.11, 0, 0));
         e.setAxis(joint, 0, axis);
       });
-      t.set(j, JointParameter::maxForce, 0, strength);
+      t.set(j, JointParameter::maxForce, 0, maxForce);
       t.set(j, JointParameter::velocity, 0, t.uniform(-4, 4));
       t.set(j, JointParameter::lowStop, 0, -0.6);
       t.set(j, JointParameter::highStop, 0, 0.6);
@@ -48,7 +48,7 @@ void addChain(Twins& t, int length, const Vec3& at, double strength) {
 
 }  // namespace
 
-TEST_CASE("boxes fall on the ground, bounce and slip as with ODE") {
+TEST_CASE("boxes that fall, bounce and slip move as with ODE") {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     INFO("seed " << seed);
     Twins t(seed);
@@ -77,19 +77,19 @@ TEST_CASE("a pile of boxes settles as with ODE") {
   }
 }
 
-TEST_CASE("no room is made for islands that the engine's own limit leaves to it") {
+TEST_CASE("no memory is allocated for islands that the engine's own limit defers to it") {
   Twins t;
   setProperty(t.kernel.root().require<Leaf>("/sys/solved/solver"), "mostRows", 1000000000);
   t.ground();
   for (int i = 0; i < 1000; ++i)
     t.box({0.2, 0.2, 0.2},
           t.body({0.19 * (i % 10), 0.19 * (i / 10 % 10), 0.1 + 0.19 * (i / 100)}, 1, Mat3::Identity()));
-  t.touch(t.solved);
+  t.detectContacts(t.solved);
   t.solved.engine.step(t.solved.world, t.solved.contacts, t.dt);
   CHECK(t.counted("deferredIslands") > 0);
 }
 
-TEST_CASE("chains fall on the ground and on each other as with ODE") {
+TEST_CASE("chains that fall on the ground and on each other move as with ODE") {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     INFO("seed " << seed);
     Twins t(seed);

@@ -7,12 +7,12 @@ using engine::JointType;
 
 namespace {
 
-/// Anchor, axes, motors and stops as `random` has them.
-void dress(Twins& t, std::size_t joint, JointType type, const Vec3& anchor) {
-  const Vec3 axis1 = t.anyVector(1).normalized(), other = t.anyVector(1);
+/// Sets an anchor, random axes, motors and stops.
+void configure(Twins& t, std::size_t joint, JointType type, const Vec3& anchor) {
+  const Vec3 axis1 = t.randomVector(1).normalized(), other = t.randomVector(1);
   const Vec3 axis2 = (other - other.dot(axis1) * axis1).normalized(), axis3 = axis1.cross(axis2);
-  const bool euler = t.pick(2) == 0;
-  t.eachJoint(joint, [&](engine::IEngine& e, engine::Joint j) {
+  const bool euler = t.randomInt(2) == 0;
+  t.forBothJoints(joint, [&](engine::IEngine& e, engine::Joint j) {
     e.setAnchor(j, anchor);
     if (type == JointType::angularMotor) {
       e.setAngularMotor(j, 3, euler);
@@ -27,19 +27,19 @@ void dress(Twins& t, std::size_t joint, JointType type, const Vec3& anchor) {
     e.setFixed(j);
   });
   for (int axis = 0; axis < 3; ++axis) {
-    if (t.pick(2)) {
+    if (t.randomInt(2)) {
       t.set(joint, JointParameter::maxForce, axis, t.uniform(0.01, 10));
       t.set(joint, JointParameter::velocity, axis, t.uniform(-5, 5));
     }
-    if (t.pick(2)) {
-      const double width = t.pick(4) ? t.uniform(0, 0.5) : 0;
+    if (t.randomInt(2)) {
+      const double width = t.randomInt(4) ? t.uniform(0, 0.5) : 0;
       const double low = t.uniform(-0.4, 0.2);
       t.set(joint, JointParameter::highStop, axis, low + width);
       t.set(joint, JointParameter::lowStop, axis, low);
-      t.set(joint, JointParameter::bounce, axis, t.pick(2) ? 0.7 : 0);
+      t.set(joint, JointParameter::bounce, axis, t.randomInt(2) ? 0.7 : 0);
       t.set(joint, JointParameter::fudgeFactor, axis, t.uniform(0, 1));
     }
-    t.set(joint, JointParameter::cfm, axis, t.pick(2) ? 1e-4 : 1e-6);
+    t.set(joint, JointParameter::cfm, axis, t.randomInt(2) ? 1e-4 : 1e-6);
     t.set(joint, JointParameter::stopErp, axis, 0.4);
   }
   t.set(joint, JointParameter::suspensionErp, 0, 0.3);
@@ -50,10 +50,10 @@ const char* kNames[] = {"ball", "hinge", "hinge2", "slider", "universal", "fixed
 
 }  // namespace
 
-TEST_CASE("a body alone flies as with ODE, gyroscopic torque and gravity mode included") {
+TEST_CASE("a free body moves as with ODE, with gyroscopic torque and gravity mode") {
   Twins t;
-  const std::size_t a = t.anyBody({0, 0, 1}), b = t.anyBody({3, 0, 1});
-  t.each([&](Scene& s) { s.engine.setGravityMode(s.bodies[b], false); });
+  const std::size_t a = t.randomBody({0, 0, 1}), b = t.randomBody({3, 0, 1});
+  t.forBoth([&](Scene& s) { s.engine.setGravityMode(s.bodies[b], false); });
   (void)a;
   t.shake();
   t.checkSteps(50);
@@ -66,10 +66,10 @@ TEST_CASE("every joint type in both orders of its bodies, and with the world, mo
       for (unsigned seed = 1; seed <= 6; ++seed) {
         INFO(kNames[type] << ", order " << order << ", seed " << seed);
         Twins t(seed * 100 + static_cast<unsigned>(order));
-        t.anyBody({0, 0, 1});
-        t.anyBody({0.3, 0.1, 1.2});
+        t.randomBody({0, 0, 1});
+        t.randomBody({0.3, 0.1, 1.2});
         const int ends[4][2] = {{0, 1}, {1, 0}, {0, -1}, {-1, 0}};
-        dress(t, t.joint(kTypes[type], ends[order][0], ends[order][1]), kTypes[type], {0.15, 0, 1.1});
+        configure(t, t.joint(kTypes[type], ends[order][0], ends[order][1]), kTypes[type], {0.15, 0, 1.1});
         t.shake();
         t.checkSteps(30);
       }

@@ -7,7 +7,7 @@
 using namespace spark;
 using namespace spark::articulated;
 
-TEST_CASE("angles are those of the mathematical library, all round") {
+TEST_CASE("portableAtan2 is the mathematical library's atan2 in all directions") {
   for (int i = -2000; i <= 2000; ++i) {
     const double angle = kPi * i / 2000, size = 1e-6 + std::abs(i);
     const double y = size * std::sin(angle), x = size * std::cos(angle);
@@ -18,23 +18,23 @@ TEST_CASE("angles are those of the mathematical library, all round") {
   CHECK(std::isnan(portableAtan2(std::nan(""), 1)));
 }
 
-TEST_CASE("a rotation's turn gives it back") {
+TEST_CASE("the quaternion of a rotation matrix is the same rotation") {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int i = 0; i < 200; ++i) {
     const Mat3 m = orthonormalFrame({any(random), any(random), any(random)}, {any(random), any(random), any(random)});
-    const Quaternion t = Quaternion::of(m);
-    const Eigen::Quaterniond q(t.w, t.v.x(), t.v.y(), t.v.z());
-    CHECK((q.toRotationMatrix() - m).norm() < 1e-14);
+    const Quaternion q = Quaternion::of(m);
+    const Eigen::Quaterniond same(q.w, q.v.x(), q.v.y(), q.v.z());
+    CHECK((same.toRotationMatrix() - m).norm() < 1e-14);
   }
 }
 
-TEST_CASE("Dantzig's way keeps every row's conditions") {
+TEST_CASE("Dantzig's algorithm meets every row's conditions") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int round = 0; round < 100; ++round) {
     const auto n = static_cast<Eigen::Index>(1 + random() % 40);
-    const auto inner = round % 3 ? n : std::max<Eigen::Index>(1, n / 2);  // sometimes hardly more than singular
+    const auto inner = round % 3 ? n : std::max<Eigen::Index>(1, n / 2);  // sometimes nearly singular
     Eigen::MatrixXd half(n, inner);
     Eigen::VectorXd b(n);
     for (double& v : half.reshaped()) v = any(random);
@@ -51,7 +51,7 @@ TEST_CASE("Dantzig's way keeps every row's conditions") {
     }
     std::vector<RowState> states;
     REQUIRE(lcp.solve(states));
-    // Solve for the rows that hold, and look.
+    // Solve for the rows that hold, with the others at their bounds, and check the conditions.
     Eigen::VectorXd x(n);
     std::vector<Eigen::Index> holding;
     for (Eigen::Index i = 0; i < n; ++i) {

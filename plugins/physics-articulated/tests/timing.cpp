@@ -1,7 +1,12 @@
-// Prints what a step costs by ODE's dense solver and by this one, both through the engine, with the same contacts: CPU
-// time of this thread, medians (dense: the engine with ODE; engine: with this solver, of which solver: the solver
-// itself; times: dense / solver), in microseconds for each robot and step. Nothing is asserted; runs only when asked
-// for: test-physics-articulated [timing].
+// Prints the time of a step with ODE's dense solver and with the articulated solver, through the engine and with the
+// same contacts: medians of this thread's CPU time, in microseconds per robot (or box) and step.
+//
+//     dense   the engine with ODE's solver
+//     engine  the engine with the articulated solver
+//     solver  the articulated solver's part of that
+//     times   dense / solver
+//
+// Nothing is asserted. Runs only on request: test-physics-articulated "[timing]".
 
 #include <fmt/format.h>
 
@@ -17,6 +22,7 @@ using namespace spark::test;
 
 namespace {
 
+/// CPU time of this thread [us].
 double now() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -28,30 +34,30 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// The solver, with a clock: what it takes from the engine's plain data and back.
+/// The articulated solver, with a clock.
 class TimedSolver : public Leaf, public engine::ISolver {
   SPARK_CLASS(TimedSolver, Leaf)
  public:
   static void describe(Description<TimedSolver>& d) {
-    d.doc("Solves against a clock.");
+    d.doc("Measures the time of the articulated solver.");
     d.implements<engine::ISolver>();
   }
   std::size_t step(engine::SolverStep& step) override {
     const double start = now();
-    const std::size_t left = stepper.step(step, 1, {});
+    const std::size_t deferred = stepper.step(step, 1, {});
     spent = now() - start;
-    return left;
+    return deferred;
   }
   void forget(engine::World world) override { stepper.forget(world); }
   articulated::Stepper stepper;
-  double spent = 0;
+  double spent = 0;  ///< in the last step [us]
 };
 
-/// A scene in both engines, stepped by turns.
+/// A scene in both engines, stepped in turns, and the times of all steps [us].
 struct Timing {
   Twins twins;
   TimedSolver& timed;
-  std::vector<double> dense, whole, alone;
+  std::vector<double> dense, engine, solver;
   double contacts = 0;
 
   Timing() : timed(replaceSolver(twins)) {
@@ -65,58 +71,60 @@ struct Timing {
     return t.kernel.create<TimedSolver>("TimedSolver", "/sys/solved/solver");
   }
   void step(Scene& scene) {
-    twins.touch(scene);
+    twins.detectContacts(scene);
     contacts = static_cast<double>(scene.contacts.size());
     const double start = now();
     scene.engine.step(scene.world, scene.contacts, twins.dt);
-    (&scene == &twins.plain ? dense : whole).push_back(now() - start);
-    if (&scene == &twins.solved) alone.push_back(timed.spent);
+    (&scene == &twins.plain ? dense : engine).push_back(now() - start);
+    if (&scene == &twins.solved) solver.push_back(timed.spent);
   }
-  /// In blocks: a step finds in the caches what the same world's last step left there, as it does in a run.
-  /// `before(scene, step)` drives.
+  /// Steps both scenes in alternating blocks: within a block, a step finds the caches as the same world's last step
+  /// left them, as it does in a run. `before(scene, step)` sets the motors.
   template <class F>
   void run(int steps, F&& before) {
     constexpr int kBlock = 10;
     for (int first = 0; first < steps; first += kBlock) {
       twins.copyState();
-      twins.each([&](Scene& scene) {
+      twins.forBoth([&](Scene& scene) {
         for (int i = first; i < first + kBlock; ++i) before(scene, i), step(scene);
       });
     }
   }
-  /// For each of so many robots or boxes.
-  void print(const char* name, int things) const {
-    const double d = median(dense) / things, e = median(whole) / things, solver = median(alone) / things;
+  /// Prints the medians per robot or box, of which there are `count`.
+  void print(const char* name, int count) const {
+    const double d = median(dense) / count, e = median(engine) / count, a = median(solver) / count;
     const articulated::Stepper& s = timed.stepper;
-    fmt::print("{:<28} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6}\n", "", "contacts", "dense", "engine", "solver",
-               "times", "passes", "exact", "left");
-    fmt::print("{:<28} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.2f} {:>8.1f} {:>8.2f} {:>6} {:>6}\n", name, contacts / things, d,
-               e, solver, d / solver, static_cast<double>(s.passes()) / static_cast<double>(s.islands()),
-               s.exactSolutions(), s.deferredIslands());
+    fmt::print("{:<28} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>8}\n", "", "contacts", "dense", "engine", "solver",
+               "times", "passes", "exact", "deferred");
+    fmt::print("{:<28} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.2f} {:>8.1f} {:>8.2f} {:>6} {:>8}\n", name, contacts / count, d,
+               e, a, d / a, static_cast<double>(s.passes()) / static_cast<double>(s.islands()), s.exactSolutions(),
+               s.deferredIslands());
   }
 };
 
-struct Doing {
+/// What humanoids do.
+struct Motion {
   const char* name;
   int robots;
-  double height, apart;  ///< m
-  double strength;       ///< Nm
-  double speed;          ///< rad/s
-  bool random;
+  double height, spacing;  ///< m
+  double maxTorque;        ///< of the motors [Nm]
+  double speed;            ///< largest of the motors [rad/s]
+  bool random;             ///< another speed in each step, else a sine
 };
 
-void timeHumanoids(const Doing& what, int steps) {
+void timeHumanoids(const Motion& motion, int steps) {
   Timing timing;
   Humanoids humanoids(timing.twins);
-  for (int i = 0; i < what.robots; ++i) humanoids.add({what.apart * (i % 6), what.apart * (i / 6), what.height});
+  for (int i = 0; i < motion.robots; ++i)
+    humanoids.add({motion.spacing * (i % 6), motion.spacing * (i / 6), motion.height});
   timing.run(steps, [&](Scene& scene, int i) {
     const auto speed = [&](std::size_t j) {
-      return what.random ? timing.twins.uniform(-what.speed, what.speed)
-                         : what.speed * std::sin(0.1 * i + 0.3 * static_cast<double>(j));
+      return motion.random ? timing.twins.uniform(-motion.speed, motion.speed)
+                           : motion.speed * std::sin(0.1 * i + 0.3 * static_cast<double>(j));
     };
-    humanoids.drive(scene, speed, what.strength);
+    humanoids.drive(scene, speed, motion.maxTorque);
   });
-  timing.print(what.name, what.robots);
+  timing.print(motion.name, motion.robots);
 }
 
 void timeBoxes(int count, int steps) {
@@ -130,7 +138,7 @@ void timeBoxes(int count, int steps) {
 
 }  // namespace
 
-TEST_CASE("what a step costs by the dense solver and along the trees", "[.][timing]") {
+TEST_CASE("time of a step with the dense and with the articulated solver", "[.][timing]") {
   constexpr int kSteps = 150;
   SECTION("air") { timeHumanoids({"in the air, moving", 22, 50, 2, 25, 2, false}, kSteps); }
   SECTION("standing") { timeHumanoids({"standing", 22, 0, 2, 25, 0, false}, kSteps); }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The same scene in two engines: one steps by ODE alone, the other by the solver. Before every step the second takes
-/// over the first one's state; after it, what they say must agree.
+/// The same scene in two engines: one uses ODE's direct solver, the other the articulated solver. Before each step the
+/// second takes over the first one's state; after it, states and forces of both must agree.
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -12,12 +12,12 @@
 
 namespace spark::test {
 
-/// Every type of joint.
+/// All joint types.
 inline constexpr engine::JointType kTypes[] = {
     engine::JointType::ball,      engine::JointType::hinge, engine::JointType::hinge2,      engine::JointType::slider,
     engine::JointType::universal, engine::JointType::fixed, engine::JointType::angularMotor};
 
-/// One engine's world with what was put into it.
+/// A world of one engine, with its bodies and joints in order of creation.
 struct Scene {
   engine::IEngine& engine;
   engine::World world;
@@ -29,17 +29,20 @@ struct Scene {
       : engine(e), world(e.createWorld()), space(e.createSpace(world, engine::Space::none)) {}
 };
 
-/// Largest differences found.
+/// Largest differences between the two worlds. Velocities and feedback are relative to the largest in the world;
+/// position is in m, or an element of the rotation matrix.
 struct Differences {
-  double velocity = 0, place = 0, feedback = 0;  ///< relative to the largest in the world
+  double velocity = 0, position = 0, feedback = 0;
 };
 
+/// Builds the scene in both engines and steps it. Random numbers come from `random` alone, so a scene depends only on
+/// its seed.
 class Twins : public House {
  public:
-  Scene plain, solved;
+  Scene plain, solved;  ///< by ODE alone; by the articulated solver
   engine::WorldParameters parameters;
-  engine::Surface surface;
-  double dt = 0.02;
+  engine::Surface surface;  ///< of all contacts
+  double dt = 0.02;         ///< s
   std::mt19937 random;
 
   explicit Twins(unsigned seed = 1)
@@ -49,29 +52,34 @@ class Twins : public House {
     parameters.autoDisable = false;
     apply();
   }
-  /// A solver that remembers nothing.
+  /// Replaces the solver by a new one, which has no warm start.
   void newSolver() {
     if (solver_) solver_->parent()->remove(*solver_);
     solver_ = &kernel.create("ArticulatedSolver", "/sys/solved/solver");
   }
+  /// Sets `parameters` in both worlds.
   void apply() {
-    each([&](Scene& s) { s.engine.setWorldParameters(s.world, parameters); });
+    forBoth([&](Scene& s) { s.engine.setWorldParameters(s.world, parameters); });
   }
+  /// Calls f for both scenes.
   template <class F>
-  void each(F&& f) {
+  void forBoth(F&& f) {
     f(plain);
     f(solved);
   }
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
-  int pick(int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); }
-  Vec3 anyVector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
-  Mat3 anyRotation() {
+  /// 0..n-1.
+  int randomInt(int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); }
+  /// Elements in -size..size.
+  Vec3 randomVector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
+  Mat3 randomRotation() {
     return (Eigen::AngleAxisd(uniform(-3, 3), Vec3::UnitX()) * Eigen::AngleAxisd(uniform(-3, 3), Vec3::UnitY()) *
             Eigen::AngleAxisd(uniform(-3, 3), Vec3::UnitZ()))
         .toRotationMatrix();
   }
-  Mat3 anyInertia(double mass, double size) {
-    const Mat3 r = anyRotation();
+  /// Of a box with edges of size / 2 .. size [m], in a random rotation.
+  Mat3 randomInertia(double mass, double size) {
+    const Mat3 r = randomRotation();
     const Vec3 sizes(uniform(0.5, 1), uniform(0.5, 1), uniform(0.5, 1));
     const Vec3 squares = sizes.cwiseProduct(sizes) * size * size;
     return r *
@@ -80,8 +88,9 @@ class Twins : public House {
            r.transpose();
   }
 
+  /// Adds a body; returns its index in Scene::bodies.
   std::size_t body(const Vec3& at, double mass, const Mat3& inertia, const Mat3& rotation = Mat3::Identity()) {
-    each([&](Scene& s) {
+    forBoth([&](Scene& s) {
       const engine::Body b = s.engine.createBody(s.world);
       s.engine.setMass(b, {mass, Vec3::Zero(), inertia});
       s.engine.setPosition(b, at);
@@ -90,23 +99,25 @@ class Twins : public House {
     });
     return plain.bodies.size() - 1;
   }
-  std::size_t anyBody(const Vec3& at) {
+  std::size_t randomBody(const Vec3& at) {
     const double mass = uniform(0.1, 3);
-    return body(at, mass, anyInertia(mass, 0.3), anyRotation());
+    return body(at, mass, randomInertia(mass, 0.3), randomRotation());
   }
+  /// Adds a geom to a body; -1: static.
   void geom(const engine::ShapeDescription& shape, int body) {
-    each([&](Scene& s) {
+    forBoth([&](Scene& s) {
       const engine::Geom g = s.engine.createGeom(s.space, shape, nullptr);
       s.engine.setBody(g, body < 0 ? engine::Body::none : s.bodies[static_cast<std::size_t>(body)], {});
     });
   }
-  /// Geoms from now on stand in a space of their own and do not touch each other.
+  /// Geoms that are added from now on are in a new space and do not collide with each other.
   void newSpace() {
-    each([&](Scene& s) {
+    forBoth([&](Scene& s) {
       s.space = s.engine.createSpace(s.world, engine::Space::none);
       s.engine.setInnerCollision(s.space, false);
     });
   }
+  /// A static plane at z = 0.
   void ground() {
     engine::ShapeDescription s;
     s.shape = engine::Shape::plane;
@@ -117,9 +128,9 @@ class Twins : public House {
     s.lengths = lengths;
     geom(s, static_cast<int>(body));
   }
-  /// -1: the world.
+  /// Adds a joint between two bodies; -1: the world. Returns its index in Scene::joints.
   std::size_t joint(engine::JointType type, int a, int b, bool feedback = true) {
-    each([&](Scene& s) {
+    forBoth([&](Scene& s) {
       const auto of = [&](int i) { return i < 0 ? engine::Body::none : s.bodies[static_cast<std::size_t>(i)]; };
       const engine::Joint j = s.engine.createJoint(s.world, type);
       s.engine.attach(j, of(a), of(b));
@@ -128,19 +139,21 @@ class Twins : public House {
     });
     return plain.joints.size() - 1;
   }
+  /// Calls f(engine, joint) in both scenes.
   template <class F>
-  void eachJoint(std::size_t joint, F&& f) {
-    each([&](Scene& s) { f(s.engine, s.joints[joint]); });
+  void forBothJoints(std::size_t joint, F&& f) {
+    forBoth([&](Scene& s) { f(s.engine, s.joints[joint]); });
   }
   void set(std::size_t joint, engine::JointParameter p, int axis, double v) {
-    eachJoint(joint, [&](engine::IEngine& e, engine::Joint j) { e.setParameter(j, p, axis, v); });
+    forBothJoints(joint, [&](engine::IEngine& e, engine::Joint j) { e.setParameter(j, p, axis, v); });
   }
 
-  /// Velocities of all bodies as `random` has them, and a push.
+  /// Gives all bodies random velocities, forces and torques.
   void shake(double speed = 1) {
     for (std::size_t i = 0; i < plain.bodies.size(); ++i) {
-      const Vec3 v = anyVector(speed), w = anyVector(3 * speed), f = anyVector(2 * speed), q = anyVector(speed);
-      each([&](Scene& s) {
+      const Vec3 v = randomVector(speed), w = randomVector(3 * speed), f = randomVector(2 * speed),
+                 q = randomVector(speed);
+      forBoth([&](Scene& s) {
         s.engine.setLinearVelocity(s.bodies[i], v);
         s.engine.setAngularVelocity(s.bodies[i], w);
         s.engine.addForce(s.bodies[i], f);
@@ -148,40 +161,42 @@ class Twins : public House {
       });
     }
   }
-  /// Checks some steps, each from the plain one's state.
+  /// Steps, each time from the state of `plain`, and checks that both agree: velocities and positions to 1e-8, feedback
+  /// to `forces`.
   void checkSteps(int steps, double forces = 1e-6) {
     Differences worst;
     for (int i = 0; i < steps; ++i) {
       const Differences d = step();
       worst.velocity = std::max(worst.velocity, d.velocity);
-      worst.place = std::max(worst.place, d.place);
+      worst.position = std::max(worst.position, d.position);
       worst.feedback = std::max(worst.feedback, d.feedback);
     }
     CHECK(worst.velocity < 1e-8);
-    CHECK(worst.place < 1e-8);
+    CHECK(worst.position < 1e-8);
     CHECK(worst.feedback < forces);
     CHECK(counted("islands") > 0);
     CHECK(counted("deferredIslands") == 0);
   }
 
-  /// One step of both from the state of the plain one.
-  Differences step(bool takeOver = true) {
-    if (takeOver) copyState();
+  /// One step of both from the state of `plain`.
+  Differences step() {
+    copyState();
     Differences d;
-    each([&](Scene& s) {
-      touch(s);
+    forBoth([&](Scene& s) {
+      detectContacts(s);
       s.engine.step(s.world, s.contacts, dt);
     });
     REQUIRE(plain.contacts.size() == solved.contacts.size());
     compare(d);
     return d;
   }
-  /// Finds contacts.
-  void touch(Scene& s) {
+  /// Fills Scene::contacts.
+  void detectContacts(Scene& s) {
     s.contacts.clear();
     s.engine.detect(s.world, nullptr, 4, s.contacts);
     for (auto& c : s.contacts) c.solve = c.feedback = true, c.surface = surface;
   }
+  /// Copies the state of `plain` to `solved`.
   void copyState() {
     std::vector<double> state;
     for (std::size_t i = 0; i < plain.bodies.size(); ++i) {
@@ -191,14 +206,8 @@ class Twins : public House {
     }
   }
   Leaf& solver() { return *solver_; }
+  /// A counter of the solver.
   std::int64_t counted(const char* property) { return getProperty(*solver_, property).toInteger(); }
-
-  /// Of velocities, as in Differences.
-  double difference() {
-    Differences d;
-    compare(d);
-    return d.velocity;
-  }
 
  private:
   static engine::IEngine& make(Kernel& kernel, const char* path) {
@@ -206,7 +215,7 @@ class Twins : public House {
     return kernel.create<engine::IEngine>("OdeEngine", path);
   }
   void compare(Differences& d) {
-    double fastest = 1e-3, strongest = 1e-3;
+    double largestVelocity = 1e-3, largestForce = 1e-3;
     double velocity = 0, force = 0;
     const auto differ = [](const Vec3& a, const Vec3& b, double& difference, double& size) {
       difference = std::max(difference, (a - b).norm());
@@ -215,21 +224,21 @@ class Twins : public House {
     };
     for (std::size_t i = 0; i < plain.bodies.size(); ++i) {
       const engine::BodyState a = plain.engine.state(plain.bodies[i]), b = solved.engine.state(solved.bodies[i]);
-      differ(a.linearVelocity, b.linearVelocity, velocity, fastest);
-      differ(a.angularVelocity, b.angularVelocity, velocity, fastest);
-      d.place = std::max({d.place, (a.position - b.position).norm(), (a.rotation - b.rotation).norm()});
+      differ(a.linearVelocity, b.linearVelocity, velocity, largestVelocity);
+      differ(a.angularVelocity, b.angularVelocity, velocity, largestVelocity);
+      d.position = std::max({d.position, (a.position - b.position).norm(), (a.rotation - b.rotation).norm()});
       CHECK(plain.engine.enabled(plain.bodies[i]) == solved.engine.enabled(solved.bodies[i]));
     }
     for (std::size_t i = 0; i < plain.joints.size(); ++i) {
       Vec3 a[4], b[4];
       plain.engine.feedback(plain.joints[i], a[0], a[1], a[2], a[3]);
       solved.engine.feedback(solved.joints[i], b[0], b[1], b[2], b[3]);
-      for (int k = 0; k < 4; ++k) differ(a[k], b[k], force, strongest);
+      for (int k = 0; k < 4; ++k) differ(a[k], b[k], force, largestForce);
     }
     for (std::size_t i = 0; i < plain.contacts.size(); ++i)
-      differ(plain.contacts[i].forceOnA, solved.contacts[i].forceOnA, force, strongest);
-    d.velocity = velocity / fastest;
-    d.feedback = force / strongest;
+      differ(plain.contacts[i].forceOnA, solved.contacts[i].forceOnA, force, largestForce);
+    d.velocity = velocity / largestVelocity;
+    d.feedback = force / largestForce;
   }
   Leaf* solver_ = nullptr;
 };

@@ -7,24 +7,25 @@ using engine::JointType;
 
 namespace {
 
-/// Bodies near each other and joints of any type between any of them and the world: trees, loops, several between the
-/// same two.
-void addJungle(Twins& t, int bodies, int joints, double cfm, bool boxes = true) {
+/// Bodies near each other, and joints of random types between random ones of them and the world: trees, loops, several
+/// joints between the same two bodies.
+void addRandomMechanism(Twins& t, int bodies, int joints, double cfm, bool boxes = true) {
   for (int i = 0; i < bodies; ++i) {
-    const std::size_t b = t.anyBody({0.3 * (i % 4), 0.3 * (i / 4), 0.4 + 0.1 * t.uniform(0, 1)});
+    const std::size_t b = t.randomBody({0.3 * (i % 4), 0.3 * (i / 4), 0.4 + 0.1 * t.uniform(0, 1)});
     if (boxes && i % 2) t.box({0.1, 0.15, 0.2}, b);
   }
   for (int k = 0; k < joints; ++k) {
-    const JointType type = kTypes[t.pick(7)];
-    // At first to one before, so that all hang together; then anywhere.
-    int a = k < bodies - 1 ? k + 1 : t.pick(bodies), b = k < bodies - 1 ? t.pick(k + 1) : t.pick(bodies + 1) - 1;
+    const JointType type = kTypes[t.randomInt(7)];
+    // The first joints connect each body to an earlier one, so that there is one tree; the others are anywhere.
+    int a = k < bodies - 1 ? k + 1 : t.randomInt(bodies),
+        b = k < bodies - 1 ? t.randomInt(k + 1) : t.randomInt(bodies + 1) - 1;
     if (a == b) continue;
     if (type == JointType::hinge2 && b < 0) continue;
-    if (t.pick(2)) std::swap(a, b);
+    if (t.randomInt(2)) std::swap(a, b);
     const std::size_t j = t.joint(type, a, b);
-    const Vec3 anchor = t.anyVector(0.3) + Vec3(0.5, 0.3, 0.5), axis1 = t.anyVector(1).normalized();
-    const Vec3 axis2 = axis1.cross(t.anyVector(1)).normalized();
-    t.eachJoint(j, [&](engine::IEngine& e, engine::Joint joint) {
+    const Vec3 anchor = t.randomVector(0.3) + Vec3(0.5, 0.3, 0.5), axis1 = t.randomVector(1).normalized();
+    const Vec3 axis2 = axis1.cross(t.randomVector(1)).normalized();
+    t.forBothJoints(j, [&](engine::IEngine& e, engine::Joint joint) {
       e.setAnchor(joint, anchor);
       if (type == JointType::angularMotor) e.setAngularMotor(joint, 2, false);
       e.setAxis(joint, 0, axis1, 1);
@@ -34,7 +35,7 @@ void addJungle(Twins& t, int bodies, int joints, double cfm, bool boxes = true) 
     for (int axis = 0; axis < 2; ++axis) {
       t.set(j, JointParameter::cfm, axis, cfm);
       t.set(j, JointParameter::stopCfm, axis, cfm);
-      t.set(j, JointParameter::maxForce, axis, t.pick(2) ? t.uniform(0.1, 3) : 0);
+      t.set(j, JointParameter::maxForce, axis, t.randomInt(2) ? t.uniform(0.1, 3) : 0);
       t.set(j, JointParameter::velocity, axis, t.uniform(-3, 3));
       t.set(j, JointParameter::highStop, axis, t.uniform(0, 1));
       t.set(j, JointParameter::lowStop, axis, t.uniform(-1, 0));
@@ -44,30 +45,30 @@ void addJungle(Twins& t, int bodies, int joints, double cfm, bool boxes = true) 
 
 }  // namespace
 
-TEST_CASE("jungles of joints with loops move as with ODE") {
+TEST_CASE("random mechanisms with loops move as with ODE") {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     INFO("seed " << seed);
     Twins t(seed);
     t.parameters.cfm = 1e-4;
     t.apply();
     t.ground();
-    const int bodies = 2 + t.pick(8);
-    addJungle(t, bodies, bodies - 1 + t.pick(4), 1e-4);
+    const int bodies = 2 + t.randomInt(8);
+    addRandomMechanism(t, bodies, bodies - 1 + t.randomInt(4), 1e-4);
     t.shake();
     t.surface.mu = seed % 2 ? HUGE_VAL : 1;
     t.checkSteps(20);
   }
 }
 
-TEST_CASE("without any softness trees move as with ODE, which a division by it would not survive") {
+TEST_CASE("trees with a CFM of 0 move as with ODE") {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     INFO("seed " << seed);
     Twins t(seed);
     t.parameters.cfm = 0;
     t.apply();
-    const int bodies = 2 + t.pick(6);
-    addJungle(t, bodies, bodies - 1, 0, false);
-    // One point on the ground: more would say the same twice, and ODE has no answer to that.
+    const int bodies = 2 + t.randomInt(6);
+    addRandomMechanism(t, bodies, bodies - 1, 0, false);
+    // One contact point only: more would be redundant rows, which ODE cannot solve with a CFM of 0.
     t.ground();
     const std::size_t ball = t.body({3, 0, 0.095}, 1, Mat3::Identity() * 0.01);
     engine::ShapeDescription sphere;
@@ -79,14 +80,14 @@ TEST_CASE("without any softness trees move as with ODE, which a division by it w
   }
 }
 
-TEST_CASE("contacts that say the same many times without softness harm nobody") {
+TEST_CASE("redundant contacts with a CFM of 0 do no harm") {
   Twins t(5);
   t.parameters.cfm = 0;
   t.apply();
   t.ground();
   for (int i = 0; i < 3; ++i) t.box({0.3, 0.3, 0.3}, t.body({0, 0, 0.15 + 0.299 * i}, 1, Mat3::Identity() * 0.015));
   for (int i = 0; i < 100; ++i) {
-    t.touch(t.solved);
+    t.detectContacts(t.solved);
     t.solved.engine.step(t.solved.world, t.solved.contacts, t.dt);
   }
   for (int i = 0; i < 3; ++i) {
@@ -96,7 +97,7 @@ TEST_CASE("contacts that say the same many times without softness harm nobody") 
   }
 }
 
-TEST_CASE("humanoids stand, walk, fall and push each other as with ODE") {
+TEST_CASE("humanoids that stand, walk, fall and push each other move as with ODE") {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     INFO("seed " << seed);
     Twins t(seed);
@@ -104,7 +105,7 @@ TEST_CASE("humanoids stand, walk, fall and push each other as with ODE") {
     Humanoids humanoids(t);
     for (int i = 0; i < 3; ++i) humanoids.add({0.2 * i, 0.03 * i, 0});
     for (int i = 0; i < 15; ++i) {
-      t.each([&](Scene& s) {
+      t.forBoth([&](Scene& s) {
         humanoids.drive(
             s, [&](std::size_t j) { return 3.0 * (seed - 1.0) * std::sin(0.2 * i + static_cast<double>(j)); },
             seed == 4 ? 0.8 : 25);
@@ -114,14 +115,14 @@ TEST_CASE("humanoids stand, walk, fall and push each other as with ODE") {
   }
 }
 
-TEST_CASE("where the search began has no say in what is found, to the last digit") {
+TEST_CASE("the warm start does not change a digit of the result") {
   Twins used(9), fresh(9);
   for (Twins* t : {&used, &fresh}) {
     t->ground();
     t->surface.mu = 2;
     Humanoids humanoids(*t);
     for (int i = 0; i < 2; ++i) humanoids.add({0.15 * i, 0.02 * i, 0});
-    t->each([&](Scene& s) {
+    t->forBoth([&](Scene& s) {
       humanoids.drive(
           s, [](std::size_t j) { return j % 3 - 1.0; }, 0.8);
     });
@@ -132,7 +133,7 @@ TEST_CASE("where the search began has no say in what is found, to the last digit
     fresh.newSolver();
     std::vector<double> states[2];
     for (Twins* t : {&used, &fresh}) {
-      t->touch(t->solved);
+      t->detectContacts(t->solved);
       t->solved.engine.step(t->solved.world, t->solved.contacts, t->dt);
       for (const engine::Body b : t->solved.bodies) t->solved.engine.saveBody(b, states[t == &fresh]);
     }
@@ -141,12 +142,12 @@ TEST_CASE("where the search began has no say in what is found, to the last digit
   CHECK(used.counted("passes") > used.counted("islands"));
 }
 
-TEST_CASE("islands that several threads solve move as with one thread, to the last digit") {
+TEST_CASE("several threads give the digits of one thread") {
   const auto states = [](int threads) {
     Twins t(5);
     t.kernel.jobs().setThreads(threads);
     for (int i = 0; i < 24; i += 2) {
-      t.anyBody({0.1 * i, 0, 1}), t.anyBody({0.1 * i, 0.3, 1});
+      t.randomBody({0.1 * i, 0, 1}), t.randomBody({0.1 * i, 0.3, 1});
       t.joint(JointType::ball, i, i + 1);
     }
     t.shake();
