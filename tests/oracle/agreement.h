@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What counts as agreement.
+/// When a solver agrees with ODE.
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 
 namespace spark::oracle {
 
-/// Says what was found, and fails when the two do not agree: velocities to 1e-8 of the greatest, forces to 1e-6, and
-/// who sleeps. Nothing may be deferred to ODE.
+/// Prints the differences, and fails unless velocities agree to 1e-8 of the largest, forces to 1e-6, all bodies on
+/// sleep, and nothing was deferred to ODE.
 inline void expectAgreement(const std::string& world, const Agreement& a) {
   fmt::print("{:<44} {:>5} steps {:>7} bodies {:>6} forces   speed {:.1e}   spin {:.1e}   force {:.1e}\n", world,
              a.steps, a.compared, a.feedbacks, a.speed, a.spin, a.force);

@@ -22,7 +22,7 @@ ShadowSolver& watch(Kernel& kernel, const std::string& path) {
 }
 
 namespace {
-/// From a body to what is kept of it, or back.
+/// Copies the state of a body, to or from State.
 template <class From, class To>
 void copyState(const From& from, To& to) {
   std::copy_n(from.position, 3, to.position);
@@ -93,7 +93,7 @@ void ShadowSolver::compare() {
     if (a.awake != b.awake) ++agreement_.disagreedOnSleep;
     if (!b.awake) continue;
     ++agreement_.compared;
-    // What is no number is the worst, and stays it.
+    // NaN is the worst error, and stays it.
     const auto worse = [&](double error, double& worst) {
       if (error <= worst || std::isnan(worst)) return;
       worst = error;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The solver that is tested, beside ODE: both step the same world from the same state, and what comes out is compared.
+/// Compares a solver with ODE: both step the same world from the same state.
 
 #include <functional>
 #include <string>
@@ -12,27 +12,28 @@
 
 namespace spark::oracle {
 
-/// How far two steps from one state are apart, at worst, over many steps. Errors are parts of the greatest value in the
-/// world; what is slower than ODE's threshold of sleep (0.01 m/s, 0.01 rad/s) counts as that, and a force below 1 N or
-/// Nm as that.
+/// Largest differences between the two steps from the same state, over many steps. Errors of velocities and forces are
+/// relative to the largest in the world, but at least to ODE's thresholds of sleep (0.01 m/s, 0.01 rad/s) and to 1 N or
+/// 1 Nm; errors of positions are in m.
 struct Agreement {
-  std::size_t steps = 0, compared = 0;  ///< compared: bodies, once for each step
-  std::size_t deferred = 0;             ///< bodies that were deferred to ODE
-  std::size_t feedbacks = 0;            ///< forces of joints and contacts
-  std::size_t disagreedOnSleep = 0;
-  double speed = 0, spin = 0, place = 0, force = 0;
-  std::size_t worstStep = 0;
+  std::size_t steps = 0, compared = 0;               ///< compared: sum over all steps of the bodies that were compared
+  std::size_t deferred = 0;                          ///< bodies that were deferred to ODE
+  std::size_t feedbacks = 0;                         ///< forces of joints and contacts that were compared
+  std::size_t disagreedOnSleep = 0;                  ///< bodies that were awake after one of the steps only
+  double speed = 0, spin = 0, place = 0, force = 0;  ///< linear and angular velocity, position, forces and torques
+  std::size_t worstStep = 0;                         ///< in which the last of the maxima was found
 };
 
-/// A solver that asks the solver below it (its child `tested`), notes the answer, puts the world back as it was and
-/// defers it all to ODE. So the world goes on as ODE says, and no step inherits another's error. Compares in the phase
-/// after the engine's step where the house has phases; else somebody calls compare().
+/// A solver that lets its child `tested` step the world, keeps the result, restores the world and defers all of it to
+/// ODE. So the world continues as with ODE alone, and no step inherits another's error. In a simulation with phases it
+/// compares in the phase `place`, which follows the engine's step; elsewhere the test calls compare().
 class ShadowSolver : public Node, public engine::ISolver {
   SPARK_CLASS(ShadowSolver, Node)
  public:
   static void describe(Description<ShadowSolver>& d);
   std::size_t step(engine::SolverStep& step) override;
   void forget(engine::World world) override;
+  /// Compares the last step of `tested` with the present state, once.
   void compare();
   const Agreement& agreement() const { return agreement_; }
   /// The joints of the last step, in order of creation.
@@ -64,7 +65,7 @@ class ShadowSolver : public Node, public engine::ISolver {
   Agreement agreement_;
 };
 
-/// Puts a shadow below the engine at `path`, and below that the solver that is tested.
+/// Creates a ShadowSolver below the engine at `path`, with an ArticulatedSolver as `tested`.
 ShadowSolver& watch(Kernel& kernel, const std::string& path = "/sys/server/physics/engine");
 
 }  // namespace spark::oracle
