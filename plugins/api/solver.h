@@ -3,7 +3,7 @@
 /// ISolver: a constraint solver that replaces the engine's own.
 ///
 /// The engine keeps bodies, joints and geoms and detects contacts. If its child `solver` implements ISolver, the engine
-/// hands it the world as plain data once a step. The solver steps the islands that it can handle and defers the others
+/// hands it the world as plain data in each step. The solver steps the islands that it can handle and defers the others
 /// to the engine's own solver.
 ///
 /// Time stepping is at the velocity level with soft constraints, as in ODE (Smith, ODE manual, "Concepts"). A joint or
@@ -69,7 +69,7 @@ struct SolverJoint {
   /// Only a second body was attached. A slider's axis then points the other way, and an Euler motor's first and third
   /// axes change places.
   bool reversed = false;
-  std::array<SolverAxis, 3> axes;  ///< as many as the type has count; ball and fixed joints have none
+  std::array<SolverAxis, 3> axes;  ///< only as many as the type has axes are used; ball and fixed joints have none
   /// The points [m] that coincide, in a and in b, except:
   /// fixed: b's centre when set, in a, and zero; without b zero and a's centre when set, in the world.
   /// slider: anchorB alone, a's centre when set, in b.
@@ -130,8 +130,9 @@ class ISolver {
  public:
   SPARK_INTERFACE(ISolver, 1);
   virtual ~ISolver() = default;
-  /// Wakes the islands with an awake body, solves their joints and contacts, integrates velocities, positions and
-  /// rotations by `dt`, clears forces and writes the feedback that is wanted. Returns the number of deferred bodies.
+  /// Steps each island that has an awake body: wakes all its bodies, solves joints and contacts, integrates velocities,
+  /// positions and rotations by `dt`, clears forces and writes the feedback that is wanted. Returns the number of
+  /// deferred bodies.
   /// Does not throw, and does not allocate while the world's structure and number of contacts repeat.
   virtual std::size_t step(SolverStep& step) = 0;
   /// Drops what was kept for a world that is being destroyed.

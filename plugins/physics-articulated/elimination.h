@@ -24,7 +24,7 @@
 ///
 /// This is the block LDL^T factorisation of the sparse system of equations in maximal coordinates along the tree
 /// (Baraff 1996, "Linear-time dynamics using Lagrange multipliers"). With the terms of all children added, M is the
-/// articulated-body inertia of the body, and f corresponds to its bias force (Featherstone 2008, chapter 7).
+/// articulated-body inertia of the body, and -f corresponds to its bias force (Featherstone 2008, chapter 7).
 ///
 /// Every block is 6 x 6. A row that does not hold (a motor at its bound, a stop that opens) has 0 in J and K and 1 in
 /// D, so that its force is 0; a force at a bound is part of f. A root that is connected to the world has no K.
@@ -35,9 +35,9 @@
 /// M is positive definite and W positive semidefinite, so no pivoting is needed. Nothing is divided by a D that could
 /// be 0; of redundant rows with D = 0, one gets the whole force (SpatialLdlt).
 ///
-/// After factorisation, the path from a row's bodies to the root answers how that row acts on the tree (PathTerm). With
-/// T the equations of the whole tree and J_i, J_j two rows outside of it, the products of their path responses are the
-/// Delassus terms J_i T^-1 J_j^T, from which coupling.h solves for the rows' forces.
+/// A force along a row reaches the nodes on the paths from the row's bodies to the roots; what it does there is the
+/// row's path response (PathTerm). With T the equations of the trees and J_i, J_j two rows outside of them, the product
+/// of their path responses is the Delassus term J_i T^-1 J_j^T, from which coupling.h solves for the rows' forces.
 
 #include <span>
 #include <vector>

@@ -17,10 +17,11 @@ class IslandBuilder {
   std::size_t size() const { return islands_.size(); }
   /// Island i, 0..size()-1, in order of its first tree. Valid until the next build().
   IslandContents operator[](std::size_t i) const;
-  /// Number of bodies of the largest awake island, and upper bounds of the number of rows and of coupling rows (of
-  /// contacts between bodies and of loop joints) of any.
+  /// Largest number of bodies of an awake island.
   std::size_t maxBodies() const { return maxBodies_; }
+  /// Upper bound of the number of rows of an awake island.
   std::size_t maxRows() const { return maxRows_; }
+  /// Upper bound of the number of rows of contacts between bodies and of loop joints of an awake island.
   std::size_t maxCouplingRows() const { return maxCouplingRows_; }
 
  private:

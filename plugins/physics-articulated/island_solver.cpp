@@ -12,7 +12,8 @@ constexpr double kMaxFoldedStiffness = 1e8;
 /// Lower bound of the D of coupling rows, as a fraction of their mobility. Redundant rows then share their force, and
 /// velocities change by less than rounding does.
 constexpr double kMinSoftness = 1e-11;
-/// Velocities that differ by less count as equal in pivoting [m/s, rad/s; or this fraction of the island's largest].
+/// Velocities that differ by less count as equal in pivoting, relative to the island's largest velocity or to 1 m/s and
+/// 1 rad/s if that is larger.
 constexpr double kVelocityTolerance = 1e-11;
 
 Vec3 toVec(const double* v) { return {v[0], v[1], v[2]}; }
@@ -52,7 +53,7 @@ Index IslandSolver::nodeOf(const WorldView& world, const engine::SolverBody* bod
   return world.firstNode[tree] + world.topology.treeBodyOf[body->index] - world.topology.trees[tree].begin;
 }
 
-/// Makes the nodes, tree by tree, and computes what does not depend on rows.
+/// Fills the nodes, tree by tree: state, inertia in world axes, gravity and gyroscopic torque.
 void IslandSolver::readBodies(WorldView& world, const IslandContents& island) {
   system_.trees.begin(island.bodies);
   Index next = 0;
@@ -79,7 +80,7 @@ void IslandSolver::readBodies(WorldView& world, const IslandContents& island) {
       s.force = toVec(body.force), s.torque = toVec(body.torque);
     }
   }
-  // A loop of its own: the one above waits for memory, of many bodies at a time as long as it computes nothing.
+  // In a separate loop: the one above only copies, so that the cache misses of many bodies overlap.
   double fastest = 1;
   for (Node& n : system_.trees.nodes) {
     const engine::SolverBody& body = *n.body;
@@ -167,39 +168,37 @@ void IslandSolver::fold(Index index) {
   n.firstFolded = index;
 }
 
-/// Appends the rows of a contact, with the states of the last step.
-void IslandSolver::readContact(WorldView& world, Index index) {
-  Rows& rows = system_.rows;
-  const engine::Contact& contact = world.step.contacts[index];
-  const engine::SolverPair& pair = world.step.pairs[index];
-  const Index a = nodeOf(world, pair.a), b = nodeOf(world, pair.b);
-  RowRange range{index, rows.size(), 0};
-  range.count = writeContactRows(contact, pair.reversed, node(a).state, b == kNone ? nullptr : &node(b).state,
-                                 constants_, rows.prepare(kMaxContactRows));
-  rows.commit(range.count);
-  const ContactWarmStart::States* last = world.contacts.last(index);
-  for (Index i = range.first; i < range.end(); ++i) {
-    Row& row = rows[i];
-    row.nodeA = a, row.nodeB = b;
-    if (last) row.state = (*last)[i - range.first];
-    if (std::isinf(row.bound())) row.state = RowState::holds;
-    if (b == kNone && row.softness * kMaxFoldedStiffness > freeMobility(row.jacobianA, a))
-      fold(i);
-    else
-      addCoupling(i);
-    // The bounds of a friction pyramid are known only after a first solution.
-    if (row.normalRow != kNone) {
-      row.normalRow += range.first;
-      pyramidRows_.push_back(i);
-    } else if (row.bounded()) {
-      addBounded(i);
-    }
-  }
-  contacts_.push_back(range);
-}
-
+/// Appends the rows of all contacts, with the states of the last step.
 void IslandSolver::readContacts(WorldView& world, const IslandContents& island) {
-  for (const Index c : island.contacts) readContact(world, c);
+  Rows& rows = system_.rows;
+  for (const Index c : island.contacts) {
+    const engine::Contact& contact = world.step.contacts[c];
+    const engine::SolverPair& pair = world.step.pairs[c];
+    const Index a = nodeOf(world, pair.a), b = nodeOf(world, pair.b);
+    RowRange range{c, rows.size(), 0};
+    range.count = writeContactRows(contact, pair.reversed, node(a).state, b == kNone ? nullptr : &node(b).state,
+                                   constants_, rows.prepare(kMaxContactRows));
+    rows.commit(range.count);
+    const ContactWarmStart::States* last = world.contacts.last(c);
+    for (Index i = range.first; i < range.end(); ++i) {
+      Row& row = rows[i];
+      row.nodeA = a, row.nodeB = b;
+      if (last) row.state = (*last)[i - range.first];
+      if (std::isinf(row.bound())) row.state = RowState::holds;
+      if (b == kNone && row.softness * kMaxFoldedStiffness > freeMobility(row.jacobianA, a))
+        fold(i);
+      else
+        addCoupling(i);
+      // The bounds of a friction pyramid are known only after a first solution.
+      if (row.normalRow != kNone) {
+        row.normalRow += range.first;
+        pyramidRows_.push_back(i);
+      } else if (row.bounded()) {
+        addBounded(i);
+      }
+    }
+    contacts_.push_back(range);
+  }
 }
 
 /// M v / dt plus the forces of the step, with those of motors at stops.
@@ -220,7 +219,7 @@ bool IslandSolver::solve() {
   for (const Index i : pyramidRows_) {
     Row& row = system_.rows[i];
     const double normalForce = std::abs(system_.rows[row.normalRow].force);
-    // The coefficient may be infinite, and infinity times 0 is no number.
+    // The coefficient may be infinite, and infinity times 0 is NaN.
     row.high = normalForce == 0 ? 0 : row.high * normalForce;
     row.low = -row.high;
     if (row.high == 0) continue;

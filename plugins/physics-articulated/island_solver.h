@@ -33,7 +33,7 @@ class IslandSolver {
   /// Allocates memory for islands of up to `bodies` bodies, `rows` rows, of which up to `couplingRows` are coupling
   /// rows, and trees of up to `depth` bodies from root to leaf.
   void reserve(std::size_t bodies, std::size_t rows, std::size_t couplingRows, std::size_t depth);
-  /// Steps the island. Returns false, and changes nothing, if the island has too many coupling rows
+  /// Steps the island. Returns false, with its bodies, joints and contacts unchanged, if it has too many coupling rows
   /// (SolverStep::maxCouplingRows) or no solution was found.
   bool step(WorldView& world, const IslandContents& island);
   /// For its counters.
@@ -49,7 +49,6 @@ class IslandSolver {
   void readBodies(WorldView& world, const IslandContents& island);
   void readJoints(WorldView& world, const IslandContents& island);
   void readContacts(WorldView& world, const IslandContents& island);
-  void readContact(WorldView& world, Index contact);
   void setExternalForces();
   RowRange addJoint(WorldView& world, Index joint);
   void addCoupling(Index row);

@@ -8,7 +8,7 @@
 //     point, along d:     J_A = (d, r_a x d)      J_B = (-d, -r_b x d)
 //     rotation about d:   J_A = (0, d)            J_B = (0, -d)
 //
-// and the target velocity is erp / dt times the position error, which moves a fraction erp of the error away in one
+// and the target velocity is erp / dt times the position error, which removes a fraction erp of the error in one
 // step.
 
 namespace spark::articulated {
@@ -126,9 +126,9 @@ struct JointWriter {
 
   /// The row of axis `index`: its stop's if it has reached one, else its motor's if it has one, else none. `velocity`
   /// is the present velocity of a relative to b along the axis, for bounce.
-  void addAxis(int index, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const StopContact& contact,
+  void addAxis(Index index, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const StopContact& contact,
                double velocity) {
-    const SolverAxis& axis = joint.axes[static_cast<std::size_t>(index)];
+    const SolverAxis& axis = joint.axes[index];
     const Stop stop = contact.stop;
     const bool stopped = stop != Stop::none;
     const bool locked = stopped && axis.lowStop == axis.highStop;
@@ -156,7 +156,7 @@ struct JointWriter {
     row.target = target * constants.inverseDt;
   }
   /// The same for rotation about `axis`.
-  void addAngularAxis(int index, const Vec3& axis, const StopContact& contact) {
+  void addAngularAxis(Index index, const Vec3& axis, const StopContact& contact) {
     const double velocity = a.angularVelocity.dot(axis) - (b ? b->angularVelocity.dot(axis) : 0);
     addAxis(index, SpatialVector::of(Vec3::Zero(), axis), SpatialVector::of(Vec3::Zero(), -axis), contact, velocity);
   }
@@ -258,11 +258,11 @@ struct JointWriter {
 
   /// Angular motor in user mode: axes and angles are the caller's.
   void writeUserMotor() {
-    for (int i = 0; i < joint.motorAxes; ++i) {
-      const auto n = static_cast<std::size_t>(i);
-      const Vec3& v = joint.axisA[n];
-      const Vec3 axis = joint.frame[n] == 1 ? fromA(v) : joint.frame[n] == 2 ? fromB(v) : v;
-      addAngularAxis(i, axis, stopAt(joint.axes[n], joint.angle[n]));
+    const auto count = static_cast<Index>(joint.motorAxes);
+    for (Index i = 0; i < count; ++i) {
+      const Vec3& v = joint.axisA[i];
+      const Vec3 axis = joint.frame[i] == 1 ? fromA(v) : joint.frame[i] == 2 ? fromB(v) : v;
+      addAngularAxis(i, axis, stopAt(joint.axes[i], joint.angle[i]));
     }
   }
 
@@ -284,8 +284,7 @@ struct JointWriter {
                              -portableAtan2(zero0.dot(axis[1]), zero0.dot(axis[1].cross(axis[2])))};
     // The velocity about direction i depends on the rate of angle i alone: it is perpendicular to the other two axes.
     const Vec3 directions[] = {axis[1].cross(axis[2]), axis[1], normal};
-    for (int i = 0; i < 3; ++i)
-      addAngularAxis(i, directions[i], stopAt(joint.axes[static_cast<std::size_t>(i)], angles[i]));
+    for (Index i = 0; i < 3; ++i) addAngularAxis(i, directions[i], stopAt(joint.axes[i], angles[i]));
   }
 
   void write() {

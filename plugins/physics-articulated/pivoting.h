@@ -21,18 +21,19 @@ struct BoundedRow {
 /// The algorithm is block principal pivoting (Júdice and Pires 1994, "A block principal pivoting algorithm for
 /// large-scale strictly monotone linear complementarity problems"): solve, flip the states of all rows that violate
 /// their conditions, solve again. Mostly nothing is to be flipped, because the search begins with the states of the
-/// last step. When the number of violations does not fall, a repeatable pseudo-random half of the rows is flipped
-/// instead, which breaks cycles. (Júdice and Pires flip single rows then, as in Murty's algorithm.) After `maxPasses`
-/// passes Dantzig's algorithm (BoxedLcp) solves for the bounded rows.
+/// last step. When two passes in a row do not reduce the number of violations, a repeatable pseudo-random half of them
+/// is flipped instead, which breaks cycles. (Júdice and Pires flip single rows then, as in Murty's algorithm.) After
+/// `maxPasses` passes Dantzig's algorithm (BoxedLcp) solves for the bounded rows.
 ///
 /// A row within its tolerance of a bound is put at that bound, whatever its state was. So the result depends on the
 /// island alone and not on where the search began, and a saved and restored world continues with the same digits.
 class Pivoting {
  public:
-  std::uint32_t maxPasses = 30;                 ///< of block pivoting, in each search
-  std::size_t maxExactRows = 400;               ///< searches with more bounded rows do not use Dantzig's algorithm
-  std::vector<BoundedRow> rows;                 ///< the bounded rows; to be filled before solve()
-  std::int64_t passes = 0, exactSolutions = 0;  ///< passes and uses of Dantzig's algorithm since construction
+  std::uint32_t maxPasses = 30;     ///< of block pivoting, in each search
+  std::size_t maxExactRows = 400;   ///< searches with more bounded rows do not use Dantzig's algorithm
+  std::vector<BoundedRow> rows;     ///< the bounded rows; to be filled before solve()
+  std::int64_t passes = 0;          ///< of block pivoting, since construction
+  std::int64_t exactSolutions = 0;  ///< uses of Dantzig's algorithm, since construction
 
   /// Allocates memory for `count` bounded rows.
   void reserve(std::size_t count) {

@@ -25,11 +25,13 @@ class Stepper {
   /// Drops what is kept for a world.
   void forget(engine::World world);
 
-  /// Counts since construction: awake islands, deferred ones included; passes of pivoting; solutions by Dantzig's
-  /// algorithm; deferred islands.
+  /// Number of awake islands since construction, deferred ones included.
   std::int64_t islands() const { return islands_; }
+  /// Number of passes of pivoting since construction.
   std::int64_t passes() const;
+  /// Number of searches since construction that used Dantzig's algorithm.
   std::int64_t exactSolutions() const;
+  /// Number of deferred islands since construction.
   std::int64_t deferredIslands() const { return deferredIslands_; }
 
  private:
