@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Agents' drawings as viewers get them.
+/// The message with agents' drawings.
 
 #include <span>
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace spark::web {
 
-/// `{"type":"drawings","sets":{"name":[...],"gone":null}}` of the sets that changed after version `since`.
+/// `{"type":"drawings","sets":{"name":[...],"gone":null}}` with the sets whose version is greater than `since`; an
+/// empty set is null.
 std::string drawingsMessage(std::span<const IDrawings::Set> sets, std::uint64_t since);
 
 }  // namespace spark::web

@@ -1,5 +1,6 @@
 #include "exchange.h"
 
+#include <fmt/format.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -10,16 +11,16 @@
 
 namespace spark::web {
 
-Exchange::Exchange() : descriptor_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
-  if (descriptor_ < 0) throw Error(std::string("cannot make an eventfd: ") + std::strerror(errno));
+Exchange::Exchange() : wakeupFd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (wakeupFd_ < 0) throw Error(fmt::format("cannot make an eventfd: {}", std::strerror(errno)));
 }
 
-Exchange::~Exchange() { close(descriptor_); }
+Exchange::~Exchange() { close(wakeupFd_); }
 
 void Exchange::wake() {
   const std::uint64_t one = 1;
-  // It cannot fail but for a full counter, which wakes as well.
-  [[maybe_unused]] const auto written = write(descriptor_, &one, sizeof one);
+  // The write fails only if the counter is full, and then the descriptor is readable already.
+  [[maybe_unused]] const auto written = write(wakeupFd_, &one, sizeof one);
 }
 
 }  // namespace spark::web

@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// Where the simulation's thread and the thread that serves viewers meet. Nobody waits for the other.
+/// Data shared by the simulation thread and the I/O thread that serves viewers. Neither blocks on the other.
 ///
-///     simulation's thread                               I/O thread
-///     WebMonitor, publish phase   ◄── wanted ─────────  Audience: a lane is due
-///           └─ fills it ──────────── ready ──► wake ──► encodes, sends, wants it again
-///     Desk, between cycles        ◄── questions ──────  viewers ask
-///           └─ as the budget lets ── answers ─► wake ─► to the viewer that asked
+///     simulation thread                                 I/O thread
+///     WebMonitor, publish phase   ◄── wanted ─────────  ViewerHub: a lane is due
+///           └─ fills it ──────────── ready ──► wake ──► encodes, sends, requests the next one
+///     RequestQueue, between cycles ◄─ requests ───────  viewers' requests
+///           └─ within its budget ─── replies ─► wake ─► to the viewer that sent the request
 
 #include <atomic>
 #include <cstdint>
@@ -18,50 +18,56 @@
 
 namespace spark::web {
 
-/// Something that only the simulation's thread can know or do.
-struct Question {
+/// Work for the simulation thread.
+struct SimulationRequest {
   enum class Kind {
-    request,   ///< JSON, for the control server; `referee`: may change things
-    command,   ///< a trainer's, S-expressions; only of referees
-    unwatch,   ///< ends watch `id`
-    drawings,  ///< wants them from now on, or (`on` false) no longer
-    gone,      ///< the viewer left
-    status,    ///< how the host is doing, for all
-  } kind = Kind::request;
-  std::uint64_t viewer = 0;
-  std::int64_t id = 0;
+    control,     ///< `text`: JSON for the control server; `referee`: it may change the simulation
+    command,     ///< `text`: a trainer command as S-expressions; sent for referees only
+    unwatch,     ///< ends watch `id`
+    drawings,    ///< subscribes the viewer to drawings, or unsubscribes it if `on` is false
+    disconnect,  ///< the viewer disconnected: drop what it requested, watches and subscribed to
+    status,      ///< the status report for all viewers
+  } kind = Kind::control;
+  std::uint64_t viewer = 0;  ///< Viewer::id()
+  std::int64_t id = 0;       ///< chosen by the viewer; repeated in the reply
   std::string text;
   bool referee = false, on = true;
 };
 
-/// A message for viewers.
-struct Answer {
-  enum class Kind { reply, told, status } kind = Kind::reply;  ///< reply: ends a question; told: comes by itself
+/// A message from the simulation thread to viewers.
+struct SimulationReply {
+  enum class Kind {
+    reply,   ///< completes a request of `viewer`
+    update,  ///< unsolicited: a new value of a watch, changed drawings
+    status,  ///< the status report, for all viewers
+  } kind = Kind::reply;
   std::uint64_t viewer = 0;
   std::string text;                      ///< JSON
-  std::vector<std::uint64_t> viewers{};  ///< told: instead of `viewer`, when several get the same
+  std::vector<std::uint64_t> viewers{};  ///< updates: the recipients, if there are several; then `viewer` is unused
 };
 
-/// Owned by the web server; both sides end before it.
+/// Owned by the WebServer; must outlive the users on both threads.
 class Exchange {
  public:
+  /// Throws Error if the process has no file descriptor left.
   Exchange();
   ~Exchange();
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;
 
-  std::atomic<Snapshot*> wanted{nullptr}, ready{nullptr};
-  std::atomic<bool> watched{false};  ///< there are viewers: events count
-  Mailbox<Question> questions;
-  Mailbox<Answer> answers;
+  std::atomic<Snapshot*> wanted{nullptr};  ///< lent to the simulation thread, which fills it
+  std::atomic<Snapshot*> ready{nullptr};   ///< filled, on its way back to the I/O thread
+  std::atomic<bool> watched{false};        ///< there are viewers, so events are collected
+  Mailbox<SimulationRequest> requests;     ///< I/O thread to simulation thread
+  Mailbox<SimulationReply> replies;        ///< simulation thread to I/O thread
 
-  /// Tells the I/O thread that something is there for it.
+  /// Wakes the I/O thread. Any thread; does not block.
   void wake();
-  /// Becomes readable by wake(); the reader takes eight bytes.
-  int descriptor() const { return descriptor_; }
+  /// The eventfd that wake() makes readable; a reader consumes eight bytes. Owned by this object.
+  int wakeupFd() const { return wakeupFd_; }
 
  private:
-  int descriptor_;
+  int wakeupFd_;
 };
 
 }  // namespace spark::web

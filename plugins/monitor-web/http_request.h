@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How a request's head is read: limits, and what counts of it.
+/// Parses the head of an HTTP request.
 
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/error.hpp>
@@ -12,28 +12,28 @@
 
 namespace spark::web {
 
-/// Bytes of a request's head that are taken at most.
-inline constexpr std::uint32_t kLongestHeader = 8192;
+/// Maximum size of a request's head in bytes.
+inline constexpr std::uint32_t kMaxHeaderBytes = 8192;
 
 using HeaderParser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
 
-/// A parser for the next request.
+/// Makes a new parser with limits, for the next request.
 inline void makeParser(std::optional<HeaderParser>& parser) {
   parser.emplace();
-  parser->header_limit(kLongestHeader);
+  parser->header_limit(kMaxHeaderBytes);
   parser->body_limit(std::uint64_t{0});
 }
 
-/// What counts of a head that was read; views into the parser. Of a header that came twice the request is one without
-/// host.
-inline Request requestIn(const HeaderParser& parser) {
+/// The request in a parser that has read a head. The texts are views into the parser. A repeated Host field counts as
+/// missing, a repeated Origin as "null", so both are refused.
+inline HttpRequest requestIn(const HeaderParser& parser) {
   namespace http = boost::beast::http;
   const auto view = [](boost::beast::string_view s) { return std::string_view(s.data(), s.size()); };
   const auto& message = parser.get();
   const auto field = [&](http::field name) {
     return message.count(name) == 1 ? view(message[name]) : std::string_view();
   };
-  Request out;
+  HttpRequest out;
   out.method = view(message.method_string());
   out.target = view(message.target());
   out.host = field(http::field::host);
@@ -43,13 +43,14 @@ inline Request requestIn(const HeaderParser& parser) {
   return out;
 }
 
-/// What is answered to bytes that are no request; nothing when nobody is there to hear it.
-inline std::optional<Reply> complaintAbout(const boost::beast::error_code& ec) {
+/// The reply to bytes that are not a valid request, or that exceed a limit. Empty if `ec` is no HTTP error or the
+/// connection has ended.
+inline std::optional<HttpReply> errorReply(const boost::beast::error_code& ec) {
   namespace http = boost::beast::http;
   static const auto& category = make_error_code(http::error::end_of_stream).category();
   if (!ec || ec.category() != category || ec == http::error::end_of_stream || ec == http::error::partial_message)
     return std::nullopt;
-  Reply out;
+  HttpReply out;
   out.status = ec == http::error::header_limit || ec == http::error::buffer_overflow ? 431
                : ec == http::error::body_limit                                       ? 413
                                                                                      : 400;

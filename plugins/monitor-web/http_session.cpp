@@ -9,8 +9,8 @@
 #include <optional>
 #include <variant>
 
-#include "connections.h"
 #include "http_request.h"
+#include "server_state.h"
 
 namespace spark::web {
 
@@ -18,33 +18,37 @@ namespace {
 
 using beast::error_code;
 
-constexpr int kMostRequests = 200;  // of one connection
+constexpr int kMaxRequests = 200;  // per connection
 
-constexpr auto kLinger = std::chrono::seconds(2);
-constexpr std::size_t kMostDrained = 1 << 20;
+// Limits of what is read and discarded after the last response.
+constexpr auto kDrainTimeout = std::chrono::seconds(2);
+constexpr std::size_t kMaxDrainedBytes = 1 << 20;
 
-constexpr const char* kPolicy =
+constexpr const char* kContentSecurityPolicy =
     "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src "
     "'self' ws: wss: blob: data:; "
     "worker-src 'self' blob:; object-src 'none'; base-uri 'none'; frame-ancestors 'none'";
 
+/// One HTTP connection: reads a request, writes the response, repeats. The pending asynchronous operation owns it.
 class HttpSession : public Connection, public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(Hall& hall, beast::tcp_stream stream) : hall_(hall), stream_(std::move(stream)), buffer_(kLongestHeader) {
-    hall_.visitors.push_back(this);
-    place = std::prev(hall_.visitors.end());
+  HttpSession(ServerState& state, beast::tcp_stream stream)
+      : state_(state), stream_(std::move(stream)), buffer_(kMaxHeaderBytes) {
+    state_.connections.push_back(this);
+    position = std::prev(state_.connections.end());
   }
-  ~HttpSession() override { hall_.visitors.erase(place); }
+  ~HttpSession() override { state_.connections.erase(position); }
 
   void drop() override { stream_.close(); }
 
+  /// Waits for the next request.
   void read() {
     answering = false;
-    hall_.visitors.splice(hall_.visitors.end(), hall_.visitors, place);
+    state_.connections.splice(state_.connections.end(), state_.connections, position);
     makeParser(parser_);
-    expire();
+    startTimeout();
     http::async_read_header(stream_, buffer_, *parser_,
-                            [self = shared_from_this()](error_code ec, std::size_t) { self->heard(ec); });
+                            [self = shared_from_this()](error_code ec, std::size_t) { self->onRead(ec); });
   }
 
  private:
@@ -52,31 +56,31 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
   using Text = http::response<http::string_body>;
   using File = http::response<http::file_body>;
 
-  void expire() {
+  void startTimeout() {
     stream_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(
-        std::chrono::duration<double>(hall_.settings.requestTimeout)));
+        std::chrono::duration<double>(state_.settings.requestTimeout)));
   }
 
-  void heard(error_code ec) {
-    if (const auto complaint = complaintAbout(ec)) return answer(*complaint);
-    if (ec) return;  // it left, or took too long
+  void onRead(error_code ec) {
+    if (const auto reply = errorReply(ec)) return answer(*reply);
+    if (ec) return;  // the peer closed the connection, or the timeout expired
     answering = true;
-    Reply reply = hall_.site.answer(requestIn(*parser_));
+    HttpReply reply = state_.site.answer(requestIn(*parser_));
     if (reply.stream) return becomeViewer();
     if (!reply.isStatus) return answer(reply);
-    hall_.audience.whenStatus(Clock::now(), [self = shared_from_this(), reply](const std::string& status) mutable {
+    state_.hub.requestStatus(Clock::now(), [self = shared_from_this(), reply](const std::string& status) mutable {
       reply.text = status;
       self->answer(reply);
     });
-    hall_.pump();
+    state_.update();
   }
 
   void becomeViewer() {
-    if (hall_.viewers < static_cast<std::size_t>(hall_.settings.maxViewers)) {
+    if (state_.viewers < state_.settings.maxViewers) {
       stream_.expires_never();
-      return serveViewer(hall_, std::move(stream_), parser_->get());
+      return serveViewer(state_, std::move(stream_), parser_->get());
     }
-    Reply full;
+    HttpReply full;
     full.status = 503;
     full.text = "All places are taken.\n";
     full.close = true;
@@ -84,47 +88,47 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
   }
 
   template <class Body>
-  http::response<Body> head(const Reply& reply) {
+  http::response<Body> responseHead(const HttpReply& reply) {
     http::response<Body> out;
     out.version(11);
     out.result(reply.status);
-    out.keep_alive(stays_);
+    out.keep_alive(keepAlive_);
     out.set(http::field::content_type, reply.type);
-    out.set(http::field::cache_control, reply.keep ? "public, max-age=31536000, immutable" : "no-cache");
-    out.set("Content-Security-Policy", kPolicy);
+    out.set(http::field::cache_control, reply.immutable ? "public, max-age=31536000, immutable" : "no-cache");
+    out.set("Content-Security-Policy", kContentSecurityPolicy);
     out.set("X-Content-Type-Options", "nosniff");
     out.set("Referrer-Policy", "no-referrer");
     if (reply.status == 426) out.set(http::field::upgrade, "websocket");
     return out;
   }
 
-  void answer(const Reply& reply) {
-    stays_ = !reply.close && parser_->get().keep_alive() && ++requests_ < kMostRequests;
+  void answer(const HttpReply& reply) {
+    keepAlive_ = !reply.close && parser_->get().keep_alive() && ++requests_ < kMaxRequests;
     const bool bodyless = parser_->get().method() == http::verb::head;
     if (!reply.file.empty()) return answerFile(reply, bodyless);
     if (bodyless) {
-      auto out = head<http::empty_body>(reply);
+      auto out = responseHead<http::empty_body>(reply);
       out.content_length(reply.text.size());
       return write(std::move(out));
     }
-    auto out = head<http::string_body>(reply);
+    auto out = responseHead<http::string_body>(reply);
     out.body() = reply.text;
     out.prepare_payload();
     write(std::move(out));
   }
 
-  void answerFile(const Reply& reply, bool bodyless) {
-    auto out = head<http::file_body>(reply);
+  void answerFile(const HttpReply& reply, bool bodyless) {
+    auto out = responseHead<http::file_body>(reply);
     error_code ec;
     out.body().open(reply.file.c_str(), beast::file_mode::scan, ec);
     if (ec) {
-      Reply gone;
-      gone.status = 404;
-      gone.text = "This file cannot be read.\n";
-      return answer(gone);
+      HttpReply unreadable;
+      unreadable.status = 404;
+      unreadable.text = "This file cannot be read.\n";
+      return answer(unreadable);
     }
     if (bodyless) {
-      auto headOnly = head<http::empty_body>(reply);
+      auto headOnly = responseHead<http::empty_body>(reply);
       headOnly.content_length(out.body().size());
       return write(std::move(headOnly));
     }
@@ -132,7 +136,7 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
     write(std::move(out));
   }
 
-  /// An answer and how much of it has left.
+  /// A response and the state of its transmission.
   template <class Body>
   struct Outgoing {
     explicit Outgoing(http::response<Body> r) : response(std::move(r)), serializer(response) {}
@@ -144,47 +148,49 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
   void write(http::response<Body> response) {
     writeSome(std::make_shared<Outgoing<Body>>(std::move(response)));
   }
-  /// Piece by piece: each has its own time.
+  /// Writes part by part, each with its own timeout.
   template <class Body>
   void writeSome(std::shared_ptr<Outgoing<Body>> out) {
-    expire();
+    startTimeout();
     http::async_write_some(stream_, out->serializer, [self = shared_from_this(), out](error_code ec, std::size_t) {
       if (ec) return;
       if (!out->serializer.is_done()) return self->writeSome(out);
-      if (self->stays_)
+      if (self->keepAlive_)
         self->read();
       else
         self->end();
     });
   }
 
-  /// Says that nothing more comes. What the other still sends is taken for a moment: a connection that is closed with
-  /// unread bytes takes the answer with it.
+  /// Closes our direction, then reads and discards what the peer still sends: closing a socket with unread bytes resets
+  /// the connection, and the peer could lose the response.
   void end() {
     answering = false;
     error_code ignored;
     stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
-    stream_.expires_after(kLinger);
-    drain(kMostDrained);
+    stream_.expires_after(kDrainTimeout);
+    drain(kMaxDrainedBytes);
   }
-  void drain(std::size_t left) {
-    stream_.async_read_some(boost::asio::buffer(waste_),
-                            [self = shared_from_this(), left](error_code ec, std::size_t n) {
-                              if (!ec && n < left) self->drain(left - n);
+  void drain(std::size_t maxBytes) {
+    stream_.async_read_some(boost::asio::buffer(discarded_),
+                            [self = shared_from_this(), maxBytes](error_code ec, std::size_t n) {
+                              if (!ec && n < maxBytes) self->drain(maxBytes - n);
                             });
   }
 
-  Hall& hall_;
+  ServerState& state_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_;
   std::optional<HeaderParser> parser_;
-  std::array<char, 4096> waste_;
-  int requests_ = 0;
-  bool stays_ = true;
+  std::array<char, 4096> discarded_;
+  int requests_ = 0;  ///< answered on this connection
+  bool keepAlive_ = true;
 };
 
 }  // namespace
 
-void serveHttp(Hall& hall, beast::tcp_stream stream) { std::make_shared<HttpSession>(hall, std::move(stream))->read(); }
+void serveHttp(ServerState& state, beast::tcp_stream stream) {
+  std::make_shared<HttpSession>(state, std::move(stream))->read();
+}
 
 }  // namespace spark::web

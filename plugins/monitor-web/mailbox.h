@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A mailbox between threads: many put, one takes everything.
+/// A lock-free mailbox: many threads put messages in, one thread takes all of them out.
 
 #include <algorithm>
 #include <atomic>
@@ -9,7 +9,8 @@
 
 namespace spark::web {
 
-/// Nobody waits for anybody: putting and taking are one exchange of a pointer each.
+/// A stack of heap-allocated messages with an atomic top pointer. Neither side blocks: a put and a takeAll are one
+/// atomic exchange each, and put() retries only while other threads put at the same moment.
 template <class T>
 class Mailbox {
  public:
@@ -18,31 +19,31 @@ class Mailbox {
   Mailbox& operator=(const Mailbox&) = delete;
   ~Mailbox() { takeAll(); }
 
-  /// Any thread.
+  /// Adds a message. Any thread; allocates.
   void put(T value) {
-    auto* letter = new Letter{std::move(value), top_.load(std::memory_order_relaxed)};
-    while (!top_.compare_exchange_weak(letter->below, letter, std::memory_order_release, std::memory_order_relaxed)) {
+    auto* message = new Message{std::move(value), top_.load(std::memory_order_relaxed)};
+    while (!top_.compare_exchange_weak(message->below, message, std::memory_order_release, std::memory_order_relaxed)) {
     }
   }
-  /// Any thread; may be outdated at once. Costs one load.
+  /// True if there is no message at this moment. Any thread; costs one load.
   bool empty() const { return !top_.load(std::memory_order_relaxed); }
-  /// The one taker: all letters, the oldest first.
+  /// Removes and returns all messages, oldest first. Consumer thread only.
   std::vector<T> takeAll() {
     std::vector<T> out;
-    for (Letter* letter = top_.exchange(nullptr, std::memory_order_acquire); letter;) {
-      out.push_back(std::move(letter->value));
-      delete std::exchange(letter, letter->below);
+    for (Message* message = top_.exchange(nullptr, std::memory_order_acquire); message;) {
+      out.push_back(std::move(message->value));
+      delete std::exchange(message, message->below);
     }
     std::reverse(out.begin(), out.end());
     return out;
   }
 
  private:
-  struct Letter {
+  struct Message {
     T value;
-    Letter* below;
+    Message* below;  ///< put before this one
   };
-  std::atomic<Letter*> top_{nullptr};
+  std::atomic<Message*> top_{nullptr};
 };
 
 }  // namespace spark::web

@@ -10,7 +10,7 @@ namespace spark::web {
 
 namespace {
 
-/// Significant digits of a number in an entry, such as the time of play.
+/// Significant digits of a number in an entry, such as the game time.
 constexpr int kEntryDigits = 10;
 
 void writeShape(JsonWriter& json, const SceneShape& shape) {
@@ -59,7 +59,7 @@ void writeNode(JsonWriter& json, const NodeDescription& node, bool visible) {
   json.endObject();
 }
 
-/// Recorded games know only texts.
+/// True if the text is a number. In recorded games all atoms are texts.
 bool isNumber(std::string_view text) {
   if (text.find_first_not_of("0123456789+-.eE") != text.npos) return false;
   double number = 0;
@@ -67,7 +67,8 @@ bool isNumber(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-std::string environment(const Snapshot& s, bool full, const std::vector<std::uint32_t>& tokens) {
+/// The environment message with the entries at `tokens`.
+std::string environmentMessage(const Snapshot& s, bool full, const std::vector<std::uint32_t>& tokens) {
   std::string out;
   JsonWriter json(out, kWebJson);
   json.beginObject().member("type", "environment").key("time").value(s.time, kEntryDigits);
@@ -135,7 +136,7 @@ std::string fullEnvironmentMessage(const Snapshot& s) {
   std::vector<std::uint32_t> tokens;
   for (const Environment::Entry& entry : s.environment.entries)
     if (entry.policy != EnvPolicy::once) tokens.push_back(entry.token);
-  return environment(s, true, tokens);
+  return environmentMessage(s, true, tokens);
 }
 
 std::string eventMessage(double time, const Element& event) {
@@ -161,19 +162,19 @@ std::string failure(std::string_view why) {
   return out;
 }
 
-bool EnvironmentDiary::changed(const EntryKey& key) {
-  for (EntryKey& told : told_)
-    if (told.name == key.name) return std::exchange(told.content, key.content) != key.content;
-  told_.push_back(key);
+bool ChangeTracker::changed(const EntryKey& key) {
+  for (EntryKey& sent : sent_)
+    if (sent.name == key.name) return std::exchange(sent.content, key.content) != key.content;
+  sent_.push_back(key);
   return true;
 }
 
-bool EnvironmentDiary::changed(std::size_t entry, std::string text) {
-  if (entry >= toldAlways_.size()) toldAlways_.resize(entry + 1);
-  return std::exchange(toldAlways_[entry], std::move(text)) != toldAlways_[entry];
+bool ChangeTracker::changed(std::size_t entry, std::string text) {
+  if (entry >= sentAlways_.size()) sentAlways_.resize(entry + 1);
+  return std::exchange(sentAlways_[entry], std::move(text)) != sentAlways_[entry];
 }
 
-std::string EnvironmentDiary::take(const Snapshot& s, bool always) {
+std::string ChangeTracker::update(const Snapshot& s, bool always) {
   const auto& entries = s.environment.entries;
   std::vector<std::uint32_t> tokens;
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -185,7 +186,7 @@ std::string EnvironmentDiary::take(const Snapshot& s, bool always) {
     }
     if (differs) tokens.push_back(entries[i].token);
   }
-  return tokens.empty() ? std::string() : environment(s, false, tokens);
+  return tokens.empty() ? std::string() : environmentMessage(s, false, tokens);
 }
 
 }  // namespace spark::web

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The text messages that viewers get, as JSON. README.md lists them.
+/// The JSON text messages to viewers. README.md lists them.
 
 #include <string>
 #include <string_view>
@@ -10,37 +10,38 @@
 
 namespace spark::web {
 
-/// Of all messages. Bytes that are no UTF-8 become U+FFFD, numbers that are not finite 0.
+/// JSON style of all messages: ASCII only; invalid UTF-8 becomes U+FFFD, a number that is not finite 0.
 inline constexpr JsonStyle kWebJson{.ascii = true, .notFinite = "0"};
-/// Writes an element: lists as arrays, texts that are numbers as numbers.
+/// Appends a JSON string.
+inline void putQuoted(std::string& out, std::string_view text) { JsonWriter(out, kWebJson).value(text); }
+/// Writes an element: lists as arrays, texts that look like numbers as numbers.
 void writeElement(JsonWriter& json, const Element& element);
 
-/// `{"type":"hello",...}`. `step`: simulated seconds of a cycle; `rate`: frames a second that a viewer gets unless it
-/// asks for another.
+/// `{"type":"hello",...}`. `step`: simulated seconds per cycle; `rate`: default number of frames a second.
 std::string helloMessage(double step, double rate);
-/// `{"type":"scene",...}` with the matrices as they are now.
+/// `{"type":"scene",...}` with the matrices of the snapshot. `snapshot.scene` must be set; `shape`: its number.
 std::string sceneMessage(const Snapshot& snapshot, std::uint32_t shape);
-/// `{"type":"environment",...,"full":true}`: every entry.
+/// `{"type":"environment",...,"full":true}`: all entries except events.
 std::string fullEnvironmentMessage(const Snapshot& snapshot);
-/// `{"type":"event",...}` for event `i`.
+/// `{"type":"event",...}`. `time`: simulated seconds.
 std::string eventMessage(double time, const Element& event);
-/// `{"type":"TYPE","id":ID,` in front of what an answer `{"ok":...}` says.
+/// `{"type":TYPE,"id":ID,...}` with the members of `answer`, a JSON object such as `{"ok":true}`.
 std::string reply(std::string_view type, std::int64_t id, std::string_view answer);
-/// `{"ok":false,"error":"..."}`.
+/// `{"ok":false,"error":WHY}`.
 std::string failure(std::string_view why);
 
-/// What viewers were told of the environment, to tell them what changed.
-class EnvironmentDiary {
+/// Tracks which entries of the environment have changed since they were sent.
+class ChangeTracker {
  public:
-  /// Notes what the snapshot says; the message that tells the differences, "" when there are none. `always`: also of
-  /// the entries that other monitors get with every frame, such as the time of play.
-  std::string take(const Snapshot& snapshot, bool always);
+  /// The environment message with the entries that changed since the last call; "" if there are none. `always`: include
+  /// entries with policy `always`, such as the game time.
+  std::string update(const Snapshot& snapshot, bool always);
 
  private:
   bool changed(const EntryKey& key);
   bool changed(std::size_t entry, std::string text);
-  std::vector<EntryKey> told_;
-  std::vector<std::string> toldAlways_;  ///< by index among the entries
+  std::vector<EntryKey> sent_;           ///< `change` entries, in order of their first appearance
+  std::vector<std::string> sentAlways_;  ///< `always` entries as JSON, by index among all entries
 };
 
 }  // namespace spark::web

@@ -5,6 +5,7 @@
 namespace spark::web {
 
 namespace {
+/// Escapes text for HTML.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -19,7 +20,7 @@ std::string escaped(std::string_view text) {
 }
 }  // namespace
 
-std::string plainPage(std::string_view lacks) {
+std::string plainPage(std::string_view missing) {
   return fmt::format(R"(<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
@@ -38,7 +39,7 @@ std::string plainPage(std::string_view lacks) {
 <script src="plain.js"></script>
 </html>
 )",
-                     lacks.empty() ? "" : ": missing is ", escaped(lacks));
+                     missing.empty() ? "" : ": missing is ", escaped(missing));
 }
 
 const char* const kPlainScript = R"(const table = document.getElementById("numbers");

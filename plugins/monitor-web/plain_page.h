@@ -1,16 +1,16 @@
 #pragma once
 /// \file
-/// What is served where the viewer was not built: the live numbers, and what is missing.
+/// The page that is served if the viewer was not built: it shows live numbers and what is missing to build the viewer.
 
 #include <string>
 #include <string_view>
 
 namespace spark::web {
 
-/// The page; `lacks` says what is missing, "" when that is not known.
-std::string plainPage(std::string_view lacks);
+/// The page as HTML. `missing`: what is missing to build the viewer; "" if unknown.
+std::string plainPage(std::string_view missing);
 
-/// Its script, /plain.js.
+/// The script of the page, served as /plain.js.
 extern const char* const kPlainScript;
 
 }  // namespace spark::web

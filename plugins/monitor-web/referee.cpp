@@ -14,8 +14,8 @@ namespace spark::web {
 std::string makeToken() {
   std::array<unsigned char, 16> bytes;
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw Error(std::string("cannot make a referee's token: the system gives no random numbers: ") +
-                std::strerror(errno));
+    throw Error(
+        fmt::format("cannot make a referee's token: the system gives no random numbers: {}", std::strerror(errno)));
   return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 

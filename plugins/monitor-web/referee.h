@@ -1,19 +1,19 @@
 #pragma once
 /// \file
-/// The token that makes a viewer a referee.
+/// The token with which a viewer becomes a referee.
 
 #include <string>
 #include <string_view>
 
 namespace spark::web {
 
-/// 128 bits of the system's randomness, as 32 hexadecimal digits. Throws Error when the system gives none.
+/// A new token: 128 random bits of the system as 32 hexadecimal digits. Throws Error if the system has none.
 std::string makeToken();
 
-/// True when they are equal; the time it takes tells only the length of `given`.
+/// True if they are equal and not empty. Its run time depends only on the length of `given`, not on its content.
 bool isToken(std::string_view token, std::string_view given);
 
-/// Wrong tokens after which a connection is closed.
-inline constexpr int kMostWrongTokens = 5;
+/// Number of wrong tokens after which a viewer is disconnected.
+inline constexpr int kMaxWrongTokens = 5;
 
 }  // namespace spark::web

@@ -8,7 +8,7 @@ namespace spark::web {
 
 namespace {
 
-/// Shapes that a viewer can draw: planes are the ground, rays are nothing to see, meshes come as meshes.
+/// The shape as viewers draw it. Empty for planes and rays, which are not drawn, and meshes, which are visual nodes.
 std::optional<SceneShape> shapeOf(const engine::ShapeDescription& s) {
   switch (s.shape) {
     case engine::Shape::box:
@@ -24,9 +24,9 @@ std::optional<SceneShape> shapeOf(const engine::ShapeDescription& s) {
   }
 }
 
-/// Colliders below `above` that no other transform stands between.
-void collectShapes(const Node& above, std::vector<SceneShape>& out) {
-  for (const auto& child : above.children()) {
+/// Collects the shapes of the colliders below `parent`, without those below another transform.
+void collectShapes(const Node& parent, std::vector<SceneShape>& out) {
+  for (const auto& child : parent.children()) {
     if (child->as<Transform>() || !child->asNode()) continue;
     if (const auto collider = child->as<ICollider>())
       if (const auto description = collider->shape())
@@ -62,13 +62,13 @@ NodeDescription describeNode(const FrameNode& node) {
 
 std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame) {
   auto scene = std::make_shared<SceneDescription>();
-  std::vector<int> above;  // by depth: the last node
+  std::vector<int> lastAtDepth;  // index of the last node of each depth, which is the parent of the next deeper ones
   for (const FrameNode& node : frame.nodes) {
     const auto depth = static_cast<std::size_t>(node.depth);
-    above.resize(depth + 1, -1);
+    lastAtDepth.resize(depth + 1, -1);
     scene->nodes.push_back(describeNode(node));
-    scene->nodes.back().parent = depth > 0 ? above[depth - 1] : -1;
-    above[depth] = static_cast<int>(scene->nodes.size()) - 1;
+    scene->nodes.back().parent = depth > 0 ? lastAtDepth[depth - 1] : -1;
+    lastAtDepth[depth] = static_cast<int>(scene->nodes.size()) - 1;
   }
   return scene;
 }

@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// Copies of what a frame refers to, made in the publish phase.
+/// Copies of the scene for the I/O thread. Simulation thread, publish phase.
 
 #include "snapshot.h"
 
 namespace spark::web {
 
-/// The nodes with their paths, meshes and the shapes of their colliders. Publish phase, simulation's thread; allocates.
+/// Describes the nodes of a frame: paths, meshes, shapes of colliders. Allocates.
 std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame);
 
-/// Matrices and visibility; allocates only when there are more nodes than ever before.
+/// Copies the matrices and visibilities of a frame. Allocates only if there are more nodes than ever before.
 void copyNodes(const MonitorFrame& frame, Snapshot& out);
 
 }  // namespace spark::web

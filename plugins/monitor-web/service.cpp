@@ -11,7 +11,7 @@
 #include <csignal>
 #include <thread>
 
-#include "connections.h"
+#include "server_state.h"
 #include "spark/error.h"
 #include "spark/log.h"
 
@@ -22,21 +22,23 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 namespace {
-constexpr int kSpareDescriptors = 256;  // for agents, monitors, files
-constexpr int kSendBuffer =
-    131072;  // bytes that the system holds back for a viewer; the rest of what waits is ours to drop
-constexpr auto kAcceptPause = std::chrono::milliseconds(200);
+constexpr int kReservedDescriptors = 256;  // for agents, monitors, files
 
-/// As many connections as the process has descriptors for; each may have a file open besides its socket.
-int affordable(int wanted) {
+// Bytes; small, so that frames for a slow viewer wait in our queue, where they can be skipped.
+constexpr int kSendBufferBytes = 131072;
+
+constexpr auto kAcceptRetryDelay = std::chrono::milliseconds(200);
+
+/// Limits the number of connections to what the process may open: each may need a file besides its socket.
+int clampToDescriptorLimit(int wanted) {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return wanted;
-  return std::min(wanted,
-                  std::max(16, (static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 1 << 20)) - kSpareDescriptors) / 2));
+  return std::min(
+      wanted, std::max(16, (static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 1 << 20)) - kReservedDescriptors) / 2));
 }
 
-ServiceSettings afforded(ServiceSettings s) {
-  s.maxConnections = affordable(s.maxConnections);
+ServiceSettings withDescriptorLimit(ServiceSettings s) {
+  s.maxConnections = clampToDescriptorLimit(s.maxConnections);
   s.maxViewers = std::min(s.maxViewers, s.maxConnections);
   return s;
 }
@@ -44,24 +46,25 @@ ServiceSettings afforded(ServiceSettings s) {
 
 struct Service::Impl {
   Impl(ServiceSettings s, Exchange& e, Log& log)
-      : exchange(e), hall{afforded(s), log, Site(s.site), Audience(e, log, s.audience), {}, 0, 0, [this] { pump(); }} {
+      : exchange(e), state{withDescriptorLimit(s), log, Site(s.site), ViewerHub(e, log, s.hub), {}, 0, 0,
+                           [this] { update(); }} {
     open(s);
-    const int copy = dup(exchange.descriptor());
+    const int copy = dup(exchange.wakeupFd());  // `wakeup` closes its descriptor
     if (copy < 0) throw Error("cannot open the web server: too many files are open");
-    bell.assign(copy);
-    listen();
+    wakeup.assign(copy);
+    awaitWakeup();
     accept();
-    pump();
+    update();
     start();
   }
 
   ~Impl() {
     io.stop();
     thread.join();
-    hall.audience.dismiss();  // what else is alive hangs in io, which goes before the hall
+    state.hub.clear();  // the remaining sessions are owned by handlers in io, which is destroyed before `state`
   }
 
-  // ---- the port ----
+  // ---- listening port ----
 
   void open(const ServiceSettings& s) {
     error_code ec;
@@ -69,88 +72,92 @@ struct Service::Impl {
     if (ec)
       throw Error(fmt::format(
           "the web server's address: expected an IP address such as 127.0.0.1 or 0.0.0.0, found '{}'", s.address));
-    const bool had = bind({address, s.port}, ec);
+    const bool bound = bind({address, s.port}, ec);
     const std::string why = ec.message();
-    if (!had && (s.port == 0 || !bind({address, 0}, ec)))
+    if (!bound && (s.port == 0 || !bind({address, 0}, ec)))
       throw Error(fmt::format("the web server cannot listen on {}:{}: {}", s.address, s.port, why));
     port = acceptor.local_endpoint().port();
-    if (!had) hall.log.info("Web: port {} cannot be had ({}), {} is taken instead.", s.port, why, port);
+    if (!bound) state.log.info("Web: port {} cannot be had ({}), {} is taken instead.", s.port, why, port);
   }
 
-  bool bind(const tcp::endpoint& end, error_code& ec) {
+  bool bind(const tcp::endpoint& endpoint, error_code& ec) {
     acceptor.close(ec);
-    acceptor.open(end.protocol(), ec);
+    acceptor.open(endpoint.protocol(), ec);
     if (!ec) acceptor.set_option(tcp::acceptor::reuse_address(true), ec);
-    if (!ec) acceptor.bind(end, ec);
+    if (!ec) acceptor.bind(endpoint, ec);
     if (!ec) acceptor.listen(asio::socket_base::max_listen_connections, ec);
     return !ec;
   }
 
   void accept() {
     acceptor.async_accept([this](error_code ec, tcp::socket socket) {
-      if (ec) return acceptLater(ec);
-      take(std::move(socket));
+      if (ec) return retryAccept(ec);
+      serve(std::move(socket));
       accept();
     });
   }
 
-  /// Out of descriptors, most likely.
-  void acceptLater(error_code ec) {
+  /// The likely cause is that the process has no descriptor left: closes a connection and tries again later.
+  void retryAccept(error_code ec) {
     if (ec == asio::error::operation_aborted) return;
-    hall.log.debug("Web: cannot take a connection: {}.", ec.message());
+    state.log.debug("Web: cannot take a connection: {}.", ec.message());
     makeRoom();
-    pause.expires_after(kAcceptPause);
-    pause.async_wait([this](error_code stopped) {
+    retryTimer.expires_after(kAcceptRetryDelay);
+    retryTimer.async_wait([this](error_code stopped) {
       if (!stopped) accept();
     });
   }
 
-  void take(tcp::socket socket) {
+  void serve(tcp::socket socket) {
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
-    socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
-    if (hall.visitors.size() + hall.viewers >= static_cast<std::size_t>(hall.settings.maxConnections) && !makeRoom())
-      return;
-    serveHttp(hall, beast::tcp_stream(std::move(socket)));
+    socket.set_option(tcp::socket::send_buffer_size(kSendBufferBytes), ignored);
+    if (openConnections() >= state.settings.maxConnections && !makeRoom()) return;
+    serveHttp(state, beast::tcp_stream(std::move(socket)));
   }
 
-  /// Ends the visitor who was quiet longest, else the one who came first; viewers stay.
+  int openConnections() const { return static_cast<int>(state.connections.size()) + state.viewers; }
+
+  /// Drops the HTTP connection that has been idle longest, or the oldest one if all are busy. Never drops a viewer.
+  /// False if there is no HTTP connection.
   bool makeRoom() {
-    const auto quiet =
-        std::find_if(hall.visitors.begin(), hall.visitors.end(), [](const Connection* c) { return !c->answering; });
-    const auto at = quiet == hall.visitors.end() ? hall.visitors.begin() : quiet;
-    if (at == hall.visitors.end()) return false;
-    (*at)->drop();
+    auto& all = state.connections;
+    const auto idle = std::find_if(all.begin(), all.end(), [](const Connection* c) { return !c->answering; });
+    const auto victim = idle == all.end() ? all.begin() : idle;
+    if (victim == all.end()) return false;
+    (*victim)->drop();
     return true;
   }
 
-  // ---- the simulation's thread rings ----
+  // ---- hub ----
 
-  void listen() {
-    bell.async_wait(asio::posix::stream_descriptor::wait_read, [this](error_code ec) {
+  /// Waits for the simulation thread to signal snapshots and replies.
+  void awaitWakeup() {
+    wakeup.async_wait(asio::posix::stream_descriptor::wait_read, [this](error_code ec) {
       if (ec) return;
       std::uint64_t count = 0;
-      [[maybe_unused]] const auto got = ::read(bell.native_handle(), &count, sizeof count);
-      hall.audience.collect(Clock::now());
-      pump();
-      listen();
+      [[maybe_unused]] const auto got = ::read(wakeup.native_handle(), &count, sizeof count);
+      state.hub.collect(Clock::now());
+      update();
+      awaitWakeup();
     });
   }
 
-  void pump() {
-    viewers.store(static_cast<int>(hall.audience.size()), std::memory_order_relaxed);
-    connections.store(static_cast<int>(hall.visitors.size() + hall.viewers), std::memory_order_relaxed);
-    const auto next = hall.audience.tick(Clock::now());
-    if (next == planned) return;
-    planned = next;
+  /// Publishes the counters, runs the hub's due work and sets the timer for the next.
+  void update() {
+    viewers.store(static_cast<int>(state.hub.size()), std::memory_order_relaxed);
+    connections.store(openConnections(), std::memory_order_relaxed);
+    const auto next = state.hub.tick(Clock::now());
+    if (next == timerAt) return;
+    timerAt = next;
     timer.expires_at(next);
     timer.async_wait([this](error_code ec) {
-      if (!ec) planned = {}, pump();
+      if (!ec) timerAt = {}, update();
     });
   }
 
-  /// Signals are for the simulation's thread, and so is a processor that only one of them can have: this one does not
-  /// push it off.
+  /// Starts the thread. It blocks all signals, which belong to the simulation thread. With SCHED_BATCH it does not
+  /// preempt the simulation thread when both share a processor.
   void start() {
     sigset_t all, before;
     sigfillset(&all);
@@ -165,14 +172,14 @@ struct Service::Impl {
   }
 
   Exchange& exchange;
-  Hall hall;
+  ServerState state;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   unsigned short port = 0;
-  asio::posix::stream_descriptor bell{io};
-  asio::steady_timer timer{io}, pause{io};
-  Clock::time_point planned{};
-  std::atomic<int> viewers{0}, connections{0};
+  asio::posix::stream_descriptor wakeup{io};     // Exchange::wakeupFd()
+  asio::steady_timer timer{io}, retryTimer{io};  // of the hub; of accept()
+  Clock::time_point timerAt{};                   // when `timer` expires; {}: it is not set
+  std::atomic<int> viewers{0}, connections{0};   // for other threads
   std::thread thread;
 };
 

@@ -10,19 +10,19 @@
 
 #include "plain_page.h"
 
-// Which file a request may mean is decided on names alone: every component must be a plain name (no dots in front, no
-// separators, no control characters, after decoding), so that a path cannot leave its folder.
+// A requested path is checked by its names alone, without the file system: after decoding, each component must be a
+// plain name (no leading dot, no separator, no control character), so a path cannot leave its folder.
 
 namespace spark::web {
 
 namespace fs = std::filesystem;
 
 namespace {
-constexpr std::size_t kMostFolders = 4;  // components below a folder
-constexpr const char* kPacked = "application/gzip";
+constexpr std::size_t kMaxComponents = 4;  // of a path below a served folder
+constexpr const char* kGzipType = "application/gzip";
 
-Reply refusal(unsigned status, std::string text) {
-  Reply out;
+HttpReply refusal(unsigned status, std::string text) {
+  HttpReply out;
   out.status = status;
   out.text = std::move(text) + "\n";
   out.close = status != 404;
@@ -36,14 +36,14 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// The name of `host` without its port, in lower case; brackets of an IPv6 address are taken off.
-std::string nameOf(std::string_view host) {
+/// `host` in lower case, without its port and without the brackets of an IPv6 address.
+std::string hostName(std::string_view host) {
   if (host.starts_with('['))
     return host.find(']') == host.npos ? std::string() : lower(host.substr(1, host.find(']') - 1));
   return lower(host.substr(0, host.find(':')));
 }
 
-std::string machineName() {
+std::string localHostName() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? lower(name.data()) : std::string();
 }
@@ -54,8 +54,8 @@ int hexDigit(char c) {
   return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-/// The text with %41 as A; "" when it is no such text.
-std::string decoded(std::string_view text) {
+/// Decodes percent escapes, such as %41 for A; "" if one is malformed.
+std::string percentDecoded(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '%') {
@@ -89,7 +89,7 @@ std::string typeOf(const fs::path& file) {
                                                                       {".woff2", "font/woff2"},
                                                                       {".log", "text/plain; charset=utf-8"},
                                                                       {".txt", "text/plain; charset=utf-8"},
-                                                                      {".gz", kPacked}}};
+                                                                      {".gz", kGzipType}}};
   const std::string extension = lower(file.extension().string());
   for (const auto& [ending, type] : kTypes)
     if (extension == ending) return type;
@@ -101,8 +101,8 @@ std::vector<std::string> plainComponents(std::string_view path) {
   std::vector<std::string> out;
   while (true) {
     const std::size_t end = std::min(path.find('/'), path.size());
-    std::string name = decoded(path.substr(0, end));
-    if (!isPlainName(name) || out.size() == kMostFolders) return {};
+    std::string name = percentDecoded(path.substr(0, end));
+    if (!isPlainName(name) || out.size() == kMaxComponents) return {};
     out.push_back(std::move(name));
     if (end == path.size()) return out;
     path.remove_prefix(end + 1);
@@ -115,12 +115,12 @@ bool isSameOrigin(std::string_view origin, std::string_view host) {
   return false;
 }
 
-bool Site::isOurs(std::string_view host) const {
-  const std::string name = nameOf(host);
+bool Site::acceptsHost(std::string_view host) const {
+  const std::string name = hostName(host);
   if (name.empty()) return false;
   boost::system::error_code ec;
-  boost::asio::ip::make_address(name, ec);  // an address cannot be pointed elsewhere
-  if (!ec || name == "localhost" || name.ends_with(".localhost") || name == machineName()) return true;
+  boost::asio::ip::make_address(name, ec);  // an IP address cannot be rebound
+  if (!ec || name == "localhost" || name.ends_with(".localhost") || name == localHostName()) return true;
   return std::any_of(settings_.hosts.begin(), settings_.hosts.end(),
                      [&](const std::string& known) { return known == "*" || lower(known) == name; });
 }
@@ -130,8 +130,8 @@ bool Site::hasViewer() const {
   return !settings_.viewer.empty() && fs::is_regular_file(settings_.viewer / "index.html", ec);
 }
 
-Reply Site::answer(const Request& request) const {
-  if (!isOurs(request.host))
+HttpReply Site::answer(const HttpRequest& request) const {
+  if (!acceptsHost(request.host))
     return refusal(
         421, fmt::format("This server is not known as '{}'. Its config may name it: server.hosts = {{ \"NAME\" }}.",
                          request.host.substr(0, 100)));
@@ -143,15 +143,15 @@ Reply Site::answer(const Request& request) const {
     if (!request.upgrade) return refusal(426, "Expected a WebSocket.");
     if (!request.origin.empty() && !isSameOrigin(request.origin, request.host))
       return refusal(403, fmt::format("A page from '{}' may not watch here.", request.origin.substr(0, 100)));
-    Reply out;
+    HttpReply out;
     out.stream = true;
     return out;
   }
   return page(path);
 }
 
-Reply Site::page(std::string_view path) const {
-  Reply out;
+HttpReply Site::page(std::string_view path) const {
+  HttpReply out;
   if (path == "/status.json") {
     out.type = "application/json";
     out.isStatus = true;
@@ -172,25 +172,26 @@ Reply Site::page(std::string_view path) const {
   return refusal(404, "There is no such page.");
 }
 
-/// Recorded games come from anywhere: a browser is never to take one for a page or a script of this server.
-Reply Site::logFile(std::string_view name) const {
+/// Logs may come from untrusted sources: their type keeps browsers from running them as pages or scripts of this
+/// server.
+HttpReply Site::logFile(std::string_view name) const {
   if (settings_.logs.empty()) return refusal(404, "There are no logs here.");
-  Reply out = fileIn(settings_.logs, name);
-  if (out.status == 200) out.type = out.type == kPacked ? kPacked : "text/plain; charset=utf-8";
-  out.keep = false;
+  HttpReply out = fileIn(settings_.logs, name);
+  if (out.status == 200) out.type = out.type == kGzipType ? kGzipType : "text/plain; charset=utf-8";
+  out.immutable = false;
   return out;
 }
 
-Reply Site::fileIn(const fs::path& folder, std::string_view name) const {
+HttpReply Site::fileIn(const fs::path& folder, std::string_view name) const {
   const std::vector<std::string> components = plainComponents(name);
   fs::path file = folder;
   for (const std::string& c : components) file /= c;
   std::error_code ec;
   if (components.empty() || !fs::is_regular_file(file, ec)) return refusal(404, "There is no such file.");
-  Reply out;
+  HttpReply out;
   out.file = file;
   out.type = typeOf(file);
-  out.keep = components.front() == "assets";  // their names change with what is in them
+  out.immutable = components.front() == "assets";  // the bundler puts a hash of the content into the name
   return out;
 }
 

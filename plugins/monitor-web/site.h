@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// What the web server answers to HTTP requests. Knows no sockets: a request comes as plain data, an answer goes as
-/// plain data.
+/// Maps HTTP requests to replies: pages, files, errors. Independent of sockets; requests and replies are plain data.
 
 #include <filesystem>
 #include <memory>
@@ -11,59 +10,58 @@
 
 namespace spark::web {
 
-/// What counts of a request.
-struct Request {
+/// The head of a request. The texts belong to the caller.
+struct HttpRequest {
   std::string_view method, target;
-  std::string_view host, origin;  ///< "" when missing
-  bool upgrade = false;           ///< wants a WebSocket
+  std::string_view host, origin;  ///< header fields; "" if missing
+  bool upgrade = false;           ///< asks for a WebSocket
   bool hasBody = false;
 };
 
-/// An answer. Its body is `text`, or the file where one is named.
-struct Reply {
+/// A reply. Its body is `file` if that is not empty, otherwise `text`.
+struct HttpReply {
   unsigned status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::string text;
   std::filesystem::path file;
-  bool keep = false;      ///< its name says what is in it: browsers may keep it
-  bool stream = false;    ///< no answer: the request becomes a viewer
-  bool isStatus = false;  ///< the body is how the host is doing, as soon as that is known
-  bool close = false;     ///< nothing more is taken from who asks so
+  bool immutable = false;  ///< browsers may cache it for ever: the file's name is a hash of its content
+  bool stream = false;     ///< no reply: the connection becomes a viewer
+  bool isStatus = false;   ///< the body is to be the status message, which ViewerHub::requestStatus() delivers
+  bool close = false;      ///< close the connection after it
 };
 
-/// What is served. Folders may be "": nothing of the kind.
+/// What is served. An empty folder is not served.
 struct SiteSettings {
-  std::filesystem::path viewer;  ///< index.html and assets/
-  std::string viewerLacks;       ///< why there is no viewer, for the plain page
-  std::filesystem::path logs;    ///< files under /logs/
-  std::vector<std::string>
-      hosts;  ///< names under which the server is known, besides IP addresses and localhost; "*": any
+  std::filesystem::path viewer;    ///< folder with index.html and assets/
+  std::string viewerLacks;         ///< what is missing to build the viewer, for the plain page
+  std::filesystem::path logs;      ///< folder whose files are served under /logs/
+  std::vector<std::string> hosts;  ///< accepted names of this server besides IP addresses and localhost; "*": any
 };
 
+/// Answers requests for pages and files. Immutable.
 class Site {
  public:
   explicit Site(SiteSettings settings) : settings_(std::move(settings)) {}
 
-  /// Nothing is thrown.
-  Reply answer(const Request& request) const;
+  /// The reply to a request. Does not throw.
+  HttpReply answer(const HttpRequest& request) const;
 
-  /// True when a browser that was sent to `host` was sent to us and to nobody who only claims our address (DNS
-  /// rebinding).
-  bool isOurs(std::string_view host) const;
+  /// True if `host`, the Host field of a request, is an accepted name of this server. Refusing others prevents DNS
+  /// rebinding: a foreign page whose name resolves to our address.
+  bool acceptsHost(std::string_view host) const;
 
  private:
-  Reply page(std::string_view path) const;
-  Reply logFile(std::string_view name) const;
-  Reply fileIn(const std::filesystem::path& folder, std::string_view name) const;
+  HttpReply page(std::string_view path) const;
+  HttpReply logFile(std::string_view name) const;
+  HttpReply fileIn(const std::filesystem::path& folder, std::string_view name) const;
   bool hasViewer() const;
   SiteSettings settings_;
 };
 
-/// True when a page from `origin` may open a WebSocket at `host`: it came from there.
+/// True if a page from `origin` may open a WebSocket at `host`: it was loaded from this host and port.
 bool isSameOrigin(std::string_view origin, std::string_view host);
 
-/// The components of a path below a folder, percent-decoded; nothing for a path that has another component than plain
-/// names.
+/// The percent-decoded components of a relative path; empty if a component is not a plain name.
 std::vector<std::string> plainComponents(std::string_view path);
 
 }  // namespace spark::web

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One instant of the scene as plain data: what the simulation's thread hands to the thread that serves viewers.
+/// The scene at one instant as plain data. The simulation thread fills it, the I/O thread reads it.
 
 #include <memory>
 #include <string>
@@ -10,45 +10,47 @@
 
 namespace spark::web {
 
-/// A shape that touches, in the frame of the transform it belongs to.
+/// The shape of a collider, in the frame of the transform that it belongs to.
 struct SceneShape {
   enum class Kind { box, sphere, capsule, cylinder } kind = Kind::box;
-  std::vector<double> size;                    ///< [m]: edges; radius; radius and length without caps
-  Vec3 position = Vec3::Zero();                ///< m
-  std::array<double, 4> rotation{0, 0, 0, 1};  ///< x y z w
+  std::vector<double> size;      ///< [m] box: edges x y z; sphere: radius; others: radius, length (without caps)
+  Vec3 position = Vec3::Zero();  ///< m
+  std::array<double, 4> rotation{0, 0, 0, 1};  ///< unit quaternion x y z w
 };
 
-/// A node of the scene, as viewers build it.
+/// A node of the scene.
 struct NodeDescription {
   FrameNode::Kind kind = FrameNode::Kind::transform;
-  int parent = -1;  ///< index among the nodes
-  std::string path;
-  std::vector<SceneShape> shapes;
-  std::string load;
+  int parent = -1;                 ///< index in SceneDescription::nodes; -1: top level
+  std::string path;                ///< transforms: in the tree; "" in recorded scenes
+  std::vector<SceneShape> shapes;  ///< transforms: of their colliders
+  std::string load;                ///< meshes: as IVisual::load()
   Vec3f scale{1, 1, 1};
   std::vector<std::string> materials;
   bool transparent = false, visible = true;
 };
 
-/// What does not change from frame to frame.
+/// The part of a scene that stays the same while MonitorFrame::shape does.
 struct SceneDescription {
   std::vector<NodeDescription> nodes;
 };
 
-/// One instant. Buffers keep their capacity from one to the next.
+/// One instant. It is reused: its buffers keep their capacity.
 struct Snapshot {
-  std::uint64_t shape = 0;            ///< MonitorFrame's
-  double time = 0;                    ///< s
-  std::vector<Matrix> transforms;     ///< of the transform nodes, in order
-  std::vector<std::uint8_t> visible;  ///< of all nodes
+  std::uint64_t shape = 0;            ///< MonitorFrame::shape
+  double time = 0;                    ///< s, simulated
+  std::vector<Matrix> transforms;     ///< local matrices of the transform nodes, in order
+  std::vector<std::uint8_t> visible;  ///< of all nodes, in order
   Environment environment;
-  std::vector<EntryKey> keys;      ///< of its entries
+  std::vector<EntryKey> keys;      ///< one per entry of `environment`
   Predicates events;               ///< `once` entries since the last snapshot
-  std::vector<double> eventTimes;  ///< s, of each
-  /// Of this shape; made only when the shape is not `knownShape` and whoever asks wants it described.
+  std::vector<double> eventTimes;  ///< s, simulated; one per event
+  /// Description of `shape`; made only if `shape` differs from `knownShape` and `describe` is set, otherwise nullptr.
   std::shared_ptr<const SceneDescription> scene;
-  std::uint64_t knownShape = 0;  ///< what whoever asks has the scene of
-  bool describe = true;
+
+  // Set by the I/O thread before it requests the snapshot.
+  std::uint64_t knownShape = 0;  ///< shape of the last description that it got
+  bool describe = true;          ///< false: it wants no description now
 };
 
 }  // namespace spark::web

@@ -2,7 +2,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
 
-#include "connections.h"
+#include "server_state.h"
 #include "viewer_socket.h"
 
 namespace spark::web {
@@ -11,25 +11,28 @@ namespace {
 
 using beast::error_code;
 
-/// A viewer behind a WebSocket. Lives as long as something is on its way; the audience knows it from the handshake to
-/// the end of reading.
+/// A viewer behind a WebSocket. Pending asynchronous operations own it; the hub owns it too, from the handshake until
+/// reading ends.
 class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketViewer> {
  public:
-  SocketViewer(Hall& hall, beast::tcp_stream stream, std::string peer)
-      : Viewer(++hall.lastId, std::move(peer)), hall_(hall), socket_(std::move(stream)), buffer_(kLongestMessage) {
+  SocketViewer(ServerState& state, beast::tcp_stream stream, std::string peer)
+      : Viewer(++state.lastViewerId, std::move(peer)),
+        state_(state),
+        socket_(std::move(stream)),
+        buffer_(kMaxMessageBytes) {
     configureSocket(socket_);
-    ++hall_.viewers;
+    ++state_.viewers;
   }
-  ~SocketViewer() override { --hall_.viewers; }
+  ~SocketViewer() override { --state_.viewers; }
 
   void accept(const http::request<http::empty_body>& request) {
     socket_.async_accept(request, [self = shared_from_this()](error_code ec) {
       if (ec) return;
       self->socket_.control_callback(
-          [s = self.get()](beast::websocket::frame_type, beast::string_view) { s->knocked(); });
-      self->hall_.log.debug("Web: {} watches.", self->peer());
-      self->hall_.audience.arrived(self, Clock::now());
-      self->hall_.pump();
+          [s = self.get()](beast::websocket::frame_type, beast::string_view) { s->onPing(); });
+      self->state_.log.debug("Web: {} watches.", self->peer());
+      self->state_.hub.onConnect(self, Clock::now());
+      self->state_.update();
       self->read();
     });
   }
@@ -40,15 +43,15 @@ class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketVi
       paused_ = true;
       return;
     }
-    socket_.async_read(buffer_, [self = shared_from_this()](error_code ec, std::size_t) { self->heard(ec); });
+    socket_.async_read(buffer_, [self = shared_from_this()](error_code ec, std::size_t) { self->onRead(ec); });
   }
 
-  void heard(error_code ec) {
-    if (ec) return leave(ec);
+  void onRead(error_code ec) {
+    if (ec) return onEnd(ec);
     if (socket_.got_text()) {
       const auto bytes = buffer_.cdata();
-      hall_.audience.said(*this, {static_cast<const char*>(bytes.data()), bytes.size()}, Clock::now());
-      hall_.pump();
+      state_.hub.onMessage(*this, {static_cast<const char*>(bytes.data()), bytes.size()}, Clock::now());
+      state_.update();
     } else {
       close("expected text messages");
     }
@@ -56,15 +59,15 @@ class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketVi
     read();
   }
 
-  /// A ping, pong or close came; nothing may be closed within the call that tells so.
-  void knocked() {
-    if (hall_.audience.knocked(*this, Clock::now())) return;
+  /// Called by Beast for a ping, pong or close frame, from within a read: the socket must not be closed in this call.
+  void onPing() {
+    if (state_.hub.onPing(*this, Clock::now())) return;
     boost::asio::post(socket_.get_executor(), [self = shared_from_this()] { self->close("too many messages"); });
   }
 
-  void leave(error_code ec) {
-    hall_.log.debug("Web: {} left: {}.", peer(), ec.message());
-    hall_.audience.left(*this);
+  void onEnd(error_code ec) {
+    state_.log.debug("Web: {} left: {}.", peer(), ec.message());
+    state_.hub.onDisconnect(*this);
     beast::get_lowest_layer(socket_).close();
   }
 
@@ -73,20 +76,20 @@ class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketVi
     socket_.async_write(boost::asio::buffer(*message.bytes),
                         [self = shared_from_this(), bytes = message.bytes](error_code ec, std::size_t) {
                           if (ec)
-                            beast::get_lowest_layer(self->socket_).close();  // reading ends as well
+                            beast::get_lowest_layer(self->socket_).close();  // ends reading as well
                           else
                             self->sent();
                         });
   }
 
-  void hangUp(std::string_view reason) override {
-    hall_.log.info("Web: {} was closed: {}.", peer(), reason);
+  void disconnect(std::string_view reason) override {
+    state_.log.info("Web: {} was closed: {}.", peer(), reason);
     if (idle()) {
       socket_.async_close(
           {beast::websocket::close_code::policy_error, beast::string_view(reason.data(), reason.size())},
           [self = shared_from_this()](error_code) {});
     } else {
-      beast::get_lowest_layer(socket_).close();  // it would not hear it before what waits
+      beast::get_lowest_layer(socket_).close();  // a close frame would have to wait behind the queue
     }
     resume();
   }
@@ -97,10 +100,10 @@ class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketVi
     read();
   }
 
-  Hall& hall_;
+  ServerState& state_;
   beast::websocket::stream<beast::tcp_stream> socket_;
   beast::flat_buffer buffer_;
-  bool paused_ = false;
+  bool paused_ = false;  ///< reading waits for resume()
 };
 
 std::string describePeer(const beast::tcp_stream& stream) {
@@ -111,9 +114,9 @@ std::string describePeer(const beast::tcp_stream& stream) {
 
 }  // namespace
 
-void serveViewer(Hall& hall, beast::tcp_stream stream, const http::request<http::empty_body>& request) {
+void serveViewer(ServerState& state, beast::tcp_stream stream, const http::request<http::empty_body>& request) {
   std::string peer = describePeer(stream);
-  std::make_shared<SocketViewer>(hall, std::move(stream), std::move(peer))->accept(request);
+  std::make_shared<SocketViewer>(state, std::move(stream), std::move(peer))->accept(request);
 }
 
 }  // namespace spark::web

@@ -14,20 +14,20 @@ std::string StatusReport::make(int spectators) {
   const auto* clock = kernel_.root().find<ISimulation>();
   const double time = clock ? clock->time() : 0;
   const auto now = std::chrono::steady_clock::now();
-  const double passed = std::chrono::duration<double>(now - std::exchange(madeAt_, now)).count();
-  const double factor = passed > 0 ? (time - std::exchange(time_, time)) / passed : 0;
+  const double elapsed = std::chrono::duration<double>(now - std::exchange(lastCallAt_, now)).count();
+  const double factor = elapsed > 0 ? (time - std::exchange(lastTime_, time)) / elapsed : 0;
   std::string out;
   JsonWriter json(out, kWebJson);
   json.beginObject().member("type", "status").key("realTimeFactor").fixed(factor, 3);
   json.member("cycle", clock ? clock->cycle() : 0).key("time").fixed(time, 2).member("spectators", spectators);
   writeGame(json);
-  lookUpAgents();
+  updateAgents();
   writeAgents(json);
   json.endObject();
   return out;
 }
 
-/// The words that pages understand by their names, all else in the list "status".
+/// Well-known entries become members of their own; the others go into the list "status".
 void StatusReport::writeGame(JsonWriter& json) {
   List others;
   for (StatusEntry& entry : reporters_.read(kernel_)) {
@@ -39,7 +39,7 @@ void StatusReport::writeGame(JsonWriter& json) {
   if (!others.empty()) json.member("status", Value(std::move(others)));
 }
 
-void StatusReport::lookUpAgents() {
+void StatusReport::updateAgents() {
   if (!tree_.changed(kernel_.root())) return;
   agents_.clear();
   if (const auto* control = kernel_.root().find<IGameControl>())

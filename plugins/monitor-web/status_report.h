@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How the host is doing, as viewers are told once a second.
+/// The status message that viewers get once a second.
 
 #include <chrono>
 #include <string>
@@ -13,30 +13,31 @@
 
 namespace spark::web {
 
-/// Used in the simulation's thread, between cycles. It knows no game: what a game reports of itself (IStatus) is in it,
-/// and who the agents are in the game (IAgentIdentity).
+/// Writes the status message: speed, time, what the game reports (IStatus), the agents with their identity in the game
+/// (IAgentIdentity). Simulation thread, between cycles.
 class StatusReport {
  public:
   explicit StatusReport(Kernel& kernel) : kernel_(kernel) {}
-  /// `{"type":"status",...}`; README.md has what is in it.
+  /// `{"type":"status",...}`; README.md describes the members. The real-time factor is that since the last call.
+  /// `spectators`: number of viewers.
   std::string make(int spectators);
 
  private:
   struct Agent {
     const AgentAspect* aspect;
     std::string path;
-    const IAgentIdentity* identity;  ///< nullptr: it has none
+    const IAgentIdentity* identity;  ///< nullptr: the game gives it none
   };
-  void lookUpAgents();
+  void updateAgents();
   void writeGame(JsonWriter& json);
   void writeAgents(JsonWriter& json) const;
 
   Kernel& kernel_;
   StatusReporters reporters_;
   std::vector<Agent> agents_;
-  TreeWatch tree_;
-  std::chrono::steady_clock::time_point madeAt_ = std::chrono::steady_clock::now();
-  double time_ = 0;  ///< s, simulated, when one was made last
+  TreeWatch tree_;  ///< `agents_` is rebuilt when the tree changes
+  std::chrono::steady_clock::time_point lastCallAt_ = std::chrono::steady_clock::now();
+  double lastTime_ = 0;  ///< s, simulated, at the last call
 };
 
 }  // namespace spark::web

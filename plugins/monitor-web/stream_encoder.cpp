@@ -10,24 +10,30 @@ static_assert(std::endian::native == std::endian::little, "frames are little end
 
 namespace {
 constexpr std::uint8_t kKey = 1, kDelta = 2;
-constexpr std::size_t kWorthSkipping = 3;  // unchanged transforms that cost more as empty masks than as a new run
-// A value moves to another step only when it is this far from the one it has: what trembles around the middle of two
-// stays.
-constexpr float kHold = 0.75f;
-constexpr float kLargest = 1 << 30;
+
+// Unchanged transforms within a run cost a byte each, a new run two or more: shorter gaps do not end a run.
+constexpr std::size_t kMinGap = 3;
+
+// Hysteresis in quanta: a value changes only if it is this far from the current one, so noise around the midpoint of
+// two quanta sends nothing.
+constexpr float kHysteresis = 0.75f;
+
+constexpr float kMaxQuantised = 1 << 30;
 
 template <class T>
 void putRaw(std::string& out, T value) {
   out.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-std::int32_t step(float exact, std::int32_t before) {
+/// Rounds with hysteresis. Keeps the previous value if `exact` is not finite.
+std::int32_t quantum(float exact, std::int32_t before) {
   if (!std::isfinite(exact)) return before;
-  if (std::abs(exact - static_cast<float>(before)) <= kHold) return before;
-  return static_cast<std::int32_t>(std::lround(std::clamp(exact, -kLargest, kLargest)));
+  if (std::abs(exact - static_cast<float>(before)) <= kHysteresis) return before;
+  return static_cast<std::int32_t>(std::lround(std::clamp(exact, -kMaxQuantised, kMaxQuantised)));
 }
 
-/// Scaled and sheared matrices give the rotation nearest to them; what is none at all, none.
+/// The rotation of a matrix as quaternion x y z w. Tolerates scaled and sheared matrices; the identity if there is
+/// none.
 Eigen::Vector4f rotationOf(const Matrix& m) {
   const Eigen::Matrix3f r = m.block<3, 3>(0, 0);
   const Eigen::Vector4f q = Eigen::Quaternionf(r).normalized().coeffs();
@@ -47,12 +53,12 @@ void putSigned(std::string& out, std::int64_t value) {
 StreamEncoder::Quantised StreamEncoder::quantise(const Matrix& m, const Quantised& before) const {
   const float perMetre = std::ldexp(1.f, precision_.position), perUnit = std::ldexp(1.f, precision_.rotation);
   Quantised out;
-  for (int i = 0; i < 3; ++i) out[i] = step(m(i, 3) * perMetre, before[i]);
+  for (int i = 0; i < 3; ++i) out[i] = quantum(m(i, 3) * perMetre, before[i]);
   const Eigen::Vector4f q = rotationOf(m) * perUnit;
   const Eigen::Vector4f last(static_cast<float>(before[3]), static_cast<float>(before[4]),
                              static_cast<float>(before[5]), static_cast<float>(before[6]));
-  const float sign = q.dot(last) < 0 ? -1.f : 1.f;  // both signs are one rotation: the nearer one is
-  for (int i = 0; i < 4; ++i) out[3 + i] = step(sign * q[i], before[3 + i]);
+  const float sign = q.dot(last) < 0 ? -1.f : 1.f;  // q and -q are the same rotation: take the nearer one
+  for (int i = 0; i < 4; ++i) out[3 + i] = quantum(sign * q[i], before[3 + i]);
   return out;
 }
 
@@ -67,10 +73,10 @@ void StreamEncoder::advance(const Instant& instant) {
   std::swap(before_, now_);
   now_.resize(size);
   for (std::size_t i = 0; i < size; ++i) now_[i] = quantise(instant.transforms[i], before_[i]);
-  flickers_.assign(instant.flickers.begin(), instant.flickers.end());
-  flickered_.clear();
-  for (const std::uint32_t node : flickers_)
-    if (hasDelta_ && visible_[node] != instant.visible[node]) flickered_.push_back(node);
+  toggled_.assign(instant.toggled.begin(), instant.toggled.end());
+  toggledNow_.clear();
+  for (const std::uint32_t node : toggled_)
+    if (hasDelta_ && visible_[node] != instant.visible[node]) toggledNow_.push_back(node);
   visible_.assign(instant.visible.begin(), instant.visible.end());
   shape_ = instant.shape;
   time_ = instant.time;
@@ -92,11 +98,13 @@ void StreamEncoder::writeTransforms(std::string& out, const std::vector<Quantise
   const std::size_t size = now_.size();
   const auto same = [&](std::size_t i) { return now_[i] == before[i]; };
   for (std::size_t at = 0, begin = 0;; at = begin) {
+    // Find the next run of changed transforms, [begin, end); it may contain gaps shorter than kMinGap.
     while (begin < size && same(begin)) ++begin;
     if (begin == size) break;
-    std::size_t end = begin + 1;  // of the run: behind its last change
-    for (std::size_t i = end; i < size && i < end + kWorthSkipping; ++i)
+    std::size_t end = begin + 1;
+    for (std::size_t i = end; i < size && i < end + kMinGap; ++i)
       if (!same(i)) end = i + 1;
+    // Write the run.
     putVarint(out, begin - at);
     putVarint(out, end - begin);
     for (; begin < end; ++begin) {
@@ -107,6 +115,7 @@ void StreamEncoder::writeTransforms(std::string& out, const std::vector<Quantise
         if (mask >> k & 1) putSigned(out, std::int64_t{now_[begin][k]} - before[begin][k]);
     }
   }
+  // An empty run ends the list.
   putVarint(out, 0);
   putVarint(out, 0);
 }
@@ -122,14 +131,14 @@ void StreamEncoder::writeVisibility(std::string& out, const std::vector<std::uin
 const std::string& StreamEncoder::delta() {
   begin(delta_, kDelta);
   writeTransforms(delta_, before_);
-  writeVisibility(delta_, flickered_);
+  writeVisibility(delta_, toggledNow_);
   return delta_;
 }
 
 const std::string& StreamEncoder::key() {
   begin(key_, kKey);
   writeTransforms(key_, zero_);
-  writeVisibility(key_, flickers_);
+  writeVisibility(key_, toggled_);
   return key_;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The binary frames that viewers get: quantised positions and rotations, whole (key) or as differences to the frame
-/// before (delta). Pure computation; README.md has the format byte by byte.
+/// Encodes the binary frames of the stream: quantised positions and rotations, complete (key frame) or as differences
+/// to the previous frame (delta). README.md specifies the format byte by byte.
 
 #include <array>
 #include <cstdint>
@@ -13,41 +13,43 @@
 
 namespace spark::web {
 
-/// How finely a stream is quantised: a step is 2^-bits (metres; parts of a unit quaternion).
+/// Quantisation of a stream: a quantum is 2^-bits, in metres for positions and without unit for quaternions.
 struct Precision {
   int position = 0, rotation = 0;
 };
-inline constexpr Precision kFine{10, 10};  ///< 1 mm, some 0.1 degrees
-inline constexpr Precision kCoarse{7, 7};  ///< 8 mm, some 0.9 degrees
+inline constexpr Precision kFine{10, 10};  ///< 1 mm, about 0.1 degrees
+inline constexpr Precision kCoarse{7, 7};  ///< 8 mm, about 0.9 degrees
 
-/// One instant as a stream takes it.
+/// Input of the encoder: the scene at one instant. The arrays belong to the caller.
 struct Instant {
-  std::uint32_t shape = 0;                  ///< number of the scene that it belongs to
-  double time = 0;                          ///< s
-  std::span<const Matrix> transforms;       ///< local, of the transform nodes in order
-  std::span<const std::uint8_t> visible;    ///< of all nodes
-  std::span<const std::uint32_t> flickers;  ///< nodes whose visibility ever changed in this shape
+  std::uint32_t shape = 0;                 ///< number of the scene that it belongs to
+  double time = 0;                         ///< s, simulated
+  std::span<const Matrix> transforms;      ///< local matrices of the transform nodes, in order
+  std::span<const std::uint8_t> visible;   ///< of all nodes, in order
+  std::span<const std::uint32_t> toggled;  ///< nodes whose visibility ever changed in this shape; only grows
 };
 
-/// One stream of frames at one precision. Deltas build on the frame before: who missed one needs a key.
+/// A stream of frames at one precision. A delta is relative to the previous frame; a viewer that missed that one needs
+/// a key frame.
 class StreamEncoder {
  public:
   explicit StreamEncoder(Precision precision) : precision_(precision) {}
 
-  /// Takes the next instant. With another shape everything begins anew.
+  /// Quantises the next instant. A new shape restarts the stream with a key frame.
   void advance(const Instant& instant);
-  /// True when there is an instant before of the same shape, to which delta() is.
+  /// True if the previous instant has the same shape, so that delta() exists.
   bool hasDelta() const { return hasDelta_; }
-  /// The frame as difference to the one before. Valid until the next call of it.
+  /// The delta to the previous frame; requires hasDelta(). Valid until the next call of delta().
   const std::string& delta();
-  /// The whole frame, with the visibility of all that flicker. Valid until the next call of it.
+  /// The key frame, with the visibility of all toggled nodes. Valid until the next call of key().
   const std::string& key();
-  /// Of the instant taken last; counts from 1.
+  /// Number of the current frame; counts from 1 and on across shapes.
   std::uint32_t serial() const { return serial_; }
+  /// Shape of the current frame.
   std::uint32_t shape() const { return shape_; }
 
  private:
-  /// Position x y z, quaternion x y z w, in steps.
+  /// Position x y z and quaternion x y z w, in quanta.
   using Quantised = std::array<std::int32_t, 7>;
   Quantised quantise(const Matrix& m, const Quantised& before) const;
   void begin(std::string& out, std::uint8_t kind) const;
@@ -58,9 +60,9 @@ class StreamEncoder {
   std::uint32_t shape_ = 0, serial_ = 0;
   double time_ = 0;
   bool hasDelta_ = false;
-  std::vector<Quantised> now_, before_, zero_;
+  std::vector<Quantised> now_, before_, zero_;  ///< current and previous frame; zeros, to which a key frame is relative
   std::vector<std::uint8_t> visible_;
-  std::vector<std::uint32_t> flickers_, flickered_;  ///< all; those that changed with this instant
+  std::vector<std::uint32_t> toggled_, toggledNow_;  ///< all; those that changed in this frame
   std::string delta_, key_;
 };
 

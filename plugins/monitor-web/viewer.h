@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// One browser, or program, that watches: what waits to be sent to it and what is known of it. I/O thread only.
+/// One connected viewer (a browser or another client of the stream): its outgoing queue and its settings. I/O thread
+/// only.
 
 #include <chrono>
 #include <cstdint>
@@ -15,22 +16,23 @@ namespace spark::web {
 
 using Clock = std::chrono::steady_clock;
 
-/// A message on its way; viewers that get the same share it.
+/// An outgoing message. The bytes are shared by all viewers that get the same message.
 struct Message {
   enum class Kind { text, scene, frame } kind = Kind::text;
   std::shared_ptr<const std::string> bytes;
+  /// True for frames, which are WebSocket binary messages; the others are text messages.
   bool binary() const { return kind == Kind::frame; }
 };
 
-/// Bytes that may wait for a viewer; one that lets more pile up is closed.
-inline constexpr std::size_t kMostWaiting = 16u << 20;
-/// Questions of a viewer that may wait for the simulation's thread; until there are fewer, nothing more is read from
-/// it.
-inline constexpr std::size_t kMostAsked = 16;
+/// Maximum number of queued bytes of a viewer; beyond it the viewer is disconnected.
+inline constexpr std::size_t kMaxQueuedBytes = 16u << 20;
+/// Maximum number of requests of a viewer that wait for the simulation thread; at this number reading from it pauses.
+inline constexpr std::size_t kMaxPendingRequests = 16;
 
-/// A viewer behind some transport. Messages leave one after the other.
+/// A viewer behind a transport that a derived class implements. Messages are sent one at a time, in order.
 class Viewer {
  public:
+  /// `id`: unique in this process, never 0. `peer`: "address:port", for the log.
   Viewer(std::uint64_t id, std::string peer) : id_(id), peer_(std::move(peer)) {}
   virtual ~Viewer() = default;
   Viewer(const Viewer&) = delete;
@@ -39,48 +41,51 @@ class Viewer {
   std::uint64_t id() const { return id_; }
   const std::string& peer() const { return peer_; }
 
-  /// Puts a message behind those that wait. A viewer that does not take them is closed.
+  /// Appends a message to the queue. Closes the viewer if the queue exceeds kMaxQueuedBytes. Does nothing after
+  /// close().
   void send(Message message);
+  /// Sends a text message.
   void sendText(std::string text) { send({Message::Kind::text, std::make_shared<const std::string>(std::move(text))}); }
-  /// True when nothing waits.
+  /// True if the queue is empty.
   bool idle() const { return queue_.empty(); }
-  /// True while a frame or scene waits: it gets no other until that has left.
-  bool lags() const { return large_ > 0; }
-  /// Since when the message that is leaving has been leaving; `now` when none is.
-  Clock::time_point leavingSince(Clock::time_point now) const { return queue_.empty() ? now : leavingSince_; }
-  /// Ends it, with a reason of at most 120 bytes that it is told.
+  /// True while a frame or a scene is queued: the viewer gets no other frame until it has been sent.
+  bool lags() const { return queuedFrames_ > 0; }
+  /// When sending of the current message began; `now` if the queue is empty.
+  Clock::time_point sendingSince(Clock::time_point now) const { return queue_.empty() ? now : sendingSince_; }
+  /// Disconnects it. `reason`: at most 120 bytes, sent in the close frame if nothing else is queued.
   void close(std::string_view reason);
   bool closing() const { return closing_; }
-  /// True when more may be read from it: its questions do not pile up, it takes its answers.
-  bool mayRead() const { return asked.size() < kMostAsked && queue_.size() < 4 * kMostAsked; }
+  /// True if the transport may read the next message: few requests are pending and few messages are queued.
+  bool mayRead() const { return pending.size() < kMaxPendingRequests && queue_.size() < 4 * kMaxPendingRequests; }
 
-  // What the audience keeps of it.
-  std::size_t lane = 0;
-  std::uint64_t shape = 0;  ///< of the scene it was sent; 0: none
+  // State that the ViewerHub keeps per viewer.
+  std::size_t lane = 0;     ///< index of the hub's lane
+  std::uint64_t shape = 0;  ///< of the scene that was sent to it last; 0: none yet
   bool needsKey = true, referee = false, wantsDrawings = false;
-  int wrongTokens = 0;
-  double allowance = 0;  ///< messages that it may send now
-  Clock::time_point allowanceAt{};
-  std::deque<Question> asked;  ///< the first is with the simulation's thread
+  int wrongTokens = 0;                    ///< failed logins
+  double messageBudget = 0;               ///< messages that it may send now; negative: too many
+  Clock::time_point budgetUpdatedAt{};    ///< when `messageBudget` was refilled last
+  std::deque<SimulationRequest> pending;  ///< the first one is with the simulation thread
 
  protected:
-  /// The transport has sent the message it was given.
+  /// The transport calls this after it has sent the message passed to transmit().
   void sent();
 
  private:
-  /// Begins to send; sent() or close() follows, never from within.
+  /// Starts to send a message. sent() or close() follows asynchronously, not within this call.
   virtual void transmit(const Message& message) = 0;
-  virtual void hangUp(std::string_view reason) = 0;
-  /// mayRead() may be true again.
+  /// Closes the connection.
+  virtual void disconnect(std::string_view reason) = 0;
+  /// Called when mayRead() may have become true.
   virtual void resume() = 0;
 
-  friend class Audience;
+  friend class ViewerHub;
   const std::uint64_t id_;
   const std::string peer_;
-  std::deque<Message> queue_;  ///< the first is leaving
-  std::size_t waiting_ = 0;    ///< bytes
-  int large_ = 0;              ///< scenes and frames that wait
-  Clock::time_point leavingSince_{};
+  std::deque<Message> queue_;    ///< the first one is being sent
+  std::size_t queuedBytes_ = 0;  ///< of all messages in the queue
+  int queuedFrames_ = 0;         ///< scenes and frames in the queue
+  Clock::time_point sendingSince_{};
   bool closing_ = false;
 };
 

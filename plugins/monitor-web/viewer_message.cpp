@@ -1,5 +1,7 @@
 #include "viewer_message.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -9,12 +11,12 @@ namespace spark::web {
 
 namespace {
 using Json = nlohmann::json;
-constexpr int kDeepestJson = 32;
+constexpr int kMaxJsonDepth = 32;
 
-/// JSON of at most kDeepestJson levels.
+/// Parses an object of at most kMaxJsonDepth levels.
 Json parse(std::string_view text) {
   const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepestJson) throw Error("expected JSON nested at most " + std::to_string(kDeepestJson) + " deep");
+    if (depth > kMaxJsonDepth) throw Error(fmt::format("expected JSON nested at most {} deep", kMaxJsonDepth));
     return true;
   };
   try {
@@ -27,14 +29,14 @@ Json parse(std::string_view text) {
 
 std::string textOf(const Json& message, const char* key) {
   const auto at = message.find(key);
-  if (at == message.end() || !at->is_string()) throw Error(std::string("the message lacks a text \"") + key + "\"");
+  if (at == message.end() || !at->is_string()) throw Error(fmt::format("the message lacks a text \"{}\"", key));
   return at->get<std::string>();
 }
 
-std::int64_t idOf(const Json& message, bool needed) {
+std::int64_t idOf(const Json& message, bool required) {
   const auto at = message.find("id");
   if (at != message.end() && at->is_number_integer()) return at->get<std::int64_t>();
-  if (needed || at != message.end())
+  if (required || at != message.end())
     throw Error("the message lacks a whole number \"id\", by which its answer is known");
   return 0;
 }
@@ -42,7 +44,7 @@ std::int64_t idOf(const Json& message, bool needed) {
 void readView(const Json& message, ViewerMessage& out) {
   if (const auto rate = message.find("rate"); rate != message.end()) {
     if (!rate->is_number()) throw Error("expected a number as \"rate\"");
-    out.rate = std::clamp(rate->get<double>(), kSlowest, kFastest);
+    out.rate = std::clamp(rate->get<double>(), kMinRate, kMaxRate);
   }
   const auto detail = message.find("detail");
   if (detail == message.end()) return;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What viewers say: one JSON object a message.
+/// Messages from viewers: one JSON object each.
 
 #include <cstdint>
 #include <optional>
@@ -9,30 +9,30 @@
 
 namespace spark::web {
 
-/// A message that was understood.
+/// A message that was parsed and checked.
 struct ViewerMessage {
   enum class What {
-    view,      ///< `rate` and `fine` from now on
-    drawings,  ///< `on`
-    login,     ///< `text` is the token
-    command,   ///< `text` is for the trainer
-    unwatch,   ///< `id`
-    request,   ///< anything else: the simulation's thread knows
+    view,      ///< sets `rate` and `fine`
+    drawings,  ///< sets whether it gets drawings, `on`
+    login,     ///< `text` is the referee's token
+    command,   ///< `text` is a trainer command
+    unwatch,   ///< ends watch `id`
+    request,   ///< any other: forwarded to the simulation thread
   } what = What::request;
   std::int64_t id = 0;
-  double rate = 0;             ///< frames a second; 0: as it was
-  std::optional<bool> fine{};  ///< none: as it was
+  double rate = 0;             ///< frames a second, kMinRate..kMaxRate; 0: unchanged
+  std::optional<bool> fine{};  ///< empty: unchanged
   bool on = true;
-  bool watch = false;  ///< request: begins a watch
-  std::string text;    ///< request: the message itself
+  bool watch = false;  ///< request: starts a watch
+  std::string text;    ///< request: the whole message
 };
 
-/// Bytes of a message that are taken at most.
-inline constexpr std::size_t kLongestMessage = 16384;
-/// Frames a second that a viewer may ask for.
-inline constexpr double kSlowest = 1, kFastest = 50;
+/// Maximum size of a message in bytes.
+inline constexpr std::size_t kMaxMessageBytes = 16384;
+/// Range of the rate that a viewer may request, in frames a second.
+inline constexpr double kMinRate = 1, kMaxRate = 50;
 
-/// Reads a message. Throws Error that says what was expected; numbers out of range are brought into it.
+/// Parses a message. Clamps numbers to their range. Throws Error with what was expected.
 ViewerMessage readViewerMessage(std::string_view text);
 
 }  // namespace spark::web

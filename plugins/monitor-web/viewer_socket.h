@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How a viewer's WebSocket is set: limits and times.
+/// Limits and timeouts of a viewer's WebSocket.
 
 #include <boost/beast/websocket/stream.hpp>
 #include <chrono>
@@ -9,15 +9,16 @@
 
 namespace spark::web {
 
-/// Before the handshake. A viewer that is silent is asked with pings whether it is still there.
+/// Sets them; call it before the handshake. An idle connection is kept alive with pings and closed after 40 s without
+/// any answer.
 template <class Stream>
 void configureSocket(boost::beast::websocket::stream<Stream>& socket) {
   boost::beast::websocket::stream_base::timeout times;
-  times.handshake_timeout = std::chrono::seconds(1);  // also for the other's part of a close
+  times.handshake_timeout = std::chrono::seconds(1);  // also the time to answer a close frame
   times.idle_timeout = std::chrono::seconds(40);
   times.keep_alive_pings = true;
   socket.set_option(times);
-  socket.read_message_max(kLongestMessage);
+  socket.read_message_max(kMaxMessageBytes);
   socket.auto_fragment(false);
 }
 

@@ -6,7 +6,7 @@
 namespace spark {
 
 namespace {
-constexpr std::uint32_t kMostEvents = 1u << 14;  // tokens of events that wait
+constexpr std::uint32_t kMaxEventTokens = 1u << 14;  // of events since the last snapshot; further events are dropped
 }
 
 void WebMonitor::describe(Description<WebMonitor>& d) {
@@ -16,8 +16,7 @@ void WebMonitor::describe(Description<WebMonitor>& d) {
 }
 
 void WebMonitor::event(const Element& event) {
-  const web::Exchange* exchange = this->exchange();
-  if (!exchange || !exchange->watched.load(std::memory_order_relaxed) || events_.size() > kMostEvents) return;
+  if (!exchange() || !exchange_->watched.load(std::memory_order_relaxed) || events_.size() > kMaxEventTokens) return;
   events_.append(event);
   ++eventCount_;
 }
@@ -38,10 +37,9 @@ void WebMonitor::take(const NewestFrame& newest, IMonitorEncoder*, const Event& 
 }
 
 void WebMonitor::takeAgain() {
-  web::Exchange* exchange = this->exchange();
-  if (!newest_ || !exchange || !exchange->wanted.load(std::memory_order_relaxed)) return;
-  if (takenAt_ != kernel().structureVersion() || newest_->frame.shape == 0) return;  // what it points to may be gone
-  web::Snapshot* snapshot = exchange->wanted.exchange(nullptr, std::memory_order_acquire);
+  if (!newest_ || !exchange_ || !exchange_->wanted.load(std::memory_order_relaxed)) return;
+  if (takenAt_ != kernel().structureVersion() || newest_->frame.shape == 0) return;  // its pointers may dangle
+  web::Snapshot* snapshot = exchange_->wanted.exchange(nullptr, std::memory_order_acquire);
   if (!snapshot) return;
   fill(*newest_, time_, *snapshot);
   exchange->ready.store(snapshot, std::memory_order_release);
@@ -54,7 +52,7 @@ void WebMonitor::fill(const NewestFrame& newest, double time, web::Snapshot& out
   web::copyNodes(newest.frame, out);
   out.environment = newest.frame.env;
   out.keys = newest.keys;
-  eventTimes_.resize(eventCount_, time);  // of events that came with no frame for us, as when a monitor connects
+  eventTimes_.resize(eventCount_, time);  // of events that came between frames, as when a monitor connects
   std::swap(out.events, events_);
   std::swap(out.eventTimes, eventTimes_);
   events_.clear();

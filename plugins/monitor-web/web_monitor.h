@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The viewer inside the host that all browsers look through.
+/// Hands frames of the monitor server to the web server.
 
 #include "api/monitor.h"
 #include "spark/describe.h"
@@ -8,8 +8,8 @@
 
 namespace spark {
 
-/// Below the monitor server. When somebody watches and wants a frame, copies the newest one for the web server's
-/// thread; otherwise it costs a look at a pointer. Has no state: who watches does not change the simulation.
+/// A child of the monitor server. Copies the newest frame when the I/O thread requests one; otherwise it costs an
+/// atomic load per cycle. It has no state: watching does not change the simulation.
 class WebMonitor : public Node, public IFrameTaker {
   SPARK_CLASS(WebMonitor, Node)
  public:
@@ -18,21 +18,23 @@ class WebMonitor : public Node, public IFrameTaker {
   void event(const Element& event) override;
   void take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) override;
 
-  /// The frame taken last is handed over again if somebody waits for one and no cycle comes. Called by the web server,
-  /// between cycles.
+  /// Hands over the last frame again if the I/O thread has requested one. The WebServer calls it between cycles while
+  /// the clock stands still.
   void takeAgain();
 
  private:
   web::Exchange* exchange() const { return server_ ? &server_->exchange() : nullptr; }
   void fill(const NewestFrame& newest, double time, web::Snapshot& out);
 
-  Link<WebServer> server_;
-  Predicates events_;  ///< since the last snapshot
-  std::vector<double> eventTimes_;
+  std::string serverPath_ = "/sys/server/web";
+  web::Exchange* exchange_ = nullptr;
+  std::uint64_t lookedAt_ = 0;      ///< structure version of the last lookup of `exchange_`
+  Predicates events_;               ///< since the last snapshot
+  std::vector<double> eventTimes_;  ///< s, simulated; shorter than the events while their frame has not come
   std::size_t eventCount_ = 0;
   const NewestFrame* newest_ = nullptr;  ///< the monitor server's
-  double time_ = 0;                      ///< s, of it
-  std::uint64_t takenAt_ = 0;            ///< structure version when it was taken
+  double time_ = 0;                      ///< s, simulated, of `newest_`
+  std::uint64_t takenAt_ = 0;            ///< structure version when `newest_` was set
 };
 
 }  // namespace spark

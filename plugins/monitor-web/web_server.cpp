@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "desk.h"
 #include "referee.h"
+#include "request_queue.h"
 #include "service.h"
 #include "spark/plugin.h"
 #include "web_monitor.h"
@@ -13,8 +13,8 @@
 namespace spark {
 
 namespace {
-constexpr std::size_t kShortestToken = 16;
-constexpr auto kStandsStill = std::chrono::milliseconds(300);
+constexpr std::size_t kMinTokenLength = 16;
+constexpr auto kPauseTime = std::chrono::milliseconds(300);  // without a cycle, after which the clock counts as paused
 }  // namespace
 
 WebServer::WebServer() : viewerLacks_(SPARK_VIEWER_LACKS) {}
@@ -23,51 +23,53 @@ WebServer::~WebServer() = default;
 void WebServer::describe(Description<WebServer>& d) {
   using W = WebServer;
   d.doc(
-      "Shows the match in browsers: serves the viewer, streams frames, answers questions, takes a referee's commands.");
+      "Shows the match in browsers: serves the viewer, streams frames, answers requests, takes a referee's commands.");
   d.implements<IInputSource>();
-  d.link(&WebServer::monitor_, At<IMonitorServer>().child<WebMonitor>());
-  d.property("address", &W::address_).doc("Where it listens; 0.0.0.0: for the whole network, unencrypted.");
+  d.property("address", &W::address_).doc("Address to listen on; 0.0.0.0: the whole network, unencrypted.");
   d.property("port", &W::port, &W::setPort)
       .range(0, 65535)
       .unit("1")
-      .doc("TCP port; 0: a free one. Taken: a free one, and the log says so.");
+      .doc("TCP port; 0: any free one. If it is in use, a free one is opened and logged.");
   d.property("viewer", &W::viewerFolder_)
-      .doc("Folder of the built viewer, with index.html; without one a plain page is served.");
-  d.property("viewerLacks", &W::viewerLacks_).doc("What the plain page says is missing for the viewer.");
-  d.property("logs", &W::logs_)
-      .doc("Folder whose files are served as /logs/NAME, to be played by the viewer; empty: none.");
+      .doc("Folder of the built viewer, with index.html; without it a plain page is served.");
+  d.property("viewerLacks", &W::viewerLacks_).doc("What is missing to build the viewer; shown by the plain page.");
+  d.property("logs", &W::logs_).doc("Folder whose files are served as /logs/NAME for the viewer to play; empty: none.");
   d.property("hosts", &W::hosts_)
-      .doc("Names under which browsers may reach it, besides IP addresses, localhost and the machine's name; *: any.");
+      .doc("Host names that browsers may use for it besides IP addresses, localhost and the machine's name; *: any.");
   d.property("rate", &W::rate_)
       .unit("1/s")
       .range(1, 50)
-      .doc("Frames that a viewer gets unless it asks for another rate.");
+      .doc("Frames that a viewer gets unless it requests another rate.");
   d.property("maxConnections", &W::maxConnections_)
       .range(16, 100000)
-      .doc("Connections at a time, viewers included, as far as the process may open files. Idle ones make room.");
-  d.property("maxViewers", &W::maxViewers_).range(1, 100000).doc("Viewers at a time; further ones are turned away.");
+      .doc(
+          "Maximum number of connections, viewers included, within the process's limit of open files. Idle ones make "
+          "room.");
+  d.property("maxViewers", &W::maxViewers_)
+      .range(1, 100000)
+      .doc("Maximum number of viewers; further ones are refused.");
   d.property("requestTimeout", &W::requestTimeout_)
       .unit("s")
       .range(0.1, 3600)
-      .doc("A connection that takes longer to ask, or to take a piece of its answer, is closed.");
+      .doc("Time to receive a request, and to send each part of the reply; a slower connection is closed.");
   d.property("stallTimeout", &W::stallTimeout_)
       .unit("s")
       .range(0.1, 3600)
-      .doc("A viewer that takes nothing for so long is closed.");
+      .doc("A viewer that reads nothing for this time is disconnected.");
   d.property("share", &W::share_)
       .range(0, 1)
-      .doc("Share of wall time that answers to all viewers' questions may take of the simulation's thread.");
+      .doc("Fraction of wall time that the simulation thread may spend on viewers' requests.");
   d.property("inspection", &W::inspection_)
       .choices({"everybody", "referee"})
-      .doc("Who may ask about the tree, properties, contacts, percepts.");
+      .doc("Who may inspect the tree, properties, contacts, percepts.");
   d.property("refereeChanges", &W::refereeChanges_).doc("The referee may also set properties and call methods.");
   d.property("viewers", &W::viewers).doc("Number of viewers now.");
   d.property("connections", &W::connections).doc("Number of connections now, viewers included.");
-  d.method("listen", &W::listen).doc("Opens the port; the first poll does so otherwise.");
+  d.method("listen", &W::listen).doc("Opens the port; otherwise the first poll does.");
   d.method("setToken", &W::setToken)
       .parameters({"token"})
-      .doc("Sets the referee's token, of at least 16 characters; empty: one is made up. Before listen().");
-  d.method("link", &W::link).doc("Where browsers find it, empty when it is not open.");
+      .doc("Sets the referee's token, at least 16 characters; empty: a random one. Call it before listen().");
+  d.method("link", &W::link).doc("Address for browsers; empty while the port is closed.");
   d.method("refereeLink", &W::refereeLink).doc("The same with the referee's token.");
 }
 
@@ -89,11 +91,11 @@ int WebServer::connections() const { return service_ ? service_->connections() :
 void WebServer::setToken(std::string token) {
   mustNotListen("setToken");
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
-  if (!token.empty() && (token.size() < kShortestToken || !std::all_of(token.begin(), token.end(), plain)))
+  if (!token.empty() && (token.size() < kMinTokenLength || !std::all_of(token.begin(), token.end(), plain)))
     throw Error(
         fmt::format("{}.setToken: expected at least {} letters, digits, - or _, so that it cannot be guessed and can "
                     "stand in a link",
-                    path(), kShortestToken));
+                    path(), kMinTokenLength));
   token_ = std::move(token);
 }
 
@@ -131,29 +133,29 @@ void WebServer::open() {
   s.maxViewers = maxViewers_;
   s.requestTimeout = requestTimeout_;
   s.site = {viewerFolder_, viewerLacks_, logs_, hosts_};
-  s.audience.token = token_;
-  s.audience.rate = rate_;
-  s.audience.stallTimeout = stallTimeout_;
-  if (const auto* clock = kernel().root().find<ISimulation>()) s.audience.step = clock->step();
+  s.hub.token = token_;
+  s.hub.rate = rate_;
+  s.hub.stallTimeout = stallTimeout_;
+  if (const auto* clock = kernel().root().find<ISimulation>()) s.hub.step = clock->step();
   service_ = std::make_unique<web::Service>(std::move(s), exchange_, kernel().log());
-  desk_ = std::make_unique<web::Desk>(kernel(), exchange_);
+  requests_ = std::make_unique<web::RequestQueue>(kernel(), exchange_);
 }
 
 void WebServer::poll() {
   if (!tried_) listen();
   if (!service_) return;
   if (exchange_.wanted.load(std::memory_order_relaxed)) handOverAgain();
-  desk_->work({share_, inspection_ == "everybody", refereeChanges_}, service_->viewers());
+  requests_->process({share_, inspection_ == "everybody", refereeChanges_}, service_->viewers());
 }
 
-/// While the clock stands still, as it does for agents that are waited for, no publish phase comes: who begins to watch
-/// sees what there is.
+/// While the clock stands still, for example until the expected agents have connected, there is no publish phase. New
+/// viewers then get the last frame.
 void WebServer::handOverAgain() {
   const auto* clock = kernel().root().find<ISimulation>();
   const auto now = std::chrono::steady_clock::now();
   if (!clock || std::exchange(cycle_, clock->cycle()) != clock->cycle()) {
     cycleAt_ = now;
-  } else if (now - cycleAt_ > kStandsStill) {
+  } else if (now - cycleAt_ > kPauseTime) {
     cycleAt_ = now;
     if (monitor_) monitor_->takeAgain();
   }
@@ -161,12 +163,12 @@ void WebServer::handOverAgain() {
 
 void WebServer::onUnlink() {
   service_.reset();
-  desk_.reset();
+  requests_.reset();
   tried_ = false;
 }
 
 }  // namespace spark
 
 SPARK_PLUGIN("monitor-web", "1.0",
-             "The match in browsers: HTTP and WebSockets, a compact stream, questions, a referee's console.",
+             "The match in browsers: HTTP and WebSockets, a compact stream, requests, a referee's console.",
              spark::WebServer, spark::WebMonitor)

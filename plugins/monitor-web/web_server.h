@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The web server as a node: its settings, and its part in the simulation's thread.
+/// The web server as a node: its settings and its part in the simulation thread.
 
 #include <chrono>
 #include <memory>
@@ -16,12 +16,13 @@ namespace spark {
 
 class WebMonitor;
 namespace web {
-class Desk;
+class RequestQueue;
 class Service;
 }  // namespace web
 
-/// At /sys/server/web. A thread of its own serves viewers; this one hands it frames (WebMonitor) and answers what
-/// viewers ask, between cycles. Has no state: who watches does not change the simulation, but for what a referee does.
+/// At /sys/server/web. A thread of its own (Service) serves viewers. The simulation thread hands it frames (WebMonitor)
+/// and executes viewers' requests between cycles (RequestQueue). It has no state: only a referee's requests change the
+/// simulation.
 class WebServer : public Node, public IInputSource {
   SPARK_CLASS(WebServer, Node)
  public:
@@ -30,26 +31,27 @@ class WebServer : public Node, public IInputSource {
   ~WebServer() override;
   static void describe(Description<WebServer>& d);
 
-  /// Opens the port; the first poll does so otherwise. A house that gets none runs without, and says so.
+  /// Opens the port; without this call the first poll() does. If no port can be opened, logs a warning and stays
+  /// closed.
   void listen();
   void poll() override;
   bool wait(double) override { return false; }
   bool canWait() const override { return false; }
 
-  /// Where its monitor hands frames over.
-  web::Exchange& exchange() { return exchange_; }
+  /// Sets the monitor and returns the exchange to which it hands frames; valid while both nodes exist.
+  web::Exchange& joinedBy(WebMonitor& monitor);
 
  protected:
   void onUnlink() override;
 
  private:
   int port() const;
-  /// Throws Error when it listens already.
+  /// Throws Error if it listens already.
   void setPort(int port);
   int viewers() const;
   int connections() const;
-  /// Sets the referee's token; "" makes one up. Throws Error: it is short, or the server listens already. No property:
-  /// those can be read.
+  /// Sets the referee's token; "" generates one. Throws Error if the token is too short or the server listens already.
+  /// Not a property, since properties can be read.
   void setToken(std::string token);
   std::string link() const;
   std::string refereeLink() const;
@@ -67,10 +69,10 @@ class WebServer : public Node, public IInputSource {
   web::Exchange exchange_;
   Link<WebMonitor, true> monitor_;
   std::unique_ptr<web::Service> service_;
-  std::unique_ptr<web::Desk> desk_;
-  bool tried_ = false;
-  std::int64_t cycle_ = -1;  ///< when one was seen last
-  std::chrono::steady_clock::time_point cycleAt_{};
+  std::unique_ptr<web::RequestQueue> requests_;
+  bool tried_ = false;                               ///< listen() was called
+  std::int64_t cycle_ = -1;                          ///< seen by the last poll()
+  std::chrono::steady_clock::time_point cycleAt_{};  ///< when `cycle_` changed, or the last frame was handed over again
 };
 
 }  // namespace spark

@@ -15,7 +15,7 @@ const Site& site() {
   return served;
 }
 
-void check(const Reply& reply) {
+void check(const HttpReply& reply) {
   const bool known = reply.status == 200 || (reply.status >= 400 && reply.status < 500);
   if (!known || reply.type.empty()) throw std::logic_error("an answer that is none");
   if (reply.file.empty()) return;
@@ -43,9 +43,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       bytes.append(reinterpret_cast<const char*>(data) + at, n);
       at += n;
     }
-    if (const auto complaint = complaintAbout(ec)) return check(*complaint), 0;
-    const Request request = requestIn(*parser);
-    const Reply reply = site().answer(request);
+    if (const auto reply = errorReply(ec)) return check(*reply), 0;
+    const HttpRequest request = requestIn(*parser);
+    const HttpReply reply = site().answer(request);
     check(reply);
     // Names alone decide which file is meant, whatever there is.
     const auto names = plainComponents(request.target.substr(std::min<std::size_t>(1, request.target.size())));

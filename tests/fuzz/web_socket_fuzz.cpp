@@ -19,10 +19,10 @@ constexpr const char* kHandshake =
     "Sec-WebSocket-Version: 13\r\n\r\n";
 
 void check(std::string_view text) {
-  if (text.size() > kLongestMessage) throw std::logic_error("a message that is too long");
+  if (text.size() > kMaxMessageBytes) throw std::logic_error("a message that is too long");
   try {
     const ViewerMessage message = readViewerMessage(text);
-    if (message.rate != 0 && (message.rate < kSlowest || message.rate > kFastest))
+    if (message.rate != 0 && (message.rate < kMinRate || message.rate > kMaxRate))
       throw std::logic_error("a rate out of range");
   } catch (const spark::Error&) {
   }
@@ -31,7 +31,7 @@ void check(std::string_view text) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  check(bytes.substr(0, kLongestMessage));  // as a message, too
+  check(bytes.substr(0, kMaxMessageBytes));  // as a message, too
 
   boost::asio::io_context io;
   beast::test::stream browser(io);
@@ -44,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (ec) throw std::logic_error("the handshake failed: " + ec.message());
   socket.next_layer().append(beast::string_view(bytes.data(), bytes.size()));
   browser.close();
-  beast::flat_buffer buffer(kLongestMessage);
+  beast::flat_buffer buffer(kMaxMessageBytes);
   while (!ec) {
     socket.read(buffer, ec);
     if (ec) break;

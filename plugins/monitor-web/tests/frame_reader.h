@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Reads the binary frames as a viewer does, written from the description in README.md.
+/// Decodes the binary frames as a viewer does; written from the description in README.md.
 
 #include <cmath>
 #include <cstring>
@@ -12,7 +12,7 @@
 
 namespace spark::web::test {
 
-/// A viewer's picture of the transforms. Throws std::runtime_error for a frame that does not fit.
+/// The transforms as a viewer knows them. Throws std::runtime_error for a malformed frame.
 class FrameReader {
  public:
   explicit FrameReader(std::size_t transforms) : quantised(transforms) {}
@@ -40,7 +40,7 @@ class FrameReader {
     must(bytes_.empty(), "the end");
   }
 
-  /// True when transform `i` is what the matrix says, within a quantum.
+  /// True if transform `i` equals the matrix to within a quantum.
   bool isNear(std::size_t i, const Matrix& m) const {
     const auto& q = quantised[i];
     const double perMetre = std::ldexp(1, positionBits), perUnit = std::ldexp(1, rotationBits);
@@ -58,7 +58,7 @@ class FrameReader {
   }
 
   std::vector<std::array<std::int64_t, 7>> quantised;
-  std::map<std::uint64_t, bool> visible;  ///< as told with the last key and since
+  std::map<std::uint64_t, bool> visible;  ///< by node: of the last key frame and the deltas since
   std::uint32_t shape = 0, serial = 0;
   int positionBits = 0, rotationBits = 0;
   double time = 0;

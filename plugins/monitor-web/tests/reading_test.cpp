@@ -8,16 +8,16 @@
 #include "spark/error.h"
 #include "temporary_folder.h"
 
-// What outside bytes mean, and how texts are written.
+// How bytes from outside are parsed and how messages are written.
 
 using namespace spark;
 using namespace spark::web;
 using What = ViewerMessage::What;
 using Catch::Contains;
 
-TEST_CASE("What viewers say is understood, or refused with what was expected") {
-  CHECK(readViewerMessage(R"({"do":"view","rate":1000})").rate == kFastest);
-  CHECK(readViewerMessage(R"({"do":"view","rate":-5})").rate == kSlowest);
+TEST_CASE("Viewers' messages are parsed, or refused with what was expected") {
+  CHECK(readViewerMessage(R"({"do":"view","rate":1000})").rate == kMaxRate);
+  CHECK(readViewerMessage(R"({"do":"view","rate":-5})").rate == kMinRate);
   CHECK_FALSE(readViewerMessage(R"({"do":"view","rate":10})").fine.has_value());
   CHECK(readViewerMessage(R"({"do":"view","detail":"coarse"})").fine == false);
   CHECK(readViewerMessage(R"({"do":"drawings","on":false})").on == false);
@@ -51,7 +51,7 @@ TEST_CASE("A token is 128 bits, another one each time, and only itself") {
   CHECK_FALSE(isToken("", ""));
 }
 
-TEST_CASE("Texts that are no UTF-8, and numbers that are none, give JSON all the same") {
+TEST_CASE("Texts that are not UTF-8 and numbers that are not finite still give valid JSON") {
   std::string out;
   JsonWriter(out, kWebJson)
       .beginArray()
@@ -98,13 +98,15 @@ TEST_CASE("Files are served with their type, by names that are there; without a 
   folder.write("assets/index-1.js", "1");
   std::filesystem::create_directory(folder.path() / "logs");
   folder.write("logs/game.log", "((time 0))");
-  const auto request = [](std::string_view target) { return Request{"GET", target, "localhost", "", false, false}; };
+  const auto request = [](std::string_view target) {
+    return HttpRequest{"GET", target, "localhost", "", false, false};
+  };
   const Site site({folder.path(), "", folder.path() / "logs", {}});
   CHECK(site.answer(request("/")).file == folder.path() / "index.html");
   CHECK(site.answer(request("/?file=/logs/game.log")).type == "text/html; charset=utf-8");
   CHECK(site.answer(request("/assets/index-1.js")).type == "text/javascript; charset=utf-8");
-  CHECK(site.answer(request("/assets/index-1.js")).keep);
-  CHECK_FALSE(site.answer(request("/")).keep);
+  CHECK(site.answer(request("/assets/index-1.js")).immutable);
+  CHECK_FALSE(site.answer(request("/")).immutable);
   CHECK(site.answer(request("/logs/game.log")).file == folder.path() / "logs/game.log");
   for (const char* name : {"logs/trap.html", "logs/trap.js", "logs/trap.svg"}) {
     folder.write(name, "<script>");
@@ -123,17 +125,17 @@ TEST_CASE("Files are served with their type, by names that are there; without a 
   CHECK(plain.answer(request("/assets/index-1.js")).status == 404);
 }
 
-TEST_CASE("Names that nobody else can point here are ours; pages of this server may watch") {
+TEST_CASE("Hosts that cannot be rebound are accepted; pages of this server may watch") {
   const Site site({"", "", "", {"Match.Example"}});
   for (const char* ours : {"127.0.0.1", "127.0.0.1:80", "[::1]:80", "[fe80::1]", "10.1.2.3:5", "localhost",
                            "LocalHost:9", "a.localhost", "match.example:443"})
-    CHECK(site.isOurs(ours));
+    CHECK(site.acceptsHost(ours));
   for (const char* strange : {"", ":80", "evil.example", "127.0.0.1.evil.example", "127.0.0.1x", "notlocalhost", "[::1",
                               "[]", "xmatch.example", "localhost."}) {
     INFO(strange);
-    CHECK_FALSE(site.isOurs(strange));
+    CHECK_FALSE(site.acceptsHost(strange));
   }
-  CHECK(Site({"", "", "", {"*"}}).isOurs("any.example"));
+  CHECK(Site({"", "", "", {"*"}}).acceptsHost("any.example"));
   CHECK(isSameOrigin("http://localhost:80", "localhost:80"));
   CHECK(isSameOrigin("https://MATCH.example", "match.example"));
   for (const char* origin : {"http://localhost", "http://localhost:81", "null", "ftp://localhost:80", "localhost:80",

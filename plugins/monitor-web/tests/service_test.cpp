@@ -10,7 +10,7 @@
 #include "test_support.h"
 #include "web_client.h"
 
-// The server as a whole: a house whose clock runs in one thread, the server's own thread, and viewers in this one.
+// The whole server: the simulation runs in one thread, the server in its own, the viewers in this one.
 
 using namespace spark;
 using namespace spark::test;
@@ -20,7 +20,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Tells a time and takes `(push n)`.
+/// Contributes a score and takes the command `(push n)`.
 class Match : public Node, public IMonitorItem, public ITrainer {
   SPARK_CLASS(Match, Node)
  public:
@@ -43,7 +43,7 @@ class Match : public Node, public IMonitorItem, public ITrainer {
   bool goal = false;
 };
 
-/// Stands still.
+/// A clock that stands still.
 class StillClock : public Node, public ISimulation {
   SPARK_CLASS(StillClock, Node)
  public:
@@ -59,7 +59,7 @@ class StillClock : public Node, public ISimulation {
   void setPaced(bool) override {}
 };
 
-/// A house with a moving robot, whose cycles run in a thread of their own until it is stopped.
+/// A simulation with a moving robot, whose cycles run in a thread of their own until stop().
 struct Running : House {
   Running() {
     makeFakeScene(kernel);
@@ -99,7 +99,7 @@ struct Running : House {
       std::this_thread::yield();
     }
   }
-  /// No cycle comes any more; viewers are served on. `first`, in between, is done while nothing runs.
+  /// Ends the cycles, calls `first`, then keeps polling so that viewers are served.
   template <class F>
   void standStill(F first) {
     stop();
@@ -164,7 +164,7 @@ TEST_CASE("Viewers see the scene move, ask, and a referee changes it") {
 }
 
 TEST_CASE(
-    "An event has the time of its frame, however late that is shown; one that comes between frames that of the last") {
+    "An event has the time of its frame, however late it is sent; one between frames has that of the last frame") {
   Running house;
   WebClient viewer(house.port);
   REQUIRE(viewer.watch() == 101);
@@ -222,7 +222,7 @@ TEST_CASE("Pages are answered while the match runs") {
   CHECK(status["spectators"] == 0);
 }
 
-TEST_CASE("The server goes while people watch; they are told nothing more, and another one may come") {
+TEST_CASE("The server may be removed while viewers watch, and a new one may be created") {
   Running house;
   WebClient viewer(house.port);
   REQUIRE(viewer.watch() == 101);

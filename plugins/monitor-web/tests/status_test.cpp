@@ -66,7 +66,7 @@ struct Dohyo : House {
 
 }  // namespace
 
-TEST_CASE("the status of a game without soccer: its words by name, all else as name and value") {
+TEST_CASE("the status of a game that is not soccer: known entries by name, all others as name and value") {
   Dohyo house;
   SECTION("with all words") {
     house.game({{"round", 3, {}},
@@ -84,7 +84,7 @@ TEST_CASE("the status of a game without soccer: its words by name, all else as n
   SECTION("without any") {
     const Json nothing = house.status();
     for (const char* word : {"playMode", "score", "teams", "status"}) CHECK_FALSE(nothing.contains(word));
-    // names of the message's own members are no harm, nor is a word with another type
+    // an entry may have the name of a member of the message, or an unexpected type
     house.game({{"time", "late", {}}, {"score", 7, {}}, {"empty", List{}, {}}});
     const Json status = house.status();
     CHECK(status["time"] == 0);
@@ -93,7 +93,7 @@ TEST_CASE("the status of a game without soccer: its words by name, all else as n
   }
 }
 
-TEST_CASE("team and number of an agent are those that a node below it says, at any depth") {
+TEST_CASE("team and number of an agent come from a node below it, at any depth") {
   Dohyo house;
   auto& control = house.kernel.create<TwoAgents>("TwoAgents", "/sys/server/gamecontrol");
   for (const char* name : {"one", "two"})

@@ -8,7 +8,7 @@ using namespace spark::web;
 using spark::web::test::FrameReader;
 
 namespace {
-/// A matrix somewhere, turned by degrees.
+/// A position in metres and a rotation in degrees.
 Matrix at(float x, float y, float z, float a = 0, float b = 0, float c = 0) {
   Matrix m = rotationDeg(a, b, c);
   m.block<3, 1>(0, 3) = Vec3f(x, y, z);
@@ -18,14 +18,14 @@ Matrix at(float x, float y, float z, float a = 0, float b = 0, float c = 0) {
 struct Scene {
   std::vector<Matrix> transforms;
   std::vector<std::uint8_t> visible;
-  std::vector<std::uint32_t> flickers;
+  std::vector<std::uint32_t> toggled;
   std::uint32_t shape = 1;
   double time = 0;
-  Instant instant() const { return {shape, time, transforms, visible, flickers}; }
+  Instant instant() const { return {shape, time, transforms, visible, toggled}; }
 };
 }  // namespace
 
-TEST_CASE("A key tells every transform to its quantum") {
+TEST_CASE("A key frame has every transform to within its quantum") {
   Scene scene{{at(1, -2, 3), at(0.1234f, 0, 0, 10, 20, 30), at(-40, 25, 0.5f, 0, 0, 179)}, {1, 0, 1}, {1}, 7, 12.5};
   for (const Precision precision : {kFine, kCoarse}) {
     StreamEncoder encoder(precision);
@@ -41,7 +41,7 @@ TEST_CASE("A key tells every transform to its quantum") {
   }
 }
 
-TEST_CASE("Deltas add up to what the next key tells") {
+TEST_CASE("Deltas add up to the next key frame") {
   Scene scene{std::vector<Matrix>(40, Matrix::Identity()), std::vector<std::uint8_t>(50, 1), {}};
   StreamEncoder encoder(kFine);
   FrameReader follower(40);
@@ -59,7 +59,7 @@ TEST_CASE("Deltas add up to what the next key tells") {
   CHECK(follower.serial == 100);
 }
 
-TEST_CASE("What stands still costs nothing, and neither does trembling below the quantum") {
+TEST_CASE("Transforms that do not move cost nothing, and neither does noise below the quantum") {
   Scene scene{std::vector<Matrix>(600, at(1, 2, 3, 10, 20, 30)), std::vector<std::uint8_t>(600, 1), {}};
   StreamEncoder encoder(kFine);
   encoder.advance(scene.instant());
@@ -87,7 +87,7 @@ TEST_CASE("A rotation keeps its sign from frame to frame, so that turning on and
   }
 }
 
-TEST_CASE("Visibility is told when it changes, and with every key") {
+TEST_CASE("Visibility is sent when it changes, and with every key frame") {
   Scene scene{{Matrix::Identity()}, {1, 1, 1}, {}};
   StreamEncoder encoder(kFine);
   encoder.advance(scene.instant());
@@ -95,7 +95,7 @@ TEST_CASE("Visibility is told when it changes, and with every key") {
   follower.take(encoder.key());
   CHECK(follower.visible.empty());
   scene.visible[2] = 0;
-  scene.flickers = {2};
+  scene.toggled = {2};
   encoder.advance(scene.instant());
   follower.take(encoder.delta());
   CHECK(follower.visible == std::map<std::uint64_t, bool>{{2, false}});

@@ -1,4 +1,4 @@
-#include "../audience.h"
+#include "../viewer_hub.h"
 
 #include <catch2/catch.hpp>
 #include <thread>
@@ -14,37 +14,37 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// A viewer whose messages arrive when the test says so.
+/// A viewer whose messages are sent when the test says so.
 class FakeViewer : public Viewer {
  public:
   explicit FakeViewer(std::uint64_t id) : Viewer(id, "test:" + std::to_string(id)) {}
-  /// Takes one message that waits.
+  /// Completes the transmission of the current message.
   void takeOne() {
-    ++(leaving.binary() ? frames : texts);
-    if (leaving.binary())
-      lastFrame = *leaving.bytes;
+    ++(sending.binary() ? frames : texts);
+    if (sending.binary())
+      lastFrame = *sending.bytes;
     else
-      said += *leaving.bytes + "\n";
-    leaving.bytes.reset();
+      said += *sending.bytes + "\n";
+    sending.bytes.reset();
     sent();
   }
   void takeAll() {
-    while (leaving.bytes) takeOne();
+    while (sending.bytes) takeOne();
   }
   bool lastIsKey() const { return lastFrame.front() == 1; }
   int resumed = 0, frames = 0, texts = 0;
   std::string said, lastFrame, why;
-  Message leaving;
+  Message sending;
 
  private:
-  void transmit(const Message& message) override { leaving = message; }
-  void hangUp(std::string_view reason) override { why = reason; }
+  void transmit(const Message& message) override { sending = message; }
+  void disconnect(std::string_view reason) override { why = reason; }
   void resume() override { ++resumed; }
 };
 
-/// An audience with the simulation's side played by hand.
-struct Theatre {
-  Theatre() {
+/// A hub; the test plays the simulation thread.
+struct HubFixture {
+  HubFixture() {
     log.setSink([](Level, std::string_view) {});
     scene = std::make_shared<SceneDescription>();
     scene->nodes.resize(3);
@@ -54,13 +54,13 @@ struct Theatre {
   }
   std::shared_ptr<FakeViewer> enter() {
     auto viewer = std::make_shared<FakeViewer>(++ids);
-    audience.arrived(viewer, now);
+    hub.onConnect(viewer, now);
     return viewer;
   }
-  /// Lets the audience want a frame, gives it one 40 ms later; false when none is wanted.
+  /// 40 ms later: gives the hub a frame; false if it requests none.
   bool frame() {
     now += milliseconds(40);
-    audience.tick(now);
+    hub.tick(now);
     Snapshot* s = exchange.wanted.exchange(nullptr);
     if (!s) return false;
     ++frames;
@@ -80,19 +80,19 @@ struct Theatre {
     s->eventTimes.clear();
     if (foul) s->events.open("foul").add(std::exchange(foul, 0)).close(), s->eventTimes.push_back(s->time);
     exchange.ready.store(s);
-    audience.collect(now);
+    hub.collect(now);
     return true;
   }
-  std::vector<Question> questions(Question::Kind kind) {
-    std::vector<Question> out;
-    for (Question& q : exchange.questions.takeAll())
+  std::vector<SimulationRequest> requests(SimulationRequest::Kind kind) {
+    std::vector<SimulationRequest> out;
+    for (SimulationRequest& q : exchange.requests.takeAll())
       if (q.kind == kind) out.push_back(std::move(q));
     return out;
   }
 
   Exchange exchange;
   Log log;
-  Audience audience{exchange, log, {"0123456789abcdef", 0.02, 25, 10}};
+  ViewerHub hub{exchange, log, {"0123456789abcdef", 0.02, 25, 10}};
   Clock::time_point now = Clock::now();
   std::shared_ptr<SceneDescription> scene;
   std::vector<std::uint8_t> visible{1, 1, 1};
@@ -108,21 +108,21 @@ int count(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("Nobody watches: the simulation is asked for nothing") {
-  Theatre t;
+TEST_CASE("Without viewers nothing is requested from the simulation") {
+  HubFixture t;
   CHECK_FALSE(t.frame());
   CHECK_FALSE(t.exchange.watched);
-  CHECK(t.exchange.questions.empty());
+  CHECK(t.exchange.requests.empty());
   auto viewer = t.enter();
   CHECK(t.exchange.watched);
   CHECK(t.frame());
-  t.audience.left(*viewer);
+  t.hub.onDisconnect(*viewer);
   CHECK_FALSE(t.exchange.watched);
   CHECK_FALSE(t.frame());
 }
 
 TEST_CASE("A viewer gets hello, scene, environment, a key, then deltas") {
-  Theatre t;
+  HubFixture t;
   auto viewer = t.enter();
   REQUIRE(t.frame());
   viewer->takeAll();
@@ -148,8 +148,8 @@ TEST_CASE("A viewer gets hello, scene, environment, a key, then deltas") {
   CHECK_THAT(viewer->said, Contains("[\"play_mode\",4]") && Contains("\"entry\":[\"foul\",7]"));
 }
 
-TEST_CASE("A viewer that lags misses frames, gets a key when it is back, and nobody else notices") {
-  Theatre t;
+TEST_CASE("A viewer that lags skips frames and resumes with a key; the others get all frames") {
+  HubFixture t;
   auto slow = t.enter(), quick = t.enter();
   t.frame();
   slow->takeAll(), quick->takeAll();
@@ -174,20 +174,20 @@ TEST_CASE("A viewer that lags misses frames, gets a key when it is back, and nob
 }
 
 TEST_CASE("Viewers of one lane share the bytes") {
-  Theatre t;
+  HubFixture t;
   auto a = t.enter(), b = t.enter();
   t.frame();
   a->takeAll(), b->takeAll();
   t.frame();
-  while (!a->leaving.binary()) a->takeOne();
-  while (!b->leaving.binary()) b->takeOne();
-  CHECK(a->leaving.bytes == b->leaving.bytes);
+  while (!a->sending.binary()) a->takeOne();
+  while (!b->sending.binary()) b->takeOne();
+  CHECK(a->sending.bytes == b->sending.bytes);
 }
 
 TEST_CASE("Each viewer gets the rate and the detail that it asks for") {
-  Theatre t;
+  HubFixture t;
   auto fast = t.enter(), slow = t.enter();
-  t.audience.said(*slow, R"({"do":"view","rate":4.5,"detail":"coarse"})", t.now);
+  t.hub.onMessage(*slow, R"({"do":"view","rate":4.5,"detail":"coarse"})", t.now);
   for (int i = 0; i < 100; ++i) {
     t.frame();
     fast->takeAll(), slow->takeAll();
@@ -199,7 +199,7 @@ TEST_CASE("Each viewer gets the rate and the detail that it asks for") {
 }
 
 TEST_CASE("Another scene goes out before its first frame, but not in every frame while it keeps changing") {
-  Theatre t;
+  HubFixture t;
   auto viewer = t.enter();
   t.frame();
   viewer->takeAll();
@@ -215,12 +215,12 @@ TEST_CASE("Another scene goes out before its first frame, but not in every frame
   CHECK_FALSE(viewer->lastIsKey());
 }
 
-TEST_CASE("Who takes nothing for long is closed, and so is who lets too much pile up") {
-  Theatre t;
+TEST_CASE("A viewer that takes nothing for long is disconnected, and so is one with too long a queue") {
+  HubFixture t;
   auto viewer = t.enter();
   t.frame();
   t.now = Clock::now() + std::chrono::seconds(11);
-  t.audience.tick(t.now);
+  t.hub.tick(t.now);
   CHECK_THAT(viewer->why, Contains("do not read"));
   auto other = t.enter();
   const std::string text(1 << 20, 'x');
@@ -228,20 +228,20 @@ TEST_CASE("Who takes nothing for long is closed, and so is who lets too much pil
   CHECK_THAT(other->why, Contains("too much"));
 }
 
-TEST_CASE("Each viewer has one question with the simulation at a time, and is not read while many wait") {
-  Theatre t;
+TEST_CASE("Each viewer has one request at a time with the simulation, and is not read while many are pending") {
+  HubFixture t;
   auto eager = t.enter(), other = t.enter();
-  t.questions(Question::Kind::request);
+  t.requests(SimulationRequest::Kind::control);
   for (int i = 1; i <= 20; ++i)
-    t.audience.said(*eager, R"({"do":"get","id":)" + std::to_string(i) + R"(,"path":"/"})", t.now);
-  t.audience.said(*other, R"({"do":"plugins","id":1})", t.now);
+    t.hub.onMessage(*eager, R"({"do":"get","id":)" + std::to_string(i) + R"(,"path":"/"})", t.now);
+  t.hub.onMessage(*other, R"({"do":"plugins","id":1})", t.now);
   CHECK_FALSE(eager->mayRead());
   for (int i = 1; i <= 20; ++i) {
-    const auto asked = t.questions(Question::Kind::request);
+    const auto asked = t.requests(SimulationRequest::Kind::control);
     REQUIRE(asked.size() == (i == 1 ? 2 : 1));
     CHECK(asked[0].id == i);
-    t.exchange.answers.put({Answer::Kind::reply, asked[0].viewer, "{\"id\":" + std::to_string(i) + "}"});
-    t.audience.collect(t.now);
+    t.exchange.replies.put({SimulationReply::Kind::reply, asked[0].viewer, "{\"id\":" + std::to_string(i) + "}"});
+    t.hub.collect(t.now);
   }
   eager->takeAll();
   CHECK(eager->mayRead());
@@ -249,29 +249,30 @@ TEST_CASE("Each viewer has one question with the simulation at a time, and is no
   CHECK_THAT(eager->said, Contains("{\"id\":20}"));
 }
 
-TEST_CASE("What several are told is one message for all of them, and nobody else's") {
-  Theatre t;
+TEST_CASE("An update for several viewers is one message for all of them, and for no other") {
+  HubFixture t;
   auto first = t.enter(), second = t.enter(), other = t.enter();
   for (auto& viewer : {first, second, other}) viewer->takeAll();
-  t.exchange.answers.put({Answer::Kind::told, 0, "{\"type\":\"drawings\"}", {first->id(), 77, second->id()}});
-  t.audience.collect(t.now);
-  REQUIRE(first->leaving.bytes);
-  CHECK(*first->leaving.bytes == "{\"type\":\"drawings\"}");
-  CHECK(first->leaving.bytes == second->leaving.bytes);
-  CHECK_FALSE(other->leaving.bytes);
+  t.exchange.replies.put(
+      {SimulationReply::Kind::update, 0, "{\"type\":\"drawings\"}", {first->id(), 77, second->id()}});
+  t.hub.collect(t.now);
+  REQUIRE(first->sending.bytes);
+  CHECK(*first->sending.bytes == "{\"type\":\"drawings\"}");
+  CHECK(first->sending.bytes == second->sending.bytes);
+  CHECK_FALSE(other->sending.bytes);
 }
 
-TEST_CASE("Only who knows the token gives commands; who guesses is closed") {
-  Theatre t;
+TEST_CASE("Only a viewer with the token gives commands; one that guesses is disconnected") {
+  HubFixture t;
   auto viewer = t.enter();
-  t.questions(Question::Kind::command);
+  t.requests(SimulationRequest::Kind::command);
   const auto say = [&](const std::string& text) {
-    t.audience.said(*viewer, text, t.now);
+    t.hub.onMessage(*viewer, text, t.now);
     viewer->takeAll();
   };
   say(R"~({"do":"command","id":1,"text":"(killsim)"})~");
   CHECK_THAT(viewer->said, Contains("only the referee"));
-  CHECK(t.questions(Question::Kind::command).empty());
+  CHECK(t.requests(SimulationRequest::Kind::command).empty());
   for (const char* wrong : {"", "0123456789abcde", "0123456789abcdeF", "0123456789abcdef0"})
     say(std::string(R"({"do":"login","token":")") + wrong + "\"}");
   CHECK(viewer->why.empty());
@@ -279,29 +280,29 @@ TEST_CASE("Only who knows the token gives commands; who guesses is closed") {
   say(R"({"do":"login","token":"0123456789abcdef"})");
   CHECK(viewer->referee);
   say(R"~({"do":"command","id":2,"text":"(kickOff Left)"})~");
-  CHECK(t.questions(Question::Kind::command).size() == 1);
+  CHECK(t.requests(SimulationRequest::Kind::command).size() == 1);
   auto guesser = t.enter();
-  for (int i = 0; i < 5; ++i) t.audience.said(*guesser, R"({"do":"login","token":"x"})", t.now);
+  for (int i = 0; i < 5; ++i) t.hub.onMessage(*guesser, R"({"do":"login","token":"x"})", t.now);
   CHECK_THAT(guesser->why, Contains("wrong tokens"));
 }
 
-TEST_CASE("How the host is doing is asked once a second, and for who asks when nobody watches") {
-  Theatre t;
+TEST_CASE("The status is requested once a second, and without viewers when a page asks for it") {
+  HubFixture t;
   std::string heard;
-  t.audience.whenStatus(t.now, [&](const std::string& text) { heard = text; });
-  t.audience.tick(t.now);
-  REQUIRE(t.questions(Question::Kind::status).size() == 1);
-  t.audience.tick(t.now);
-  CHECK(t.questions(Question::Kind::status).empty());
-  t.exchange.answers.put({Answer::Kind::status, 0, "{\"type\":\"status\"}"});
-  t.audience.collect(t.now);
+  t.hub.requestStatus(t.now, [&](const std::string& text) { heard = text; });
+  t.hub.tick(t.now);
+  REQUIRE(t.requests(SimulationRequest::Kind::status).size() == 1);
+  t.hub.tick(t.now);
+  CHECK(t.requests(SimulationRequest::Kind::status).empty());
+  t.exchange.replies.put({SimulationReply::Kind::status, 0, "{\"type\":\"status\"}"});
+  t.hub.collect(t.now);
   CHECK(heard == "{\"type\":\"status\"}");
   // A host that does not answer: what was known last.
   heard.clear();
-  t.audience.whenStatus(t.now + std::chrono::seconds(5), [&](const std::string& text) { heard = text; });
-  t.audience.tick(t.now + std::chrono::seconds(5));
+  t.hub.requestStatus(t.now + std::chrono::seconds(5), [&](const std::string& text) { heard = text; });
+  t.hub.tick(t.now + std::chrono::seconds(5));
   CHECK(heard.empty());
-  t.audience.tick(t.now + std::chrono::seconds(8));
+  t.hub.tick(t.now + std::chrono::seconds(8));
   CHECK(heard == "{\"type\":\"status\"}");
 }
 
