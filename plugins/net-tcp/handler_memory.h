@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Memory for the one outstanding wait of a socket, so that waiting for input allocates nothing in steady state.
+/// Reusable memory for the one outstanding wait of a socket: waiting for input allocates nothing in steady state.
 
 #include <cstddef>
 #include <new>
@@ -8,19 +8,19 @@
 
 namespace spark::net {
 
-/// A block that one handler at a time lives in; larger or further handlers fall back to the heap.
+/// A block of memory for one handler at a time. A larger handler, or a second one, gets memory from the heap.
 class HandlerMemory {
  public:
   HandlerMemory() = default;
   HandlerMemory(const HandlerMemory&) = delete;
   HandlerMemory& operator=(const HandlerMemory&) = delete;
 
-  void* take(std::size_t size) {
+  void* allocate(std::size_t size) {
     if (used_ || size > sizeof(block_)) return ::operator new(size);
     used_ = true;
     return block_;
   }
-  void give(void* p) {
+  void deallocate(void* p) {
     if (p == block_)
       used_ = false;
     else
@@ -32,15 +32,15 @@ class HandlerMemory {
   bool used_ = false;
 };
 
-/// The allocator that Asio asks a handler for.
+/// The allocator that Asio gets from a handler. The memory must outlive the handler.
 template <class T>
 struct HandlerAllocator {
   using value_type = T;
   explicit HandlerAllocator(HandlerMemory& m) : memory(&m) {}
   template <class U>
   HandlerAllocator(const HandlerAllocator<U>& other) : memory(other.memory) {}
-  T* allocate(std::size_t n) const { return static_cast<T*>(memory->take(n * sizeof(T))); }
-  void deallocate(T* p, std::size_t) const { memory->give(p); }
+  T* allocate(std::size_t n) const { return static_cast<T*>(memory->allocate(n * sizeof(T))); }
+  void deallocate(T* p, std::size_t) const { memory->deallocate(p); }
   template <class U>
   bool operator==(const HandlerAllocator<U>& other) const {
     return memory == other.memory;
@@ -48,7 +48,7 @@ struct HandlerAllocator {
   HandlerMemory* memory;
 };
 
-/// A completion handler with its memory; `F` is called with Asio's arguments.
+/// A completion handler that Asio places into `memory`; calls `f` with Asio's arguments.
 template <class F>
 class MemoryHandler {
  public:

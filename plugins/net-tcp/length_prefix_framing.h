@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The framing of the installed base: four bytes of length, big-endian, then that many bytes.
+/// The framing of the SimSpark protocol: a length of four bytes, big-endian, then as many bytes.
 
 #include <fmt/format.h>
 
@@ -9,14 +9,14 @@
 
 namespace spark {
 
-/// Messages behind a 4-byte big-endian length. Length 0 is legal and gives an empty message.
+/// A message follows its length, a 4-byte big-endian integer. Length 0 is legal and gives an empty message.
 class LengthPrefixFraming : public Leaf, public IFraming {
   SPARK_CLASS(LengthPrefixFraming, Leaf)
  public:
-  static constexpr std::size_t kPrefix = 4;
+  static constexpr std::size_t kPrefix = 4;  ///< bytes
 
   static void describe(Description<LengthPrefixFraming>& d) {
-    d.doc("Cuts messages behind a 4-byte big-endian length.");
+    d.doc("Splits a byte stream into messages, each after its 4-byte big-endian length.");
     d.implements<IFraming>();
   }
 

@@ -11,8 +11,8 @@ namespace spark {
 
 namespace {
 using Clock = std::chrono::steady_clock;
-// How soon a request to stop is seen while nothing arrives.
-constexpr auto kSlice = std::chrono::milliseconds(25);
+// Maximum time of one wait for input, so that a request to stop is seen.
+constexpr auto kMaxWait = std::chrono::milliseconds(25);
 }  // namespace
 
 NetServer::NetServer() = default;
@@ -21,7 +21,7 @@ void NetServer::describe(Description<NetServer>& d) {
   d.doc("Network server: ports below it bring input to the run loop.");
   d.implements<IInputSource>();
   d.link(&NetServer::ports_, Below<TcpPort>());
-  d.property("open", &NetServer::open_).doc("False: no port is opened, nobody comes in.");
+  d.property("open", &NetServer::open_).doc("False: no port is opened.");
   d.method("listen", &NetServer::listen).doc("Opens all ports below; otherwise the first poll does.");
 }
 
@@ -30,9 +30,9 @@ void NetServer::listen() {
   for (const Found<TcpPort>& port : ports_) port->listen();
 }
 
-void NetServer::poll() { round(); }
+void NetServer::poll() { pollPorts(); }
 
-bool NetServer::round() {
+bool NetServer::pollPorts() {
   if (!open_) return false;
   if (!std::all_of(ports_.begin(), ports_.end(), [](const Found<TcpPort>& p) { return p->listening(); })) {
     try {
@@ -54,10 +54,11 @@ bool NetServer::wait(double seconds) {
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(std::clamp(seconds, 0.0, 3600.0)));
   for (;;) {
-    if (round() || kernel().stopRequested()) return true;
+    if (pollPorts() || kernel().stopRequested()) return true;
     const auto now = Clock::now();
     if (now >= end) return false;
-    timer_.expires_at(std::min(end, now + kSlice));
+    // Sleep until a socket becomes ready or the timer expires.
+    timer_.expires_at(std::min(end, now + kMaxWait));
     timer_.async_wait(net::MemoryHandler(timerMemory_, [](const boost::system::error_code&) {}));
     io_->restart();
     io_->run_one();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The network server: one I/O context that the run loop polls, ports below it.
+/// The network server: an I/O context that the run loop polls, with ports below it.
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
@@ -17,23 +17,25 @@ namespace spark {
 
 class TcpPort;
 
-/// At /sys/server/net. Works in the simulation's thread only: nothing happens between the run loop's calls but what the
-/// operating system does, so a cycle sees the input that was there when it asked.
+/// At /sys/server/net. It works only within calls of the run loop, in the simulation thread: a cycle sees the input
+/// that had arrived when the run loop polled.
 class NetServer : public Node, public IInputSource {
   SPARK_CLASS(NetServer, Node)
  public:
   NetServer();
   static void describe(Description<NetServer>& d);
 
-  /// Opens all ports below, unless the network is to stay closed. Throws Error.
+  /// Opens all ports below it, unless property `open` is false. Throws Error if one cannot be opened.
   void listen();
   void poll() override;
+  /// Polls until a port has delivered something, a stop is requested or `seconds` of wall time have passed.
   bool wait(double seconds) override;
 
+  /// The I/O context of all ports. Simulation thread.
   const std::shared_ptr<boost::asio::io_context>& io() const { return io_; }
 
  private:
-  bool round();
+  bool pollPorts();
 
   std::shared_ptr<boost::asio::io_context> io_ = std::make_shared<boost::asio::io_context>(1);
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_->get_executor()};

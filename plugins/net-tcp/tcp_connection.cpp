@@ -20,10 +20,9 @@ std::string describePeer(const tcp::socket& socket) {
   return ec ? std::string("(gone)") : fmt::format("{}:{}", end.address().to_string(), end.port());
 }
 
-/// A client whose machine has gone without a word is noticed by the system: after 30 s of silence it is probed, and the
-/// connection ends when it did not answer six times. A client that is there but does not read answers probes, for ever:
-/// no TCP_USER_TIMEOUT, which would end it.
-void keepAlive(tcp::socket& socket) {
+/// Detects clients whose machine is gone: after 30 s of silence the system sends probes, and ends the connection after
+/// six unanswered ones. TCP_USER_TIMEOUT is not set, since it would also end clients that merely do not read.
+void enableKeepAlive(tcp::socket& socket) {
   constexpr int kIdle = 30, kInterval = 10, kProbes = 6;  // s, s, number
   using Idle = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>;
   using Interval = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPINTVL>;
@@ -41,7 +40,7 @@ TcpConnection::TcpConnection(tcp::socket socket, std::uint64_t id, TcpPort& port
   error_code ignored;
   socket_.non_blocking(true, ignored);
   socket_.set_option(tcp::no_delay(true), ignored);
-  keepAlive(socket_);
+  enableKeepAlive(socket_);
 }
 
 Node& TcpConnection::port() { return port_; }
@@ -74,7 +73,7 @@ void TcpConnection::shut() {
 
 void TcpConnection::close(std::string_view reason) {
   if (closing_) return;
-  port_.complain(Level::warning, fmt::format("{} is closed: {}.", peer_, reason));
+  port_.logLimited(Level::warning, fmt::format("{} is closed: {}.", peer_, reason));
   shut();
 }
 
@@ -104,7 +103,7 @@ bool TcpConnection::flush() {
       return true;
     }
     if (ec) {
-      // The reason comes with the next read, which ends the connection.
+      // The next read reports the error and ends the connection.
       written_ = out_.size();
       readable_ = true;
       return false;

@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// One client of a port: what it sent and was not cut yet, what it was sent and did not take yet.
+/// A client of a port, with its input that is not split into messages yet and its unsent output.
 ///
-/// Nothing here is driven by callbacks. Asio only tells that a socket became readable or writable; bytes move when the
-/// port asks for it, in the port's order, so that the order of delivery depends on what arrived and not on how the
-/// operating system reported it.
+/// Callbacks of Asio only note that a socket became readable or writable. Bytes are read when the port calls read(), in
+/// the port's order: the order of delivery depends on what has arrived, not on the order in which the operating system
+/// reports it.
 
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
@@ -23,12 +23,18 @@ namespace spark::net {
 using boost::asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
+/// Owned by its TcpPort and by its pending waits. Simulation thread only.
 class TcpConnection final : public IConnection, public std::enable_shared_from_this<TcpConnection> {
  public:
-  /// What reading brought. `all`: less than there was room for, so that nothing more is there. `ended`: the client has
-  /// gone or the connection failed.
-  enum class Read { nothing, some, all, ended };
+  /// Result of read().
+  enum class Read {
+    nothing,  ///< no input
+    some,     ///< the buffer is full; there may be more
+    all,      ///< the buffer is not full: all available input was read
+    ended,    ///< the client closed the connection or it failed
+  };
 
+  /// `id`: unique within the port. `port` must outlive it.
   TcpConnection(tcp::socket socket, std::uint64_t id, TcpPort& port);
 
   std::uint64_t id() const override { return id_; }
@@ -37,41 +43,48 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   bool send(std::string_view message) override;
   bool idle() const override { return written_ == out_.size(); }
   double stalledSeconds() const override;
-  /// Seconds since it last took a byte that waits for it or finished a message; 0 when nothing waits for it.
+  /// Seconds of wall time since the client last accepted a byte of the unsent output or completed a message; 0 if there
+  /// is no unsent output.
   double quietSeconds(Clock::time_point now) const;
   void close(std::string_view reason) override;
 
-  /// Shuts the socket; the port still has to tell the consumer.
+  /// Closes the socket; the port calls IConnectionConsumer::disconnected() later.
   void shut();
-  /// True when the socket may have bytes for read().
+  /// True if read() may find input.
   bool readable() const { return readable_; }
+  /// True after close() or shut().
   bool closing() const { return closing_; }
-  /// Reads once, into `scratch`, and appends to input().
+  /// Reads once, at most scratch.size() bytes, and appends them to input(). Does not block.
   Read read(std::string& scratch);
-  /// Received and not cut into messages yet.
+  /// Received bytes that are not consumed yet.
   const std::string& input() const { return input_; }
+  /// Removes bytes from the front of input().
   void consume(std::size_t bytes);
-  /// It has sent a whole message.
+  /// True if it has ever sent a complete message.
   bool spoken() const { return spoken_; }
+  /// Notes that it has sent a complete message.
   void markSpoken();
-  /// Notes that the input ends in a part of a message (or not), for partialSeconds().
+  /// Notes whether the input ends with an incomplete message, for partialSeconds().
   void markPartial(bool partial);
-  /// Seconds since the unfinished message began; 0 when there is none.
+  /// Seconds of wall time since the incomplete message began; 0 if there is none.
   double partialSeconds(Clock::time_point now) const;
 
  private:
   void watchRead();
   void watchWrite();
-  /// Writes what waits; false when the connection failed.
+  /// Writes unsent output as far as the system takes it; false if the connection failed.
   bool flush();
 
   tcp::socket socket_;
   TcpPort& port_;
   const std::uint64_t id_;
-  std::string peer_, input_, out_;
-  std::size_t written_ = 0;
+  std::string peer_, input_;
+  std::string out_;          ///< the framed message that is being sent
+  std::size_t written_ = 0;  ///< bytes of `out_` that are sent
   HandlerMemory readMemory_, writeMemory_;
-  Clock::time_point stalledSince_{}, heardAt_{}, partialSince_{};
+  Clock::time_point stalledSince_{};  ///< when a byte was sent last
+  Clock::time_point heardAt_{};       ///< when it last completed a message while output was unsent
+  Clock::time_point partialSince_{};  ///< when the incomplete message began
   bool readable_ = true, closing_ = false, partial_ = false, watchingWrite_ = false, spoken_ = false;
 };
 

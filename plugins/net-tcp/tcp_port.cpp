@@ -15,18 +15,19 @@ using net::Clock;
 using net::tcp;
 using net::TcpConnection;
 
-constexpr std::size_t kReadSize = 65536;  // bytes a read
-constexpr int kReadsPerPoll = 4;          // per connection: nobody starves behind a client that floods
+constexpr std::size_t kReadSize = 65536;  // bytes
+constexpr int kReadsPerPoll = 4;          // per connection, so that a flooding client cannot starve others
 constexpr int kAcceptsPerPoll = 64;
-constexpr auto kAcceptPause = std::chrono::seconds(1);  // after the system refused, e.g. out of descriptors
-constexpr auto kTimeoutCheck = std::chrono::milliseconds(500);
+constexpr auto kAcceptRetryDelay = std::chrono::seconds(1);  // after an error, such as too many open files
+constexpr auto kTimeoutCheckInterval = std::chrono::milliseconds(500);
 }  // namespace
 
 void TcpPort::describe(Description<TcpPort>& d) {
-  d.doc("A listening TCP port; delivers messages to its consumer, cut by the framing below it.");
+  d.doc(
+      "A listening TCP port; splits input into messages with the framing below it and delivers them to its consumer.");
   d.property("port", &TcpPort::port, &TcpPort::setPort)
       .range(0, 65535)
-      .doc("Port number; 0 picks a free one, which is read back once it listens.");
+      .doc("Port number; 0 picks a free one, which can be read once it listens.");
   d.property("address", &TcpPort::address_).doc("Address to listen on.");
   d.link(&TcpPort::framing_, Child<IFraming>());
   d.link(&TcpPort::named_, At<IConnectionConsumer>(&TcpPort::consumerPath_));
@@ -36,15 +37,17 @@ void TcpPort::describe(Description<TcpPort>& d) {
       .unit("bytes")
       .range(1, 1 << 30)
       .doc("A client that announces a longer message is closed.");
-  d.property("maxConnections", &TcpPort::maxConnections_).range(1, 65536).doc("Further clients are closed at once.");
+  d.property("maxConnections", &TcpPort::maxConnections_)
+      .range(1, 65536)
+      .doc("Further clients are disconnected at once.");
   d.property("makeRoom", &TcpPort::makeRoom_)
-      .doc("When there are maxConnections clients, a new one takes the place of the oldest that never sent a message.");
+      .doc("When there are maxConnections clients, a new one replaces the oldest that never sent a message.");
   d.property("makeRoomAfter", &TcpPort::makeRoomAfter_)
       .unit("s")
       .min(0)
       .doc(
-          "When it is full, a client that does not read and was not heard for longer than this (wall clock) makes "
-          "room; 0: none does.");
+          "When it is full, a client that neither reads nor sends for longer than this (wall time) is closed to make "
+          "room; 0: none is.");
   d.property("messageTimeout", &TcpPort::messageTimeout_)
       .unit("s")
       .min(0.001)
@@ -52,11 +55,11 @@ void TcpPort::describe(Description<TcpPort>& d) {
   d.property("sendBuffer", &TcpPort::sendBuffer_)
       .unit("bytes")
       .range(4096, 1 << 28)
-      .doc("What the system may hold back for a client that does not read.");
-  d.property("connections", &TcpPort::connectionCount).doc("Clients now.");
-  d.property("connectionsSeen", &TcpPort::connectionsSeen).doc("Clients that were ever taken.");
+      .doc("Send buffer of the system, which fills for a client that does not read.");
+  d.property("connections", &TcpPort::connectionCount).doc("Number of clients now.");
+  d.property("connectionsSeen", &TcpPort::connectionsSeen).doc("Number of clients that were ever accepted.");
   d.property("messagesDropped", &TcpPort::messagesDropped)
-      .doc("Messages not sent because their client had not taken an earlier one.");
+      .doc("Messages that were not sent because an earlier one was still unsent.");
   d.method("listen", &TcpPort::listen).doc("Opens the port; otherwise the first poll does.");
 }
 
@@ -70,17 +73,17 @@ void TcpPort::onLink() {
 }
 
 void TcpPort::onUnlink() {
-  closeSilent();
+  closeAll();
   acceptor_.reset();
   if (!io_) return;
   io_->restart();
-  io_->poll();  // lets go of the cancelled waits, which hold connections
+  io_->poll();  // runs the cancelled waits, which own connections
   io_.reset();
 }
 
-void TcpPort::closeSilent() {
+void TcpPort::closeAll() {
   for (auto& c : connections_) c->shut();
-  reap();
+  removeClosed();
 }
 
 void TcpPort::setPort(int port) {
@@ -94,29 +97,29 @@ void TcpPort::setConsumer(std::string path) {
   named_.lookAgain();
 }
 
-void TcpPort::complain(Level level, std::string_view what) {
+void TcpPort::logLimited(Level level, std::string_view what) {
   auto& log = kernel().log();
-  if (log.enabled(level)) complaints_.write(log, level, fmt::format("Port {} ({}): {}", name(), port_, what));
+  if (log.enabled(level)) log_.write(log, level, fmt::format("Port {} ({}): {}", name(), port_, what));
 }
 
-void TcpPort::followConsumer() {
+void TcpPort::updateConsumer() {
   const Found<IConnectionConsumer> now = named_.found();
   if (now.object == consumer_.get()) return;
   if (!connections_.empty()) {
-    complain(Level::warning, "its consumer changed, all clients are closed.");
-    closeSilent();
+    logLimited(Level::warning, "its consumer changed, all clients are closed.");
+    closeAll();
   }
   consumer_ = now;
 }
 
 void TcpPort::listen() {
   if (listening()) return;
-  followConsumer();
+  updateConsumer();
   if (!framing_)
     throw Error(fmt::format("{} has no framing below it. Add one, e.g. new(\"LengthPrefixFraming\", \"{}/framing\").",
                             path(), path()));
   if (!consumer_) {
-    require<IConnectionConsumer>(consumerPath_);  // says what is missing
+    require<IConnectionConsumer>(consumerPath_);  // throws with the reason if there is no such node
     throw Error(fmt::format("{}.consumer = '{}' takes no connections.", path(), consumerPath_));
   }
   error_code ec;
@@ -125,17 +128,17 @@ void TcpPort::listen() {
     throw Error(
         fmt::format("{}.address: expected an IP address such as 0.0.0.0 or ::1, found '{}'.", path(), address_));
   tcp::acceptor acceptor(*io_);
-  const tcp::endpoint end(address, static_cast<unsigned short>(port_));
-  const char* step = "open";
+  const tcp::endpoint endpoint(address, static_cast<unsigned short>(port_));
+  const char* action = "open";
   const auto failed = [&] { return static_cast<bool>(ec); };
-  acceptor.open(end.protocol(), ec);
-  if (!failed()) step = "configure", acceptor.set_option(tcp::acceptor::reuse_address(true), ec);
+  acceptor.open(endpoint.protocol(), ec);
+  if (!failed()) action = "configure", acceptor.set_option(tcp::acceptor::reuse_address(true), ec);
   if (!failed()) acceptor.non_blocking(true, ec);
-  if (!failed()) step = "bind", acceptor.bind(end, ec);
-  if (!failed()) step = "listen on", acceptor.listen(boost::asio::socket_base::max_listen_connections, ec);
+  if (!failed()) action = "bind", acceptor.bind(endpoint, ec);
+  if (!failed()) action = "listen on", acceptor.listen(boost::asio::socket_base::max_listen_connections, ec);
   if (failed())
-    throw Error(fmt::format("{}: cannot {} {}:{}: {}. Choose another port; 0 picks a free one.", path(), step, address_,
-                            port_, ec.message()));
+    throw Error(fmt::format("{}: cannot {} {}:{}: {}. Choose another port; 0 picks a free one.", path(), action,
+                            address_, port_, ec.message()));
   port_ = acceptor.local_endpoint().port();
   acceptor_.emplace(std::move(acceptor));
   *acceptReady_ = true;
@@ -151,22 +154,22 @@ void TcpPort::watchAccept() {
 }
 
 bool TcpPort::poll() {
-  followConsumer();
+  updateConsumer();
   bool any = false;
-  for (std::size_t i = 0; i < connections_.size(); ++i) any |= serve(*connections_[i]);
-  any |= reap();
+  for (std::size_t i = 0; i < connections_.size(); ++i) any |= readFrom(*connections_[i]);
+  any |= removeClosed();
   const std::size_t old = connections_.size();
   any |= acceptAll();
-  for (std::size_t i = old; i < connections_.size(); ++i) any |= serve(*connections_[i]);
+  for (std::size_t i = old; i < connections_.size(); ++i) any |= readFrom(*connections_[i]);
 
   const auto now = Clock::now();
-  if (now - timeoutsChecked_ >= kTimeoutCheck) {
+  if (now - timeoutsChecked_ >= kTimeoutCheckInterval) {
     timeoutsChecked_ = now;
     for (auto& c : connections_)
       if (c->partialSeconds(now) > messageTimeout_)
         c->close(fmt::format("it began a message and did not finish it within {} s", messageTimeout_));
   }
-  return reap() || any;
+  return removeClosed() || any;
 }
 
 bool TcpPort::acceptAll() {
@@ -176,20 +179,20 @@ bool TcpPort::acceptAll() {
     tcp::socket socket(*io_);
     acceptor_->accept(socket, ec);
     if (!ec) {
-      take(std::move(socket));
+      addConnection(std::move(socket));
     } else if (ec == boost::asio::error::would_block) {
       watchAccept();
       return i > 0;
     } else if (ec != boost::asio::error::connection_aborted && ec != boost::asio::error::interrupted) {
-      complain(Level::error, fmt::format("cannot take a client: {}. Tried again in a second.", ec.message()));
-      acceptAgain_ = Clock::now() + kAcceptPause;
+      logLimited(Level::error, fmt::format("cannot take a client: {}. Tried again in a second.", ec.message()));
+      acceptAgain_ = Clock::now() + kAcceptRetryDelay;
       return i > 0;
     }
   }
   return true;
 }
 
-void TcpPort::take(tcp::socket socket) {
+void TcpPort::addConnection(tcp::socket socket) {
   error_code ignored;
   socket.set_option(tcp::socket::send_buffer_size(sendBuffer_), ignored);
   auto connection =
@@ -200,62 +203,63 @@ void TcpPort::take(tcp::socket socket) {
     connection->close(fmt::format("{} clients are connected already (maxConnections)", maxConnections_));
   } else {
     ++connectionsSeen_;
-    complain(Level::debug, fmt::format("{} connected.", connection->peer()));
+    logLimited(Level::debug, fmt::format("{} connected.", connection->peer()));
     connections_.push_back(connection);
     consumer_->connected(*connection);
   }
 }
 
-/// Clients that are closing give their place away already.
+/// True if no further client can be accepted. Closes one to make room if the properties allow it.
 bool TcpPort::full() {
-  const auto stays = [](const Connection& c) { return !c->closing(); };
-  if (std::count_if(connections_.begin(), connections_.end(), stays) < maxConnections_) return false;
-  TcpConnection* const leaves = givesWay();
-  if (!leaves) return true;
-  leaves->close(leaves->spoken() ? "it neither reads nor sends, and its place is needed"
-                                 : "it said nothing, and its place is needed");
+  const auto open = [](const Connection& c) { return !c->closing(); };
+  if (std::count_if(connections_.begin(), connections_.end(), open) < maxConnections_) return false;
+  TcpConnection* const evicted = connectionToEvict();
+  if (!evicted) return true;
+  evicted->close(evicted->spoken() ? "it neither reads nor sends, and its place is needed"
+                                   : "it said nothing, and its place is needed");
   return false;
 }
 
-/// Who is the least loss when the port is full, or nullptr: the oldest that never said anything where clients speak
-/// first; else of those that do not read the one that has been quiet for the longest, and who never said anything
-/// before all others.
-TcpConnection* TcpPort::givesWay() const {
+/// The connection to close if the port is full, or nullptr. With `makeRoom`: the oldest that never sent a message. With
+/// `makeRoomAfter`: of those that do not read, one that never sent a message, then the one that was quiet for longest.
+TcpConnection* TcpPort::connectionToEvict() const {
   const auto now = Clock::now();
-  TcpConnection* found = nullptr;
+  TcpConnection* best = nullptr;
   for (const Connection& c : connections_) {
     if (c->closing()) continue;
     if (makeRoom_ && !c->spoken()) return c.get();
     if (makeRoomAfter_ <= 0 || c->quietSeconds(now) <= makeRoomAfter_) continue;
-    const auto loss = [now](const TcpConnection& x) { return std::pair(x.spoken(), -x.quietSeconds(now)); };
-    if (!found || loss(*c) < loss(*found)) found = c.get();
+    const auto rank = [now](const TcpConnection& x) { return std::pair(x.spoken(), -x.quietSeconds(now)); };
+    if (!best || rank(*c) < rank(*best)) best = c.get();
   }
-  return found;
+  return best;
 }
 
-bool TcpPort::serve(TcpConnection& connection) {
+/// Reads what has arrived and delivers its complete messages; true if there were any.
+bool TcpPort::readFrom(TcpConnection& connection) {
   bool any = false;
   for (int i = 0; i < kReadsPerPoll && connection.readable() && !connection.closing(); ++i) {
     const auto result = connection.read(scratch_);
     if (result == TcpConnection::Read::nothing) break;
     if (result == TcpConnection::Read::ended) {
       if (connection.input().empty())
-        complain(Level::debug, fmt::format("{} left.", connection.peer()));
+        logLimited(Level::debug, fmt::format("{} left.", connection.peer()));
       else
-        complain(Level::info, fmt::format("{} left in the middle of a message.", connection.peer()));
+        logLimited(Level::info, fmt::format("{} left in the middle of a message.", connection.peer()));
       connection.shut();
       break;
     }
-    const bool delivered = cut(connection);
+    const bool delivered = deliverMessages(connection);
     any |= delivered;
-    // It stays readable: until the next poll its next message is mostly there, and is read without asking the system
-    // before. Only who waits without a message is watched.
+    // The connection stays readable: by the next poll its next message has usually arrived, and is read without a wait
+    // in between. Only a connection without input is watched.
     if (delivered && result == TcpConnection::Read::all) break;
   }
   return any;
 }
 
-bool TcpPort::cut(TcpConnection& connection) {
+/// Splits the input into messages and delivers them; true if there were any.
+bool TcpPort::deliverMessages(TcpConnection& connection) {
   const std::string_view all = connection.input();
   std::size_t at = 0;
   if (!framing_) {
@@ -276,14 +280,15 @@ bool TcpPort::cut(TcpConnection& connection) {
   return at > 0;
 }
 
-bool TcpPort::reap() {
+/// Removes closed connections and tells the consumer; true if there were any.
+bool TcpPort::removeClosed() {
   for (auto& c : connections_)
-    if (c->closing()) leaving_.push_back(c);
-  if (leaving_.empty()) return false;
+    if (c->closing()) closed_.push_back(c);
+  if (closed_.empty()) return false;
   std::erase_if(connections_, [](const Connection& c) { return c->closing(); });
-  for (auto& c : leaving_)
+  for (auto& c : closed_)
     if (consumer_) consumer_->disconnected(*c);
-  leaving_.clear();
+  closed_.clear();
   return true;
 }
 

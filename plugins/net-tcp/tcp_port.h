@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A listening TCP port: accepts, reads in a fair round, cuts messages with the framing below it, delivers to its
-/// consumer.
+/// A listening TCP port: accepts clients, reads from them round robin, splits the bytes into messages with the framing
+/// below it, delivers the messages to its consumer.
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -11,34 +11,39 @@
 #include <vector>
 
 #include "api/net.h"
-#include "net-tcp/complaints.h"
+#include "net-tcp/rate_limited_log.h"
 #include "net-tcp/tcp_connection.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
 
 namespace spark {
 
-/// Below the network server. Lives and delivers in the simulation's thread.
+/// A node below the NetServer. Simulation thread only.
 class TcpPort : public Node {
   SPARK_CLASS(TcpPort, Node)
  public:
   static void describe(Description<TcpPort>& d);
 
-  /// Opens the port. Throws Error: no framing or consumer, bad address, in use. Does nothing when it is open.
+  /// Opens the port; does nothing if it is open. Throws Error if it has no framing or consumer, if the address is
+  /// invalid or in use.
   void listen();
   bool listening() const { return acceptor_.has_value(); }
-  /// One fair round in accept order: old connections are read, new ones are taken and read. True when something was
-  /// delivered.
+  /// Reads from all connections in the order in which they were accepted, then accepts new ones and reads from them. A
+  /// connection delivers a bounded amount per call. True if something was delivered.
   bool poll();
 
-  /// For connections: frames with the framing below, counts, writes rate-limited lines that name this port.
-  void frame(std::string_view message, std::string& out) { framing_->frame(message, out); }
-  void countDropped() { ++messagesDropped_; }
-  void complain(Level level, std::string_view what);
+  // For connections of this port.
 
-  /// The real port once it listens.
+  /// Appends the framed message.
+  void frame(std::string_view message, std::string& out) { framing_->frame(message, out); }
+  /// Counts a message that was not sent.
+  void countDropped() { ++messagesDropped_; }
+  /// Writes a rate-limited log line that names this port.
+  void logLimited(Level level, std::string_view what);
+
+  /// The port number: the open one if it listens, otherwise the property, where 0 means any free port.
   int port() const { return port_; }
-  /// Throws Error when it listens already.
+  /// Throws Error if it listens already.
   void setPort(int port);
 
  protected:
@@ -47,16 +52,16 @@ class TcpPort : public Node {
 
  private:
   using Connection = std::shared_ptr<net::TcpConnection>;
-  void followConsumer();
+  void updateConsumer();
   void watchAccept();
   bool acceptAll();
-  void take(net::tcp::socket socket);
-  bool serve(net::TcpConnection& connection);
-  bool cut(net::TcpConnection& connection);
-  bool reap();
+  void addConnection(net::tcp::socket socket);
+  bool readFrom(net::TcpConnection& connection);
+  bool deliverMessages(net::TcpConnection& connection);
+  bool removeClosed();
   bool full();
-  net::TcpConnection* givesWay() const;
-  void closeSilent();
+  net::TcpConnection* connectionToEvict() const;
+  void closeAll();
   std::int64_t messagesDropped() const { return messagesDropped_; }
   std::int64_t connectionsSeen() const { return connectionsSeen_; }
   int connectionCount() const { return static_cast<int>(connections_.size()); }
@@ -66,12 +71,12 @@ class TcpPort : public Node {
   std::shared_ptr<boost::asio::io_context> io_;
   std::optional<net::tcp::acceptor> acceptor_;
   net::HandlerMemory acceptMemory_;
-  std::shared_ptr<bool> acceptReady_ = std::make_shared<bool>(false);
+  std::shared_ptr<bool> acceptReady_ = std::make_shared<bool>(false);  ///< shared with the pending wait
   net::Clock::time_point acceptAgain_{}, timeoutsChecked_{};
-  std::vector<Connection> connections_;  ///< in accept order
-  std::vector<Connection> leaving_;
-  std::string scratch_;
-  net::Complaints complaints_;
+  std::vector<Connection> connections_;  ///< in the order in which they were accepted
+  std::vector<Connection> closed_;       ///< used by removeClosed()
+  std::string scratch_;                  ///< buffer of one read
+  net::RateLimitedLog log_;
 
   int port_ = 0;
   std::string address_ = "0.0.0.0", consumerPath_ = "/sys/server/gamecontrol";
@@ -81,8 +86,8 @@ class TcpPort : public Node {
   std::int64_t messagesDropped_ = 0, connectionsSeen_ = 0;
 
   Link<IFraming> framing_;
-  Link<IConnectionConsumer> named_;    ///< by the property
-  Ref<IConnectionConsumer> consumer_;  ///< whom all connections belong to
+  Link<IConnectionConsumer> named_;    ///< at the path of the property
+  Ref<IConnectionConsumer> consumer_;  ///< consumer of all current connections
 };
 
 }  // namespace spark
