@@ -1,5 +1,7 @@
 #include "gamecontrol/game_control.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -14,99 +16,98 @@
 namespace spark {
 
 namespace {
-/// So many messages to an agent that has not sent (syn) yet leave no faster than joinPace, others waiting or not.
+/// The first kPacedMessages messages to an agent that has not sent (syn) yet are paced by joinPace, even if others
+/// wait.
 constexpr std::int64_t kPacedMessages = 50;
-/// Who keeps a cycle waiting for longer is slow [s].
+/// An agent that delays a cycle for longer is slow [s].
 constexpr double kSlow = 1;
 
-/// The participant so many places on, or nullptr.
+/// The participant `distance` places after index `i`, or nullptr.
 template <class Participants>
-auto* next(const Participants& all, std::size_t i, std::size_t places) {
-  return i + places < all.size() ? all[i + places].get() : nullptr;
+auto* ahead(const Participants& all, std::size_t i, std::size_t distance) {
+  return i + distance < all.size() ? all[i + distance].get() : nullptr;
 }
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 }  // namespace
 
 void GameControl::describe(Description<GameControl>& d) {
-  d.doc("Makes agents of connections and behaviours, dispatches their actions, asks their perceptors.");
-  d.link(&GameControl::joinPolicy_, Child<IJoinPolicy>()).doc("Reads who joins; without it agents have no names.");
+  d.doc("Creates agents for connections and behaviours, dispatches their actions, calls their perceptors.");
+  d.link(&GameControl::joinPolicy_, Child<IJoinPolicy>())
+      .doc("Reads the identity of agents that join; without it they have none.");
   d.property("createEffector", &GameControl::createEffector_)
-      .doc("Class of the effector with which an agent asks for its robot.");
+      .doc("Class of the effector with which an agent requests its robot.");
   d.property("expect", &GameControl::expect_)
       .range(0, 1000)
       .doc(
-          "Holds the clock at cycle 0 until so many agents have named their robot and, where a game has names for "
-          "them, "
-          "themselves, and have sent syn; they are numbered by team and number.");
+          "Holds the clock at cycle 0 until this number of agents have named their robot and, if the game has a join "
+          "policy, themselves, and have sent syn; they are numbered by team and number.");
   d.property("maxAgents", &GameControl::maxAgents_)
       .range(0, 1000)
-      .doc("Further agents are closed; clients that never said anything do not count.");
+      .doc("Further agents are disconnected; clients that never sent anything do not count.");
   d.property("maxPending", &GameControl::maxPending_)
       .unit("bytes")
       .range(1024, 1 << 28)
-      .doc("A client that sends more within one cycle is closed.");
+      .doc("A client that sends more within one cycle is disconnected.");
   d.property("loadsPerCycle", &GameControl::loadsPerCycle_)
       .min(1)
       .doc(
-          "In real time so many robots are loaded in one cycle at most, the others in the next ones; elsewhere all at "
-          "once.");
+          "Maximum number of robots that are loaded in one cycle in real time, the others in the next ones; in other "
+          "modes all are loaded at once.");
   d.property("perceptDelay", &GameControl::perceptDelay_)
       .range(0, 1)
-      .doc("Cycles between sensing and sending; the installed base has 1.");
+      .doc("Cycles between sensing and sending; SimSpark has 1.");
   d.property("agentStep", &GameControl::agentStep_)
       .unit("s")
       .min(0)
-      .doc(
-          "Simulated time between two turns of the agents, in which they act and sense; no more than one turn a "
-          "cycle.");
-  d.property("sync", &GameControl::sync_).doc("Waits for the agents' (syn) although the run loop is not in lockstep.");
+      .doc("Simulated time between two turns of the agents, in which they act and sense; at most one turn per cycle.");
+  d.property("sync", &GameControl::sync_).doc("Waits for the agents' (syn) even if the run loop is not in lockstep.");
   d.property("robotFolder", &GameControl::robotFolder_)
-      .doc("Agents' robots are scene files below this folder, e.g. rsg/agent/; empty: anywhere.");
+      .doc("Agents' robots are scene files below this folder, e.g. rsg/agent/; empty: any folder.");
   d.property("holdWait", &GameControl::holdWait_)
       .unit("s")
       .min(0)
-      .doc("Expected agents that named a robot and are silent for so long get a first message (wall clock).");
+      .doc("Expected agents that named a robot and are silent for this time get a first message (wall time).");
   d.property("syncTimeout", &GameControl::syncTimeout_)
       .unit("s")
       .min(0)
-      .doc("Lockstep: an agent that does not answer for so long is closed (wall clock); 0: never.");
+      .doc("Lockstep: an agent that does not answer for this time is disconnected (wall time); 0: never.");
   d.property("holdReport", &GameControl::holdReport_)
       .unit("s")
       .min(0)
-      .doc("While expected agents are waited for: time between two lines on who they are (wall clock).");
+      .doc("While waiting for expected agents: time between two log lines about those that are missing (wall time).");
   d.property("joinWait", &GameControl::joinWait_)
       .unit("s")
       .min(0)
       .doc(
-          "When expected agents are waited for and nothing more came from any for so long, the match starts with those "
-          "that named a robot (wall clock); 0: never.");
+          "While waiting for expected agents: if none makes progress for this time, the match starts with those that "
+          "named a robot (wall time); 0: never.");
   d.property("joinBudget", &GameControl::joinBudget, &GameControl::setJoinBudget)
       .unit("s")
       .min(0)
       .doc(
-          "Lockstep: what agents that were not expected and are new, or slow, may keep all others waiting in sum (wall "
-          "clock); it grows back by a tenth of the time.");
+          "Lockstep: total time that agents which were not expected, and are new or slow, may delay all others (wall "
+          "time); it refills by a tenth of the time.");
   d.property("answerWait", &GameControl::answerWait_)
       .unit("s")
       .min(0)
       .doc(
-          "Lockstep: until an agent that joins has its first percepts, others are waited for no longer than this in a "
-          "cycle (wall clock).");
+          "Lockstep: until an agent that joins has its first percepts, a cycle waits for others no longer than this "
+          "(wall time).");
   d.property("joinPace", &GameControl::joinPace_)
       .unit("s")
       .min(0)
       .doc(
-          "Lockstep: cycles take at least so long while an agent that is new, or all there are, have not sent (syn) "
-          "yet (wall clock).");
+          "Lockstep: minimum duration of a cycle while a new agent, or all agents, have not sent (syn) yet (wall "
+          "time).");
   d.property("idleLimit", &GameControl::idleLimit_)
       .unit("s")
       .min(0)
-      .doc("A client that has no robot after so long is closed (wall clock); 0: never.");
-  d.property("agentCount", &GameControl::agentCount).doc("Agents now.");
-  d.property("agentsSeen", &GameControl::agentsSeen).doc("Agents that ever had a robot.");
+      .doc("A client that has no robot after this time is disconnected (wall time); 0: never.");
+  d.property("agentCount", &GameControl::agentCount).doc("Number of agents now.");
+  d.property("agentsSeen", &GameControl::agentsSeen).doc("Number of agents that ever had a robot.");
   d.property("messagesDropped", &GameControl::messagesDropped)
-      .doc("Percepts not sent because the client had not taken earlier ones.");
+      .doc("Messages with percepts that were not sent because the client had not read earlier ones.");
   d.implements<IGameControl>();
   d.implements<IConnectionConsumer>();
   d.implements<IInputGate>();
@@ -120,21 +121,21 @@ void GameControl::onUnlink() {
   agents_.clear();
 }
 
-void GameControl::note(const std::string& line) { lines().write(Level::info, line); }
+void GameControl::logInfo(const std::string& line) { agentLog().write(Level::info, line); }
 
-void GameControl::complain(const std::string& line) { lines().write(Level::error, line); }
+void GameControl::logError(const std::string& line) { agentLog().write(Level::error, line); }
 
-gamecontrol::AgentLines& GameControl::lines() {
-  if (!lines_) lines_.emplace(kernel().log());
-  return *lines_;
+gamecontrol::AgentLog& GameControl::agentLog() {
+  if (!log_) log_.emplace(kernel().log());
+  return *log_;
 }
 
 void GameControl::setJoinBudget(double seconds) {
   joinBudget_ = seconds;
-  waits_.setMost(seconds);
+  waitBudget_.setCapacity(seconds);
 }
 
-/// Messages come in the order of participants, or nearly so: the search begins where the last one ended.
+/// Messages usually come in the order of participants: the search begins where the last one ended.
 GameControl::Participant* GameControl::participantOf(const IConnection& connection) const {
   for (std::size_t n = participants_.size(), i = 0; i < n; ++i)
     if (const auto& p = participants_[(lastHeard_ + i) % n]; p->connection() == &connection) {
@@ -146,6 +147,7 @@ GameControl::Participant* GameControl::participantOf(const IConnection& connecti
   return nullptr;
 }
 
+/// True if there are maxAgents. Clients that never sent anything do not count.
 bool GameControl::full() const {
   const auto counts = [](const auto& p) { return p->heardFrom(); };
   return std::count_if(participants_.begin(), participants_.end(), counts) +
@@ -165,9 +167,9 @@ void GameControl::received(IConnection& connection, std::string_view message) {
   resolveParsers();
   const std::string why = !p->heardFrom() && full()
                               ? fmt::format("there are {} agents already (maxAgents)", maxAgents_)
-                              : p->receive(message, static_cast<std::size_t>(maxPending_), lines(), cycle_);
+                              : p->receive(message, static_cast<std::size_t>(maxPending_), agentLog(), cycle_);
   if (why.empty()) {
-    if (holding()) gamecontrol::Hold::note(*p, joinPolicy_.get());
+    if (holding()) gamecontrol::Hold::onMessage(*p, joinPolicy_.get());
     return;
   }
   connection.close(why);
@@ -192,77 +194,79 @@ void GameControl::removeAgent(AgentAspect& agent, bool close) {
 bool GameControl::ready(bool lockstep) {
   resolveParsers();
   if (holding())
-    return hold_.over(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy_.get()}, kernel().log());
+    return hold_.isOver(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy_.get()}, kernel().log());
   if ((!lockstep && !sync_) || cyclesToTurn_ > 0) return true;
   const auto now = Clock::now();
   if (!std::exchange(waiting_, true)) waitingSince_ = now;
   const auto joins = [](const auto& p) { return p->joining(); };
-  const bool somebodyJoins = std::any_of(participants_.begin(), participants_.end(), joins) ||
-                             std::any_of(newcomers_.begin(), newcomers_.end(), joins);
-  bool strangers = false;
+  const bool anyJoins = std::any_of(participants_.begin(), participants_.end(), joins) ||
+                        std::any_of(newcomers_.begin(), newcomers_.end(), joins);
+  bool untrusted = false;
   for (const auto& p : participants_) {
-    if (answered(*p, now, somebodyJoins)) continue;
-    if (!isStranger(*p, now)) return false;
-    strangers = true;
+    if (hasAnswered(*p, now, anyJoins)) continue;
+    if (!isUntrusted(*p, now)) return false;
+    untrusted = true;
   }
-  if (!strangers && !tooSoon(now)) return true;
-  return !indulge(now);
+  if (!untrusted && !mustPace(now)) return true;
+  return !waitForUntrusted(now);
 }
 
-/// What it keeps others waiting is counted: until it has proved that it answers, and when it is slow. Expected agents
-/// never are.
-bool GameControl::isStranger(const Participant& p, Clock::time_point now) const {
+/// True if waiting for it is charged to the wait budget: it has not proved yet that it answers, or it is slow in this
+/// cycle and was not expected.
+bool GameControl::isUntrusted(const Participant& p, Clock::time_point now) const {
   return !p.trusted() || (!p.expected() && syncTimeout_ > 0 && seconds(now - waitingSince_) > kSlow);
 }
 
-/// All trusted agents have answered, and others have not, or are new and shall see what comes. True when the cycle
-/// waits for these. Without trusted agents nobody is kept waiting; where there are some, it lasts as long as the
-/// budget, so that a stranger who joins again and again, or answers now and then, costs a match a tenth of its time.
-bool GameControl::indulge(Clock::time_point now) {
-  const auto leads = [](const auto& p) { return !p->leaving() && p->mustSync() && p->trusted(); };
-  if (std::none_of(participants_.begin(), participants_.end(), leads)) return true;
-  waits_.refill(now);
-  waits_.refill(actedAt_);
-  if (indulgedAt_ != Clock::time_point())
-    waits_.spend(seconds(now - indulgedAt_));
+/// Called when all trusted agents have answered, but untrusted ones have not, or the cycle must be paced for new ones.
+/// True if the cycle waits for these. Without trusted agents no one is delayed and it always waits; otherwise the wait
+/// is charged to a budget, so that a client that joins again and again, or answers rarely, costs a match at most a
+/// tenth of its time. When the budget is used up, agents that have not answered are no longer waited for.
+bool GameControl::waitForUntrusted(Clock::time_point now) {
+  const auto delayed = [](const auto& p) { return !p->leaving() && p->mustSync() && p->trusted(); };
+  if (std::none_of(participants_.begin(), participants_.end(), delayed)) return true;
+  // The time since the last act phase does not refill the budget.
+  waitBudget_.refill(now);
+  waitBudget_.refill(actedAt_);
+  if (waitChargedAt_ != Clock::time_point())
+    waitBudget_.spend(seconds(now - waitChargedAt_));
   else if (seconds(now - waitingSince_) > kSlow)
-    waits_.spend(kSlow);  // which it had for nothing
-  indulgedAt_ = now;
-  if (waits_.left()) return true;
+    waitBudget_.spend(kSlow);  // before a slow agent counted as untrusted
+  waitChargedAt_ = now;
+  if (waitBudget_.available()) return true;
   for (const auto& p : participants_)
     if (p->mustSync() && !p->synced() && !p->expected()) p->distrust();
   return false;
 }
 
-/// Who is waited for in lockstep: agents that sent (syn) once and were sent percepts since, until syncTimeout. All
-/// others only watch: an idle connection, or a client that says (syn) when all of its team have joined, must not stop
-/// the match. One program may lead many agents and read each in turn: while one is about to get its first percepts, the
-/// others are not waited for so long.
-bool GameControl::answered(Participant& p, Clock::time_point now, bool somebodyJoins) {
+/// True if lockstep need not wait for `p` now. It waits for agents that have sent (syn) before and were sent percepts
+/// since, until syncTimeout. It does not wait for others: an idle connection, or a client that sends (syn) only when
+/// all of its team have joined, must not stop the match. One program may control many agents and read from each in
+/// turn: while any agent is about to get its first percepts, the wait for the others is limited by answerWait.
+bool GameControl::hasAnswered(Participant& p, Clock::time_point now, bool anyJoins) {
   if (p.leaving() || !p.mustSync() || p.synced()) return true;
   const double waited = seconds(now - waitingSince_);
-  if (somebodyJoins && !p.expected() && waited >= answerWait_) return true;
+  if (anyJoins && !p.expected() && waited >= answerWait_) return true;
   if (syncTimeout_ <= 0 || waited <= syncTimeout_) return false;
   p.connection()->close(fmt::format("{} did not answer for {} s, all others wait", p.label(), syncTimeout_));
   p.leave();
   return true;
 }
 
-/// Some clients read until nothing is there before they go on: a match that runs as fast as it can would never let
-/// those join.
-bool GameControl::tooSoon(Clock::time_point now) const {
+/// True if the next cycle would come too soon for a new agent. Some clients read until no message is left before they
+/// continue; they could never join a match that runs as fast as possible.
+bool GameControl::mustPace(Clock::time_point now) const {
   if (seconds(now - actedAt_) >= joinPace_) return false;
-  bool watched = false, led = false;
+  bool anyObserves = false, anySyncs = false;
   for (const auto& p : participants_) {
     if (p->leaving()) continue;
-    if (p->watches() && p->sent() <= kPacedMessages) return true;
-    watched |= p->watches();
-    led |= p->mustSync();
+    if (p->observes() && p->sent() <= kPacedMessages) return true;
+    anyObserves |= p->observes();
+    anySyncs |= p->mustSync();
   }
-  return watched && !led;
+  return anyObserves && !anySyncs;
 }
 
-void GameControl::closeIdle() {
+void GameControl::closeWithoutRobot() {
   if (idleLimit_ <= 0) return;
   for (const auto& p : participants_) {
     if (p->hasRobot() || p->leaving() || p->inside() || seconds(actedAt_ - p->joinedAt()) <= idleLimit_) continue;
@@ -271,14 +275,14 @@ void GameControl::closeIdle() {
   }
 }
 
-/// The clock must not stand still while a whole team comes in. Where it waits for agents, or nobody watches it, what
-/// happens in which cycle must not depend on such a limit; but a stranger that joins again and again must not spend the
-/// match's time on building robots.
+/// In real time the number per cycle is limited, so that the clock does not stop while a whole team joins. In lockstep
+/// and at maximum speed such a limit would decide in which cycle a robot appears; there only a bucket limits the robots
+/// of untrusted clients, which might join again and again to slow the match down.
 bool GameControl::mayLoad(const AgentAspect& agent) {
   if (realTime()) return loads_++ < loadsPerCycle_;
   const Participant* p = participantOf(agent);
-  loading_.setMost(2 * maxAgents_);
-  return !p || p->inside() || p->expected() || loading_.take(Clock::now());
+  loadBudget_.setCapacity(2 * maxAgents_);
+  return !p || p->inside() || p->expected() || loadBudget_.take(Clock::now());
 }
 
 bool GameControl::realTime() const {
@@ -291,9 +295,9 @@ void GameControl::act(const Event& event) {
   cycle_ = event.cycle;
   waiting_ = false;
   actedAt_ = Clock::now();
-  if (indulgedAt_ != Clock::time_point()) waits_.spend(seconds(actedAt_ - std::exchange(indulgedAt_, {})));
+  if (waitChargedAt_ != Clock::time_point()) waitBudget_.spend(seconds(actedAt_ - std::exchange(waitChargedAt_, {})));
   loads_ = 0;
-  closeIdle();
+  closeWithoutRobot();
   removeLeaving();
   joinBehaviors();
   joinNewcomers();
@@ -307,18 +311,20 @@ void GameControl::act(const Event& event) {
 }
 
 void GameControl::takeTurn(const Event& event) {
-  // the installed base takes a turn that is due in less than 5 ms
-  constexpr double kEarly = 0.005;
-  const double cycles = event.step > 0 ? std::ceil((agentStep_ - kEarly) / event.step - 1e-9) : 1;
+  // Cycles until the next turn. As in SimSpark, a turn that is due in less than 5 ms is taken now.
+  constexpr double kTolerance = 0.005;  // s
+  const double cycles = event.step > 0 ? std::ceil((agentStep_ - kTolerance) / event.step - 1e-9) : 1;
   cyclesToTurn_ = static_cast<int>(std::clamp(cycles, 1.0, 1e6)) - 1;
+
+  // Send the percepts of the last turn, then execute the actions that came before.
   if (perceptDelay_ > 0)
     deliver();
   else
     for (const auto& p : participants_) p->promote();
   for (std::size_t i = 0; i < participants_.size(); ++i) {
-    if (auto* p = next(participants_, i, 2)) p->approachActing();
-    if (waits_.left()) participants_[i]->countAnswer();
-    participants_[i]->realise(lines(), cycle_);
+    if (auto* p = ahead(participants_, i, 2)) p->prefetchForExecute();
+    if (waitBudget_.available()) participants_[i]->countAnswer();
+    participants_[i]->execute(agentLog(), cycle_);
     if (perceptDelay_ > 0) participants_[i]->promote();
   }
 }
@@ -326,37 +332,41 @@ void GameControl::takeTurn(const Event& event) {
 void GameControl::sense(const Event& event) {
   if (!isTurn_) return;
   if (perceptorsTree_.changed(*this))
-    for (const auto& p : participants_) p->forgetTheDead();
+    for (const auto& p : participants_) p->dropRemovedPerceptors();
+
+  // Update what several agents' perceptors share.
   ++round_;
   for (std::size_t i = 0; i < participants_.size(); ++i) {
-    if (auto* p = next(participants_, i, 2)) p->approachSharing();
+    if (auto* p = ahead(participants_, i, 2)) p->prefetchForShare();
     participants_[i]->share(round_);
   }
+
+  // Sense, agents in parallel.
   std::atomic<bool> faults = false;
   const auto one = [&](std::size_t i) {
-    for (std::size_t ahead = Participant::kStages; ahead > 0; --ahead)
-      if (auto* p = next(participants_, i, ahead)) p->approachSensing(ahead);
+    for (std::size_t distance = Participant::kSenseStages; distance > 0; --distance)
+      if (auto* p = ahead(participants_, i, distance)) p->prefetchForSense(distance);
     if (!participants_[i]->sense(event)) faults = true;
   };
-  kernel().jobs().run(participants_.size(), std::ref(one));  // a copy would take memory
+  kernel().jobs().run(participants_.size(), std::ref(one));  // std::ref: a copy would allocate
   if (faults)
-    for (const auto& p : participants_) p->reportFaults(lines());
+    for (const auto& p : participants_) p->reportFaults(agentLog());
   if (perceptDelay_ == 0) deliver();
 }
 
 void GameControl::deliver() {
   const auto now = Clock::now();
   for (const auto& p : participants_)
-    if (!p->deliver(lines(), cycle_, now)) ++messagesDropped_;
+    if (!p->deliver(agentLog(), cycle_, now)) ++messagesDropped_;
 }
 
 void GameControl::removeLeaving() {
-  const auto stays =
+  const auto removed =
       std::stable_partition(participants_.begin(), participants_.end(), [](const auto& p) { return !p->leaving(); });
-  if (stays == participants_.end()) return;
-  for (auto it = stays; it != participants_.end(); ++it) {
+  if (removed == participants_.end()) return;
+  for (auto it = removed; it != participants_.end(); ++it) {
     Participant& p = **it;
-    note(fmt::format("{} leaves.", p.label()));
+    logInfo(fmt::format("{} leaves.", p.label()));
     if (AgentAspect* aspect = p.aspect()) {
       for (const auto& child : children())
         if (auto rule = child->as<ControlAspect>()) rule->agentLeaving(*aspect);
@@ -365,7 +375,7 @@ void GameControl::removeLeaving() {
       p.connection()->close("its agent was removed from the scene");
     }
   }
-  participants_.erase(stays, participants_.end());
+  participants_.erase(removed, participants_.end());
   agentsChanged();
 }
 
@@ -379,11 +389,11 @@ void GameControl::joinBehaviors() {
   };
   for (Behavior* b : behaviors)
     if (!known(b) && !join(std::make_unique<Participant>(*b))) refusedBehaviors_.push_back(b->id());
-  behaviorsTree_.changed(*this);  // what joining made does not count
+  behaviorsTree_.changed(*this);  // ignore the changes that joining made
 }
 
 void GameControl::joinNewcomers() {
-  if (holding()) hold_.order(newcomers_, expect_, joinPolicy_.get());
+  if (holding()) hold_.orderNewcomers(newcomers_, expect_, joinPolicy_.get());
   released_ = true;
   auto joining = std::move(newcomers_);
   newcomers_.clear();
@@ -391,6 +401,7 @@ void GameControl::joinNewcomers() {
     if (!p->leaving()) join(std::move(p));
 }
 
+/// Creates the agent's aspect. False if that fails; the participant is removed then.
 bool GameControl::join(std::unique_ptr<Participant> participant) {
   const int number = nextNumber_++;
   Participant& p = *participant;
@@ -412,13 +423,14 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
     return false;
   }
   agentsChanged();
-  note(fmt::format("{} joins.", p.label()));
+  logInfo(fmt::format("{} joins.", p.label()));
   for (const auto& child : children())
     if (auto rule = child->as<ControlAspect>()) rule->agentConnected(*aspect);
   return true;
 }
 
-/// Anybody may remove an aspect at any time: it must not be found here until the next act notices.
+/// An aspect may be removed from the tree at any time; it must not be listed until the next act phase removes the
+/// agent.
 const std::vector<AgentAspect*>& GameControl::agents() const {
   if (!agentsTree_.changed(*this)) return agents_;
   agents_.clear();
@@ -454,13 +466,14 @@ void GameControl::resolveParsers() {
     for (const auto& p : *list) p->resolveParser(*this);
 }
 
-/// After the cycle's actions: what a scene brought in the last cycle answers and senses from here on.
+/// Called after the actions of a cycle: effectors and perceptors that a scene file brought in the last cycle are used
+/// from now on.
 void GameControl::resolveRobots() {
   if (!robotsTree_.changed(*this)) return;
   for (const auto& p : participants_)
     if (p->resolveRobot()) {
       ++agentsSeen_;
-      note(fmt::format("{} has its robot.", p->label()));
+      logInfo(fmt::format("{} has its robot.", p->label()));
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Game control: makes agents of connections and behaviours, dispatches their actions to effectors, asks their
+/// Game control: creates agents for connections and behaviors, dispatches their actions to effectors, calls their
 /// perceptors.
 
 #include <memory>
@@ -14,7 +14,8 @@
 
 namespace spark {
 
-/// At /sys/server/gamecontrol. Children: a parser, control aspects.
+/// At /sys/server/gamecontrol. Its children are a parser, control aspects and perhaps a join policy. Simulation thread
+/// only; in the sense phase it distributes agents over the kernel's threads.
 class GameControl : public Node, public IGameControl, public IConnectionConsumer, public IInputGate {
   SPARK_CLASS(GameControl, Node)
  public:
@@ -30,12 +31,13 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   void received(IConnection& connection, std::string_view message) override;
   void disconnected(IConnection& connection) override;
 
+  /// True if the next cycle may begin: the hold is over, and in lockstep all agents that are waited for have answered.
   bool ready(bool lockstep) override;
 
-  /// Asked by an effector that is about to load a robot for `agent`. False: not in this cycle, ask again in the next.
+  /// True if a robot may be loaded for `agent` in this cycle; otherwise the effector tries again in the next one.
   bool mayLoad(const AgentAspect& agent);
-  /// A line that an agent caused; they are limited.
-  void complain(const std::string& line);
+  /// Writes a log line that an agent caused; their rate is limited.
+  void logError(const std::string& line);
 
  protected:
   void onUnlink() override;
@@ -57,19 +59,19 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   void resolveParsers();
   void resolveRobots();
   void deliver();
-  bool answered(Participant& p, Clock::time_point now, bool somebodyJoins);
-  bool isStranger(const Participant& p, Clock::time_point now) const;
-  bool indulge(Clock::time_point now);
-  bool tooSoon(Clock::time_point now) const;
+  bool hasAnswered(Participant& p, Clock::time_point now, bool anyJoins);
+  bool isUntrusted(const Participant& p, Clock::time_point now) const;
+  bool waitForUntrusted(Clock::time_point now);
+  bool mustPace(Clock::time_point now) const;
   bool full() const;
-  void closeIdle();
+  void closeWithoutRobot();
   bool realTime() const;
   bool holding() const { return expect_ > 0 && !released_; }
   Participant* participantOf(const IConnection& connection) const;
   const Participant* participantOf(const AgentAspect& agent) const;
   void agentsChanged();
-  void note(const std::string& line);
-  gamecontrol::AgentLines& lines();
+  void logInfo(const std::string& line);
+  gamecontrol::AgentLog& agentLog();
   double joinBudget() const { return joinBudget_; }
   void setJoinBudget(double seconds);
   int agentCount() const { return static_cast<int>(agents().size()); }
@@ -77,32 +79,36 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
 
   std::vector<std::unique_ptr<Participant>> participants_;  ///< in order of number
   std::vector<std::unique_ptr<Participant>> newcomers_;     ///< in order of arrival
-  std::vector<std::uint64_t> refusedBehaviors_;  ///< ids of those that could not be made an agent; not tried again
-  mutable std::vector<AgentAspect*> agents_;     ///< of participants_; asked in the simulation's thread only
+  std::vector<std::uint64_t>
+      refusedBehaviors_;                      ///< ids of behaviors for which no agent could be created; not tried again
+  mutable std::vector<AgentAspect*> agents_;  ///< of participants_; a cache that agents() updates
   mutable TreeWatch agentsTree_;
   mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
   Link<IJoinPolicy> joinPolicy_;
-  std::optional<gamecontrol::AgentLines> lines_;
-  // What clients that are not trusted yet may take of a match in lockstep.
-  gamecontrol::Allowance waits_{30, 0.1};  ///< s, and s a second
-  gamecontrol::Allowance loading_{0, 4};   ///< robots, twice as many as there may be agents, and robots a second
-  Clock::time_point indulgedAt_{};         ///< when this cycle was last kept waiting for them; zero: it was not
+  std::optional<gamecontrol::AgentLog> log_;
+  // Limits of what clients that are not trusted yet may cost a match in lockstep.
+  gamecontrol::TokenBucket waitBudget_{30, 0.1};  ///< s of waiting; refilled by s per second
+  gamecontrol::TokenBucket loadBudget_{0, 4};     ///< robots; capacity: 2 * maxAgents; refilled by robots per second
+  Clock::time_point waitChargedAt_{};             ///< up to when this cycle's wait was charged; zero: it was not
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, loadsPerCycle_ = 4;
-  bool sync_ = false, released_ = false;
+  bool sync_ = false;
+  bool released_ = false;  ///< the hold is over
   double joinBudget_ = 30, agentStep_ = 0, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30,
          answerWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
 
-  int nextNumber_ = 1, agentsSeen_ = 0, loads_ = 0;
+  int nextNumber_ = 1, agentsSeen_ = 0;
+  int loads_ = 0;  ///< robots loaded in this cycle
   std::int64_t messagesDropped_ = 0, cycle_ = 0;
-  int cyclesToTurn_ = 0;     ///< between the next cycle and the agents' next turn
-  bool isTurn_ = true;       ///< they have it in this cycle
-  std::uint64_t round_ = 0;  ///< of sensing
+  int cyclesToTurn_ = 0;     ///< cycles without agents between now and their next turn, see agentStep
+  bool isTurn_ = true;       ///< agents act and sense in this cycle
+  std::uint64_t round_ = 0;  ///< number of the sense phase
   TreeWatch parsersTree_, robotsTree_, perceptorsTree_, behaviorsTree_;
-  bool waiting_ = false;
-  Clock::time_point waitingSince_{}, actedAt_{};
+  bool waiting_ = false;              ///< ready() was called since the last act phase
+  Clock::time_point waitingSince_{};  ///< when it was called first
+  Clock::time_point actedAt_{};       ///< when the last act phase began
 };
 
 }  // namespace spark

@@ -1,26 +1,27 @@
 #pragma once
 /// \file
-/// Joining reproducibly: the clock stands at cycle 0 until the expected agents are there.
+/// Reproducible joining: the clock stays at cycle 0 until the expected agents are ready.
 ///
-/// During the hold nothing is made in the tree; messages are parsed and kept. An agent is complete when it has named
-/// its robot `(scene ...)` and itself, and has sent `(syn)` with that or later: a `(syn)` still on its way would count
-/// as the answer to its first percepts, sometimes. How an agent names itself the game's policy knows (IJoinPolicy); its
-/// predicate is `(init ...)` below. Without a policy agents have no names, and `(scene ...)` and `(syn)` are enough.
-/// When enough are complete they are ordered by team name and number, then by what they said of their robot, which
-/// makes their agents' numbers independent of who came first.
+/// During the hold nothing is created in the tree; messages are parsed and kept. An agent is complete when it has sent
+/// `(scene ...)`, which names its robot, its identity, and `(syn)` in the same message as these or later: a `(syn)`
+/// that is still in the network at the start could count as the answer to the first percepts. The game's IJoinPolicy
+/// knows how an agent states its identity; below that predicate is `(init ...)`. Without a policy agents have no
+/// identity, and
+/// `(scene ...)` and `(syn)` are enough. When enough agents are complete, they are ordered by team name and number,
+/// then by their `(scene ...)`, so that their numbers do not depend on the order of arrival.
 ///
-/// Clients of a game with a policy differ in what they wait for before they go on:
+/// Clients of a game with a policy differ in what they wait for before they continue:
 ///
 ///     all at once        scene, init, syn
 ///     in turn            scene syn  <- message    init syn
 ///     step by step       scene      <- message    init       <- message    syn
-///     no part in a team  scene syn  <- message    syn        <- message    syn        and never an init
-///     one program        agent 1 as above, then agent 2, which comes when agent 1 has been told more
+///     without a team     scene syn  <- message    syn        <- message    syn        and never an init
+///     one program        agent 1 as above, then agent 2, which connects when agent 1 has got more messages
 ///
-/// So a client that named its robot and is silent for a moment gets a minimal message, `(time (now 0.00))`, once after
-/// each thing it said, until it is complete; one that answered two of them with `(syn)` and had no `(init ...)` to say
-/// needs none. The last kind cannot be helped so: when nothing came from anybody for a while, the match starts with who
-/// is there.
+/// So a client that has sent `(scene ...)` and is silent for a moment gets a minimal message, `(time (now 0.00))`, once
+/// after each of its messages, until it is complete. One that has answered two of them with `(syn)` and without `(init
+/// ...)` is complete, too. For the last kind of client this is not enough: when no agent has made progress for a while,
+/// the match starts with those that are ready.
 
 #include <memory>
 #include <string>
@@ -34,31 +35,33 @@ namespace spark::gamecontrol {
 class Hold {
  public:
   using List = std::vector<std::unique_ptr<Participant>>;
-  /// What ends it. Times are of the wall clock [s].
+  /// When the hold ends. Times are wall time in seconds.
   struct Terms {
-    int agents;         ///< how many are expected
-    double greetAfter;  ///< silence after which a client gets a message
-    double startAfter;  ///< without progress, after which the match starts with who is there; 0: never
-    double reportEvery;
-    const IJoinPolicy* policy;  ///< the game's; nullptr: agents have no names
+    int agents;                 ///< number of expected agents
+    double greetAfter;          ///< silence after which a client gets a message
+    double startAfter;          ///< time without progress after which the match starts anyway; 0: never
+    double reportEvery;         ///< between two log lines
+    const IJoinPolicy* policy;  ///< the game's; nullptr: agents have no identity
   };
-  /// To be called after each message that `p` sent during the hold.
-  static void note(Participant& p, const IJoinPolicy* policy);
-  /// True when enough of the newcomers (in order of arrival) are complete, or nothing more comes; otherwise greets
-  /// those that wait for a message, and says now and then who is waited for.
-  bool over(const List& newcomers, const Terms& terms, Log& log);
-  /// Puts those with which the match starts to the front, ordered; what they sent after `(scene ...)` is held back
-  /// until they were sent their first percepts. Returns how many these are.
-  std::size_t order(List& newcomers, int expect, const IJoinPolicy* policy) const;
+  /// Updates Participant::held(). Call it after each message of `p` during the hold.
+  static void onMessage(Participant& p, const IJoinPolicy* policy);
+  /// True if the match can start: enough newcomers are complete, or there was no progress for `startAfter`. Otherwise
+  /// greets clients that wait for a message, and logs from time to time what is missing. `newcomers`: in order of
+  /// arrival.
+  bool isOver(const List& newcomers, const Terms& terms, Log& log);
+  /// Moves the agents with which the match starts to the front and orders them. Their actions other than `(scene ...)`
+  /// are held back until the first percepts were sent.
+  void orderNewcomers(List& newcomers, int expect, const IJoinPolicy* policy) const;
 
  private:
-  bool isThere(const Participant& p) const;
-  void greet(const List& newcomers, double patience, Clock::time_point now) const;
-  void noteProgress(const List& newcomers, const IJoinPolicy* policy, Clock::time_point now);
+  bool isReady(const Participant& p) const;
+  void greetSilent(const List& newcomers, double greetAfter, Clock::time_point now) const;
+  void updateProgress(const List& newcomers, const IJoinPolicy* policy, Clock::time_point now);
   void report(const List& newcomers, const Terms& terms, Clock::time_point now, Log& log);
 
-  int reported_ = -1, furthest_ = -1;
-  bool givenUp_ = false;  ///< the match starts with who is there
+  int complete_ = -1;      ///< number of complete agents, as logged last; -1: not yet
+  int progress_ = -1;      ///< the maximum of what updateProgress() counts
+  bool timedOut_ = false;  ///< the match starts without all expected agents
   Clock::time_point progressAt_{}, reportedAt_{};
 };
 

@@ -1,35 +1,32 @@
 #pragma once
 /// \file
-/// How many log lines somebody may cause.
+/// Limits the log lines about one agent.
 
 #include <cstdint>
+#include <utility>
 
 namespace spark::gamecontrol {
 
-/// At most `lines` per `kWindow` cycles; counts what was left out. Counted in cycles: no clock, and a halted host does
-/// not chatter.
+/// Allows `lines` per `kWindow` cycles and counts the others. It counts cycles, not time, so that the lines of a match
+/// are reproducible.
 class LineBudget {
  public:
   static constexpr std::int64_t kWindow = 100;
   explicit LineBudget(int lines) : lines_(lines) {}
 
-  /// True when one more line may be written in `cycle`.
+  /// True if a line may be written in `cycle`; otherwise counts it as dropped.
   bool take(std::int64_t cycle) {
-    if (cycle - begin_ >= kWindow || cycle < begin_) begin_ = cycle, used_ = 0;
+    if (cycle - windowStart_ >= kWindow || cycle < windowStart_) windowStart_ = cycle, used_ = 0;
     if (used_ < lines_) return ++used_, true;
-    ++leftOut_;
+    ++dropped_;
     return false;
   }
-  /// Lines left out since the last call.
-  std::int64_t leftOut() {
-    const std::int64_t n = leftOut_;
-    leftOut_ = 0;
-    return n;
-  }
+  /// Number of dropped lines since the last call.
+  std::int64_t takeDropped() { return std::exchange(dropped_, 0); }
 
  private:
   int lines_, used_ = 0;
-  std::int64_t begin_ = 0, leftOut_ = 0;
+  std::int64_t windowStart_ = 0, dropped_ = 0;
 };
 
 }  // namespace spark::gamecontrol

@@ -1,178 +1,184 @@
 #pragma once
 /// \file
-/// One agent as game control sees it: where its actions come from, what is still to be realised, what it is to be sent.
+/// One agent: where its actions come from, its effectors and perceptors, and what is sent to it.
 ///
-/// The latency of the installed base, which recorded sessions depend on:
+///     message ─► parser ─► ActionQueue ─ act phase ──► EffectorTable ─► effectors
+///     message ◄─ parser ◄───────────── PerceptBuffer ◄─ sense phase ──── perceptors
 ///
-///     cycle k      connected: aspect made, counter 1
-///     cycle k+1    first message realised: (scene ...) is stored in act, the robot built in prepare
+/// Its latency is that of SimSpark, which recorded matches depend on:
+///
+///     cycle k      connected: its aspect is created, its cycle count is 1
+///     cycle k+1    the first message is executed: (scene ...) is stored in act, the robot is built in prepare
 ///     cycle k+2    end of act: effectors and perceptors are looked up; sense: first percepts
-///     cycle k+3    act: percepts sent, after this cycle's inputs were taken; what answers them acts in k+4
+///     cycle k+3    act: the percepts are sent, after this cycle's input was read; the answer is executed in k+4
 ///
-/// Effectors that a message addresses before they were looked up are "not registered": the action is lost with a
-/// warning. Only `(syn)` counts at once: who sends it takes part in lockstep from then on.
+/// Actions for effectors that are not looked up yet are lost with a warning. Only `(syn)` counts at once: from then on
+/// the agent takes part in lockstep.
 ///
-/// A client is idle until its first message: the cycles until then are not counted, so that what comes in every third
-/// cycle does not depend on how long it hesitated.
+/// The cycles before a client's first message are not counted, so that percepts that come in every third cycle do not
+/// depend on the time between its connection and that message.
 
-#include <algorithm>
 #include <chrono>
-#include <limits>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "api/agents.h"
-#include "gamecontrol/agent_lines.h"
+#include "gamecontrol/action_queue.h"
+#include "gamecontrol/agent_log.h"
+#include "gamecontrol/effector_table.h"
+#include "gamecontrol/latency_meter.h"
 #include "gamecontrol/line_budget.h"
+#include "gamecontrol/lockstep_record.h"
+#include "gamecontrol/percept_buffer.h"
 #include "spark/state.h"
 
 namespace spark::gamecontrol {
 
-/// What a sync predicate is called as long as no robot says otherwise.
+/// The sync predicate of agents without a robot; a robot's sync effector defines its own.
 inline constexpr std::string_view kSync = "syn";
 
+/// An agent behind a connection (a client), or one that a Behavior drives inside the host. Simulation thread, except
+/// sense().
 class Participant {
  public:
-  /// Behind a connection, which outlives it or is taken away by disconnect().
+  /// A client. The connection must outlive it or be removed by disconnect().
   explicit Participant(IConnection& connection);
-  /// Driven from inside.
+  /// An agent inside the host.
   explicit Participant(Behavior& behavior);
 
-  /// "agent 3 (127.0.0.1:4711)".
+  /// For the log: "agent 3 (127.0.0.1:4711)".
   const std::string& label() const { return label_; }
+  /// The agent's number, from 1; 0 before join().
   int number() const { return number_; }
+  /// nullptr: inside the host, or disconnected.
   IConnection* connection() const { return connection_; }
+  /// nullptr: before join(), or removed from the tree.
   AgentAspect* aspect() const { return aspect_.get(); }
+  /// nullptr: a client, or removed from the tree.
   Behavior* behavior() const { return behavior_.get(); }
   bool inside() const { return inside_; }
-  /// From now on it is to be removed at the start of the next act.
+
+  /// Marks it for removal at the start of the next act phase.
   void leave() { leaving_ = true; }
-  /// True when it has to go: told to, or what it lives from is gone.
+  /// True if it is to be removed: it was marked, or its aspect, behavior or connection is gone.
   bool leaving() const { return leaving_ || (number_ > 0 && !aspect()) || (inside_ ? !behavior() : !connection_); }
+  /// The connection ended.
   void disconnect() { connection_ = nullptr; }
 
-  /// Gets its place in the tree and, when it lives inside, its first actions.
+  /// Assigns number and aspect. A behavior adds its first actions.
   void join(int number, AgentAspect& aspect);
-  /// Looks its parser up again.
-  void resolveParser(Node& gameControl);
-  IParser* parser() const { return parser_.get(); }
-
-  /// A message came: parsed at once, realised in the next act. Returns "" or why the connection has to be closed.
-  std::string receive(std::string_view message, std::size_t maxPending, AgentLines& log, std::int64_t cycle);
-  /// Looks effectors and perceptors up again if something changed below its aspect. True when it has a robot now and
-  /// had none before.
-  bool resolveRobot();
-  /// The tree changed since the last look: perceptors that died are asked no more.
-  void forgetTheDead();
-  // A crowd does not fit the caches: while others have their turn, what this one will look at in its own is on its way
-  // there. Each part leads to the next, so that the way has stages.
-  static constexpr std::size_t kStages = 3;
-  /// Before realise, when two others have theirs first.
-  void approachActing() const;
-  /// Before share, when two others have theirs first.
-  void approachSharing() const;
-  /// Before sense, when so many others have theirs first: kStages, then fewer. Runs on any thread.
-  void approachSensing(std::size_t distance) const;
-
-  /// Realises what is pending.
-  void realise(AgentLines& log, std::int64_t cycle);
-  /// What a behaviour thought of becomes pending.
-  void promote();
-  /// Before the sense phase, in the simulation's thread: lets what its perceptors look at with others be brought up to
-  /// date.
-  void share(std::uint64_t round);
-  /// Counts the cycle, asks the perceptors that are due, encodes. Runs on any thread, changes only this agent. False
-  /// when a perceptor threw or left lists open, which are closed.
-  bool sense(const Event& event);
-  /// After sense, on the simulation's thread: reports a perceptor that threw and asks it no more; reports one that left
-  /// lists open, once.
-  void reportFaults(AgentLines& log);
-  /// Sends or hands over what was sensed last, at the instant `now`. False when the message was dropped because an
-  /// earlier one has not left.
-  bool deliver(AgentLines& log, std::int64_t cycle, Clock::time_point now);
-
-  /// Lockstep: it can answer percepts with a sync predicate, was sent some, and has sent that predicate before.
-  bool mustSync() const { return canSync() && pledged_; }
-  /// As mustSync, but it never sent a sync predicate: it is told what every cycle brings and not waited for.
-  bool watches() const { return canSync() && !pledged_; }
-  bool synced() const { return synced_; }
-  /// Lockstep waits for it without counting: it was expected, lives inside, or has answered often enough.
-  bool trusted() const { return inside_ || expected_ || turnsAnswered_ >= kProbation; }
-  /// The cycle that begins found its answer there, or did without.
-  void countAnswer() { turnsAnswered_ += synced_; }
-  /// It kept others waiting for too long: it is not waited for until it answers again, and trusted only when it has
-  /// done so often.
-  void distrust() { turnsAnswered_ = 0, pledged_ = false; }
-  /// It was heard from, and its first percepts may be on their way.
-  bool joining() const { return heardFrom_ && sent_ == 0 && counter_ <= kCyclesToFirstPercepts; }
-  bool heardFrom() const { return heardFrom_; }
-  bool hasRobot() const { return hadRobot_; }
-  /// Messages with percepts that it was sent.
-  std::int64_t sent() const { return sent_; }
+  /// When it was created or joined last.
   Clock::time_point joinedAt() const { return joinedAt_; }
-  Clock::time_point lastHeard() const { return lastHeard_; }
-  /// What it sensed last.
-  const Predicates& percepts() const { return percepts_; }
-  /// Wall time from percepts to the answer [s], smoothed; NaN when not known.
-  double latency() const { return latency_; }
-  /// What is under way inside the host: percepts that were not sent yet, what a behaviour wants to do next. Messages on
-  /// the wire are not.
-  void save(StateWriter& out) const;
-  void load(StateReader& in);
+  /// True while it has sent messages but its first percepts may be under way.
+  bool joining() const { return heardFrom_ && sent_ == 0 && cycles_ <= kCyclesToFirstPercepts; }
 
-  /// What was received and not realised yet.
-  const Predicates& pending() const { return pending_; }
-  /// The last message that could be read; before it joined, and valid until the next one comes.
-  const Predicates& lastMessage() const { return arrived_; }
-  /// What the hold has seen of a client.
+  // ---- actions ----
+
+  /// Looks up the parser of a client: the one below its port, otherwise the one below `gameControl`.
+  void resolveParser(Node& gameControl);
+  /// Parses a message; its actions are executed in the next act phase. `maxPending`: bytes per cycle. Returns "", or
+  /// why the connection is to be closed.
+  std::string receive(std::string_view message, std::size_t maxPending, AgentLog& log, std::int64_t cycle);
+  /// A client's first message has come.
+  bool heardFrom() const { return heardFrom_; }
+  /// When the last message came; before the first one, when it was created.
+  Clock::time_point lastHeard() const { return lastHeard_; }
+  /// Received actions that are not executed yet.
+  const Predicates& pending() const { return actions_.pending(); }
+  /// The last message that could be parsed; before join() only, valid until the next one.
+  const Predicates& lastMessage() const { return actions_.lastMessage(); }
+  /// Executes the pending actions.
+  void execute(AgentLog& log, std::int64_t cycle);
+  /// Inside the host: the actions that followed from the last percepts become pending.
+  void promote() {
+    if (inside_) actions_.promote();
+  }
+
+  // ---- percepts ----
+
+  /// Rebuilds the tables of effectors and perceptors if something below the aspect has changed. True if that brought
+  /// its robot.
+  bool resolveRobot();
+  /// True if it has or had a robot.
+  bool hasRobot() const { return hasRobot_; }
+  /// Forgets perceptors that were removed, after a change of the tree.
+  void dropRemovedPerceptors() { percepts_.dropRemoved(); }
+  /// Updates what its perceptors share with those of others, before sense(). `round`: number of the sense phase.
+  void share(std::uint64_t round) { percepts_.share(round, nextCycle()); }
+  /// Counts the cycle, calls the perceptors that are due and encodes the message. Any thread; changes only this agent.
+  /// False if reportFaults() has something to report.
+  bool sense(const Event& event);
+  /// After sense(), in the simulation thread.
+  void reportFaults(AgentLog& log) { percepts_.reportFaults(label_, log); }
+  /// Sends the percepts of the last sense(), or calls the behavior with them. `now`: the time of the phase. False if
+  /// the message was dropped because the client has not read an earlier one.
+  bool deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now);
+  /// Number of messages with percepts that were sent.
+  std::int64_t sent() const { return sent_; }
+  /// What was sensed last.
+  const Predicates& percepts() const { return percepts_.percepts(); }
+  /// Wall time from percepts to the answer [s], smoothed; NaN if unknown.
+  double latency() const { return latency_.seconds(); }
+
+  // Prefetching: see PerceptBuffer.
+
+  /// Before execute(), two agents ahead.
+  void prefetchForExecute() const;
+  /// Before share(), two agents ahead.
+  void prefetchForShare() const { percepts_.prefetchShared(); }
+  /// Number of prefetchForSense() stages: each one reads what the previous one has fetched.
+  static constexpr std::size_t kSenseStages = 3;
+  /// Before sense(), `distance` agents ahead, kSenseStages first, then fewer. Any thread.
+  void prefetchForSense(std::size_t distance) const;
+
+  // ---- lockstep ----
+
+  /// Lockstep waits for it: it can answer percepts with a sync predicate, was sent some, and has sent that predicate
+  /// before.
+  bool mustSync() const { return canSync() && lockstep_.pledged(); }
+  /// As mustSync(), but it has not sent a sync predicate: it gets percepts in every cycle and is not waited for.
+  bool observes() const { return canSync() && !lockstep_.pledged(); }
+  /// It has answered in this cycle.
+  bool synced() const { return lockstep_.synced(); }
+  /// True for agents that the start of the match waited for.
+  bool expected() const { return lockstep_.expected(); }
+  /// Lockstep waits for it without a budget.
+  bool trusted() const { return inside_ || lockstep_.trusted(); }
+  /// Counts its answer to the last cycle. Call it before execute().
+  void countAnswer() { lockstep_.countAnswer(); }
+  /// It delayed others for too long; see LockstepRecord.
+  void distrust() { lockstep_.distrust(); }
+
+  // ---- the hold before the start, see Hold ----
+
   struct Held {
-    bool saidAll = false;  ///< it waits for nothing but the clock
-    bool greeted = false;  ///< it was sent a message since it was last heard
-    int answers = 0;       ///< to such messages, with a sync predicate
+    bool complete = false;  ///< it waits for nothing but the start
+    bool greeted = false;   ///< a greeting was sent since its last message
+    int answers = 0;        ///< number of greetings that it answered with a sync predicate
   };
   Held& held() { return held_; }
   const Held& held() const { return held_; }
-  /// Keeps all but the predicate `first` back until the first percepts were sent: what it sent during the hold then
-  /// comes in time. `expected`: lockstep always waits for it.
+  /// Ends the hold: defers all received actions except those with the head `first` until the first percepts were sent,
+  /// when they would have come without the hold. `expected`: lockstep trusts it from the start.
   void holdBack(std::string_view first, bool expected);
-  /// True for agents that were held until all expected ones were there.
-  bool expected() const { return expected_; }
-  /// One message outside of the cycle, to a client that waits for something before it goes on.
+  /// Sends a message outside of the cycle, to a client that waits for one.
   void greet(const Predicates& percepts);
 
+  /// Saves the cycle count and what is under way inside the host: percepts that were not sent yet, a behavior's
+  /// actions. Messages in the network are not part of the state.
+  void save(StateWriter& out) const;
+  void load(StateReader& in);
+
  private:
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   static constexpr std::int64_t kCyclesToFirstPercepts = 3;
-  static constexpr int kProbation = 100;  // answers
-  struct Slot {
-    std::string predicate;
-    Ref<Effector> effector;
-    const void* node = nullptr;  ///< the effector's memory, not to be read
-    std::size_t next =
-        0;  ///< index of the one that was addressed after it last: agents say the same things in the same order
-  };
-  struct Shared {
-    Ref<Perceptor> perceptor;
-    ISharedView* view;
-    const Perceptor* alive;  ///< as asked_
-  };
-  bool canSync() const { return !syncPredicate_.empty() && sent_ > 0; }
+  bool canSync() const { return !effectors_.syncPredicate().empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;
-  /// It asked for its robot, which is to come in one of the next cycles.
-  bool loading() const;
-  std::size_t resolveEffectors(AgentAspect& root);
-  void act(Effector& effector, const Element& action, AgentLines& log, std::int64_t cycle);
-  std::size_t fetchNext(std::size_t index) const;
-  Slot* slot(std::string_view predicate, std::size_t& guess);
-  /// What the counter is in the next sense phase.
-  std::int64_t nextCount() const { return counter_ + (inside_ || heardFrom_ || counter_ == 0); }
-  static bool isDue(const Perceptor& p, std::int64_t count) { return count % std::max(1, p.interval()) == 0; }
-  void keep(const Predicates& arrived);
-  void noteAnswer();
+  void executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle);
+  void think(AgentLog& log, std::int64_t cycle);
+  /// The cycle count in the next sense phase.
+  std::int64_t nextCycle() const { return cycles_ + (inside_ || heardFrom_ || cycles_ == 0); }
   void encode();
-  void balance(std::size_t perceptor);
-  void warn(AgentLines& log, std::int64_t cycle, std::string_view text);
+  void warn(AgentLog& log, std::int64_t cycle, std::string_view text);
 
   std::string label_;
   int number_ = 0;
@@ -181,33 +187,19 @@ class Participant {
   Ref<AgentAspect> aspect_;
   Ref<IParser> parser_;
   const bool inside_;
-  bool leaving_ = false, skipCycle_ = true, heardFrom_ = false, hadRobot_ = false, expected_ = false,
-       holdingBack_ = false;
-  Held held_;
-  int turnsAnswered_ = 0;
-  bool pledged_ = false, synced_ = false;  ///< sent a sync predicate: ever, since the last cycle
+  bool leaving_ = false, heardFrom_ = false, hasRobot_ = false;
+  LockstepRecord lockstep_;
+  ActionQueue actions_;
+  EffectorTable effectors_;
+  PerceptBuffer percepts_;
+  std::string message_;      ///< the encoded percepts
+  std::int64_t cycles_ = 0;  ///< the agent's cycle count
+  std::int64_t sent_ = 0;
+  std::uint64_t robotAt_ = 0;  ///< AgentAspect::changedAt() at the last resolveRobot()
+  LatencyMeter latency_;
   Clock::time_point joinedAt_ = Clock::now(), lastHeard_ = joinedAt_;
-  Clock::time_point askedAt_{};  ///< when the first percepts were sent that it has not answered; zero: there are none
-  double latency_ = std::numeric_limits<double>::quiet_NaN();
-
-  Predicates pending_, arrived_, percepts_;
-  Predicates later_;  ///< held back, or thought of and not due yet
-  std::size_t pendingBytes_ = 0;
-  std::string message_, first_;
-  std::vector<Slot> effectors_;  ///< by predicate
-  std::size_t firstSlot_ = 0;    ///< the one that was addressed first last
-  std::vector<Ref<Perceptor>> perceptors_;
-  std::vector<Perceptor*> asked_;  ///< perceptors_, as long as the tree stays: a reference costs a cache line each
-  std::vector<Shared> shared_;
-  std::size_t faulty_ = kNone;  ///< index of a perceptor that threw
-  std::string fault_;
-  std::size_t unbalanced_ = kNone;     ///< index of a perceptor whose lists had to be closed, and
-  int open_ = 0;                       ///< what Predicates::balance() said of them
-  std::vector<std::uint64_t> blamed_;  ///< ids of those that were reported so
-  std::string syncPredicate_;
-  std::uint64_t robotAt_ = 0;  ///< its aspect's changedAt() at the last look
-  std::int64_t counter_ = 0, sent_ = 0;
-  LineBudget budget_{10};
+  Held held_;
+  LineBudget lines_{10};
 };
 
 }  // namespace spark::gamecontrol

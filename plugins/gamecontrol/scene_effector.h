@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// `(scene file arguments...)`: how an agent asks for its robot.
+/// The effector with which an agent requests its robot: `(scene file arguments...)`.
 
 #include "api/agents.h"
 #include "gamecontrol/game_control.h"
@@ -8,31 +8,31 @@
 
 namespace spark {
 
-/// The effector that every agent has from the start. Deferred: the file is imported below the agent in the prepare
-/// phase.
+/// Every agent has this effector from the start. The action is stored; the file is imported below the agent's aspect in
+/// the prepare phase.
 class SceneEffector : public Effector {
   SPARK_CLASS(SceneEffector, Effector)
  public:
   static void describe(Description<SceneEffector>& d) {
     d.doc("(scene file arguments...): loads the agent's robot, once.");
-    d.property("folder", &SceneEffector::folder_).doc("Robots are files below this folder; empty: anywhere.");
+    d.property("folder", &SceneEffector::folder_).doc("Robots are files below this folder; empty: any folder.");
     d.on<&SceneEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "scene"; }
-  /// From now on only files below this folder are loaded; "": any.
+  /// Restricts robots to files below `folder`; "": no restriction.
   void setFolder(std::string folder) { folder_ = std::move(folder); }
 
-  /// Its robot was asked for and had to wait, or came in the last prepare phase after it had.
+  /// True while its robot waits to be loaded, and in the cycle after a robot that had to wait was loaded.
   bool late() const { return late_; }
 
   std::string act(const Element& action) override {
     if (loaded_) return "(scene ...): it has a robot already; a second one is refused.";
-    if (failures_ >= kMostFailures)
+    if (failures_ >= kMaxFailures)
       return "(scene ...): no robot could be built too often; connect again to try once more.";
     const Element file = action.at(1);
     if (!file || !file.isText() || file.text().empty())
       return "(scene <file> <arguments>...): expected a file name after scene.";
-    if (file.text().size() > kLongestName) return "(scene <file> ...): the file's name is too long.";
+    if (file.text().size() > kMaxNameLength) return "(scene <file> ...): the file's name is too long.";
     if (!allowed(file.text()))
       return fmt::format("(scene {}): robots are files below {}; others are refused.", file.text(), folder_);
     file_ = file.text();
@@ -42,13 +42,13 @@ class SceneEffector : public Effector {
   }
 
  private:
-  static constexpr std::size_t kLongestName = 512;
+  static constexpr std::size_t kMaxNameLength = 512;
 
-  /// Absolute names, folders, and names with `..` in them get through: the file server refuses those, and says better
-  /// why.
+  /// True if the file is below the folder. Also true for absolute names, folders and names with `..`: the file server
+  /// refuses these with a better message.
   bool allowed(std::string_view file) const {
-    const bool climbs = ("/" + std::string(file) + "/").find("/../") != std::string::npos;
-    return file.starts_with(folder_) || folder_ == std::string(file) + "/" || file.starts_with("/") || climbs;
+    const bool hasParent = ("/" + std::string(file) + "/").find("/../") != std::string::npos;
+    return file.starts_with(folder_) || folder_ == std::string(file) + "/" || file.starts_with("/") || hasParent;
   }
 
   static Value value(const Element& e) {
@@ -73,15 +73,15 @@ class SceneEffector : public Effector {
       return;
     }
     auto* control = kernel().root().find<GameControl>("/sys/server/gamecontrol");
-    AgentAspect* inner = agent();
-    if (control && inner && !control->mayLoad(inner->outermost())) {
+    AgentAspect* nearest = agent();
+    if (control && nearest && !control->mayLoad(nearest->outermost())) {
       late_ = true;
       return;
     }
     const std::string file = std::move(file_);
     file_.clear();
-    if (!inner) return kernel().log().error("{}: (scene {}) needs an agent aspect above the effector.", path(), file);
-    AgentAspect& root = inner->outermost();
+    if (!nearest) return kernel().log().error("{}: (scene {}) needs an agent aspect above the effector.", path(), file);
+    AgentAspect& root = nearest->outermost();
     const std::size_t before = root.children().size();
     try {
       auto& server = kernel().root().require<ISceneServer>();
@@ -90,14 +90,16 @@ class SceneEffector : public Effector {
       server.markModified();
     } catch (const std::exception& e) {
       ++failures_;
+      // Remove what was imported before the error.
       while (root.children().size() > before) root.remove(*root.children().back());
       const std::string line = fmt::format("Agent {} gets no robot: {}", root.number(), e.what());
-      control ? control->complain(line) : kernel().log().write(Level::error, line);
+      control ? control->logError(line) : kernel().log().write(Level::error, line);
     }
   }
 
-  static constexpr int kMostFailures = 10;
-  std::string folder_, file_;
+  static constexpr int kMaxFailures = 10;
+  std::string folder_;
+  std::string file_;  ///< to load in the next prepare phase; "": none
   List arguments_;
   bool loaded_ = false, late_ = false;
   int failures_ = 0;

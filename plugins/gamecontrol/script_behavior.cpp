@@ -6,9 +6,9 @@
 namespace spark {
 
 void ScriptBehavior::describe(Description<ScriptBehavior>& d) {
-  d.doc("A behaviour written in Lua: handles start and think, leaves S-expressions in actions.");
+  d.doc("A behaviour written in Lua: handles start and think, sets actions to S-expressions.");
   d.property("actions", &ScriptBehavior::actions_)
-      .doc("What is to be done: S-expressions, set by the script's handlers.");
+      .doc("The agent's next actions: S-expressions, set by the script's handlers.");
   d.method("script", &ScriptBehavior::script)
       .parameters({"file", "arguments"})
       .optional(1)
@@ -17,7 +17,7 @@ void ScriptBehavior::describe(Description<ScriptBehavior>& d) {
 
 void ScriptBehavior::onLink() {
   kernel().events().define("start", Order::parentsFirst, "At a ScriptBehavior: its agent joins.");
-  kernel().events().define("think", Order::parentsFirst, "At a ScriptBehavior: here is what it perceives.");
+  kernel().events().define("think", Order::parentsFirst, "At a ScriptBehavior: its percepts came.");
 }
 
 void ScriptBehavior::script(std::string file, Value arguments) {

@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// A behaviour written in Lua.
+/// An agent's behavior as a Lua script.
 
 #include "api/agents.h"
 #include "spark/describe.h"
 
 namespace spark {
 
-/// Runs a script's handlers: `start` once, `think` for each cycle's percepts (`event.data`: nested lists). What the
-/// script leaves in the property `actions`, S-expressions, is done.
+/// Runs the handlers of a script: `start` once, `think` for the percepts of each cycle (`event.data`: nested lists). A
+/// handler sets the property `actions` to S-expressions, which the agent executes.
 class ScriptBehavior : public Behavior {
   SPARK_CLASS(ScriptBehavior, Behavior)
  public:
@@ -20,6 +20,7 @@ class ScriptBehavior : public Behavior {
   void onLink() override;
 
  private:
+  /// Attaches a script; its `...` is `arguments`. Throws Error if it cannot be loaded.
   void script(std::string file, Value arguments);
   void run(std::string_view channel, const Value* data, Predicates& actions);
   std::string actions_;

@@ -1,0 +1,59 @@
+#include "gamecontrol/action_queue.h"
+
+namespace spark::gamecontrol {
+
+bool ActionQueue::reserve(std::size_t bytes, std::size_t maxBytes) {
+  constexpr std::size_t kMaxTokens = 1 << 17;  // tokens take more memory than the bytes they are parsed from
+  bytes_ += bytes;
+  return bytes_ <= maxBytes && tokens() <= kMaxTokens;
+}
+
+Predicates& ActionQueue::beginMessage() {
+  message_.clear();
+  return message_;
+}
+
+void ActionQueue::endMessage(bool keepMessage) {
+  if (pending_.empty() && !holdingBack_ && !keepMessage)
+    std::swap(pending_, message_);
+  else
+    append(message_);
+}
+
+void ActionQueue::append(const Predicates& actions) {
+  for (const Element e : actions)
+    if (e.isList()) (holdingBack_ && e.head() != first_ ? deferred_ : pending_).append(e);
+}
+
+void ActionQueue::holdBack(std::string_view first) {
+  holdingBack_ = true;
+  first_ = first;
+  message_.clear();
+  std::swap(message_, pending_);
+  append(message_);
+}
+
+void ActionQueue::releaseHeldBack() {
+  skipNext_ = true;
+  holdingBack_ = false;
+  std::swap(pending_, deferred_);
+  for (const Element e : deferred_) pending_.append(e);
+  deferred_.clear();
+}
+
+void ActionQueue::save(StateWriter& out) const {
+  out.write(Value(toList(pending_)));
+  out.write(Value(toList(deferred_)));
+}
+
+void ActionQueue::load(StateReader& in) {
+  loadPredicates(in, pending_);
+  loadPredicates(in, deferred_);
+}
+
+void loadPredicates(StateReader& in, Predicates& to) {
+  to.clear();
+  spark::append(in.readValue().toList(), to);
+}
+
+}  // namespace spark::gamecontrol

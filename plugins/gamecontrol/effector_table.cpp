@@ -1,0 +1,48 @@
+#include "gamecontrol/effector_table.h"
+
+#include <algorithm>
+
+#include "gamecontrol/scene_effector.h"
+
+namespace spark::gamecontrol {
+
+std::size_t EffectorTable::rebuild(AgentAspect& root) {
+  clear();
+  std::vector<Effector*> effectors;
+  root.collect(effectors);
+  for (Effector* e : effectors) entries_.push_back({e->predicate(), e, e});
+
+  // Sort by predicate; of equal ones keep the last in tree order.
+  std::stable_sort(entries_.begin(), entries_.end(),
+                   [](const Entry& a, const Entry& b) { return a.predicate < b.predicate; });
+  for (std::size_t i = 0; i + 1 < entries_.size();)
+    if (entries_[i].predicate == entries_[i + 1].predicate)
+      entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(i));
+    else
+      ++i;
+
+  for (const Entry& e : entries_)
+    if (e.effector->as<ISyncEffector>()) syncPredicate_ = e.predicate;
+  return effectors.size();
+}
+
+void EffectorTable::clear() {
+  entries_.clear();
+  syncPredicate_.clear();
+}
+
+bool EffectorTable::loading() const {
+  return std::any_of(entries_.begin(), entries_.end(), [](const Entry& e) {
+    const auto* scene = e.effector ? e.effector->as<SceneEffector>() : nullptr;
+    return scene && scene->late();
+  });
+}
+
+std::size_t EffectorTable::indexOf(std::string_view predicate) const {
+  const auto it = std::lower_bound(entries_.begin(), entries_.end(), predicate,
+                                   [](const Entry& e, std::string_view p) { return e.predicate < p; });
+  if (it == entries_.end() || it->predicate != predicate) return entries_.size();
+  return static_cast<std::size_t>(it - entries_.begin());
+}
+
+}  // namespace spark::gamecontrol

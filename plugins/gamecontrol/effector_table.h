@@ -1,0 +1,84 @@
+#pragma once
+/// \file
+/// The effectors of one agent by predicate.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/agents.h"
+
+namespace spark::gamecontrol {
+
+/// Finds the effector for an action. Agents usually send the same actions in the same order, so each entry remembers
+/// which entry was used after it: a lookup first tries that one, and loops prefetch along this chain.
+class EffectorTable {
+  struct Entry {
+    std::string predicate;
+    Ref<Effector> effector;
+    const void* memory = nullptr;  ///< of the effector; for prefetching only, it may dangle
+    std::size_t next = 0;          ///< index of the entry that was used after this one the last time
+  };
+
+ public:
+  /// Rebuilds the table from the effectors below `root`. If several have the same predicate the last in tree order
+  /// counts. Returns the number of effectors.
+  std::size_t rebuild(AgentAspect& root);
+  /// Removes all effectors.
+  void clear();
+  /// Predicate of the sync effector (ISyncEffector); "" if there is none.
+  const std::string& syncPredicate() const { return syncPredicate_; }
+  /// True while a SceneEffector waits to load the robot, or has loaded it in the last prepare phase after a wait.
+  bool loading() const;
+  /// Prefetches the first entry of the chain.
+  void prefetchFirst() const {
+    if (first_ < entries_.size()) prefetch(&entries_[first_], sizeof(Entry));
+  }
+
+  /// Looks up the effectors for the actions of one cycle, in order.
+  class Lookup {
+   public:
+    /// Prefetches the first effectors of the chain.
+    explicit Lookup(EffectorTable& table) : table_(table), guess_(&table.first_), prefetched_(table.first_) {
+      for (std::size_t i = 0; i < kPrefetchDistance; ++i) advance();
+    }
+    /// Prefetches one more effector. Call it once per action, before find().
+    void advance() { prefetched_ = table_.prefetchNext(prefetched_); }
+    /// The effector for `predicate`; nullptr if there is none or it was removed.
+    Effector* find(std::string_view predicate) {
+      auto& entries = table_.entries_;
+      if (*guess_ >= entries.size() || entries[*guess_].predicate != predicate) {
+        const std::size_t index = table_.indexOf(predicate);
+        if (index == entries.size()) return nullptr;
+        *guess_ = index;
+      }
+      Entry& entry = entries[*guess_];
+      guess_ = &entry.next;
+      return entry.effector.get();
+    }
+
+   private:
+    EffectorTable& table_;
+    std::size_t* guess_;      ///< index of the entry that is tried first
+    std::size_t prefetched_;  ///< index of the entry to prefetch next
+  };
+
+ private:
+  static constexpr std::size_t kPrefetchDistance = 4;   // effectors
+  static constexpr std::size_t kPrefetchedBytes = 256;  // of an effector, which most cycles use
+  /// Prefetches an effector; returns the index of the one after it.
+  std::size_t prefetchNext(std::size_t index) const {
+    if (index >= entries_.size()) return index;
+    prefetch(entries_[index].memory, kPrefetchedBytes);
+    return entries_[index].next;
+  }
+  /// Binary search; the number of entries if there is none.
+  std::size_t indexOf(std::string_view predicate) const;
+
+  std::vector<Entry> entries_;  ///< sorted by predicate
+  std::size_t first_ = 0;       ///< index of the entry that was used first the last time
+  std::string syncPredicate_;
+};
+
+}  // namespace spark::gamecontrol

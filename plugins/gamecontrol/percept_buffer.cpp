@@ -1,0 +1,112 @@
+#include "gamecontrol/percept_buffer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "spark/running.h"
+
+namespace spark::gamecontrol {
+
+std::size_t PerceptBuffer::rebuild(AgentAspect& root) {
+  shared_.clear();
+  std::vector<Perceptor*> perceptors;
+  root.collect(perceptors);
+  perceptors_.assign(perceptors.begin(), perceptors.end());
+  for (Perceptor* p : perceptors)
+    if (auto* view = p->as<ISharedView>()) shared_.push_back({p, view, p});
+  dropRemoved();
+  return perceptors_.size();
+}
+
+void PerceptBuffer::clear() {
+  perceptors_.clear();
+  shared_.clear();
+  called_.clear();
+}
+
+void PerceptBuffer::dropRemoved() {
+  std::erase_if(perceptors_, [](const Ref<Perceptor>& p) { return !p; });
+  std::erase_if(shared_, [](const Shared& s) { return !s.perceptor; });
+  called_.clear();
+  for (const Ref<Perceptor>& p : perceptors_) called_.push_back(p.get());
+}
+
+void PerceptBuffer::prefetchShared() const {
+  for (const Shared& s : shared_) prefetch(s.called, kPerceptorBytes);
+}
+
+void PerceptBuffer::prefetchPerceptors() const {
+  for (std::size_t i = 0; i < std::min(called_.size(), 2 * kPrefetchDistance); ++i)
+    prefetch(called_[i], kPerceptorBytes);
+}
+
+void PerceptBuffer::share(std::uint64_t round, std::int64_t cycle) {
+  if (shared_.empty()) return;
+  NowRunning now("share");
+  for (const Shared& s : shared_)
+    if (isDue(*s.called, cycle)) now.at(s.called), s.view->share(round);
+}
+
+bool PerceptBuffer::sense(const Event& event, std::int64_t cycle) {
+  prefetch(percepts_.tokens().data(), kPerceptBytes);
+  for (std::size_t i = 0; i < std::min(called_.size(), 2 * kPrefetchDistance); ++i)
+    prefetch(called_[i]->parent(), kParentBytes);
+
+  percepts_.clear();
+  NowRunning now("sense");
+  for (std::size_t i = 0; i < called_.size(); ++i) {
+    Perceptor* p = called_[i];
+    if (i + kPrefetchDistance < called_.size()) prefetch(called_[i + kPrefetchDistance], kSenseBytes);
+    if (!isDue(*p, cycle)) continue;
+    const std::uint32_t before = percepts_.size();
+    now.at(p);
+    // No exception may leave a worker thread: it would end the process.
+    try {
+      p->sense(percepts_, event);
+    } catch (const std::exception& fault) {
+      percepts_.truncate(before);
+      faulty_ = i;
+      fault_ = fault.what();
+    } catch (...) {
+      percepts_.truncate(before);
+      faulty_ = i;
+      fault_ = "something that is no std::exception";
+    }
+    if (percepts_.isUnbalanced()) [[unlikely]]
+      closeLists(i);
+  }
+  return faulty_ == kNone && unbalanced_ == kNone;
+}
+
+void PerceptBuffer::closeLists(std::size_t perceptor) {
+  const int open = percepts_.balance();
+  const std::uint64_t id = called_[perceptor]->id();
+  if (unbalanced_ != kNone || std::find(reported_.begin(), reported_.end(), id) != reported_.end()) return;
+  reported_.push_back(id);
+  unbalanced_ = perceptor;
+  openLists_ = open;
+}
+
+void PerceptBuffer::reportFaults(std::string_view label, AgentLog& log) {
+  if (const Perceptor* p = unbalanced_ != kNone ? perceptors_[unbalanced_].get() : nullptr)
+    log.write(Level::error, fmt::format("{}: {} ({}) {} in sense(); its percept is as if it had closed what it opened. "
+                                        "Each open() needs one close(). "
+                                        "This is said once.",
+                                        label, p->path(), p->classObject()->name(),
+                                        openLists_ > 0 ? fmt::format("left {} list(s) open", openLists_)
+                                                       : std::string("closed a list that was not open")));
+  unbalanced_ = kNone;
+
+  if (faulty_ == kNone) return;
+  if (const Perceptor* p = perceptors_[faulty_].get()) {
+    p->kernel().countFault();
+    log.write(Level::error, fmt::format("{}: {} ({}) threw and is asked no more: {}", label, p->path(),
+                                        p->classObject()->name(), fault_));
+  }
+  perceptors_.erase(perceptors_.begin() + static_cast<std::ptrdiff_t>(faulty_));
+  called_.erase(called_.begin() + static_cast<std::ptrdiff_t>(faulty_));
+  faulty_ = kNone;
+}
+
+}  // namespace spark::gamecontrol

@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// The perceptors of one agent and what they sensed last.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/agents.h"
+#include "gamecontrol/agent_log.h"
+
+namespace spark::gamecontrol {
+
+/// Calls the perceptors that are due and keeps their percepts. A perceptor that throws is not called again; one that
+/// leaves lists open is reported, and the lists are closed so that they do not swallow other percepts.
+class PerceptBuffer {
+ public:
+  /// Collects the perceptors below `root`. Returns their number.
+  std::size_t rebuild(AgentAspect& root);
+  /// Removes all perceptors; the percepts stay.
+  void clear();
+  /// Forgets perceptors that were removed from the tree. Call it after a change of the tree and before share().
+  void dropRemoved();
+
+  /// Updates what the due perceptors share with others (ISharedView). Sense phase, simulation thread, before any
+  /// sense(). `round`: number of the sense phase; `cycle`: the agent's cycle count.
+  void share(std::uint64_t round, std::int64_t cycle);
+  /// Replaces the percepts by those of the perceptors that are due in the agent's `cycle`. Any thread; changes only
+  /// this agent. False if there is something for reportFaults().
+  bool sense(const Event& event, std::int64_t cycle);
+  /// Reports a perceptor that threw and removes it; reports one that left lists open, once each. Simulation thread.
+  /// `label`: the agent, for the log.
+  void reportFaults(std::string_view label, AgentLog& log);
+
+  /// What was sensed last.
+  const Predicates& percepts() const { return percepts_; }
+  Predicates& percepts() { return percepts_; }
+
+  // Prefetching: the memory of a crowd exceeds the caches, so game control requests that of the next agents while it
+  // works on one. These calls have no other effect.
+
+  /// What share() reads.
+  void prefetchShared() const;
+  /// The array of perceptors.
+  void prefetchTable() const { prefetch(called_.data(), called_.size() * sizeof called_[0]); }
+  /// The first perceptors; sense() prefetches the others.
+  void prefetchPerceptors() const;
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  static constexpr std::size_t kPrefetchDistance = 4;  // perceptors
+  // Bytes that most cycles use: of a perceptor, in sense(), of the node above it, of the percepts.
+  static constexpr std::size_t kPerceptorBytes = 448, kSenseBytes = 256, kParentBytes = 768, kPerceptBytes = 256;
+
+  struct Shared {
+    Ref<Perceptor> perceptor;
+    ISharedView* view;
+    const Perceptor* called;  ///< as in `called_`
+  };
+  static bool isDue(const Perceptor& p, std::int64_t cycle) { return cycle % std::max(1, p.interval()) == 0; }
+  void closeLists(std::size_t perceptor);
+
+  Predicates percepts_;
+  std::vector<Ref<Perceptor>> perceptors_;  ///< in tree order
+  std::vector<Perceptor*> called_;  ///< the same as pointers, valid until the tree changes: a Ref costs a cache line
+  std::vector<Shared> shared_;      ///< those that offer ISharedView
+
+  std::size_t faulty_ = kNone;           ///< index of a perceptor that threw
+  std::string fault_;                    ///< what it threw
+  std::size_t unbalanced_ = kNone;       ///< index of a perceptor whose lists were closed
+  int openLists_ = 0;                    ///< what Predicates::balance() returned for them
+  std::vector<std::uint64_t> reported_;  ///< ids of the perceptors that were reported for open lists
+};
+
+}  // namespace spark::gamecontrol
