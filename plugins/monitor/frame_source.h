@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// Frames that do not come from the scene.
 
 #include <vector>
 
@@ -7,14 +9,14 @@
 
 namespace spark {
 
-/// Child of the monitor server: makes its frames instead of the active scene and the items, e.g. from a recorded game.
+/// A child of the monitor server that makes its frames instead of the active scene and the items, e.g. from a log.
 class IFrameSource {
  public:
   SPARK_INTERFACE(IFrameSource, 1);
   virtual ~IFrameSource() = default;
-  /// Publish phase, in cycles that are due. `watched`: a monitor is connected. Writes nodes and environment of the
-  /// frame (`once` entries are told once) and the nodes' numbers. True when clients need a full message: nodes, meshes
-  /// or materials are others.
+  /// Writes nodes and environment of `frame`, and the nodes' `ids` (NewestFrame::ids); a `once` entry is written in one
+  /// frame only. `watched`: a monitor is connected. True if clients need a full message: nodes, meshes or materials
+  /// have changed. Publish phase, in cycles in which a frame is due.
   virtual bool fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const Event& event, bool watched) = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "log_file.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <string_view>
 
@@ -10,8 +12,8 @@ namespace spark {
 namespace {
 bool isJson(std::string_view line) { return line.starts_with("[["); }
 
-/// Bytes of draw commands at the start of a line: `[1, 0, ...][...]`.
-std::size_t drawCommands(std::string_view line) {
+/// Number of bytes of the draw commands at the start of a line: `[1, 0, ...][...]`.
+std::size_t drawCommandBytes(std::string_view line) {
   std::size_t at = 0;
   while (at < line.size() && line[at] == '[') {
     const std::size_t end = line.find(']', at);
@@ -25,15 +27,18 @@ std::size_t drawCommands(std::string_view line) {
 
 LogFile::LogFile(const std::string& path) : in_(path, std::ios::binary) {
   if (std::filesystem::is_directory(path))
-    throw Error("The log '" + path + "' is a folder; expected a file of monitor messages.");
+    throw Error(fmt::format("The log '{}' is a folder; expected a file of monitor messages.", path));
   if (!in_)
-    throw Error("The log '" + path + "' cannot be read. Check its name; it is looked up in the working folder.");
+    throw Error(
+        fmt::format("The log '{}' cannot be read. Check its name; it is looked up in the working folder.", path));
+
+  // Read chunk by chunk and index each line; a line may span chunks.
   std::string line, chunk(1u << 16, ' ');
-  std::uint64_t start = 0, at = 0;  // of the line, of the chunk
+  std::uint64_t start = 0, at = 0;  // offsets: of the current line, of the byte to read next
   bool tooLong = false;
   const auto endLine = [&](std::uint64_t end) {
     if (tooLong)
-      ++leftOut_;
+      ++skipped_;
     else
       addLine(start, line);
     line.clear();
@@ -44,29 +49,29 @@ LogFile::LogFile(const std::string& path) : in_(path, std::ios::binary) {
     std::string_view rest(chunk.data(), static_cast<std::size_t>(in_.gcount()));
     while (!rest.empty()) {
       const std::size_t end = rest.find('\n');
-      const std::string_view part = rest.substr(0, end);
-      tooLong |= line.size() + part.size() > kLongest;
-      if (!tooLong) line.append(part);
-      at += part.size();
+      const std::string_view piece = rest.substr(0, end);
+      tooLong |= line.size() + piece.size() > kMaxLineBytes;
+      if (!tooLong) line.append(piece);
+      at += piece.size();
       if (end == std::string_view::npos) break;
       endLine(at++);
       rest.remove_prefix(end + 1);
     }
   }
-  if (at > start) endLine(at);
+  if (at > start) endLine(at);  // the last line may have no newline
   in_.clear();
   if (records_.empty())
-    throw Error("The log '" + path +
-                "' holds no record; expected lines like ((time 0)...)(RSG 0 1)(...), or the same in JSON.");
+    throw Error(fmt::format(
+        "The log '{}' holds no record; expected lines like ((time 0)...)(RSG 0 1)(...), or the same in JSON.", path));
 }
 
 void LogFile::addLine(std::uint64_t offset, std::string_view line) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  const std::size_t skip = isJson(line) ? 0 : drawCommands(line);
+  const std::size_t skip = isJson(line) ? 0 : drawCommandBytes(line);
   line.remove_prefix(skip);
   if (line.empty() && skip == 0) return;
-  if (line.empty() || (line.front() != '(' && !isJson(line)) || records_.size() >= kMost) {
-    ++leftOut_;
+  if (line.empty() || (line.front() != '(' && !isJson(line)) || records_.size() >= kMaxRecords) {
+    ++skipped_;
     return;
   }
   const bool isFull = line.find(isJson(line) ? "],[\"RSG\"," : ")(RSG ") != std::string_view::npos;

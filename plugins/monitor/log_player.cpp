@@ -9,29 +9,31 @@
 namespace spark {
 
 namespace {
-constexpr double kFastest = 100;
-constexpr double kTolerance = 1e-6;       ///< of a record; the sum of steps is not exact
-constexpr std::int64_t kMostLines = 10;   ///< about damaged records
-constexpr std::size_t kMostAFrame = 250;  ///< records on the way to another place: other monitors get frames meanwhile
+constexpr double kMaxSpeed = 100;
+constexpr double kTolerance = 1e-6;            // records; the sum of time steps is not exact
+constexpr std::int64_t kMaxDamagedLines = 10;  // in the log, about damaged records
+constexpr std::size_t kMaxPerFrame = 250;      // records of a seek, so that it does not delay frames
 }  // namespace
 
 void LogPlayer::describe(Description<LogPlayer>& d) {
   using P = LogPlayer;
   d.doc(
-      "Plays a recorded game to monitors. Commands: (p) pause, (f) forward, (b) back, (l) other direction, (speed x), "
+      "Plays a log to monitors. Commands: (p) pause, (f) forward, (b) back, (l) reverse, (speed x), "
       "(record n).");
   d.property("file", &P::file, &P::setFile).doc("The log: one monitor message a line. Opened when it is set.");
   d.property("commands", &P::commands).doc("Names of the commands that it takes.");
   d.property("recordTime", &P::recordTime_).unit("s").range(0.001, 60).doc("Time between two records.");
-  d.property("speed", &P::speed_).range(0, kFastest).state().doc("1: as it was recorded; 2: twice as fast.");
-  d.property("paused", &P::paused_).state().doc("Stands still; (p) switches it.");
-  d.property("backward", &P::backward_).state().doc("Plays backwards; (l) switches it.");
-  d.property("waitForMonitor", &P::waitForMonitor_).doc("Does not begin before the first monitor is there.");
+  d.property("speed", &P::speed_).range(0, kMaxSpeed).state().doc("1: as it was recorded; 2: twice as fast.");
+  d.property("paused", &P::paused_).state().doc("Playing is paused; (p) toggles it.");
+  d.property("backward", &P::backward_).state().doc("Plays backwards; (l) toggles it.");
+  d.property("waitForMonitor", &P::waitForMonitor_).doc("Playing begins when the first monitor connects.");
   d.property("record", &P::record, &P::setRecord)
       .min(0)
-      .doc("The record that is shown, from 0. Setting it goes there; without a file it is where the next one begins.");
-  d.property("records", &P::records).doc("How many there are.");
-  d.property("damaged", &P::damaged_).readOnly().doc("Records that could not be played and were passed over.");
+      .doc(
+          "The record that is shown, from 0. Setting it shows that record; without a file it is where the next file "
+          "begins.");
+  d.property("records", &P::records).doc("Number of records.");
+  d.property("damaged", &P::damaged_).readOnly().doc("Number of records that could not be played and were skipped.");
   d.implements<IFrameSource>();
   d.implements<ITrainer>();
 }
@@ -40,28 +42,29 @@ void LogPlayer::setFile(std::string path) {
   log_.reset();
   scene_.clear();
   due_ = 0;
-  wanted_.reset();
-  moments_.clear();
-  underWay_ = false;
+  target_.reset();
+  snapshots_.clear();
+  seeking_ = false;
   started_ = false;
   damaged_ = 0;
   path_ = std::move(path);
   if (path_.empty()) return;
   log_ = std::make_unique<LogFile>(path_);
-  goTo(std::min(at_, log_->size() - 1));
+  seek(std::min(at_, log_->size() - 1));
 }
 
-void LogPlayer::take(std::size_t record) {
+/// Applies a record to the scene. A damaged one is logged and leaves the scene as it was.
+void LogPlayer::apply(std::size_t record) {
   draw(record);
   const std::string wrong = scene_.take(log_->read(record), childOf<IParser>());
   at_ = record;
-  moments_.passed(record, record - log_->fullBefore(record), scene_);
+  snapshots_.onRecord(record, record - log_->fullBefore(record), scene_);
   if (wrong.empty()) return;
-  if (++damaged_ <= kMostLines)
+  if (++damaged_ <= kMaxDamagedLines)
     kernel().log().warning("{}: record {} of '{}' is passed over: {}", path(), record, path_, wrong);
 }
 
-/// Packets as bytes with their sign: `[0, 0, 97, 0][2, 2, -128]`.
+/// Draws the packets of a record. In the file they are lists of signed bytes: `[0, 0, 97, 0][2, 2, -128]`.
 void LogPlayer::draw(std::size_t record) {
   const std::string& text = log_->readDrawings(record);
   auto* drawings = text.empty() ? nullptr : kernel().root().find<IDrawings>();
@@ -69,17 +72,17 @@ void LogPlayer::draw(std::size_t record) {
   std::vector<std::byte> packet;
   int value = 0;
   for (const char *at = text.data(), *end = at + text.size(); at < end;) {
-    const auto [behind, wrong] = std::from_chars(at, end, value);
+    const auto [next, wrong] = std::from_chars(at, end, value);
     if (wrong == std::errc())
       packet.push_back(static_cast<std::byte>(value));
     else if (*at == ']')
       drawings->draw(packet), packet.clear();
-    at = std::max(behind, at + 1);
+    at = std::max(next, at + 1);
   }
 }
 
-/// As a log's full records do; agents' texts each.
-void LogPlayer::takeDrawingsAway() {
+/// Clears all drawings with the packets that a log's full records contain for it; agents' texts one by one.
+void LogPlayer::clearDrawings() {
   auto* drawings = kernel().root().find<IDrawings>();
   if (!drawings || drawings->version() == 0) return;
   constexpr std::byte kNone{0}, kText{2};
@@ -90,91 +93,94 @@ void LogPlayer::takeDrawingsAway() {
 
 void LogPlayer::setRecord(std::int64_t record) {
   due_ = 0;
-  wanted_.reset();
-  underWay_ = false;
+  target_.reset();
+  seeking_ = false;
   at_ = static_cast<std::size_t>(record);
-  if (log_) goTo(std::min(at_, log_->size() - 1));
+  if (log_) seek(std::min(at_, log_->size() - 1));
 }
 
-void LogPlayer::goTo(std::size_t target) {
-  begin(target);
-  go(target, target + 1);
+/// Shows a record now, however far away it is.
+void LogPlayer::seek(std::size_t target) {
+  beginSeek(target);
+  continueSeek(target, target + 1);
 }
 
-/// By way of the last full record, and from there of the last moment that is known. Events of the way are not told,
-/// drawings are made.
-void LogPlayer::begin(std::size_t target) {
-  tellEvents_ = false;
-  takeDrawingsAway();
+/// Goes to the last full record before the target, and from there to the last snapshot before the target. The drawings
+/// of all records in between are drawn; their events are dropped.
+void LogPlayer::beginSeek(std::size_t target) {
+  sendEvents_ = false;
+  clearDrawings();
   const std::size_t full = log_->fullBefore(target);
-  std::size_t known = full;
-  const RecordedScene::Moment* moment = moments_.before(full + 1, target, known);
-  take(full);
-  if (moment && scene_.restore(*moment)) {
-    for (std::size_t i = full + 1; i <= known; ++i)
+  std::size_t record = full;
+  const RecordedScene::Snapshot* snapshot = snapshots_.findLast(full + 1, target, record);
+  apply(full);
+  if (snapshot && scene_.restore(*snapshot)) {
+    for (std::size_t i = full + 1; i <= record; ++i)
       if (log_->hasDrawings(i)) draw(i);
-    at_ = known;
+    at_ = record;
   }
-  if (target > at_) moments_.beginWay(target - at_);
+  if (target > at_) snapshots_.beginSeek(target - at_);
 }
 
-/// At most so many records; false while the target is not reached.
-bool LogPlayer::go(std::size_t target, std::size_t most) {
-  for (; most > 0 && at_ < target; --most) take(at_ + 1);
+/// Applies at most `maxRecords`; true if the target is reached.
+bool LogPlayer::continueSeek(std::size_t target, std::size_t maxRecords) {
+  for (; maxRecords > 0 && at_ < target; --maxRecords) apply(at_ + 1);
   return at_ >= target;
 }
 
+/// Plays the next record, with its events; false at the end of the log.
 bool LogPlayer::step() {
   if (!log_ || at_ + 1 >= log_->size()) return false;
-  take(at_ + 1);
-  tellEvents_ = true;
+  apply(at_ + 1);
+  sendEvents_ = true;
   return true;
 }
 
-/// Commands say where to go; the way is gone once a frame, however many there were, and a long one in several.
-void LogPlayer::aim(std::int64_t record) {
-  if (log_) wanted_ = std::clamp<std::int64_t>(record, 0, static_cast<std::int64_t>(log_->size()) - 1);
+void LogPlayer::setTarget(std::int64_t record) {
+  if (log_) target_ = std::clamp<std::int64_t>(record, 0, static_cast<std::int64_t>(log_->size()) - 1);
 }
 
-void LogPlayer::goWhereAimed() {
-  if (!wanted_) return;
-  const auto target = static_cast<std::size_t>(*wanted_);
-  const bool goesOn = underWay_ && at_ <= target && at_ >= log_->fullBefore(target);
-  if (!goesOn && target == at_ + 1) {
+/// Moves towards the target, at most kMaxPerFrame records.
+void LogPlayer::seekTarget() {
+  if (!target_) return;
+  const auto target = static_cast<std::size_t>(*target_);
+  // A seek that has begun continues if the new target can be reached from where it is.
+  const bool continues = seeking_ && at_ <= target && at_ >= log_->fullBefore(target);
+  if (!continues && target == at_ + 1) {
     step();
-  } else if (goesOn || target != at_) {
-    if (!goesOn) begin(target);
-    underWay_ = !go(target, kMostAFrame);
-    if (underWay_) return;
+  } else if (continues || target != at_) {
+    if (!continues) beginSeek(target);
+    seeking_ = !continueSeek(target, kMaxPerFrame);
+    if (seeking_) return;
   }
-  underWay_ = false;
-  wanted_.reset();
+  seeking_ = false;
+  target_.reset();
 }
 
-/// So many records at once; false at the log's end.
+/// Moves by a number of records in the current direction; false if the log ends before.
 bool LogPlayer::advance(std::size_t records) {
-  bool moves = true;
+  bool moved = true;
   if (backward_) {
-    moves = log_ && at_ >= records;
-    if (log_ && at_ > 0) goTo(at_ - std::min(at_, records));
+    moved = log_ && at_ >= records;
+    if (log_ && at_ > 0) seek(at_ - std::min(at_, records));
   } else {
-    for (; records > 0 && moves; --records) moves = step();
+    for (; records > 0 && moved; --records) moved = step();
   }
-  return moves;
+  return moved;
 }
 
 bool LogPlayer::fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const Event& event, bool watched) {
   if (!started_) lastTime_ = event.time;
   started_ |= watched || !waitForMonitor_;
-  const double passed = std::exchange(lastTime_, event.time), now = event.time;
-  if (started_ && !paused_ && !underWay_ && now > passed) {
-    due_ += speed_ * (now - passed) / recordTime_;
+  const double last = std::exchange(lastTime_, event.time);
+  if (started_ && !paused_ && !seeking_ && event.time > last) {
+    due_ += speed_ * (event.time - last) / recordTime_;
     if (const double whole = std::floor(due_ + kTolerance); whole >= 1)
       due_ = advance(static_cast<std::size_t>(whole)) ? due_ - whole : 0;
   }
-  goWhereAimed();
-  scene_.copyTo(frame, ids, std::exchange(tellEvents_, false));
-  return std::exchange(shown_, scene_.shape()) != scene_.shape();
+  seekTarget();
+  scene_.copyTo(frame, ids, std::exchange(sendEvents_, false));
+  return std::exchange(shownShape_, scene_.shape()) != scene_.shape();
 }
 
 bool LogPlayer::command(const Element& command, std::string& why) {
@@ -190,11 +196,11 @@ bool LogPlayer::command(const Element& command, std::string& why) {
   else if (name == "l")
     backward_ = !backward_;
   else if (name == "f" || name == "b")
-    aim(wanted_.value_or(static_cast<std::int64_t>(at_)) + (name == "b" ? -1 : 1));
+    setTarget(record() + (name == "b" ? -1 : 1));
   else if (name == "speed") {
-    if (const double v = argument(); why.empty()) speed_ = std::min(v, kFastest);
+    if (const double v = argument(); why.empty()) speed_ = std::min(v, kMaxSpeed);
   } else if (name == "record") {
-    if (const double v = argument(); why.empty()) due_ = 0, aim(static_cast<std::int64_t>(std::min(v, 1e9)));
+    if (const double v = argument(); why.empty()) due_ = 0, setTarget(static_cast<std::int64_t>(std::min(v, 1e9)));
   } else {
     return false;
   }

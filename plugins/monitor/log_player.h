@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// Plays logs to monitors.
 
 #include <memory>
 #include <optional>
@@ -6,19 +8,22 @@
 #include "api/drawing.h"
 #include "frame_source.h"
 #include "log_file.h"
-#include "moments.h"
 #include "recorded_scene.h"
+#include "snapshot_cache.h"
 #include "spark/describe.h"
 #include "spark/node.h"
 
 namespace spark {
 
-/// Plays a recorded game to all monitors of the server above it. Each gets what it lacks, as in a live game, so
-/// monitors come and go, and the game can be stopped, stepped and played backwards while they watch.
+/// Plays a log to all monitors of the server above it. As in a live game, each monitor gets what has changed since its
+/// own last message, so monitors may connect at any time, and the game can be paused, stepped and played backwards.
 ///
-/// Trainer commands, named after the keys of the old log player: `(p)` pause or go on, `(f)` and `(b)` one record
-/// forward or back,
-/// `(l)` the other direction, `(speed 2)`, `(record 150)`. What was drawn goes to the house's drawings, if it has any.
+/// Trainer commands, named after the keys of SimSpark's log player: `(p)` pause or continue, `(f)` and `(b)` one record
+/// forward or back, `(l)` reverse the direction, `(speed 2)`, `(record 150)`. Recorded drawings are drawn by the
+/// simulation's IDrawings, if there is one.
+///
+/// A seek far away is split over several frames. Commands only set its target: however many come in a cycle, one seek
+/// follows.
 class LogPlayer : public Node, public IFrameSource, public ITrainer {
   SPARK_CLASS(LogPlayer, Node)
  public:
@@ -34,23 +39,22 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
  private:
   std::vector<std::string> commands() const { return {"p", "f", "b", "l", "speed", "record"}; }
   std::string file() const { return path_; }
-  /// Opens it. Throws Error when it cannot be played.
+  /// Opens a log and shows the current record of it. Throws Error if it cannot be played.
   void setFile(std::string path);
-  std::int64_t record() const { return wanted_.value_or(static_cast<std::int64_t>(at_)); }
+  std::int64_t record() const { return target_.value_or(static_cast<std::int64_t>(at_)); }
   std::int64_t records() const { return log_ ? static_cast<std::int64_t>(log_->size()) : 0; }
-  /// Shows a record; one beyond the end is the last.
+  /// Shows a record at once; a number beyond the end means the last one.
   void setRecord(std::int64_t record);
-  void aim(std::int64_t record);
-  void goWhereAimed();
+  void setTarget(std::int64_t record);
+  void seekTarget();
   bool advance(std::size_t records);
-  /// One record on; false at the end.
   bool step();
-  void goTo(std::size_t target);
-  void begin(std::size_t target);
-  bool go(std::size_t target, std::size_t most);
-  void take(std::size_t record);
+  void seek(std::size_t target);
+  void beginSeek(std::size_t target);
+  bool continueSeek(std::size_t target, std::size_t maxRecords);
+  void apply(std::size_t record);
   void draw(std::size_t record);
-  void takeDrawingsAway();
+  void clearDrawings();
 
   std::string path_;
   double recordTime_ = 0.2, speed_ = 1;
@@ -58,16 +62,16 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
 
   std::unique_ptr<LogFile> log_;
   RecordedScene scene_{*this};
-  std::size_t at_ = 0;
-  log_player::Moments moments_;
-  bool underWay_ = false;               ///< to wanted_, which is too far for one frame
-  std::optional<std::int64_t> wanted_;  ///< where commands want to be with the next frame
-  double due_ = 0;                      ///< part of a record that has passed
-  double lastTime_ = 0;
-  bool started_ = false;  ///< a monitor came
-  bool tellEvents_ = false;
-  std::uint64_t shown_ = 0;
-  std::int64_t damaged_ = 0;
+  std::size_t at_ = 0;  ///< the record that was applied last
+  log_player::SnapshotCache snapshots_;
+  std::optional<std::int64_t> target_;  ///< record that commands have requested
+  bool seeking_ = false;                ///< a seek to `target_` has begun and continues in the next frame
+  double due_ = 0;                      ///< records that are due since `at_`; a fraction while playing
+  double lastTime_ = 0;                 ///< s, simulated, of the last frame
+  bool started_ = false;                ///< playing has begun, see waitForMonitor
+  bool sendEvents_ = false;             ///< the next frame has the events of record `at_`
+  std::uint64_t shownShape_ = 0;        ///< RecordedScene::shape() of the last frame
+  std::int64_t damaged_ = 0;            ///< number of records that could not be applied
 };
 
 }  // namespace spark

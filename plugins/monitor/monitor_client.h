@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// A connected monitor.
 
 #include <string>
 
@@ -7,28 +9,29 @@
 
 namespace spark {
 
-/// A monitor behind a connection. There is no queue of frames: only when the last message has left is the next one
-/// made, from the newest frame.
+/// A monitor behind a connection. There is no queue of frames: the next message is encoded when the last one has been
+/// sent, from the newest frame.
 class MonitorClient {
  public:
-  /// Both must outlive the client.
+  /// `connection` and `newest` must outlive it.
   MonitorClient(IConnection& connection, const NewestFrame& newest) : view(newest), connection_(connection) {}
 
-  MonitorView view;
+  MonitorView view;  ///< what the client was sent
 
   IConnection& connection() const { return connection_; }
-  /// Makes the next message. Touches only this client: clients may do it at the same time.
+  /// Encodes the next message. Changes only this client: several clients may be encoded in parallel.
   void encode(IMonitorEncoder& encoder) {
     message_.clear();
     view.encode(encoder, message_);
   }
+  /// The message that was encoded last.
   const std::string& message() const { return message_; }
-  /// Hands a message to the connection: its own, or that of a client whose view is like its own.
+  /// Sends a message: its own, or that of a client with an equivalent view.
   void send(const std::string& message) {
     if (connection_.send(message))
       view.delivered();
     else
-      view.requestFull();  // it was not taken: nothing is known of what the client has
+      view.requestFull();  // the message was dropped, so the view does not describe what the client has
   }
 
  private:

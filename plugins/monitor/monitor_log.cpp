@@ -14,16 +14,13 @@ void MonitorLog::describe(Description<MonitorLog>& d) {
   using L = MonitorLog;
   d.doc("Writes a log of the match that log players and monitors can play: one monitor message a line.");
   d.link(&MonitorLog::drawings_, At<IDrawings>());
-  d.property("file", &L::file_).doc("The file; what it held is replaced. Read when the first record is written.");
+  d.property("file", &L::file_).doc("The file; its content is replaced. Used when the first record is written.");
   d.property("interval", &L::interval_)
       .unit("s")
       .min(0)
-      .doc("Simulated time between two records, rounded to cycles; the server's own interval is the shortest.");
-  d.property("fullInterval", &L::fullInterval_)
-      .unit("s")
-      .min(0)
-      .doc("A record is full when the last full one is older.");
-  d.property("records", &L::records_).readOnly().doc("Records written.");
+      .doc("Simulated time between two records, rounded to cycles; at least the server's own interval.");
+  d.property("fullInterval", &L::fullInterval_).unit("s").min(0).doc("A record is full if the last full one is older.");
+  d.property("records", &L::records_).readOnly().doc("Number of records written.");
   d.implements<IFrameTaker>();
 }
 
@@ -35,12 +32,12 @@ void MonitorLog::event(const Element& event) {
     early_.append(event);
 }
 
-/// Opens the file with the first frame. False when there is nothing to write to.
-bool MonitorLog::ready(const NewestFrame& newest) {
+/// Opens the file at the first frame. False if that failed, now or before.
+bool MonitorLog::open(const NewestFrame& newest) {
   if (failed_ || view_) return !failed_;
-  // A pipe that nobody reads must not hold the match: opening it fails. Later records wait for its reader.
+  // With O_NONBLOCK a pipe without a reader fails instead of blocking the match. Later writes do wait for its reader.
   errno = 0;
-  if (const int file = open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666); file >= 0) {
+  if (const int file = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666); file >= 0) {
     fcntl(file, F_SETFL, fcntl(file, F_GETFL) & ~O_NONBLOCK);
     out_.reset(fdopen(file, "wb"));
   }
@@ -55,10 +52,10 @@ bool MonitorLog::ready(const NewestFrame& newest) {
 }
 
 void MonitorLog::take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) {
-  if (event.cycle < next_ || !encoder || !ready(newest)) return;
+  if (event.cycle < nextCycle_ || !encoder || !open(newest)) return;
   const auto every =
       std::max<std::int64_t>(1, event.step > 0 ? std::llround(std::min(interval_ / event.step, 1e9)) : 1);
-  next_ = event.cycle + every;
+  nextCycle_ = event.cycle + every;
   // Half a step of tolerance: the sum of steps is not exact.
   if (event.time - lastFull_ > fullInterval_ + 0.5 * event.step) view_->requestFull();
   record_.clear();
@@ -68,7 +65,7 @@ void MonitorLog::take(const NewestFrame& newest, IMonitorEncoder* encoder, const
   write();
 }
 
-/// A full record says all that is drawn, others what changed. Records in other languages have no place for it.
+/// A full record gets all drawings, others those that changed. Only S-expression records may have drawings.
 void MonitorLog::recordDrawings() {
   drawn_.clear();
   if (!drawings_ || !record_.starts_with('(')) return;

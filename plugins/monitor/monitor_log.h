@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// Writes logs.
 
 #include <cstdio>
 #include <memory>
@@ -10,9 +12,9 @@
 
 namespace spark {
 
-/// Writes what a monitor would be sent into a file, one message a line: the installed base's `sparkmonitor.log`. Child
-/// of the monitor server; a viewer of its own, so the log is complete whatever the monitors were sent. What agents drew
-/// stands in front of a record, as the installed base's viewer writes it.
+/// A child of the monitor server that writes monitor messages into a file, one per line, as SimSpark's
+/// `sparkmonitor.log`. It has a view of its own, so the log is complete whatever the monitors were sent. Agents'
+/// drawings precede a record, as SimSpark's viewer writes them.
 class MonitorLog : public Node, public IFrameTaker {
   SPARK_CLASS(MonitorLog, Node)
  public:
@@ -22,7 +24,7 @@ class MonitorLog : public Node, public IFrameTaker {
   void take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) override;
 
  private:
-  bool ready(const NewestFrame& newest);
+  bool open(const NewestFrame& newest);
   void recordDrawings();
   void write();
   void fail(std::string_view what);
@@ -31,16 +33,17 @@ class MonitorLog : public Node, public IFrameTaker {
   double interval_ = 0.2, fullInterval_ = 3;
 
   std::optional<MonitorView> view_;
-  Predicates early_;  ///< events of the time before the first frame came
+  Predicates early_;  ///< events before the first frame
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   std::unique_ptr<std::FILE, Close> out_;
-  std::string record_, drawn_;
+  std::string record_, drawn_;  ///< message and draw commands of the current record
   Link<IDrawings> drawings_;
-  std::uint64_t drawnVersion_ = 0;
-  std::int64_t next_ = 0, records_ = 0;
-  double lastFull_ = 0;
+  std::uint64_t drawnVersion_ = 0;  ///< IDrawings::version() of the last record
+  std::int64_t nextCycle_ = 0;      ///< no record before this cycle
+  std::int64_t records_ = 0;
+  double lastFull_ = 0;  ///< s, simulated, of the last full record
   bool failed_ = false;
 };
 

@@ -11,10 +11,8 @@
 namespace spark {
 
 namespace {
-/// Commands that may wait for their cycle, in tokens; messages beyond are dropped.
-constexpr std::uint32_t kMostWaiting = 1u << 15;
-/// Cycles between two lines about dropped messages.
-constexpr std::int64_t kComplainEvery = 250;
+constexpr std::uint32_t kMaxQueuedTokens = 1u << 15;  // of commands; messages beyond that are dropped
+constexpr std::int64_t kLogInterval = 250;            // cycles between two log lines about commands of one kind
 }  // namespace
 
 void MonitorServer::describe(Description<MonitorServer>& d) {
@@ -32,12 +30,12 @@ void MonitorServer::describe(Description<MonitorServer>& d) {
       .doc("A frame is made in every n-th cycle; commands are executed in the cycles after these.");
   d.property("precision", &M::precision_)
       .min(0)
-      .doc("A matrix is sent again when one of its elements changed by more (metres, or unit vectors).");
+      .doc("A matrix is sent again if one of its elements changed by more (metres; for rotations without unit).");
   d.property("clients", &M::clientCount).doc("Number of connected monitors.");
   d.method("command", &M::commandOrThrow)
       .parameters({"text"})
-      .doc("Trainer's commands, as S-expressions; they act in the next cycle that takes commands.");
-  d.method("requestFullState", &M::requestFullState).doc("The next message to every client is full.");
+      .doc("Trainer commands as S-expressions; executed in the next cycle that takes commands.");
+  d.method("requestFullState", &M::requestFullState).doc("Makes the next message to every client a full one.");
   d.implements<IMonitorServer>();
   d.implements<IConnectionConsumer>();
   d.on<&M::act>(phase::kAct);
@@ -48,7 +46,7 @@ void MonitorServer::requestFullState() {
   for (auto& client : clients_) client->view.requestFull();
 }
 
-// ---- connections (the simulation's thread, between cycles) ----
+// ---- connections (between cycles) ----
 
 void MonitorServer::connected(IConnection& connection) {
   if (newest_.frame.shape == 0 || (!source_ && !nodes_.fresh(kernel()))) makeFrame(last_);
@@ -58,27 +56,27 @@ void MonitorServer::connected(IConnection& connection) {
 
 void MonitorServer::received(IConnection& connection, std::string_view message) {
   auto* parser = connection.port().childOf<IParser>();
-  keepCommands(parser ? parser : childOf<IParser>(), connection.peer(), message);
+  queueCommands(parser ? parser : childOf<IParser>(), connection.peer(), message);
 }
 
 std::string MonitorServer::command(std::string_view from, std::string_view message) {
-  return keepCommands(nullptr, from, message);
+  return queueCommands(nullptr, from, message);
 }
 
-std::string MonitorServer::keepCommands(IParser* parser, std::string_view from, std::string_view message) {
-  learnCommands();
-  if (commands_.size() >= kMostWaiting) return dropMessage(from);
+std::string MonitorServer::queueCommands(IParser* parser, std::string_view from, std::string_view message) {
+  updateKnownCommands();
+  if (commands_.size() >= kMaxQueuedTokens) return dropMessage(from);
   const std::uint32_t before = commands_.size();
   const ReadResult result = parser ? parser->parse(message, commands_) : readSexp(message, commands_);
-  if (commands_.size() > kMostWaiting) {
+  if (commands_.size() > kMaxQueuedTokens) {
     commands_.truncate(before);
     return dropMessage(from);
   }
   if (result.message.empty()) {
-    std::string unknown = unknownFrom(before);
-    // a monitor gets no answer on the wire: its parser would stumble over it
-    if (!unknown.empty() && (!toldUnknownAt_ || last_.cycle - *toldUnknownAt_ >= kComplainEvery)) {
-      toldUnknownAt_ = last_.cycle;
+    std::string unknown = describeUnknown(before);
+    // Only the log and the caller learn of it: the protocol has no replies, and monitors could not parse one.
+    if (!unknown.empty() && (!unknownLoggedAt_ || last_.cycle - *unknownLoggedAt_ >= kLogInterval)) {
+      unknownLoggedAt_ = last_.cycle;
       kernel().log().info("{}: from {}: {}", path(), from, unknown);
     }
     return unknown;
@@ -88,14 +86,14 @@ std::string MonitorServer::keepCommands(IParser* parser, std::string_view from, 
   return fmt::format("{}:{}: {}", result.line, result.column, result.message);
 }
 
-std::string MonitorServer::unknownFrom(std::uint32_t first) const {
-  if (known_.empty()) return {};
+std::string MonitorServer::describeUnknown(std::uint32_t first) const {
+  if (knownCommands_.empty()) return {};
   for (const Element command : commands_) {
     if (command.index() < first || !command.isList()) continue;
     const std::string_view name = command.head();
-    if (std::find(known_.begin(), known_.end(), name) == known_.end())
+    if (std::find(knownCommands_.begin(), knownCommands_.end(), name) == knownCommands_.end())
       return fmt::format("there is no command '{}' here.{}", name.substr(0, 40),
-                         didYouMean(name.substr(0, 40), known_));
+                         didYouMean(name.substr(0, 40), knownCommands_));
   }
   return {};
 }
@@ -106,8 +104,8 @@ void MonitorServer::commandOrThrow(std::string text) {
 
 std::string MonitorServer::dropMessage(std::string_view from) {
   ++dropped_;
-  if (!toldDroppedAt_ || last_.cycle - *toldDroppedAt_ >= kComplainEvery) {
-    toldDroppedAt_ = last_.cycle;
+  if (!droppedLoggedAt_ || last_.cycle - *droppedLoggedAt_ >= kLogInterval) {
+    droppedLoggedAt_ = last_.cycle;
     kernel().log().warning("{}: {} sends more commands than can wait for the next cycle; {} messages were dropped",
                            path(), from, dropped_);
     dropped_ = 0;
@@ -122,7 +120,7 @@ void MonitorServer::disconnected(IConnection& connection) {
 // ---- commands ----
 
 void MonitorServer::act(const Event& event) {
-  if (due(event)) atAct_ = version();
+  if (due(event)) versionAtAct_ = version();
   if (!takesCommands(event)) return;
   for (const Element command : commands_) execute(command);
   commands_.clear();
@@ -151,13 +149,13 @@ void MonitorServer::execute(const Element& command) {
 
 // ---- frames ----
 
-void MonitorServer::learnCommands() {
+void MonitorServer::updateKnownCommands() {
   if (!tree_.changed(*this)) return;
-  known_ = {"init", "getAck", "reqfullstate", "killsim"};
+  knownCommands_ = {"init", "getAck", "reqfullstate", "killsim"};
   for (const Found<ITrainer>& trainer : trainers_) {
-    if (!trainer.leaf->classObject()->property("commands")) return known_.clear();
+    if (!trainer.leaf->classObject()->property("commands")) return knownCommands_.clear();
     const Value names = getProperty(*trainer.leaf, "commands");
-    for (const Value& name : names.toList()) known_.push_back(name.toString());
+    for (const Value& name : names.toList()) knownCommands_.push_back(name.toString());
   }
 }
 
@@ -176,11 +174,12 @@ void MonitorServer::makeFrame(const Event& event) {
   else
     fillFromScene();
   if (changed_ || frame.shape == 0) ++frame.shape;
-  // Every message needs at least one entry, so without one that says the time it is said here.
+  // Monitors need at least one entry per message: add the time unless an item adds such an entry.
   const auto& entries = frame.env.entries;
   const auto isAlways = [](const Environment::Entry& e) { return e.policy == EnvPolicy::always; };
   if (std::none_of(entries.begin(), entries.end(), isAlways)) frame.env.put(EnvPolicy::always, "time", event.time);
 
+  // Hash the entries, and distribute the events.
   newest_.precision = static_cast<float>(precision_);
   newest_.keys.clear();
   for (const auto& entry : entries) {
@@ -204,8 +203,8 @@ void MonitorServer::publish(const Event& event) {
   if (!due(event)) return;
   makeFrame(event);
   for (const Found<IFrameTaker>& taker : takers_) taker->take(newest_, encoder_.get(), event);
-  leftOut_ = changed_ && !source_ && !leftOut_ && version() != atAct_;
-  if (leftOut_) return;
+  skipped_ = changed_ && !source_ && !skipped_ && version() != versionAtAct_;
+  if (skipped_) return;
   ready_.clear();
   for (auto& client : clients_)
     if (client->connection().idle()) ready_.push_back(client.get());
@@ -221,20 +220,21 @@ void MonitorServer::sendTo(const std::vector<MonitorClient*>& clients) {
   encoders_.clear();
   for (const MonitorClient* client : clients) encoders_.push_back(encoderFor(*client));
   if (std::find(encoders_.begin(), encoders_.end(), nullptr) != encoders_.end()) {
-    if (!toldNoEncoder_)
+    if (!noEncoderLogged_)
       kernel().log().error(
           "{}: expected an encoder below it, found none; monitors get nothing. Add one, e.g. new(\"SexpMonitor\", "
           "\"{}/encoder\").",
           path(), path());
-    toldNoEncoder_ = true;
+    noEncoderLogged_ = true;
     return;
   }
-  // Clients that were sent the same all along get the same: one of them is encoded.
+
+  // Group equivalent clients; encode one of each group.
   leaders_.clear();
   encoding_.clear();
   for (std::size_t i = 0; i < clients.size(); ++i) {
     const auto same = [&](std::size_t k) {
-      return encoders_[k] == encoders_[i] && clients[k]->view.isLike(clients[i]->view);
+      return encoders_[k] == encoders_[i] && clients[k]->view.isEquivalent(clients[i]->view);
     };
     const auto leader = std::find_if(encoding_.begin(), encoding_.end(), same);
     leaders_.push_back(leader == encoding_.end() ? i : *leader);
@@ -246,7 +246,7 @@ void MonitorServer::sendTo(const std::vector<MonitorClient*>& clients) {
   else if (!encoding_.empty())
     encode(0);
   for (std::size_t i = 0; i < clients.size(); ++i)
-    if (leaders_[i] != i) clients[i]->view.become(clients[leaders_[i]]->view);
+    if (leaders_[i] != i) clients[i]->view.copyState(clients[leaders_[i]]->view);
   for (std::size_t i = 0; i < clients.size(); ++i) clients[i]->send(clients[leaders_[i]]->message());
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// The monitor server.
 
 #include <memory>
 #include <optional>
@@ -14,23 +16,23 @@
 
 namespace spark {
 
-/// Makes frames of the scene and sends each client what it lacks; takes trainer commands.
+/// Makes frames of the scene, sends each client what has changed since its last message, executes trainer commands.
 ///
 ///     items ─┐ contribute (time 1.2)(round 3)...
 ///     scene ─┴► frame, every `interval` cycles in the publish phase (or a frame source makes it)
 ///                 ├─► client: what changed since *its* last message ─► encoder ─► connection, when idle
 ///                 ├─► client ...
-///                 └─► log: another viewer, in the host
-///     clients ─► commands, read when they arrive ─► act phase of the cycle after a due one ─► built in, then trainers
+///                 └─► frame takers inside the host: logs, the web server
+///     clients ─► commands, parsed on arrival ─► act phase of the cycle after a frame ─► built-in ones, then trainers
 ///
-/// A frame is due in the cycles whose number is a multiple of `interval`. Commands act in the cycle after, so that a
-/// frame shows what `interval` steps made of them; game control must stand before the monitor server in the tree for
-/// agents to act before trainers. As in the installed base a frame of a scene that changed after the act phase of its
-/// own cycle is left out, the next one is full; two are never left out in a row.
+/// A frame is due in cycles whose number is a multiple of `interval`. Commands are executed in the cycle after, so that
+/// the next frame shows their effect after `interval` steps. In the tree game control must precede the monitor server,
+/// so that agents act before trainers. As in SimSpark, a frame is skipped if its scene changed after the act phase of
+/// the same cycle; the next one is full. Two frames are never skipped in a row.
 ///
-/// A client that does not read is never closed: utilities open the port only to send commands, viewers pause. Frames
-/// are left out for it, and it costs one unsent message and some waiting events. Whose machine has gone is the
-/// transport's business.
+/// A client that does not read is never disconnected: utilities open the port only to send commands, viewers pause. It
+/// skips frames, and costs one unsent message and some waiting events. The transport detects clients whose machine is
+/// gone.
 class MonitorServer : public Node, public IMonitorServer, public IConnectionConsumer {
   SPARK_CLASS(MonitorServer, Node)
  public:
@@ -51,22 +53,22 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   bool takesCommands(const Event& event) const { return event.cycle % interval_ == 1 % interval_; }
   int clientCount() const { return static_cast<int>(clients_.size()); }
 
-  void learnCommands();
+  void updateKnownCommands();
   void makeFrame(const Event& event);
   void fillFromScene();
   void sendTo(const std::vector<MonitorClient*>& clients);
   IMonitorEncoder* encoderFor(const MonitorClient& client) const;
   void execute(const Element& command);
-  /// Keeps what a parser (nullptr: S-expressions) makes of a message until it is due.
-  std::string keepCommands(IParser* parser, std::string_view from, std::string_view message);
+  /// Parses a message (`parser` nullptr: S-expressions) and queues its commands. Returns as command().
+  std::string queueCommands(IParser* parser, std::string_view from, std::string_view message);
   std::string dropMessage(std::string_view from);
-  /// Which of the commands from token `first` on nobody takes, with the nearest that somebody does; "" when all are
-  /// known.
-  std::string unknownFrom(std::uint32_t first) const;
-  /// As command(), for scripts and sparkctl. Throws Error.
+  /// The first unknown command from token `first` of `commands_` on, with the nearest known one, as a sentence; "" if
+  /// all are known.
+  std::string describeUnknown(std::uint32_t first) const;
+  /// As command(), for scripts and sparkctl. Throws Error if a command will not be executed.
   void commandOrThrow(std::string text);
 
-  /// Of tree and scene.
+  /// Versions of the tree and of the scene.
   struct Version {
     std::uint64_t structure = 0, modified = 0;
     bool operator==(const Version&) const = default;
@@ -78,17 +80,20 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
 
   NewestFrame newest_;
   VisibleNodes nodes_;
-  Version atAct_;                                        ///< in the act phase of the last due cycle
+  Version versionAtAct_;                                 ///< in the act phase of the last cycle with a frame
   bool changed_ = false;                                 ///< the newest frame has another shape than the one before
-  bool leftOut_ = false;                                 ///< the last frame that was due was not sent
+  bool skipped_ = false;                                 ///< the last frame that was due was skipped
   std::vector<std::unique_ptr<MonitorClient>> clients_;  ///< in order of arrival
+  Predicates commands_;                                  ///< wait for the next cycle that executes commands
+  std::int64_t dropped_ = 0;                             ///< messages since the last log line about them
+  std::optional<std::int64_t> droppedLoggedAt_, unknownLoggedAt_;  ///< cycle of the last line
+
+  // Used by publish() and sendTo(); members, so that they keep their capacity. Indices refer to the clients of
+  // sendTo().
   std::vector<MonitorClient*> ready_;
-  std::vector<IMonitorEncoder*> encoders_;  ///< of the clients that are sent to
-  std::vector<std::size_t> leaders_;        ///< for each of these, the first that is like it
-  std::vector<std::size_t> encoding_;       ///< those that are encoded
-  Predicates commands_;
-  std::int64_t dropped_ = 0;  ///< messages since the last line about it
-  std::optional<std::int64_t> toldDroppedAt_, toldUnknownAt_;
+  std::vector<IMonitorEncoder*> encoders_;  ///< of each client
+  std::vector<std::size_t> leaders_;        ///< of each client: the first equivalent one
+  std::vector<std::size_t> encoding_;       ///< clients that are encoded: the leaders
 
   Link<IMonitorEncoder> encoder_;
   Link<IFrameSource> source_;
@@ -96,10 +101,10 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   Links<IFrameTaker> takers_;
   Links<IMonitorItem> items_;
   Links<ITrainer> trainers_;
-  TreeWatch tree_;                  ///< in which known_ was learnt
-  std::vector<std::string> known_;  ///< commands; empty when a trainer does not say what it takes
-  Event last_;                      ///< of the last publish phase
-  bool toldNoEncoder_ = false;
+  TreeWatch tree_;                          ///< `knownCommands_` is updated when the tree changes
+  std::vector<std::string> knownCommands_;  ///< empty if a trainer has no property `commands`
+  Event last_;                              ///< of the last publish phase
+  bool noEncoderLogged_ = false;
 };
 
 }  // namespace spark

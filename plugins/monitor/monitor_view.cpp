@@ -37,21 +37,21 @@ EntryKey keyOf(const Predicates& predicates, std::uint32_t token) {
 }
 
 void MonitorView::addEvent(const Element& event) {
-  if (update_.events.size() > kMostWaiting) forgetOldEvents();
+  if (update_.events.size() > kMaxEventTokens) dropOldEvents();
   const std::uint32_t at = update_.events.size();
   update_.events.append(event);
-  events_ = mix(events_, keyOf(update_.events, at).content);
+  eventsHash_ = mix(eventsHash_, keyOf(update_.events, at).content);
 }
 
-/// For viewers that never read.
-void MonitorView::forgetOldEvents() {
+/// For viewers that never read: drops the older half of the waiting events.
+void MonitorView::dropOldEvents() {
   const Predicates all = std::exchange(update_.events, {});
-  events_ = 0;
+  eventsHash_ = 0;
   for (const Element event : all) {
     if (event.index() < all.size() / 2) continue;
     const std::uint32_t at = update_.events.size();
     update_.events.append(event);
-    events_ = mix(events_, keyOf(update_.events, at).content);
+    eventsHash_ = mix(eventsHash_, keyOf(update_.events, at).content);
   }
 }
 
@@ -61,14 +61,14 @@ void MonitorView::encode(IMonitorEncoder& encoder, std::string& out) {
   pickEntries();
   shape_ = newest_.frame.shape;
   needsFull_ = false;
-  history_ = mix(update_.full ? newestId_ : history_, newest_.serial);
+  historyHash_ = mix(update_.full ? newestId_ : historyHash_, newest_.serial);
   encoder.encode(update_, out);
 }
 
 void MonitorView::pickNodes() {
   const auto& nodes = newest_.frame.nodes;
   if (update_.full) {
-    sent_.resize(nodes.size());
+    matrices_.resize(nodes.size());
     visible_.resize(nodes.size());
   }
   update_.changed.assign(nodes.size(), 0);
@@ -76,12 +76,11 @@ void MonitorView::pickNodes() {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     bool differs = false;
     if (nodes[i].kind == FrameNode::Kind::transform) {
-      // With a full update there is nothing to compare with: what was sent is new memory.
-      differs = update_.full || !((nodes[i].local - sent_[i]).cwiseAbs().maxCoeff() <= newest_.precision);
-      if (differs) sent_[i] = nodes[i].local;
+      // A full update has nothing to compare with: matrices_[i] may be uninitialized.
+      differs = update_.full || !((nodes[i].local - matrices_[i]).cwiseAbs().maxCoeff() <= newest_.precision);
+      if (differs) matrices_[i] = nodes[i].local;
     } else {
-      // The first diff after a mesh came repeats its visibility: the installed base's monitors have always been sent
-      // that.
+      // As SimSpark, the first diff after a mesh was created repeats its visibility.
       differs =
           nodes[i].kind != FrameNode::Kind::light && (newest_.ids[i] > newestId_ || visible_[i] != nodes[i].visible);
       visible_[i] = nodes[i].visible;
@@ -95,7 +94,7 @@ void MonitorView::pickNodes() {
 void MonitorView::pickEntries() {
   const auto& entries = newest_.frame.env.entries;
   update_.env.clear();
-  if (update_.full) told_.clear();
+  if (update_.full) entries_.clear();
   for (std::size_t i = 0; i < entries.size(); ++i) {
     bool wanted = update_.full;
     switch (entries[i].policy) {
@@ -109,41 +108,37 @@ void MonitorView::pickEntries() {
         break;
       case EnvPolicy::once:
         wanted = false;
-        break;  // waits among the events
+        break;  // sent as an event
     }
     if (wanted) update_.env.push_back(entries[i].token);
   }
 }
 
 bool MonitorView::changed(const EntryKey& key) {
-  for (EntryKey& told : told_) {
-    if (told.name != key.name) continue;
-    const bool differs = told.content != key.content;
-    told.content = key.content;
-    return differs;
-  }
-  told_.push_back(key);
+  for (EntryKey& sent : entries_)
+    if (sent.name == key.name) return std::exchange(sent.content, key.content) != key.content;
+  entries_.push_back(key);
   return true;
 }
 
 void MonitorView::delivered() {
   update_.events.clear();
-  events_ = 0;
+  eventsHash_ = 0;
 }
 
-bool MonitorView::isLike(const MonitorView& other) const {
+bool MonitorView::isEquivalent(const MonitorView& other) const {
   const bool full = willBeFull();
-  return full == other.willBeFull() && events_ == other.events_ && newestId_ == other.newestId_ &&
-         (full || history_ == other.history_);
+  return full == other.willBeFull() && eventsHash_ == other.eventsHash_ && newestId_ == other.newestId_ &&
+         (full || historyHash_ == other.historyHash_);
 }
 
-void MonitorView::become(const MonitorView& other) {
-  sent_ = other.sent_;
+void MonitorView::copyState(const MonitorView& other) {
+  matrices_ = other.matrices_;
   visible_ = other.visible_;
-  told_ = other.told_;
+  entries_ = other.entries_;
   shape_ = other.shape_;
   newestId_ = other.newestId_;
-  history_ = other.history_;
+  historyHash_ = other.historyHash_;
   needsFull_ = other.needsFull_;
   update_.full = other.update_.full;
 }

@@ -10,21 +10,21 @@ namespace spark {
 
 namespace {
 
-// What no monitor sends more of; the rest of such a record is left out.
-constexpr std::size_t kMostText = 512, kMostMaterials = 64, kMostEntries = 256;
+// Limits that no monitor server reaches; what exceeds them is dropped.
+constexpr std::size_t kMaxTextBytes = 512, kMaxMaterials = 64, kMaxEntries = 256;
 
-/// A match of 22 robots has some 15,000 tokens.
+/// Depth and tokens of a message; one of 22 robots has about 15,000 tokens.
 constexpr ReadLimits kLimits{64, 1u << 18};
 
-/// True when the text can be sent on as an atom.
+/// True if the text can be sent as an atom without quotes.
 bool isPlain(std::string_view text) {
   return !text.empty() && std::none_of(text.begin(), text.end(), [](unsigned char c) {
     return c <= ' ' || c == 127 || c == '(' || c == ')' || c == '"' || c == '\'' || c == ';' || c == '\\';
   });
 }
 
-/// All atoms behind a list's head, with blanks between them.
-std::string restOf(const Element& list) {
+/// The atoms after a list's head, separated by blanks.
+std::string argumentsOf(const Element& list) {
   std::string out;
   bool head = true;
   for (const Element e : list) {
@@ -33,12 +33,13 @@ std::string restOf(const Element& list) {
                                    ? std::string()
                                    : fmt::format("{:g}", e.number());  // in JSON a mesh's parameters are numbers
     const std::string_view word = number.empty() ? e.text() : number;
-    if (out.size() + word.size() < kMostText) out.append(out.empty() ? "" : " ").append(word);
+    if (out.size() + word.size() < kMaxTextBytes) out.append(out.empty() ? "" : " ").append(word);
   }
   return out;
 }
 
-/// The first `count` numbers behind a list's head; what is missing or no finite number stays.
+/// Reads up to `count` numbers after a list's head. An element of `out` stays as it is if its number is missing or not
+/// finite.
 void readNumbers(const Element& list, float* out, int count) {
   int i = -1;
   for (const Element e : list) {
@@ -80,6 +81,7 @@ std::string RecordedScene::take(std::string_view message, IParser* parser) {
   if (json && !parser)
     return "it is JSON: expected a parser below the player, e.g. new(\"JsonParser\", "
            "\"/sys/server/monitor/player/parser\")";
+  // Parse and check the form: environment, header, nodes.
   const ReadResult result = json ? parser->parse(message, parsed_) : readSexp(message, parsed_, kLimits);
   if (!result.message.empty()) return result.message;
   for (const Token& t : parsed_.tokens())
@@ -94,6 +96,8 @@ std::string RecordedScene::take(std::string_view message, IParser* parser) {
   if (count != 3 || !parts[0].isList() || !parts[2].isList()) return "expected three lists";
   const bool full = parts[1].head() == "RSG";
   if (!full && parts[1].head() != "RDS") return "expected (RSG 0 1) or (RDS 0 1)";
+
+  // Replace or patch the nodes; the environment comes last, since the message may still be refused here.
   if (full) {
     newNodes_.clear();
     newVisuals_.clear();
@@ -140,7 +144,7 @@ std::string RecordedScene::readNode(const Element& element, int depth) {
     else if (name == "SMN")
       visual->what = IVisual::Kind::singleMaterial, node.kind = FrameNode::Kind::singleMaterial;
     else
-      return "expected a node of type TRF, Light, StaticMesh or SMN, found '" + std::string(name.substr(0, 40)) + "'";
+      return fmt::format("expected a node of type TRF, Light, StaticMesh or SMN, found '{}'", name.substr(0, 40));
   }
   for (const Element e : element) {
     if (!e.isList()) continue;
@@ -151,7 +155,7 @@ std::string RecordedScene::readNode(const Element& element, int depth) {
     }
     if (head == "setVisible") visual->shown = e.at(1) && e.at(1).number() == 1;
     if (head == "setTransparent") visual->glass = true;
-    if (head == "load") visual->mesh = restOf(e);
+    if (head == "load") visual->mesh = argumentsOf(e);
     if (head == "sSc") readNumbers(e, visual->size.data(), 3);
     if (head == "sMat" && e.at(1)) visual->names = {std::string(e.at(1).text())};
     if (head == "setDiffuse") visual->colors[0] = readColor(e);
@@ -161,8 +165,8 @@ std::string RecordedScene::readNode(const Element& element, int depth) {
     visual->names.clear();
     bool first = true;
     for (const Element name : e) {
-      if (!std::exchange(first, false) && visual->names.size() < kMostMaterials)
-        visual->names.emplace_back(name.text().substr(0, kMostText));
+      if (!std::exchange(first, false) && visual->names.size() < kMaxMaterials)
+        visual->names.emplace_back(name.text().substr(0, kMaxTextBytes));
     }
   }
   if (visual && node.kind != FrameNode::Kind::light && visual->mesh.empty())
@@ -172,6 +176,7 @@ std::string RecordedScene::readNode(const Element& element, int depth) {
   return readNodes(element, depth + 1);
 }
 
+/// Checks that a diff has the nodes of the last full message. `next`: index of the next node.
 std::string RecordedScene::checkDiff(const Element& list, int depth, std::size_t& next) const {
   for (const Element e : list) {
     if (!isNode(e)) continue;
@@ -210,7 +215,7 @@ void RecordedScene::readEnvironment(const Element& list, bool full) {
     }
     auto at =
         std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) { return known.name == e.head(); });
-    if (at == entries_.end() && entries_.size() >= kMostEntries) continue;
+    if (at == entries_.end() && entries_.size() >= kMaxEntries) continue;
     if (at == entries_.end()) at = entries_.insert(at, Entry{std::string(e.head()), {}, false});
     at->value.clear();
     at->value.append(e);
@@ -218,8 +223,8 @@ void RecordedScene::readEnvironment(const Element& list, bool full) {
   }
 }
 
-std::shared_ptr<const RecordedScene::Moment> RecordedScene::moment() const {
-  auto out = std::make_shared<Moment>();
+std::shared_ptr<const RecordedScene::Snapshot> RecordedScene::snapshot() const {
+  auto out = std::make_shared<Snapshot>();
   out->nodes.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     std::copy_n(nodes_[i].local.data(), 16, out->nodes[i].first.begin());
@@ -230,14 +235,14 @@ std::shared_ptr<const RecordedScene::Moment> RecordedScene::moment() const {
   return out;
 }
 
-bool RecordedScene::restore(const Moment& moment) {
-  if (moment.nodes.size() != nodes_.size()) return false;
+bool RecordedScene::restore(const Snapshot& snapshot) {
+  if (snapshot.nodes.size() != nodes_.size()) return false;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    std::copy_n(moment.nodes[i].first.begin(), 16, nodes_[i].local.data());
-    if (visuals_[i]) visuals_[i]->shown = moment.nodes[i].second;
+    std::copy_n(snapshot.nodes[i].first.begin(), 16, nodes_[i].local.data());
+    if (visuals_[i]) visuals_[i]->shown = snapshot.nodes[i].second;
   }
-  entries_ = moment.entries;
-  events_ = moment.events;
+  entries_ = snapshot.entries;
+  events_ = snapshot.events;
   return true;
 }
 
@@ -250,7 +255,7 @@ bool RecordedScene::sameShape(const std::vector<FrameNode>& nodes, const Visuals
   return true;
 }
 
-void RecordedScene::copyTo(MonitorFrame& frame, std::vector<std::uint64_t>& ids, bool tellEvents) const {
+void RecordedScene::copyTo(MonitorFrame& frame, std::vector<std::uint64_t>& ids, bool events) const {
   frame.nodes.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     FrameNode& node = frame.nodes[i] = nodes_[i];
@@ -266,11 +271,12 @@ void RecordedScene::copyTo(MonitorFrame& frame, std::vector<std::uint64_t>& ids,
     env.predicates.append(e);
   };
   for (const Entry& entry : entries_) {
-    const bool passing = entry.name.starts_with("pass_mode_score_wait");  // there while it lasts
-    if (passing && !entry.current) continue;
-    add(passing || entry.name == "time" ? EnvPolicy::always : EnvPolicy::change, *entry.value.begin());
+    // Pass mode entries are in the messages only while the wait lasts.
+    const bool temporary = entry.name.starts_with("pass_mode_score_wait");
+    if (temporary && !entry.current) continue;
+    add(temporary || entry.name == "time" ? EnvPolicy::always : EnvPolicy::change, *entry.value.begin());
   }
-  if (tellEvents)
+  if (events)
     for (const Element e : events_) add(EnvPolicy::once, e);
 }
 

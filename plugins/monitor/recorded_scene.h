@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// The scene of a log.
 
 #include <array>
 #include <memory>
@@ -11,32 +13,33 @@
 
 namespace spark {
 
-/// What recorded monitor messages show: full ones replace it, diffs patch it. Recordings are outside data: a message
-/// that does not fit changes nothing.
+/// The scene and environment that recorded monitor messages describe: full messages replace it, diffs patch it. Logs
+/// are untrusted input: an invalid message changes nothing.
 class RecordedScene {
  public:
-  /// `owner` stands for the recorded nodes, which are none of the tree; it must outlive the scene.
+  /// `owner` is returned as the leaf of all recorded visuals, which are not nodes of the tree; it must outlive the
+  /// scene.
   explicit RecordedScene(Leaf& owner) : owner_(owner) {}
 
-  /// Takes one message, an S-expression or what `parser` (may be nullptr) reads, which begins with a bracket. Returns
-  /// "" or what is wrong with it.
+  /// Applies a message: an S-expression, or JSON, which begins with a bracket and needs `parser`. Returns "" or what is
+  /// wrong with it.
   std::string take(std::string_view message, IParser* parser = nullptr);
-  /// Forgets everything.
+  /// Removes everything.
   void clear();
-  /// Counts changes of nodes, meshes and materials.
+  /// Changes whenever nodes, meshes or materials do.
   std::uint64_t shape() const { return shape_; }
-  /// Copies what it shows. `tellEvents`: also those of the last message.
-  void copyTo(MonitorFrame& frame, std::vector<std::uint64_t>& ids, bool tellEvents) const;
+  /// Writes nodes and environment into `frame`, and the nodes' ids. `events`: with the events of the last message.
+  void copyTo(MonitorFrame& frame, std::vector<std::uint64_t>& ids, bool events) const;
 
-  /// What diffs change since the last full message.
-  struct Moment;
-  std::shared_ptr<const Moment> moment() const;
-  /// Is again as it was at a moment after the same full message, which must be the last one taken. False, and
-  /// unchanged, when it was another.
-  bool restore(const Moment& moment);
+  /// What diffs change.
+  struct Snapshot;
+  std::shared_ptr<const Snapshot> snapshot() const;
+  /// Restores a snapshot. The last applied message must be the full one on which the snapshot is based. False, without
+  /// a change, if the number of nodes differs.
+  bool restore(const Snapshot& snapshot);
 
  private:
-  /// A light or mesh as it was recorded.
+  /// A recorded light or mesh.
   class Visual : public IVisual {
    public:
     explicit Visual(Leaf& owner) : owner_(&owner) {}
@@ -50,6 +53,7 @@ class RecordedScene {
     const std::vector<std::string>& materials() const override { return names; }
     void setMaterialName(std::size_t i, std::string name) override { names.at(i) = std::move(name); }
     std::array<Color, 3> lightColors() const override { return colors; }
+    /// True if all but the visibility is equal.
     bool looksLike(const Visual& o) const;
 
     Kind what = Kind::mesh;
@@ -65,7 +69,7 @@ class RecordedScene {
   struct Entry {
     std::string name;
     Predicates value;
-    bool current = false;  ///< stood in the last message
+    bool current = false;  ///< it is in the last message
   };
   using Visuals = std::vector<std::unique_ptr<Visual>>;  ///< nullptr for transforms
 
@@ -78,16 +82,16 @@ class RecordedScene {
 
   Leaf& owner_;
   Predicates parsed_, events_;
-  std::vector<FrameNode> nodes_, newNodes_;
-  Visuals visuals_, newVisuals_;
-  std::vector<std::uint64_t> ids_;
+  std::vector<FrameNode> nodes_, newNodes_;  ///< current ones; those of the message that is being read
+  Visuals visuals_, newVisuals_;             ///< by node, likewise
+  std::vector<std::uint64_t> ids_;           ///< by node
   std::vector<Entry> entries_;
   std::uint64_t shape_ = 0, lastId_ = 0;
-  bool known_ = false;  ///< a full message was taken
+  bool known_ = false;  ///< a full message was applied
 };
 
-struct RecordedScene::Moment {
-  std::vector<std::pair<std::array<float, 16>, bool>> nodes;  ///< where they are, whether they are shown
+struct RecordedScene::Snapshot {
+  std::vector<std::pair<std::array<float, 16>, bool>> nodes;  ///< matrix, visibility
   std::vector<Entry> entries;
   Predicates events;
 };

@@ -14,7 +14,7 @@
 namespace spark {
 
 namespace {
-/// Monitors read words up to a blank or a bracket, and know no quotes.
+/// True if monitors can read the text: their words end at blanks and brackets, and they know no quotes.
 bool isWord(std::string_view text) {
   const auto fits = [](unsigned char c) { return c > ' ' && c != 0x7f && !std::strchr("()\"'\\;", c); };
   return !text.empty() && std::all_of(text.begin(), text.end(), fits);
@@ -26,7 +26,7 @@ void checkName(const std::string& name) {
                        "\"");
 }
 
-/// Throws RefusedValue unless monitors can read the value.
+/// Throws RefusedValue if monitors cannot read the value.
 void checkValue(const Value& value) {
   if (value.isList())
     for (const Value& v : value.toList()) checkValue(v);
@@ -36,7 +36,7 @@ void checkValue(const Value& value) {
     throw RefusedValue("expected a finite number, a word, a bool, or a list of these, found " + value.text());
 }
 
-/// Entries that a status has in words of its own, or not at all.
+/// Entries that a status has under other names, or not at all.
 constexpr std::string_view kMonitorWords[] = {"play_mode", "play_modes", "score_left", "score_right",
                                               "team_left", "team_right", "time"};
 
@@ -46,7 +46,7 @@ bool isStatusName(std::string_view name) {
          std::find(std::begin(kMonitorWords), std::end(kMonitorWords), name) == std::end(kMonitorWords);
 }
 
-/// `(name value)`; of a list each element: `(play_modes Wait Fight)`.
+/// Adds `(name value)`, or `(name value value ...)` for a list.
 void put(Environment& env, EnvPolicy policy, const std::string& name, const Value& value) {
   Predicates& out = env.open(policy, name);
   append(value.isList() ? value.toList() : List{value}, out);
@@ -76,7 +76,7 @@ void ScriptItem::describe(Description<ScriptItem>& d) {
 }
 
 void ScriptItem::contribute(Environment& env) {
-  // The server says its own time unless an item does.
+  // An entry 'time' replaces the server's own.
   for (const auto& [name, value] : entries_)
     put(env, name == "time" ? EnvPolicy::always : EnvPolicy::change, name, value);
   for (const Value& event : std::exchange(events_, {}))

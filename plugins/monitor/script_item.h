@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Monitor entries that a script sets: a game in Lua shows its score on the page.
+/// Entries of the monitors' environment that a script sets, such as the score of a game in Lua.
 
 #include <map>
 #include <string>
@@ -11,34 +11,33 @@
 
 namespace spark {
 
-/// A monitor item that a script fills. Its entries read and write like properties: `item.score_left = 3` adds
-/// `(score_left 3)` to every full message, and to the next one whenever the value changed. Entries are state: a rule
-/// that keeps its score here is restored with the world. Below the monitor server. The host's status line and a batch's
-/// columns have them as well.
+/// A child of the monitor server. Lua reads and writes its entries like properties: `item.score_left = 3` adds
+/// `(score_left 3)` to every full message, and to the next message after the value changed. Entries are state: a rule
+/// that keeps its score here is restored with the world. The host's status line and a batch's columns show them, too.
 class ScriptItem : public Node, public IMonitorItem, public IStatus {
   SPARK_CLASS(ScriptItem, Node)
  public:
   static void describe(Description<ScriptItem>& d);
   void contribute(Environment& env) override;
-  /// The words of monitors in those of a status: `play_mode`, `score_left` and `score_right`, `team_left` and
-  /// `team_right` become playMode, score and teams. All others but `play_modes` and `time` as they are.
+  /// Reports the entries under the names of a status: `play_mode`, `score_left` and `score_right`, `team_left` and
+  /// `team_right` become playMode, score and teams; `play_modes` and `time` are not reported; others keep their names.
   void report(std::vector<StatusEntry>& out) const override;
 
  private:
   void set(std::string name, Value value);
   Value get(std::string name) const;
   Value playMode() const;
-  /// The entries `left` and `right` as one.
+  /// Reports the entries `left` and `right` as one list, if both exist.
   void reportPair(std::vector<StatusEntry>& out, const char* name, const char* left, const char* right) const;
   std::vector<std::string> names() const;
   Value entries() const;
-  /// Takes the place of all entries. Throws RefusedValue and changes nothing when one of them is none.
+  /// Replaces all entries. Throws RefusedValue, without a change, if one is invalid.
   void setEntries(Value pairs);
   void event(std::string name, std::vector<Value> values);
   void script(std::string file, Value arguments);
 
   std::map<std::string, Value, std::less<>> entries_;
-  /// Events for the next frame. No state: frames are also made when a monitor connects.
+  /// Events of the next frame: lists of name and values. Not state, since a frame is also made when a monitor connects.
   List events_;
 };
 

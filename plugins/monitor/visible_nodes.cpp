@@ -23,16 +23,16 @@ bool VisibleNodes::refresh(Kernel& kernel) {
   return changed;
 }
 
-void VisibleNodes::collect(const Node& above, int depth) {
-  for (const auto& child : above.children()) {
+void VisibleNodes::collect(const Node& parent, int depth) {
+  for (const auto& child : parent.children()) {
     Entry entry{child->as<Transform>(), child->as<IVisual>(), depth};
-    const bool seen = entry.transform || entry.visual;
-    if (seen) {
+    const bool visible = entry.transform || entry.visual;
+    if (visible) {
       entries_.push_back(entry);
       ids_.push_back(child->id());
       depths_.push_back(depth);
     }
-    if (child->asNode()) collect(*child->asNode(), seen ? depth + 1 : depth);
+    if (child->asNode()) collect(*child->asNode(), visible ? depth + 1 : depth);
   }
 }
 

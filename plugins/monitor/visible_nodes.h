@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// The nodes of the scene that monitors see.
 
 #include <vector>
 
@@ -6,19 +8,18 @@
 
 namespace spark {
 
-/// The nodes of the active scene that monitors see, in depth-first order: transforms, lights and meshes; everything
-/// else is transparent, its visible children stand in its place. Looked up again only when the tree or the scene
-/// changed.
+/// The transforms, lights and meshes of the active scene in depth-first order. Other nodes are skipped; their visible
+/// children take their place. The list is rebuilt only if the tree or the scene has changed.
 class VisibleNodes {
  public:
-  /// Looks again if needed. True when clients need a full message: nodes came or went, or the scene was marked
-  /// modified.
+  /// Rebuilds the list if needed. True if clients need a full message: nodes were added or removed, or the scene was
+  /// marked as modified.
   bool refresh(Kernel& kernel);
-  /// True when refresh() would find nothing new: pointers that it gave out are valid.
+  /// True if refresh() would find no change; then the pointers of copyTo() are valid.
   bool fresh(Kernel& kernel) const;
-  /// Copies what the nodes say now; after refresh().
+  /// Writes the nodes with their current matrices and visibility. Call refresh() before.
   void copyTo(std::vector<FrameNode>& out) const;
-  /// Numbers of the nodes, in their order. Later made nodes have higher ones.
+  /// The nodes' ids, in the same order; a node that was created later has a higher one.
   const std::vector<std::uint64_t>& ids() const { return ids_; }
 
  private:
@@ -27,7 +28,7 @@ class VisibleNodes {
     IVisual* visual = nullptr;
     int depth = 0;
   };
-  void collect(const Node& above, int depth);
+  void collect(const Node& parent, int depth);
   std::vector<Entry> entries_;
   std::vector<std::uint64_t> ids_, lastIds_;
   std::vector<int> depths_, lastDepths_;
