@@ -9,7 +9,7 @@ namespace asio = boost::asio;
 using boost::system::error_code;
 
 namespace {
-constexpr std::size_t kMaxLine = 65536;  // bytes of one request
+constexpr std::size_t kMaxRequestBytes = 65536;
 }
 
 ControlClient::ControlClient(Socket socket) : socket_(std::move(socket)) { socket_.non_blocking(true); }
@@ -32,22 +32,22 @@ bool ControlClient::read() {
   if (ec == asio::error::would_block) return true;
   if (ec) return false;
   in_.append(bytes.data(), n);
-  return in_.size() <= kMaxLine;
+  return in_.size() <= kMaxRequestBytes;
 }
 
-void ControlClient::say(const std::string& line) { out_ += line + "\n"; }
+void ControlClient::writeLine(const std::string& line) { out_ += line + "\n"; }
 
 bool ControlClient::serve(Kernel& kernel, const Node& self) {
   if (!flush()) return false;
-  if (!out_.empty()) return true;  // it does not read: nothing more for it
+  if (!out_.empty()) return true;  // the client does not read
   if (!read()) return false;
   if (const std::size_t end = in_.find('\n'); end != std::string::npos) {
     const std::string line = in_.substr(0, end);
     in_.erase(0, end + 1);
-    say(answer(kernel, self, line, watch_));
+    writeLine(answer(kernel, self, line, watch_));
   } else if (watch_.started) {
     bool done = false;
-    if (const std::string line = nextOf(kernel, watch_, done); !line.empty()) say(line);
+    if (const std::string line = nextOf(kernel, watch_, done); !line.empty()) writeLine(line);
     watch_.started = !done;
   }
   return flush();

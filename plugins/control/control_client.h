@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One sparkctl that is connected.
+/// A connected sparkctl.
 
 #include <boost/asio/local/stream_protocol.hpp>
 #include <string>
@@ -9,24 +9,25 @@
 
 namespace spark::control {
 
-/// Reads lines and writes answers without ever waiting. Owned by the server.
+/// Reads requests and writes answers, one per line, without blocking. Owned by the ControlServer.
 class ControlClient {
  public:
   using Socket = boost::asio::local::stream_protocol::socket;
+  /// `socket`: connected.
   explicit ControlClient(Socket socket);
 
-  /// Writes what waits, then answers at most one request and looks at its watch. Returns false when the client is gone
-  /// or misbehaves.
+  /// Writes unsent output, then answers at most one request or, without one, polls the watch. False if the connection
+  /// is to be closed: it ended, or a request is too long. `self`: the server's node.
   bool serve(Kernel& kernel, const Node& self);
 
  private:
   bool flush();
   bool read();
-  void say(const std::string& line);
+  void writeLine(const std::string& line);
 
   Socket socket_;
-  std::string in_, out_;
-  Watch watch_;
+  std::string in_, out_;  ///< received and not handled; not sent yet
+  Watch watch_;           ///< of the last watch request
 };
 
 }  // namespace spark::control

@@ -5,20 +5,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "socket_place.h"
+#include "socket_path.h"
 #include "spark/error.h"
 #include "spark/plugin.h"
 
-// Who may talk to a house: its own user. The socket lies in a folder that only the user can enter (0700), is itself
-// 0600, and the peer's uid is asked of the system for every connection. A house that cannot have a socket runs without
-// one and says so.
+// Only the user that runs the simulation may connect: the socket (0600) is in a folder that only the user can enter
+// (0700), and the peer's user id of each connection is checked. If no socket can be opened, the simulation runs without
+// one and logs a warning.
 
 namespace spark {
 
 namespace {
 constexpr std::size_t kMaxClients = 16;
 
-bool sameUser(int descriptor) {
+/// True if the peer of a connected socket runs as the same user.
+bool isSameUser(int descriptor) {
   struct ucred peer = {};
   socklen_t size = sizeof peer;
   return getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == geteuid();
@@ -26,24 +27,24 @@ bool sameUser(int descriptor) {
 }  // namespace
 
 void ControlServer::describe(Description<ControlServer>& d) {
-  d.doc("The local socket of sparkctl; only the host's own user can open it.");
+  d.doc("The local socket of sparkctl; only the user of the host can open it.");
   d.implements<IInputSource>();
   d.implements<IRequests>();
-  d.property("socket", &ControlServer::socket).doc("The socket's file; empty when there is none.");
-  d.property("clients", &ControlServer::clients).doc("Programs connected now.");
+  d.property("socket", &ControlServer::socket).doc("Path of the socket; empty if there is none.");
+  d.property("clients", &ControlServer::clients).doc("Number of connected programs.");
 }
 
 void ControlServer::onLink() {
   try {
     open();
   } catch (const std::exception& e) {
-    kernel().log().warning("no control socket, sparkctl cannot reach this house: {}", e.what());
+    kernel().log().warning("no control socket, sparkctl cannot reach this simulation: {}", e.what());
   }
 }
 
 void ControlServer::open() {
   const auto folder = control::socketFolder();
-  control::sweep(folder);
+  control::removeStale(folder);
   const auto file = control::freeSocket(folder);
   Protocol::acceptor acceptor(io_);
   acceptor.open();
@@ -64,14 +65,14 @@ void ControlServer::onUnlink() {
 
 void ControlServer::accept() {
   if (!acceptor_ || clients_.size() >= kMaxClients) return;
-  // Accepting makes a socket before it finds that nobody is there; asking first costs a tenth.
-  pollfd door{acceptor_->native_handle(), POLLIN, 0};
-  if (::poll(&door, 1, 0) <= 0) return;
+  // accept() creates a socket object even if no client waits; poll() costs a tenth of that.
+  pollfd waiting{acceptor_->native_handle(), POLLIN, 0};
+  if (::poll(&waiting, 1, 0) <= 0) return;
   boost::system::error_code ec;
   Protocol::socket socket(io_);
   acceptor_->accept(socket, ec);
   if (ec) return;
-  if (sameUser(socket.native_handle()))
+  if (isSameUser(socket.native_handle()))
     clients_.push_back(std::make_unique<control::ControlClient>(std::move(socket)));
   else
     kernel().log().warning("a program of another user tried to open {} and was turned away", socket_);

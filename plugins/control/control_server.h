@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The local socket through which sparkctl looks at a running house.
+/// The local socket through which sparkctl inspects and controls a running simulation.
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
@@ -15,15 +15,16 @@
 
 namespace spark {
 
-/// At /sys/server/control. Works only in the run loop's poll, between two cycles: what it changes is an input like any
-/// other. Other servers that hear clients let it answer for them; its children answer further requests.
+/// At /sys/server/control. It works only in the run loop's poll, between two cycles, so changes by requests are
+/// ordinary inputs. Other servers use it to answer requests of their clients (IRequests). Children may answer further
+/// requests (IRequestHandler).
 class ControlServer : public Node, public IInputSource, public IRequests {
   SPARK_CLASS(ControlServer, Node)
  public:
   static void describe(Description<ControlServer>& d);
 
   void poll() override;
-  /// Does not wait: poll() is all it has.
+  /// Does not wait; see canWait().
   bool wait(double) override { return false; }
   bool canWait() const override { return false; }
 
@@ -45,7 +46,7 @@ class ControlServer : public Node, public IInputSource, public IRequests {
   boost::asio::io_context io_;
   std::optional<Protocol::acceptor> acceptor_;
   std::vector<std::unique_ptr<control::ControlClient>> clients_;
-  std::string socket_;
+  std::string socket_;  ///< path of the socket; "": none
 };
 
 }  // namespace spark

@@ -1,5 +1,7 @@
 #include "requests.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -12,8 +14,8 @@ namespace spark::control {
 using Json = nlohmann::ordered_json;
 
 namespace {
-// Of one tree answer, below the node that was asked for; for those who only look, who must not hold up the match.
-constexpr std::size_t kMostNodes = 100000, kMostNodesToLookAt = 2000;
+// Maximum number of nodes in a tree answer; less for clients that may not change anything (spectators).
+constexpr std::size_t kMaxNodes = 100000, kMaxNodesForSpectators = 2000;
 constexpr int kMaxDepth = 64;  // of lists in a value
 
 Json toJson(const Value& v) {
@@ -37,7 +39,7 @@ Json toJson(const Value& v) {
 }
 
 Value fromJson(const Json& j, int depth = 0) {
-  if (depth > kMaxDepth) throw Error("expected lists nested at most " + std::to_string(kMaxDepth) + " deep");
+  if (depth > kMaxDepth) throw Error(fmt::format("expected lists nested at most {} deep", kMaxDepth));
   if (j.is_boolean()) return j.get<bool>();
   if (j.is_number_integer()) return j.get<std::int64_t>();
   if (j.is_number()) return j.get<double>();
@@ -50,7 +52,7 @@ Value fromJson(const Json& j, int depth = 0) {
 
 std::string textOf(const Json& request, const char* key) {
   const auto at = request.find(key);
-  if (at == request.end() || !at->is_string()) throw Error(std::string("the request lacks a text \"") + key + "\"");
+  if (at == request.end() || !at->is_string()) throw Error(fmt::format("the request lacks a text \"{}\"", key));
   return at->get<std::string>();
 }
 
@@ -60,8 +62,8 @@ const Property& propertyOf(Leaf& leaf, const std::string& name) {
   if (const Property* p = leaf.classObject()->property(name)) return *p;
   std::vector<std::string> names;
   for (const Property* p : leaf.classObject()->properties()) names.push_back(p->name);
-  throw Error(leaf.path() + " (" + leaf.classObject()->name() + ") has no property '" + name + "'." +
-              didYouMean(name, names));
+  throw Error(fmt::format("{} ({}) has no property '{}'.{}", leaf.path(), leaf.classObject()->name(), name,
+                          didYouMean(name, names)));
 }
 
 Json describe(const Leaf& leaf, const Property& p) {
@@ -85,7 +87,7 @@ Json describeLinks(const Leaf& leaf) {
   return out;
 }
 
-/// What `left` nodes do not suffice for is told as what is too deep is: how many there are.
+/// `left`: number of nodes that may still be listed. Children beyond it, or beyond `depth`, are only counted.
 Json describeTree(const Leaf& leaf, int depth, bool links, std::size_t& left) {
   Json out{{"name", leaf.name()}, {"class", leaf.classObject()->name()}, {"doc", leaf.classObject()->doc()}};
   if (links && !leaf.classObject()->links().empty()) out["links"] = describeLinks(leaf);
@@ -98,9 +100,10 @@ Json describeTree(const Leaf& leaf, int depth, bool links, std::size_t& left) {
   return out;
 }
 
-Json tree(Kernel& kernel, const Json& request, std::size_t most) {
+Json tree(Kernel& kernel, const Json& request, std::size_t maxNodes) {
   const Leaf& top = nodeOf(kernel, request);
-  std::size_t left = std::max(most, top.asNode() ? top.asNode()->children().size() : 0);
+  // The children of the requested node are listed in any case.
+  std::size_t left = std::max(maxNodes, top.asNode() ? top.asNode()->children().size() : 0);
   return {{"ok", true}, {"tree", describeTree(top, request.value("depth", -1), request.value("links", false), left)}};
 }
 
@@ -119,22 +122,23 @@ Json set(Kernel& kernel, const Json& request) {
   if (!request.contains("value")) throw Error("the request lacks a \"value\"");
   Leaf& leaf = nodeOf(kernel, request);
   setProperty(leaf, textOf(request, "property"), fromJson(request["value"]));
-  return propertiesOf(leaf, request);  // its name may be what was set
+  return propertiesOf(leaf, request);  // by reference: the name may have been set
 }
 
-/// The run loop and this server are at work while a request is answered: they cannot go.
-void refuseSawing(const Leaf& target, const std::string& method, const Leaf& self) {
+/// The run loop and this server are on the call stack while a request is answered: refuses to remove them.
+void refuseRemovingServers(const Leaf& target, const std::string& method, const Leaf& self) {
   if (method != "unlinkLeaf" && method != "unlinkChildren") return;
   bool inServers = false;
   for (const Leaf* up = &target; up; up = up->parent()) inServers |= up == self.parent();
   for (const Leaf* up = &self; up; up = up->parent()) inServers |= up == &target;
-  if (inServers) throw Error("cannot remove " + target.path() + " while the house runs: servers stay until its end");
+  if (inServers)
+    throw Error(fmt::format("cannot remove {} while the simulation runs: servers stay until its end", target.path()));
 }
 
 Json call(Kernel& kernel, const Leaf& self, const Json& request) {
   Leaf& leaf = nodeOf(kernel, request);
   const std::string method = textOf(request, "method");
-  refuseSawing(leaf, method, self);
+  refuseRemovingServers(leaf, method, self);
   std::vector<Value> arguments;
   if (const auto at = request.find("arguments"); at != request.end() && at->is_array())
     for (const Json& a : *at) arguments.push_back(fromJson(a));
@@ -159,7 +163,7 @@ Json plugins(Kernel& kernel) {
 
 Json load(Kernel& kernel, const Json& request) {
   const Plugin& p = kernel.plugins().use(textOf(request, "name"));
-  std::string text = p.name() + " " + p.version() + " from " + p.file() + ":";
+  std::string text = fmt::format("{} {} from {}:", p.name(), p.version(), p.file());
   for (const std::string& c : p.classes()) text += " " + c;
   return {{"ok", true}, {"text", text}};
 }
@@ -188,7 +192,7 @@ std::string startWatch(Kernel& kernel, const Json& request, Watch& watch) {
   return watchLine(kernel, watch);
 }
 
-/// All requests that are answered here, for people.
+/// The names of all requests, as part of a sentence.
 std::string knownRequests(const Node& self) {
   std::string out = "tree, get, set, call, watch, plugins, load, unload";
   for (const auto& child : self.children())
@@ -197,7 +201,7 @@ std::string knownRequests(const Node& self) {
   return out.insert(out.rfind(", ") + 2, "or ");
 }
 
-/// The handler that answers a request, nullptr when there is none.
+/// The handler that answers a request; nullptr if there is none.
 IRequestHandler* handlerOf(const Node& self, std::string_view what) {
   for (const auto& child : self.children())
     if (auto handler = child->as<IRequestHandler>())
@@ -211,10 +215,10 @@ std::string dispatch(Kernel& kernel, const Node& self, std::string_view line, Wa
   if (!request.is_object()) throw Error("expected one JSON object a line");
   const std::string what = textOf(request, "do");
   if (!mayChange && (what == "set" || what == "call" || what == "load" || what == "unload"))
-    throw Error(
-        "'" + what +
-        "' changes the match, which only the referee may: log in with the token that the host printed at its start");
-  if (what == "tree") return dump(tree(kernel, request, mayChange ? kMostNodes : kMostNodesToLookAt));
+    throw Error(fmt::format(
+        "'{}' changes the match, which only the referee may: log in with the token that the host printed at its start",
+        what));
+  if (what == "tree") return dump(tree(kernel, request, mayChange ? kMaxNodes : kMaxNodesForSpectators));
   if (what == "get") return dump(get(kernel, request));
   if (what == "set") return dump(set(kernel, request));
   if (what == "call") return dump(call(kernel, self, request));
@@ -223,7 +227,7 @@ std::string dispatch(Kernel& kernel, const Node& self, std::string_view line, Wa
   if (what == "plugins") return dump(plugins(kernel));
   if (what == "watch") return startWatch(kernel, request, watch);
   if (auto* handler = handlerOf(self, what)) return handler->answer(line);
-  throw Error("expected " + knownRequests(self) + ", found '" + what + "'");
+  throw Error(fmt::format("expected {}, found '{}'", knownRequests(self), what));
 }
 }  // namespace
 
@@ -237,7 +241,7 @@ std::string answer(Kernel& kernel, const Node& self, std::string_view line, Watc
 
 std::string nextOf(Kernel& kernel, Watch& watch, bool& done) {
   try {
-    if (!watch.leaf) throw Error("there is no " + watch.path + " any more");
+    if (!watch.leaf) throw Error(fmt::format("there is no {} any more", watch.path));
     Value now = getProperty(*watch.leaf, watch.property);
     if (now == watch.last) return {};
     watch.last = std::move(now);

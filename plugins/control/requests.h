@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// What sparkctl and other clients may ask: JSON in, JSON out, answered from the tree's own descriptions.
+/// Requests of sparkctl and other clients: JSON in, JSON out, answered from the descriptions of classes.
 ///
 ///     {"do":"tree","path":"/sys","depth":2}         {"ok":true,"tree":{"name","class","doc","children":[...]}};
-///                                                   "more": number of children left out, for depth or number;
+///                                                   "more": number of children left out, because of depth or number;
 ///                                                   with "links":true also "links":[{"to","paths"}, ...]
 ///     {"do":"get","path":"/x","property":"step"}    {"ok":true,"properties":[{"name","value","text","type",...}]}
 ///     {"do":"get","path":"/x"}                      all properties of the node
@@ -11,13 +11,12 @@
 ///     {"do":"call","path","method","arguments":[]}  {"ok":true,"text","value"}
 ///     {"do":"watch","path","property"}              {"ok":true,"cycle","time","text","value"} now and after each
 ///     change
-///     {"do":"load","name":"wind"}                   {"ok":true,"text"}: registers a plugin's classes, loads its file
-///     first
+///     {"do":"load","name":"wind"}                   {"ok":true,"text"}: loads a plugin and registers its classes
 ///     {"do":"unload","name":"wind"}                 {"ok":true}
-///     {"do":"plugins"} {"ok":true,"plugins":[{"name","version","doc","file","classes",...}]}
-///     whatever the children of the control server answer (IRequestHandler)
+///     {"do":"plugins"} {"ok":true,"plugins":[{"name","version","doc","file","classes",...}]} requests of the control
+///     server's children (IRequestHandler)
 ///
-/// Texts in "value" and "arguments" are read as people type them (true, 3, {1,2}, words). Errors:
+/// Strings in "value" and "arguments" are parsed like user input (true, 3, {1,2}, words). Errors:
 /// {"ok":false,"error":"..."}.
 
 #include <nlohmann/json_fwd.hpp>
@@ -30,12 +29,14 @@
 
 namespace spark::control {
 
-/// The answer to one line, without the line feed. Bad requests give an error answer; nothing is thrown. `self`: the
-/// server's own node, which requests must not saw off. When the request is a watch, `watch` is filled in and the answer
-/// is its first line. `mayChange` false refuses all that changes something.
+/// The answer to a request of one line, both without the line feed. An invalid request gets an error answer; does not
+/// throw. `self`: the server's node; requests that would remove it are refused. A watch request sets `watch`, and the
+/// answer is its first line. `mayChange` false: requests that change something are refused. Simulation thread, between
+/// cycles.
 std::string answer(Kernel& kernel, const Node& self, std::string_view line, Watch& watch, bool mayChange = true);
 
-/// The next line of a watch, "" when the value is as before. An error answer when the property is gone (`done` is set).
+/// The next line of a watch; "" if the value has not changed. If the property is gone, an error answer, and `done` is
+/// set.
 std::string nextOf(Kernel& kernel, Watch& watch, bool& done);
 
 }  // namespace spark::control

@@ -8,10 +8,9 @@
 namespace spark::drawing {
 
 namespace {
-/// Packets of the drawing port are no longer than this.
-constexpr std::size_t kLongestPacket = 512;
+constexpr std::size_t kMaxPacketBytes = 512;  // of the drawing port
 
-/// Collects commands in packets, which it writes as recorders do: `[1, 0, -3]`, bytes with a sign.
+/// Collects commands into packets and writes these as SimSpark's recorder does: `[1, 0, -3]`, signed bytes.
 class Recorder {
  public:
   explicit Recorder(std::string& out) : out_(out), begin_(out.size()) {}
@@ -20,9 +19,10 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   void add(const std::string& command) {
-    if (packet_.size() + command.size() > kLongestPacket) flush();
+    if (packet_.size() + command.size() > kMaxPacketBytes) flush();
     packet_ += command;
   }
+  /// Number of bytes written so far, about.
   std::size_t size() const { return out_.size() - begin_ + 5 * packet_.size(); }
 
  private:
@@ -39,6 +39,7 @@ class Recorder {
   std::string packet_;
 };
 
+/// The byte of an agent in packets.
 std::size_t byteOf(const Drawing& text) { return static_cast<std::size_t>(text.number - 1 + 128 * text.team); }
 }  // namespace
 
@@ -48,7 +49,7 @@ std::size_t DrawBoard::weight(const std::vector<Drawing>& shapes) {
   return sum;
 }
 
-/// A set that shows nothing and is not drawn into gives its place to another.
+/// Removes a set without shapes, shown or in the back buffer; false if there is none.
 bool DrawBoard::makeRoom() {
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     if (!shown_[i].shapes.empty() || !next_[i].empty()) continue;
@@ -66,7 +67,7 @@ std::size_t DrawBoard::indexOf(std::string_view set) {
   };
   auto at = find();
   if (at != shown_.end() && at->name == set) return static_cast<std::size_t>(at - shown_.begin());
-  if (shown_.size() >= kMostSets && !makeRoom()) return shown_.size();
+  if (shown_.size() >= kMaxSets && !makeRoom()) return shown_.size();
   at = find();
   const auto index = at - shown_.begin();
   shown_.insert(at, Set{std::string(set), version_, {}});
@@ -75,9 +76,9 @@ std::size_t DrawBoard::indexOf(std::string_view set) {
 }
 
 bool DrawBoard::add(std::string_view set, Drawing drawing) {
-  if (set == kAgents || points_ + weight(drawing) > kMostPoints) return false;
+  if (set == kAgents || points_ + weight(drawing) > kMaxPoints) return false;
   const std::size_t i = indexOf(set);
-  if (i == shown_.size() || next_[i].size() >= kMostShapes) return false;
+  if (i == shown_.size() || next_[i].size() >= kMaxShapes) return false;
   points_ += weight(drawing);
   next_[i].push_back(std::move(drawing));
   return true;
@@ -101,14 +102,14 @@ std::size_t DrawBoard::show(std::string_view set, std::vector<Drawing> shapes) {
   const std::size_t wanted = shapes.size();
   const std::size_t i = set == kAgents ? shown_.size() : indexOf(set);
   if (i == shown_.size()) return wanted;
-  if (shapes.size() > kMostShapes) shapes.resize(kMostShapes);
+  if (shapes.size() > kMaxShapes) shapes.resize(kMaxShapes);
   const std::size_t others = points_ - weight(shown_[i].shapes);
-  while (!shapes.empty() && others + weight(shapes) > kMostPoints) shapes.resize(shapes.size() / 2);
+  while (!shapes.empty() && others + weight(shapes) > kMaxPoints) shapes.resize(shapes.size() / 2);
   if (shapes.empty() && shown_[i].shapes.empty()) return wanted;
-  const std::size_t left = wanted - shapes.size();
+  const std::size_t refused = wanted - shapes.size();
   points_ += weight(shapes);
   replace(i, std::move(shapes));
-  return left;
+  return refused;
 }
 
 void DrawBoard::setAgentText(const Drawing& text) {
@@ -143,8 +144,6 @@ void DrawBoard::clear() {
   place_ = {};
 }
 
-/// A swap concerns all sets whose names begin so. In order of name these follow at once: what a swap took from them is
-/// drawn again.
 void DrawBoard::record(std::uint64_t since, std::string& out) const {
   if (version_ == since) return;
   Recorder recorder(out);
@@ -154,7 +153,11 @@ void DrawBoard::record(std::uint64_t since, std::string& out) const {
     put(arguments..., command);
     recorder.add(command);
   };
-  if (since == 0) write(writeSwap, ""), write(writeSwap, "");  // the second takes away what was drawn before the first
+  // Clear both buffers of all sets: the second swap removes what the first one has shown.
+  if (since == 0) write(writeSwap, ""), write(writeSwap, "");
+
+  // A swap of a set also swaps all sets whose names begin with its name. In order of name these follow immediately, so
+  // they are drawn again after it.
   std::string_view swapped;
   bool any = false;
   for (const Set& set : shown_) {
@@ -162,10 +165,12 @@ void DrawBoard::record(std::uint64_t since, std::string& out) const {
     const bool follows = any && set.name.starts_with(swapped);
     if ((set.version <= since && !follows) || (since == 0 && set.shapes.empty())) continue;
     if (!follows) swapped = set.name, any = true;
-    if (recorder.size() > kMostRecorded) break;
+    if (recorder.size() > kMaxRecordBytes) break;
     for (const Drawing& d : set.shapes) write(writeDrawing, d, set.name);
     write(writeSwap, set.name);
   }
+
+  // Agents' texts: all that were ever set, or removed.
   const auto agents = std::find_if(shown_.begin(), shown_.end(), [](const Set& s) { return s.name == kAgents; });
   if (agents == shown_.end() || agents->version <= since) return;
   for (std::size_t i = 0; i < labelled_.size(); ++i) {

@@ -1,24 +1,26 @@
 #pragma once
+/// \file
+/// The effector with which agents draw.
 
 #include "api/agents.h"
-#include "draw_list.h"
 #include "draw_packet.h"
 #include "drawing_server.h"
+#include "shape_reader.h"
 
 namespace spark {
 
-/// `(draw (set Red.3.plan) (line (from 0 0 0) (to 1 2 0)) (text (at 1 2 0.5) (say "there")))`: shows these shapes, in
-/// the world's frame, under that name, instead of what was there. Without a drawing server it does nothing.
+/// `(draw (set Red.3.plan) (line (from 0 0 0) (to 1 2 0)) (text (at 1 2 0.5) (say "there")))`: replaces the shapes of a
+/// set, in the world frame. Without a drawing server it does nothing.
 class DrawEffector : public Effector {
   SPARK_CLASS(DrawEffector, Effector)
  public:
   static void describe(Description<DrawEffector>& d) {
     d.doc(
-        "Draws for those who watch: (draw (set name) shapes ...) replaces what was drawn under that name; without "
-        "shapes it is taken away.");
+        "Draws for viewers: (draw (set name) shapes ...) replaces the shapes of that set; without shapes it removes "
+        "the set.");
     d.link(&DrawEffector::server_, At<DrawingServer>());
     d.property("defaultSet", &DrawEffector::defaultSet_)
-        .doc("Name of the set that a message does not name; empty: agent and its number.");
+        .doc("Name of the set if the action names none; empty: agent and its number.");
   }
   std::string predicate() const override { return "draw"; }
 
@@ -28,10 +30,10 @@ class DrawEffector : public Effector {
     std::vector<Drawing> shapes;
     for (const Element e : action) {
       if (!e.isList() || e.head() == "set") continue;
-      if (shapes.size() == drawing::DrawBoard::kMostShapes)
+      if (shapes.size() == drawing::DrawBoard::kMaxShapes)
         return fmt::format("(draw): expected at most {} shapes.", shapes.size());
       if (std::string wrong = drawing::readShape(e, shapes.emplace_back()); !wrong.empty())
-        return "(draw): " + wrong + ".";
+        return fmt::format("(draw): {}.", wrong);
     }
     server->show(setOf(action), std::move(shapes));
     return {};
@@ -40,7 +42,7 @@ class DrawEffector : public Effector {
  private:
   std::string setOf(const Element& action) const {
     if (const Element set = action.named("set"))
-      return drawing::cleanText(set.at(1).text(), drawing::PacketReader::kLongestName);
+      return drawing::cleanText(set.at(1).text(), drawing::PacketReader::kMaxNameBytes);
     if (!defaultSet_.empty()) return defaultSet_;
     AgentAspect* aspect = agent();
     return fmt::format("agent{}", aspect ? aspect->outermost().number() : 0);

@@ -14,7 +14,7 @@ constexpr std::uint8_t kRight = 128;
 
 using Kind = Drawing::Kind;
 
-/// Length of the UTF-8 character at the start of the bytes; 0 when there is none.
+/// Number of bytes of the UTF-8 character at the start; 0 if it is invalid. `bytes` is not empty.
 std::size_t characterAt(std::string_view bytes) {
   const auto at = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
   const std::uint8_t first = at(0);
@@ -26,28 +26,28 @@ std::size_t characterAt(std::string_view bytes) {
   if (n == 0 || n > bytes.size()) return 0;
   for (std::size_t i = 1; i < n; ++i)
     if ((at(i) & 0xc0) != 0x80) return 0;
-  if (first == 0xe0 && at(1) < 0xa0) return 0;  // longer than needed
-  if (first == 0xed && at(1) > 0x9f) return 0;  // halves of characters
+  if (first == 0xe0 && at(1) < 0xa0) return 0;  // overlong encoding
+  if (first == 0xed && at(1) > 0x9f) return 0;  // surrogates
   if ((first == 0xf0 && at(1) < 0x90) || (first == 0xf4 && at(1) > 0x8f)) return 0;
   return n;
 }
 
 }  // namespace
 
-std::string cleanText(std::string_view bytes, std::size_t longest) {
+std::string cleanText(std::string_view bytes, std::size_t maxBytes) {
   std::string out;
   while (!bytes.empty()) {
     const std::size_t n = characterAt(bytes);
     const auto first = static_cast<std::uint8_t>(bytes[0]);
     const std::string_view character = n == 0 ? "?" : first < ' ' || first == 127 ? " " : bytes.substr(0, n);
-    if (out.size() + character.size() > longest) break;
+    if (out.size() + character.size() > maxBytes) break;
     out += character;
     bytes.remove_prefix(std::max<std::size_t>(n, 1));
   }
   return out;
 }
 
-// ---- reading: what is not there is zero and marks the packet as failed ----
+// ---- reading: a missing or invalid argument is zero and sets failed_ ----
 
 bool PacketReader::next(Command& out) {
   if (rest_.empty() || failed_) return false;
@@ -60,13 +60,13 @@ bool PacketReader::read(Command& out) {
   const std::uint8_t what = byte(), type = byte();
   if (what == 0 && type == 0) {
     out.kind = Command::Kind::swap;
-    out.set = text(kLongestName);
+    out.set = text(kMaxNameBytes);
     return true;
   }
   if (what == 1) {
     out.kind = Command::Kind::draw;
     if (!readShape(type, out.drawing)) return false;
-    out.set = text(kLongestName);
+    out.set = text(kMaxNameBytes);
     return true;
   }
   if (what == 2) return readText(type, out);
@@ -122,8 +122,8 @@ bool PacketReader::readText(std::uint8_t type, Command& out) {
     readAgent(d);
   if (type == 2) return true;
   d.color = color();
-  d.text = text(kLongestText);
-  if (type == 0) out.set = text(kLongestName);
+  d.text = text(kMaxTextBytes);
+  if (type == 0) out.set = text(kMaxNameBytes);
   return true;
 }
 
@@ -143,8 +143,8 @@ float PacketReader::number() {
   while (begin < end && (*begin == ' ' || *begin == '+')) ++begin;
   while (end > begin && end[-1] == ' ') --end;
   float v = 0;
-  const auto [behind, wrong] = std::from_chars(begin, end, v);
-  if (wrong != std::errc() || behind != end || !(std::abs(v) <= kFarthest)) return failed_ = true, 0.f;
+  const auto [parsed, wrong] = std::from_chars(begin, end, v);
+  if (wrong != std::errc() || parsed != end || !(std::abs(v) <= kMaxCoordinate)) return failed_ = true, 0.f;
   return v;
 }
 
@@ -157,18 +157,18 @@ Vec3f PacketReader::point() {
 
 Color PacketReader::color(bool alpha) {
   Color c;
-  for (float* part : {&c.r, &c.g, &c.b}) *part = static_cast<float>(byte()) / 255.f;
+  for (float* channel : {&c.r, &c.g, &c.b}) *channel = static_cast<float>(byte()) / 255.f;
   if (alpha) c.a = static_cast<float>(byte()) / 255.f;
   return c;
 }
 
-std::string PacketReader::text(std::size_t longest) {
+std::string PacketReader::text(std::size_t maxBytes) {
   const auto end = std::find(rest_.begin(), rest_.end(), std::byte{0});
   if (end == rest_.end()) return failed_ = true, std::string();
   const std::string_view bytes(reinterpret_cast<const char*>(rest_.data()),
                                static_cast<std::size_t>(end - rest_.begin()));
   rest_ = rest_.subspan(bytes.size() + 1);
-  return cleanText(bytes, longest);
+  return cleanText(bytes, maxBytes);
 }
 
 void PacketReader::readAgent(Drawing& out) {
@@ -184,9 +184,9 @@ namespace {
 void put(std::string& out, int byte) { out += static_cast<char>(byte); }
 
 void putNumber(std::string& out, float v) {
-  constexpr float kMost = 99999;
+  constexpr float kMax = 99999;  // fits into six characters
   char text[64];
-  std::snprintf(text, sizeof text, "%6f", static_cast<double>(std::isfinite(v) ? std::clamp(v, -kMost, kMost) : 0));
+  std::snprintf(text, sizeof text, "%6f", static_cast<double>(std::isfinite(v) ? std::clamp(v, -kMax, kMax) : 0));
   out.append(text, kDigits);
 }
 
@@ -195,9 +195,9 @@ void putPoint(std::string& out, const Vec3f& p) {
 }
 
 void putColor(std::string& out, const Color& c, bool alpha = false) {
-  const auto part = [&](float v) { put(out, static_cast<int>(std::lround(255 * std::clamp(v, 0.f, 1.f)))); };
-  part(c.r), part(c.g), part(c.b);
-  if (alpha) part(c.a);
+  const auto channel = [&](float v) { put(out, static_cast<int>(std::lround(255 * std::clamp(v, 0.f, 1.f)))); };
+  channel(c.r), channel(c.g), channel(c.b);
+  if (alpha) channel(c.a);
 }
 
 void putText(std::string& out, std::string_view text) { out.append(text.substr(0, text.find('\0'))), put(out, 0); }
@@ -213,7 +213,7 @@ void putAgentText(std::string& out, const Drawing& d) {
 }  // namespace
 
 void writeDrawing(const Drawing& d, std::string_view set, std::string& out) {
-  constexpr std::size_t kMostCorners = 255;
+  constexpr std::size_t kMaxCorners = 255;
   switch (d.kind) {
     case Kind::circle:
       put(out, 1), put(out, 0), putNumber(out, d.points[0].x()), putNumber(out, d.points[0].y()),
@@ -227,7 +227,7 @@ void writeDrawing(const Drawing& d, std::string_view set, std::string& out) {
       put(out, 1), put(out, d.kind == Kind::point ? 2 : 3), putPoint(out, d.points[0]), putNumber(out, d.size);
       break;
     case Kind::polygon: {
-      const std::size_t corners = std::min(d.points.size(), kMostCorners);
+      const std::size_t corners = std::min(d.points.size(), kMaxCorners);
       put(out, 1), put(out, 4), put(out, static_cast<int>(corners)), putColor(out, d.color, true);
       for (std::size_t i = 0; i < corners; ++i) putPoint(out, d.points[i]);
       return putText(out, set);

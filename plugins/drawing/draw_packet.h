@@ -1,16 +1,17 @@
 #pragma once
 /// \file
-/// The packets of the drawing port, as the installed base's viewer reads them. Several commands stand in a packet, each
-/// a type, a subtype and what belongs to it:
+/// The packets of the drawing port, in the format of RoboViz. A packet contains several commands, each a type, a
+/// subtype and arguments:
 ///
-///     0 0 name\0                              swap: shows what was drawn under names that begin so, begins anew
+///     0 0 name\0                              swap the buffers of all sets whose names begin so
 ///     1 0 x y radius thickness rgb name\0     circle            1 3 x y z radius rgb name\0         sphere
 ///     1 1 x y z x y z thickness rgb name\0    line              1 4 n rgba n times (x y z) name\0   polygon
 ///     1 2 x y z size rgb name\0               point             2 0 x y z rgb text\0 name\0         text
-///     2 1 agent rgb text\0                    text at an agent  2 2 agent                           no text there
-///     3 0 agent                               the viewer is to select the agent: ignored here
+///     2 1 agent rgb text\0                    text at an agent  2 2 agent                           remove it
+///     3 0 agent                               select the agent in the viewer: ignored here
 ///
-/// Numbers are six ASCII characters, colours a byte each, agents their number - 1, with 128 added on the right.
+/// Numbers are six ASCII characters, colours one byte per channel, agents their number - 1, plus 128 for the right
+/// team.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,24 +23,24 @@
 
 namespace spark::drawing {
 
-/// What one command says.
+/// A command.
 struct Command {
   enum class Kind { swap, draw, agentText, none } kind = Kind::none;
-  std::string set;  ///< swap: how names begin; draw: the name
-  Drawing drawing;  ///< agentText: with an empty text it takes the agent's away
+  std::string set;  ///< swap: prefix of the names; draw: the name
+  Drawing drawing;  ///< draw, agentText; an empty agentText removes the agent's text
 };
 
-/// Reads packets of outside origin: names and texts come out as short, valid UTF-8 without control characters, numbers
-/// finite.
+/// Reads untrusted packets: names and texts become short, valid UTF-8 without control characters; numbers are finite.
 class PacketReader {
  public:
-  static constexpr std::size_t kLongestName = 64, kLongestText = 128;  ///< bytes; what is longer is cut
-  static constexpr float kFarthest = 1e5f;                             ///< m; what is farther out is no place
+  static constexpr std::size_t kMaxNameBytes = 64, kMaxTextBytes = 128;  ///< longer ones are cut
+  static constexpr float kMaxCoordinate = 1e5f;                          ///< m; a larger number is an error
 
+  /// `packet` must outlive it.
   explicit PacketReader(std::span<const std::byte> packet) : rest_(packet) {}
-  /// The next command. False at the end and at what is none: then failed() says which.
+  /// Reads the next command. False at the end of the packet and after an error; see failed().
   bool next(Command& out);
-  /// The rest of the packet could not be read.
+  /// True after an error.
   bool failed() const { return failed_; }
 
  private:
@@ -51,19 +52,20 @@ class PacketReader {
   float length();
   Vec3f point();
   Color color(bool alpha = false);
-  std::string text(std::size_t longest);
+  std::string text(std::size_t maxBytes);
   void readAgent(Drawing& out);
 
   std::span<const std::byte> rest_;
   bool failed_ = false;
 };
 
-/// As PacketReader leaves texts.
-std::string cleanText(std::string_view bytes, std::size_t longest);
+/// The bytes as at most `maxBytes` of valid UTF-8: an invalid byte becomes "?", a control character a blank.
+std::string cleanText(std::string_view bytes, std::size_t maxBytes);
 
-/// Appends the command that draws; for agentText the one that sets, or with an empty text takes away, the agent's text.
+/// Appends the command for a drawing. For agentText that is the command which sets, or with an empty text removes, the
+/// agent's text.
 void writeDrawing(const Drawing& drawing, std::string_view set, std::string& out);
-/// Appends the command that swaps.
+/// Appends a swap command.
 void writeSwap(std::string_view prefix, std::string& out);
 
 }  // namespace spark::drawing

@@ -9,9 +9,8 @@
 #include "draw_packet.h"
 #include "spark/error.h"
 
-// The port is open to whoever can reach it, so nothing that comes through it may harm the match: a poll takes so many
-// packets, for so long, and no more (what comes faster the system drops), packets are read with care, and what there
-// can be to be shown is limited.
+// Anyone who can reach the port may send packets, so these must not harm the match: a poll reads a limited number for a
+// limited time (the system drops what comes faster), packets are validated, and the number of drawings is limited.
 
 namespace spark {
 
@@ -21,27 +20,25 @@ using boost::system::error_code;
 namespace {
 constexpr int kPacketsPerPoll = 64;
 constexpr std::chrono::microseconds kTimePerPoll(500);
-constexpr std::size_t kLongestPacket = 2048;  // bytes; the installed base's viewer takes 512
-constexpr std::size_t kLongestForwarded = 512;
+constexpr std::size_t kMaxPacketBytes = 2048;  // received; RoboViz accepts 512
+constexpr std::size_t kMaxForwardedBytes = 512;
 }  // namespace
 
 void DrawingServer::describe(Description<DrawingServer>& d) {
   using S = DrawingServer;
-  d.doc("Keeps what agents draw for viewers; takes it from a UDP port, from draw effectors and from plugins.");
+  d.doc("Keeps agents' drawings for viewers; they come from a UDP port, from draw effectors and from plugins.");
   d.implements<IDrawings>();
   d.implements<IInputSource>();
   d.property("port", &S::port, &S::setPort)
       .range(-1, 65535)
-      .doc("UDP port; -1: none; 0 picks a free one, which is read back once it is open.");
-  d.property("address", &S::address, &S::setAddress)
-      .doc("Address of this machine at which the port is opened; 0.0.0.0: all.");
+      .doc("UDP port; -1: none; 0 picks a free one, which can be read once it is open.");
+  d.property("address", &S::address, &S::setAddress).doc("Address of this machine to listen on; 0.0.0.0: all.");
   d.property("forward", &S::forwardTo, &S::setForwardTo)
-      .doc("host:port of another viewer that gets all packets too; empty: none.");
-  d.property("packets", &S::packets).doc("Number of packets that came through the port.");
-  d.property("refused", &S::refused)
-      .doc("Number of packets that could not be read to their end, and of shapes for which there was no room.");
-  d.property("sets", &S::names).doc("Names of the sets that show something.");
-  d.method("clear", &S::clear).doc("Shows nothing any more.");
+      .doc("host:port of another viewer that also gets all packets; empty: none.");
+  d.property("packets", &S::packets).doc("Number of packets received at the port.");
+  d.property("refused", &S::refused).doc("Number of packets with errors, and of shapes that exceeded a limit.");
+  d.property("sets", &S::names).doc("Names of the sets that have shapes.");
+  d.method("clear", &S::clear).doc("Removes all drawings.");
 }
 
 void DrawingServer::setPort(int port) {
@@ -116,14 +113,14 @@ void DrawingServer::openForward() {
 void DrawingServer::poll() {
   if (!opened_) open();
   if (!in_) return;
-  std::array<char, kLongestPacket> bytes;
+  std::array<char, kMaxPacketBytes> bytes;
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < kPacketsPerPoll && std::chrono::steady_clock::now() - begin < kTimePerPoll; ++i) {
     Udp::endpoint from;
     error_code ec;
     const std::size_t n = in_->receive_from(asio::buffer(bytes), from, 0, ec);
-    if (ec) return;                        // nothing more is there
-    if (from == forwardedFrom_) continue;  // our own, sent to ourselves: it would go round for ever
+    if (ec) return;                        // no packet is left
+    if (from == forwardedFrom_) continue;  // `forward` leads back to this port: an endless loop
     ++packets_;
     draw(std::as_bytes(std::span(bytes.data(), n)));
   }
@@ -143,12 +140,13 @@ void DrawingServer::draw(std::span<const std::byte> packet) {
 }
 
 void DrawingServer::show(std::string_view set, std::vector<Drawing> shapes) {
+  // Forward them as packets of at most kMaxForwardedBytes.
   if (out_) {
     std::string packet, command;
     const auto add = [&](const auto& write) {
       command.clear();
       write();
-      if (packet.size() + command.size() > kLongestForwarded) forward(std::exchange(packet, {}));
+      if (packet.size() + command.size() > kMaxForwardedBytes) forward(std::exchange(packet, {}));
       packet += command;
     };
     for (const Drawing& d : shapes) add([&] { drawing::writeDrawing(d, set, command); });
@@ -161,7 +159,7 @@ void DrawingServer::show(std::string_view set, std::vector<Drawing> shapes) {
   refused_ += static_cast<std::int64_t>(board_.show(set, std::move(shapes)));
 }
 
-/// Who is not there gets nothing; that is not our matter.
+/// Errors are ignored: the other viewer may not be running.
 void DrawingServer::forward(std::string_view packet) {
   if (!out_ || packet.empty()) return;
   error_code ec;

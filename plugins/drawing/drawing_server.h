@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// The drawing server.
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/udp.hpp>
@@ -11,12 +13,12 @@
 
 namespace spark {
 
-/// Keeps what agents draw, for the viewers that ask: from a UDP port in the format of the installed base's viewer, from
-/// effectors, from other plugins. At /sys/server/drawing. The match does not depend on it, it is no state.
+/// Keeps agents' drawings for viewers. They come from a UDP port in the format of RoboViz, from effectors and from
+/// other plugins. At /sys/server/drawing. The match does not depend on drawings, and they are not state.
 ///
-///     agents ─► UDP port ─► poll, so many packets each ─┐
-///     agents ─► DrawEffector, act phase ────────────────┼─► board ─► the browser's viewer, the log
-///     plugins ─► draw() ────────────────────────────────┘       └─► packets to another viewer (`forward`)
+///     agents ─► UDP port ─► poll, a limited number each ─┐
+///     agents ─► DrawEffector, act phase ─────────────────┼─► DrawBoard ─► the browser's viewer, the log
+///     plugins ─► draw() ─────────────────────────────────┘       └─────► packets to another viewer (`forward`)
 class DrawingServer : public Leaf, public IDrawings, public IInputSource {
   SPARK_CLASS(DrawingServer, Leaf)
  public:
@@ -27,11 +29,11 @@ class DrawingServer : public Leaf, public IDrawings, public IInputSource {
   void draw(std::span<const std::byte> packet) override;
   void record(std::uint64_t since, std::string& out) const override { board_.record(since, out); }
 
-  /// Shows these shapes under a name, instead of what was there; texts of agents are set.
+  /// Replaces the shapes of a set; agents' texts are set.
   void show(std::string_view set, std::vector<Drawing> shapes);
 
   void poll() override;
-  /// Does not wait: poll() is all it has.
+  /// Does not wait; see canWait().
   bool wait(double) override { return false; }
   bool canWait() const override { return false; }
 
@@ -57,11 +59,11 @@ class DrawingServer : public Leaf, public IDrawings, public IInputSource {
 
   int port_ = -1;
   std::string address_ = "127.0.0.1", forwardTo_;
-  bool opened_ = false;
+  bool opened_ = false;  ///< ports are open, or could not be opened; false after a change of their properties
   drawing::DrawBoard board_;
   boost::asio::io_context io_;
-  std::optional<Udp::socket> in_, out_;
-  Udp::endpoint forwardedFrom_;  ///< of out_
+  std::optional<Udp::socket> in_, out_;  ///< the UDP port; to the viewer of `forward`
+  Udp::endpoint forwardedFrom_;          ///< local endpoint of out_
   std::int64_t packets_ = 0, refused_ = 0;
 };
 

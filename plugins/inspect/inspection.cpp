@@ -1,5 +1,7 @@
 #include "inspection.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,18 +16,19 @@ using Json = nlohmann::json;
 namespace {
 using namespace std::chrono_literals;
 
-// What one answer holds at most.
-constexpr std::size_t kMostContacts = 1024, kMostJoints = 256, kMostSeen = 512, kMostLines = 256, kMostTokens = 8192;
-/// Agents that are watched at the same time: who asks for another one takes the place of the one that was asked for
-/// longest ago.
-constexpr std::size_t kMostWatched = 4;
-constexpr auto kForgetAfter = 5s;
-/// No agent's sight is kept more often, and keeping takes one part in so many of wall time: a match that runs as fast
-/// as it can is not slowed down.
-constexpr auto kKeepEvery = 40ms;
-constexpr int kOneIn = 50;
+// Limits of an answer.
+constexpr std::size_t kMaxContacts = 1024, kMaxJoints = 256, kMaxSeen = 512, kMaxLines = 256, kMaxTokens = 8192;
 
-/// Short, and exact enough to be drawn.
+// Number of agents that are observed at the same time; a further one replaces the one that was requested longest ago.
+constexpr std::size_t kMaxObserved = 4;
+constexpr auto kObserveFor = 5s;  // after the last request
+
+// Observing an agent takes place at most once per kObserveInterval, and takes at most 1 / kShare of wall time, so that
+// it does not slow down a match that runs as fast as possible.
+constexpr auto kObserveInterval = 40ms;
+constexpr int kShare = 50;
+
+/// Rounds to 0.1 mm: short, and exact enough for drawing.
 double rounded(double v) { return std::round(v * 1e4) / 1e4; }
 
 template <class Vector>
@@ -39,7 +42,7 @@ Json json(const Matrix& m) {
   return out;
 }
 
-/// As the S-expression: words are text, what reads as a number is one.
+/// An S-expression as JSON: lists are arrays, numbers that are not finite are null.
 Json json(const Element& e) {
   if (!e.isList()) {
     const Token& token = e.token();
@@ -49,7 +52,7 @@ Json json(const Element& e) {
     return std::string(e.text());
   }
   Json out = Json::array();
-  for (const Element part : e) out.push_back(json(part));
+  for (const Element inner : e) out.push_back(json(inner));
   return out;
 }
 
@@ -106,17 +109,17 @@ Json describe(IEye& eye, const Leaf& leaf) {
   return out;
 }
 
-/// What an eye's percept says, in the world.
-class Sighted {
+/// Converts an eye's percept to world coordinates and adds the true positions.
+class Sight {
  public:
-  explicit Sighted(IEye& eye) : eye_(eye) {
+  explicit Sight(IEye& eye) : eye_(eye) {
     eye.sights(truth_);
     std::stable_sort(truth_.begin(), truth_.end(),
                      [](const IEye::Sight& a, const IEye::Sight& b) { return a.name < b.name; });
   }
 
-  void take(const ISightReader::Sightings& sightings) {
-    for (const auto& thing : sightings.things) add(thing.name, thing.at);
+  void add(const ISightReader::Sightings& sightings) {
+    for (const auto& thing : sightings.things) addThing(thing.name, thing.at);
     for (const auto& line : sightings.lines) addLine(line);
   }
   Json seen = Json::array(), lines = Json::array();
@@ -127,23 +130,23 @@ class Sighted {
     out = eye_.placeOf(polar.distance, polar.horizontalDeg, polar.verticalDeg);
     return out.allFinite();
   }
-  void add(const std::string& name, const Polar& polar) {
+  void addThing(const std::string& name, const Polar& polar) {
     Vec3f where;
-    if (seen.size() >= kMostSeen || !place(polar, where)) return;
-    Json one{{"name", name}, {"seen", json(where)}};
+    if (seen.size() >= kMaxSeen || !place(polar, where)) return;
+    Json thing{{"name", name}, {"seen", json(where)}};
     const auto at = std::lower_bound(truth_.begin(), truth_.end(), name,
                                      [](const IEye::Sight& s, const std::string& n) { return s.name < n; });
-    if (at != truth_.end() && at->name == name) one["true"] = json(at->place);
-    seen.push_back(std::move(one));
+    if (at != truth_.end() && at->name == name) thing["true"] = json(at->place);
+    seen.push_back(std::move(thing));
   }
   void addLine(const ISightReader::Sightings::Line& line) {
     Vec3f from, to;
-    if (lines.size() < kMostLines && place(line.from, from) && place(line.to, to))
+    if (lines.size() < kMaxLines && place(line.from, from) && place(line.to, to))
       lines.push_back({json(from), json(to)});
   }
 
   IEye& eye_;
-  std::vector<IEye::Sight> truth_;  ///< by name
+  std::vector<IEye::Sight> truth_;  ///< sorted by name
 };
 
 struct Eye {
@@ -160,7 +163,7 @@ std::vector<Eye> eyesOf(AgentAspect& agent) {
   return eyes;
 }
 
-/// The agent that a node belongs to, nullptr for none.
+/// The agent that a node belongs to; nullptr if there is none.
 AgentAspect* agentOf(Leaf& leaf) {
   AgentAspect* found = nullptr;
   for (Leaf* up = &leaf; up; up = up->parent())
@@ -181,7 +184,7 @@ std::string Inspection::answer(const Json& request) {
     else if (what == "percepts")
       out = percepts(request);
     else
-      throw Error("expected contacts, joints or percepts, found '" + what + "'");
+      throw Error(fmt::format("expected contacts, joints or percepts, found '{}'", what));
     out["ok"] = true;
   } catch (const std::exception& e) {
     out = {{"ok", false}, {"error", e.what()}};
@@ -198,15 +201,15 @@ Json Inspection::contacts() const {
   auto& physics = kernel_.root().require<IPhysicsServer>();
   Json list = Json::array();
   for (const engine::Contact& c : physics.contacts()) {
-    if (list.size() >= kMostContacts) break;
+    if (list.size() >= kMaxContacts) break;
     ICollider &a = physics.colliderOf(c.ownerA), &b = physics.colliderOf(c.ownerB);
-    if (!a.body() && !b.body()) continue;  // nothing that could move
+    if (!a.body() && !b.body()) continue;  // both are static
     list.push_back(
         {{"position", json(c.position)}, {"normal", json(c.normal)}, {"depth", rounded(c.depth)}, {"solved", c.solve}});
-    Json& one = list.back();
-    if (c.solve && c.feedback) one["force"] = json(c.forceOnA);
-    one["a"] = a.leaf().path();
-    one["b"] = b.leaf().path();
+    Json& contact = list.back();
+    if (c.solve && c.feedback) contact["force"] = json(c.forceOnA);
+    contact["a"] = a.leaf().path();
+    contact["b"] = b.leaf().path();
   }
   return {{"contacts", std::move(list)}};
 }
@@ -217,7 +220,7 @@ Json Inspection::joints(const Json& request) const {
   Node* robot = agent ? agent : leaf.asNode();
   std::vector<IJoint*> joints;
   if (robot) robot->collect(joints);
-  if (joints.size() > kMostJoints) joints.resize(kMostJoints);
+  if (joints.size() > kMaxJoints) joints.resize(kMaxJoints);
   Json list = Json::array();
   for (IJoint* joint : joints) list.push_back(describe(*joint));
   return {{"joints", std::move(list)}};
@@ -226,26 +229,28 @@ Json Inspection::joints(const Json& request) const {
 Json Inspection::percepts(const Json& request) {
   const std::string& path = pathIn(request);
   AgentAspect* agent = agentOf(kernel_.root().require<Leaf>(path));
-  if (!agent) throw Error(path + " is no agent's: expected an agent, as below /usr/scene, or a node of one");
+  if (!agent)
+    throw Error(fmt::format("{} is no agent's: expected an agent, as below /usr/scene, or a node of one", path));
   const auto now = Clock::now();
-  Watched& watch = watched(*agent);
-  watch.askedAt = now;
-  if (watch.kept.is_null()) keepWhatItSees(watch, now);
+  Observed& observed = this->observed(*agent);
+  observed.requestedAt = now;
+  if (observed.sight.is_null()) storeSight(observed, now);
 
   Json out{{"time", rounded(time())},
            {"percepts", Json::array()},
            {"seen", Json::array()},
            {"lines", Json::array()},
            {"cones", Json::array()}};
+  // Its current percepts; if the eye did not see in this cycle, together with the stored percept of the eye.
   auto& control = kernel_.root().require<IGameControl>();
   bool sees = false;
-  if (const Predicates* all = control.percepts(*agent); all && all->size() <= kMostTokens)
+  if (const Predicates* all = control.percepts(*agent); all && all->size() <= kMaxTokens)
     for (const Element e : *all) {
-      sees |= !watch.see.is_null() && e.isList() && watch.see[0] == e.head();
+      sees |= !observed.see.is_null() && e.isList() && observed.see[0] == e.head();
       out["percepts"].push_back(json(e));
     }
-  if (!watch.kept.is_null()) out.update(watch.kept);
-  if (!sees && !watch.see.is_null()) out["percepts"].push_back(watch.see);
+  if (!observed.sight.is_null()) out.update(observed.sight);
+  if (!sees && !observed.see.is_null()) out["percepts"].push_back(observed.see);
   for (const Eye& e : eyesOf(*agent)) {
     if (!out.contains("head")) out["head"] = json(e.eye->view());
     out["cones"].push_back(describe(*e.eye, *e.perceptor));
@@ -253,45 +258,47 @@ Json Inspection::percepts(const Json& request) {
   return out;
 }
 
-Inspection::Watched& Inspection::watched(AgentAspect& agent) {
+Inspection::Observed& Inspection::observed(AgentAspect& agent) {
   const auto known =
-      std::find_if(watched_.begin(), watched_.end(), [&](const Watched& w) { return w.agent.get() == &agent; });
-  if (known != watched_.end()) return *known;
-  if (watched_.size() >= kMostWatched)
-    watched_.erase(std::min_element(watched_.begin(), watched_.end(),
-                                    [](const Watched& a, const Watched& b) { return a.askedAt < b.askedAt; }));
-  return watched_.emplace_back(Watched{Ref<AgentAspect>(&agent), {}, {}, nullptr, nullptr});
+      std::find_if(observed_.begin(), observed_.end(), [&](const Observed& o) { return o.agent.get() == &agent; });
+  if (known != observed_.end()) return *known;
+  if (observed_.size() >= kMaxObserved)
+    observed_.erase(std::min_element(observed_.begin(), observed_.end(), [](const Observed& a, const Observed& b) {
+      return a.requestedAt < b.requestedAt;
+    }));
+  return observed_.emplace_back(Observed{Ref<AgentAspect>(&agent), {}, {}, nullptr, nullptr});
 }
 
-void Inspection::look() {
-  if (watched_.empty()) return;
+void Inspection::observe() {
+  if (observed_.empty()) return;
   const auto* simulation = kernel_.root().find<ISimulation>();
-  if (!simulation || std::exchange(lookedAt_, simulation->cycle()) == simulation->cycle()) return;
+  if (!simulation || std::exchange(lastCycle_, simulation->cycle()) == simulation->cycle()) return;
   const auto now = Clock::now();
-  if (now < lookDue_) return;
-  std::erase_if(watched_, [&](const Watched& w) { return !w.agent || now - w.askedAt > kForgetAfter; });
-  for (Watched& w : watched_)
-    if (now - w.keptAt >= kKeepEvery) keepWhatItSees(w, now);
-  lookDue_ = now + (Clock::now() - now) * kOneIn;
+  if (now < observeDue_) return;
+  std::erase_if(observed_, [&](const Observed& o) { return !o.agent || now - o.requestedAt > kObserveFor; });
+  for (Observed& o : observed_)
+    if (now - o.storedAt >= kObserveInterval) storeSight(o, now);
+  observeDue_ = now + (Clock::now() - now) * kShare;
 }
 
-void Inspection::keepWhatItSees(Watched& watch, Clock::time_point now) const {
+/// Stores what the agent's first eye with a percept in this cycle sees.
+void Inspection::storeSight(Observed& observed, Clock::time_point now) const {
   auto* control = kernel_.root().find<IGameControl>();
-  const Predicates* all = control ? control->percepts(*watch.agent) : nullptr;
-  if (!all || all->size() > kMostTokens) return;
-  for (const Eye& e : eyesOf(*watch.agent)) {
+  const Predicates* all = control ? control->percepts(*observed.agent) : nullptr;
+  if (!all || all->size() > kMaxTokens) return;
+  for (const Eye& e : eyesOf(*observed.agent)) {
     const auto reader = e.perceptor->as<ISightReader>();
     if (!reader) continue;
     for (const Element see : *all) {
       if (see.head() != e.perceptor->predicateName()) continue;
       ISightReader::Sightings sightings;
       reader->read(see, sightings);
-      Sighted sighted(*e.eye);
-      sighted.take(sightings);
-      watch.keptAt = now;
-      watch.see = json(see);
-      watch.kept = {
-          {"seenTime", rounded(time())}, {"seen", std::move(sighted.seen)}, {"lines", std::move(sighted.lines)}};
+      Sight sight(*e.eye);
+      sight.add(sightings);
+      observed.storedAt = now;
+      observed.see = json(see);
+      observed.sight = {
+          {"seenTime", rounded(time())}, {"seen", std::move(sight.seen)}, {"lines", std::move(sight.lines)}};
       return;
     }
   }

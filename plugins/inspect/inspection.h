@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What clients may ask to look into the match: what touches, how joints stand, what an agent senses.
+/// Requests about contacts, joints and what an agent senses.
 ///
 ///     {"do":"contacts"}                {"contacts":[{"position","normal","depth","solved","force","a","b"}, ...]}
 ///     {"do":"joints","path":p}         {"joints":[{"path","type","anchor","axes","angles","rates",
@@ -9,16 +9,16 @@
 ///                                       "cones":[{"path","matrix","horizontal","vertical","range"}, ...],
 ///                                       "seenTime","seen":[{"name","seen","true"}, ...],"lines":[[from, to], ...]}
 ///
-/// Metres, newtons, degrees (sliders: metres), the world's frame; normals and forces are those on `a`. Matrices are
-/// column by column; those of eyes look along x, z is up. `p` is a node, of an agent: any of its own. What is not known
-/// is left out: forces that nobody measures, joints without stops, sight without limit, the truth about what has no
-/// place.
+/// Metres, newtons, degrees (sliders: metres), world frame; normals and forces act on `a`. Matrices are column by
+/// column; eyes look along x, z is up. `p` is a node; for agents any node of the agent. Unknown values are left out:
+/// forces that are not measured, limits of joints without stops, unlimited range, true positions of things that have
+/// none.
 ///
-/// An agent sees in some cycles only, and what it saw is to be compared with what was true then. So an agent whose
-/// percepts were asked for lately is watched:
+/// An agent sees in some cycles only, and its percept is to be compared with the true positions of that cycle. So
+/// agents whose percepts were requested recently are observed:
 ///
-///     poll ─► look(): in a cycle in which a watched agent saw ─► keeps its percept with camera and true places
-///     request ─► what it senses now, and what was kept
+///     poll ─► observe(): in a cycle in which an observed agent saw ─► stores its percept with the true positions
+///     request ─► what the agent senses now, and what was stored
 
 #include <array>
 #include <chrono>
@@ -31,39 +31,42 @@
 
 namespace spark::inspect {
 
-/// Answers such requests. Used in the simulation's thread, between two cycles; changes nothing in the match.
+/// Answers these requests. Simulation thread, between two cycles. Changes nothing in the match.
 class Inspection {
  public:
   using Json = nlohmann::json;
+  /// `kernel` must outlive it.
   explicit Inspection(Kernel& kernel) : kernel_(kernel) {}
 
-  /// What "do" says in the requests that it answers.
+  /// Values of "do" in these requests.
   static constexpr std::array<std::string_view, 3> kRequests{"contacts", "joints", "percepts"};
-  /// `{"ok":true,...}` or `{"ok":false,"error":"..."}`. Nothing is thrown.
+  /// The answer: `{"ok":true,...}` or `{"ok":false,"error":"..."}`. Does not throw.
   std::string answer(const Json& request);
-  /// To be called between every two cycles, before requests are answered. Takes a fiftieth of wall time at most.
-  void look();
+  /// Stores what observed agents see. Call it between every two cycles, before requests are answered. Takes at most a
+  /// fiftieth of wall time.
+  void observe();
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// An agent that somebody looks at.
-  struct Watched {
+  /// An agent whose percepts were requested recently.
+  struct Observed {
     Ref<AgentAspect> agent;
-    Clock::time_point askedAt, keptAt;  ///< the last time
-    Json kept;                          ///< what it saw, as in the answer; null: nothing yet
-    Json see;                           ///< the percept that this is made of
+    Clock::time_point requestedAt;  ///< when its percepts were requested last
+    Clock::time_point storedAt;     ///< when `sight` was stored
+    Json sight;                     ///< what it saw, as in the answer; null: nothing yet
+    Json see;                       ///< the percept from which `sight` was made
   };
   Json contacts() const;
   Json joints(const Json& request) const;
   Json percepts(const Json& request);
-  Watched& watched(AgentAspect& agent);
-  void keepWhatItSees(Watched& watched, Clock::time_point now) const;
+  Observed& observed(AgentAspect& agent);
+  void storeSight(Observed& observed, Clock::time_point now) const;
   double time() const;
 
   Kernel& kernel_;
-  std::vector<Watched> watched_;
-  std::int64_t lookedAt_ = -1;   ///< cycle
-  Clock::time_point lookDue_{};  ///< not before: looking takes its share of wall time only
+  std::vector<Observed> observed_;
+  std::int64_t lastCycle_ = -1;     ///< of the last observe()
+  Clock::time_point observeDue_{};  ///< observe() does nothing before, which limits its share of wall time
 };
 
 }  // namespace spark::inspect

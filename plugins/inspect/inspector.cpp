@@ -7,19 +7,19 @@
 
 namespace spark {
 
-/// A child of the control server: sparkctl and browsers ask it what touches, how joints stand, what agents sense.
+/// A child of the control server that answers requests about contacts, joints and what agents sense.
 class Inspector : public Leaf, public IRequestHandler {
   SPARK_CLASS(Inspector, Leaf)
  public:
   static void describe(Description<Inspector>& d) {
-    d.doc("Answers the requests contacts, joints and percepts: what touches, how joints stand, what an agent senses.");
+    d.doc("Answers the requests contacts, joints and percepts: contacts, the state of joints, what an agent senses.");
     d.implements<IRequestHandler>();
   }
   std::span<const std::string_view> requests() const override { return inspect::Inspection::kRequests; }
   std::string answer(std::string_view request) override {
     return inspection_->answer(nlohmann::json::parse(request, nullptr, false));
   }
-  void poll() override { inspection_->look(); }
+  void poll() override { inspection_->observe(); }
 
  protected:
   void onLink() override { inspection_.emplace(kernel()); }
@@ -31,5 +31,5 @@ class Inspector : public Leaf, public IRequestHandler {
 
 }  // namespace spark
 
-SPARK_PLUGIN("inspect", "1.0", "What touches, how joints stand, what agents sense, for sparkctl and browsers.",
+SPARK_PLUGIN("inspect", "1.0", "Contacts, the state of joints and what agents sense, for sparkctl and browsers.",
              spark::Inspector)

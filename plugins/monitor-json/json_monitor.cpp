@@ -39,7 +39,7 @@ void write(JsonWriter& json, const Element& element) {
   json.endArray();
 }
 
-/// A mesh name with its parameters, `StdCapsule 0.1 0.2`: the words that are numbers become numbers.
+/// A mesh name with parameters, `StdCapsule 0.1 0.2`; words that are numbers become numbers.
 void writeLoad(JsonWriter& json, std::string_view load) {
   json.beginArray().value("load");
   while (!load.empty()) {
@@ -83,7 +83,7 @@ void writeMesh(JsonWriter& json, const FrameNode& node) {
   json.endArray();
 }
 
-/// What stands in a node's array in front of its children.
+/// The elements of a node's array before its children.
 void write(JsonWriter& json, const FrameNode& node, bool full, bool changed) {
   json.value("nd");
   switch (node.kind) {
@@ -121,7 +121,7 @@ void JsonMonitor::encode(const MonitorUpdate& update, std::string& bytes) {
   json.beginArray().value(update.full ? "RSG" : "RDS").value(0).value(1).endArray();
 
   json.beginArray();
-  int open = 0;  // nodes that are not closed yet: the ancestors of the next one, if its depth says so
+  int open = 0;  // number of nodes whose array is not closed yet
   const auto closeTo = [&](int depth) {
     for (; open > depth; --open) json.endArray();
   };

@@ -1,15 +1,17 @@
 #pragma once
+/// \file
+/// Monitor messages as JSON.
 
 #include "api/monitor.h"
 
 namespace spark {
 
-/// Writes monitor messages as JSON that mirrors the S-expressions:
+/// Encodes monitor messages as JSON that mirrors the S-expressions of SexpMonitor:
 ///
 ///     [[["time",0.8],["round",3]],["RDS",0,1],
 ///      [["nd",["nd"]],["nd",["SLT",1,0,...,1],["nd","StaticMesh",["setVisible",1]]]]]
 ///
-/// Numbers are numbers with six significant digits; what is not finite is null.
+/// Numbers have six significant digits; those that are not finite are null. Stateless.
 class JsonMonitor : public Node, public IMonitorEncoder {
   SPARK_CLASS(JsonMonitor, Node)
  public:

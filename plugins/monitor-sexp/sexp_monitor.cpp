@@ -13,7 +13,7 @@ namespace spark {
 
 namespace {
 
-/// ` 1 0 0.5`.
+/// Writes each number after a blank: ` 1 0 0.5`.
 void putNumbers(ByteWriter& out, std::span<const float> numbers) {
   char* at = out.room(numbers.size() * (1 + kGeneralRoom));
   for (const float v : numbers) {
@@ -23,6 +23,7 @@ void putNumbers(ByteWriter& out, std::span<const float> numbers) {
   out.end(at);
 }
 
+/// `(name 1 0 0.5)`.
 void putList(ByteWriter& out, std::string_view name, std::span<const float> numbers) {
   out.put('(');
   out.put(name);
@@ -52,21 +53,21 @@ void putElement(ByteWriter& out, const Element& element) {
   out.put(')');
 }
 
-/// A matrix, column by column. Most parts of a robot are shifted and not turned, and no column ends in anything but 0
-/// or 1 unless somebody shears the scene: that is known before it is written.
+/// Writes a matrix column by column. Two common cases are faster: no rotation, as for most parts of a robot, and
+/// columns that end with 0 or 1, as in all matrices of rigid transforms.
 void putTransform(ByteWriter& out, const Matrix& matrix) {
-  constexpr float kUpright[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  constexpr float kNoRotation[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   out.put(" (SLT");
   int column = 0;
-  if (std::memcmp(matrix.data(), kUpright, sizeof kUpright) == 0) {
+  if (std::memcmp(matrix.data(), kNoRotation, sizeof kNoRotation) == 0) {
     out.put(" 1 0 0 0 0 1 0 0 0 0 1 0");
     column = 3;
   }
   for (; column < 4; ++column) {
     const float* v = matrix.data() + 4 * column;
-    const bool plain = std::bit_cast<std::uint32_t>(v[3]) == std::bit_cast<std::uint32_t>(column == 3 ? 1.0f : 0.0f);
-    putNumbers(out, {v, plain ? 3u : 4u});
-    if (plain) out.put(column == 3 ? " 1" : " 0");
+    const bool rigid = std::bit_cast<std::uint32_t>(v[3]) == std::bit_cast<std::uint32_t>(column == 3 ? 1.0f : 0.0f);
+    putNumbers(out, {v, rigid ? 3u : 4u});
+    if (rigid) out.put(column == 3 ? " 1" : " 0");
   }
   out.put(')');
 }
@@ -82,7 +83,7 @@ void putLight(ByteWriter& out, const IVisual& light) {
 
 void putVisible(ByteWriter& out, bool visible) { out.put(visible ? " (setVisible 1)" : " (setVisible 0)"); }
 
-/// Mostly thrice the same number, which is worked out once.
+/// Usually the three numbers are equal; equal ones are formatted once.
 void putScale(ByteWriter& out, const Vec3f& scale) {
   char text[1 + kGeneralRoom] = " ";
   std::size_t size = 0;
@@ -110,7 +111,7 @@ void putMesh(ByteWriter& out, const FrameNode& node) {
     out.put(materials[0]);
     return out.put(')');
   }
-  out.put("(resetMaterials");  // no blank before it: monitors have always been sent it so
+  out.put("(resetMaterials");  // without a blank before it, as SimSpark writes it
   for (const std::string& material : materials) {
     out.put(' ');
     out.put(material);
@@ -153,7 +154,7 @@ void SexpMonitor::encode(const MonitorUpdate& update, std::string& bytes) {
   for (const Element event : update.events) putElement(out, event);
   out.put(update.full ? ")(RSG 0 1)(" : ")(RDS 0 1)(");
 
-  int open = 0;  // nodes that are not closed yet: the ancestors of the next one, if its depth says so
+  int open = 0;  // number of nodes whose list is not closed yet
   const auto closeTo = [&](int depth) {
     for (; open > depth; --open) out.put(')');
   };

@@ -1,15 +1,16 @@
 #pragma once
+/// \file
+/// Monitor messages as S-expressions.
 
 #include "api/monitor.h"
 
 namespace spark {
 
-/// Writes monitor messages as S-expressions, to the blank as the installed base's monitors (RoboViz, rcssmonitor3d)
-/// have been sent them:
+/// Encodes monitor messages as S-expressions, byte for byte as SimSpark does for RoboViz and rcssmonitor3d:
 ///
 ///     ((time 0.8)(round 3))(RDS 0 1)((nd(nd))(nd (SLT 1 0 ... 1)(nd StaticMesh (setVisible 1))))
 ///
-/// Environment, header (RSG full, RDS diff), nodes; numbers with six significant digits.
+/// Environment, header (RSG: full, RDS: diff), nodes; numbers with six significant digits. Stateless.
 class SexpMonitor : public Node, public IMonitorEncoder {
   SPARK_CLASS(SexpMonitor, Node)
  public:

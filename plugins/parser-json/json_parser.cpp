@@ -12,6 +12,7 @@ namespace spark {
 
 namespace {
 
+/// True if the text needs no escapes in JSON.
 bool isPlain(std::string_view text) {
   for (const unsigned char c : text)
     if (c < 0x20 || c > 0x7E || c == '"' || c == '\\') return false;
@@ -57,7 +58,7 @@ void writeElement(const Element& e, int decimals, ByteWriter& out) {
 
 }  // namespace
 
-/// The same messages as JSON: `[["he1",1.2],["init",["number",7],["team","A"]]]`.
+/// The messages of SexpParser as JSON: `[["he1",1.2],["init",["number",7],["team","A"]]]`.
 class JsonParser : public Leaf, public IParser {
   SPARK_CLASS(JsonParser, Leaf)
  public:
@@ -65,15 +66,15 @@ class JsonParser : public Leaf, public IParser {
     d.doc("Reads and writes JSON that mirrors the S-expressions.");
     d.property("decimals", &JsonParser::decimals_)
         .range(-1, 9)
-        .doc("Decimals of every number that is no integer, as the S-expressions have them; -1: as many as it has.");
-    d.property("maxDepth", &JsonParser::maxDepth_).range(1, 1000).doc("Lists nested deeper are refused.");
+        .doc("Decimals of numbers that are not integers, as in S-expressions; -1: all digits.");
+    d.property("maxDepth", &JsonParser::maxDepth_).range(1, 1000).doc("Messages with deeper nesting are refused.");
     d.property("maxTokens", &JsonParser::maxTokens_).range(1, 1e6).doc("Longer messages are refused.");
     d.method("parse", &JsonParser::parseText)
         .parameters({"text"})
-        .doc("The text's top-level elements, as far as it can be read.");
+        .doc("Parses a text; returns its top-level elements up to the first error.");
     d.method("write", &JsonParser::writeText)
         .parameters({"elements"})
-        .doc("The message for a list of top-level elements.");
+        .doc("Writes a list of top-level elements as a message.");
     d.implements<IParser>();
   }
 

@@ -1,5 +1,7 @@
 #include "parser-json/json_reader.h"
 
+#include <fmt/format.h>
+
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -8,7 +10,7 @@ namespace spark::json {
 
 namespace {
 
-/// Input whose position outlives nlohmann's parser, so that the next value is read where the last one ended.
+/// Input iterator for nlohmann's parser that keeps its position outside, so that the next value is read after the last.
 class Cursor {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -23,7 +25,7 @@ class Cursor {
     ++*at_;
     return *this;
   }
-  /// Compared with the end only.
+  /// `end`: any cursor of the same bytes; true until all bytes are read.
   bool operator!=(const Cursor& end) const { return *at_ < end.bytes_.size(); }
   bool operator==(const Cursor& end) const { return !(*this != end); }
 
@@ -32,8 +34,8 @@ class Cursor {
   std::size_t* at_;
 };
 
-/// Takes nlohmann's events. Whether a top-level array is a predicate or holds predicates shows in its first element;
-/// until then it is `undecided_`.
+/// Builds predicates from nlohmann's events. The first element of a top-level array decides whether the array is a
+/// predicate or contains predicates; before it, the array is `undecided_`.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
  public:
   Builder(Predicates& out, const ReadLimits& limits)
@@ -56,11 +58,11 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return fail("objects are no part of the language"); }
 
   bool start_array(std::size_t) override {
-    if (depth_ == limits_.maxDepth) return fail("lists nested deeper than " + std::to_string(limits_.maxDepth));
+    if (depth_ == limits_.maxDepth) return fail(fmt::format("lists nested deeper than {}", limits_.maxDepth));
     if (depth_ == 0) {
       undecided_ = true;
     } else {
-      if (undecided_) holds_ = true, undecided_ = false;
+      if (undecided_) contains_ = true, undecided_ = false;
       if (full()) return false;
       out_.open();
     }
@@ -70,9 +72,9 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool end_array() override {
     --depth_;
     const bool outer = depth_ == 0;
-    if (!outer || (!undecided_ && !holds_)) out_.close();
-    if (outer || (holds_ && depth_ == 1)) complete_ = out_.size();
-    if (outer) undecided_ = holds_ = false;
+    if (!outer || (!undecided_ && !contains_)) out_.close();
+    if (outer || (contains_ && depth_ == 1)) complete_ = out_.size();
+    if (outer) undecided_ = contains_ = false;
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& e) override {
@@ -81,8 +83,9 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return fail(std::string(end == what.npos ? what : what.substr(end + 2)));
   }
 
+  /// What is wrong; "" if nothing is.
   const std::string& message() const { return message_; }
-  /// Drops what was begun and not finished.
+  /// Removes an incomplete predicate.
   void dropUnfinished() { out_.truncate(complete_); }
 
  private:
@@ -96,7 +99,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   }
   bool full() {
     if (out_.size() - first_ < limits_.maxTokens) return false;
-    fail("more than " + std::to_string(limits_.maxTokens) + " tokens");
+    fail(fmt::format("more than {} tokens", limits_.maxTokens));
     return true;
   }
   bool fail(std::string message) {
@@ -106,9 +109,11 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 
   Predicates& out_;
   const ReadLimits& limits_;
-  const std::uint32_t first_;
-  std::uint32_t complete_, depth_ = 0;
-  bool undecided_ = false, holds_ = false;
+  const std::uint32_t first_;  ///< size of `out_` at the beginning
+  std::uint32_t complete_;     ///< end of the last complete predicate in `out_`
+  std::uint32_t depth_ = 0;
+  bool undecided_ = false;  ///< in a top-level array before its first element
+  bool contains_ = false;   ///< in a top-level array that contains predicates
   std::string message_;
 };
 

@@ -9,8 +9,9 @@
 namespace spark::json {
 
 /// Reads any number of JSON values and appends their predicates to `out`. `["he1", 1.2]` is one predicate; an array
-/// that begins with an array holds several, `[["he1", 1.2], ["syn"]]`. Booleans are the texts true and false, null is
-/// not-a-number, objects are refused. At an error what was complete before stays. Never throws on bad bytes.
+/// that begins with an array contains several, `[["he1", 1.2], ["syn"]]`. Booleans become the texts true and false,
+/// null becomes NaN; objects are refused. After an error `out` keeps the complete predicates before it. Does not throw
+/// on invalid input.
 ReadResult read(std::string_view bytes, Predicates& out, const ReadLimits& limits);
 
 }  // namespace spark::json

@@ -4,23 +4,23 @@
 
 namespace spark {
 
-/// The language of the installed base: S-expressions both ways.
+/// The language of SimSpark's agents: S-expressions.
 class SexpParser : public Leaf, public IParser {
   SPARK_CLASS(SexpParser, Leaf)
  public:
   static void describe(Description<SexpParser>& d) {
-    d.doc("Reads and writes S-expressions as agents of the installed base do.");
+    d.doc("Reads and writes S-expressions as SimSpark does.");
     d.property("decimals", &SexpParser::decimals_)
         .range(0, 9)
-        .doc("Decimals of every number that is no integer; the mainline server has 2, the SPL build 3.");
-    d.property("maxDepth", &SexpParser::maxDepth_).range(1, 1000).doc("Lists nested deeper are refused.");
+        .doc("Decimals of numbers that are not integers; the mainline server has 2, the SPL build 3.");
+    d.property("maxDepth", &SexpParser::maxDepth_).range(1, 1000).doc("Messages with deeper nesting are refused.");
     d.property("maxTokens", &SexpParser::maxTokens_).range(1, 1e6).doc("Longer messages are refused.");
     d.method("parse", &SexpParser::parseText)
         .parameters({"text"})
-        .doc("The text's top-level elements, as far as it can be read.");
+        .doc("Parses a text; returns its top-level elements up to the first error.");
     d.method("write", &SexpParser::writeText)
         .parameters({"elements"})
-        .doc("The message for a list of top-level elements.");
+        .doc("Writes a list of top-level elements as a message.");
     d.implements<IParser>();
   }
 

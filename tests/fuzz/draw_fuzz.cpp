@@ -17,16 +17,16 @@ void check(bool holds) {
 
 void check(const Drawing& d) {
   for (const Vec3f& p : d.points)
-    for (int i = 0; i < 3; ++i) check(std::abs(p[i]) <= PacketReader::kFarthest);
+    for (int i = 0; i < 3; ++i) check(std::abs(p[i]) <= PacketReader::kMaxCoordinate);
   check(d.size >= 0 && std::isfinite(d.size) && d.thickness >= 0 && std::isfinite(d.thickness));
-  check(d.text.size() <= PacketReader::kLongestText && drawing::cleanText(d.text, d.text.size()) == d.text);
+  check(d.text.size() <= PacketReader::kMaxTextBytes && drawing::cleanText(d.text, d.text.size()) == d.text);
 }
 
 void take(std::string_view bytes, drawing::DrawBoard& board, bool mustRead) {
   PacketReader reader(std::as_bytes(std::span(bytes.data(), bytes.size())));
   for (drawing::Command c; reader.next(c);) {
     check(c.drawing);
-    check(c.set.size() <= PacketReader::kLongestName);
+    check(c.set.size() <= PacketReader::kMaxNameBytes);
     if (c.kind == drawing::Command::Kind::swap) board.swap(c.set);
     if (c.kind == drawing::Command::Kind::draw) board.add(c.set, c.drawing);
     if (c.kind == drawing::Command::Kind::agentText) board.setAgentText(c.drawing);
@@ -64,6 +64,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string record;
   board.record(0, record);
   replay(record, again);
-  check(record.size() > drawing::DrawBoard::kMostRecorded || shapes(again) == shapes(board));
+  check(record.size() > drawing::DrawBoard::kMaxRecordBytes || shapes(again) == shapes(board));
   return 0;
 }

@@ -133,7 +133,7 @@ TEST_CASE("agents' texts come and go in any order") {
 
 TEST_CASE("there is room for so much and no more, and room comes back") {
   DrawBoard board;
-  for (std::size_t i = 0; i < DrawBoard::kMostShapes; ++i) REQUIRE(board.add("a", point(1)));
+  for (std::size_t i = 0; i < DrawBoard::kMaxShapes; ++i) REQUIRE(board.add("a", point(1)));
   CHECK_FALSE(board.add("a", point(1)));
   CHECK(board.add("b", point(1)));
   Drawing large;
@@ -142,20 +142,20 @@ TEST_CASE("there is room for so much and no more, and room comes back") {
   std::size_t n = 0;
   while (board.add("c" + std::to_string(n % 5), large)) ++n;
   CHECK(n >= 25);
-  CHECK(n <= DrawBoard::kMostPoints / 255);
+  CHECK(n <= DrawBoard::kMaxPoints / 255);
   CHECK(board.show("d", std::vector<Drawing>(10, large)) > 0);
   board.swap(""), board.swap("");
   CHECK(board.show("d", std::vector<Drawing>(10, large)) == 0);
-  CHECK(board.show("d", std::vector<Drawing>(DrawBoard::kMostShapes + 5, point(1))) == 5);
+  CHECK(board.show("d", std::vector<Drawing>(DrawBoard::kMaxShapes + 5, point(1))) == 5);
 }
 
 TEST_CASE("sets that show nothing give their place to others") {
   DrawBoard board;
-  for (std::size_t i = 0; i < DrawBoard::kMostSets; ++i) REQUIRE(board.show(std::to_string(i), {point(1)}) == 0);
+  for (std::size_t i = 0; i < DrawBoard::kMaxSets; ++i) REQUIRE(board.show(std::to_string(i), {point(1)}) == 0);
   CHECK_FALSE(board.add("one more", point(1)));
   board.show("77", {});
   CHECK(board.show("one more", {point(1)}) == 0);
-  CHECK(board.sets().size() == DrawBoard::kMostSets);
+  CHECK(board.sets().size() == DrawBoard::kMaxSets);
 }
 
 TEST_CASE("a reader of records knows what is shown, from any full one on") {
@@ -190,9 +190,9 @@ TEST_CASE("nothing is recorded as long as nothing was drawn, and a record has it
   CHECK(record.empty());
   Drawing large = point(1);
   large.kind = Drawing::Kind::text;
-  large.text = std::string(drawing::PacketReader::kLongestText, 'x');
+  large.text = std::string(drawing::PacketReader::kMaxTextBytes, 'x');
   for (int i = 0; i < 60; ++i) board.show(std::to_string(i), std::vector<Drawing>(100, large));
   board.record(0, record);
-  CHECK(record.size() > DrawBoard::kMostRecorded / 2);
-  CHECK(record.size() < DrawBoard::kMostRecorded + 100000);
+  CHECK(record.size() > DrawBoard::kMaxRecordBytes / 2);
+  CHECK(record.size() < DrawBoard::kMaxRecordBytes + 100000);
 }

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "../draw_list.h"
 #include "../draw_packet.h"
+#include "../shape_reader.h"
 #include "packets.h"
 
 using namespace spark;
@@ -147,7 +147,7 @@ TEST_CASE("names and texts come out short, in valid UTF-8, without control chara
   CHECK(drawing::cleanText("\xc0\x80|\xed\xa0\x80", 100) == "??|???");  // longer than needed, half of a pair
   CHECK(drawing::cleanText("\xf5\x80\x80\x80", 100) == "????");         // beyond the last character
   CHECK(drawing::cleanText("aaa\xe2\x82\xac", 5) == "aaa");             // cut between characters
-  CHECK(readOne(bytes({0, 0}) + zero(std::string(500, 'x'))).set.size() == PacketReader::kLongestName);
+  CHECK(readOne(bytes({0, 0}) + zero(std::string(500, 'x'))).set.size() == PacketReader::kMaxNameBytes);
 }
 
 TEST_CASE("agents write shapes as lists") {

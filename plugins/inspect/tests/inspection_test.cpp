@@ -47,7 +47,7 @@ struct League : House {
         if (e.head() == "See") return true;
       return false;
     };
-    do run(1), inspection.look();
+    do run(1), inspection.observe();
     while (sees() != seeing);
     return ask({{"do", "percepts"}, {"path", "/usr/scene/AgentAspect1"}});
   }
@@ -205,7 +205,7 @@ TEST_CASE("a match goes the same way whether anybody inspects it or not") {
     league.act("(he1 1)(lle3 2)(rle4 -1)");
     for (int i = 0; i < 30; ++i) {
       if (inspect) {
-        league.inspection.look();
+        league.inspection.observe();
         for (const char* what : {"contacts", "joints", "percepts"})
           CHECK(league.ask({{"do", what}, {"path", "/usr/scene/AgentAspect1"}})["ok"] == true);
       }
@@ -224,11 +224,11 @@ TEST_CASE("inspection outlives what it looks at") {
   inspection.answer({{"do", "percepts"}, {"path", "/usr/scene/AgentAspect1"}});
   auto& scene = house.kernel.root().require<Node>("/usr/scene");
   scene.remove(house.at("/usr/scene/AgentAspect1"));
-  inspection.look();
+  inspection.observe();
   CHECK(Json::parse(inspection.answer({{"do", "contacts"}}))["contacts"].empty());
   CHECK(Json::parse(inspection.answer({{"do", "percepts"}, {"path", "/usr/scene/AgentAspect1"}}))["ok"] == false);
   house.run(3);
-  inspection.look();
+  inspection.observe();
 }
 
 TEST_CASE("a child of the control server answers the same") {

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Shapes as agents write them in their effector's language:
+/// Reads the shapes of a `(draw ...)` action:
 ///
 ///     (circle (at x y) (radius r))                 (sphere (at x y z) (radius r))
 ///     (line (from x y z) (to x y z))               (polygon (at x y z) (at x y z) (at x y z) ...)
 ///     (point (at x y z) (size pixels))             (text (at x y z) (say "what is written"))
-///     (agent (side left) (unum 3) (say "..."))     without (say ...) the agent's text goes
+///     (agent (side left) (unum 3) (say "..."))     without (say ...): removes the agent's text
 ///
-/// each with `(color red green blue alpha)`, 0 to 255, alpha only of polygons; circles and lines with `(thickness
+/// all with `(color red green blue alpha)`, 0 to 255, alpha for polygons only; circles and lines with `(thickness
 /// pixels)`.
 
 #include <string>
@@ -17,7 +17,7 @@
 
 namespace spark::drawing {
 
-/// Reads one shape. Returns "" or what is wrong with it: expected, found.
+/// Reads a shape. Returns "" or what was expected and found.
 std::string readShape(const Element& list, Drawing& out);
 
 }  // namespace spark::drawing

@@ -1,4 +1,4 @@
-#include "socket_place.h"
+#include "socket_path.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -26,8 +26,8 @@ fs::path folderName() {
   return fs::temp_directory_path() / fmt::format("spark-{}", geteuid());
 }
 
-/// True when a house answers there.
-bool alive(const fs::path& file) {
+/// True if a simulation listens on the socket.
+bool isAlive(const fs::path& file) {
   asio::io_context io;
   asio::local::stream_protocol::socket socket(io);
   boost::system::error_code ec;
@@ -42,25 +42,27 @@ fs::path socketFolder() {
     throw Error(fmt::format("cannot make {} for the control socket: {}", folder.string(), std::strerror(errno)));
   struct stat s = {};
   if (lstat(folder.c_str(), &s) != 0 || !S_ISDIR(s.st_mode))
-    throw Error(folder.string() + ", where the control socket belongs, is no folder. Remove it.");
+    throw Error(fmt::format("{}, where the control socket belongs, is no folder. Remove it.", folder.string()));
   if (s.st_uid != geteuid())
-    throw Error(folder.string() +
-                ", where the control socket belongs, is another user's. Set XDG_RUNTIME_DIR to a folder of your own.");
+    throw Error(fmt::format(
+        "{}, where the control socket belongs, is another user's. Set XDG_RUNTIME_DIR to a folder of your own.",
+        folder.string()));
   if ((s.st_mode & 077) != 0)
-    throw Error(folder.string() + ", where the control socket belongs, is open to other users. Say chmod 700 " +
-                folder.string() + ".");
+    throw Error(fmt::format("{0}, where the control socket belongs, is open to other users. Say chmod 700 {0}.",
+                            folder.string()));
   return folder;
 }
 
-void sweep(const fs::path& folder) {
+void removeStale(const fs::path& folder) {
   std::error_code ec;
   std::vector<fs::path> dead;
   for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
     const fs::path& file = it->path();
     const int pid = std::atoi(file.filename().c_str());  // <pid>.sock, <pid>-2.sock
     if (file.extension() != ".sock" || pid <= 0 || !it->is_socket(ec)) continue;
-    // A house binds before it listens, and one in another container has no number here: both signs are needed.
-    if (kill(pid, 0) != 0 && errno == ESRCH && !alive(file)) dead.push_back(file);
+    // A dead process alone proves nothing: a process in another container has no pid here. A socket without a listener
+    // alone proves nothing either: a new process binds before it listens.
+    if (kill(pid, 0) != 0 && errno == ESRCH && !isAlive(file)) dead.push_back(file);
   }
   for (const fs::path& file : dead) fs::remove(file, ec);
 }
@@ -69,7 +71,7 @@ fs::path freeSocket(const fs::path& folder) {
   for (int n = 1;; ++n) {
     const fs::path file = folder / (n == 1 ? fmt::format("{}.sock", getpid()) : fmt::format("{}-{}.sock", getpid(), n));
     if (!fs::exists(file)) return file;
-    if (alive(file)) continue;
+    if (isAlive(file)) continue;
     fs::remove(file);
     return file;
   }

@@ -1,4 +1,4 @@
-#include "draw_list.h"
+#include "shape_reader.h"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,9 @@ namespace spark::drawing {
 
 namespace {
 using Kind = Drawing::Kind;
-constexpr std::size_t kMostCorners = 255;
+constexpr std::size_t kMaxCorners = 255;
 
-/// One shape while it is read. The first thing that is wrong stays in `wrong`.
+/// Reads one shape; keeps the first error.
 class ShapeReader {
  public:
   ShapeReader(const Element& list, Drawing& out) : list_(list), out_(out) {}
@@ -49,14 +49,14 @@ class ShapeReader {
   void expect(std::string_view what) {
     if (wrong_.empty()) wrong_ = fmt::format("expected {} in ({} ...)", what, list_.head());
   }
-  static bool inReach(double v) { return std::abs(v) <= static_cast<double>(PacketReader::kFarthest); }
+  static bool inRange(double v) { return std::abs(v) <= static_cast<double>(PacketReader::kMaxCoordinate); }
 
   bool point(const Element& e, int count) {
     Vec3f p = Vec3f::Zero();
     if (e.size() < static_cast<std::size_t>(count) + 1) return false;
     for (int i = 0; i < count; ++i) {
       const double v = e.at(static_cast<std::size_t>(i) + 1).number();
-      if (!inReach(v)) return false;
+      if (!inRange(v)) return false;
       p[i] = static_cast<float>(v);
     }
     out_.points.push_back(p);
@@ -64,25 +64,26 @@ class ShapeReader {
   }
   void points(const char* name, int count) {
     if (const Element e = list_.named(name); !e || !point(e, count))
-      expect(fmt::format("({} {}) with numbers below {}", name, count == 2 ? "x y" : "x y z", PacketReader::kFarthest));
+      expect(fmt::format("({} {}) with numbers below {}", name, count == 2 ? "x y" : "x y z",
+                         PacketReader::kMaxCoordinate));
   }
   void corners() {
     for (const Element e : list_)
-      if (e.head() == "at" && out_.points.size() < kMostCorners && !point(e, 3)) return expect("corners (at x y z)");
+      if (e.head() == "at" && out_.points.size() < kMaxCorners && !point(e, 3)) return expect("corners (at x y z)");
     if (out_.points.size() < 3) expect("at least three corners (at x y z)");
   }
-  void number(const char* name, float& to, bool needed) {
+  void number(const char* name, float& to, bool required) {
     const Element e = list_.named(name);
-    if (!e) return needed ? expect(fmt::format("({} number)", name)) : void();
+    if (!e) return required ? expect(fmt::format("({} number)", name)) : void();
     const double v = e.at(1).number();
-    if (!(v >= 0) || !inReach(v)) return expect(fmt::format("({} number), not below 0", name));
+    if (!(v >= 0) || !inRange(v)) return expect(fmt::format("({} number), not below 0", name));
     to = static_cast<float>(v);
   }
   void thickness() { number("thickness", out_.thickness, false); }
-  void say(bool needed) {
+  void say(bool required) {
     const Element e = list_.named("say");
-    if (!e) return needed ? expect("(say text)") : void();
-    out_.text = cleanText(e.at(1).text(), PacketReader::kLongestText);
+    if (!e) return required ? expect("(say text)") : void();
+    out_.text = cleanText(e.at(1).text(), PacketReader::kMaxTextBytes);
   }
   void agent() {
     const Element side = list_.named("side"), index = list_.named("unum");
@@ -98,10 +99,10 @@ class ShapeReader {
     const Element e = list_.named("color");
     if (!e) return;
     if (e.size() < 4) return expect("(color red green blue), 0 to 255");
-    float* parts[] = {&out_.color.r, &out_.color.g, &out_.color.b, &out_.color.a};
+    float* channels[] = {&out_.color.r, &out_.color.g, &out_.color.b, &out_.color.a};
     for (std::size_t i = 0; i < 4 && i + 1 < e.size(); ++i) {
       const double v = e.at(i + 1).number();
-      *parts[i] = std::isfinite(v) ? static_cast<float>(std::clamp(v, 0.0, 255.0) / 255) : 0;
+      *channels[i] = std::isfinite(v) ? static_cast<float>(std::clamp(v, 0.0, 255.0) / 255) : 0;
     }
     if (out_.kind != Kind::polygon) out_.color.a = 1;
   }
