@@ -33,7 +33,7 @@ void EffectorTable::clear() {
 
 bool EffectorTable::loading() const {
   return std::any_of(entries_.begin(), entries_.end(), [](const Entry& e) {
-    const auto* scene = e.effector ? e.effector->as<SceneEffector>() : nullptr;
+    const auto scene = e.effector ? e.effector->as<SceneEffector>() : nullptr;
     return scene && scene->late();
   });
 }

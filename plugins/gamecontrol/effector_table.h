@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/agents.h"
+#include "spark/prefetch.h"
 
 namespace spark::gamecontrol {
 

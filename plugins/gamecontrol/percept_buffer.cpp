@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "spark/prefetch.h"
 #include "spark/running.h"
 
 namespace spark::gamecontrol {
@@ -14,7 +15,7 @@ std::size_t PerceptBuffer::rebuild(AgentAspect& root) {
   root.collect(perceptors);
   perceptors_.assign(perceptors.begin(), perceptors.end());
   for (Perceptor* p : perceptors)
-    if (auto* view = p->as<ISharedView>()) shared_.push_back({p, view, p});
+    if (auto view = p->as<ISharedView>()) shared_.push_back({p, view, p});
   dropRemoved();
   return perceptors_.size();
 }

@@ -10,6 +10,7 @@
 
 #include "api/agents.h"
 #include "gamecontrol/agent_log.h"
+#include "spark/prefetch.h"
 
 namespace spark::gamecontrol {
 

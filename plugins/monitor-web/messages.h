@@ -12,8 +12,6 @@ namespace spark::web {
 
 /// JSON style of all messages: ASCII only; invalid UTF-8 becomes U+FFFD, a number that is not finite 0.
 inline constexpr JsonStyle kWebJson{.ascii = true, .notFinite = "0"};
-/// Appends a JSON string.
-inline void putQuoted(std::string& out, std::string_view text) { JsonWriter(out, kWebJson).value(text); }
 /// Writes an element: lists as arrays, texts that look like numbers as numbers.
 void writeElement(JsonWriter& json, const Element& element);
 

@@ -16,7 +16,8 @@ void WebMonitor::describe(Description<WebMonitor>& d) {
 }
 
 void WebMonitor::event(const Element& event) {
-  if (!exchange() || !exchange_->watched.load(std::memory_order_relaxed) || events_.size() > kMaxEventTokens) return;
+  const web::Exchange* exchange = this->exchange();
+  if (!exchange || !exchange->watched.load(std::memory_order_relaxed) || events_.size() > kMaxEventTokens) return;
   events_.append(event);
   ++eventCount_;
 }
@@ -37,9 +38,10 @@ void WebMonitor::take(const NewestFrame& newest, IMonitorEncoder*, const Event& 
 }
 
 void WebMonitor::takeAgain() {
-  if (!newest_ || !exchange_ || !exchange_->wanted.load(std::memory_order_relaxed)) return;
+  web::Exchange* exchange = this->exchange();
+  if (!newest_ || !exchange || !exchange->wanted.load(std::memory_order_relaxed)) return;
   if (takenAt_ != kernel().structureVersion() || newest_->frame.shape == 0) return;  // its pointers may dangle
-  web::Snapshot* snapshot = exchange_->wanted.exchange(nullptr, std::memory_order_acquire);
+  web::Snapshot* snapshot = exchange->wanted.exchange(nullptr, std::memory_order_acquire);
   if (!snapshot) return;
   fill(*newest_, time_, *snapshot);
   exchange->ready.store(snapshot, std::memory_order_release);

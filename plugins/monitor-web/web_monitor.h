@@ -26,9 +26,7 @@ class WebMonitor : public Node, public IFrameTaker {
   web::Exchange* exchange() const { return server_ ? &server_->exchange() : nullptr; }
   void fill(const NewestFrame& newest, double time, web::Snapshot& out);
 
-  std::string serverPath_ = "/sys/server/web";
-  web::Exchange* exchange_ = nullptr;
-  std::uint64_t lookedAt_ = 0;      ///< structure version of the last lookup of `exchange_`
+  Link<WebServer> server_;
   Predicates events_;               ///< since the last snapshot
   std::vector<double> eventTimes_;  ///< s, simulated; shorter than the events while their frame has not come
   std::size_t eventCount_ = 0;

@@ -25,6 +25,7 @@ void WebServer::describe(Description<WebServer>& d) {
   d.doc(
       "Shows the match in browsers: serves the viewer, streams frames, answers requests, takes a referee's commands.");
   d.implements<IInputSource>();
+  d.link(&WebServer::monitor_, At<IMonitorServer>().child<WebMonitor>());
   d.property("address", &W::address_).doc("Address to listen on; 0.0.0.0: the whole network, unencrypted.");
   d.property("port", &W::port, &W::setPort)
       .range(0, 65535)

@@ -38,8 +38,8 @@ class WebServer : public Node, public IInputSource {
   bool wait(double) override { return false; }
   bool canWait() const override { return false; }
 
-  /// Sets the monitor and returns the exchange to which it hands frames; valid while both nodes exist.
-  web::Exchange& joinedBy(WebMonitor& monitor);
+  /// Where its monitor hands over frames.
+  web::Exchange& exchange() { return exchange_; }
 
  protected:
   void onUnlink() override;

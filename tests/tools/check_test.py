@@ -27,6 +27,7 @@ class Check(unittest.TestCase):
             (self.tree / folder).mkdir()
         self.program("clang-format-14", "exit 0")
         self.program(self.tree / "tools/lint-words", "exit 0")
+        self.program(self.tree / "tools/lint", "exit 0")
         self.program("cmake", "exit 0")
         self.program("dpkg-query", "echo install ok installed")
         self.program("node", "echo true")
@@ -61,44 +62,48 @@ class Check(unittest.TestCase):
             self.assertIn(text, result.stderr)
 
     def test_all_stages_pass(self):
-        self.expect(0, "6 passed, 0 failed, 0 skipped", "release build", "asan tests", "fuzz runs", "CPU s; 0 compiled, 0 from the compiler cache")
-        self.assertEqual(len((self.tree / "build/check/stages").read_text().splitlines()), 11)
+        self.expect(0, "7 passed, 0 failed, 0 skipped", "release build", "asan tests", "fuzz runs", "CPU s; 0 compiled, 0 from the compiler cache")
+        self.assertEqual(len((self.tree / "build/check/stages").read_text().splitlines()), 12)
 
     def test_more_cpu_time_than_the_budget_fails(self):
         (self.tree / "tools/check.budget").write_text("# none\n0\n")
-        self.expect(1, "6 passed, 1 failed, 0 skipped", "more than tools/check.budget allows (0)")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "more than tools/check.budget allows (0)")
 
     def test_a_file_that_is_formatted_otherwise_is_named(self):
-        self.program("clang-format-14", "echo 'core/src/a.cpp:3:1: error: code should be clang-formatted' >&2; exit 1")
-        self.expect(1, "5 passed, 1 failed, 0 skipped", "format: clang-format-14 -i core/src/a.cpp")
+        self.program("clang-format-14", "echo 'core/kernel/src/a.cpp:3:1: error: code should be clang-formatted' >&2; exit 1")
+        self.expect(1, "6 passed, 1 failed, 0 skipped", "format: clang-format-14 -i core/kernel/src/a.cpp")
 
     def test_a_word_of_soccer_is_shown_with_its_place(self):
-        self.program(self.tree / "tools/lint-words", "echo \"core/src/a.cpp:3: 'ball' is soccer's\"; exit 1")
-        self.expect(1, "5 passed, 1 failed, 0 skipped", "core/src/a.cpp:3: 'ball'", "words: tools/lint-words")
+        self.program(self.tree / "tools/lint-words", "echo \"core/kernel/src/a.cpp:3: 'ball' is soccer's\"; exit 1")
+        self.expect(1, "6 passed, 1 failed, 0 skipped", "core/kernel/src/a.cpp:3: 'ball'", "words: tools/lint-words")
+
+    def test_what_clang_tidy_finds_is_shown(self):
+        self.program(self.tree / "tools/lint", "echo 'plugins/a.cpp:3:1: error: copied'; exit 1")
+        self.expect(1, "6 passed, 1 failed, 0 skipped", "plugins/a.cpp:3:1: error: copied", "lint: tools/lint")
 
     def test_a_report_without_tests_is_a_failure(self):
         self.reports(NO_TEST, "asan")
-        self.expect(1, "5 passed, 1 failed, 0 skipped", "asan: no test ran")
+        self.expect(1, "6 passed, 1 failed, 0 skipped", "asan: no test ran")
 
     def test_no_report_is_a_failure(self):
         self.reports("", "tsan")
-        self.expect(1, "5 passed, 1 failed, 0 skipped", "tsan: ctest gave no report")
+        self.expect(1, "6 passed, 1 failed, 0 skipped", "tsan: ctest gave no report")
 
     def test_skipped_tests_are_counted_as_such(self):
         self.reports('<testsuite name="x"><testcase name="a" status="notrun"><skipped/></testcase></testsuite>', "release")
-        self.expect(0, "5 passed, 0 failed, 1 skipped")
+        self.expect(0, "6 passed, 0 failed, 1 skipped")
 
     def test_a_test_that_fails_is_named(self):
         self.reports('<testsuite name="x"><testcase name="a" status="fail"><failure/></testcase></testsuite>', "release")
-        self.expect(1, "5 passed, 1 failed, 0 skipped", "x: a")
+        self.expect(1, "6 passed, 1 failed, 0 skipped", "x: a")
 
     def test_a_fuzzer_that_fails_is_named(self):
         self.fuzzer("exit 1")
-        self.expect(1, "5 passed, 1 failed, 0 skipped", "fuzz: fuzz-some")
+        self.expect(1, "6 passed, 1 failed, 0 skipped", "fuzz: fuzz-some")
 
     def test_fuzzing_without_a_program_is_a_failure(self):
         (self.tree / "build/fuzz/bin/fuzz-some").unlink()
-        self.expect(1, "5 passed, 1 failed, 0 skipped", "fuzz: there is no program")
+        self.expect(1, "6 passed, 1 failed, 0 skipped", "fuzz: there is no program")
 
 
 class Presets(unittest.TestCase):

@@ -32,14 +32,14 @@ class LintWords(unittest.TestCase):
         self.assertEqual(self.lint(), (0, []))
 
     def test_each_word_is_named_with_file_and_line_however_it_is_written(self):
-        self.write("core/src/a.cpp", "int a;\nbool isBallNear;\nint kKickOff, free_kick;\n/// The referee's AgentState.\nint BALL;\n")
+        self.write("core/kernel/src/a.cpp", "int a;\nbool isBallNear;\nint kKickOff, free_kick;\n/// The referee's AgentState.\nint BALL;\n")
         code, lines = self.lint()
         self.assertEqual(code, 1)
-        self.assertEqual(lines, [f"core/src/a.cpp:{place}" for place in
+        self.assertEqual(lines, [f"core/kernel/src/a.cpp:{place}" for place in
                                  ("2: 'ball'", "3: 'kick'", "3: 'kick off'", "3: 'free kick'", "4: 'referee'", "4: 'agent state'", "5: 'ball'")])
 
     def test_parts_of_other_words_are_none(self):
-        self.write("core/src/a.cpp", "int balloon, goalless, kickstart, footballer; // agent, state; game. state\n")
+        self.write("core/kernel/src/a.cpp", "int balloon, goalless, kickstart, footballer; // agent, state; game. state\n")
         self.assertEqual(self.lint(), (0, []))
 
     def test_soccer_itself_tests_and_prose_may_say_them(self):
