@@ -1,5 +1,6 @@
 #include "zip_file_system.h"
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include "spark/error.h"
@@ -13,9 +14,7 @@ void ZipFileSystem::describe(Description<ZipFileSystem>& d) {
   d.implements<IFileSystem>();
   d.property("path", &ZipFileSystem::file, &ZipFileSystem::setFile).doc("The archive.");
   d.property("prefix", &ZipFileSystem::prefix, &ZipFileSystem::setPrefix)
-      .doc(
-          "Resource names start with this, and the rest is looked up in the archive: 'rsg/' mounts the archive as "
-          "rsg.");
+      .doc("Prefix of resource names; the rest is looked up in the archive. 'rsg/' mounts the archive as rsg.");
   d.property("maxBytes", &ZipFileSystem::maxBytes_)
       .unit("bytes")
       .min(0)
@@ -34,11 +33,12 @@ void ZipFileSystem::setPrefix(std::string prefix) {
 }
 
 std::string ZipFileSystem::where() const {
-  return "archive '" + (path_.empty() ? std::string("(none)") : path_) + "'" +
-         (prefix_.empty() ? "" : " (as '" + prefix_ + "')");
+  return fmt::format("archive '{}'{}", path_.empty() ? "(none)" : path_,
+                     prefix_.empty() ? "" : fmt::format(" (as '{}')", prefix_));
 }
 
 bool ZipFileSystem::refresh() {
+  // Has the file changed?
   struct stat s {};
   if (path_.empty() || ::stat(path_.c_str(), &s) != 0) {
     archive_.reset();
@@ -48,6 +48,7 @@ bool ZipFileSystem::refresh() {
   const std::uint64_t identity =
       std::max<std::uint64_t>(1, hashBytes({reinterpret_cast<const char*>(parts), sizeof parts}) >> 8);
   if (archive_ && identity == identity_) return true;
+
   int code = 0;
   archive_.reset(zip_open(path_.c_str(), ZIP_RDONLY, &code));
   if (!archive_) {
@@ -55,7 +56,7 @@ bool ZipFileSystem::refresh() {
     zip_error_init_with_code(&error, code);
     const std::string why = zip_error_strerror(&error);
     zip_error_fini(&error);
-    throw Error("cannot open " + where() + ": " + why);
+    throw Error(fmt::format("cannot open {}: {}", where(), why));
   }
   identity_ = identity;
   return true;
@@ -70,20 +71,23 @@ std::optional<std::string> ZipFileSystem::read(const std::string& resource) {
   const zip_int64_t index = locate(resource);
   if (index < 0) {
     if (archive_ && locate(resource + "/") >= 0)
-      throw Error("expected a file, found a folder: '" + resource + "' in " + where());
+      throw Error(fmt::format("expected a file, found a folder: '{}' in {}", resource, where()));
     return {};
   }
   const auto fail = [&](const std::string& why) {
-    throw Error("cannot read '" + resource + "' in " + where() + ": " + why);
+    throw Error(fmt::format("cannot read '{}' in {}: {}", resource, where(), why));
   };
+
+  // Refuse members that are encrypted or too large.
   zip_stat_t stat;
   if (zip_stat_index(archive_.get(), static_cast<zip_uint64_t>(index), 0, &stat) != 0)
     fail(zip_strerror(archive_.get()));
   if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) && stat.encryption_method != ZIP_EM_NONE) fail("it is encrypted");
   if (!(stat.valid & ZIP_STAT_SIZE)) fail("its size is unknown");
   if (stat.size > static_cast<zip_uint64_t>(maxBytes_))
-    fail("it is too large: " + std::to_string(stat.size) + " bytes, at most " + std::to_string(maxBytes_) +
-         " are allowed (" + path() + ".maxBytes)");
+    fail(fmt::format("it is too large: {} bytes, at most {} are allowed ({}.maxBytes)", stat.size, maxBytes_, path()));
+
+  // Unpack.
   const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
       zip_fopen_index(archive_.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
   if (!file) fail(zip_strerror(archive_.get()));
@@ -91,10 +95,10 @@ std::optional<std::string> ZipFileSystem::read(const std::string& resource) {
   for (std::size_t have = 0; have < content.size();) {
     const zip_int64_t n = zip_fread(file.get(), content.data() + have, content.size() - have);
     if (n < 0) fail(zip_file_strerror(file.get()));
-    if (n == 0) fail("it ends after " + std::to_string(have) + " of " + std::to_string(content.size()) + " bytes");
-    have += static_cast<std::size_t>(n);
+    if (n == 0) fail(fmt::format("it ends after {} of {} bytes", have, content.size()));
+    have += n;
   }
-  // One byte beyond: the checksum is compared at the end of the data.
+  // libzip compares the checksum when the end of the data is read: read one byte more.
   char beyond = 0;
   if (zip_fread(file.get(), &beyond, 1) != 0) fail("its data does not fit its checksum or size");
   return content;

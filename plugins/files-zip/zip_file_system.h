@@ -11,7 +11,8 @@
 
 namespace spark {
 
-/// A zip archive. It is opened at the first look and again whenever the file changed. Encrypted members are refused.
+/// A zip archive. It is opened when it is first used, and again whenever the file changed. Encrypted members are
+/// refused.
 class ZipFileSystem : public Leaf, public IFileSystem {
   SPARK_CLASS(ZipFileSystem, Leaf)
  public:
@@ -22,12 +23,13 @@ class ZipFileSystem : public Leaf, public IFileSystem {
   std::string where() const override;
 
  private:
+  /// Closes an archive.
   struct Close {
     void operator()(zip_t* archive) const { zip_discard(archive); }
   };
-  /// Opens or reopens the archive; false when there is no such file. Throws Error when it is no archive.
+  /// Opens the archive where needed. Returns false when the file does not exist; throws Error when it is no archive.
   bool refresh();
-  /// The member's number, -1 when there is none.
+  /// Index of the member of that name, -1 when there is none.
   zip_int64_t locate(const std::string& resource);
   const std::string& file() const { return path_; }
   void setFile(std::string path);
@@ -37,7 +39,7 @@ class ZipFileSystem : public Leaf, public IFileSystem {
   std::string path_, prefix_;
   std::int64_t maxBytes_ = 16 << 20;
   std::unique_ptr<zip_t, Close> archive_;
-  std::uint64_t identity_ = 0;  ///< of the archive file when it was opened
+  std::uint64_t identity_ = 0;  ///< hash of age, size and inode of the file when it was opened
 };
 
 }  // namespace spark

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <fstream>
@@ -11,15 +12,15 @@ namespace fs = std::filesystem;
 namespace spark {
 
 namespace {
-constexpr std::size_t kMostRemembered = 10000;
+constexpr std::size_t kMaxCached = 10000;  // identities
 }
 
 void DirectoryFileSystem::describe(Description<DirectoryFileSystem>& d) {
-  d.doc("A folder as file system; what links lead out of it is refused.");
+  d.doc("A folder as file system. Files outside of it cannot be reached, not even through links.");
   d.implements<IFileSystem>();
   d.property("path", &DirectoryFileSystem::path_).doc("The folder.");
   d.property("prefix", &DirectoryFileSystem::prefix, &DirectoryFileSystem::setPrefix)
-      .doc("Resource names start with this, and the rest is looked up in the folder: 'rsg/' mounts the folder as rsg.");
+      .doc("Prefix of resource names; the rest is looked up in the folder. 'rsg/' mounts the folder as rsg.");
   d.property("maxBytes", &DirectoryFileSystem::maxBytes_).unit("bytes").min(0).doc("Larger files are refused.");
 }
 
@@ -30,8 +31,8 @@ void DirectoryFileSystem::setPrefix(std::string prefix) {
 }
 
 std::string DirectoryFileSystem::where() const {
-  return "folder '" + (path_.empty() ? std::string("(none)") : path_) + "'" +
-         (prefix_.empty() ? "" : " (as '" + prefix_ + "')");
+  return fmt::format("folder '{}'{}", path_.empty() ? "(none)" : path_,
+                     prefix_.empty() ? "" : fmt::format(" (as '{}')", prefix_));
 }
 
 std::optional<fs::path> DirectoryFileSystem::locate(const std::string& resource) const {
@@ -43,28 +44,32 @@ std::optional<fs::path> DirectoryFileSystem::locate(const std::string& resource)
   if (failed) return {};
   const fs::path inside = file.lexically_relative(root);
   if (inside.empty() || *inside.begin() == "..")
-    throw Error("resource '" + resource + "' is refused: a link leads out of " + where());
+    throw Error(fmt::format("resource '{}' is refused: a link leads out of {}", resource, where()));
   return file;
 }
 
 std::optional<std::string> DirectoryFileSystem::read(const std::string& resource) {
   const auto file = locate(resource);
   if (!file) return {};
+
+  // Only plain files of limited size.
   std::error_code failed;
   const fs::file_status status = fs::status(*file, failed);
-  if (failed) throw Error("cannot look at '" + file->string() + "': " + failed.message());
-  if (fs::is_directory(status)) throw Error("expected a file, found a folder: '" + resource + "' in " + where());
+  if (failed) throw Error(fmt::format("cannot look at '{}': {}", file->string(), failed.message()));
+  if (fs::is_directory(status))
+    throw Error(fmt::format("expected a file, found a folder: '{}' in {}", resource, where()));
   if (!fs::is_regular_file(status))
-    throw Error("expected a plain file, found something else: '" + resource + "' in " + where());
+    throw Error(fmt::format("expected a plain file, found something else: '{}' in {}", resource, where()));
   const std::uintmax_t size = fs::file_size(*file, failed);
-  if (failed) throw Error("cannot look at '" + file->string() + "': " + failed.message());
+  if (failed) throw Error(fmt::format("cannot look at '{}': {}", file->string(), failed.message()));
   if (size > static_cast<std::uintmax_t>(maxBytes_))
-    throw Error("resource '" + resource + "' is too large: " + std::to_string(size) + " bytes, at most " +
-                std::to_string(maxBytes_) + " are allowed (" + path() + ".maxBytes)");
+    throw Error(fmt::format("resource '{}' is too large: {} bytes, at most {} are allowed ({}.maxBytes)", resource,
+                            size, maxBytes_, path()));
+
   std::ifstream in(*file, std::ios::binary);
   std::string content(size, '\0');
   if (!in || !in.read(content.data(), static_cast<std::streamsize>(size)))
-    throw Error("cannot read '" + file->string() + "'");
+    throw Error(fmt::format("cannot read '{}'", file->string()));
   return content;
 }
 
@@ -73,12 +78,16 @@ std::uint64_t DirectoryFileSystem::stamp(const std::string& resource) {
   const fs::path file = fs::path(path_) / resource.substr(prefix_.size());
   struct stat s {};
   if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return 0;
+
+  // A new file: check that it is inside of the folder.
   const Identity identity{s.st_dev, s.st_ino};
   if (const auto known = inside_.find(resource); known == inside_.end() || known->second != identity) {
     if (!locate(resource)) return 0;
-    if (inside_.size() >= kMostRemembered) inside_.clear();  // links in circles give one file many names
+    if (inside_.size() >= kMaxCached) inside_.clear();  // circular links give a file any number of names
     inside_.insert_or_assign(resource, identity);
   }
+
+  // Time of the last change, size and inode.
   const std::int64_t parts[] = {s.st_mtim.tv_sec, s.st_mtim.tv_nsec, s.st_size, static_cast<std::int64_t>(s.st_ino)};
   return std::max<std::uint64_t>(1, hashBytes({reinterpret_cast<const char*>(parts), sizeof parts}) >> 8);
 }

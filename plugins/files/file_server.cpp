@@ -1,5 +1,7 @@
 #include "file_server.h"
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "spark/error.h"
@@ -11,17 +13,20 @@ std::string normalName(std::string_view resource) {
     std::string shown(resource);
     for (char& c : shown)
       if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    throw Error("expected a relative resource name such as 'rsg/agent/sphere.rsg', found '" + shown + "': " + why);
+    throw Error(
+        fmt::format("expected a relative resource name such as 'rsg/agent/sphere.rsg', found '{}': {}", shown, why));
   };
   if (resource.empty()) refuse("it is empty");
   if (resource.size() > 1024)
-    throw Error("expected a resource name of at most 1024 bytes, found one of " + std::to_string(resource.size()));
+    throw Error(fmt::format("expected a resource name of at most 1024 bytes, found one of {}", resource.size()));
   if (resource.front() == '/') refuse("it is absolute");
   for (const char c : resource) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) refuse("it holds a control character");
     if (c == '\\') refuse("it holds a backslash; use '/'");
     if (c == ':') refuse("it holds a ':'");
   }
+
+  // Copy the components.
   std::string out;
   while (!resource.empty()) {
     const std::size_t n = std::min(resource.find('/'), resource.size());
@@ -40,9 +45,9 @@ std::string normalName(std::string_view resource) {
 namespace spark {
 
 void FileServer::describe(Description<FileServer>& d) {
-  d.doc("Finds resources by name in the file systems below it, asked in order.");
+  d.doc("Finds resources by name in the file systems below it, in their order.");
   d.implements<IFileServer>();
-  d.method("read", &FileServer::readText).parameters({"resource"}).doc("The content of a resource.");
+  d.method("read", &FileServer::readText).parameters({"resource"}).doc("Returns the content of a resource.");
   d.method("exist", &FileServer::hasResource).parameters({"resource"}).doc("True when a file system has the resource.");
 }
 
@@ -56,17 +61,17 @@ void FileServer::forEach(F visit) const {
 std::string FileServer::read(std::string_view resource) {
   const std::string name = files::normalName(resource);
   std::optional<std::string> content;
-  std::optional<Error> trouble;  // of the first that has it but cannot give it; a later one may
+  std::optional<Error> failure;  // of the first file system that has the resource but cannot read it
   forEach([&](IFileSystem& system) {
     try {
       content = system.read(name);
     } catch (const Error& e) {
-      if (!trouble) trouble = e;
+      if (!failure) failure = e;
     }
     return content.has_value();
   });
   if (content) return *std::move(content);
-  if (trouble) throw *trouble;
+  if (failure) throw *failure;
   notFound(name);
 }
 
@@ -74,14 +79,14 @@ bool FileServer::exists(std::string_view resource) { return stamp(resource) != 0
 
 std::uint64_t FileServer::stamp(std::string_view resource) {
   const std::string name = files::normalName(resource);
-  std::uint64_t stamp = 0, place = 0;
+  std::uint64_t stamp = 0, number = 0;
   forEach([&](IFileSystem& system) {
-    ++place;
+    ++number;
     stamp = system.stamp(name);
     return stamp != 0;
   });
-  // Which file system answers is part of it: two folders may hold files of one age.
-  return stamp == 0 ? 0 : std::max<std::uint64_t>(1, stamp ^ (place << 56));
+  // The number of the file system is part of the stamp: files in two folders may have the same age.
+  return stamp == 0 ? 0 : std::max<std::uint64_t>(1, stamp ^ (number << 56));
 }
 
 void FileServer::notFound(const std::string& name) const {
@@ -90,9 +95,10 @@ void FileServer::notFound(const std::string& name) const {
     places += (places.empty() ? "" : ", ") + system.where();
     return false;
   });
-  throw Error("there is no resource '" + name + "'. " +
-              (places.empty() ? path() + " has no file systems below it: add a DirectoryFileSystem."
-                              : "Looked in " + places + "."));
+  const std::string hint = places.empty()
+                               ? fmt::format("{} has no file systems below it: add a DirectoryFileSystem.", path())
+                               : fmt::format("Looked in {}.", places);
+  throw Error(fmt::format("there is no resource '{}'. {}", name, hint));
 }
 
 }  // namespace spark

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The file server and the folder as file system.
+/// The file server, and folders as file systems.
 
 #include <filesystem>
 #include <map>
@@ -10,16 +10,16 @@
 
 namespace spark::files {
 
-/// Checks a resource name and returns its normal form: '/' between components, no empty ones, no ".".
-/// Throws Error for empty and absolute names, names that climb out with "..", backslashes, drive letters, control
-/// characters.
+/// Checks a resource name and returns its normal form: components separated by one '/', without ".". Throws Error for
+/// empty and absolute names, and for names with "..", backslashes, colons or control characters, or of more than 1024
+/// bytes.
 std::string normalName(std::string_view resource);
 
 }  // namespace spark::files
 
 namespace spark {
 
-/// Finds resources: asks the file systems below it, in order.
+/// Finds resources by name in the file systems below it. The first that has a resource delivers it.
 class FileServer : public Node, public IFileServer {
   SPARK_CLASS(FileServer, Node)
  public:
@@ -30,14 +30,16 @@ class FileServer : public Node, public IFileServer {
   std::uint64_t stamp(std::string_view resource) override;
 
  private:
+  /// Calls `visit` for the file systems, in order, until it returns true.
   template <class F>
   void forEach(F visit) const;
+  /// Throws Error with the places that were searched.
   [[noreturn]] void notFound(const std::string& name) const;
   std::string readText(std::string resource) { return read(resource); }
   bool hasResource(std::string resource) { return exists(resource); }
 };
 
-/// A folder of the machine. Nothing outside of it is reachable, also not through links.
+/// A folder of the host. Files outside of it cannot be reached, not even through symbolic links.
 class DirectoryFileSystem : public Leaf, public IFileSystem {
   SPARK_CLASS(DirectoryFileSystem, Leaf)
  public:
@@ -48,16 +50,20 @@ class DirectoryFileSystem : public Leaf, public IFileSystem {
   std::string where() const override;
 
  private:
+  /// The path of a resource with all links resolved; nullopt when it does not exist. Throws Error when it is outside of
+  /// the folder.
   std::optional<std::filesystem::path> locate(const std::string& resource) const;
   void setPrefix(std::string prefix);
   const std::string& prefix() const { return prefix_; }
-  /// Where a resource was found inside: looking whether it is the same file is all that a stamp takes then.
+  /// Identity of a file.
   struct Identity {
     std::uint64_t device, inode;
     bool operator==(const Identity&) const = default;
   };
   std::string path_, prefix_;
   std::int64_t maxBytes_ = 16 << 20;
+  /// Files known to be inside of the folder, by resource: while the identity is the same, stamp() need not resolve
+  /// links.
   std::map<std::string, Identity, std::less<>> inside_;
 };
 

@@ -6,8 +6,10 @@
 namespace spark::simulation {
 
 std::size_t Histogram::bucket(std::uint64_t micros) {
+  // The leading 5 bits of the duration select the bucket, their position the octave.
   const int octave = std::max(0, static_cast<int>(std::bit_width(micros)) - 1 - kShift);
-  return std::min<std::size_t>(static_cast<std::size_t>(octave << kShift) + (micros >> octave), kBuckets - 1);
+  const std::size_t firstOfOctave = octave << kShift;
+  return std::min<std::size_t>(firstOfOctave + (micros >> octave), kBuckets - 1);
 }
 
 double Histogram::begin(std::size_t i) {
@@ -23,8 +25,8 @@ void Histogram::add(Duration d) {
   longest_ = std::max(longest_, micros);
 }
 
-double Histogram::percentile(double share) const {
-  const auto wanted = static_cast<std::int64_t>(std::ceil(share * static_cast<double>(count_)));
+double Histogram::percentile(double fraction) const {
+  const auto wanted = static_cast<std::int64_t>(std::ceil(fraction * static_cast<double>(count_)));
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < kBuckets; ++i)
     if ((sum += counts_[i]) >= wanted && sum > 0) return std::min(begin(i + 1), longest_);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How long something takes, cycle by cycle: counts in fixed buckets. Wall time: never part of the state.
+/// Histogram of durations with fixed buckets. Wall time, never part of the state.
 
 #include <array>
 #include <bit>
@@ -9,28 +9,32 @@
 
 namespace spark::simulation {
 
-/// Counts durations from 0 to two minutes, each within 1/16 of its size (below 16 us: to the microsecond). Adding
-/// allocates nothing.
+/// Counts durations from 0 to two minutes with a relative resolution of 1/16; below 16 us of 1 us. Does not allocate.
 class Histogram {
  public:
   using Duration = std::chrono::steady_clock::duration;
 
-  /// What is below 0 counts as 0, what is too long as the longest.
+  /// Counts a duration. Negative ones count as 0, ones beyond the last bucket in it.
   void add(Duration d);
+  /// Removes all counts.
   void reset() { *this = {}; }
+  /// Number of durations.
   std::int64_t count() const { return count_; }
-  /// Microseconds that a share (0..1) of all stayed within: the upper end of a bucket, but no more than the longest; 0
-  /// without any.
-  double percentile(double share) const;
+  /// The duration [us] that the fraction `fraction` (0..1) of all durations does not exceed: the upper end of a bucket,
+  /// at most longest(); 0 without durations.
+  double percentile(double fraction) const;
+  /// The longest duration [us]; 0 without durations.
   double longest() const { return longest_; }
 
   static constexpr std::size_t kBuckets = 16 * 24;
+  /// Number of durations in bucket `i`, below kBuckets.
   std::int64_t inBucket(std::size_t i) const { return counts_[i]; }
-  /// Microseconds at which a bucket begins.
+  /// Lower end of bucket `i` [us].
   static double begin(std::size_t i);
 
  private:
-  static constexpr int kShift = 4;  // 16 buckets for each power of two
+  static constexpr int kShift = 4;  // 2^4 = 16 buckets per power of two
+  /// The bucket of a duration.
   static std::size_t bucket(std::uint64_t micros);
   std::array<std::int64_t, kBuckets> counts_{};
   std::int64_t count_ = 0;

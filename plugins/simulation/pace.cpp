@@ -52,6 +52,8 @@ std::string Pace::table() const {
     for (std::size_t i = 2; i < r.size(); ++i) out += fmt::format(" {:>9.0f}", r[i].toNumber());
     out += '\n';
   }
+
+  // Rows of 8 buckets each.
   out += fmt::format("{:>10} {:>9} {:>9} {:>9}\n", "from [us]", "late", "long", "done");
   constexpr std::size_t kRow = 8;
   const auto sum = [](const Histogram& h, std::size_t from) {

@@ -1,5 +1,7 @@
 #include "simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <thread>
 
@@ -8,28 +10,28 @@
 #include "spark/running.h"
 #include "spark/state.h"
 
-// One cycle, and where waiting happens:
+// One cycle, and where it waits:
 //
 //   wait for the clock ─► input ─► act ─► prepare ─► physics ─► place ─► rule ─► sense ─► publish
 //   (real time only;       │
-//    input is taken        └ poll all sources; while a gate is closed, wait for input and ask again;
-//    meanwhile)              then poll once more: what was received when the last answer was read counts
+//    input is processed    └ poll all sources; while a gate is closed, wait for input and check the gates again;
+//    meanwhile)              then poll once more: input that had arrived with the last answer belongs to this cycle
 //
-// All waiting is inside a source's wait(), so that input is taken as it comes, and in slices, so that a stop request
-// and sources that can only be polled are seen soon. Waiting never shows in the state: the simulated clock stands still
-// meanwhile. In real time, what a cycle takes longer than its step is dropped, and counted: the simulation gets slower,
-// it never catches up with double steps.
+// All waiting is done in the wait() of an input source, so that input is processed as it arrives. It is done in slices,
+// so that a stop request and sources without a wait() are noticed soon. Waiting does not change the state: the
+// simulated clock does not advance. In real time, the time by which a cycle exceeds its step is lost, and counted as
+// such: the simulation becomes slower and never catches up.
 //
-// Unlike the original, the first cycle has a step like every other: nobody can see the difference (an agent's robot
-// exists from the end of a cycle's act phase at the earliest), and cycles * step is the time.
+// Unlike in the installed base, the first cycle has a step like every other. Agents cannot observe the difference,
+// because their robots exist from the end of the first act phase at the earliest; and time is always cycles * step.
 
 namespace spark {
 
 namespace {
-constexpr double kSlice = 0.02;  // s; bound on the delay of a stop request and of polled sources
-constexpr const char* kTakesInput = "it takes input just now";
-constexpr double kJitter = 0.002;        // s; a cycle that starts later than this lost time that is not made up for
-constexpr const char* kInput = "input";  ///< as a phase, for last words and watchdogs
+constexpr double kSlice = 0.02;    // longest single wait [s]: bounds the delay of a stop request and of polled sources
+constexpr double kJitter = 0.002;  // lateness [s] that the next cycles may make up for; more is lost time
+constexpr const char* kTakesInput = "it takes input just now";  // reason why a source cannot be removed
+constexpr const char* kInput = "input";  // name of the input part, for crash reports and watchdogs
 using simulation::Part;
 
 double secondsUntil(std::chrono::steady_clock::time_point t) {
@@ -38,14 +40,14 @@ double secondsUntil(std::chrono::steady_clock::time_point t) {
 }  // namespace
 
 void Simulation::describe(Description<Simulation>& d) {
-  d.doc("The run loop: names the phases and drives them.");
+  d.doc("The run loop: defines the phases and runs them.");
   d.implements<ISimulation>();
   d.link(&Simulation::sources_, At<Node>("/sys/server").child<IInputSource>());
   d.link(&Simulation::gates_, At<Node>("/").below<IInputGate>());
   d.property("step", &Simulation::step_).unit("s").range(1e-6, 1).doc("Simulated time of one cycle.");
   d.property("rate", &Simulation::rate_)
       .choices({"real", "max"})
-      .doc("real: paced to wall time; max: as fast as it goes.");
+      .doc("real: paced to wall time; max: as fast as possible.");
   d.property("sync", &Simulation::sync_).doc("Lockstep: a cycle starts when every agent has answered.");
   d.property("duration", &Simulation::duration_)
       .unit("s")
@@ -53,7 +55,7 @@ void Simulation::describe(Description<Simulation>& d) {
       .doc("Simulated time after which run() ends; 0: never.");
   d.property("threads", &Simulation::threads, &Simulation::setThreads)
       .range(1, 64)
-      .doc("Host threads for physics, sensing and encoding. Results do not depend on it.");
+      .doc("Threads of the host for physics, sensing and encoding. Results do not depend on it.");
   d.property("cycle", &Simulation::cycle).doc("Number of the current cycle, from 1; 0 before the first.");
   d.property("time", &Simulation::time).unit("s").doc("Simulated time since the start.");
   d.property("phaseMicros", &Simulation::phaseMicros)
@@ -61,39 +63,42 @@ void Simulation::describe(Description<Simulation>& d) {
   d.property("cycleTimes", &Simulation::cycleTimes)
       .doc(
           "Three lists {name, cycles, p50, p90, p99, p99.9, longest} of wall time since resetTimers() [microseconds]: "
-          "late, from when a cycle was due in real time to "
-          "its beginning; long, from its beginning to its end; done, from when it was due to its end.");
+          "late, from the time a cycle was due to its beginning; long, from its beginning to its end; done, from the "
+          "time "
+          "it was due to its end.");
   d.property("histogram", &Simulation::histogram)
       .doc(
-          "The same in buckets, a list {from, late, long, done} for each that has any: where it begins [microseconds], "
-          "and how many cycles are in it.");
+          "The same as a histogram, a list {from, late, long, done} for each bucket that is not empty: its lower end "
+          "[microseconds], and the numbers of cycles in it.");
   d.property("lostTime", &Simulation::lostTime_)
       .unit("s")
       .readOnly()
       .doc(
-          "Wall time by which cycles began too late in real time, because those before took longer than a step. It is "
+          "Wall time by which cycles began too late in real time, because earlier ones took longer than a step. It is "
           "not made up for.");
-  d.property("lateCycles", &Simulation::lateCycles_).readOnly().doc("Cycles that began too late in real time.");
+  d.property("lateCycles", &Simulation::lateCycles_)
+      .readOnly()
+      .doc("Number of cycles that began too late in real time.");
   d.property("faults", &Simulation::faults)
       .doc(
-          "Faults of plugins and scripts that were caught while the simulation ran; the log tells the first of each "
-          "place.");
-  d.method("run", &Simulation::run).doc("Runs until duration is reached or something asks to stop.");
+          "Number of faults of plugins and scripts that were caught while the simulation ran; the log has the first of "
+          "each place.");
+  d.method("run", &Simulation::run).doc("Runs until duration is reached or a stop is requested.");
   d.method("runCycles", &Simulation::runCycles).parameters({"count"}).doc("Runs that many cycles.");
   d.method("paceTable", &Simulation::paceTable)
-      .doc("cycleTimes and histogram as a table for people, with wider buckets.");
+      .doc("cycleTimes and histogram as a formatted table, with wider buckets.");
   d.method("stop", &Simulation::stop).doc("Ends run() after the current cycle.");
-  d.method("resetTimers", &Simulation::resetTimers).doc("Starts phaseMicros, cycleTimes and histogram anew.");
+  d.method("resetTimers", &Simulation::resetTimers).doc("Resets phaseMicros, cycleTimes and histogram.");
 }
 
 void Simulation::onLink() {
   Events& events = kernel().events();
-  act_ = &events.define(phase::kAct, Order::parentsFirst, "Agents' messages are realised; immediate effectors act.");
+  act_ = &events.define(phase::kAct, Order::parentsFirst, "Agents' messages are executed; immediate effectors act.");
   prepare_ =
       &events.define(phase::kPrepare, Order::childrenFirst, "Deferred actions, controllers, sampling before the step.");
   physics_ =
       &events.define(phase::kPhysics, Order::parentsFirst, "Contacts, collision handlers, joints, one solver step.");
-  place_ = &events.define(phase::kPlace, Order::parentsFirst, "Bodies write transforms; world matrices.");
+  place_ = &events.define(phase::kPlace, Order::parentsFirst, "Bodies write transforms; world matrices are updated.");
   rule_ = &events.define(phase::kRule, Order::parentsFirst, "Control aspects see the new world.");
   sense_ = &events.define(phase::kSense, Order::parentsFirst, "Perceptors read the world.");
   publish_ = &events.define(phase::kPublish, Order::parentsFirst, "Monitors and recorders take a frame.");
@@ -123,10 +128,11 @@ void Simulation::runCycles(std::int64_t count) {
   loop([&count] { return count-- > 0; });
 }
 
-// A trainer or sparkctl may call what it likes, also run() while it runs.
 template <class More>
 void Simulation::loop(More more) {
-  if (running_) throw Error(path() + " runs already: run() and runCycles() cannot be called from within a cycle");
+  // A trainer or sparkctl may call run() while it runs.
+  if (running_)
+    throw Error(fmt::format("{} runs already: run() and runCycles() cannot be called from within a cycle", path()));
   struct Running {
     explicit Running(bool& f) : flag(f) { flag = true; }
     ~Running() { flag = false; }
@@ -141,13 +147,15 @@ void Simulation::loop(More more) {
   while (more() && collectInput()) executeCycle();
 }
 
-// Half a step of tolerance: the sum of steps is not exact.
-bool Simulation::finished() const { return stopping() || (duration_ > 0 && time_ > duration_ - 0.5 * step_); }
+bool Simulation::finished() const {
+  // Half a step of tolerance: the sum of steps is not exact.
+  return stopping() || (duration_ > 0 && time_ > duration_ - 0.5 * step_);
+}
 
-// Input changes the tree (agents come and go), so positions are looked up anew for every source.
 void Simulation::poll() {
   NowRunning now(kInput);
   now.beat();
+  // Input changes the tree (agents connect and disconnect): the list is fetched again for every source.
   for (std::size_t i = 0;; ++i) {
     const std::vector<Found<IInputSource>>& sources = sources_.all();
     if (i >= sources.size()) return;
@@ -166,6 +174,7 @@ bool Simulation::gatesOpen() {
 }
 
 void Simulation::waitForInput(double seconds) {
+  // The first source that can wait; sources that cannot are polled after it.
   const double slice = std::min(seconds, kSlice);
   const auto canWait = [](const Found<IInputSource>& s) { return s->canWait(); };
   const auto waiter = std::find_if(sources_.begin(), sources_.end(), canWait);
@@ -182,12 +191,15 @@ void Simulation::waitForInput(double seconds) {
 }
 
 void Simulation::waitForClock() {
+  // Wait until the cycle is due.
   while (paced() && !stopping()) {
-    const double left = secondsUntil(due_);
-    if (left <= 0) break;
-    waitForInput(left);
+    const double remaining = secondsUntil(due_);
+    if (remaining <= 0) break;
+    waitForInput(remaining);
   }
-  wanted_ = due_;
+
+  // The next one is due a step later: after this due time if the cycle starts in time, else after now.
+  startDue_ = due_;
   const double late = -secondsUntil(due_);
   if (late > kJitter) {
     due_ = Clock::now();
@@ -209,8 +221,9 @@ bool Simulation::collectInput() {
   if (stopping()) return false;
   if (waited) {
     poll();
-    due_ = std::max(due_, Clock::now());  // the clock stood still for agents: that is not lost
-    wanted_ = std::max(wanted_, Clock::now());
+    // Waiting for agents is no lost time.
+    due_ = std::max(due_, Clock::now());
+    startDue_ = std::max(startDue_, Clock::now());
   }
   timers_.add(Part::input, waited ? Clock::duration::zero() : Clock::now() - mark);
   return !stopping();
@@ -231,7 +244,7 @@ void Simulation::emit(Part part, Channel& channel, Clock::time_point& mark) {
 void Simulation::executeCycle() {
   ++cycle_;
   auto mark = Clock::now();
-  pace_.begin(wanted_, mark, paced());
+  pace_.begin(startDue_, mark, paced());
   emit(Part::act, *act_, mark);
   emit(Part::prepare, *prepare_, mark);
   emit(Part::physics, *physics_, mark);
@@ -247,5 +260,5 @@ void Simulation::executeCycle() {
 }  // namespace spark
 
 SPARK_PLUGIN("simulation", "1.0",
-             "The run loop: names the phases and drives them in real time, in lockstep, or as fast as possible.",
+             "The run loop: defines the phases and runs them in real time, in lockstep, or as fast as possible.",
              spark::Simulation)

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The run loop: names the phases of a cycle and drives them in real time, in lockstep, or as fast as possible.
+/// The run loop: defines the phases of a cycle and runs them in real time, in lockstep, or as fast as possible.
 
 #include <chrono>
 #include <string>
@@ -47,21 +47,28 @@ class Simulation : public Node, public ISimulation {
   Value histogram() const { return pace_.buckets(); }
   void resetTimers() { timers_.reset(), pace_.reset(); }
 
+  /// Runs cycles while `more()` returns true and no stop is requested.
   template <class More>
   void loop(More more);
   bool stopping() const { return stopped_ || kernel().stopRequested(); }
+  /// True when `duration` is reached or a stop is requested.
   bool finished() const;
+  /// Polls all input sources.
   void poll();
+  /// True when all input gates are ready.
   bool gatesOpen();
-  /// Waits for input or until `seconds` have passed, at most one slice, and takes what came.
+  /// Waits for input, at most `seconds` and at most one slice, and processes it.
   void waitForInput(double seconds);
+  /// Waits until the next cycle is due in real time. Processes input meanwhile.
   void waitForClock();
-  /// Everything that must have been read before the cycle starts; false when asked to stop meanwhile.
+  /// Waits for clock and gates and processes all input that belongs to the next cycle. Returns false when a stop was
+  /// requested meanwhile.
   bool collectInput();
+  /// Emits a phase and measures it from `mark` on; sets `mark` to its end.
   void emit(simulation::Part part, Channel& channel, Clock::time_point& mark);
   void executeCycle();
 
-  double step_ = 0.02, duration_ = 0, time_ = 0;
+  double step_ = 0.02, duration_ = 0, time_ = 0;  ///< s
   std::int64_t cycle_ = 0;
   std::string rate_ = "real";
   bool sync_ = false, stopped_ = false, running_ = false;
@@ -72,9 +79,9 @@ class Simulation : public Node, public ISimulation {
 
   Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr,
           *sense_ = nullptr, *publish_ = nullptr;
-  Clock::time_point due_{};     ///< when the next cycle may start in real time
-  Clock::time_point wanted_{};  ///< when this one was due, or could start because agents had answered
-  double lostTime_ = 0;         ///< s of wall time; says how the host does, not how the world is: no state
+  Clock::time_point due_{};       ///< time at which the next cycle is due in real time
+  Clock::time_point startDue_{};  ///< time at which the current cycle was due, or at which the last agent had answered
+  double lostTime_ = 0;           ///< wall time [s]; a measurement of the host, not state of the world
   std::int64_t lateCycles_ = 0;
   simulation::Timers timers_;
   simulation::Pace pace_;

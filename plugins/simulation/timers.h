@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How long each phase takes, for the bench and for people. Wall time: never part of the state.
+/// Wall time of each phase, for benchmarks. Never part of the state.
 
 #include <array>
 #include <chrono>
@@ -15,18 +15,18 @@ enum class Part : std::size_t { input, act, prepare, physics, place, rule, sense
 inline constexpr std::array<const char*, 8> kPartNames{"input", "act",  "prepare", "physics",
                                                        "place", "rule", "sense",   "publish"};
 
-/// Sums of wall time per part. Used by the simulation's thread.
+/// Sums of wall time per part. Used in the simulation's thread.
 class Timers {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Forgets all sums.
+  /// Sets all sums to 0.
   void reset();
+  /// Adds to the sum of a part.
   void add(Part part, Clock::duration spent) { sums_[static_cast<std::size_t>(part)] += spent; }
-  /// Ends one cycle: means are per cycle.
+  /// Counts a cycle, for the means.
   void cycleDone() { ++cycles_; }
-  /// `{{"input", 1.2}, {"act", 3.4}, ...}`: mean per cycle since the last reset [microseconds]; all 0 before the first
-  /// cycle.
+  /// `{{"input", 1.2}, {"act", 3.4}, ...}`: mean per cycle since the last reset [us]; all 0 before the first cycle.
   List means() const;
 
  private:
