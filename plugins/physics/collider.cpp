@@ -77,7 +77,7 @@ void Collider::reshape() {
     if (geom_ != engine::Geom::none) return engine()->setShape(geom_, *s);
     geom_ = engine()->createGeom(space_->id(), *s, &outermost());
   } catch (const Error& e) {
-    throw Error(where() + ": cannot take that shape", e);
+    throw Error(fmt::format("{}: cannot take that shape", where()), e);
   }
   attach();
 }
@@ -121,7 +121,7 @@ void Collider::setLocalPosition(const Vec3& p) {
 }
 
 void Collider::setRotation(std::vector<double> matrix) {
-  if (matrix.empty()) throw Error(where() + ": expected a matrix of 6 or 16 numbers, found none");
+  if (matrix.empty()) throw Error(fmt::format("{}: expected a matrix of 6 or 16 numbers, found none", where()));
   const Mat3 r = physics::poseFrom(matrix).rotation;
   local_.rotation = isStaticInWorld() ? Mat3(physics::frameOf(*this).rotation.transpose() * r) : r;
   attach();

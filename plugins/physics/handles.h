@@ -25,7 +25,8 @@ class WorldHandle {
   /// Creates the world. `path` is that of the world's node, for messages.
   WorldHandle(const EngineUse& use, const std::string& path)
       : use_(use),
-        why_(path + " and the bodies, colliders and joints in it live in the engine; remove them all first"),
+        why_(fmt::format("{} and the bodies, colliders and joints in it live in the engine; remove them all first",
+                         path)),
         inUse_(*use_.leaf, why_),
         id_(use_.engine->createWorld()) {}
   ~WorldHandle() {

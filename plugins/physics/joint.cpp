@@ -147,7 +147,8 @@ void Joint::attach(std::string first, std::string second) {
 }
 
 void Joint::setAnchor(const Vec3& local) {
-  if (engine() && !local.allFinite()) throw RefusedValue(where() + ": expected finite numbers for the anchor");
+  if (engine() && !local.allFinite())
+    throw RefusedValue(fmt::format("{}: expected finite numbers for the anchor", where()));
   withBodies([this, local] {
     const Pose frame = physics::frameOf(*this);
     engine()->setAnchor(joint_, frame.position + frame.rotation * local);
@@ -156,12 +157,12 @@ void Joint::setAnchor(const Vec3& local) {
 
 void Joint::setAxisLocal(int axis, const Vec3& direction) {
   if (engine() && !(direction.norm() >= kShortestAxis))
-    throw Error(where() + ": cannot set the axis", Error("expected an axis longer than 0"));
+    throw Error(fmt::format("{}: cannot set the axis", where()), Error("expected an axis longer than 0"));
   withBodies([this, axis, direction] {
     try {
       engine()->setAxis(joint_, axis, physics::frameOf(*this).rotation * direction);
     } catch (const Error& e) {
-      throw Error(where() + ": cannot set the axis", e);
+      throw Error(fmt::format("{}: cannot set the axis", where()), e);
     }
   });
 }

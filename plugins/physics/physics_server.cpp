@@ -48,7 +48,7 @@ World* PhysicsServer::findWorld() {
 
 engine::World PhysicsServer::world() {
   if (World* w = findWorld()) return w->handle()->id();
-  throw Error(path() + ": the active scene has no world: make one, new(\"World\", \"/usr/scene/world\")");
+  throw Error(fmt::format("{}: the active scene has no world: make one, new(\"World\", \"/usr/scene/world\")", path()));
 }
 
 void PhysicsServer::bodies(Node& root, std::vector<IRigidBody*>& out) {

@@ -46,9 +46,10 @@ void World::describe(Description<World>& d) {
 World& World::of(const Leaf& node) {
   for (Node* up = node.parent(); up; up = up->parent())
     if (auto* world = up->childOf<World>(); world && world->handle() && world->handle()->engine()) return *world;
-  throw Error(node.path() +
-              ": expected a World in its scene, found none. Make one before importing bodies: new(\"World\", "
-              "\"/usr/scene/world\")");
+  throw Error(
+      fmt::format("{}: expected a World in its scene, found none. Make one before importing bodies: new(\"World\", "
+                  "\"/usr/scene/world\")",
+                  node.path()));
 }
 
 void World::onLink() {
@@ -70,7 +71,7 @@ const std::shared_ptr<physics::SpaceHandle>& World::space() {
 }
 
 void World::setGravity(const Vec3& g) {
-  if (!g.allFinite()) throw Error(where() + ": expected finite numbers for gravity");
+  if (!g.allFinite()) throw Error(fmt::format("{}: expected finite numbers for gravity", where()));
   parameters_.gravity = g;
   apply();
 }

@@ -17,7 +17,7 @@ class PhysicsObject : public SceneNode {
 
  protected:
   /// Path and class, for messages: "/usr/scene/box/body (RigidBody)".
-  std::string where() const { return path() + " (" + classObject()->name() + ")"; }
+  std::string where() const { return fmt::format("{} ({})", path(), classObject()->name()); }
 };
 
 /// The physical world of a scene, its child `world`: gravity and the solver's parameters.

@@ -59,7 +59,7 @@ struct Statement {
   Site site;
 
   // Caches, filled when the statement runs.
-  mutable Ref<ClassObject> made;           ///< node: its class
+  mutable Ref<ClassObject> nodeClass;      ///< node: its class
   mutable std::uint64_t classId = 0;       ///< call: id of the class for which `method` was looked up
   mutable const Method* method = nullptr;  ///< call: the method of that class; nullptr: it has none
   mutable bool complained = false;         ///< a problem of this statement was logged

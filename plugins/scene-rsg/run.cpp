@@ -91,22 +91,22 @@ void Run::runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChil
 }
 
 ClassObject& Run::classOf(const Statement& s) const {
-  if (s.made) return *s.made;
-  ClassObject& made = importer_.kernel().classOf(s.text);
-  if (!made.isA(SceneNode::kClassName))
-    throw Error(fmt::format("expected a class of scene nodes, found {}, which does not derive from {}", made.name(),
-                            SceneNode::kClassName));
-  s.made = &made;
-  return made;
+  if (s.nodeClass) return *s.nodeClass;
+  ClassObject& nodeClass = importer_.kernel().classOf(s.text);
+  if (!nodeClass.isA(SceneNode::kClassName))
+    throw Error(fmt::format("expected a class of scene nodes, found {}, which does not derive from {}",
+                            nodeClass.name(), SceneNode::kClassName));
+  s.nodeClass = &nodeClass;
+  return nodeClass;
 }
 
 Node& Run::makeNode(const Statement& s, Node& parent) {
-  ClassObject& made = classOf(s);
+  ClassObject& nodeClass = classOf(s);
   Budget& budget = importer_.budget_;
   if (++budget.nodes > budget.maxNodes)
     importer_.exhausted(
         fmt::format("too many nodes: one import may make at most {} ({}.maxNodes)", budget.maxNodes, importer_.path()));
-  return *parent.add(made.create()).asNode();
+  return *parent.add(nodeClass.create()).asNode();
 }
 
 Node& Run::nextNode(Cursor& cursor) {

@@ -32,7 +32,8 @@ class PerfectVisionPerceptor : public Perceptor {
  private:
   void collect() {
     transforms_.clear();
-    if (auto* server = kernel().root().find<ISceneServer>()) server->scene().collect(transforms_);
+    auto* server = kernel().root().find<ISceneServer>();
+    if (Node* scene = server ? server->activeScene() : nullptr) scene->collect(transforms_);
   }
   std::vector<Transform*> transforms_;
   TreeWatch tree_;
