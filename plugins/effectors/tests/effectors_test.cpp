@@ -187,7 +187,7 @@ TEST_CASE("the other joints have their own units and limits") {
   }
 }
 
-TEST_CASE("an effector without its joint says so") {
+TEST_CASE("an effector without its joint reports that") {
   Robot robot;
   auto& lost = robot.transform->create<Effector>("HingeEffector", "lost");
   CHECK(robot.act(lost, "(lost 1)") == "there is no HingeJoint above it");

@@ -48,7 +48,7 @@ TEST_CASE("a resource is read by its name, also in a form that is not normal") {
   CHECK_FALSE(f.server->exists("rsg/a"));
 }
 
-TEST_CASE("file systems are asked in order, and a prefix mounts a folder below a name") {
+TEST_CASE("file systems are searched in order, and a prefix mounts a folder below a name") {
   Files f;
   test::TemporaryFolder installed;
   f.mount("two", installed.path(), "rsg");
@@ -61,7 +61,7 @@ TEST_CASE("file systems are asked in order, and a prefix mounts a folder below a
   CHECK(f.server->stamp("rsg/a.rsg") != before);
 }
 
-TEST_CASE("a missing resource says where it was looked for") {
+TEST_CASE("the error for a missing resource names the places that were searched") {
   Files f;
   CHECK(f.errorOf("rsg/none.rsg").find(f.folder.path().string()) != std::string::npos);
 }

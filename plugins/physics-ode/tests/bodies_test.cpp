@@ -254,7 +254,7 @@ TEST_CASE("exact replay rounds every component of what crosses the engine, and n
     }
     const engine::Joint hinge = house.ode.createJoint(world, engine::JointType::hinge);
     house.ode.attach(hinge, b, Body::none);
-    house.ode.setAnchor(hinge, v);  // the body stands at 0: the anchor comes back as it was taken
+    house.ode.setAnchor(hinge, v);  // the body is at 0: the anchor is returned as it was stored
     for (int i = 0; i < 3; ++i) CHECK(house.ode.anchor(hinge)[i] == wanted[i]);
     house.ode.destroyWorld(world);
   }

@@ -126,7 +126,7 @@ TEST_CASE("a geom at an offset collides where it is, on a body and in the world,
   }
 }
 
-TEST_CASE("a plane stays where its numbers say, whatever body it is given") {
+TEST_CASE("a plane stays where its numbers put it, whatever body it is attached to") {
   EngineHouse house;
   house.setGravity(0);
   const Body carrier = house.body({0, 0, 10}), b = house.body({0, 0, 0.45});

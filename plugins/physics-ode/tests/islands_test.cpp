@@ -34,7 +34,7 @@ std::int64_t approximate(const Knot& k) { return getProperty(k.leaf, "approximat
 
 }  // namespace
 
-TEST_CASE("a knot that the direct solver cannot untie in time is untied approximately, said once, and the same twice") {
+TEST_CASE("an island that is too large for the direct solver is solved approximately, logged once, and repeatable") {
   Knot a(40), b(40);
   for (int i = 0; i < 20; ++i) a.step(), b.step();
   CHECK(approximate(a) > 0);

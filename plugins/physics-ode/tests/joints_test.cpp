@@ -49,7 +49,7 @@ TEST_CASE("a ball joint keeps its point and lets all turns be") {
   CHECK(std::abs(w.x()) > 0.1);
 }
 
-TEST_CASE("a hinge turns about its axis only, tells angle and rate of the first body relative to the second") {
+TEST_CASE("a hinge rotates about its axis only; angle and rate are those of the first body relative to the second") {
   Two two;
   const Joint j = two.joint(JointType::hinge);
   two.ode.setAxis(j, 0, {0, 0, 1}, 0);
@@ -81,7 +81,7 @@ TEST_CASE("a hinge's motor drives it to its stop and not beyond") {
   CHECK(two.ode.angle(j, 0) == Approx(-0.3).margin(0.02));
 }
 
-TEST_CASE("to drive a joint wakes its first body unless it is to stand, and a joint tells when it is at a stop") {
+TEST_CASE("driving a joint wakes its first body unless the speed is 0, and a joint detects that it is at a stop") {
   Two two;
   const Joint j = two.joint(JointType::hinge);
   two.ode.setAxis(j, 0, {0, 0, 1}, 0);
@@ -262,7 +262,7 @@ TEST_CASE("an angular motor drives its axes") {
   CHECK_THROWS_WITH(two.ode.setAngularMotor(j, 4, false), Catch::Contains("0 to 3"));
 }
 
-TEST_CASE("feedback tells what a joint carries, whichever body comes first") {
+TEST_CASE("feedback is the load of a joint, whichever body comes first") {
   for (const bool worldFirst : {false, true}) {
     Two two;
     two.setGravity(9.81);

@@ -15,12 +15,12 @@ using engine::SolverStep;
 
 namespace {
 
-/// A solver that does what the test says; by default it defers everything.
+/// A solver whose behaviour the test sets; by default it defers everything.
 class TestSolver : public Leaf, public engine::ISolver {
   SPARK_CLASS(TestSolver, Leaf)
  public:
   static void describe(Description<TestSolver>& d) {
-    d.doc("Does what a test says.");
+    d.doc("Behaves as a test sets it.");
     d.implements<engine::ISolver>();
   }
   std::function<std::size_t(SolverStep&)> does;
@@ -93,7 +93,7 @@ TEST_CASE("a solver that defers everything changes nothing, bit for bit, through
     watched.step();
     REQUIRE((watched.saved() == alone.saved()));
   }
-  CHECK((solver.steps > 50 && solver.steps < 250));  // nobody is asked while all sleep
+  CHECK((solver.steps > 50 && solver.steps < 250));  // not called while all bodies sleep
   CHECK_FALSE(watched.ode.enabled(watched.bodies[8]));
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("a solver is given the bodies of each contact, the world last") {
   CHECK(none == 0);
 }
 
-TEST_CASE("a solver's wanted feedback is what the engine tells, with the joint's bodies in the caller's order") {
+TEST_CASE("the engine returns the feedback of the solver, with the joint's bodies in the caller's order") {
   EngineHouse house;
   house.kernel.registerClass<TestSolver>();
   auto& solver = house.kernel.create<TestSolver>("TestSolver", "/sys/server/physics/engine/solver");
@@ -211,8 +211,8 @@ TEST_CASE("a solver's wanted feedback is what the engine tells, with the joint's
 }
 
 TEST_CASE(
-    "structure changes its number when bodies and joints come, go or are attached, and else does not; a world's end is "
-    "told") {
+    "structure changes when bodies and joints are created, destroyed or attached, and only then; the solver is told "
+    "when a world is destroyed") {
   EngineHouse house;
   house.kernel.registerClass<TestSolver>();
   auto& solver = house.kernel.create<TestSolver>("TestSolver", "/sys/server/physics/engine/solver");

@@ -88,7 +88,7 @@ TEST_CASE("masses: every command sets the mass it names; a new body has 1 kg and
   CHECK(mass() == Approx(1.5));
 }
 
-TEST_CASE("setBox makes a body turn as its inertia says") {
+TEST_CASE("setBox gives a body the inertia of a box") {
   PhysicsHouse house;
   Node& t = house.thing("thing", {0, 0, 0});
   house.call(*t.find("body"), "setBoxTotal", {12.0, 1.0, 2.0, 3.0});
@@ -118,7 +118,7 @@ TEST_CASE("added masses move the body's origin to the common centre, and what is
   outer.as<ICollider>()->bounds(low, high);
   CHECK(low.x() == Approx(0.3).margin(1e-6));
   CHECK(high.x() == Approx(0.5).margin(1e-6));
-  // A second part is told in the frame the first was.
+  // The pose of a second part is in the same frame as that of the first.
   house.call(body, "addSphereTotal", {4.0, 0.1, 0.8, 0.0, 0.0, 0.0, 0.0, 0.0});
   CHECK(house.body(t).state().position.x() == Approx(0.55).epsilon(1e-6));
   house.step();

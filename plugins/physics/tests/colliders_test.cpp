@@ -57,7 +57,7 @@ TEST_CASE("every pair of colliders touches, plain and inside a transform collide
       }
 }
 
-TEST_CASE("a collider says its shape and where that is below its transform, wherever the body went") {
+TEST_CASE("a collider returns its shape and the pose below its transform, wherever the body is") {
   PhysicsHouse house;
   Node& t = house.thing("thing", {1, 2, 3});
   Node& outer = *t.create("TransformCollider", "outer").asNode();
@@ -235,7 +235,7 @@ TEST_CASE("colliders join the nearest space above, else the scene's first, else 
   CHECK(seen.colliders().size() == 1);
 }
 
-TEST_CASE("colliders that are told not to collide do not, from either side, until told again") {
+TEST_CASE("excluded colliders do not collide, from either side, until they are allowed again") {
   PhysicsHouse house;
   Node& a = house.box("a", {0, 0, 0}, {1, 1, 1});
   Node& b = house.box("b", {0, 0, 0.5}, {1, 1, 1});
@@ -255,7 +255,7 @@ TEST_CASE("colliders that are told not to collide do not, from either side, unti
   }
 }
 
-TEST_CASE("a ray hears of what it meets and pushes nothing") {
+TEST_CASE("a ray calls its handlers and pushes nothing") {
   PhysicsHouse house;
   Node& carrier = house.thing("carrier", {0, 0, 3});
   house.call(*carrier.find("body"), "useGravity", {false});
@@ -305,7 +305,7 @@ TEST_CASE("a detached group touches itself and what does not move, nothing else"
   using Names = std::vector<std::string>;
   for (Node* box : {a.boxes[0], b.boxes[0], b.boxes[1]}) box->as<Transform>()->setLocalPos({0, 0, 0.49f});
 
-  SECTION("attached: everybody touches everybody") {
+  SECTION("attached: all collide with each other") {
     house.step();
     CHECK(touched(0) == Names{"box0", "box1", "ground"});
     CHECK(touched(1) == Names{"box0", "box1", "ground"});

@@ -6,7 +6,7 @@ using namespace spark::test;
 
 namespace {
 
-/// Counts what it is told.
+/// Counts its calls.
 class CountingHandler : public ContactJointHandler {
   SPARK_CLASS(CountingHandler, ContactJointHandler)
  public:
@@ -74,7 +74,7 @@ TEST_CASE("a contact is solid only when both colliders have a contact joint hand
   }
 }
 
-TEST_CASE("the first contact joint handler decides the surface, whatever stands beside it") {
+TEST_CASE("the first contact joint handler decides the surface, whatever handlers are beside it") {
   Ground g;
   g.collider().create("RecorderHandler");
   Leaf& first = g.collider().create("ContactJointHandler");
@@ -111,7 +111,7 @@ TEST_CASE("a recorder remembers each collider once, from either side, until it i
   CHECK(getProperty(*g.ground.find("RecorderHandler"), "colliders").toList().empty());
 }
 
-TEST_CASE("static triggers hear of each other; static things without listeners cost nothing and do nothing") {
+TEST_CASE("static triggers detect each other; static colliders without handlers cost nothing") {
   PhysicsHouse house;
   Node& a = house.transform(house.scene, "a", {0, 0, 0});
   Node& b = house.transform(house.scene, "b", {0.5, 0, 0});
@@ -121,7 +121,7 @@ TEST_CASE("static triggers hear of each other; static things without listeners c
   CHECK(seen.colliders().size() == 1);
 }
 
-TEST_CASE("a handler is told direct and symmetric contacts, and afterwards the force it asked for") {
+TEST_CASE("a handler gets direct and symmetric contacts, and afterwards the requested force") {
   Ground g;
   g.kernel.registerClass<CountingHandler>();
   auto& upper = static_cast<CountingHandler&>(g.collider().create("CountingHandler"));
@@ -135,8 +135,8 @@ TEST_CASE("a handler is told direct and symmetric contacts, and afterwards the f
 }
 
 TEST_CASE(
-    "contacts of the last step can be looked at, all with their force when it is measured, and handlers hear no more "
-    "for that") {
+    "the contacts of the last step can be read, all with their force when it is measured, and handlers get no more "
+    "calls for that") {
   Ground g;
   g.kernel.registerClass<CountingHandler>();
   auto& upper = static_cast<CountingHandler&>(g.collider().create("CountingHandler"));
@@ -172,7 +172,7 @@ TEST_CASE(
   CHECK(server.contacts().empty());
 }
 
-TEST_CASE("every contact has its force when forces are measured, also where nobody asked for one") {
+TEST_CASE("every contact has its force when forces are measured, even where no handler requested it") {
   Ground g;
   g.collider().create("ContactJointHandler");
   g.ground.create("ContactJointHandler");
@@ -239,7 +239,7 @@ TEST_CASE("a script handler emits collide at itself, after the step, with what t
     depth = e.data->at(std::size_t(2))->toNumber();
     const List& p = e.data->at(std::size_t(1))->toList();
     position = {p[0].toNumber(), p[1].toNumber(), p[2].toNumber()};
-    // A script may take away what it was told of.
+    // A script may remove the other collider.
     if (Leaf* ground = g.scene.find("ground")) g.scene.remove(*ground);
   });
   g.step();
@@ -251,18 +251,18 @@ TEST_CASE("a script handler emits collide at itself, after the step, with what t
   CHECK(others.size() == 1);
 }
 
-TEST_CASE("a ScriptHandler tells of every point until it is removed") {
+TEST_CASE("a ScriptHandler emits every point until it is removed") {
   Ground g;
   Leaf& handler = g.collider().create("ScriptHandler");
-  int told = 0, removeAt = 0;
+  int events = 0, removeAt = 0;
   g.kernel.events().channel("collide").add(handler, [&](Leaf& self, const Event&) {
-    if (++told == removeAt) self.parent()->remove(self);
+    if (++events == removeAt) self.parent()->remove(self);
   });
   g.step();
-  CHECK(told == 4);
+  CHECK(events == 4);
   removeAt = 6;
   g.step(2);
-  CHECK(told == 6);
+  CHECK(events == 6);
 }
 
 TEST_CASE("Lua reacts to collisions") {

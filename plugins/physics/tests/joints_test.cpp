@@ -6,7 +6,7 @@ using engine::JointType;
 
 namespace {
 
-/// A body that hangs 1 m below a held one; the joint stands at the child, turned by 90 degrees about z.
+/// A body that hangs 1 m below a fixed one; the joint is at the child, rotated by 90 degrees about z.
 struct Pair : PhysicsHouse {
   Node& child;
   Node& parent;
@@ -136,7 +136,7 @@ TEST_CASE("every setting of a joint has a getter that gives what was set") {
   CHECK(number(j, "getLinearMotorVelocity", {0}) == 1);
 }
 
-TEST_CASE("a universal joint tells both angles") {
+TEST_CASE("a universal joint returns both angles") {
   Pair p;
   Leaf& j = p.joint("UniversalJoint");
   p.call(j, "setAnchor", {0.0, 0.0, 0.5});
@@ -205,7 +205,7 @@ TEST_CASE("a ball joint holds a point, a fixed joint a pose even without setFixe
   CHECK((p.childBody().state().position - at).norm() < 0.03);
 }
 
-TEST_CASE("a path that leads nowhere is told and means the static world") {
+TEST_CASE("a path that leads nowhere is logged and means the static world") {
   Pair p;
   Leaf& j = p.child.create("BallJoint", "joint");
   p.call(j, "attach", {"../body", "../../nobody/body"});

@@ -51,7 +51,7 @@ TEST_CASE("results that are no integers are single precision with six significan
   CHECK(resultText(0.1 + 0.2, false) == "0.30000000000000004");
 }
 
-TEST_CASE("two integers divide really, and to the floor where that is asked for") {
+TEST_CASE("the quotient of two integers is real, or rounded down with integerDivision") {
   CHECK(text("30 / 4") == "7.5");
   CHECK(text("30 / 4", true) == "7");
   CHECK(text("-30 / 4", true) == "-8");
@@ -69,7 +69,7 @@ TEST_CASE("variables are read by group and name, lists from 0, tables by key") {
   CHECK(text("NaoType[1][\"X\"]") == "0.0729541");
 }
 
-TEST_CASE("what is no expression says what was expected") {
+TEST_CASE("the error for a malformed expression names what was expected") {
   for (const char* wrong : {"",
                             " ",
                             "1 +",

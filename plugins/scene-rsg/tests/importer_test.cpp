@@ -23,7 +23,7 @@ TEST_CASE("the header decides: magic, version 0 1") {
   CHECK(h.scene->children().size() == 3);
 }
 
-TEST_CASE("broken brackets change nothing, or empty the root where that is asked for") {
+TEST_CASE("broken brackets change nothing, or empty the root with unlinkOnUnreadable") {
   SceneHouse h;
   h.run("(nd Probe)");
   h.write("broken.rsg", "(RSG 0 1)\n((nd Probe)\n (nd Probe (tell x)\n)");
@@ -36,7 +36,7 @@ TEST_CASE("broken brackets change nothing, or empty the root where that is asked
   CHECK(h.scene->children().empty());
 }
 
-TEST_CASE("a second import of a file reads and parses nothing, a changed file is read anew") {
+TEST_CASE("a second import of a file reads and parses nothing, a changed file is read again") {
   SceneHouse h;
   h.write("leg.rsg", "(RSG 0 1)((templ $n)(nd Probe (setName $n)))");
   h.write("robot.rsg", "(RSG 0 1)((importScene leg.rsg l)(importScene leg.rsg r))");
@@ -52,7 +52,7 @@ TEST_CASE("a second import of a file reads and parses nothing, a changed file is
   CHECK(h.scene->children().size() == 8);
 }
 
-TEST_CASE("errors say file, line and column, and what is near") {
+TEST_CASE("errors name file, line and column, and similar names") {
   SceneHouse h;
   CHECK(h.failure("(nd\n  Transfrom)").find("test.rsg:2:3: there is no class 'Transfrom'. Did you mean 'Transform'") ==
         0);
@@ -196,7 +196,7 @@ class ListImporter : public Node, public ISceneImporter {
 };
 }  // namespace
 
-TEST_CASE("importers of several formats nest in each other, and an error tells the way through all of them") {
+TEST_CASE("importers of several formats nest, and an error has the chain of all of them") {
   SceneHouse h;
   h.kernel.registerClass<ListImporter>();
   h.kernel.create("ListImporter", "/sys/server/scene/list");

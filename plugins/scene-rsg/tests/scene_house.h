@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the importer's tests share: a kernel with files in memory and probes that tell what was done to them, in order.
+/// Fixture of the importer's tests: a kernel with files in memory, and probes that record the calls of their methods.
 
 #include <map>
 
@@ -108,7 +108,7 @@ struct SceneHouse {
     write("test.rsg", "(RSG 0 1)\n(" + body + ")");
     import("test.rsg", arguments);
   }
-  /// What the import says when it fails; "" when it does not.
+  /// The error message of the import; "" when it succeeds.
   std::string failure(const std::string& body, const List& arguments = {}) {
     try {
       run(body, arguments);

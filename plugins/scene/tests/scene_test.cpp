@@ -13,7 +13,7 @@ using namespace spark;
 
 namespace {
 
-/// Counts how often it was told to follow, and where to.
+/// Counts the calls of follow(), and keeps the last matrix.
 class Follower : public SceneNode, public IFollowsTransform {
   SPARK_CLASS(Follower, SceneNode)
  public:
@@ -187,7 +187,7 @@ TEST_CASE("another active scene counts as a change of the tree") {
   CHECK(f.kernel.structureVersion() > made);
 }
 
-TEST_CASE("an import without an importer says what to add") {
+TEST_CASE("the error for an import without an importer names what to add") {
   Fixture f;
   CHECK_THROWS_WITH(f.server->importScene("x.rsg", *f.scene, {}), Catch::Contains("has no importer below it"));
 }
@@ -258,7 +258,7 @@ TEST_CASE("a mesh has the materials of its file in alphabetical order, or those 
   CHECK(visual.materials() == std::vector<std::string>{"c"});
 }
 
-TEST_CASE("an unknown material is told once, a known one never") {
+TEST_CASE("an unknown material is logged once, a known one never") {
   Fixture f;
   Leaf& materials = f.kernel.create("MaterialServer", "/sys/server/material");
   callMethod(materials, "define", List{"matRed", 1, 0, 0, 1});

@@ -10,7 +10,7 @@ using namespace spark::test;
 
 namespace {
 
-/// What sonars hear.
+/// An echo target.
 class Post : public SceneNode, public IEchoTarget {
   SPARK_CLASS(Post, SceneNode)
  public:
@@ -48,7 +48,7 @@ TEST_CASE("the time is simulated seconds") {
   CHECK(robot.sense(robot.transform->create("TimePerceptor", "t")) == "(time (now 7.36))");
 }
 
-TEST_CASE("joint sensors say degrees in the formats of the installed base") {
+TEST_CASE("joint sensors report degrees in the formats of the installed base") {
   Robot robot;
   SECTION("hinge") {
     auto& joint = robot.joint(engine::JointType::hinge);
@@ -60,7 +60,7 @@ TEST_CASE("joint sensors say degrees in the formats of the installed base") {
     joint.angles = {degToRad(10), degToRad(-20), 0};
     CHECK(robot.sense(joint.create("UniversalJointPerceptor", "uj")) == "(UJ (n uj) (ax1 10.00) (ax2 -20.00))");
   }
-  SECTION("hinge2 says its axis first") {
+  SECTION("hinge2 reports its axis first") {
     auto& joint = robot.joint(engine::JointType::hinge2);
     joint.angles = {degToRad(12.5), 1, 0};
     CHECK(robot.sense(joint.create("Hinge2Perceptor", "wheel")) == "(H2J (n wheel) (ax 0 12.50))");
@@ -72,13 +72,13 @@ TEST_CASE("joint sensors say degrees in the formats of the installed base") {
     inner.type = engine::JointType::angularMotor;
     CHECK(robot.sense(inner.create("HingePerceptor", "h")) == "(HJ (n h) (ax 5.00))");
   }
-  SECTION("without a joint it is silent and says why") {
+  SECTION("without a joint it is silent and logs why") {
     CHECK(robot.sense(robot.transform->create("HingePerceptor", "lost")).empty());
     CHECK(robot.text.find("/usr/robot/lost: expected a HingeJoint above it") != std::string::npos);
   }
 }
 
-TEST_CASE("the angular motor's sensor says what is switched on, and a temperature only when it changed") {
+TEST_CASE("the angular motor's sensor reports the items that are switched on, and a temperature only after a change") {
   Robot robot;
   auto& hinge = robot.joint(engine::JointType::hinge);
   hinge.angles[0] = degToRad(3);
@@ -98,7 +98,7 @@ TEST_CASE("the angular motor's sensor says what is switched on, and a temperatur
   CHECK(robot.sense(sensor) == "(HJ (n hj1) (ax 3.00) (rt 30.00) (tq 1.50) (tp 24.50) (ct 250.00))");
 }
 
-TEST_CASE("the gyroscope says degrees per second in the body's own frame") {
+TEST_CASE("the gyroscope reports degrees per second in the body's own frame") {
   Robot robot;
   Leaf& gyro = robot.transform->create("GyroRatePerceptor", "torso");
   robot.body->now.angularVelocity = {degToRad(90), 0, degToRad(1)};
@@ -169,7 +169,7 @@ TEST_CASE("a foot feels the weighted mean point and the sum of forces in its own
   CHECK(robot.sense(sensor) == "(FRP (n rf) (c 0.20 0.00 -0.10) (f -0.00 -5.00 1.00))");
 }
 
-TEST_CASE("collision sensors say what touched since they last sensed") {
+TEST_CASE("collision sensors report what touched since the last percept") {
   Robot robot;
   auto& shell = robot.transform->create<FakeCollider>("FakeCollider", "shell");
   auto& ball = robot.kernel.create<FakeCollider>("FakeCollider", "/usr/ball");
@@ -190,7 +190,7 @@ TEST_CASE("collision sensors say what touched since they last sensed") {
     CHECK(stateHash(sensor) != hash);
     CHECK(robot.sense(sensor).empty());
   }
-  SECTION("what it has not told yet is part of saved state") {
+  SECTION("names that were not reported yet are part of the saved state") {
     Leaf& sensor = robot.transform->create("CollisionPerceptor", "c");
     StateWriter out(true);
     handler.onCollision({shell, ball, contact, true});
@@ -216,7 +216,7 @@ TEST_CASE("collision sensors say what touched since they last sensed") {
   }
 }
 
-TEST_CASE("the satellite receiver says the world matrix row by row") {
+TEST_CASE("the GPS reports the world matrix, row-major") {
   Robot robot;
   robot.transform->setLocalPos({1, 2, 3});
   CHECK(robot.sense(robot.transform->create("GPS", "torso")) ==
@@ -242,7 +242,7 @@ TEST_CASE("sensors that are only accepted keep their settings and are silent") {
   CHECK(getProperty(image, "fov") == Value(45.0));
 }
 
-TEST_CASE("a sonar hears the echo targets in its cone that are not its own robot's, the nearest first") {
+TEST_CASE("a sonar detects the echo targets in its cone, except those of its own robot, nearest first") {
   Robot robot;
   robot.kernel.registerClass<Post>();
   const auto put = [&](const char* aspect, const char* name, const Vec3f& at, const char* mark) -> Node& {

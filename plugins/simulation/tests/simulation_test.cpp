@@ -49,7 +49,7 @@ class Polled : public Node, public IInputSource {
   int polls = 0, waits = 0;
 };
 
-/// A gate that opens a second after it was first asked.
+/// A gate that opens a second after its first check.
 class ClosedForASecond : public Node, public IInputGate {
   SPARK_CLASS(ClosedForASecond, Node)
  public:
@@ -203,7 +203,7 @@ TEST_CASE("In real time the clock never runs faster than wall time") {
   REQUIRE(spent >= 5 * 0.02);
 }
 
-TEST_CASE("What cycles take longer than real time allows is told, as fast as possible nothing is") {
+TEST_CASE("time that cycles lose in real time is reported; as fast as possible none is lost") {
   for (const char* rate : {"real", "max"}) {
     LoopFixture f;
     setProperty(*f.simulation, "rate", rate);
