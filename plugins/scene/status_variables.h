@@ -11,7 +11,7 @@ class StatusVariables : public Variables, public IStatus {
   SPARK_CLASS(StatusVariables, Variables)
  public:
   static void describe(Description<StatusVariables>& d);
-  /// Reports playMode, score and teams first, then all other variables, sorted by name.
+  /// Reports the names that IStatus knows first, then all other variables, sorted by name.
   void report(std::vector<StatusEntry>& out) const override;
 
  protected:
