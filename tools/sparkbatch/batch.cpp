@@ -10,18 +10,19 @@
 #include "spark/error.h"
 #include "spark/random.h"
 
-// Who does what:
+// The protocol between the processes:
 //
 //   leader (process 0)                                     helper (any other process that mpirun started)
-//     table, progress, which run is next                     its own threads
-//     its own threads                                        a thread is idle ── ready ──►
-//       ◄───────────────────────────────────────────────── a number, or none ── run ───►
-//     a row goes into the table   ◄── row ──                 a world has ended
-//     all helpers are done        ◄── bye ──                 no runs, no worlds
-//     ── home ──►                                            leaves
+//     owns the table, assigns runs, has worker threads       has worker threads
+//                                 ◄── ready ──               a thread is idle
+//     number of a run, or none    ── run ────►               starts it
+//     adds the row to the table   ◄── row ────               a run has ended
+//     counts the helper as done   ◄── done ───               no run is left and none is running
+//     all helpers are done        ── exit ───►               exits
 //
-// MPI's own waiting spins, and the leader waits for threads and helpers at once: both look for messages every few
-// milliseconds, which beside runs of seconds is nothing. When a process dies mpirun ends all; what has a row stays.
+// A blocking receive of MPI spins, and the leader must wait for threads and helpers at the same time. So both poll for
+// messages every few milliseconds, which is cheap compared with runs of seconds. If a process dies, mpirun ends all;
+// written rows stay.
 
 namespace sparkbatch {
 
@@ -29,12 +30,13 @@ using spark::Error;
 namespace fs = std::filesystem;
 
 namespace {
-constexpr auto kAlone = std::chrono::milliseconds(50);    // bound on the delay of a signal
-constexpr auto kTogether = std::chrono::milliseconds(2);  // and of a helper's message
-constexpr int kFailed = 1, kInterrupted = 3;
-constexpr int kFailuresShown = 5;
+// Maximum time of a wait for worker threads, after which signals and messages of helpers are handled.
+constexpr auto kWaitAlone = std::chrono::milliseconds(50);
+constexpr auto kWaitWithHelpers = std::chrono::milliseconds(2);
+constexpr int kFailed = 1, kInterrupted = 3;  // exit codes
+constexpr int kMaxFailuresShown = 5;          // on stderr
 
-/// The config's text, where it is found as the host finds it; empty when it is not there.
+/// The text of the config, looked up like sparkhost does; "" if it is not found.
 std::string configText(const std::string& config) {
   const fs::path share = fs::canonical("/proc/self/exe").parent_path().parent_path() / "share" / "spark" / "lua";
   for (const fs::path& file : {fs::path(config), share / config}) {
@@ -46,7 +48,7 @@ std::string configText(const std::string& config) {
   return {};
 }
 
-/// What must be the same for all rows of a table. Not the number of seeds: more may be added.
+/// What must be the same for all rows of a table. The number of runs may change.
 Json batchOf(const Options& o) {
   Json batch{{"config", o.config},
              {"config's text (hash)", fmt::format("{:016x}", spark::hashBytes(configText(o.config)))},
@@ -55,7 +57,7 @@ Json batchOf(const Options& o) {
   Json settings = Json::object(), sweep = Json::array(), reports = Json::array();
   for (const auto& [key, text] : o.settings) settings[key] = text;
   for (const Parameter& p : o.sweep) sweep.push_back({{"key", p.key}, {"values", p.values}});
-  for (const Report& r : o.reports) reports.push_back(r.column + "=" + r.path + "." + r.property);
+  for (const Report& r : o.reports) reports.push_back(fmt::format("{}={}.{}", r.column, r.path, r.property));
   batch["settings"] = settings;
   batch["sweep"] = sweep;
   batch["reports"] = reports;
@@ -64,37 +66,40 @@ Json batchOf(const Options& o) {
   return batch;
 }
 
-Table::Open opening(const Options& o) {
+Table::Open openMode(const Options& o) {
   return o.retry ? Table::Open::retry : o.resume ? Table::Open::resume : Table::Open::fresh;
 }
 
-/// A table that is begun is begun with a world that can be built: a slip in the command line is no row.
+/// For a new table, builds the first world, so that a mistake in the command line is an error and not a table of
+/// errors.
 const Options& checked(const Options& options, const Sweep& sweep) {
   if (!fs::exists(options.results)) check(options, sweep.run(1));
   return options;
 }
 
-std::int64_t countThere(const Table& table, std::int64_t runs) {
+/// Number of the first `runs` runs that have a row.
+std::int64_t countExisting(const Table& table, std::int64_t runs) {
   std::int64_t n = 0;
   for (std::int64_t run = 1; run <= runs; ++run) n += table.has(run);
   return n;
 }
 
-/// Keeps the plugins mapped: otherwise every world that ends alone would take them out of the process, and the next
-/// would load them anew.
-struct Keeper {
-  explicit Keeper(const Options& o) {
-    asked.pluginPaths = o.pluginPaths;
-    asked.logLevel = o.logLevel;
-    host.emplace(asked);
+/// Keeps the plugins loaded. Without it, the end of the only running world would unload them, and the next world would
+/// load them again.
+struct PluginKeeper {
+  explicit PluginKeeper(const Options& o) {
+    hostOptions.pluginPaths = o.pluginPaths;
+    hostOptions.logLevel = o.logLevel;
+    host.emplace(hostOptions);
   }
-  sparkhost::Options asked;
+  sparkhost::Options hostOptions;
   std::optional<sparkhost::Host> host;
 };
 
+/// The function that a worker thread calls for each run.
 Workers::Work work(const Options& options) {
-  return [&options, plugins = std::make_shared<Keeper>(options)](const Run& run, Watch& watch) {
-    return simulate(options, run, watch);
+  return [&options, plugins = std::make_shared<PluginKeeper>(options)](const Run& run, RunControl& control) {
+    return simulate(options, run, control);
   };
 }
 }  // namespace
@@ -103,35 +108,37 @@ Leader::Leader(const Options& options, Cluster& cluster)
     : options_(options),
       cluster_(cluster),
       sweep_(options.sweep, options.seed, options.seeds),
-      table_(checked(options, sweep_).results, batchOf(options), opening(options)),
-      there_(countThere(table_, sweep_.runs())),
-      progress_(sweep_.runs(), there_, options.duration),
+      table_(checked(options, sweep_).results, batchOf(options), openMode(options)),
+      existing_(countExisting(table_, sweep_.runs())),
+      progress_(sweep_.runs(), existing_, options.duration),
       workers_(options.threads, work(options)),
       usage_(options.threads),
       helpers_(cluster.size() - 1) {}
 
-/// The number of the next run without a row, 0 when nothing more is to be begun.
-std::int64_t Leader::next(Wish wish) {
-  if (wish != Wish::goOn) return 0;
+/// The number of the next run without a row; 0 if there is none or the batch is being stopped.
+std::int64_t Leader::next(StopMode stop) {
+  if (stop != StopMode::none) return 0;
   while (number_ < sweep_.runs())
     if (!table_.has(++number_)) return number_;
   return 0;
 }
 
-void Leader::begin(Wish wish) {
+/// Gives a run to each idle thread of this process.
+void Leader::startRuns(StopMode stop) {
   while (workers_.idle() > 0) {
-    const std::int64_t number = next(wish);
+    const std::int64_t number = next(stop);
     if (number == 0) return;
-    workers_.begin(sweep_.run(number));
+    workers_.start(sweep_.run(number));
   }
 }
 
-void Leader::answer(Wish wish) {
+/// Handles the messages of helpers that have arrived.
+void Leader::handleMessages(StopMode stop) {
   while (const auto message = cluster_.receive()) {
-    if (message->word == Word::ready) {
-      const std::int64_t number = next(wish);
-      cluster_.send(message->from, Word::run, number == 0 ? "" : std::to_string(number));
-    } else if (message->word == Word::row) {
+    if (message->kind == MessageKind::ready) {
+      const std::int64_t number = next(stop);
+      cluster_.send(message->from, MessageKind::run, number == 0 ? "" : std::to_string(number));
+    } else if (message->kind == MessageKind::row) {
       add(Row::parse(message->text));
     } else {
       usage_.add(Json::parse(message->text));
@@ -144,26 +151,27 @@ void Leader::add(Row row) {
   const bool failed = row.value("end", "") == "error";
   usage_.addCpu(row.value("cpuSeconds", 0.0));
   progress_.add(row.value("simSeconds", 0.0), failed);
-  if (failed && progress_.failed() <= kFailuresShown)
-    sayLine(fmt::format("run {} failed: {}{}", row["run"].get<std::int64_t>(), row.value("error", ""),
-                        progress_.failed() == kFailuresShown ? "\n(further errors are told in the table only)" : ""));
+  if (failed && progress_.failed() <= kMaxFailuresShown)
+    printLine(
+        fmt::format("run {} failed: {}{}", row["run"].get<std::int64_t>(), row.value("error", ""),
+                    progress_.failed() == kMaxFailuresShown ? "\n(further errors are told in the table only)" : ""));
   table_.add(std::move(row));
 }
 
-int Leader::run(const std::atomic<Wish>& wish) {
-  begin(wish);
+int Leader::run(const std::atomic<StopMode>& stop) {
+  startRuns(stop);
   while (workers_.running() > 0 || helpers_ > 0) {
-    if (wish == Wish::abandon) workers_.abandon();
-    for (auto& result : workers_.take(cluster_.size() > 1 ? kTogether : kAlone))
+    if (stop == StopMode::abandon) workers_.abandon();
+    for (auto& result : workers_.collect(cluster_.size() > 1 ? kWaitWithHelpers : kWaitAlone))
       if (result) add(std::move(*result));
-    begin(wish);
-    answer(wish);
+    startRuns(stop);
+    handleMessages(stop);
     progress_.show(workers_.time());
   }
-  for (int other = 1; other < cluster_.size(); ++other) cluster_.send(other, Word::home, "");
+  for (int other = 1; other < cluster_.size(); ++other) cluster_.send(other, MessageKind::exit, "");
   usage_.measure();
   progress_.end();
-  if (there_ + progress_.done() < sweep_.runs()) return kInterrupted;
+  if (existing_ + progress_.done() < sweep_.runs()) return kInterrupted;
   table_.sort();
   return progress_.failed() > 0 ? kFailed : 0;
 }
@@ -172,7 +180,7 @@ std::string Leader::summary() const {
   const double cpu = usage_.cpuSeconds(), wall = progress_.elapsed();
   const auto rounded = [](double v) { return std::stod(fmt::format("{:.4g}", v)); };
   return Json{{"runs", sweep_.runs()},
-              {"there", there_},
+              {"there", existing_},
               {"done", progress_.done()},
               {"failed", progress_.failed()},
               {"processes", cluster_.size()},
@@ -187,40 +195,40 @@ std::string Leader::summary() const {
       .dump();
 }
 
-void dismiss(Cluster& cluster) {
+void dismissHelpers(Cluster& cluster) {
   for (int helpers = cluster.size() - 1; helpers > 0;) {
     const auto message = cluster.receive();
     if (!message)
-      std::this_thread::sleep_for(kTogether);
-    else if (message->word == Word::ready)
-      cluster.send(message->from, Word::run, "");
-    else if (message->word == Word::bye)
+      std::this_thread::sleep_for(kWaitWithHelpers);
+    else if (message->kind == MessageKind::ready)
+      cluster.send(message->from, MessageKind::run, "");
+    else if (message->kind == MessageKind::done)
       --helpers;
   }
-  for (int other = 1; other < cluster.size(); ++other) cluster.send(other, Word::home, "");
+  for (int other = 1; other < cluster.size(); ++other) cluster.send(other, MessageKind::exit, "");
 }
 
-void help(const Options& options, Cluster& cluster) {
+void runHelper(const Options& options, Cluster& cluster) {
   const Sweep sweep(options.sweep, options.seed, options.seeds);
   Workers workers(options.threads, work(options));
   Usage usage(options.threads);
-  int asked = 0;
-  bool over = false;
-  while (!over || asked > 0 || workers.running() > 0) {
-    for (; !over && workers.idle() > asked; ++asked) cluster.send(0, Word::ready, "");
+  int requested = 0;      // runs
+  bool finished = false;  // there are no more runs
+  while (!finished || requested > 0 || workers.running() > 0) {
+    for (; !finished && workers.idle() > requested; ++requested) cluster.send(0, MessageKind::ready, "");
     while (const auto message = cluster.receive()) {
-      --asked;
+      --requested;
       if (message->text.empty())
-        over = true;
+        finished = true;
       else
-        workers.begin(sweep.run(std::stoll(message->text)));
+        workers.start(sweep.run(std::stoll(message->text)));
     }
-    for (const auto& row : workers.take(kTogether))
-      if (row) cluster.send(0, Word::row, row->dump(-1, ' ', false, Json::error_handler_t::replace));
+    for (const auto& row : workers.collect(kWaitWithHelpers))
+      if (row) cluster.send(0, MessageKind::row, row->dump(-1, ' ', false, Json::error_handler_t::replace));
   }
   usage.measure();
-  cluster.send(0, Word::bye, usage.json().dump());
-  while (!cluster.receive()) std::this_thread::sleep_for(kTogether);
+  cluster.send(0, MessageKind::done, usage.json().dump());
+  while (!cluster.receive()) std::this_thread::sleep_for(kWaitWithHelpers);
 }
 
 }  // namespace sparkbatch

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A batch from its options to its table: the leader hands out runs, to its own threads and to helpers, and writes what
-/// comes back.
+/// The execution of a batch: the leader assigns runs to its own threads and to helper processes, and writes the results
+/// into the table.
 
 #include <atomic>
 #include <deque>
@@ -18,40 +18,42 @@
 
 namespace sparkbatch {
 
-/// What a signal asks for: at first nothing new is begun, then what runs is abandoned.
-enum class Wish { goOn, finish, abandon };
+/// How signals stop a batch: `finish` starts no further runs, `abandon` also ends the current ones.
+enum class StopMode { none, finish, abandon };
 
-/// The process that leads. Without mpirun the only one.
+/// The leading process; without mpirun the only one.
 class Leader {
  public:
-  /// Checks the options against the first run's config and opens the table. Throws spark::Error.
+  /// Opens the table; for a new table first builds the world of the first run as a check. Throws spark::Error.
+  /// `options` and `cluster` must outlive it.
   Leader(const Options& options, Cluster& cluster);
-  /// Runs what has no row yet; returns the exit code. `wish` may change meanwhile.
-  int run(const std::atomic<Wish>& wish);
-  /// One JSON object: what was done and what it took.
+  /// Executes all runs without a row; returns the exit code. A signal handler may set `stop` meanwhile.
+  int run(const std::atomic<StopMode>& stop);
+  /// The result as a JSON object: number of runs, time, memory.
   std::string summary() const;
 
  private:
-  std::int64_t next(Wish wish);
-  void begin(Wish wish);
-  void answer(Wish wish);
+  std::int64_t next(StopMode stop);
+  void startRuns(StopMode stop);
+  void handleMessages(StopMode stop);
   void add(Row row);
 
   const Options& options_;
   Cluster& cluster_;
   Sweep sweep_;
   Table table_;
-  std::int64_t number_ = 0, there_;  ///< the last run that was looked at; rows that were there before
+  std::int64_t number_ = 0;  ///< of the last run that was assigned or has a row
+  std::int64_t existing_;    ///< number of rows that the table had before
   Progress progress_;
   Workers workers_;
   Usage usage_;
-  int helpers_;  ///< that are not done
+  int helpers_;  ///< number of helpers that are not done
 };
 
-/// Sends all helpers away when there is nothing to lead.
-void dismiss(Cluster& cluster);
+/// Ends all helpers without giving them a run.
+void dismissHelpers(Cluster& cluster);
 
-/// Any other process: asks the leader for runs and sends it their rows, until there are no more.
-void help(const Options& options, Cluster& cluster);
+/// The main function of any other process: requests runs from the leader and sends it their rows, until there are none.
+void runHelper(const Options& options, Cluster& cluster);
 
 }  // namespace sparkbatch

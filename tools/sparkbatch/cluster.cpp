@@ -30,16 +30,17 @@ class MpiCluster : public Cluster {
   int number() const override { return number_; }
   int size() const override { return size_; }
   int neighbours() const override { return neighbours_; }
-  void send(int to, Word word, const std::string& text) override {
-    MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, to, static_cast<int>(word), MPI_COMM_WORLD);
+  void send(int to, MessageKind kind, const std::string& text) override {
+    MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, to, static_cast<int>(kind), MPI_COMM_WORLD);
   }
   std::optional<Message> receive() override {
-    int there = 0, length = 0;
+    int available = 0, length = 0;
     MPI_Status status;
-    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &status);
-    if (!there) return std::nullopt;
+    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &available, &status);
+    if (!available) return std::nullopt;
     MPI_Get_count(&status, MPI_CHAR, &length);
-    Message m{status.MPI_SOURCE, static_cast<Word>(status.MPI_TAG), std::string(static_cast<std::size_t>(length), ' ')};
+    Message m{status.MPI_SOURCE, static_cast<MessageKind>(status.MPI_TAG),
+              std::string(static_cast<std::size_t>(length), ' ')};
     MPI_Recv(m.text.data(), length, MPI_CHAR, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     return m;
   }
@@ -51,7 +52,7 @@ class MpiCluster : public Cluster {
 #endif
 }  // namespace
 
-/// Open MPI's mpirun, then Slurm's and others' through PMIx, then MPICH's.
+/// Checks variables that are set by Open MPI's mpirun, by Slurm and others through PMIx, and by MPICH.
 bool Cluster::started() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
     if (std::getenv(name)) return true;

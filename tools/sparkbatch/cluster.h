@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The processes that mpirun started together. Without mpirun there is one, and MPI is never touched.
+/// The processes that mpirun has started together. Without mpirun there is one, and MPI is not initialised.
 
 #include <memory>
 #include <optional>
@@ -8,38 +8,42 @@
 
 namespace sparkbatch {
 
-/// What processes say to each other.
-enum class Word {
-  ready,  ///< a helper has an idle thread
-  run,    ///< the leader's answer: the number of a run; empty: there are no more
-  row,    ///< a helper's result
-  bye,    ///< a helper is done; says what it used
-  home,   ///< the leader: all are done
+/// The kinds of messages between processes; see batch.cpp.
+enum class MessageKind {
+  ready,  ///< from a helper: it has an idle thread
+  run,    ///< from the leader, the reply: number of a run; "": there are no more
+  row,    ///< from a helper: a Row as JSON
+  done,   ///< from a helper: it has finished; its Usage as JSON
+  exit,   ///< from the leader: all helpers have finished
 };
 
+/// A received message.
 struct Message {
-  int from;
-  Word word;
+  int from;  ///< number of the sender
+  MessageKind kind;
   std::string text;
 };
 
-/// One of the processes; number 0 leads. To be used by the main thread alone.
+/// This process as one of several; number 0 leads. The base class is the one without mpirun. Main thread only.
 class Cluster {
  public:
   virtual ~Cluster() = default;
-  /// True when mpirun (or another program of its kind) started this process as one of several.
+  /// True if mpirun, or a similar program, has started this process as one of several.
   static bool started();
-  /// Joins the others when there are some. Throws spark::Error when there are and this program was built without MPI.
+  /// Initialises MPI if started() is true. Throws spark::Error if this program was built without MPI then.
   static std::unique_ptr<Cluster> join();
 
+  /// Number of this process, from 0.
   virtual int number() const { return 0; }
+  /// Number of processes.
   virtual int size() const { return 1; }
-  /// Processes on this machine.
+  /// Number of processes on this machine, this one included.
   virtual int neighbours() const { return 1; }
-  virtual void send(int /*to*/, Word /*word*/, const std::string& /*text*/) {}
-  /// The next message, if one has come. Does not wait.
+  /// Sends a message to another process.
+  virtual void send(int /*to*/, MessageKind /*kind*/, const std::string& /*text*/) {}
+  /// The next message that has arrived, if any. Does not wait.
   virtual std::optional<Message> receive() { return std::nullopt; }
-  /// Ends all processes when one cannot go on.
+  /// Ends all processes, because this one cannot continue.
   virtual void abort(int /*code*/) {}
 };
 

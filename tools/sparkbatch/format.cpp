@@ -9,7 +9,7 @@ namespace sparkbatch {
 using spark::Error;
 
 namespace {
-/// What a cell shows; empty for what is not there.
+/// A value as the text of a cell; "" for null.
 std::string plain(const Json& value) {
   if (value.is_null()) return "";
   if (value.is_string()) return value.get<std::string>();
@@ -17,7 +17,7 @@ std::string plain(const Json& value) {
   return value.dump();
 }
 
-/// As RFC 4180, but for control characters: a row is one line.
+/// Quotes a cell as in RFC 4180, but replaces control characters, so that a row is one line.
 std::string cell(const std::string& text) {
   std::string out;
   bool quoted = false;
@@ -35,12 +35,14 @@ std::string cell(const std::string& text) {
   return quoted ? "\"" + out + "\"" : out;
 }
 
+/// A line of cells.
 std::string joined(const std::vector<std::string>& cells) {
   std::string out;
   for (const std::string& c : cells) out += (out.empty() && &c == &cells.front() ? "" : ",") + cell(c);
   return out + "\n";
 }
 
+/// Splits a line into cells.
 std::vector<std::string> cells(std::string_view line) {
   std::vector<std::string> out(1);
   bool quoted = false;
@@ -62,7 +64,7 @@ std::int64_t number(const std::string& text) {
   try {
     return std::stoll(text);
   } catch (const std::exception&) {
-    throw Error("expected the number of a run, found '" + text + "'");
+    throw Error(fmt::format("expected the number of a run, found '{}'", text));
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How rows stand in a file: CSV with a header, or a JSON object a line. A row is one line, whatever is in it.
+/// The format of a table: CSV with a header, or a JSON object per line. A row is always one line.
 
 #include <string>
 #include <string_view>
@@ -10,18 +10,19 @@
 
 namespace sparkbatch {
 
-/// The language of a table's file, by its name: .csv, else JSON lines.
+/// CSV if the name of the file ends with .csv, otherwise JSON lines.
 class Format {
  public:
   explicit Format(const std::string& file);
-  /// True when the first line names the columns.
+  /// True if the first line has the names of the columns.
   bool hasHeader() const { return csv_; }
-  /// Lines end with a line break.
+  /// The first line, with its line break; "" if there is none.
   std::string header(const std::vector<std::string>& columns) const;
+  /// The line of a row, with its line break.
   std::string line(const Row& row, const std::vector<std::string>& columns) const;
-  /// The names in a header, without its line break.
+  /// The names of the columns in a header without line break; none if the format has no header.
   std::vector<std::string> columns(std::string_view header) const;
-  /// The row in a line. Cells of a CSV become texts, but for `run`. Throws spark::Error that says what is wrong.
+  /// Parses a line without line break. Values in a CSV file become strings, except `run`. Throws spark::Error.
   Row row(std::string_view line, const std::vector<std::string>& columns) const;
 
  private:

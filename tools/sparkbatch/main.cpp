@@ -11,25 +11,25 @@
 #include "batch.h"
 #include "crash_report.h"
 
-// Exit codes: 0 every run has a row; 1 some rows are errors, or the line is lost; 2 the command line, the config or the
-// table is wrong, nothing was run; 3 it was interrupted. stdout carries one JSON line at the end, everything else goes
-// to stderr.
+// Exit codes: 0: every run has a row; 1: some rows are errors, or stdout could not be written; 2: an error in the
+// command line, the config or the table, nothing was run; 3: interrupted. stdout gets one JSON line at the end,
+// everything else goes to stderr.
 
 namespace {
 using namespace sparkbatch;
 
-constexpr int kWrong = 2;
-std::atomic<Wish> wish = Wish::goOn;
-static_assert(std::atomic<Wish>::is_always_lock_free);
+constexpr int kUsageError = 2;
+std::atomic<StopMode> stopMode = StopMode::none;
+static_assert(std::atomic<StopMode>::is_always_lock_free);  // for the signal handler
 
 extern "C" void endBatch(int number) {
-  if (wish == Wish::abandon) std::signal(number, SIG_DFL), std::raise(number);
-  wish = number == SIGINT && wish == Wish::goOn ? Wish::finish : Wish::abandon;
+  if (stopMode == StopMode::abandon) std::signal(number, SIG_DFL), std::raise(number);
+  stopMode = number == SIGINT && stopMode == StopMode::none ? StopMode::finish : StopMode::abandon;
 }
 
-/// The first SIGINT lets what runs come to its end, the second and SIGTERM abandon it; one more ends the process as the
-/// system does: a config that never returns hears of nothing. Under mpirun signals end all processes at once, as MPI
-/// has it; what has a row stays either way.
+/// The first SIGINT lets current runs finish; the second one, or SIGTERM, abandons them; one more kills the process,
+/// which helps if a config never returns. Under mpirun a signal ends all processes at once. Written rows stay in any
+/// case.
 void watchSignals() {
   struct sigaction action = {};
   action.sa_handler = endBatch;
@@ -37,7 +37,7 @@ void watchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-/// Processors that this process may use, which it shares with its neighbours unless each has its own.
+/// Number of processors for this process. Processes on one machine share them, unless each is bound to its own.
 int processors(int neighbours) {
   cpu_set_t mine;
   const int allowed = sched_getaffinity(0, sizeof mine, &mine) == 0 ? CPU_COUNT(&mine) : 1;
@@ -50,8 +50,9 @@ void chooseThreads(Options& options, int neighbours) {
   if (options.threads == 0)
     options.threads = processors(neighbours);
   else if (neighbours > 1 && sched_getaffinity(0, sizeof mine, &mine) == 0 && options.threads > CPU_COUNT(&mine))
-    sayLine(fmt::format("{} threads share {} processors, to which mpirun binds this process: say mpirun --bind-to none",
-                        options.threads, CPU_COUNT(&mine)));
+    printLine(
+        fmt::format("{} threads share {} processors, to which mpirun binds this process: say mpirun --bind-to none",
+                    options.threads, CPU_COUNT(&mine)));
 }
 
 int lead(const Options& options, Cluster& cluster) {
@@ -61,10 +62,10 @@ int lead(const Options& options, Cluster& cluster) {
     leader.emplace(options, cluster);
   } catch (const std::exception& e) {
     fmt::print(stderr, "sparkbatch: {}\n", e.what());
-    dismiss(cluster);
-    return kWrong;
+    dismissHelpers(cluster);
+    return kUsageError;
   }
-  const int code = leader->run(wish);
+  const int code = leader->run(stopMode);
   const std::string summary = leader->summary();
   if (std::puts(summary.c_str()) >= 0 && std::fflush(stdout) == 0) return code;
   fmt::print(stderr, "sparkbatch: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno),
@@ -82,11 +83,11 @@ int main(int argc, char** argv) {
     if (const auto code = readOptions(argc, argv, cluster->number() == 0, options)) return *code;
     chooseThreads(options, cluster->neighbours());
     if (cluster->number() == 0) return lead(options, *cluster);
-    help(options, *cluster);
+    runHelper(options, *cluster);
     return 0;
   } catch (const std::exception& e) {
     fmt::print(stderr, "sparkbatch: {}\n", e.what());
-    if (cluster) cluster->abort(kWrong);
-    return kWrong;
+    if (cluster) cluster->abort(kUsageError);
+    return kUsageError;
   }
 }

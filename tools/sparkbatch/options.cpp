@@ -3,20 +3,19 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "surroundings.h"
+#include "common_options.h"
 
 namespace sparkbatch {
 
 namespace {
 constexpr int kUsageError = 2;
 
-/// `KEY=TEXT`; throws what CLI11 prints.
+/// Splits `KEY=TEXT`. Throws CLI::ValidationError.
 std::pair<std::string, std::string> splitSetting(const char* option, const std::string& text) {
   const std::size_t at = text.find('=');
   if (at == 0 || at == std::string::npos)
-    throw CLI::ValidationError(option, std::string("expected KEY=") +
-                                           (std::string(option) == "--set" ? "VALUE" : "A,B,...") + ", found '" + text +
-                                           "'");
+    throw CLI::ValidationError(option, fmt::format("expected KEY={}, found '{}'",
+                                                   std::string_view(option) == "--set" ? "VALUE" : "A,B,...", text));
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
@@ -29,7 +28,8 @@ Report readReport(const std::string& text) {
   const std::size_t dot = where.rfind('.');
   if (r.column.empty() || where.empty() || where.front() != '/' || dot == std::string::npos || dot < where.rfind('/') ||
       dot + 1 == where.size())
-    throw CLI::ValidationError("--report", "expected /path.property or NAME=/path.property, found '" + text + "'");
+    throw CLI::ValidationError("--report",
+                               fmt::format("expected /path.property or NAME=/path.property, found '{}'", text));
   r.path = where.substr(0, dot);
   r.property = where.substr(dot + 1);
   return r;
@@ -43,11 +43,12 @@ void checkResults(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension();
   if (extension != ".csv" && extension != ".jsonl")
     throw CLI::ValidationError(
-        "--results", "expected a file that ends in .csv or .jsonl (a JSON object a line), found '" + file + "'");
+        "--results",
+        fmt::format("expected a file that ends in .csv or .jsonl (a JSON object a line), found '{}'", file));
 }
 }  // namespace
 
-std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out) {
+std::optional<int> readOptions(int argc, char** argv, bool print, Options& out) {
   CLI::App app{
       "Runs many worlds of one Spark config: seeds, sweeps of settings; over threads, and over machines when mpirun "
       "starts it.",
@@ -63,9 +64,8 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", out.seed, "Seed of the first; the others count up (default 1)")
       ->type_name("N")
-      ->check(sparkhost::seedProblem);
-  app.add_option("--duration", out.duration,
-                 "A run ends after that much simulated time [s]; 0: when the config ends it")
+      ->check(sparkhost::checkSeed);
+  app.add_option("--duration", out.duration, "A run ends after this simulated time [s]; 0: when the config ends it")
       ->type_name("SECONDS")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--set", settings, "As for sparkhost, the same in every run; {run} and {seed} in V become the run's")
@@ -80,9 +80,11 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
   app.add_option("--threads", out.threads, "Worlds at a time in this process (default: its processors)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
-  app.add_flag("--resume", out.resume, "Goes on with a table that is there: only runs without a row are run");
-  app.add_flag("--retry", out.retry, "With --resume: rows with an error are dropped, and run again")->needs("--resume");
-  sparkhost::addSurroundings(app, out.pluginPaths, out.scenePaths, out.logLevel, "What worlds may write to stderr");
+  app.add_flag("--resume", out.resume, "Continues an existing table: executes only runs without a row");
+  app.add_flag("--retry", out.retry, "With --resume: removes rows with an error and executes their runs again")
+      ->needs("--resume");
+  sparkhost::addCommonOptions(app, out.pluginPaths, out.scenePaths, out.logLevel,
+                              "Minimum level of log lines of worlds on stderr");
   app.footer(
       "stdout: one JSON line at the end. Exit code 0: every run has a row; 1: some rows are errors; 2: nothing was "
       "run; 3: it was "
@@ -91,21 +93,21 @@ std::optional<int> readOptions(int argc, char** argv, bool speaks, Options& out)
     app.parse(argc, argv);
     checkResults(out.results);
     if (out.seed + static_cast<std::uint64_t>(out.seeds - 1) < out.seed)
-      throw CLI::ValidationError("--seed", "expected seeds of 64 bits; " + std::to_string(out.seeds) + " runs from " +
-                                               std::to_string(out.seed) + " on go beyond");
+      throw CLI::ValidationError(
+          "--seed", fmt::format("expected seeds of 64 bits; {} runs from {} on go beyond", out.seeds, out.seed));
     for (const std::string& s : settings) out.settings.push_back(splitSetting("--set", s));
     for (const std::string& s : sweep) {
       const auto [key, values] = splitSetting("--sweep", s);
       for (const Parameter& p : out.sweep)
         if (p.key == key)
           throw CLI::ValidationError(
-              "--sweep", "expected each KEY once, found '" + key + "' twice: say all of its values at once");
+              "--sweep", fmt::format("expected each KEY once, found '{}' twice: say all of its values at once", key));
       out.sweep.push_back({key, splitValues(values)});
     }
     for (const std::string& r : reports) out.reports.push_back(readReport(r));
   } catch (const CLI::ParseError& e) {
     std::ostringstream nowhere;
-    return (speaks ? app.exit(e) : app.exit(e, nowhere, nowhere)) == 0 ? 0 : kUsageError;
+    return (print ? app.exit(e) : app.exit(e, nowhere, nowhere)) == 0 ? 0 : kUsageError;
   }
   makeAbsolute(out.pluginPaths);
   makeAbsolute(out.scenePaths);

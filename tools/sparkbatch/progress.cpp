@@ -11,14 +11,13 @@ namespace sparkbatch {
 namespace {
 constexpr auto kTerminalPeriod = std::chrono::milliseconds(250);
 constexpr auto kLinePeriod = std::chrono::seconds(10);
-constexpr int kWidth = 24;
+constexpr std::size_t kWidth = 24;  // characters of the bar
 
 bool onTerminal() { return isatty(STDERR_FILENO) != 0; }
 
-std::string bar(double part) {
-  const int full = static_cast<int>(std::clamp(part, 0.0, 1.0) * kWidth);
-  return "[" + std::string(static_cast<std::size_t>(full), '=') +
-         std::string(static_cast<std::size_t>(kWidth - full), ' ') + "] ";
+std::string bar(double fraction) {
+  const auto full = static_cast<std::size_t>(std::clamp(fraction, 0.0, 1.0) * kWidth);
+  return fmt::format("[{}{}] ", std::string(full, '='), std::string(kWidth - full, ' '));
 }
 
 /// "1:02:03" or "2:03".
@@ -29,11 +28,11 @@ std::string clockText(double seconds) {
 }
 }  // namespace
 
-void sayLine(std::string_view line) { fmt::print(stderr, "{}{}\n", onTerminal() ? "\r\033[K" : "", line); }
+void printLine(std::string_view line) { fmt::print(stderr, "{}{}\n", onTerminal() ? "\r\033[K" : "", line); }
 
-Progress::Progress(std::int64_t runs, std::int64_t there, double duration)
+Progress::Progress(std::int64_t runs, std::int64_t existing, double duration)
     : runs_(runs),
-      there_(there),
+      existing_(existing),
       duration_(duration),
       terminal_(onTerminal()),
       next_(begin_ + (terminal_ ? Clock::duration(0) : Clock::duration(kLinePeriod))) {}
@@ -47,25 +46,26 @@ void Progress::add(double simulatedSeconds, bool failed) {
 }
 
 std::string Progress::text(double running) const {
-  const double seconds = std::max(elapsed(), 1e-6), begun = duration_ > 0 ? running / duration_ : 0;
-  const double now = static_cast<double>(done_) + begun, left = static_cast<double>(runs_ - there_) - now;
-  std::string out = fmt::format("{} of {} runs", there_ + done_, runs_);
+  // Current runs count as fractions of a run, if the duration is known.
+  const double seconds = std::max(elapsed(), 1e-6), partial = duration_ > 0 ? running / duration_ : 0;
+  const double done = static_cast<double>(done_) + partial, left = static_cast<double>(runs_ - existing_) - done;
+  std::string out = fmt::format("{} of {} runs", existing_ + done_, runs_);
   if (failed_ > 0) out += fmt::format(", {} failed", failed_);
-  out += fmt::format(", {:.3g} runs/s, {:.3g} x real time", now / seconds, (simulated_ + running) / seconds);
-  if (now > 0 && left > 0) out += fmt::format(", {} left", clockText(left * seconds / now));
+  out += fmt::format(", {:.3g} runs/s, {:.3g} x real time", done / seconds, (simulated_ + running) / seconds);
+  if (done > 0 && left > 0) out += fmt::format(", {} left", clockText(left * seconds / done));
   if (!terminal_) return out;
-  return bar((static_cast<double>(there_) + now) / static_cast<double>(std::max<std::int64_t>(runs_, 1))) + out;
+  return bar((static_cast<double>(existing_) + done) / static_cast<double>(std::max<std::int64_t>(runs_, 1))) + out;
 }
 
 void Progress::show(double running) {
   const auto now = Clock::now();
   if (now < next_) return;
   next_ = now + (terminal_ ? Clock::duration(kTerminalPeriod) : Clock::duration(kLinePeriod));
-  if (!terminal_) return sayLine(text(running));
+  if (!terminal_) return printLine(text(running));
   fmt::print(stderr, "\r\033[K{}", text(running));
   std::fflush(stderr);
 }
 
-void Progress::end() { sayLine(text(0)); }
+void Progress::end() { printLine(text(0)); }
 
 }  // namespace sparkbatch

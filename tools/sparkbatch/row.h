@@ -8,8 +8,8 @@ namespace sparkbatch {
 
 using Json = nlohmann::ordered_json;
 
-/// A JSON object. Every row has `run`; `end` says how the run ended: "duration", "stopped" (something in the config
-/// ended it), "error".
+/// A JSON object. Every row has `run`, the number, and `end`, how the run ended: "duration", "stopped" (by the config
+/// or a plugin), "error".
 using Row = Json;
 
 }  // namespace sparkbatch

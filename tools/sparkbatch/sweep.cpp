@@ -30,11 +30,12 @@ Sweep::Sweep(std::vector<Parameter> parameters, std::uint64_t firstSeed, std::in
 
 Run Sweep::run(std::int64_t number) const {
   Run run{number, firstSeed_ + static_cast<std::uint64_t>((number - 1) / points_), {}};
-  std::int64_t left = (number - 1) % points_;
+  // The index of the combination, in a mixed radix: one digit per parameter.
+  std::int64_t index = (number - 1) % points_;
   for (auto p = parameters_.rbegin(); p != parameters_.rend(); ++p) {
     const auto n = static_cast<std::int64_t>(p->values.size());
-    run.point.insert(run.point.begin(), {p->key, p->values[static_cast<std::size_t>(left % n)]});
-    left /= n;
+    run.point.insert(run.point.begin(), {p->key, p->values[static_cast<std::size_t>(index % n)]});
+    index /= n;
   }
   return run;
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Which worlds a batch has: every combination of the swept settings, with several seeds each.
+/// The runs of a batch: all combinations of the swept settings, each with several seeds.
 
 #include <cstdint>
 #include <string>
@@ -9,31 +9,33 @@
 
 namespace sparkbatch {
 
-/// A setting that is swept, and its values as they were typed.
+/// A swept setting and its values as text.
 struct Parameter {
   std::string key;
   std::vector<std::string> values;
 };
 
-/// One world.
+/// The parameters of one run.
 struct Run {
   std::int64_t number = 0;  ///< from 1
   std::uint64_t seed = 0;
-  std::vector<std::pair<std::string, std::string>> point;  ///< key and value of every swept setting
+  std::vector<std::pair<std::string, std::string>> point;  ///< keys and values of the swept settings
 };
 
-/// Cuts at commas, but not inside of brackets or quotes: "1,{2,3}" has two values.
+/// Splits at commas, except those in brackets or quotes: "1,{2,3}" has two values.
 std::vector<std::string> splitValues(const std::string& text);
 
-/// Numbers the runs of a batch: all combinations with the first seed, then all with the second. So a batch that is to
-/// have more seeds later keeps the numbers that it has.
+/// Numbers the runs of a batch: all combinations with the first seed, then all with the second, so that further seeds
+/// do not change the numbers of earlier runs.
 class Sweep {
  public:
+  /// `seeds`: number of runs of each combination.
   Sweep(std::vector<Parameter> parameters, std::uint64_t firstSeed, std::int64_t seeds);
-  /// Number of combinations, and of runs.
+  /// Number of combinations.
   std::int64_t points() const { return points_; }
+  /// Number of runs.
   std::int64_t runs() const { return points_ * seeds_; }
-  /// Run `number`, 1..runs(). The last parameter changes first.
+  /// Run `number`, 1..runs(). The last parameter changes fastest.
   Run run(std::int64_t number) const;
 
  private:

@@ -20,7 +20,7 @@ using spark::Error;
 namespace fs = std::filesystem;
 
 namespace {
-/// Columns that stand at the end, whatever else comes.
+/// Columns that are always at the end, in this order.
 const std::vector<std::string> kLast{"cpuSeconds", "wallSeconds", "error"};
 
 bool isLast(const std::string& column) { return std::find(kLast.begin(), kLast.end(), column) != kLast.end(); }
@@ -35,8 +35,8 @@ std::string textOf(const std::string& file) {
 
 Table::Table(std::string file, const Json& batch, Open open) : name_(std::move(file)), format_(name_) {
   if (open == Open::fresh && fs::exists(name_))
-    throw Error(name_ +
-                " is there already. Go on with it with --resume, name another file with --results, or remove it.");
+    throw Error(fmt::format(
+        "{} is there already. Go on with it with --resume, name another file with --results, or remove it.", name_));
   try {
     lock(batch, open);
     if (fs::exists(name_)) read(open == Open::retry);
@@ -53,20 +53,23 @@ Table::~Table() {
   if (lock_ >= 0) close(lock_);
 }
 
-/// The file beside the table is never replaced, so it can carry the lock.
+/// Locks the batch file and compares or writes it. The table itself cannot be locked, since rewrite() replaces its
+/// file.
 void Table::lock(const Json& batch, Open open) {
   const std::string name = name_ + ".batch";
   lock_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_ < 0) fail("cannot open " + name);
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) throw Error(name_ + " is in use: another sparkbatch is writing it");
+  if (lock_ < 0) fail(fmt::format("cannot open {}", name));
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0)
+    throw Error(fmt::format("{} is in use: another sparkbatch is writing it", name_));
   const std::string text = textOf(name);
   if (open != Open::fresh && fs::exists(name_)) {
     const Json before = Json::parse(text, nullptr, false);
     if (!before.is_object())
-      throw Error(name_ + " cannot be resumed: " + name + ", which says what its batch is, is missing or damaged");
+      throw Error(
+          fmt::format("{} cannot be resumed: {}, which says what its batch is, is missing or damaged", name_, name));
     return compare(before, batch);
   }
-  if (ftruncate(lock_, 0) != 0) fail("cannot write " + name);
+  if (ftruncate(lock_, 0) != 0) fail(fmt::format("cannot write {}", name));
   write(lock_, batch.dump(2) + "\n");
 }
 
@@ -87,7 +90,7 @@ void Table::compare(const Json& before, const Json& batch) const {
   for (const auto& [key, value] : before.items()) check(key);
 }
 
-/// A last line without its end was cut off when the program died: its run has no row.
+/// Reads the rows. A last line without a line break was cut off when the program died; it is ignored.
 void Table::read(bool retry) {
   const std::string text = textOf(name_);
   std::size_t at = 0, number = 0;
@@ -112,7 +115,7 @@ void Table::read(bool retry) {
   }
 }
 
-/// Returns how many were new.
+/// Adds the columns of a row before the last ones. Returns the number of new columns.
 std::size_t Table::addColumns(const Row& row) {
   std::size_t added = 0;
   for (const auto& [column, value] : row.items()) {
@@ -132,7 +135,7 @@ void Table::add(Row row) {
   const auto run = row["run"].get<std::int64_t>();
   const auto at = rows_.insert_or_assign(run, std::move(row)).first;
   if (added > 0 && format_.hasHeader())
-    rewrite();
+    rewrite();  // the header changes
   else
     write(file_, format_.line(at->second, columns_));
 }
@@ -148,29 +151,29 @@ void Table::rewrite() {
   std::string text = format_.header(columns_);
   for (const auto& [number, row] : rows_) text += format_.line(row, columns_);
   const int file = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) fail("cannot open " + fresh);
+  if (file < 0) fail(fmt::format("cannot open {}", fresh));
   write(file, text);
-  const bool safe = fsync(file) == 0;
+  const bool synced = fsync(file) == 0;
   close(file);
-  if (!safe || std::rename(fresh.c_str(), name_.c_str()) != 0) fail("cannot write " + name_);
+  if (!synced || std::rename(fresh.c_str(), name_.c_str()) != 0) fail(fmt::format("cannot write {}", name_));
   openForAppending();
 }
 
 void Table::openForAppending() {
   if (file_ >= 0) close(file_);
   file_ = ::open(name_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  if (file_ < 0) fail("cannot open " + name_);
+  if (file_ < 0) fail(fmt::format("cannot open {}", name_));
 }
 
 void Table::write(int file, const std::string& text) const {
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t n = ::write(file, text.data() + at, text.size() - at);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail("cannot write " + name_);
+    if (n < 0) fail(fmt::format("cannot write {}", name_));
     at += static_cast<std::size_t>(n);
   }
 }
 
-void Table::fail(const std::string& what) const { throw Error(what + ": " + std::strerror(errno)); }
+void Table::fail(const std::string& what) const { throw Error(fmt::format("{}: {}", what, std::strerror(errno))); }
 
 }  // namespace sparkbatch

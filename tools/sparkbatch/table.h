@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The results: one file with a row a run, and beside it `<file>.batch`, which says what the batch is.
+/// The results: a file with a row per run, and beside it `<file>.batch`, which describes the batch.
 
 #include <cstdint>
 #include <map>
@@ -12,27 +12,28 @@
 
 namespace sparkbatch {
 
-/// The table and its file. Rows are written as they come, each with one write; what is there at any moment is a whole
-/// table, but perhaps for its last line. Held by one process at a time.
+/// The table and its file. Each row is appended with one write, so the file is a valid table at any time, except
+/// perhaps for its last line. A lock allows one process at a time.
 class Table {
  public:
-  /// How to open a file that is there.
+  /// How to open the file: `fresh`: it must not exist; `resume`: continue it; `retry`: also remove rows with an error.
   enum class Open { fresh, resume, retry };
 
-  /// `batch`: what must be the same for rows of one table, an object with a sentence's worth of text a key. Throws
-  /// spark::Error when the file is there and it is to be fresh, when it is of another batch (says what differs), is no
-  /// table, or is in use.
+  /// `batch`: an object with all that must be the same for the rows of a table. Throws spark::Error if the file exists
+  /// and must not, belongs to another batch (the text says what differs), is damaged, or is in use.
   Table(std::string file, const Json& batch, Open open);
   ~Table();
   Table(const Table&) = delete;
   Table& operator=(const Table&) = delete;
 
+  /// True if a run has a row.
   bool has(std::int64_t run) const { return rows_.count(run) > 0; }
+  /// Number of rows.
   std::size_t size() const { return rows_.size(); }
-  /// Adds a row; when this returns it is in the file. Throws spark::Error.
+  /// Adds a row and writes it to the file. Throws spark::Error.
   void add(Row row);
-  /// Puts the rows in order of number and the columns in the order of their first row. To be called when all rows are
-  /// there.
+  /// Sorts the rows by number and the columns by their first row, and rewrites the file. Call it when the table is
+  /// complete.
   void sort();
 
  private:
@@ -40,7 +41,7 @@ class Table {
   void compare(const Json& before, const Json& batch) const;
   void read(bool retry);
   std::size_t addColumns(const Row& row);
-  /// Puts the whole table into the file, in one go.
+  /// Replaces the file by the current table, atomically.
   void rewrite();
   void openForAppending();
   void write(int file, const std::string& text) const;
@@ -50,7 +51,7 @@ class Table {
   Format format_;
   std::vector<std::string> columns_;
   std::map<std::int64_t, Row> rows_;
-  int file_ = -1, lock_ = -1;
+  int file_ = -1, lock_ = -1;  ///< descriptors: the table, for appending; the batch file, which is locked
 };
 
 }  // namespace sparkbatch

@@ -7,7 +7,7 @@
 namespace sparkbatch {
 
 namespace {
-/// A line "key:  123 kB" of /proc/self/status, in MB.
+/// The value of a line "key:  123 kB" of /proc/self/status in MB.
 double megabytes(const std::string& key) {
   std::ifstream in("/proc/self/status");
   for (std::string line; std::getline(in, line);)

@@ -1,25 +1,29 @@
 #pragma once
 /// \file
-/// What a process, or several together, used.
+/// Memory and CPU time of the batch.
 
 #include "row.h"
 
 namespace sparkbatch {
 
-/// Memory in MB of 10^6 bytes: the most that the process had in memory, and how much of that came after this object was
-/// made, per thread that simulated.
+/// Memory is in MB of 10^6 bytes: the peak of the process, and the part of it since construction per worker thread. Of
+/// several processes the largest values count; threads and CPU time are summed.
 class Usage {
  public:
+  /// `threads`: number of worker threads of this process.
   explicit Usage(int threads);
+  /// Worker threads of all processes.
   int threads() const { return threads_; }
   double cpuSeconds() const { return cpuSeconds_; }
   double peakMegabytes() const { return peak_; }
   double megabytesPerWorld() const { return perWorld_; }
-  /// Reads the system's counts for this process.
+  /// Measures the memory of this process.
   void measure();
+  /// Adds CPU time of runs.
   void addCpu(double seconds) { cpuSeconds_ += seconds; }
+  /// The usage as a message to the leader.
   Json json() const;
-  /// Takes in another process: threads are summed, of memory the larger counts.
+  /// Adds the usage of another process, as json() returned it there.
   void add(const Json& other);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The threads of one process, a world each at a time.
+/// The worker threads of a process, each with one world at a time.
 
 #include <chrono>
 #include <condition_variable>
@@ -18,40 +18,44 @@
 
 namespace sparkbatch {
 
-/// A pool whose threads simulate runs. All functions are for the one thread that owns it.
+/// A thread pool that executes runs. All functions must be called by the thread that created it.
 class Workers {
  public:
-  using Work = std::function<Row(const Run&, Watch&)>;
-  /// What came of a run; no row when it was abandoned.
+  /// Executes a run. Called by several threads at once; must not throw.
+  using Work = std::function<Row(const Run&, RunControl&)>;
+  /// The row of a run; empty if it was abandoned.
   using Result = std::optional<Row>;
 
+  /// Starts the threads.
   Workers(int threads, Work work);
-  /// Abandons what runs and waits for it.
+  /// Abandons the current runs and joins the threads.
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  /// Threads with nothing to do, and runs that were begun and not yet taken as finished.
+  /// Number of threads without a run.
   int idle() const;
+  /// Number of runs that were started and not collected yet.
   int running() const { return running_; }
-  /// Precondition: a thread is idle.
-  void begin(Run run);
-  /// What has finished; waits up to `patience` for the first.
-  std::vector<Result> take(std::chrono::milliseconds patience);
+  /// Starts a run. Precondition: idle() > 0.
+  void start(Run run);
+  /// The results of finished runs; waits up to `timeout` for the first.
+  std::vector<Result> collect(std::chrono::milliseconds timeout);
+  /// Ends the current runs after their current cycle.
   void abandon();
-  /// Simulated seconds of the worlds that run now.
+  /// Simulated seconds of the current runs, in sum.
   double time() const;
 
  private:
   struct Job {
     Run run;
-    Watch watch;
+    RunControl control;
   };
   void loop();
 
   Work work_;
-  mutable std::mutex mutex_;
-  std::condition_variable begun_, finished_;
+  mutable std::mutex mutex_;  ///< of the members below, except running_
+  std::condition_variable started_, finished_;
   std::deque<std::shared_ptr<Job>> waiting_;
   std::vector<std::shared_ptr<Job>> active_;
   std::vector<Result> results_;

@@ -22,25 +22,25 @@ using namespace sparkhost;
 namespace {
 constexpr const char* kResult = "/sys/variables/Result";
 
-/// The world's side of a Watch. Has no state.
+/// Connects a world with its RunControl. It has no state.
 class Pulse : public Node {
   SPARK_CLASS(Pulse, Node)
  public:
   static void describe(Description<Pulse>& d) {
-    d.doc("Tells the batch how far this world is.");
+    d.doc("Reports the simulated time of this world to the batch.");
     d.on<&Pulse::beat>(phase::kPublish);
   }
-  Watch* watch = nullptr;
+  RunControl* control = nullptr;
 
  private:
   void beat(const Event& event) {
-    if (!watch) return;
-    watch->setTime(event.time);
-    if (watch->abandoned()) kernel().requestStop();
+    if (!control) return;
+    control->setTime(event.time);
+    if (control->abandoned()) kernel().requestStop();
   }
 };
 
-/// CPU seconds of this thread and wall seconds since it was made.
+/// CPU time of this thread and wall time since construction [s].
 class Stopwatch {
  public:
   double cpu() const { return cpuNow() - cpu_; }
@@ -62,7 +62,7 @@ std::string replaced(std::string text, std::string_view what, const std::string&
   return text;
 }
 
-/// What sparkhost would be told for the same world. A setting of the user's comes last: it wins.
+/// The options of sparkhost for the same world. Settings of the user come last, so they win.
 sparkhost::Options hostOptions(const Options& options, const Run& run) {
   sparkhost::Options out;
   out.config = options.config;
@@ -82,19 +82,19 @@ sparkhost::Options hostOptions(const Options& options, const Run& run) {
   return out;
 }
 
-/// The house, its log on stderr with the run's number. `fault` becomes what the log says of the first fault, when its
-/// level lets it.
+/// A host whose log lines go to stderr with the run's number. `fault` is set to the log line of the first fault, if the
+/// log level permits it.
 std::unique_ptr<Host> makeHost(const sparkhost::Options& options, const Run& run, std::string* fault = nullptr) {
   auto host = std::make_unique<Host>(options);
   Kernel& kernel = host->kernel();
   kernel.log().setSink([&kernel, fault, number = run.number](Level level, std::string_view text) {
     if (fault && fault->empty() && level >= Level::warning && kernel.faults() > 0) *fault = text;
-    sayLine(fmt::format("run {}: {}", number, text));
+    printLine(fmt::format("run {}: {}", number, text));
   });
   return host;
 }
 
-/// Why the numbers of a run whose plugins or scripts failed are none to rely on.
+/// The error text of a run in which plugins or scripts failed.
 std::string faultsOf(const Kernel& kernel, const std::string& first) {
   const std::int64_t n = kernel.faults();
   return fmt::format("{} fault{} of plugins or scripts; {}", n, n == 1 ? "" : "s",
@@ -121,21 +121,21 @@ Json toJson(const Value& v) {
   return list;
 }
 
-/// Half a step of tolerance, as the run loop has it.
-std::string reason(const Leaf& root) {
+/// How the run ended. With a tolerance of half a step, as in the run loop.
+std::string endOf(const Leaf& root) {
   const double duration = numberAt(root, kSimulation, "duration");
-  const bool over =
+  const bool atEnd =
       duration > 0 && numberAt(root, kSimulation, "time") > duration - 0.5 * numberAt(root, kSimulation, "step");
-  return over ? "duration" : "stopped";
+  return atEnd ? "duration" : "stopped";
 }
 
-/// Agents of a batch live in the house.
+/// Agents of a batch are behaviors inside the host; no port is needed.
 void closeNetwork(Node& root) {
   Leaf* net = root.find(kNet);
   if (net && net->classObject()->property("open")) setProperty(*net, "open", false);
 }
 
-/// A further column. Throws Error when there is one of that name.
+/// Adds a column. Throws Error if there is one of that name.
 void put(Row& row, const std::string& column, const Value& value) {
   if (row.contains(column))
     throw Error(fmt::format("cannot report {0}: the table has another column {0}. Name it otherwise.", column));
@@ -146,7 +146,7 @@ void addReports(const Leaf& root, const std::vector<Report>& reports, Row& row) 
   for (const Report& r : reports) put(row, r.column, getProperty(root.require<Leaf>(r.path), r.property));
 }
 
-/// What the config left in the variables Result.*.
+/// Adds the variables Result.* of the config.
 void addResults(Node& root, Row& row) {
   Leaf* group = root.find(kResult);
   if (!group) return;
@@ -155,13 +155,13 @@ void addResults(Node& root, Row& row) {
 }
 
 void addOutcome(const Leaf& root, Row& row) {
-  row["end"] = reason(root);
+  row["end"] = endOf(root);
   row["cycles"] = integerAt(root, kSimulation, "cycle");
   row["simSeconds"] = numberAt(root, kSimulation, "time");
   row["stateHash"] = fmt::format("{:016x}", stateHash(root));
 }
 
-/// What the game reports: a column for each entry, or for each element of a list.
+/// Adds the status of the game: a column for each entry, or for each element of a list.
 void addStatus(Kernel& kernel, Row& row) {
   for (const StatusEntry& entry : StatusReporters().read(kernel)) {
     if (!entry.value.isList()) {
@@ -176,23 +176,23 @@ void addStatus(Kernel& kernel, Row& row) {
 }  // namespace
 
 void check(const Options& options, const Run& run) {
-  const sparkhost::Options asked = hostOptions(options, run);
-  const auto host = makeHost(asked, run);
+  const sparkhost::Options hosted = hostOptions(options, run);
+  const auto host = makeHost(hosted, run);
   host->build();
 }
 
-Row simulate(const Options& options, const Run& run, Watch& watch) {
+Row simulate(const Options& options, const Run& run, RunControl& control) {
   Row row{{"run", run.number}, {"seed", run.seed}};
   for (const auto& [key, text] : run.point) row[key] = toJson(Value::fromText(text));
   const Stopwatch clock;
   std::string error, fault;
   try {
-    const sparkhost::Options asked = hostOptions(options, run);
-    const auto host = makeHost(asked, run, &fault);
+    const sparkhost::Options hosted = hostOptions(options, run);
+    const auto host = makeHost(hosted, run, &fault);
     host->build();
     closeNetwork(host->kernel().root());
     host->kernel().registerClass<Pulse>();
-    host->kernel().create<Pulse>("Pulse", "/sys/host/pulse").watch = &watch;
+    host->kernel().create<Pulse>("Pulse", "/sys/host/pulse").control = &control;
     Node& root = host->kernel().root();
     callMethod(root.require<Leaf>(kSimulation), "run", {});
     addOutcome(root, row);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One world of a batch: a kernel of its own, run in the caller's thread from the config to the row.
+/// One run of a batch: a world with a kernel of its own, in the calling thread.
 
 #include <atomic>
 
@@ -9,13 +9,13 @@
 
 namespace sparkbatch {
 
-/// What other threads may know of a running world, and do to it.
-class Watch {
+/// Controls a run from another thread. All functions are thread-safe.
+class RunControl {
  public:
-  /// Ends the world after the cycle that it is in; it gets no row.
+  /// Ends the run after its current cycle; it gets no row.
   void abandon() { abandoned_ = true; }
   bool abandoned() const { return abandoned_; }
-  /// Simulated seconds so far.
+  /// Simulated time so far [s].
   double time() const { return time_; }
   void setTime(double time) { time_ = time; }
 
@@ -24,11 +24,11 @@ class Watch {
   std::atomic<double> time_ = 0;
 };
 
-/// Builds the world of `run` and throws it away. Throws spark::Error: what is wrong with the config or the settings.
+/// Builds the world of `run` and destroys it. Throws spark::Error if the config or the settings are wrong.
 void check(const Options& options, const Run& run);
 
-/// Simulates `run` to its end and returns its row; whatever goes wrong is told in the row. The result depends on
-/// nothing but the options and the run (and the times cpuSeconds and wallSeconds).
-Row simulate(const Options& options, const Run& run, Watch& watch);
+/// Simulates `run` to its end and returns its row. Does not throw: errors are in the row. Except for cpuSeconds and
+/// wallSeconds, the row depends on the options and the run only.
+Row simulate(const Options& options, const Run& run, RunControl& control);
 
 }  // namespace sparkbatch

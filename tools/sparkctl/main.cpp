@@ -6,36 +6,37 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "house.h"
+#include "control_connection.h"
 #include "print.h"
 
-// Exit codes: 0 done; 1 the house refused, there is none, or its answer cannot be written; 2 the command line is wrong.
+// Exit codes: 0: done; 1: no simulation was found, it returned an error, or stdout cannot be written; 2: the command
+// line is wrong.
 
 using namespace sparkctl;
 
 namespace {
-/// What the command line names: a node, or a property or method of it.
+/// A node, or a property or method of it.
 struct Target {
   std::string path, member;
 };
 
-/// `/sys/server/simulation.step`: what follows the last dot behind the last slash is the member.
-Target split(const std::string& text, bool memberNeeded) {
+/// Splits `/sys/server/simulation.step` at the last dot after the last slash.
+Target split(const std::string& text, bool needsMember) {
   const std::size_t slash = text.rfind('/');
   const std::size_t dot = text.rfind('.');
   if (dot != std::string::npos && (slash == std::string::npos || dot > slash) && dot + 1 < text.size())
     return {text.substr(0, dot), text.substr(dot + 1)};
-  if (memberNeeded)
-    throw std::runtime_error("expected PATH.NAME, such as /sys/server/simulation.step, found '" + text + "'");
+  if (needsMember)
+    throw std::runtime_error(fmt::format("expected PATH.NAME, such as /sys/server/simulation.step, found '{}'", text));
   return {text, ""};
 }
 
-/// The one house that is meant; throws when it is unclear.
-std::string choose(const std::string& socket, int pid) {
+/// The socket that the options select; throws if there is not exactly one.
+std::string chooseSocket(const std::string& socket, int pid) {
   if (!socket.empty()) return socket;
-  std::vector<std::string> refused;
-  std::vector<std::string> all = houses(refused);
-  for (const std::string& why : refused) fmt::print(stderr, "sparkctl: {}: it is not looked into\n", why);
+  std::vector<std::string> skipped;
+  std::vector<std::string> all = findSockets(skipped);
+  for (const std::string& why : skipped) fmt::print(stderr, "sparkctl: {}: it is not looked into\n", why);
   if (pid > 0)
     std::erase_if(all, [&](const std::string& s) { return s.find(fmt::format("/{}.sock", pid)) == std::string::npos; });
   if (all.empty())
@@ -51,60 +52,62 @@ void print(const std::string& text) {
     throw std::runtime_error(fmt::format("cannot write to stdout: {}", std::strerror(errno)));
 }
 
-void get(House& house, const std::string& what) {
+void get(ControlConnection& simulation, const std::string& what) {
   const Target t = split(what, false);
   Json request{{"do", "get"}, {"path", t.path}};
   if (!t.member.empty()) request["property"] = t.member;
-  const Json answer = house.ask(request);
+  const Json answer = simulation.ask(request);
   if (t.member.empty()) print(fmt::format("{}  ({})\n", answer.value("path", ""), answer.value("class", "")));
   for (const Json& p : answer["properties"]) print(propertyText(p));
 }
 
-void set(House& house, const std::string& what, const std::string& value) {
+void set(ControlConnection& simulation, const std::string& what, const std::string& value) {
   const Target t = split(what, true);
   for (const Json& p :
-       house.ask({{"do", "set"}, {"path", t.path}, {"property", t.member}, {"value", value}})["properties"])
+       simulation.ask({{"do", "set"}, {"path", t.path}, {"property", t.member}, {"value", value}})["properties"])
     print(propertyText(p));
 }
 
-void call(House& house, const std::string& what, const std::vector<std::string>& arguments) {
+void call(ControlConnection& simulation, const std::string& what, const std::vector<std::string>& arguments) {
   const Target t = split(what, true);
   const std::string result =
-      house.ask({{"do", "call"}, {"path", t.path}, {"method", t.member}, {"arguments", arguments}}).value("text", "");
+      simulation.ask({{"do", "call"}, {"path", t.path}, {"method", t.member}, {"arguments", arguments}})
+          .value("text", "");
   if (!result.empty()) print(result + "\n");
 }
 
-void ask(House& house, const std::string& what, const std::string& path) {
+void ask(ControlConnection& simulation, const std::string& what, const std::string& path) {
   Json request{{"do", what}};
   if (!path.empty()) request["path"] = path;
-  print(answerText(house.ask(request)));
+  print(answerText(simulation.ask(request)));
 }
 
-void watch(House& house, const std::string& what) {
+void watch(ControlConnection& simulation, const std::string& what) {
   const Target t = split(what, true);
-  for (Json line = house.ask({{"do", "watch"}, {"path", t.path}, {"property", t.member}});; line = house.next())
+  for (Json line = simulation.ask({{"do", "watch"}, {"path", t.path}, {"property", t.member}});;
+       line = simulation.next())
     print(fmt::format("{:10.2f} s  {} {}\n", line.value("time", 0.0), line.value("text", ""), line.value("unit", "")));
 }
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Looks into a running Spark house: its tree, properties, plugins.", "sparkctl"};
+  CLI::App app{"Inspects and controls a running Spark simulation: its tree, properties, plugins.", "sparkctl"};
   std::string socket, path = "/", target, value;
   std::vector<std::string> arguments;
   int pid = 0, depth = -1;
   double timeout = 10;
   bool all = false, links = false;
-  app.add_option("--socket", socket, "The house's control socket, where several run");
-  app.add_option("--pid", pid, "The house's process, where several run");
-  app.add_option("--timeout", timeout, "How long to wait for each answer [s]")
+  app.add_option("--socket", socket, "Path of the control socket, if several simulations run");
+  app.add_option("--pid", pid, "Process of the simulation, if several run");
+  app.add_option("--timeout", timeout, "Maximum time to wait for an answer [s]")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
   app.require_subcommand(1);
-  CLI::App* tree = app.add_subcommand("tree", "The tree below a path, with classes and what they are for");
+  CLI::App* tree = app.add_subcommand("tree", "The tree below a path, with classes and their purpose");
   tree->add_option("PATH", path, "Where to begin")->capture_default_str();
   tree->add_option("--depth", depth, "Levels to show");
-  tree->add_flag("--all", all, "Show every one of many brothers of one class");
-  tree->add_flag("--links", links, "Also what each node looks up, and where that is");
+  tree->add_flag("--all", all, "Show all siblings of one class, even if there are many");
+  tree->add_flag("--links", links, "Also the links of each node, with their targets");
   CLI::App* gets = app.add_subcommand("get", "A property, or all properties of a node, with units and documentation");
   gets->add_option("PATH.PROPERTY", target)->required();
   CLI::App* sets = app.add_subcommand("set", "Sets a property between two cycles");
@@ -116,15 +119,15 @@ int main(int argc, char** argv) {
   CLI::App* watches = app.add_subcommand("watch", "Prints a property now and whenever it changes");
   watches->add_option("PATH.PROPERTY", target)->required();
   CLI::App* asks = app.add_subcommand(
-      "ask", "Asks for contacts, joints PATH, percepts PATH or what else a plugin answers; prints JSON");
+      "ask", "Requests contacts, joints PATH, percepts PATH or others that plugins answer; prints JSON");
   asks->add_option("REQUEST", target)->required();
-  asks->add_option("PATH", value, "A node; of an agent: any of its own");
-  CLI::App* plugins = app.add_subcommand("plugins", "The plugins that were found");
-  CLI::App* loads =
-      app.add_subcommand("load", "Loads a plugin of the host's folders, as a config's line plugin \"NAME\" does");
+  asks->add_option("PATH", value, "A node; for an agent any node of it");
+  CLI::App* plugins = app.add_subcommand("plugins", "All plugins that were found");
+  CLI::App* loads = app.add_subcommand(
+      "load", "Loads a plugin from the host's folders, as the line plugin \"NAME\" of a config does");
   loads->add_option("NAME", target)->required();
   CLI::App* unloads =
-      app.add_subcommand("unload", "Unloads a plugin that has no objects; load then takes the file as it is by then");
+      app.add_subcommand("unload", "Unloads a plugin that has no objects; a later load reads the file again");
   unloads->add_option("NAME", target)->required();
   try {
     app.parse(argc, argv);
@@ -132,18 +135,18 @@ int main(int argc, char** argv) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   try {
-    House house(choose(socket, pid), timeout);
+    ControlConnection simulation(chooseSocket(socket, pid), timeout);
     if (*tree)
-      print(
-          treeText(house.ask({{"do", "tree"}, {"path", path}, {"depth", depth}, {"links", links}})["tree"], path, all));
-    if (*gets) get(house, target);
-    if (*sets) set(house, target, value);
-    if (*calls) call(house, target, arguments);
-    if (*asks) ask(house, target, value);
-    if (*watches) watch(house, target);
-    if (*loads) print(house.ask({{"do", "load"}, {"name", target}}).value("text", "") + "\n");
-    if (*unloads) house.ask({{"do", "unload"}, {"name", target}});
-    if (*plugins) print(pluginsText(house.ask({{"do", "plugins"}})["plugins"]));
+      print(treeText(simulation.ask({{"do", "tree"}, {"path", path}, {"depth", depth}, {"links", links}})["tree"], path,
+                     all));
+    if (*gets) get(simulation, target);
+    if (*sets) set(simulation, target, value);
+    if (*calls) call(simulation, target, arguments);
+    if (*asks) ask(simulation, target, value);
+    if (*watches) watch(simulation, target);
+    if (*loads) print(simulation.ask({{"do", "load"}, {"name", target}}).value("text", "") + "\n");
+    if (*unloads) simulation.ask({{"do", "unload"}, {"name", target}});
+    if (*plugins) print(pluginsText(simulation.ask({{"do", "plugins"}})["plugins"]));
   } catch (const std::exception& e) {
     fmt::print(stderr, "sparkctl: {}\n", e.what());
     return 1;

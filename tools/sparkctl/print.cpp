@@ -5,12 +5,12 @@
 namespace sparkctl {
 
 namespace {
-constexpr std::size_t kBrothers = 4;  // of one class in a row, before the rest is only counted
-constexpr std::size_t kDocColumn = 44;
+constexpr std::size_t kMaxSiblings = 4;  // of one class in a row that are shown; longer runs are counted
+constexpr std::size_t kDocColumn = 44;   // where documentation begins
 
 std::string text(const Json& j, const char* key) { return j.value(key, std::string()); }
 
-/// Width on screen: the lines of the drawing are three bytes a character.
+/// Number of UTF-8 characters.
 std::size_t width(const std::string& s) {
   std::size_t n = 0;
   for (const char c : s) n += (c & 0xc0) != 0x80;
@@ -19,7 +19,7 @@ std::size_t width(const std::string& s) {
 
 std::string nodeLine(const std::string& indent, const std::string& name, const Json& node) {
   std::string left = indent + name;
-  if (text(node, "class") == "Node") return left + "\n";  // a mere folder
+  if (text(node, "class") == "Node") return left + "\n";  // a folder
   if (text(node, "class") != name) left += "  (" + text(node, "class") + ")";
   if (const std::string doc = text(node, "doc"); !doc.empty()) {
     const std::size_t w = width(left);
@@ -35,6 +35,7 @@ void child(const Json& node, const std::string& indent, bool last, bool all, std
   children(node, indent + (last ? "   " : "│  "), all, out);
 }
 
+/// A line for each link of a node.
 void links(const Json& node, const std::string& indent, std::string& out) {
   for (const Json& link : node.value("links", Json::array())) {
     std::string paths;
@@ -51,7 +52,7 @@ void children(const Json& node, const std::string& indent, bool all, std::string
   for (std::size_t i = 0; i < list.size();) {
     std::size_t run = i;
     while (run < list.size() && list[run]["class"] == list[i]["class"]) ++run;
-    const std::size_t shown = all || run - i <= kBrothers ? run : i + 1;
+    const std::size_t shown = all || run - i <= kMaxSiblings ? run : i + 1;
     for (std::size_t k = i; k < shown; ++k) child(list[k], indent, k + 1 == list.size(), all, out);
     if (shown < run)
       out += fmt::format("{}{}… {} more of class {}\n", indent, run == list.size() ? "└─ " : "├─ ", run - shown,
@@ -94,7 +95,8 @@ std::string answerText(const Json& answer) {
       out += value.dump();
       continue;
     }
-    for (const Json& part : value) out += fmt::format("{}\n    {}", &part == &value.front() ? "[" : ",", part.dump());
+    for (const Json& element : value)
+      out += fmt::format("{}\n    {}", &element == &value.front() ? "[" : ",", element.dump());
     out += "\n  ]";
   }
   return out.empty() ? "{}\n" : out + "\n}\n";

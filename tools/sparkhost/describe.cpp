@@ -42,7 +42,7 @@ std::string propertyLine(ClassObject& owner, const Property& p) {
   return fmt::format("    {:<22} {}\n{:27}{}\n", p.name, type, "", p.doc);
 }
 
-/// setX and getX, which every property has.
+/// True for setX and getX of a property x.
 bool isAccessor(ClassObject& c, const std::string& method) {
   if (method.size() < 4 || (method.compare(0, 3, "set") != 0 && method.compare(0, 3, "get") != 0)) return false;
   std::string property = method.substr(3);
@@ -64,7 +64,7 @@ std::string linkLines(ClassObject& c) {
   return out.empty() ? out : "  looks up:\n" + out;
 }
 
-/// The entries that `c` adds to what its base has, or describes anew.
+/// The entries of `all` that are not inherited unchanged.
 template <class T>
 std::vector<const T*> added(const std::vector<const T*>& all, const std::vector<const T*>& inherited) {
   std::vector<const T*> out;
@@ -73,7 +73,7 @@ std::vector<const T*> added(const std::vector<const T*>& all, const std::vector<
   return out;
 }
 
-/// One section a class of the chain, the most derived first. A name that a derived class describes anew is not
+/// One section per class of the inheritance chain, the most derived first. A name that a derived class overrides is not
 /// repeated.
 template <class T, class Print>
 std::string sections(ClassObject& c, const char* title, std::vector<const T*> (ClassObject::*list)(), Print print) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What --list-plugins and --describe print.
+/// The output of --list-plugins and --describe.
 
 #include <string>
 #include <string_view>
@@ -9,11 +9,11 @@
 
 namespace sparkhost {
 
-/// One paragraph a plugin: name, version, what it is for, file, classes.
+/// One paragraph per plugin: name, version, purpose, file, classes.
 std::string pluginList(spark::Kernel& kernel);
 
-/// A class as it describes itself: bases, plugin, interfaces, properties with type, unit, range and default, methods,
-/// phases. Registers the plugins that provide it and its bases. Throws spark::Error for an unknown class.
+/// The description of a class: bases, plugin, interfaces, phases, links, properties with type, unit, range and default,
+/// methods. Registers the plugins of the class and its bases. Throws spark::Error if the class is unknown.
 std::string classDescription(spark::Kernel& kernel, std::string_view className);
 
 }  // namespace sparkhost

@@ -5,16 +5,16 @@ namespace sparkhost {
 using namespace spark;
 
 namespace {
-constexpr std::chrono::milliseconds kLook{250};
-constexpr double kLookSeconds = 0.25;
+constexpr std::chrono::milliseconds kInterval{250};
+constexpr double kIntervalSeconds = 0.25;
 }  // namespace
 
 void HangWatch::describe(Description<HangWatch>& d) {
-  d.doc("Says in the log what the simulation hangs in, and when it goes on.");
+  d.doc("Logs in which call the simulation hangs, and when it continues.");
   d.property("after", &HangWatch::after, &HangWatch::setAfter)
       .unit("s")
       .range(0, 1e6)
-      .doc("Wall time in one call of a node's code that counts as hanging; 0: nothing is said.");
+      .doc("Wall time in one call of a node's code that counts as a hang; 0: none does.");
 }
 
 void HangWatch::install(Kernel& kernel) {
@@ -24,15 +24,15 @@ void HangWatch::install(Kernel& kernel) {
 
 HangWatch::~HangWatch() { stop(); }
 
-/// The host ends between two looks: what hung has returned.
+/// The host may end between two checks; then the call that hung has returned.
 void HangWatch::onUnlink() {
   stop();
-  if (told_) tellGoesOn();
+  if (reported_) reportEnd();
 }
 
 void HangWatch::start() {
-  dog_.emplace();
-  last_ = Clock::now();
+  watchdog_.emplace();
+  lastProgress_ = Clock::now();
   thread_ = std::thread([this] { watch(); });
 }
 
@@ -43,43 +43,44 @@ void HangWatch::stop() {
   }
   wake_.notify_all();
   if (thread_.joinable()) thread_.join();
-  dog_.reset();
+  watchdog_.reset();
 }
 
-void HangWatch::tellGoesOn() {
+void HangWatch::reportEnd() {
   kernel().log().warning("The simulation goes on after {:.1f} s.",
-                         std::chrono::duration<double>(Clock::now() - last_).count());
-  told_ = toldEnd_ = false;
+                         std::chrono::duration<double>(Clock::now() - lastProgress_).count());
+  reported_ = stopReported_ = false;
 }
 
 void HangWatch::watch() {
   std::unique_lock lock(mutex_);
-  while (!wake_.wait_for(lock, kLook, [this] { return ending_; })) look();
+  while (!wake_.wait_for(lock, kInterval, [this] { return ending_; })) check();
 }
 
-/// Counts looks, not time: a host that was suspended, or has no processor, does not hang.
-void HangWatch::look() {
-  if (dog_->gotOn()) {
-    if (told_) tellGoesOn();
-    last_ = Clock::now();
+/// Counts checks, not time: a host that was suspended, or got no processor time, does not hang.
+void HangWatch::check() {
+  if (watchdog_->gotOn()) {
+    if (reported_) reportEnd();
+    lastProgress_ = Clock::now();
     stuck_ = 0;
     return;
   }
-  stuck_ += kLookSeconds;
+  stuck_ += kIntervalSeconds;
   const double after = after_;
-  if (after > 0 && stuck_ >= after) tell();
+  if (after > 0 && stuck_ >= after) reportHang();
 }
 
-void HangWatch::tell() {
-  const bool ends = kernel().stopRequested();
-  if (told_ && (toldEnd_ || !ends)) return;
-  const char* words = dog_->words();
+/// Logs a hang once, and once more when a stop is requested meanwhile.
+void HangWatch::reportHang() {
+  const bool stopping = kernel().stopRequested();
+  if (reported_ && (stopReported_ || !stopping)) return;
+  const char* words = watchdog_->words();
   kernel().log().warning("The simulation stands still: for {:.1f} s it has been {}.{}",
-                         std::chrono::duration<double>(Clock::now() - last_).count(),
+                         std::chrono::duration<double>(Clock::now() - lastProgress_).count(),
                          *words ? words : "in a call that does not answer",
-                         ends ? " It was asked to end; a second signal ends it at once." : "");
-  told_ = true;
-  toldEnd_ = ends;
+                         stopping ? " It was asked to end; a second signal ends it at once." : "");
+  reported_ = true;
+  stopReported_ = stopping;
 }
 
 }  // namespace sparkhost

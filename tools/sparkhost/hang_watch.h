@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Says what a run hangs in.
+/// Detects hangs of the simulation.
 
 #include <atomic>
 #include <condition_variable>
@@ -14,15 +14,15 @@
 
 namespace sparkhost {
 
-/// A thread that looks four times a second whether the simulation's thread gets on. Where one call of a node's code
-/// takes longer than `after`, the log says once in which; and again when it goes on. Nothing of it is in the step's way
-/// but the counter that the step counts up.
+/// A thread that checks four times a second whether the simulation thread makes progress. If one call of a node's code
+/// takes longer than `after`, it logs once in which call, and again when the simulation continues. Its cost in the step
+/// is one counter.
 class HangWatch : public spark::Node {
   SPARK_CLASS(HangWatch, spark::Node)
  public:
   static constexpr const char* kPath = "/sys/host/watchdog";
   static void describe(spark::Description<HangWatch>& d);
-  /// Makes one in the kernel's tree, which watches the calling thread.
+  /// Creates one in the kernel's tree that watches the calling thread.
   static void install(spark::Kernel& kernel);
   ~HangWatch() override;
 
@@ -36,20 +36,21 @@ class HangWatch : public spark::Node {
   void start();
   void stop();
   void watch();
-  void look();
-  void tell();
-  void tellGoesOn();
+  void check();
+  void reportHang();
+  void reportEnd();
 
   std::atomic<double> after_ = 2;
-  std::optional<Watchdog> dog_;
+  std::optional<spark::Watchdog> watchdog_;
   std::thread thread_;
   std::mutex mutex_;
   std::condition_variable wake_;
   bool ending_ = false;
-  // Of its thread alone, and of who ended that.
-  Clock::time_point last_{};  ///< when it got on
-  double stuck_ = 0;          ///< s that it was seen not to
-  bool told_ = false, toldEnd_ = false;
+  // Used by its thread, and after stop() by the simulation thread.
+  Clock::time_point lastProgress_{};
+  double stuck_ = 0;           ///< s without progress, as counted by check()
+  bool reported_ = false;      ///< the hang was logged
+  bool stopReported_ = false;  ///< ... together with the request to stop
 };
 
 }  // namespace sparkhost

@@ -18,13 +18,23 @@ using namespace spark;
 namespace fs = std::filesystem;
 
 namespace {
-/// A port's number; null where a house has no such port.
+/// The text as a Lua string literal.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text)
+    out += (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20)
+               ? fmt::format("\\{:03}", static_cast<unsigned char>(c))
+               : std::string(1, c);
+  return out + "\"";
+}
+
+/// Writes the number of a port; null if there is no such port.
 void writePort(JsonWriter& json, const char* name, const Leaf& root, const char* path) {
   const Value v = valueAt(root, path, "port");
   json.key(name).raw(v.isNil() ? "null" : v.plain());
 }
 
-/// The link for browsers; null where a house has none.
+/// Writes the link for browsers; null if there is none.
 void writeWeb(JsonWriter& json, const Leaf& root) {
   Leaf* web = root.find(kWeb);
   const std::string link = web ? callMethod(*web, "link", {}).plain() : std::string();
@@ -58,17 +68,20 @@ void Host::scanPlugins() {
     if (fs::is_directory(folder)) kernel_.plugins().scan(folder.lexically_normal());
 }
 
-void Host::tellScripts() {
-  List scenePaths(options_.scenePaths.begin(), options_.scenePaths.end());
-  scripts(kernel_).setGlobal("host", List{List{"share", fs::is_directory(share_) ? share_.string() : ""},
-                                          List{"scenePaths", std::move(scenePaths)}, List{"alone", options_.alone}});
+void Host::defineHostTable() {
+  std::string paths;
+  for (const std::string& p : options_.scenePaths) paths += quoted(p) + ", ";
+  const std::string share = fs::is_directory(share_) ? share_.string() : std::string();
+  kernel_.lua().run(
+      fmt::format("host = {{ share = {}, scenePaths = {{ {} }}, alone = {} }}", quoted(share), paths, options_.alone),
+      "sparkhost");
 }
 
 void Host::build() {
-  scripts(kernel_).addFolder(share_ / "lua");
-  tellScripts();
-  for (const auto& [key, value] : options_.overrides) scripts(kernel_).addOverride(key, value);
-  scripts(kernel_).runConfig(options_.config);
+  kernel_.lua().addFolder(share_ / "lua");
+  defineHostTable();
+  for (const auto& [key, value] : options_.overrides) kernel_.lua().addOverride(key, value);
+  kernel_.lua().runConfig(options_.config);
   for (const Options::Switch& s : options_.switches) {
     Leaf* node = kernel_.root().find(s.path);
     if (!node)

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One house from the command line to the last line on stdout.
+/// A simulation from the command line to the last line on stdout.
 
 #include <filesystem>
 #include <string>
@@ -10,29 +10,31 @@
 
 namespace sparkhost {
 
-/// Builds a kernel as the options say, and runs it. Set-up functions throw spark::Error.
+/// Builds a kernel according to the options, and runs it. All functions throw spark::Error.
 class Host {
  public:
-  /// Finds plugin folders and the share relative to the running program, so that a tree can be moved.
+  /// Plugin folders and shared files are found relative to the program, so that an installation can be moved. `options`
+  /// must outlive it.
   explicit Host(const Options& options);
 
+  /// The kernel; owned by this object.
   spark::Kernel& kernel() { return kernel_; }
-  /// Runs the config: afterwards the house stands.
+  /// Runs the config, which builds the simulation, then sets the properties of command line switches.
   void build();
   /// Opens the ports and returns the first line of stdout.
   std::string open();
-  /// How late and how long cycles were, for people.
+  /// A table of the delay and the duration of cycles, as text.
   std::string histogram();
-  /// Runs until its end and returns the last line of stdout.
+  /// Runs the simulation to its end and returns the last line of stdout.
   std::string run();
 
  private:
   void scanPlugins();
-  void tellScripts();
+  void defineHostTable();
 
   const Options& options_;
   spark::Kernel kernel_;
-  std::filesystem::path bin_, share_;
+  std::filesystem::path bin_, share_;  ///< folders of the program and of lua/, scenes/, the viewer
 };
 
 }  // namespace sparkhost

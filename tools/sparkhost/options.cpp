@@ -3,16 +3,16 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "surroundings.h"
+#include "common_options.h"
 
 namespace sparkhost {
 
 namespace {
-/// `K=V`; throws what CLI11 prints.
+/// Splits `K=V`. Throws CLI::ValidationError.
 std::pair<std::string, spark::Value> splitOverride(const std::string& text) {
   const std::size_t at = text.find('=');
   if (at == 0 || at == std::string::npos)
-    throw CLI::ValidationError("--set", "expected KEY=VALUE, found '" + text + "'");
+    throw CLI::ValidationError("--set", fmt::format("expected KEY=VALUE, found '{}'", text));
   return {text.substr(0, at), spark::Value::typed(std::string_view(text).substr(at + 1))};
 }
 
@@ -22,7 +22,7 @@ void makeAbsolute(std::vector<std::string>& folders) {
 }  // namespace
 
 std::optional<int> readOptions(int argc, char** argv, Options& out) {
-  CLI::App app{"Runs a Spark config: a house of plugins, wired by a Lua file.", "sparkhost"};
+  CLI::App app{"Runs a Spark config: a Lua file that creates and connects nodes of plugins.", "sparkhost"};
   std::vector<std::string> sets;
   std::optional<std::string> rate;
   std::optional<double> duration;
@@ -34,14 +34,14 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--set", sets, "Overrides an option of the config, a variable GROUP.NAME or /path.property")
       ->type_name("K=V")
       ->allow_extra_args(false);
-  app.add_option("--seed", out.seed, "Seed of all random streams (default 1)")->type_name("N")->check(seedProblem);
+  app.add_option("--seed", out.seed, "Seed of all random streams (default 1)")->type_name("N")->check(checkSeed);
   app.add_option("--rate", rate, "real: paced to wall time (default); max: as fast as it goes")
       ->check(CLI::IsMember({"real", "max"}));
   app.add_flag("--sync", sync, "Lockstep: a cycle starts when every agent has answered with (syn)");
   app.add_option("--expect", expect, "Hold the clock until N agents have named robot and team")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--duration", duration, "End after that much simulated time [s]; 0 never")
+  app.add_option("--duration", duration, "End after this simulated time [s]; 0: never")
       ->type_name("SECONDS")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--agent-port", agentPort, "TCP port of agents (default 3100); 0 picks a free one")
@@ -53,13 +53,14 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--web-port", webPort, "TCP port of the page for browsers (default 3280); 0 picks a free one")
       ->type_name("P")
       ->check(CLI::Range(0, 65535));
-  addSurroundings(app, out.pluginPaths, out.scenePaths, out.logLevel, "What stderr shows");
-  app.add_flag("--check", out.check,
-               "Load, wire and import, but step nothing: exit code 0, or 2 and the errors, those of scenes that a run "
-               "only logs too");
-  app.add_flag("--histogram", out.histogram, "At the end: how late and how long cycles were, as a table on stderr");
+  addCommonOptions(app, out.pluginPaths, out.scenePaths, out.logLevel, "Minimum level of log lines on stderr");
+  app.add_flag(
+      "--check", out.check,
+      "Run the config and import scenes, but no cycle; exit code 0, or 2 after errors, including those of scenes "
+      "that a run only logs");
+  app.add_flag("--histogram", out.histogram, "Print a table of the delay and duration of cycles to stderr at the end");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
-  app.add_option("--describe", out.describe, "Print what a class says about itself, and end")
+  app.add_option("--describe", out.describe, "Print the description of a class, and end")
       ->type_name("CLASS")
       ->excludes("--config");
   app.footer(

@@ -13,30 +13,30 @@ namespace sparkhost {
 
 inline constexpr int kUsageError = 2;  ///< exit code: the command line is wrong
 
-/// What the user asked for.
+/// The command line options.
 struct Options {
   std::string config;
-  /// A flag that stands for a property of a node that not every house has.
+  /// A flag that sets a property of a node which not every config creates.
   struct Switch {
-    std::string flag;  ///< as it was written
+    std::string flag;  ///< as given: "--rate max"
     const char *path, *property;
     spark::Value value;
-    const char* missing;  ///< what a house without that node lacks, and how it gets it
+    const char* missing;  ///< what a config without that node lacks, and how to add it
   };
-  /// From --set: key and value, in order; the last of a key wins.
+  /// --set: keys and values in order; the last value of a key wins.
   std::vector<std::pair<std::string, spark::Value>> overrides;
-  /// Set when the house is built; they win over --set.
+  /// Applied after the config ran, so they win over --set.
   std::vector<Switch> switches;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> pluginPaths, scenePaths;  ///< absolute, existing folders
   std::string logLevel = "info";
-  std::string describe;  ///< class name, "" for none
+  std::string describe;  ///< --describe: name of a class; "": not given
   bool check = false, listPlugins = false, histogram = false;
-  bool alone = false;  ///< nobody looks in: no control socket
+  bool alone = false;  ///< without servers for other programs, such as the control socket; for worlds of a batch
 };
 
-/// Reads the command line. When the program is to end at once (help, version, an error, which it has printed) returns
-/// the exit code instead: 0, or 2 for an error.
+/// Parses the command line. If the program is to end at once (help, version, an error), prints that and returns the
+/// exit code: 0, or kUsageError.
 std::optional<int> readOptions(int argc, char** argv, Options& out);
 
 }  // namespace sparkhost

@@ -15,9 +15,9 @@
 #include "spark/error.h"
 #include "status_line.h"
 
-// Exit codes: 0 as asked; 1 the run itself failed, or its result could not be written; 2 the command line, the config,
-// a plugin or a scene is wrong (stderr says how). stdout carries JSON lines (or the text of --list-plugins and
-// --describe), everything else goes to stderr.
+// Exit codes: 0: success; 1: the run failed, or stdout could not be written; 2: an error in the command line, the
+// config, a plugin or a scene. stdout gets JSON lines (or the text of --list-plugins and --describe), everything else
+// goes to stderr.
 
 namespace {
 
@@ -25,8 +25,7 @@ spark::Kernel* stopOnSignal = nullptr;
 
 extern "C" void onSignal(int) { stopOnSignal->requestStop(); }
 
-/// The first SIGINT, SIGTERM or SIGHUP (the terminal is gone) ends the run cleanly, a second one as the system does.
-/// Under nohup there is no SIGHUP.
+/// The first SIGINT, SIGTERM or SIGHUP stops the run, a second one kills the process. SIGHUP stays ignored under nohup.
 void watchSignals(spark::Kernel& kernel) {
   stopOnSignal = &kernel;
   struct sigaction action = {}, before = {};
@@ -39,7 +38,7 @@ void watchSignals(spark::Kernel& kernel) {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-/// False, and a sentence, when it cannot be written: the match is worth more than the line.
+/// Prints a line to stdout. On error prints a message to stderr and returns false; the run continues.
 bool printLine(const std::string& line) {
   errno = 0;
   if (std::puts(line.c_str()) >= 0 && std::fflush(stdout) == 0) return true;
@@ -49,7 +48,7 @@ bool printLine(const std::string& line) {
   return false;
 }
 
-/// Runs a step of the program; an error goes to stderr and ends it with `code`.
+/// Calls `step`; on an exception prints it to stderr and exits with `code`.
 template <class F>
 void orExit(int code, F step) {
   try {
@@ -66,15 +65,15 @@ void printDescriptions(spark::Kernel& kernel, const sparkhost::Options& options)
   if (std::fflush(stdout) != 0) throw spark::Error(fmt::format("cannot write to stdout: {}", std::strerror(errno)));
 }
 
-/// What a run only logs, and goes on without, fails a check.
+/// Throws if errors were logged: a run would continue after them, but --check fails.
 void checkLog(spark::Kernel& kernel) {
   if (const auto n = kernel.log().errors(); n > 0)
     throw spark::Error(fmt::format("the check failed: {} in the log above (--log-level error shows them alone).",
                                    n == 1 ? "1 error" : fmt::format("{} errors", n)));
 }
 
-/// False when the result is lost.
-bool runHouse(sparkhost::Host& host, const std::string& firstLine, bool histogram) {
+/// Runs the simulation and prints both lines; false if the last one could not be written.
+bool runSimulation(sparkhost::Host& host, const std::string& firstLine, bool histogram) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   sparkhost::StatusLine::install(host.kernel(), terminal);
   printLine(firstLine);
@@ -102,6 +101,6 @@ int sparkhost::runProgram(int argc, char** argv) {
     if (!options.check) firstLine = host->open();
   });
   bool written = true;
-  if (!firstLine.empty()) orExit(1, [&] { written = runHouse(*host, firstLine, options.histogram); });
+  if (!firstLine.empty()) orExit(1, [&] { written = runSimulation(*host, firstLine, options.histogram); });
   return written ? 0 : 1;
 }

@@ -9,11 +9,11 @@
 #include "options.h"
 #include "program.h"
 
-// sparkhost with the command line of rcssserver3d and simspark. It is no second process: scripts that kill it by its
-// name, or by its number, end the server itself.
+// sparkhost with the command line of rcssserver3d and simspark. It runs in this process, so that scripts which kill it
+// by name or process id end the server itself.
 
 namespace {
-/// The config that stands for a start-up script: a Lua file is one itself, of the Ruby scripts the names are known.
+/// The config that replaces a start-up script: a Lua file is used itself, Ruby scripts are recognised by name.
 std::string configFor(const std::string& script) {
   const std::filesystem::path path(script);
   if (path.extension() == ".lua") return script;

@@ -17,7 +17,7 @@ constexpr auto kTerminalPeriod = std::chrono::milliseconds(250);
 constexpr auto kLogPeriod = std::chrono::seconds(5);
 constexpr const char* kNames[] = {"trace", "debug", "info", "warning", "error", ""};
 
-/// Whether real time has been kept since the start.
+/// Time lost against real time since the start.
 std::string lossText(const Leaf& root) {
   const std::int64_t late = integerAt(root, kSimulation, "lateCycles");
   if (late == 0) return ", on time";
@@ -26,7 +26,7 @@ std::string lossText(const Leaf& root) {
 }  // namespace
 
 void StatusLine::describe(Description<StatusLine>& d) {
-  d.doc("Shows on stderr how the run goes.");
+  d.doc("Shows the status of the run on stderr.");
   d.on<&StatusLine::show>(phase::kPublish);
 }
 

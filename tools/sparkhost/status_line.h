@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How a run goes, on stderr: one line that a terminal keeps up to date, elsewhere a line in the log now and then.
+/// The status of a run on stderr: on a terminal a line that is updated, otherwise a log line from time to time.
 
 #include <chrono>
 
@@ -10,13 +10,13 @@
 
 namespace sparkhost {
 
-/// Shows clock, real-time factor, what was lost against real time, what the game reports, and agents. Has no state:
-/// what it shows never influences the simulation.
+/// Shows simulated time, real-time factor, time lost against real time, the game's status, faults and number of agents.
+/// It has no state and does not influence the simulation.
 class StatusLine : public spark::Node {
   SPARK_CLASS(StatusLine, spark::Node)
  public:
   static void describe(spark::Description<StatusLine>& d);
-  /// Makes one in the kernel's tree. On a terminal the kernel's log writes above it.
+  /// Creates one in the kernel's tree. `terminal`: stderr is one; log lines then appear above the status line.
   static void install(spark::Kernel& kernel, bool terminal);
 
  private:
@@ -25,8 +25,8 @@ class StatusLine : public spark::Node {
   std::string text(double time, double factor);
 
   spark::StatusReporters reporters_;
-  Clock::time_point next_{}, last_{};
-  double lastTime_ = 0;
+  Clock::time_point next_{}, last_{};  ///< of the next and the last update
+  double lastTime_ = 0;                ///< s, simulated, of the last update
   bool terminal_ = false;
 };
 

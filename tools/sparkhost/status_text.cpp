@@ -10,28 +10,28 @@ using spark::StatusEntry;
 using spark::Value;
 
 namespace {
-/// A list's elements with `between` them.
-std::string joined(const Value& value, const char* between) {
+/// The elements of a list with `separator` between them.
+std::string joined(const Value& value, const char* separator) {
   if (!value.isList()) return value.plain();
   std::string out;
-  for (const Value& part : value.toList()) out += (out.empty() ? "" : between) + part.plain();
+  for (const Value& element : value.toList()) out += (out.empty() ? "" : separator) + element.plain();
   return out;
 }
 
 }  // namespace
 
 std::string statusText(const std::vector<StatusEntry>& entries) {
-  std::string out, before;
+  std::string out, previous;
   for (const StatusEntry& entry : entries) {
     const std::string text = joined(entry.value, entry.name == "score" ? ":" : " ");
     if (text.empty()) continue;
     if (entry.name == "playMode")
       out += ", " + text;
-    else if (entry.name == "score" && before == "playMode")
+    else if (entry.name == "score" && previous == "playMode")
       out += ' ' + text;
     else
       out += fmt::format(", {} {}", entry.name, text);
-    before = entry.name;
+    previous = entry.name;
   }
   return out;
 }

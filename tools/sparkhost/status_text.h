@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a game reports of itself (api/status.h), as the host's status line and its last line on stdout have it.
+/// The game's status (api/status.h) as text for the status line and as JSON for the last line on stdout.
 
 #include <string>
 #include <vector>
@@ -10,11 +10,11 @@
 
 namespace sparkhost {
 
-/// ", PlayOn 1:0, round 3": a play mode without its name, the score behind it; all else as `name value`. Empty texts
-/// are left out.
+/// ", PlayOn 1:0, round 3": the play mode and a score after it without names; other entries as `name value`. Empty
+/// values are left out.
 std::string statusText(const std::vector<spark::StatusEntry>& entries);
 
-/// Members of the object that is open: `"playMode":"PlayOn","score":[1,0],"status":{"round":3}`.
+/// Writes members into the current object: `"playMode":"PlayOn","score":[1,0],"status":{"round":3}`.
 void writeStatus(spark::JsonWriter& json, const std::vector<spark::StatusEntry>& entries);
 
 }  // namespace sparkhost

@@ -3,7 +3,7 @@
 
 #include "workers.h"
 
-// Several houses in one process, in several threads: nothing that they share may show in what they do.
+// Several simulations in one process and several threads: nothing that they share may influence them.
 
 using namespace sparkbatch;
 
@@ -20,13 +20,13 @@ Options match() {
 
 /// The rows of the runs 1..n, which get their number as seed, by number and without what a clock measured.
 std::map<int, Row> simulateAll(const Options& options, int n, int threads) {
-  Workers workers(threads, [&options](const Run& run, Watch& watch) { return simulate(options, run, watch); });
+  Workers workers(threads, [&options](const Run& run, RunControl& control) { return simulate(options, run, control); });
   std::map<int, Row> rows;
   int begun = 0;
   while (static_cast<int>(rows.size()) < n) {
     for (; begun < n && workers.idle() > 0; ++begun)
-      workers.begin({begun + 1, static_cast<std::uint64_t>(begun) + 1, {}});
-    for (auto& result : workers.take(std::chrono::seconds(1))) {
+      workers.start({begun + 1, static_cast<std::uint64_t>(begun) + 1, {}});
+    for (auto& result : workers.collect(std::chrono::seconds(1))) {
       REQUIRE(result);
       result->erase("cpuSeconds");
       result->erase("wallSeconds");
@@ -37,7 +37,7 @@ std::map<int, Row> simulateAll(const Options& options, int n, int threads) {
 }
 }  // namespace
 
-TEST_CASE("Worlds side by side in one process go as each goes alone") {
+TEST_CASE("Worlds that run in parallel in one process give the same rows as alone") {
   const Options options = match();
   const auto together = simulateAll(options, 4, 3), alone = simulateAll(options, 4, 1);
   for (const auto& [number, row] : together) {
@@ -52,12 +52,12 @@ TEST_CASE("Worlds side by side in one process go as each goes alone") {
 TEST_CASE("A world that is abandoned has no row, and its thread is free again") {
   Options options = match();
   options.duration = 0;
-  Workers workers(2, [&options](const Run& run, Watch& watch) { return simulate(options, run, watch); });
-  workers.begin({1, 1, {}});
+  Workers workers(2, [&options](const Run& run, RunControl& control) { return simulate(options, run, control); });
+  workers.start({1, 1, {}});
   REQUIRE(workers.idle() == 1);
-  while (workers.time() == 0) REQUIRE(workers.take(std::chrono::milliseconds(5)).empty());
+  while (workers.time() == 0) REQUIRE(workers.collect(std::chrono::milliseconds(5)).empty());
   workers.abandon();
-  const auto results = workers.take(std::chrono::minutes(2));
+  const auto results = workers.collect(std::chrono::minutes(2));
   REQUIRE(results.size() == 1);
   REQUIRE_FALSE(results.front());
   REQUIRE(workers.idle() == 2);

@@ -1,4 +1,4 @@
-#include "house.h"
+#include "control_connection.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,16 +15,16 @@
 #include <filesystem>
 #include <stdexcept>
 
-// A house in the temporary folder may be anybody's who was quick. What is asked and answered here is often secret (a
-// referee's token): the folder must be the user's own and closed to others, and the system says whose program answers.
-// The house checks the same from its side.
+// Any user can create sockets in the temporary folder, and requests may contain secrets (a referee's token). So the
+// folder must belong to the user and be closed to others, and the program behind the socket must run as the same user.
+// The server makes the same checks.
 
 namespace sparkctl {
 
 namespace fs = std::filesystem;
 
 namespace {
-/// Where houses put their sockets: see plugins/control.
+/// Folders of control sockets: see plugins/control/socket_path.h.
 std::vector<fs::path> folders() {
   std::vector<fs::path> out;
   if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime)
@@ -33,17 +33,17 @@ std::vector<fs::path> folders() {
   return out;
 }
 
-/// "" when only this user can have put something into the folder.
+/// Why the folder cannot be trusted; "" if only this user can have created its files.
 std::string problem(const fs::path& folder) {
   struct stat s = {};
   if (lstat(folder.c_str(), &s) != 0) return {};  // there is none
-  if (!S_ISDIR(s.st_mode)) return folder.string() + " is no folder";
-  if (s.st_uid != geteuid()) return folder.string() + " is another user's";
-  if ((s.st_mode & 077) != 0) return folder.string() + " is open to other users";
+  if (!S_ISDIR(s.st_mode)) return fmt::format("{} is no folder", folder.string());
+  if (s.st_uid != geteuid()) return fmt::format("{} is another user's", folder.string());
+  if ((s.st_mode & 077) != 0) return fmt::format("{} is open to other users", folder.string());
   return {};
 }
 
-/// A connected socket that never blocks, or -1 and errno.
+/// A connected, non-blocking socket; -1 and errno on error.
 int connectTo(const std::string& file) {
   sockaddr_un address = {};
   address.sun_family = AF_UNIX;
@@ -57,33 +57,33 @@ int connectTo(const std::string& file) {
   return -1;
 }
 
-/// A house that cannot take one more caller now lives, too.
-bool lives(const fs::path& file) {
+/// True if a simulation listens on the socket, even if its queue of connections is full.
+bool isAlive(const fs::path& file) {
   const int s = connectTo(file.string());
   if (s >= 0) close(s);
   return s >= 0 || errno == EAGAIN;
 }
 }  // namespace
 
-std::vector<std::string> houses(std::vector<std::string>& refused) {
+std::vector<std::string> findSockets(std::vector<std::string>& skipped) {
   std::vector<std::string> out;
   for (const fs::path& folder : folders()) {
     if (std::string why = problem(folder); !why.empty()) {
-      refused.push_back(std::move(why));
+      skipped.push_back(std::move(why));
       continue;
     }
     std::error_code ec;
     for (const auto& entry : fs::directory_iterator(folder, ec))
-      if (entry.path().extension() == ".sock" && lives(entry.path())) out.push_back(entry.path().string());
+      if (entry.path().extension() == ".sock" && isAlive(entry.path())) out.push_back(entry.path().string());
   }
   std::sort(out.begin(), out.end());
   return out;
 }
 
-House::House(const std::string& socket, double timeout) : name_(socket), timeout_(timeout) {
+ControlConnection::ControlConnection(const std::string& socket, double timeout) : name_(socket), timeout_(timeout) {
   const auto until = deadline();
   while ((socket_ = connectTo(socket)) < 0 && errno == EAGAIN && Clock::now() < until)
-    poll(nullptr, 0, 20);  // its queue of callers is full
+    poll(nullptr, 0, 20);  // the queue of connections is full: sleep 20 ms
   if (socket_ < 0) throw std::runtime_error(fmt::format("no house answers at {}: {}", socket, std::strerror(errno)));
   ucred peer = {};
   socklen_t size = sizeof peer;
@@ -94,26 +94,26 @@ House::House(const std::string& socket, double timeout) : name_(socket), timeout
   }
 }
 
-House::~House() { close(socket_); }
+ControlConnection::~ControlConnection() { close(socket_); }
 
-House::Clock::time_point House::deadline() const {
+ControlConnection::Clock::time_point ControlConnection::deadline() const {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_));
 }
 
-void House::wait(short events, Clock::time_point until) {
+void ControlConnection::wait(short events, Clock::time_point until) {
   pollfd p{socket_, events, 0};
   while (true) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
-    if (left <= 0)
+    const auto remaining = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+    if (remaining <= 0)
       throw std::runtime_error(
           fmt::format("the house at {} did not answer within {:g} s: it is stopped, or in a very long cycle. --timeout "
                       "waits longer.",
                       name_, timeout_));
-    if (poll(&p, 1, static_cast<int>(std::min<long long>(left, 1'000'000))) > 0) return;
+    if (poll(&p, 1, static_cast<int>(std::min<long long>(remaining, 1'000'000))) > 0) return;
   }
 }
 
-Json House::ask(const Json& request) {
+Json ControlConnection::ask(const Json& request) {
   const auto until = deadline();
   const std::string line = request.dump() + "\n";
   for (std::size_t sent = 0; sent < line.size();) {
@@ -128,9 +128,9 @@ Json House::ask(const Json& request) {
   return receive(until);
 }
 
-Json House::next() { return receive(Clock::time_point::max()); }
+Json ControlConnection::next() { return receive(Clock::time_point::max()); }
 
-Json House::receive(Clock::time_point until) {
+Json ControlConnection::receive(Clock::time_point until) {
   std::size_t end;
   while ((end = received_.find('\n')) == std::string::npos) {
     char bytes[4096];
