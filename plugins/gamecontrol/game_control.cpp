@@ -16,19 +16,12 @@
 namespace spark {
 
 namespace {
-/// The first kPacedMessages messages to an agent that has not sent (syn) yet are paced by joinPace, even if others
-/// wait.
-constexpr std::int64_t kPacedMessages = 50;
-/// An agent that delays a cycle for longer is slow [s].
-constexpr double kSlow = 1;
-
 /// The participant `distance` places after index `i`, or nullptr.
 template <class Participants>
 auto* ahead(const Participants& all, std::size_t i, std::size_t distance) {
   return i + distance < all.size() ? all[i + distance].get() : nullptr;
 }
 
-double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 }  // namespace
 
 void GameControl::describe(Description<GameControl>& d) {
@@ -132,7 +125,7 @@ gamecontrol::AgentLog& GameControl::agentLog() {
 
 void GameControl::setJoinBudget(double seconds) {
   joinBudget_ = seconds;
-  waitBudget_.setCapacity(seconds);
+  lockstep_.setBudget(seconds);
 }
 
 /// Messages usually come in the order of participants: the search begins where the last one ended.
@@ -196,80 +189,15 @@ bool GameControl::ready(bool lockstep) {
   if (holding())
     return hold_.isOver(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy_.get()}, kernel().log());
   if ((!lockstep && !sync_) || cyclesToTurn_ > 0) return true;
-  const auto now = Clock::now();
-  if (!std::exchange(waiting_, true)) waitingSince_ = now;
-  const auto joins = [](const auto& p) { return p->joining(); };
-  const bool anyJoins = std::any_of(participants_.begin(), participants_.end(), joins) ||
-                        std::any_of(newcomers_.begin(), newcomers_.end(), joins);
-  bool untrusted = false;
-  for (const auto& p : participants_) {
-    if (hasAnswered(*p, now, anyJoins)) continue;
-    if (!isUntrusted(*p, now)) return false;
-    untrusted = true;
-  }
-  if (!untrusted && !mustPace(now)) return true;
-  return !waitForUntrusted(now);
-}
-
-/// True if waiting for it is charged to the wait budget: it has not proved yet that it answers, or it is slow in this
-/// cycle and was not expected.
-bool GameControl::isUntrusted(const Participant& p, Clock::time_point now) const {
-  return !p.trusted() || (!p.expected() && syncTimeout_ > 0 && seconds(now - waitingSince_) > kSlow);
-}
-
-/// Called when all trusted agents have answered, but untrusted ones have not, or the cycle must be paced for new ones.
-/// True if the cycle waits for these. Without trusted agents no one is delayed and it always waits; otherwise the wait
-/// is charged to a budget, so that a client that joins again and again, or answers rarely, costs a match at most a
-/// tenth of its time. When the budget is used up, agents that have not answered are no longer waited for.
-bool GameControl::waitForUntrusted(Clock::time_point now) {
-  const auto delayed = [](const auto& p) { return !p->leaving() && p->mustSync() && p->trusted(); };
-  if (std::none_of(participants_.begin(), participants_.end(), delayed)) return true;
-  // The time since the last act phase does not refill the budget.
-  waitBudget_.refill(now);
-  waitBudget_.refill(actedAt_);
-  if (waitChargedAt_ != Clock::time_point())
-    waitBudget_.spend(seconds(now - waitChargedAt_));
-  else if (seconds(now - waitingSince_) > kSlow)
-    waitBudget_.spend(kSlow);  // before a slow agent counted as untrusted
-  waitChargedAt_ = now;
-  if (waitBudget_.available()) return true;
-  for (const auto& p : participants_)
-    if (p->mustSync() && !p->synced() && !p->expected()) p->distrust();
-  return false;
-}
-
-/// True if lockstep need not wait for `p` now. It waits for agents that have sent (syn) before and were sent percepts
-/// since, until syncTimeout. It does not wait for others: an idle connection, or a client that sends (syn) only when
-/// all of its team have joined, must not stop the match. One program may control many agents and read from each in
-/// turn: while any agent is about to get its first percepts, the wait for the others is limited by answerWait.
-bool GameControl::hasAnswered(Participant& p, Clock::time_point now, bool anyJoins) {
-  if (p.leaving() || !p.mustSync() || p.synced()) return true;
-  const double waited = seconds(now - waitingSince_);
-  if (anyJoins && !p.expected() && waited >= answerWait_) return true;
-  if (syncTimeout_ <= 0 || waited <= syncTimeout_) return false;
-  p.connection()->close(fmt::format("{} did not answer for {} s, all others wait", p.label(), syncTimeout_));
-  p.leave();
-  return true;
-}
-
-/// True if the next cycle would come too soon for a new agent. Some clients read until no message is left before they
-/// continue; they could never join a match that runs as fast as possible.
-bool GameControl::mustPace(Clock::time_point now) const {
-  if (seconds(now - actedAt_) >= joinPace_) return false;
-  bool anyObserves = false, anySyncs = false;
-  for (const auto& p : participants_) {
-    if (p->leaving()) continue;
-    if (p->observes() && p->sent() <= kPacedMessages) return true;
-    anyObserves |= p->observes();
-    anySyncs |= p->mustSync();
-  }
-  return anyObserves && !anySyncs;
+  return lockstep_.isOpen(participants_, newcomers_, {syncTimeout_, answerWait_, joinPace_});
 }
 
 void GameControl::closeWithoutRobot() {
   if (idleLimit_ <= 0) return;
   for (const auto& p : participants_) {
-    if (p->hasRobot() || p->leaving() || p->inside() || seconds(actedAt_ - p->joinedAt()) <= idleLimit_) continue;
+    if (p->hasRobot() || p->leaving() || p->inside() ||
+        std::chrono::duration<double>(actedAt_ - p->joinedAt()).count() <= idleLimit_)
+      continue;
     p->connection()->close(fmt::format("it has no robot after {} s", idleLimit_));
     p->leave();
   }
@@ -293,9 +221,8 @@ bool GameControl::realTime() const {
 void GameControl::act(const Event& event) {
   const InUse acting(*this, "agents act just now");
   cycle_ = event.cycle;
-  waiting_ = false;
   actedAt_ = Clock::now();
-  if (waitChargedAt_ != Clock::time_point()) waitBudget_.spend(seconds(actedAt_ - std::exchange(waitChargedAt_, {})));
+  lockstep_.beginCycle(actedAt_);
   loads_ = 0;
   closeWithoutRobot();
   removeLeaving();
@@ -323,7 +250,7 @@ void GameControl::takeTurn(const Event& event) {
     for (const auto& p : participants_) p->promote();
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     if (auto* p = ahead(participants_, i, 2)) p->prefetchForExecute();
-    if (waitBudget_.available()) participants_[i]->countAnswer();
+    if (lockstep_.hasBudget()) participants_[i]->countAnswer();
     participants_[i]->execute(agentLog(), cycle_);
     if (perceptDelay_ > 0) participants_[i]->promote();
   }

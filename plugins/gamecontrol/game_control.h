@@ -10,6 +10,7 @@
 
 #include "api/agents.h"
 #include "gamecontrol/hold.h"
+#include "gamecontrol/lockstep_gate.h"
 #include "gamecontrol/participant.h"
 
 namespace spark {
@@ -59,10 +60,6 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   void resolveParsers();
   void resolveRobots();
   void deliver();
-  bool hasAnswered(Participant& p, Clock::time_point now, bool anyJoins);
-  bool isUntrusted(const Participant& p, Clock::time_point now) const;
-  bool waitForUntrusted(Clock::time_point now);
-  bool mustPace(Clock::time_point now) const;
   bool full() const;
   void closeWithoutRobot();
   bool realTime() const;
@@ -87,10 +84,9 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   gamecontrol::Hold hold_;
   Link<IJoinPolicy> joinPolicy_;
   std::optional<gamecontrol::AgentLog> log_;
-  // Limits of what clients that are not trusted yet may cost a match in lockstep.
-  gamecontrol::TokenBucket waitBudget_{30, 0.1};  ///< s of waiting; refilled by s per second
-  gamecontrol::TokenBucket loadBudget_{0, 4};     ///< robots; capacity: 2 * maxAgents; refilled by robots per second
-  Clock::time_point waitChargedAt_{};             ///< up to when this cycle's wait was charged; zero: it was not
+  gamecontrol::LockstepGate lockstep_;
+  /// Robots that untrusted clients may load in lockstep; capacity: 2 * maxAgents; refilled by robots per second.
+  gamecontrol::TokenBucket loadBudget_{0, 4};
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, loadsPerCycle_ = 4;
@@ -106,9 +102,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   bool isTurn_ = true;       ///< agents act and sense in this cycle
   std::uint64_t round_ = 0;  ///< number of the sense phase
   TreeWatch parsersTree_, robotsTree_, perceptorsTree_, behaviorsTree_;
-  bool waiting_ = false;              ///< ready() was called since the last act phase
-  Clock::time_point waitingSince_{};  ///< when it was called first
-  Clock::time_point actedAt_{};       ///< when the last act phase began
+  Clock::time_point actedAt_{};  ///< when the last act phase began
 };
 
 }  // namespace spark

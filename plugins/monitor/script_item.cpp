@@ -55,20 +55,20 @@ void put(Environment& env, EnvPolicy policy, const std::string& name, const Valu
 }  // namespace
 
 void ScriptItem::describe(Description<ScriptItem>& d) {
-  d.doc("Sends monitors the entries that a script sets: item.score_left = 3 is (score_left 3).");
+  d.doc("Entries for monitors that a script sets: item.score_left = 3 is the entry (score_left 3).");
   d.implements<IMonitorItem>();
   d.implements<IStatus>();
   d.method("set", &ScriptItem::set)
       .parameters({"name", "value"})
-      .doc("Sets an entry: a number, a word, a bool, or a list of these; nil takes it away.");
-  d.method("get", &ScriptItem::get).parameters({"name"}).doc("An entry's value, nil when there is none.");
+      .doc("Sets an entry: a number, a word, a bool, or a list of these; nil removes it.");
+  d.method("get", &ScriptItem::get).parameters({"name"}).doc("An entry's value; nil if there is none.");
   d.property("names", &ScriptItem::names).doc("Names of all entries, sorted.");
   d.property("entries", &ScriptItem::entries, &ScriptItem::setEntries)
       .state()
       .doc("All entries at once: a table, or a list of {name, value}.");
   d.method("event", &ScriptItem::event)
       .parameters({"name", "values"})
-      .doc("Sends every monitor an entry once, with the next frame: event(\"fell\", \"Red\", 3) is (fell Red 3).");
+      .doc("Sends an event once to every monitor, with the next frame: event(\"fell\", \"Red\", 3) is (fell Red 3).");
   d.method("script", &ScriptItem::script)
       .parameters({"file", "arguments"})
       .optional(1)
