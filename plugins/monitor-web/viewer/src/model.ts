@@ -11,7 +11,7 @@ export interface Shape {
   rotation: [number, number, number, number];
 }
 
-/// A node of the scene, in depth-first order: parents stand before their children.
+/// A node of the scene, in depth-first order: parents before their children.
 export interface SceneNode {
   /// Index in World.nodes; -1 at the top.
   parent: number;
@@ -69,7 +69,7 @@ export interface GameEvent {
   side?: Side;
 }
 
-/// Counts up: who keeps the last one seen knows what to do again.
+/// Counters that increase with each change; a reader keeps the last value and updates when it differs.
 export interface Versions {
   /// Nodes, shapes, meshes, materials or robots are others: build anew.
   scene: number;

@@ -2,7 +2,7 @@ import { BufferAttribute, Color, DynamicDrawUsage, IcosahedronGeometry, Instance
 
 export interface DotLook {
   opacity?: number;
-  /// True: seen through what stands before it.
+  /// True: visible through objects in front of it.
   through?: boolean;
 }
 

@@ -1,4 +1,4 @@
-/// Says when things that stand at robots must be placed again: with each new frame, and once more in the picture after it, because only then
+/// Decides when things attached to robots must be placed again: with each new frame, and once more in the picture after it, because only then
 /// the picture knows where everything in that frame is.
 export class Following {
   private frame = -1;

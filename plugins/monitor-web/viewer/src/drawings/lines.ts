@@ -9,7 +9,7 @@ export interface LineLook {
   width: number;
   /// 0..1
   opacity?: number;
-  /// True: seen through what stands before it.
+  /// True: visible through objects in front of it.
   through?: boolean;
 }
 

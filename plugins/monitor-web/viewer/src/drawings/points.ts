@@ -31,7 +31,7 @@ export class Points {
   private room = 0;
   private count = 0;
 
-  /// `through`: seen through what stands before them.
+  /// `through`: visible through objects in front of them.
   constructor(through = false) {
     const material = new ShaderMaterial({
       vertexShader: kVertex, fragmentShader: kFragment, transparent: true, depthTest: !through, depthWrite: false, toneMapped: false, uniforms: { pixels: { value: 1 } },

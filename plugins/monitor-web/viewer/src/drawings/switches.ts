@@ -32,7 +32,7 @@ function covers(prefix: string, name: string): boolean {
 export interface SetRow {
   prefix: string;
   label: string;
-  /// Names of the sets it stands for.
+  /// Names of its sets.
   names: string[];
   nested: boolean;
 }

@@ -34,7 +34,7 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-/// Texts that stand at places of the world and face the viewer, of the same size from near and far: one instance a glyph, one call for all.
+/// Texts at positions in the world that face the viewer, of the same size from near and far: one instance a glyph, one call for all.
 export class Texts {
   readonly object: Mesh<InstancedBufferGeometry, ShaderMaterial>;
   private drawnGlyphs: Glyphs | null = null;

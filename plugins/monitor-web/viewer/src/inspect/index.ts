@@ -144,7 +144,7 @@ class Inspector implements Panel {
     if (this.tabs && this.app.inspecting && this.inspectable) this.updatePage();
   }
 
-  /// Somebody chose a node of the tree.
+  /// A node of the tree was selected.
   private choose(path: string): void {
     this.app.select({ robot: this.paths!.robotAt(path), node: this.paths!.nodeAt(path), path });
   }

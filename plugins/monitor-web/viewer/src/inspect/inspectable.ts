@@ -30,7 +30,7 @@ export interface NodeInfo {
 }
 
 export interface Inspectable {
-  /// False while nobody would answer.
+  /// False while there would be no answer.
   readonly ready: boolean;
   /// The node that is shown first, opened with all above it.
   readonly first: string;
@@ -41,6 +41,6 @@ export interface Inspectable {
   /// Rejects with the reason. Only where `editable`.
   set(path: string, property: string, text: string): Promise<PropertyInfo>;
   readonly editable: boolean;
-  /// Tells watchers what changed since the last call; needed where nobody else does.
+  /// Notifies watchers of changes since the last call; needed if the source does not do so itself.
   update(): void;
 }

@@ -18,7 +18,7 @@ export interface Plotted {
 
 export const kMostPlotted = 12;
 
-/// Told apart by people who do not tell red from green (Okabe and Ito), and legible on dark and light.
+/// Distinguishable with red-green colour blindness (Okabe and Ito), and legible on dark and light backgrounds.
 const kColours = ["#2b9bd8", "#e69f00", "#17a67c", "#d55e00", "#cc79a7", "#8c7cf0", "#b8a800", "#7f8c99", "#56c4e9", "#f07c6c", "#5b8c3a", "#b06ab3"];
 
 interface Watch {

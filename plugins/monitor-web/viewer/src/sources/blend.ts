@@ -1,7 +1,7 @@
 import { Poses, writeMatrix } from "./poses";
 import type { Scene } from "./scene";
 
-/// Shows a scene between two instants. Who jumped in between (a beam, a kick-in) stays until the second one; parts of a robot stay together.
+/// Shows a scene between two instants. What jumps in between (a beam, a kick-in) stays until the second one; parts of a robot stay together.
 
 /// Farther than this [m] plus speed [m/s] times the time in between is no movement.
 const kJump = 0.3;

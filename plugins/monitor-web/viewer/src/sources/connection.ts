@@ -66,7 +66,7 @@ export class Connection {
     this.lost();
   }
 
-  /// False when nobody is there.
+  /// False if there is no host.
   send(message: unknown): boolean {
     if (this.state !== "open" || !this.socket) return false;
     this.socket.send(JSON.stringify(message));
@@ -94,7 +94,7 @@ export class Connection {
     this.socket = null;
     if (!socket) return;
     socket.onopen = socket.onmessage = socket.onclose = null;
-    // Errors of a socket that is given up are nobody's.
+    // Ignore errors of a socket that is given up.
     socket.onerror = () => {};
     socket.close();
   }

@@ -31,7 +31,7 @@ const kModeWords: Record<string, string> = {
   pass: "Pass",
 };
 
-/// A foul of the same player within so many seconds is the same one.
+/// A foul of the same player within this time is the same one [s].
 const kSameFoul = 1;
 const kFouls = ["crowding", "touching", "illegal defence", "illegal attack", "incapable", "illegal kick-off", "charging", "self collision", "ball holding", "double touching", "hand"];
 

@@ -276,7 +276,7 @@ export class Live implements LiveSource {
     if (changed) this.onchange?.();
   }
 
-  /// Who wears no number is known to the host all the same.
+  /// The host also knows robots that wear no number.
   private nameRobots(): void {
     const agents = new Map(this.status?.agents.map((a) => [a.path, a]));
     const teams = { left: teamName(this.world.environment, "left"), right: teamName(this.world.environment, "right") };

@@ -1,5 +1,5 @@
 /// Which instant of a running match to show. Frames arrive unevenly, and simulated time runs at any speed: the clock follows the straight line
-/// through the last arrivals, and shows what was so long ago as the longest of the last pauses between two frames.
+/// through the last arrivals, and shows the state as old as the longest of the last pauses between two frames.
 
 const kArrivals = 32;
 /// Limits of the delay [ms].

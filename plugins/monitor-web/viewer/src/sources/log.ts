@@ -13,14 +13,14 @@ const kSlice = 1 << 20;
 const kLongestLine = 8 << 20;
 const kPage = 1 << 20;
 const kPages = 12;
-/// Drawings are kept in memory, about so many bytes of them.
+/// Maximum size of drawings in memory, about [bytes].
 const kMostPackets = 64 << 20;
 const kNoPackets: Uint8Array[] = [];
 /// Bytes of a packet that swaps all sets twice, 0 0 \0 0 0 \0: nothing is left then.
 const kAllSwapped = 6;
 /// Between two records, unless the log says otherwise [s].
 const kUsual = 0.2;
-/// More than so many usual times is no pause between two records.
+/// A longer time than this multiple of the usual one is a gap, not a pause between two records.
 const kLikely = 10;
 /// No monitor waits longer between two records [ms].
 const kLongestStep = 60_000;

@@ -19,7 +19,7 @@ export class Questions {
   private next = 1;
   private readonly asked = new Map<number, Question>();
   private readonly watches = new Map<number, Watch>();
-  /// Wanted while nobody was there, or before the loss.
+  /// Requested while there was no connection, or before it was lost.
   private waiting: Watch[] = [];
 
   constructor(private readonly connection: Connection) {}

@@ -14,7 +14,7 @@ import { emptyWorld, showScene } from "./world";
 
 /// Decoding never takes longer than this at a time [ms]: a leap over many records is made in several pictures.
 const kBudget = 10;
-/// Snapshots stand so many records apart, where no full record is so near.
+/// Distance of snapshots [records], where no full record is nearer.
 const kSnapshots = 64;
 /// A picture that comes later than this [ms] does not make time run faster.
 const kLongestPicture = 1000;

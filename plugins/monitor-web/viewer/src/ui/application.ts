@@ -316,7 +316,7 @@ export class Application implements App {
     this.eventTime = time;
   }
 
-  /// A selected robot stays selected in another scene, where its node is another one; who left is no longer selected.
+  /// A selected robot stays selected in another scene, where its node is another one; a robot that left is no longer selected.
   private followScene(): void {
     const { world, chosen } = this;
     if (world.versions.scene === this.sceneSeen) return;

@@ -108,7 +108,7 @@ function replay(app: Application): Binding[] {
   ];
 }
 
-/// Only while the console is open, so that nobody kicks off by a slip.
+/// Only while the console is open, so that no kick-off happens by accident.
 function referee(app: Application): Binding[] {
   const when = () => (app.live?.referee ?? false) && app.side.open === "referee";
   const line = (combo: string, title: string, run: () => void): Binding => ({ combo, title, group: "Referee, with the console open", run, when });

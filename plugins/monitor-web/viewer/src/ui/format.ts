@@ -9,7 +9,7 @@ export function clock(seconds: number): string {
   return `${Math.floor(whole / 60)}:${rest}`;
 }
 
-/// "3 minutes 7 seconds", for those who listen.
+/// "3 minutes 7 seconds", for screen readers.
 export function spokenClock(seconds: number): string {
   const whole = Math.max(0, Math.floor(seconds + 1e-6));
   const count = (n: number, what: string) => `${n} ${what}${n === 1 ? "" : "s"}`;

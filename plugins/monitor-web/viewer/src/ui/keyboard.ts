@@ -49,7 +49,7 @@ export interface Binding {
   combo: string;
   title: string;
   group: string;
-  /// Left out: the help tells of it, somebody else does it.
+  /// Undefined: the key is listed in the help only; another part handles it.
   run?: () => void;
   /// Only then; always when left out.
   when?: () => boolean;
@@ -84,7 +84,7 @@ export class Keyboard {
     }
   }
 
-  /// Runs what the combination stands for; false when it stands for nothing now.
+  /// Runs the action of the combination; false if it has none now.
   run(combo: string): boolean {
     const binding = this.bindings.find((b) => b.run && b.combo === combo && (!b.when || b.when()));
     binding?.run?.();
@@ -101,7 +101,7 @@ export class Keyboard {
     return groups;
   }
 
-  /// Listens for as long as the page lives. Keys that stand for nothing go to `camera`.
+  /// Listens for as long as the page lives. Keys without an action go to `camera`.
   listen(target: Window, camera: CameraKeys): void {
     target.addEventListener("keydown", (event) => {
       const combo = comboOf(event);

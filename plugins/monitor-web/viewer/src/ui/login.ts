@@ -19,7 +19,7 @@ export class Login {
     this.tried = false;
   }
 
-  /// Tries a token that somebody typed.
+  /// Tries a typed token.
   async login(live: LiveSource, token: string): Promise<boolean> {
     const taken = await live.login(token);
     if (taken) this.keep(token);

@@ -1,4 +1,4 @@
-/// What stands in the middle of an empty picture: waiting, loading, or why there is nothing.
+/// The notice in the middle of an empty picture: waiting, loading, or why there is nothing.
 import { h, setHidden, setText } from "./dom";
 
 export interface NoticeAction {

@@ -11,7 +11,7 @@ export interface NoticeText {
   actions: NoticeAction[];
 }
 
-/// Nobody is told that the connection is being made before this [ms].
+/// Delay before the notice that the connection is being made [ms].
 const kPatience = 1200;
 
 /// null: there is something to see. `waited` [ms] since the source is shown; `host` as in the address bar.

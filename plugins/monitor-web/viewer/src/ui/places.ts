@@ -1,4 +1,4 @@
-/// Where things stand in a world.
+/// Positions of things in a world.
 import type { World } from "../model";
 
 export type Point = [number, number, number];

@@ -246,7 +246,7 @@ export class RefereePanel {
     return h("button", { type: "button", class: "button", "data-testid": testid, onclick: run }, icon("target"), "Pick on the field");
   }
 
-  /// Removing somebody cannot be undone: it takes a second press.
+  /// Removing an agent cannot be undone: it needs a second press.
   private removal(run: () => void): HTMLElement {
     const button = h("button", { type: "button", class: "button careful", "data-testid": "player-kill" }, "Remove");
     const disarm = () => {
@@ -300,7 +300,7 @@ export class RefereePanel {
     if (players.some((r) => r.key === kept)) this.players.value = kept;
   }
 
-  /// The fields follow the score until somebody types in them.
+  /// The fields follow the score until the user types in them.
   private showScore(): void {
     const { environment } = this.app.world;
     const goals = [numberOf(environment, "score_left", 0), numberOf(environment, "score_right", 0)].map(String);

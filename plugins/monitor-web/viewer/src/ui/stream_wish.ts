@@ -7,7 +7,7 @@ export interface StreamWish {
   detail: "fine" | "coarse";
 }
 
-/// A page that nobody sees stays connected with next to nothing; who saves data gets less.
+/// A hidden page stays connected at the lowest rate. With the data saver on, the rate is lower.
 export function streamWish(hidden: boolean, savesData: boolean): StreamWish {
   if (hidden) return { rate: 1, detail: "coarse" };
   return savesData ? { rate: 10, detail: "coarse" } : { rate: 25, detail: "fine" };

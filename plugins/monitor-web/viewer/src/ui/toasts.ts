@@ -1,4 +1,4 @@
-/// Short messages over the picture, and the voice for those who listen.
+/// Short messages over the picture, and announcements for screen readers.
 import type { GameEvent, Side } from "../model";
 import type { Tone } from "./app";
 import { h } from "./dom";
@@ -19,7 +19,7 @@ export class Toasts {
     this.say(text);
   }
 
-  /// Goals and fouls are shown; a change of mode stands on the score board already.
+  /// Goals and fouls are shown; a change of mode is on the score board already.
   event(event: GameEvent): void {
     if (event.kind === "mode") return;
     this.show(event.text, event.kind, event.side);

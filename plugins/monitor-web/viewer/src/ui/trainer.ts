@@ -5,7 +5,7 @@ export class Incomplete extends Error {}
 
 const kLargest = 1e6;
 
-/// What somebody typed; null when the field is empty.
+/// The typed number; null if the field is empty.
 export function typed(text: string, name: string): number | null {
   const trimmed = text.trim().replace(",", ".");
   if (trimmed === "") return null;

@@ -12,7 +12,7 @@ export interface Sights {
   extent: number;
   /// Null: there is none.
   ball: Vector3 | null;
-  /// World matrix of the head to look out of; null: nobody there. Upright: it rolls (a sphere), look at the ball from above it.
+  /// World matrix of the head to look out of; null: none. Upright: it rolls (a sphere), look at the ball from above it.
   head: { matrix: Matrix4; rolls: boolean; radius: number } | null;
   /// Width of the picture over its height.
   aspect: number;

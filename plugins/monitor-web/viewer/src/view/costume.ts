@@ -10,7 +10,7 @@ export interface Dress {
 
 type Part = "body" | "head" | "upperarm" | "lowerarm" | "thigh" | "shank" | "foot";
 
-/// Meshes that stand for what the view draws by itself: ground, sky, goals, ball.
+/// Meshes of things that the view draws itself: ground, sky, goals, ball.
 export function isSceneryMesh(name: string): boolean {
   return /soccerfield|skybox|soccergoal|soccerball/.test(name);
 }

@@ -1,6 +1,6 @@
 import type { Environment } from "../model";
 
-/// Sizes of a soccer field [m]; the centre is the origin, the goals stand at +-length/2.
+/// Sizes of a soccer field [m]; the centre is the origin, the goals are at +-length/2.
 export interface FieldSizes {
   length: number;
   width: number;

@@ -1,7 +1,7 @@
 import { type InstancedBufferGeometry } from "three";
 import { barrel, type Form, roundedBox } from "./forms";
 
-/// A form in the detail that suits pieces up to so many pixels (half their longest diagonal).
+/// A form with the detail for pieces of up to this size [pixels, half of the longest diagonal].
 interface Level {
   upTo: number;
   make(): InstancedBufferGeometry;
@@ -19,7 +19,7 @@ export const levels: Record<Form, Level[]> = {
 /// Smaller ones are not drawn [pixels].
 export const tooSmall = 0.9;
 
-/// Which level of a form suits a piece of so many pixels.
+/// The level of a form for a piece of this size [pixels].
 export function levelFor(form: Form, pixels: number): number {
   return levels[form].findIndex(({ upTo }) => pixels < upTo);
 }

@@ -33,7 +33,7 @@ export function teamColour(side: Side | null, teams = usualTeams): Rgb {
   return side === null ? noTeam : teams[side];
 }
 
-/// What to write in on a colour: black or white, whichever stands out more.
+/// The text colour for a background: black or white, whichever has more contrast.
 export function inkOn(colour: Rgb): Rgb {
   return luminance(colour) > 0.18 ? rgb(0x14181d) : rgb(0xffffff);
 }
@@ -51,7 +51,7 @@ const materials: Record<string, Rgb> = {
 
 const others = [0x6f8fb0, 0xb08f6f, 0x7fa37a, 0xa37a9c, 0x8d86c4, 0xbba35f].map(rgb);
 
-/// The colour of a material; one of a few quiet ones for names that nobody knows, always the same for the same name.
+/// The colour of a material; one of a few muted ones for unknown names, always the same for the same name.
 export function materialColour(name: string | undefined, teams = usualTeams): Rgb {
   if (name === undefined) return materials.matGrey!;
   const known = materials[name];

@@ -53,7 +53,7 @@ export function makePicture(world: World, teams: TeamColours = usualTeams): Pict
 
 class PictureMaker {
   readonly picture: Picture;
-  /// Transforms whose shapes a mesh stands for.
+  /// Transforms whose shapes a mesh represents.
   private readonly covered = new Set<number>();
 
   constructor(private readonly world: World, private readonly teams: TeamColours) {
@@ -113,7 +113,7 @@ class PictureMaker {
     for (const decal of dressed.decals) this.picture.decals.push({ ...decal, node: part, robot: this.picture.robotOf[index]! });
   }
 
-  /// The transform whose shapes a model stands for: its own, or the nearest above that has some.
+  /// The transform whose shapes a model represents: its own, or the nearest above that has some.
   private carrier(at: number): number {
     for (let n = at; n >= 0; n = this.world.nodes[n]!.parent) if (this.world.nodes[n]!.shapes?.length) return n;
     return at;

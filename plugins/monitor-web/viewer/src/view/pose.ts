@@ -29,7 +29,7 @@ export class Pose {
     return this.setBasis();
   }
 
-  /// Stands `distance` from a point, at these angles around it [rad], and looks at it; also straight from above.
+  /// A pose at `distance` from a point, at these angles around it [rad], that looks at it; also straight from above.
   around(target: Vector3, azimuth: number, elevation: number, distance: number): this {
     back.set(Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation));
     right.set(-Math.sin(azimuth), Math.cos(azimuth), 0);

@@ -63,7 +63,7 @@ class Batch {
   }
 }
 
-/// Everything solid. Each piece is drawn in the detail that its size in the picture deserves, and not at all where nobody sees it.
+/// Everything solid. The detail of a piece depends on its size in the picture; invisible pieces are not drawn.
 export class Solids {
   readonly group = new Group();
   private readonly batches: Record<Form, Batch[]>;

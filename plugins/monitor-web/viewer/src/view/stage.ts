@@ -23,7 +23,7 @@ export interface Pick {
 export interface CameraView {
   /// "head" looks out of the selected robot (the one nearest to the ball when none is selected). Dragging leaves "broadcast" and "head" for "orbit".
   mode: CameraMode;
-  /// Called after every change of mode, whoever made it.
+  /// Called after every change of mode.
   onmode: ((mode: CameraMode) => void) | null;
   /// Jumps instead of flying from mode to mode.
   reducedMotion: boolean;
@@ -67,7 +67,7 @@ export class Stage {
   private showLabels = true;
   private showTrail = true;
   private selection: string | number | null = null;
-  /// Robot that the head camera chose itself; it stays with it, since who is nearest changes too often to look through.
+  /// Robot that the head camera chose itself; it stays with it, since the nearest robot changes too often.
   private ridden: string | null = null;
   private seen = { scene: -1, frame: -1, environment: -1 };
   private last = 0;

@@ -8,7 +8,7 @@ export class WorldMatrices {
   private parents = new Int32Array(0);
   private isTransform = new Uint8Array(0);
 
-  /// For another scene: parents stand before their children.
+  /// For another scene: parents before their children.
   rebuild(nodes: readonly SceneNode[]): void {
     this.values = new Float32Array(16 * nodes.length + 16);
     identity(this.values, 16 * nodes.length);

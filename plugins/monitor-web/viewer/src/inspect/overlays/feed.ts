@@ -1,6 +1,6 @@
 import { Poller } from "../poller";
 
-/// The newest answer to a question that is asked while somebody wants it.
+/// The newest answer to a request that is repeated while it is needed.
 export class Feed<T> {
   answer: T | null = null;
   /// What the host said instead.
@@ -15,7 +15,7 @@ export class Feed<T> {
     this.poller = new Poller<T>(() => ask(this.subject!), (answer) => this.take(answer, ""), (why) => this.take(null, why));
   }
 
-  /// null: nobody wants it, or there is nothing to ask about. Another subject forgets the last answer.
+  /// null: not needed, or there is no subject. Another subject forgets the last answer.
   tick(now: number, subject: string | null): void {
     if (subject !== this.subject) {
       this.subject = subject;

@@ -7,7 +7,7 @@ import { fixed, nameOf } from "./overlay";
 
 const kPeriod = 250;   // [ms] between two readings of speed and latency
 const kSize = 12;      // [px]
-const kBelow = -2;     // lines below the feet: numbers stand above the heads
+const kBelow = -2;     // lines below the feet: numbers are above the heads
 
 interface Label {
   robot: Robot;

@@ -21,7 +21,7 @@ export interface Percepts {
 
 const kSeen = 9;     // [px]
 const kTrue = 7;
-const kBelow = -2;   // lines; players' numbers stand above
+const kBelow = -2;   // lines; players' numbers are above
 const kFar = 2.5;    // [m]; how far a cone without a range is drawn
 
 /// How far the selected robot's eyes reach.
