@@ -273,7 +273,7 @@ class Arena {
     event.time += event.step;
     emit(phase::kSense, event);
   }
-  void emit(const char* channel, Event& event) {
+  void emit(ChannelName channel, Event& event) {
     event.name = channel;
     kernel.events().channel(channel).emit(event);
   }

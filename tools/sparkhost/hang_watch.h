@@ -41,7 +41,7 @@ class HangWatch : public spark::Node {
   void reportEnd();
 
   std::atomic<double> after_ = 2;
-  std::optional<spark::Watchdog> watchdog_;
+  std::optional<Watchdog> watchdog_;
   std::thread thread_;
   std::mutex mutex_;
   std::condition_variable wake_;

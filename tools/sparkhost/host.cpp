@@ -18,16 +18,6 @@ using namespace spark;
 namespace fs = std::filesystem;
 
 namespace {
-/// The text as a Lua string literal.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text)
-    out += (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20)
-               ? fmt::format("\\{:03}", static_cast<unsigned char>(c))
-               : std::string(1, c);
-  return out + "\"";
-}
-
 /// Writes the number of a port; null if there is no such port.
 void writePort(JsonWriter& json, const char* name, const Leaf& root, const char* path) {
   const Value v = valueAt(root, path, "port");
@@ -69,19 +59,16 @@ void Host::scanPlugins() {
 }
 
 void Host::defineHostTable() {
-  std::string paths;
-  for (const std::string& p : options_.scenePaths) paths += quoted(p) + ", ";
-  const std::string share = fs::is_directory(share_) ? share_.string() : std::string();
-  kernel_.lua().run(
-      fmt::format("host = {{ share = {}, scenePaths = {{ {} }}, alone = {} }}", quoted(share), paths, options_.alone),
-      "sparkhost");
+  List scenePaths(options_.scenePaths.begin(), options_.scenePaths.end());
+  scripts(kernel_).setGlobal("host", List{List{"share", fs::is_directory(share_) ? share_.string() : ""},
+                                          List{"scenePaths", std::move(scenePaths)}, List{"alone", options_.alone}});
 }
 
 void Host::build() {
-  kernel_.lua().addFolder(share_ / "lua");
+  scripts(kernel_).addFolder(share_ / "lua");
   defineHostTable();
-  for (const auto& [key, value] : options_.overrides) kernel_.lua().addOverride(key, value);
-  kernel_.lua().runConfig(options_.config);
+  for (const auto& [key, value] : options_.overrides) scripts(kernel_).addOverride(key, value);
+  scripts(kernel_).runConfig(options_.config);
   for (const Options::Switch& s : options_.switches) {
     Leaf* node = kernel_.root().find(s.path);
     if (!node)

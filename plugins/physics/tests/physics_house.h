@@ -33,7 +33,7 @@ struct PhysicsHouse : House {
   /// Prepare, physics and place, n times.
   void step(int n = 1) {
     for (int i = 0; i < n; ++i, ++cycle)
-      for (const char* channel : {phase::kPrepare, phase::kPhysics, phase::kPlace})
+      for (const ChannelName channel : {phase::kPrepare, phase::kPhysics, phase::kPlace})
         kernel.events().channel(channel).emit(Event{channel, double(cycle) * dt, dt, cycle, nullptr});
   }
   /// A transform below `parent`.
