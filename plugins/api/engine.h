@@ -37,6 +37,7 @@ struct Mass {
   Mat3 inertia = Mat3::Identity();  ///< about the body's origin, body frame [kg m^2]
 };
 
+/// Kinds of collision shapes.
 enum class Shape { box, sphere, capsule, cylinder, plane, ray, mesh };
 /// A collision shape in its own frame. Capsules and cylinders lie along z.
 struct ShapeDescription {
@@ -50,6 +51,7 @@ struct ShapeDescription {
   std::vector<std::uint32_t> triangles;  ///< mesh: three vertex indices of each triangle
 };
 
+/// Joint types of the ODE manual, section "Joint types and joint functions".
 enum class JointType { ball, hinge, hinge2, slider, universal, fixed, angularMotor };
 /// Parameters of one axis of a joint, as in the section "Stop and motor parameters" of the ODE manual. The suspension
 /// parameters belong to axis 0 of hinge2.
@@ -67,7 +69,8 @@ enum class JointParameter {
   suspensionCfm   ///< constraint force mixing of the suspension
 };
 
-/// Contact surface of two colliders, combined (scene-language section 3.3). A value counts only with its flag.
+/// Contact surface of two colliders, combined (scene-language section 3.3). Bounce, soft ERP, soft CFM and slip count
+/// only with their flags.
 struct Surface {
   bool bounceOn = false, softErpOn = false, softCfmOn = false, slipOn = false;
   /// True: mu is a coefficient, and friction is bounded by mu times the normal force of a solution without friction

@@ -58,9 +58,9 @@ struct SpaceData {
   dSpaceID id;
   WorldData* world;
   bool inner = true;  ///< its geoms collide with each other
-  bool top = false;   ///< exact replay: not inside another space
-  std::uint64_t collidedAt =
-      0;  ///< exact replay: number of the step in which its geoms were last tested for collisions
+  // Exact replay:
+  bool top = false;              ///< not inside another space
+  std::uint64_t collidedAt = 0;  ///< number of the step in which its geoms were last collided with each other
 };
 
 struct MeshDeleter {
