@@ -19,6 +19,8 @@ class ISceneServer {
  public:
   SPARK_INTERFACE(ISceneServer, 2);
   static constexpr const char* kPath = "/sys/server/scene";
+  /// Where the active scene is until a config says otherwise, and where one is expected without a scene server.
+  static constexpr const char* kDefaultScene = "/usr/scene";
   virtual ~ISceneServer() = default;
   /// The node that offers it.
   virtual Leaf& leaf() = 0;
@@ -53,6 +55,8 @@ class ISceneImporter {
 class IVariables {
  public:
   SPARK_INTERFACE(IVariables, 1);
+  /// The folder of all groups.
+  static constexpr const char* kFolder = "/sys/variables";
   virtual ~IVariables() = default;
   /// The value of a variable; nil when there is none. "" is the value of the group itself.
   virtual Value variable(std::string_view name) const = 0;

@@ -336,7 +336,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
   AgentAspect* aspect = nullptr;
   try {
     auto* server = kernel().root().find<ISceneServer>();
-    Node& scene = server ? server->scene() : kernel().root().require<Node>("/usr/scene");
+    Node& scene = server ? server->scene() : require<Node>(ISceneServer::kDefaultScene);
     aspect = &scene.create<AgentAspect>("AgentAspect", fmt::format("AgentAspect{}", number));
     aspect->setNumber(number);
     if (auto scene = aspect->create(createEffector_, "_CreateEffector").as<SceneEffector>())

@@ -72,7 +72,7 @@ class SceneEffector : public Effector {
       late_ = false;
       return;
     }
-    auto* control = kernel().root().find<GameControl>("/sys/server/gamecontrol");
+    auto* control = find<GameControl>(IGameControl::kPath);
     AgentAspect* nearest = agent();
     if (control && nearest && !control->mayLoad(nearest->outermost())) {
       late_ = true;

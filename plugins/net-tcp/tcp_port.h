@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "api/agents.h"
 #include "api/net.h"
 #include "net-tcp/rate_limited_log.h"
 #include "net-tcp/tcp_connection.h"
@@ -79,7 +80,7 @@ class TcpPort : public Node {
   net::RateLimitedLog log_;
 
   int port_ = 0;
-  std::string address_ = "0.0.0.0", consumerPath_ = "/sys/server/gamecontrol";
+  std::string address_ = "0.0.0.0", consumerPath_ = IGameControl::kPath;
   bool makeRoom_ = false;
   int maxMessage_ = 65536, maxConnections_ = 64, sendBuffer_ = 262144;
   double messageTimeout_ = 30, makeRoomAfter_ = 0;

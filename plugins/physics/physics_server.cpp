@@ -41,7 +41,7 @@ engine::IEngine& PhysicsServer::engine() {
 }
 
 World* PhysicsServer::findWorld() {
-  Node* scene = scene_ ? scene_->activeScene() : kernel().root().find<Node>("/usr/scene");
+  Node* scene = scene_ ? scene_->activeScene() : find<Node>(ISceneServer::kDefaultScene);
   auto* world = scene ? scene->childOf<World>() : nullptr;
   return world && world->handle() && world->handle()->engine() ? world : nullptr;
 }

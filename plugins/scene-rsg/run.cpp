@@ -260,7 +260,7 @@ std::string Run::textOf(const Operand& o) {
 }
 
 Value Run::variable(std::string_view group, std::string_view member) const {
-  Node* groups = importer_.kernel().root().find<Node>("/sys/variables");
+  Node* groups = importer_.kernel().root().find<Node>(IVariables::kFolder);
   auto found = groups && groups->child(group) ? groups->child(group)->as<IVariables>() : nullptr;
   if (!found) {
     std::vector<std::string> names;

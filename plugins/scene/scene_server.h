@@ -70,7 +70,7 @@ class SceneServer : public Node, public ISceneServer {
   const std::string& scenePath() const { return scenePath_; }
   void setScenePath(std::string path);
 
-  std::string scenePath_ = "/usr/scene";
+  std::string scenePath_ = kDefaultScene;
   bool flattenTransforms_ = true;
   std::uint64_t modified_ = 0;
   std::uint64_t firstImported_ = 0;  ///< first id of the nodes of the current import; 0: there is none

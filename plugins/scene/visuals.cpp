@@ -8,7 +8,7 @@ namespace spark {
 namespace {
 /// nullptr while `leaf` is not linked, or when there is none.
 SceneServer* serverOf(const Leaf& leaf) {
-  return leaf.isLinked() ? leaf.kernel().root().find<SceneServer>("/sys/server/scene") : nullptr;
+  return leaf.isLinked() ? leaf.find<SceneServer>(ISceneServer::kPath) : nullptr;
 }
 /// Marks the scene as modified.
 void modified(const Leaf& leaf) {
