@@ -74,7 +74,7 @@ class SceneNode : public Node {
   /// The nearest transform above; nullptr when there is none.
   Transform* transform() const { return transform_.get(); }
   /// Imports a scene file below this node. Throws Error: see ISceneServer::importScene().
-  void importScene(std::string file, std::vector<Value> arguments) {
+  void importScene(const std::string& file, const std::vector<Value>& arguments) {
     kernel().root().require<ISceneServer>().importScene(file, *this, arguments);
   }
 

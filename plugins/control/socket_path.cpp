@@ -37,7 +37,7 @@ bool isAlive(const fs::path& file) {
 }  // namespace
 
 fs::path socketFolder() {
-  const fs::path folder = folderName();
+  fs::path folder = folderName();
   if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
     throw Error(fmt::format("cannot make {} for the control socket: {}", folder.string(), std::strerror(errno)));
   struct stat s = {};
@@ -69,7 +69,7 @@ void removeStale(const fs::path& folder) {
 
 fs::path freeSocket(const fs::path& folder) {
   for (int n = 1;; ++n) {
-    const fs::path file = folder / (n == 1 ? fmt::format("{}.sock", getpid()) : fmt::format("{}-{}.sock", getpid(), n));
+    fs::path file = folder / (n == 1 ? fmt::format("{}.sock", getpid()) : fmt::format("{}-{}.sock", getpid(), n));
     if (!fs::exists(file)) return file;
     if (isAlive(file)) continue;
     fs::remove(file);

@@ -40,7 +40,7 @@ class Recorder {
 };
 
 /// The byte of an agent in packets.
-std::size_t byteOf(const Drawing& text) { return static_cast<std::size_t>(text.number - 1 + 128 * text.team); }
+std::size_t byteOf(const Drawing& text) { return static_cast<unsigned>(text.number - 1 + 128 * text.team); }
 }  // namespace
 
 std::size_t DrawBoard::weight(const std::vector<Drawing>& shapes) {

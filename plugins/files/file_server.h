@@ -35,8 +35,8 @@ class FileServer : public Node, public IFileServer {
   void forEach(F visit) const;
   /// Throws Error with the places that were searched.
   [[noreturn]] void notFound(const std::string& name) const;
-  std::string readText(std::string resource) { return read(resource); }
-  bool hasResource(std::string resource) { return exists(resource); }
+  std::string readText(const std::string& resource) { return read(resource); }
+  bool hasResource(const std::string& resource) { return exists(resource); }
 };
 
 /// A folder of the host. Files outside of it cannot be reached, not even through symbolic links.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,7 +46,7 @@ class PerceptBuffer {
   /// What share() reads.
   void prefetchShared() const;
   /// The array of perceptors.
-  void prefetchTable() const { prefetch(called_.data(), called_.size() * sizeof called_[0]); }
+  void prefetchTable() const { prefetch(called_.data(), std::span(called_).size_bytes()); }
   /// The first perceptors; sense() prefetches the others.
   void prefetchPerceptors() const;
 

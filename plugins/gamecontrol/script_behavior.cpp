@@ -20,7 +20,7 @@ void ScriptBehavior::onLink() {
   kernel().events().define("think", Order::parentsFirst, "At a ScriptBehavior: its percepts came.");
 }
 
-void ScriptBehavior::script(std::string file, Value arguments) {
+void ScriptBehavior::script(const std::string& file, const Value& arguments) {
   require<IScriptServer>().attach(*this, file, arguments);
 }
 

@@ -21,7 +21,7 @@ class ScriptBehavior : public Behavior {
 
  private:
   /// Attaches a script; its `...` is `arguments`. Throws Error if it cannot be loaded.
-  void script(std::string file, Value arguments);
+  void script(const std::string& file, const Value& arguments);
   void run(std::string_view channel, const Value* data, Predicates& actions);
   std::string actions_;
 };

@@ -59,6 +59,8 @@ void putTransform(ByteWriter& out, const Matrix& matrix) {
   constexpr float kNoRotation[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   out.put(" (SLT");
   int column = 0;
+  // The same bits are meant: -0 is written as such.
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
   if (std::memcmp(matrix.data(), kNoRotation, sizeof kNoRotation) == 0) {
     out.put(" 1 0 0 0 0 1 0 0 0 0 1 0");
     column = 3;

@@ -45,7 +45,7 @@ ServiceSettings withDescriptorLimit(ServiceSettings s) {
 }  // namespace
 
 struct Service::Impl {
-  Impl(ServiceSettings s, Exchange& e, Log& log)
+  Impl(const ServiceSettings& s, Exchange& e, Log& log)
       : exchange(e), state{withDescriptorLimit(s), log, Site(s.site), ViewerHub(e, log, s.hub), {}, 0, 0,
                            [this] { update(); }} {
     open(s);

@@ -98,7 +98,7 @@ std::string MonitorServer::describeUnknown(std::uint32_t first) const {
   return {};
 }
 
-void MonitorServer::commandOrThrow(std::string text) {
+void MonitorServer::commandOrThrow(const std::string& text) {
   if (const std::string why = command("the host's owner", text); !why.empty()) throw Error(why);
 }
 

@@ -66,7 +66,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   /// all are known.
   std::string describeUnknown(std::uint32_t first) const;
   /// As command(), for scripts and sparkctl. Throws Error if a command will not be executed.
-  void commandOrThrow(std::string text);
+  void commandOrThrow(const std::string& text);
 
   /// Versions of the tree and of the scene.
   struct Version {

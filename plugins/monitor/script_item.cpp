@@ -93,7 +93,8 @@ void ScriptItem::report(std::vector<StatusEntry>& out) const {
 
 /// A mode's name, or its index in `play_modes`.
 Value ScriptItem::playMode() const {
-  const Value mode = get("play_mode"), names = get("play_modes");
+  Value mode = get("play_mode");
+  const Value names = get("play_modes");
   if (!mode.isInteger() || !names.isList() || mode.toInteger() < 0) return mode;
   const Value* name = names.at(static_cast<std::size_t>(mode.toInteger()));
   return name ? *name : mode;
@@ -112,7 +113,7 @@ void ScriptItem::set(std::string name, Value value) {
   entries_.insert_or_assign(std::move(name), std::move(value));
 }
 
-Value ScriptItem::get(std::string name) const {
+Value ScriptItem::get(const std::string& name) const {
   const auto found = entries_.find(name);
   return found == entries_.end() ? Value() : found->second;
 }
@@ -142,12 +143,14 @@ void ScriptItem::setEntries(Value pairs) {
   entries_ = std::move(taken);
 }
 
-void ScriptItem::event(std::string name, std::vector<Value> values) {
+void ScriptItem::event(const std::string& name, const std::vector<Value>& values) {
   checkName(name);
   for (const Value& v : values) checkValue(v);
   events_.push_back(List{name, values});
 }
 
-void ScriptItem::script(std::string file, Value arguments) { require<IScriptServer>().attach(*this, file, arguments); }
+void ScriptItem::script(const std::string& file, const Value& arguments) {
+  require<IScriptServer>().attach(*this, file, arguments);
+}
 
 }  // namespace spark

@@ -25,7 +25,7 @@ class ScriptItem : public Node, public IMonitorItem, public IStatus {
 
  private:
   void set(std::string name, Value value);
-  Value get(std::string name) const;
+  Value get(const std::string& name) const;
   Value playMode() const;
   /// Reports the entries `left` and `right` as one list, if both exist.
   void reportPair(std::vector<StatusEntry>& out, const char* name, const char* left, const char* right) const;
@@ -33,8 +33,8 @@ class ScriptItem : public Node, public IMonitorItem, public IStatus {
   Value entries() const;
   /// Replaces all entries. Throws RefusedValue, without a change, if one is invalid.
   void setEntries(Value pairs);
-  void event(std::string name, std::vector<Value> values);
-  void script(std::string file, Value arguments);
+  void event(const std::string& name, const std::vector<Value>& values);
+  void script(const std::string& file, const Value& arguments);
 
   std::map<std::string, Value, std::less<>> entries_;
   /// Events of the next frame: lists of name and values. Not state, since a frame is also made when a monitor connects.

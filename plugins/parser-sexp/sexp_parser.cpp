@@ -33,12 +33,12 @@ class SexpParser : public Leaf, public IParser {
   }
 
  private:
-  List parseText(std::string text) {
+  List parseText(const std::string& text) {
     Predicates out;
     parse(text, out);
     return toList(out);
   }
-  std::string writeText(List elements) {
+  std::string writeText(const List& elements) {
     Predicates in;
     append(elements, in);
     std::string out;

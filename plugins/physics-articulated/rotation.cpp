@@ -20,7 +20,7 @@ double atanInFirstOctant(double y, double x) {
   // With c the multiple of 1/8 that is nearest to y / x:  atan(y / x) = atan(c) + atan(z),  z = (y - c x) / (x + c y),
   // |z| <= 1/16.
   const double t = y / x;
-  const int eighth = static_cast<int>(t * 8 + 0.5);
+  const int eighth = static_cast<int>(t * 8 + 0.5);  // NOLINT(bugprone-incorrect-roundings): t >= 0
   const double c = eighth * 0.125;
   const double z = (y - c * x) / (x + c * y);
   // atan(z) = z (1 - z^2/3 + z^4/5 - ...). The first term left out is below 1e-18.

@@ -142,11 +142,14 @@ struct WorldData {
   std::vector<engine::SolverJoint*> solverJoints;
 };
 
+// A handle is the address of its data.
+// NOLINTBEGIN(performance-no-int-to-ptr)
 inline WorldData* data(engine::World h) { return reinterpret_cast<WorldData*>(h); }
 inline SpaceData* data(engine::Space h) { return reinterpret_cast<SpaceData*>(h); }
 inline BodyData* data(engine::Body h) { return reinterpret_cast<BodyData*>(h); }
 inline GeomData* data(engine::Geom h) { return reinterpret_cast<GeomData*>(h); }
 inline JointData* data(engine::Joint h) { return reinterpret_cast<JointData*>(h); }
+// NOLINTEND(performance-no-int-to-ptr)
 inline BodyData* data(engine::SolverBody* b) { return static_cast<BodyData*>(b); }
 
 inline engine::World handle(WorldData& w) { return engine::World{reinterpret_cast<std::uintptr_t>(&w)}; }

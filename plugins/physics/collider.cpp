@@ -120,14 +120,14 @@ void Collider::setLocalPosition(const Vec3& p) {
   attach();
 }
 
-void Collider::setRotation(std::vector<double> matrix) {
+void Collider::setRotation(const std::vector<double>& matrix) {
   if (matrix.empty()) throw Error(fmt::format("{}: expected a matrix of 6 or 16 numbers, found none", where()));
   const Mat3 r = physics::poseFrom(matrix).rotation;
   local_.rotation = isStaticInWorld() ? Mat3(physics::frameOf(*this).rotation.transpose() * r) : r;
   attach();
 }
 
-void Collider::addCollisionHandler(std::string className) { create<CollisionHandler>(className); }
+void Collider::addCollisionHandler(const std::string& className) { create<CollisionHandler>(className); }
 
 void Collider::addNotCollideWithColliderName(std::string name, bool on) {
   std::erase(notCollideWith_, name);

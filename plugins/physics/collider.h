@@ -88,8 +88,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   void findHandlers(bool defaultOnTransform);
   void setPosition(const Vec3& p);
   void setLocalPosition(const Vec3& p);
-  void setRotation(std::vector<double> matrix);
-  void addCollisionHandler(std::string className);
+  void setRotation(const std::vector<double>& matrix);
+  void addCollisionHandler(const std::string& className);
   void addNotCollideWithColliderName(std::string name, bool on);
   bool isStaticInWorld() const { return !outer_ && !body_; }
 

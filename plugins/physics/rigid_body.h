@@ -83,22 +83,22 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
     applyMass(physics::cylinderMass(density * physics::cylinderVolume(r, l), r, l));
   }
   void setCylinderTotal(double m, double r, double l) { applyMass(physics::cylinderMass(m, r, l)); }
-  void addBox(double density, const Vec3& e, std::vector<double> at) {
+  void addBox(double density, const Vec3& e, const std::vector<double>& at) {
     add(physics::boxMass(density * physics::boxVolume(e), e), at);
   }
-  void addBoxTotal(double m, const Vec3& e, std::vector<double> at) { add(physics::boxMass(m, e), at); }
-  void addSphere(double density, double r, std::vector<double> at) {
+  void addBoxTotal(double m, const Vec3& e, const std::vector<double>& at) { add(physics::boxMass(m, e), at); }
+  void addSphere(double density, double r, const std::vector<double>& at) {
     add(physics::sphereMass(density * physics::sphereVolume(r), r), at);
   }
-  void addSphereTotal(double m, double r, std::vector<double> at) { add(physics::sphereMass(m, r), at); }
-  void addCapsule(double density, double r, double l, std::vector<double> at) {
+  void addSphereTotal(double m, double r, const std::vector<double>& at) { add(physics::sphereMass(m, r), at); }
+  void addCapsule(double density, double r, double l, const std::vector<double>& at) {
     add(physics::capsuleMass(density * physics::capsuleVolume(r, l), r, l), at);
   }
   void addCapsuleTotal(double m, double r, double l) { add(physics::capsuleMass(m, r, l), {}); }
-  void addCylinder(double density, double r, double l, std::vector<double> at) {
+  void addCylinder(double density, double r, double l, const std::vector<double>& at) {
     add(physics::cylinderMass(density * physics::cylinderVolume(r, l), r, l), at);
   }
-  void addCylinderTotal(double m, double r, double l, std::vector<double> at) {
+  void addCylinderTotal(double m, double r, double l, const std::vector<double>& at) {
     add(physics::cylinderMass(m, r, l), at);
   }
   void setMass(double m);

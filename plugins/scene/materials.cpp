@@ -20,7 +20,7 @@ void MaterialServer::describe(Description<MaterialServer>& d) {
   d.method("resetMaterials", &MaterialServer::reset).doc("Removes all materials and creates one named 'default'.");
 }
 
-void MaterialServer::define(std::string name, Color diffuse) {
+void MaterialServer::define(const std::string& name, Color diffuse) {
   Leaf* material = child(name);
   if (!material) material = &create("MaterialSolid", name);
   setProperty(*material, "diffuse", Convert<Color>::to(diffuse));

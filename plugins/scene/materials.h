@@ -30,7 +30,7 @@ class MaterialServer : public Node {
   void warnUnlessKnown(const std::string& name, const Leaf& user);
 
  private:
-  void define(std::string name, Color diffuse);
+  void define(const std::string& name, Color diffuse);
   void reset();
   std::set<std::string, std::less<>> warned_;  ///< names that were warned about
 };

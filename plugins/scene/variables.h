@@ -25,7 +25,7 @@ class Variables : public Leaf, public IVariables {
 
  private:
   void set(std::string name, Value value);
-  Value get(std::string name) const { return variable(name); }
+  Value get(const std::string& name) const { return variable(name); }
   std::vector<std::string> names() const;
   Value value_;
   Map variables_;

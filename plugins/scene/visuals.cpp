@@ -85,7 +85,7 @@ void StaticMesh::describe(Description<StaticMesh>& d) {
   d.property("externalMeshScale", &StaticMesh::externalScale_).unit("1").doc("Its scale.");
 }
 
-void StaticMesh::loadCall(std::string mesh, std::vector<Value> parameters) {
+void StaticMesh::loadCall(std::string mesh, const std::vector<Value>& parameters) {
   for (const Value& p : parameters) mesh += " " + p.plain();
   loadMesh(std::move(mesh));
 }
@@ -101,7 +101,7 @@ void StaticMesh::meshChanged() {
   if (SceneServer* server = serverOf(*this)) materials_ = server->meshes().materials(kernel(), load_);
 }
 
-void StaticMesh::setScale(Vec3f scale) {
+void StaticMesh::setScale(const Vec3f& scale) {
   scale_ = scale;
   if (classObject()) modified(*this);
 }

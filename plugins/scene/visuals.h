@@ -91,7 +91,7 @@ class StaticMesh : public RenderNode, public IVisual {
   void loadMesh(std::string load);
   /// Called when the mesh changed: takes over its materials.
   virtual void meshChanged();
-  void setScale(Vec3f scale);
+  void setScale(const Vec3f& scale);
   /// Replaces all materials. Logs a warning for unknown names.
   void resetMaterials(std::vector<std::string> names);
   /// Materials are state: robots get the colours of their team while the simulation runs.
@@ -99,7 +99,7 @@ class StaticMesh : public RenderNode, public IVisual {
   void loadState(StateReader& in) override;
 
  private:
-  void loadCall(std::string mesh, std::vector<Value> parameters);
+  void loadCall(std::string mesh, const std::vector<Value>& parameters);
   std::string load_, externalMesh_;
   Vec3f scale_{1, 1, 1}, externalScale_{1, 1, 1};
   bool castShadows_ = true, useExternalMesh_ = false;

@@ -87,6 +87,7 @@ std::string Format::header(const std::vector<std::string>& columns) const { retu
 std::string Format::line(const Row& row, const std::vector<std::string>& columns) const {
   if (!csv_) return row.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   std::vector<std::string> texts;
+  texts.reserve(columns.size());
   for (const std::string& c : columns) texts.push_back(row.contains(c) ? plain(row[c]) : "");
   return joined(texts);
 }

@@ -142,7 +142,7 @@ Json ControlConnection::receive(Clock::time_point until) {
     else if (n == 0 || errno != EINTR)
       throw std::runtime_error("the house has ended");
   }
-  const Json answer = Json::parse(received_.substr(0, end));
+  Json answer = Json::parse(received_.substr(0, end));
   received_.erase(0, end + 1);
   if (!answer.value("ok", false)) throw std::runtime_error(answer.value("error", "the house refused without a reason"));
   return answer;

@@ -90,6 +90,7 @@ void watch(ControlConnection& simulation, const std::string& what) {
 }
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): options that are set up wrongly end the program
 int main(int argc, char** argv) {
   CLI::App app{"Inspects and controls a running Spark simulation: its tree, properties, plugins.", "sparkctl"};
   std::string socket, path = "/", target, value;

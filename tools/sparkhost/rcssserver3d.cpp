@@ -27,6 +27,7 @@ std::string configFor(const std::string& script) {
 
 int runArguments(std::vector<std::string> arguments) {
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (std::string& a : arguments) pointers.push_back(a.data());
   pointers.push_back(nullptr);
   return sparkhost::runProgram(static_cast<int>(arguments.size()), pointers.data());
