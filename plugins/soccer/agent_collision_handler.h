@@ -5,37 +5,38 @@
 
 namespace spark {
 
-/// Stands in the colliders of robots and tells PlayerContactAspect, where there is one, which robots (and the ball)
-/// they meet.
+/// A child of a robot's collider. Reports the contacts of that collider with other robots and with the ball to
+/// PlayerContactAspect. Does not change the contacts.
 class AgentCollisionHandler : public CollisionHandler {
   SPARK_CLASS(AgentCollisionHandler, CollisionHandler)
  public:
   static void describe(Description<AgentCollisionHandler>& d) {
-    d.doc("Tells the rules of touching and charging which robots its collider meets; contacts are not changed.");
+    d.doc("Reports the contacts of its collider with other robots and the ball; does not change the contacts.");
     d.link(&AgentCollisionHandler::contacts_, At<Node>(IGameControl::kPath).child<PlayerContactAspect>());
   }
   void onCollision(const Collision& collision) override {
     if (!collision.other.body()) return;  // ground and goals
     refresh();
     if (!contacts_ || !self_) return;
-    if (other_ != &collision.other) look(collision.other);
+    if (other_ != &collision.other) classify(collision.other);
     if (otherAgent_ ? otherAgent_ != self_ : otherIsBall_)
-      contacts_->add(*self_, otherAgent_, collision.contact.position);
+      contacts_->report(*self_, otherAgent_, collision.contact.position);
   }
 
  private:
   void refresh() {
     if (!tree_.changed(*this)) return;
-    self_ = outermost(*this);
+    self_ = outermostAgent(*this);
     other_ = nullptr;
   }
-  /// The last collider it met stays in mind: contacts go on for many points and cycles.
-  void look(ICollider& other) {
+  /// Finds out what `other` belongs to. The result is cached, because a pair of colliders usually touches at several
+  /// points and over many cycles.
+  void classify(ICollider& other) {
     other_ = &other;
-    otherAgent_ = outermost(other.leaf());
+    otherAgent_ = outermostAgent(other.leaf());
     otherIsBall_ = !otherAgent_ && other.leaf().ancestor<Ball>();
   }
-  static const AgentAspect* outermost(const Leaf& leaf) {
+  static const AgentAspect* outermostAgent(const Leaf& leaf) {
     auto* agent = leaf.ancestor<AgentAspect>();
     return agent ? &agent->outermost() : nullptr;
   }
@@ -43,8 +44,9 @@ class AgentCollisionHandler : public CollisionHandler {
   Link<PlayerContactAspect> contacts_;
   TreeWatch tree_;
   const AgentAspect* self_ = nullptr;
+  // The last collider that it touched.
   const ICollider* other_ = nullptr;
-  const AgentAspect* otherAgent_ = nullptr;
+  const AgentAspect* otherAgent_ = nullptr;  ///< nullptr: the collider belongs to no agent
   bool otherIsBall_ = false;
 };
 

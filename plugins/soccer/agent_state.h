@@ -14,90 +14,107 @@
 
 namespace spark {
 
-/// What the match knows of a player: team, number, battery, where it looks, what it heard. Must be named AgentState and
-/// stand below the robot's agent aspect. Visible itself: agents see it as `P`.
+/// The state of a player in the match: team, number, battery, direction of view, messages it heard. A scene node named
+/// AgentState below the robot's agent aspect. It is a visible object: agents see it as `P`.
 class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget {
   SPARK_CLASS(AgentState, ObjectState)
  public:
-  static constexpr double kFullBattery = 100;                      ///< %
-  static constexpr double kNeverMoved = -1e6;                      ///< s
-  static constexpr int kHearCost = 2, kHearMax = 2, kHearInc = 1;  ///< protocol section 3.8
+  static constexpr double kFullBattery = 100;  ///< %
+  static constexpr double kNeverMoved = -1e6;  ///< s
+  /// Hearing of the installed base: for each team a capacity of 2, which grows by 1 in each sense cycle; a message
+  /// costs
+  /// 2. A player therefore hears one message of each team every two cycles.
+  static constexpr int kHearCost = 2, kHearMax = 2, kHearInc = 1;
 
-  /// A message on its way from the act phase to the sense phase of the same cycle.
-  struct Heard {
-    bool waiting = false;
-    double directionDeg = 0;  ///< to the speaker, from the team's own x axis
-    std::string team, text;
+  /// A message that the player hears in this cycle: stored in the act phase, sent in the sense phase.
+  struct Message {
+    bool pending = false;
+    double directionDeg = 0;  ///< to the speaker, relative to the x axis of the hearer's team frame
+    std::string team, text;   ///< the speaker's team
   };
 
   AgentState() { perceptName_ = "P"; }
   static void describe(Description<AgentState>& d) {
     using S = AgentState;
-    d.doc("What the match knows of a player.");
+    d.doc("The state of a player in the match.");
     d.implements<IAgentIdentity>();
     d.implements<IEchoTarget>();
     d.property("robotType", &S::robotType_).min(0).doc("Type of a heterogeneous robot.");
-    d.property("team", &S::team_).state().readOnly().doc("Name of its team, \"\" before it was initialised.");
+    d.property("team", &S::team_).state().readOnly().doc("Name of its team; \"\" before init.");
     d.property("side", &S::sideText).state().doc("left, right or none.");
-    d.property("unum", &S::unum_).state().readOnly().doc("Uniform number, 0 before it was initialised.");
+    d.property("unum", &S::unum_).state().readOnly().doc("Uniform number; 0 before init.");
     d.property("battery", &S::battery_).unit("%").range(0, kFullBattery).state().doc("Energy left.");
-    d.property("temperature", &S::temperature_).unit("degC").state().doc("Temperature; nothing changes it by itself.");
-    d.property("pan", &S::pan_).unit("deg").state().doc("Where it looks, to the left.");
-    d.property("tilt", &S::tilt_).unit("deg").state().doc("Where it looks, up.");
+    d.property("temperature", &S::temperature_).unit("degC").state().doc("Temperature; only trainers change it.");
+    d.property("pan", &S::pan_).unit("deg").state().doc("Direction of view, positive to the left.");
+    d.property("tilt", &S::tilt_).unit("deg").state().doc("Direction of view, positive up.");
     d.property("selected", &S::selected).doc("A trainer has selected it: its SelectionMarker is visible.");
     d.on<&S::prepare>(phase::kPrepare);
   }
 
+  /// Side of its team; none before init.
   soccer::Side side() const { return side_; }
+  /// Uniform number from 1; 0 before init.
   int unum() const { return unum_; }
   const std::string& team() const override { return team_; }
   int number() const override { return unum_; }
+  /// Type of a heterogeneous robot, from 0.
   int robotType() const { return robotType_; }
-  /// Game state gives (and at half time swaps) sides; `announce`: the agent is told with its next GS.
+  /// Sets team and number. Called by game state, which also swaps sides at half time. `announce`: the agent gets both
+  /// in its next GS percept.
   void assign(soccer::Side side, int unum, const std::string& team, bool announce) {
     side_ = side;
     unum_ = unum;
     team_ = team;
     announce_ = announce;
   }
-  /// True once after assign() announced.
+  /// True once after an assign() with `announce`.
   bool takeAnnouncement() { return std::exchange(announce_, false); }
 
+  /// Energy left [%], 0 to 100.
   double battery() const { return battery_; }
+  /// Sets the energy [%], clamped to 0..100.
   void setBattery(double percent) { battery_ = std::clamp(percent, 0.0, kFullBattery); }
-  /// Takes energy; false (and nothing is taken) when there is not enough.
+  /// Consumes energy [%]. Returns false and consumes nothing when there is not enough.
   bool drain(double percent) { return percent <= battery_ ? (battery_ -= percent, true) : false; }
+  /// Temperature [degC].
   double temperature() const { return temperature_; }
   void setTemperature(double celsius) { temperature_ = celsius; }
 
-  /// s of the simulated clock when the referee moved the player last; before the start when he never did.
+  /// Simulated time of the last move by the referee [s]; kNeverMoved when there was none.
   double movedAt() const { return movedAt_; }
   void setMovedAt(double time) { movedAt_ = time; }
 
+  /// Direction of view [deg], positive to the left.
   double pan() const { return pan_; }
+  /// Direction of view [deg], positive up.
   double tilt() const { return tilt_; }
-  void look(double panDeg, double tiltDeg) { pan_ = panDeg, tilt_ = tiltDeg; }
+  void setView(double panDeg, double tiltDeg) { pan_ = panDeg, tilt_ = tiltDeg; }
 
+  /// True while a trainer has selected the player.
   bool selected() const { return selected_; }
   void select(bool on) { selected_ = on, showMarker(); }
 
-  /// Its own message: the last of a cycle counts.
-  void hearSelf(std::string_view text) { own_.waiting = true, own_.text = text, own_.team = team_; }
-  /// Somebody else's: the first of a cycle counts, if the ear has recovered.
+  /// Stores the echo of the player's own message. The last message of a cycle replaces earlier ones.
+  void hearSelf(std::string_view text) { own_.pending = true, own_.text = text, own_.team = team_; }
+  /// Stores a message of another player. For team-mates and opponents each, only the first message of a cycle counts,
+  /// and only while there is hearing capacity.
   void hear(bool mate, const std::string& team, double directionDeg, std::string_view text) {
-    const std::size_t ear = mate ? 0 : 1;
-    if (heard_[ear].waiting || capacity_[ear] < kHearCost) return;
-    capacity_[ear] -= kHearCost;
-    heard_[ear].waiting = true;
-    heard_[ear].directionDeg = directionDeg;
-    heard_[ear].team = team;
-    heard_[ear].text = text;
+    const std::size_t channel = mate ? kMate : kOpponent;
+    if (heard_[channel].pending || capacity_[channel] < kHearCost) return;
+    capacity_[channel] -= kHearCost;
+    heard_[channel].pending = true;
+    heard_[channel].directionDeg = directionDeg;
+    heard_[channel].team = team;
+    heard_[channel].text = text;
   }
-  Heard& own() { return own_; }
-  /// 0: the team-mate's message, 1: the opponent's.
-  Heard& heard(std::size_t ear) { return heard_[ear]; }
-  /// Once per sense cycle.
-  void recoverEars() {
+  /// Channels of heard().
+  static constexpr std::size_t kMate = 0, kOpponent = 1;
+  /// The echo of the player's own message.
+  Message& own() { return own_; }
+  /// The message of a team-mate or an opponent.
+  Message& heard(std::size_t channel) { return heard_[channel]; }
+  /// Restores hearing capacity. Called once in each sense cycle.
+  void recoverHearing() {
     for (int& c : capacity_) c = std::min(c + kHearInc, kHearMax);
   }
 
@@ -110,11 +127,11 @@ class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget
     out.write(selected_);
     out.write(movedAt_);
     for (int c : capacity_) out.write(c);
-    for (const Heard* h : {&own_, &heard_[0], &heard_[1]}) {
-      out.write(h->waiting);
-      out.write(h->directionDeg);
-      out.write(std::string_view(h->team));
-      out.write(std::string_view(h->text));
+    for (const Message* m : {&own_, &heard_[kMate], &heard_[kOpponent]}) {
+      out.write(m->pending);
+      out.write(m->directionDeg);
+      out.write(std::string_view(m->team));
+      out.write(std::string_view(m->text));
     }
   }
   void loadState(StateReader& in) override {
@@ -125,21 +142,21 @@ class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget
     selected_ = in.readBool();
     movedAt_ = in.readNumber();
     for (int& c : capacity_) c = static_cast<int>(in.readInteger());
-    for (Heard* h : {&own_, &heard_[0], &heard_[1]}) {
-      h->waiting = in.readBool();
-      h->directionDeg = in.readNumber();
-      h->team = in.readString();
-      h->text = in.readString();
+    for (Message* m : {&own_, &heard_[kMate], &heard_[kOpponent]}) {
+      m->pending = in.readBool();
+      m->directionDeg = in.readNumber();
+      m->team = in.readString();
+      m->text = in.readString();
     }
   }
 
  private:
   std::string sideText() const { return soccer::sideName(side_); }
-  /// Robots come with a visible marker.
+  /// Updates the marker when the robot's nodes have changed: scene files load it visible.
   void prepare(const Event&) {
     if (std::exchange(shownAt_, changedAt()) != changedAt()) showMarker();
   }
-  /// Shows or hides the visual named SelectionMarker below, where there is one.
+  /// Shows or hides the visuals named SelectionMarker below this node.
   void showMarker() {
     std::vector<IVisual*> visuals;
     collect(visuals);
@@ -153,10 +170,10 @@ class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget
   bool announce_ = false, selected_ = false;
   double movedAt_ = kNeverMoved;
   double battery_ = kFullBattery, temperature_ = 20, pan_ = 0, tilt_ = 0;
-  std::array<int, 2> capacity_{kHearMax, kHearMax};
-  Heard own_;
-  std::array<Heard, 2> heard_;
-  std::uint64_t shownAt_ = 0;
+  std::array<int, 2> capacity_{kHearMax, kHearMax};  ///< for messages of team-mates and of opponents
+  Message own_;
+  std::array<Message, 2> heard_;
+  std::uint64_t shownAt_ = 0;  ///< changedAt() when the marker was last updated
 };
 
 }  // namespace spark

@@ -13,12 +13,13 @@ void BallHoldingAspect::judgePlay(const Event& event) {
       continue;
     }
     const soccer::Player& p = players()[i];
-    const bool has = distance(p.position(), ball().position()) <= s.ballHoldRadius;
-    h.away = has ? 0 : h.away + 1;
-    if (has && underPressure(p.side())) ++h.held;
-    if (h.away * event.step >= s.ballHoldResetTime - 1e-9) h = {};
-    const double most = isGoalie(i) && inOwnArea(p) ? s.goalieBallHoldMaxTime : s.ballHoldMaxTime;
-    if (has && h.held * event.step > most + 1e-9) sendOff(i, Foul::ballHolding);
+    const bool hasBall = distance(p.position(), ball().position()) <= s.ballHoldRadius;
+    // Time counts under pressure only; a hold ends after BallHoldResetTime without the ball.
+    h.cyclesAway = hasBall ? 0 : h.cyclesAway + 1;
+    if (hasBall && underPressure(p.side())) ++h.cyclesHeld;
+    if (h.cyclesAway * event.step >= s.ballHoldResetTime - 1e-9) h = {};
+    const double maxTime = isGoalie(i) && inOwnArea(p) ? s.goalieBallHoldMaxTime : s.ballHoldMaxTime;
+    if (hasBall && h.cyclesHeld * event.step > maxTime + 1e-9) sendOff(i, Foul::ballHolding);
   }
 }
 

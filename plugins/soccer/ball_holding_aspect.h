@@ -4,8 +4,9 @@
 
 namespace spark {
 
-/// Keeping the ball within BallHoldRadius for too long while an opponent is near it. A rule of later servers, off
-/// unless Soccer.UseBallHolding is set.
+/// Ball holding: a player keeps the ball within BallHoldRadius for longer than BallHoldMaxTime (a goalie in its own
+/// area: BallHoldGoalieMaxTime) while an opponent is within BallHoldOppDist of the ball. A rule of servers after 0.7.5;
+/// off unless Soccer.UseBallHolding is set.
 class BallHoldingAspect : public FoulAspect {
   SPARK_CLASS(BallHoldingAspect, FoulAspect)
  public:
@@ -21,10 +22,15 @@ class BallHoldingAspect : public FoulAspect {
 
  private:
   struct Holder {
-    int held = 0, away = 0;  ///< cycles with the ball under pressure, and since he last had it
-    void save(StateWriter& out) const { out.write(held), out.write(away); }
-    void load(StateReader& in) { held = static_cast<int>(in.readInteger()), away = static_cast<int>(in.readInteger()); }
+    int cyclesHeld = 0;  ///< with the ball, under pressure
+    int cyclesAway = 0;  ///< since the player last had the ball
+    void save(StateWriter& out) const { out.write(cyclesHeld), out.write(cyclesAway); }
+    void load(StateReader& in) {
+      cyclesHeld = static_cast<int>(in.readInteger());
+      cyclesAway = static_cast<int>(in.readInteger());
+    }
   };
+  /// True when an opponent of `side` is near the ball.
   bool underPressure(Side side) const;
   soccer::PlayerRecords<Holder> holders_;
 };

@@ -6,17 +6,16 @@
 
 namespace spark {
 
-/// Running into an opponent (protocol section 6.7). For each pair of standing opponents who touch, neither of them just
-/// moved by the referee nor under a penalty:
+/// Charging: a player runs into an opponent. The rule of the installed base. It judges each pair of opponents that
+/// touch while both stand, neither serves a penalty and the referee has moved neither within the last second:
 ///
-///  1. Conduct. With the ball near to one of them, who moves rather towards the opponent than towards the ball charges;
-///  if neither does,
-///     the one farther from the ball who runs straighter into the other, or into one who stands. Far from the ball both
-///     may.
-///  2. It takes speed, and speed towards the contact.
-///  3. Both, or a contact at the ball: nobody. Also spared: a goalie in his own area, who has just touched the ball,
-///  whom such a spared
-///     player has just charged; and contacts that go on after a harmless one.
+///  1. Conduct. If the ball is within ChargingMaxBallRulesDist of one of them, a player charges when it moves towards
+///     the opponent rather than towards the ball. If neither does, the player farther from the ball charges when it
+///     moves more directly towards the other, or when the other stands. If the ball is far away, both may charge.
+///  2. Speed. A player that charges has at least ChargingMinSpeed, and ChargingMinCollisionSpeed towards the contact.
+///  3. No foul if both charge, or if the contact is within ChargingMinCollBallDist of the ball. Immune for
+///     ChargingImmunityTime are players that touched the ball and players that an immune one has charged; always immune
+///     is a goalie in its own area. A contact that continues a harmless one is harmless, too.
 class ChargingFoulAspect : public FoulAspect {
   SPARK_CLASS(ChargingFoulAspect, FoulAspect)
  public:
@@ -32,43 +31,51 @@ class ChargingFoulAspect : public FoulAspect {
 
  private:
   using Vec2 = Eigen::Vector2d;
-  using Meeting = PlayerContactAspect::Meeting;
+  using Pair = PlayerContactAspect::Pair;
   static constexpr int kCycles = 3;          ///< over which velocities are averaged
-  static constexpr double kMovedTime = 1.0;  ///< s: after a move by the referee nobody charges
+  static constexpr double kMovedTime = 1.0;  ///< immunity after a move by the referee [s]
   static constexpr double kLongAgo = -1e9;   ///< s
 
-  struct Runner {
-    std::array<Vec2, kCycles> velocities{Vec2(0, 0), Vec2(0, 0), Vec2(0, 0)};  ///< m/s, the newest first
-    int known = 0;                                                             ///< how many of them
-    double touchedBall = kLongAgo, wasPushed = kLongAgo;                       ///< s of the simulated clock
+  /// What is remembered of a player. Times are simulated times [s].
+  struct History {
+    std::array<Vec2, kCycles> velocities{Vec2(0, 0), Vec2(0, 0), Vec2(0, 0)};  ///< of the torso [m/s], newest first
+    int known = 0;                                                             ///< number of velocities
+    double touchedBall = kLongAgo;                                             ///< last touch of the ball
+    double wasCharged = kLongAgo;                                              ///< last charge by an immune player
     Vec2 velocity() const { return known ? Vec2((velocities[0] + velocities[1] + velocities[2]) / known) : Vec2(0, 0); }
     void save(StateWriter& out) const;
     void load(StateReader& in);
   };
-  /// One of a pair that touches.
-  struct Party {
-    std::size_t player;
-    Vec2 position, velocity;
-    double speed, ballDistance;
-    double ballAngle, opponentAngle;  ///< deg, between its velocity and the direction there
+  /// Motion of one player of a pair, on the ground plane.
+  struct Motion {
+    std::size_t player;       ///< index
+    Vec2 position, velocity;  ///< m, m/s
+    double speed;             ///< m/s
+    double ballDistance;      ///< m
+    double ballAngle;         ///< between the velocity and the direction to the ball [deg]
+    double opponentAngle;     ///< between the velocity and the direction to the opponent [deg]
   };
   /// A contact that was no foul.
-  struct Harmless {
-    int a, b;  ///< numbers of agents
-    double time;
+  struct HarmlessContact {
+    int a, b;     ///< numbers of the agents
+    double time;  ///< simulated time of the last contact [s]
   };
 
-  void observe(double now);
-  void judgeMeeting(const Meeting& meeting, double now);
-  bool mayCharge(std::size_t player) const;
-  Party party(std::size_t player, std::size_t opponent) const;
-  std::array<bool, 2> conduct(const std::array<Party, 2>& pair) const;
-  bool runsInto(const Party& self, const Party& other, const Vec2& contact) const;
+  void updateHistories(double now);
+  void judgePair(const Pair& contact, double now);
+  /// The player may be judged: it stands, serves no penalty and was not moved by the referee.
+  bool isEligible(std::size_t player) const;
+  Motion motion(std::size_t player, std::size_t opponent) const;
+  /// Step 1: which of the two charges by its conduct.
+  std::array<bool, 2> chargesByConduct(const std::array<Motion, 2>& pair) const;
+  /// Step 2: `self` is fast enough, also towards the point midway between `contact` and `other`.
+  bool isFastEnough(const Motion& self, const Motion& other, const Vec2& contact) const;
   bool isImmune(std::size_t player, double now) const;
-  bool wentOn(const Meeting& meeting, double now);
+  /// True when the contact continues a harmless one, which is then prolonged.
+  bool continuesHarmless(const Pair& contact, double now);
 
-  soccer::PlayerRecords<Runner> runners_;
-  std::vector<Harmless> harmless_;
+  soccer::PlayerRecords<History> histories_;
+  std::vector<HarmlessContact> harmless_;
 };
 
 }  // namespace spark

@@ -1,18 +1,18 @@
 #pragma once
 /// \file
-/// Beam and say: what players of all leagues do.
+/// The effectors of all leagues: beam and say.
 
 #include "match_lookup.h"
 
 namespace spark {
 
-/// `(beam x y angle)`: jumps to a place of the own half, before kick-offs and after goals. x, y as the team sees the
-/// field.
+/// `(beam x y angle)`: moves the robot to a position in its own half [m, m, deg], in its team's frame (the opponents'
+/// goal towards +x). Acts before kick-offs and after goals only.
 class BeamEffector : public Effector {
   SPARK_CLASS(BeamEffector, Effector)
  public:
   static void describe(Description<BeamEffector>& d) {
-    d.doc("Jumps to a place of the own half: (beam x y angle), m and deg; only before kick-offs and after goals.");
+    d.doc("Moves to a position in the own half: (beam x y angle), m and deg; only before kick-offs and after goals.");
     d.property("random", &BeamEffector::random_).state().doc("Its noise.");
     d.on<&BeamEffector::prepare>(phase::kPrepare);
   }
@@ -27,21 +27,24 @@ class BeamEffector : public Effector {
   }
 
  private:
-  static constexpr float kFarthest = 1000;  ///< m from the centre, along each axis
+  static constexpr float kMaxCoordinate = 1000;  ///< m
   void prepare(const Event&) {
     if (!std::exchange(pending_, false)) return;
     const soccer::Player* player = match_.player(*this);
     if (!player || !match_.game()->paused()) return;
     const SoccerSettings& s = *match_.settings();
-    // In single precision, as the installed base: where exactly a robot is put decides the last digit of all that it
-    // senses afterwards.
+    // In single precision, as in the installed base: the exact position decides the last digit of every later percept.
     const auto noise = [&](double width) { return static_cast<float>(width * random_.uniform(-1, 1)); };
     float x = x_ + noise(s.beamNoiseXY), y = y_ + noise(s.beamNoiseXY);
     const float angle = angle_ + noise(s.beamNoiseAngle);
+
+    // The installed base clamps after the noise.
     if (!s.startAnyFieldPosition) x = std::clamp(x, static_cast<float>(-s.fieldLength / 2), 0.0F);
-    if (const auto most = static_cast<float>(s.fieldWidth / 2); s.beamWithinFieldWidth) y = std::clamp(y, -most, most);
-    // where leagues set no limit, the engine's numbers still have one
-    x = std::clamp(x, -kFarthest, kFarthest), y = std::clamp(y, -kFarthest, kFarthest);
+    if (const auto maxY = static_cast<float>(s.fieldWidth / 2); s.beamWithinFieldWidth) y = std::clamp(y, -maxY, maxY);
+    // Leagues without these limits: keep the numbers within what the engine can handle.
+    x = std::clamp(x, -kMaxCoordinate, kMaxCoordinate), y = std::clamp(y, -kMaxCoordinate, kMaxCoordinate);
+
+    // Robots look along their y axis: angle 0 faces the opponents' goal.
     const bool left = player->side() == soccer::Side::left;
     const float yaw = left ? angle - 90 : angle + 90, d = left ? 1 : -1;
     player->moveTo(Vec3(d * x, d * y, s.agentRadius), degToRad(yaw));
@@ -54,11 +57,11 @@ class BeamEffector : public Effector {
   bool pending_ = false;
 };
 
-/// `(say message)`: heard by everybody within range in the same cycle's percepts.
+/// `(say message)`: players within range get the message in the percepts of the same cycle.
 class SayEffector : public Effector {
   SPARK_CLASS(SayEffector, Effector)
  public:
-  static constexpr double kRange = 50;  ///< m
+  static constexpr double kRange = 50;  ///< of the installed base [m]
 
   static void describe(Description<SayEffector>& d) {
     d.doc("Says something: (say message), at most Soccer.SayMsgSize printable characters, heard within 50 m.");
@@ -72,16 +75,18 @@ class SayEffector : public Effector {
     for (const unsigned char c : text)
       if (c < 0x21 || c > 0x7e || c == '(' || c == ')')
         return fmt::format("byte {} is not allowed in a message", int(c));
+
+    // Too long messages are dropped without a remark, as in the installed base.
     const soccer::Player* speaker = match_.player(*this);
-    if (!speaker || text.size() > static_cast<std::size_t>(match_.settings()->sayMsgSize)) return {};
+    if (!speaker || text.size() > std::size_t(match_.settings()->sayMsgSize)) return {};
     speaker->state->hearSelf(text);
-    const Vec3 mouth = speaker->position();
+    const Vec3 origin = speaker->position();
     for (const soccer::Player& hearer : match_.game()->pitch().players()) {
       if (&hearer == speaker || hearer.side() == soccer::Side::none) continue;
-      const Vec3 way = (mouth - hearer.position()) * direction(hearer.side());
-      if (way.norm() > kRange) continue;
+      const Vec3 offset = (origin - hearer.position()) * direction(hearer.side());
+      if (offset.norm() > kRange) continue;
       hearer.state->hear(hearer.side() == speaker->side(), speaker->state->team(),
-                         radToDeg(std::atan2(way.y(), way.x())), text);
+                         radToDeg(std::atan2(offset.y(), offset.x())), text);
     }
     return {};
   }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What stands on a field: the ball, flags, goal posts, lines, and what makes them visible to agents.
+/// Scene nodes of a field: ball, flags, goal posts, lines, and the nodes that make them visible to agents.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace spark {
 
-/// The ball; must be `Ball` below the scene, with a body and a collider with a recorder.
+/// The ball. Its node is `Ball` below the active scene and holds a body and a collider with a recorder.
 class Ball : public Transform {
   SPARK_CLASS(Ball, Transform)
  public:
@@ -25,12 +25,12 @@ class FieldFlag : public Transform {
   static void describe(Description<FieldFlag>& d) { d.doc("A flag that marks a point of the field."); }
 };
 
-/// Base of what soccer attaches to a transform.
+/// Base of the nodes that soccer attaches to a transform.
 class SoccerNode : public SceneNode {
   SPARK_CLASS(SoccerNode, SceneNode)
  public:
   static void describe(Description<SoccerNode>& d) {
-    d.doc("Base of what soccer attaches to a transform.");
+    d.doc("Base of the nodes that soccer attaches to a transform.");
     d.abstract();
   }
 };
@@ -45,14 +45,16 @@ class ObjectState : public SoccerNode {
         .doc("Its label in See: B, F1L, ...; \"\" for parts of robots.");
     d.property("ID", &ObjectState::id_).doc("Name of the part of a robot that it marks: head, lfoot, ...");
   }
+  /// Label of the object in See: B, F1L, ...; "" for parts of robots.
   const std::string& perceptName() const { return perceptName_; }
+  /// Name of the robot part that it marks; "" for others.
   const std::string& id() const { return id_; }
 
  protected:
   std::string perceptName_, id_;
 };
 
-/// A goal post that sonars see too.
+/// A goal post: a visible object that sonars detect, too.
 class GoalPost : public ObjectState, public IEchoTarget {
   SPARK_CLASS(GoalPost, ObjectState)
  public:
@@ -71,7 +73,9 @@ class Line : public SoccerNode {
     d.property("beginPoint", &Line::begin_).unit("m").doc("One end, in the frame of the transform above.");
     d.property("endPoint", &Line::end_).unit("m").doc("The other end.");
   }
+  /// One end, in the frame of the transform above [m].
   const Vec3f& begin() const { return begin_; }
+  /// The other end, in the frame of the transform above [m].
   const Vec3f& end() const { return end_; }
 
  private:

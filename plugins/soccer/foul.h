@@ -2,8 +2,8 @@
 
 namespace spark::soccer {
 
-/// What the automatic referee judges. The numbers are those that monitors are told (protocol section 6.7); 3 and 5 are
-/// never used.
+/// The fouls of the automatic referee. The numbers are those of the monitor protocol; 3 (illegal attack) and 5 (illegal
+/// kick-off) are reserved there and never used.
 enum class Foul {
   crowding = 0,
   touching = 1,
@@ -14,6 +14,7 @@ enum class Foul {
   ballHolding = 8,
 };
 
+/// Name of a foul for the log.
 constexpr const char* foulName(Foul foul) {
   switch (foul) {
     case Foul::crowding:

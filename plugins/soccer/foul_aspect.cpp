@@ -12,6 +12,7 @@ void FoulAspect::judge(const Event& event) {
 }
 
 bool FoulAspect::isDown(const soccer::Player& player) const {
+  // The limits of the installed base; 0.1 m beyond the touch lines still count as field.
   const Vec3 p = player.position();
   return p.z() < kStandingHeight && std::abs(p.y()) < settings().fieldWidth / 2 + 0.1;
 }

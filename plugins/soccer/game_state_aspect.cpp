@@ -12,12 +12,12 @@ using soccer::PlayMode;
 using soccer::Side;
 
 namespace {
-constexpr double kQuitAfter = 10;  // s after the match
+constexpr double kQuitAfter = 10;  // after the match [s]
 }
 
 void GameStateAspect::describe(Description<GameStateAspect>& d) {
   using G = GameStateAspect;
-  d.doc("Clock, half, play mode, score, teams and their numbers.");
+  d.doc("Clock, half, play mode, score, teams and uniform numbers.");
   d.implements<IStatus>();
   d.implements<IJoinPolicy>();
   d.property("playMode", &G::modeText, &G::setModeText)
@@ -28,14 +28,14 @@ void GameStateAspect::describe(Description<GameStateAspect>& d) {
       .unit("s")
       .min(0)
       .state()
-      .doc("Time of play; stands before the kick-off and after the match.");
-  d.property("modeTime", &G::modeTime).unit("s").doc("Since the play mode changed.");
+      .doc("Time of play; stopped before kick-offs and after the match.");
+  d.property("modeTime", &G::modeTime).unit("s").doc("Time since the play mode changed.");
   d.property("half", &G::half).doc("1 or 2.");
   d.property("score", &G::scoreList).doc("Goals of the left and of the right team.");
   d.property("teamLeft", &G::leftName).doc("Name of the team that defends the left goal, \"\" while it is unknown.");
   d.property("teamRight", &G::rightName).doc("Name of the team that defends the right goal, \"\" while it is unknown.");
-  d.property("random", &G::random_).state().doc("Where coins and shuffles come from.");
-  d.method("kickOff", &G::kickOffForWhoIsDue).doc("Kick-off for the team that is due.");
+  d.property("random", &G::random_).state().doc("The stream for coin tosses and shuffles.");
+  d.method("kickOff", &G::kickOffDueSide).doc("Kick-off for the team that is due.");
   d.method("setScores", &G::setScores).parameters({"left", "right"}).doc("Sets the score.");
 }
 
@@ -47,22 +47,22 @@ void GameStateAspect::setModeText(std::string name) {
 
 void GameStateAspect::setMode(PlayMode mode) {
   if (mode == mode_) return;
-  // trainers may switch modes thousands of times in a cycle
-  if (linesLeft_ > 0)
-    --linesLeft_, kernel().log().info("soccer: {:.2f} s, {} after {}", time_, soccer::playModeName(mode),
-                                      soccer::playModeName(mode_));
+  // Log lines are limited: trainers can change the mode thousands of times in a cycle.
+  if (modeLinesLeft_ > 0)
+    --modeLinesLeft_, kernel().log().info("soccer: {:.2f} s, {} after {}", time_, soccer::playModeName(mode),
+                                          soccer::playModeName(mode_));
   mode_ = mode;
   modeStart_ = time_;
-  standing_ = 0;
+  stoppedTime_ = 0;
   ++modeChanges_;
 }
 
-bool GameStateAspect::mayTell() {
+bool GameStateAspect::mayLogJoin() {
   const auto now = std::chrono::steady_clock::now();
-  linesAboutAgents_ = std::min(
-      kLinesAboutAgents, linesAboutAgents_ + std::chrono::duration<double>(now - std::exchange(toldAt_, now)).count());
-  if (linesAboutAgents_ < 1) return false;
-  --linesAboutAgents_;
+  const std::chrono::duration<double> elapsed = now - std::exchange(joinLinesUpdated_, now);
+  joinLinesLeft_ = std::min(kJoinLines, joinLinesLeft_ + elapsed.count());
+  if (joinLinesLeft_ < 1) return false;
+  --joinLinesLeft_;
   return true;
 }
 
@@ -80,7 +80,7 @@ void GameStateAspect::setScores(int left, int right) {
 }
 
 void GameStateAspect::rule(const Event& event) {
-  linesLeft_ = kLinesPerCycle;
+  modeLinesLeft_ = kModeLinesPerCycle;
   soccer::Pitch& p = pitch();
   if (!p.ready()) return;
   advanceHalf();
@@ -92,12 +92,11 @@ void GameStateAspect::rule(const Event& event) {
 
 void GameStateAspect::advanceClock(double step) {
   if (clockRuns())
-    time_ = time_ < kSingleUntil ? static_cast<float>(time_) + static_cast<float>(step) : time_ + step;
+    time_ = time_ < kSinglePrecisionUntil ? static_cast<float>(time_) + static_cast<float>(step) : time_ + step;
   else if (mode_ == PlayMode::gameOver || !pitch_.gameControl()->agents().empty())
-    standing_ += step;
+    stoppedTime_ += step;
 }
 
-/// Ends a half or the match when its time is over. The end is imposed again in every cycle.
 void GameStateAspect::advanceHalf() {
   const SoccerSettings& s = pitch_.settings();
   const bool last = half_ == 2 || s.singleHalfTime;
@@ -116,14 +115,14 @@ void GameStateAspect::swapSides() {
   for (const soccer::Player& p : pitch_.players()) {
     if (p.side() == Side::none) continue;
     p.state->assign(soccer::opponent(p.side()), p.state->unum(), p.state->team(), false);
-    soccer::paintTeam(*p.agent, p.side(), p.state->unum());
+    soccer::setTeamMaterials(*p.agent, p.side(), p.state->unum());
   }
   if (auto* scene = pitch_.scene()) scene->markModified();
 }
 
 Side GameStateAspect::halfKickOff() const {
   const Side first = firstKickOff_ == Side::none ? Side::left : firstKickOff_;
-  // when they have changed ends, the other team stands on the first one's side
+  // The other team kicks off the second half. If the teams have swapped sides, it is now on the first one's side.
   return half_ == 1 || pitch_.settings().changeSidesInSecondHalf ? first : soccer::opponent(first);
 }
 
@@ -136,7 +135,6 @@ void GameStateAspect::kickOff(Side side) {
   setMode(forSide(PlayMode::kickOffLeft, side));
 }
 
-/// Who kicks off when nobody is named: the first time in a half whose turn it is, later a coin decides.
 Side GameStateAspect::dueSide() {
   const auto coin = [this] { return random_.below(2) == 0 ? Side::left : Side::right; };
   if (kickedOffInHalf_) return coin();
@@ -144,7 +142,7 @@ Side GameStateAspect::dueSide() {
   return halfKickOff();
 }
 
-/// Names go to all agents and monitors as they are: one with a bracket in it could tell them anything.
+/// Team names are sent unquoted to all agents and monitors. A name with brackets could inject any percept.
 static bool isPlainWord(std::string_view name) {
   return std::all_of(name.begin(), name.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -156,10 +154,12 @@ std::string GameStateAspect::join(AgentState& state, const std::string& name, st
   pitch();
   if (name.empty()) return "expected (teamname <name>) with a name, found none";
   if (!isPlainWord(name)) return "the team name holds a blank, a control character, or one of ( ) \" ' ; \\";
-  // it stands up to 22 times in what a robot sees, and clients read at most 8 KiB
-  constexpr std::size_t kLongestName = 32;
-  if (name.size() > kLongestName)
-    return fmt::format("the team name has {} bytes, at most {} are allowed", name.size(), kLongestName);
+  // See contains the name up to 22 times, and clients read messages of at most 8 KiB.
+  constexpr std::size_t kMaxNameBytes = 32;
+  if (name.size() > kMaxNameBytes)
+    return fmt::format("the team name has {} bytes, at most {} are allowed", name.size(), kMaxNameBytes);
+
+  // A side with this name, or else one without a name.
   Side side = Side::none;
   for (Side s : {Side::left, Side::right}) {
     if (side == Side::none && (team(s).name == name || team(s).name.empty())) side = s;
@@ -167,20 +167,23 @@ std::string GameStateAspect::join(AgentState& state, const std::string& name, st
   if (side == Side::none)
     return fmt::format("there are two teams already, '{}' and '{}': a third, '{}', cannot play", teams_[0].name,
                        teams_[1].name, name);
-  const int most = pitch_.settings().teamSize;
-  if (unum < 0 || unum > most) return fmt::format("number {} is not one of 1..{}", unum, most);
+
+  // The number.
+  const int maxUnum = pitch_.settings().teamSize;
+  if (unum < 0 || unum > maxUnum) return fmt::format("number {} is not one of 1..{}", unum, maxUnum);
   Team& wanted = team(side);
   if (unum == 0)
-    for (int n = most; n >= 1; --n)
+    for (int n = maxUnum; n >= 1; --n)
       if (!wanted.has(n)) unum = n;
-  if (unum == 0) return fmt::format("team '{}' has {} players already", name, most);
+  if (unum == 0) return fmt::format("team '{}' has {} players already", name, maxUnum);
   if (wanted.has(static_cast<int>(unum))) return fmt::format("number {} of team '{}' is taken", unum, name);
   if (std::string problem = robotTypeProblem(side, state); !problem.empty()) return problem;
 
+  // An earlier number of the agent becomes free.
   if (state.side() != Side::none) team(state.side()).taken[state.unum()] = false;
   const bool first = state.side() == Side::none;
   wanted.name = name;
-  if (wanted.taken.size() <= static_cast<std::size_t>(unum)) wanted.taken.resize(most + 1);
+  if (wanted.taken.size() <= std::size_t(unum)) wanted.taken.resize(maxUnum + 1);
   wanted.taken[unum] = true;
   state.assign(side, static_cast<int>(unum), name, first);
   return {};
@@ -193,37 +196,41 @@ int GameStateAspect::teamSize() const {
 
 std::string GameStateAspect::robotTypeProblem(Side side, const AgentState& joining) const {
   const SoccerSettings& s = pitch_.settings();
-  std::array<int, 64> count{};
-  int types = 0, registered = 0, most = 0;
-  const int type = std::min(joining.robotType(), 63);
+  // Count the team's robots by type; types from kMaxType on count as one.
+  constexpr int kMaxType = 63;
+  std::array<int, kMaxType + 1> count{};
+  int types = 0, registered = 0, maxOtherType = 0;
+  const int type = std::min(joining.robotType(), kMaxType);
   for (const soccer::Player& p : pitch_.players()) {
     if (p.state == &joining || p.side() != side) continue;
     ++registered;
-    if (count[std::min(p.state->robotType(), 63)]++ == 0) ++types;
+    if (count[std::min(p.state->robotType(), kMaxType)]++ == 0) ++types;
   }
-  for (int t = 0; t < 64; ++t)
-    if (t != type) most = std::max(most, count[t]);
+  for (int t = 0; t <= kMaxType; ++t)
+    if (t != type) maxOtherType = std::max(maxOtherType, count[t]);
+
   if (count[type] >= s.maxRobotTypeCount)
     return fmt::format("the team has {} robots of type {} already", count[type], type);
-  if (count[type] + most + 1 > s.maxSumTwoRobotTypes)
+  if (count[type] + maxOtherType + 1 > s.maxSumTwoRobotTypes)
     return fmt::format("more than {} robots of two types (type {} is one) are not allowed", s.maxSumTwoRobotTypes,
                        type);
+  // The free places are needed for other types.
   if (count[type] > 0 && s.teamSize - registered <= s.minRobotTypesCount - types)
     return fmt::format("the team needs robots of {} types: type {} is there already", s.minRobotTypesCount, type);
   return {};
 }
 
-Vec3 GameStateAspect::nextStart(Side side) {
+Vec3 GameStateAspect::nextStartPosition(Side side) {
+  // The grid of the installed base: columns along y from the left touch line, spacing 3 r in y and 2 r in x.
   const SoccerSettings& s = pitch().settings();
-  const double r = s.agentRadius, first = s.fieldWidth / 2 - 2 * r;
-  const double aside = s.startDistance > 0 ? s.startDistance : 3 * r,
-               ahead = s.startDistance > 0 ? s.startDistance : 2 * r;
-  const int perColumn = static_cast<int>((first + s.fieldWidth / 2) / aside) + 1;
-  // start positions are never given back: after half the field they begin anew
-  const int columns = std::max(1, static_cast<int>((s.fieldLength / 2 - 2 * r) / ahead));
+  const double r = s.agentRadius, firstY = s.fieldWidth / 2 - 2 * r;
+  const double spacingX = s.startDistance > 0 ? s.startDistance : 2 * r,
+               spacingY = s.startDistance > 0 ? s.startDistance : 3 * r;
+  const int perColumn = static_cast<int>((firstY + s.fieldWidth / 2) / spacingY) + 1;
+  const int columns = std::max(1, static_cast<int>((s.fieldLength / 2 - 2 * r) / spacingX));
   const int n = team(side).starts++ % (perColumn * columns);
-  const double x0 = -direction(side) * (s.fieldLength / 2 - 2 * r);
-  return {x0 + direction(side) * ahead * (n / perColumn), first - aside * (n % perColumn), r};
+  const double firstX = -direction(side) * (s.fieldLength / 2 - 2 * r);
+  return {firstX + direction(side) * spacingX * (n / perColumn), firstY - spacingY * (n % perColumn), r};
 }
 
 void GameStateAspect::agentLeaving(AgentAspect& agent) {
@@ -235,7 +242,7 @@ void GameStateAspect::agentLeaving(AgentAspect& agent) {
 
 void GameStateAspect::saveState(StateWriter& out) const {
   out.write(static_cast<int>(mode_));
-  for (double v : {time_, modeStart_, standing_}) out.write(v);
+  for (double v : {time_, modeStart_, stoppedTime_}) out.write(v);
   out.write(modeChanges_);
   out.write(sideSwaps_);
   out.write(half_);
@@ -251,7 +258,7 @@ void GameStateAspect::saveState(StateWriter& out) const {
 
 void GameStateAspect::loadState(StateReader& in) {
   mode_ = static_cast<PlayMode>(in.readInteger());
-  for (double* v : {&time_, &modeStart_, &standing_}) *v = in.readNumber();
+  for (double* v : {&time_, &modeStart_, &stoppedTime_}) *v = in.readNumber();
   modeChanges_ = in.readInteger();
   sideSwaps_ = in.readInteger();
   half_ = static_cast<int>(in.readInteger());

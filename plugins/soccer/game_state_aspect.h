@@ -11,14 +11,14 @@
 
 namespace spark {
 
-/// Clock, half, play mode, score, teams and their numbers. The first of the soccer aspects in child order. Reports mode
-/// and score, and reads for game control who joins.
+/// Clock, half, play mode, score, teams and uniform numbers. The first of the soccer aspects in child order. Reports
+/// mode and score (IStatus), and reads the init action for game control (IJoinPolicy).
 class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoinPolicy {
   SPARK_CLASS(GameStateAspect, SoccerControlAspect)
  public:
   using Side = soccer::Side;
   using PlayMode = soccer::PlayMode;
-  /// Of a match of soccer; Soccer.TeamSize lets more come.
+  /// Players of a team in a match of soccer. Soccer.TeamSize allows more.
   static constexpr int kTeamSize = 11;
 
   static void describe(Description<GameStateAspect>& d);
@@ -28,56 +28,62 @@ class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoin
   std::string_view predicate() const override;
   Name read(const Element& action) const override;
 
-  /// Refreshed; for rules and effectors.
+  /// The match, refreshed; for rules and effectors. In the simulation's thread.
   soccer::Pitch& pitch() {
     pitch_.refresh(kernel());
     return pitch_;
   }
+  /// The stream for coin tosses and shuffles.
   RandomStream& random() { return random_; }
 
   PlayMode mode() const { return mode_; }
-  /// Sets the mode; nothing happens when it is the mode already.
+  /// Sets the mode. Does nothing if it is the current one.
   void setMode(PlayMode mode);
-  /// s since the last real change, 0 in the cycle of the change. On the clock of play, where it runs: a trainer who
-  /// sets the clock ahead ends pauses too; set back, the mode begins anew.
-  double modeTime() const { return clockRuns() ? time_ - modeStart_ : standing_; }
-  /// The mode has lasted `seconds`, but for rounding.
+  /// Time since the mode changed [s]; 0 in the cycle of the change. Measured on the clock of play while it runs, so
+  /// that a trainer that sets the clock ahead also ends pauses; if the clock is set back, the mode starts again.
+  double modeTime() const { return clockRuns() ? time_ - modeStart_ : stoppedTime_; }
+  /// True when the mode has lasted `seconds`, within rounding.
   bool modeReached(double seconds) const { return modeTime() > seconds - kRounding; }
-  /// Counts real changes of the mode.
+  /// Number of changes of the mode so far.
   std::int64_t modeChanges() const { return modeChanges_; }
-  /// s of play: stands before the kick-off and after the match.
+  /// Time of play [s]. Stopped before kick-offs and after the match.
   double time() const { return time_; }
   void setTime(double seconds) {
     time_ = std::max(0.0, seconds);
     modeStart_ = std::min(modeStart_, time_);
   }
+  /// 1 or 2.
   int half() const { return half_; }
-  /// Counts the times that teams swapped sides.
+  /// Number of times that the teams have swapped sides.
   std::int64_t sideSwaps() const { return sideSwaps_; }
-  /// No fouls are judged, beams are allowed.
+  /// True while beams are allowed and no fouls are judged: before kick-offs and after goals.
   bool paused() const {
     return mode_ == PlayMode::beforeKickOff || mode_ == PlayMode::goalLeft || mode_ == PlayMode::goalRight;
   }
 
+  /// Goals of a side; 0 for none.
   int score(Side side) const { return side == Side::none ? 0 : team(side).score; }
   void addGoal(Side side) { ++team(side).score; }
   void setScores(int left, int right);
+  /// Name of the team; "" while it is unknown. `side` must not be none.
   const std::string& teamName(Side side) const { return team(side).name; }
-  /// A player of the side has that number, from 1.
+  /// True when a player of the side has this number.
   bool isTaken(Side side, int unum) const { return team(side).has(unum); }
-  /// Who kicks this half off, as far as it is decided: left, unless a coin said otherwise, then the other.
+  /// The side that kicks off this half. Before the coin is tossed it is assumed to be left in the first half.
   Side halfKickOff() const;
 
-  /// Kick-off for a side; none: who is due, or a coin decides. The ball goes to the centre.
+  /// Starts a kick-off with the ball at the centre. `side` none: the side that is due in this half, after the half's
+  /// first kick-off a random one.
   void kickOff(Side side);
-  /// Gives an agent its team and number (0: the lowest free one). Returns "" or what forbids it; nothing has changed
-  /// then.
+  /// Assigns a team and a number (0: the lowest free one) to an agent. Returns "", or the reason why not; nothing has
+  /// changed then.
   std::string join(AgentState& state, const std::string& teamName, std::int64_t unum);
-  /// The next start position of the team.
-  Vec3 nextStart(Side side);
-  /// True when one more line about who joins may be written: a hundred at once, then one a second (wall clock), so that
-  /// clients that come again and again do not fill a disk.
-  bool mayTell();
+  /// The next start position of the team [m]. Start positions form a grid in the team's half; they are not given back,
+  /// and after the last the first comes again.
+  Vec3 nextStartPosition(Side side);
+  /// Takes one of the log lines about joining agents; false when there is none left. Token bucket: 100 lines, refilled
+  /// by one per second of wall time, so that clients that connect again and again do not fill the disk.
+  bool mayLogJoin();
 
  protected:
   void saveState(StateWriter& out) const override;
@@ -88,51 +94,56 @@ class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoin
     std::string name;
     int score = 0;
     std::vector<char> taken = std::vector<char>(kTeamSize + 1);  ///< by number
-    int starts = 0;                                              ///< start positions given so far
-    bool has(int unum) const { return static_cast<std::size_t>(unum) < taken.size() && taken[unum]; }
+    int starts = 0;                                              ///< start positions used so far
+    bool has(int unum) const { return std::size_t(unum) < taken.size() && taken[unum]; }
   };
   Team& team(Side s) { return teams_[s == Side::right]; }
   const Team& team(Side s) const { return teams_[s == Side::right]; }
-  static constexpr double kRounding = 1e-6;  ///< s; sums of steps are not exact
-  /// Time of play passes.
+  static constexpr double kRounding = 1e-6;  ///< of sums of steps [s]
+  /// True while the time of play advances.
   bool clockRuns() const { return mode_ != PlayMode::beforeKickOff && mode_ != PlayMode::gameOver; }
   int teamSize() const;
+  /// Ends a half or the match when its time is over. GameOver is imposed again in every cycle, as in the installed
+  /// base.
   void advanceHalf();
   void advanceClock(double step);
+  /// The side of a kick-off for which none was named.
   Side dueSide();
   void swapSides();
+  /// Why the type of the robot is not allowed in the team, by the league's limits; "": it is.
   std::string robotTypeProblem(Side side, const AgentState& joining) const;
 
-  // Script view
+  // Properties and methods of scripts.
   std::string modeText() const { return soccer::playModeName(mode_); }
   void setModeText(std::string name);
   std::vector<int> scoreList() const { return {teams_[0].score, teams_[1].score}; }
   std::string leftName() const { return teams_[0].name; }
   std::string rightName() const { return teams_[1].name; }
-  void kickOffForWhoIsDue() { kickOff(Side::none); }
+  void kickOffDueSide() { kickOff(Side::none); }
 
   soccer::Pitch pitch_;
   RandomStream random_{*this, "referee"};
   PlayMode mode_ = PlayMode::beforeKickOff;
-  /// As in the installed base the clock of play is summed in single precision: behind 64 s it is a little slow, and a
-  /// freeze or a kick-off lasts a cycle longer. No match is as long as this [s]; behind it the clock would go wrong by
-  /// per cents, and stand in the end.
-  static constexpr double kSingleUntil = 4096;
-  double time_ = 0, modeStart_ = 0;  ///< s of play
-  double standing_ = 0;  ///< s that the clock of play has stood: before the kick-off with agents there, after the match
+  /// As in the installed base, the time of play is summed in single precision up to this time [s]: after 64 s it is a
+  /// little slow, so that some durations last one cycle longer. Matches are shorter; beyond it single precision would
+  /// be wrong by per cents and stop in the end.
+  static constexpr double kSinglePrecisionUntil = 4096;
+  double time_ = 0, modeStart_ = 0;  ///< time of play [s]
+  double stoppedTime_ =
+      0;  ///< time in this mode while the clock of play is stopped; before kick-offs with agents only [s]
   std::int64_t modeChanges_ = 0, sideSwaps_ = 0;
-  static constexpr int kLinesPerCycle = 4;
-  int linesLeft_ = kLinesPerCycle;  ///< in the log, about modes
-  static constexpr double kLinesAboutAgents = 100;
-  double linesAboutAgents_ = kLinesAboutAgents;
-  std::chrono::steady_clock::time_point toldAt_{};
+  static constexpr int kModeLinesPerCycle = 4;
+  int modeLinesLeft_ = kModeLinesPerCycle;  ///< log lines about modes, in this cycle
+  static constexpr double kJoinLines = 100;
+  double joinLinesLeft_ = kJoinLines;  ///< log lines about joining agents
+  std::chrono::steady_clock::time_point joinLinesUpdated_{};
   int half_ = 1;
   bool kickedOffInHalf_ = false;
-  Side firstKickOff_ = Side::none;  ///< predetermined for the first half; none: not determined yet
+  Side firstKickOff_ = Side::none;  ///< of the first half; none: not determined yet
   std::array<Team, 2> teams_;
 };
 
-/// The SPL variant: accepted, plays by the same rules.
+/// The class of the SPL server: accepted, with the same rules.
 class SPLState : public GameStateAspect {
   SPARK_CLASS(SPLState, GameStateAspect)
  public:

@@ -7,7 +7,7 @@ namespace spark {
 using soccer::opponent;
 
 void DoubleTouchRule::judge(const Event&) {
-  if (referee().playing() && referee().lastKick().again() && referee().restricted())
+  if (referee().playing() && referee().lastKick().doubleTouch() && referee().restricted())
     referee().awardFreeKick(opponent(ball().last().side));
 }
 
@@ -17,7 +17,7 @@ void GoalRule::judge(const Event&) {
 }
 
 void GoalRule::goal(Side goalOf) {
-  if (refused(goalOf)) return;
+  if (isDisallowed(goalOf)) return;
   const Side scorer = opponent(goalOf);
   game().addGoal(scorer);
   const BallStateAspect::Touch& last = ball().last();
@@ -26,17 +26,21 @@ void GoalRule::goal(Side goalOf) {
   game().setMode(forSide(PlayMode::goalLeft, scorer));
 }
 
-/// A goal that does not count gives a goal kick, an own goal that does not count a corner.
-bool GoalRule::refused(Side goalOf) {
+bool GoalRule::isDisallowed(Side goalOf) {
   const Side scorer = opponent(goalOf);
+
+  // After a kick-off, or directly from a restart: a goal kick; a corner for an own goal.
   if (referee().restricted()) {
-    const Side kicked = referee().kickOffSide();
-    const bool own = kicked != Side::none ? kicked == goalOf : ball().last().side == goalOf;
-    if (kicked != Side::none || (referee().lastKick().straight() && (referee().lastKick().indirect() || own))) {
-      own ? referee().awardCorner(scorer) : referee().awardGoalKick(goalOf);
+    const Side kickOffSide = referee().kickOffSide();
+    const bool ownGoal = kickOffSide != Side::none ? kickOffSide == goalOf : ball().last().side == goalOf;
+    const soccer::LastKick& kick = referee().lastKick();
+    if (kickOffSide != Side::none || (kick.isDirectFromRestart() && (kick.indirect() || ownGoal))) {
+      ownGoal ? referee().awardCorner(scorer) : referee().awardGoalKick(goalOf);
       return true;
     }
   }
+
+  // After pass mode.
   PassModeRule* pass = referee().passMode();
   if (!pass || pass->scoreWait(scorer) <= 0) return false;
   referee().awardGoalKick(goalOf);
@@ -70,6 +74,7 @@ void BallOutRule::judge(const Event&) {
   const SoccerSettings& s = settings();
   const Vec3 &at = ball().position(), &valid = ball().lastValid();
   const Side last = ball().last().side;
+  // If no player has touched the ball, it is put back to its last position on the field.
   if (last == Side::none) return pitch().placeBall(Vec3(valid.x(), valid.y(), s.ballRadius));
   if (std::abs(at.x()) >= s.fieldLength / 2) {
     const Side defending = at.x() < 0 ? Side::left : Side::right;

@@ -4,7 +4,8 @@
 
 namespace spark {
 
-/// The taker of a restart touched the ball again before anybody else: an indirect free kick for the others.
+/// Double touch: the taker of a restart touches the ball again before any other player. Indirect free kick for the
+/// opponents.
 class DoubleTouchRule : public SoccerRule {
   SPARK_CLASS(DoubleTouchRule, SoccerRule)
  public:
@@ -16,20 +17,23 @@ class DoubleTouchRule : public SoccerRule {
   void judge(const Event&) override;
 };
 
-/// Goals, and what forbids them; after a goal the pause and the other side's kick-off.
+/// Goals: counts them unless they are disallowed; after a goal the pause and the kick-off of the team that conceded it.
+/// Disallowed are, in the order of the installed base, goals before the kick-off team may score, goals directly from an
+/// indirect restart, own goals directly from any restart, and goals too soon after the team's pass mode.
 class GoalRule : public SoccerRule {
   SPARK_CLASS(GoalRule, SoccerRule)
  public:
-  static void describe(Description<GoalRule>& d) { d.doc("Goals, what forbids them, and the pause after one."); }
+  static void describe(Description<GoalRule>& d) { d.doc("Goals, disallowed goals, and the pause after a goal."); }
 
  private:
   void judge(const Event&) override;
   void goal(Side goalOf);
   void pause();
-  bool refused(Side goalOf);
+  /// True when the goal does not count; the restart is awarded then. `goalOf`: the side that defends the goal.
+  bool isDisallowed(Side goalOf);
 };
 
-/// Penalty shoot-out: the right team's goalie leaves his area, and it is a goal.
+/// Penalty shoot-out: if a player of the right team leaves its penalty area, the left team scores.
 class PenaltyShootoutRule : public SoccerRule {
   SPARK_CLASS(PenaltyShootoutRule, SoccerRule)
  public:

@@ -3,44 +3,42 @@
 namespace spark {
 
 void IllegalDefenceAspect::judgePlay(const Event&) {
-  follow(were_);
+  follow(records_);
   std::array<int, 2> inside{};
   for (std::size_t i = 0; i < players().size(); ++i) {
-    were_[i].is = isJudged(i) && inOwnArea(players()[i]);
-    inside[players()[i].side() == Side::right] += were_[i].is;
+    records_[i].now = isJudged(i) && inOwnArea(players()[i]);
+    inside[players()[i].side() == Side::right] += records_[i].now;
   }
   for (const Side side : {Side::left, Side::right})
     for (int surplus = inside[side == Side::right] - settings().maxPlayersInsideOwnArea; surplus > 0; --surplus)
-      if (const int player = guilty(side); player >= 0) punish(player);
-  for (Inside& i : were_) i.was = i.is;
+      if (const int player = findOffender(side); player >= 0) penalise(player);
+  for (Inside& i : records_) i.before = i.now;
 }
 
-/// Of those who just came in the farthest from the goal; of all when the goalie came, or nobody. -1: there are only
-/// goalies.
-int IllegalDefenceAspect::guilty(Side side) const {
+int IllegalDefenceAspect::findOffender(Side side) const {
+  // Players that have just entered precede all others; among equals the farthest from the goal is taken.
   const Vec3 goal(-direction(side) * settings().fieldLength / 2, 0, 0);
-  int found = -1;
-  bool foundNew = false;
-  double farthest = -1;
+  int offender = -1;
+  bool entered = false;
+  double maxDistance = -1;
   for (std::size_t i = 0; i < players().size(); ++i) {
-    if (players()[i].side() != side || !were_[i].is || isGoalie(i)) continue;
-    const bool isNew = !were_[i].was;
-    const double far = distance(players()[i].position(), goal);
-    if (foundNew && !isNew) continue;
-    if (isNew == foundNew && far <= farthest) continue;
-    found = static_cast<int>(i), foundNew = isNew, farthest = far;
+    if (players()[i].side() != side || !records_[i].now || isGoalie(i)) continue;
+    const bool justEntered = !records_[i].before;
+    const double goalDistance = distance(players()[i].position(), goal);
+    if (entered && !justEntered) continue;
+    if (justEntered == entered && goalDistance <= maxDistance) continue;
+    offender = static_cast<int>(i), entered = justEntered, maxDistance = goalDistance;
   }
-  return found;
+  return offender;
 }
 
-void IllegalDefenceAspect::punish(std::size_t player) {
-  were_[player].is = false;
+void IllegalDefenceAspect::penalise(std::size_t player) {
+  records_[player].now = false;
   if (settings().illegalDefenseBeamPenalty) return sendOff(player, Foul::illegalDefence);
-  penalties().moveAside(pitch(), player, Foul::illegalDefence, exitOf(players()[player]));
+  penalties().moveAside(pitch(), player, Foul::illegalDefence, exitPosition(players()[player]));
 }
 
-/// One radius beyond the nearest edge that is not the goal line.
-Vec3 IllegalDefenceAspect::exitOf(const soccer::Player& player) const {
+Vec3 IllegalDefenceAspect::exitPosition(const soccer::Player& player) const {
   const soccer::Area area = pitch().penaltyArea(player.side());
   const double radius = settings().agentRadius;
   Vec3 p = player.position();

@@ -3,8 +3,8 @@
 namespace spark {
 
 namespace {
-constexpr double kUpTime = 0.5;  ///< s of standing after which a player has got up
-/// More cycles than that many seconds.
+constexpr double kUpTime = 0.5;  // of standing after which a player is no longer down, as in the installed base [s]
+/// True when `cycles` of `step` last longer than `seconds`.
 bool exceeds(int cycles, double step, double seconds) { return cycles * step > seconds + 1e-9; }
 }  // namespace
 

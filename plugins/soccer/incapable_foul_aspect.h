@@ -4,7 +4,8 @@
 
 namespace spark {
 
-/// Who lies on the ground, or does not stand, for too long is taken away. Goalies have more time.
+/// Incapable: a player lies on the ground for longer than GroundMaxTime, or does not stand for longer than
+/// NotStandingMaxTime. Goalies have GoalieGroundMaxTime and GoalieNotStandingMaxTime.
 class IncapableFoulAspect : public FoulAspect {
   SPARK_CLASS(IncapableFoulAspect, FoulAspect)
  public:
@@ -17,9 +18,10 @@ class IncapableFoulAspect : public FoulAspect {
   void loadState(StateReader& in) override { clocks_.load(in); }
 
  private:
-  /// Cycles.
   struct Clock {
-    int ground = 0, down = 0, standing = 0;
+    int ground = 0;    ///< cycles on the ground, until the torso is at standing height
+    int down = 0;      ///< cycles without standing, until the player has stood for a while
+    int standing = 0;  ///< cycles of standing since the player was down
     void save(StateWriter& out) const;
     void load(StateReader& in);
   };

@@ -6,14 +6,14 @@
 
 namespace spark {
 
-/// `(init (unum 7)(teamname A))`: takes the agent into a team and puts it at the team's next start position. Refused
-/// quietly for the agent, with one line in the log: without a team it then falls down in the middle of the field, as it
-/// always did (protocol section 1.6).
+/// `(init (unum 7)(teamname A))`: adds the agent to a team and moves it to the team's next start position. The agent
+/// gets no reply when it is refused, only the log says so; as in the installed base, a robot without a team then drops
+/// from 10 m onto the middle of the field.
 class InitEffector : public Effector {
   SPARK_CLASS(InitEffector, Effector)
  public:
   static void describe(Description<InitEffector>& d) {
-    d.doc("Takes the agent into a team: (init (unum n)(teamname t)); unum 0 or none is the lowest free number.");
+    d.doc("Adds the agent to a team: (init (unum n)(teamname t)); unum 0 or none: the lowest free number.");
     d.on<&InitEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return std::string(soccer::kInit); }
@@ -26,8 +26,8 @@ class InitEffector : public Effector {
   }
 
  protected:
-  /// Dresses the robot in its team's colours.
-  virtual void dress(AgentAspect&, soccer::Side, int) {}
+  /// Sets the materials of the robot to those of its team and number.
+  virtual void setMaterials(AgentAspect&, soccer::Side, int) {}
 
  private:
   void prepare(const Event&) {
@@ -37,27 +37,27 @@ class InitEffector : public Effector {
     AgentState* state = match_.state();
     AgentAspect* agent = match_.agent();
     if (!game || !state || !agent || !game->pitch().ready()) {
-      if (mayTell())
+      if (mayLog())
         kernel().log().warning(
             "{}: init refused: it needs an AgentState in the robot and soccer's rules below game control", path());
       return;
     }
     const bool first = state->side() == soccer::Side::none;
-    if (const std::string problem = refusal(*game, *state); !problem.empty()) {
-      if (mayTell() && game->mayTell()) kernel().log().warning("{}: init refused: {}", agent->path(), problem);
+    if (const std::string problem = join(*game, *state); !problem.empty()) {
+      if (mayLog() && game->mayLogJoin()) kernel().log().warning("{}: init refused: {}", agent->path(), problem);
     } else {
-      if (mayTell() && game->mayTell())
+      if (mayLog() && game->mayLogJoin())
         kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_,
                             soccer::sideName(state->side()), state->unum());
-      dress(*agent, state->side(), state->unum());
+      setMaterials(*agent, state->side(), state->unum());
       if (auto* scene = game->pitch().scene()) scene->markModified();
     }
-    // init again is no way to jump about during play
+    // A repeated init moves the robot only while beams are allowed, too.
     if (first || game->paused()) place(*game, state->side());
   }
 
-  /// Takes the agent into the team; returns "" or why it cannot be.
-  std::string refusal(GameStateAspect& game, AgentState& state) const {
+  /// Adds the agent to the team; returns "" or the reason why not.
+  std::string join(GameStateAspect& game, AgentState& state) const {
     if (state.side() != soccer::Side::none && state.team() == team_ && (unum_ == 0 || unum_ == state.unum()))
       return "it plays already";
     return game.join(state, team_, unum_);
@@ -67,19 +67,19 @@ class InitEffector : public Effector {
     const soccer::Player* player = game.pitch().playerOf(this);
     if (!player) return;
     if (side == soccer::Side::none) return player->moveTo(Vec3(0, 0, kRefusedHeight), 0);
-    player->moveTo(game.nextStart(side), degToRad(side == soccer::Side::left ? -90 : 90));
+    player->moveTo(game.nextStartPosition(side), degToRad(side == soccer::Side::left ? -90 : 90));
   }
 
-  /// An agent that sends init in every cycle does not fill the log.
-  bool mayTell() {
-    if (lines_ == kMostLines) return false;
-    if (++lines_ == kMostLines)
+  /// True while the agent has log lines left, so that an agent that repeats init does not fill the log.
+  bool mayLog() {
+    if (lines_ == kMaxLines) return false;
+    if (++lines_ == kMaxLines)
       kernel().log().warning("{}: it sends init again and again; what becomes of it is told no more", path());
     return true;
   }
 
-  static constexpr int kMostLines = 20;
-  static constexpr double kRefusedHeight = 10;  ///< m
+  static constexpr int kMaxLines = 20;
+  static constexpr double kRefusedHeight = 10;  ///< of a robot without a team [m]
   MatchLookup match_;
   int lines_ = 0;
   std::int64_t unum_ = 0;
@@ -96,8 +96,8 @@ class SingleMatInitEffector : public InitEffector {
   }
 
  protected:
-  void dress(AgentAspect& agent, soccer::Side side, int unum) override {
-    const std::string material = (side == soccer::Side::left ? "matLeft" : "matRight") + std::to_string(unum);
+  void setMaterials(AgentAspect& agent, soccer::Side side, int unum) override {
+    const std::string material = fmt::format("{}{}", side == soccer::Side::left ? "matLeft" : "matRight", unum);
     std::vector<IVisual*> visuals;
     agent.collect(visuals);
     for (IVisual* v : visuals)
@@ -105,7 +105,7 @@ class SingleMatInitEffector : public InitEffector {
   }
 
  private:
-  /// The visual or a node above it, up to the agent, has the name of a part that wears the jersey.
+  /// True when the visual or a node above it, below the agent, has the name of a part with the team's colour.
   static bool isJersey(const Leaf& visual) {
     for (const Leaf* l = &visual; l && !l->as<AgentAspect>(); l = l->parent())
       for (const char* part : {"body", "leftshoulder", "rightshoulder", "leftshank", "rightshank", "lowerTorso"})
@@ -123,7 +123,9 @@ class StaticMeshInitEffector : public InitEffector {
   }
 
  protected:
-  void dress(AgentAspect& agent, soccer::Side side, int unum) override { soccer::paintTeam(agent, side, unum); }
+  void setMaterials(AgentAspect& agent, soccer::Side side, int unum) override {
+    soccer::setTeamMaterials(agent, side, unum);
+  }
 };
 
 }  // namespace spark

@@ -19,10 +19,10 @@ void KickOffRule::judge(const Event&) {
 }
 
 void KickOffRule::earnRightToScore() {
-  const Side kicked = referee().kickOffSide();
-  if (kicked == Side::none || !ball().touched()) return;
+  const Side kickOffSide = referee().kickOffSide();
+  if (kickOffSide == Side::none || !ball().touched()) return;
   const Vec3& b = ball().position();
-  if (ball().last().side != kicked || std::hypot(b.x(), b.y()) > settings().freeKickDistance)
+  if (ball().last().side != kickOffSide || std::hypot(b.x(), b.y()) > settings().freeKickDistance)
     referee().setKickOffSide(Side::none);
 }
 

@@ -4,20 +4,20 @@
 
 namespace spark {
 
-/// BeforeKickOff: the ball is held at the centre, teams stay in their halves.
+/// BeforeKickOff: keeps the ball at the centre and the teams in their halves.
 class BeforeKickOffRule : public SoccerRule {
   SPARK_CLASS(BeforeKickOffRule, SoccerRule)
  public:
   static void describe(Description<BeforeKickOffRule>& d) {
-    d.doc("Before the kick-off: the ball is held, teams stay in their halves.");
+    d.doc("Before the kick-off: keeps the ball at the centre and the teams in their halves.");
   }
 
  private:
   void judge(const Event&) override;
 };
 
-/// KickOff_X: the others stay away from the ball; the first touch starts the play. The team that kicked off may not
-/// score before an opponent touched the ball, or one of its own outside of the centre circle.
+/// KickOff_X: keeps the opponents away from the ball; the first touch starts play. The team that kicked off may not
+/// score until an opponent has touched the ball, or one of its own players has touched it outside of the centre circle.
 class KickOffRule : public SoccerRule {
   SPARK_CLASS(KickOffRule, SoccerRule)
  public:

@@ -6,16 +6,17 @@
 
 namespace spark {
 
-/// What an effector or perceptor needs of the match, found again when the shape of the tree changed. One object each;
-/// refresh() and the pointers are safe in the sense phase, player() is for the simulation's thread.
+/// The parts of the match that an effector, perceptor or monitor item works with, looked up again when the shape of the
+/// tree changed. Each of these nodes has an instance of its own. refresh() and the accessors may be called in the sense
+/// phase, player() only in the simulation's thread.
 class MatchLookup {
  public:
-  /// What is missing is nullptr.
+  /// Looks everything up for the node `from`; what is missing becomes nullptr.
   void refresh(const Leaf& from) {
     if (!tree_.changed(from)) return;
     Node& root = from.kernel().root();
     settings_ = root.find<SoccerSettings>();
-    Node* control = root.find<Node>("/sys/server/gamecontrol");
+    Node* control = root.find<Node>(IGameControl::kPath);
     game_ = control ? control->childOf<GameStateAspect>() : nullptr;
     ball_ = control ? control->childOf<BallStateAspect>() : nullptr;
     referee_ = control ? control->childOf<SoccerRuleAspect>() : nullptr;
@@ -23,6 +24,8 @@ class MatchLookup {
     auto* aspect = from.ancestor<AgentAspect>();
     agent_ = aspect ? &aspect->outermost() : nullptr;
     player_ = nullptr;
+
+    // The state may also be in another branch of the robot.
     if (state_ || !agent_) return;
     std::vector<AgentState*> states;
     agent_->collect(states);
@@ -32,11 +35,13 @@ class MatchLookup {
   GameStateAspect* game() const { return game_; }
   BallStateAspect* ball() const { return ball_; }
   SoccerRuleAspect* referee() const { return referee_; }
-  /// Of the agent that `from` belongs to.
+  /// State of the agent that `from` belongs to.
   AgentState* state() const { return state_; }
+  /// The agent that `from` belongs to (outermost aspect).
   AgentAspect* agent() const { return agent_; }
 
-  /// Refreshes, and gives the player that `from` belongs to; nullptr unless there are a match, a body and a team.
+  /// Refreshes and returns the player that `from` belongs to; nullptr unless there is a match and the player has a body
+  /// and a team.
   const soccer::Player* player(const Leaf& from) {
     refresh(from);
     if (!game_) return nullptr;
@@ -57,10 +62,11 @@ class MatchLookup {
   const soccer::Player* player_ = nullptr;
 };
 
-/// The first `count` arguments. False when one is missing: the action is then to have no effect.
+/// Reads the first `count` arguments into `out`. Returns false when one is missing or not finite: the action should
+/// then have no effect.
 inline bool readNumbers(NumberArguments& read, double* out, int count) {
   for (int i = 0; i < count; ++i)
-    if (!read(static_cast<std::size_t>(i), out[i])) return false;
+    if (!read(std::size_t(i), out[i])) return false;
   return true;
 }
 

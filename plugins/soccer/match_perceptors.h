@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// What agents are told of the match and of themselves. Each line is in protocol section 3.
+/// The perceptors for the match and the agent's own state. Percepts are those of the installed base.
 
 #include "match_lookup.h"
 
 namespace spark {
 
-/// `(GS (unum 3) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))`; unum and team once, after init.
+/// `(GS (unum 3) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))`. unum and team are sent once, after init.
 class GameStatePerceptor : public Perceptor {
   SPARK_CLASS(GameStatePerceptor, Perceptor)
  public:
@@ -28,14 +28,15 @@ class GameStatePerceptor : public Perceptor {
     }
     out.pair("t", game->time());
     out.pair("pm", playModeName(game->mode()));
-    if (match_.settings()->extraGameState) tellMore(out, *game, match_.settings()->teamSize);
+    if (match_.settings()->extraGameState) writeExtra(out, *game, match_.settings()->teamSize);
     out.close();
   }
 
  private:
-  /// `(k left) (ti ((1 penalty_none 0.000)) ())`: a player without a penalty has minus the time of play left, as in the
-  /// installed base.
-  static void tellMore(Predicates& out, const GameStateAspect& game, int teamSize) {
+  /// Writes `(k left) (ti ((1 penalty_none 0.000)) ())` with Soccer.ExtraGameState: the kick-off side, and for each
+  /// player of each team number, penalty and remaining time. Without a penalty the remaining time is minus the time of
+  /// play, as in the SPL server.
+  static void writeExtra(Predicates& out, const GameStateAspect& game, int teamSize) {
     out.pair("k", sideName(game.halfKickOff()));
     out.open("ti");
     for (const soccer::Side side : {soccer::Side::left, soccer::Side::right}) {
@@ -49,47 +50,48 @@ class GameStatePerceptor : public Perceptor {
   MatchLookup match_;
 };
 
-/// `(hear A 1.20 self hello)(hear A 1.20 -45.00 hi)`: itself, a team-mate, an opponent.
+/// `(hear A 1.20 self hello)(hear A 1.20 -45.00 hi)`: the player's own message, a team-mate's, an opponent's.
 class HearPerceptor : public Perceptor {
   SPARK_CLASS(HearPerceptor, Perceptor)
  public:
   static void describe(Description<HearPerceptor>& d) {
     d.doc(
-        "What was said in this cycle: (hear team time direction message); direction in deg from the team's own x "
-        "axis.");
+        "Messages of this cycle: (hear team time direction message); direction in deg relative to the x axis of the "
+        "team's frame.");
   }
   void sense(Predicates& out, const Event&) override {
     match_.refresh(*this);
     AgentState* state = match_.state();
     const GameStateAspect* game = match_.game();
     if (!state || !game || !match_.settings()) return;
-    tell(out, state->own(), *game, true);
-    for (std::size_t ear : {0, 1}) tell(out, state->heard(ear), *game, false);
-    state->recoverEars();
+    write(out, state->own(), *game, true);
+    write(out, state->heard(AgentState::kMate), *game, false);
+    write(out, state->heard(AgentState::kOpponent), *game, false);
+    state->recoverHearing();
   }
 
  private:
-  void tell(Predicates& out, AgentState::Heard& heard, const GameStateAspect& game, bool self) {
-    if (!std::exchange(heard.waiting, false)) return;
+  void write(Predicates& out, AgentState::Message& message, const GameStateAspect& game, bool self) {
+    if (!std::exchange(message.pending, false)) return;
     out.open("hear");
-    if (match_.settings()->labelMessages) out.add(heard.team);
+    if (match_.settings()->labelMessages) out.add(message.team);
     out.add(game.time());
     if (self)
       out.add("self");
     else
-      out.add(heard.directionDeg);
-    out.add(heard.text).close();
+      out.add(message.directionDeg);
+    out.add(message.text).close();
   }
   MatchLookup match_;
 };
 
-/// `(AgentState (pan_tilt 0 0) (battery 99.20) (temp 23.00))` in every tenth cycle.
+/// `(AgentState (pan_tilt 0 0) (battery 99.20) (temp 23.00))`, in every tenth cycle.
 class AgentStatePerceptor : public Perceptor {
   SPARK_CLASS(AgentStatePerceptor, Perceptor)
  public:
   AgentStatePerceptor() { interval_ = 10; }
   static void describe(Description<AgentStatePerceptor>& d) {
-    d.doc("Where the agent looks, its battery and its temperature.");
+    d.doc("The agent's direction of view, battery and temperature.");
   }
   void sense(Predicates& out, const Event&) override {
     match_.refresh(*this);
@@ -106,11 +108,11 @@ class AgentStatePerceptor : public Perceptor {
   }
 
  private:
-  static constexpr double kTemperature = 23;  ///< degC: what the installed base's mainline says
+  static constexpr double kTemperature = 23;  ///< constant of the mainline server [degC]
   MatchLookup match_;
 };
 
-/// `(time (now 12.34))` with the time of play.
+/// `(time (now 12.34))`: the time of play.
 class GameTimePerceptor : public Perceptor {
   SPARK_CLASS(GameTimePerceptor, Perceptor)
  public:

@@ -6,7 +6,7 @@ namespace spark {
 
 using soccer::Side;
 
-void GameStateItem::field(Environment& env, const SoccerSettings& s) const {
+void GameStateItem::writeField(Environment& env, const SoccerSettings& s) const {
   const std::pair<const char*, double> values[] = {{"FieldLength", s.fieldLength},
                                                    {"FieldWidth", s.fieldWidth},
                                                    {"FieldHeight", s.fieldHeight},
@@ -34,7 +34,7 @@ void GameStateItem::contribute(Environment& env) {
   match_.refresh(*this);
   const GameStateAspect* game = match_.game();
   if (!game || !match_.settings()) return;
-  field(env, *match_.settings());
+  writeField(env, *match_.settings());
   env.put(EnvPolicy::always, "time", game->time());
   if (!game->teamName(Side::left).empty())
     env.put(EnvPolicy::change, "team_left", std::string_view(game->teamName(Side::left)));
@@ -44,14 +44,14 @@ void GameStateItem::contribute(Environment& env) {
   env.put(EnvPolicy::change, "score_left", game->score(Side::left));
   env.put(EnvPolicy::change, "score_right", game->score(Side::right));
   env.put(EnvPolicy::change, "play_mode", static_cast<int>(game->mode()));
-  scoreWaits(env, *game);
+  writeScoreWaits(env, *game);
   if (!areas_) return;
   env.put(EnvPolicy::full, "PenaltyAreaLength", match_.settings()->penaltyLength);
   env.put(EnvPolicy::full, "PenaltyAreaWidth", match_.settings()->penaltyWidth + match_.settings()->goalWidth);
 }
 
-/// s until goals of a team count again after its pass mode.
-void GameStateItem::scoreWaits(Environment& env, const GameStateAspect& game) {
+/// Writes the time until goals of a team count again after its pass mode [s].
+void GameStateItem::writeScoreWaits(Environment& env, const GameStateAspect& game) {
   const PassModeRule* pass = match_.referee() ? match_.referee()->passMode() : nullptr;
   if (!pass || game.mode() != soccer::PlayMode::playOn) return;
   if (const double left = pass->scoreWait(Side::left); left > 0)
@@ -64,8 +64,8 @@ void SoccerRuleItem::contribute(Environment& env) {
   match_.refresh(*this);
   if (!match_.referee()) return;
   for (const SoccerRuleAspect::Foul& f : match_.referee()->fouls()) {
-    if (f.index <= told_) continue;
-    told_ = f.index;
+    if (f.index <= lastIndex_) continue;
+    lastIndex_ = f.index;
     env.open(EnvPolicy::once, "foul").add(f.index).add(f.type).add(static_cast<int>(f.side)).add(f.unum).close();
   }
 }

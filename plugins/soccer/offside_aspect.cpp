@@ -6,7 +6,7 @@ using soccer::opponent;
 using soccer::PlayMode;
 using soccer::Side;
 
-bool OffsideAspect::inPlay() {
+bool OffsideAspect::isInPlay() {
   GameStateAspect* game = game_.get();
   BallStateAspect* ball = ball_.get();
   SoccerRuleAspect* referee = referee_.get();
@@ -15,9 +15,9 @@ bool OffsideAspect::inPlay() {
   if (!pitch.ready()) return false;
   const PlayMode mode = game->mode();
   if (mode == PlayMode::offsideLeft || mode == PlayMode::offsideRight) {
-    pitch.placeBall(spot_);
+    pitch.placeBall(kickPosition_);
     if (game->modeTime() >= pitch.settings().ruleKickInPauseTime)
-      referee->award(forSide(PlayMode::freeKickLeft, opponent(sideOf(mode))), spot_);
+      referee->award(forSide(PlayMode::freeKickLeft, opponent(sideOf(mode))), kickPosition_);
     return false;
   }
   if (mode != PlayMode::playOn) marked_.fill(false);
@@ -25,41 +25,41 @@ bool OffsideAspect::inPlay() {
 }
 
 void OffsideAspect::rule(const Event&) {
-  // a touch that takes a restart is not one in PlayOn
-  if (inPlay() && ball_->newTouch() && game_->modeTime() > 0) touch(game_->pitch());
+  // In the first cycle of PlayOn the touch is that of the restart: no offside.
+  if (isInPlay() && ball_->newTouch() && game_->modeTime() > 0) judgeTouch(game_->pitch());
 }
 
 void OffsideAspect::rest(const Event&) {
-  if (inPlay()) marked_.fill(false);
+  if (isInPlay()) marked_.fill(false);
 }
 
-void OffsideAspect::touch(soccer::Pitch& pitch) {
+void OffsideAspect::judgeTouch(soccer::Pitch& pitch) {
   const BallStateAspect::Touch& last = ball_->last();
   const bool offends = last.side == markedSide_ && last.unum <= GameStateAspect::kTeamSize && marked_[last.unum];
   marked_.fill(false);
   if (!offends) return mark(pitch, last.side, last.unum);
-  spot_ = Vec3(ball_->lastValid().x(), ball_->lastValid().y(), pitch.settings().ballRadius);
+  kickPosition_ = Vec3(ball_->lastValid().x(), ball_->lastValid().y(), pitch.settings().ballRadius);
   kernel().log().info("soccer: offside, {} {}", soccer::sideName(last.side), last.unum);
   game_->setMode(forSide(PlayMode::offsideLeft, last.side));
 }
 
 void OffsideAspect::mark(const soccer::Pitch& pitch, Side side, int toucher) {
   markedSide_ = side;
-  const double towards = direction(side);
-  // x of the two last opponents as the attackers see them
+  // x of the last and second-last opponent in the frame of `side`, which attacks towards +x.
+  const double attack = direction(side);
   double last = -HUGE_VAL, second = -HUGE_VAL;
   for (const soccer::Player& p : pitch.players()) {
     if (p.side() != opponent(side)) continue;
-    const double x = towards * p.position().x();
+    const double x = attack * p.position().x();
     if (x > last)
       second = std::exchange(last, x);
     else
       second = std::max(second, x);
   }
-  const double line = std::max({0.0, towards * ball_->position().x(), second});
+  const double line = std::max({0.0, attack * ball_->position().x(), second});
   for (const soccer::Player& p : pitch.players())
     if (p.side() == side && p.state->unum() != toucher && p.state->unum() <= GameStateAspect::kTeamSize)
-      marked_[p.state->unum()] = towards * p.position().x() > line;
+      marked_[p.state->unum()] = attack * p.position().x() > line;
 }
 
 std::vector<int> OffsideAspect::markedUnums() const {
@@ -72,13 +72,13 @@ std::vector<int> OffsideAspect::markedUnums() const {
 void OffsideAspect::saveState(StateWriter& out) const {
   for (bool m : marked_) out.write(m);
   out.write(static_cast<int>(markedSide_));
-  for (int i = 0; i < 3; ++i) out.write(spot_[i]);
+  for (int i = 0; i < 3; ++i) out.write(kickPosition_[i]);
 }
 
 void OffsideAspect::loadState(StateReader& in) {
   for (bool& m : marked_) m = in.readBool();
   markedSide_ = static_cast<Side>(in.readInteger());
-  for (int i = 0; i < 3; ++i) spot_[i] = in.readNumber();
+  for (int i = 0; i < 3; ++i) kickPosition_[i] = in.readNumber();
 }
 
 }  // namespace spark

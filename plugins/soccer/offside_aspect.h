@@ -6,11 +6,12 @@
 
 namespace spark {
 
-/// Offside, as a rule of its own: one line of the config adds it.
+/// Offside, a rule of its own that one line of the config adds. (The installed base has the play modes but no rule.)
 ///
-/// At each new touch in PlayOn the toucher's team-mates in an offside position are marked: in the opponents' half,
-/// nearer to their goal line than the ball and than the second-last opponent. A marked player's touch before an
-/// opponent's gives offside_X (X: his side), and after the restart's pause the opponents have a free kick at that spot.
+/// At each new touch in PlayOn, team-mates of the player are marked if they are in an offside position: in the
+/// opponents' half and nearer to the opponents' goal line than the ball and the second-last opponent. If a marked
+/// player touches the ball before an opponent does, the mode becomes offside_X (X: its side). After RuleKickInPauseTime
+/// the opponents have a free kick at that position.
 class OffsideAspect : public SoccerControlAspect {
   SPARK_CLASS(OffsideAspect, SoccerControlAspect)
  public:
@@ -18,10 +19,10 @@ class OffsideAspect : public SoccerControlAspect {
   static void describe(Description<OffsideAspect>& d) {
     d.doc("Offside. Its presence below game control switches the rule on, `enabled` off and on during a match.");
     d.property("marked", &OffsideAspect::markedUnums)
-        .doc("Numbers of the marked players; they are of the team that touched the ball last.");
+        .doc("Numbers of the marked players, of the team that touched the ball last.");
   }
   void rule(const Event& event) override;
-  /// Switched off, nobody is marked; an offside that was called is still taken to its free kick.
+  /// Disabled: no player is marked. An offside that was called still leads to its free kick.
   void rest(const Event& event) override;
 
  protected:
@@ -29,15 +30,16 @@ class OffsideAspect : public SoccerControlAspect {
   void loadState(StateReader& in) override;
 
  private:
-  /// What both rule() and rest() begin with: false when there is nothing to judge.
-  bool inPlay();
-  void touch(soccer::Pitch& pitch);
+  /// Handles the pause of an offside. True in PlayOn, when there is something to judge.
+  bool isInPlay();
+  void judgeTouch(soccer::Pitch& pitch);
+  /// Marks the players of `side` that are in an offside position, except number `toucher`.
   void mark(const soccer::Pitch& pitch, Side side, int toucher);
   std::vector<int> markedUnums() const;
 
-  std::array<bool, GameStateAspect::kTeamSize + 1> marked_{};  ///< by number
+  std::array<bool, GameStateAspect::kTeamSize + 1> marked_{};  ///< by uniform number
   Side markedSide_ = Side::none;
-  Vec3 spot_ = Vec3::Zero();
+  Vec3 kickPosition_ = Vec3::Zero();  ///< of the free kick [m]
 };
 
 }  // namespace spark

@@ -5,13 +5,12 @@
 
 namespace spark {
 
-/// `(pass)`: asks for pass mode; granted when the ball rests at the player's feet and no opponent is near (protocol
-/// section 2.5).
+/// `(pass)`: requests pass mode. PassModeRule grants it when the ball rests near the player and no opponent is near.
 class PassEffector : public Effector {
   SPARK_CLASS(PassEffector, Effector)
  public:
   static void describe(Description<PassEffector>& d) {
-    d.doc("Asks for pass mode: (pass).");
+    d.doc("Requests pass mode: (pass).");
     d.on<&PassEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "pass"; }

@@ -5,7 +5,7 @@ namespace spark {
 using soccer::opponent;
 
 namespace {
-constexpr double kRounding = 1e-6;  // s; sums of steps are not exact
+constexpr double kRounding = 1e-6;  // of sums of steps [s]
 
 double groundDistance(const Vec3& a, const Vec3& b) { return std::hypot(a.x() - b.x(), a.y() - b.y()); }
 }  // namespace
@@ -13,37 +13,37 @@ double groundDistance(const Vec3& a, const Vec3& b) { return std::hypot(a.x() - 
 void PassModeRule::describe(Description<PassModeRule>& d) {
   using P = PassModeRule;
   d.doc("Pass mode: a team may pass a resting ball undisturbed, and may not score for a while afterwards.");
-  d.property("scoreWaitLeft", &P::waitLeft).unit("s").doc("Goals of the left team do not count so long.");
-  d.property("scoreWaitRight", &P::waitRight).unit("s").doc("Goals of the right team do not count so long.");
+  d.property("scoreWaitLeft", &P::waitLeft).unit("s").doc("Time until goals of the left team count again.");
+  d.property("scoreWaitRight", &P::waitRight).unit("s").doc("Time until goals of the right team count again.");
 }
 
 void PassModeRule::judge(const Event&) {
-  if (modeSeen_ != game().modeChanges()) begin();
-  if (in(PlayMode::passLeft)) passing();
+  if (modeSeen_ != game().modeChanges()) enterMode();
+  if (in(PlayMode::passLeft)) judgePassMode();
   if (referee().playing())
     for (Side s : {Side::left, Side::right}) earnRightToScore(s);
-  noteDistances();
+  recordDistances();
 }
 
-/// A mode began: set pieces end all bans, pass mode for one team ends the other's.
-void PassModeRule::begin() {
+void PassModeRule::enterMode() {
+  // Set pieces end the bans of both teams, pass mode for one team that of the other.
   modeSeen_ = game().modeChanges();
-  if (!referee().playing()) return forget();
+  if (!referee().playing()) return reset();
   if (in(PlayMode::passLeft)) team(opponent(side())).cleared = true;
 }
 
-void PassModeRule::forget() {
+void PassModeRule::reset() {
   for (Team& t : teams_) t.lastActive = kNever, t.cleared = true;
 }
 
-void PassModeRule::passing() {
+void PassModeRule::judgePassMode() {
   const SoccerSettings& s = settings();
   if (ball().touched() || game().modeReached(s.passModeDuration)) return game().setMode(PlayMode::playOn);
   pitch().repel(opponent(side()), ball().position(), s.passModeMinOppBallDist, 1.1 * s.passModeMinOppBallDist,
                 random());
   Team& t = team(side());
   t.lastActive = pitch().now();
-  t.spot = ball().position();
+  t.position = ball().position();
   t.cleared = t.ballAway = t.twoTouched = false;
   t.toucher = 0;
 }
@@ -51,8 +51,8 @@ void PassModeRule::passing() {
 void PassModeRule::earnRightToScore(Side side) {
   Team& t = team(side);
   if (t.cleared) return;
-  // a touch counts where the ball was before it
-  t.ballAway |= (ball().position() - t.spot).norm() >= settings().passModeMinOppBallDist;
+  // The distance is that before a touch in this cycle moves the ball.
+  t.ballAway |= (ball().position() - t.position).norm() >= settings().passModeMinOppBallDist;
   if (!ball().touched() || ball().last().side != side) return;
   if (t.toucher == 0) t.toucher = ball().last().unum;
   t.twoTouched |= t.toucher != ball().last().unum;
@@ -77,22 +77,22 @@ bool PassModeRule::mayPass(const soccer::Player& player) const {
   if (game().mode() != PlayMode::playOn || pitch().now() - team(mine).lastActive < s.passModeRetryWaitTime - kRounding)
     return false;
   if (ball().touchedBy(mine) || pitch().ball()->state().linearVelocity.norm() > s.passModeMaxBallSpeed) return false;
-  const Vec3 spot = pitch().ballPosition();
+  const Vec3 ballPosition = pitch().ballPosition();
   const auto distances = [&](const soccer::Player& p) {
-    return std::pair(groundDistance(p.position(), spot), team(p.side()).before(p.state->unum()));
+    return std::pair(groundDistance(p.position(), ballPosition), team(p.side()).lastDistance(p.state->unum()));
   };
-  const auto [now, before] = distances(player);
-  if (now > s.passModeMaxBallDist || before < 0 || before > s.passModeMaxBallDist) return false;
+  const auto [distance, last] = distances(player);
+  if (distance > s.passModeMaxBallDist || last < 0 || last > s.passModeMaxBallDist) return false;
   for (const soccer::Player& p : pitch().players()) {
     if (p.side() != opponent(mine) || !p.torso) continue;
-    const auto [theirs, theirsBefore] = distances(p);
-    if (theirs < s.passModeMinOppBallDist || (theirsBefore >= 0 && theirsBefore < s.passModeMinOppBallDist))
+    const auto [opponents, opponentsLast] = distances(p);
+    if (opponents < s.passModeMinOppBallDist || (opponentsLast >= 0 && opponentsLast < s.passModeMinOppBallDist))
       return false;
   }
   return true;
 }
 
-void PassModeRule::noteDistances() {
+void PassModeRule::recordDistances() {
   for (Team& t : teams_) t.ballDistance.fill(Team::kUnknown);
   for (const soccer::Player& p : pitch().players())
     if (p.side() != Side::none && p.torso && p.state->unum() <= GameStateAspect::kTeamSize)
@@ -105,7 +105,7 @@ void PassModeRule::saveState(StateWriter& out) const {
     out.write(t.lastActive);
     for (bool b : {t.cleared, t.ballAway, t.twoTouched}) out.write(b);
     out.write(t.toucher);
-    for (int i = 0; i < 3; ++i) out.write(t.spot[i]);
+    for (int i = 0; i < 3; ++i) out.write(t.position[i]);
     for (double d : t.ballDistance) out.write(d);
   }
 }
@@ -116,7 +116,7 @@ void PassModeRule::loadState(StateReader& in) {
     t.lastActive = in.readNumber();
     for (bool* b : {&t.cleared, &t.ballAway, &t.twoTouched}) *b = in.readBool();
     t.toucher = static_cast<int>(in.readInteger());
-    for (int i = 0; i < 3; ++i) t.spot[i] = in.readNumber();
+    for (int i = 0; i < 3; ++i) t.position[i] = in.readNumber();
     for (double& d : t.ballDistance) d = in.readNumber();
   }
 }

@@ -6,20 +6,20 @@
 
 namespace spark {
 
-/// Pass mode (protocol sections 2.5, 6.3, 6.4): opponents are kept away from a resting ball for a while; in return the
-/// team may not score for PassModeScoreWaitTime. The ban ends early when two team-mates have touched the ball since,
-/// and one of them after it had gone PassModeMinOppBallDist from where it lay.
+/// Pass mode, as in the installed base: for PassModeDuration opponents are kept away from a resting ball. In return the
+/// team may not score for PassModeScoreWaitTime. This ban ends early when two team-mates have touched the ball, one of
+/// them after the ball has been PassModeMinOppBallDist away from its position in pass mode.
 class PassModeRule : public SoccerRule {
   SPARK_CLASS(PassModeRule, SoccerRule)
  public:
   static void describe(Description<PassModeRule>& d);
 
-  /// A player asks for pass mode; what is not fulfilled is ignored quietly.
+  /// Requests pass mode for a player's team. Ignored if a condition of mayPass() is not met.
   void request(const soccer::Player& player);
-  /// s that goals of this team do not count yet, 0: they count.
+  /// Time until goals of the team count again [s]; 0: they count.
   double scoreWait(Side side) const;
-  /// Ends both teams' bans and waits.
-  void forget();
+  /// Ends the bans of both teams, and the time between two pass modes.
+  void reset();
 
  protected:
   void saveState(StateWriter& out) const override;
@@ -28,31 +28,35 @@ class PassModeRule : public SoccerRule {
  private:
   static constexpr double kNever = -1e6;  ///< s
   struct Team {
-    double lastActive = kNever;  ///< s of the simulated clock, when pass mode was on
+    double lastActive = kNever;  ///< simulated time of the last cycle of pass mode [s]
     bool cleared = true;         ///< goals count
-    bool ballAway = false;       ///< the ball has been far from `spot`
-    int toucher = 0;             ///< number of the first who touched the ball since
-    bool twoTouched = false;
+    bool ballAway = false;       ///< the ball has been far from `position`
+    int toucher = 0;             ///< number of the first player that touched the ball after pass mode; 0: none yet
+    bool twoTouched = false;     ///< another player has touched it, too
     static constexpr double kUnknown = -1;  ///< m
-    Vec3 spot = Vec3::Zero();               ///< where the ball was in pass mode [m]
-    std::array<double, GameStateAspect::kTeamSize + 1>
-        ballDistance{};  ///< of each player at the last judging [m]; < 0: unknown
-    double before(int unum) const { return unum <= GameStateAspect::kTeamSize ? ballDistance[unum] : kUnknown; }
+    Vec3 position = Vec3::Zero();           ///< of the ball in pass mode [m]
+    /// Distances of the players to the ball in the last cycle, by number [m].
+    std::array<double, GameStateAspect::kTeamSize + 1> ballDistance{};
+    /// Distance of a player to the ball in the last cycle [m].
+    double lastDistance(int unum) const { return unum <= GameStateAspect::kTeamSize ? ballDistance[unum] : kUnknown; }
   };
   Team& team(Side s) { return teams_[s == Side::right]; }
   const Team& team(Side s) const { return teams_[s == Side::right]; }
 
   void judge(const Event&) override;
-  void begin();
-  void passing();
+  void enterMode();
+  void judgePassMode();
   void earnRightToScore(Side side);
-  void noteDistances();
+  void recordDistances();
+  /// The conditions of the installed base: PlayOn; PassModeRetryWaitTime since the team's last pass mode; the ball is
+  /// slow and no player of the team touches it; in this cycle and the last the player is near the ball and no opponent
+  /// is.
   bool mayPass(const soccer::Player& player) const;
   double waitLeft() const { return scoreWait(Side::left); }
   double waitRight() const { return scoreWait(Side::right); }
 
   std::array<Team, 2> teams_;
-  std::int64_t modeSeen_ = -1;
+  std::int64_t modeSeen_ = -1;  ///< count of mode changes
 };
 
 }  // namespace spark

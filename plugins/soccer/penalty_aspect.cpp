@@ -17,9 +17,9 @@ void PenaltyAspect::rule(const Event& event) {
     if (!isFree(i)) serve(pitch, pitch.players()[i], records_[i], event.step);
 }
 
-void PenaltyAspect::call(const Pitch& pitch, std::size_t player, Foul foul, Sentence sentence, const Vec3& target) {
+void PenaltyAspect::call(const Pitch& pitch, std::size_t player, Foul foul, Penalty penalty, const Vec3& target) {
   if (!enabled() || !isFree(player)) return;
-  records_[player] = {sentence, foul, 0, target};
+  records_[player] = {penalty, foul, 0, target};
   const Player& p = pitch.players()[player];
   ++count_;
   kernel().log().info("soccer: foul: {}, {} {}", foulName(foul), soccer::sideName(p.side()), p.state->unum());
@@ -31,32 +31,32 @@ void PenaltyAspect::report(const Player& player, Foul foul) {
 }
 
 void PenaltyAspect::serve(const Pitch& pitch, const Player& player, Record& record, double step) {
-  if (record.sentence == Sentence::aside) {
+  if (record.penalty == Penalty::moveAside) {
     report(player, record.foul);
     pitch.moveSafely(player, record.target, true);
     record = {};
-  } else if (record.held * step < pitch.settings().foulHoldTime - 1e-9) {
-    ++record.held;
+  } else if (record.cyclesHeld * step < pitch.settings().foulHoldTime - 1e-9) {
+    ++record.cyclesHeld;
     report(player, record.foul);
-    const Vec3 here = player.position();
-    pitch.hold(player, Vec3(here.x(), here.y(), kHoldHeight + kHoldRise * record.held));
+    const Vec3 position = player.position();
+    pitch.relocate(player, Vec3(position.x(), position.y(), kHoldHeight + kHoldRise * record.cyclesHeld));
   } else {
-    pitch.putOutside(player, pitch.settings().agentRadius);
+    pitch.moveOffField(player, pitch.settings().agentRadius);
     record = {};
   }
 }
 
 void PenaltyAspect::Record::save(StateWriter& out) const {
-  out.write(static_cast<int>(sentence));
+  out.write(static_cast<int>(penalty));
   out.write(static_cast<int>(foul));
-  out.write(held);
+  out.write(cyclesHeld);
   for (int i = 0; i < 3; ++i) out.write(target[i]);
 }
 
 void PenaltyAspect::Record::load(StateReader& in) {
-  sentence = static_cast<Sentence>(in.readInteger());
+  penalty = static_cast<Penalty>(in.readInteger());
   foul = static_cast<Foul>(in.readInteger());
-  held = static_cast<int>(in.readInteger());
+  cyclesHeld = static_cast<int>(in.readInteger());
   for (int i = 0; i < 3; ++i) target[i] = in.readNumber();
 }
 

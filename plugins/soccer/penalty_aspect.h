@@ -6,41 +6,42 @@
 
 namespace spark {
 
-/// Carries out what fouls bring, and tells monitors. The last of the soccer aspects: fouls before it call players in
-/// the same cycle.
+/// Carries out penalties and reports fouls to monitors. The last of the soccer aspects: penalties start in the cycle in
+/// which the foul is called. As in the installed base:
 ///
-///     sendOff:    called -> held in the air for FoulHoldTime, rising (a foul record in each cycle)
-///                        -> beside the field -> free
-///     moveAside:  called -> moved (one foul record) -> free
+///     sendOff:    foul called -> lifted and held for FoulHoldTime (a foul record in each cycle)
+///                             -> moved beside the field -> free
+///     moveAside:  foul called -> moved (one foul record) -> free
 ///
-/// While the match pauses everybody is free.
+/// A pause of the match ends all penalties.
 class PenaltyAspect : public SoccerControlAspect {
   SPARK_CLASS(PenaltyAspect, SoccerControlAspect)
  public:
+  // In the n-th cycle of the hold the torso is at z = kHoldHeight + n * kHoldRise.
   static constexpr double kHoldHeight = 1.0;  ///< m
-  static constexpr double kHoldRise = 0.01;   ///< m per cycle of the hold
+  static constexpr double kHoldRise = 0.01;   ///< m
 
   static void describe(Description<PenaltyAspect>& d) {
-    d.doc("Carries out the penalties of fouls. After all other soccer aspects.");
+    d.doc("Carries out the penalties of fouls. Must be after all other soccer aspects.");
     d.property("fouls", &PenaltyAspect::count_).readOnly().doc("Number of fouls called since the start.");
   }
   void rule(const Event& event) override;
-  /// Switched off, everybody is free.
+  /// Disabled: all players are free.
   void rest(const Event&) override { records_.reset(); }
 
-  /// To be called by fouls before they judge.
+  /// Matches the records to the players of this cycle. Fouls call it before they judge.
   void follow(const soccer::Pitch& pitch) { records_.follow(pitch, *this); }
-  /// The player (an index) has no penalty to serve: only then he may be called.
-  bool isFree(std::size_t player) const { return records_[player].sentence == Sentence::none; }
-  /// He is held, and then placed outside.
+  /// True when the player (an index) serves no penalty. Fouls of other players are ignored.
+  bool isFree(std::size_t player) const { return records_[player].penalty == Penalty::none; }
+  /// Calls a foul: the player is held and then moved beside the field.
   void sendOff(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul) {
-    call(pitch, player, foul, Sentence::off, Vec3::Zero());
+    call(pitch, player, foul, Penalty::sendOff, Vec3::Zero());
   }
-  /// He is moved to a safe place near `target` [m], at once.
+  /// Calls a foul: the player is moved to a safe position near `target` [m] in this cycle.
   void moveAside(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul, const Vec3& target) {
-    call(pitch, player, foul, Sentence::aside, target);
+    call(pitch, player, foul, Penalty::moveAside, target);
   }
-  /// A foul that monitors are told of, and no more.
+  /// Reports a foul without a penalty to monitors.
   void report(const soccer::Player& player, soccer::Foul foul);
 
  protected:
@@ -54,20 +55,21 @@ class PenaltyAspect : public SoccerControlAspect {
   }
 
  private:
-  enum class Sentence { none, off, aside };
+  enum class Penalty { none, sendOff, moveAside };
   struct Record {
-    Sentence sentence = Sentence::none;
+    Penalty penalty = Penalty::none;
     soccer::Foul foul = soccer::Foul::incapable;
-    int held = 0;  ///< cycles
-    Vec3 target = Vec3::Zero();
+    int cyclesHeld = 0;
+    Vec3 target = Vec3::Zero();  ///< of moveAside [m]
     void save(StateWriter& out) const;
     void load(StateReader& in);
   };
-  void call(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul, Sentence sentence, const Vec3& target);
+  void call(const soccer::Pitch& pitch, std::size_t player, soccer::Foul foul, Penalty penalty, const Vec3& target);
+  /// Carries out one cycle of a penalty.
   void serve(const soccer::Pitch& pitch, const soccer::Player& player, Record& record, double step);
 
   soccer::PlayerRecords<Record> records_;
-  std::int64_t count_ = 0;
+  std::int64_t count_ = 0;  ///< fouls called
 };
 
 }  // namespace spark

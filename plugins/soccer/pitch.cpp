@@ -1,5 +1,4 @@
 #include "pitch.h"
-#include "spark/prefetch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +7,10 @@
 namespace spark::soccer {
 
 Bounds Player::bounds() const {
-  constexpr std::size_t kAhead = 3;                      // colliders
-  constexpr std::size_t kBefore = 192, kCollider = 576;  // bytes around an interface that are looked at
   Bounds all;
   Vec3 low, high;
-  for (std::size_t i = 0; i < colliders.size(); ++i) {
-    if (i + kAhead < colliders.size())
-      prefetch(reinterpret_cast<const char*>(colliders[i + kAhead]) - kBefore, kCollider);
-    colliders[i]->bounds(low, high);
+  for (const ICollider* collider : colliders) {
+    collider->bounds(low, high);
     all.low = all.low.cwiseMin(low);
     all.high = all.high.cwiseMax(high);
   }
@@ -24,8 +19,8 @@ Bounds Player::bounds() const {
 
 namespace {
 
-// Moves are computed as the installed base computes them, in single precision and from left to right: where a robot
-// stands decides every digit of what happens to it later.
+// Moves are computed like in the installed base, in single precision and with sums from left to right: the last digit
+// of a robot's position decides every later digit of its motion.
 
 Eigen::Matrix3f product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
   Eigen::Matrix3f out;
@@ -35,13 +30,13 @@ Eigen::Matrix3f product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
   return out;
 }
 
-Vec3f turned(const Eigen::Matrix3f& a, const Vec3f& v) {
+Vec3f rotated(const Eigen::Matrix3f& a, const Vec3f& v) {
   Vec3f out;
   for (int row = 0; row < 3; ++row) out[row] = (a(row, 0) * v[0] + a(row, 1) * v[1]) + a(row, 2) * v[2];
   return out;
 }
 
-void halt(IRigidBody& body) {
+void stop(IRigidBody& body) {
   body.setVelocity(Vec3::Zero());
   body.setAngularVelocity(Vec3::Zero());
 }
@@ -51,9 +46,9 @@ void halt(IRigidBody& body) {
 void Player::moveTo(const Vec3& target) const {
   const Vec3f from = position().cast<float>(), to = target.cast<float>();
   for (IRigidBody* b : bodies) {
-    const Vec3f place = to + (b->state().position.cast<float>() - from);
-    b->setPosition(place.cast<double>());
-    halt(*b);
+    const Vec3f moved = to + (b->state().position.cast<float>() - from);
+    b->setPosition(moved.cast<double>());
+    stop(*b);
   }
 }
 
@@ -61,27 +56,27 @@ void Player::moveTo(const Vec3& target, double yaw) const {
   const float angle = static_cast<float>(yaw), c = std::cos(angle), s = std::sin(angle);
   Eigen::Matrix3f upright;
   upright << c, -s, 0, s, c, 0, 0, 0, 1;
-  place(target, upright.cast<double>());
+  setPose(target, upright.cast<double>());
 }
 
-void Player::turnTo(const Mat3& orientation) const { place(position(), orientation); }
+void Player::rotateTo(const Mat3& orientation) const { setPose(position(), orientation); }
 
-void Player::place(const Vec3& target, const Mat3& orientation) const {
+void Player::setPose(const Vec3& target, const Mat3& orientation) const {
   if (!torso) return;
   const engine::BodyState reference = torso->state();
   const Vec3f from = reference.position.cast<float>(), to = target.cast<float>();
-  const Eigen::Matrix3f turn = product(orientation.cast<float>(), reference.rotation.cast<float>().transpose());
+  const Eigen::Matrix3f rotation = product(orientation.cast<float>(), reference.rotation.cast<float>().transpose());
   for (IRigidBody* b : bodies) {
     const engine::BodyState old = b->state();
-    const Vec3f place = to + turned(turn, old.position.cast<float>() - from);
-    b->setPose({place.cast<double>(), product(turn, old.rotation.cast<float>()).cast<double>()});
-    halt(*b);
+    const Vec3f moved = to + rotated(rotation, old.position.cast<float>() - from);
+    b->setPose({moved.cast<double>(), product(rotation, old.rotation.cast<float>()).cast<double>()});
+    stop(*b);
   }
 }
 
 namespace {
-/// A player without a state is none.
-Player playerWith(AgentAspect& agent) {
+/// The player of an agent. Its state is nullptr if the agent has no robot of a player.
+Player makePlayer(AgentAspect& agent) {
   Player p;
   p.agent = &agent;
   p.changedAt = agent.changedAt();
@@ -105,8 +100,7 @@ void Pitch::refresh(Kernel& kernel) {
   scene_ = root.find<ISceneServer>();
   ball_ = nullptr;
   ballRecorder_ = leftGoal_ = rightGoal_ = nullptr;
-  Node* field = scene_ ? root.find<Node>("/usr/scene") : nullptr;
-  if (field && settings_) {
+  if (Node* field = scene_ ? scene_->activeScene() : nullptr; field && settings_) {
     if (Node* ball = field->find<Node>("Ball")) ball_ = Below<IRigidBody>().find(*ball).object;
     ballRecorder_ = field->find<ICollisionRecorder>(settings_->ballRecorder);
     leftGoal_ = field->find<ICollisionRecorder>(settings_->leftGoalRecorder);
@@ -116,26 +110,27 @@ void Pitch::refresh(Kernel& kernel) {
   findPlayers();
 }
 
-/// Who did not change is taken over.
 void Pitch::findPlayers() {
+  // Look up the robots that are new or have changed; take over all others.
   std::vector<Player> now;
   if (gameControl_)
     for (AgentAspect* agent : gameControl_->agents()) {
-      const std::size_t before = indexOf(agent);
-      const bool same = before < players_.size() && players_[before].changedAt == agent->changedAt();
-      if (Player p = same ? std::move(players_[before]) : playerWith(*agent); p.state) now.push_back(std::move(p));
+      const std::size_t old = indexOf(agent);
+      const bool unchanged = old < players_.size() && players_[old].changedAt == agent->changedAt();
+      if (Player p = unchanged ? std::move(players_[old]) : makePlayer(*agent); p.state) now.push_back(std::move(p));
     }
   players_ = std::move(now);
+
   byAgent_.clear();
   for (const Player& p : players_) byAgent_.emplace_back(p.agent, byAgent_.size());
   std::sort(byAgent_.begin(), byAgent_.end(),
             [](const auto& a, const auto& b) { return std::less<>()(a.first, b.first); });
-  order_.reserve(players_.size());
+  order_.reserve(players_.size());  // so that no rule allocates
 }
 
 std::size_t Pitch::indexOf(const Leaf* agent) const {
   const auto it = std::lower_bound(byAgent_.begin(), byAgent_.end(), agent,
-                                   [](const auto& known, const Leaf* l) { return std::less<>()(known.first, l); });
+                                   [](const auto& entry, const Leaf* l) { return std::less<>()(entry.first, l); });
   return it != byAgent_.end() && it->first == agent ? it->second : players_.size();
 }
 
@@ -166,7 +161,7 @@ int Pitch::count(Side side) const {
 
 void Pitch::placeBall(const Vec3& position) const {
   if (!ball_) return;
-  ball_->enable();  // also when it is awake: where it is put it has not been idle yet
+  ball_->enable();  // even if it is awake: this restarts its idle time
   ball_->setPosition(position);
   ball_->setVelocity(Vec3::Zero());
   ball_->setAngularVelocity(Vec3::Zero());
@@ -179,8 +174,9 @@ Area Pitch::penaltyArea(Side side) const {
 }
 
 Area Pitch::opponentHalf(Side side) const {
-  constexpr double far = 1e6;
-  return side == Side::left ? Area{0, -far, far, far} : Area{-far, -far, 0, far};
+  constexpr double kUnlimited = 1e6;  // m
+  return side == Side::left ? Area{0, -kUnlimited, kUnlimited, kUnlimited}
+                            : Area{-kUnlimited, -kUnlimited, 0, kUnlimited};
 }
 
 Vec3 Pitch::freeBallPosition(const Vec3& wanted) const {
@@ -197,7 +193,7 @@ Vec3 Pitch::freeBallPosition(const Vec3& wanted) const {
 }
 
 template <class F>
-void Pitch::shuffled(Side side, RandomStream& random, F each) const {
+void Pitch::forEachShuffled(Side side, RandomStream& random, F each) const {
   order_.clear();
   for (const Player& p : players_)
     if (p.side() == side && p.torso) order_.push_back(&p);
@@ -206,7 +202,7 @@ void Pitch::shuffled(Side side, RandomStream& random, F each) const {
 }
 
 void Pitch::clearSphere(const Player& player, const Vec3& centre, double radius, double distance) const {
-  if (!player.bounds().touchesSphere(centre, radius)) return;
+  if (!player.bounds().intersectsSphere(centre, radius)) return;
   const double d = direction(player.side());
   Vec3 target = player.position();
   target.x() = centre.x() - d * distance;
@@ -218,12 +214,12 @@ void Pitch::clearSphere(const Player& player, const Vec3& centre, double radius,
 }
 
 void Pitch::clearSphere(Side side, const Vec3& centre, double radius, double distance, RandomStream& random) const {
-  shuffled(side, random, [&](const Player& p) { clearSphere(p, centre, radius, distance); });
+  forEachShuffled(side, random, [&](const Player& p) { clearSphere(p, centre, radius, distance); });
 }
 
 void Pitch::clearArea(Side side, const Area& area, double distance, RandomStream& random) const {
-  shuffled(side, random, [&](const Player& p) {
-    if (!area.touches(p.bounds())) return;
+  forEachShuffled(side, random, [&](const Player& p) {
+    if (!area.intersects(p.bounds())) return;
     Vec3 target = p.position();
     target.x() = side == Side::left ? area.minX - distance : area.maxX + distance;
     moveSafely(p, target, true);
@@ -231,12 +227,13 @@ void Pitch::clearArea(Side side, const Area& area, double distance, RandomStream
 }
 
 void Pitch::clearOpponentHalf(Side side, double circle, double distance, RandomStream& random) const {
-  shuffled(side, random, [&](const Player& p) {
+  forEachShuffled(side, random, [&](const Player& p) {
     const Bounds b = p.bounds();
-    if (!opponentHalf(side).touches(b)) return;
-    const double farX = std::max(std::abs(b.low.x()), std::abs(b.high.x())),
-                 farY = std::max(std::abs(b.low.y()), std::abs(b.high.y()));
-    if (std::hypot(farX, farY) < circle) return;
+    if (!opponentHalf(side).intersects(b)) return;
+    // The corner of the bounds that is farthest from the centre decides.
+    const double maxX = std::max(std::abs(b.low.x()), std::abs(b.high.x())),
+                 maxY = std::max(std::abs(b.low.y()), std::abs(b.high.y()));
+    if (std::hypot(maxX, maxY) < circle) return;
     Vec3 target = p.position();
     target.x() = -direction(side) * distance;
     moveSafely(p, target, true);
@@ -251,28 +248,29 @@ void Pitch::clearForKickOff(Side side, RandomStream& random) const {
 }
 
 void Pitch::repel(Side side, const Vec3& centre, double within, double distance, RandomStream& random) const {
-  shuffled(side, random, [&](const Player& p) {
-    Vec3 away = p.position() - centre;
-    away.z() = 0;
-    const double now = away.norm();
-    if (now >= within) return;
-    // who stands on the very spot goes towards his own end
-    const Vec3 outward = now > 1e-6 ? Vec3(away / now) : Vec3(-direction(side), 0, 0);
+  forEachShuffled(side, random, [&](const Player& p) {
+    Vec3 offset = p.position() - centre;
+    offset.z() = 0;
+    const double current = offset.norm();
+    if (current >= within) return;
+    // A player at the centre itself is moved towards its own end.
+    const Vec3 outward = current > 1e-6 ? Vec3(offset / current) : Vec3(-direction(side), 0, 0);
     const Vec3 target = centre + outward * distance;
     moveSafely(p, Vec3(target.x(), target.y(), p.position().z()), false);
   });
 }
 
 void Pitch::moveSafely(const Player& player, const Vec3& target, bool avoidBall) const {
-  hold(player, safePlace_.find(*this, player, target, avoidBall));
+  relocate(player, safeReposition_.find(*this, player, target, avoidBall));
 }
 
-void Pitch::hold(const Player& player, const Vec3& target) const {
+void Pitch::relocate(const Player& player, const Vec3& target) const {
   player.moveTo(target);
   player.state->setMovedAt(now());
 }
 
-void Pitch::putOutside(const Player& player, double z) const {
+void Pitch::moveOffField(const Player& player, double z) const {
+  // A column of 0.6 m spacing, number 7 at the centre line, as in the installed base.
   const double x = -direction(player.side()) * 0.6 * (7 - player.state->unum());
   const double y = (settings_->fieldWidth / 2 + 0.5) * (ballPosition().y() < 0 ? 1 : -1);
   moveSafely(player, Vec3(x, y, z), true);

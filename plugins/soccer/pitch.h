@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What rules and effectors see of the match: ball, goals, players and the settings, looked up once per shape of the
-/// tree.
+/// The match as rules and effectors see it: ball, goals, players and settings, looked up again when the shape of the
+/// tree changed; and the moves that the referee makes.
 
 #include <vector>
 
@@ -9,138 +9,151 @@
 #include "api/agents.h"
 #include "api/phases.h"
 #include "api/physics.h"
-#include "safe_place.h"
+#include "safe_reposition.h"
 #include "soccer_settings.h"
 #include "spark/random.h"
 
 namespace spark::soccer {
 
-/// An axis-aligned box.
+/// An axis-aligned box [m]; empty by default.
 struct Bounds {
   Vec3 low = Vec3::Constant(HUGE_VAL), high = Vec3::Constant(-HUGE_VAL);
   bool empty() const { return low.x() > high.x(); }
-  bool touchesSphere(const Vec3& centre, double radius) const {
+  /// True when the box and the sphere have a point in common.
+  bool intersectsSphere(const Vec3& centre, double radius) const {
     return !empty() && (centre - centre.cwiseMax(low).cwiseMin(high)).norm() <= radius;
   }
 };
 
-/// A rectangle on the ground.
+/// An axis-aligned rectangle on the ground [m].
 struct Area {
   double minX = 0, minY = 0, maxX = 0, maxY = 0;
+  /// True when the point is inside the rectangle extended by `pad` [m] on each side. Its border is outside.
   bool contains(double x, double y, double pad = 0) const {
     return x > minX - pad && x < maxX + pad && y > minY - pad && y < maxY + pad;
   }
-  /// As Bounds of any height.
-  bool touches(const Bounds& b) const {
+  /// True when the box, seen from above, overlaps the rectangle.
+  bool intersects(const Bounds& b) const {
     return !b.empty() && b.high.x() > minX && b.low.x() < maxX && b.high.y() > minY && b.low.y() < maxY;
   }
 };
 
-/// An agent with a robot that is a player.
+/// An agent whose robot has an AgentState. All pointers are valid until the shape of the tree changes.
 struct Player {
   AgentAspect* agent = nullptr;  ///< the outermost aspect
-  AgentState* state = nullptr;
-  std::uint64_t changedAt = 0;  ///< the agent's, when its parts were looked up
-  IRigidBody* torso = nullptr;  ///< first body of the innermost aspect; nullptr: a robot without bodies
+  AgentState* state = nullptr;   ///< never nullptr in Pitch::players()
+  std::uint64_t changedAt = 0;   ///< the agent's changedAt() when its parts were looked up
+  IRigidBody* torso = nullptr;   ///< first body of the innermost aspect; nullptr: the robot has no bodies
   std::vector<IRigidBody*> bodies;
   std::vector<ICollider*> colliders;
 
+  /// Side of its team; none before init.
   Side side() const { return state->side(); }
-  /// Of the torso, now [m].
+  /// Current position of the torso [m].
   Vec3 position() const { return torso ? torso->state().position : Vec3(Vec3::Zero()); }
-  /// Of all colliders, now.
+  /// Current bounds of all colliders.
   Bounds bounds() const;
-  /// Moves all bodies so that the torso stands at `target`; orientations stay, velocities are taken away.
+  /// Moves all bodies rigidly so that the torso is at `target` [m]. Keeps orientations, zeroes velocities.
   void moveTo(const Vec3& target) const;
-  /// As moveTo, and the torso is put upright with this yaw [rad] (protocol section 2.3).
+  /// Moves and rotates all bodies rigidly so that the torso is upright at `target` [m] with this yaw [rad]. Zeroes
+  /// velocities.
   void moveTo(const Vec3& target, double yaw) const;
-  /// Turns all bodies about the torso, which gets this orientation; velocities are taken away.
-  void turnTo(const Mat3& orientation) const;
+  /// Rotates all bodies rigidly about the torso so that it gets this orientation. Zeroes velocities.
+  void rotateTo(const Mat3& orientation) const;
 
  private:
-  /// Moves and turns all bodies as one, so that the torso gets this pose.
-  void place(const Vec3& target, const Mat3& orientation) const;
+  /// Moves and rotates all bodies rigidly so that the torso gets this pose.
+  void setPose(const Vec3& target, const Mat3& orientation) const;
 };
 
-/// Owned by game state, valid for its kernel. refresh() at the start of whatever runs in the simulation's thread.
+/// The match. Owned by game state. Every function that runs in the simulation's thread gets it by
+/// GameStateAspect::pitch(), which calls refresh().
 class Pitch {
  public:
-  /// Looks everything up again if the shape of the tree changed. Throws nothing: what is missing is nullptr.
+  /// Looks everything up again if the shape of the tree changed. What is missing becomes nullptr. Does not throw.
   void refresh(Kernel& kernel);
 
-  /// False when there are no settings: nothing below may be called then.
+  /// False when there are no settings: none of the functions below may be called then.
   bool ready() const { return settings_ != nullptr; }
   const SoccerSettings& settings() const { return *settings_; }
-  /// In the order of agents' numbers; only those with an AgentState.
+  /// All agents with an AgentState, sorted by the agents' numbers.
   const std::vector<Player>& players() const { return players_; }
+  /// The player with this side and uniform number; nullptr if there is none.
   const Player* player(Side side, int unum) const;
+  /// The player of the agent with this number; nullptr if there is none.
   const Player* playerOfAgent(int agentNumber) const;
-  /// The player to whom a collider (or anything else below an agent) belongs, nullptr when there is none.
+  /// The player that a collider (or any other node below an agent) belongs to; nullptr if there is none.
   const Player* playerOf(const Leaf* leaf) const;
+  /// Number of players of a side.
   int count(Side side) const;
 
+  /// The ball's body; nullptr if the scene has none.
   IRigidBody* ball() const { return ball_; }
+  /// The recorder of the ball's collider; nullptr if there is none.
   ICollisionRecorder* ballRecorder() const { return ballRecorder_; }
-  /// Of the goal that `side` defends.
+  /// The recorder of the trigger box in the goal that `side` defends; nullptr if there is none.
   ICollisionRecorder* goalRecorder(Side side) const { return side == Side::left ? leftGoal_ : rightGoal_; }
   ISceneServer* scene() const { return scene_; }
   IGameControl* gameControl() const { return gameControl_; }
 
+  /// Current position of the ball [m]; the origin if there is no ball.
   Vec3 ballPosition() const { return ball_ ? ball_->state().position : Vec3(Vec3::Zero()); }
-  /// Puts the ball somewhere at rest.
+  /// Moves the ball to `position` [m] and zeroes its velocities.
   void placeBall(const Vec3& position) const;
+  /// Position of the ball at the centre mark [m].
   Vec3 centre() const { return {0, 0, settings_->ballRadius}; }
   /// The penalty area that `side` defends.
   Area penaltyArea(Side side) const;
-  /// Everything on the other side of the centre line, seen from `side`.
+  /// The half of the ground that the opponents of `side` defend, without limits beyond the field.
   Area opponentHalf(Side side) const;
-  /// Outside of both penalty areas: an inner point comes to the area's front corner on its side; y stays on the field,
-  /// z as it is.
+  /// Position of a dropped ball or free kick: a point inside a penalty area is moved to the area's front corner, and y
+  /// is clamped to the field [m]. Keeps z.
   Vec3 freeBallPosition(const Vec3& wanted) const;
 
-  /// s: the simulated clock now.
+  /// Simulated time [s].
   double now() const { return simulation_ ? simulation_->time() : 0; }
 
-  // What the referee does to players (protocol section 6.6). Orientations stay, velocities are taken away, and the time
-  // is noted: rules that spare who was just moved ask movedWithin(player, 1.0). Bodies are moved at once, transforms
-  // follow at the next place phase.
-  /// Moves to `target` or the first safe place near it. `avoidBall`: not beside the ball either.
+  // Moves of the referee. They keep orientations, zero velocities and record the time for movedWithin(): rules that
+  // spare players who have just been moved read it. Bodies move at once, transforms follow in the next place phase.
+
+  /// Moves the player to `target` [m] or the first safe position near it. `avoidBall`: not close to the ball.
   void moveSafely(const Player& player, const Vec3& target, bool avoidBall) const;
-  /// Moves to `target` whoever stands there, as for a player who is held in the air.
-  void hold(const Player& player, const Vec3& target) const;
-  /// Beside the field on the side away from the ball, as after a foul; z [m].
-  void putOutside(const Player& player, double z) const;
-  /// The referee moved the player less than so many seconds ago.
+  /// Moves the player to `target` [m], even if that position is occupied.
+  void relocate(const Player& player, const Vec3& target) const;
+  /// Moves the player to its place beside the field, on the side away from the ball, at height `z` [m].
+  void moveOffField(const Player& player, double z) const;
+  /// True when the referee moved the player less than `seconds` ago.
   bool movedWithin(const Player& player, double seconds) const { return now() - player.state->movedAt() < seconds; }
 
-  // Clearing. Players are taken in an order that `random` shuffles.
-  /// Calls each(side) for both sides, in an order that a coin decides.
+  // Clearing. `random` shuffles the order of the players, as in the installed base. All lengths in m.
+
+  /// Calls each(side) for both sides, in random order.
   template <class F>
   void bothSides(RandomStream& random, F each) const {
     const Side first = random.below(2) == 0 ? Side::left : Side::right;
     each(first);
     each(opponent(first));
   }
-  /// Moves away who touches the sphere: `distance` towards his own end, or in y where that would be behind his goal
-  /// line.
+  /// Moves all players of `side` that intersect the sphere to x = centre -/+ `distance`, towards their own end; if that
+  /// is behind their goal line, to y = centre +/- `distance`, towards the middle.
   void clearSphere(Side side, const Vec3& centre, double radius, double distance, RandomStream& random) const;
-  /// As clearSphere for one player.
+  /// Like clearSphere, for one player.
   void clearSphere(const Player& player, const Vec3& centre, double radius, double distance) const;
-  /// Moves out of a rectangle, `distance` beyond its edge on the team's own side.
+  /// Moves all players of `side` out of the rectangle, to `distance` beyond its edge towards their own end.
   void clearArea(Side side, const Area& area, double distance, RandomStream& random) const;
-  /// Out of the opponents' half, to `distance` on the own side, unless all of him is within `circle` of the centre (0:
-  /// no circle).
+  /// Moves all players of `side` out of the opponents' half, to `distance` from the centre line. Players entirely
+  /// within `circle` of the centre stay; 0: all are moved.
   void clearOpponentHalf(Side side, double circle, double distance, RandomStream& random) const;
-  /// To where they may stand at a kick-off of `side`.
+  /// Moves both teams to where they may be at a kick-off of `side`.
   void clearForKickOff(Side side, RandomStream& random) const;
-  /// Pushes who is nearer than `within` radially to `distance` from the centre.
+  /// Moves all players of `side` that are closer than `within` to `centre` radially away, to `distance` from it.
   void repel(Side side, const Vec3& centre, double within, double distance, RandomStream& random) const;
 
  private:
   template <class F>
-  void shuffled(Side side, RandomStream& random, F each) const;
+  void forEachShuffled(Side side, RandomStream& random, F each) const;
   void findPlayers();
-  /// Index of the player of an agent, players_.size() when there is none.
+  /// Index of the agent's player; players_.size() if there is none.
   std::size_t indexOf(const Leaf* agent) const;
 
   TreeWatch tree_;
@@ -151,10 +164,10 @@ class Pitch {
   IRigidBody* ball_ = nullptr;
   ICollisionRecorder *ballRecorder_ = nullptr, *leftGoal_ = nullptr, *rightGoal_ = nullptr;
   std::vector<Player> players_;
-  std::vector<std::pair<const Leaf*, std::size_t>>
-      byAgent_;  ///< players by the address of their agent, to look up only
-  mutable std::vector<const Player*> order_;
-  mutable SafePlace safePlace_;
+  /// Indices of players, sorted by the address of the agent. Only for lookups: the order differs between runs.
+  std::vector<std::pair<const Leaf*, std::size_t>> byAgent_;
+  mutable std::vector<const Player*> order_;  ///< of forEachShuffled()
+  mutable SafeReposition safeReposition_;
 };
 
 }  // namespace spark::soccer

@@ -7,26 +7,28 @@ namespace spark {
 using soccer::Side;
 
 void PlayerContactAspect::rule(const Event&) {
-  meetings_.clear();
+  pairs_.clear();
   group_.clear();
-  atBall_.clear();
+  touchesBall_.clear();
   GameStateAspect* game = game_.get();
   if (game && game->pitch().ready()) {
     pitch_ = &game->pitch();
-    atBall_.resize(pitch_->players().size());
+    touchesBall_.resize(pitch_->players().size());
+    // Each player starts in a group of its own.
     for (std::size_t i = 0; i < pitch_->players().size(); ++i) group_.push_back(static_cast<int>(i));
-    for (const Told& t : told_) {
-      const int self = playerOf(t.self);
+    for (const Report& r : reports_) {
+      const int self = playerOf(r.self);
       if (self < 0) continue;
-      if (!t.other) {
-        atBall_[self] = 1;
-      } else if (const int other = playerOf(t.other); other >= 0 && other != self) {
-        meet(std::min(self, other), std::max(self, other), t.point);
+      if (!r.other) {
+        touchesBall_[self] = 1;
+      } else if (const int other = playerOf(r.other); other >= 0 && other != self) {
+        addContact(std::min(self, other), std::max(self, other), r.point);
       }
     }
-    for (Meeting& m : meetings_) m.point /= m.points;
+    // Up to here `point` is a sum.
+    for (Pair& p : pairs_) p.point /= p.points;
   }
-  told_.clear();
+  reports_.clear();
 }
 
 int PlayerContactAspect::playerOf(const AgentAspect* agent) const {
@@ -36,17 +38,17 @@ int PlayerContactAspect::playerOf(const AgentAspect* agent) const {
   return -1;
 }
 
-void PlayerContactAspect::meet(int a, int b, const Vec3& point) {
-  auto known = std::find_if(meetings_.begin(), meetings_.end(), [&](const Meeting& m) { return m.a == a && m.b == b; });
-  if (known == meetings_.end()) {
-    known = meetings_.insert(meetings_.end(), Meeting{a, b});
-    join(a, b);
+void PlayerContactAspect::addContact(int a, int b, const Vec3& point) {
+  auto pair = std::find_if(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return p.a == a && p.b == b; });
+  if (pair == pairs_.end()) {
+    pair = pairs_.insert(pairs_.end(), Pair{a, b});
+    mergeGroups(a, b);
   }
-  known->point += point;
-  ++known->points;
+  pair->point += point;
+  ++pair->points;
 }
 
-void PlayerContactAspect::join(int a, int b) {
+void PlayerContactAspect::mergeGroups(int a, int b) {
   const int keep = std::min(group_[a], group_[b]), drop = std::max(group_[a], group_[b]);
   std::replace(group_.begin(), group_.end(), drop, keep);
 }

@@ -6,57 +6,60 @@
 
 namespace spark {
 
-/// Who touches whom, and who the ball, in this cycle: what the colliders' AgentCollisionHandlers tell during physics,
-/// put together for the fouls that come after it. Players without a team count as nobody.
+/// The contacts of this cycle between players, and between players and the ball. AgentCollisionHandlers report them
+/// during the physics phase; the fouls that run after this aspect read them. Players without a team are ignored.
 class PlayerContactAspect : public SoccerControlAspect {
   SPARK_CLASS(PlayerContactAspect, SoccerControlAspect)
  public:
-  /// Two players touch each other.
-  struct Meeting {
+  /// Two players that touch each other.
+  struct Pair {
     int a = 0, b = 0;           ///< indices of players, a < b
-    Vec3 point = Vec3::Zero();  ///< mean of their contact points [m]
-    int points = 0;
+    Vec3 point = Vec3::Zero();  ///< mean of their contact points, world frame [m]
+    int points = 0;             ///< number of contact points
   };
 
   static void describe(Description<PlayerContactAspect>& d) {
-    d.doc("Who touches whom, and who the ball, in this cycle; touching and charging are judged by it.");
+    d.doc("The contacts of this cycle between players, and with the ball; touching and charging are judged by them.");
   }
   void rule(const Event& event) override;
-  /// Switched off, nobody touches anybody.
+  /// Disabled: there are no contacts.
   void rest(const Event& event) override {
-    told_.clear();
+    reports_.clear();
     rule(event);
   }
 
-  /// A collider of `self` meets one of `other`, nullptr: the ball's. During physics. The same point may be told from
-  /// both sides.
-  void add(const AgentAspect& self, const AgentAspect* other, const Vec3& point) {
-    told_.push_back({&self, other, point});
+  /// Reports a contact of `self` with `other` at `point` (world frame [m]); `other` nullptr: with the ball. Called
+  /// during the physics phase. Both agents may report the same point.
+  void report(const AgentAspect& self, const AgentAspect* other, const Vec3& point) {
+    reports_.push_back({&self, other, point});
   }
 
-  /// In the order in which their contacts were found.
-  std::span<const Meeting> meetings() const { return meetings_; }
-  /// The player touches the ball.
-  bool atBall(int player) const { return atBall_[player] != 0; }
-  /// Players who touch each other, directly or through others, have the same group: the least index of its members.
+  /// The pairs of players that touch, in the order in which their contacts were reported. Valid until the next rule
+  /// phase.
+  std::span<const Pair> pairs() const { return pairs_; }
+  /// True when the player (an index) touches the ball.
+  bool touchesBall(int player) const { return touchesBall_[player] != 0; }
+  /// The contact group of the player: players that touch each other, directly or through others, are in the same
+  /// group. It is the smallest index of its members.
   int group(int player) const { return group_[player]; }
 
  private:
-  struct Told {
+  struct Report {
     const AgentAspect* self;
-    const AgentAspect* other;
+    const AgentAspect* other;  ///< nullptr: the ball
     Vec3 point;
   };
+  /// Index of the agent's player; -1 when it has no team.
   int playerOf(const AgentAspect* agent) const;
-  void join(int a, int b);
-  void meet(int a, int b, const Vec3& point);
+  void mergeGroups(int a, int b);
+  void addContact(int a, int b, const Vec3& point);
 
   const soccer::Pitch* pitch_ = nullptr;  ///< of this cycle
-  // kept between cycles for their capacity only
-  std::vector<Told> told_;
-  std::vector<Meeting> meetings_;
-  std::vector<int> group_;
-  std::vector<char> atBall_;
+  // Rebuilt in each cycle; members only to keep their capacity.
+  std::vector<Report> reports_;
+  std::vector<Pair> pairs_;
+  std::vector<int> group_;         ///< by player
+  std::vector<char> touchesBall_;  ///< by player
 };
 
 }  // namespace spark

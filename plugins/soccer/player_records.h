@@ -7,13 +7,13 @@
 
 namespace spark::soccer {
 
-/// One record for each player of the pitch, by his index there. A player keeps his record while he stays, a new one
-/// starts with T(). T has save(StateWriter&) const and load(StateReader&).
+/// A record for each player of the pitch, by the player's index there. A player keeps its record until its agent
+/// leaves; new players get T(). T has save(StateWriter&) const and load(StateReader&).
 template <class T>
 class PlayerRecords {
  public:
-  /// Makes the records fit the players. To be called before they are used; costs a comparison while the tree's shape is
-  /// the same.
+  /// Matches the records to the players. Call it in each cycle before the records are used. Costs one comparison unless
+  /// the shape of the tree changed.
   void follow(const Pitch& pitch, const Leaf& anyNode) {
     if (!tree_.changed(anyNode)) return;
     std::vector<int> numbers;
@@ -27,7 +27,7 @@ class PlayerRecords {
     numbers_ = std::move(numbers);
     records_ = std::move(records);
   }
-  /// Back to T() for all.
+  /// Sets all records to T().
   void reset() {
     for (T& r : records_) r = T();
   }
@@ -57,7 +57,7 @@ class PlayerRecords {
 
  private:
   TreeWatch tree_;
-  std::vector<int> numbers_;  ///< of the agents, ascending as players are
+  std::vector<int> numbers_;  ///< of the agents, ascending, like players
   std::vector<T> records_;
 };
 

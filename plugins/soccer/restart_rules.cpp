@@ -14,21 +14,22 @@ void SetPieceRule::repelOnce() {
 void RestartRule::judge(const Event&) {
   const bool indirect = in(PlayMode::kickInLeft) || in(PlayMode::freeKickLeft);
   if (!indirect && !in(PlayMode::cornerKickLeft) && !in(PlayMode::directFreeKickLeft)) return;
-  if (!open()) return;
-  const Vec3& where = referee().kickPosition();
-  pitch().clearSphere(opponent(side()), where, settings().freeKickDistance, settings().freeKickMoveDist, random());
+  if (!isOpen()) return;
+  const Vec3& position = referee().kickPosition();
+  pitch().clearSphere(opponent(side()), position, settings().freeKickDistance, settings().freeKickMoveDist, random());
   repelOnce();
   if (kicked())
     referee().taken(indirect);
   else
-    pitch().placeBall(where);
+    pitch().placeBall(position);
 }
 
 void GoalKickRule::judge(const Event&) {
-  if (!in(PlayMode::goalKickLeft) || !open()) return;
+  if (!in(PlayMode::goalKickLeft) || !isOpen()) return;
   const soccer::Area area = pitch().penaltyArea(side());
   pitch().clearArea(opponent(side()), area, settings().freeKickMoveDist, random());
   repelOnce();
+  // After the first touch the ball is free until it leaves the area.
   if (kickedIn_ != game().modeChanges()) {
     if (!kicked()) return pitch().placeBall(referee().kickPosition());
     kickedIn_ = game().modeChanges();
@@ -49,7 +50,7 @@ void GoalKickRule::loadState(StateReader& in) {
 }
 
 void DropBallRule::judge(const Event&) {
-  // At a kick-off nobody holds the ball: it is dropped where it lies, at its height.
+  // At a kick-off the ball is not held: it is dropped at its current position.
   if (in(PlayMode::kickOffLeft) && game().modeReached(settings().ruleDropBallTime))
     return referee().dropBall(pitch().ballPosition());
   for (const PlayMode restart : {PlayMode::kickInLeft, PlayMode::cornerKickLeft, PlayMode::goalKickLeft,

@@ -4,32 +4,33 @@
 
 namespace spark {
 
-/// What restarts have in common. Nothing happens for RuleKickInPauseTime; then opponents are cleared, the kicking team
-/// is pushed off the ball once, and the ball is pinned to the kick position until it is touched.
+/// Base of the restarts, with the procedure of the installed base: nothing happens for RuleKickInPauseTime; then
+/// opponents are moved away, players of the kicking team are once moved to KickRepelDist from the ball, and the ball is
+/// held at the kick position until it is touched.
 class SetPieceRule : public SoccerRule {
   SPARK_CLASS(SetPieceRule, SoccerRule)
  public:
-  static constexpr double kTouchDelay = 0.03;  ///< s after the pause before a touch takes a restart
+  static constexpr double kTouchDelay = 0.03;  ///< after the pause, before a touch takes a restart [s]
   static void describe(Description<SetPieceRule>& d) {
-    d.doc("What restarts have in common.");
+    d.doc("Base of the restarts.");
     d.abstract();
   }
 
  protected:
-  /// The pause is over.
-  bool open() const { return game().modeReached(settings().ruleKickInPauseTime); }
-  /// The ball is touched, and the touch takes the restart.
+  /// True when the pause is over.
+  bool isOpen() const { return game().modeReached(settings().ruleKickInPauseTime); }
+  /// True when the restart is taken in this cycle, by a touch of any player.
   bool kicked() const { return ball().touched() && game().modeTime() > settings().ruleKickInPauseTime + kTouchDelay; }
-  /// Pushes the kicking team off the ball, once in a mode.
+  /// Moves the kicking team away from the ball, once in each mode.
   void repelOnce();
   void saveState(StateWriter& out) const override { out.write(repelledIn_); }
   void loadState(StateReader& in) override { repelledIn_ = in.readInteger(); }
 
  private:
-  std::int64_t repelledIn_ = -1;  ///< count of mode changes
+  std::int64_t repelledIn_ = -1;  ///< count of mode changes then
 };
 
-/// KickIn_X, corner_kick_X, free_kick_X, direct_free_kick_X.
+/// KickIn_X, corner_kick_X, free_kick_X and direct_free_kick_X. Kick-ins and free kicks are indirect.
 class RestartRule : public SetPieceRule {
   SPARK_CLASS(RestartRule, SetPieceRule)
  public:
@@ -39,7 +40,7 @@ class RestartRule : public SetPieceRule {
   void judge(const Event&) override;
 };
 
-/// goal_kick_X: opponents leave the penalty area; play goes on when the ball has left it.
+/// goal_kick_X: opponents are moved out of the penalty area; PlayOn when the ball has left the area.
 class GoalKickRule : public SetPieceRule {
   SPARK_CLASS(GoalKickRule, SetPieceRule)
  public:
@@ -51,14 +52,16 @@ class GoalKickRule : public SetPieceRule {
 
  private:
   void judge(const Event&) override;
-  std::int64_t kickedIn_ = -1;  ///< count of mode changes
+  std::int64_t kickedIn_ = -1;  ///< count of mode changes then
 };
 
-/// A restart or kick-off that nobody takes for RuleDropBallTime becomes a drop ball.
+/// A restart or kick-off that is not taken within RuleDropBallTime becomes a drop ball.
 class DropBallRule : public SoccerRule {
   SPARK_CLASS(DropBallRule, SoccerRule)
  public:
-  static void describe(Description<DropBallRule>& d) { d.doc("A restart that nobody takes becomes a drop ball."); }
+  static void describe(Description<DropBallRule>& d) {
+    d.doc("A restart that is not taken in time becomes a drop ball.");
+  }
 
  private:
   void judge(const Event&) override;

@@ -7,7 +7,7 @@
 
 namespace spark {
 
-/// Sees within a cone, in the frame of the head or along the field's axes:
+/// Vision within a view cone, in the frame of the head or along the axes of the team's frame:
 /// `(See (G1R (pol ...)) (B (pol ...)) (P (team A) (id 3) (rlowerarm (pol ...)) ...))`.
 class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public IEye, public soccer::SeeReader {
   SPARK_CLASS(RestrictedVisionPerceptor, Perceptor)
@@ -15,15 +15,16 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   RestrictedVisionPerceptor() { predicateName_ = "See"; }
   static void describe(Description<RestrictedVisionPerceptor>& d);
   void sense(Predicates& out, const Event& event) override;
-  void share(std::uint64_t round) override { outlook_.share(*this, round, range_); }
+  void share(std::uint64_t round) override { eye_.share(*this, round, range_); }
 
   Matrix view() override;
   std::array<double, 2> cone() override;
   double range() override;
   Vec3f placeOf(double distance, double horizontalDeg, double verticalDeg) override;
   void sights(std::vector<Sight>& out) override;
-  /// deg, of the static axis mode.
+  /// Smallest and largest pan of a PanTiltEffector [deg].
   const std::array<int, 2>& panRange() const { return pan_; }
+  /// Smallest and largest tilt of a PanTiltEffector [deg].
   const std::array<int, 2>& tiltRange() const { return tilt_; }
 
  protected:
@@ -31,11 +32,11 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   void loadState(StateReader& in) override { noise_.load(in); }
 
  private:
-  /// The league may look more or less often than the robot's scene file says.
+  /// Soccer.VisionInterval overrides the interval of the robot's scene file.
   void prepare(const Event&);
   void setViewCones(int horizontal, int vertical) {
     cone_ = {horizontal, vertical};
-    glances_.clear();
+    cache_.clear();
   }
   void setPanRange(int low, int high) { pan_ = {std::min(low, high), std::max(low, high)}; }
   void setTiltRange(int low, int high) { tilt_ = {std::min(low, high), std::max(low, high)}; }
@@ -47,40 +48,48 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   }
   const RandomStream& randomState() const { return noise_.random; }
   void setRandomState(RandomStream r) { noise_.random = r; }
-  soccer::Side side() const { return outlook_.state() ? outlook_.state()->side() : soccer::Side::none; }
-  bool inField() const { return staticAxis_ || !transform(); }
-  Vec3f toView(const Vec3f& way) const;
+  soccer::Side side() const { return eye_.state() ? eye_.state()->side() : soccer::Side::none; }
+  /// True when angles are relative to the team's frame, false: to the head's.
+  bool usesTeamFrame() const { return staticAxis_ || !transform(); }
+  /// Rotates an offset from the eye (world frame [m]) into the frame in which angles are measured.
+  Vec3f toView(const Vec3f& offset) const;
+  /// Polar coordinates of a point in that frame [m], without noise.
   soccer::Polar direction(const Vec3f& view) const;
   bool inCone(const soccer::Polar& p) const;
-  bool isPlainlyOutside(const Vec3f& view) const;
-  bool find(const Vec3f& view, soccer::Polar& out);
-  bool look(const Vec3f& place, soccer::Polar& out);
-  bool lookAtLine(const soccer::Sights::Stroke& line, soccer::Polar& begin, soccer::Polar& end);
-  void openEye();
-  void seeLines(Predicates& out);
-  void seeRobot(const soccer::Sights::Robot& robot, Predicates& out);
+  /// A cheap test that needs no angles: true for most directions outside of the cone, false for all inside.
+  bool isClearlyOutside(const Vec3f& view) const;
+  /// Polar coordinates of a point in the view frame [m]. Returns false when it is outside of the cone.
+  bool measure(const Vec3f& view, soccer::Polar& out);
+  /// Measures a point (world frame [m]), with noise. Returns false when it is too near, out of range or outside of the
+  /// cone.
+  bool see(const Vec3f& point, soccer::Polar& out);
+  /// Measures the ends of the visible part of a line, with noise. Returns false when nothing of it is visible.
+  bool seeLine(const soccer::VisibleObjects::FieldLine& line, soccer::Polar& begin, soccer::Polar& end);
+  void beginSense();
+  void writeLines(Predicates& out);
+  void writeRobot(const soccer::VisibleObjects::Robot& robot, Predicates& out);
 
-  soccer::Outlook outlook_;
+  soccer::EyeContext eye_;
   soccer::VisionNoise noise_{*this};
   std::array<int, 2> cone_{90, 90}, pan_{-90, 90}, tilt_{-20, 20};
   bool staticAxis_ = true, senseMyPos_ = false, senseMyOrien_ = false, senseBallPos_ = false, senseLine_ = false,
        senseLineName_ = false;
-  float range_ = soccer::Sights::kUnlimited;
-  /// What stood where in its view when it looked last: robots at rest see the same again, and angles are what seeing
-  /// costs.
-  struct Glance {
-    Vec3f view = Vec3f::Constant(std::numeric_limits<float>::quiet_NaN());  ///< in the frame in which it looks [m]
-    bool seen = false;
+  float range_ = soccer::VisibleObjects::kUnlimited;
+  /// The direction of a tested point, cached from the previous percept: angles are expensive, and many robots stand
+  /// still.
+  struct CachedDirection {
+    Vec3f view = Vec3f::Constant(std::numeric_limits<float>::quiet_NaN());  ///< the point in the view frame [m]
+    bool inCone = false;
     soccer::Polar polar;  ///< without noise
   };
-  std::vector<Glance> glances_;  ///< in the order of looking
-  std::size_t glance_ = 0;       ///< the next one
-  // while it looks
-  Vec3f here_ = Vec3f::Zero();  ///< m
+  std::vector<CachedDirection> cache_;  ///< in the order of the tests
+  std::size_t nextCached_ = 0;          ///< index for the next test
+  // During sense():
+  Vec3f origin_ = Vec3f::Zero();  ///< own position, world frame [m]
   struct {
     double sin = 0, cos = 1;
-  } halfWidth_, halfHeight_;           ///< of the cone
-  std::array<float, 2> window_{1, 1};  ///< half width and height of what it sees, 1 m ahead
+  } halfWidth_, halfHeight_;               ///< of half the angles of the cone
+  std::array<float, 2> halfWindow_{1, 1};  ///< half width and half height of the image plane at a distance of 1 m
 };
 
 }  // namespace spark

@@ -18,7 +18,7 @@ void readThing(std::string name, const Element& polar, Sightings& out) {
   if (const auto at = polarIn(polar)) out.things.push_back({std::move(name), *at});
 }
 
-/// A player is seen whole, or by its parts.
+/// A player has one position, or one for each visible part.
 void readPlayer(const Element& player, Sightings& out) {
   const Element team = player.named("team"), id = player.named("id");
   const std::string name = fmt::format("P {} {}", team ? team.at(1).text() : "", id ? id.at(1).integer() : 0);

@@ -6,13 +6,14 @@ namespace spark {
 
 namespace {
 
-/// How a part is called: after the transform that carries it.
+/// Name of the part of the robot that a box belongs to: that of the transform above.
 const std::string& partName(IRobotBox& box) {
   const auto* part = box.leaf().ancestor<Transform>();
   return part ? part->name() : box.leaf().name();
 }
 
-/// A trainer may have set the clock of play back: then it is long ago.
+/// True when `since` is less than `seconds` ago. False for times in the future: a trainer may set the clock of play
+/// back.
 bool isWithin(double seconds, double since, double now) { return now >= since && now - since < seconds; }
 
 }  // namespace
@@ -32,29 +33,30 @@ void SelfCollisionAspect::reset() {
     for (Joint& j : robot.joints) {
       if (j.frozen) j.effector->freeze(false);
       j.frozen = false;
-      j.since = kLongAgo;
+      j.frozenAt = kLongAgo;
     }
-    robot.sentOff = kLongAgo;
+    robot.sentOffAt = kLongAgo;
   }
 }
 
 void SelfCollisionAspect::lookUp() {
   if (!tree_.changed(*this)) return;
+  // Look up the robots that are new or have changed; take over all others.
   std::vector<Robot> now;
   for (const soccer::Player& p : players()) {
-    const auto before =
+    const auto old =
         std::find_if(robots_.begin(), robots_.end(), [&](const Robot& r) { return r.agent == p.agent->number(); });
-    if (before != robots_.end() && before->changedAt == p.changedAt) {
-      now.push_back(std::move(*before));
+    if (old != robots_.end() && old->changedAt == p.changedAt) {
+      now.push_back(std::move(*old));
       continue;
     }
-    now.push_back(dissect(p));
-    if (before != robots_.end()) keepClocks(*before, now.back());
+    now.push_back(makeRobot(p));
+    if (old != robots_.end()) copyTimes(*old, now.back());
   }
   robots_ = std::move(now);
 }
 
-SelfCollisionAspect::Robot SelfCollisionAspect::dissect(const soccer::Player& player) const {
+SelfCollisionAspect::Robot SelfCollisionAspect::makeRobot(const soccer::Player& player) {
   Robot robot;
   robot.agent = player.agent->number();
   robot.changedAt = player.changedAt;
@@ -65,11 +67,13 @@ SelfCollisionAspect::Robot SelfCollisionAspect::dissect(const soccer::Player& pl
   player.agent->collect(boxes);
   for (IRobotBox* box : boxes) {
     Box& b = robot.boxes.emplace_back(Box{box, {}, (box->boxLengths() / 2).cast<float>(), {}});
+    // The joints that it names.
     for (std::size_t k = 0; k < effectors.size(); ++k)
       if (const auto& names = box->freezeJointEffectors();
           std::find(names.begin(), names.end(), effectors[k]->leaf().name()) != names.end())
-        b.limb.push_back(static_cast<int>(k));
+        b.joints.push_back(static_cast<int>(k));
   }
+  // All pairs, unless the later box excludes the earlier one.
   for (std::size_t a = 0; a < boxes.size(); ++a)
     for (std::size_t b = a + 1; b < boxes.size(); ++b) {
       if (boxes[b]->ignores(boxes[a]->leaf().name())) continue;
@@ -79,18 +83,17 @@ SelfCollisionAspect::Robot SelfCollisionAspect::dissect(const soccer::Player& pl
   return robot;
 }
 
-/// What is added to a robot comes after its older joints.
-void SelfCollisionAspect::keepClocks(const Robot& from, Robot& to) {
-  to.sentOff = from.sentOff;
+void SelfCollisionAspect::copyTimes(const Robot& from, Robot& to) {
+  to.sentOffAt = from.sentOffAt;
   for (std::size_t k = 0; k < std::min(from.joints.size(), to.joints.size()); ++k) {
     to.joints[k].frozen = from.joints[k].frozen;
-    to.joints[k].since = from.joints[k].since;
+    to.joints[k].frozenAt = from.joints[k].frozenAt;
   }
 }
 
 void SelfCollisionAspect::thaw(Robot& robot, double now) {
   for (Joint& j : robot.joints) {
-    if (!j.frozen || isWithin(settings().selfCollisionJointFrozenTime, j.since, now)) continue;
+    if (!j.frozen || isWithin(settings().selfCollisionJointFrozenTime, j.frozenAt, now)) continue;
     j.effector->freeze(false);
     j.frozen = false;
   }
@@ -99,41 +102,40 @@ void SelfCollisionAspect::thaw(Robot& robot, double now) {
 void SelfCollisionAspect::judgeRobot(std::size_t player, double now) {
   const SoccerSettings& s = settings();
   Robot& robot = robots_[player];
-  for (Box& b : robot.boxes) b.now = soccer::SingleBox(b.box->pose(), b.half);
-  bool foul = false;
+  for (Box& b : robot.boxes) b.current = soccer::SingleBox(b.box->pose(), b.half);
+  bool foul = false;  // report one foul, however many pairs overlap
   for (const Pair& pair : robot.pairs) {
     if (!overlap(robot, pair)) continue;
     const Box &a = robot.boxes[pair.a], &b = robot.boxes[pair.b];
     if (s.selfCollisionBeamPenalty) {
-      if (isWithin(s.selfCollisionBeamCooldownTime, robot.sentOff, now)) return;
-      robot.sentOff = now;
-      tell(players()[player], a, b, now);
+      if (isWithin(s.selfCollisionBeamCooldownTime, robot.sentOffAt, now)) return;
+      robot.sentOffAt = now;
+      record(players()[player], a, b, now);
       if (s.foulOnSelfCollisions) sendOff(player, Foul::selfCollision);
       return;
     }
     const bool frozeA = freeze(robot, a, now), frozeB = freeze(robot, b, now);
     if (!frozeA && !frozeB) continue;
-    tell(players()[player], a, b, now);
+    record(players()[player], a, b, now);
     foul = true;
   }
   if (foul && s.foulOnSelfCollisions) penalties().report(players()[player], Foul::selfCollision);
 }
 
 bool SelfCollisionAspect::overlap(const Robot& robot, const Pair& pair) const {
-  const soccer::SingleBox &a = robot.boxes[pair.a].now, &b = robot.boxes[pair.b].now;
+  const soccer::SingleBox &a = robot.boxes[pair.a].current, &b = robot.boxes[pair.b].current;
   if ((a.centre - b.centre).squaredNorm() > pair.reachSquared) return false;
   return soccer::overlapBeyond(static_cast<float>(settings().selfCollisionsTolerance), a, b);
 }
 
-/// True when a joint of the limb was neither frozen nor spared. Without FoulOnSelfCollisions only its clock starts.
 bool SelfCollisionAspect::freeze(Robot& robot, const Box& box, double now) {
   const SoccerSettings& s = settings();
-  const double spared = s.selfCollisionJointFrozenTime + s.selfCollisionJointThawTime;
+  const double immunity = s.selfCollisionJointFrozenTime + s.selfCollisionJointThawTime;
   bool any = false;
-  for (int k : box.limb) {
+  for (int k : box.joints) {
     Joint& joint = robot.joints[k];
-    if (isWithin(spared, joint.since, now)) continue;
-    joint.since = now;
+    if (isWithin(immunity, joint.frozenAt, now)) continue;
+    joint.frozenAt = now;
     joint.frozen = s.foulOnSelfCollisions;
     if (joint.frozen) joint.effector->freeze(true);
     any = true;
@@ -141,7 +143,7 @@ bool SelfCollisionAspect::freeze(Robot& robot, const Box& box, double now) {
   return any;
 }
 
-void SelfCollisionAspect::tell(const soccer::Player& player, const Box& a, const Box& b, double now) {
+void SelfCollisionAspect::record(const soccer::Player& player, const Box& a, const Box& b, double now) {
   const SoccerSettings& s = settings();
   if (!s.printSelfCollisions && !s.writeSelfCollisionsToFile) return;
   const std::string line = fmt::format("{} {}: {} and {}", soccer::sideName(player.side()), player.state->unum(),
@@ -155,9 +157,9 @@ void SelfCollisionAspect::saveState(StateWriter& out) const {
   out.write(static_cast<std::int64_t>(robots_.size()));
   for (const Robot& r : robots_) {
     out.write(r.agent);
-    out.write(r.sentOff);
+    out.write(r.sentOffAt);
     out.write(static_cast<std::int64_t>(r.joints.size()));
-    for (const Joint& j : r.joints) out.write(j.frozen), out.write(j.since);
+    for (const Joint& j : r.joints) out.write(j.frozen), out.write(j.frozenAt);
   }
 }
 
@@ -166,11 +168,11 @@ void SelfCollisionAspect::loadState(StateReader& in) {
   for (std::int64_t n = in.readInteger(); n > 0; --n) {
     Robot& r = robots_.emplace_back();
     r.agent = static_cast<int>(in.readInteger());
-    r.sentOff = in.readNumber();
+    r.sentOffAt = in.readNumber();
     for (std::int64_t k = in.readInteger(); k > 0; --k) {
       Joint& j = r.joints.emplace_back(Joint{nullptr});
       j.frozen = in.readBool();
-      j.since = in.readNumber();
+      j.frozenAt = in.readNumber();
     }
   }
   tree_.lookAgain();

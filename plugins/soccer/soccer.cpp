@@ -22,14 +22,14 @@
 #include "trainer_command_parser.h"
 #include "vision_perceptor.h"
 
-SPARK_PLUGIN("soccer", "1.0", "Soccer: field, rules, and what players sense and do.",
+SPARK_PLUGIN("soccer", "1.0", "Soccer: field, rules, perceptors and effectors.",
              // the field
              spark::SoccerSettings, spark::Ball, spark::FieldFlag, spark::SoccerNode, spark::ObjectState,
              spark::GoalPost, spark::Line, spark::AgentState, spark::AgentCollisionHandler,
              // rules
              spark::SoccerControlAspect, spark::GameStateAspect, spark::BallStateAspect, spark::SoccerRuleAspect,
              spark::OffsideAspect, spark::SPLState, spark::SPLRule, spark::TeamlessAspect,
-             // the referee's rules of play
+             // rules of play
              spark::SoccerRule, spark::BeforeKickOffRule, spark::KickOffRule, spark::SetPieceRule, spark::RestartRule,
              spark::GoalKickRule, spark::PassModeRule, spark::DoubleTouchRule, spark::GoalRule,
              spark::PenaltyShootoutRule, spark::BallOutRule, spark::DropBallRule,
@@ -37,10 +37,10 @@ SPARK_PLUGIN("soccer", "1.0", "Soccer: field, rules, and what players sense and 
              spark::PlayerContactAspect, spark::FoulAspect, spark::IncapableFoulAspect, spark::CrowdingFoulAspect,
              spark::IllegalDefenceAspect, spark::TouchingFoulAspect, spark::ChargingFoulAspect,
              spark::BallHoldingAspect, spark::SelfCollisionAspect, spark::PenaltyAspect,
-             // what players sense
+             // perceptors
              spark::GameStatePerceptor, spark::HearPerceptor, spark::AgentStatePerceptor, spark::GameTimePerceptor,
              spark::VisionPerceptor, spark::RestrictedVisionPerceptor,
-             // what players do
+             // effectors
              spark::InitEffector, spark::SingleMatInitEffector, spark::StaticMeshInitEffector, spark::BeamEffector,
              spark::SayEffector, spark::PassEffector, spark::KickEffector, spark::DriveEffector, spark::CatchEffector,
              spark::PanTiltEffector,

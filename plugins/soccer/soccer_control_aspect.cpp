@@ -7,7 +7,7 @@
 namespace spark {
 
 void SoccerControlAspect::describe(Description<SoccerControlAspect>& d) {
-  d.doc("Base of the rules of soccer.");
+  d.doc("Base of the control aspects of soccer.");
   d.abstract();
   d.link(&SoccerControlAspect::game_, Beside<GameStateAspect>());
   d.link(&SoccerControlAspect::ball_, Beside<BallStateAspect>());

@@ -9,7 +9,8 @@ class BallStateAspect;
 class GameStateAspect;
 class SoccerRuleAspect;
 
-/// Base of the rules of soccer: finds the match and says what is missing.
+/// Base of the control aspects of soccer: links them to each other. Linking throws Error when there are no
+/// SoccerSettings.
 class SoccerControlAspect : public ControlAspect {
   SPARK_CLASS(SoccerControlAspect, ControlAspect)
  public:
@@ -18,7 +19,7 @@ class SoccerControlAspect : public ControlAspect {
  protected:
   void onLink() override { kernel().root().require<SoccerSettings>(); }
 
-  /// The aspects beside it that hold the match; empty where the config has none.
+  /// The aspects of the match beside this one; empty when the config has none.
   Link<GameStateAspect, true> game_;
   Link<BallStateAspect, true> ball_;
   Link<SoccerRuleAspect, true> referee_;

@@ -4,9 +4,9 @@
 
 namespace spark {
 
-/// Base of the rules of play. A rule stands below the referee (SoccerRuleAspect), or beside and after it, and judges
-/// once a cycle, in tree order. It acts on the referee's `mode()`, and asks `holds()` or `playing()` whether a rule
-/// before it has ended that mode already.
+/// Base of the rules of play. A rule is a child of the referee (SoccerRuleAspect), or its sibling after it. Rules judge
+/// once in each cycle, in tree order. A rule judges the referee's mode(), the mode at the start of the cycle; holds()
+/// and playing() say whether an earlier rule has already ended it.
 class SoccerRule : public ControlAspect {
   SPARK_CLASS(SoccerRule, ControlAspect)
  public:
@@ -27,9 +27,9 @@ class SoccerRule : public ControlAspect {
   }
 
  protected:
-  /// Everything below may be called.
+  /// Judges a cycle. Only here and in skip() may the accessors below be called.
   virtual void judge(const Event& event) = 0;
-  /// Instead of judge() while the rule is switched off.
+  /// Called instead of judge() while the rule is disabled.
   virtual void skip() {}
 
   SoccerRuleAspect& referee() const { return *referee_; }
@@ -39,9 +39,9 @@ class SoccerRule : public ControlAspect {
   const SoccerSettings& settings() const { return referee_->settings(); }
   RandomStream& random() const { return game().random(); }
   PlayMode mode() const { return referee_->mode(); }
-  /// The team that the mode names.
+  /// The side that the mode is for.
   Side side() const { return sideOf(mode()); }
-  /// mode() is that kind of mode, for either side (`left`: its left variant), and still holds.
+  /// True when mode() is `left` or the same mode for the right side, and still holds.
   bool in(PlayMode left) const { return (mode() == left || mode() == forSide(left, Side::right)) && referee_->holds(); }
 
   void onLink() override {
@@ -52,6 +52,7 @@ class SoccerRule : public ControlAspect {
   }
 
  private:
+  /// Looks up the referee; false when there is none.
   bool findReferee() {
     referee_ = above_ ? above_.get() : beside_.get();
     return referee_ != nullptr;

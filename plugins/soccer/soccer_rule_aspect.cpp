@@ -9,8 +9,8 @@ using soccer::PlayMode;
 using soccer::Side;
 
 namespace {
-constexpr std::size_t kFoulsKept = 64;
-/// In the order of judging.
+constexpr std::size_t kMaxFouls = 64;
+/// In the order in which they judge.
 constexpr const char* kRules[] = {"BeforeKickOffRule", "KickOffRule",     "RestartRule", "GoalKickRule",
                                   "PassModeRule",      "DoubleTouchRule", "GoalRule",    "PenaltyShootoutRule",
                                   "BallOutRule",       "DropBallRule"};
@@ -19,18 +19,18 @@ constexpr const char* kRules[] = {"BeforeKickOffRule", "KickOffRule",     "Resta
 void SoccerRuleAspect::describe(Description<SoccerRuleAspect>& d) {
   using R = SoccerRuleAspect;
   d.doc(
-      "The referee: what the rules of play share. It makes the rules below itself: KickOffRule, GoalRule, "
+      "The referee: the state that the rules of play share. It creates the rules below itself: KickOffRule, GoalRule, "
       "PassModeRule, ...");
   d.link(&SoccerRuleAspect::passMode_, Child<PassModeRule>());
   d.property("kickPosition", &R::kickPosition_)
       .unit("m")
       .readOnly()
       .state()
-      .doc("Where the current or last restart is taken.");
-  d.method("dropBall", &R::dropBall).parameters({"where [m]"}).doc("Drops the ball there; play goes on.");
+      .doc("Position of the current or last restart.");
+  d.method("dropBall", &R::dropBall).parameters({"position [m]"}).doc("Drops the ball there and starts PlayOn.");
   d.method("reportFoul", &R::reportFoul)
       .parameters({"type", "team", "unum"})
-      .doc("Tells monitors of a foul; team is left, right or none.");
+      .doc("Reports a foul to monitors; team is left, right or none.");
 }
 
 void SoccerRuleAspect::onLink() {
@@ -45,20 +45,20 @@ void SoccerRuleAspect::rule(const Event&) {
   if (!ready_) return;
   mode_ = game_->mode();
   if (modeSeen_ != game_->modeChanges()) enterMode();
-  lastKick_.follow(*ball_);
+  lastKick_.update(*ball_);
 }
 
-/// A mode began, by the rules or by a trainer.
 void SoccerRuleAspect::enterMode() {
+  // The mode was started by a rule (award() has set the position) or by a trainer.
   modeSeen_ = game_->modeChanges();
   if (isPlay(mode_)) return;
   if (positionGivenAt_ != modeSeen_) kickPosition_ = positionFor(mode_);
-  lastKick_.forget();
+  lastKick_.reset();
   kickOffSide_ = Side::none;
 }
 
-void SoccerRuleAspect::award(PlayMode mode, const Vec3& where) {
-  kickPosition_ = where;
+void SoccerRuleAspect::award(PlayMode mode, const Vec3& position) {
+  kickPosition_ = position;
   game_->setMode(mode);
   positionGivenAt_ = game_->modeChanges();
 }
@@ -93,7 +93,7 @@ Vec3 SoccerRuleAspect::goalKickPosition(Side side) const {
 }
 
 Vec3 SoccerRuleAspect::cornerPosition(Side defending) const {
-  // between corner and goal: the installed base's compromise of 2012
+  // Halfway between corner and goal, a compromise of the installed base from 2012.
   const SoccerSettings& s = settings();
   const double y = (s.fieldWidth + s.goalWidth) / 4 - s.ballRadius;
   return {-direction(defending) * (s.fieldLength / 2 - s.ballRadius), ball_->position().y() < 0 ? -y : y, s.ballRadius};
@@ -110,22 +110,22 @@ void SoccerRuleAspect::taken(bool indirect) {
   game_->setMode(PlayMode::playOn);
 }
 
-void SoccerRuleAspect::dropBall(const Vec3& where) {
+void SoccerRuleAspect::dropBall(const Vec3& position) {
   if (!findMatch()) return;
-  const Vec3 target = pitch().freeBallPosition(where);
+  const Vec3 target = pitch().freeBallPosition(position);
   pitch().placeBall(target);
   const SoccerSettings& s = settings();
   pitch().bothSides(game_->random(), [&](Side side) {
     pitch().clearSphere(side, target, s.freeKickDistance, s.freeKickMoveDist, game_->random());
   });
-  lastKick_.forget();
+  lastKick_.reset();
   kickOffSide_ = Side::none;
-  if (PassModeRule* pass = passMode()) pass->forget();
+  if (PassModeRule* pass = passMode()) pass->reset();
   game_->setMode(PlayMode::playOn);
 }
 
 void SoccerRuleAspect::reportFoul(int type, std::string team, int unum) {
-  if (fouls_.size() >= kFoulsKept) fouls_.erase(fouls_.begin());
+  if (fouls_.size() >= kMaxFouls) fouls_.erase(fouls_.begin());
   fouls_.push_back({++foulCount_, type,
                     team == "left"    ? Side::left
                     : team == "right" ? Side::right

@@ -4,18 +4,18 @@ namespace spark {
 
 void SoccerSettings::describe(Description<SoccerSettings>& d) {
   using S = SoccerSettings;
-  d.doc("The variables Soccer.*: what scene files read, rules obey and monitors show.");
+  d.doc("The variables Soccer.*, which scene files, rules and monitors read.");
   d.implements<IVariables>();
   d.method("define", &S::define)
       .parameters({"name", "value"})
-      .doc("Adds a variable that no rule knows, for scene files of other leagues.");
+      .doc("Adds a variable that no rule reads, for scene files of other leagues.");
 
   d.property("FieldLength", &S::fieldLength).unit("m").min(0.1).doc("Length of the field, along x.");
   d.property("FieldWidth", &S::fieldWidth).unit("m").min(0.1).doc("Width of the field, along y.");
   d.property("FieldHeight", &S::fieldHeight)
       .unit("m")
       .min(0)
-      .doc("Height of the space above the field; told to monitors.");
+      .doc("Height of the space above the field; sent to monitors.");
   d.property("GoalWidth", &S::goalWidth).unit("m").min(0).doc("Inner width of the goals.");
   d.property("GoalDepth", &S::goalDepth).unit("m").min(0).doc("Depth of the goals behind the goal line.");
   d.property("GoalHeight", &S::goalHeight).unit("m").min(0).doc("Inner height of the goals.");
@@ -28,57 +28,60 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
       .min(0)
       .doc("Width of the penalty areas beyond the goal's width, both sides together.");
   d.property("PenaltyWidthBeyondGoal", &S::penaltyWidthBeyondGoal)
-      .doc("Rules add the goal's width to PenaltyWidth, as field files do; false: rules take PenaltyWidth alone.");
-  d.property("BorderSize", &S::borderSize).unit("m").min(0).doc("Border around the field; told to monitors.");
+      .doc("Rules add the goal's width to PenaltyWidth, as field files do; false: they use PenaltyWidth alone.");
+  d.property("BorderSize", &S::borderSize).unit("m").min(0).doc("Border around the field; sent to monitors.");
 
   d.property("BallRadius", &S::ballRadius).unit("m").min(0.001).doc("Radius of the ball.");
   d.property("BallMass", &S::ballMass).unit("kg").min(0.001).doc("Mass of the ball.");
-  d.property("BallLinearDrag", &S::ballLinearDrag).unit("N s/m").min(0).doc("Drag force of the ball per speed.");
+  d.property("BallLinearDrag", &S::ballLinearDrag)
+      .unit("N s/m")
+      .min(0)
+      .doc("Drag force of the ball per unit of speed.");
   d.property("BallAngularDrag", &S::ballAngularDrag)
       .unit("N m s")
       .min(0)
-      .doc("Drag torque of the ball per angular speed.");
+      .doc("Drag torque of the ball per unit of angular speed.");
   d.property("BallMaxSpeed", &S::ballMaxSpeed)
       .unit("m/s")
       .min(0)
-      .doc("Speed to which the ball is cut before each step; 0: none.");
+      .doc("Largest speed of the ball, enforced before each step; 0: no limit.");
   d.property("AgentRadius", &S::agentRadius)
       .unit("m")
       .min(0.01)
       .doc("Radius of an agent: start positions, repositioning, kicks.");
   d.property("AgentMass", &S::agentMass).unit("kg").min(0.001).doc("Mass of a sphere agent.");
-  d.property("AgentMaxSpeed", &S::agentMaxSpeed).unit("m/s").min(0).doc("Greatest speed of a sphere agent.");
+  d.property("AgentMaxSpeed", &S::agentMaxSpeed).unit("m/s").min(0).doc("Largest speed of a sphere agent.");
   d.property("AgentLinearDrag", &S::agentLinearDrag)
       .unit("N s/m")
       .min(0)
-      .doc("Drag force of a sphere agent per speed.");
+      .doc("Drag force of a sphere agent per unit of speed.");
   d.property("TeamSize", &S::teamSize)
       .range(11, 1000)
-      .doc("Greatest number of a player. Pass mode and offside know 11 a team, a match of soccer has no more.");
+      .doc("Largest uniform number. Pass mode and offside handle numbers up to 11 only.");
   d.property("StartDistance", &S::startDistance)
       .unit("m")
       .min(0)
       .doc(
-          "Between neighbouring start positions of a team; 0: as in the installed base, one and a half and one "
-          "diameter of an agent.");
-  d.property("MaxRobotTypeCount", &S::maxRobotTypeCount).min(0).doc("At most so many robots of one type in a team.");
-  d.property("MinRobotTypesCount", &S::minRobotTypesCount).min(0).doc("At least so many types in a team of 11.");
+          "Distance between neighbouring start positions of a team; 0: as in the installed base, one and a half "
+          "diameters of an agent in y and one in x.");
+  d.property("MaxRobotTypeCount", &S::maxRobotTypeCount).min(0).doc("Largest number of robots of one type in a team.");
+  d.property("MinRobotTypesCount", &S::minRobotTypesCount).min(0).doc("Smallest number of types in a team of 11.");
   d.property("MaxSumTwoRobotTypes", &S::maxSumTwoRobotTypes)
       .min(0)
-      .doc("At most so many robots of any two types together.");
+      .doc("Largest number of robots of any two types together.");
 
   d.property("FreeKickDistance", &S::freeKickDistance)
       .unit("m")
       .min(0)
-      .doc("Opponents stay so far from the ball at restarts; radius of the centre circle.");
+      .doc("Smallest distance of opponents from the ball at restarts; radius of the centre circle.");
   d.property("FreeKickMoveDist", &S::freeKickMoveDist)
       .unit("m")
       .min(0)
-      .doc("So far players are moved away at restarts.");
+      .doc("Distance to which players are moved at restarts.");
   d.property("KickRepelDist", &S::kickRepelDist)
       .unit("m")
       .min(0)
-      .doc("At a restart the kicking team is once pushed so far from the ball.");
+      .doc("Distance to which players of the kicking team are moved from the ball, once at each restart.");
   d.property("GoalKickDist", &S::goalKickDist)
       .unit("m")
       .min(0)
@@ -91,121 +94,133 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("RuleDropBallTime", &S::ruleDropBallTime)
       .unit("s")
       .min(0)
-      .doc("A restart that nobody takes becomes a drop ball.");
+      .doc("A restart that is not taken within this time becomes a drop ball.");
   d.property("RuleHalfTime", &S::ruleHalfTime).unit("s").min(0).doc("Length of a half.");
   d.property("WaitBeforeKickOff", &S::waitBeforeKickOff)
       .unit("s")
       .min(0)
-      .doc("With AutomaticKickOff: from the first agent's coming to the kick-off.");
-  d.property("AutomaticKickOff", &S::automaticKickOff).doc("The match kicks off by itself.");
+      .doc("With AutomaticKickOff: time from the first agent to the kick-off.");
+  d.property("AutomaticKickOff", &S::automaticKickOff).doc("The match kicks off without a trainer.");
   d.property("CoinTossForKickOff", &S::coinTossForKickOff)
-      .doc("A coin decides the first kick-off; else the left team has it.");
+      .doc("A coin toss decides the first kick-off; false: the left team has it.");
   d.property("SingleHalfTime", &S::singleHalfTime).doc("The match has one half.");
   d.property("ChangeSidesInSecondHalf", &S::changeSidesInSecondHalf).doc("Teams swap sides at half time.");
   d.property("PenaltyShootout", &S::penaltyShootout)
       .doc(
           "Penalty shoot-out: kick-off restrictions are off, the right team stays in its penalty area, a goal ends "
           "it.");
-  d.property("StartAnyFieldPosition", &S::startAnyFieldPosition).doc("Beams and starts anywhere on the field.");
+  d.property("StartAnyFieldPosition", &S::startAnyFieldPosition)
+      .doc("Players may beam to and start at any position of the field.");
   d.property("AutomaticQuit", &S::automaticQuit).doc("The host ends 10 s after the match.");
   d.property("UseOffside", &S::useOffside)
       .doc("Without effect, as in the installed base: offside is a control aspect (OffsideAspect).");
   d.property("MaxNumSafeRepositionAttempts", &S::maxNumSafeRepositionAttempts)
       .min(0)
-      .doc("So many places are tried when a player is moved.");
+      .doc("Number of positions that are tried when a player is moved.");
 
-  d.property("ReportScore", &S::reportScore).doc("Agents are told the score.");
-  d.property("LabelMessages", &S::labelMessages).doc("Heard messages carry the speaker's team.");
+  d.property("ReportScore", &S::reportScore).doc("GS contains the score.");
+  d.property("LabelMessages", &S::labelMessages).doc("hear contains the speaker's team.");
   d.property("BeamNoiseXY", &S::beamNoiseXY).unit("m").min(0).doc("Half width of the uniform noise of beam positions.");
   d.property("BeamNoiseAngle", &S::beamNoiseAngle)
       .unit("deg")
       .min(0)
       .doc("Half width of the uniform noise of beam angles.");
   d.property("BeamWithinFieldWidth", &S::beamWithinFieldWidth).doc("Beams end between the touch lines.");
-  d.property("SayMsgSize", &S::sayMsgSize).unit("bytes").range(1, 512).doc("Longer messages of players are not heard.");
+  d.property("SayMsgSize", &S::sayMsgSize).unit("bytes").range(1, 512).doc("Longer messages of players are dropped.");
   d.property("ExtraGameState", &S::extraGameState)
       .doc(
-          "GS also tells who kicks the half off and every player's penalty: (k left) (ti ((1 penalty_none 0.00)) ()).");
+          "GS also contains the kick-off side of the half and each player's penalty: (k left) (ti ((1 penalty_none "
+          "0.00)) ()).");
   d.property("ConstantTemperature", &S::constantTemperature)
-      .doc("Agents are told 23 degC, whatever their temperature is.");
+      .doc("AgentState always contains 23 degC, whatever the temperature is.");
   d.property("VisionInterval", &S::visionInterval)
       .unit("cycles")
       .range(0, 1000)
-      .doc("Cycles between two looks through a RestrictedVisionPerceptor; 0: as the robot's scene file says.");
+      .doc("Cycles between two percepts of a RestrictedVisionPerceptor; 0: as in the robot's scene file.");
   d.property("VisionRange", &S::visionRange)
       .unit("m")
       .min(0)
-      .doc("Objects and players farther away are not seen, by nobody; 0: as the robots' files say.");
-  d.property("VisionNoise", &S::visionNoise)
-      .doc("False: what robots see has no noise, whatever their scene files say.");
+      .doc("Objects and players farther away are not seen by any robot; 0: as in the robots' scene files.");
+  d.property("VisionNoise", &S::visionNoise).doc("False: vision has no noise, whatever the robots' scene files say.");
   d.property("Cheats", &S::cheats)
       .doc(
-          "For training: robots see the truth, too: (mypos x y z), (myorien deg), (ballpos x y z), in the view of "
-          "their side.");
-  d.property("FieldLinesSeen", &S::fieldLinesSeen).doc("Robots whose vision senses lines see the field's.");
+          "For training: See also contains the ground truth (mypos x y z), (myorien deg), (ballpos x y z), in the "
+          "team's frame.");
+  d.property("FieldLinesSeen", &S::fieldLinesSeen).doc("Robots whose vision senses lines see those of the field.");
 
   d.property("PassModeMaxBallSpeed", &S::passModeMaxBallSpeed)
       .unit("m/s")
       .min(0)
-      .doc("Pass mode: the ball must not be faster.");
+      .doc("Pass mode: largest speed of the ball.");
   d.property("PassModeMaxBallDist", &S::passModeMaxBallDist)
       .unit("m")
       .min(0)
-      .doc("Pass mode: the player must be as near to the ball.");
+      .doc("Pass mode: largest distance of the player to the ball.");
   d.property("PassModeMinOppBallDist", &S::passModeMinOppBallDist)
       .unit("m")
       .min(0)
-      .doc("Pass mode: opponents must be as far from the ball.");
-  d.property("PassModeDuration", &S::passModeDuration).unit("s").min(0).doc("Pass mode ends by itself.");
+      .doc("Pass mode: smallest distance of opponents to the ball.");
+  d.property("PassModeDuration", &S::passModeDuration).unit("s").min(0).doc("Pass mode ends after this time.");
   d.property("PassModeScoreWaitTime", &S::passModeScoreWaitTime)
       .unit("s")
       .min(0)
-      .doc("Goals do not count so long after pass mode.");
+      .doc("Time after pass mode in which goals do not count.");
   d.property("PassModeRetryWaitTime", &S::passModeRetryWaitTime)
       .unit("s")
       .min(0)
-      .doc("Pass mode is not given again before.");
+      .doc("Smallest time between two pass modes of a team.");
 
-  d.property("NotStandingMaxTime", &S::notStandingMaxTime).unit("s").min(0).doc("A field player may be down so long.");
+  d.property("NotStandingMaxTime", &S::notStandingMaxTime)
+      .unit("s")
+      .min(0)
+      .doc("Longest time that a field player may not stand.");
   d.property("GoalieNotStandingMaxTime", &S::goalieNotStandingMaxTime)
       .unit("s")
       .min(0)
-      .doc("A goalie may be down so long.");
-  d.property("GroundMaxTime", &S::groundMaxTime).unit("s").min(0).doc("A field player may lie so long.");
-  d.property("GoalieGroundMaxTime", &S::goalieGroundMaxTime).unit("s").min(0).doc("A goalie may lie so long.");
-  d.property("FoulHoldTime", &S::foulHoldTime).unit("s").min(0).doc("A penalised player is held so long.");
+      .doc("Longest time that a goalie may not stand.");
+  d.property("GroundMaxTime", &S::groundMaxTime)
+      .unit("s")
+      .min(0)
+      .doc("Longest time that a field player may lie on the ground.");
+  d.property("GoalieGroundMaxTime", &S::goalieGroundMaxTime)
+      .unit("s")
+      .min(0)
+      .doc("Longest time that a goalie may lie on the ground.");
+  d.property("FoulHoldTime", &S::foulHoldTime).unit("s").min(0).doc("Time that a penalised player is held.");
   d.property("MinOppDistance", &S::minOppDistance)
       .unit("m")
       .min(0)
-      .doc("Crowding: the opponent's distance to the ball; 0: off.");
+      .doc("Crowding: distance of the opponent to the ball; 0: off.");
   d.property("Min2PlDistance", &S::min2PlDistance)
       .unit("m")
       .min(0)
-      .doc("Crowding: the second player's distance; 0: off.");
+      .doc("Crowding: smallest distance of the second player; 0: off.");
   d.property("Min3PlDistance", &S::min3PlDistance)
       .unit("m")
       .min(0)
-      .doc("Crowding: the third player's distance; 0: off.");
+      .doc("Crowding: smallest distance of the third player; 0: off.");
   d.property("MaxPlayersInsideOwnArea", &S::maxPlayersInsideOwnArea)
       .min(0)
-      .doc("At most so many players in their own penalty area.");
-  d.property("MaxTouchGroupSize", &S::maxTouchGroupSize).min(1).doc("At most so many players may touch each other.");
+      .doc("Largest number of players in their own penalty area.");
+  d.property("MaxTouchGroupSize", &S::maxTouchGroupSize)
+      .min(1)
+      .doc("Largest number of players that may touch each other.");
   d.property("IllegalDefenseBeamPenalty", &S::illegalDefenseBeamPenalty).doc("Illegal defence is penalised by a beam.");
   d.property("TouchingFoulBeamPenalty", &S::touchingFoulBeamPenalty).doc("Touching is penalised by a beam.");
   d.property("UseCharging", &S::useCharging).doc("Charging is a foul.");
-  d.property("ChargingMinSpeed", &S::chargingMinSpeed).unit("m/s").min(0).doc("Charging: least speed.");
+  d.property("ChargingMinSpeed", &S::chargingMinSpeed).unit("m/s").min(0).doc("Charging: smallest speed.");
   d.property("ChargingMinBallSpeedAngle", &S::chargingMinBallSpeedAngle)
       .unit("deg")
       .min(0)
-      .doc("Charging: least angle between motion and ball.");
+      .doc("Charging: smallest angle between the velocity and the direction to the ball.");
   d.property("ChargingMinDeltaDist", &S::chargingMinDeltaDist)
       .unit("m")
       .min(0)
-      .doc("Charging: least difference of the distances to the ball.");
+      .doc("Charging: smallest difference of the distances to the ball.");
   d.property("ChargingMinDeltaAng", &S::chargingMinDeltaAng)
       .unit("deg")
       .min(0)
-      .doc("Charging: least difference of the angles to the opponent.");
+      .doc("Charging: smallest difference of the angles to the opponent.");
   d.property("ChargingImmunityTime", &S::chargingImmunityTime)
       .unit("s")
       .min(0)
@@ -213,62 +228,62 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("ChargingCollisionMinTime", &S::chargingCollisionMinTime)
       .unit("s")
       .min(0)
-      .doc("Charging: quiet time after a harmless contact.");
+      .doc("Charging: gap after which a contact no longer continues a harmless one.");
   d.property("ChargingMaxBallRulesDist", &S::chargingMaxBallRulesDist)
       .unit("m")
       .min(0)
-      .doc("Charging: the ball counts within this distance.");
+      .doc("Charging: within this distance the ball is taken into account.");
   d.property("ChargingMinCollBallDist", &S::chargingMinCollBallDist)
       .unit("m")
       .min(0)
-      .doc("Charging: contacts nearer to the ball are none.");
+      .doc("Charging: contacts nearer to the ball are no fouls.");
   d.property("ChargingMinCollisionSpeed", &S::chargingMinCollisionSpeed)
       .unit("m/s")
       .min(0)
-      .doc("Charging: least speed towards the contact.");
+      .doc("Charging: smallest speed towards the contact.");
   d.property("SelfCollisionsTolerance", &S::selfCollisionsTolerance)
       .unit("m")
       .min(0)
-      .doc("Overlap of a robot's own parts that is tolerated.");
+      .doc("Tolerated overlap of parts of one robot.");
   d.property("SelfCollisionJointFrozenTime", &S::selfCollisionJointFrozenTime)
       .unit("s")
       .min(0)
-      .doc("Joints of a self-collision are frozen so long.");
+      .doc("Time that joints are frozen after a self-collision.");
   d.property("SelfCollisionJointThawTime", &S::selfCollisionJointThawTime)
       .unit("s")
       .min(0)
-      .doc("And immune so long afterwards.");
+      .doc("Time that they are immune afterwards.");
   d.property("SelfCollisionBeamCooldownTime", &S::selfCollisionBeamCooldownTime)
       .unit("s")
       .min(0)
-      .doc("Least time between two beam penalties.");
+      .doc("Smallest time between two beam penalties.");
   d.property("PrintSelfCollisions", &S::printSelfCollisions).doc("Self-collisions are logged.");
   d.property("FoulOnSelfCollisions", &S::foulOnSelfCollisions).doc("Self-collisions are fouls.");
   d.property("SelfCollisionBeamPenalty", &S::selfCollisionBeamPenalty).doc("Self-collisions are penalised by a beam.");
   d.property("WriteSelfCollisionsToFile", &S::writeSelfCollisionsToFile).doc("Self-collisions are recorded in a file.");
-  d.property("SelfCollisionRecordFilename", &S::selfCollisionRecordFilename).doc("That file.");
+  d.property("SelfCollisionRecordFilename", &S::selfCollisionRecordFilename).doc("Name of that file.");
 
-  d.property("UseBallHolding", &S::useBallHolding).doc("Holding the ball is a foul, as in later servers.");
+  d.property("UseBallHolding", &S::useBallHolding).doc("Holding the ball is a foul, as in servers after 0.7.5.");
   d.property("BallHoldRadius", &S::ballHoldRadius)
       .unit("m")
       .min(0)
-      .doc("Ball holding: who has the ball so near holds it.");
+      .doc("Ball holding: largest distance at which a player holds the ball.");
   d.property("BallHoldOppDist", &S::ballHoldOppDist)
       .unit("m")
       .min(0)
-      .doc("Ball holding: it counts while an opponent is so near to the ball; 0: always.");
+      .doc("Ball holding: time counts while an opponent is this near to the ball; 0: always.");
   d.property("BallHoldMaxTime", &S::ballHoldMaxTime)
       .unit("s")
       .min(0)
-      .doc("Ball holding: a player may hold the ball so long.");
+      .doc("Ball holding: longest time that a player may hold the ball.");
   d.property("BallHoldGoalieMaxTime", &S::goalieBallHoldMaxTime)
       .unit("s")
       .min(0)
-      .doc("Ball holding: a goalie in the own penalty area may hold the ball so long.");
+      .doc("Ball holding: longest time that a goalie may hold the ball in its own penalty area.");
   d.property("BallHoldResetTime", &S::ballHoldResetTime)
       .unit("s")
       .min(0)
-      .doc("Ball holding: so long without the ball ends a hold.");
+      .doc("Ball holding: time without the ball after which a hold ends.");
 
   d.property("Keepaway", &S::keepaway).doc("Keep-away instead of soccer.");
   d.property("KeepawayCenterX", &S::keepawayCenterX).unit("m").doc("Centre of the keep-away field.");
@@ -278,11 +293,11 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
   d.property("KeepawayLengthReductionRate", &S::keepawayLengthReductionRate)
       .unit("m/min")
       .min(0)
-      .doc("It shrinks so fast.");
+      .doc("Rate at which the keep-away field gets shorter.");
   d.property("KeepawayWidthReductionRate", &S::keepawayWidthReductionRate)
       .unit("m/min")
       .min(0)
-      .doc("It shrinks so fast.");
+      .doc("Rate at which the keep-away field gets narrower.");
 
   d.property("BallRecorder", &S::ballRecorder).doc("Path of the ball's collision recorder below the scene.");
   d.property("LeftGoalRecorder", &S::leftGoalRecorder)

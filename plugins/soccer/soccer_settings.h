@@ -4,23 +4,23 @@
 #include <string>
 
 #include "api/scene.h"
-#include "sights.h"
+#include "visible_objects.h"
 
 namespace spark {
 
-/// The variables `Soccer.*`: what scene files read, rules obey and monitors show. Defaults are those of the 3D league
-/// (30 x 20 m). Rules read them in every cycle, so that a change takes effect at once; scene files read them when they
-/// are loaded.
+/// The variables `Soccer.*`, which scene files, rules and monitors read. Defaults are those of the 3D league (field of
+/// 30 x 20 m). Rules read them in every cycle, so that changes take effect at once; scene files when they are loaded.
+/// describe() documents each of them, with unit and range.
 class SoccerSettings : public Node, public IVariables {
   SPARK_CLASS(SoccerSettings, Node)
  public:
   static constexpr const char* kPath = "/sys/variables/Soccer";
   static void describe(Description<SoccerSettings>& d);
   Value variable(std::string_view name) const override;
-  /// Adds or replaces a variable that no rule knows, for scene files of other leagues.
+  /// Adds or replaces a variable that no rule reads, for scene files of other leagues.
   void define(std::string name, Value value) { others_[std::move(name)] = std::move(value); }
-  /// What the eyes of the league look at.
-  soccer::Sights& sights() { return sights_; }
+  /// The visible objects of the scene, shared by all eyes.
+  soccer::VisibleObjects& visibleObjects() { return visibleObjects_; }
 
   // Field [m]
   double fieldLength = 30, fieldWidth = 20, fieldHeight = 40, goalWidth = 2.1, goalDepth = 0.6, goalHeight = 0.8;
@@ -37,7 +37,7 @@ class SoccerSettings : public Node, public IVariables {
   bool automaticKickOff = false, coinTossForKickOff = false, singleHalfTime = false, changeSidesInSecondHalf = false;
   bool penaltyShootout = false, startAnyFieldPosition = false, automaticQuit = false, useOffside = false;
   int maxNumSafeRepositionAttempts = 100;
-  // What agents are told, and noise
+  // Percepts and noise
   bool reportScore = true, labelMessages = true, extraGameState = false, constantTemperature = true;
   double beamNoiseXY = 0.05, beamNoiseAngle = 10;
   bool beamWithinFieldWidth = true;
@@ -77,8 +77,8 @@ class SoccerSettings : public Node, public IVariables {
               rightGoalRecorder = "rightgoal/GoalBox/BoxCollider/recorder";
 
  private:
-  std::map<std::string, Value, std::less<>> others_;
-  soccer::Sights sights_;
+  std::map<std::string, Value, std::less<>> others_;  ///< of define()
+  soccer::VisibleObjects visibleObjects_;
 };
 
 }  // namespace spark

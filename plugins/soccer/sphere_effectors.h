@@ -1,24 +1,28 @@
 #pragma once
 /// \file
-/// Drive, catch and pan/tilt: what sphere players do besides kicking (protocol section 7).
+/// Effectors of the sphere robots of 2004, besides the kick: drive, catch, pan and tilt. Formulas are those of the
+/// installed base, those of catch and its values are the manual's.
 
 #include "match_lookup.h"
 #include "restricted_vision_perceptor.h"
 
 namespace spark {
 
-/// `(drive x y z)`: a force that acts in every step until the next command, in the team's view of the field.
+/// `(drive x y z)`: a force in the team's frame that acts in every step until the next command.
 class DriveEffector : public Effector {
   SPARK_CLASS(DriveEffector, Effector)
  public:
   static void describe(Description<DriveEffector>& d) {
     using E = DriveEffector;
     d.doc("Drives the sphere: (drive x y z), length up to maxPower, until the next command; acts on the ground only.");
-    d.property("forceFactor", &E::forceFactor_).unit("N").min(0).doc("Force per power.");
-    d.property("maxPower", &E::maxPower_).unit("1").min(0).doc("Greatest power: longer commands are shortened.");
+    d.property("forceFactor", &E::forceFactor_).unit("N").min(0).doc("Force per unit of power.");
+    d.property("maxPower", &E::maxPower_)
+        .unit("1")
+        .min(0)
+        .doc("Largest length of (x y z): longer vectors are shortened.");
     d.property("sigma", &E::sigma_).min(0).doc("Relative standard deviation of each component.");
-    d.property("consumption", &E::consumption_).unit("%/(N s)").min(0).doc("Battery used per force and second.");
-    d.property("force", &E::force_).unit("N").readOnly().state().doc("The force in the team's view of the field.");
+    d.property("consumption", &E::consumption_).unit("%/(N s)").min(0).doc("Energy used per unit of force and time.");
+    d.property("force", &E::force_).unit("N").readOnly().state().doc("The force, in the team's frame.");
     d.property("random", &E::random_).state().doc("Its noise.");
     d.on<&E::prepare>(phase::kPrepare);
   }
@@ -28,7 +32,7 @@ class DriveEffector : public Effector {
     double v[3];
     if (!readNumbers(read, v, 3)) return read.remark();
     Vec3 power(v[0], v[1], v[2]);
-    // stableNorm: 1e300 is finite, its square is not
+    // norm() would overflow for 1e300.
     if (const double length = power.stableNorm(); length > maxPower_) power *= maxPower_ / length;
     for (int i = 0; i < 3; ++i) force_[i] = power[i] * (sigma_ > 0 ? random_.normal(1, sigma_) : 1) * forceFactor_;
     return read.remark();
@@ -59,16 +63,16 @@ class DriveEffector : public Effector {
   Vec3 force_ = Vec3::Zero();
 };
 
-/// `(catch)`: the goalie takes the ball inside his penalty area and lays it in front of himself.
+/// `(catch)`: the goalie catches the ball inside its penalty area and places it in front of itself.
 class CatchEffector : public Effector {
   SPARK_CLASS(CatchEffector, Effector)
  public:
   static void describe(Description<CatchEffector>& d) {
-    d.doc("The goalie (number 1) catches the ball inside his penalty area: (catch).");
+    d.doc("The goalie (number 1) catches the ball inside its penalty area: (catch).");
     d.property("catchMargin", &CatchEffector::margin_)
         .unit("m")
         .min(0)
-        .doc("So near the surfaces of goalie and ball must be.");
+        .doc("Largest distance between the surfaces of goalie and ball.");
     d.on<&CatchEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "catch"; }
@@ -78,7 +82,7 @@ class CatchEffector : public Effector {
   }
 
  private:
-  static constexpr double kClearRadius = 2, kClearDistance = 5, kGap = 0.07;  ///< m
+  static constexpr double kClearRadius = 2, kClearDistance = 5, kGap = 0.07;  ///< of the installed base [m]
 
   void prepare(const Event&) {
     if (!std::exchange(pending_, false)) return;
@@ -89,6 +93,8 @@ class CatchEffector : public Effector {
     const Vec3 from = goalie->position(), ball = pitch.ballPosition();
     if (!pitch.ball() || !pitch.penaltyArea(goalie->side()).contains(ball.x(), ball.y())) return;
     if (from.z() > s.agentRadius + 0.01 || (ball - from).norm() > s.agentRadius + s.ballRadius + margin_) return;
+
+    // Players near the new position of the ball are moved away.
     const Vec3 target = from + Vec3(direction(goalie->side()) * (s.agentRadius + s.ballRadius + kGap), 0, 0);
     for (const soccer::Player& p : pitch.players())
       if (&p != goalie && p.torso && p.side() != soccer::Side::none)
@@ -102,16 +108,16 @@ class CatchEffector : public Effector {
   bool pending_ = false;
 };
 
-/// `(pantilt dpan dtilt)`: turns the cone vision.
+/// `(pantilt dpan dtilt)`: turns the direction of view of the cone vision [deg].
 class PanTiltEffector : public Effector {
   SPARK_CLASS(PanTiltEffector, Effector)
  public:
   static void describe(Description<PanTiltEffector>& d) {
     using E = PanTiltEffector;
     d.doc("Turns the agent's view: (pantilt dpan dtilt), deg.");
-    d.property("maxPanAngleDelta", &E::maxPan_).unit("deg").min(0).doc("Greatest turn to the side by one command.");
-    d.property("maxTiltAngleDelta", &E::maxTilt_).unit("deg").min(0).doc("Greatest turn up or down by one command.");
-    d.property("sigma", &E::sigma_).unit("deg").min(0).doc("Standard deviation of a turn.");
+    d.property("maxPanAngleDelta", &E::maxPan_).unit("deg").min(0).doc("Largest change of pan by one command.");
+    d.property("maxTiltAngleDelta", &E::maxTilt_).unit("deg").min(0).doc("Largest change of tilt by one command.");
+    d.property("sigma", &E::sigma_).unit("deg").min(0).doc("Standard deviation of a change.");
     d.property("random", &E::random_).state().doc("Its noise.");
     d.on<&E::prepare>(phase::kPrepare);
   }
@@ -131,15 +137,18 @@ class PanTiltEffector : public Effector {
     match_.refresh(*this);
     AgentState* state = match_.state();
     if (!state) return;
+
+    // The ranges are those of the robot's cone vision; without one the installed base's defaults.
     std::array<int, 2> pan{-90, 90}, tilt{-20, 20};
     if (auto* eye = match_.agent() ? eyeOf(*match_.agent()) : nullptr) pan = eye->panRange(), tilt = eye->tiltRange();
-    const auto turned = [this](double now, double by, int limit, const std::array<int, 2>& range) {
-      const double delta = std::clamp(by, -double(limit), double(limit)) + random_.normal(0, sigma_);
-      return std::clamp(now + delta, double(range[0]), double(range[1]));
+    const auto turned = [this](double current, double wanted, int limit, const std::array<int, 2>& range) {
+      const double delta = std::clamp(wanted, -double(limit), double(limit)) + random_.normal(0, sigma_);
+      return std::clamp(current + delta, double(range[0]), double(range[1]));
     };
     const double newPan = turned(state->pan(), pan_, maxPan_, pan);
-    state->look(newPan, turned(state->tilt(), tilt_, maxTilt_, tilt));
+    state->setView(newPan, turned(state->tilt(), tilt_, maxTilt_, tilt));
   }
+  /// The first cone vision below `node`; nullptr if there is none.
   static RestrictedVisionPerceptor* eyeOf(const Node& node) {
     for (const auto& c : node.children()) {
       if (auto eye = c->as<RestrictedVisionPerceptor>()) return eye;

@@ -4,13 +4,13 @@
 
 namespace spark {
 
-/// Robots without a team touch the ground only: they are created at one spot, inside of each other, and would burst
-/// apart.
+/// Robots without a team collide with static colliders only. They are all created at the same position, inside each
+/// other, and would burst apart otherwise.
 class TeamlessAspect : public SoccerControlAspect {
   SPARK_CLASS(TeamlessAspect, SoccerControlAspect)
  public:
   static void describe(Description<TeamlessAspect>& d) {
-    d.doc("Robots without a team touch only what does not move.");
+    d.doc("Robots without a team collide with static colliders only.");
   }
   void agentConnected(AgentAspect& agent) override { detach(agent.create(kGroup, kGroup), enabled()); }
   void rule(const Event&) override { follow(); }
@@ -22,10 +22,11 @@ class TeamlessAspect : public SoccerControlAspect {
  private:
   static constexpr const char *kGroup = "CollisionGroup", *kDetached = "detached";
   struct Robot {
-    const AgentState* state;  ///< nullptr: no robot, or one that cannot be in a team
-    Leaf* group;
+    const AgentState* state;  ///< nullptr: no robot yet, or not that of a player
+    Leaf* group;              ///< the collision group of the agent
     bool detached;
   };
+  /// Detaches the robots without a team, and attaches those that have joined one.
   void follow() {
     if (tree_.changed(*this)) lookUp();
     for (Robot& r : robots_)
@@ -46,7 +47,7 @@ class TeamlessAspect : public SoccerControlAspect {
   }
 
   TreeWatch tree_;
-  std::vector<Robot> robots_;  ///< as of the last change of the tree
+  std::vector<Robot> robots_;  ///< of all agents, as of the last change of the tree
 };
 
 }  // namespace spark

@@ -4,15 +4,15 @@
 
 namespace spark {
 
-/// At most MaxTouchGroupSize players may touch each other. The last to join is guilty when his team has at least half
-/// of the group (a team-mate when he is the goalie), else a random opponent of the group; goalies are drawn only when
-/// there is nobody else.
+/// Touching, as in the installed base: more than MaxTouchGroupSize players touch each other. If the team of the player
+/// that joined last has at least half of the group, that player is the offender (a team-mate if it is the goalie); else
+/// a random opponent. Goalies are chosen only if there is no other player.
 class TouchingFoulAspect : public FoulAspect {
   SPARK_CLASS(TouchingFoulAspect, FoulAspect)
  public:
   static void describe(Description<TouchingFoulAspect>& d) {
     d.doc("Joining too large a group of players who touch each other is a foul.");
-    d.property("random", &TouchingFoulAspect::random_).state().doc("Draws who is guilty among equals.");
+    d.property("random", &TouchingFoulAspect::random_).state().doc("The stream that chooses among equal offenders.");
   }
 
  protected:
@@ -23,20 +23,22 @@ class TouchingFoulAspect : public FoulAspect {
 
  private:
   struct Member {
-    std::int64_t group = 0;   ///< name of the group in the last cycle, 0: alone
-    std::int64_t joined = 0;  ///< cycle in which he joined the others
+    std::int64_t group = 0;   ///< id of its group in the last cycle (the number of an agent); 0: none
+    std::int64_t joined = 0;  ///< cycle in which it joined the group
     void save(StateWriter& out) const { out.write(group), out.write(joined); }
     void load(StateReader& in) { group = in.readInteger(), joined = in.readInteger(); }
   };
-  void note(int group, std::int64_t cycle);
+  /// Records which members of group_ joined it in this cycle. `first`: index of its first player.
+  void updateMembers(int first, std::int64_t cycle);
   void judgeGroup();
+  /// A random player of group_ for which accepts(player) is true; -1: there is none.
   template <class F>
-  int draw(F wanted);
-  void punish(int player);
+  int choose(F accepts);
+  void penalise(int player);
 
   RandomStream random_{*this, "touching"};
   soccer::PlayerRecords<Member> members_;
-  // of the group at hand; kept for their capacity
+  // Of the group that is judged; members only to keep their capacity.
   std::vector<int> group_, candidates_;
 };
 

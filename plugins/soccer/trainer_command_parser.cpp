@@ -10,10 +10,11 @@ using soccer::Side;
 
 namespace {
 
-/// Greatest number that a trainer may give: what agents and monitors are told has single precision and a field's size.
-constexpr double kLargest = 1e6;
+/// Largest magnitude of a number in trainer commands. Larger ones make no sense on a field, and percepts have single
+/// precision.
+constexpr double kMaxNumber = 1e6;
 
-/// A number and nothing else, not too large. Nothing for all that may be found in its place.
+/// The number in `e`; nullopt for lists, texts that are not entirely a number, and numbers beyond kMaxNumber.
 std::optional<double> numberIn(const Element& e) {
   if (!e || e.isList()) return {};
   double v = e.number();
@@ -23,36 +24,37 @@ std::optional<double> numberIn(const Element& e) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
     if (error != std::errc() || end != text.data() + text.size()) return {};
   }
-  if (!(std::abs(v) <= kLargest)) return {};
+  if (!(std::abs(v) <= kMaxNumber)) return {};
   return v;
 }
 
-/// As numberIn, without a fraction.
+/// As numberIn, for integers only.
 std::optional<int> integerIn(const Element& e) {
   const auto v = numberIn(e);
   if (!v || *v != std::trunc(*v)) return {};
   return static_cast<int>(*v);
 }
 
-/// The `count` numbers behind a list's name; false when one is missing or none.
-bool numbers(const Element& list, double* out, int count) {
+/// Reads `count` numbers after the head of a list. Returns false when one is missing or not a number.
+bool readList(const Element& list, double* out, int count) {
   if (!list) return false;
   for (int i = 0; i < count; ++i) {
-    const auto v = numberIn(list.at(static_cast<std::size_t>(i) + 1));
+    const auto v = numberIn(list.at(std::size_t(i) + 1));
     if (!v) return false;
     out[i] = *v;
   }
   return true;
 }
 
-/// The numbers of `(name n...)` inside a command.
-bool numbers(const Element& command, std::string_view name, double* out, int count) {
-  return numbers(command.named(name), out, count);
+/// Reads the numbers of `(name n...)` inside a command.
+bool readNamed(const Element& command, std::string_view name, double* out, int count) {
+  return readList(command.named(name), out, count);
 }
 
-/// A command without arguments, about whom the trainer selected.
+/// True for a command without arguments: it is for the selected player.
 bool isBare(const Element& command) { return command.size() == 1; }
 
+/// The side in `(team Left)` of a command.
 Side sideIn(const Element& command) {
   const Element team = command.named("team");
   return team ? soccer::sideFromTrainer(team.at(1).text()) : Side::none;
@@ -114,7 +116,7 @@ std::string TrainerCommandParser::ball(const Element& c) {
   IRigidBody* ball = match_.game()->pitch().ball();
   if (!ball) return "there is no ball";
   double p[3], v[3];
-  const bool place = numbers(c, "pos", p, 3), push = numbers(c, "vel", v, 3);
+  const bool place = readNamed(c, "pos", p, 3), push = readNamed(c, "vel", v, 3);
   if (!place && !push) return "expected (pos x y z) or (vel x y z)";
   ball->enable();
   if (place) ball->setPosition(Vec3(p[0], p[1], p[2]));
@@ -125,13 +127,13 @@ std::string TrainerCommandParser::ball(const Element& c) {
   return {};
 }
 
-const soccer::Player* TrainerCommandParser::named(const Element& c) {
+const soccer::Player* TrainerCommandParser::namedPlayer(const Element& c) {
   const Element unum = c.named("unum");
   const auto number = unum ? integerIn(unum.at(1)) : std::nullopt;
   return number ? match_.game()->pitch().player(sideIn(c), *number) : nullptr;
 }
 
-const soccer::Player* TrainerCommandParser::selected() {
+const soccer::Player* TrainerCommandParser::selectedPlayer() {
   for (const Player& p : match_.game()->pitch().players())
     if (p.state->selected()) return &p;
   return nullptr;
@@ -140,6 +142,7 @@ const soccer::Player* TrainerCommandParser::selected() {
 std::string TrainerCommandParser::agent(const Element& c) {
   const soccer::Pitch& pitch = match_.game()->pitch();
   if (isBare(c)) {
+    // Move the selected players away from where they are, towards their own end.
     const double distance = pitch.settings().freeKickMoveDist;
     for (const Player& p : pitch.players()) {
       if (!p.state->selected() || !p.torso) continue;
@@ -153,18 +156,18 @@ std::string TrainerCommandParser::agent(const Element& c) {
     }
     return {};
   }
-  const Player* p = named(c);
+  const Player* p = namedPlayer(c);
   if (!p || !p->torso) return kNoSuchPlayer;
   double v[4];
   bool done = false;
   const auto given = [&](std::string_view name, int count) {
-    const bool yes = numbers(c, name, v, count);
+    const bool yes = readNamed(c, name, v, count);
     done |= yes;
     return yes;
   };
   if (given("move", 4)) p->moveTo(Vec3(v[0], v[1], v[2]), degToRad(v[3]));
   if (given("pos", 3)) p->moveTo(Vec3(v[0], v[1], v[2]));
-  if (given("rot", 3)) p->turnTo(rotationDeg(float(v[0]), float(v[1]), float(v[2])).block<3, 3>(0, 0).cast<double>());
+  if (given("rot", 3)) p->rotateTo(rotationDeg(float(v[0]), float(v[1]), float(v[2])).block<3, 3>(0, 0).cast<double>());
   if (given("battery", 1)) p->state->setBattery(v[0]);
   if (given("temperature", 1)) p->state->setTemperature(v[0]);
   return done ? std::string() : "expected (pos x y z), (move x y z deg), (rot x y z), (battery v) or (temperature v)";
@@ -173,11 +176,11 @@ std::string TrainerCommandParser::agent(const Element& c) {
 std::string TrainerCommandParser::select(const Element& c) {
   const auto& players = match_.game()->pitch().players();
   const Element unum = c.named("unum");
-  const Player* wanted = named(c);
+  const Player* wanted = namedPlayer(c);
   if (!isBare(c) && !wanted && !(unum && integerIn(unum.at(1)) == -1)) return kNoSuchPlayer;
   if (isBare(c) && !players.empty()) {
-    // the next in the list after the one that is selected, and round again
-    const Player* now = selected();
+    // Select the next player in the list; after the last the first.
+    const Player* now = selectedPlayer();
     wanted = now && now != &players.back() ? now + 1 : &players.front();
   }
   for (const Player& p : players)
@@ -186,23 +189,23 @@ std::string TrainerCommandParser::select(const Element& c) {
 }
 
 std::string TrainerCommandParser::kill(const Element& c) {
-  const Player* p = isBare(c) ? selected() : named(c);
+  const Player* p = isBare(c) ? selectedPlayer() : namedPlayer(c);
   if (!p) return kNoSuchPlayer;
-  // with its connection: the installed base leaves it open and sends the last message again for ever
+  // Also close its connection. The installed base leaves it open and repeats the last message forever.
   match_.game()->pitch().gameControl()->removeAgent(*p->agent, true);
   return {};
 }
 
 std::string TrainerCommandParser::repos(const Element& c) {
-  const Player* p = isBare(c) ? selected() : named(c);
+  const Player* p = isBare(c) ? selectedPlayer() : namedPlayer(c);
   if (!p || !p->torso || p->side() == Side::none) return kNoSuchPlayer;
-  match_.game()->pitch().putOutside(*p, 1.0);
+  match_.game()->pitch().moveOffField(*p, 1.0);
   return {};
 }
 
 std::string TrainerCommandParser::time(const Element& c) {
   double t;
-  if (!numbers(c, &t, 1) || t < 0) return fmt::format("expected a time of 0 to {} s", kLargest);
+  if (!readList(c, &t, 1) || t < 0) return fmt::format("expected a time of 0 to {} s", kMaxNumber);
   match_.game()->setTime(t);
   return {};
 }

@@ -5,13 +5,14 @@
 
 namespace spark {
 
-/// Takes the trainers' commands that concern soccer (protocol section 4.5). Below the monitor server.
+/// Executes the trainer commands of soccer. A child of the monitor server. Malformed commands have no effect; the
+/// returned text says why.
 class TrainerCommandParser : public Node, public ITrainer {
   SPARK_CLASS(TrainerCommandParser, Node)
  public:
   static void describe(Description<TrainerCommandParser>& d) {
-    d.doc("Executes trainers' commands: playMode, kickOff, dropBall, ball, agent, select, kill, repos, time, score.");
-    d.property("commands", &TrainerCommandParser::commands).doc("Names of the commands that it takes.");
+    d.doc("Executes trainer commands: playMode, kickOff, dropBall, ball, agent, select, kill, repos, time, score.");
+    d.property("commands", &TrainerCommandParser::commands).doc("Names of the commands that it executes.");
     d.implements<ITrainer>();
   }
   bool command(const Element& command, std::string& why) override;
@@ -21,6 +22,7 @@ class TrainerCommandParser : public Node, public ITrainer {
   using Run = std::string (TrainerCommandParser::*)(const Element&);
   static const std::vector<std::pair<std::string_view, Run>>& table();
   std::vector<std::string> commands() const;
+  // Each executes a command and returns "", or the reason why it has no effect.
   std::string playMode(const Element& c);
   std::string kickOff(const Element& c);
   std::string dropBall(const Element& c);
@@ -31,8 +33,10 @@ class TrainerCommandParser : public Node, public ITrainer {
   std::string repos(const Element& c);
   std::string time(const Element& c);
   std::string score(const Element& c);
-  const Player* named(const Element& c);
-  const Player* selected();
+  /// The player that (unum n)(team t) of a command name; nullptr if there is none.
+  const Player* namedPlayer(const Element& c);
+  /// The first selected player; nullptr if there is none.
+  const Player* selectedPlayer();
 
   MatchLookup match_;
 };

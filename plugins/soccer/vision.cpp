@@ -2,30 +2,30 @@
 
 namespace spark::soccer {
 
-Polar polarOf(const Vec3f& r) {
-  const double x = r.x(), y = r.y(), z = r.z();
+Polar toPolar(const Vec3f& point) {
+  const double x = point.x(), y = point.y(), z = point.z();
   return {std::sqrt(x * x + y * y + z * z), radToDeg(std::atan2(y, x)), radToDeg(std::atan2(z, std::hypot(x, y)))};
 }
 
-Vec3f pointOf(const Polar& p) {
+Vec3f toCartesian(const Polar& p) {
   const double h = degToRad(p.horizontal), v = degToRad(p.vertical);
   return Vec3(p.distance * std::cos(v) * std::cos(h), p.distance * std::cos(v) * std::sin(h), p.distance * std::sin(v))
       .cast<float>();
 }
 
-void tellSights(const Sights& sights, std::vector<IEye::Sight>& out) {
-  for (const Sights::Mark& m : sights.field()) out.push_back({m.object->perceptName(), m.place});
-  for (const Sights::Robot& r : sights.robots()) {
+void appendSights(const VisibleObjects& objects, std::vector<IEye::Sight>& out) {
+  for (const VisibleObjects::Object& o : objects.field()) out.push_back({o.state->perceptName(), o.position});
+  for (const VisibleObjects::Robot& r : objects.robots()) {
     const std::string name = fmt::format("{} {} {}", r.state->perceptName(), r.state->team(), r.state->unum());
-    out.push_back({name, r.place});
-    for (const Sights::Mark& part : sights.partsOf(r))
-      out.push_back({fmt::format("{} {}", name, part.object->id()), part.place});
+    out.push_back({name, r.position});
+    for (const VisibleObjects::Object& part : objects.partsOf(r))
+      out.push_back({fmt::format("{} {}", name, part.state->id()), part.position});
   }
 }
 
-Matrix fieldView(const Vec3f& place, Side side) {
-  Matrix m = translation(place);
-  for (int axis = 0; axis < 3; ++axis) m.block<3, 1>(0, axis) = seenBy(side, Vec3f::Unit(axis));
+Matrix teamView(const Vec3f& position, Side side) {
+  Matrix m = translation(position);
+  for (int axis = 0; axis < 3; ++axis) m.block<3, 1>(0, axis) = toTeamFrame(side, Vec3f::Unit(axis));
   return m;
 }
 
@@ -40,7 +40,7 @@ void writePoint(Predicates& out, std::string_view name, const Vec3f& p) {
   out.open(name).add(double(p.x())).add(double(p.y())).add(double(p.z())).close();
 }
 
-void Outlook::refresh(const SceneNode& eye) {
+void EyeContext::refresh(const SceneNode& eye) {
   Kernel& kernel = eye.kernel();
   if (!tree_.changed(eye)) return;
   stateFound_ = false;
@@ -48,36 +48,36 @@ void Outlook::refresh(const SceneNode& eye) {
   agent_ = aspect ? &aspect->outermost() : nullptr;
   state_ = nullptr;
   settings_ = kernel.root().find<SoccerSettings>();
-  if (!settings_ && !own_) own_ = std::make_unique<Sights>();
-  sights_ = settings_ ? &settings_->sights() : own_.get();
+  if (!settings_ && !own_) own_ = std::make_unique<VisibleObjects>();
+  objects_ = settings_ ? &settings_->visibleObjects() : own_.get();
 }
 
-void Outlook::findState() {
+void EyeContext::findState() {
   if (std::exchange(stateFound_, true)) return;
-  state_ = sights_->stateOf(agent_);
+  state_ = objects_->stateOf(agent_);
 }
 
-void Outlook::share(const SceneNode& eye, std::uint64_t round, float range) {
+void EyeContext::share(const SceneNode& eye, std::uint64_t round, float range) {
   refresh(eye);
-  range_ = limited(range);
-  sights_->share(eye.kernel(), round, range_);
+  range_ = limitRange(range);
+  objects_->share(eye.kernel(), round, range_);
   findState();
   shared_ = true;
 }
 
-void Outlook::open(const SceneNode& eye, float range) {
-  if (!std::exchange(shared_, false)) bring(eye, range);
+void EyeContext::beginSense(const SceneNode& eye, float range) {
+  if (!std::exchange(shared_, false)) update(eye, range);
 }
 
-void Outlook::bring(const SceneNode& eye, float range) {
+void EyeContext::update(const SceneNode& eye, float range) {
   refresh(eye);
-  range_ = limited(range);
-  sights_->update(eye.kernel(), range_);
+  range_ = limitRange(range);
+  objects_->update(eye.kernel(), range_);
   findState();
 }
 
-std::span<const std::uint32_t> Outlook::robotsNear(const Vec3f& place) {
-  sights_->near(place, range_, near_);
+std::span<const std::uint32_t> EyeContext::robotsNear(const Vec3f& position) {
+  objects_->findNear(position, range_, near_);
   return near_;
 }
 

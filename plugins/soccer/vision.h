@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What both kinds of vision share: what they look at, polar coordinates, noise.
+/// What both vision perceptors share: the objects they test, polar coordinates, noise.
 
 #include <algorithm>
 #include <memory>
@@ -9,47 +9,53 @@
 #include <vector>
 
 #include "api/agents.h"
-#include "sights.h"
 #include "soccer_settings.h"
 #include "spark/random.h"
+#include "visible_objects.h"
 
 namespace spark::soccer {
 
-inline constexpr float kTooNear = 0.1f;  ///< m: what is nearer is the eye's own body
+/// Objects at most this near are parts of the eye's own body and are not seen, as in the installed base [m].
+inline constexpr float kMinDistance = 0.1f;
 
-/// A direction and distance as agents get it.
+/// Polar coordinates as percepts have them.
 struct Polar {
   double distance = 0;    ///< m
   double horizontal = 0;  ///< deg, positive to the left
   double vertical = 0;    ///< deg, positive up
 };
 
-/// Polar coordinates of a point in a frame with x forward, y to the left, z up.
-Polar polarOf(const Vec3f& relative);
-/// `(pol d h v)`.
+/// Polar coordinates of a point [m] in a frame with x forward, y to the left, z up.
+Polar toPolar(const Vec3f& point);
+/// The point [m] with these polar coordinates, in that frame.
+Vec3f toCartesian(const Polar& polar);
+/// Writes `(pol d h v)`.
 inline void writePolar(Predicates& out, const Polar& p) {
   out.open("pol").add(p.distance).add(p.horizontal).add(p.vertical).close();
 }
 
-/// The installed base's noise: distance in proportion, angles absolute, and a constant calibration error.
+/// The vision noise of the installed base: normal noise on distance (relative) and angles (absolute), and a constant
+/// calibration error, drawn once for each eye.
 class VisionNoise {
  public:
   explicit VisionNoise(const Leaf& eye) : random(eye, "vision") {}
-  bool on = true;       ///< as the robot's scene file says
-  bool allowed = true;  ///< as the league says
+  bool on = true;       ///< the robot's scene file has noise on
+  bool allowed = true;  ///< the league has noise on
   RandomStream random;
+  /// True when there is noise.
   bool active() const { return on && allowed; }
-  /// The installed base's setNoiseParams: distance [%], phi (vertical) [deg], theta (horizontal) [deg], calibration
-  /// error [m].
+  /// The parameters of setNoiseParams in the installed base: standard deviations of distance [%], phi (vertical angle
+  /// [deg]) and theta (horizontal angle [deg]); half width of the uniform calibration error [m].
   void set(double distance, double phi, double theta, double error) {
     sigmaDistance_ = distance, sigmaPhi_ = phi, sigmaTheta_ = theta, error_ = error;
   }
-  /// Once for each eye; zero while noise is off.
+  /// Constant offset of all points, in the eye's frame [m]. Zero without noise.
   const Vec3f& calibration() {
     if (active() && !std::exchange(calibrated_, true))
       for (int i = 0; i < 3; ++i) calibration_[i] = static_cast<float>(random.uniform(-error_, error_));
     return active() ? calibration_ : kNone;
   }
+  /// Adds noise to a measurement.
   void apply(Polar& p) {
     if (!active()) return;
     p.distance += random.normal(0, sigmaDistance_) * p.distance / 100;
@@ -72,68 +78,69 @@ class VisionNoise {
   Vec3f calibration_ = Vec3f::Zero();
 };
 
-/// What one eye looks at: the sights of the league, or its own where there is no league.
-class Outlook {
+/// What an eye works with: the visible objects, its agent, the settings. Without settings it has visible objects of its
+/// own.
+class EyeContext {
  public:
-  /// Finds agent and league again when the shape of the tree changed.
+  /// Looks up agent and settings again when the shape of the tree changed.
   void refresh(const SceneNode& eye);
-  /// Before the sense phase, in the simulation's thread; `range` of the eye itself [m].
+  /// ISharedView::share(): updates the visible objects once for each `round`. `range`: of the eye's scene file [m].
   void share(const SceneNode& eye, std::uint64_t round, float range);
-  /// In the sense phase, before all below. Who is asked outside of it brings the sights up to date himself.
-  void open(const SceneNode& eye, float range);
-  /// As open, at any time between the phases.
-  void bring(const SceneNode& eye, float range);
-  /// How far it sees in this phase [m].
+  /// Called at the start of sense(). Updates the visible objects itself if share() was not called before, as when a
+  /// perceptor senses outside of the sense phase.
+  void beginSense(const SceneNode& eye, float range);
+  /// Updates the visible objects; between cycles, in the simulation's thread.
+  void update(const SceneNode& eye, float range);
+  /// Range of the eye, limited by Soccer.VisionRange [m].
   float range() const { return range_; }
 
-  const Sights& sights() const { return *sights_; }
-  /// The robots of which something may be within its range of `place`, in scene order; indices into sights().
-  std::span<const std::uint32_t> robotsNear(const Vec3f& place);
-  /// The agent of the eye, nullptr when it belongs to none.
+  const VisibleObjects& objects() const { return *objects_; }
+  /// Indices of the robots that may be within range() of `position` [m], in scene order. Valid until the next call.
+  std::span<const std::uint32_t> robotsNear(const Vec3f& position);
+  /// The agent of the eye (outermost aspect); nullptr if there is none.
   AgentAspect* agent() const { return agent_; }
-  /// Its state, nullptr when it has none.
+  /// The agent's state; nullptr if it has none.
   AgentState* state() const { return state_; }
-  /// The league's settings, nullptr where there are none.
+  /// nullptr if there are none.
   const SoccerSettings* settings() const { return settings_; }
 
  private:
   void findState();
-  float limited(float range) const {
+  float limitRange(float range) const {
     return settings_ && settings_->visionRange > 0 ? std::min(range, static_cast<float>(settings_->visionRange))
                                                    : range;
   }
   TreeWatch tree_;
   bool stateFound_ = false;
-  bool shared_ = false;
-  float range_ = Sights::kUnlimited;
-  std::unique_ptr<Sights> own_;
-  Sights* sights_ = nullptr;
+  bool shared_ = false;  ///< share() was called for this sense phase
+  float range_ = VisibleObjects::kUnlimited;
+  std::unique_ptr<VisibleObjects> own_;  ///< without settings
+  VisibleObjects* objects_ = nullptr;
   AgentAspect* agent_ = nullptr;
   AgentState* state_ = nullptr;
   SoccerSettings* settings_ = nullptr;
   std::vector<std::uint32_t> near_;
 };
 
-/// The point that polar coordinates mean, in the frame in which they were measured.
-Vec3f pointOf(const Polar& polar);
-/// Appends all that there is to be seen, as IEye wants it.
-void tellSights(const Sights& sights, std::vector<IEye::Sight>& out);
+/// IEye::sights(): appends all visible objects.
+void appendSights(const VisibleObjects& objects, std::vector<IEye::Sight>& out);
 
-/// x and y turned as the side sees the field.
-inline Vec3f seenBy(Side side, const Vec3f& v) {
+/// A vector of the field in the frame of a team, and back: for the right team x and y are mirrored, so that the
+/// opponents' goal is towards +x.
+inline Vec3f toTeamFrame(Side side, const Vec3f& v) {
   const float d = static_cast<float>(direction(side));
   return {d * v.x(), d * v.y(), v.z()};
 }
-/// The frame, x forward, of an eye that looks along the field as its side sees it.
-Matrix fieldView(const Vec3f& place, Side side);
-/// The frame, x forward, of an eye that looks as its head does: heads look along their y axis.
+/// Pose of an eye at `position` [m] whose axes are those of its team's frame: x towards the opponents' goal.
+Matrix teamView(const Vec3f& position, Side side);
+/// Pose of an eye that looks in the direction of `head`, x forward. Heads look along their y axis.
 Matrix headView(const Transform& head);
-/// `(myorien deg)`: the heading of what a frame's y axis points at, as the side sees the field.
+/// Writes `(myorien deg)`: heading of the frame's y axis in the team's frame.
 inline void writeHeading(Predicates& out, const Matrix& frame, Side side) {
   const double heading = radToDeg(std::atan2(frame(1, 1), frame(0, 1)));
   out.pair("myorien", normalizeDeg(side == Side::right ? heading - 180 : heading));
 }
-/// `(mypos x y z)` in the side's view.
+/// Writes `(name x y z)`.
 void writePoint(Predicates& out, std::string_view name, const Vec3f& p);
 
 }  // namespace spark::soccer

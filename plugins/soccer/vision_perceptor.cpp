@@ -2,68 +2,67 @@
 
 namespace spark {
 
-using soccer::Sights;
+using soccer::VisibleObjects;
 
-/// False when the object is too near or too far to be seen.
-bool VisionPerceptor::look(const Vec3f& place, soccer::Polar& out) {
-  const Vec3f way = place - here_;
-  const float distance = way.norm();
-  if (distance <= soccer::kTooNear || distance > outlook_.range()) return false;
-  Vec3f relative = soccer::seenBy(side(), way);
-  if (!staticAxis_ && transform()) relative = transform()->world().block<3, 3>(0, 0).transpose() * way;
-  out = soccer::polarOf(relative + noise_.calibration());
-  // robots look along their own y axis
+bool VisionPerceptor::see(const Vec3f& point, soccer::Polar& out) {
+  const Vec3f offset = point - origin_;
+  const float distance = offset.norm();
+  if (distance <= soccer::kMinDistance || distance > eye_.range()) return false;
+  Vec3f relative = soccer::toTeamFrame(side(), offset);
+  if (!staticAxis_ && transform()) relative = transform()->world().block<3, 3>(0, 0).transpose() * offset;
+  out = soccer::toPolar(relative + noise_.calibration());
+  // Robots look along their y axis.
   if (!staticAxis_) out.horizontal = normalizeDeg(out.horizontal - 90);
   if (randomNoise_) noise_.apply(out);
   return true;
 }
 
 void VisionPerceptor::sense(Predicates& out, const Event&) {
-  outlook_.open(*this, range_);
-  here_ = soccer::placeOf(*this);
-  const Sights& sights = outlook_.sights();
-  noise_.allowed = !outlook_.settings() || outlook_.settings()->visionNoise;
+  eye_.beginSense(*this, range_);
+  origin_ = soccer::worldPosition(*this);
+  const VisibleObjects& objects = eye_.objects();
+  noise_.allowed = !eye_.settings() || eye_.settings()->visionNoise;
   soccer::Polar polar;
   out.open(predicateName_);
-  for (const Sights::Mark& m : sights.field()) {
-    if (!look(m.place, polar)) continue;
-    out.open(m.object->perceptName());
+  for (const VisibleObjects::Object& o : objects.field()) {
+    if (!see(o.position, polar)) continue;
+    out.open(o.state->perceptName());
     writePolar(out, polar);
     out.close();
   }
-  for (const std::uint32_t i : outlook_.robotsNear(here_)) {
-    const Sights::Robot& r = sights.robots()[i];
-    if (r.agent == outlook_.agent() || r.state->side() == soccer::Side::none || !look(r.place, polar)) continue;
+  for (const std::uint32_t i : eye_.robotsNear(origin_)) {
+    const VisibleObjects::Robot& r = objects.robots()[i];
+    if (r.agent == eye_.agent() || r.state->side() == soccer::Side::none || !see(r.position, polar)) continue;
     out.open(r.state->perceptName()).pair("team", std::string_view(r.state->team())).pair("id", r.state->unum());
     writePolar(out, polar);
     out.close();
   }
-  const bool cheats = outlook_.settings() && outlook_.settings()->cheats;
-  if (senseMyPos_ || cheats) soccer::writePoint(out, "mypos", soccer::seenBy(side(), here_));
+  const bool cheats = eye_.settings() && eye_.settings()->cheats;
+  if (senseMyPos_ || cheats) soccer::writePoint(out, "mypos", soccer::toTeamFrame(side(), origin_));
   if (cheats && transform()) soccer::writeHeading(out, transform()->world(), side());
-  if (const Sights::Mark* ball = cheats ? sights.ball() : nullptr)
-    soccer::writePoint(out, "ballpos", soccer::seenBy(side(), ball->place));
+  if (const VisibleObjects::Object* ball = cheats ? objects.ball() : nullptr)
+    soccer::writePoint(out, "ballpos", soccer::toTeamFrame(side(), ball->position));
   out.close();
 }
 
 Matrix VisionPerceptor::view() {
-  outlook_.bring(*this, range_);
-  return inField() ? soccer::fieldView(soccer::placeOf(*this), side()) : soccer::headView(*transform());
+  eye_.update(*this, range_);
+  return usesTeamFrame() ? soccer::teamView(soccer::worldPosition(*this), side()) : soccer::headView(*transform());
 }
 
 double VisionPerceptor::range() {
-  outlook_.bring(*this, range_);
-  return outlook_.range();
+  eye_.update(*this, range_);
+  return eye_.range();
 }
 
 Vec3f VisionPerceptor::placeOf(double distance, double horizontalDeg, double verticalDeg) {
   const Matrix frame = view();
-  return positionOf(frame) + frame.block<3, 3>(0, 0) * soccer::pointOf({distance, horizontalDeg, verticalDeg});
+  return positionOf(frame) + frame.block<3, 3>(0, 0) * soccer::toCartesian({distance, horizontalDeg, verticalDeg});
 }
 
 void VisionPerceptor::sights(std::vector<Sight>& out) {
-  outlook_.bring(*this, range_);
-  soccer::tellSights(outlook_.sights(), out);
+  eye_.update(*this, range_);
+  soccer::appendSights(eye_.objects(), out);
 }
 
 }  // namespace spark

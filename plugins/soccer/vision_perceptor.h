@@ -5,7 +5,7 @@
 
 namespace spark {
 
-/// Sees everything around, by default along the field's axes as the team sees them:
+/// Vision in all directions, by default along the axes of the team's frame:
 /// `(See (F1L (pol 12.1 30.4 -0.3)) ... (B (pol ...)) (P (team A) (id 1) (pol ...)))`.
 class VisionPerceptor : public Perceptor, public ISharedView, public IEye, public soccer::SeeReader {
   SPARK_CLASS(VisionPerceptor, Perceptor)
@@ -17,10 +17,10 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye, publi
     d.implements<ISharedView>();
     d.implements<IEye>();
     d.implements<ISightReader>();
-    d.property("range", &V::range_).unit("m").min(0).doc("What is farther away is not seen; infinite by default.");
+    d.property("range", &V::range_).unit("m").min(0).doc("Objects farther away are not seen; infinite by default.");
     d.property("staticSenseAxis", &V::staticAxis_)
-        .doc("Angles from the field's x axis as the team sees it; else in the frame of the transform above.");
-    d.property("senseMyPos", &V::senseMyPos_).doc("Tells its own position too.");
+        .doc("Angles are relative to the x axis of the team's frame; false: in the frame of the transform above.");
+    d.property("senseMyPos", &V::senseMyPos_).doc("Reports its own position, too: (mypos x y z).");
     d.method("addNoise", &V::setNoise).parameters({"on"}).doc("Noise on or off.");
     d.method("useRandomNoise", &V::setRandom).parameters({"on"}).doc("False: only the constant calibration error.");
     d.method("setNoiseParams", &V::setNoiseParameters)
@@ -30,7 +30,7 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye, publi
     d.property("random", &V::randomState, &V::setRandomState).state().doc("Its noise.");
   }
   void sense(Predicates& out, const Event& event) override;
-  void share(std::uint64_t round) override { outlook_.share(*this, round, range_); }
+  void share(std::uint64_t round) override { eye_.share(*this, round, range_); }
 
   Matrix view() override;
   std::array<double, 2> cone() override { return {360, 180}; }
@@ -51,15 +51,17 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye, publi
   }
   const RandomStream& randomState() const { return noise_.random; }
   void setRandomState(RandomStream r) { noise_.random = r; }
-  soccer::Side side() const { return outlook_.state() ? outlook_.state()->side() : soccer::Side::none; }
-  bool inField() const { return staticAxis_ || !transform(); }
-  bool look(const Vec3f& place, soccer::Polar& out);
+  soccer::Side side() const { return eye_.state() ? eye_.state()->side() : soccer::Side::none; }
+  /// True when angles are relative to the team's frame, false: to the frame of the transform above.
+  bool usesTeamFrame() const { return staticAxis_ || !transform(); }
+  /// Measures a point (world frame [m]). Returns false when it is too near or out of range.
+  bool see(const Vec3f& point, soccer::Polar& out);
 
-  soccer::Outlook outlook_;
+  soccer::EyeContext eye_;
   soccer::VisionNoise noise_{*this};
   bool staticAxis_ = true, senseMyPos_ = false, randomNoise_ = true;
-  float range_ = soccer::Sights::kUnlimited;
-  Vec3f here_ = Vec3f::Zero();  ///< while it looks [m]
+  float range_ = soccer::VisibleObjects::kUnlimited;
+  Vec3f origin_ = Vec3f::Zero();  ///< own position during sense(), world frame [m]
 };
 
 }  // namespace spark
