@@ -1,16 +1,16 @@
 #pragma once
 /// \file
-/// Checks of preconditions, in Debug and sanitizer builds.
+/// Checks of preconditions, active in Debug and sanitizer builds.
 
 #include "spark/abi/spark/assert.h"
 
 namespace spark::detail {
-/// Prints the condition and its place, and aborts.
+/// Prints the condition and its place to stderr, then aborts.
 [[noreturn]] void assertionFailed(const char* condition, const char* file, int line);
 }  // namespace spark::detail
 
-/// Ends the program where `condition` is false: the caller has broken a precondition. Release builds do not look at it.
-/// For mistakes of code only; what comes from outside is answered with an Error.
+/// Aborts the program if `condition` is false, that is, if the caller has broken a precondition. Release builds
+/// (NDEBUG) do not evaluate the condition. Use it for programming errors only: bad input is reported with an Error.
 #ifdef NDEBUG
 #define SPARK_ASSERT(condition) static_cast<void>(0)
 #else

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The one exception type of set-up code, and the hint that follows a misspelt name.
+/// The exception type of set-up code, and hints for misspelt names.
 
 #include <exception>
 #include <string>
@@ -11,30 +11,30 @@
 
 namespace spark {
 
-/// Thrown by everything that happens at set-up (configs, plugins, scenes, property access).
-/// The text says where, what was expected, what was found and what to do. Never thrown in the step path.
+/// The exception of all set-up code: configs, plugins, scenes, access to properties. Its text says where the error is,
+/// what was expected, what was found and what to do. The step path never throws.
 class Error : public std::exception {
  public:
-  /// An error of its own, `message` being its whole text.
+  /// An error without a cause. `message` is its whole text.
   explicit Error(std::string message);
-  /// An error with a cause: `what()` reads "<message>\n  because: <cause>".
+  /// An error with a cause: `what()` is "<message>\n  because: <cause>".
   Error(std::string_view message, const std::exception& cause);
   ~Error() override;
-  /// The whole chain, outermost first, one cause a line.
+  /// The message, followed by one line for each cause, outermost first. Valid while the error lives.
   const char* what() const noexcept override { return text_.c_str(); }
 
  private:
   std::string text_;
 };
 
-/// A value that is refused however lenient a scene file's calls are taken: the import ends, with the place in the file.
+/// A value that even the lenient calls of scene files refuse. It ends the import, which adds the place in the file.
 class RefusedValue : public Error {
  public:
   using Error::Error;
 };
 
-/// The up to three `candidates` nearest to `wanted` as a sentence (" Did you mean 'a' or 'b'?"), or "" when nothing is
-/// near.
+/// Suggests up to three of the `candidates` that are spelt most like `wanted`, as a sentence that follows another one:
+/// " Did you mean 'a' or 'b'?". Returns "" if no candidate is near.
 std::string didYouMean(std::string_view wanted, const std::vector<std::string>& candidates);
 
 }  // namespace spark

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The log of one kernel: levels, one line a message, on stderr unless a sink is set. Thread safe.
+/// The log of one kernel. Writes to stderr unless a sink is set. Thread safe.
 
 #include <fmt/format.h>
 
@@ -15,47 +15,58 @@
 
 namespace spark {
 
+/// How important a message is. `off` is a threshold that no message reaches.
 enum class Level { trace, debug, info, warning, error, off };
 
-/// "trace" ... "off"; throws Error for other words.
+/// The level of that name: "trace", "debug", "info", "warning", "error" or "off". Throws Error for any other word.
 Level levelFromName(std::string_view name);
 
-/// A kernel's log. Writing below the level costs one comparison.
+/// A kernel's log. A message below the level costs one comparison.
 class Log {
  public:
+  /// Receives each message that passes the level. Calls are serialised, and may come from any thread.
   using Sink = std::function<void(Level, std::string_view)>;
+  /// A log at level `info` that writes to stderr.
   Log();
   ~Log();
+  /// Drops messages below `level` from now on.
   void setLevel(Level level) { level_ = level; }
+  /// The lowest level that is written.
   Level level() const { return level_; }
+  /// True if messages of that level are written.
   bool enabled(Level level) const { return level >= level_; }
-  /// Sends every line that passes the level to `sink` instead of stderr; an empty sink restores stderr.
+  /// Sends every message that passes the level to `sink` instead of stderr. An empty sink restores stderr.
   void setSink(Sink sink);
 
+  /// Writes a message at level `trace`, formatted by fmt::format only if the level is enabled.
   template <class... A>
   void trace(fmt::format_string<A...> f, A&&... a) {
     if (enabled(Level::trace)) write(Level::trace, fmt::format(f, std::forward<A>(a)...));
   }
+  /// As trace(), at level `debug`.
   template <class... A>
   void debug(fmt::format_string<A...> f, A&&... a) {
     if (enabled(Level::debug)) write(Level::debug, fmt::format(f, std::forward<A>(a)...));
   }
+  /// As trace(), at level `info`.
   template <class... A>
   void info(fmt::format_string<A...> f, A&&... a) {
     if (enabled(Level::info)) write(Level::info, fmt::format(f, std::forward<A>(a)...));
   }
+  /// As trace(), at level `warning`.
   template <class... A>
   void warning(fmt::format_string<A...> f, A&&... a) {
     if (enabled(Level::warning)) write(Level::warning, fmt::format(f, std::forward<A>(a)...));
   }
+  /// Writes a message at level `error`, and counts it whatever the level is.
   template <class... A>
   void error(fmt::format_string<A...> f, A&&... a) {
     write(Level::error, fmt::format(f, std::forward<A>(a)...));
   }
-  /// One line, or several of which all but the first are indented (control characters are escaped: the text may come
-  /// from a client).
+  /// Writes one message. Lines after the first are indented and control characters are escaped as \xNN, because the
+  /// text may come from a client.
   void write(Level level, std::string_view line);
-  /// Errors so far, whether the level lets them pass or not. No state.
+  /// The number of messages of level `error` so far, including those below the level. Not part of the state.
   std::int64_t errors() const { return errors_.load(std::memory_order_relaxed); }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The value that crosses every border: Lua, scene files, sparkctl, state.
+/// The value type that Lua, scene files, sparkctl and saved state exchange with the tree.
 
 #include <cstdint>
 #include <span>
@@ -14,16 +14,19 @@
 namespace spark {
 
 class Value;
-/// A list of values; vectors, matrices and key-value tables (as lists of pairs) are lists.
+/// A list of values. Vectors and matrices are lists of numbers, tables are lists of [key, value] pairs.
 using List = std::vector<Value>;
 
-/// nil, bool, integer, double, string or list. Plain data, freely copied.
+/// nil, bool, integer, double, string or list. Plain data that owns what it holds.
 class Value {
  public:
-  /// What a value holds; the order is that of the variant.
+  /// The type of a value, in the order of the variant below.
   enum class Type { nil, boolean, integer, number, string, list };
 
+  /// nil.
   Value() = default;
+  /// A value of the type that corresponds to the argument's. Integers are stored as 64 bits; an unsigned one of 2^63 or
+  /// more becomes the negative number of the same bits.
   Value(bool v) : data_(v) {}
   Value(int v) : data_(static_cast<std::int64_t>(v)) {}
   Value(unsigned v) : data_(static_cast<std::int64_t>(v)) {}
@@ -34,45 +37,59 @@ class Value {
   Value(std::string v) : data_(std::move(v)) {}
   Value(std::string_view v) : data_(std::string(v)) {}
   Value(List v) : data_(std::move(v)) {}
-  /// Text as a person typed it (`--set K=TEXT`, sparkctl): a string that is not read before it is known what it is for.
-  /// See readAs.
+  /// Text as a person typed it (`--set K=TEXT`, sparkctl). It is a string until readAs() reads it as the type that its
+  /// target expects.
   static Value typed(std::string_view text);
 
+  /// The type of the value; `string` for typed text.
   Type type() const { return isTyped() ? Type::string : static_cast<Type>(data_.index()); }
+  /// True for nil.
   bool isNil() const { return type() == Type::nil; }
+  /// True for true and false.
   bool isBool() const { return type() == Type::boolean; }
+  /// True for integers.
   bool isInteger() const { return type() == Type::integer; }
   /// True for integers and doubles.
   bool isNumber() const { return isInteger() || type() == Type::number; }
+  /// True for strings, typed text included.
   bool isString() const { return type() == Type::string; }
+  /// True for lists.
   bool isList() const { return type() == Type::list; }
-  /// True for what typed() made; such a value is a string as well.
+  /// True for typed text, which is a string as well.
   bool isTyped() const { return std::holds_alternative<Typed>(data_); }
 
-  /// The value as the named type. Precondition: it is of that type (`toNumber` also takes integers).
+  /// The bool. Throws std::bad_variant_access for other types.
   bool toBool() const { return std::get<bool>(data_); }
+  /// The integer. Throws std::bad_variant_access for other types.
   std::int64_t toInteger() const { return std::get<std::int64_t>(data_); }
+  /// The double, or the integer as a double. Throws std::bad_variant_access for other types.
   double toNumber() const { return isInteger() ? static_cast<double>(toInteger()) : std::get<double>(data_); }
+  /// The string, or the typed text. Throws std::bad_variant_access for other types. Valid while this value lives
+  /// unchanged.
   const std::string& toString() const { return isTyped() ? std::get<Typed>(data_).text : std::get<std::string>(data_); }
+  /// The list. Throws std::bad_variant_access for other types. Valid while this value lives unchanged.
   const List& toList() const { return std::get<List>(data_); }
+  /// As above, to be changed in place.
   List& toList() { return std::get<List>(data_); }
 
-  /// In a list of [key, value] pairs the value of `key`, else nullptr. Valid while this value lives unchanged.
+  /// The value of `key` in a list of [key, value] pairs, else nullptr. Valid while this value lives unchanged.
   const Value* at(std::string_view key) const;
-  /// Element `index` (0-based) of a list, else nullptr. Valid while this value lives unchanged.
+  /// Element `index` of a list, from 0, else nullptr. Valid while this value lives unchanged.
   const Value* at(std::size_t index) const;
 
-  /// For people: `nil`, `true`, `3`, `0.1` (shortest text that reads back), `"text"`, `{1, 2}`.
+  /// The value as people read it: `nil`, `true`, `3`, `0.1` (the shortest text that reads back), `"text"`, `{1, 2}`.
   std::string text() const;
-  /// Bare strings without quotes, otherwise as text().
+  /// As text(), but a string is returned without quotes.
   std::string plain() const;
-  /// Reads what a person types after `--set K=`: true, false, nil, numbers, `{...}` or `[...]`; all else is a string.
+  /// Reads text as a person types it after `--set K=`: true, false, nil, a number, `{...}` or `[...]`. Any other text
+  /// is a string. Never fails.
   static Value fromText(std::string_view text);
-  /// What typed text means where a type is expected (named as Convert<T>::typeName() does): for a string the text
-  /// itself, without quotes around all of it; for a list of strings its texts; for anything else, an unknown type
-  /// included, as fromText reads it. Other values are what they are.
+  /// Reads typed text as the type `typeName` (a name that Convert<T>::typeName() returns). A string is the text itself,
+  /// without quotes around the whole; a list of strings keeps the text of each element; for every other type name the
+  /// text is read by fromText(). Returns a value that is no typed text as it is.
   Value readAs(std::string_view typeName) const;
 
+  /// True if type and contents are equal. The integer 1 and the double 1.0 differ, and so do typed text and a string.
   bool operator==(const Value&) const = default;
 
  private:
@@ -83,24 +100,31 @@ class Value {
   std::variant<std::monostate, bool, std::int64_t, double, std::string, List, Typed> data_;
 };
 
-/// "nil", "bool", "integer", "number", "string", "list".
+/// The name of a type: "nil", "bool", "integer", "number", "string" or "list".
 std::string_view typeName(Value::Type type);
 
-/// The arguments of one call, read from left to right by Convert<T>::from.
+/// The arguments of one call. Convert<T>::from reads them from left to right.
 struct Args {
-  std::span<const Value> values;
-  /// What the installed base's scene files rely on: text where a number is due is read as C atof does (garbage is 0).
+  std::span<const Value> values;  ///< all arguments; the caller keeps them alive
+  /// Lenient conversion, which the scene files of the installed base rely on: where a number is expected, text is read
+  /// as C's atof reads it (garbage is 0), and integers are truncated and clamped.
   bool loose = false;
-  std::size_t next = 0;
+  std::size_t next = 0;  ///< index of the next argument
 
+  /// True if no argument is left.
   bool atEnd() const { return next >= values.size(); }
+  /// The number of arguments that have not been read.
   std::size_t left() const { return values.size() - next; }
-  /// The next value; throws Error when there is none.
+  /// Returns the next argument and advances. Throws Error if there is none.
   const Value& take();
 };
 
-/// How a C++ type is made from arguments and turned into a value. Specialise it for types of your own; `kScalars` is
-/// the number of plain arguments it reads (a list of that length is taken as well), -1 for "the rest".
+/// Converts between a C++ type and values. Specialise it for further types. A specialisation has:
+/// - `kScalars`, the number of plain arguments that from() reads, or -1 for all that are left; a list of that length is
+///   accepted in their place;
+/// - `typeName()`, the name of the type in documentation and errors;
+/// - `from(Args&)`, which reads a T and throws Error for arguments of the wrong type or number;
+/// - `to(const T&)`, which makes a Value.
 template <class T>
 struct Convert;
 
@@ -122,7 +146,7 @@ SPARK_CONVERT(std::string, "string");
 SPARK_CONVERT(Value, "any");
 #undef SPARK_CONVERT
 
-/// A list takes all that is left: one list, or any number of plain arguments.
+/// Reads all arguments that are left: either one list, or any number of plain arguments.
 template <class T>
 struct Convert<std::vector<T>> {
   static constexpr int kScalars = -1;
