@@ -5,56 +5,65 @@
 #include <mutex>
 #include <thread>
 
-// A cycle has a handful of rounds, some of a few dozen microseconds: what a round costs beside its jobs matters. So
-//  - an idle thread spins for a next round before it sleeps, where every thread can have a core of its own; a host that
-//    waits for input finds its threads asleep;
-//  - a round is over when its jobs are done, not when every thread has seen it: a thread that wakes up too late finds
-//  it
-//    closed and goes back to sleep.
+// One call of run() is a round. A simulation cycle has a handful of rounds, and some take only a few dozen
+// microseconds, so the overhead of a round matters. Therefore:
+//  - an idle worker spins for a moment before it sleeps, so that a round that follows soon finds it awake. It does so
+//    only if each thread can have a core of its own;
+//  - a round ends when its jobs are done, not when every worker has seen it. A worker that wakes up too late finds the
+//    round closed and goes back to sleep.
+//
+// The caller works too. Workers claim indices from an atomic counter; the mutex guards everything else.
 
 namespace spark {
 namespace {
 
-/// About what falling asleep and being woken costs: spinning in vain at most doubles it.
+/// How long a thread spins before it sleeps: about the cost of sleeping and waking, so that spinning without success at
+/// most doubles that cost.
 constexpr std::chrono::microseconds kSpin{20};
 
+/// Tells the processor that this is a spinning loop.
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
 #endif
 }
 
-/// Spins until `come()` holds, for kSpin at most.
+/// Spins until `condition()` is true, but no longer than kSpin.
 template <class Condition>
-void spinUntil(const Condition& come) {
+void spinUntil(const Condition& condition) {
+  constexpr int kTestsPerClock = 16;  // reading the clock costs more than a test
   const auto end = std::chrono::steady_clock::now() + kSpin;
   do {
-    for (int i = 0; i < 16; ++i, pause())
-      if (come()) return;
+    for (int i = 0; i < kTestsPerClock; ++i, pause())
+      if (condition()) return;
   } while (std::chrono::steady_clock::now() < end);
 }
 
 }  // namespace
 
 struct Jobs::Impl {
-  std::vector<std::thread> threads;
+  std::vector<std::thread> threads;  ///< the workers
   std::mutex mutex;
-  std::condition_variable start, done;
-  const std::function<void(std::size_t)>* job = nullptr;
-  std::size_t n = 0;
-  std::atomic<std::size_t> next{0};
-  std::atomic<std::uint64_t> round{0};
-  std::atomic<std::size_t> inside{
-      0};  ///< threads that work in this round, the caller's not counted; changed under the mutex
-  std::size_t asleep = 0;
-  bool open = false, ending = false, patient = false;
+  std::condition_variable start;                          ///< a round has begun, or the pool ends
+  std::condition_variable done;                           ///< no worker works in the round any more
+  const std::function<void(std::size_t)>* job = nullptr;  ///< of this round
+  std::size_t n = 0;                                      ///< jobs of this round
+  std::atomic<std::size_t> next{0};                       ///< the next index to claim
+  std::atomic<std::uint64_t> round{0};                    ///< rounds begun so far; written under the mutex
+  std::atomic<std::size_t> working{0};                    ///< workers in this round; written under the mutex
+  std::size_t asleep = 0;                                 ///< workers that wait for `start`
+  bool open = false;                                      ///< workers may still join the round
+  bool ending = false;                                    ///< workers return
+  bool spins = false;                                     ///< threads spin before they sleep
 
+  /// Claims and runs jobs until none is left.
   void work() {
     for (std::size_t i = next.fetch_add(1); i < n; i = next.fetch_add(1)) (*job)(i);
   }
+  /// A worker's life. `seen`: the last round that it need not join.
   void loop(std::uint64_t seen) {
     while (true) {
-      if (patient) spinUntil([&] { return round != seen; });
+      if (spins) spinUntil([&] { return round != seen; });
       std::unique_lock lock(mutex);
       ++asleep;
       start.wait(lock, [&] { return ending || round != seen; });
@@ -62,14 +71,14 @@ struct Jobs::Impl {
       if (ending) return;
       seen = round;
       if (!open) continue;
-      ++inside;
+      ++working;
       lock.unlock();
       work();
       lock.lock();
-      if (--inside == 0) done.notify_one();
+      if (--working == 0) done.notify_one();
     }
   }
-  /// True when somebody must be woken.
+  /// Opens a round. Returns true if workers sleep and must be notified.
   bool begin(std::size_t count, const std::function<void(std::size_t)>& what) {
     const std::lock_guard lock(mutex);
     job = &what;
@@ -79,16 +88,18 @@ struct Jobs::Impl {
     ++round;
     return asleep > 0;
   }
+  /// Closes the round and waits for the workers in it.
   void end() {
     {
       const std::lock_guard lock(mutex);
       open = false;
     }
-    if (inside == 0) return;
-    if (patient) spinUntil([&] { return inside == 0; });
+    if (working == 0) return;
+    if (spins) spinUntil([&] { return working == 0; });
     std::unique_lock lock(mutex);
-    done.wait(lock, [&] { return inside == 0; });
+    done.wait(lock, [&] { return working == 0; });
   }
+  /// Ends and joins all workers.
   void stop() {
     {
       const std::lock_guard lock(mutex);
@@ -107,8 +118,9 @@ Jobs::~Jobs() { impl_->stop(); }
 void Jobs::setThreads(int count) {
   SPARK_ASSERT(count >= 1);
   impl_->stop();
-  count = std::min(count, 64);
-  impl_->patient = count <= static_cast<int>(std::thread::hardware_concurrency());
+  constexpr int kMaxThreads = 64;
+  count = std::min(count, kMaxThreads);
+  impl_->spins = count <= static_cast<int>(std::thread::hardware_concurrency());
   for (int i = 1; i < count; ++i)
     impl_->threads.emplace_back([this, seen = impl_->round.load()] { impl_->loop(seen); });
 }
@@ -116,6 +128,7 @@ void Jobs::setThreads(int count) {
 int Jobs::threads() const { return static_cast<int>(impl_->threads.size()) + 1; }
 
 void Jobs::run(std::size_t n, const std::function<void(std::size_t)>& job) {
+  // Nothing to share: no round.
   if (impl_->threads.empty() || n < 2) {
     for (std::size_t i = 0; i < n; ++i) job(i);
     return;

@@ -2,64 +2,49 @@
 
 #include <elf.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <vector>
 
-// What the linker asserts, or follows without a look: the tables of the headers lie in the file, segments in order and
-// aligned, the dynamic section and what it points to in segments. Elf Specification 1.2 and System V gABI, chapters 4
-// and 5.
+#include "open_file.h"
+
+// Checks what the dynamic linker asserts or uses unchecked: the header tables are inside the file, segments are in
+// order and aligned, and the dynamic section and the tables it refers to are inside loaded segments. ELF
+// specification 1.2; System V gABI, chapters 4 and 5.
 
 namespace spark {
 
 namespace {
-class Descriptor {
- public:
-  explicit Descriptor(const std::string& path) : number_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  operator int() const { return number_; }
-
- private:
-  int number_;
-};
-
-template <class T>
-bool readAt(int file, std::uint64_t offset, T* to, std::size_t count) {
-  const auto bytes = static_cast<ssize_t>(count * sizeof(T));
-  return pread(file, to, count * sizeof(T), static_cast<off_t>(offset)) == bytes;
-}
-
-/// True when [begin, begin + size) lies in [from, from + length).
+/// True if [begin, begin + size) is part of [from, from + length). Sums that overflow are no problem.
 bool within(std::uint64_t begin, std::uint64_t size, std::uint64_t from, std::uint64_t length) {
   return begin >= from && begin - from <= length && size <= length - (begin - from);
 }
 
+/// True if a loaded segment is misaligned, larger in the file than in memory, beyond 4 GiB, or unreadable.
 bool isDamagedSegment(const Elf64_Phdr& p) {
   const bool oddAlignment =
       p.p_align > 1 && (!std::has_single_bit(p.p_align) || (p.p_vaddr - p.p_offset) % p.p_align != 0);
   return p.p_filesz > p.p_memsz || oddAlignment || !within(p.p_vaddr, p.p_memsz, 0, 1ull << 32) || !(p.p_flags & PF_R);
 }
 
-/// What other segments describe is loaded by the loaded ones.
-bool isAstray(const Elf64_Phdr& p, const std::vector<Elf64_Phdr>& segments) {
+/// True if a segment that only describes a range is not inside a loaded one, where the linker would read it.
+bool isOutsideLoaded(const Elf64_Phdr& p, const std::vector<Elf64_Phdr>& segments) {
+  constexpr std::uint64_t kPageRest = 0xfff;  // the last page is loaded as a whole
   if (p.p_type == PT_LOAD || p.p_type == PT_GNU_STACK || p.p_type == PT_NULL) return false;
   const std::uint64_t size = p.p_type == PT_TLS ? p.p_filesz : p.p_memsz;
   return std::none_of(segments.begin(), segments.end(), [&](const Elf64_Phdr& load) {
-    return load.p_type == PT_LOAD && within(p.p_vaddr, size, load.p_vaddr, load.p_memsz + 0xfff);
+    return load.p_type == PT_LOAD && within(p.p_vaddr, size, load.p_vaddr, load.p_memsz + kPageRest);
   });
 }
 
-/// The linker's tables: which entry says where one is, and how long it is (DT_NULL: not said).
+/// A table that the dynamic section refers to: the tags of the entries with its address and its size. DT_NULL: no entry
+/// has the size.
 struct Table {
-  Elf64_Sxword where, size;
+  Elf64_Sxword address, size;
 };
 constexpr Table kTables[] = {{DT_STRTAB, DT_STRSZ},
                              {DT_SYMTAB, DT_NULL},
@@ -76,67 +61,97 @@ constexpr Table kTables[] = {{DT_STRTAB, DT_STRSZ},
                              {DT_VERNEED, DT_NULL},
                              {DT_VERDEF, DT_NULL}};
 
-bool isDamagedDynamic(const std::vector<Elf64_Dyn>& entries, const std::vector<Elf64_Phdr>& segments) {
-  const auto value = [&](Elf64_Sxword tag) -> const Elf64_Dyn* {
-    for (const Elf64_Dyn& d : entries) {
+/// The entries of a library's dynamic section.
+class DynamicSection {
+ public:
+  DynamicSection(const std::vector<Elf64_Dyn>& entries, const std::vector<Elf64_Phdr>& segments)
+      : entries_(entries), segments_(segments) {}
+
+  bool isDamaged() const {
+    return !isTerminated() || !hasRequired() || !sizesAgree() || !tablesLoaded() || !namesFit();
+  }
+
+ private:
+  /// The first entry with that tag, nullptr if there is none before the end of the section.
+  const Elf64_Dyn* find(Elf64_Sxword tag) const {
+    for (const Elf64_Dyn& d : entries_) {
       if (d.d_tag == DT_NULL) return nullptr;
       if (d.d_tag == tag) return &d;
     }
     return nullptr;
-  };
-  const auto is = [&](Elf64_Sxword tag, std::uint64_t expected) {
-    return !value(tag) || value(tag)->d_un.d_val == expected;
-  };
-  if (std::none_of(entries.begin(), entries.end(), [](const Elf64_Dyn& d) { return d.d_tag == DT_NULL; })) return true;
-  if (!value(DT_STRTAB) || !value(DT_STRSZ) || !value(DT_SYMTAB)) return true;
-  if (!is(DT_SYMENT, sizeof(Elf64_Sym)) || !is(DT_RELAENT, sizeof(Elf64_Rela)) || !is(DT_PLTREL, DT_RELA)) return true;
-  const auto divides = [&](Elf64_Sxword tag, std::uint64_t size) {
-    return !value(tag) || value(tag)->d_un.d_val % size == 0;
-  };
-  if (!divides(DT_RELASZ, sizeof(Elf64_Rela)) || !divides(DT_PLTRELSZ, sizeof(Elf64_Rela)) ||
-      !divides(DT_INIT_ARRAYSZ, 8) || !divides(DT_FINI_ARRAYSZ, 8))
-    return true;
-  if (value(DT_RELACOUNT) &&
-      (!value(DT_RELASZ) || value(DT_RELACOUNT)->d_un.d_val > value(DT_RELASZ)->d_un.d_val / sizeof(Elf64_Rela)))
-    return true;
-  if (value(DT_RELA) && (!value(DT_RELASZ) || !value(DT_RELAENT))) return true;
-  if (value(DT_JMPREL) && (!value(DT_PLTRELSZ) || !value(DT_PLTREL))) return true;
-  const auto loaded = [&](std::uint64_t address, std::uint64_t size) {
-    return std::any_of(segments.begin(), segments.end(), [&](const Elf64_Phdr& p) {
+  }
+  bool has(Elf64_Sxword tag) const { return find(tag) != nullptr; }
+  std::uint64_t value(Elf64_Sxword tag) const { return find(tag)->d_un.d_val; }
+  bool isAbsentOr(Elf64_Sxword tag, std::uint64_t expected) const { return !has(tag) || value(tag) == expected; }
+  bool isAbsentOrMultiple(Elf64_Sxword tag, std::uint64_t size) const { return !has(tag) || value(tag) % size == 0; }
+
+  bool isTerminated() const {
+    return std::any_of(entries_.begin(), entries_.end(), [](const Elf64_Dyn& d) { return d.d_tag == DT_NULL; });
+  }
+  /// Names and symbols are there, and a table of relocations comes with its size and kind.
+  bool hasRequired() const {
+    return has(DT_STRTAB) && has(DT_STRSZ) && has(DT_SYMTAB) &&
+           (!has(DT_RELA) || (has(DT_RELASZ) && has(DT_RELAENT))) &&
+           (!has(DT_JMPREL) || (has(DT_PLTRELSZ) && has(DT_PLTREL)));
+  }
+  /// Entries have the sizes of this machine, and tables hold whole entries.
+  bool sizesAgree() const {
+    return isAbsentOr(DT_SYMENT, sizeof(Elf64_Sym)) && isAbsentOr(DT_RELAENT, sizeof(Elf64_Rela)) &&
+           isAbsentOr(DT_PLTREL, DT_RELA) && isAbsentOrMultiple(DT_RELASZ, sizeof(Elf64_Rela)) &&
+           isAbsentOrMultiple(DT_PLTRELSZ, sizeof(Elf64_Rela)) &&
+           isAbsentOrMultiple(DT_INIT_ARRAYSZ, sizeof(Elf64_Addr)) &&
+           isAbsentOrMultiple(DT_FINI_ARRAYSZ, sizeof(Elf64_Addr)) &&
+           (!has(DT_RELACOUNT) || (has(DT_RELASZ) && value(DT_RELACOUNT) <= value(DT_RELASZ) / sizeof(Elf64_Rela)));
+  }
+  /// Every table is inside a loaded segment.
+  bool tablesLoaded() const {
+    return std::all_of(std::begin(kTables), std::end(kTables), [&](const Table& t) {
+      const Elf64_Dyn* size = t.size == DT_NULL ? nullptr : find(t.size);
+      return !has(t.address) || isLoaded(value(t.address), size ? size->d_un.d_val : 0);
+    });
+  }
+  bool isLoaded(std::uint64_t address, std::uint64_t size) const {
+    return std::any_of(segments_.begin(), segments_.end(), [&](const Elf64_Phdr& p) {
       return p.p_type == PT_LOAD && within(address, std::max<std::uint64_t>(size, 1), p.p_vaddr, p.p_memsz);
     });
-  };
-  for (const Table& t : kTables)
-    if (const Elf64_Dyn* where = value(t.where)) {
-      const Elf64_Dyn* size = t.size == DT_NULL ? nullptr : value(t.size);
-      if (!loaded(where->d_un.d_ptr, size ? size->d_un.d_val : 0)) return true;
-    }
-  const std::uint64_t names = value(DT_STRSZ)->d_un.d_val;
-  for (const Elf64_Dyn& d : entries) {
-    if (d.d_tag == DT_NULL) break;
-    const bool isName = d.d_tag == DT_NEEDED || d.d_tag == DT_SONAME || d.d_tag == DT_RPATH || d.d_tag == DT_RUNPATH;
-    if (isName && d.d_un.d_val >= names) return true;
   }
-  return false;
-}
+  /// Every name begins inside the string table.
+  bool namesFit() const {
+    const std::uint64_t size = value(DT_STRSZ);
+    for (const Elf64_Dyn& d : entries_) {
+      if (d.d_tag == DT_NULL) break;
+      const bool isName = d.d_tag == DT_NEEDED || d.d_tag == DT_SONAME || d.d_tag == DT_RPATH || d.d_tag == DT_RUNPATH;
+      if (isName && d.d_un.d_val >= size) return false;
+    }
+    return true;
+  }
+
+  const std::vector<Elf64_Dyn>& entries_;
+  const std::vector<Elf64_Phdr>& segments_;
+};
 }  // namespace
 
 std::string libraryProblem(const std::string& path) {
-  const Descriptor file(path);
+  constexpr std::uint64_t kMaxDynamic = 1u << 20;  // bytes
+  const OpenFile file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   struct stat s = {};
   if (file < 0 || fstat(file, &s) != 0) return {};
   if (!S_ISREG(s.st_mode)) return "it is no regular file";
   const auto size = static_cast<std::uint64_t>(s.st_size);
+
+  // The file header. The linker itself refuses libraries of another word size.
   Elf64_Ehdr head{};
   if (!readAt(file, 0, &head, 1) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 || head.e_type != ET_DYN)
     return "it is no shared library";
   if (head.e_ident[EI_CLASS] != ELFCLASS64) return {};
-  const std::string damaged = "its headers are damaged; copy or build it again";
+  std::string damaged = "its headers are damaged; copy or build it again";
   if (head.e_phentsize != sizeof(Elf64_Phdr) || head.e_phnum == 0) return damaged;
+
+  // The segments: inside the file, and the loaded ones in order without overlap.
   std::vector<Elf64_Phdr> segments(head.e_phnum);
-  const std::string cut = "it is cut off after " + std::to_string(size) + " bytes";
+  std::string cut = fmt::format("it is cut off after {} bytes", size);
   if (!readAt(file, head.e_phoff, segments.data(), segments.size())) return cut;
-  std::uint64_t end = 0;  // of the last loaded segment
+  std::uint64_t end = 0;  // address behind the last loaded segment
   const Elf64_Phdr* dynamic = nullptr;
   for (const Elf64_Phdr& p : segments) {
     if (!within(p.p_offset, p.p_filesz, 0, size)) return cut;
@@ -145,11 +160,13 @@ std::string libraryProblem(const std::string& path) {
     if (isDamagedSegment(p) || p.p_vaddr < end) return damaged;
     end = p.p_vaddr + p.p_memsz;
   }
-  if (end == 0 || !dynamic || dynamic->p_filesz < sizeof(Elf64_Dyn) || dynamic->p_filesz > (1u << 20)) return damaged;
-  if (std::any_of(segments.begin(), segments.end(), [&](const Elf64_Phdr& p) { return isAstray(p, segments); }))
+  if (end == 0 || !dynamic || dynamic->p_filesz < sizeof(Elf64_Dyn) || dynamic->p_filesz > kMaxDynamic) return damaged;
+  if (std::any_of(segments.begin(), segments.end(), [&](const Elf64_Phdr& p) { return isOutsideLoaded(p, segments); }))
     return damaged;
+
+  // The dynamic section.
   std::vector<Elf64_Dyn> entries(dynamic->p_filesz / sizeof(Elf64_Dyn));
-  if (!readAt(file, dynamic->p_offset, entries.data(), entries.size()) || isDamagedDynamic(entries, segments))
+  if (!readAt(file, dynamic->p_offset, entries.data(), entries.size()) || DynamicSection(entries, segments).isDamaged())
     return damaged;
   return {};
 }

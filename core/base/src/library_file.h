@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// Private to the loader: whether a file may be given to the dynamic linker.
+/// Private to the loader: checks a file before the dynamic linker gets it.
 
 #include <string>
 
 namespace spark {
 
-/// "" when the file is a whole shared library for this machine as far as its headers say, else what is wrong: a
-/// sentence's second half, "it is ...". The linker trusts its headers and ends the process where they are damaged; what
-/// lies behind them is not looked at. Never waits: what is no regular file is not read. "" also for what cannot be
-/// opened: the linker says that better.
+/// Returns "" if the file is a complete shared library for this machine as far as its headers show, else the reason as
+/// the second half of a sentence: "it is ...". The dynamic linker trusts these headers and would end the process if
+/// they were damaged; contents behind them are not checked. Never blocks: a file that is not a regular file is not
+/// read. Returns "" also for a file that cannot be opened, because the linker has the better message for that.
 std::string libraryProblem(const std::string& path);
 
 }  // namespace spark

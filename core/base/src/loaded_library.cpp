@@ -3,92 +3,76 @@
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <link.h>
 #include <ltdl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <vector>
 
+#include "library_file.h"
+#include "open_file.h"
 #include "spark/error.h"
 
-// A plugin's author builds while the host runs. The linker maps a file's pages as they are needed: were it the author's
-// file, code of the old and the new version would run side by side. So what is loaded is a copy in memory
-// (memfd_create(2)) that nobody else can write.
+// Authors rebuild plugins while the host runs. The linker maps the pages of a file on demand, so a host that mapped the
+// file itself would run code of the old and the new version side by side. Therefore a private copy in memory
+// (memfd_create(2)) is loaded, which no other process can write:
 //
-//   the file ── copied as far as it is loaded, again while somebody writes it ──► a memfd
-//   memfd ── dlopen(NOW, LOCAL) as /proc/self/fd/... ── lt_dlopen of the same name ──► one mapping; the memfd is closed
-//   the linker's list ── the mapping gets the file's name ──► debuggers, sanitizers and dladdr(3) find the symbols
+//   the file ── copy its loaded part, again if the file changes meanwhile ──► a memfd
+//   the memfd ── dlopen(NOW, LOCAL) as /proc/self/fd/..., then lt_dlopen ──► one mapping; the memfd is closed
+//   the mapping ── gets the file's name in the linker's list ──► debuggers, sanitizers and dladdr(3) find its symbols
 //
-// libltdl asks the dynamic linker for lazy binding and keeps its error text to itself. So each file is first opened
-// with dlopen(NOW, LOCAL): what is missing is found then and said in the linker's own words; libltdl's handle keeps it
-// open, ours is closed again.
+// libltdl binds lazily and hides the linker's error texts. So each file is first opened with dlopen(NOW, LOCAL), which
+// finds missing symbols and reports them in the linker's words. Then libltdl opens it, and the first handle is closed.
 //
-// Names: both libltdl and the linker take an equal name for an equal file, and descriptors' numbers come again. So each
-// copy's name is spelled in a way of its own. $ORIGIN in a copy's search path would be /proc: libraries that are found
-// so are loaded first, from where they are, and the linker then finds them by their names.
+// Names: libltdl and the linker take two files of equal names for one file, and descriptor numbers are used again. So
+// the path of each copy is spelled differently. A search path that contains $ORIGIN would be relative to /proc for a
+// copy: libraries that are found that way are loaded first, from beside the file; the linker then finds them by their
+// names.
 //
-// Where no copy can be made (no memfd or /proc, no descriptor free, a limit on the size of files, a system that forbids
-// to run one) the file itself is loaded.
+// The file itself is loaded where no copy is possible: no memfd or /proc, no free descriptor, a limit on file sizes, or
+// a system that does not execute code from a memfd.
 
 namespace fs = std::filesystem;
 
 namespace spark {
 
 namespace {
-constexpr int kTries = 5;  // copies of a file that changes meanwhile
+constexpr int kMaxCopies = 5;  // attempts, each spoilt by a change of the file
 
+/// Guards libltdl and the list below. Recursive, because load() may destroy a library: the one that it compares with
+/// may lose its other owners in that moment.
 std::recursive_mutex& libraryMutex() {
-  static std::recursive_mutex mutex;  // libltdl and the list below are the process's
+  static std::recursive_mutex mutex;
   return mutex;
 }
 
+/// The libraries that this process has loaded.
 std::vector<std::weak_ptr<LoadedLibrary>>& libraries() {
   static std::vector<std::weak_ptr<LoadedLibrary>> all;
   return all;
 }
 
-class OpenFile {
- public:
-  explicit OpenFile(int number) : number_(number) {}
-  ~OpenFile() {
-    if (number_ >= 0) close(number_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  operator int() const { return number_; }
-
- private:
-  int number_;
-};
-
-template <class T>
-bool readBytes(int file, std::uint64_t offset, std::vector<T>& to) {
-  return pread(file, to.data(), to.size() * sizeof(T), static_cast<off_t>(offset)) ==
-         static_cast<ssize_t>(to.size() * sizeof(T));
-}
-
+/// The program headers of a library; empty if the file is not one.
 std::vector<Elf64_Phdr> segmentsOf(int file) {
-  std::vector<Elf64_Ehdr> head(1);
-  if (!readBytes(file, 0, head) || std::memcmp(head[0].e_ident, ELFMAG, SELFMAG) != 0 ||
-      head[0].e_ident[EI_CLASS] != ELFCLASS64)
+  Elf64_Ehdr head{};
+  if (!readAt(file, 0, &head, 1) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 ||
+      head.e_ident[EI_CLASS] != ELFCLASS64)
     return {};
-  std::vector<Elf64_Phdr> segments(head[0].e_phnum);
-  if (!readBytes(file, head[0].e_phoff, segments)) return {};
+  std::vector<Elf64_Phdr> segments(head.e_phnum);
+  if (!readAt(file, head.e_phoff, segments.data(), segments.size())) return {};
   return segments;
 }
 
-/// Bytes from the beginning that are loaded; what follows is for debuggers. 0: it is no library, and nobody needs a
-/// copy.
+/// The length of the part that the linker loads [bytes], from the beginning of a file of `size` bytes; debug
+/// information comes behind it. 0: the file is not a library and needs no copy.
 std::uint64_t loadedBytes(int file, std::uint64_t size) {
   const std::vector<Elf64_Phdr> segments = segmentsOf(file);
   std::uint64_t end = 0;
@@ -97,50 +81,58 @@ std::uint64_t loadedBytes(int file, std::uint64_t size) {
   return segments.empty() ? 0 : std::min(std::max<std::uint64_t>(end, sizeof(Elf64_Ehdr)), size);
 }
 
+/// Copies the first `count` bytes. Returns false if a system call fails; a source that has become shorter is no
+/// failure.
 bool copyBytes(int from, int to, std::uint64_t count) {
   std::vector<char> block(1u << 18);
   for (std::uint64_t at = 0; at < count;) {
     const ssize_t n =
         pread(from, block.data(), std::min<std::uint64_t>(block.size(), count - at), static_cast<off_t>(at));
-    if (n <= 0) return n == 0;  // it was shortened: its stamp says so
+    if (n <= 0) return n == 0;  // n == 0: the file became shorter, which its stamp shows
     if (pwrite(to, block.data(), static_cast<std::size_t>(n), static_cast<off_t>(at)) != n) return false;
     at += static_cast<std::uint64_t>(n);
   }
   return true;
 }
 
-bool allows(std::uint64_t size) {
+/// True if this process may write a file of `size` bytes.
+bool allowsSize(std::uint64_t size) {
   rlimit limit = {};
   return getrlimit(RLIMIT_FSIZE, &limit) == 0 && (limit.rlim_cur == RLIM_INFINITY || size <= limit.rlim_cur);
 }
 
-/// What is given to the linker: a private copy of a file, or the file itself.
+/// The file that the linker opens: a private copy of the plugin's file, or the file itself.
 class Source {
  public:
-  /// Throws Error when the file is written all the time.
+  /// Copies the file. Throws Error if the file changes during every attempt.
   explicit Source(const std::string& path)
       : path_(path), name_(path), copy_(memfd_create(shortName(path).c_str(), MFD_CLOEXEC)) {
     const OpenFile file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     struct stat s = {};
-    for (int i = 0; i < kTries; ++i) {
-      if (file < 0 || fstat(file, &s) != 0 || !S_ISREG(s.st_mode)) return;  // the linker says it better
+    for (int i = 0; i < kMaxCopies; ++i) {
+      // What cannot be opened is left to the linker, which has the better error text.
+      if (file < 0 || fstat(file, &s) != 0 || !S_ISREG(s.st_mode)) return;
       stamp_ = FileStamp(s);
       const std::uint64_t size = loadedBytes(file, static_cast<std::uint64_t>(s.st_size));
-      if (size == 0 || copy_ < 0 || !allows(size)) return;
+      if (size == 0 || copy_ < 0 || !allowsSize(size)) return;
       if (ftruncate(copy_, 0) != 0 || !copyBytes(file, copy_, size)) return;
+      // The copy is consistent if the file is still the same.
       if (fstat(file, &s) != 0 || FileStamp(s) == stamp_) {
         nameCopy();
         return;
       }
     }
-    throw Error("cannot load plugin " + path + ": somebody is writing it. Try again when it is complete.");
+    throw Error(fmt::format("cannot load plugin {}: somebody is writing it. Try again when it is complete.", path));
   }
+  /// The name under which the linker opens it.
   const std::string& name() const { return name_; }
   bool isCopy() const { return name_ != path_; }
+  /// The file's stamp before it was copied.
   const FileStamp& stamp() const { return stamp_; }
+  /// Gives up the copy.
   void useFileItself() { name_ = path_; }
-  /// The linker's words about it, with the file's name for the copy's.
-  std::string words(std::string text) const {
+  /// The linker's error text with the name of the file instead of the copy's.
+  std::string withFileName(std::string text) const {
     for (std::size_t at = text.find(name_); at != std::string::npos && isCopy();
          at = text.find(name_, at + path_.size()))
       text.replace(at, name_.size(), path_);
@@ -148,9 +140,11 @@ class Source {
   }
 
  private:
+  /// The name that /proc shows for the memfd, which is limited to 249 bytes.
   static std::string shortName(const std::string& path) { return fs::path(path).filename().string().substr(0, 200); }
 
-  /// Another spelling each time: the bits of a counter are ways that lead nowhere.
+  /// Spells the copy's path in a new way: the bits of a counter choose between components that change nothing, "./" and
+  /// "../fd/".
   void nameCopy() {
     static std::uint64_t count = 0;
     name_ = "/proc/self/fd/";
@@ -164,9 +158,10 @@ class Source {
   const OpenFile copy_;
 };
 
-/// What a library needs, and where it looks: the texts of its dynamic section.
+/// What the dynamic section of a library says about the libraries that it needs.
 struct Needs {
-  std::vector<std::string> libraries, folders;
+  std::vector<std::string> libraries;  ///< their names (DT_NEEDED)
+  std::vector<std::string> folders;    ///< its search path (DT_RPATH, DT_RUNPATH)
 };
 
 Needs needsOf(const std::string& name) {
@@ -176,19 +171,22 @@ Needs needsOf(const std::string& name) {
       std::find_if(segments.begin(), segments.end(), [](const auto& p) { return p.p_type == PT_DYNAMIC; });
   if (dynamic == segments.end()) return {};
   std::vector<Elf64_Dyn> entries(dynamic->p_filesz / sizeof(Elf64_Dyn));
-  if (!readBytes(file, dynamic->p_offset, entries)) return {};
+  if (!readAt(file, dynamic->p_offset, entries.data(), entries.size())) return {};
   const auto valueOf = [&](Elf64_Sxword tag) {
     const auto at = std::find_if(entries.begin(), entries.end(), [&](const Elf64_Dyn& d) { return d.d_tag == tag; });
     return at == entries.end() ? 0 : at->d_un.d_val;
   };
+  // The string table, found in the loaded segment that contains its address.
   const std::uint64_t address = valueOf(DT_STRTAB);
   const auto home = std::find_if(segments.begin(), segments.end(), [&](const Elf64_Phdr& p) {
     return p.p_type == PT_LOAD && address >= p.p_vaddr && address - p.p_vaddr + valueOf(DT_STRSZ) <= p.p_filesz;
   });
   if (home == segments.end()) return {};
   std::vector<char> texts(valueOf(DT_STRSZ));
-  if (!readBytes(file, address - home->p_vaddr + home->p_offset, texts)) return {};
+  if (!readAt(file, address - home->p_vaddr + home->p_offset, texts.data(), texts.size())) return {};
   texts.push_back(0);
+
+  // The entries that are names; a search path is split at its colons.
   Needs needs;
   for (const Elf64_Dyn& d : entries) {
     if (d.d_tag == DT_NULL) break;
@@ -205,8 +203,8 @@ Needs needsOf(const std::string& name) {
   return needs;
 }
 
-/// Opens what a copy would not find: libraries that its search path has relative to the file ($ORIGIN). Held until the
-/// copy is open.
+/// Opens the libraries that the linker could not find for a copy, because its search path is relative to the file
+/// ($ORIGIN), and keeps them open until the copy is open.
 class Neighbours {
  public:
   Neighbours(const std::string& name, const std::string& path) {
@@ -223,11 +221,12 @@ class Neighbours {
   Neighbours& operator=(const Neighbours&) = delete;
 
  private:
-  /// What is there already, such as the kernel, is not loaded again from elsewhere.
+  /// Does not load a second version of a library that is loaded already, such as the kernel.
   static void* open(const std::string& name, const fs::path& file) {
     void* known = dlopen(name.c_str(), RTLD_LAZY | RTLD_NOLOAD);
     return known ? known : dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   }
+  /// A folder of the search path that is relative to the file, as an absolute one; nothing for other folders.
   static std::optional<fs::path> resolved(std::string folder, const std::string& path) {
     for (const std::string word : {"$ORIGIN", "${ORIGIN}"})
       if (const std::size_t at = folder.find(word); at != std::string::npos)
@@ -237,35 +236,14 @@ class Neighbours {
   std::vector<void*> handles_;
 };
 
-/// "" when the file looks like a whole shared library. The dynamic linker trusts its headers: a file that was copied
-/// half would kill us.
-std::string fileProblem(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::error_code ec;
-  const std::uintmax_t size = fs::file_size(path, ec);
-  Elf64_Ehdr head{};
-  if (!in || ec) return {};  // the linker says it better
-  if (!in.read(reinterpret_cast<char*>(&head), sizeof head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 ||
-      head.e_type != ET_DYN)
-    return "it is no shared library";
-  if (head.e_ident[EI_CLASS] != ELFCLASS64) return {};
-  in.seekg(static_cast<std::streamoff>(head.e_phoff));
-  for (int i = 0; i < head.e_phnum; ++i) {
-    Elf64_Phdr part{};
-    if (!in.read(reinterpret_cast<char*>(&part), sizeof part) || part.p_offset > size ||
-        part.p_filesz > size - part.p_offset)
-      return "it is cut off after " + std::to_string(size) + " bytes";
-  }
-  return {};
-}
-
-std::string lastWords() {
+/// The text of the last dlopen(3) error.
+std::string linkerError() {
   const char* text = dlerror();
   return text ? text : "unknown reason";
 }
 
-/// Of the linker's list, which others read at any time: kept to the end of the process.
-char* keptName(const std::string& path) {
+/// A copy of the path for the linker's list, which other code may read at any time: valid until the process ends.
+char* permanentName(const std::string& path) {
   static auto& names = *new std::set<std::string>;
   return const_cast<char*>(names.insert(path).first->c_str());
 }
@@ -298,26 +276,31 @@ std::shared_ptr<LoadedLibrary> LoadedLibrary::load(const std::string& path) {
 void LoadedLibrary::open() {
   Source source(path_);
   const auto fail = [&](const char* how, const std::string& why) {
-    throw Error(std::string(how) + " plugin " + path_ + ": " + source.words(why));
+    throw Error(fmt::format("{} plugin {}: {}", how, path_, source.withFileName(why)));
   };
-  if (const std::string problem = fileProblem(source.name()); !problem.empty()) fail("refused", problem);
+  // A damaged library would end the process.
+  if (const std::string problem = libraryProblem(source.name()); !problem.empty()) fail("refused", problem);
   static const int started = lt_dlinit();
   if (started != 0) fail("cannot load", "libltdl does not start");
+
+  // The linker opens it, which resolves all symbols. "failed to map" of a copy: this system forbids to execute it.
   const Neighbours neighbours(source.name(), path_);
   void* first = dlopen(source.name().c_str(), RTLD_NOW | RTLD_LOCAL);
-  std::string why = first ? "" : lastWords();
+  std::string why = first ? "" : linkerError();
   if (!first && source.isCopy() && why.find("failed to map") != std::string::npos) {
     source.useFileItself();
     first = dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL);
-    why = first ? "" : lastWords();
+    why = first ? "" : linkerError();
   }
   if (!first) fail("cannot load", why);
   stamp_ = source.stamp();
+
+  // libltdl opens the same mapping, which then has the name of the file.
   handle_ = lt_dlopen(source.name().c_str());
   if (const char* text = handle_ ? nullptr : lt_dlerror()) why = text;
   if (handle_ && source.isCopy() && dlinfo(first, RTLD_DI_LINKMAP, &map_) == 0) {
     linkerName_ = map_->l_name;
-    map_->l_name = keptName(path_);
+    map_->l_name = permanentName(path_);
   }
   dlclose(first);
   if (!handle_) fail("refused", why.empty() ? "libltdl cannot open it" : why);
@@ -326,7 +309,7 @@ void LoadedLibrary::open() {
 LoadedLibrary::~LoadedLibrary() {
   if (!handle_) return;
   const std::lock_guard lock(libraryMutex());
-  if (map_) map_->l_name = linkerName_;  // the linker frees it
+  if (map_) map_->l_name = linkerName_;  // the linker frees its own name
   lt_dlclose(static_cast<lt_dlhandle>(handle_));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Private to the loader: a plugin's file in memory.
+/// Private to the loader: the shared library of a plugin, loaded into this process.
 
 #include <sys/stat.h>
 
@@ -11,13 +11,14 @@ struct link_map;
 
 namespace spark {
 
-/// What tells one content of a file from the next without reading it.
+/// Identifies a version of a file without reading it: device, inode, size, times of change.
 class FileStamp {
  public:
+  /// The stamp of no file. It equals no stamp, not even itself.
   FileStamp() = default;
-  /// `s`: what the system says of the file.
+  /// The stamp of the file that `s` describes.
   explicit FileStamp(const struct stat& s);
-  /// Of the file now; one that equals no other when it is gone.
+  /// The stamp of the file at `path` now; the stamp of no file if there is none.
   static FileStamp of(const std::string& path);
   bool operator==(const FileStamp& o) const;
 
@@ -26,19 +27,19 @@ class FileStamp {
   bool there_ = false;
 };
 
-/// A shared library that this process has loaded: a private copy of the file, so that writing to the file does no harm.
-/// Kernels that load the same unchanged file share one; it is unmapped when the last of them lets go.
+/// A shared library that this process has loaded, as a private copy of its file: writing to the file does not affect
+/// it. Kernels that load the same unchanged file share one. It is unmapped when its last owner releases it.
 class LoadedLibrary {
  public:
-  /// `path`: absolute. Throws Error that names the file and says why it cannot be loaded. Thread safe.
+  /// Loads the library at the absolute `path`. Throws Error with the name of the file and the reason. Thread safe.
   static std::shared_ptr<LoadedLibrary> load(const std::string& path);
   ~LoadedLibrary();
   LoadedLibrary(const LoadedLibrary&) = delete;
   LoadedLibrary& operator=(const LoadedLibrary&) = delete;
 
-  /// The address of an exported symbol, nullptr when there is none.
+  /// The address of an exported symbol, nullptr if there is none. Valid while the library is loaded. Thread safe.
   const void* symbol(const char* name) const;
-  /// True when there is another file of that name now.
+  /// True if the path now has a file of another version.
   bool hasChanged() const;
 
  private:
@@ -46,10 +47,10 @@ class LoadedLibrary {
   void open();
 
   std::string path_;
-  FileStamp stamp_;
-  void* handle_ = nullptr;          ///< libltdl's
-  struct link_map* map_ = nullptr;  ///< the dynamic linker's; of copies only
-  char* linkerName_ = nullptr;      ///< what it called the copy
+  FileStamp stamp_;                 ///< of the file when it was copied
+  void* handle_ = nullptr;          ///< of libltdl
+  struct link_map* map_ = nullptr;  ///< the linker's entry; nullptr unless a copy is loaded
+  char* linkerName_ = nullptr;      ///< the name in that entry before it was replaced
 };
 
 }  // namespace spark

@@ -17,7 +17,7 @@ struct Log::Impl {
 
 Log::Log() : impl_(std::make_unique<Impl>()) {
   impl_->logger.set_pattern("%H:%M:%S.%e %^%-7l%$ %v");
-  impl_->logger.set_level(spdlog::level::trace);
+  impl_->logger.set_level(spdlog::level::trace);  // write() applies the level of this log
 }
 Log::~Log() = default;
 
@@ -25,8 +25,8 @@ Level levelFromName(std::string_view name) {
   const std::vector<std::string> names{"trace", "debug", "info", "warning", "error", "off"};
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i] == name) return static_cast<Level>(i);
-  throw Error("expected a log level (trace, debug, info, warning, error, off), found '" + std::string(name) + "'." +
-              didYouMean(name, names));
+  throw Error(
+      fmt::format("expected a log level ({}), found '{}'.{}", fmt::join(names, ", "), name, didYouMean(name, names)));
 }
 
 void Log::setSink(Sink sink) {
@@ -42,7 +42,7 @@ void Log::write(Level level, std::string_view line) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
     const auto byte = static_cast<unsigned char>(c);
-    // What follows a line break is indented: text from a client cannot pass for a line of its own.
+    // Lines after the first are indented, so that text from a client cannot look like a message of its own.
     if (byte == '\n')
       clean += i + 1 < line.size() && line[i + 1] == ' ' ? "\n" : "\n  ";
     else if (byte == '\t' || (byte >= 0x20 && byte != 0x7f))
@@ -52,6 +52,7 @@ void Log::write(Level level, std::string_view line) {
   }
   const std::lock_guard lock(impl_->mutex);
   if (impl_->sink) return impl_->sink(level, clean);
+  // In the order of Level.
   constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::trace, spdlog::level::debug, spdlog::level::info,
                                                    spdlog::level::warn,  spdlog::level::err,   spdlog::level::off};
   impl_->logger.log(kLevels[static_cast<int>(level)], "{}", clean);

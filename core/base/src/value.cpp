@@ -1,5 +1,7 @@
 #include "spark/value.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -23,6 +25,7 @@ const Value* Value::at(std::size_t index) const {
 }
 
 namespace {
+/// The shortest text that reads back as `v` and is recognised as a double: "1.0", not "1".
 std::string numberText(double v) {
   if (std::isnan(v)) return "nan";
   if (std::isinf(v)) return v < 0 ? "-inf" : "inf";
@@ -37,26 +40,30 @@ void skipBlanks(std::string_view& t) {
   while (!t.empty() && (t.front() == ' ' || t.front() == '\t')) t.remove_prefix(1);
 }
 
+/// Reads nil, a bool or a number; all other text is a string.
 Value scalarFromText(std::string_view t) {
   if (t == "nil") return {};
   if (t == "true") return true;
   if (t == "false") return false;
   const char* end = t.data() + t.size();
-  std::int64_t i = 0;
+  // from_chars takes no leading '+'.
   const char* begin = t.size() > 1 && t.front() == '+' && t[1] != '-' ? t.data() + 1 : t.data();
+  std::int64_t i = 0;
   if (auto r = std::from_chars(begin, end, i); r.ec == std::errc() && r.ptr == end) return i;
   double d = 0;
   if (auto r = std::from_chars(begin, end, d); r.ec == std::errc() && r.ptr == end) return d;
   return t;
 }
 
-/// How the words of a text are read that stand in no quotes.
+/// Reads a word without quotes.
 using ReadWord = Value (*)(std::string_view);
 
-/// Takes one value off `t`; `ok` turns false where a list is not well formed.
+/// Removes one value from the front of `t` and returns it. Sets `ok` to false if a list is malformed.
 Value valueFromText(std::string_view& t, ReadWord readWord, bool inList, int depth, bool& ok) {
+  constexpr int kMaxNesting = 32;
   skipBlanks(t);
-  if (depth < 32 && !t.empty() && (t.front() == '{' || t.front() == '[')) {
+  // A list. Commas between its elements may be omitted.
+  if (depth < kMaxNesting && !t.empty() && (t.front() == '{' || t.front() == '[')) {
     const char close = t.front() == '{' ? '}' : ']';
     t.remove_prefix(1);
     List list;
@@ -70,6 +77,7 @@ Value valueFromText(std::string_view& t, ReadWord readWord, bool inList, int dep
     if (ok) t.remove_prefix(1);
     return list;
   }
+  // A quoted string. Outside a list the quotes must enclose the whole text.
   if (!t.empty() && (t.front() == '"' || t.front() == '\'')) {
     if (const auto end = t.find(t.front(), 1); end != std::string_view::npos && (inList || end + 1 == t.size())) {
       Value v(t.substr(1, end - 1));
@@ -77,6 +85,7 @@ Value valueFromText(std::string_view& t, ReadWord readWord, bool inList, int dep
       return v;
     }
   }
+  // A word: in a list up to the next separator, else the whole text.
   std::size_t n = inList ? t.find_first_of(",}] ") : t.size();
   if (n == std::string_view::npos) n = t.size();
   if (inList && n == 0) ok = false;
@@ -97,7 +106,7 @@ std::string Value::text() const {
     case Type::number:
       return numberText(toNumber());
     case Type::string:
-      return '"' + toString() + '"';
+      return fmt::format("\"{}\"", toString());
     case Type::list:
       break;
   }
@@ -109,6 +118,7 @@ std::string Value::text() const {
 std::string Value::plain() const { return isString() ? toString() : text(); }
 
 namespace {
+/// Reads the whole text as one value. Text that is not one well-formed value is a string.
 Value allFromText(std::string_view text, ReadWord readWord) {
   std::string_view rest = text;
   bool ok = true;
@@ -117,7 +127,7 @@ Value allFromText(std::string_view text, ReadWord readWord) {
   return ok && rest.empty() ? v : Value(text);
 }
 
-/// `text` without the quotes around all of it.
+/// `text` without the quotes that enclose the whole of it, if there are any.
 std::string_view unquoted(std::string_view text) {
   const bool quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') &&
                       text.find(text.front(), 1) == text.size() - 1;
@@ -153,16 +163,16 @@ const Value& Args::take() {
 
 namespace {
 [[noreturn]] void wrongType(std::string_view expected, const Value& found) {
-  throw Error("expected " + std::string(expected) + ", found " + std::string(typeName(found.type())) + " " +
-              found.text());
+  throw Error(fmt::format("expected {}, found {} {}", expected, typeName(found.type()), found.text()));
 }
 
-/// A single value, also when it comes as a list of one.
+/// Takes the next argument; a list of one element is unwrapped.
 const Value& takeScalar(Args& args) {
   const Value& v = args.take();
   return v.isList() && v.toList().size() == 1 ? v.toList()[0] : v;
 }
 
+/// Takes a number, also written as text.
 double numberFrom(Args& args) {
   const Value& v = takeScalar(args);
   if (v.isNumber()) return v.toNumber();
@@ -174,27 +184,32 @@ double numberFrom(Args& args) {
   wrongType("number", v);
 }
 
+/// Takes an integer, also written as a double without fraction. Loose reading truncates, clamps to the range of I, and
+/// reads numbers that are not finite or too large for exact digits as 0.
 template <class I>
 I integerFrom(Args& args) {
-  const Value& before = args.atEnd() ? args.take() : args.values[args.next];
-  if (before.isInteger()) {
+  constexpr double kMaxExact = 9e15;  // just below 2^53, from which on doubles skip integers
+  const Value& next = args.atEnd() ? args.take() : args.values[args.next];  // take() throws at the end
+  // An integer is never converted to double on the way.
+  if (next.isInteger()) {
     const std::int64_t i = takeScalar(args).toInteger();
     if (i >= static_cast<std::int64_t>(std::numeric_limits<I>::min()) &&
         (sizeof(I) >= 8 || i <= static_cast<std::int64_t>(std::numeric_limits<I>::max())))
       return static_cast<I>(i);
-    throw Error("expected an integer that fits, found " + std::to_string(i));
+    throw Error(fmt::format("expected an integer that fits, found {}", i));
   }
   const double d = numberFrom(args);
-  if (!std::isfinite(d) || std::abs(d) > 9e15) {
+  if (!std::isfinite(d) || std::abs(d) > kMaxExact) {
     if (args.loose) return 0;
-    throw Error("expected an integer, found " + numberText(d));
+    throw Error(fmt::format("expected an integer, found {}", numberText(d)));
   }
-  if (!args.loose && d != std::trunc(d)) throw Error("expected an integer, found " + numberText(d));
+  if (!args.loose && d != std::trunc(d)) throw Error(fmt::format("expected an integer, found {}", numberText(d)));
   constexpr double kLow = static_cast<double>(std::numeric_limits<I>::min()),
                    kHigh = static_cast<double>(std::numeric_limits<I>::max());
   if (d >= kLow && d <= kHigh) return static_cast<I>(d);
   if (!args.loose)
-    throw Error("expected an integer of " + numberText(kLow) + " to " + numberText(kHigh) + ", found " + numberText(d));
+    throw Error(
+        fmt::format("expected an integer of {} to {}, found {}", numberText(kLow), numberText(kHigh), numberText(d)));
   return d < kLow ? std::numeric_limits<I>::min() : std::numeric_limits<I>::max();
 }
 }  // namespace
@@ -213,13 +228,14 @@ Value Convert<int>::to(const int& v) { return v; }
 std::int64_t Convert<std::int64_t>::from(Args& args) { return integerFrom<std::int64_t>(args); }
 Value Convert<std::int64_t>::to(const std::int64_t& v) { return v; }
 std::uint64_t Convert<std::uint64_t>::from(Args& args) {
+  // A Value holds the bits of a large unsigned number as a negative integer.
   if (!args.atEnd() && args.values[args.next].isInteger()) return static_cast<std::uint64_t>(args.take().toInteger());
   return integerFrom<std::uint64_t>(args);
 }
 Value Convert<std::uint64_t>::to(const std::uint64_t& v) { return v; }
 double Convert<double>::from(Args& args) {
   const double v = numberFrom(args);
-  return args.loose ? static_cast<float>(v) : v;
+  return args.loose ? static_cast<float>(v) : v;  // the installed base has single precision
 }
 Value Convert<double>::to(const double& v) { return v; }
 float Convert<float>::from(Args& args) { return static_cast<float>(numberFrom(args)); }

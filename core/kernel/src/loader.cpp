@@ -7,7 +7,6 @@
 
 #include "class_registry.h"
 #include "host_headers.h"
-#include "library_file.h"
 #include "loaded_library.h"
 #include "spark/error.h"
 #include "spark/kernel.h"
@@ -155,8 +154,6 @@ void Loader::runActions(Plugin& plugin) {
 
 Plugin& Loader::open(const fs::path& file) {
   const std::string path = absolutePath(file);
-  if (const std::string problem = libraryProblem(path); !problem.empty())
-    throw Error("refused plugin " + path + ": " + problem);
   const Loading loading(path.c_str());
   std::shared_ptr<LoadedLibrary> library = LoadedLibrary::load(path);
   const auto* d = static_cast<const PluginDescriptor*>(library->symbol("sparkPlugin"));
