@@ -61,11 +61,13 @@ JsonWriter& JsonWriter::raw(std::string_view json) {
 }
 
 JsonWriter& JsonWriter::members(std::string_view object) {
+  // Without the braces it is written like one value; "{}" has no members.
   if (object.size() > 2) raw(object.substr(1, object.size() - 2));
   return *this;
 }
 
 void JsonWriter::quote(std::string_view text) {
+  // Nearly all strings need no escapes; the library writes the others.
   const auto plain = [](unsigned char c) { return c >= 0x20 && c < 0x7f && c != '"' && c != '\\'; };
   if (!std::all_of(text.begin(), text.end(), plain))
     return out_.put(nlohmann::json(text).dump(-1, ' ', style_.ascii, nlohmann::json::error_handler_t::replace));

@@ -1,3 +1,5 @@
+// Predicates as values and back.
+
 #include "spark/predicates.h"
 
 namespace spark {

@@ -18,9 +18,10 @@ std::optional<double> Element::asNumber() const {
 std::int64_t Element::integer() const {
   if (token().kind == Token::Kind::integer) return token().integer;
   const double d = number();
+  constexpr double kLimit = 9.2e18;  // a little below 2^63
   if (std::isnan(d)) return 0;
-  if (d >= 9.2e18) return std::numeric_limits<std::int64_t>::max();
-  if (d <= -9.2e18) return std::numeric_limits<std::int64_t>::min();
+  if (d >= kLimit) return std::numeric_limits<std::int64_t>::max();
+  if (d <= -kLimit) return std::numeric_limits<std::int64_t>::min();
   return static_cast<std::int64_t>(d);
 }
 
@@ -49,12 +50,13 @@ void Predicates::clear() {
 }
 
 int Predicates::balance() {
-  int open = surplus_ ? -1 : 0;
-  for (; open_ != kNone; close()) open = std::max(open, 0) + 1;
+  int problem = surplus_ ? -1 : 0;
+  for (; open_ != kNone; close()) problem = std::max(problem, 0) + 1;
   surplus_ = false;
-  return open;
+  return problem;
 }
 
+/// Appends to the text store and returns the offset.
 std::size_t Predicates::store(std::string_view text) {
   const std::size_t begin = text_.size();
   text_.append(text);
@@ -68,11 +70,13 @@ void Predicates::mark(std::uint32_t line, std::uint32_t column) {
 
 void Predicates::truncate(std::uint32_t index) {
   if (index >= size()) return;
+  // Texts are stored in the order of their tokens: the first one that is removed ends the store.
   for (std::uint32_t i = index; i < size(); ++i)
     if (const Token& t = tokens_[i]; t.kind == Token::Kind::text && t.size > Token::kShort) {
       text_.resize(t.begin);
       break;
     }
+  // Lists that are removed are not open any more.
   while (open_ != kNone && open_ >= index) open_ = tokens_[open_].outer;
   tokens_.resize(index);
   places_.resize(std::min<std::size_t>(places_.size(), index));
@@ -81,6 +85,7 @@ void Predicates::truncate(std::uint32_t index) {
 void Predicates::append(const Element& e) {
   for (std::uint32_t i = e.index_, end = e.behind(); i < end; ++i) {
     Token t = e.owner_->tokens_[i];
+    // Only longer texts refer to their buffer.
     if (t.kind == Token::Kind::text && t.size > Token::kShort) t.begin = store(e.owner_->textOf(e.owner_->tokens_[i]));
     tokens_.push_back(t);
   }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <optional>
 #include <utility>
@@ -9,8 +11,9 @@ namespace spark {
 
 namespace {
 
-/// What a byte may be, by its value.
+/// Classes of bytes. kAtom: part of an atom without quotes. kPlain: the same and no escape.
 enum Class : std::uint8_t { kBlank = 1, kAtom = 2, kPlain = 4 };
+/// The classes of each byte.
 constexpr auto kClasses = [] {
   std::array<std::uint8_t, 256> out{};
   for (const unsigned char c : {' ', '\t', '\r', '\n'}) out[c] = kBlank;
@@ -22,19 +25,21 @@ constexpr auto kClasses = [] {
 bool is(Class what, char c) { return kClasses[static_cast<unsigned char>(c)] & what; }
 bool isEscapable(char c) { return c == '"' || c == '\'' || c == '(' || c == ')' || c == '\\'; }
 
-/// A list that lacks its ')', and the line that says so.
+/// A list that lacks its ')', and the line from which that is concluded.
 struct Unclosed {
-  std::uint32_t line = 0, column = 0, siblingLine = 0;
+  std::uint32_t line = 0, column = 0;  ///< of the list
+  std::uint32_t siblingLine = 0;
 };
 
-/// Reads the indentation of a text in which some list is not closed: the first line that begins with '(' no further
-/// right than the list that is open there must have been meant as its sibling. Nothing where people do not indent.
+/// Guesses from the indentation which list of a text lacks its ')'. A line that begins with '(' no further right than
+/// the innermost list that began a line was probably meant as the sibling of that list, which then lacks its ')'. The
+/// first such line counts. Finds nothing in a text whose lists are not indented.
 class Indentation {
  public:
   explicit Indentation(std::string_view bytes) : bytes_(bytes) {}
 
   std::optional<Unclosed> read() {
-    for (at_ = 0; at_ < bytes_.size() && !flat_; ++at_) {
+    for (at_ = 0; at_ < bytes_.size() && !isFlatText_; ++at_) {
       const char c = bytes_[at_];
       if (c == '\n') {
         ++line_;
@@ -52,17 +57,17 @@ class Indentation {
         close();
       fresh_ = fresh_ && is(kBlank, c);
     }
-    return flat_ ? std::nullopt : found_;
+    return isFlatText_ ? std::nullopt : found_;
   }
 
  private:
   struct List {
     std::uint32_t line, column;
-    bool first;  ///< begins its line, and says something there
-    bool flat;   ///< has lines that begin beside it
+    bool first;  ///< it begins its line, and has more than '(' there
+    bool flat;   ///< a line inside it begins in its column, or further left
   };
   std::uint32_t column() const { return static_cast<std::uint32_t>(at_ - lineStart_) + 1; }
-  /// To the byte, or in front of a line's end.
+  /// Skips a string up to its closing quote, or a comment up to the byte in front of the line's end.
   void skipTo(char end) {
     while (at_ + 1 < bytes_.size() && (bytes_[at_ + 1] != end || (end == '"' && bytes_[at_] == '\\'))) {
       ++at_;
@@ -71,6 +76,7 @@ class Indentation {
     if (end == '"') ++at_;
   }
   void open() {
+    // Compare a list that begins its line with the innermost open one that does.
     if (fresh_)
       for (std::size_t i = lists_.size(); i-- > 0;) {
         List& outer = lists_[i];
@@ -86,31 +92,32 @@ class Indentation {
   }
   void close() {
     if (lists_.empty()) return;
-    flat_ = fresh_ && lists_.back().flat && lists_.back().column == column();
+    // A ')' in the column of its '(' confirms that the elements in that column are meant to be inside.
+    isFlatText_ = fresh_ && lists_.back().flat && lists_.back().column == column();
     lists_.pop_back();
   }
 
   std::string_view bytes_;
   std::size_t at_ = 0, lineStart_ = 0;
   std::uint32_t line_ = 1;
-  bool fresh_ = true;  ///< nothing but blanks on this line so far
-  bool flat_ = false;  ///< lists and what is in them begin in the same column, and it is meant so
+  bool fresh_ = true;        ///< this line has only blanks so far
+  bool isFlatText_ = false;  ///< the author does not indent elements: lines tell nothing
   std::vector<List> lists_;
   std::optional<Unclosed> found_;
 };
 
 std::optional<Unclosed> findUnclosed(std::string_view bytes) { return Indentation(bytes).read(); }
 
-/// One pass over the bytes with an explicit depth: no recursion, whatever the nesting.
+/// Reads in one pass with an explicit depth: nested lists cost no stack.
 class Reader {
  public:
   Reader(std::string_view bytes, Predicates& out, const ReadLimits& limits)
       : bytes_(bytes), out_(out), limits_(limits) {}
 
   ReadResult read(std::size_t maxExpressions) {
-    std::size_t complete = 0;
+    std::size_t complete = 0;  // top-level expressions
     const std::uint32_t firstToken = out_.size();
-    std::uint32_t expressionStart = firstToken;
+    std::uint32_t expressionStart = firstToken;  // token at which the current top-level expression begins
     Place expressionPlace;
     while (!failed_) {
       if (depth_ == 0 && maxExpressions && complete == maxExpressions) break;
@@ -120,12 +127,12 @@ class Reader {
       const Place place = here();
       if (depth_ == 0) expressionStart = out_.size(), expressionPlace = place;
       if (c != ')' && out_.size() - firstToken >= limits_.maxTokens) {
-        fail("more than " + std::to_string(limits_.maxTokens) + " tokens", place);
+        fail(fmt::format("more than {} tokens", limits_.maxTokens), place);
         break;
       }
       if (c == '(') {
         if (depth_ == limits_.maxDepth) {
-          fail("lists nested deeper than " + std::to_string(limits_.maxDepth), place);
+          fail(fmt::format("lists nested deeper than {}", limits_.maxDepth), place);
           break;
         }
         out_.open();
@@ -150,6 +157,7 @@ class Reader {
         expressionStart = out_.size();
       }
     }
+    // Complete expressions stay, an incomplete one is removed.
     if (!failed_ && depth_ > 0) failUnclosed(expressionPlace);
     if (failed_) out_.truncate(expressionStart);
     result_.consumed = at_;
@@ -167,17 +175,17 @@ class Reader {
     result_.line = place.line;
     result_.column = place.column;
   }
-  /// Files that people wrote: their lines say where the list should have ended.
+  /// The text ended inside a list. In a file, which people indent, the indentation shows which list that is.
   void failUnclosed(Place place) {
-    const std::optional<Unclosed> guilty = limits_.places ? findUnclosed(bytes_) : std::nullopt;
-    if (!guilty) return fail("the list is not closed", place);
-    fail("the list is not closed: line " + std::to_string(guilty->siblingLine) + " begins beside it",
-         {guilty->line, guilty->column});
+    const std::optional<Unclosed> guess = limits_.places ? findUnclosed(bytes_) : std::nullopt;
+    if (!guess) return fail("the list is not closed", place);
+    fail(fmt::format("the list is not closed: line {} begins beside it", guess->siblingLine),
+         {guess->line, guess->column});
   }
   void mark(Place place) {
     if (limits_.places) out_.mark(place.line, place.column);
   }
-  /// Over a byte that may end a line.
+  /// Skips a byte that may end a line.
   void step() {
     if (bytes_[at_++] == '\n') ++line_, lineStart_ = at_;
   }
@@ -192,11 +200,13 @@ class Reader {
       }
     }
   }
+  /// Appends a byte, or the one behind a backslash, to the text of an atom.
   void escapeOrByte() {
     if (bytes_[at_] == '\\' && at_ + 1 < bytes_.size() && isEscapable(bytes_[at_ + 1])) step();
     text_ += bytes_[at_];
     step();
   }
+  /// Reads an atom of any kind.
   void atom() {
     const char c = bytes_[at_];
     if (is(kPlain, c)) return plainAtom();
@@ -220,12 +230,10 @@ class Reader {
     } else if (is(kAtom, c)) {
       escapedAtom();
     } else {
-      constexpr char kHex[] = "0123456789abcdef";
-      const auto byte = static_cast<unsigned char>(c);
-      fail(std::string("byte 0x") + kHex[byte >> 4] + kHex[byte & 15] + " is no part of an atom", place);
+      fail(fmt::format("byte 0x{:02x} is no part of an atom", static_cast<unsigned char>(c)), place);
     }
   }
-  /// Nearly every atom: its bytes are its text.
+  /// Reads an atom whose bytes are its text, as nearly all are.
   void plainAtom() {
     std::size_t end = at_ + 1;
     while (end < bytes_.size() && is(kPlain, bytes_[end])) ++end;
@@ -233,11 +241,12 @@ class Reader {
     out_.add(bytes_.substr(at_, end - at_));
     at_ = end;
   }
+  /// Reads an atom that contains a backslash.
   void escapedAtom() {
     while (at_ < bytes_.size() && is(kAtom, bytes_[at_])) escapeOrByte();
     out_.add(text_);
   }
-  /// `'(...)`: kept as text.
+  /// Reads `'(...)` as one text.
   void quotedList(Place place) {
     std::size_t depth = 0;
     do {
@@ -259,17 +268,18 @@ class Reader {
   bool failed_ = false;
 };
 
-/// More than any token takes, and what stands before and behind it.
+/// Room for any token but a long text, with the brackets and blanks around it [bytes].
 constexpr std::size_t kTokenRoom = kFixedRoom + 16;
 
+/// How numbers are written.
 struct Style {
   int decimals;
   DoubleRange doubles;
 };
 
-/// Writes the elements of tokens [t, end), a blank between them. `at` has room for a token, and so has what is
-/// returned: the place to write stays in a register, where a writer's own would be stored and loaded again for each
-/// byte.
+/// Writes the elements of tokens [t, end), separated by blanks. `at` must have kTokenRoom, and the place that is
+/// returned has it too. The place is passed by value so that it stays in a register; the writer's own position would be
+/// stored and loaded for each byte.
 char* writeElements(const Predicates& from, const Token* t, const Token* end, const Style& style, ByteWriter& out,
                     char* at) {
   const auto more = [&out](char* to) { return out.end(to), out.room(kTokenRoom); };
@@ -321,11 +331,12 @@ void writeSexp(const Predicates& predicates, int decimals, std::string& bytes, D
   for (const Token* t = predicates.tokens().data(); t < end;) {
     const bool list = t->kind == Token::Kind::list;
     const Token* const next = t + (list ? t->size : 1);
+    // A predicate without arguments has a blank behind its name.
     if (list && t->size == 2) {
       *at++ = '(';
       at = writeElements(predicates, t + 1, next, style, out, at);
-      std::memcpy(at, " )", 2);
-      at += 2;
+      *at++ = ' ';
+      *at++ = ')';
     } else {
       at = writeElements(predicates, t, next, style, out, at);
     }

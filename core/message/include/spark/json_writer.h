@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// JSON text, written as it is known: commas, quotes and escapes are the writer's.
+/// Writes JSON text piece by piece, with commas, quotes and escapes.
 ///
 ///     std::string out;
 ///     JsonWriter json(out);
@@ -17,55 +17,63 @@
 
 namespace spark {
 
-/// What JSON leaves open.
+/// Choices that JSON leaves open.
 struct JsonStyle {
-  bool ascii = false;              ///< other characters become \uXXXX; else they are written as UTF-8
-  const char* notFinite = "null";  ///< written for a number that is not finite
+  bool ascii = false;              ///< writes other characters as \uXXXX instead of UTF-8
+  const char* notFinite = "null";  ///< written for numbers that are not finite
 };
 
-/// Appends one JSON value to a string. Calls come in the order of the text; brackets and keys are not checked. The text
-/// is in the string when the outermost bracket is closed, or when the writer ends.
+/// Appends one JSON value to a string. Call its functions in the order of the text; brackets and keys are not checked.
+/// The text is complete in the string when the outermost bracket is closed, or when the writer is destroyed.
 class JsonWriter {
  public:
-  /// `out` must outlive the writer and not be touched before the text is complete.
+  /// `out` must outlive the writer and must not be used before the text is complete.
   explicit JsonWriter(std::string& out, JsonStyle style = {}) : out_(out), style_(style) {}
 
+  /// Begins an object. Its members follow, each as key() and a value.
   JsonWriter& beginObject() { return open('{'); }
+  /// Ends an object.
   JsonWriter& endObject() { return close('}'); }
+  /// Begins an array. Its values follow.
   JsonWriter& beginArray() { return open('['); }
+  /// Ends an array.
   JsonWriter& endArray() { return close(']'); }
-  /// In front of a member's value.
+  /// Writes the key of a member, whose value follows.
   JsonWriter& key(std::string_view name);
 
-  /// UTF-8; bytes that are none become U+FFFD.
+  /// Writes a string in UTF-8. Invalid bytes become U+FFFD.
   JsonWriter& value(std::string_view text);
+  /// Writes a string in UTF-8. Invalid bytes become U+FFFD.
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
+  /// Writes true or false.
   JsonWriter& value(bool v) { return raw(v ? "true" : "false"); }
-  /// Up to 2^63 - 1.
+  /// Writes an integer, up to 2^63 - 1.
   template <std::integral T>
   JsonWriter& value(T v) {
     return separate(), out_.integer(static_cast<std::int64_t>(v)), *this;
   }
-  /// With so many significant digits.
+  /// Writes a number with `digits` significant digits.
   JsonWriter& value(double v, int digits = 6);
-  /// With so many decimals.
+  /// Writes a number with `decimals` decimals.
   JsonWriter& fixed(double v, int decimals);
-  /// Lists as arrays; nil and numbers that are not finite as null.
+  /// Writes a Value: lists as arrays, nil and numbers that are not finite as null.
   template <std::same_as<Value> V>
   JsonWriter& value(const V& v) {
     return anyValue(v);
   }
+  /// Writes null.
   JsonWriter& null() { return raw("null"); }
-  /// A value that is JSON already.
+  /// Writes a value that is JSON already.
   JsonWriter& raw(std::string_view json);
 
+  /// Writes a key and its value.
   template <class T>
   JsonWriter& member(std::string_view name, const T& v) {
     return key(name).value(v);
   }
-  /// The members of an object that is JSON already, `{...}`, within the object that is open.
+  /// Writes the members of an object that is JSON already, `{...}`, as members of the open object.
   JsonWriter& members(std::string_view object);
-  /// An array of numbers.
+  /// Writes an array of numbers.
   template <class List>
   JsonWriter& numbers(const List& list) {
     beginArray();
@@ -76,7 +84,7 @@ class JsonWriter {
  private:
   JsonWriter& open(char bracket);
   JsonWriter& close(char bracket);
-  /// The comma between two values.
+  /// Writes the comma between two values.
   void separate() {
     if (comma_) out_.put(',');
     comma_ = true;
@@ -86,8 +94,8 @@ class JsonWriter {
 
   ByteWriter out_;
   JsonStyle style_;
-  int depth_ = 0;       ///< brackets that are open
-  bool comma_ = false;  ///< a value has been written that the next one follows
+  int depth_ = 0;       ///< open brackets
+  bool comma_ = false;  ///< the next value needs a comma in front
 };
 
 }  // namespace spark

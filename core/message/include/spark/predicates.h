@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Nested lists of atoms in one flat buffer: what parsers make of bytes, what effectors read and perceptors write.
-/// Reused from cycle to cycle, it allocates nothing in steady state. And the S-expression reader that scene files,
-/// agents and monitors share.
+/// Predicates: nested lists of atoms in one flat buffer. Parsers fill it from bytes, effectors read it and perceptors
+/// write it. A buffer that is reused from cycle to cycle allocates nothing in steady state. Also the reader and writer
+/// of S-expressions that scene files, agents and monitors share.
 
 #include <cstdint>
 #include <optional>
@@ -17,80 +17,97 @@
 
 namespace spark {
 
-/// One token of the buffer. Lists hold sizes and short texts stand in the token itself, so that a list means the same
-/// wherever it is copied.
+/// One token of the buffer: an atom, or the head of a list, whose elements follow. Tokens refer to each other by sizes
+/// only, and short texts are stored in the token, so that the tokens of a list can be copied as they are.
 struct Token {
+  /// What a token is.
   enum class Kind : std::uint8_t { list, text, number, integer };
-  static constexpr std::uint32_t kShort = 8;  ///< bytes of text that a token has room for
+  static constexpr std::uint32_t kShort = 8;  ///< the longest text that is stored in the token [bytes]
   Kind kind = Kind::text;
-  bool quoted = false;     ///< text only: was written in quotes
-  std::uint32_t size = 0;  ///< list: tokens in it, itself included; text: bytes
+  bool quoted = false;     ///< of a text: it was written in quotes
+  std::uint32_t size = 0;  ///< of a list: its tokens, this one included; of a text: bytes
   union {
-    double number;
-    std::int64_t integer = 0;
-    char letters[kShort];  ///< text of at most kShort bytes
-    std::size_t begin;     ///< longer text: offset into the text store
-    std::uint32_t outer;   ///< list that is still open: index of the open list around it
+    double number;             ///< of a number
+    std::int64_t integer = 0;  ///< of an integer
+    char letters[kShort];      ///< of a text of at most kShort bytes
+    std::size_t begin;         ///< of a longer text: its offset in the text store
+    std::uint32_t outer;       ///< of a list that is still open: index of the open list around it
   };
 };
 static_assert(sizeof(Token) == 16);
 
 class Predicates;
 
-/// A view of one element. Valid while its Predicates is unchanged.
+/// A view of one element: a list or an atom. Valid while its Predicates is unchanged. Unless said otherwise, calls
+/// require that the element is not empty.
 class Element {
  public:
+  /// The empty element.
   Element() = default;
+  /// The element whose first token has that index.
   Element(const Predicates& owner, std::uint32_t index) : owner_(&owner), index_(index) {}
+  /// False for the empty element.
   explicit operator bool() const { return owner_ != nullptr; }
+  /// The element's first token.
   const Token& token() const;
+  /// True for a list.
   bool isList() const { return token().kind == Token::Kind::list; }
+  /// True for an atom that was written as text.
   bool isText() const { return token().kind == Token::Kind::text; }
-  /// The text of an atom; "" for lists and numbers.
+  /// The text of an atom, "" for lists and numbers.
   std::string_view text() const;
-  /// A number: as written, or as C atof reads the text (garbage is 0, trailing junk ignored). Lists are 0.
+  /// The number, or the text as C's atof reads it: garbage is 0, characters behind a number are ignored. 0 for a list.
   double number() const;
-  /// The number when it is one: written as such, or a text that C's strtod reads to its end (with inf and nan, without
-  /// blanks). Else nothing, where number() would be 0 or ignore what follows.
+  /// The number, or a text that C's strtod reads completely (inf and nan included, blanks excluded). Nothing for other
+  /// texts, for lists and for the empty element.
   std::optional<double> asNumber() const;
+  /// True if asNumber() returns a number.
   bool isNumber() const { return asNumber().has_value(); }
-  /// The number truncated; out of range is clamped, NaN is 0.
+  /// number() truncated. Numbers out of range are clamped, NaN is 0.
   std::int64_t integer() const;
-  /// Where it was read, from 1; 0 when it was written.
+  /// The line where the element was read, from 1; 0 if it was not read from text.
   std::uint32_t line() const;
+  /// The column [bytes] where the element was read, from 1; 0 if it was not read from text.
   std::uint32_t column() const;
 
-  /// Number of elements of a list (0 for atoms). Linear.
+  /// The number of elements of a list, 0 for atoms. Takes linear time.
   std::size_t size() const;
-  /// Element i of a list, empty when there is none. Linear.
+  /// Element `i` of a list, from 0; empty if there is none. Takes linear time.
   Element at(std::size_t i) const;
-  /// The first element's text: a predicate's name. "" when it is no text.
+  /// The text of a list's first element, which is the name of a predicate. "" if the first element is not a text.
   std::string_view head() const;
-  /// The first sub-list with that head and at least two elements, empty when there is none: named parameters.
+  /// A named parameter: the first sub-list with that head and at least two elements, empty if there is none.
   Element named(std::string_view name) const;
+  /// The index of the first token.
   std::uint32_t index() const { return index_; }
 
   /// Iterates over the elements of a list.
   class Iterator {
    public:
+    /// At the element whose first token has that index.
     Iterator(const Predicates& owner, std::uint32_t index) : owner_(&owner), index_(index) {}
+    /// The element.
     Element operator*() const { return Element(*owner_, index_); }
+    /// Moves to the next element.
     Iterator& operator++() {
       index_ = Element(*owner_, index_).behind();
       return *this;
     }
+    /// True if the positions differ.
     bool operator!=(const Iterator& o) const { return index_ != o.index_; }
 
    private:
     const Predicates* owner_;
     std::uint32_t index_;
   };
+  /// The first element of a list. An atom has none.
   Iterator begin() const { return {*owner_, isList() ? index_ + 1 : index_}; }
+  /// Behind the last element.
   Iterator end() const { return {*owner_, isList() ? behind() : index_}; }
 
  private:
   friend class Predicates;
-  /// Index of the token behind it.
+  /// Index of the token behind the element.
   std::uint32_t behind() const { return index_ + (isList() ? token().size : 1); }
   double numberInText() const;
   const Predicates* owner_ = nullptr;
@@ -100,11 +117,13 @@ class Element {
 /// A sequence of top-level elements, usually lists: `(he1 1.2)(init (name red))`.
 class Predicates {
  public:
+  /// Removes all elements and keeps the memory.
   void clear();
+  /// True if there are no elements.
   bool empty() const { return tokens_.empty(); }
 
-  /// Writing: open a list with a name (or none), add atoms, close it. Lists left open at the end, and closing what is
-  /// not open, are programming errors: see isUnbalanced().
+  /// Begins a list, with `name` as its first element unless it is empty. What is added next is inside it until close().
+  /// Every open() needs one close(), see isUnbalanced().
   Predicates& open(std::string_view name = {}) {
     Token t;
     t.kind = Token::Kind::list;
@@ -114,6 +133,7 @@ class Predicates {
     tokens_.push_back(t);
     return name.empty() ? *this : add(name);
   }
+  /// Ends the innermost open list.
   Predicates& close() {
     if (open_ == kNone) return surplus_ = true, *this;
     Token& t = tokens_[open_];
@@ -121,6 +141,7 @@ class Predicates {
     open_ = t.outer;
     return *this;
   }
+  /// Adds a text, which is copied. `quoted`: it is written in quotes.
   Predicates& add(std::string_view text, bool quoted = false) {
     Token t;
     t.quoted = quoted;
@@ -132,7 +153,9 @@ class Predicates {
     tokens_.push_back(t);
     return *this;
   }
+  /// Adds a text, which is copied.
   Predicates& add(const char* text) { return add(std::string_view(text)); }
+  /// Adds a number.
   Predicates& add(double number) {
     Token t;
     t.kind = Token::Kind::number;
@@ -140,6 +163,7 @@ class Predicates {
     tokens_.push_back(t);
     return *this;
   }
+  /// Adds an integer.
   Predicates& add(std::int64_t integer) {
     Token t;
     t.kind = Token::Kind::integer;
@@ -147,32 +171,39 @@ class Predicates {
     tokens_.push_back(t);
     return *this;
   }
+  /// Adds an integer.
   Predicates& add(int integer) { return add(static_cast<std::int64_t>(integer)); }
-  /// `(name value)`.
+  /// Adds the list `(name value)`.
   template <class T>
   Predicates& pair(std::string_view name, const T& value) {
     return open(name).add(value).close();
   }
-  /// True when lists are open, or more were closed than were open, since the last clear() or balance().
+  /// True if a list is open, or close() was called without one since the last clear() or balance(). Both are
+  /// programming errors at the end of a message.
   bool isUnbalanced() const { return open_ != kNone || surplus_; }
-  /// Closes the lists that are open. Returns what had been wrong: so many lists open, -1 when too many were closed, 0
-  /// when all was well.
+  /// Closes all open lists. Returns their number, or -1 if none was open but close() was called once too often, or 0 if
+  /// there was no error.
   int balance();
-  /// Sets where the token just added was read.
+  /// Sets the place in the text, from 1, of the token that was added last.
   void mark(std::uint32_t line, std::uint32_t column);
-  /// Removes everything from token `index` on (that a reader began and could not finish).
+  /// Removes token `index` and all that follow, such as an expression that a reader could not finish.
   void truncate(std::uint32_t index);
-  /// Appends a copy of an element of another buffer.
+  /// Adds a copy of an element of another buffer.
   void append(const Element& element);
 
+  /// The first top-level element.
   Element::Iterator begin() const { return {*this, 0}; }
+  /// Behind the last top-level element.
   Element::Iterator end() const { return {*this, size()}; }
+  /// All tokens. Valid until the next change.
   const std::vector<Token>& tokens() const { return tokens_; }
-  /// The text of a token of this buffer; it may stand in the token.
+  /// The text of a token of this buffer. Valid until the next change; a short text also only while the token lives.
   std::string_view textOf(const Token& t) const {
     return {t.size <= Token::kShort ? t.letters : text_.data() + t.begin, t.size};
   }
+  /// A temporary token cannot hold a text.
   std::string_view textOf(Token&&) const = delete;
+  /// The number of tokens.
   std::uint32_t size() const { return static_cast<std::uint32_t>(tokens_.size()); }
 
  private:
@@ -184,10 +215,10 @@ class Predicates {
   std::size_t store(std::string_view text);
 
   std::vector<Token> tokens_;
-  std::string text_;            ///< what does not stand in tokens
-  std::vector<Place> places_;   ///< of the tokens up to the last that was marked
-  std::uint32_t open_ = kNone;  ///< the innermost open list
-  bool surplus_ = false;        ///< close() was called without one
+  std::string text_;            ///< the text store: all texts that are too long for their tokens
+  std::vector<Place> places_;   ///< of all tokens up to the last one with a mark
+  std::uint32_t open_ = kNone;  ///< index of the innermost open list
+  bool surplus_ = false;        ///< close() was called without an open list
 };
 
 inline const Token& Element::token() const {
@@ -217,35 +248,35 @@ inline std::string_view Element::head() const {
   return first ? first.text() : std::string_view();
 }
 
-/// The top-level elements as a list of values (lists, texts, numbers), for scripts and tools; allocates.
+/// The top-level elements as a list of values (lists, strings, numbers), for scripts and tools. Allocates.
 List toList(const Predicates& predicates);
-/// Appends a list of values as top-level elements; bools and nil become texts.
+/// Adds the values as top-level elements. Bools and nil become texts.
 void append(const List& values, Predicates& out);
 
-/// What an S-expression reader met. `message` is empty when all was read.
+/// The result of reading S-expressions.
 struct ReadResult {
-  std::string message;
-  std::uint32_t line = 0, column = 0;
-  std::size_t consumed = 0;  ///< bytes read
+  std::string message;                 ///< the error, "" if everything was read
+  std::uint32_t line = 0, column = 0;  ///< of the error, from 1
+  std::size_t consumed = 0;            ///< bytes read
 };
 
-/// Limits of a reader of outside bytes.
+/// Limits for bytes from outside.
 struct ReadLimits {
-  std::uint32_t maxDepth = 64;
-  std::uint32_t maxTokens = 65536;
-  bool places = true;  ///< elements know where they were read
+  std::uint32_t maxDepth = 64;      ///< levels of nested lists
+  std::uint32_t maxTokens = 65536;  ///< tokens of one call
+  bool places = true;               ///< elements get the line and column where they were read
 };
 
-/// Reads top-level expressions of the sfsexp dialect (atoms, "..." and '...' quoting, backslash escapes, ';' comments
-/// where a token may start) and appends them to `out`; at most `maxExpressions` (0: all). At an error what was complete
-/// before stays, the rest is dropped. Never throws on bad bytes. Text becomes tokens of kind text; numbers are not
-/// recognised.
+/// Reads top-level expressions of the sfsexp dialect and adds them to `out`, at most `maxExpressions` of them (0: all).
+/// The dialect has atoms, quoting by "..." and '...', escapes by backslash, and comments that begin with ';' where a
+/// token may begin. Atoms become tokens of kind text; numbers are not recognised. After an error `out` has the complete
+/// expressions in front of it. Never throws for bad bytes.
 ReadResult readSexp(std::string_view bytes, Predicates& out, const ReadLimits& limits = {},
                     std::size_t maxExpressions = 0);
 
-/// Writes all top-level elements as S-expressions as agents and monitors of the installed base expect them: `(name a
-/// b)`, one blank after the name even without arguments, `decimals` fixed decimals for numbers; `doubles` as of
-/// putFixed().
+/// Appends all top-level elements as S-expressions in the form that agents and monitors of the installed base expect:
+/// `(name a b)`, with a blank behind the name even if there are no arguments. Numbers have `decimals` fixed decimals;
+/// `doubles` is passed to putFixed().
 void writeSexp(const Predicates& predicates, int decimals, std::string& out, DoubleRange doubles = {});
 
 }  // namespace spark
