@@ -26,7 +26,7 @@ static_assert(std::endian::native == std::endian::little,
 constexpr int kGeneralDigits = 6;                    // significant digits of %g
 constexpr std::uint64_t kSixZeros = 0x303030303030;  // "000000" as a word
 constexpr std::uint32_t kFourZeros = 0x30303030;     // "0000"
-constexpr std::uint32_t kMaxDecimals = 27;           // 5^27 < 2^63
+constexpr int kMaxDecimals = 27;                     // 5^27 < 2^63
 
 /// 5^k.
 constexpr auto kPowersOfFive = [] {
@@ -53,9 +53,9 @@ constexpr auto kDigitPairs = [] {
   return out;
 }();
 
-/// |v| * 10^k, rounded exactly to the nearest integer, ties to even. Requires |v| < 2^31, k <= kMaxDecimals and a
+/// |v| * 10^k, rounded exactly to the nearest integer, ties to even. Requires |v| < 2^31, 0 <= k <= kMaxDecimals and a
 /// result below 2^63.
-[[gnu::noinline]] std::uint64_t scaledExactly(double v, std::uint32_t k) {
+[[gnu::noinline]] std::uint64_t scaledExactly(double v, int k) {
   constexpr int kMantissaBits = 52;
   constexpr int kBias = 1075;  // of the exponent of m * 2^e with an integer m
   constexpr int kMaxShift = 120;
@@ -64,7 +64,7 @@ constexpr auto kDigitPairs = [] {
   const auto exponent = static_cast<int>(bits >> kMantissaBits);
   const std::uint64_t fraction = bits & ((1ull << kMantissaBits) - 1);
   const std::uint64_t mantissa = exponent > 0 ? fraction | 1ull << kMantissaBits : fraction;
-  const int shift = kBias - std::max(exponent, 1) - static_cast<int>(k);
+  const int shift = kBias - std::max(exponent, 1) - k;
   if (shift >= kMaxShift) return 0;  // less than a half: the product has at most 116 bits
   const Wide product = static_cast<Wide>(mantissa) * kPowersOfFive[k];
   const auto whole = static_cast<std::uint64_t>(product >> shift);
@@ -85,7 +85,7 @@ inline bool nearest(double product, std::uint64_t& whole) {
 }
 
 /// As scaledExactly(), but in double precision if its rounding is certain.
-inline std::uint64_t scaled(double v, std::uint32_t k) {
+inline std::uint64_t scaled(double v, int k) {
   const double product = std::abs(v) * kDoublePowersOfTen[k];
   std::uint64_t whole = 0;
   return product < 0x1p30 && nearest(product, whole) ? whole : scaledExactly(v, k);
@@ -225,7 +225,8 @@ char* putGeneral(char* to, double v) {
   // The digits as text, the first one in the lowest byte, and their number without trailing zeros.
   const auto high = static_cast<std::uint32_t>(digits) / 10000, low = static_cast<std::uint32_t>(digits) % 10000;
   const std::uint64_t text = digitPair(high) | digitPair(low / 100) << 16 | digitPair(low % 100) << 32;
-  const int count = 8 - std::countl_zero((text ^ kSixZeros) | 1) / 8;  // at least one
+  const auto leadingZeros = static_cast<std::uint32_t>(std::countl_zero((text ^ kSixZeros) | 1));
+  const int count = 8 - static_cast<int>(leadingZeros / 8);  // at least one
 
   // The layout is filled in without branches, because a processor could not predict where a matrix has its points. Each
   // piece is copied as a whole, and the next one overwrites what was too much.
