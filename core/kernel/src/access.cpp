@@ -1,5 +1,7 @@
 #include "spark/access.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -10,7 +12,7 @@
 namespace spark {
 
 namespace {
-/// Numbers may come as text: what will be read from it is checked.
+/// Throws Error for numbers out of the property's range. A number may be written as text.
 void checkRange(const Property& p, const Value& v, bool loose) {
   if (!p.min && !p.max) return;
   if (v.isList()) {
@@ -19,32 +21,30 @@ void checkRange(const Property& p, const Value& v, bool loose) {
     Args args{std::span(&v, 1), loose};
     const double d = Convert<double>::from(args);
     if ((p.min && !(d >= *p.min)) || (p.max && !(d <= *p.max)))
-      throw Error("expected " + (p.min ? Value(*p.min).text() : std::string("-inf")) + " to " +
-                  (p.max ? Value(*p.max).text() : std::string("inf")) + (p.unit.empty() ? "" : " " + p.unit) +
-                  ", found " + v.text());
+      throw Error(fmt::format("expected {} to {}{}{}, found {}", p.min ? Value(*p.min).text() : "-inf",
+                              p.max ? Value(*p.max).text() : "inf", p.unit.empty() ? "" : " ", p.unit, v.text()));
   }
 }
 
 void checkChoices(const Property& p, const Value& v) {
   if (p.choices.empty()) return;
   if (std::find(p.choices.begin(), p.choices.end(), v.plain()) != p.choices.end()) return;
-  std::string all;
-  for (const std::string& c : p.choices) all += (all.empty() ? "'" : ", '") + c + "'";
-  throw Error("expected one of " + all + ", found " + v.text());
+  throw Error(fmt::format("expected one of '{}', found {}", fmt::join(p.choices, "', '"), v.text()));
 }
 
-/// The type in `name: type [unit]`, of which only the type must be there.
+/// The type of a parameter "name: type [unit]". Name and unit may be missing.
 std::string_view typeOf(std::string_view parameter) {
   if (const std::size_t colon = parameter.find(": "); colon != std::string_view::npos)
     parameter.remove_prefix(colon + 2);
   return parameter.substr(0, parameter.find(" ["));
 }
 
-/// What typed texts among the arguments mean for the method.
+/// Reads typed texts among the arguments as the types that the method expects (Value::readAs).
 std::vector<Value> readTyped(const Method& m, std::span<const Value> arguments) {
   constexpr std::string_view kListOf = "list of ";
+  // Plain arguments that are the elements of a list have its element type; those of a vector have no type name.
   const bool each = arguments.size() == m.parameters.size();
-  std::string_view type;  // of plain arguments that together make a vector: none of its own
+  std::string_view type;
   if (!each && m.parameters.size() == 1 && typeOf(m.parameters[0]).starts_with(kListOf))
     type = typeOf(m.parameters[0]).substr(kListOf.size());
   std::vector<Value> out;
@@ -61,9 +61,10 @@ void writeProperty(const Property& p, Leaf& leaf, Args& args) {
   }
   p.set(leaf, args);
 }
+
 namespace {
 ClassObject& classFor(const Leaf& leaf) {
-  if (!leaf.classObject()) throw Error(leaf.path() + " has no class");
+  if (!leaf.classObject()) throw Error(fmt::format("{} has no class", leaf.path()));
   return *leaf.classObject();
 }
 
@@ -72,37 +73,34 @@ const Property& findProperty(const Leaf& leaf, std::string_view name) {
   if (const Property* p = c.property(name)) return *p;
   std::vector<std::string> names;
   for (const Property* p : c.properties()) names.push_back(p->name);
-  throw Error(leaf.path() + " (class " + c.name() + ") has no property '" + std::string(name) + "'." +
-              didYouMean(name, names));
+  throw Error(
+      fmt::format("{} (class {}) has no property '{}'.{}", leaf.path(), c.name(), name, didYouMean(name, names)));
 }
 
-std::string signature(const Method& m) {
-  std::string out = m.name + "(";
-  for (const std::string& p : m.parameters) out += (out.back() == '(' ? "" : ", ") + p;
-  return out + ")";
-}
+/// The method with its parameters, for messages.
+std::string signature(const Method& m) { return fmt::format("{}({})", m.name, fmt::join(m.parameters, ", ")); }
 
+/// The number of plain arguments, if lists are taken apart.
 int scalarCount(std::span<const Value> arguments) {
   int n = 0;
   for (const Value& v : arguments) n += v.isList() ? static_cast<int>(v.toList().size()) : 1;
   return n;
 }
 
+/// "" unless there are clearly too few or too many arguments. A list may replace one argument or several.
 std::string countProblem(const Method& m, std::span<const Value> arguments, bool loose) {
-  const int n = scalarCount(arguments);
-  // One list may stand for one argument; only what is plainly too few or too many is refused here.
-  const bool tooFew = n < m.minScalars && static_cast<int>(arguments.size()) < m.minScalars;
-  const bool tooMany =
-      m.maxScalars >= 0 && static_cast<int>(arguments.size()) > m.maxScalars && !(loose && m.surplusIgnored);
+  const int scalars = scalarCount(arguments), count = static_cast<int>(arguments.size());
+  const bool tooFew = scalars < m.minScalars && count < m.minScalars;
+  const bool tooMany = m.maxScalars >= 0 && count > m.maxScalars && !(loose && m.surplusIgnored);
   if (!tooFew && !tooMany) return {};
-  std::string wanted = std::to_string(m.minScalars);
-  if (m.maxScalars < 0)
-    wanted = "at least " + wanted;
-  else if (m.maxScalars != m.minScalars)
-    wanted += " to " + std::to_string(m.maxScalars);
-  return signature(m) + " expected " + wanted + " arguments, found " + std::to_string(n);
+  const std::string wanted = m.maxScalars < 0               ? fmt::format("at least {}", m.minScalars)
+                             : m.maxScalars != m.minScalars ? fmt::format("{} to {}", m.minScalars, m.maxScalars)
+                                                            : fmt::format("{}", m.minScalars);
+  return fmt::format("{} expected {} arguments, found {}", signature(m), wanted, scalars);
 }
-/// What loose reading made of texts where numbers are due: " 'six' was read as 0.", "" when there are none.
+
+/// The texts that loose conversion has read as numbers although they are none, one line each, if all parameters are
+/// numbers.
 std::string readAsNumbers(const Method& m, std::span<const Value> arguments) {
   const auto wantsNumbers = [](const std::string& parameter) {
     return parameter.find("number") != std::string::npos || parameter.find("integer") != std::string::npos ||
@@ -116,7 +114,7 @@ std::string readAsNumbers(const Method& m, std::span<const Value> arguments) {
     char* end = nullptr;
     const double number = std::strtod(text, &end);
     if (end == text || *end != 0)
-      out += "\n  '" + v.toString() + "' is no number: it was read as " + Value(number).text() + ".";
+      out += fmt::format("\n  '{}' is no number: it was read as {}.", v.toString(), Value(number).text());
   }
   return out;
 }
@@ -126,14 +124,14 @@ Value getProperty(const Leaf& leaf, std::string_view name) { return findProperty
 
 void setProperty(Leaf& leaf, std::string_view name, const Value& value) {
   const Property& p = findProperty(leaf, name);
-  if (!p.set) throw Error(leaf.path() + "." + std::string(name) + " is read only");
+  if (!p.set) throw Error(fmt::format("{}.{} is read only", leaf.path(), name));
   const NowRunning now(p.name.c_str(), &leaf);
   try {
     const Value meant = value.readAs(p.type);
     Args args{std::span(&meant, 1)};
     writeProperty(p, leaf, args);
   } catch (const std::exception& e) {
-    throw Error("cannot set " + leaf.path() + "." + std::string(name), e);
+    throw Error(fmt::format("cannot set {}.{}", leaf.path(), name), e);
   }
 }
 
@@ -143,11 +141,11 @@ Value callMethod(Leaf& leaf, std::string_view name, std::span<const Value> argum
   if (!m) {
     std::vector<std::string> names;
     for (const Method* q : c.methods()) names.push_back(q->name);
-    throw Error(leaf.path() + " (class " + c.name() + ") has no method '" + std::string(name) + "'." +
-                didYouMean(name, names));
+    throw Error(
+        fmt::format("{} (class {}) has no method '{}'.{}", leaf.path(), c.name(), name, didYouMean(name, names)));
   }
   if (const std::string problem = countProblem(*m, arguments, false); !problem.empty())
-    throw Error("cannot call " + leaf.path() + ": " + problem);
+    throw Error(fmt::format("cannot call {}: {}", leaf.path(), problem));
   const NowRunning now(m->name.c_str(), &leaf);
   try {
     std::vector<Value> meant;
@@ -156,10 +154,10 @@ Value callMethod(Leaf& leaf, std::string_view name, std::span<const Value> argum
     Args args{arguments};
     Value result = m->call(leaf, args);
     if (!args.atEnd())
-      throw Error(signature(*m) + " expected fewer arguments, found " + std::to_string(arguments.size()));
+      throw Error(fmt::format("{} expected fewer arguments, found {}", signature(*m), arguments.size()));
     return result;
   } catch (const std::exception& e) {
-    throw Error("cannot call " + std::string(name) + " of " + leaf.path(), e);
+    throw Error(fmt::format("cannot call {} of {}", name, leaf.path()), e);
   }
 }
 
@@ -174,7 +172,7 @@ bool callLoosely(Leaf& leaf, const Method& method, std::span<const Value> argume
   } catch (const RefusedValue&) {
     throw;
   } catch (const std::exception& e) {
-    whyNot = signature(method) + ": " + e.what() + readAsNumbers(method, arguments);
+    whyNot = fmt::format("{}: {}{}", signature(method), e.what(), readAsNumbers(method, arguments));
     return false;
   }
 }

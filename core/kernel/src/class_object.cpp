@@ -1,5 +1,7 @@
 #include "spark/class_object.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -13,49 +15,56 @@
 namespace spark {
 
 namespace {
-std::string capitalised(std::string_view prefix, std::string_view name) {
+/// The name of a generated method: "set" and "x" make "setX".
+std::string accessorName(std::string_view prefix, std::string_view property) {
   std::string out(prefix);
-  out += name;
+  out += property;
   if (char& c = out[prefix.size()]; c >= 'a' && c <= 'z') c = static_cast<char>(c - 32);
   return out;
+}
+
+/// The class with the plugin that provides it, for messages.
+std::string classAndPlugin(const ClassObject& c) {
+  return c.plugin() ? fmt::format("class {} of plugin {}", c.name(), c.plugin()->name())
+                    : fmt::format("class {}", c.name());
 }
 }  // namespace
 
 ClassObject::ClassObject(Kernel& kernel, ClassDescription description, Plugin* plugin)
     : kernel_(kernel), description_(std::move(description)), plugin_(plugin) {
   setName(description_.name);
-  // A property x gives setX and getX, unless the class has methods of those names.
+  // A property x makes the methods setX and getX, unless the class has methods of those names.
   const auto has = [&](const std::string& n) {
     return std::any_of(description_.methods.begin(), description_.methods.end(),
                        [&](const Method& m) { return m.name == n; });
   };
   std::vector<Method> generated;
   for (const Property& p : description_.properties) {
-    const int scalars = p.scalars;
-    if (!p.readOnly && !has(capitalised("set", p.name))) {
+    if (!p.readOnly && !has(accessorName("set", p.name))) {
       Method m;
-      m.name = capitalised("set", p.name);
-      m.doc = "Sets " + p.name + ". " + p.doc;
-      m.parameters = {p.name + ": " + p.type + (p.unit.empty() ? "" : " [" + p.unit + "]")};
-      m.minScalars = scalars < 0 ? 0 : scalars;
-      m.maxScalars = scalars;
+      m.name = accessorName("set", p.name);
+      m.doc = fmt::format("Sets {}. {}", p.name, p.doc);
+      m.parameters = {p.unit.empty() ? fmt::format("{}: {}", p.name, p.type)
+                                     : fmt::format("{}: {} [{}]", p.name, p.type, p.unit)};
+      m.minScalars = std::max(p.scalars, 0);
+      m.maxScalars = p.scalars;
       m.call = [p](Leaf& l, Args& a) -> Value {
         writeProperty(p, l, a);
         return {};
       };
       generated.push_back(std::move(m));
     }
-    if (!has(capitalised("get", p.name))) {
+    if (!has(accessorName("get", p.name))) {
       Method m;
-      m.name = capitalised("get", p.name);
-      m.doc = "Gives " + p.name + ". " + p.doc;
+      m.name = accessorName("get", p.name);
+      m.doc = fmt::format("Gives {}. {}", p.name, p.doc);
       m.returns = p.type;
       m.call = [get = p.get](Leaf& l, Args&) { return get(l); };
       generated.push_back(std::move(m));
     }
   }
   for (Method& m : generated) description_.methods.push_back(std::move(m));
-  fillCasts();  // class objects are queried before they are resolved
+  fillCasts();  // the class of classes is queried before it is resolved
 }
 
 ClassObject::~ClassObject() { detail::Tree::disown(*this); }
@@ -74,17 +83,16 @@ std::string ClassObject::pluginName() const { return plugin_ ? plugin_->name() :
 ClassObject* ClassObject::base() {
   if (base_ || description_.base.empty()) return base_;
   base_ = kernel_.findClass(description_.base);
-  if (!base_) {
-    Plugin* provider = kernel_.plugins().providerOf(description_.base);
-    throw Error("class " + name() + (plugin_ ? " of plugin " + plugin_->name() : "") + " needs its base class " +
-                description_.base + ", which is not registered. " +
-                (provider ? "Plugin '" + provider->name() + "' provides it: add plugin \"" + provider->name() +
-                                "\" to the config."
-                          : "No scanned plugin provides it."));
-  }
-  return base_;
+  if (base_) return base_;
+  const Plugin* provider = kernel_.plugins().providerOf(description_.base);
+  throw Error(fmt::format(
+      "{} needs its base class {}, which is not registered. {}", classAndPlugin(*this), description_.base,
+      provider ? fmt::format("Plugin '{0}' provides it: add plugin \"{0}\" to the config.", provider->name())
+               : "No scanned plugin provides it."));
 }
 
+/// Fills the lists that contain inherited entries. Later than the constructor, because bases may be registered after
+/// derived classes.
 void ClassObject::resolve() {
   if (resolved_) return;
   if (ClassObject* b = base()) {
@@ -100,23 +108,21 @@ void ClassObject::resolve() {
   resolved_ = true;
 }
 
-/// Runs the constructor, which knows neither class nor place.
+/// Runs the constructor.
 std::unique_ptr<Leaf> ClassObject::construct() const {
   const NowRunning now("the constructor", this);
-  const auto failed = [this] {
-    return "the constructor of class " + name() + (plugin_ ? " of plugin " + plugin_->name() : "") + " failed";
-  };
   try {
     return description_.make();
   } catch (const std::exception& e) {
-    throw Error(failed(), e);
+    throw Error(fmt::format("the constructor of {} failed", classAndPlugin(*this)), e);
   } catch (...) {
-    throw Error(failed() + ": it threw something that is no std::exception");
+    throw Error(fmt::format("the constructor of {} failed: it threw something that is no std::exception",
+                            classAndPlugin(*this)));
   }
 }
 
 std::unique_ptr<Leaf> ClassObject::create() {
-  if (isAbstract()) throw Error("class " + name() + " is a base for others and cannot be made itself");
+  if (isAbstract()) throw Error(fmt::format("class {} is a base for others and cannot be made itself", name()));
   resolve();
   std::unique_ptr<Leaf> leaf = construct();
   kernel_.tree().adopt(*leaf, *this);
@@ -125,6 +131,7 @@ std::unique_ptr<Leaf> ClassObject::create() {
   return leaf;
 }
 
+/// Connects the links of a new object with their routes.
 void ClassObject::bindLinks(Leaf& leaf) {
   for (std::size_t i = 0; i < links_.size(); ++i) {
     detail::LinkBase& link = links_[i]->member(leaf);
@@ -142,6 +149,7 @@ std::vector<Found<void>> LinkDescription::targets(const Leaf& owner) const {
   return out;
 }
 
+/// Logs the required links of `leaf` that have no target.
 void ClassObject::warnOfMissing(const Leaf& leaf) const {
   for (const LinkDescription* l : links_)
     if (!l->lacks.empty() && !l->route.find(leaf))
@@ -155,11 +163,13 @@ bool ClassObject::isA(std::string_view className) {
 }
 
 void ClassObject::fillCasts() {
+  // Own interfaces first: a derived class overrides the casts of its bases.
   std::vector<Cast> all;
   for (const ClassObject* c = this; c; c = c->base_)
     for (const auto& i : c->description_.interfaces)
       if (std::none_of(all.begin(), all.end(), [&](const Cast& known) { return known.id == i.id.id; }))
         all.push_back({i.id.id, i.cast});
+  // At most a quarter of the table is used; linear probing.
   castMask_ = std::bit_ceil(4 * all.size() + 1) - 1;
   casts_.assign(castMask_ + 1, Cast{});
   for (const Cast& cast : all) {
@@ -179,7 +189,14 @@ const Property* ClassObject::property(std::string_view name) {
 const Method* ClassObject::method(std::string_view name) {
   for (ClassObject* c = this; c; c = c->base())
     for (const Method& m : c->description_.methods)
-      if (m.name == name) return m.call ? &m : method(m.returns.substr(1));
+      if (m.name == name) return m.call ? &m : method(m.returns.substr(1));  // an alias returns "@name"
+  return nullptr;
+}
+
+const Property* ClassObject::propertySetBy(std::string_view methodName) {
+  for (ClassObject* c = this; c; c = c->base())
+    for (const Property& p : c->description_.properties)
+      if (methodName == accessorName("set", p.name)) return &p;
   return nullptr;
 }
 

@@ -1,5 +1,7 @@
 #include "class_registry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "spark/error.h"
@@ -10,12 +12,12 @@ namespace spark::detail {
 
 ClassObject& ClassRegistry::add(ClassDescription description, Plugin* plugin) {
   if (ClassObject* other = find(description.name))
-    throw Error("class '" + description.name + "' is registered already, by " +
-                (other->plugin() ? "plugin '" + other->plugin()->name() + "'" : "the kernel") +
-                ". Two plugins cannot provide one name: use only one of them.");
+    throw Error(fmt::format(
+        "class '{}' is registered already, by {}. Two plugins cannot provide one name: use only one of them.",
+        description.name, other->plugin() ? fmt::format("plugin '{}'", other->plugin()->name()) : "the kernel"));
   auto made = std::make_unique<ClassObject>(kernel_, std::move(description), plugin);
   ClassObject& c = *made;
-  // The first class is of itself until the class of classes comes.
+  // Classes that are registered before the class of classes get it later.
   kernel_.tree().adopt(c, classOfClasses_ ? *classOfClasses_ : c);
   if (c.name() == ClassObject::kClassName) {
     classOfClasses_ = &c;
@@ -25,7 +27,7 @@ ClassObject& ClassRegistry::add(ClassDescription description, Plugin* plugin) {
   if (kernel_.tree().classes)
     kernel_.tree().attachSorted(*kernel_.tree().classes, std::move(made));
   else
-    made.release();  // hang() gives the first classes to the tree
+    static_cast<void>(made.release());  // owned by index_ until hang()
   return c;
 }
 
@@ -36,7 +38,7 @@ void ClassRegistry::hang() {
 void ClassRegistry::drop(ClassObject& c, bool leak) {
   index_.erase(index_.find(c.name()));
   if (leak)
-    Tree::take(c).release();
+    static_cast<void>(Tree::take(c).release());  // never destroyed
   else
     kernel_.tree().detach(c);
 }

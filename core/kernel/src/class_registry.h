@@ -16,22 +16,23 @@ namespace spark::detail {
 class ClassRegistry {
  public:
   explicit ClassRegistry(Kernel& kernel) : kernel_(kernel) {}
-  /// Registers a class; `plugin` nullptr: the program's own. Throws Error when there is one of its name.
+  /// Registers a class. `plugin` nullptr: a class of the program itself. Throws Error if there is a class of that name.
   ClassObject& add(ClassDescription description, Plugin* plugin);
-  /// Removes a class. `leak`: its object stays in memory, since objects of it are left.
+  /// Removes a class. `leak`: its class object stays in memory, because objects of the class still exist.
   void drop(ClassObject& c, bool leak);
-  /// Hangs the classes that came before the tree into /classes.
+  /// Moves the classes that were registered before the tree existed to /classes.
   void hang();
-  /// Takes all class objects out of /classes: they outlive the tree.
+  /// Removes all class objects from /classes and returns them: they must outlive the tree.
   std::vector<std::unique_ptr<Leaf>> takeAll();
-  /// nullptr when there is none. A leading path is ignored.
+  /// The class of that name, without a leading path; nullptr if there is none.
   ClassObject* find(std::string_view name) const;
+  /// All classes in order of name.
   const std::map<std::string, ClassObject*, std::less<>>& all() const { return index_; }
 
  private:
   Kernel& kernel_;
   std::map<std::string, ClassObject*, std::less<>> index_;
-  ClassObject* classOfClasses_ = nullptr;
+  ClassObject* classOfClasses_ = nullptr;  ///< nullptr until it is registered
 };
 
 }  // namespace spark::detail

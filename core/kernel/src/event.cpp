@@ -1,5 +1,7 @@
 #include "spark/event.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -12,14 +14,16 @@
 
 namespace spark {
 
-// Handlers are kept sorted by tree order, sorted again only when the tree's shape or the handlers changed since the
-// last emit. While a channel runs its entries are never moved nor destroyed: what is added waits in pending_, what goes
-// is blanked. So handlers may change the tree and the handlers, their own included. Afterwards settle() makes it so.
+// Handlers are sorted by tree order. They are sorted again only if the tree or the handlers have changed since the last
+// event. While a channel runs, its entries are neither moved nor destroyed: new ones wait in pending_, and removed ones
+// are blanked. So handlers may change the tree and the handlers, also themselves. settle() applies these changes
+// afterwards.
 
 namespace {
-constexpr std::size_t kFar = 12, kNear = 6;  // handlers
-constexpr std::size_t kNode = 384;           // bytes that a handler with nothing to do looks at
-constexpr std::size_t kAbove = 64;           // and of the class of the node above it, on which controllers act
+// Prefetch distances in handlers, and sizes in bytes; measured for crowds of agents.
+constexpr std::size_t kFar = 12, kNear = 6;
+constexpr std::size_t kNode = 384;  // part of a node that a handler without work reads
+constexpr std::size_t kAbove = 64;  // part of its parent behind the Node, which controllers read
 }  // namespace
 
 void Channel::run(Entry& entry, const Event& event) {
@@ -35,19 +39,22 @@ void Channel::run(Entry& entry, const Event& event) {
   }
 }
 
-/// Once for each handler: one that fails in every cycle would fill the disk.
+/// Counts a failure. Logs only the first one of each handler, because one that fails in every cycle would fill the
+/// disk.
 void Channel::report(Entry& entry, const char* what) {
   kernel_->countFault();
   if (std::exchange(entry.faulty, true)) return;
-  std::string who = "a removed node";
+  std::string node = "a removed node";
   if (entry.node) {
     const ClassObject& c = *entry.node->classObject();
-    who = entry.node->path() + " (class " + c.name() + (c.plugin() ? " of plugin " + c.plugin()->name() : "") + ")";
+    node = c.plugin() ? fmt::format("{} (class {} of plugin {})", entry.node->path(), c.name(), c.plugin()->name())
+                      : fmt::format("{} (class {})", entry.node->path(), c.name());
   }
   kernel_->log().error("{} of {} failed: {}\n  It stays; further faults of this handler are counted, not logged.",
-                       name_, who, what);
+                       name_, node, what);
 }
 
+/// Sorts the entries by tree order, if anything has changed.
 void Channel::sort() {
   if (!dirty_ && sortedAt_ == kernel_->structureVersion()) return;
   kernel_->updateOrder();
@@ -62,9 +69,10 @@ void Channel::sort() {
   dirty_ = false;
 }
 
+/// Applies the changes that handlers have made, unless the channel still runs.
 void Channel::settle() {
   if (depth_ > 0) return;
-  std::vector<Handler> dying;  // their destructors may come back here
+  std::vector<Handler> dying;  // destroyed last, because their destructors may call this channel
   if (holes_) {
     for (Entry& e : entries_)
       if (!e.node && e.handler) dying.push_back(std::move(e.handler));
@@ -85,6 +93,7 @@ void Channel::emit(const Event& event) {
   NowRunning now(name_.c_str());
   now.beat();
   for (std::size_t i = 0; i < entries_.size(); ++i) {
+    // Fetch the node of a later handler, and the parent of a nearer one, whose node has arrived meanwhile.
     if (i + kFar < entries_.size()) prefetch(entries_[i + kFar].node, kNode);
     if (const Leaf* next = i + kNear < entries_.size() ? entries_[i + kNear].node : nullptr; next && next->parent())
       prefetch(next->parent() + 1, kAbove);
@@ -114,6 +123,7 @@ void Channel::insert(Entry entry) {
   dirty_ = true;
 }
 
+/// Removes an entry without moving the others.
 void Channel::blank(Entry& entry) {
   entry.node = nullptr;
   holes_ = true;
@@ -121,14 +131,14 @@ void Channel::blank(Entry& entry) {
 
 std::uint64_t Channel::add(Leaf& node, Handler handler) {
   if (!node.isLinked())
-    throw Error("cannot handle '" + name_ + "' at " + node.path() + ": it is not linked into the tree");
+    throw Error(fmt::format("cannot handle '{}' at {}: it is not linked into the tree", name_, node.path()));
   insert({&node, nullptr, std::move(handler), ++lastNumber_});
   return lastNumber_;
 }
 
 void Channel::remove(std::uint64_t subscription) {
-  if (subscription == 0) return;
-  std::vector<Handler> dying;
+  if (subscription == 0) return;  // the number of hooks
+  std::vector<Handler> dying;     // as in settle()
   std::erase_if(pending_, [&](Entry& e) {
     if (e.number != subscription) return false;
     dying.push_back(std::move(e.handler));
@@ -152,8 +162,8 @@ Channel& Events::channel(std::string_view name) {
 Channel& Events::define(std::string_view name, Order order, std::string doc) {
   Channel& c = channel(name);
   if (!c.doc_.empty() && c.order_ != order)
-    throw Error("event channel '" + std::string(name) + "' is defined already with the other order of handlers (" +
-                c.doc_ + ")");
+    throw Error(
+        fmt::format("event channel '{}' is defined already with the other order of handlers ({})", name, c.doc_));
   c.order_ = order;
   c.doc_ = std::move(doc);
   c.dirty_ = true;
@@ -170,14 +180,16 @@ bool Events::running() const {
   return std::any_of(channels_.begin(), channels_.end(), [](const auto& c) { return c->depth_ > 0; });
 }
 
+/// Adds the hooks of a node that has been linked.
 void Events::hook(Leaf& node) {
   for (const Hook* h : node.classObject()->hooks()) channel(h->channel).insert({&node, h->run, {}, 0});
 }
 
+/// Removes all handlers of a node that has been unlinked.
 void Events::unhook(Leaf& node) {
   if (!detail::Tree::isHooked(node)) return;
   detail::Tree::setHooked(node, false);
-  std::vector<Channel::Handler> dying;  // their destructors may come back here
+  std::vector<Channel::Handler> dying;  // as in Channel::settle()
   for (const auto& c : channels_) {
     std::erase_if(c->pending_, [&](Channel::Entry& e) {
       if (e.node != &node) return false;
@@ -187,7 +199,7 @@ void Events::unhook(Leaf& node) {
     for (Channel::Entry& e : c->entries_) {
       if (e.node != &node) continue;
       c->blank(e);
-      // A handler that nobody runs dies with its node: its code may be unmapped soon.
+      // A handler that does not run now is destroyed with its node, because its code may be unmapped soon.
       if (c->depth_ == 0 && e.handler) dying.push_back(std::move(e.handler)), e.handler = nullptr;
     }
   }

@@ -4,7 +4,7 @@
 
 namespace spark {
 
-/// "api/physics.h 0123456789abcdef" each: the header's name and the hash of its text without comments. In order of
+/// Texts such as "api/physics.h 0123456789abcdef": a header and the hash of its text without comments. In order of
 /// name, ended by nullptr.
 extern const char* const kHostHeaders[];
 

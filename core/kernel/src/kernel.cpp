@@ -1,5 +1,7 @@
 #include "spark/kernel.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <map>
@@ -12,6 +14,7 @@
 
 namespace spark {
 
+/// The members of a kernel. They are destroyed in reverse order.
 struct Kernel::Parts {
   explicit Parts(Kernel& kernel) : events(kernel), tree(kernel), classes(kernel) {}
   Log log;
@@ -21,8 +24,8 @@ struct Kernel::Parts {
   detail::ClassRegistry classes;
   std::unique_ptr<Loader> loader;
   std::uint64_t seed = 1;
-  std::map<std::uint64_t, std::uint32_t> streamOrdinals;
-  std::mutex streamMutex;
+  std::map<std::uint64_t, std::uint32_t> streamOrdinals;  ///< calls of streamSeed() by hash of the key
+  std::mutex streamMutex;                                 ///< guards streamOrdinals
   std::atomic<bool> stop{false}, ending{false};
   std::atomic<std::int64_t> faults{0};
 };
@@ -39,12 +42,12 @@ Kernel::Kernel() : parts_(std::make_unique<Parts>(*this)) {
   parts_->loader = std::make_unique<Loader>(*this);
 }
 
-// Order of the end: the tree but for classes and plugins, then class objects, then the plugins' files.
+// The tree without classes and plugins is destroyed first, then the classes of plugins, then the plugins' libraries.
 Kernel::~Kernel() {
   parts_->ending = true;
   parts_->tree.fell();
   parts_->loader.reset();
-  // Class objects count their products; the nodes that remain go before their classes.
+  // Class objects count their objects, so the kernel's own ones must outlive the nodes that remain.
   const std::vector<std::unique_ptr<Leaf>> classes = parts_->classes.takeAll();
   parts_->tree.uproot();
 }
@@ -67,13 +70,13 @@ ClassObject& Kernel::classOf(std::string_view name) {
   if (ClassObject* c = findClass(name)) return *c;
   if (parts_->loader)
     if (Plugin* p = parts_->loader->providerOf(name))
-      throw Error("there is no class '" + std::string(name) + "' yet: plugin '" + p->name() +
-                  "' provides it. Add plugin \"" + p->name() + "\" to the config.");
+      throw Error(fmt::format(
+          "there is no class '{0}' yet: plugin '{1}' provides it. Add plugin \"{1}\" to the config.", name, p->name()));
   std::vector<std::string> names;
   for (const auto& [n, c] : parts_->classes.all()) names.push_back(n);
   for (const auto& p : parts_->tree.plugins->children())
     for (const std::string& n : static_cast<Plugin&>(*p).classes()) names.push_back(n);
-  throw Error("there is no class '" + std::string(name) + "'." + didYouMean(name, names));
+  throw Error(fmt::format("there is no class '{}'.{}", name, didYouMean(name, names)));
 }
 
 std::vector<ClassObject*> Kernel::classes() const {
@@ -84,9 +87,10 @@ std::vector<ClassObject*> Kernel::classes() const {
 
 Leaf& Kernel::create(std::string_view className, std::string_view path) {
   if (path.empty() || path.front() != '/')
-    throw Error("expected an absolute path for a new " + std::string(className) + ", found '" + std::string(path) +
-                "'");
+    throw Error(fmt::format("expected an absolute path for a new {}, found '{}'", className, path));
   ClassObject& c = classOf(className);
+
+  // Walk down to the parent and make what is missing.
   Node* at = parts_->tree.root();
   const std::size_t last = path.rfind('/');
   std::string_view above = path.substr(0, last);
@@ -98,15 +102,14 @@ Leaf& Kernel::create(std::string_view className, std::string_view path) {
     if (part.empty()) continue;
     Leaf* next = at->child(part);
     if (!next) next = &at->create("Node", part);
-    if (!next->asNode())
-      throw Error("cannot make " + std::string(path) + ": " + next->path() + " cannot have children");
+    if (!next->asNode()) throw Error(fmt::format("cannot make {}: {} cannot have children", path, next->path()));
     at = next->asNode();
   }
+
   const std::string_view name = path.substr(last + 1);
-  if (name.empty()) throw Error("expected a name at the end of '" + std::string(path) + "'");
-  if (at->child(name))
-    throw Error("cannot make " + std::string(path) + ": it exists already, as " +
-                at->child(name)->classObject()->name());
+  if (name.empty()) throw Error(fmt::format("expected a name at the end of '{}'", path));
+  if (const Leaf* other = at->child(name))
+    throw Error(fmt::format("cannot make {}: it exists already, as {}", path, other->classObject()->name()));
   auto leaf = c.create();
   leaf->setName(std::string(name));
   return at->add(std::move(leaf));
@@ -124,12 +127,11 @@ void Kernel::setSeed(std::uint64_t seed) { parts_->seed = seed; }
 std::uint64_t Kernel::seed() const { return parts_->seed; }
 
 std::uint64_t Kernel::streamSeed(const Leaf& owner, std::string_view purpose) {
-  static_assert(sizeof(std::size_t) == 8);
   const std::string key =
-      owner.path() + "\n" + (owner.classObject() ? owner.classObject()->name() : "") + "\n" + std::string(purpose);
+      fmt::format("{}\n{}\n{}", owner.path(), owner.classObject() ? owner.classObject()->name() : "", purpose);
   const std::uint64_t h = hashBytes(key);
   const std::lock_guard lock(parts_->streamMutex);
-  const std::uint32_t ordinal = parts_->streamOrdinals[h]++;
+  const std::uint32_t ordinal = parts_->streamOrdinals[h]++;  // different streams of one key get different seeds
   return hashBytes(key, parts_->seed ^ (static_cast<std::uint64_t>(ordinal) << 32));
 }
 

@@ -1,5 +1,7 @@
 #include "spark/leaf.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "class_registry.h"
@@ -37,14 +39,14 @@ void Leaf::unlinkLeaf() {
 }
 
 void Leaf::setName(std::string name) {
-  const auto refuse = [&](const char* why) { throw Error("cannot name " + path() + " '" + name + "': " + why); };
+  const auto refuse = [&](const char* why) { throw Error(fmt::format("cannot name {} '{}': {}", path(), name, why)); };
   if (name.find_first_of("/\\") != std::string::npos)
     refuse("a name must not hold '/' or '\\', which separate names in paths");
   if (name == "." || name == "..") refuse("'.' and '..' have a meaning in paths");
   if (name.empty() && parent_) refuse("what has a parent needs a name");
   if (linked_ && kernel().tree().isFixed(*this)) refuse("classes, plugins and their folders keep their names");
   if (linked_ && name != name_)
-    kernel().tree().refuseUsed(*this, true, "cannot name " + path() + " '" + name + "' now");
+    kernel().tree().refuseUsed(*this, true, fmt::format("cannot name {} '{}' now", path(), name));
   detail::Tree::rename(*this, std::move(name));
 }
 
@@ -60,13 +62,15 @@ bool Leaf::isLinked() const { return linked_; }
 
 std::string Leaf::path() const {
   if (!parent_) return linked_ ? "/" : name_;
-  std::vector<const Leaf*> way;
+  // From this object up, then the names from the top down.
+  std::vector<const Leaf*> ancestors;
   const Leaf* top = this;
-  for (; top->parent_; top = top->parent_) way.push_back(top);
+  for (; top->parent_; top = top->parent_) ancestors.push_back(top);
   std::string out = top->linked_ ? "" : top->name_;
-  for (std::size_t i = way.size(); i-- > 0;) {
-    out += "/" + way[i]->name_;
-    if (const std::size_t mine = way[i]->parent_->ordinalOf(*way[i]); mine > 1) out += "[" + std::to_string(mine) + "]";
+  for (std::size_t i = ancestors.size(); i-- > 0;) {
+    const Leaf& leaf = *ancestors[i];
+    out.append("/").append(leaf.name_);
+    if (const std::size_t ordinal = leaf.parent_->ordinalOf(leaf); ordinal > 1) out += fmt::format("[{}]", ordinal);
   }
   return out;
 }
@@ -74,7 +78,7 @@ std::string Leaf::path() const {
 Leaf* Leaf::find(std::string_view path) const {
   const Leaf* at = this;
   if (!path.empty() && (path.front() == '/' || path.front() == '\\')) {
-    // What is not linked knows its kernel all the same.
+    // An object that is not linked has a kernel too, whose root is meant.
     if (class_ && class_->kernel_.tree().root()) at = class_->kernel_.tree().root();
     while (at->parent_) at = at->parent_;
   }
@@ -103,15 +107,14 @@ void* Leaf::query(const InterfaceId& id) const {
 
 void* Leaf::requireAs(const InterfaceId& id) const {
   if (void* p = query(id)) return p;
-  throw Error("expected a " + std::string(id.name) + ", found " + path() + " of class " +
-              (class_ ? class_->name() : "Leaf") + ", which lacks interface " + id.name + " version " +
-              std::to_string(id.version));
+  throw Error(fmt::format("expected a {0}, found {1} of class {2}, which lacks interface {0} version {3}", id.name,
+                          path(), class_ ? class_->name() : "Leaf", id.version));
 }
 
 void* Leaf::requireInterface(std::string_view path, const InterfaceId& id) const {
   const Leaf* found = find(path);
   if (!found) {
-    // Walk as far as the path goes, to say what is missing there and what is near.
+    // Follow the path to its first missing name, and suggest the nearest ones there.
     std::string_view rest = path;
     const Leaf* at = this;
     if (!rest.empty() && rest.front() == '/') at = find("/");
@@ -124,19 +127,18 @@ void* Leaf::requireInterface(std::string_view path, const InterfaceId& id) const
         std::vector<std::string> names;
         if (at->asNode())
           for (const auto& c : at->asNode()->children()) names.push_back(c->name());
-        hint = " There is no '" + std::string(part) + "' in " + at->path() + "." + didYouMean(part, names);
+        hint = fmt::format(" There is no '{}' in {}.{}", part, at->path(), didYouMean(part, names));
         break;
       }
       at = next;
       rest.remove_prefix(std::min(n + 1, rest.size()));
     }
-    throw Error("expected a " + std::string(id.name) + " at '" + std::string(path) + "' (seen from " + this->path() +
-                "), found nothing." + hint);
+    throw Error(
+        fmt::format("expected a {} at '{}' (seen from {}), found nothing.{}", id.name, path, this->path(), hint));
   }
   if (void* p = found->query(id)) return p;
-  throw Error("expected a " + std::string(id.name) + " at " + found->path() + ", found a " +
-              (found->class_ ? found->class_->name() : "Leaf") + ", which lacks interface " + id.name + " version " +
-              std::to_string(id.version) + ".");
+  throw Error(fmt::format("expected a {0} at {1}, found a {2}, which lacks interface {0} version {3}.", id.name,
+                          found->path(), found->class_ ? found->class_->name() : "Leaf", id.version));
 }
 
 }  // namespace spark

@@ -1,5 +1,7 @@
 #include "spark/link.h"
 
+#include <fmt/format.h>
+
 #include <string_view>
 
 #include "spark/error.h"
@@ -10,39 +12,42 @@ namespace spark {
 namespace {
 using Search = AnyRoute::Search;
 
+/// The name of what a step searches.
 std::string_view nameOf(const AnyRoute::Step& step) {
   return step.what.empty() ? std::string_view(step.id.name) : step.what;
 }
 
-std::string withArticle(std::string_view name) {
+const char* articleOf(std::string_view name) {
   const bool vowel = !name.empty() && std::string_view("AEIOUaeiou").find(name.front()) != std::string_view::npos;
-  return (vowel ? "an " : "a ") + std::string(name);
+  return vowel ? "an" : "a";
 }
 
-std::string place(const AnyRoute::Step& step, const std::string& origin) {
+/// The place of a step in words, as seen from `origin`.
+std::string placeOf(const AnyRoute::Step& step, const std::string& origin) {
   switch (step.search) {
     case Search::above:
-      return " above " + origin;
+      return "above " + origin;
     case Search::below:
-      return " below " + origin;
+      return "below " + origin;
     case Search::child:
-      return " among the children of " + origin;
+      return "among the children of " + origin;
     case Search::beside:
-      return " beside " + origin;
+      return "beside " + origin;
     case Search::at:
-      return " at " + step.path + (step.path.starts_with('/') || origin == "it" ? "" : " of " + origin);
+      if (step.path.starts_with('/') || origin == "it") return "at " + step.path;
+      return fmt::format("at {} of {}", step.path, origin);
     default:
-      return " at the path that it names";
+      return "at the path that it names";
   }
 }
 }  // namespace
 
-/// Searches for matches of one step.
+/// Finds the matches of one step.
 class AnyRoute::Walk {
  public:
   Walk(const Step& step, const Leaf& from) : step_(step), from_(from), linkedOnly_(from.isLinked()) {}
 
-  /// Calls take(Found<void>) for each match in tree order until it returns false.
+  /// Calls take(Found<void>) for each match, in tree order, until it returns false.
   template <class Take>
   void run(Take take) const {
     switch (step_.search) {
@@ -109,6 +114,7 @@ Found<void> AnyRoute::find(const Leaf& from) const {
 }
 
 void AnyRoute::findAll(const Leaf& from, std::vector<Found<void>>& out) const {
+  // All steps but the last lead to their first match.
   const Leaf* here = &from;
   if (steps_.size() > 1) {
     AnyRoute first = *this;
@@ -117,6 +123,7 @@ void AnyRoute::findAll(const Leaf& from, std::vector<Found<void>>& out) const {
   }
   if (!here) return;
   const Step& last = steps_.back();
+  // In the tree all descendants are collected from the kernel's flat list.
   if (last.search == Search::below && !last.accepts && here->isLinked() && here->asNode()) {
     here->kernel().updateOrder();
     return here->asNode()->collectAs(
@@ -126,25 +133,26 @@ void AnyRoute::findAll(const Leaf& from, std::vector<Found<void>>& out) const {
         },
         &out);
   }
-  Walk(steps_.back(), *here).run([&out](const Found<void>& match) {
+  Walk(last, *here).run([&out](const Found<void>& match) {
     out.push_back(match);
     return true;
   });
 }
 
 std::string AnyRoute::text() const {
-  std::string origin = "it", name, out;
+  std::string origin = "it", place;
   for (const Step& step : steps_) {
-    name = nameOf(step);
-    out = place(step, origin);
-    origin = "the " + name + out;
+    place = placeOf(step, origin);
+    origin = fmt::format("the {} {}", nameOf(step), place);
   }
-  return withArticle(name) + out;
+  const std::string_view name = nameOf(steps_.back());
+  return fmt::format("{} {} {}", articleOf(name), name, place);
 }
 
 void AnyRoute::throwMissing(const Leaf& from) const {
+  // For a plain path the text names the nearest names.
   if (steps_.size() == 1 && steps_[0].search == Search::at) from.requireInterface(steps_[0].path, steps_[0].id);
-  throw Error(from.path() + ": expected " + text() + ", found none");
+  throw Error(fmt::format("{}: expected {}, found none", from.path(), text()));
 }
 
 bool TreeWatch::changed(const Leaf& anyNode) {

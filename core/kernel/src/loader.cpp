@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
@@ -13,20 +15,20 @@
 #include "spark/running.h"
 #include "tree.h"
 
-// How a plugin comes and goes.
+// The life of a plugin.
 //
-//   scan(folder)   open every *.so (symbols resolved now, names local), read its descriptor, check magic, ABI word and
-//                  headers, list it under /plugins. Nothing of the plugin runs: it has no constructors with effects,
-//                  and registering is a call.
-//   use(name)      call registerClasses: the classes appear under /classes. If it throws, what it registered so far is
-//                  removed again.
-//   unload(name)   refused while an object of its classes lives, a foreign class derives from them or handlers run
-//                  (their code may be the plugin's); then its atUnload actions run, its classes go, /plugins loses it,
-//                  and its library is unmapped. The name is kept: the next use opens the file again, which may be
-//                  another one by then.
-//   unloadLater    as unload where no handler runs, else when the run loop says settle(), between two cycles.
+//   scan(folder)   opens every *.so (all symbols resolved, names local), reads its descriptor, checks magic, ABI word
+//   and
+//                  headers, and lists it under /plugins. No code of the plugin runs.
+//   use(name)      calls registerClasses: the classes appear under /classes. If it throws, the classes that it has
+//                  registered are removed again.
+//   unload(name)   is refused while objects of its classes exist, a class of another plugin derives from them, or
+//                  handlers run, whose code may be the plugin's. It runs the atUnload actions, removes the classes and
+//                  the entry under /plugins, and unmaps the library. The path of the file is kept: the next use() opens
+//                  the file again, which may be a new version then.
+//   unloadLater    is unload() if no handler runs; else settle() unloads, which the run loop calls between two cycles.
 //
-// What is mapped is a copy of the file (loaded_library.cpp), shared by kernels that load the same.
+// The library that is mapped is a copy of the file, and kernels that load the same file share it (loaded_library.cpp).
 
 namespace fs = std::filesystem;
 
@@ -37,34 +39,33 @@ std::string sanitizerName(std::uint32_t s) {
   return s == 0 ? "no sanitizer" : s == 1 ? "the address sanitizer" : "the thread sanitizer";
 }
 
-/// "" when the plugin's word agrees with ours, else what differs.
+/// "" if the plugin's ABI word equals the host's, else the difference.
 std::string abiProblem(const AbiWord& theirs) {
   const AbiWord ours = thisAbi();
-  const auto number = [](const char* what, std::uint32_t a, std::uint32_t b) {
-    return std::string("it was built with ") + what + " " + std::to_string(a) + ", this host with " + std::to_string(b);
-  };
-  if (theirs.version < ours.version)
-    return "it was built for the older plugin ABI " + std::to_string(theirs.version) + ", this host has " +
-           std::to_string(ours.version);
-  if (theirs.version > ours.version)
-    return "it was built for the newer plugin ABI " + std::to_string(theirs.version) + ", this host has " +
-           std::to_string(ours.version);
+  if (theirs.version != ours.version)
+    return fmt::format("it was built for the {} plugin ABI {}, this host has {}",
+                       theirs.version < ours.version ? "older" : "newer", theirs.version, ours.version);
   if (theirs.sanitizer != ours.sanitizer)
-    return "it was built with " + sanitizerName(theirs.sanitizer) + ", this host with " + sanitizerName(ours.sanitizer);
-  if (theirs.compiler != ours.compiler) return number("compiler ABI", theirs.compiler, ours.compiler);
-  if (theirs.alignment != ours.alignment) return number("alignment", theirs.alignment, ours.alignment);
+    return fmt::format("it was built with {}, this host with {}", sanitizerName(theirs.sanitizer),
+                       sanitizerName(ours.sanitizer));
+  if (theirs.compiler != ours.compiler)
+    return fmt::format("it was built with compiler ABI {}, this host with {}", theirs.compiler, ours.compiler);
+  if (theirs.alignment != ours.alignment)
+    return fmt::format("it was built with alignment {}, this host with {}", theirs.alignment, ours.alignment);
   return {};
 }
 
+/// True if the host was built with that version of a header.
 bool isHostHeader(std::string_view stamp) {
   const char* const* ours = kHostHeaders;
   while (*ours && stamp != *ours) ++ours;
   return *ours;
 }
 
-/// "" when each header that the plugin was compiled with is this host's, else the names of those that are not. Headers
-/// that the plugin does not include may differ.
+/// "" if the host was built with the same versions of all headers that the plugin includes, else the names of the other
+/// ones. Headers that the plugin does not include may differ.
 std::string headersProblem(const PluginDescriptor& d) {
+  // The texts in the list are separated by zeros, of which there may be several.
   bool listed = false;
   std::set<std::string> others;
   for (const char* at = d.headers; at < d.headersEnd; ++at) {
@@ -79,7 +80,7 @@ std::string headersProblem(const PluginDescriptor& d) {
   return fmt::format("this host has another version of {}, or none", fmt::join(others, ", "));
 }
 
-/// The linker believes what a file says. Where it is wrong, the host's last words are the file's name.
+/// Records the file that is being loaded: if its contents crash the linker, the crash report has the name.
 struct Loading {
   explicit Loading(const char* file) { running().file = file; }
   ~Loading() { running().file = nullptr; }
@@ -87,6 +88,7 @@ struct Loading {
   Loading& operator=(const Loading&) = delete;
 };
 
+/// Collects what a plugin registers, so that nothing is registered if it throws.
 class ClassCollector : public Registrar {
  public:
   void add(ClassDescription description) override { classes.push_back(std::move(description)); }
@@ -97,12 +99,21 @@ class ClassCollector : public Registrar {
 
 std::string absolutePath(const fs::path& file) { return fs::absolute(file).lexically_normal().string(); }
 
-/// The word for a plugin in paths, configs and messages: letters, digits, '-', '_', '.'.
-bool isPluginName(const char* name) {
-  const std::string_view n = name ? name : "";
-  return !n.empty() && n.front() != '.' && n.size() <= 100 && std::all_of(n.begin(), n.end(), [](unsigned char c) {
-    return std::isalnum(c) || c == '-' || c == '_' || c == '.';
-  });
+/// True for a name that can be used in paths and configs: letters, digits, '-', '_', '.'.
+bool isPluginName(std::string_view name) {
+  constexpr std::size_t kLongest = 100;
+  return !name.empty() && name.front() != '.' && name.size() <= kLongest &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; });
+}
+
+/// The text, "" for nullptr.
+const char* textOf(const char* text) { return text ? text : ""; }
+
+/// Libraries that stay loaded until the process ends.
+std::vector<std::shared_ptr<LoadedLibrary>>& permanentLibraries() {
+  static auto& libraries = *new std::vector<std::shared_ptr<LoadedLibrary>>;
+  return libraries;
 }
 }  // namespace
 
@@ -124,8 +135,8 @@ Loader::~Loader() {
     runActions(plugin);
     libraries.push_back(std::move(plugin.library_));
   }
-  // The classes hold functions of the plugins: they go first. Somebody who still owns an object outside the tree will
-  // need its class and its code: both are then left to the process.
+  // Classes contain functions of their plugins, so they are removed before the libraries. An object outside the tree
+  // that outlives the kernel still needs its class and its code: both then stay in memory.
   bool keep = false;
   std::vector<ClassObject*> foreign;
   for (const auto& [name, c] : kernel_.registry().all()) {
@@ -138,10 +149,10 @@ Loader::~Loader() {
   for (ClassObject* c : foreign) kernel_.registry().drop(*c, keep);
   while (!kernel_.tree().plugins->children().empty())
     kernel_.tree().detach(*kernel_.tree().plugins->children().front());
-  static auto& forever = *new std::vector<std::shared_ptr<LoadedLibrary>>;
-  if (keep) forever.insert(forever.end(), libraries.begin(), libraries.end());
+  if (keep) permanentLibraries().insert(permanentLibraries().end(), libraries.begin(), libraries.end());
 }
 
+/// Runs the atUnload actions once.
 void Loader::runActions(Plugin& plugin) {
   const std::vector<std::function<void()>> actions = std::move(plugin.atUnload_);
   plugin.atUnload_.clear();
@@ -152,33 +163,35 @@ void Loader::runActions(Plugin& plugin) {
     }
 }
 
+/// Loads a file and lists it under /plugins.
 Plugin& Loader::open(const fs::path& file) {
   const std::string path = absolutePath(file);
   const Loading loading(path.c_str());
   std::shared_ptr<LoadedLibrary> library = LoadedLibrary::load(path);
+
+  // The members of the descriptor are read in the order in which the checks make them reliable.
   const auto* d = static_cast<const PluginDescriptor*>(library->symbol("sparkPlugin"));
-  const auto refuse = [&](const std::string& reason) { throw Error("refused plugin " + path + ": " + reason); };
+  const auto refuse = [&](std::string_view reason) { throw Error(fmt::format("refused plugin {}: {}", path, reason)); };
+  const auto refuseBuild = [&](const std::string& problem) {
+    if (!problem.empty()) refuse(problem + ". Build it again with this host's headers.");
+  };
   if (!d) refuse("it has no symbol sparkPlugin; a plugin ends with SPARK_PLUGIN(name, version, doc, classes...)");
   if (std::memcmp(d->magic, "SPARKPLG", 8) != 0) refuse("its descriptor lacks the magic word SPARKPLG");
-  if (d->size < offsetof(PluginDescriptor, name))
-    refuse("its descriptor has only " + std::to_string(d->size) + " bytes");
-  if (const std::string problem = abiProblem(d->abi); !problem.empty())
-    refuse(problem + ". Build it again with this host's headers.");
+  if (d->size < offsetof(PluginDescriptor, name)) refuse(fmt::format("its descriptor has only {} bytes", d->size));
+  refuseBuild(abiProblem(d->abi));
   if (d->size != sizeof(PluginDescriptor))
-    refuse("its descriptor has " + std::to_string(d->size) + " bytes, this host's " +
-           std::to_string(sizeof(PluginDescriptor)));
-  if (const std::string problem = headersProblem(*d); !problem.empty())
-    refuse(problem + ". Build it again with this host's headers.");
-  if (!isPluginName(d->name))
-    refuse("its name '" + std::string(d->name ? d->name : "") +
-           "' is none: letters, digits, '-', '_' and '.' make one");
+    refuse(fmt::format("its descriptor has {} bytes, this host's {}", d->size, sizeof(PluginDescriptor)));
+  refuseBuild(headersProblem(*d));
+  if (!isPluginName(textOf(d->name)))
+    refuse(fmt::format("its name '{}' is none: letters, digits, '-', '_' and '.' make one", textOf(d->name)));
   if (Leaf* other = kernel_.tree().plugins->child(d->name))
-    refuse(std::string("there is a plugin '") + d->name + "' already, from " + static_cast<Plugin*>(other)->file_);
+    refuse(fmt::format("there is a plugin '{}' already, from {}", d->name, static_cast<Plugin*>(other)->file_));
+
   auto made = kernel_.classOf("Plugin").create();
   made->setName(d->name);
   Plugin& plugin = static_cast<Plugin&>(kernel_.tree().attach(*kernel_.tree().plugins, std::move(made)));
-  plugin.version_ = d->version ? d->version : "";
-  plugin.doc_ = d->doc ? d->doc : "";
+  plugin.version_ = textOf(d->version);
+  plugin.doc_ = textOf(d->doc);
   plugin.file_ = path;
   for (const char* const* c = d->classes; c && *c; ++c) plugin.classes_.emplace_back(*c);
   plugin.library_ = std::move(library);
@@ -193,7 +206,7 @@ std::vector<std::string> Loader::scan(const fs::path& folder) {
   for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec))
     if (it->path().extension() == ".so") files.push_back(it->path());
   if (ec) {
-    problems.push_back("cannot read plugin folder " + folder.string() + ": " + ec.message());
+    problems.push_back(fmt::format("cannot read plugin folder {}: {}", folder.string(), ec.message()));
   } else if (const fs::path full = absolutePath(folder);
              std::find(folders_.begin(), folders_.end(), full) == folders_.end()) {
     folders_.push_back(full);
@@ -211,10 +224,11 @@ std::vector<std::string> Loader::scan(const fs::path& folder) {
   return problems;
 }
 
+/// Registers all classes of a plugin, or none if that fails.
 void Loader::registerPlugin(Plugin& plugin) {
   if (plugin.registered_) return;
   ClassCollector collector;
-  const std::string failed = "plugin '" + plugin.name() + "' (" + plugin.file_ + ") failed to register";
+  const std::string failed = fmt::format("plugin '{}' ({}) failed to register", plugin.name(), plugin.file_);
   std::vector<ClassObject*> added;
   const auto takeBack = [&] {
     for (ClassObject* c : added) kernel_.registry().drop(*c, false);
@@ -224,7 +238,7 @@ void Loader::registerPlugin(Plugin& plugin) {
   try {
     plugin.descriptor_->registerClasses(collector);
     for (ClassDescription& d : collector.classes) {
-      if (d.base == d.name) throw Error("class '" + d.name + "' names itself as its base");
+      if (d.base == d.name) throw Error(fmt::format("class '{}' names itself as its base", d.name));
       names.push_back(d.name);
       added.push_back(&kernel_.registry().add(std::move(d), &plugin));
     }
@@ -242,7 +256,8 @@ void Loader::registerPlugin(Plugin& plugin) {
 
 Plugin& Loader::use(std::string_view name) {
   Plugin* plugin = static_cast<Plugin*>(kernel_.tree().plugins->child(name));
-  if (plugin && !plugin->registered_ && plugin->library_->hasChanged()) {  // built again since it was listed
+  // A plugin that has been rebuilt since it was listed is loaded again.
+  if (plugin && !plugin->registered_ && plugin->library_->hasChanged()) {
     unloaded_.insert_or_assign(plugin->name(), plugin->file_);
     close(*plugin);
     plugin = nullptr;
@@ -255,18 +270,19 @@ Plugin& Loader::use(std::string_view name) {
   std::vector<std::string> names;
   for (const auto& p : kernel_.tree().plugins->children()) names.push_back(p->name());
   for (const auto& [known, file] : unloaded_) names.push_back(known);
-  std::string where;
-  for (const fs::path& f : folders_) where += (where.empty() ? "" : ", ") + f.string();
-  throw Error("there is no plugin '" + std::string(name) + "'." + didYouMean(name, names) +
-              " Looked in: " + (where.empty() ? "no folder" : where) + ".");
+  std::vector<std::string> where;
+  for (const fs::path& f : folders_) where.push_back(f.string());
+  throw Error(fmt::format("there is no plugin '{}'.{} Looked in: {}.", name, didYouMean(name, names),
+                          where.empty() ? "no folder" : fmt::format("{}", fmt::join(where, ", "))));
 }
 
-/// A plugin that was unloaded, or whose file came into a folder after the scan; nullptr when there is none.
+/// Loads a plugin that was unloaded, or whose file is newer than the scan of its folder. Returns nullptr if there is
+/// none.
 Plugin* Loader::openAgain(std::string_view name) {
   std::vector<fs::path> files;
   if (const auto known = unloaded_.find(name); known != unloaded_.end()) files.push_back(known->second);
-  if (isPluginName(std::string(name).c_str()))
-    for (const fs::path& folder : folders_) files.push_back(folder / (std::string(name) + ".so"));
+  if (isPluginName(name))
+    for (const fs::path& folder : folders_) files.push_back(folder / fmt::format("{}.so", name));
   for (const fs::path& file : files)
     if (std::error_code ec; fs::is_regular_file(file, ec) && !fromFile(file)) {
       Plugin& plugin = open(file);
@@ -291,11 +307,14 @@ Plugin& Loader::useFile(const fs::path& file) {
   return plugin;
 }
 
+/// Removes a plugin from /plugins and unmaps its library.
 void Loader::close(Plugin& plugin) {
-  const std::shared_ptr<LoadedLibrary> library = std::move(plugin.library_);  // the node may hold what is in it
+  // The object may contain functions of the library, so it is destroyed first.
+  const std::shared_ptr<LoadedLibrary> library = std::move(plugin.library_);
   kernel_.tree().detach(plugin);
 }
 
+/// The listed plugin of that file, nullptr if there is none.
 Plugin* Loader::fromFile(const fs::path& file) const {
   const std::string path = absolutePath(file);
   for (const auto& p : kernel_.tree().plugins->children())
@@ -310,43 +329,49 @@ std::vector<ClassObject*> Loader::classesOf(const Plugin& plugin) const {
   return all;
 }
 
-/// The plugin of that name. Throws Error when something needs it.
+/// The plugin of that name. Throws Error if its classes are in use.
 Plugin& Loader::unused(std::string_view name) const {
   Leaf* found = kernel_.tree().plugins->child(name);
-  if (!found) throw Error("cannot unload plugin '" + std::string(name) + "': there is none of that name");
+  if (!found) throw Error(fmt::format("cannot unload plugin '{}': there is none of that name", name));
   Plugin& plugin = static_cast<Plugin&>(*found);
-  const std::vector<ClassObject*> mine = classesOf(plugin);
-  std::string living, derived;
-  const auto isMine = [&](ClassObject* c) { return std::find(mine.begin(), mine.end(), c) != mine.end(); };
+  const std::vector<ClassObject*> classes = classesOf(plugin);
+
+  // Objects of its classes, with the paths of those in the tree.
+  std::size_t count = 0;
+  for (ClassObject* c : classes) count += c->living();
+  std::string living;
   const auto walk = [&](auto& self, const Node& node) -> void {
     for (const auto& c : node.children()) {
-      if (isMine(c->classObject())) living += "\n  " + c->path() + " (" + c->classObject()->name() + ")";
+      if (std::find(classes.begin(), classes.end(), c->classObject()) != classes.end())
+        living += fmt::format("\n  {} ({})", c->path(), c->classObject()->name());
       if (c->asNode()) self(self, *c->asNode());
     }
   };
   walk(walk, kernel_.root());
-  std::size_t products = 0;
-  for (ClassObject* c : mine) products += c->living();
-  if (products > 0)
-    throw Error("cannot unload plugin '" + plugin.name() + "' while its objects live:" +
-                (living.empty() ? " " + std::to_string(products) + " outside the tree" : living) +
-                "\nRemove them first.");
+  if (count > 0)
+    throw Error(fmt::format("cannot unload plugin '{}' while its objects live:{}\nRemove them first.", plugin.name(),
+                            living.empty() ? fmt::format(" {} outside the tree", count) : living));
+
+  // Classes of other plugins that derive from its classes.
+  std::string derived;
   for (const auto& [n, c] : kernel_.registry().all())
-    if (c->plugin() != &plugin && std::any_of(mine.begin(), mine.end(), [&, derivedClass = c](ClassObject* m) {
-          return m->name() == derivedClass->baseName();
+    if (c->plugin() != &plugin && std::any_of(classes.begin(), classes.end(), [&, other = c](ClassObject* own) {
+          return own->name() == other->baseName();
         }))
-      derived += "\n  " + n + (c->plugin() ? " of plugin '" + c->plugin()->name() + "'" : "");
+      derived += c->plugin() ? fmt::format("\n  {} of plugin '{}'", n, c->plugin()->name()) : fmt::format("\n  {}", n);
   if (!derived.empty())
-    throw Error("cannot unload plugin '" + plugin.name() + "' while classes derive from its classes:" + derived +
-                "\nUnload those first.");
+    throw Error(fmt::format("cannot unload plugin '{}' while classes derive from its classes:{}\nUnload those first.",
+                            plugin.name(), derived));
   return plugin;
 }
 
 void Loader::unload(std::string_view name) {
   Plugin& plugin = unused(name);
   if (kernel_.events().running())
-    throw Error("cannot unload plugin '" + plugin.name() +
-                "' while handlers of events run, which may be its own. Unload it between two cycles.");
+    throw Error(
+        fmt::format("cannot unload plugin '{}' while handlers of events run, which may be its own. Unload it "
+                    "between two cycles.",
+                    plugin.name()));
   runActions(plugin);
   for (ClassObject* c : classesOf(plugin)) kernel_.registry().drop(*c, false);
   unloaded_.insert_or_assign(plugin.name(), plugin.file_);

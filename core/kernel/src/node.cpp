@@ -1,5 +1,7 @@
 #include "spark/node.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -11,10 +13,10 @@
 namespace spark {
 
 namespace {
-constexpr std::size_t kManyChildren = 64;
+constexpr std::size_t kManyChildren = 64;  // from here on children are found by an index of names
 
-/// Only the kernel adds children to it.
-bool isKernels(const Node& node) {
+/// True for /classes and /plugins, whose children only the kernel adds.
+bool isKernelFolder(const Node& node) {
   const detail::Tree& tree = node.kernel().tree();
   return &node == tree.classes || &node == tree.plugins;
 }
@@ -29,10 +31,10 @@ std::size_t Node::ordinalOf(const Leaf& child) const {
   if (names_) {
     const auto same = names_->find(child.name());
     if (same != names_->end()) {
-      if (same->second.back() == &child) return same->second.size();
-      return static_cast<std::size_t>(std::find(same->second.begin(), same->second.end(), &child) -
-                                      same->second.begin()) +
-             1;
+      const std::vector<Leaf*>& list = same->second;
+      if (list.back() == &child) return list.size();  // a child that was just added
+      const std::size_t before = std::find(list.begin(), list.end(), &child) - list.begin();
+      return before + 1;
     }
   }
   std::size_t n = 1;
@@ -43,7 +45,7 @@ std::size_t Node::ordinalOf(const Leaf& child) const {
   return 1;
 }
 
-/// Called for every new child: from kManyChildren on they are found without looking at all of them.
+/// Adds a new child to the index of names. Makes the index if there are many children.
 void Node::rememberName(Leaf& child) {
   if (names_) {
     (*names_)[child.name()].push_back(&child);
@@ -54,27 +56,28 @@ void Node::rememberName(Leaf& child) {
 }
 
 Node::~Node() {
-  // Away from the list first: a child's destructor may look at its siblings.
+  // The list is emptied first, because the destructor of a child may look at it.
   forgetNames();
   const std::vector<std::unique_ptr<Leaf>> dying = std::move(children_);
   children_.clear();
 }
 
 Leaf* Node::child(std::string_view name) const {
-  int index = 1;
+  std::uint32_t ordinal = 1;
   if (!name.empty() && name.back() == ']') {
-    // A literal match wins: names may end in ']'.
+    // A name may itself end in ']'.
     if (Leaf* literal = numbered(name, 1)) return literal;
     if (const std::size_t open = name.rfind('['); open != std::string_view::npos) {
-      const auto r = std::from_chars(name.data() + open + 1, name.data() + name.size() - 1, index);
-      if (r.ec != std::errc() || r.ptr != name.data() + name.size() - 1 || index < 1) return nullptr;
+      const char* end = name.data() + name.size() - 1;
+      const auto r = std::from_chars(name.data() + open + 1, end, ordinal);
+      if (r.ec != std::errc() || r.ptr != end || ordinal < 1) return nullptr;
       name = name.substr(0, open);
     }
   }
-  return numbered(name, static_cast<std::size_t>(index));
+  return numbered(name, ordinal);
 }
 
-/// The n-th child of that name, from 1.
+/// The n-th child of that name, from 1; nullptr if there is none.
 Leaf* Node::numbered(std::string_view name, std::size_t n) const {
   if (names_) {
     const auto same = names_->find(name);
@@ -93,9 +96,9 @@ void Node::walk(const InterfaceId& id, bool deep, Take take, void* list) const {
   }
 }
 
-/// In the flat order the descendants are one range.
 void Node::collectAs(const InterfaceId& id, bool deep, Take take, void* list) const {
   if (!isLinked() || !kernel().tree().isOrdered()) return walk(id, deep, take, list);
+  // In the kernel's list all descendants follow their ancestor.
   const std::vector<Leaf*>& order = kernel().tree().order();
   for (std::size_t i = detail::Tree::preOrder(*this) + 1; i <= detail::Tree::lastBelow(*this); ++i) {
     void* match = order[i]->query(id);
@@ -106,16 +109,16 @@ void Node::collectAs(const InterfaceId& id, bool deep, Take take, void* list) co
 }
 
 Leaf& Node::add(std::unique_ptr<Leaf> leaf) {
-  if (!leaf) throw Error("cannot add nothing to " + path());
+  if (!leaf) throw Error(fmt::format("cannot add nothing to {}", path()));
   Leaf& added = *leaf;
   if (!added.classObject())
-    throw Error("cannot add an object without a class to " + path() + ": make it through its class object");
-  if (added.parent() || added.isLinked())
-    throw Error("cannot add " + added.path() + " to " + path() + ": it has a parent already");
-  if (classObject() && &kernel() != &added.kernel())
-    throw Error("cannot add " + added.path() + " to " + path() + ": it was made by another kernel");
-  if (classObject() && isKernels(*this))
-    throw Error("cannot add " + added.path() + " to " + path() + ": what is there comes from plugins");
+    throw Error(fmt::format("cannot add an object without a class to {}: make it through its class object", path()));
+  const auto refuse = [&](const char* why) {
+    throw Error(fmt::format("cannot add {} to {}: {}", added.path(), path(), why));
+  };
+  if (added.parent() || added.isLinked()) refuse("it has a parent already");
+  if (classObject() && &kernel() != &added.kernel()) refuse("it was made by another kernel");
+  if (classObject() && isKernelFolder(*this)) refuse("what is there comes from plugins");
   return added.kernel().tree().attach(*this, std::move(leaf));
 }
 
@@ -127,25 +130,26 @@ Leaf& Node::create(std::string_view className, std::string_view name) {
 
 void Node::remove(Leaf& child) {
   if (child.parent() != this)
-    throw Error("cannot remove " + child.path() + " from " + path() + ": it is no child of it");
+    throw Error(fmt::format("cannot remove {} from {}: it is no child of it", child.path(), path()));
   kernel().tree().refuseFixed(child, "remove");
   kernel().tree().detach(child);
 }
 
 void Node::removeChildren() {
+  // All or none.
   for (const auto& c : children_) kernel().tree().refuseFixed(*c, "remove");
   while (!children_.empty()) remove(*children_.front());
 }
 
 void Node::reparent(Leaf& child, Node& newParent) {
-  if (child.parent() != this) throw Error("cannot move " + child.path() + ": it is no child of " + path());
+  if (child.parent() != this) throw Error(fmt::format("cannot move {}: it is no child of {}", child.path(), path()));
   for (Node* p = &newParent; p; p = p->parent())
-    if (p == &child) throw Error("cannot move " + child.path() + " below itself");
+    if (p == &child) throw Error(fmt::format("cannot move {} below itself", child.path()));
   kernel().tree().refuseFixed(child, "move");
   if (&newParent.kernel() != &kernel())
-    throw Error("cannot move " + child.path() + " to " + newParent.path() + ", which belongs to another kernel");
-  if (isKernels(newParent))
-    throw Error("cannot move " + child.path() + " to " + newParent.path() + ": what is there comes from plugins");
+    throw Error(fmt::format("cannot move {} to {}, which belongs to another kernel", child.path(), newParent.path()));
+  if (isKernelFolder(newParent))
+    throw Error(fmt::format("cannot move {} to {}: what is there comes from plugins", child.path(), newParent.path()));
   kernel().tree().move(child, newParent);
 }
 

@@ -1,5 +1,7 @@
 #include "spark/random.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
 
@@ -10,35 +12,42 @@
 namespace spark {
 
 namespace {
+__extension__ using Wide = unsigned __int128;
+
+constexpr std::uint64_t kGoldenGamma =
+    0x9e3779b97f4a7c15ull;  // increment of splitmix64: 2^64 divided by the golden ratio
+
+/// The finaliser of splitmix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
 std::uint64_t mix(std::uint64_t z) {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
   return z ^ (z >> 31);
 }
-std::uint64_t rotl(std::uint64_t x, int k) { return (x << k) | (x >> (64 - k)); }
 }  // namespace
 
 std::uint64_t hashBytes(std::string_view bytes, std::uint64_t seed) {
-  std::uint64_t h = 14695981039346656037ull ^ mix(seed + 0x9e3779b97f4a7c15ull);
-  for (unsigned char c : bytes) h = (h ^ c) * 1099511628211ull;
+  constexpr std::uint64_t kFnvOffset = 14695981039346656037ull, kFnvPrime = 1099511628211ull;
+  std::uint64_t h = kFnvOffset ^ mix(seed + kGoldenGamma);
+  for (unsigned char c : bytes) h = (h ^ c) * kFnvPrime;
   return mix(h);
 }
 
 void RandomStream::seed(std::uint64_t seed) {
-  for (std::uint64_t& s : s_) s = mix(seed += 0x9e3779b97f4a7c15ull);
+  for (std::uint64_t& s : s_) s = mix(seed += kGoldenGamma);
   seeded_ = true;
   hasSpare_ = false;
 }
 
 std::uint64_t RandomStream::bits() {
   if (!seeded_) seed(owner_->kernel().streamSeed(*owner_, purpose_));
-  const std::uint64_t result = rotl(s_[1] * 5, 7) * 9, t = s_[1] << 17;
+  // xoshiro256**.
+  const std::uint64_t result = std::rotl(s_[1] * 5, 7) * 9, t = s_[1] << 17;
   s_[2] ^= s_[0];
   s_[3] ^= s_[1];
   s_[1] ^= s_[2];
   s_[0] ^= s_[3];
   s_[2] ^= t;
-  s_[3] = rotl(s_[3], 45);
+  s_[3] = std::rotl(s_[3], 45);
   return result;
 }
 
@@ -47,6 +56,7 @@ double RandomStream::normal(double mean, double sigma) {
     hasSpare_ = false;
     return mean + sigma * spare_;
   }
+  // A point in the unit circle gives two independent normal numbers.
   double u, v, s;
   do {
     u = uniform(-1, 1);
@@ -61,10 +71,9 @@ double RandomStream::normal(double mean, double sigma) {
 
 std::uint64_t RandomStream::below(std::uint64_t n) {
   SPARK_ASSERT(n > 0);
-  // Lemire's rejection on the high half of the product.
-  std::uint64_t x = bits();
-  __extension__ typedef unsigned __int128 Wide;
-  Wide m = static_cast<Wide>(x) * n;
+  // Lemire, "Fast Random Integer Generation in an Interval", 2019: the high half of a 128-bit product is in [0, n). It
+  // is without bias if products whose low half is below 2^64 mod n are rejected.
+  Wide m = static_cast<Wide>(bits()) * n;
   if (static_cast<std::uint64_t>(m) < n) {
     const std::uint64_t threshold = (0 - n) % n;
     while (static_cast<std::uint64_t>(m) < threshold) m = static_cast<Wide>(bits()) * n;
@@ -75,7 +84,7 @@ std::uint64_t RandomStream::below(std::uint64_t n) {
 RandomStream Convert<RandomStream>::from(Args& args) {
   const Value& v = args.take();
   if (!v.isList() || v.toList().size() != 6)
-    throw Error("expected the six numbers of a random stream, found " + v.text());
+    throw Error(fmt::format("expected the six numbers of a random stream, found {}", v.text()));
   RandomStream out(0);
   const List& l = v.toList();
   for (int i = 0; i < 4; ++i) out.s_[i] = static_cast<std::uint64_t>(l[i].toInteger());

@@ -10,22 +10,23 @@
 #include "spark/node.h"
 #include "spark/plugin_object.h"
 
-// describeRunning() runs in signal handlers, which may allocate nothing and take no lock: text goes into fixed buffers.
+// describeRunning() runs in signal handlers, which must not allocate or lock: text is written to fixed buffers.
 
 namespace spark {
 
 namespace {
-constexpr std::size_t kRecords = 128;  // threads that run nodes at a time; further ones are not watched
-constexpr std::size_t kDeepest = 64;   // nodes of a path
+constexpr std::size_t kRecords = 128;  // threads that run nodes at the same time; further ones are not watched
+constexpr std::size_t kDeepest = 64;   // names of a path; of a longer one the last are shown
 
 Running records[kRecords];
+/// The record of this thread. This TLS model reads it without a call that could allocate.
 [[gnu::tls_model("initial-exec")]] thread_local Running* mine = nullptr;
 void (*onThreadBegin)() = nullptr;
 void (*onThreadEnd)() = nullptr;
 
 int threadNumber() { return static_cast<int>(syscall(SYS_gettid)); }
 
-/// Words in a buffer; what does not fit is left out.
+/// Text in a buffer. What does not fit is omitted.
 class Words {
  public:
   Words(char* to, std::size_t size) : at_(to), begin_(to), end_(to + size) {}
@@ -41,6 +42,7 @@ class Words {
   std::size_t size() const { return static_cast<std::size_t>(at_ - begin_); }
 
  private:
+  /// Control characters become '?'.
   Words& add(const char* text, std::size_t n) {
     for (; n > 0 && at_ < end_; --n, ++text)
       *at_++ = static_cast<unsigned char>(*text) < 0x20 || *text == 0x7f ? '?' : *text;
@@ -49,26 +51,28 @@ class Words {
   char *at_, *begin_, *end_;
 };
 
-/// As Leaf::path(), without memory.
+/// As Leaf::path(), without allocation.
 void addPath(const Leaf& leaf, Words& words) {
-  const Leaf* way[kDeepest];
+  const Leaf* ancestors[kDeepest];
   std::size_t depth = 0;
-  for (const Leaf* at = &leaf; at && depth < kDeepest; at = at->parent()) way[depth++] = at;
+  for (const Leaf* at = &leaf; at && depth < kDeepest; at = at->parent()) ancestors[depth++] = at;
   if (depth == kDeepest) words << "...";
   for (std::size_t i = depth; i-- > 0;) {
-    const Node* parent = way[i]->parent();
-    if (!parent && way[i]->isLinked()) {
+    const Leaf& at = *ancestors[i];
+    const Node* parent = at.parent();
+    // The name of the root is shown only as its own path.
+    if (!parent && at.isLinked()) {
       if (depth == 1) words << "/";
-      continue;  // the root
+      continue;
     }
-    words << (parent ? "/" : "") << way[i]->name();
+    words << (parent ? "/" : "") << at.name();
     if (!parent) continue;
-    std::uint64_t index = 1;
-    for (const auto& brother : parent->children()) {
-      if (brother.get() == way[i]) break;
-      index += brother->name() == way[i]->name();
+    std::uint64_t ordinal = 1;
+    for (const auto& sibling : parent->children()) {
+      if (sibling.get() == &at) break;
+      ordinal += sibling->name() == at.name();
     }
-    if (index > 1) (words << "[").number(index, 10) << "]";
+    if (ordinal > 1) (words << "[").number(ordinal, 10) << "]";
   }
 }
 
@@ -77,7 +81,7 @@ void addClass(const ClassObject& c, Words& words) {
   if (c.plugin()) words << " of plugin " << c.plugin()->name();
 }
 
-/// A record of the table for as long as the thread lives, or one of its own when all are taken.
+/// Holds a free record for the life of its thread, or a private one if none is free.
 struct Claim {
   Claim() {
     mine = &own;
@@ -104,7 +108,7 @@ struct Claim {
 Running& running() {
   if (mine) return *mine;
   thread_local const Claim claim;
-  static Running late;  // of a thread that ends: its own record has gone already
+  static Running late;  // for a thread that is ending and has released its record
   return mine ? *mine : late;
 }
 

@@ -1,5 +1,7 @@
 #include "spark/state.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstring>
 
@@ -10,6 +12,8 @@
 
 namespace spark {
 
+/// Mixes a word into the hash, and keeps its bytes, the lowest first. The multipliers are those of MurmurHash3's 64-bit
+/// finaliser (Appleby).
 void StateWriter::word(std::uint64_t w) {
   a_ = std::rotl(a_ ^ (w * 0xff51afd7ed558ccdull), 29) * 0xc4ceb9fe1a85ec53ull + 0x9e3779b97f4a7c15ull;
   ++count_;
@@ -21,6 +25,7 @@ void StateWriter::write(double v) { word(std::bit_cast<std::uint64_t>(v)); }
 void StateWriter::write(std::int64_t v) { word(static_cast<std::uint64_t>(v)); }
 
 void StateWriter::write(std::string_view v) {
+  // The length, then eight bytes in a word; the last word is filled with zeros.
   word(v.size());
   for (std::size_t i = 0; i < v.size(); i += 8) {
     std::uint64_t w = 0;
@@ -54,6 +59,7 @@ void StateWriter::write(const Value& v) {
 }
 
 std::uint64_t StateWriter::hash() const {
+  // MurmurHash3's finaliser.
   std::uint64_t h = a_ ^ count_;
   h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdull;
   h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ull;
@@ -83,6 +89,7 @@ std::string StateReader::readString() {
 }
 
 Value StateReader::readValue() {
+  // The numbers of Value::Type, which saved files contain.
   switch (const std::uint64_t type = word()) {
     case 0:
       return {};
@@ -100,7 +107,7 @@ Value StateReader::readValue() {
       return list;
     }
     default:
-      throw Error("saved state holds a value of unknown type " + std::to_string(type));
+      throw Error(fmt::format("saved state holds a value of unknown type {}", type));
   }
 }
 
@@ -117,7 +124,7 @@ void loadTree(Leaf& leaf, StateReader& in) {
     for (const Property* p : leaf.classObject()->stateProperties()) {
       const Value v = in.readValue();
       Args args{std::span(&v, 1)};
-      if (p->set) p->set(leaf, args);
+      if (p->set) p->set(leaf, args);  // a read-only property restores itself by loadState()
     }
   detail::Tree::loadState(leaf, in);
   if (Node* node = leaf.asNode())

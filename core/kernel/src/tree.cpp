@@ -1,5 +1,7 @@
 #include "tree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -10,7 +12,7 @@
 
 namespace spark::detail {
 
-/// Marks a leaf that is being linked, moved or unlinked.
+/// Marks a leaf as being linked, moved or unlinked.
 struct Tree::Changing {
   Changing(Tree& t, Leaf& l) : tree(t), leaf(l), before(l.changing_) {
     leaf.changing_ = true;
@@ -38,6 +40,7 @@ void Tree::plant(std::unique_ptr<Leaf> root) {
 void Tree::fell() {
   for (const char* top : {"usr", "sys"})
     while (Leaf* leaf = root_->child(top)) detach(*leaf);
+  // Then the other children of the root, last to first. An object that leaves may add and remove others.
   const auto& all = root_->children_;
   for (std::size_t i = all.size(); i-- > 0; i = std::min(i, all.size()))
     if (Leaf* leaf = all[i].get(); leaf != classes && leaf != plugins) detach(*leaf);
@@ -77,15 +80,15 @@ void Tree::adopt(Leaf& leaf, ClassObject& c) {
   if (leaf.name_.empty()) leaf.name_ = c.name();
 }
 
-// Where it hangs.
+// Adding, removing, moving.
 
 Leaf& Tree::attach(Node& parent, std::unique_ptr<Leaf> leaf) {
   Leaf& added = *leaf;
   int levels = 1;
   for (const Node* up = parent.parent_; up; up = up->parent_) ++levels;
   if (levels > Node::kMostLevels)
-    throw Error("cannot add a " + added.class_->name() + " here: the tree is at most " +
-                std::to_string(Node::kMostLevels) + " levels deep");
+    throw Error(fmt::format("cannot add a {} here: the tree is at most {} levels deep", added.class_->name(),
+                            Node::kMostLevels));
   if (added.name_.empty()) added.name_ = added.class_->name();
   parent.children_.push_back(std::move(leaf));
   added.parent_ = &parent;
@@ -103,6 +106,7 @@ Leaf& Tree::attach(Node& parent, std::unique_ptr<Leaf> leaf) {
 
 Leaf& Tree::attachSorted(Node& parent, std::unique_ptr<Leaf> leaf) {
   Leaf& added = attach(parent, std::move(leaf));
+  // attach() has counted the change.
   auto& list = parent.children_;
   for (std::size_t i = list.size() - 1; i > 0 && list[i]->name() < list[i - 1]->name(); --i)
     std::swap(list[i], list[i - 1]);
@@ -129,24 +133,25 @@ std::unique_ptr<Leaf> Tree::take(Leaf& child) {
 void Tree::move(Leaf& child, Node& to) {
   Node& from = *child.parent_;
   if (child.linked_ && !to.linked_) unlink(child);
-  const auto carry = [&](Node& there) {
-    Node& here = *child.parent_;
-    there.children_.reserve(there.children_.size() + 1);
-    there.forgetNames();
+  // Room is made first, so that nothing can fail between the two parents.
+  const auto carryTo = [&](Node& target) {
+    Node& source = *child.parent_;
+    target.children_.reserve(target.children_.size() + 1);
+    target.forgetNames();
     std::unique_ptr<Leaf> moving = take(child);
-    child.parent_ = &there;
-    there.children_.push_back(std::move(moving));
-    markChanged(&here);
-    markChanged(&there);
+    child.parent_ = &target;
+    target.children_.push_back(std::move(moving));
+    markChanged(&source);
+    markChanged(&target);
   };
-  carry(to);
+  carryTo(to);
   try {
     if (child.linked_ == to.linked_)
       moved(child);
     else
       link(child);
   } catch (...) {
-    carry(from);
+    carryTo(from);
     try {
       if (child.linked_) moved(child);
     } catch (const std::exception& e) {
@@ -162,15 +167,17 @@ void Tree::rename(Leaf& leaf, std::string name) {
   if (leaf.linked_) leaf.kernel().tree().markChanged(leaf.parent_);
 }
 
-/// References to a leaf and to all below it become empty.
+/// Empties all references to a leaf and its descendants.
 void Tree::emptyReferences(Leaf& leaf) {
   if (leaf.life_) leaf.life_->leaf = nullptr;
   if (Node* node = leaf.asNode())
     for (const auto& c : node->children_) emptyReferences(*c);
 }
 
-/// First to last, what is below before what is above. All is unlinked, and no reference is left.
+/// Destroys all descendants, children before parents and first to last. They are unlinked, and references to them are
+/// empty.
 void Tree::destroyBelow(Node& node) {
+  // A destructor may add children: look again.
   while (!node.children_.empty()) {
     node.forgetNames();
     std::vector<std::unique_ptr<Leaf>> dying = std::move(node.children_);
@@ -182,13 +189,13 @@ void Tree::destroyBelow(Node& node) {
   }
 }
 
-// Joining and leaving.
+// Linking and unlinking.
 
 void Tree::link(Leaf& leaf) {
   const Changing guard(*this, leaf);
   leaf.linked_ = true;
   markChanged(leaf.parent_);
-  bool entered = false;
+  bool entered = false;  // onLink() has succeeded, so that onUnlink() must follow
   try {
     {
       const NowRunning now("onLink", &leaf);
@@ -212,6 +219,7 @@ void Tree::linkChildren(Node& node) {
   for (std::size_t i = 0; i < node.children_.size();) {
     Leaf& child = *node.children_[i];
     if (!child.linked_) link(child);
+    // If linking has changed the list, begin again; linked children are skipped.
     i = i < node.children_.size() && node.children_[i].get() == &child ? i + 1 : 0;
   }
 }
@@ -232,6 +240,7 @@ void Tree::unlinkChildren(Leaf& leaf) {
   for (std::size_t i = 0; i < node->children_.size();) {
     Leaf& child = *node->children_[i];
     if (child.linked_) unlink(child);
+    // If unlinking has changed the list, begin again; unlinked children are skipped.
     i = i < node->children_.size() && node->children_[i].get() == &child ? i + 1 : 0;
   }
 }
@@ -256,10 +265,10 @@ void Tree::moved(Leaf& leaf) {
     for (std::size_t i = 0; i < node->children_.size(); ++i) moved(*node->children_[i]);
 }
 
-// What must stay.
+// Objects that must stay.
 
 void Tree::refuseUsed(const Leaf& leaf, bool rename, const std::string& doing) const {
-  // How many levels `low` is below `high`, -1 when it is not below it.
+  // The number of levels that `low` is below `high`; -1 if it is not below it.
   const auto levels = [](const Leaf* low, const Leaf* high) {
     for (int n = 0; low; low = low->parent(), ++n)
       if (low == high) return n;
@@ -268,9 +277,10 @@ void Tree::refuseUsed(const Leaf& leaf, bool rename, const std::string& doing) c
   for (const InUse* use = inUse_; use; use = use->next_) {
     const Leaf* used = use->leaf_.get();
     if (!used) continue;
+    // Refused: the used leaf, its ancestors, and for a new name also the descendants that keep theirs.
     const int below = levels(&leaf, used);
     if (levels(used, &leaf) < 0 && !(rename && below > 0 && below <= use->namesBelow_)) continue;
-    throw Error(doing + ": " + (used == &leaf ? "it" : used->path()) + " is in use: " + std::string(use->why_));
+    throw Error(fmt::format("{}: {} is in use: {}", doing, used == &leaf ? "it" : used->path(), use->why_));
   }
 }
 
@@ -281,14 +291,15 @@ bool Tree::isFixed(const Leaf& leaf) const {
 
 void Tree::refuseFixed(const Leaf& leaf, const char* verb) const {
   if (isFixed(leaf))
-    throw Error("cannot " + std::string(verb) + " " + leaf.path() +
-                ": it belongs to the kernel (a plugin's classes go when it is unloaded)");
-  if (inUse_ && leaf.linked_) refuseUsed(leaf, false, "cannot " + std::string(verb) + " " + leaf.path() + " now");
+    throw Error(fmt::format("cannot {} {}: it belongs to the kernel (a plugin's classes go when it is unloaded)", verb,
+                            leaf.path()));
+  if (inUse_ && leaf.linked_) refuseUsed(leaf, false, fmt::format("cannot {} {} now", verb, leaf.path()));
   if (changing_ == 0) return;
+  // The leaf or a descendant may be changing.
   const auto walk = [&](const auto& self, const Leaf& l) -> void {
     if (l.changing_)
-      throw Error("cannot " + std::string(verb) + " " + leaf.path() + " now: " + (&l == &leaf ? "it" : l.path()) +
-                  " is just being linked or unlinked");
+      throw Error(fmt::format("cannot {} {} now: {} is just being linked or unlinked", verb, leaf.path(),
+                              &l == &leaf ? "it" : l.path()));
     if (l.asNode())
       for (const auto& c : l.asNode()->children()) self(self, *c);
   };

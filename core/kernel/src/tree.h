@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Private to the kernel: the one place that links, moves, unlinks, destroys and orders nodes.
+/// Private to the kernel: the one class that links, moves, unlinks, destroys and numbers objects of the tree.
 
 #include <cstdint>
 #include <memory>
@@ -12,70 +12,75 @@
 
 namespace spark::detail {
 
-/// How a node joins and leaves. link: onLink of the parent, its hooks, then its children's; when one throws, what was
-/// linked is unlinked again and attach() throws. unlink: children first, then onUnlink, then its handlers go. Both may
-/// change the tree around them, so lists are walked by index and looked at again; only what is being linked or unlinked
-/// itself must stay where it is (`changing_`). Once all is unlinked references turn empty, then destructors run: none
-/// sees another object half destroyed.
+/// Changes the tree.
+///
+/// Linking an object: its onLink(), its hooks, then its children. If one of them throws, everything that was linked is
+/// unlinked again, and attach() throws. Unlinking: the children, its onUnlink(), then its handlers. onLink() and
+/// onUnlink() may change the tree around them, so lists of children are walked by index and looked at again; only an
+/// object that is being linked or unlinked must stay (`changing_`). When everything is unlinked, references become
+/// empty, and then destructors run, so that none of them sees another object half destroyed.
 class Tree {
  public:
   explicit Tree(Kernel& kernel) : kernel_(kernel) {}
 
-  /// Makes `root` the root of the tree.
+  /// Makes `root` the root of the tree, with /classes and /plugins.
   void plant(std::unique_ptr<Leaf> root);
-  /// Destroys all but classes and plugins.
+  /// Destroys everything but /classes and /plugins.
   void fell();
   /// Destroys the rest.
   void uproot();
-  /// nullptr before plant().
+  /// The root; nullptr before plant().
   Node* root() const { return root_.get(); }
   /// /classes and /plugins, whose children only the kernel makes.
   Node* classes = nullptr;
   Node* plugins = nullptr;
 
-  /// Counts changes of shape and names.
+  /// The number of changes of shape and names.
   const std::uint64_t& version() const { return version_; }
-  /// The shape, or a name, changed at `node` or right below it.
+  /// Counts a change of the shape, or of a name, of `node` or its children.
   void markChanged(Node* node);
-  /// Lists and numbers all linked nodes in tree order, when the shape has changed.
+  /// Lists and numbers all linked objects in tree order, if the tree has changed since the last call.
   void updateOrder();
-  /// All linked nodes, parents first; valid while isOrdered().
+  /// All linked objects, parents before children. Valid while isOrdered().
   const std::vector<Leaf*>& order() const { return order_; }
   bool isOrdered() const { return orderedAt_ == version_; }
-  /// Indices in order(): of a linked leaf, and of the last leaf below it (its own without one). Where parents come last
-  /// a leaf's index is postOrder().
+  /// The index of a linked leaf in order().
   static std::uint32_t preOrder(const Leaf& leaf) { return leaf.preOrder_; }
+  /// The index in order() of its last descendant, or its own if it has none.
   static std::uint32_t lastBelow(const Leaf& leaf) { return leaf.lastBelow_; }
+  /// Its index in the order that has children before parents.
   static std::uint32_t postOrder(const Leaf& leaf) { return leaf.postOrder_; }
 
-  /// Gives a new object its class and its id.
+  /// Sets the class of a new object, and its id and name unless it has them.
   void adopt(Leaf& leaf, ClassObject& c);
-  /// Takes the class away: `leaf` outlives it.
+  /// Removes the class of a leaf that outlives it.
   static void disown(Leaf& leaf) { leaf.class_ = nullptr; }
+  /// The id of the newest object.
   std::uint64_t lastId() const { return nextId_ - 1; }
-  /// Appends `leaf` to `parent`, and links it where the parent is linked. Throws what onLink throws; `leaf` is then
-  /// destroyed and the tree as before.
+  /// Appends `leaf` to the children of `parent`, and links it if the parent is linked. Throws Error if the tree is too
+  /// deep, and what onLink() throws; `leaf` is then destroyed and the tree as before.
   Leaf& attach(Node& parent, std::unique_ptr<Leaf> leaf);
-  /// As attach, in order of name. For parents of which nobody else adds children.
+  /// As attach(), but inserts `leaf` in order of name. All children of `parent` must be added by this function.
   Leaf& attachSorted(Node& parent, std::unique_ptr<Leaf> leaf);
-  /// Unlinks a child and destroys it.
+  /// Unlinks a child and destroys it with its descendants.
   void detach(Leaf& child);
-  /// Takes a child away without unlinking it.
+  /// Removes a child from its parent without unlinking it.
   static std::unique_ptr<Leaf> take(Leaf& child);
-  /// Moves a child; throws what onMoved and onLink throw, the child is then back as the last one.
+  /// Moves a child, see Node::reparent.
   void move(Leaf& child, Node& to);
-  /// Renames without a check.
+  /// Renames without checks.
   static void rename(Leaf& leaf, std::string name);
 
-  /// True for the root, /classes, /plugins and what is in these.
+  /// True for the root, /classes, /plugins and their children.
   bool isFixed(const Leaf& leaf) const;
-  /// Throws Error when `leaf` cannot go or move now: fixed, in use, or being linked or unlinked. `verb`: "remove".
+  /// Throws Error if `leaf` cannot be removed or moved now: it is fixed, in use, or it or a descendant is being linked
+  /// or unlinked. `verb`: "remove" or "move".
   void refuseFixed(const Leaf& leaf, const char* verb) const;
-  /// Throws Error when `leaf`, or what is below it, is in use; to be renamed: also when its name is kept. `doing`:
-  /// "cannot remove /a now".
+  /// Throws Error if `leaf` or a descendant is in use. `rename`: also if an ancestor is in use that protects the name
+  /// of `leaf`. `doing` begins the message: "cannot remove /a now".
   void refuseUsed(const Leaf& leaf, bool rename, const std::string& doing) const;
 
-  /// A channel has a handler of `leaf`, which goes with it.
+  /// Sets whether some channel has handlers of `leaf`.
   static void setHooked(Leaf& leaf, bool hooked) { leaf.hooked_ = hooked; }
   static bool isHooked(const Leaf& leaf) { return leaf.hooked_; }
   static void saveState(const Leaf& leaf, StateWriter& out) { leaf.saveState(out); }
@@ -98,8 +103,8 @@ class Tree {
   std::unique_ptr<Node> root_;
   std::uint64_t version_ = 1, orderedAt_ = 0, nextId_ = 1;
   std::vector<Leaf*> order_;
-  int changing_ = 0;        ///< leaves that are being linked, moved or unlinked
-  InUse* inUse_ = nullptr;  ///< the newest first
+  int changing_ = 0;        ///< number of leaves that are being linked, moved or unlinked
+  InUse* inUse_ = nullptr;  ///< list of all guards, the newest first
 };
 
 }  // namespace spark::detail

@@ -8,14 +8,16 @@
 
 namespace spark {
 
-/// The name of a channel, a constant that definer and listeners share, so that a misspelt one does not compile:
+/// The name of a channel, as a constant that all code shares, so that a misspelt name does not compile:
 ///
 ///     inline constexpr ChannelName kGust{"gust"};
 class ChannelName {
  public:
-  /// `name` outlives the constant (a literal).
+  /// `name` must outlive the constant (a literal).
   explicit constexpr ChannelName(const char* name) : name_(name) {}
+  /// The name.
   constexpr operator std::string_view() const { return name_; }
+  /// The name, ended by a zero.
   constexpr const char* text() const { return name_; }
 
  private:

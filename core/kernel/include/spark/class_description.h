@@ -1,8 +1,7 @@
 #pragma once
 /// \file
-/// What a class says about itself: properties, methods, hooks, links.
-///
-/// One table serves Lua, scene files, sparkctl, `--describe` and state. It is filled by `describe()` (see describe.h).
+/// The description of a class: properties, methods, hooks, links. Lua, scene files, sparkctl, `--describe` and saved
+/// state all use it. A class fills it in its `describe()` (describe.h).
 
 #include <functional>
 #include <memory>
@@ -19,52 +18,54 @@ namespace spark {
 
 struct Event;
 
-/// One readable, usually writable value of a class. A writable property `x` also gives the methods `setX` and `getX`.
+/// A value of an object that can be read, and usually written, by its name. A property `x` also makes the method
+/// `getX`, and `setX` if it is writable.
 struct Property {
   std::string name;
-  std::string type;                  ///< "number", "string", "vec3 [m]", ... as Convert<T>::typeName says
-  std::string unit;                  ///< "m", "rad/s", "" when it has none
+  std::string type;                  ///< as Convert<T>::typeName: "number", "string", "vec3 [m]", ...
+  std::string unit;                  ///< "m", "rad/s", ...; "" for none
   std::string doc;                   ///< one sentence
-  std::optional<double> min, max;    ///< inclusive range of every number in it
-  std::vector<std::string> choices;  ///< when not empty: the only texts allowed
-  int scalars = 1;                   ///< plain arguments that set takes, -1 for any number
+  std::optional<double> min, max;    ///< range of each number in it, inclusive; empty: no limit
+  std::vector<std::string> choices;  ///< the only texts allowed; empty: any
+  int scalars = 1;                   ///< plain arguments that `set` reads, -1 for any number
   bool readOnly = false;
-  bool state = false;  ///< part of the state hash and of saved state
-  std::function<Value(const Leaf&)> get;
-  std::function<void(Leaf&, Args&)> set;  ///< empty when read only
+  bool state = false;                     ///< part of the state hash and of saved state
+  std::function<Value(const Leaf&)> get;  ///< reads it
+  std::function<void(Leaf&, Args&)> set;  ///< writes it, without checks of range and choices; empty if read only
 };
 
-/// One callable of a class.
+/// A method that can be called by its name.
 struct Method {
   std::string name;
-  std::string doc;
-  std::vector<std::string> parameters;  ///< "name: type [unit]" each
-  std::string returns;                  ///< type name, "" for nothing
-  int minScalars = 0;                   ///< plain arguments needed
-  int maxScalars = 0;                   ///< plain arguments taken, -1 for any number
-  bool surplusIgnored = false;          ///< loose callers may pass more than maxScalars
-  std::function<Value(Leaf&, Args&)> call;
+  std::string doc;                          ///< one sentence
+  std::vector<std::string> parameters;      ///< "name: type [unit]" each
+  std::string returns;                      ///< type name, "" for nothing; "@name" for an alias of method `name`
+  int minScalars = 0;                       ///< plain arguments that it needs
+  int maxScalars = 0;                       ///< plain arguments that it reads, -1 for any number
+  bool surplusIgnored = false;              ///< scene files may pass more than maxScalars
+  std::function<Value(Leaf&, Args&)> call;  ///< calls it; empty for an alias
 };
 
-/// A handler that every object of the class has from link to unlink.
+/// A handler that every object of a class has while it is linked.
 struct Hook {
   std::string channel;
   void (*run)(Leaf&, const Event&) = nullptr;
 };
 
-/// A link that every object of the class has.
+/// A link that every object of a class has.
 struct LinkDescription {
   AnyRoute route;
-  bool all = false;   ///< Links: it leads to all that the route finds
-  std::string doc;    ///< one sentence, may be empty
-  std::string lacks;  ///< not empty: without a target a warning says so, and this
-  std::function<detail::LinkBase&(Leaf&)> member;
-  /// Where it leads from an object of the class now.
+  bool all = false;                                ///< it is a Links: it leads to all matches of the route
+  std::string doc;                                 ///< one sentence, may be empty
+  std::string lacks;                               ///< the end of the warning if there is no target; "": no warning
+  std::function<detail::LinkBase&(Leaf&)> member;  ///< the link of an object
+  /// The objects to which the route leads from `owner` now.
   std::vector<Found<void>> targets(const Leaf& owner) const;
 };
 
-/// What `describe()` fills in.
+/// The description of a class.
 struct ClassDescription {
+  /// An interface, and the cast from an object of the class.
   struct Interface {
     InterfaceId id;
     void* (*cast)(Leaf*);
@@ -75,7 +76,7 @@ struct ClassDescription {
   std::vector<Method> methods;
   std::vector<Hook> hooks;
   std::vector<LinkDescription> links;
-  std::unique_ptr<Leaf> (*make)() = nullptr;  ///< nullptr: abstract
+  std::unique_ptr<Leaf> (*make)() = nullptr;  ///< constructs an object; nullptr if the class is abstract
 };
 
 }  // namespace spark

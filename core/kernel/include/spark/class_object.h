@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Class objects: reflective factories in the tree (`/classes/<Name>`) that know base, interfaces, properties, methods,
-/// hooks and links.
+/// Class objects: reflective factories in the tree (`/classes/<Name>`) with base class, interfaces, properties,
+/// methods, hooks and links.
 
 #include <memory>
 #include <string>
@@ -16,51 +16,65 @@ namespace spark {
 
 class Plugin;
 
-/// A class in the tree. Made by plugins that register, gone when their plugin goes.
+/// A class in the tree. It is made when its plugin is registered and destroyed when the plugin is unloaded.
 class ClassObject : public Leaf {
  public:
+  /// Made by the kernel only. `plugin` nullptr: the class is part of the program.
   ClassObject(Kernel& kernel, ClassDescription description, Plugin* plugin);
   ~ClassObject() override;
+  // As SPARK_CLASS(ClassObject, Leaf), but for the name.
   static constexpr const char* kClassName = "Class";
   using ClassSelf = ClassObject;
   using ClassBase = Leaf;
   static constexpr InterfaceId kInterface{"Class", 1};
+  /// Describes the class of class objects.
   static void describe(Description<ClassObject>& d);
 
+  /// One sentence about the class.
   const std::string& doc() const { return description_.doc; }
+  /// The name of the base class, "" for Leaf.
   const std::string& baseName() const { return description_.base; }
+  /// True if the class is only a base and makes no objects.
   bool isAbstract() const { return !description_.make; }
-  /// The plugin that registered it; nullptr for the kernel's own classes.
+  /// The plugin that registered the class; nullptr for classes of the program itself.
   Plugin* plugin() const { return plugin_; }
-  /// Number of objects of exactly this class that live now.
+  /// The number of existing objects of exactly this class.
   std::size_t living() const { return living_; }
 
-  /// Makes an unlinked object. Throws Error when the class is abstract or a base is not registered (and names the
-  /// plugin that has it).
+  /// Makes an object that is not part of the tree yet. Throws Error if the class is abstract, if a base is not
+  /// registered (with the plugin that provides it), or if the constructor throws.
   std::unique_ptr<Leaf> create();
-  /// The base's class object; nullptr for Leaf. Throws Error when it is not registered.
+  /// The class object of the base; nullptr for Leaf. Throws Error if it is not registered.
   ClassObject* base();
-  /// True for the class itself and all its bases.
+  /// True if `className` is this class or one of its bases.
   bool isA(std::string_view className);
-  /// Own and inherited, nullptr when there is none. The most derived wins. Names of scene files' methods work here.
+  /// The property of that name, own or inherited; nullptr if there is none. A derived class overrides its bases.
   const Property* property(std::string_view name);
+  /// The method of that name, own or inherited, with setters, getters and aliases; nullptr if there is none. A derived
+  /// class overrides its bases.
   const Method* method(std::string_view name);
-  /// Own and inherited, bases first, in order of description.
+  /// The property that a method of that name sets, own or inherited: `setX` sets `x`. nullptr if the name is no
+  /// setter's.
+  const Property* propertySetBy(std::string_view methodName);
+  /// All properties, those of bases first, in order of description.
   std::vector<const Property*> properties();
+  /// All methods, those of bases first, in order of description.
   std::vector<const Method*> methods();
+  /// All hooks, those of bases first, in order of description.
   const std::vector<const Hook*>& hooks();
+  /// All links, those of bases first, in order of description.
   const std::vector<const LinkDescription*>& links();
-  /// The properties that are state, own and inherited, in order of properties().
+  /// All properties that are state, in the order of properties().
   const std::vector<const Property*>& stateProperties();
-  /// Own interfaces only.
+  /// The interfaces that the class itself adds to those of its bases.
   const std::vector<ClassDescription::Interface>& interfaces() const { return description_.interfaces; }
-  /// The default of a property, read from a fresh object; nil for abstract classes.
+  /// The default of a property, read from a new object; nil for abstract classes.
   Value defaultOf(const Property& property);
 
  private:
   friend class Leaf;
   friend class detail::Tree;
-  /// The leaf as class or interface `id`, nullptr when it is none; once resolved.
+  /// An object of this class as class or interface `id`; nullptr if it has no such interface.
   void* cast(Leaf* leaf, const InterfaceId& id) const {
     for (std::size_t i = id.id & castMask_; casts_[i].id; i = (i + 1) & castMask_)
       if (casts_[i].id == id.id) return casts_[i].to(leaf);
@@ -74,8 +88,8 @@ class ClassObject : public Leaf {
   std::int64_t livingCount() const;
   std::string pluginName() const;
 
-  /// Own and inherited interfaces by id, in open addressing with room for misses: queries are what tree walks spend
-  /// their time on.
+  /// An entry of the table of own and inherited interfaces: open addressing by id, at most a quarter full, because
+  /// walks through the tree spend most of their time on queries, and most queries fail.
   struct Cast {
     std::uint64_t id = 0;
     void* (*to)(Leaf*) = nullptr;
@@ -87,11 +101,11 @@ class ClassObject : public Leaf {
   std::uint64_t castMask_ = 0;
   std::vector<const Hook*> hooks_;
   std::vector<const LinkDescription*> links_;
-  std::vector<detail::LinkSite> sites_;  ///< of each link
+  std::vector<detail::LinkSite> sites_;  ///< of each of links_
   std::vector<const Property*> stateProperties_;
   Plugin* plugin_;
   ClassObject* base_ = nullptr;
-  bool resolved_ = false;
+  bool resolved_ = false;  ///< the lists with inherited entries are filled
   std::size_t living_ = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The typed builder behind every class's `static void describe(spark::Description<Self>& d)`.
+/// The builder by which every class describes itself, in `static void describe(spark::Description<Self>& d)`.
 ///
 ///     static void describe(spark::Description<DragController>& d) {
 ///       d.doc("Slows its body in proportion to its speed.");
@@ -21,18 +21,26 @@
 
 namespace spark {
 
-/// Refines the property just described.
+/// Adds details to a property. Returned by Description::property.
 class PropertyBuilder {
  public:
+  /// For property `index` of `d`, which must outlive the builder.
   explicit PropertyBuilder(ClassDescription& d, std::size_t index) : d_(d), index_(index) {}
+  /// One sentence about the property.
   PropertyBuilder& doc(std::string text) { return get().doc = std::move(text), *this; }
+  /// Its unit, such as "m" or "rad/s".
   PropertyBuilder& unit(std::string text) { return get().unit = std::move(text), *this; }
+  /// The least number allowed.
   PropertyBuilder& min(double v) { return get().min = v, *this; }
+  /// The greatest number allowed.
   PropertyBuilder& max(double v) { return get().max = v, *this; }
+  /// The numbers allowed: `lo` to `hi`, both included.
   PropertyBuilder& range(double lo, double hi) { return min(lo).max(hi); }
+  /// The only texts allowed.
   PropertyBuilder& choices(std::vector<std::string> texts) { return get().choices = std::move(texts), *this; }
-  /// Part of the state hash and of saved state.
+  /// The property is part of the state hash and of saved state.
   PropertyBuilder& state() { return get().state = true, *this; }
+  /// The property cannot be set.
   PropertyBuilder& readOnly() { return get().readOnly = true, get().set = nullptr, *this; }
 
  private:
@@ -41,20 +49,22 @@ class PropertyBuilder {
   std::size_t index_;
 };
 
-/// Refines the method just described.
+/// Adds details to a method. Returned by Description::method.
 class MethodBuilder {
  public:
+  /// For method `index` of `d`, which must outlive the builder.
   explicit MethodBuilder(ClassDescription& d, std::size_t index) : d_(d), index_(index) {}
+  /// One sentence about the method.
   MethodBuilder& doc(std::string text) { return get().doc = std::move(text), *this; }
-  /// Names (and units) of the parameters, in order: `{"axis", "angle [deg]"}`.
+  /// The names of the parameters in order, with units: `{"axis", "angle [deg]"}`.
   MethodBuilder& parameters(std::vector<std::string> names) {
     auto& p = get().parameters;
     for (std::size_t i = 0; i < p.size() && i < names.size(); ++i) p[i] = names[i] + ": " + p[i];
     return *this;
   }
-  /// The last `n` scalars may be left out (they keep the C++ value-initialised default).
+  /// Callers may omit the last `n` plain arguments, which then are value-initialised.
   MethodBuilder& optional(int n) { return get().minScalars -= n, *this; }
-  /// Scene files may pass more arguments than are read.
+  /// Scene files may pass more arguments than the method reads.
   MethodBuilder& surplusIgnored() { return get().surplusIgnored = true, *this; }
 
  private:
@@ -63,12 +73,15 @@ class MethodBuilder {
   std::size_t index_;
 };
 
-/// Refines the link just described.
+/// Adds details to a link. Returned by Description::link.
 class LinkBuilder {
  public:
+  /// For `link`, which must outlive the builder.
   explicit LinkBuilder(LinkDescription& link) : link_(link) {}
+  /// One sentence about the link.
   LinkBuilder& doc(std::string text) { return link_.doc = std::move(text), *this; }
-  /// The node is of no use without it: where it is missing a warning in the log says so and ends with `hint`.
+  /// The object needs the link: when it joins the tree and there is no target, a warning is logged that ends with
+  /// `hint`.
   LinkBuilder& required(std::string hint) { return link_.lacks = std::move(hint), *this; }
 
  private:
@@ -83,6 +96,7 @@ concept ObjectType = std::is_object_v<M>;
 template <class C, class T>
 concept BaseOf = std::is_base_of_v<C, T>;
 
+/// Result and decayed arguments of a member function pointer.
 template <class F>
 struct Signature;
 template <class C, class R, class... A>
@@ -99,16 +113,17 @@ struct Signature<R (C::*)(A...) noexcept> : Signature<R (C::*)(A...)> {};
 template <class C, class R, class... A>
 struct Signature<R (C::*)(A...) const noexcept> : Signature<R (C::*)(A...)> {};
 
+/// The parameters of a method.
 template <class... A>
 struct Pack {
   static constexpr bool kRest = ((Convert<A>::kScalars < 0) || ... || false);
   static constexpr int kScalars = (0 + ... + (Convert<A>::kScalars < 0 ? 0 : Convert<A>::kScalars));
   static std::vector<std::string> typeNames() { return {Convert<A>::typeName()...}; }
-  /// Reads left to right (braces order the evaluation); what is left out is value-initialised.
+  /// Reads the arguments from left to right, which the braces guarantee. Omitted ones are value-initialised.
   static std::tuple<A...> read(Args& args) { return std::tuple<A...>{one<A>(args)...}; }
   template <class T>
   static T one(Args& args) {
-    // Static, so that it is all zeros before: a vector's constructor may leave its numbers as they are.
+    // Static memory is zero before construction; a vector's constructor may leave its numbers uninitialised.
     static const T kNone{};
     if (args.atEnd() && Convert<T>::kScalars > 0) return kNone;
     return Convert<T>::from(args);
@@ -116,16 +131,17 @@ struct Pack {
 };
 }  // namespace detail
 
-/// Collects what a class says about itself.
+/// The description of a class that is being made.
 template <class T>
 class Description {
  public:
+  /// Fills `d`, which must outlive this object.
   explicit Description(ClassDescription& d) : d_(d) {}
 
   /// One sentence about the class.
   void doc(std::string text) { d_.doc = std::move(text); }
 
-  /// A data member (also an inherited one).
+  /// A property that is a data member, own or inherited.
   template <detail::ObjectType M, detail::BaseOf<T> C>
   PropertyBuilder property(std::string name, M C::*member) {
     return addProperty(
@@ -133,7 +149,7 @@ class Description {
         [member](const Leaf& l) { return Convert<M>::to(static_cast<const T&>(l).*member); },
         [member](Leaf& l, Args& a) { static_cast<T&>(l).*member = Convert<M>::from(a); });
   }
-  /// A getter alone: read only.
+  /// A read-only property with a getter.
   template <detail::MemberFunction G>
   PropertyBuilder property(std::string name, G getter) {
     using V = std::decay_t<typename detail::Signature<G>::Result>;
@@ -142,7 +158,7 @@ class Description {
         [getter](const Leaf& l) { return Convert<V>::to((const_cast<T&>(static_cast<const T&>(l)).*getter)()); },
         nullptr);
   }
-  /// A getter and a setter of one argument.
+  /// A property with a getter and a setter of one argument.
   template <detail::MemberFunction G, detail::MemberFunction S>
   PropertyBuilder property(std::string name, G getter, S setter) {
     using V = std::decay_t<typename detail::Signature<G>::Result>;
@@ -152,7 +168,7 @@ class Description {
         [setter](Leaf& l, Args& a) { (static_cast<T&>(l).*setter)(Convert<V>::from(a)); });
   }
 
-  /// A member function; its parameters and result are converted, their count is checked.
+  /// A method. Arguments and result are converted, and the number of arguments is checked.
   template <detail::MemberFunction F>
   MethodBuilder method(std::string name, F function) {
     using S = detail::Signature<F>;
@@ -181,41 +197,42 @@ class Description {
     return MethodBuilder(d_, d_.methods.size() - 1);
   }
 
-  /// A second name for a method described before (or inherited).
+  /// A second name for a method that was described before or is inherited.
   void alias(std::string name, std::string method) {
     Method m;
     m.name = std::move(name);
     m.doc = "The same as " + method + ".";
-    m.returns = "@" + method;  // resolved by the class object
+    m.returns = "@" + std::move(method);  // ClassObject::method follows it
     d_.methods.push_back(std::move(m));
   }
 
-  /// The class offers interface I (it must derive from it).
+  /// The class implements interface I, from which it must derive.
   template <class I>
   void implements() {
     static_assert(std::is_base_of_v<I, T>);
     d_.interfaces.push_back({I::kInterface, [](Leaf* l) -> void* { return static_cast<I*>(static_cast<T*>(l)); }});
   }
 
-  /// A member that the kernel looks up along a route (see link.h).
+  /// A link: a member that leads to the object at the end of a route (link.h).
   template <class L, bool kKnows, detail::BaseOf<T> C>
   LinkBuilder link(Link<L, kKnows> C::*member, Route<L> route) {
     return addLink(std::move(route), false,
                    [member](Leaf& l) -> detail::LinkBase& { return static_cast<T&>(l).*member; });
   }
+  /// A link to all objects at the end of a route.
   template <class L, detail::BaseOf<T> C>
   LinkBuilder link(Links<L> C::*member, Route<L> route) {
     return addLink(std::move(route), true,
                    [member](Leaf& l) -> detail::LinkBase& { return static_cast<T&>(l).*member; });
   }
 
-  /// Every object of the class handles this event while it is linked: `void T::f(const Event&)`.
+  /// A hook: every linked object of the class handles the event by `void T::F(const Event&)`.
   template <auto F>
   void on(ChannelName channel) {
     d_.hooks.push_back({channel.text(), [](Leaf& l, const Event& e) { (static_cast<T&>(l).*F)(e); }});
   }
 
-  /// The class is only a base: scenes and scripts cannot make one.
+  /// The class is only a base and makes no objects.
   void abstract() { d_.make = nullptr; }
 
  private:
@@ -238,7 +255,7 @@ class Description {
   ClassDescription& d_;
 };
 
-/// Runs T::describe and adds what follows from the type: name, base, factory, the class as an interface of its own.
+/// Makes the description of class T: what T::describe() adds, and name, base, factory and the class as an interface.
 template <class T>
 ClassDescription describeClass() {
   static_assert(std::is_same_v<typename T::ClassSelf, T>, "the class lacks SPARK_CLASS(Self, Base)");

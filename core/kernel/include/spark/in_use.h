@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Keeps what is at work where it is.
+/// Protects objects that are in use from being removed, moved or renamed.
 
 #include <string_view>
 
@@ -9,15 +9,14 @@
 
 namespace spark {
 
-/// Says that a leaf is in use: code of it is at work, or others live in it. While one of these lives, the leaf and what
-/// is above it can neither be removed nor moved nor renamed: that throws Error with `why`. The simulation's thread
-/// only.
+/// A guard: while it lives, its leaf is in use, for example because its code runs. Removing, moving or renaming the
+/// leaf or one of its ancestors then throws Error. The simulation's thread only.
 class InUse {
  public:
-  /// What is below keeps its name, too: for servers, which are found by their paths.
+  /// All descendants keep their names too: for servers, which are found by their paths.
   static constexpr int kAllBelow = 1 << 20;
-  /// `why` finishes the sentence "it is in use: ..." and outlives this object. `namesBelow`: how many levels below keep
-  /// their names.
+  /// `why` completes the sentence "it is in use: ..." and must outlive the guard. Descendants down to `namesBelow`
+  /// levels below the leaf cannot be renamed either.
   InUse(const Leaf& leaf, std::string_view why, int namesBelow = 0);
   ~InUse();
   InUse(const InUse&) = delete;
@@ -28,7 +27,7 @@ class InUse {
   Ref<Leaf> leaf_;
   std::string_view why_;
   int namesBelow_;
-  InUse** link_;  ///< what points at this one in the kernel's list
+  InUse** link_;  ///< the pointer to this guard in the kernel's list
   InUse* next_;
 };
 

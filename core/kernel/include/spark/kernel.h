@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The kernel: the tree's root, the class registry, the loader of plugins; beside them events, log, random seed and
-/// worker threads. No global state: several kernels live in one process.
+/// The kernel: the tree, the class registry and the loader of plugins, with events, log, random seed and worker
+/// threads. There is no global state, so that several kernels can run in one process.
 
 #include <cstdint>
 #include <memory>
@@ -26,72 +26,85 @@ namespace detail {
 class ClassRegistry;
 }
 
-/// One simulation's tree and what it is made with.
+/// One simulation: its tree and all that belongs to it. Unless said otherwise, only the simulation's thread may use it.
 class Kernel {
  public:
+  /// A kernel with the classes and folders of an empty simulation.
   Kernel();
+  /// Destroys the tree, then class objects, then unloads plugins.
   ~Kernel();
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  /// The root "/". It has the children classes, plugins, sys, usr.
+  /// The root "/" with the children classes, plugins, sys and usr.
   Node& root();
+  /// The event channels.
   Events& events();
+  /// The log.
   Log& log();
+  /// The loader of plugins.
   Loader& plugins();
+  /// The worker threads.
   Jobs& jobs();
 
-  /// The class of that name (a leading path as in "oxygen/Box" is ignored). Throws Error with the nearest names and the
-  /// plugin that has it.
+  /// The class of that name; a leading path as in "oxygen/Box" is ignored. Throws Error if there is none, with the
+  /// plugin that provides it or the nearest names.
   ClassObject& classOf(std::string_view name);
-  /// As classOf, nullptr when there is none.
+  /// As classOf(), but returns nullptr if there is none.
   ClassObject* findClass(std::string_view name) const;
-  /// Registers a class that is part of the host program itself. Throws Error when there is one of its name.
+  /// Registers a class of the program itself. Throws Error if there is a class of that name.
   template <class T>
   void registerClass() {
     addClass(describeClass<T>());
   }
-  /// All classes by name.
+  /// All classes in order of name.
   std::vector<ClassObject*> classes() const;
-  /// Makes an object of `className` at an absolute path; missing parents are made as plain Nodes. Throws Error.
+  /// Makes an object of a class at an absolute path; missing parents are made as Nodes. Throws Error if there is no
+  /// such class, if the path is not absolute or exists, and as Node::add().
   Leaf& create(std::string_view className, std::string_view path);
+  /// As above, and returns the object as T. Throws Error also if the object is not a T.
   template <class T>
   T& create(std::string_view className, std::string_view path) {
     return *static_cast<T*>(create(className, path).requireAs(T::kInterface));
   }
 
-  /// The seed of all random streams. To be set before the first draw.
+  /// Sets the seed of all random streams (default 1). Must be called before the first draw.
   void setSeed(std::uint64_t seed);
+  /// The seed of all random streams.
   std::uint64_t seed() const;
-  /// What a RandomStream of `owner` starts with: the seed, the owner's path and class, the purpose, and how many such
-  /// streams there are. Thread safe.
+  /// A new seed for a RandomStream of `owner`: a hash of the kernel's seed, the owner's path and class, the purpose,
+  /// and the number of earlier calls with the same three. Thread safe.
   std::uint64_t streamSeed(const Leaf& owner, std::string_view purpose);
 
-  /// Counts every change of the tree's shape and names: caches are valid while it stays. Valid as long as the kernel.
+  /// A counter of changes of the tree: objects that join, leave or move, and new names. A cache is valid while it
+  /// stays. The reference is valid as long as the kernel.
   const std::uint64_t& structureVersion() const;
-  /// Lists and numbers all linked nodes in tree order if the shape changed since the last call; every emit begins with
-  /// it. To be called by code that changes the tree and then collects from much of it. The simulation's thread only.
+  /// Lists and numbers all linked objects in tree order, if the tree has changed since the last call. Channel::emit
+  /// calls it; so should code that changes the tree and then collects from large parts of it.
   void updateOrder();
-  /// Makes all caches that go by structureVersion() be looked up again although the shape stays: what stands for
-  /// something else changed at `leaf`, such as which scene is the active one.
+  /// Increments structureVersion() although the tree is the same, because something that routes depend on has changed
+  /// at `leaf`: for example which scene is the active one.
   void markChanged(Leaf& leaf);
-  /// The id of the object that was made last; later objects have greater ones.
+  /// The id of the newest object, see Leaf::id.
   std::uint64_t lastId() const;
 
-  /// Asks the host to end; safe from signal handlers and threads.
+  /// Asks the host to end. Safe in signal handlers and from any thread.
   void requestStop();
+  /// True after requestStop(). Safe from any thread.
   bool stopRequested() const;
-  /// True while the kernel is being destroyed: what leaves the tree then need not be replaced nor reported.
+  /// True while the kernel is being destroyed: objects that leave the tree then need no replacement and no report. Safe
+  /// from any thread.
   bool isEnding() const;
 
-  /// Counts a fault of a plugin or a script that was caught while the simulation ran: the log tells the first of each
-  /// place only. Thread safe.
+  /// Counts an exception of a plugin or a script that was caught while the simulation ran; the log shows only the first
+  /// of each place. Thread safe.
   void countFault();
-  /// Faults caught so far. No state.
+  /// The number of faults so far. Not part of the state. Thread safe.
   std::int64_t faults() const;
 
-  /// For the kernel's own sources, which alone know these classes.
+  /// The class that changes the tree; defined in the kernel's own sources only.
   detail::Tree& tree();
+  /// The class registry; defined in the kernel's own sources only.
   detail::ClassRegistry& registry();
 
  private:

@@ -1,11 +1,15 @@
 #pragma once
 /// \file
-/// An element of the tree: everything that exists at run time is a Leaf with a name, a parent, a class object and a
+/// An element of the tree. Everything that exists at run time is a Leaf with a name, a parent, a class object and a
 /// path.
 ///
-/// One owner per object (its parent). Everybody else holds a Ref, which turns empty when the object dies.
-/// Paths: components separated by '/', absolute or relative, '.' and '..'; `name[k]` is the k-th sibling of that name,
-/// from 1. The tree is changed by the simulation's thread only.
+/// Ownership: an object is owned by its parent. All other code refers to it by a Ref, which becomes empty when the
+/// object is destroyed.
+///
+/// Paths: names separated by '/', absolute or relative to an object. '.' is the object itself and '..' its parent;
+/// `name[k]` is the k-th sibling of that name, from 1.
+///
+/// Threads: only the simulation's thread changes the tree.
 
 #include <cstdint>
 #include <string>
@@ -32,88 +36,95 @@ class Tree;
 /// A named element of the tree.
 class Leaf {
  public:
+  // As SPARK_CLASS(Leaf, Leaf).
   static constexpr const char* kClassName = "Leaf";
   using ClassSelf = Leaf;
   using ClassBase = Leaf;
   static constexpr InterfaceId kInterface{"Leaf", 1};
+  /// Describes the class.
   static void describe(Description<Leaf>& d);
 
+  /// A leaf without name, class and parent. Class objects construct all leaves (ClassObject::create).
   Leaf() = default;
+  /// Empties all references to the object.
   virtual ~Leaf();
   Leaf(const Leaf&) = delete;
   Leaf& operator=(const Leaf&) = delete;
 
+  /// The name, which need not be unique among siblings.
   const std::string& name() const { return name_; }
-  /// Renames; siblings may share a name (the first is found by it, the others as `name[k]`). Throws Error for names
-  /// that no path can hold ("", ".", "..", with '/' or '\\'), for classes and plugins, whose names are fixed, and for
-  /// what is in use (InUse).
+  /// Renames the object. Among siblings of one name the first is found by the name and the others as `name[k]`. Throws
+  /// Error for a name that is not possible in a path ("", ".", "..", or with '/' or '\\'), for classes and plugins,
+  /// whose names are fixed, and for an object that is in use (InUse).
   void setName(std::string name);
-  /// The owner, nullptr for the root and for what is not linked.
+  /// The owner; nullptr for the root and for an object that has not been added to a node.
   Node* parent() const { return parent_; }
-  /// The class that made this object. Set before onLink; nullptr only inside constructors.
+  /// The class that made this object; nullptr only inside constructors.
   ClassObject* classObject() const { return class_; }
-  /// The kernel this object lives in. Not to be called in constructors.
+  /// The kernel of this object. Throws Error inside constructors, where the object has no kernel yet.
   Kernel& kernel() const;
-  /// "/usr/scene/robot"; the root is "/". What is not linked starts with its own name.
+  /// The path from the root, such as "/usr/scene/robot"; "/" for the root. The path of an object that is not linked
+  /// begins with the name of its topmost ancestor instead of '/'.
   std::string path() const;
-  /// True when this object hangs below the kernel's root.
+  /// True if this object is part of the tree, that is, it is the kernel's root or below it.
   bool isLinked() const;
 
-  /// This object as class or interface T, through the class object's table, together with itself; empty when it is
-  /// none.
+  /// This object as class or interface T, which it is looked up as in the table of its class. Empty if it is not a T.
   template <class T>
   Found<T> as() const {
     T* object = static_cast<T*>(query(T::kInterface));
     return {object, object ? const_cast<Leaf*>(this) : nullptr};
   }
-  /// As `as` where only the id of T is known.
+  /// As as(), for a T of which only the id is known. The pointer points to a T.
   void* query(const InterfaceId& id) const;
-  /// As `query`, but throws Error that says what the object lacks.
+  /// As query(), but throws Error with the missing interface.
   void* requireAs(const InterfaceId& id) const;
-  /// The object at `path` (relative to this one), nullptr when there is none.
+  /// The object at `path`, absolute or relative to this one; nullptr if there is none.
   Leaf* find(std::string_view path) const;
-  /// The object at `path` as T; nullptr when it is missing or no T.
+  /// The object at `path` as T; nullptr if there is none or it is not a T.
   template <class T>
   T* find(std::string_view path) const {
     Leaf* found = find(path);
     return found ? found->as<T>() : nullptr;
   }
-  /// As find, but throws Error that says what is missing: the path (with the nearest names) or the interface.
+  /// As find(), but throws Error if the path is missing, with the nearest names, or the interface.
   template <class T>
   T& require(std::string_view path) const {
     return *static_cast<T*>(requireInterface(path, T::kInterface));
   }
-  /// As `require` where only the id of T is known.
+  /// As require(), for a T of which only the id is known. The pointer points to a T.
   void* requireInterface(std::string_view path, const InterfaceId& id) const;
-  /// The server that offers T, at its well-known path `T::kPath`: nullptr when there is none, or Error.
+  /// The server at the well-known path of T, `T::kPath`, as T; nullptr if there is none.
   template <detail::HasPath T>
   T* find() const {
     return find<T>(T::kPath);
   }
+  /// As find<T>(), but throws Error if there is none.
   template <detail::HasPath T>
   T& require() const {
     return require<T>(T::kPath);
   }
-  /// The nearest ancestor that is a T, nullptr when there is none.
+  /// The nearest ancestor that is a T; nullptr if there is none.
   template <class T>
   T* ancestor() const;
 
-  /// This object as Node, nullptr for a mere Leaf.
+  /// This object as Node; nullptr if it cannot have children.
   virtual Node* asNode() { return nullptr; }
+  /// As above, for a const object.
   const Node* asNode() const { return const_cast<Leaf*>(this)->asNode(); }
-  /// Stable number of this object in its kernel, never used again.
+  /// The number of this object, unique in its kernel for all time, from 1. Later objects have greater numbers.
   std::uint64_t id() const { return id_; }
 
  protected:
-  /// Runs when the object (and its parents) hang in the tree, before its children are linked. May throw Error: it is
-  /// then not added.
+  /// Runs when the object has joined the tree, before its children join. If it throws, the object is removed again.
   virtual void onLink() {}
-  /// Runs when a parent further up changed (Node::reparent). Links need nothing here (link.h).
+  /// Runs when the object or one of its ancestors has another parent (Node::reparent). Links are updated without it.
   virtual void onMoved() {}
-  /// Runs before the object leaves the tree, after its children's. What it throws is logged.
+  /// Runs before the object leaves the tree, when its children have left. An exception is logged.
   virtual void onUnlink() {}
-  /// State that is not a property: write it in a fixed order, read it back in the same.
+  /// Writes state that is not a property, in a fixed order.
   virtual void saveState(StateWriter&) const {}
+  /// Reads the state that saveState() wrote, in the same order.
   virtual void loadState(StateReader&) {}
 
  private:
@@ -128,11 +139,11 @@ class Leaf {
   ClassObject* class_ = nullptr;
   mutable detail::Life* life_ = nullptr;
   std::uint64_t id_ = 0;
-  std::uint32_t preOrder_ = 0, postOrder_ = 0;
-  std::uint32_t lastBelow_ = 0;  ///< preOrder_ of the last descendant, its own without
+  std::uint32_t preOrder_ = 0, postOrder_ = 0;  ///< indices in tree order, parents first and children first
+  std::uint32_t lastBelow_ = 0;                 ///< preOrder_ of the last descendant, or its own without descendants
   bool linked_ = false;
-  bool hooked_ = false;    ///< some channel has an entry of it
-  bool changing_ = false;  ///< is being linked, moved or unlinked: it must stay where it is
+  bool hooked_ = false;    ///< a channel has a handler of this object
+  bool changing_ = false;  ///< it is being linked, moved or unlinked, and must not be removed or moved meanwhile
 };
 
 }  // namespace spark

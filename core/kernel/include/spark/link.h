@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Links: how a node finds what it works with, declared once and looked up by the kernel.
+/// Links: members that lead to the objects a node works with. A class declares their routes, the kernel looks them up.
 ///
 ///     class GyroRatePerceptor : public Perceptor {
 ///       SPARK_CLASS(GyroRatePerceptor, Perceptor)
@@ -16,9 +16,9 @@
 ///       Link<IRigidBody> body_;
 ///     };
 ///
-/// A link is looked up when it is read and the tree has changed since it was looked up last; else reading it costs one
-/// comparison. It holds what is linked only (hangs in the tree), so it is empty as soon as its target leaves.
-/// `sparkhost --describe` and `sparkctl tree --links` show links.
+/// Reading a link looks it up if the tree has changed since the last time; else it costs one comparison. A link of an
+/// object in the tree finds only objects in the tree, so it is empty as soon as its target leaves. `sparkhost
+/// --describe` and `sparkctl tree --links` show links.
 
 #include <atomic>
 #include <cstddef>
@@ -35,30 +35,33 @@
 
 namespace spark {
 
-/// A way through the tree to objects of a class or interface: one search after the other, each from where the last one
-/// ended. The typed ones are made by Above, Below, Child, Beside and At.
+/// A way through the tree to objects of a class or interface: a sequence of searches, each of which begins where the
+/// one before ended. Above, Below, Child, Beside and At make typed routes.
 class AnyRoute {
  public:
+  /// Where a step searches, as seen from its origin.
   enum class Search { above, below, child, beside, at, atProperty };
+  /// One search for objects that have interface `id`.
   struct Step {
     Search search;
     InterfaceId id;
-    std::string path = {};                                ///< of `at`
-    std::function<std::string(const Leaf&)> pathOf = {};  ///< of `atProperty`
-    std::function<bool(const void*)> accepts = {};        ///< empty: all
-    std::string what = {};                                ///< what `accepts` wants, for people; "" for the id's name
+    std::string path = {};                                ///< for `at`
+    std::function<std::string(const Leaf&)> pathOf = {};  ///< for `atProperty`: reads the path
+    std::function<bool(const void*)> accepts = {};        ///< further condition; empty: none
+    std::string what = {};                                ///< name of what `accepts` accepts; "": the id's name
   };
+  /// A route of one step.
   explicit AnyRoute(Step step) { steps_.push_back(std::move(step)); }
 
   class Walk;
 
-  /// The first match; empty when there is none. Leaves out what is not linked where `from` is.
+  /// The first match, empty if there is none. If `from` is part of the tree, so are the matches.
   Found<void> find(const Leaf& from) const;
-  /// All matches, in tree order.
+  /// Appends all matches in tree order.
   void findAll(const Leaf& from, std::vector<Found<void>>& out) const;
-  /// For people: "the IRigidBody below the Transform above".
+  /// The route in words, such as "an IRigidBody below the Transform above it".
   std::string text() const;
-  /// Throws Error: what was expected and where the search ended.
+  /// Throws Error that says what was expected.
   [[noreturn]] void throwMissing(const Leaf& from) const;
 
  protected:
@@ -70,29 +73,32 @@ template <class T>
 class Route : public AnyRoute {
  public:
   using AnyRoute::AnyRoute;
-  /// The first match; empty when there is none. For set-up: in the step a Link remembers it.
+  /// The first match, empty if there is none. For set-up; in the step use a Link, which keeps the result.
   Found<T> find(const Leaf& from) const {
     const Found<void> found = AnyRoute::find(from);
     return {static_cast<T*>(found.object), found.leaf};
   }
-  /// Goes on from what was found so far.
+  /// The route followed by a search for the nearest ancestor that is a U.
   template <class U>
   Route<U> above() && {
     return std::move(*this).template then<U>({Search::above, U::kInterface});
   }
+  /// The route followed by a search for the first descendant that is a U.
   template <class U>
   Route<U> below() && {
     return std::move(*this).template then<U>({Search::below, U::kInterface});
   }
+  /// The route followed by a search for the first child that is a U.
   template <class U>
   Route<U> child() && {
     return std::move(*this).template then<U>({Search::child, U::kInterface});
   }
-  /// The last search takes only objects of which Accepts(const T&) is true; `what` names them, e.g. "HingeJoint".
+  /// The last search accepts only objects for which Accepts(const T&) is true. `what` names them, such as "HingeJoint".
   template <auto Accepts>
   Route where(std::string what) && {
-    this->steps_.back().accepts = [](const void* object) { return Accepts(*static_cast<const T*>(object)); };
-    this->steps_.back().what = std::move(what);
+    AnyRoute::Step& last = AnyRoute::steps_.back();
+    last.accepts = [](const void* object) { return Accepts(*static_cast<const T*>(object)); };
+    last.what = std::move(what);
     return std::move(*this);
   }
 
@@ -128,17 +134,18 @@ template <class T>
 Route<T> Beside() {
   return Route<T>({AnyRoute::Search::beside, T::kInterface});
 }
-/// What is at a path, absolute or relative to the node; empty when it is no T.
+/// The object at a path, absolute or relative to the node, if it is a T.
 template <class T>
 Route<T> At(std::string path) {
   return Route<T>({AnyRoute::Search::at, T::kInterface, std::move(path)});
 }
-/// What is at the interface's well-known path, e.g. At<IPhysicsServer>(): `T::kPath`.
+/// The server at the well-known path of an interface, `T::kPath`, as in At<IPhysicsServer>().
 template <detail::HasPath T>
 Route<T> At() {
   return At<T>(T::kPath);
 }
-/// What is at the path that a property of the node holds; "" for nothing. Its setter calls Link::lookAgain().
+/// The object at the path that a property of the node has; "" leads to nothing. The property's setter must call
+/// Link::lookAgain().
 template <class T, class Self>
 Route<T> At(std::string Self::*property) {
   AnyRoute::Step step{AnyRoute::Search::atProperty, T::kInterface};
@@ -147,22 +154,24 @@ Route<T> At(std::string Self::*property) {
 }
 
 namespace detail {
-/// What all links of one declaration share.
+/// Shared by the links of one declaration, that is, by those of all objects of a class.
 struct LinkSite {
   const std::uint64_t* version;  ///< the kernel's structureVersion
   const AnyRoute* route;
   std::ptrdiff_t offset = 0;   ///< of the link in its owner [bytes]
-  const Leaf* from = nullptr;  ///< instead of the owner: a link that is no member of a node
+  const Leaf* from = nullptr;  ///< origin of a link that is not a member of a node; else nullptr
 };
+/// The site of links that have not been bound: never stale, so that they stay empty.
 inline constexpr std::uint64_t kNeverChanges = 0;
 inline constexpr LinkSite kNoSite{&kNeverChanges, nullptr};
 
+/// The part of a link that does not depend on its type.
 class LinkBase {
  public:
   LinkBase() = default;
   LinkBase(const LinkBase&) = delete;
   LinkBase& operator=(const LinkBase&) = delete;
-  /// Makes the next read look it up: what the route depends on has changed, and not the tree.
+  /// Makes the next read look the link up, because something else than the tree has changed that the route depends on.
   void lookAgain() { at_.store(kStale, std::memory_order_relaxed); }
 
  protected:
@@ -174,7 +183,8 @@ class LinkBase {
   }
   Found<void> lookUp() const;
   void lookUpAll(std::vector<Found<void>>& out) const;
-  /// What was looked up holds until the tree changes; an owner that is not linked does not hear of changes around it.
+  /// Marks the result as valid until the tree changes. The link of an owner that is not in the tree stays stale,
+  /// because changes around it are not counted.
   void looked() const;
   [[noreturn]] void throwMissing() const;
 
@@ -190,25 +200,25 @@ class LinkBase {
 }  // namespace detail
 
 namespace detail {
-/// A T gives its leaf itself.
+/// A T is a leaf, or has a function leaf() that returns it.
 template <class T>
 concept KnowsLeaf = std::is_base_of_v<Leaf, T> || requires(T& t) {
   t.leaf();
 };
 }  // namespace detail
 
-/// The object that a route leads to, seen from the node that has the link as a member (declared in its describe()).
-/// Several threads may read it at a time while the tree does not change. `kKnows` is named for a T that is not complete
-/// yet.
+/// The object at the end of a route, as seen from the node that has the link as a member and declares it in describe().
+/// Several threads may read a link at a time while the tree does not change. Give `kKnows` explicitly if T is an
+/// incomplete type.
 template <class T, bool kKnows = detail::KnowsLeaf<T>>
 class Link : public detail::LinkBase {
  public:
-  /// The object; nullptr when there is none.
+  /// The object; nullptr if there is none.
   T* get() const {
     if (isStale()) update();
     return object_.load(std::memory_order_relaxed);
   }
-  /// Its leaf; nullptr when there is none.
+  /// The leaf of the object; nullptr if there is none.
   Leaf* leaf() const {
     T* object = get();
     if constexpr (!kKnows)
@@ -218,19 +228,22 @@ class Link : public detail::LinkBase {
     else
       return object ? &object->leaf() : nullptr;
   }
+  /// The object with its leaf.
   Found<T> found() const { return {get(), leaf()}; }
-  /// The object. Throws Error when there is none: what was expected where.
+  /// The object. Throws Error if there is none, with the route in words.
   T& require() const {
     if (T* object = get()) return *object;
     throwMissing();
   }
-  /// Precondition of -> and *: it is not empty.
+  /// The object. Precondition: there is one.
   T* operator->() const {
     T* object = get();
     SPARK_ASSERT(object);
     return object;
   }
+  /// The object. Precondition: there is one.
   T& operator*() const { return *operator->(); }
+  /// True if there is an object.
   explicit operator bool() const { return get() != nullptr; }
 
  private:
@@ -245,17 +258,22 @@ class Link : public detail::LinkBase {
   [[no_unique_address]] mutable std::conditional_t<kKnows, None, std::atomic<Leaf*>> leaf_{};
 };
 
-/// All objects that a route leads to, in tree order. The simulation's thread only.
+/// All objects at the end of a route, in tree order. The simulation's thread only.
 template <class T>
 class Links : public detail::LinkBase {
  public:
+  /// The objects. The list is valid until the tree changes.
   const std::vector<Found<T>>& all() const {
     if (isStale()) update();
     return all_;
   }
+  /// The first object.
   auto begin() const { return all().begin(); }
+  /// Behind the last object. Call begin() first.
   auto end() const { return std::as_const(all_).end(); }
+  /// The number of objects.
   std::size_t size() const { return all().size(); }
+  /// True if there are no objects.
   bool empty() const { return all().empty(); }
 
  private:
@@ -269,26 +287,28 @@ class Links : public detail::LinkBase {
   mutable std::vector<Found<T>> all_;
 };
 
-/// Says whether the tree has changed: for tables that are made of what stands in it.
+/// Detects changes of the tree, for tables that are made from it.
 ///
 ///     if (tree_.changed(*this)) listPlayers();
 class TreeWatch {
  public:
-  /// True when somebody came, went, moved or got another name since the last call, and at the first call.
+  /// True if an object has joined, left, moved or been renamed since the last call, and for the first call. `anyNode`:
+  /// an object of the tree.
   bool changed(const Leaf& anyNode);
-  /// What changed() would say.
+  /// The result that changed() would return, without effect on it.
   bool isStale(const Leaf& anyNode) const;
-  /// The next call of changed() says true.
+  /// Makes the next call of changed() return true.
   void lookAgain() { at_ = 0; }
 
  private:
   std::uint64_t at_ = 0;
 };
 
-/// A link of an object that is no node itself: looked up from `from`, which must outlive it.
+/// A link that is not a member of a node.
 template <class T>
 class FreeLink : public Link<T> {
  public:
+  /// A link that leads along `route` from `from`, which must outlive it.
   FreeLink(const Leaf& from, Route<T> route) : route_(std::move(route)) {
     own_ = {&this->structureVersionOf(from), &route_, 0, &from};
     this->bind(own_);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What loads plugins.
+/// The loader of plugins.
 
 #include <filesystem>
 #include <map>
@@ -16,33 +16,38 @@ class ClassObject;
 class Kernel;
 class Plugin;
 
-/// Finds, registers and unloads plugins (libltdl). What is loaded is a private copy of the file as it was: whoever
-/// overwrites the file does no harm, and loading again after unload() gives the new version.
+/// Finds, registers and unloads plugins. A plugin is loaded as a private copy of its file: overwriting the file does
+/// not affect it, and unload() followed by use() loads the new version. The simulation's thread only.
 class Loader {
  public:
+  /// Made by the kernel only.
   explicit Loader(Kernel& kernel);
+  /// Removes all classes of plugins and unloads the plugins.
   ~Loader();
-  /// Reads the descriptors of all `*.so` in a folder (by name) and lists them under /plugins. What is no good is logged
-  /// and skipped; returns the sentences that were logged. A file that is listed already is left alone.
+  /// Loads all files `*.so` of a folder in order of name, reads their descriptors and lists them as /plugins/<name>.
+  /// Files that are listed already are skipped. Files that cannot be used are logged and skipped; returns these
+  /// messages.
   std::vector<std::string> scan(const std::filesystem::path& folder);
-  /// Registers a scanned plugin's classes; does nothing when it is registered. A plugin that was unloaded, and a
-  /// NAME.so that came into a scanned folder since, is loaded first. Throws Error: unknown name (with the nearest and
-  /// the folders that were searched), duplicate class, what the plugin threw.
+  /// Registers the classes of a plugin unless they are registered already. A plugin that was unloaded or has been
+  /// rebuilt, and a file NAME.so that is new in a scanned folder, is loaded first. Throws Error if there is no such
+  /// plugin (with the nearest names and the folders that were searched), if a class exists already, or if registering
+  /// fails.
   Plugin& use(std::string_view name);
-  /// Loads and registers one file. Throws Error.
+  /// Loads one file and registers its classes. Throws Error if either fails.
   Plugin& useFile(const std::filesystem::path& file);
-  /// Removes a plugin's classes and unmaps its file. Throws Error when objects of its classes live (lists their paths),
-  /// classes of other plugins derive from them, or handlers of events run.
+  /// Removes the classes of a plugin and unmaps its file. Throws Error if objects of its classes exist (with their
+  /// paths), if classes of other plugins derive from its classes, or if event handlers run.
   void unload(std::string_view name);
-  /// As unload; while handlers of events run it happens in the next settle(), where a late refusal is logged. Throws
-  /// Error when it is refused already.
+  /// As unload(), but while event handlers run it only checks, and the next settle() unloads the plugin or logs why it
+  /// cannot. Throws Error as unload().
   void unloadLater(std::string_view name);
-  /// Between two cycles, outside of all handlers: unloads what handlers asked for. For run loops.
+  /// Unloads the plugins for which unloadLater() was called by handlers. Run loops call it between two cycles.
   void settle() {
     if (!leaving_.empty()) unloadLeaving();
   }
-  /// The scanned plugin that provides a class, nullptr when none does.
+  /// The listed plugin that provides a class, registered or not; nullptr if there is none.
   Plugin* providerOf(std::string_view className) const;
+  /// The folders that were scanned.
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
 
  private:
@@ -57,8 +62,8 @@ class Loader {
   void unloadLeaving();
   Kernel& kernel_;
   std::vector<std::filesystem::path> folders_;
-  std::map<std::string, std::string, std::less<>> unloaded_;  // files by name
-  std::vector<std::string> leaving_;
+  std::map<std::string, std::string, std::less<>> unloaded_;  // files of unloaded plugins, by the plugins' names
+  std::vector<std::string> leaving_;                          // names of plugins that settle() unloads
 };
 
 }  // namespace spark

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a plugin exports: one C descriptor. A plugin does nothing at load; registering is an explicit call by the host.
+/// The descriptor that a plugin exports. A plugin runs no code when it is loaded; the host registers it by a call.
 ///
 ///     SPARK_PLUGIN("sensors", "1.0", "Perceptors of robots.", GyroRatePerceptor, Accelerometer)
 
@@ -14,14 +14,16 @@
 
 namespace spark {
 
-/// The list of the public headers that this library was compiled with, which the linker joins from its object files:
-/// "api/physics.h 0123456789abcdef" each, with the hash of the header's text without comments, and zeros between them.
 extern "C" {
-[[gnu::visibility("hidden")]] extern const char __start_spark_headers[];
-[[gnu::visibility("hidden")]] extern const char __stop_spark_headers[];
+// The linker defines these names for the section spark_headers, so they cannot be others.
+/// The public headers that this library was compiled with: texts such as "api/physics.h 0123456789abcdef", with the
+/// hash of the header without comments, separated by zeros. The linker joins the lists of all object files.
+[[gnu::visibility("hidden")]] extern const char __start_spark_headers[];  // NOLINT(bugprone-reserved-identifier)
+/// The end of that list.
+[[gnu::visibility("hidden")]] extern const char __stop_spark_headers[];  // NOLINT(bugprone-reserved-identifier)
 }
 
-/// What must agree between a plugin and its host, beside the headers. Debug and Release mix.
+/// What must be equal in a plugin and its host, beside the headers. Debug and Release builds agree.
 struct AbiWord {
   std::uint32_t version;    ///< SPARK_ABI_VERSION, raised when the descriptor changes
   std::uint32_t alignment;  ///< alignof(max_align_t)
@@ -29,7 +31,7 @@ struct AbiWord {
   std::uint32_t sanitizer;  ///< 0 none, 1 address, 2 thread
 };
 
-/// The AbiWord of the code that includes this header.
+/// The AbiWord of the code that is compiled with this header.
 constexpr AbiWord thisAbi() {
   AbiWord w{SPARK_ABI_VERSION, alignof(std::max_align_t), __GXX_ABI_VERSION, 0};
 #if defined(__SANITIZE_ADDRESS__)
@@ -46,29 +48,30 @@ constexpr AbiWord thisAbi() {
   return w;
 }
 
-/// Takes a plugin's classes.
+/// Receives the classes of a plugin.
 class Registrar {
  public:
+  /// Adds a class.
   virtual void add(ClassDescription description) = 0;
-  /// Runs when the plugin is unloaded, before its classes go.
+  /// Adds an action that runs when the plugin is unloaded, before its classes are removed.
   virtual void atUnload(std::function<void()> action) = 0;
 
  protected:
   ~Registrar() = default;
 };
 
-/// The descriptor, exported as `sparkPlugin`. Its first two members never move.
+/// The descriptor, exported as `sparkPlugin`. The first two members are the same in every version.
 struct PluginDescriptor {
-  char magic[8];       ///< "SPARKPLG"
-  std::uint32_t size;  ///< sizeof(PluginDescriptor) of the plugin
-  AbiWord abi;
-  const char* headers;  ///< __start_spark_headers: of the headers that the plugin includes, and of no others
+  char magic[8];        ///< "SPARKPLG"
+  std::uint32_t size;   ///< sizeof(PluginDescriptor) when the plugin was compiled
+  AbiWord abi;          ///< of the plugin
+  const char* headers;  ///< __start_spark_headers: the headers that the plugin includes
   const char* headersEnd;
-  const char* name;
-  const char* version;
-  const char* doc;
-  const char* const* classes;  ///< names, ended by nullptr
-  void (*registerClasses)(Registrar&);
+  const char* name;                     ///< of the plugin: letters, digits, '-', '_' and '.'
+  const char* version;                  ///< of the plugin, any text
+  const char* doc;                      ///< one sentence
+  const char* const* classes;           ///< names of its classes, ended by nullptr
+  void (*registerClasses)(Registrar&);  ///< passes the descriptions of all its classes
 };
 
 namespace detail {
@@ -79,7 +82,7 @@ struct ClassList {
 };
 }  // namespace detail
 
-/// Defines the descriptor. The rest of the arguments are the plugin's classes.
+/// Defines the descriptor of a plugin. The arguments behind `Doc` are its classes.
 #define SPARK_PLUGIN(Name, Version, Doc, ...)                                                            \
   extern "C" __attribute__((visibility("default")))                                                      \
   const ::spark::PluginDescriptor sparkPlugin = {{'S', 'P', 'A', 'R', 'K', 'P', 'L', 'G'},               \

@@ -15,16 +15,21 @@ namespace spark {
 class LoadedLibrary;
 struct PluginDescriptor;
 
-/// A plugin in the tree, `/plugins/<name>`: found by a scan, registered by a config line.
+/// A plugin in the tree, `/plugins/<name>`. The loader makes it when it finds the file; a config registers it.
 class Plugin : public Leaf {
   SPARK_CLASS(Plugin, Leaf)
  public:
+  /// Describes the class.
   static void describe(Description<Plugin>& d);
+  /// The plugin's own version.
   const std::string& version() const { return version_; }
+  /// One sentence about the plugin.
   const std::string& doc() const { return doc_; }
+  /// The absolute path of its file.
   const std::string& file() const { return file_; }
-  /// Names of the classes it provides, registered or not.
+  /// The names of the classes it provides, also before they are registered.
   const std::vector<std::string>& classes() const { return classes_; }
+  /// True if its classes are registered.
   bool registered() const { return registered_; }
 
  private:

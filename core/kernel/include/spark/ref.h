@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// References to objects of the tree.
+/// References to objects of the tree, which become empty when the object is destroyed.
 
 #include <cstddef>
 #include <type_traits>
@@ -15,36 +15,44 @@ namespace spark {
 class Leaf;
 
 namespace detail {
-/// Outlives its leaf while references remain; `leaf` is nulled when the leaf dies.
+/// Shared by a leaf and the references to it. It is deleted with the last of them.
 struct Life {
-  Leaf* leaf;
+  Leaf* leaf;  ///< nullptr when the leaf has been destroyed
   unsigned references;
 };
-/// The life of a leaf, with one reference more.
+/// The Life of a leaf, with one more reference counted.
 Life* shareLife(const Leaf& leaf);
 }  // namespace detail
 
-/// An object of the tree, as the leaf that it is and as the T that it offers.
+/// An object of the tree as T, together with its leaf. Not a reference: valid as long as the object.
 template <class T>
 struct Found {
+  /// Nothing.
   Found(std::nullptr_t = nullptr) {}
+  /// The object `o` of leaf `l`.
   Found(T* o, Leaf* l) : object(o), leaf(l) {}
   T* object = nullptr;
   Leaf* leaf = nullptr;
-  /// Precondition of -> and *: it is not empty.
+  /// The object. Precondition: not empty.
   T* operator->() const { return SPARK_ASSERT(object), object; }
+  /// The object. Precondition: not empty.
   std::add_lvalue_reference_t<T> operator*() const { return SPARK_ASSERT(object), *object; }
+  /// True if there is an object.
   explicit operator bool() const { return object != nullptr; }
+  /// The object, or nullptr.
   operator T*() const { return object; }
 };
 
-/// A checked, non-owning reference: empty once the object died. Copy and assign it on the simulation's thread; read it
-/// anywhere.
+/// A non-owning reference that becomes empty when its object is destroyed. Copy and assign it on the simulation's
+/// thread only; any thread may read it.
 template <class T>
 class Ref {
  public:
+  /// An empty reference.
   Ref() = default;
+  /// A reference to an object, which may be nullptr.
   Ref(T* object);
+  /// A reference to an object that was found, or an empty one.
   Ref(const Found<T>& found);
   Ref(const Ref& other) noexcept : life_(other.life_), object_(other.object_) {
     if (life_) ++life_->references;
@@ -52,6 +60,7 @@ class Ref {
   Ref(Ref&& other) noexcept
       : life_(std::exchange(other.life_, nullptr)), object_(std::exchange(other.object_, nullptr)) {}
   Ref& operator=(const Ref& other) {
+    if (this == &other) return *this;
     if (other.life_) ++other.life_->references;
     release();
     life_ = other.life_;
@@ -60,11 +69,13 @@ class Ref {
   }
   ~Ref() { release(); }
 
-  /// The object, or nullptr when it is dead or was never set.
+  /// The object; nullptr if the reference is empty.
   T* get() const { return life_ && life_->leaf ? object_ : nullptr; }
-  /// Precondition of -> and *: it is not empty.
+  /// The object. Precondition: not empty.
   T* operator->() const { return SPARK_ASSERT(get()), get(); }
+  /// The object. Precondition: not empty.
   T& operator*() const { return SPARK_ASSERT(get()), *get(); }
+  /// True if the reference is not empty.
   explicit operator bool() const { return get() != nullptr; }
 
  private:

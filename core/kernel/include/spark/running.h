@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// What the threads of this process run at this instant: node and phase, for reports of crashes and for watchdogs.
+/// Records which node and phase each thread runs, for crash reports and watchdogs.
 ///
-/// Who calls the code of plugins says so with a NowRunning: a few relaxed stores to a record of the calling thread, no
-/// lock, no memory, no text. Names and paths are made from it when they are needed, in a signal handler on the very
-/// thread: nothing can change meanwhile.
+/// Code that calls plugins makes a NowRunning: a few relaxed stores to a record of the calling thread, without locks,
+/// allocation or text. Names and paths are read from the tree only for a report, in a signal handler of that thread, so
+/// that they cannot change meanwhile.
 
 #include <atomic>
 #include <cstddef>
@@ -17,27 +17,28 @@ namespace spark {
 
 class Leaf;
 
-/// One thread's record. Written by that thread only.
+/// The record of a thread. Only that thread writes it.
 struct Running {
-  std::atomic<const Leaf*> node{
-      nullptr};  ///< whose code runs; a class object while it makes an object; nullptr: no node's
-  std::atomic<const char*> phase{nullptr};  ///< "sense", "onLink", "constructor", ...: a text that outlives the call
-  std::atomic<const char*> file{nullptr};   ///< the plugin's file that is being loaded
-  std::atomic<std::uint64_t> beats{0};      ///< grows as long as the thread gets on
-  std::atomic<int> thread{0};               ///< the system's number of it, 0: a record that no thread has
-  /// The thread gets on: it starts something new, or it waits.
+  /// The node whose code runs; the class object while a constructor runs; nullptr outside of nodes.
+  std::atomic<const Leaf*> node{nullptr};
+  std::atomic<const char*> phase{nullptr};  ///< "sense", "onLink", ...: a text that outlives the call
+  std::atomic<const char*> file{nullptr};   ///< file of the plugin that is being loaded, else nullptr
+  std::atomic<std::uint64_t> beats{0};      ///< increases while the thread makes progress
+  std::atomic<int> thread{0};               ///< the system's id of the thread; 0: the record is free
+  /// Records progress: the thread begins something new, or it waits.
   void beat() { beats.store(beats.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed); }
 };
 
-/// The calling thread's record, valid as long as the thread.
+/// The record of the calling thread, valid as long as the thread.
 Running& running();
 
-/// The calling thread's record, nullptr when it has run no node yet. Safe in signal handlers.
+/// The record of the calling thread; nullptr if it has not run a node yet. Safe in signal handlers.
 const Running* runningHere();
 
-/// While it lives, its thread runs a phase; of which node, `at` says. What ran before runs again afterwards.
+/// Records what the calling thread runs while this object lives. The destructor restores the record.
 class NowRunning {
  public:
+  /// The thread runs `phase`, a text that outlives this object, of `node`.
   explicit NowRunning(const char* phase, const Leaf* node = nullptr)
       : now_(running()),
         node_(now_.node.load(std::memory_order_relaxed)),
@@ -51,7 +52,9 @@ class NowRunning {
   }
   NowRunning(const NowRunning&) = delete;
   NowRunning& operator=(const NowRunning&) = delete;
+  /// The thread goes on with another node.
   void at(const Leaf* node) { now_.node.store(node, std::memory_order_relaxed); }
+  /// Records progress, see Running::beat.
   void beat() { now_.beat(); }
 
  private:
@@ -60,15 +63,15 @@ class NowRunning {
   const char* phase_;
 };
 
-/// Writes what a thread runs as words: "in sense of /usr/scene/x (class Gyro of plugin sensors)". Returns their length,
-/// at most `size`. Safe in signal handlers of that very thread.
+/// Writes a record in words: "in sense of /usr/scene/x (class Gyro of plugin sensors)". Returns the length [bytes], at
+/// most `size`; the text is not terminated. Safe in signal handlers of the record's own thread.
 std::size_t describeRunning(const Running& now, char* words, std::size_t size);
 
-/// The records of all threads, those that no thread has included.
+/// All records, those without a thread included. Valid as long as the process.
 std::span<const Running> runningThreads();
 
-/// From now on `begin` runs in the calling thread, and in each other one when it runs a node for the first time; `end`
-/// when such a thread ends. To be called once, before there are other threads.
+/// Calls `begin` now in the calling thread, and later in each other thread when it first runs a node; `end` is called
+/// in such a thread when it ends. Call it once, before other threads are started.
 void watchThreads(void (*begin)(), void (*end)());
 
 }  // namespace spark

@@ -1,10 +1,8 @@
 #pragma once
 /// \file
-/// State: every property marked `state()` and what `saveState` writes, in tree order. Hash: 64 bits, raw bits of
-/// doubles, no names.
-///
-/// Saved form: for each node, bases first, its state properties as Values, then what saveState wrote. Shape (classes,
-/// names, children) is not part of it: it is loaded into a tree of the same shape.
+/// The state of a simulation: for each object in tree order the values of all properties marked `state()`, those of
+/// bases first, followed by what saveState() writes. Names, classes and the shape of the tree are not part of it, so it
+/// can be loaded only into a tree of the same shape.
 
 #include <cstdint>
 #include <string>
@@ -17,20 +15,30 @@ namespace spark {
 
 class Leaf;
 
-/// Takes state as raw bytes; with `keep` false only the hash is made.
+/// Writes state as a sequence of 64-bit words: doubles by their bits, texts with their length.
 class StateWriter {
  public:
+  /// `keep` false: only the hash is computed, the bytes are not kept.
   explicit StateWriter(bool keep) : keep_(keep) {}
+  /// Writes a number, bit by bit.
   void write(double v);
+  /// Writes an integer.
   void write(std::int64_t v);
+  /// Writes an integer.
   void write(std::uint64_t v) { write(static_cast<std::int64_t>(v)); }
+  /// Writes an integer.
   void write(int v) { write(static_cast<std::int64_t>(v)); }
+  /// Writes a bool.
   void write(bool v) { write(static_cast<std::int64_t>(v)); }
+  /// Writes a text.
   void write(std::string_view v);
+  /// Writes a text.
   void write(const char* v) { write(std::string_view(v)); }
+  /// Writes a value with its type.
   void write(const Value& v);
-  /// Hash of all that was written so far.
+  /// The hash of everything written so far.
   std::uint64_t hash() const;
+  /// The bytes written so far; empty unless they are kept.
   const std::string& bytes() const { return bytes_; }
 
  private:
@@ -40,15 +48,23 @@ class StateWriter {
   std::string bytes_;
 };
 
-/// Reads what StateWriter kept, in the same order. Throws Error when the bytes end early or a value has another type.
+/// Reads the bytes of a StateWriter, in the order in which they were written. Throws Error if the bytes end early or a
+/// value has an unknown type.
 class StateReader {
  public:
+  /// `bytes` must outlive the reader.
   explicit StateReader(std::string_view bytes) : bytes_(bytes) {}
+  /// Reads a number.
   double readNumber();
+  /// Reads an integer.
   std::int64_t readInteger();
+  /// Reads a bool.
   bool readBool() { return readInteger() != 0; }
+  /// Reads a text.
   std::string readString();
+  /// Reads a value.
   Value readValue();
+  /// True if everything has been read.
   bool atEnd() const { return bytes_.empty(); }
 
  private:
@@ -56,10 +72,12 @@ class StateReader {
   std::string_view bytes_;
 };
 
-/// The state hash of a subtree.
+/// The hash of the state of `root` and all its descendants.
 std::uint64_t stateHash(const Leaf& root);
-/// Saves and restores the state of a subtree. loadTree throws Error when the shape differs.
+/// Writes the state of `root` and all its descendants.
 void saveTree(const Leaf& root, StateWriter& out);
+/// Reads the state that saveTree() wrote for a tree of the same shape. Throws Error if it does not fit; a part of the
+/// tree is then changed.
 void loadTree(Leaf& root, StateReader& in);
 
 }  // namespace spark
