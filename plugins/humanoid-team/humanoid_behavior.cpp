@@ -6,7 +6,7 @@
 
 namespace spark {
 
-/// A humanoid player inside the host: the brain of the demo team as a behaviour node.
+/// A humanoid player inside the host: the player of the demo team as a behaviour node.
 class HumanoidBehavior : public Behavior {
   SPARK_CLASS(HumanoidBehavior, Behavior)
  public:

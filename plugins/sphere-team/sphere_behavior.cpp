@@ -4,7 +4,7 @@
 
 namespace spark {
 
-/// A sphere player inside the host: the brain of the demo teams as a behaviour node.
+/// A sphere player inside the host: the player of the demo team as a behaviour node.
 class SphereBehavior : public Behavior {
   SPARK_CLASS(SphereBehavior, Behavior)
  public:

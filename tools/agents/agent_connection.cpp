@@ -17,9 +17,9 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 namespace {
-constexpr std::size_t kMaxMessage = 1 << 20;  // bytes; a longer one means that this is no such server
-constexpr std::size_t kPrefix = 4;            // bytes of length before a message
-constexpr std::size_t kRoom = 16384;          // bytes that are asked for at a time
+constexpr std::size_t kMaxMessage = 1 << 20;  // bytes; a longer message means that the server speaks another protocol
+constexpr std::size_t kPrefix = 4;            // bytes of the length prefix
+constexpr std::size_t kRoom = 16384;          // bytes per read
 constexpr auto kRetry = std::chrono::milliseconds(100);
 }  // namespace
 
@@ -50,7 +50,7 @@ void AgentConnection::close() {
   socket_.close(ignored);
 }
 
-// Messages are small and the server always reads: a blocking write is over at once and keeps the order plain.
+// A blocking write: messages are small and the server always reads, so it returns at once, and messages stay in order.
 void AgentConnection::send(const Predicates& predicates) {
   out_.assign(4, '\0');
   language_.write(predicates, out_);
@@ -73,7 +73,7 @@ void AgentConnection::receive() {
                           });
 }
 
-/// Every whole message that is there.
+/// Answers every complete message in the buffer.
 void AgentConnection::answerAll() {
   const std::string_view all(in_.data(), filled_);
   std::size_t at = 0;

@@ -13,23 +13,24 @@
 
 namespace spark::agent {
 
-/// Runs on the io_context that it is given, in the thread that runs it. Must outlive the io_context's run().
+/// One connection. Its handlers run in the thread that runs the io_context. Must outlive the io_context's run().
 class AgentConnection {
  public:
-  /// A message came; append the answer's predicates. An empty answer is not sent.
+  /// Called for each message; appends the predicates of the answer. An empty answer is not sent.
   using OnMessage = std::function<void(const Predicates& percepts, Predicates& actions)>;
-  /// The connection ended; `why` is one sentence.
+  /// Called once when the connection has ended; `why` is one sentence.
   using OnEnd = std::function<void(const std::string& why)>;
 
   AgentConnection(boost::asio::io_context& io, Language& language) : socket_(io), language_(language) {}
-  /// Connects, and tries again for `patience` seconds while nobody listens. Blocks. Throws spark::Error.
+  /// Connects; retries for `patience` [s] while the server cannot be reached. Blocks. Throws spark::Error.
   void connect(const std::string& host, int port, double patience = 0);
-  /// False: messages are counted and answered, not read; `percepts` stay empty.
+  /// False: messages are counted and answered, but not parsed; `percepts` stay empty.
   void setListens(bool on) { listens_ = on; }
   /// Sends `first` (when it is not empty) and answers messages from then on.
   void start(const Predicates& first, OnMessage onMessage, OnEnd onEnd);
+  /// Closes the socket. OnEnd is not called.
   void close();
-  /// Messages received so far.
+  /// Number of messages received so far.
   std::uint64_t received() const { return received_; }
 
  private:
@@ -45,7 +46,7 @@ class AgentConnection {
   OnEnd onEnd_;
   Predicates percepts_, actions_;
   std::string in_, out_;
-  std::size_t filled_ = 0;  ///< bytes of in_ that were received and not answered yet
+  std::size_t filled_ = 0;  ///< bytes of in_ that were received and not processed yet
   std::uint64_t received_ = 0;
   bool listens_ = true;
 };

@@ -3,7 +3,7 @@
 #include "humanoid/player.h"
 #include "team.h"
 
-// A team of Naos in one process: one connection and one brain a player, all in one thread.
+// A team of Naos in one process and one thread, with one connection per player.
 
 namespace {
 using spark::Predicates;

@@ -7,8 +7,8 @@
 
 #include "team.h"
 
-// Load for a server: agents that take a robot and a place, and then only say that they are there; monitors that read
-// and forget. One process, one thread, and next to no work, so that what is measured is the server.
+// Load for a server: agents that load a robot, join a team and then only send (syn); monitors that discard what they
+// read. One process and one thread with almost no work of its own, so that measurements show the server.
 
 namespace {
 namespace asio = boost::asio;

@@ -16,7 +16,7 @@ class Sexp : public Language {
   void write(const Predicates& predicates, std::string& out) override { writeSexp(predicates, kDecimals, out); }
 };
 
-/// A parser from a plugin, in a small house of its own.
+/// A parser from a plugin, in a kernel of its own.
 class FromPlugin : public Language {
  public:
   FromPlugin(const std::string& parser, const std::vector<std::filesystem::path>& folders) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The language that an agent speaks with its server.
+/// The message language between an agent and its server.
 
 #include <filesystem>
 #include <memory>
@@ -12,19 +12,18 @@
 
 namespace spark::agent {
 
-/// Messages to predicates and back. Not thread safe; one object may serve many agents of a program.
+/// Converts messages to predicates and back. Not thread safe. All agents of a program can share one.
 class Language {
  public:
   virtual ~Language() = default;
-  /// Appends what the message holds; what cannot be read is left out.
+  /// Appends the predicates of a message. Skips what it cannot parse.
   virtual void read(std::string_view message, Predicates& out) = 0;
   /// Appends the message for `predicates`.
   virtual void write(const Predicates& predicates, std::string& out) = 0;
 };
 
-/// The language of a server whose parser is of class `parser`. "SexpParser" needs nothing but core/; any other class
-/// comes from a plugin in one of the folders and needs the methods parse and write. Throws spark::Error when there is
-/// no such class.
+/// The language of a server whose parser has class `parser`. "SexpParser" is built in; any other class must come from a
+/// plugin in one of the folders and have the methods parse and write. Throws spark::Error when there is no such class.
 std::unique_ptr<Language> makeLanguage(const std::string& parser,
                                        const std::vector<std::filesystem::path>& pluginFolders);
 

@@ -3,7 +3,7 @@
 #include "sphere/player.h"
 #include "team.h"
 
-// A team of spheres in one process: one connection and one brain a player.
+// A team of spheres in one process and one thread, with one connection per player.
 
 namespace {
 using spark::Predicates;

@@ -15,7 +15,7 @@ namespace {
 namespace asio = boost::asio;
 namespace fs = std::filesystem;
 
-/// A player and his connection.
+/// A player and its connection.
 class Participant {
  public:
   Participant(asio::io_context& io, Language& language, std::unique_ptr<Player> player,
@@ -97,7 +97,7 @@ int TeamProgram::run(int argc, char** argv, const std::function<std::unique_ptr<
   }
 }
 
-/// Until the server ends the match; true when every player had a place in it.
+/// Plays until the server ends the match. True when every player got a team.
 bool TeamProgram::play(const std::function<std::unique_ptr<Player>(int unum)>& make) {
   const auto language = makeLanguage(options_.parser, pluginFolders());
   std::vector<std::unique_ptr<Participant>> team;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A team in one process: options, connections, and the loop in which its players play until the server ends the match.
+/// A team in one process: command line, connections, and the loop that runs until the server ends the match.
 
 #include <functional>
 #include <memory>
@@ -17,46 +17,48 @@ class io_context;
 
 namespace spark::agent {
 
-/// One player of a team: percepts in, actions out.
+/// One player of a team. Turns percepts into actions.
 class Player {
  public:
   virtual ~Player() = default;
-  /// The first message, to be sent once when connected.
+  /// Appends the first message. Called once, after the connection is made.
   virtual void start(Predicates& actions) = 0;
-  /// Appends the answer to a sense message; (syn) is added to it. `percepts` are empty for a player that does not
-  /// listen.
+  /// Appends the answer to a sense message; the caller adds (syn). `percepts` are empty unless listens().
   virtual void think(const Predicates& percepts, Predicates& actions) = 0;
-  /// False: what the server says need not be read.
+  /// False: messages of the server need not be parsed.
   virtual bool listens() const { return true; }
-  /// The server has told him his side.
+  /// True once the player has a team.
   virtual bool placed() const = 0;
+  /// Team and number, for error messages.
   virtual std::string name() const = 0;
-  /// How it went, in one line, for the first player of a team.
+  /// The result of the match in one line. Printed for the first player of a team.
   virtual std::string result() const = 0;
 };
 
-/// A program that plays with a team. Exit codes: 0 the server closed the match; 1 it could not be reached or a player
-/// was turned away before he had a team; 2 the command line is wrong.
+/// A program that plays with a team. Exit codes: 0 the server ended the match; 1 it could not be reached, or a player
+/// got no team; 2 the command line is wrong.
 class TeamProgram {
  public:
-  /// What all teams have on their command line.
+  /// The command line options of all teams.
   struct Options {
     std::string host = "127.0.0.1", team = "Spark", parser = "SexpParser";
     int port = 3100, players = 11;
     double patience = 10;
     bool reverse = false, quiet = false;
   };
-  /// `most`: players that one process can have.
+  /// `most`: largest number of players.
   TeamProgram(std::string name, const std::string& description, int most = 11);
   ~TeamProgram();
-  /// Options of its own; `value` is the default and takes what the command line says.
+  /// Adds an option. `value` is the default and receives the value; it must outlive run().
   void addText(const std::string& option, std::string& value, const std::string& description);
-  /// A whole number in [least, most]; `value` as it is when the option is not there.
+  /// Adds an integer option with range [least, most]. `value` may be outside: it then means that the option is not
+  /// given.
   void addNumber(const std::string& option, int& value, int least, int most, const std::string& description);
+  /// The options; defaults before run().
   const Options& options() const { return options_; }
-  /// The loop that the match runs in, for what else a program does.
+  /// The event loop of the match, for further I/O of a program.
   boost::asio::io_context& io() { return *io_; }
-  /// Reads the command line and plays; `make` makes a player by his number, from 1. Returns the exit code.
+  /// Parses the command line and plays. `make` creates a player by its number, from 1. Returns the exit code.
   int run(int argc, char** argv, const std::function<std::unique_ptr<Player>(int unum)>& make);
 
  private:

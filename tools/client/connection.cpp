@@ -106,7 +106,7 @@ std::size_t Connection::announced() const {
 
 bool Connection::whole() const { return in_.size() >= kPrefix && in_.size() - kPrefix >= announced(); }
 
-/// Reads what is there, waiting for it; false when nothing came in time.
+/// Reads available bytes, waiting at most `timeout` [s]; negative: without limit. False when none arrived in time.
 bool Connection::fill(double timeout) {
   pollfd wanted{socket_, POLLIN, 0};
   const int ready = ::poll(&wanted, 1, timeout < 0 ? -1 : static_cast<int>(std::min(std::ceil(timeout * 1000), 1e9)));

@@ -11,11 +11,11 @@ const Expression kNone;
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool endsAtom(char c) { return isBlank(c) || c == '(' || c == ')' || c == '"'; }
 
-/// Goes through a message.
+/// Parses a message.
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
-  /// Adds one expression to `out`; false at the end, and where there is none.
+  /// Adds the next expression to `out`. False at the end, and when there is none.
   bool next(Expression& out, int depth) {
     while (at_ < text_.size() && isBlank(text_[at_])) ++at_;
     if (at_ == text_.size() || text_[at_] == ')') return false;

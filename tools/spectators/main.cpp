@@ -11,8 +11,8 @@
 
 #include "spectator.h"
 
-// Many spectators of a match, some of whom do not read: what a web server is measured with. Prints {"connected":N} when
-// all watch, and what each of them got at the end.
+// Load for the web server: many viewers of a match, some of which do not read. Prints {"connected":N} when all have
+// received a frame, and statistics of what they received at the end.
 
 namespace {
 using spectators::Settings;
@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   int count = 1, stalled = 0;
-  double seconds = 0;  ///< 0: until a signal
+  double seconds = 0;  ///< measured time [s]; 0: until a signal
   Settings settings;
 };
 
@@ -63,7 +63,7 @@ void printLine(const std::string& line) {
   std::fflush(stdout);
 }
 
-/// What came from when all watched to the end.
+/// Prints what was received since all were connected.
 void report(const Options& o, const std::vector<Tally>& before, const std::vector<Tally>& after, double seconds) {
   std::vector<double> bytes, frames;
   Tally sum;

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kFrameHead = 20, kLongHead = 126, kLongestHead = 65536;
 constexpr std::size_t kLongest = 64u << 20;
 
-/// Bytes in front of a message of a WebSocket from a server.
+/// Size of the WebSocket header of a message from a server [bytes].
 std::size_t headOf(std::size_t size) { return size < kLongHead ? 2 : size < kLongestHead ? 4 : 10; }
 
 class Watching : public Spectator, public std::enable_shared_from_this<Watching> {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One viewer without a picture: takes the stream and counts what comes.
+/// A viewer without display: receives the stream and counts frames and bytes.
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -11,28 +11,29 @@
 
 namespace spectators {
 
-/// What all are told.
+/// Settings of all spectators.
 struct Settings {
   std::string host = "127.0.0.1";
   unsigned short port = 3280;
-  double rate = 0;  ///< frames a second; 0: what the host gives
-  std::string detail = "fine";
+  double rate = 0;              ///< wanted frames per second; 0: the host's default
+  std::string detail = "fine";  ///< "fine" or "coarse"
 };
 
-/// What came.
+/// Counts of what was received.
 struct Tally {
-  std::uint64_t bytes = 0;  ///< of messages and their heads
+  std::uint64_t bytes = 0;  ///< of messages and their headers
   std::uint64_t keys = 0, deltas = 0, texts = 0;
-  std::uint64_t bad = 0;  ///< frames that do not follow the one before, and no frames at all
-  bool closed = false;    ///< the host ended it
+  std::uint64_t bad = 0;  ///< malformed messages, and frames that do not follow the previous one
+  bool closed = false;    ///< the host closed the connection
 };
 
+/// A connection of a viewer. Its handlers run in the thread of the io_context.
 class Spectator {
  public:
-  /// `stalled`: reads nothing behind the handshake.
+  /// `stalled`: does not read after the handshake.
   static std::shared_ptr<Spectator> make(boost::asio::io_context& io, const Settings& settings, bool stalled);
   virtual ~Spectator() = default;
-  /// Connects; `watching` is called when the first frame came (stalled: when it is connected).
+  /// Connects. Calls `watching` after the first frame; a stalled one after the handshake.
   virtual void start(std::function<void()> watching) = 0;
   virtual const Tally& tally() const = 0;
 };

@@ -5,10 +5,10 @@
 namespace humanoid {
 
 namespace {
-constexpr double kHold = 0.3;  // s, of the first frame
-constexpr double kMost = 25;   // deg that the ankles give way
+constexpr double kHold = 0.3;  // of the first frame [s]
+constexpr double kMost = 25;   // largest correction of the ankles [deg]
 
-/// Joints about the long and the forward axis turn the other way on the left side.
+/// Joints about the vertical and the forward axis have the opposite sign on the left side.
 void apply(const Keyframe& k, Pose& pose) {
   const auto alike = [&pose](Joint right, Joint left, double deg) { pose[right] = pose[left] = radians(deg); };
   const auto mirrored = [&pose](Joint right, Joint left, double deg) {
@@ -45,7 +45,7 @@ void GetUp::step(const Percepts& percepts, const Posture& posture, Pose& pose) {
   for (std::size_t i = index(Joint::rShoulderPitch); i < kJoints; ++i)
     pose.at(i) = from_.at(i) + (to_.at(i) - from_.at(i)) * share;
 
-  // the ankles keep the torso's lean where it should be
+  // In the last two frames the ankles control the lean of the torso.
   if (frame_ + 2 >= count) {
     const double wanted =
         movement_->squatLean + (frame_ + 1 == count ? (movement_->endLean - movement_->squatLean) * share : 0);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Up from belly, back, or side: keyframes that both sides of the body play alike, with feedback at the end.
+/// Getting up from belly, back or side: keyframes, the same for both sides of the body, with feedback at the end.
 
 #include <array>
 #include <span>
@@ -9,34 +9,34 @@
 
 namespace humanoid {
 
-/// A pose of both sides and the time from the one before. Angles in degrees.
+/// A symmetric pose, and the time to reach it from the previous one [s]. Angles in degrees.
 struct Keyframe {
   double seconds;
   double shoulderPitch, shoulderOut, armRoll, elbow;
   double hipYaw, legOut, hipPitch, knee, ankle;
 };
-/// The first frame is held for a moment, so that what follows begins at rest.
+/// A sequence of keyframes. The first is held for a moment, so that the others start at rest.
 struct Movement {
   std::span<const Keyframe> frames;
   double straighten = 0,
          damp =
              0;  ///< of the ankles in the last two frames, for a degree of lean beyond what is wanted, for a degree/s
-  double squatLean = 0, endLean = 0;  ///< wanted in the last but one, and at the end [deg]
+  double squatLean = 0, endLean = 0;  ///< wanted in the last frame but one, and at the end [deg]
 };
 
-/// How a type (0..4) gets up from belly or back; from a side it turns onto one of them.
+/// The movement with which a robot of `type` (0..4) gets up from belly or back; from a side it first rolls over.
 const Movement& movementOf(int type, Lying lying);
 
-/// Plays one movement.
+/// Executes a movement.
 class GetUp {
  public:
-  /// `from`: the pose it begins in. The movement must outlive the playing.
+  /// Starts `movement`, which must outlive its execution. `from`: the current pose.
   void start(const Movement& movement, const Pose& from);
   void stop() { movement_ = nullptr; }
   bool playing() const { return movement_ != nullptr; }
-  /// True once, when the first frame is over: does it still lie as it did?
+  /// True for one cycle after the first frame: the time to check that the robot still lies on the same side.
   bool begun() const { return frame_ == 1 && time_ == 0; }
-  /// One cycle further.
+  /// Sets `pose` for the next cycle.
   void step(const Percepts& percepts, const Posture& posture, Pose& pose);
 
  private:

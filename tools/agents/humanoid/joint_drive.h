@@ -1,24 +1,24 @@
 #pragma once
 /// \file
-/// From wanted joint angles to the speeds that the motors take.
+/// Converts wanted joint angles to motor speeds.
 
 #include "nao.h"
 #include "spark/predicates.h"
 
 namespace humanoid {
 
-/// Drives all joints of one robot. A command acts two messages after the percepts that it answers: the one still under
-/// way is counted in.
+/// Drives all joints of one robot. A command acts two messages after the percepts that it answers, so the previous
+/// command, which has not acted yet, is taken into account.
 class JointDrive {
  public:
   explicit JointDrive(const Build& build) : build_(build) {}
-  /// Appends one command a joint. `wanted`, `measured`: angles [rad]; `share`: of the way left that is to be made
-  /// within a cycle, 0..1.
+  /// Appends one command per joint. `wanted`, `measured`: angles [rad]; `share`: fraction of the remaining angle to
+  /// cover in one cycle, 0..1.
   void drive(const Pose& wanted, const Pose& measured, double share, spark::Predicates& out);
 
  private:
   const Build& build_;
-  Pose underWay_{};  ///< rad/s
+  Pose underWay_{};  ///< speeds of the command that has not acted yet [rad/s]
 };
 
 }  // namespace humanoid

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-// A leg is hip yaw (about a slanted axis), roll and pitch in one point, a knee, an ankle with pitch and roll:
+// The joints of a leg: hip yaw (about an axis slanted by 45 degrees), hip roll and hip pitch at one point, knee, ankle
+// pitch and roll:
 //
 //     foot = Ry(-s 45) Rz(s yaw) Ry(s 45) . Ry(hip roll) Rx(hip pitch) Rx(knee) Rx(ankle pitch) Ry(ankle roll)
 //
 // with s = 1 for the right leg, -1 for the left.
 //
-// Seen from the sole, the way to the hip fixes ankle and knee; the rest of the rotation is the hip's.
+// The position of the hip in the frame of the sole determines ankle and knee; the hip does the rest of the rotation.
 
 namespace humanoid {
 
@@ -23,7 +24,7 @@ double legLength(const Build& build) { return build.thigh + build.shank + kSole;
 void placeFoot(const Build& build, bool right, const Foot& foot, Pose& pose) {
   const double slant = right ? kPi / 4 : -kPi / 4;
   const Mat3 rotation = about(2, foot.yaw) * about(0, foot.pitch) * about(1, foot.roll);
-  Vec3 hip = rotation.transpose() * -foot.place - Vec3(0, 0, kSole);  // from the ankle, in the foot's frame
+  Vec3 hip = rotation.transpose() * -foot.place - Vec3(0, 0, kSole);  // relative to the ankle, in the frame of the foot
 
   const double thigh = std::hypot(build.thigh, kKneeForward), bend = std::atan2(kKneeForward, build.thigh);
   const double reach = thigh + build.shank - 1e-6;

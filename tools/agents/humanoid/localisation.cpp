@@ -6,12 +6,12 @@
 namespace humanoid {
 
 namespace {
-/// The robot's forward is the field's x when its heading is 0: robot axes to field axes.
+/// Rotates robot axes to field axes. With heading 0 the robot's forward axis (y) is the field's x.
 Eigen::Rotation2Dd rotation(double heading) { return Eigen::Rotation2Dd(heading - kPi / 2); }
 
-constexpr double kTorsoHeight = 0.35;         // m, of a player that stands or walks
-constexpr double kNod = 0.4, kMostNod = 0.4;  // of what a look tells; rad
-constexpr double kNear = 25;                  // m; what is further off tells the direction, hardly the place
+constexpr double kTorsoHeight = 0.35;         // of a robot that stands or walks [m]
+constexpr double kNod = 0.4, kMostNod = 0.4;  // fraction of a measured correction; limit [rad]
+constexpr double kNear = 25;                  // a single landmark farther away is not used [m]
 }  // namespace
 
 Vec3 Localisation::level(const Vec3& inHead, const Percepts& percepts, const Posture& posture) const {
@@ -21,7 +21,7 @@ Vec3 Localisation::level(const Vec3& inHead, const Percepts& percepts, const Pos
   return Eigen::AngleAxisd(nod_, Vec3::UnitX()) * (posture.level() * (head * inHead + Vec3(0, 0, kCameraHeight)));
 }
 
-/// While a player walks, the lean from its accelerometer is wrong by several degrees; landmarks of known height correct
+/// While a robot walks, the lean by its accelerometer is wrong by several degrees. Landmarks of known height correct
 /// it.
 void Localisation::findHorizon(const Percepts& percepts, const Posture& posture) {
   double across = 0, along = 0;
@@ -44,12 +44,11 @@ void Localisation::update(const Percepts& percepts, const Posture& posture, cons
   if (percepts.seeing && !percepts.side.empty()) match(percepts, posture);
 }
 
-// With two marks or more, the turn and shift that fit them best; with one, the heading is believed and the place is
-// moved.
+// Two landmarks or more: least-squares rotation and translation. One: keep the heading and correct the position.
 void Localisation::match(const Percepts& percepts, const Posture& posture) {
   findHorizon(percepts, posture);
   const double flip = percepts.side == "right" ? -1 : 1;
-  std::vector<std::pair<Vec2, Vec2>> seen;  // from the robot, on the field
+  std::vector<std::pair<Vec2, Vec2>> seen;  // relative to the robot; on the field
   Vec2 robotMean = Vec2::Zero(), fieldMean = Vec2::Zero();
   for (const Sighting& s : percepts.sightings) {
     const Vec3 place = level(s.place, percepts, posture);

@@ -1,39 +1,39 @@
 #pragma once
 /// \file
-/// Where a robot is on the field, from flags and goal posts, and where things are that it sees.
+/// Self-localisation by flags and goal posts, and positions of the objects that a robot sees.
 
 #include "posture.h"
 
 namespace humanoid {
 
-/// The field as a team sees it: the opponents' goal at +x, y to the left, origin in the middle [m].
+/// Pose of the robot in its team's frame: opponents' goal at +x, y to the left, origin at the centre of the field [m].
 class Localisation {
  public:
-  /// To be called for every message, after the posture's. `moved`: the way walked since the last one, x to the robot's
+  /// Call it for every message, after Posture::update(). `moved`: odometry since the last message, x to the robot's
   /// right, y forward [m].
   void update(const Percepts& percepts, const Posture& posture, const Vec2& moved);
-  /// True when it has found itself, and seen enough since to trust it.
+  /// True while the pose is known: enough landmarks were seen within the last few seconds.
   bool known() const { return age_ < kTrust; }
-  /// The robot's place [m].
+  /// Position of the robot [m].
   const Vec2& place() const { return place_; }
-  /// rad; 0: its front is towards the opponents' goal, positive to the left.
+  /// Heading [rad]; 0: towards the opponents' goal, positive to the left.
   double heading() const { return heading_; }
-  /// A point of the head's frame, seen from the torso's middle but level: x right, y forward, z up [m].
+  /// A point of the head's frame in the levelled frame of the torso: x right, y forward, z up [m].
   Vec3 level(const Vec3& inHead, const Percepts& percepts, const Posture& posture) const;
-  /// From the robot's level frame to the field, and back.
+  /// Converts points from the levelled frame of the robot to the team's frame, and back [m].
   Vec2 toField(const Vec2& fromRobot) const;
   Vec2 toRobot(const Vec2& onField) const;
-  /// Forgets where it is.
+  /// Marks the pose as unknown.
   void lose() { age_ = kTrust; }
 
  private:
-  static constexpr double kTrust = 3;  ///< s
+  static constexpr double kTrust = 3;  ///< time for which odometry alone is trusted [s]
   void match(const Percepts& percepts, const Posture& posture);
   void findHorizon(const Percepts& percepts, const Posture& posture);
 
   Vec2 place_ = Vec2::Zero();
-  double heading_ = 0, age_ = kTrust;  ///< age: s since it saw enough
-  double nod_ = 0;                     ///< rad that the posture's lean is wrong
+  double heading_ = 0, age_ = kTrust;  ///< rad; time since enough landmarks were seen [s]
+  double nod_ = 0;                     ///< correction of the posture's forward lean [rad]
 };
 
 }  // namespace humanoid

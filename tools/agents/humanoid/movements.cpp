@@ -3,7 +3,7 @@
 namespace humanoid {
 
 namespace {
-// All found by a search in simulation.
+// All optimised in simulation.
 using Frames = std::array<Keyframe, 6>;
 constexpr std::array<Frames, kRobotTypes> kFromBelly{{
     {{{0.4, 1.7, 7.2, -7.3, 86.4, -1, -9.4, 60.1, -29.8, 20.3},

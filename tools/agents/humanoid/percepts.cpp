@@ -37,7 +37,7 @@ void readFoot(const Element& frp, Percepts& out) {
   if (name.at(1).text() == "lf") out.leftFoot = true;
 }
 
-/// The first part that is seen tells where a player is.
+/// The position of a player is that of the first part that is seen.
 void readPlayer(const Element& p, Percepts& out) {
   const Element team = p.named("team"), id = p.named("id");
   if (!team || !id) return;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What one sense message says, as numbers. Frames: robot and head have x to the right, y forward, z up.
+/// The content of a sense message. Frames of robot and head: x to the right, y forward, z up.
 
 #include <Eigen/Core>
 #include <optional>
@@ -16,45 +16,46 @@ using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-/// A flag or goal post; where it stands is known.
+/// A flag or goal post with known position.
 struct Landmark {
   std::string_view name;
-  Vec3 place;  ///< m, field frame of the left team: x to the right goal
+  Vec3 place;  ///< in the frame of the left team: x towards the right goal [m]
 };
-/// All eight.
+/// The four flags and four goal posts.
 const std::vector<Landmark>& landmarks();
 
-/// One landmark as it was seen.
+/// An observed landmark.
 struct Sighting {
   const Landmark* landmark;
-  Vec3 place;  ///< m, head frame
+  Vec3 place;  ///< head frame [m]
 };
-/// Another robot as it was seen.
+/// An observed robot.
 struct SeenPlayer {
   std::string team;
   int unum;
-  Vec3 place;  ///< m, head frame: the part that was named first
+  Vec3 place;  ///< of the first part in the percept, head frame [m]
 };
 
-/// What is told once or seldom stays from message to message; what is seen counts for its message alone.
+/// Values that are sent once or rarely are kept from message to message; what was seen and heard is that of the last
+/// message only.
 struct Percepts {
   double now = 0, gameTime = 0;                  ///< s
-  std::string playMode = "BeforeKickOff", side;  ///< side: "left", "right", "" before it was told
+  std::string playMode = "BeforeKickOff", side;  ///< side: "left", "right", "" before init
   int unum = 0, scoreLeft = 0, scoreRight = 0;
-  Vec3 gyro = Vec3::Zero();                  ///< rad/s, torso frame
-  Vec3 acceleration = Vec3(0, 0, 9.81);      ///< m/s^2, torso frame: at rest it points up
+  Vec3 gyro = Vec3::Zero();                  ///< torso frame [rad/s]
+  Vec3 acceleration = Vec3(0, 0, 9.81);      ///< torso frame; points up at rest [m/s^2]
   Pose joints{};                             ///< rad
-  bool rightFoot = false, leftFoot = false;  ///< touches something
-  bool seeing = false;                       ///< this message has a See
+  bool rightFoot = false, leftFoot = false;  ///< has contact
+  bool seeing = false;                       ///< the message contains See
   std::vector<Sighting> sightings;
   std::vector<SeenPlayer> players;
-  std::optional<Vec3> ball;        ///< m, head frame
-  std::vector<std::string> heard;  ///< what players of `team` said, not oneself
+  std::optional<Vec3> ball;        ///< head frame [m]
+  std::vector<std::string> heard;  ///< messages of team-mates
 };
 
-/// Takes a sense message in, for a player of `team`. Unknown parts are skipped.
+/// Reads a sense message for a player of `team` into `out`. Skips unknown percepts.
 void read(const spark::Predicates& message, std::string_view team, Percepts& out);
-/// The point at distance `d` [m], `h` [deg] to the left and `v` [deg] up.
+/// The point at distance `d` [m], `h` [deg] to the left and `v` [deg] up, in the head frame [m].
 Vec3 polar(double d, double h, double v);
 
 }  // namespace humanoid

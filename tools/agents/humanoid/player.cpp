@@ -10,27 +10,29 @@
 namespace humanoid {
 
 namespace {
-constexpr double kJointShare = 0.8;          // of the way left that a joint makes in a cycle
-constexpr double kBallMemory = 4;            // s
-constexpr double kMateMemory = 1.5;          // s
-constexpr double kOtherMemory = 0.8;         // s that a player is taken to be where he was seen
-constexpr double kAtBall = 0.4;              // m: he plays the ball, or may have
-constexpr double kTouch = 0.2;               // m from the ball: he has touched it
-constexpr double kDuel = 1.0;                // m from the ball: an opponent plays it, too
-constexpr double kBarred = 8;                // s after which another player is assumed to have touched the ball
-constexpr double kRest = 0.1;                // s that he lies, at least, before he gets up
-constexpr double kMostRest = 0.35;           // s after which he tries although he still rolls
-constexpr double kUpright = radians(40);     // of tilt at most
-constexpr double kPropped = 1, kSits = 1.2;  // s without standing upright, without a foot on the ground: he lies
-constexpr double kStill = 1;                 // rad/s
-constexpr double kSlip = 0.78;               // of the speed that is walked
-constexpr double kSettling = 0.03;           // rad in a cycle towards the stance
-constexpr double kForgets = 6;               // s after which an attempt to get up is another one
-constexpr double kSteady = 0.5;              // s that he treads on the spot then
-constexpr double kBeamEvery = 0.1;           // s
-constexpr double kBeamTime = 1.0;            // s in which he is beamed to his place
-constexpr double kAskEvery = 1;              // s between two inits that were not answered
-constexpr int kSaySlots = 22;                // cycles in which each of eleven speaks once
+constexpr double kJointShare = 0.8;       // fraction of the remaining angle that a joint covers in a cycle
+constexpr double kBallMemory = 4;         // time for which a position is used: of the ball [s]
+constexpr double kMateMemory = 1.5;       // of a team-mate's message [s]
+constexpr double kOtherMemory = 0.8;      // of an observed player [s]
+constexpr double kAtBall = 0.4;           // distance at which a player may have played the ball [m]
+constexpr double kTouch = 0.2;            // distance at which a player has touched the ball [m]
+constexpr double kDuel = 1.0;             // distance of an opponent to the ball in a duel [m]
+constexpr double kBarred = 8;             // after this time another player is assumed to have touched the ball [s]
+constexpr double kRest = 0.1;             // smallest time to lie before getting up [s]
+constexpr double kMostRest = 0.35;        // after this time it gets up even if it still rolls [s]
+constexpr double kUpright = radians(40);  // largest tilt
+constexpr double
+    kPropped = 1,
+    kSits = 1.2;  // time without being upright, or without a foot on the ground, after which it counts as lying [s]
+constexpr double kStill = 1;        // angular speed of a robot at rest [rad/s]
+constexpr double kSlip = 0.78;      // real speed as a fraction of the commanded one
+constexpr double kSettling = 0.03;  // change of angles per cycle towards the stance [rad]
+constexpr double kForgets = 6;      // after this time attempts to get up are counted anew [s]
+constexpr double kSteady = 0.5;     // time of stepping on the spot after getting up [s]
+constexpr double kBeamEvery = 0.1;  // between two beams [s]
+constexpr double kBeamTime = 1.0;   // from the start of a pause in which it beams [s]
+constexpr double kAskEvery = 1;     // between two inits without an answer [s]
+constexpr int kSaySlots = 22;       // cycles in which each of eleven players speaks once
 
 void armsDown(const Build& build, Pose& pose) {
   pose[Joint::rShoulderPitch] = pose[Joint::lShoulderPitch] = radians(-100);
@@ -71,7 +73,7 @@ void HumanoidPlayer::think(const spark::Predicates& message, spark::Predicates& 
   drive_.drive(pose_, percepts_.joints, walking_ ? gait_.share : kJointShare, actions);
 }
 
-// ---- what he knows ----
+// ---- percepts ----
 
 void HumanoidPlayer::sense(const spark::Predicates& message) {
   read(message, team_, percepts_);
@@ -92,7 +94,7 @@ void HumanoidPlayer::sense(const spark::Predicates& message) {
     lyingSince_ = percepts_.now;
 }
 
-/// Propped up on his limbs, or sitting, he lies as well.
+/// A robot that is propped up on its limbs, or sits, counts as lying, too.
 Lying HumanoidPlayer::lying() const {
   if (posture_.lying() != Lying::no) return posture_.lying();
   if (percepts_.now - uprightAt_ > kPropped) return posture_.forward() > 0 ? Lying::onFront : Lying::onBack;
@@ -111,7 +113,7 @@ void HumanoidPlayer::senseOthers() {
   std::erase_if(others_, [this](const Other& o) { return percepts_.now - o.seenAt > kOtherMemory; });
   if (!localisation_.known()) return;
   for (const SeenPlayer& p : percepts_.players) {
-    if (p.team == team_ && p.unum == unum_) continue;  // his own arms
+    if (p.team == team_ && p.unum == unum_) continue;  // its own arms
     const Vec2 place = localisation_.toField(localisation_.level(p.place, percepts_, posture_).head<2>());
     const auto known = std::find_if(others_.begin(), others_.end(),
                                     [&](const Other& o) { return o.unum == p.unum && o.team == p.team; });
@@ -137,7 +139,7 @@ void HumanoidPlayer::watchRestart() {
   if (touched || percepts_.now - barredSince_ > kBarred || percepts_.playMode != "PlayOn") barredSince_ = -1;
 }
 
-/// A message is `unum:x:y:d`: the ball's place and the speaker's way to it, in cm.
+/// A message is `unum:x:y:d`: position of the ball and length of the speaker's path to it [cm].
 void HumanoidPlayer::hear() {
   for (const std::string& text : percepts_.heard) {
     int unum = 0, x = 0, y = 0, d = 0;
@@ -150,7 +152,8 @@ void HumanoidPlayer::hear() {
   }
 }
 
-/// Adds distance for a player that lies, and puts one that may not touch the ball out of the running.
+/// Length of the own path to the ball [m]; longer for a player that lies, and much longer for one that may not touch
+/// it.
 double HumanoidPlayer::toBall() const {
   return wayToBall(localisation_.place(), ball_) + (lyingSince_ >= 0 || getUp_.playing() ? 2 : 0) +
          (barredSince_ >= 0 ? 20 : 0);
@@ -182,7 +185,7 @@ Situation HumanoidPlayer::situation() const {
 
 Decision HumanoidPlayer::decideNow() const { return decide(situation()); }
 
-// ---- what he does ----
+// ---- actions ----
 
 void HumanoidPlayer::act(const Decision& decision, spark::Predicates& actions) {
   if (!pausedMode(percepts_.playMode))
@@ -220,7 +223,7 @@ void HumanoidPlayer::act(const Decision& decision, spark::Predicates& actions) {
   }
 }
 
-/// The others from the robot, without those so near to the ball.
+/// Positions of the other players relative to the robot, except those within `nearBall` of the ball [m].
 std::vector<Vec2> HumanoidPlayer::inTheWay(double nearBall) const {
   std::vector<Vec2> places;
   for (const Other& o : others_)
@@ -241,7 +244,7 @@ void HumanoidPlayer::getUp() {
   const double lain = percepts_.now - lyingSince_;
   if (lain < kRest || (percepts_.gyro.norm() > kStill && lain < kMostRest)) return;
   fell_ = lying();
-  // what failed twice would fail again
+  // After two failures try the movement for another side.
   static constexpr std::array other{Lying::onSide, Lying::onSide, Lying::onSide, Lying::onBack};
   if (percepts_.now - triedAt_ > kForgets) attempts_ = 0;
   triedAt_ = percepts_.now;
@@ -250,7 +253,7 @@ void HumanoidPlayer::getUp() {
   rise();
 }
 
-/// Who lies on another side after the first pose begins anew; who stands treads on the spot for a moment.
+/// Starts again if it lies on another side after the first frame. Steps on the spot for a moment when it stands.
 void HumanoidPlayer::rise() {
   getUp_.step(percepts_, posture_, pose_);
   const Lying lies = posture_.lying();
@@ -258,12 +261,12 @@ void HumanoidPlayer::rise() {
   if (getUp_.begun() && lies != Lying::no && lies != fell_) return getUp_.stop();
   if (getUp_.playing() || lies != Lying::no) return;
   roseAt_ = percepts_.now;
-  localisation_.lose();  // while it lay it saw the world askew
+  localisation_.lose();  // while it lay, its measurements were wrong
   walk_.start(pose_);
   walking_ = true;
 }
 
-/// Treads on the spot where there is nowhere to go.
+/// Steps on the spot with velocity 0.
 void HumanoidPlayer::walk(const Velocity& velocity) {
   if (!walking_) walk_.start(pose_);
   walking_ = true;
@@ -272,7 +275,7 @@ void HumanoidPlayer::walk(const Velocity& velocity) {
   walk_.step(steady ? velocity : Velocity{}, percepts_, posture_, pose_);
 }
 
-/// Walks to a halt, then stretches.
+/// Stops walking, then takes the stance.
 void HumanoidPlayer::standStill() {
   if (walking_ && !walk_.mayStop()) return walk({});
   walking_ = false;
@@ -287,7 +290,7 @@ void HumanoidPlayer::settle() {
     pose_.at(i) = towards(pose_.at(i), stance.at(i), kSettling);
 }
 
-/// Turns the head to the ball; sweeps while it does not know where that is.
+/// Turns the head to the ball, or sweeps while the position of the ball is unknown.
 void HumanoidPlayer::look() {
   const bool known = localisation_.known() && percepts_.now - ballAt_ < kBallMemory;
   double pan = radians(60) * std::sin(percepts_.now * 1.5), tilt = radians(-20);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A humanoid player: sense messages in, actions out.
+/// The program of a humanoid player: turns sense messages into actions.
 
 #include <string>
 
@@ -12,39 +12,41 @@
 
 namespace humanoid {
 
-/// Plays one Nao. Knows nothing of sockets; deterministic: the same messages give the same answers. One object plays
-/// one agent.
+/// Controls one Nao. Independent of the transport and deterministic: the same messages give the same answers.
 class HumanoidPlayer {
  public:
-  /// `unum`: 1..11, number 1 keeps the goal; `type`: robot type 0..4.
+  /// `unum`: 1..11, number 1 is the goalie; `type`: robot type 0..4.
   HumanoidPlayer(std::string team, int unum, int type);
   HumanoidPlayer(const HumanoidPlayer&) = delete;
 
-  /// The first message, once connected: asks for the robot.
+  /// Appends the first message, which loads the robot.
   void start(spark::Predicates& actions) const;
-  /// To be called for every sense message; appends the answer (without `(syn)`, which is the caller's).
+  /// Call it for every sense message. Appends the answer, without `(syn)`.
   void think(const spark::Predicates& message, spark::Predicates& actions);
 
+  /// Uniform number.
   int unum() const { return unum_; }
+  /// Percepts and estimates as of the last message.
   const Percepts& percepts() const { return percepts_; }
   const Localisation& localisation() const { return localisation_; }
   const Posture& posture() const { return posture_; }
-  /// The ball's place on the field, as far as it knows [m].
+  /// Estimated position of the ball in the team's frame [m].
   const Vec2& ball() const { return ball_; }
+  /// The current task.
   Task task() const { return task_; }
 
  private:
-  /// A team-mate, as he told.
+  /// What a team-mate has said.
   struct Mate {
-    double heardAt = -10, toBall = 1e9;  ///< s, m
+    double heardAt = -10, toBall = 1e9;  ///< time of the message [s]; length of its path to the ball [m]
   };
 
-  /// Another player where he was seen.
+  /// An observed player.
   struct Other {
     std::string team;
     int unum;
-    double seenAt;  ///< s
-    Vec2 place;     ///< on the field [m]
+    double seenAt;  ///< time of the observation [s]
+    Vec2 place;     ///< team's frame [m]
   };
 
   void sense(const spark::Predicates& message);
@@ -77,21 +79,21 @@ class HumanoidPlayer {
   const Gait& gait_;
   Walk walk_;
   GetUp getUp_;
-  Lying fell_ = Lying::no;  ///< how he lay when he began to get up
+  Lying fell_ = Lying::no;  ///< the side on which it lay when it started to get up
   Pose pose_{};
   Task task_ = Task::stand;
   bool walking_ = false;
-  int attempts_ = 0;                       ///< to get up, one soon after the other
-  double roseAt_ = -100, triedAt_ = -100;  ///< s, when he stood up, and began to get up
-  double uprightAt_ = 0, footAt_ = 0;      ///< s, when he was upright, and had a foot on the ground, last
+  int attempts_ = 0;                       ///< consecutive attempts to get up
+  double roseAt_ = -100, triedAt_ = -100;  ///< when it last stood up and last started to get up [s]
+  double uprightAt_ = 0, footAt_ = 0;      ///< when it was last upright, and last had a foot on the ground [s]
   double initAt_ = -10, beamAt_ = -10, lyingSince_ = -1, pausedSince_ = -1;  ///< s
-  Vec2 ballFromHere_ = Vec2::Zero();  ///< the ball from the robot, x to its right, y forward [m]
-  Vec2 ball_ = Vec2::Zero();          ///< on the field [m]
-  double ballAt_ = -100;              ///< s, when it was last seen or told of
+  Vec2 ballFromHere_ = Vec2::Zero();  ///< position of the ball relative to the robot, x to its right, y forward [m]
+  Vec2 ball_ = Vec2::Zero();          ///< in the team's frame [m]
+  double ballAt_ = -100;              ///< when the ball was last seen or reported [s]
   std::array<Mate, 12> mates_;
   std::vector<Other> others_;
-  bool restart_ = false;     ///< the last message told of a restart of ours
-  double barredSince_ = -1;  ///< s, when he took a restart that nobody has touched since; -1: he may play
+  bool restart_ = false;     ///< the mode of the last message was a restart of the own team
+  double barredSince_ = -1;  ///< when it took a restart, until another player touches the ball [s]; -1: it may play
 };
 
 }  // namespace humanoid

@@ -7,8 +7,8 @@
 namespace humanoid {
 
 namespace {
-constexpr double kTrust = 0.03;    // of the accelerometer in each cycle
-constexpr double kSteadyBand = 3;  // m/s^2 around gravity within which it shows where up is
+constexpr double kTrust = 0.03;    // weight of the accelerometer in each cycle
+constexpr double kSteadyBand = 3;  // the accelerometer is used when it measures gravity within this band [m/s^2]
 constexpr double kGravity = 9.81;  // m/s^2
 }  // namespace
 
@@ -20,7 +20,7 @@ void Posture::update(const Percepts& percepts) {
   up_.normalize();
 }
 
-// Leaning forward turns the vertical towards the robot's back.
+// When the robot leans forward, the vertical points towards its back.
 double Posture::forward() const { return std::atan2(-up_.y(), up_.z()); }
 double Posture::right() const { return std::atan2(-up_.x(), up_.z()); }
 double Posture::tilt() const { return std::acos(std::clamp(up_.z(), -1.0, 1.0)); }
@@ -31,7 +31,7 @@ Lying Posture::lying() const {
   return up_.y() < 0 ? Lying::onFront : Lying::onBack;
 }
 
-// The shortest turn; upside down any will do.
+// The shortest rotation; upside down any half turn.
 Mat3 Posture::level() const {
   const Vec3 axis = up_.cross(Vec3::UnitZ());
   if (axis.norm() < 1e-9) return up_.z() > 0 ? Mat3(Mat3::Identity()) : Mat3(Vec3(1, -1, -1).asDiagonal());

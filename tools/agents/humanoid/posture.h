@@ -1,30 +1,31 @@
 #pragma once
 /// \file
-/// How the torso leans, from its gyroscope and accelerometer.
+/// Orientation of the torso, from gyroscope and accelerometer.
 
 #include "percepts.h"
 
 namespace humanoid {
 
+/// The side on which the robot lies.
 enum class Lying { no, onFront, onBack, onSide };
 
-/// Follows the direction that is up. Everything in the torso's frame.
+/// Estimates the vertical direction with a complementary filter. All vectors are in the torso's frame.
 class Posture {
  public:
-  /// To be called for every message.
+  /// Call it for every message.
   void update(const Percepts& percepts);
-  /// Starts anew, upright; after a referee or a beam set the robot up.
+  /// Resets the estimate to upright, after a beam or a move by the referee.
   void reset() { up_ = Vec3(0, 0, 1); }
-  /// Unit vector.
+  /// The vertical, a unit vector.
   const Vec3& up() const { return up_; }
-  /// rad, positive: leans forward; to the right.
+  /// Lean forward and to the right [rad].
   double forward() const;
   double right() const;
-  /// rad between the torso's axis and the vertical.
+  /// Angle between the torso's axis and the vertical [rad].
   double tilt() const;
-  /// Which side the robot lies on when it leans by more than 60 degrees.
+  /// The side on which the robot lies, when it leans by more than 60 degrees.
   Lying lying() const;
-  /// From torso frame to a level frame with the same heading.
+  /// Rotation from the torso's frame to a level frame with the same heading.
   Mat3 level() const;
 
  private:

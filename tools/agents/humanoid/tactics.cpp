@@ -3,41 +3,41 @@
 #include <algorithm>
 #include <cmath>
 
-// What a player does, first line that fits:
+// The decision of a player; the first line that applies counts:
 //
-//     lies, or tips over                  -> get up, or let it happen
-//     before a kick-off, after a goal     -> be beamed to the place in the formation
-//     does not know where he or the ball is -> turn and look
-//     the others' ball                    -> keep away from it
-//     took a restart himself              -> keep away until somebody else has touched the ball
-//     shortest way to the ball            -> behind it as seen from the goal, then through it
-//     everybody else                      -> a place that moves with the ball
+//     lies, or falls                      -> get up, or wait until it lies
+//     before a kick-off, after a goal     -> beam to its position in the formation
+//     own or ball position unknown        -> turn and search
+//     opponents' restart                  -> keep away from the ball
+//     has taken a restart                 -> keep away until another player has touched the ball
+//     shortest path to the ball           -> go behind it, as seen from the goal, then push it
+//     otherwise                           -> a position that moves with the ball
 
 namespace humanoid {
 
 namespace {
-constexpr double kTipping = radians(50);   // of tilt: no step saves him
-constexpr double kKeepAway = 2.4;          // m from the ball at the others' restarts
-constexpr double kBehind = 0.35;           // m behind the ball: there he turns towards it
-constexpr double kAround = 0.5;            // m from the ball when he has to get round it
-constexpr double kFurther = radians(55);   // that he goes round it at a time
-constexpr double kAtHand = 0.8;            // m from the ball: he steps to its back, or pushes it
-constexpr double kFar = 2;                 // m from the ball: he does not go round it yet
-constexpr double kTurned = radians(40);    // from the ball's way: he does not push it before he has turned
-constexpr double kFoot = 0.05;             // m beside the middle of a player, where his foot meets the ball
-constexpr double kToes = 0.1;              // m that his foot is ahead then
-constexpr double kExact = 0.03;            // m beside that which do not matter
-constexpr double kAhead = 0.5;             // m ahead on his line that he walks to
-constexpr double kMouth = 0.3, kShot = 3;  // m beside the goal's middle at which he aims at most, up to that distance
-constexpr double kWiden = 0.25;            // m further aside for each m further away
-constexpr double kAsideInDuel = radians(60);  // further aside when an opponent is at the ball
-constexpr double kStraight = 4;               // m from the goal: there he aims at it, duel or not
-constexpr double kRound = 2;                  // m that getting round the whole ball counts as
-constexpr double kClear = 0.65;               // m between two players' middles when one passes the other
-constexpr double kLookOut = 1.4;              // m ahead in which others matter
-constexpr double kForward = 0.7, kBackward = 0.35, kSideways = 0.18;  // m/s that players walk, about
-constexpr double kTurn = 1;                                           // rad/s that they turn
-constexpr double kMostBackward = 0.5, kMostSideways = 0.25;           // m/s, more is not asked of a gait
+constexpr double kTipping = radians(50);      // tilt from which no step prevents the fall
+constexpr double kKeepAway = 2.4;             // distance to the ball at opponents' restarts [m]
+constexpr double kBehind = 0.35;              // distance behind the ball at which it turns towards it [m]
+constexpr double kAround = 0.5;               // distance to the ball on the way around it [m]
+constexpr double kFurther = radians(55);      // angle around the ball to the next waypoint
+constexpr double kAtHand = 0.8;               // within this distance it goes behind the ball, or pushes it [m]
+constexpr double kFar = 2;                    // beyond this distance it does not go around the ball yet [m]
+constexpr double kTurned = radians(40);       // largest heading error for a push
+constexpr double kFoot = 0.05;                // lateral offset of the foot that hits the ball [m]
+constexpr double kToes = 0.1;                 // forward offset of that foot [m]
+constexpr double kExact = 0.03;               // tolerated lateral error [m]
+constexpr double kAhead = 0.5;                // distance of the point ahead that it walks to [m]
+constexpr double kMouth = 0.3, kShot = 3;     // lateral range of the aim at the goal, up to that distance [m]
+constexpr double kWiden = 0.25;               // additional lateral range per distance
+constexpr double kAsideInDuel = radians(60);  // additional angle when an opponent is at the ball
+constexpr double kStraight = 4;               // within this distance of the goal it aims at it even in a duel [m]
+constexpr double kRound = 2;                  // additional path length for half a turn around the ball [m]
+constexpr double kClear = 0.65;               // distance between two robots that pass each other [m]
+constexpr double kLookOut = 1.4;              // distance ahead within which other robots are avoided [m]
+constexpr double kForward = 0.7, kBackward = 0.35, kSideways = 0.18;  // typical walking speeds [m/s]
+constexpr double kTurn = 1;                                           // typical turning speed [rad/s]
+constexpr double kMostBackward = 0.5, kMostSideways = 0.25;           // largest wanted speeds [m/s]
 const Vec2 kTheirGoal(15, 0), kOwnGoal(-15, 0);
 
 constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
@@ -53,7 +53,8 @@ constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
                                                             {-2.3, 0},
                                                             {-2.4, -2.5}}};
 
-/// Where the field players wait, from the ball. Two are behind it, ready to go on where the first one loses it.
+/// Positions of waiting field players relative to the ball [m]. Two are behind it, to take over when the first one
+/// loses the ball.
 constexpr std::array<std::array<double, 2>, 12> kFromBall{{{0, 0},
                                                            {0, 0},
                                                            {-4, 4.5},
@@ -78,8 +79,8 @@ Decision keepAway(const Situation& s) {
   return walkTo(s.ball + back.normalized() * kKeepAway, angleOf(-back));
 }
 
-/// Where the ball is to go: between the posts; from further away as far aside as the player comes from aside, and there
-/// more so in a duel.
+/// Direction in which to push the ball: between the posts; from far away as far to the side as the player approaches
+/// from, and more so in a duel.
 Vec2 aim(const Situation& s) {
   const Vec2 from = s.ball - s.place;
   const double distance = (kTheirGoal - s.ball).norm(), width = kMouth + kWiden * std::max(0.0, distance - kShot);
@@ -91,7 +92,7 @@ Vec2 aim(const Situation& s) {
   return {std::cos(goal + off), std::sin(goal + off)};
 }
 
-/// Round the ball to its back as seen from the goal, then along the line through it: a foot pushes it on at every step.
+/// Goes around the ball to its far side from the goal, then walks through it: a foot pushes it with every step.
 Decision attack(const Situation& s) {
   const Vec2 way = aim(s), from = s.place - s.ball, across(-way.y(), way.x());
   const double behind = -from.dot(way), beside = from.dot(across), side = beside < 0 ? -1 : 1, facing = angleOf(way);

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// What a player decides to do, from what he knows. No memory but what is handed in: the same situation gives the same
-/// decision.
+/// Decisions of a player. They have no memory: the same situation gives the same decision.
 
 #include <string>
 #include <vector>
@@ -10,53 +9,56 @@
 
 namespace humanoid {
 
-/// What matters for a decision. Places on the field as the team sees it (opponents' goal at +x) [m].
+/// The input of a decision. Positions are in the team's frame (opponents' goal at +x) [m].
 struct Situation {
   std::string playMode, side;  ///< side: "left", "right"
   int unum = 1;
   Lying lying = Lying::no;
-  double tilt = 0;  ///< rad, of the torso
+  double tilt = 0;  ///< of the torso [rad]
   bool located = false, ballKnown = false,
-       nearest = false;    ///< nearest: no team-mate says that his way to the ball is shorter
-  bool barred = false;     ///< he took the restart: another one must touch the ball before he does
+       nearest = false;    ///< nearest: no team-mate reports a shorter path to the ball
+  bool barred = false;     ///< it took the restart: another player must touch the ball before it may again
   bool contested = false;  ///< an opponent is at the ball
   Vec2 place = Vec2::Zero(), ball = Vec2::Zero();
   double heading = 0;  ///< rad
 };
 
-/// walk: to a place, to stop there; run: through it; push: the ball is right ahead, it is to meet a foot.
+/// walk: to a position and stop there; run: through a position; push: the ball is straight ahead, hit it with a foot.
 enum class Task { takePlace, fall, getUp, search, stand, walk, run, push };
 
-/// What to do next.
+/// What to do in this cycle.
 struct Decision {
   Task task = Task::stand;
-  Vec2 target = Vec2::Zero();  ///< walk, run, push: where to, on the field; takePlace: where to be beamed
+  Vec2 target = Vec2::Zero();  ///< walk, run, push: where to go [m]; takePlace: where to beam [m]
   double facing = 0;           ///< walk, push: heading at the target [rad]
 };
 
+/// Decides what to do.
 Decision decide(const Situation& s);
-/// Where number 1..11 stands at kick-off.
+/// Position of player 1..11 at kick-offs [m].
 Vec2 kickOffPlace(int unum);
-/// Length of the way to the ball [m]. Going round it, to push it towards the goal, counts as up to 2 m more.
+/// Length of the path to the ball [m]. Going around the ball, to push it towards the goal, adds up to 2 m.
 double wayToBall(const Vec2& place, const Vec2& ball);
-/// Where number 1..11 waits when others are nearer to the ball.
+/// Position of player 1..11 while others are nearer to the ball [m].
 Vec2 waitingPlace(int unum, const Vec2& ball);
-/// True for modes in which players may be beamed and nobody plays.
+/// True for play modes in which players may beam and the ball is not in play.
 bool pausedMode(std::string_view playMode);
 /// True when only the other team may touch the ball. `side`: of the own team.
 bool theirBall(std::string_view playMode, std::string_view side);
-/// How to walk to a point: straight, or turned towards it, which is sooner. `target`: from the robot, x to its right, y
-/// forward [m]; `facing`: turn to make at the target [rad]. Unlimited: the gait cuts it.
+/// A velocity [m/s, m/s, rad/s], not limited: Walk clamps it.
 struct Steering {
   double forward, right, turn;
 };
+/// How to walk to a point: sideways or after turning towards it, whichever is faster. `target`: relative to the robot,
+/// x to its right, y forward [m]; `facing`: rotation to make at the target [rad].
 Steering steer(const Vec2& target, double facing);
-/// The same without stopping there.
+/// Like steer(), without stopping at the target.
 Steering run(const Vec2& target);
-/// How to push the ball with a foot. `target`: where the middle of the robot is to pass, so that a foot meets the ball;
-/// `facing`: as above. It walks on no faster than it gets rid of its sideways error.
+/// How to push the ball with a foot. `target`: point that the centre of the robot must pass so that a foot hits the
+/// ball; `facing`: as above. The forward speed is limited so that the lateral error vanishes in time.
 Steering push(const Vec2& target, double facing);
-/// Where to go instead when others are in the way. All from the robot, x to its right, y forward [m].
+/// The target, or a point beside another robot that blocks the path. All relative to the robot, x to its right, y
+/// forward [m].
 Vec2 pass(const Vec2& target, const std::vector<Vec2>& others);
 
 }  // namespace humanoid

@@ -6,16 +6,16 @@
 namespace humanoid {
 
 namespace {
-constexpr double kStartTime = 0.6;  // s until the first steps have their full height
-constexpr double kBlend = 0.2;      // s from the pose in which it starts to that of walking
+constexpr double kStartTime = 0.6;  // until the steps have their full height [s]
+constexpr double kBlend = 0.2;      // from the start pose to that of the walk [s]
 constexpr double kStanceHeight = 0.92, kStanceForward = 0.001, kStanceLean = 0.04,
-                 kStanceSpread = -0.006;  // as in a gait; stands by itself
+                 kStanceSpread = -0.006;  // as in Gait; statically stable
 
 struct Leg {
-  double lift, way;  ///< 0..1 of the foot's height, -1..1 of its way
+  double lift, way;  ///< height of the foot, 0..1; its position along the step, -1..1
 };
 
-/// `phase` of the leg: it swings in the first half and stands in the second.
+/// `phase` of the leg: swing in the first half, support in the second.
 Leg legAt(double phase, double pause) {
   const double t = phase - std::floor(phase);
   if (t >= 0.5) return {0, 1 - 4 * (t - 0.5)};
@@ -23,7 +23,7 @@ Leg legAt(double phase, double pause) {
   return {0.5 - 0.5 * std::cos(2 * kPi * s), -std::cos(kPi * s)};
 }
 
-/// A sole that is level at `place` below an upright torso, seen from one that leans forward.
+/// Converts the position of a level sole below an upright torso to the frame of a torso that leans forward.
 Foot leant(const Vec3& place, double lean) {
   const double c = std::cos(lean), s = std::sin(lean);
   Foot foot;
@@ -52,7 +52,7 @@ void Walk::stand(Pose& pose) const {
   }
 }
 
-/// `shift`: of both feet against the torso, m.
+/// `shift`: offset of both feet relative to the torso [m].
 Foot Walk::footOf(bool right, double lift, double way, const Vec2& shift) const {
   const double side = right ? 1 : -1, step = gait_.period / 4, lean = gait_.lean + gait_.leanSpeed * now_.forward;
   const Vec3 place(side * gait_.spread + now_.right * step * way + shift.x(),

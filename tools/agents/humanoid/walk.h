@@ -1,52 +1,54 @@
 #pragma once
 /// \file
-/// A walk in all directions: the legs swing in turn while the torso sways over the standing foot.
+/// Omnidirectional walk: the legs swing alternately while the torso sways over the support foot.
 
 #include "legs.h"
 #include "posture.h"
 
 namespace humanoid {
 
-/// How a type of robot walks. Lengths in m, angles in rad.
+/// Parameters of a walk. Lengths in m, angles in rad.
 struct Gait {
-  double period = 0.5;    ///< s, two steps
-  double height = 0.93;   ///< of the hips above the soles, in parts of a straight leg
-  double lift = 0.025;    ///< of a swinging foot
-  double pause = 0.1;     ///< part of a step in which both feet stand, at its begin and end
-  double sway = 0.02;     ///< of the torso to each side
-  double swayLead = 0.3;  ///< rad by which the sway is ahead of the legs
-  double spread = 0.0;    ///< of the feet, each further out than its hip
-  double forward = 0.0;   ///< of the feet before the hips
-  double lean = 0.05;     ///< of the torso, forward
-  double tiltForward = 0, rateForward = 0, tiltRight = 0, rateRight = 0;  ///< m of feet for a rad of lean, for a rad/s
-  double maxForward = 0.3, maxSide = 0.1, maxTurn = 0.8;                  ///< m/s, m/s, rad/s
-  double change = 0.5;                     ///< 1/s: part of the highest speed that may be gained in a second
-  double brake = 0.5;                      ///< the same, lost
-  double leanSpeed = 0, forwardSpeed = 0;  ///< more lean and feet further forward for a m/s
-  double soleTilt = 0, soleRate = 0;       ///< of the soles' pitch for a rad of lean, for a rad/s
-  double share = 0.8;                      ///< of the way left that a joint makes in a cycle
+  double period = 0.5;    ///< of two steps [s]
+  double height = 0.93;   ///< of the hips above the soles, as a fraction of the length of a straight leg
+  double lift = 0.025;    ///< height of the swing foot
+  double pause = 0.1;     ///< fraction of a step with double support, at its beginning and end
+  double sway = 0.02;     ///< amplitude of the torso to each side
+  double swayLead = 0.3;  ///< phase by which the sway leads the legs [rad]
+  double spread = 0.0;    ///< lateral offset of each foot outwards from its hip
+  double forward = 0.0;   ///< offset of the feet in front of the hips
+  double lean = 0.05;     ///< forward lean of the torso
+  double tiltForward = 0, rateForward = 0, tiltRight = 0,
+         rateRight = 0;  ///< shift of the feet per lean [m/rad] and per its rate [m s/rad]
+  double maxForward = 0.3, maxSide = 0.1, maxTurn = 0.8;  ///< m/s, m/s, rad/s
+  double change = 0.5;                     ///< maximum acceleration, as a fraction of the maximum speed [1/s]
+  double brake = 0.5;                      ///< maximum deceleration, likewise
+  double leanSpeed = 0, forwardSpeed = 0;  ///< additional lean and forward offset of the feet per speed
+  double soleTilt = 0, soleRate = 0;       ///< pitch of the soles per lean and per its rate
+  double share = 0.8;                      ///< fraction of the remaining angle that a joint covers in a cycle
 };
-/// The gait that suits a type, 0..4.
+/// The optimised gait of a type, 0..4.
 const Gait& gaitOf(int type);
 
-/// Which way to walk, as the robot sees it.
+/// A walking velocity in the robot's frame.
 struct Velocity {
   double forward = 0, right = 0, turn = 0;  ///< m/s, m/s, rad/s; turn is positive to the left
 };
 
+/// Generates the leg angles of a walk.
 class Walk {
  public:
   Walk(const Build& build, const Gait& gait) : build_(build), gait_(gait) {}
-  /// Starts with steps on the spot that grow. `from`: the pose of the whole body now.
+  /// Starts with steps on the spot of growing height. `from`: the current pose of the whole body.
   void start(const Pose& from);
-  /// One cycle further. `pose`: the arms' angles as they should be, to which the legs' are added. Speeds beyond the
-  /// gait's are cut.
+  /// Sets the leg angles of `pose` for the next cycle; arms stay as they are in `pose`. `wanted` is clamped to the
+  /// gait's maximum speeds.
   void step(const Velocity& wanted, const Percepts& percepts, const Posture& posture, Pose& pose);
-  /// A stance that needs no balance.
+  /// Sets the leg angles of a statically stable stance.
   void stand(Pose& pose) const;
-  /// What it walks by now: for dead reckoning.
+  /// The current velocity, for odometry.
   const Velocity& velocity() const { return now_; }
-  /// True when it treads on the spot with both feet down: it may be stopped.
+  /// True while it steps on the spot with both feet on the ground: it may be stopped then.
   bool mayStop() const;
 
  private:
@@ -56,9 +58,9 @@ class Walk {
   const Gait& gait_;
   double phase_ = 0;     ///< 0..1; the right leg swings in the first half
   double strength_ = 0;  ///< 0..1, grows at the start
-  double blended_ = 1;   ///< 0..1 of the way from the pose in which it started
+  double blended_ = 1;   ///< progress from the pose in which it started, 0..1
   Pose from_{};
-  double sole_ = 0;  ///< rad, of both soles against the ground
+  double sole_ = 0;  ///< pitch of both soles relative to the ground [rad]
   Velocity now_;
 };
 

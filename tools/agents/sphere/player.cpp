@@ -8,31 +8,31 @@
 
 namespace spark {
 
-// How a player decides, every time it gets a message:
+// The decision of a player, for every message:
 //
 //     no team yet           -> (init ...)
-//     before a kick-off     -> (beam ...) to its place in the formation
-//     number 1              -> between ball and goal; catches and clears what comes near
-//     nearest to the ball   -> behind the ball, as seen from where it is to go, and kick
-//     everybody else        -> its place in the formation, which moves with the ball; never offside
+//     before a kick-off     -> (beam ...) to its position in the formation
+//     number 1              -> stays between ball and goal; catches and clears near balls
+//     nearest to the ball   -> goes behind the ball, as seen from the target, and kicks
+//     otherwise             -> its position in the formation, which moves with the ball; never offside
 //
-// Positions come from vision alone: the four corner flags give the field's size and the own place. All angles are along
-// the field's axes.
+// Positions come from vision alone: the four corner flags give the size of the field and the own position. Angles are
+// relative to the axes of the team's frame.
 
 namespace {
 
-constexpr double kReach = 0.35;        ///< m between the centres of player and ball at which a kick works
+constexpr double kReach = 0.35;        ///< distance between the centres of player and ball at which a kick works [m]
 constexpr double kTopSpeed = 9.5;      ///< m/s
-constexpr double kPowerPerSpeed = 10;  ///< drive power that keeps 1 m/s
-constexpr double kSpeedPerKick = 1.7;  ///< m/s of the ball per kick power
-constexpr double kInertia = 0.17;      ///< s until a sphere has most of the speed it is driven to
-constexpr double kLatency = 0.04;      ///< s from sensing to acting
+constexpr double kPowerPerSpeed = 10;  ///< drive power for a steady speed of 1 m/s
+constexpr double kSpeedPerKick = 1.7;  ///< speed of the ball per kick power [m/s]
+constexpr double kInertia = 0.17;      ///< time constant of the speed [s]
+constexpr double kLatency = 0.04;      ///< from sensing to acting [s]
 constexpr double kShotSpeed = 38;      ///< m/s
-constexpr double kKeeperSpeed = 3.5;   ///< m/s along the goal line
-constexpr double kShotRange = 28;      ///< m, on a field of 104 m
-constexpr double kTakerRest = 3;       ///< s for which the taker of a restart leaves the ball to others
+constexpr double kKeeperSpeed = 3.5;   ///< along the goal line [m/s]
+constexpr double kShotRange = 28;      ///< on a field of 104 m [m]
+constexpr double kTakerRest = 3;       ///< time for which the taker of a restart leaves the ball to others [s]
 
-/// Places at kick-off in parts of the half field, by number.
+/// Positions at kick-offs as fractions of half the field, by number.
 struct Place {
   double x, y;
 };
@@ -73,7 +73,7 @@ void SpherePlayer::think(const Predicates& percepts, Predicates& actions) {
   play(actions);
 }
 
-// ---- what it knows ----
+// ---- percepts ----
 
 void SpherePlayer::read(const Predicates& percepts) {
   const double before = now_;
@@ -109,8 +109,8 @@ void SpherePlayer::readGameState(const Element& gs) {
   }
 }
 
-/// Who is nearest to the ball when our restart turns into play took it, and must not touch the ball again before
-/// somebody else.
+/// The player nearest to the ball when an own restart becomes PlayOn has taken it, and must not touch the ball again
+/// before another player.
 void SpherePlayer::noteRestart(const std::string& before) {
   if (playMode_ != "PlayOn") return;
   const std::string now = std::exchange(playMode_, before);
@@ -135,7 +135,7 @@ void SpherePlayer::readVision(const Element& see) {
                  v = pol.at(3).number() * (std::numbers::pi / 180);
     const Point way{d * std::cos(v) * std::cos(h), d * std::cos(v) * std::sin(h)};
     if (e.head() == "B") {
-      // from the way to the ball, which is exact when it is near, and the own speed
+      // From the relative position, which is accurate for near balls, and the own velocity.
       const double dt = now_ - ballTime_;
       if (seesBall_ && dt > 0) ballVelocity_ = ballVelocity_ * 0.4 + (velocity_ + (way - toBall_) * (1 / dt)) * 0.6;
       if (ballVelocity_.length() > 45) ballVelocity_ = {};
@@ -148,7 +148,7 @@ void SpherePlayer::readVision(const Element& see) {
   }
 }
 
-/// The corner flags' mean is the centre of the field, their spread its size.
+/// The mean of the corner flags is the centre of the field, their spread its size.
 void SpherePlayer::readField(const Element& see) {
   std::array<Point, 4> corner, post;
   int corners = 0, posts = 0;
@@ -168,7 +168,7 @@ void SpherePlayer::readField(const Element& see) {
   double length = 0, width = 0, goal = 0;
   for (const Point& c : corner) length += std::abs(c.x - mean.x) / 4, width += std::abs(c.y - mean.y) / 4;
   for (int i = 0; i < posts; ++i) goal += std::abs(post[i].y - mean.y) / posts;
-  // flags are far: the own speed steadies the place, unless it jumped
+  // Flags are far away: smooth the position by the own velocity, unless it has jumped.
   const Point seen = Point{} - mean, expected = self_ + velocity_ * (now_ - fieldTime_);
   self_ = seesField_ && (seen - expected).length() < 1 ? expected + (seen - expected) * 0.3 : seen;
   fieldTime_ = now_;
@@ -177,7 +177,7 @@ void SpherePlayer::readField(const Element& see) {
   seesField_ = true;
 }
 
-/// A restart of the given kind ("" for any) is ours.
+/// True for a restart of the given kind ("": any) of the own team.
 bool SpherePlayer::ours(std::string_view kind) const {
   std::string_view mode = playMode_;
   const bool left = mode.ends_with("_left") || mode.ends_with("_Left"),
@@ -186,7 +186,7 @@ bool SpherePlayer::ours(std::string_view kind) const {
   return !mode.starts_with("offside") && (kind.empty() || mode.starts_with(kind));
 }
 
-/// The ball belongs to the others: keep away.
+/// True for a restart of the opponents.
 bool SpherePlayer::theirs() const { return playMode_ != "PlayOn" && !ours(""); }
 
 /// x beyond which a team-mate ahead of the ball would be offside.
@@ -202,7 +202,7 @@ double SpherePlayer::offsideLine() const {
   return std::max({0.0, ball_.x, second});
 }
 
-// ---- what it does ----
+// ---- actions ----
 
 void SpherePlayer::join(Predicates& actions) {
   if (joinedAt_ >= 0 && now_ < joinedAt_ + 1) return;
@@ -220,7 +220,7 @@ void SpherePlayer::takePlaces(Predicates& actions) {
 SpherePlayer::Point SpherePlayer::formation() const {
   const Place home = kFormation[static_cast<std::size_t>(unum_)];
   Point p{home.x * halfLength_, home.y * halfWidth_};
-  // the team moves with the ball, forwards more than defenders
+  // The team moves with the ball, forwards more than defenders.
   const double follow = unum_ >= 9 ? 0.95 : unum_ >= 6 ? 0.6 : 0.45;
   p.x += follow * ball_.x + (unum_ >= 9 ? 8 : 0) * halfLength_ / 52;
   p.y = 0.7 * p.y + 0.3 * ball_.y;
@@ -235,15 +235,15 @@ SpherePlayer::Point SpherePlayer::formation() const {
   return p;
 }
 
-/// Nearest of the team to where the ball will be; the goalie counts only near his goal, the taker of a restart not for
-/// a while.
+/// True for the player of the team nearest to the future position of the ball. The goalie counts at goal kicks only,
+/// the taker of a restart not for a while.
 bool SpherePlayer::goesToBall() const {
   const Point soon = ballSoon(0.3);
   const auto cost = [&](int unum, Point place) {
     if (unum == taker_ && now_ < takerUntil_) return 1e6 + unum;
     if (unum == 1 && !ours("goal_kick")) return 1e5;
     if (unum == 1) return -1.0;
-    // who is ahead of the ball has to run round it
+    // A player ahead of the ball has to run around it.
     return (place - soon).length() + (place.x > soon.x ? 1.0 : 0.0);
   };
   const double mine = cost(unum_, self_);
@@ -272,7 +272,7 @@ void SpherePlayer::keepGoal(Predicates& actions) {
     if (now_ < caughtAt_ + 2 || (toBall_.length() < 5 && ballVelocity_.length() < 6))
       return kickTowards({0, self_.y > 0 ? halfWidth_ : -halfWidth_}, 28, 25, actions);
   }
-  // on the line from the goal to the ball, or where a shot will cross
+  // On the line from the goal to the ball, or where a shot will cross.
   Point post = goal + (ball_ - goal).unit() * 1.5;
   if (ballVelocity_.x < -4) {
     const double t = (post.x - ball_.x) / ballVelocity_.x;
@@ -282,7 +282,7 @@ void SpherePlayer::keepGoal(Predicates& actions) {
   runTo(post, kKeeperSpeed, actions);
 }
 
-/// Opponents near the way of a ball from here to there, 0..1: 1 is a free way.
+/// How free of opponents the path of a ball is, 0..1.
 double SpherePlayer::wayIsFree(Point from, Point to) const {
   const Point way = to - from;
   const double length = way.length();
@@ -291,13 +291,13 @@ double SpherePlayer::wayIsFree(Point from, Point to) const {
     if (o.mate) continue;
     const double along = std::clamp((o.place - from).dot(way.unit()), 0.0, length);
     const double beside = (from + way.unit() * along - o.place).length();
-    // the farther the ball has to roll, the more time he has
+    // The farther the ball has to roll, the more time the opponent has.
     free = std::min(free, beside / (1 + 0.25 * along));
   }
   return std::clamp(free, 0.0, 1.0);
 }
 
-/// The best of shooting, passing and playing the ball ahead; what needs a turn is worth less.
+/// Chooses between shooting, passing and dribbling. An option is worth less the farther it has to turn around the ball.
 void SpherePlayer::attack(Predicates& actions) {
   const double scale = halfLength_ / 52, keeper = keeperY();
   Kick best{{halfLength_, 0.5 * ball_.y}, 10, 0, 0};
@@ -309,11 +309,11 @@ void SpherePlayer::attack(Predicates& actions) {
   };
   offer(best, 1.5 * wayIsFree(ball_, ball_ + (best.target - ball_).unit() * 12));
   const Point corner{halfLength_ + 1, (keeper > 0 ? -0.8 : 0.8) * goalHalfWidth_};
-  // the wider the goal looks from here, the better the shot
+  // The larger the angle of the goal, the better the shot.
   const double ahead = std::max(0.1, halfLength_ - ball_.x);
   const double looks = std::atan2(goalHalfWidth_ - ball_.y, ahead) - std::atan2(-goalHalfWidth_ - ball_.y, ahead);
   if (ahead < kShotRange * scale) offer({corner, kShotSpeed, 0, 0}, 16 * looks - 0.5);
-  // where the ball would go if it were kicked right now: no turn needed
+  // The direction of an immediate kick, without a turn.
   const Point now = (toBall_ + (ballVelocity_ - velocity_) * (now_ - ballTime_ + kLatency)).unit();
   const Point flies = now * kShotSpeed + ballVelocity_;
   const double hits = flies.x > 4 ? ball_.y + flies.y / flies.x * ahead : 1e9;
@@ -338,25 +338,25 @@ void SpherePlayer::attack(Predicates& actions) {
   kickTowards(best.target, best.speed, best.elevationDeg, actions);
 }
 
-/// The direction of the push that makes the ball, which moves already, go to the target.
+/// Direction of the impulse that sends the moving ball to the target.
 SpherePlayer::Point SpherePlayer::kickWay(Point target, double speed) const {
   return ((target - ball_).unit() * speed - ballVelocity_).unit();
 }
 
-/// Where the other side's goalie stands across the goal.
+/// y of the opponents' goalie; 0 if it is not seen [m].
 double SpherePlayer::keeperY() const {
   for (const Other& o : others_)
     if (!o.mate && o.unum == 1) return o.place.y;
   return 0;
 }
 
-/// Runs behind the ball as seen from the target, and kicks when it lies right.
+/// Runs behind the ball, as seen from the target, and kicks when it is in line.
 void SpherePlayer::kickTowards(Point target, double speed, double elevationDeg, Predicates& actions) {
   const Point wanted = kickWay(target, speed), side{-wanted.y, wanted.x};
   const Point rel = toBall_ + (ballVelocity_ - velocity_) * (now_ - ballTime_ + kLatency);
   const double distance = rel.length(), along = rel.dot(wanted), across = rel.dot(side),
                aim = std::atan2(std::abs(across), along);
-  // with an opponent at the ball any kick that does not go back is better than none; a restart has time to be exact
+  // With an opponent at the ball any kick forwards is better than none; at a restart there is time to be accurate.
   const bool play = playMode_ == "PlayOn";
   const bool pressed = play && std::any_of(others_.begin(), others_.end(), [this](const Other& o) {
                          return !o.mate && (o.place - ball_).length() < 1.5;
@@ -370,7 +370,7 @@ void SpherePlayer::kickTowards(Point target, double speed, double elevationDeg, 
         .add(elevationDeg)
         .add(std::clamp(std::min(speed, aim < 0.15 ? speed : 12) / kSpeedPerKick, 1.0, 100.0))
         .close();
-  // where it meets the ball; from the wrong side it goes round, without touching
+  // The point to meet the ball; from the wrong side go around it without touching it.
   Point spot = self_ + rel + ballVelocity_ * std::min(0.1 + distance / kTopSpeed, 1.5);
   double pace = 1.5 + 5 * std::max(0.0, distance - kReach) + std::max(0.0, ballVelocity_.dot(rel.unit()));
   if (aim >= tolerance) {
@@ -387,7 +387,7 @@ void SpherePlayer::kickTowards(Point target, double speed, double elevationDeg, 
 void SpherePlayer::runTo(Point target, double speed, Predicates& actions) {
   target.x = std::clamp(target.x, -halfLength_ - 0.3, halfLength_ + 0.3);
   target.y = std::clamp(target.y, -halfWidth_ - 1, halfWidth_ + 1);
-  // from behind a goal the way leads round it
+  // From behind a goal go around it.
   if (std::abs(self_.x) > halfLength_ + 0.5 && std::abs(self_.y) < goalHalfWidth_ + 0.8)
     target = {self_.x, (self_.y < 0 ? -1 : 1) * (goalHalfWidth_ + 1.5)};
   const Point way = target - self_;

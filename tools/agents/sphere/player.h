@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The brain of a sphere player: percepts in, actions out. It knows nothing of a host: the behaviour node
-/// (`SphereBehavior`) and the external demo team have the same.
+/// The program of a sphere player: turns percepts into actions. The behaviour node (`SphereBehavior`) and the external
+/// demo team both use it.
 
 #include <string>
 #include <vector>
@@ -17,25 +17,25 @@ class SpherePlayer {
  public:
   /// `team`: the team's name; `unum`: 1..11, number 1 is the goalie.
   SpherePlayer(std::string team, int unum);
-  /// Robot file that start() asks for; to be set before. Default "rsg/agent/sphere.rsg".
+  /// Sets the scene file of the robot, before start(). Default "rsg/agent/sphere.rsg".
   void setScene(std::string scene) { scene_ = std::move(scene); }
-  /// The first message, to be sent once when connected: `(scene ...)`.
+  /// Appends the first message: `(scene ...)`.
   void start(Predicates& actions);
-  /// To be called for every sense message; appends the reply (without `(syn)`: that is the caller's, in lockstep).
+  /// Call it for every sense message. Appends the answer, without `(syn)`.
   void think(const Predicates& percepts, Predicates& actions);
 
-  /// "left", "right", "" until the server has told.
+  /// "left", "right", or "" before init.
   const std::string& side() const { return side_; }
   int unum() const { return unum_; }
   const std::string& playMode() const { return playMode_; }
   /// Goals of the own team and of the other.
   int ownScore() const { return side_ == "right" ? right_ : left_; }
   int otherScore() const { return side_ == "right" ? left_ : right_; }
-  /// s, simulated time of the last sense message.
+  /// Simulated time of the last sense message [s].
   double time() const { return now_; }
 
  private:
-  /// A point or a way on the field, as the team sees it: opponents' goal at +x, y to the left [m].
+  /// A point or vector in the team's frame: opponents' goal at +x, y to the left [m].
   struct Point {
     double x = 0, y = 0;
     Point operator+(Point o) const { return {x + o.x, y + o.y}; }
@@ -52,7 +52,7 @@ class SpherePlayer {
     Point place;
   };
 
-  /// What to do with the ball; `to`: the team-mate for whom it is meant, 0: nobody.
+  /// A kick; `to`: number of the team-mate that it is for, 0: none.
   struct Kick {
     Point target;
     double speed = 0, elevationDeg = 0;
@@ -87,9 +87,9 @@ class SpherePlayer {
   double now_ = 0, joinedAt_ = -1, ballTime_ = 0, fieldTime_ = 0, modeSince_ = 0, caughtAt_ = -10;
   double halfLength_ = 52, halfWidth_ = 34, goalHalfWidth_ = 3.66;
   Point self_, ball_, toBall_, ballVelocity_;
-  Point driven_, velocity_;  ///< the speed it was last driven to, and what it has by now
-  int taker_ = 0;            ///< number of the team-mate (or self) who took our last restart
-  double takerUntil_ = -1;   ///< s: he leaves the ball to others until then
+  Point driven_, velocity_;  ///< commanded and estimated own velocity [m/s]
+  int taker_ = 0;            ///< number of the player that took the team's last restart
+  double takerUntil_ = -1;   ///< until then it leaves the ball to others [s]
   std::vector<Other> others_;
 };
 

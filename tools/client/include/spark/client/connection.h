@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A connection to a server of the RoboCup 3D simulation league (agents' port or monitors' port): whole messages behind
-/// a 4-byte big-endian length, over TCP. Needs POSIX sockets and the standard library, nothing else.
+/// A connection to a server of the RoboCup 3D simulation league (agent or monitor port): messages over TCP, each after
+/// a 4-byte big-endian length. Needs only POSIX sockets and the standard library.
 
 #include <cstddef>
 #include <optional>
@@ -10,35 +10,34 @@
 
 namespace spark::client {
 
-/// One connection. Owns its socket; moves, does not copy. Not thread safe. Functions throw std::runtime_error with one
-/// sentence when the connection cannot be used any more.
+/// A connection. Owns its socket; movable, not copyable. Not thread safe. Functions throw std::runtime_error with one
+/// sentence when the connection fails.
 class Connection {
  public:
-  /// Longest message that is taken from a server [bytes]: more means that it speaks another protocol.
+  /// Longest accepted message [bytes]: a longer one means that the server speaks another protocol.
   static constexpr std::size_t kMostBytes = std::size_t{1} << 24;
 
   Connection() = default;
-  /// Connects. `patience`: tries again for so long [s] while nobody listens.
+  /// Connects. `patience`: retries for this long while the server cannot be reached [s].
   Connection(const std::string& host, int port, double patience = 0) { connect(host, port, patience); }
   ~Connection() { close(); }
   Connection(Connection&& other) noexcept;
   Connection& operator=(Connection&& other) noexcept;
 
-  /// As the constructor; closes what was open.
+  /// Like the constructor; closes an open connection first.
   void connect(const std::string& host, int port, double patience = 0);
   bool isOpen() const { return socket_ >= 0; }
   void close();
 
-  /// Sends one message; waits until the system has taken it.
+  /// Sends a message. Blocks until the system has accepted it.
   void send(std::string_view message);
-  /// Takes the next message. Waits for it at most `timeout` [s], for ever when it is negative; nothing when none came
-  /// in time. What came of an unfinished message stays for the next call.
+  /// Returns the next message. Waits at most `timeout` [s], without limit when it is negative; nullopt when none
+  /// arrived in time. An incomplete message is kept for the next call.
   std::optional<std::string> receive(double timeout = -1);
-  /// True when receive(0) would give a message.
+  /// True when receive(0) would return a message.
   bool pending();
 
-  /// The socket, for select() or poll() with others; -1 when closed. pending() first: a message may have been read
-  /// already.
+  /// The socket, for select() or poll(); -1 when closed. Call pending() first: a message may already have been read.
   int descriptor() const { return socket_; }
 
  private:
@@ -48,7 +47,7 @@ class Connection {
   bool whole() const;
 
   int socket_ = -1;
-  std::string in_;  ///< received and not taken yet
+  std::string in_;  ///< received and not returned yet
 };
 
 }  // namespace spark::client
