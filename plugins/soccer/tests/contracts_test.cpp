@@ -7,7 +7,7 @@
 using namespace spark;
 using namespace spark::test;
 
-// What soccer offers to plugins and programs that know no game.
+// The interfaces by which plugins and programs that know no game use soccer.
 
 TEST_CASE("soccer reports play mode and score, and nothing else") {
   MatchHouse house;

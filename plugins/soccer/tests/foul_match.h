@@ -1,15 +1,14 @@
 #pragma once
 /// \file
-/// A match in which fouls are judged, and what monitors are told of them.
+/// A match in which fouls are judged, and the fouls that monitors get.
 
 #include "match_house.h"
 
 namespace spark::test {
 
-/// Teams A (left) and B (right) of spheres on the league's field, in PlayOn, with the ball far from everybody. Agents
-/// are numbered A1, A2,
-/// ..., B1, B2, ... `radius` is what makes them lie (below 0.25 m) or stand. Players wait in a row at y = 8, 2 m from
-/// each other.
+/// Teams A (left) and B (right) of spheres on the league's field, in PlayOn, with the ball far from all players. Agents
+/// are numbered A1, A2, ..., B1, B2, ... With a `radius` below 0.25 m they count as lying, else as standing. Players
+/// wait in a row at y = 8, 2 m apart.
 struct FoulMatch : MatchHouse {
   FoulMatch(std::initializer_list<const char*> fouls, int left, int right, double radius = 0.4)
       : MatchHouse(false), left_(left) {
@@ -38,7 +37,7 @@ struct FoulMatch : MatchHouse {
     bodyOf(agent).setVelocity(Vec3(vx, 0, 0));
   }
   Vec3 position(int agent) { return bodyOf(agent).state().position; }
-  /// What monitors are told since the last call: "index type team unum".
+  /// The fouls that monitors got since the last call: "index type team unum".
   std::vector<std::string> fouls() {
     Environment env;
     kernel.root().require<IMonitorItem>("/sys/fouls").contribute(env);

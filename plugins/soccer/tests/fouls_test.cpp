@@ -1,4 +1,4 @@
-// The automatic referee: when each foul is called, against whom, and what comes of it.
+// The automatic referee: when each foul is called, against which player, and its penalty.
 #include "foul_match.h"
 
 using namespace spark;
@@ -6,7 +6,7 @@ using namespace spark::test;
 
 TEST_CASE("a player who lies for 15 s is held in the air for half a second and placed beside the field", "[fouls]") {
   FoulMatch h({"IncapableFoulAspect"}, 2, 1, 0.1);
-  h.put(h.b(1), 0, 10.5);  // who lies beside the field is left alone
+  h.put(h.b(1), 0, 10.5);  // players beside the field are not judged
   h.run(750);
   CHECK(h.fouls().empty());
   const double y = h.position(h.a(2)).y();
@@ -87,7 +87,7 @@ TEST_CASE("getting up ends lying; half a second of standing ends not standing", 
   h.place(h.bodyOf(2), 0, 8, 0.1);
   h.run(750);
   CHECK(h.fouls().empty());
-  // lying now is 15 s again; not standing is 1490 cycles after the short rise
+  // Time on the ground starts anew; time without standing is 1490 cycles after the short rise.
   h.run(1);
   CHECK(h.fouls() == Fouls{"1 4 1 2"});
 }
@@ -252,7 +252,7 @@ TEST_CASE("the last to join a group of three leaves it, if his team has half of 
 }
 
 namespace {
-/// B2 runs into A2, who stands at the origin (or comes with `speed`), from +x at 1 m/s.
+/// B2 runs into A2 from +x at 1 m/s. A2 stands at the origin, or moves with `speed`.
 void runInto(FoulMatch& h, double speed = 0) {
   for (int i = 0; i < 3; ++i) {
     h.put(h.a(2), 0, 0, speed);

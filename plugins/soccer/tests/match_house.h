@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// A house with a match in it, without a network: sphere players whose actions the test writes and whose percepts it
-/// reads.
+/// A match without a network: sphere players with actions that the test writes and percepts that it reads.
 
 #include <catch2/catch.hpp>
 
@@ -13,14 +12,14 @@
 
 namespace spark::test {
 
-/// How often `what` is in `text`; places may overlap.
+/// Number of occurrences of `what` in `text`, overlapping ones included.
 inline int count(const std::string& text, const std::string& what) {
   int n = 0;
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
   return n;
 }
 
-/// Does what the test wrote into `next`, once; keeps what it was told last.
+/// Sends the actions in `next` once, and keeps its percepts.
 class Puppet : public Behavior {
   SPARK_CLASS(Puppet, Behavior)
  public:
@@ -39,7 +38,7 @@ class Puppet : public Behavior {
   std::string all;    ///< all percepts
 };
 
-/// The house. Values of the 2004 field unless `league` is false.
+/// The match. On the field of 2004, or on the league's if `sphere` is false.
 struct MatchHouse : House {
   explicit MatchHouse(bool sphere = true) {
     for (const char* p : {"files", "scene", "scene-rsg", "physics", "physics-ode", "simulation", "parser-sexp",
@@ -94,18 +93,18 @@ struct MatchHouse : House {
   }
   void runSeconds(double seconds) { run(static_cast<int>(std::lround(seconds / 0.02))); }
 
-  /// A puppet with a robot, without a team yet.
+  /// Connects a puppet with a robot; it has no team yet.
   Puppet& connect(const std::string& name) {
     auto& p = kernel.create<Puppet>("Puppet", "/usr/agent/" + name);
     run(5);
     return p;
   }
-  /// Sends actions and lets them act.
+  /// Sends actions and runs until they have acted.
   void act(Puppet& p, const std::string& actions) {
     p.next = actions;
     run(2);
   }
-  /// A player of a team.
+  /// Connects a puppet that joins a team.
   Puppet& join(const std::string& team, int unum) {
     Puppet& p = connect(team + std::to_string(unum));
     act(p, "(init (unum " + std::to_string(unum) + ")(teamname " + team + "))");
@@ -126,7 +125,7 @@ struct MatchHouse : House {
   }
   void placeAgent(int agent, double x, double y) { place(bodyOf(agent), x, y, 0.22); }
   void placeBall(double x, double y, double z = 0.111) { place(ball(), x, y, z); }
-  /// The agent stands at the ball, on its -x side, touching it.
+  /// Puts the agent at the ball, on its -x side, so that it touches the ball.
   void touch(int agent) {
     const Vec3 b = ball().state().position;
     place(bodyOf(agent), b.x() - 0.3, b.y(), 0.22);
@@ -136,7 +135,7 @@ struct MatchHouse : House {
   void setMode(const char* mode) { setProperty(at("/sys/server/gamecontrol/GameStateAspect"), "playMode", mode); }
   double gameTime() { return get("/sys/server/gamecontrol/GameStateAspect", "time").toNumber(); }
   std::string score() { return get("/sys/server/gamecontrol/GameStateAspect", "score").text(); }
-  /// A trainer's command, executed now. Returns why it was not.
+  /// Executes a trainer command. Returns "", or the reason why it had no effect.
   std::string trainer(const std::string& text) {
     Predicates p;
     readSexp(text, p);

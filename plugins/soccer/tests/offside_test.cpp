@@ -1,4 +1,4 @@
-// Offside: one line of the config adds it.
+// Offside, a rule that one line of the config adds.
 #include "match_house.h"
 
 using namespace spark;
@@ -67,7 +67,7 @@ TEST_CASE("offside is switched off and on during a match", "[soccer]") {
   h.receive(41);
   CHECK(h.mode() == "offside_left");
   setProperty(aspect, "enabled", false);
-  h.runSeconds(1.1);  // what was called is carried out
+  h.runSeconds(1.1);  // an offside that was called is still carried out
   CHECK(h.mode() == "free_kick_right");
 }
 

@@ -1,4 +1,4 @@
-// Init, and what players do.
+// Init and the effectors of players.
 #include <algorithm>
 
 #include "match_house.h"
@@ -62,7 +62,7 @@ TEST_CASE("an init that is refused drops the agent in the middle, with one line 
   CHECK(getProperty(h.stateOf(3), "side").toString() == "none");
   CHECK((h.bodyOf(3).state().position - Vec3(0, 0, 10)).norm() < 0.05);
   CHECK(c.heard.find("unum") == std::string::npos);
-  // and can still be mended
+  // The agent can still join.
   h.act(c, "(init (unum 5)(teamname B))");
   h.run(1);
   CHECK(getProperty(h.stateOf(3), "unum").toInteger() == 5);

@@ -1,4 +1,4 @@
-// Restarts, goals and clocks: what the referee does.
+// Restarts, goals and clocks: the rules of play.
 #include "match_house.h"
 
 using namespace spark;
@@ -6,8 +6,7 @@ using namespace spark::test;
 
 namespace {
 
-/// Two players a side: A1 A2 are agents 1 and 2, B1 B2 agents 3 and 4; the match is in PlayOn, everybody far from the
-/// ball.
+/// Two players on each side: A1 A2 are agents 1 and 2, B1 B2 agents 3 and 4. In PlayOn, all far from the ball.
 struct Match : MatchHouse {
   Match() {
     importField();
@@ -18,7 +17,7 @@ struct Match : MatchHouse {
     run(1);
   }
   void aside() { placeAgent(1, -30, 20), placeAgent(2, -30, -20), placeAgent(3, 30, 20), placeAgent(4, 30, -20); }
-  /// Side: agent's last touch; then the ball lies at x, y.
+  /// The agent touches the ball; then the ball is put at x, y.
   void lastTouchThenBallAt(int agent, double x, double y) {
     touch(agent);
     aside();

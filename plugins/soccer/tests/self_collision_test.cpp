@@ -1,4 +1,4 @@
-// Parts of one robot that overlap: when that is a foul, what it freezes, and which boxes overlap.
+// Self-collisions: when they are fouls, which joints are frozen, and which boxes overlap.
 #include <unistd.h>
 
 #include <Eigen/Geometry>
@@ -23,7 +23,7 @@ struct BoxerMatch : FoulMatch {
     run(2);
     fouls();
     setMode("PlayOn");
-    trainer("(time 20)");  // from 16 s to 64 s the clock of play is not slow
+    trainer("(time 20)");  // from 16 s to 64 s the clock of play is exact
   }
   bool frozen(const char* effector) {
     std::vector<Effector*> all;
@@ -151,7 +151,7 @@ TEST_CASE("of two boxes only the later one's word keeps them from being compared
   BoxerMatch h;
   h.setMode("BeforeKickOff");
   const std::string robot = "/usr/scene/AgentAspect2/robot/";
-  // a change of the robot makes the referee look at it again
+  // The referee looks up the robot's boxes again when its nodes change.
   const auto name = [&](const char* speaker, const char* named) {
     callMethod(h.at(robot + speaker), "addNotCollideWithColliderName", std::vector<Value>{named, true});
     h.kernel.create("Transform", robot + "change");
@@ -186,7 +186,7 @@ Mat3 turned(double x, double y, double z) {
       .toRotationMatrix();
 }
 
-/// What the referee says of a box at the origin and another one at `x`, both with these halves of their edges.
+/// The referee's test of a box at the origin and one at (`x`, 0, 0), both with these half edge lengths.
 bool overlap(double tolerance, const Vec3& half, double x, const Mat3& rotation) {
   const Vec3f edges = half.cast<float>();
   return soccer::overlapBeyond(static_cast<float>(tolerance), {Pose{}, edges}, {Pose{Vec3(x, 0, 0), rotation}, edges});

@@ -1,4 +1,4 @@
-// What players see and hear, what monitors are told, what trainers may do.
+// Vision and hearing of players, messages for monitors, trainer commands.
 #include <algorithm>
 
 #include "match_house.h"
@@ -70,7 +70,7 @@ TEST_CASE("vision has noise, small and different each time", "[soccer]") {
 }
 
 namespace {
-/// Whom a See names, in its order: "A3 B1 ".
+/// The players in a See percept, in its order: "A3 B1 ".
 std::string seen(const std::string& percepts) {
   Predicates p;
   readSexp(percepts, p);
@@ -107,7 +107,7 @@ TEST_CASE("who sees no farther than his range sees all that is nearer, in scene 
   look();
   CHECK(seenBy(0) == "B9 A7 B2 A4 B3 A5 ");
   CHECK(puppets[0]->all.find("(B ") != std::string::npos);
-  // one who sees farther than the cells that the others made
+  // An eye with a longer range than those for which the grid was made.
   Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect1/body");
   setProperty(body.require<Leaf>("VisionPerceptor"), "range", 10);
   look();
@@ -190,7 +190,8 @@ TEST_CASE("cone vision in the head's frame looks along y", "[soccer]") {
 
 namespace {
 
-/// Whether all that an eye's agent saw last is where the eye says that it truly is; how much that was.
+/// Checks that all objects in the agent's last See are at the true positions that the eye reports. Returns their
+/// number.
 std::size_t checkedSights(MatchHouse& h, IEye& eye, int agent) {
   auto& control = h.kernel.root().require<IGameControl>("/sys/server/gamecontrol");
   const auto& aspect = h.kernel.root().require<AgentAspect>("/usr/scene/AgentAspect" + std::to_string(agent));

@@ -1,4 +1,4 @@
-// The variables Soccer.*: names and defaults of the 3D league (protocol section 6.9).
+// The variables Soccer.*: names and defaults of the 3D league's server.
 #include "match_house.h"
 
 using namespace spark;

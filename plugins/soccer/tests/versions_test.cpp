@@ -1,4 +1,4 @@
-// What differs between versions of the installed base, property by property.
+// The differences between versions of the installed base, property by property.
 #include <algorithm>
 
 #include "match_house.h"
@@ -8,7 +8,7 @@ using namespace spark::test;
 
 namespace {
 
-/// Gives the agent cone vision instead of its own.
+/// Replaces the agent's vision by cone vision.
 Leaf& giveEye(MatchHouse& h, int agent, int interval) {
   Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect" + std::to_string(agent) + "/body");
   body.remove(*body.child("VisionPerceptor"));
