@@ -1,4 +1,4 @@
--- 54 crates, marbles and pills fall into a walled yard: the smallest house with physics in it.
+-- 54 crates, marbles and pills fall into a walled yard: the smallest simulation with physics.
 --
 --     sparkhost --config boxes.lua --rate max --duration 10
 include "house.lua"

@@ -1,9 +1,9 @@
--- A crowd of sphere agents on a field that grows with it, for measurements and for swarms of one's own: no referee and no halves, each sees as
--- far as `range`.
+-- A crowd of sphere agents on a field that grows with it, for measurements and your own swarms: no referee and no halves; the range of
+-- vision is `range`.
 --
 --     sparkhost --config crowd.lua --set agents=1000
 --
--- Agents come as to soccer: (scene rsg/agent/sphere.rsg), then (init (unum n)(teamname A)) or B, which puts them on the field side by side, and
+-- Agents join as in soccer: (scene rsg/agent/sphere.rsg), then (init (unum n)(teamname A)) or B, which moves them to the field side by side, and
 -- (drive x y z) from then on; over the network, or as behaviours below /usr/agent.
 include "house.lua"
 include "materials.lua"
@@ -17,7 +17,7 @@ local apart = 0.9 * math.sqrt(room)
 local width = math.sqrt(room * agentCount) + apart
 local team  = math.max(11, (agentCount + 1) // 2)
 
--- the rooms
+-- the servers
 files()
 scene()
 materials()
@@ -31,7 +31,7 @@ control()
 plugin "sensors"
 plugin "effectors"
 
--- the field, and who plays for whom
+-- the field and the teams
 soccerVariables {
   FieldLength = width, FieldWidth = width, GoalWidth = 7.32, GoalDepth = 2, GoalHeight = 0.5, BorderSize = 10,
   AgentRadius = 0.22, AgentMass = 75, AgentMaxSpeed = 10, AgentLinearDrag = 600,

@@ -1,4 +1,4 @@
--- The rooms of a house, ready furnished. A config says
+-- The servers of a simulation, with their usual helpers. A config says
 --
 --     include "house.lua"
 --     files() scene() physics() simulation()      -- in this order
@@ -7,14 +7,14 @@
 --     web()
 --     control() drawing()
 --
--- and adds what makes it special. Each function loads the plugins it needs, builds one server with its helpers, and returns the server,
--- so that a config can set properties or swap a helper. Nothing here is magic: a config may write the same lines itself.
+-- and adds its own nodes. Each function loads the plugins it needs, builds one server with its helpers, and returns the server,
+-- so that a config can set properties or swap a helper. A config may also write the same lines itself.
 --
--- `host` is what the program that runs the config says about itself: host.share (the folder with lua/ and scenes/, "" when there is
+-- `host` describes the program that runs the config: host.share (the folder with lua/ and scenes/, "" when there is
 -- none), host.scenePaths (folders from --scene-path) and host.alone (true in a batch). Programs that embed the kernel may leave it out.
 host = host or { share = "", scenePaths = {} }
 
---- File server. A folder given by --scene-path holds rsg/...; it is asked before the scenes that come with Spark.
+--- File server. Folders given by --scene-path contain rsg/... and are searched before the scenes that come with Spark.
 function files()
   plugin "files"
   local server = new("FileServer", "/sys/server/file")
@@ -40,7 +40,7 @@ function scene()
 end
 
 --- Physics server, its engine, and a world with a space in the active scene. `engine`: its class; `properties`: of the engine, set before the
---- world is made; `solver`: class of what steps in the engine's stead, below it ("ArticulatedSolver"); nil: the engine does it all.
+--- world is made; `solver`: class of the solver below the engine that replaces its own ("ArticulatedSolver"); nil: none.
 function physics(engine, properties, solver)
   plugin "physics"
   plugin "physics-ode"
@@ -61,13 +61,13 @@ function solverOption(default)
   return solver == "articulated" and "ArticulatedSolver" or nil
 end
 
---- The run loop. It drives everything below; sparkhost calls its run().
+--- The run loop, which emits the phases; sparkhost calls its run().
 function simulation()
   plugin "simulation"
   return new("Simulation", "/sys/server/simulation")
 end
 
--- One TCP port with its framing. `consumer` is the path of the server that takes the messages.
+-- One TCP port with its framing. `consumer` is the path of the server that receives the messages.
 local function tcpPort(name, port, consumer)
   plugin "net-tcp"
   if not get("/sys/server/net") then new("NetServer", "/sys/server/net") end
@@ -78,7 +78,7 @@ local function tcpPort(name, port, consumer)
   return node
 end
 
--- Both languages are known in every house, so that --set parser=JsonParser is all it takes.
+-- Every config loads both languages, so that --set parser=JsonParser is enough.
 local function languages()
   plugin "parser-sexp"
   plugin "parser-json"
@@ -87,12 +87,12 @@ end
 --- A port for agents; a second one may speak another language: the port's own parser wins over game control's.
 function agentPort(name, port, parser)
   local node = tcpPort(name, port, "/sys/server/gamecontrol")
-  node.makeRoom = true                         -- agents speak first: who does not may lose his place to others
+  node.makeRoom = true                         -- agents send first: one that does not may be closed to admit others
   if parser then new(parser, "/sys/server/net/" .. name .. "/parser") end
   return node
 end
 
---- Game control and the port through which agents come. `parser`: class of the language they speak.
+--- Game control and the agent port. `parser`: class of the agents' language.
 function agents(t)
   languages()
   plugin "gamecontrol"
@@ -102,7 +102,7 @@ function agents(t)
   return server
 end
 
---- Monitor server and the port through which monitors come. `encoder`: class of the language it speaks.
+--- Monitor server and the monitor port. `encoder`: class of the monitors' language.
 function monitors(t)
   plugin "monitor"
   plugin "monitor-sexp"
@@ -111,12 +111,12 @@ function monitors(t)
   new(t.encoder or "SexpMonitor", "/sys/server/monitor/encoder")
   local port = tcpPort("monitors", t.port or 3200, "/sys/server/monitor")
   port.maxConnections = 128
-  port.makeRoomAfter = 10                      -- clients that never read are welcome, but 128 of them do not keep the others out
+  port.makeRoomAfter = 10                      -- clients that never read are allowed, but 128 of them do not block others
   return server
 end
 
 --- The page on which browsers show the match: `--set web=false` leaves it out, `--set webPort=0` takes a free port, `--set webLogs=FOLDER` lets
---- the viewer play recorded games. After monitors(); without, it makes a monitor server that has no port. A house of a batch has none.
+--- the viewer play recorded games. After monitors(); without, it makes a monitor server that has no port. A simulation of a batch has none.
 function web()
   local wanted = option{ name = "web", default = true, doc = "The match can be watched in a browser." }
   local port   = option{ name = "webPort", default = 3280, doc = "Its port; 0: a free one." }
@@ -135,8 +135,8 @@ function web()
   return server
 end
 
---- The socket through which sparkctl looks at the running house; only the host's own user can open it. It and the page answer what touches, how
---- joints stand and what agents sense. A house of a batch has none.
+--- The socket of sparkctl; only the host's own user can open it. It and the page answer what touches, how
+--- joints stand and what agents sense. A simulation of a batch has none.
 function control()
   if host.alone then return end
   plugin "control"
@@ -146,8 +146,8 @@ function control()
   return server
 end
 
---- What agents draw for those who watch: --set drawings=32769 opens the UDP port of the installed base's viewer, --set
---- forwardDrawings=host:port hands everything on to another one. A house of a batch keeps none, but robots may have the effector.
+--- Drawings of agents for viewers: --set drawings=32769 opens the UDP port of the installed base's viewer, --set
+--- forwardDrawings=host:port forwards all packets to another one. A simulation of a batch keeps none, but robots may have the effector.
 function drawing()
   local port = option{ name = "drawings", default = -1, doc = "UDP port at which agents' drawings come in, e.g. 32769; -1: none, 0: any free one." }
   local forward = option{ name = "forwardDrawings", default = "", doc = "host:port of another viewer that gets agents' drawings too." }
@@ -158,7 +158,7 @@ function drawing()
   return server
 end
 
---- How a game goes: Status.score = {2, 1}. The host's status line, the columns of a batch and the page show it. `values`: what it is at first;
+--- The status of a game: Status.score = {2, 1}. The host's status line, the columns of a batch and the page show it. `values`: what it is at first;
 --- playMode (text), score (numbers) and teams (names) are understood, all others are shown by their names.
 function status(values)
   plugin "scene"
@@ -167,7 +167,7 @@ function status(values)
   return group
 end
 
---- What a run is about, in numbers: Result.falls = 3. sparkbatch makes a column of each. `values`: what they are at first.
+--- The results of a run: Result.falls = 3. sparkbatch writes a column for each. `values`: initial values.
 function results(values)
   plugin "scene"
   local group = new("Variables", "/sys/variables/Result")

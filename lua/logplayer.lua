@@ -22,5 +22,5 @@ local player = new("LogPlayer", "/sys/server/monitor/player")
 new("JsonParser", "/sys/server/monitor/player/parser").maxTokens = 262144   -- for logs that JsonMonitor wrote
 player.speed, player.waitForMonitor = speed, wait
 player.file = file
--- Who watches in a browser is no monitor of the server: the first one lets the game begin too.
+-- Viewers in browsers are no monitors of the server: the first one starts the game, too.
 if page then page:on("act", function(self) if self.viewers > 0 then player.waitForMonitor = false end end) end

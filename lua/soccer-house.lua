@@ -1,13 +1,13 @@
--- What all soccer houses share: variables, rules, what monitors and trainers need.
+-- The common part of all soccer configs: variables, rules, monitor items and trainer commands.
 --
 --     soccerVariables{ FieldLength = 104, ... }   -- before the field is imported
 --     soccerRules()                               -- after agents()
 --     soccerFouls()                               -- after soccerRules(): the automatic referee of humanoids
 --     soccerMonitor()                             -- after monitors()
 --     soccerTeams("sphere-team", "SphereBehavior", "Red Blue", 11)   -- teams that play inside the host
---     soccerCompat("F")                           -- last: what agents are told as another version of the installed base tells it
+--     soccerCompat("F")                           -- last: percepts of another version of the installed base
 
---- The variables Soccer.*, with other values where a league has them.
+--- The variables Soccer.*, with the values of a league.
 function soccerVariables(values)
   plugin "soccer"
   local soccer = new("SoccerSettings", "/sys/variables/Soccer")
@@ -18,7 +18,7 @@ end
 
 --- Rules are control aspects below game control and run in this order; the referee makes the rules of play below itself. `rules` sets their
 --- properties, or switches one off: soccerRules{ PassModeRule = false, GoalRule = { enabled = true } }. Offside is another aspect:
---- new("OffsideAspect", ...). TeamlessAspect: robots that are created at one spot touch the ground only, until they have a team.
+--- new("OffsideAspect", ...). TeamlessAspect: robots collide with static colliders only until they have a team, because all are created at one position.
 function soccerRules(rules)
   for _, class in ipairs { "TeamlessAspect", "GameStateAspect", "BallStateAspect", "SoccerRuleAspect" } do
     new(class, "/sys/server/gamecontrol/" .. class)
@@ -40,7 +40,7 @@ function soccerFouls()
   end
 end
 
---- What monitors are told of the match, what trainers may do to it, and a log of it where one is wanted.
+--- Monitor items and trainer commands of the match, and its log if one is wanted.
 function soccerMonitor()
   for _, class in ipairs { "GameStateItem", "SoccerRuleItem", "TrainerCommandParser" } do
     new(class, "/sys/server/monitor/" .. class)
@@ -49,7 +49,7 @@ function soccerMonitor()
   if file ~= "" then new("MonitorLog", "/sys/server/monitor/log").file = file end
 end
 
---- Players inside the host: `class` of `from`, a plugin, so many for each name in `teams` ("Red Blue"; "": none), numbered from 1.
+--- Players inside the host: objects of `class` from the plugin `from` for each team named in `teams` ("Red Blue"; "": none), numbered from 1.
 function soccerTeams(from, class, teams, players)
   for team in teams:gmatch("%S+") do
     plugin(from)
@@ -60,7 +60,7 @@ function soccerTeams(from, class, teams, players)
   end
 end
 
--- In what versions of the installed base differ, by the node that has the property. What is not named here is by itself as in M, the
+-- Differences between versions of the installed base, by the node that has the property. All other defaults are those of M, the
 -- mainline server 0.7.3.
 local versions = {
   M = {
@@ -91,7 +91,7 @@ function soccerCompat(version)
   end
 end
 
---- The option that names the version; a config hands it to soccerCompat().
+--- The option for the version; a config passes it to soccerCompat().
 function compatOption(default)
   return option{ name = "compat", default = default or "M", choices = { "M", "F", "L" },
                  doc = "Version of the installed base: M mainline 0.7.3, F the SPL's, L later than 0.7.3." }

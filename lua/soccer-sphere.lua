@@ -3,7 +3,7 @@
 --     sparkhost --config soccer-sphere.lua                            -- waits for teams from the network
 --     sparkhost --config soccer-sphere.lua --set "team=Red Blue"      -- plays by itself; --set changes any option below
 --
--- Three words do it all: plugin "x" loads classes, new("Class", "/path") makes a node, node.x = v sets a property. The functions of the
+-- Three statements suffice: plugin "x" loads classes, new("Class", "/path") makes a node, node.x = v sets a property. The functions of the
 -- included files say just these, for one server and its helpers each.
 include "house.lua"
 include "materials.lua"
@@ -15,7 +15,7 @@ local offside = option{ name = "offside", default = true, doc = "Offside is judg
 local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of the language that agents speak." }
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
 
--- the rooms
+-- the servers
 files()                                 -- /sys/server/file: the folder scenes/ is known as rsg/
 scene()                                 -- /sys/server/scene, and an empty scene at /usr/scene
 materials()                             -- /sys/server/material: names for viewers
@@ -25,7 +25,7 @@ agents{ parser = parser }               -- /sys/server/gamecontrol with a parser
 monitors{ encoder = encoder }           -- /sys/server/monitor with an encoder, and a TCP port
 web()                                   -- /sys/server/web: the page on which browsers show the match
 control()                               -- /sys/server/control: the socket of sparkctl
-drawing()                               -- /sys/server/drawing: what agents draw for those who watch
+drawing()                               -- /sys/server/drawing: drawings of agents for viewers
 plugin "sensors"                        -- classes that robots' scene files name
 plugin "effectors"
 
@@ -41,7 +41,7 @@ soccerVariables {
 }
 soccerRules()                           -- control aspects below /sys/server/gamecontrol; one more:
 if offside then new("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect") end
-soccerMonitor()                         -- what monitors are told of it
+soccerMonitor()                         -- monitor items and trainer commands
 get("/sys/server/monitor/GameStateItem").areas = true
 get("/usr/scene"):importScene("rsg/soccer/field_2004.rsg")
 

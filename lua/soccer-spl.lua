@@ -4,7 +4,7 @@
 --
 -- Motors get warm and draw on the battery with --set /sys/server/physics.jointHeating=true --set /sys/server/physics.batteryDischarge=true.
 league = {
-  compat = "F",                                  -- agents are told what the SPL's server told them
+  compat = "F",                                  -- percepts are those of the SPL's server
   variables = {
     FieldLength = 9, FieldWidth = 6, GoalWidth = 1.5, GoalDepth = 0.4, GoalHeight = 0.8, PenaltyLength = 0.6, PenaltyWidth = 2.2,
     FreeKickDistance = 0.75, FreeKickMoveDist = 1, GoalKickDist = 0.6, BallRadius = 0.05, BallMass = 0.05,

@@ -23,7 +23,7 @@ local solver  = solverOption(league.solver)
 local exact   = option{ name = "exactReplay", default = solver == nil,
                         doc = "Physics repeats recorded sessions of the installed base to the last digit, with the dense solver." }
 
--- the rooms
+-- the servers
 files()
 scene()
 materials()

@@ -1,5 +1,5 @@
 -- Soccer of the 3D league as fast as it goes, for training: the rules and robots of soccer.lua, physics by the articulated solver, and a
--- clock that waits for nobody but the agents.
+-- clock that waits for the agents only.
 --
 --     sparkhost --config training.lua --expect 22
 --
