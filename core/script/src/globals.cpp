@@ -1,13 +1,20 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <span>
 
+#include "environment.h"
+#include "nodes.h"
 #include "runtime.h"
+#include "values.h"
 
-// What reaches the house from a script's environment. Upvalue 1 of these functions is the script's node (the root for
-// configs), upvalue 2 the environment.
+// The globals by which scripts use the tree. Upvalue 1 of these functions is the node of the script (the root for
+// configs), upvalue 2 its environment.
 
 namespace spark::script {
 
 namespace {
+/// The node of the script whose function runs.
 Leaf& scriptNode(lua_State* L) { return *toNode(L, lua_upvalueindex(1)); }
 
 int plugin(lua_State* L) {
@@ -38,11 +45,11 @@ int remove(lua_State* L) {
   if (lua_type(L, 1) == LUA_TSTRING) {
     const std::string path(checkString(L, 1, "a path"));
     found = scriptNode(L).find(path);
-    if (!found) throw Error("cannot delete " + path + ": there is no such node");
+    if (!found) throw Error(fmt::format("cannot delete {}: there is no such node", path));
   } else {
     found = toNode(L, 1);
   }
-  if (!found) throw Error("delete expected a path or a node, found a " + typeAt(L, 1));
+  if (!found) throw Error(fmt::format("delete expected a path or a node, found a {}", typeAt(L, 1)));
   deleteNode(L, *found);
   return 0;
 }
@@ -50,16 +57,19 @@ int remove(lua_State* L) {
 int option(lua_State* L) {
   static const std::vector<std::string> known{"name", "default", "doc", "choices"};
   if (!lua_istable(L, 1))
-    throw Error("option expected a table: option{name = \"agents\", default = 11, doc = \"...\"}, found a " +
-                typeAt(L, 1));
+    throw Error(fmt::format(
+        "option expected a table: option{{name = \"agents\", default = 11, doc = \"...\"}}, found a {}", typeAt(L, 1)));
+
+  // A misspelt field is an error.
   lua_settop(L, 1);
   for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1)) {
     std::string key;
     appendText(L, -2, key);
     if (std::find(known.begin(), known.end(), key) == known.end())
-      throw Error("option knows no field '" + key + "'." + didYouMean(key, known) +
-                  " It has name, default, doc and choices.");
+      throw Error(fmt::format("option knows no field '{}'.{} It has name, default, doc and choices.", key,
+                              didYouMean(key, known)));
   }
+
   lua_getfield(L, 1, "name");
   const std::string name(checkString(L, -1, "an option's name"));
   lua_getfield(L, 1, "default");
@@ -69,7 +79,8 @@ int option(lua_State* L) {
   lua_getfield(L, 1, "choices");
   Value choices = toValue(L, -1);
   if (choices.isNil()) choices = List{};
-  if (!choices.isList()) throw Error("option '" + name + "' expected a list of choices, found " + choices.text());
+  if (!choices.isList())
+    throw Error(fmt::format("option '{}' expected a list of choices, found {}", name, choices.text()));
   pushValue(L, State::of(L).runtime().settings.declare(name, defaultValue, doc, choices.toList()));
   return 1;
 }
@@ -78,14 +89,14 @@ int include(lua_State* L) {
   const std::string file(checkString(L, 1, "a file name"));
   const std::string text = State::of(L).runtime().readInclude(file, L).text;
   lua_settop(L, 0);
-  Runtime::load(L, text, "@" + file, lua_upvalueindex(2));
+  Runtime::load(L, text, fmt::format("@{}", file), lua_upvalueindex(2));
   lua_call(L, 0, LUA_MULTRET);
   return lua_gettop(L);
 }
 
 int handle(lua_State* L) { return subscribe(L, scriptNode(L), 1); }
 
-/// Upvalue: the level.
+/// Logs its arguments as print would show them. Upvalue 1 is the level.
 int writeLog(lua_State* L) {
   Log& log = State::of(L).runtime().kernel.log();
   const auto level = static_cast<Level>(lua_tointeger(L, lua_upvalueindex(1)));
@@ -99,12 +110,13 @@ int writeLog(lua_State* L) {
   return 0;
 }
 
+/// Pushes a function that logs at a level.
 void pushLog(lua_State* L, Level level) {
   lua_pushinteger(L, static_cast<lua_Integer>(level));
   lua_pushcclosure(L, guarded<writeLog>, 1);
 }
 
-/// A global that nobody set: the group of variables of that name, else nil.
+/// __index of an environment: a global that was not set is the group of variables of that name, else nil.
 int findNamespace(lua_State* L) {
   Leaf* found = nullptr;
   if (lua_type(L, 2) == LUA_TSTRING)
@@ -123,7 +135,7 @@ void addGlobals(lua_State* L, Leaf& node, bool config) {
     lua_pushvalue(L, nodeIndex);
     lua_setfield(L, environment, "self");
   }
-  constexpr luaL_Reg kEverybody[] = {{"on", guarded<handle>}};
+  constexpr luaL_Reg kAll[] = {{"on", guarded<handle>}};
   constexpr luaL_Reg kTrusted[] = {
       {"plugin", guarded<plugin>}, {"unload", guarded<unload>}, {"new", guarded<create>},     {"get", guarded<get>},
       {"delete", guarded<remove>}, {"option", guarded<option>}, {"include", guarded<include>}};
@@ -136,9 +148,10 @@ void addGlobals(lua_State* L, Leaf& node, bool config) {
       lua_setfield(L, environment, f.name);
     }
   };
-  add(kEverybody);
+  add(kAll);
   if (trusted) {
     add(kTrusted);
+    // print, and the functions of log.
     pushLog(L, Level::info);
     lua_setfield(L, environment, "print");
     lua_newtable(L);
@@ -150,6 +163,7 @@ void addGlobals(lua_State* L, Leaf& node, bool config) {
       lua_setfield(L, -2, name);
     }
     lua_setfield(L, environment, "log");
+    // The metatable, which scripts cannot replace.
     lua_newtable(L);
     lua_pushcfunction(L, guarded<findNamespace>);
     lua_setfield(L, -2, "__index");

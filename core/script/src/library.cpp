@@ -1,23 +1,31 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "runtime.h"
+#include "environment.h"
+#include "nodes.h"
+#include "spark/error.h"
+#include "spark/leaf.h"
+#include "spark/random.h"
+#include "state.h"
+#include "values.h"
 
-// The pure library of all scripts. Lua's own, but: traversal by sorted key, a stable sort (Lua's picks its pivot by the
-// clock), random numbers from the kernel's streams, no addresses in texts, nothing that depends on the garbage
-// collector, no files, no clock, no load. Untrusted scripts get a part of it in which every function also pays for the
-// size of its arguments; no metatables (they let a C function loop without end), no patterns (they take exponential
-// time).
+// The library of all scripts. It is Lua's own, made deterministic: traversal in order of key, a stable sort (Lua's
+// depends on the clock), random numbers from the kernel's streams, no addresses in texts, nothing that depends on the
+// garbage collector, no files, no clock, no load. Untrusted scripts get a part of it, whose functions charge for the
+// size of their arguments. That part has no metatables, which let a C function loop for ever, and no patterns, which
+// take exponential time.
 //
-// The globals table of a state holds what every environment gets a copy of; no script reaches it.
+// The table of globals of a state is the model: every environment gets a copy, and scripts cannot reach the model.
 
 namespace spark::script {
 
 namespace {
 constexpr const char* kStreamType = "random stream";
 
-/// Lua's own function, kept in the registry by a function that replaces it.
+/// Calls Lua's own function, which replace() has kept in the registry.
 int callOriginal(lua_State* L, const char* key) {
   lua_getfield(L, LUA_REGISTRYINDEX, key);
   const lua_CFunction original = lua_tocfunction(L, -1);
@@ -25,6 +33,7 @@ int callOriginal(lua_State* L, const char* key) {
   return original(L);
 }
 
+/// next in order of key.
 int nextSorted(lua_State* L) {
   luaL_checktype(L, 1, LUA_TTABLE);
   lua_settop(L, 2);
@@ -35,7 +44,8 @@ int nextSorted(lua_State* L) {
   return 2;
 }
 
-/// Upvalues: the sorted keys, how many were given out. A key whose value has gone meanwhile is left out.
+/// The iterator of pairs. Upvalues: the sorted keys, and the number of keys so far. A key whose value has been removed
+/// meanwhile is skipped.
 int iterateKeys(lua_State* L) {
   lua_Integer i = lua_tointeger(L, lua_upvalueindex(2));
   int results = 0;
@@ -53,6 +63,7 @@ int iterateKeys(lua_State* L) {
   return results;
 }
 
+/// pairs in order of key.
 int pairsSorted(lua_State* L) {
   luaL_checkany(L, 1);
   if (luaL_getmetafield(L, 1, "__pairs") != LUA_TNIL) {
@@ -61,8 +72,8 @@ int pairsSorted(lua_State* L) {
     return 3;
   }
   if (!lua_istable(L, 1))
-    throw Error("pairs expected a table, found a " + typeAt(L, 1) +
-                (toNode(L, 1) ? ": use ipairs(node:children())" : ""));
+    throw Error(fmt::format("pairs expected a table, found a {}{}", typeAt(L, 1),
+                            toNode(L, 1) ? ": use ipairs(node:children())" : ""));
   lua_settop(L, 1);
   pushSortedKeys(L, 1);
   lua_pushinteger(L, 0);
@@ -72,22 +83,24 @@ int pairsSorted(lua_State* L) {
   return 3;
 }
 
+/// tostring without addresses.
 int toText(lua_State* L) {
   luaL_checkany(L, 1);
   std::string out;
   appendText(L, 1, out);
-  lua_pushlstring(L, out.data(), out.size());
+  pushText(L, out);
   return 1;
 }
 
+/// setmetatable without fields that depend on the garbage collector.
 int setMetatable(lua_State* L) {
   if (lua_istable(L, 2))
     for (const char* key : {"__gc", "__mode"}) {
       lua_pushstring(L, key);
       lua_rawget(L, 2);
       if (!lua_isnil(L, -1))
-        throw Error(std::string("a metatable must not have ") + key +
-                    ": the garbage collector's moment is not the same in every run");
+        throw Error(fmt::format(
+            "a metatable must not have {}: the garbage collector's moment is not the same in every run", key));
       lua_pop(L, 1);
     }
   return callOriginal(L, "spark.setmetatable");
@@ -96,6 +109,7 @@ int setMetatable(lua_State* L) {
 /// string.format without %p; %s shows tables and functions without their addresses.
 int formatText(lua_State* L) {
   const std::string format(checkString(L, 1, "a format"));
+  // Replace the arguments of %s that have no text of their own.
   int argument = 1;
   for (std::size_t i = 0; i < format.size(); ++i) {
     if (format[i] != '%') continue;
@@ -107,14 +121,14 @@ int formatText(lua_State* L) {
     if (format[i] == 's' && argument <= lua_gettop(L) && !lua_isstring(L, argument)) {
       std::string text;
       appendText(L, argument, text);
-      lua_pushlstring(L, text.data(), text.size());
+      pushText(L, text);
       lua_replace(L, argument);
     }
   }
   return callOriginal(L, "spark.format");
 }
 
-/// string.rep, which would count to 2^63 for an empty string.
+/// string.rep, which for an empty string would count up to 2^63.
 int repeatText(lua_State* L) {
   if (checkString(L, 1, "a text").empty() && (lua_isnoneornil(L, 3) || checkString(L, 3, "a separator").empty())) {
     luaL_checkinteger(L, 2);
@@ -124,8 +138,8 @@ int repeatText(lua_State* L) {
   return callOriginal(L, "spark.rep");
 }
 
-/// True when the element at stack index `right` goes before the one at `left`, by the comparison at index 2 or by `<`.
-bool goesBefore(lua_State* L, int right, int left) {
+/// True if the element at stack index `right` is less than the one at `left`, by the comparison at index 2 or by `<`.
+bool isLess(lua_State* L, int right, int left) {
   if (lua_isnil(L, 2)) return lua_compare(L, right, left, LUA_OPLT);
   right = lua_absindex(L, right);
   left = lua_absindex(L, left);
@@ -146,7 +160,7 @@ void merge(lua_State* L, int from, int to, lua_Integer low, lua_Integer middle, 
     if (!takeRight && right < high) {
       lua_rawgeti(L, from, left);
       lua_rawgeti(L, from, right);
-      takeRight = goesBefore(L, -1, -2);
+      takeRight = isLess(L, -1, -2);
       lua_pop(L, 2);
     }
     lua_rawgeti(L, from, takeRight ? right++ : left++);
@@ -154,13 +168,14 @@ void merge(lua_State* L, int from, int to, lua_Integer low, lua_Integer middle, 
   }
 }
 
-/// table.sort as a stable merge sort.
+/// table.sort as a stable merge sort, bottom up.
 int sortTable(lua_State* L) {
   luaL_checktype(L, 1, LUA_TTABLE);
   if (!lua_isnoneornil(L, 2)) luaL_checktype(L, 2, LUA_TFUNCTION);
   lua_settop(L, 2);
   const lua_Integer n = luaL_len(L, 1);
   luaL_argcheck(L, n < std::numeric_limits<int>::max(), 1, "array too big");
+  // Two tables at indices 3 and 4, of which one is merged into the other.
   int from = 3, to = 4;
   lua_createtable(L, static_cast<int>(std::max<lua_Integer>(n, 0)), 0);
   lua_createtable(L, static_cast<int>(std::max<lua_Integer>(n, 0)), 0);
@@ -178,22 +193,24 @@ int sortTable(lua_State* L) {
   return 0;
 }
 
-/// An environment's random numbers. The owner is asked for its path at the first draw.
+/// The random numbers of an environment. The first draw seeds them from the owner's path, so the owner must exist then.
 struct Stream {
   Ref<Leaf> owner;
   RandomStream numbers;
-  bool keyed = false;
+  bool seeded = false;
 };
 
+/// The stream of a function, which is its upvalue.
 Stream& streamOf(lua_State* L) {
   auto& stream = *static_cast<Stream*>(lua_touserdata(L, lua_upvalueindex(1)));
-  if (!stream.keyed && !stream.owner) throw Error("math.random has no stream: the script's node is gone");
+  if (!stream.seeded && !stream.owner) throw Error("math.random has no stream: the script's node is gone");
   return stream;
 }
 
+/// math.random. As Lua's: no argument for a float, 0 for all bits, else one limit or two.
 int drawRandom(lua_State* L) {
   Stream& stream = streamOf(L);
-  stream.keyed = true;
+  stream.seeded = true;
   if (lua_gettop(L) == 0) {
     lua_pushnumber(L, stream.numbers.uniform());
     return 1;
@@ -205,18 +222,20 @@ int drawRandom(lua_State* L) {
   }
   const lua_Integer low = lua_gettop(L) == 1 ? 1 : first, high = lua_gettop(L) == 1 ? first : luaL_checkinteger(L, 2);
   luaL_argcheck(L, low <= high, lua_gettop(L) == 1 ? 1 : 2, "interval is empty");
+  // Unsigned, because the range may be up to 2^64, which becomes 0.
   const std::uint64_t range = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low) + 1;
   const std::uint64_t drawn = range == 0 ? stream.numbers.bits() : stream.numbers.below(range);
   lua_pushinteger(L, static_cast<lua_Integer>(static_cast<std::uint64_t>(low) + drawn));
   return 1;
 }
 
+/// math.randomseed.
 int seedRandom(lua_State* L) {
   Stream& stream = streamOf(L);
   const lua_Number number = luaL_checknumber(L, 1);
   stream.numbers.seed(lua_isinteger(L, 1) ? static_cast<std::uint64_t>(lua_tointeger(L, 1))
                                           : std::bit_cast<std::uint64_t>(number));
-  stream.keyed = true;
+  stream.seeded = true;
   return 0;
 }
 
@@ -225,7 +244,7 @@ int freeStream(lua_State* L) {
   return 0;
 }
 
-/// Upvalue: the function of the library. Takes the size of the arguments off the budget first.
+/// Charges for the size of the arguments, then calls the function of the library that is its upvalue.
 int callCharged(lua_State* L) {
   std::uint64_t cost = 0;
   for (int i = 1; i <= lua_gettop(L); ++i) {
@@ -236,32 +255,30 @@ int callCharged(lua_State* L) {
   return lua_tocfunction(L, lua_upvalueindex(1))(L);
 }
 
-/// Elements that a function of the table library moves, compares or joins, as its arguments say.
+/// The number of elements that a function of the table library moves, compares or joins, computed from its arguments.
 struct Elements {
   static double length(lua_State* L) { return lua_istable(L, 1) ? static_cast<double>(lua_rawlen(L, 1)) : 0; }
   static double integer(lua_State* L, int index, double otherwise) {
     return lua_isinteger(L, index) ? static_cast<double>(lua_tointeger(L, index)) : otherwise;
   }
-  static double concat(lua_State* L) {
-    return 4 * (integer(L, 4, length(L)) - integer(L, 3, 1));
-  }  // numbers become texts
+  /// A number that becomes text costs as much as four moves.
+  static double concat(lua_State* L) { return 4 * (integer(L, 4, length(L)) - integer(L, 3, 1)); }
   static double insert(lua_State* L) { return lua_gettop(L) == 3 ? length(L) - integer(L, 2, 1) : 0; }
   static double remove(lua_State* L) { return lua_gettop(L) == 2 ? length(L) - integer(L, 2, 1) : 0; }
   static double move(lua_State* L) { return integer(L, 3, 0) - integer(L, 2, 0); }
   static double unpack(lua_State* L) { return integer(L, 3, length(L)) - integer(L, 2, 1); }
-  static double sort(lua_State* L) {
-    return 4 * length(L) * std::log2(length(L) + 1);
-  }  // a comparison takes as long as four moves
+  /// A comparison costs as much as four moves.
+  static double sort(lua_State* L) { return 4 * length(L) * std::log2(length(L) + 1); }
 };
 
-/// Upvalue: the function of the table library. Takes the elements that it works on off the budget first.
+/// Charges for the elements, then calls the function of the table library that is its upvalue.
 template <double (*Count)(lua_State*)>
 int callTable(lua_State* L) {
   State::of(L).charge(L, static_cast<std::uint64_t>(std::clamp(Count(L), 0.0, 1e15)));
   return lua_tocfunction(L, lua_upvalueindex(1))(L);
 }
 
-/// Replaces function `name` of the table on top of the stack, keeping the original in the registry as `key`.
+/// Replaces function `name` of the table on top of the stack. callOriginal() finds the old one by `key`.
 void replace(lua_State* L, const char* name, const char* key, lua_CFunction function) {
   lua_getfield(L, -1, name);
   lua_setfield(L, LUA_REGISTRYINDEX, key);
@@ -269,6 +286,7 @@ void replace(lua_State* L, const char* name, const char* key, lua_CFunction func
   lua_setfield(L, -2, name);
 }
 
+/// Removes entries of the table on top of the stack.
 void remove(lua_State* L, std::initializer_list<const char*> names) {
   for (const char* name : names) {
     lua_pushnil(L);
@@ -276,7 +294,7 @@ void remove(lua_State* L, std::initializer_list<const char*> names) {
   }
 }
 
-/// The table on top of the stack: only `names` stay.
+/// Replaces the table on top of the stack by one that has only `names`, whose functions charge.
 void keepCharged(lua_State* L, std::initializer_list<const char*> names) {
   lua_newtable(L);
   for (const char* name : names) {
@@ -286,13 +304,14 @@ void keepCharged(lua_State* L, std::initializer_list<const char*> names) {
   lua_replace(L, -2);
 }
 
+/// Copies a library from the globals at index 1 to those at index 2, with `names` only.
 void keepChargedLibrary(lua_State* L, const char* library, std::initializer_list<const char*> names) {
   lua_getfield(L, 1, library);
   keepCharged(L, names);
   lua_setfield(L, 2, library);
 }
 
-/// Replaces the globals by the part that untrusted scripts get.
+/// Replaces the globals by the part for untrusted scripts.
 void restrict(lua_State* L) {
   lua_settop(L, 0);
   lua_pushglobaltable(L);
@@ -308,7 +327,7 @@ void restrict(lua_State* L) {
   lua_settop(L, 0);
 }
 
-/// Pushes a copy of the table at `index`; tables in it are copied too, once deep.
+/// Pushes a copy of the table at `index`. `deep`: tables in it are copied too, but not tables in these.
 void pushCopy(lua_State* L, int index, bool deep) {
   index = lua_absindex(L, index);
   lua_newtable(L);
@@ -324,19 +343,6 @@ void pushCopy(lua_State* L, int index, bool deep) {
 }
 }  // namespace
 
-void appendText(lua_State* L, int index, std::string& out) {
-  const bool plain = lua_isnoneornil(L, index) || lua_isboolean(L, index) || lua_isstring(L, index);
-  if (!plain && luaL_getmetafield(L, index, "__tostring") == LUA_TNIL) {
-    out += typeAt(L, index);
-    return;
-  }
-  if (!plain) lua_pop(L, 1);
-  std::size_t n = 0;
-  const char* text = luaL_tolstring(L, index, &n);
-  out.append(text, n);
-  lua_pop(L, 1);
-}
-
 void openLibrary(lua_State* L, bool trusted) {
   constexpr luaL_Reg kLibraries[] = {{"_G", luaopen_base},     {"string", luaopen_string},
                                      {"table", luaopen_table}, {"math", luaopen_math},
@@ -345,6 +351,8 @@ void openLibrary(lua_State* L, bool trusted) {
     luaL_requiref(L, library.name, library.func, 1);
     lua_pop(L, 1);
   }
+
+  // Functions that are not deterministic are removed or replaced.
   lua_pushglobaltable(L);
   remove(L, {"_G", "collectgarbage", "dofile", "load", "loadfile", "print", "warn"});
   replace(L, "setmetatable", "spark.setmetatable", guarded<setMetatable>);
@@ -362,11 +370,14 @@ void openLibrary(lua_State* L, bool trusted) {
   lua_getfield(L, -1, "table");
   lua_pushcfunction(L, guarded<sortTable>);
   lua_setfield(L, -2, "sort");
+
+  // Functions whose work depends on their arguments charge for it. In an untrusted state restrict() wraps all
+  // functions.
   constexpr luaL_Reg kTable[] = {{"concat", callTable<Elements::concat>}, {"insert", callTable<Elements::insert>},
                                  {"move", callTable<Elements::move>},     {"remove", callTable<Elements::remove>},
                                  {"sort", callTable<Elements::sort>},     {"unpack", callTable<Elements::unpack>}};
   for (const luaL_Reg& f : kTable) {
-    if (!trusted) break;  // callCharged makes them pay
+    if (!trusted) break;
     lua_getfield(L, -1, f.name);
     lua_pushcclosure(L, f.func, 1);
     lua_setfield(L, -2, f.name);
@@ -382,11 +393,12 @@ void openLibrary(lua_State* L, bool trusted) {
   lua_pop(L, 2);
   if (!trusted) restrict(L);
 
+  // The metatable of random streams.
   luaL_newmetatable(L, kStreamType);
   lua_pushcfunction(L, freeStream);
   lua_setfield(L, -2, "__gc");
   lua_pop(L, 1);
-  // Texts find their methods in a table of their own, which no script can change.
+  // The methods of strings are in a table of their own, which scripts cannot change.
   lua_pushliteral(L, "");
   lua_getmetatable(L, -1);
   lua_getglobal(L, "string");
@@ -405,6 +417,7 @@ void pushEnvironment(lua_State* L, Leaf& node, bool config) {
   lua_pushvalue(L, -1);
   lua_setfield(L, -2, "_G");
 
+  // Each environment has its own random numbers.
   lua_getfield(L, -1, "math");
   new (lua_newuserdatauv(L, sizeof(Stream), 0)) Stream{Ref<Leaf>(&node), RandomStream(node, "script")};
   luaL_setmetatable(L, kStreamType);

@@ -1,21 +1,31 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstring>
 
-#include "runtime.h"
+#include "environment.h"
+#include "spark/error.h"
+#include "state.h"
+#include "values.h"
 
-// find, match, gmatch and gsub of Lua 5.4 (reference manual, section 6.4.1). Lua's own run as one instruction however
-// long they take, and a pattern such as ".-.-.-b" takes exponential time: these pay a unit of the budget for each
-// comparison.
+// find, match, gmatch and gsub as in Lua 5.4 (reference manual, sections 6.4 and 6.4.1). Lua's own functions count as
+// one instruction however long they take, and a pattern such as ".-.-.-b" takes exponential time. These charge an
+// instruction for each comparison.
+//
+// Positions are pointers into the subject (`at`, `to`) and into the pattern (`p`). A function that matches a piece of
+// the pattern returns the end of the match in the subject, or nullptr.
 
 namespace spark::script {
 
 namespace patterns {
-constexpr int kMostCaptures = 32;
-constexpr int kDeepest = 200;                         // nested calls of a pattern
-constexpr std::ptrdiff_t kOpen = -1, kPosition = -2;  // instead of a capture's length
+constexpr int kMaxCaptures = 32;
+constexpr int kMaxDepth = 200;  // nested calls of match()
+// Lengths of captures that have none: one that is not closed yet, and a position capture.
+constexpr std::ptrdiff_t kOpen = -1, kPosition = -2;
 
-/// One attempt to match a pattern, and what it captured.
+/// Matches a pattern at a position, and keeps the captures.
 class Matcher {
  public:
   Matcher(lua_State* L, std::string_view subject, std::string_view pattern)
@@ -25,31 +35,34 @@ class Matcher {
         end_(begin_ + subject.size()),
         patternEnd_(pattern.data() + pattern.size()) {}
 
-  /// The end of the match of `pattern` at `at`, nullptr when there is none.
+  /// Matches `pattern` at `at`, without the captures of earlier attempts.
   const char* start(const char* at, const char* pattern) {
-    level_ = 0;
-    depth_ = kDeepest;
+    captureCount_ = 0;
+    depthLeft_ = kMaxDepth;
     return match(at, pattern);
   }
   const char* begin() const { return begin_; }
   const char* end() const { return end_; }
 
-  /// Pushes capture i; without captures the first is the whole match.
+  /// Pushes capture `i`, from 0, of the match [from, to). Without captures the first one is the whole match.
   void push(int i, const char* from, const char* to) const {
-    if (i >= level_) {
-      if (i != 0) throw Error("invalid capture index %" + std::to_string(i + 1));
-      lua_pushlstring(L_, from, static_cast<std::size_t>(to - from));
-    } else if (captures_[i].length == kPosition) {
-      lua_pushinteger(L_, captures_[i].begin - begin_ + 1);
-    } else if (captures_[i].length == kOpen) {
-      throw Error("unfinished capture");
-    } else {
-      lua_pushlstring(L_, captures_[i].begin, static_cast<std::size_t>(captures_[i].length));
+    if (i >= captureCount_) {
+      if (i != 0) throw Error(fmt::format("invalid capture index %{}", i + 1));
+      pushText(L_, {from, to});
+      return;
     }
+    const Capture& c = captures_[i];
+    if (c.length == kPosition)
+      lua_pushinteger(L_, c.begin - begin_ + 1);
+    else if (c.length == kOpen)
+      throw Error("unfinished capture");
+    else
+      pushText(L_, {c.begin, c.begin + c.length});
   }
-  /// Pushes all captures, or the whole match when `from` is given and there are none. Returns how many.
+  /// Pushes all captures of the match [from, to), or the whole match if there are none and `from` is not nullptr.
+  /// Returns their number.
   int pushAll(const char* from, const char* to) const {
-    const int n = level_ == 0 && from ? 1 : level_;
+    const int n = captureCount_ == 0 && from ? 1 : captureCount_;
     luaL_checkstack(L_, n, "too many captures");
     for (int i = 0; i < n; ++i) push(i, from, to);
     return n;
@@ -61,8 +74,10 @@ class Matcher {
     std::ptrdiff_t length;
   };
 
-  void pay() { state_.charge(L_); }
+  /// Charges for a comparison.
+  void charge() { state_.charge(L_); }
 
+  /// True if character `c` is in the class `%letter`.
   static bool inClass(int c, int letter) {
     bool in = false;
     switch (std::tolower(letter)) {
@@ -107,7 +122,7 @@ class Matcher {
 
   static int byte(const char* p) { return static_cast<unsigned char>(*p); }
 
-  /// Behind the single character class that begins at p.
+  /// The end of the single character class that begins at p.
   const char* classEnd(const char* p) const {
     if (*p++ == '%') {
       if (p == patternEnd_) throw Error("malformed pattern (ends with '%')");
@@ -115,7 +130,7 @@ class Matcher {
     }
     if (p[-1] != '[') return p;
     if (p < patternEnd_ && *p == '^') ++p;
-    do {  // a ] that comes first is one of the set
+    do {  // a ']' in front is an element of the set
       if (p == patternEnd_) throw Error("malformed pattern (missing ']')");
       if (*p++ == '%') {
         if (p == patternEnd_) throw Error("malformed pattern (missing ']')");
@@ -125,7 +140,7 @@ class Matcher {
     return p + 1;
   }
 
-  /// `p` at the [, `last` at the ].
+  /// True if character `c` is in the set whose '[' is at `p` and whose ']' is at `last`.
   static bool inSet(int c, const char* p, const char* last) {
     bool wanted = true;
     if (p[1] == '^') wanted = false, ++p;
@@ -142,8 +157,9 @@ class Matcher {
     return !wanted;
   }
 
-  bool single(const char* at, const char* p, const char* behind) {
-    pay();
+  /// True if the character at `at` matches the class [p, classEnd).
+  bool matchesOne(const char* at, const char* p, const char* classEnd) {
+    charge();
     if (at >= end_) return false;
     switch (*p) {
       case '.':
@@ -151,18 +167,19 @@ class Matcher {
       case '%':
         return inClass(byte(at), byte(p + 1));
       case '[':
-        return inSet(byte(at), p, behind - 1);
+        return inSet(byte(at), p, classEnd - 1);
       default:
         return byte(p) == byte(at);
     }
   }
 
-  const char* balanced(const char* at, const char* p) {
+  /// %bxy, with `p` at the x.
+  const char* matchBalanced(const char* at, const char* p) {
     if (p + 1 >= patternEnd_) throw Error("malformed pattern (missing arguments to '%b')");
     if (at >= end_ || *at != p[0]) return nullptr;
     int open = 1;
     for (const char* s = at + 1; s < end_; ++s) {
-      pay();
+      charge();
       if (*s == p[1]) {
         if (--open == 0) return s + 1;
       } else if (*s == p[0]) {
@@ -172,31 +189,35 @@ class Matcher {
     return nullptr;
   }
 
-  const char* most(const char* at, const char* p, const char* behind) {
+  /// The class [p, classEnd) with the suffix '*', and the rest of the pattern: as many characters as possible.
+  const char* matchMost(const char* at, const char* p, const char* classEnd) {
     std::ptrdiff_t n = 0;
-    while (single(at + n, p, behind)) ++n;
+    while (matchesOne(at + n, p, classEnd)) ++n;
     for (; n >= 0; --n)
-      if (const char* to = match(at + n, behind + 1)) return to;
+      if (const char* to = match(at + n, classEnd + 1)) return to;
     return nullptr;
   }
 
-  const char* least(const char* at, const char* p, const char* behind) {
+  /// The class [p, classEnd) with the suffix '-', and the rest of the pattern: as few characters as possible.
+  const char* matchLeast(const char* at, const char* p, const char* classEnd) {
     for (;; ++at) {
-      if (const char* to = match(at, behind + 1)) return to;
-      if (!single(at, p, behind)) return nullptr;
+      if (const char* to = match(at, classEnd + 1)) return to;
+      if (!matchesOne(at, p, classEnd)) return nullptr;
     }
   }
 
-  const char* open(const char* at, const char* p, std::ptrdiff_t kind) {
-    if (level_ >= kMostCaptures) throw Error("too many captures");
-    captures_[level_++] = {at, kind};
+  /// Begins a capture and matches the rest of the pattern. `length`: kOpen or kPosition.
+  const char* openCapture(const char* at, const char* p, std::ptrdiff_t length) {
+    if (captureCount_ >= kMaxCaptures) throw Error("too many captures");
+    captures_[captureCount_++] = {at, length};
     const char* to = match(at, p);
-    if (!to) --level_;
+    if (!to) --captureCount_;
     return to;
   }
 
-  const char* close(const char* at, const char* p) {
-    int i = level_ - 1;
+  /// Ends the innermost open capture and matches the rest of the pattern.
+  const char* closeCapture(const char* at, const char* p) {
+    int i = captureCount_ - 1;
     while (i >= 0 && captures_[i].length != kOpen) --i;
     if (i < 0) throw Error("invalid pattern capture");
     captures_[i].length = at - captures_[i].begin;
@@ -205,46 +226,52 @@ class Matcher {
     return to;
   }
 
-  const char* again(const char* at, int digit) {
+  /// %1 to %9: the text of a capture.
+  const char* matchCapture(const char* at, int digit) {
     const int i = digit - '1';
-    if (i < 0 || i >= level_ || captures_[i].length == kOpen)
-      throw Error("invalid capture index %" + std::to_string(i + 1));
-    if (captures_[i].length == kPosition) return nullptr;  // a place is no text
-    const auto length = static_cast<std::size_t>(captures_[i].length);
-    if (static_cast<std::size_t>(end_ - at) < length) return nullptr;
+    if (i < 0 || i >= captureCount_ || captures_[i].length == kOpen)
+      throw Error(fmt::format("invalid capture index %{}", i + 1));
+    const Capture& c = captures_[i];
+    if (c.length == kPosition) return nullptr;  // it has no text
+    if (end_ - at < c.length) return nullptr;
+    const std::size_t length = c.length;
     state_.charge(L_, length / kBytesPerInstruction);
-    if (std::memcmp(captures_[i].begin, at, length) != 0) return nullptr;
+    if (std::memcmp(c.begin, at, length) != 0) return nullptr;
     return at + length;
   }
 
-  bool frontier(const char* at, const char* p, const char* behind) {
+  /// %f[set]: the set [p, setEnd) begins at `at`.
+  bool isFrontier(const char* at, const char* p, const char* setEnd) {
     const int before = at == begin_ ? 0 : byte(at - 1), here = at < end_ ? byte(at) : 0;
-    return !inSet(before, p, behind - 1) && inSet(here, p, behind - 1);
+    return !inSet(before, p, setEnd - 1) && inSet(here, p, setEnd - 1);
   }
 
+  /// Matches the pattern from `p` to its end.
   const char* match(const char* at, const char* p) {
-    struct Level {
-      int& depth;
-      explicit Level(int& d) : depth(d) {
-        if (depth-- == 0) throw Error("pattern too complex");
+    struct Depth {
+      int& left;
+      explicit Depth(int& l) : left(l) {
+        if (left-- == 0) throw Error("pattern too complex");
       }
-      ~Level() { ++depth; }
-    } level(depth_);
+      ~Depth() { ++left; }
+    } depth(depthLeft_);
     for (;;) {
-      pay();
+      charge();
       if (p == patternEnd_) return at;
+
+      // Items that are not single character classes.
       switch (*p) {
         case '(':
-          return p + 1 < patternEnd_ && p[1] == ')' ? open(at, p + 2, kPosition) : open(at, p + 1, kOpen);
+          return p + 1 < patternEnd_ && p[1] == ')' ? openCapture(at, p + 2, kPosition) : openCapture(at, p + 1, kOpen);
         case ')':
-          return close(at, p + 1);
+          return closeCapture(at, p + 1);
         case '$':
           if (p + 1 == patternEnd_) return at == end_ ? at : nullptr;
           break;
         case '%':
           if (p + 1 == patternEnd_) break;
           if (p[1] == 'b') {
-            at = balanced(at, p + 2);
+            at = matchBalanced(at, p + 2);
             if (!at) return nullptr;
             p += 4;
             continue;
@@ -252,13 +279,13 @@ class Matcher {
           if (p[1] == 'f') {
             p += 2;
             if (p == patternEnd_ || *p != '[') throw Error("missing '[' after '%f' in pattern");
-            const char* behind = classEnd(p);
-            if (!frontier(at, p, behind)) return nullptr;
-            p = behind;
+            const char* setEnd = classEnd(p);
+            if (!isFrontier(at, p, setEnd)) return nullptr;
+            p = setEnd;
             continue;
           }
           if (std::isdigit(byte(p + 1))) {
-            at = again(at, byte(p + 1));
+            at = matchCapture(at, byte(p + 1));
             if (!at) return nullptr;
             p += 2;
             continue;
@@ -267,47 +294,52 @@ class Matcher {
         default:
           break;
       }
-      const char* behind = classEnd(p);
-      const char suffix = behind < patternEnd_ ? *behind : '\0';
-      if (suffix == '*') return most(at, p, behind);
-      if (suffix == '-') return least(at, p, behind);
-      if (suffix == '+') return single(at, p, behind) ? most(at + 1, p, behind) : nullptr;
-      const bool matches = single(at, p, behind);
+
+      // A single character class with its suffix.
+      const char* end = classEnd(p);
+      const char suffix = end < patternEnd_ ? *end : '\0';
+      if (suffix == '*') return matchMost(at, p, end);
+      if (suffix == '-') return matchLeast(at, p, end);
+      if (suffix == '+') return matchesOne(at, p, end) ? matchMost(at + 1, p, end) : nullptr;
+      const bool matches = matchesOne(at, p, end);
       if (suffix == '?') {
         if (matches)
-          if (const char* to = match(at + 1, behind + 1)) return to;
-        p = behind + 1;
+          if (const char* to = match(at + 1, end + 1)) return to;
+        p = end + 1;
         continue;
       }
       if (!matches) return nullptr;
       ++at;
-      p = behind;
+      p = end;
     }
   }
 
   lua_State* L_;
   State& state_;
-  const char *begin_, *end_, *patternEnd_;
-  int level_ = 0, depth_ = kDeepest;
-  std::array<Capture, kMostCaptures> captures_;
+  const char *begin_, *end_;  // of the subject
+  const char* patternEnd_;
+  int captureCount_ = 0;
+  int depthLeft_ = kMaxDepth;
+  std::array<Capture, kMaxCaptures> captures_;
 };
 
+/// The string or number at `index` as text. Lua error for other types.
 static std::string_view text(lua_State* L, int index) {
-  std::size_t n = 0;
-  const char* s = luaL_checklstring(L, index, &n);
-  return {s, n};
+  luaL_checklstring(L, index, nullptr);
+  return textAt(L, index);
 }
 
-/// Where the optional argument says that a search begins, from 0; beyond the end: one more than the length.
-static std::size_t beginAt(lua_State* L, int index, std::size_t length) {
+/// The offset at which a search begins, from the optional argument at `index`: a position from 1, or from the end if it
+/// is negative. A position beyond the end becomes length + 1.
+static std::size_t beginOffset(lua_State* L, int index, std::size_t length) {
   const lua_Integer at = luaL_optinteger(L, index, 1);
   const auto n = static_cast<lua_Integer>(length);
-  if (at > 0) return static_cast<std::size_t>(std::min(at - 1, n + 1));
+  if (at > 0) return std::min(at - 1, n + 1);
   if (at == 0 || at < -n) return 0;
-  return static_cast<std::size_t>(n + at);
+  return n + at;
 }
 
-/// Where `what` begins at or behind `from`; npos when it does not.
+/// The offset of the first `what` at or behind `from`; npos if there is none.
 static std::size_t findPlain(lua_State* L, std::string_view subject, std::string_view what, std::size_t from) {
   State& state = State::of(L);
   while (!what.empty()) {
@@ -320,23 +352,29 @@ static std::size_t findPlain(lua_State* L, std::string_view subject, std::string
   return from;
 }
 
+/// find or match.
 static int search(lua_State* L, bool find) {
   const std::string_view subject = text(L, 1), pattern = text(L, 2);
-  const std::size_t from = beginAt(L, 3, subject.size());
+  const std::size_t from = beginOffset(L, 3, subject.size());
   if (from > subject.size()) {
     luaL_pushfail(L);
     return 1;
   }
+
+  // A text without special characters.
   if (find && (lua_toboolean(L, 4) || pattern.find_first_of("^$*+?.([%-") == std::string_view::npos)) {
     const std::size_t at = findPlain(L, subject, pattern, from);
     if (at == std::string_view::npos) {
       luaL_pushfail(L);
       return 1;
     }
-    lua_pushinteger(L, static_cast<lua_Integer>(at + 1));
-    lua_pushinteger(L, static_cast<lua_Integer>(at + pattern.size()));
+    const auto begin = static_cast<lua_Integer>(at);
+    lua_pushinteger(L, begin + 1);
+    lua_pushinteger(L, begin + static_cast<lua_Integer>(pattern.size()));
     return 2;
   }
+
+  // A pattern, tried at each position.
   Matcher m(L, subject, pattern);
   const bool anchored = pattern.starts_with('^');
   const char* const first = pattern.data() + (anchored ? 1 : 0);
@@ -356,14 +394,15 @@ static int search(lua_State* L, bool find) {
 static int find(lua_State* L) { return search(L, true); }
 static int match(lua_State* L) { return search(L, false); }
 
-/// Upvalues: subject, pattern, where to go on (from 0), where the last match ended (-1: there was none).
+/// The iterator of gmatch. Upvalues: subject, pattern, the offset at which to go on, and the offset at which the last
+/// match ended (-1 before the first).
 static int nextMatch(lua_State* L) {
   const std::string_view subject = text(L, lua_upvalueindex(1)), pattern = text(L, lua_upvalueindex(2));
   Matcher m(L, subject, pattern);
   const lua_Integer last = lua_tointeger(L, lua_upvalueindex(4));
   for (const char* at = m.begin() + lua_tointeger(L, lua_upvalueindex(3)); at <= m.end(); ++at) {
     const char* to = m.start(at, pattern.data());
-    if (!to || to - m.begin() == last) continue;
+    if (!to || to - m.begin() == last) continue;  // not an empty match behind the last one
     lua_pushinteger(L, to - m.begin());
     lua_pushvalue(L, -1);
     lua_replace(L, lua_upvalueindex(3));
@@ -376,7 +415,7 @@ static int nextMatch(lua_State* L) {
 static int gmatch(lua_State* L) {
   const std::string_view subject = text(L, 1);
   text(L, 2);
-  const std::size_t from = beginAt(L, 3, subject.size());
+  const std::size_t from = beginOffset(L, 3, subject.size());
   lua_settop(L, 2);
   lua_pushinteger(L, static_cast<lua_Integer>(from));
   lua_pushinteger(L, -1);
@@ -384,7 +423,7 @@ static int gmatch(lua_State* L) {
   return 1;
 }
 
-/// Appends a replacement text with its %0..%9.
+/// Appends a replacement text, with the captures for %0 to %9.
 static void appendTemplate(lua_State* L, const Matcher& m, std::string& out, const char* from, const char* to) {
   const std::string_view with = text(L, 3);
   for (std::size_t i = 0; i < with.size(); ++i) {
@@ -399,9 +438,8 @@ static void appendTemplate(lua_State* L, const Matcher& m, std::string& out, con
       out.append(from, to);
     } else if (std::isdigit(static_cast<unsigned char>(c))) {
       m.push(c - '1', from, to);
-      std::size_t n = 0;
-      const char* s = luaL_tolstring(L, -1, &n);
-      out.append(s, n);
+      luaL_tolstring(L, -1, nullptr);  // a position is a number
+      out += textAt(L, -1);
       lua_pop(L, 2);
     } else {
       throw Error("invalid use of '%' in replacement string");
@@ -409,7 +447,7 @@ static void appendTemplate(lua_State* L, const Matcher& m, std::string& out, con
   }
 }
 
-/// Appends what replaces a match. False: it stays as it was.
+/// Appends the replacement of a match. Returns false if the match is kept.
 static bool appendReplacement(lua_State* L, const Matcher& m, std::string& out, const char* from, const char* to) {
   const int type = lua_type(L, 3);
   if (type == LUA_TNUMBER || type == LUA_TSTRING) {
@@ -428,10 +466,8 @@ static bool appendReplacement(lua_State* L, const Matcher& m, std::string& out, 
     out.append(from, to);
     return false;
   }
-  if (!lua_isstring(L, -1)) throw Error(std::string("invalid replacement value (a ") + luaL_typename(L, -1) + ")");
-  std::size_t n = 0;
-  const char* s = lua_tolstring(L, -1, &n);
-  out.append(s, n);
+  if (!lua_isstring(L, -1)) throw Error(fmt::format("invalid replacement value (a {})", luaL_typename(L, -1)));
+  out += textAt(L, -1);
   lua_pop(L, 1);
   return true;
 }
@@ -442,6 +478,7 @@ static int gsub(lua_State* L) {
   const lua_Integer most = luaL_optinteger(L, 4, static_cast<lua_Integer>(subject.size()) + 1);
   luaL_argexpected(L, type == LUA_TNUMBER || type == LUA_TSTRING || type == LUA_TFUNCTION || type == LUA_TTABLE, 3,
                    "string/function/table");
+
   const bool anchored = pattern.starts_with('^');
   const char* const first = pattern.data() + (anchored ? 1 : 0);
   Matcher m(L, subject, pattern);
@@ -450,6 +487,7 @@ static int gsub(lua_State* L) {
   lua_Integer n = 0;
   bool changed = false;
   while (n < most) {
+    // Replace a match, unless it is an empty one behind the last; else keep a character.
     const char* to = m.start(at, first);
     if (to && to != last) {
       ++n;
@@ -466,7 +504,7 @@ static int gsub(lua_State* L) {
   }
   if (changed) {
     out.append(at, m.end());
-    lua_pushlstring(L, out.data(), out.size());
+    pushText(L, out);
   } else {
     lua_pushvalue(L, 1);
   }

@@ -1,9 +1,14 @@
 #include "runtime.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <utility>
+
+#include "environment.h"
+#include "restore.h"
+#include "values.h"
 
 namespace fs = std::filesystem;
 
@@ -20,7 +25,7 @@ void Runtime::close() {
     if (const auto state = weak.lock()) state->close();
 }
 
-/// A config is what the user names: in the working folder first.
+// The user names a config, so the working folder comes first.
 Script Runtime::readConfig(std::string_view file) {
   std::vector<fs::path> places{fs::current_path()};
   if (!configFolder.empty()) places.push_back(configFolder);
@@ -28,7 +33,8 @@ Script Runtime::readConfig(std::string_view file) {
   return read(file, "config", places);
 }
 
-/// A working folder may be anybody's: what is only included is not taken from there, unless the config itself was.
+// Included files are not searched in the working folder, whose files may belong to another user, unless the config is
+// from there.
 Script Runtime::readInclude(std::string_view file, lua_State* includer) {
   std::vector<fs::path> places;
   if (const auto beside = folderOf(includer); !beside.empty()) places.push_back(beside);
@@ -38,7 +44,7 @@ Script Runtime::readInclude(std::string_view file, lua_State* includer) {
   return read(file, "script", places);
 }
 
-/// The folder of the script that called the running C function; empty when it is none, or no file.
+/// The folder of the script that called the running C function; empty if there is none, or the script is not a file.
 fs::path Runtime::folderOf(lua_State* L) const {
   lua_Debug ar{};
   if (!L || !lua_getstack(L, 1, &ar) || !lua_getinfo(L, "S", &ar)) return {};
@@ -46,35 +52,35 @@ fs::path Runtime::folderOf(lua_State* L) const {
   return known == origins_.end() ? fs::path() : known->second;
 }
 
+/// Reads the first file of that name in `places`. `what` names its kind in errors.
 Script Runtime::read(std::string_view file, std::string_view what, std::vector<fs::path> places) {
   if (fs::path(file).is_absolute()) places = {fs::path(file).parent_path()};
-  std::string looked;
-  std::vector<std::string> names;
+  std::vector<std::string> looked, names;  // for the error: the places, and the scripts there
   for (const fs::path& place : places) {
-    const fs::path path = place / file;  // an absolute file stays what it is
+    const fs::path path = place / file;  // the file itself if it is absolute
     std::error_code ec;
     if (fs::is_directory(path, ec))
-      throw Error("cannot read " + std::string(what) + " '" + std::string(file) + "': " + path.string() +
-                  " is a folder");
+      throw Error(fmt::format("cannot read {} '{}': {} is a folder", what, file, path.string()));
     if (fs::exists(path, ec)) {
       std::ifstream in(path, std::ios::binary);
       std::string text{std::istreambuf_iterator<char>(in), {}};
-      if (!in) throw Error("cannot read " + std::string(what) + " " + path.string() + ": no permission?");
-      origins_["@" + std::string(file)] = path.parent_path();
+      if (!in) throw Error(fmt::format("cannot read {} {}: no permission?", what, path.string()));
+      origins_[fmt::format("@{}", file)] = path.parent_path();
       return {path, std::move(text)};
     }
-    looked += (looked.empty() ? "" : ", ") + place.string();
+    looked.push_back(place.string());
     for (fs::directory_iterator it(path.parent_path(), ec), end; !ec && it != end; it.increment(ec))
       if (it->path().extension() == ".lua") names.push_back(it->path().filename().string());
   }
-  throw Error("there is no " + std::string(what) + " '" + std::string(file) + "'. Looked in: " + looked + "." +
-              didYouMean(fs::path(file).filename().string(), names));
+  throw Error(fmt::format("there is no {} '{}'. Looked in: {}.{}", what, file, fmt::join(looked, ", "),
+                          didYouMean(fs::path(file).filename().string(), names)));
 }
 
 void Runtime::load(lua_State* L, std::string_view text, std::string_view chunkName, int environment) {
-  if (luaL_loadbufferx(L, text.data(), text.size(), std::string(chunkName).c_str(), "t") != LUA_OK) lua_error(L);
+  constexpr const char* kTextOnly = "t";  // binary chunks could crash Lua
+  if (luaL_loadbufferx(L, text.data(), text.size(), std::string(chunkName).c_str(), kTextOnly) != LUA_OK) lua_error(L);
   lua_pushvalue(L, environment);
-  lua_setupvalue(L, -2, 1);
+  lua_setupvalue(L, -2, 1);  // the first upvalue of a chunk is _ENV
 }
 
 void Runtime::pushConfigEnvironment(lua_State* L) {
@@ -101,7 +107,7 @@ Value Runtime::run(std::string_view text, std::string_view chunkName) {
 void Runtime::setGlobal(std::string_view name, const Value& value) {
   const auto failure = trusted->run(kUnlimited, [&](lua_State* L) {
     pushConfigEnvironment(L);
-    lua_pushlstring(L, name.data(), name.size());
+    pushText(L, name);
     pushTables(L, value);
     lua_settable(L, -3);
   });
@@ -111,13 +117,14 @@ void Runtime::setGlobal(std::string_view name, const Value& value) {
 void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted,
                      const State::Body& pushArguments) {
   const std::string path = node.path();
-  if (!node.isLinked()) throw Error("cannot attach a script to " + path + ": it is not linked into the tree");
+  if (!node.isLinked()) throw Error(fmt::format("cannot attach a script to {}: it is not linked into the tree", path));
   std::shared_ptr<State> state = trusted;
   if (!isTrusted) {
     state = std::make_shared<State>(*this, &node);
     std::erase_if(sandboxes, [](const auto& weak) { return weak.expired(); });
     sandboxes.push_back(state);
   }
+
   std::vector<std::weak_ptr<Subscription>> subscribed;
   std::optional<Failure> failure;
   {
@@ -134,27 +141,27 @@ void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkNa
   if (!failure) return;
   for (const auto& weak : subscribed)
     if (const auto s = weak.lock()) s->remove();
-  throw Error("the script attached to " + path + " failed: " + failure->text);
+  throw Error(fmt::format("the script attached to {} failed: {}", path, failure->text));
 }
 
-/// Scripts that are attached may lie where the user is: they are named by the user, or by a config that expects them
-/// there.
+// Scripts to attach are also searched in the working folder: the user names them, or a config that expects them there.
 void Runtime::attachFile(Leaf& node, std::string_view file, lua_State* from, const State::Body& pushArguments) {
   std::vector<fs::path> places;
   if (const auto beside = folderOf(from); !beside.empty()) places.push_back(beside);
   if (!configFolder.empty()) places.push_back(configFolder);
   places.insert(places.end(), folders.begin(), folders.end());
   places.push_back(fs::current_path());
-  attach(node, read(file, "script", places).text, "@" + std::string(file), true, pushArguments);
+  attach(node, read(file, "script", places).text, fmt::format("@{}", file), true, pushArguments);
 }
 
+/// True if a channel of that name is defined.
 bool Runtime::isChannel(std::string_view name) const {
   for (const Channel* c : kernel.events().all())
     if (c->name() == name) return !c->doc().empty();
   return false;
 }
 
-/// What is near the name of a channel that nobody defined, as a sentence.
+/// The names nearest to that of an undefined channel, as a sentence. "" if the channel is defined or no name is near.
 std::string Runtime::nearChannels(std::string_view name) const {
   std::vector<std::string> names;
   if (isChannel(name)) return {};
@@ -163,12 +170,15 @@ std::string Runtime::nearChannels(std::string_view name) const {
   return didYouMean(name, names);
 }
 
-/// Channels may be defined after a config listens to them. At its end they are there, or the name is wrong.
+// A config may add handlers before a channel is defined. At the end of the config the channel is defined, or its name
+// is misspelt.
 void Runtime::checkChannels() {
   const auto listened = std::exchange(listened_, {});
   for (const auto& [channel, where] : listened)
     if (const std::string near = nearChannels(channel); !near.empty())
-      throw Error(where + "there is no event channel '" + channel + "': nothing would ever run this handler." + near);
+      throw Error(fmt::format("{}there is no event channel '{}': nothing would ever run this handler.{}", where,
+                              channel, near));
+  // Hooks of C++ classes.
   std::vector<ClassObject*> classes;
   kernel.root().require<Node>("/classes").collect(classes);
   for (ClassObject* c : classes) {
@@ -181,13 +191,13 @@ void Runtime::checkChannels() {
 }
 
 std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::string_view channel) {
-  if (inConfig && !isChannel(channel)) {  // its definer may be created later in the config
+  // A config may define the channel later: checkChannels() looks again.
+  if (inConfig && !isChannel(channel)) {
     luaL_where(L, 1);
     listened_.emplace_back(channel, lua_tostring(L, -1));
     lua_pop(L, 1);
   } else if (const std::string near = nearChannels(channel); !near.empty()) {
-    throw Error("there is no event channel '" + std::string(channel) + "': nothing would ever run this handler." +
-                near);
+    throw Error(fmt::format("there is no event channel '{}': nothing would ever run this handler.{}", channel, near));
   }
   auto s = std::make_shared<Subscription>();
   State& state = State::of(L);
@@ -209,43 +219,6 @@ void Runtime::report(const Failure& failure, const Subscription& s) {
                      s.node ? s.node->path() : "a deleted node", failure.text,
                      failure.exhausted ? "It is switched off: it would take as long every time."
                                        : "It stays; further errors of this line are not logged.");
-}
-
-Subscription::~Subscription() { state->release(function); }
-
-void Subscription::remove() {
-  if (!removed && node) channel->remove(number);
-  removed = true;
-}
-
-void Subscription::run(const Event& event) {
-  if (removed || state->closed() || !node || node->kernel().isEnding()) return;
-  if (!owner) return remove();  // the script's own node has gone
-  Runtime& runtime = state->runtime();
-  const auto keep = runtime.shared_from_this();  // the handler may remove the script server
-  const Restore running(runtime.scriptNode, owner);
-  const auto failure = state->run(state->trusted() ? kHandlerBudget : kSandboxBudget, [&](lua_State* L) {
-    lua_rawgeti(L, LUA_REGISTRYINDEX, function);
-    pushNode(L, node.get());
-    lua_createtable(L, 0, 5);
-    lua_pushlstring(L, event.name.data(), event.name.size());
-    lua_setfield(L, -2, "name");
-    lua_pushnumber(L, event.time);
-    lua_setfield(L, -2, "time");
-    lua_pushnumber(L, event.step);
-    lua_setfield(L, -2, "step");
-    lua_pushinteger(L, event.cycle);
-    lua_setfield(L, -2, "cycle");
-    if (event.data)
-      pushValue(L, *event.data);
-    else
-      lua_pushnil(L);
-    lua_setfield(L, -2, "data");
-    lua_call(L, 2, 0);
-  });
-  if (!failure) return;
-  runtime.report(*failure, *this);
-  if (failure->exhausted) remove();
 }
 
 }  // namespace spark::script

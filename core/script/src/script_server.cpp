@@ -1,6 +1,10 @@
 #include "spark/script_server.h"
 
+#include <fmt/format.h>
+
+#include "restore.h"
 #include "runtime.h"
+#include "values.h"
 
 namespace fs = std::filesystem;
 
@@ -27,7 +31,7 @@ ScriptServer::~ScriptServer() = default;
 void ScriptServer::onLink() { impl_ = std::make_shared<Impl>(kernel()); }
 void ScriptServer::onUnlink() { impl_->close(); }
 
-// A script may remove the script server: what runs it holds it until it ends.
+// A script may remove the script server, so every function that runs one keeps the runtime until it returns.
 
 void ScriptServer::addFolder(fs::path folder) { impl_->folders.push_back(std::move(folder)); }
 void ScriptServer::addOverride(std::string key, Value value) { impl_->settings.add(std::move(key), std::move(value)); }
@@ -38,7 +42,7 @@ void ScriptServer::runConfig(std::string_view file) {
   const script::Restore keepFolder(running->configFolder, config.path.parent_path());
   {
     const script::Restore shielding(running->inConfig, true);
-    running->run(config.text, "@" + std::string(file));
+    running->run(config.text, fmt::format("@{}", file));
   }
   running->checkChannels();
   running->settings.finish();
@@ -46,7 +50,7 @@ void ScriptServer::runConfig(std::string_view file) {
 
 Value ScriptServer::run(std::string_view text, std::string_view chunkName) {
   const auto running = impl_;
-  return running->run(text, "=" + std::string(chunkName));
+  return running->run(text, fmt::format("={}", chunkName));
 }
 
 void ScriptServer::setGlobal(std::string_view name, const Value& value) { impl_->setGlobal(name, value); }
@@ -58,7 +62,7 @@ void ScriptServer::attach(Leaf& node, std::string_view file, const Value& argume
 
 void ScriptServer::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) {
   const auto running = impl_;
-  running->attach(node, text, "=" + std::string(chunkName), trusted);
+  running->attach(node, text, fmt::format("={}", chunkName), trusted);
 }
 
 std::vector<List> ScriptServer::options() const { return impl_->settings.options(); }

@@ -1,25 +1,30 @@
+#include "settings.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "runtime.h"
+#include "members.h"
 
-// An override is `option`, `Namespace.Name` (which is /sys/variables/Namespace.Name) or `/path.property`. Those of
-// nodes are set as soon as the node exists, so that a scene imported next already reads them, and shield their property
-// from what the config assigns.
+// The key of an override is `option`, `Namespace.Name` (short for /sys/variables/Namespace.Name) or `/path.property`. A
+// member of a node is set as soon as the node exists, so that a scene that is imported next already uses it. What the
+// config assigns to it is ignored.
 
 namespace spark::script {
 
 namespace {
-/// The value as the default's type; throws Error that says what would be right.
+/// Converts a value to the type of the default. Throws Error if that is not possible.
 Value fitted(const Value& given, const Value& defaultValue) {
   using Type = Value::Type;
-  const Value value = given.readAs(defaultValue.isNil() ? std::string_view() : typeName(defaultValue.type()));
+  Value value = given.readAs(defaultValue.isNil() ? std::string_view() : typeName(defaultValue.type()));
   if (defaultValue.isNil() || value.type() == defaultValue.type()) return value;
   switch (defaultValue.type()) {
     case Type::number:
       if (value.isInteger()) return value.toNumber();
       break;
     case Type::integer:
+      // A double without fraction that an integer can hold.
       if (value.isNumber() && std::floor(value.toNumber()) == value.toNumber() && std::fabs(value.toNumber()) < 0x1p62)
         return static_cast<std::int64_t>(value.toNumber());
       break;
@@ -29,15 +34,15 @@ Value fitted(const Value& given, const Value& defaultValue) {
     default:
       break;
   }
-  throw Error("expected " + std::string(typeName(defaultValue.type())) + " (its default is " + defaultValue.text() +
-              "), found " + std::string(typeName(value.type())) + " " + value.text());
+  throw Error(fmt::format("expected {} (its default is {}), found {} {}", typeName(defaultValue.type()),
+                          defaultValue.text(), typeName(value.type()), value.text()));
 }
 
 void checkChoice(const Value& value, const List& choices) {
   if (choices.empty() || std::find(choices.begin(), choices.end(), value) != choices.end()) return;
-  std::string all;
-  for (const Value& c : choices) all += (all.empty() ? "" : ", ") + c.text();
-  throw Error("expected one of " + all + ", found " + value.text());
+  std::vector<std::string> texts;
+  for (const Value& c : choices) texts.push_back(c.text());
+  throw Error(fmt::format("expected one of {}, found {}", fmt::join(texts, ", "), value.text()));
 }
 
 void collectPaths(const Leaf& leaf, std::vector<std::string>& out) {
@@ -54,12 +59,12 @@ void Settings::add(std::string key, Value value) {
   const std::size_t dot = o.key.rfind('.');
   if (!o.key.empty() && o.key.front() == '/') {
     if (dot == std::string::npos || dot < o.key.rfind('/') || dot + 1 == o.key.size())
-      throw Error("cannot set '" + o.key + "': expected /path.property, as in /sys/server/simulation.step");
+      throw Error(fmt::format("cannot set '{}': expected /path.property, as in /sys/server/simulation.step", o.key));
     o.path = o.key.substr(0, dot);
     if (o.path.empty()) o.path = "/";
     o.member = o.key.substr(dot + 1);
   } else if (dot != std::string::npos) {
-    o.path = "/sys/variables/" + o.key.substr(0, dot);
+    o.path = fmt::format("/sys/variables/{}", o.key.substr(0, dot));
     o.member = o.key.substr(dot + 1);
   }
   std::erase_if(overrides_, [&](const Override& other) { return other.key == o.key; });
@@ -69,19 +74,23 @@ void Settings::add(std::string key, Value value) {
 Value Settings::declare(const std::string& name, const Value& defaultValue, const std::string& doc,
                         const List& choices) {
   if (name.empty() || name.find_first_of("./= ") != std::string::npos)
-    throw Error("cannot declare option '" + name +
-                "': a name must be there and must not hold '.', '/', '=' or a blank");
+    throw Error(fmt::format(
+        "cannot declare option '{}': a name must be there and must not hold '.', '/', '=' or a blank", name));
+
+  // Two configs may declare an option in the same way.
   const auto same = std::find_if(options_.begin(), options_.end(), [&](const Option& o) { return o.name == name; });
   if (same != options_.end()) {
     if (same->defaultValue == defaultValue && same->choices == choices) return same->value;
-    throw Error("option '" + name + "' is declared already, with another default or other choices (its default was " +
-                same->defaultValue.text() + ")");
+    throw Error(
+        fmt::format("option '{}' is declared already, with another default or other choices (its default was {})", name,
+                    same->defaultValue.text()));
   }
+
   Option option{name, doc, defaultValue, defaultValue, choices};
   try {
     if (!defaultValue.isNil()) checkChoice(defaultValue, choices);
   } catch (const Error& e) {
-    throw Error("the default of option '" + name + "' is not among its choices", e);
+    throw Error(fmt::format("the default of option '{}' is not among its choices", name), e);
   }
   for (Override& o : overrides_) {
     if (!o.path.empty() || o.key != name) continue;
@@ -89,7 +98,7 @@ Value Settings::declare(const std::string& name, const Value& defaultValue, cons
       option.value = fitted(o.value, defaultValue);
       checkChoice(option.value, choices);
     } catch (const Error& e) {
-      throw Error("cannot set option '" + name + "'", e);
+      throw Error(fmt::format("cannot set option '{}'", name), e);
     }
     o.met = true;
   }
@@ -97,12 +106,13 @@ Value Settings::declare(const std::string& name, const Value& defaultValue, cons
   return option.value;
 }
 
+/// Sets the member of a node.
 void Settings::set(Override& o, Leaf& target) {
   if (isGroup(target)) {
     o.met = o.met || hasMember(target, o.member);
   } else if (!hasMember(target, o.member)) {
-    throw Error("unknown setting '" + o.key + "': " + target.path() + " (class " + target.classObject()->name() +
-                ") has no property '" + o.member + "'." + didYouMean(o.member, memberNames(target)));
+    throw Error(fmt::format("unknown setting '{}': {} (class {}) has no property '{}'.{}", o.key, target.path(),
+                            target.classObject()->name(), o.member, didYouMean(o.member, memberNames(target))));
   } else {
     o.met = true;
   }
@@ -131,32 +141,36 @@ bool Settings::shields(const Leaf& leaf, std::string_view member) {
   return false;
 }
 
-/// The names nearest to one that met nothing.
+/// The keys nearest to one that has had no effect, as a sentence.
 std::string Settings::hint(const Override& o) const {
   std::vector<std::string> names;
+  // Options, and variables as Namespace.Name.
   if (o.key.empty() || o.key.front() != '/') {
     for (const Option& option : options_) names.push_back(option.name);
     if (const auto* groups = kernel_.root().find<Node>("/sys/variables"))
       for (const auto& g : groups->children())
-        for (const std::string& n : memberNames(*g)) names.push_back(g->name() + "." + n);
+        for (const std::string& n : memberNames(*g)) names.push_back(fmt::format("{}.{}", g->name(), n));
     std::erase(names, o.key);
     return didYouMean(o.key, names);
   }
+  // The same member of other nodes.
   collectPaths(kernel_.root(), names);
-  for (std::string& n : names) n += "." + o.member;
+  for (std::string& n : names) n.append(".").append(o.member);
   return didYouMean(o.key, names);
 }
 
 void Settings::finish() {
   apply();
-  std::string text;
+  std::vector<std::string> problems;
   for (const Override& o : overrides_) {
     if (o.met) continue;
     std::string what = "the config declares no option of that name.";
-    if (!o.path.empty()) what = (o.target ? o.path + " has no variable of that name." : "there is no " + o.path + ".");
-    text += (text.empty() ? "" : "\n") + ("unknown setting '" + o.key + "': " + what + hint(o));
+    if (!o.path.empty())
+      what =
+          o.target ? fmt::format("{} has no variable of that name.", o.path) : fmt::format("there is no {}.", o.path);
+    problems.push_back(fmt::format("unknown setting '{}': {}{}", o.key, what, hint(o)));
   }
-  if (!text.empty()) throw Error(text);
+  if (!problems.empty()) throw Error(fmt::format("{}", fmt::join(problems, "\n")));
 }
 
 std::vector<List> Settings::options() const {

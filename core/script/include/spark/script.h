@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Scripts at nodes: what plugins see of the script server.
+/// The interface of the script server, for plugins that run scripts at nodes.
 
 #include <string_view>
 
@@ -12,15 +12,18 @@ namespace spark {
 
 class Leaf;
 
-/// Runs scripts, at /sys/server/script. Nodes with scripts of their own ask for it: `require<IScriptServer>()`.
+/// The script server, at /sys/server/script. A node gets it by `require<IScriptServer>()`.
 class IScriptServer {
  public:
   SPARK_INTERFACE(IScriptServer, 1);
+  /// The well-known path.
   static constexpr const char* kPath = "/sys/server/script";
   virtual ~IScriptServer() = default;
-  /// Attaches a script file to a node: it runs at once with `self` set to the node, in an environment of its own, and
-  /// may subscribe to events with on(). It goes with the node. `arguments`: what the script reads with `local args =
-  /// ...`; a list of pairs whose keys are words is a table there ({{"limit", 3}} is {limit = 3}). Throws Error.
+  /// Attaches a script file to a node. The script runs at once, in an environment of its own with `self` set to the
+  /// node, and may add event handlers by on(), which are removed with the node. The script reads `arguments` by `local
+  /// args =
+  /// ...`; a list of pairs whose keys are strings is a table there ({{"limit", 3}} is {limit = 3}). Throws Error if the
+  /// file is missing or the script fails; its handlers are then removed.
   virtual void attach(Leaf& node, std::string_view file, const Value& arguments = {}) = 0;
 };
 

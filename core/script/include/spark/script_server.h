@@ -14,34 +14,38 @@
 
 namespace spark {
 
-/// The scripts of one kernel, at /sys/server/script. Configs and trusted scripts share one Lua state; every untrusted
-/// script has a limited one of its own.
+/// Runs the scripts of one kernel, at /sys/server/script. Configs and trusted scripts share one Lua state; each
+/// untrusted script has a state of its own with limits. The simulation's thread only.
 ///
-/// Globals of a config: plugin, new, get, delete, option, include, log, on, groups of variables (see lua/README.md).
-/// Deterministic: `pairs` goes by key, `math.random` draws from a kernel stream, no clock, no io; only text chunks.
+/// Globals of a config: plugin, new, get, delete, option, include, log, on, and groups of variables (lua/README.md).
+/// Scripts are deterministic: `pairs` is in order of key, `math.random` draws from a kernel stream, and there is no
+/// clock and no access to files. Binary chunks are refused.
 class ScriptServer : public Leaf, public IScriptServer {
   SPARK_CLASS(ScriptServer, Leaf)
  public:
+  /// Describes the class.
   static void describe(Description<ScriptServer>& d);
   ScriptServer();
   ~ScriptServer() override;
-  /// Folders in which configs, `include` and attached scripts are looked up, in order; the working folder comes first.
+  /// Adds a folder in which scripts are searched. Folders are searched in the order in which they were added, and for
+  /// configs after the working folder.
   void addFolder(std::filesystem::path folder);
-  /// What `--set KEY=VALUE` gives: an option, `Namespace.Name` or `/path.property`. An override wins over what the
-  /// config sets.
+  /// Adds an override, as `--set KEY=VALUE` does. The key is an option, `Namespace.Name` or `/path.property`. What the
+  /// config assigns to it is ignored. Throws Error for a malformed key.
   void addOverride(std::string key, Value value);
-  /// Sets a global of configs before one runs, such as `host` of house.lua, which describes the program. A list of
-  /// pairs whose keys are words is a table there ({{"limit", 3}} is {limit = 3}), at any depth.
+  /// Sets a global of configs, to be called before one runs. A list of pairs whose keys are strings becomes a table
+  /// ({{"limit", 3}} is {limit = 3}), at any depth.
   void setGlobal(std::string_view name, const Value& value);
-  /// Runs a config: a file name, looked up as said. Throws Error with the script's file:line. Afterwards all overrides
-  /// must have met their target, else Error with the nearest names.
+  /// Finds a config and runs it. Throws Error with file:line if it fails. Throws Error with the nearest names if an
+  /// override has had no effect, or if a handler's channel does not exist.
   void runConfig(std::string_view file);
-  /// Runs a chunk of text in the config's environment and returns its first result. Throws Error.
+  /// Runs a chunk of text in the environment of configs and returns its first result. Throws Error if it fails.
   Value run(std::string_view text, std::string_view chunkName);
   void attach(Leaf& node, std::string_view file, const Value& arguments = {}) override;
-  /// As attach for text. `trusted` false: nothing but computation and `self`, with limits on instructions and memory.
+  /// As attach(), for a chunk of text. `trusted` false: the script can only compute and use `self` and its descendants,
+  /// with limits on instructions and memory.
   void attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted);
-  /// The options that the config declared: [name, default, doc, value] each.
+  /// The options that configs have declared: [name, default, doc, value] each.
   std::vector<List> options() const;
 
  protected:
@@ -50,10 +54,10 @@ class ScriptServer : public Leaf, public IScriptServer {
 
  private:
   struct Impl;
-  std::shared_ptr<Impl> impl_;  ///< kept by a script that runs
+  std::shared_ptr<Impl> impl_;  ///< also owned by the functions that run a script now
 };
 
-/// The kernel's script server; the first call makes it.
+/// The script server of a kernel. The first call makes it.
 ScriptServer& scripts(Kernel& kernel);
 
 }  // namespace spark

@@ -1,6 +1,13 @@
-#include <algorithm>
+#include "nodes.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "members.h"
 #include "runtime.h"
+#include "values.h"
 
 namespace spark::script {
 
@@ -8,14 +15,15 @@ namespace {
 constexpr const char* kNodeType = "node";
 constexpr const char* kSubscriptionType = "subscription";
 
-/// The userdata of a node. A cache by id makes one node one userdata, so that == and table keys go by identity.
+/// The userdata of a node. A cache by id makes sure that a node has one userdata only, so that == and table keys work.
 struct NodeRef {
   Ref<Leaf> ref;
-  std::string path;  ///< when the script got it, for messages
+  std::string path;  ///< when the script got the node, for messages
 };
 
 using SubscriptionRef = std::weak_ptr<Subscription>;
 
+/// The names that every node has in Lua.
 const std::vector<std::string>& builtins() {
   static const std::vector<std::string> names{"name",     "path", "class",  "parent",       "alive",  "find",
                                               "children", "new",  "delete", "attachScript", "attach", "on"};
@@ -26,24 +34,24 @@ bool isBuiltin(std::string_view name) {
   return std::find(builtins().begin(), builtins().end(), name) != builtins().end();
 }
 
-/// True for a built-in name that the node's class uses itself: joints have a method attach, file systems a property
-/// path. The class's counts.
+/// True if the class has a member of a built-in name, which then hides the built-in one: joints have a method attach,
+/// file systems a property path.
 bool hidesBuiltin(ClassObject& c, std::string_view name) {
   return name != "alive" && (c.property(name) || c.method(name));
 }
 
-/// The first argument of node:f(...).
+/// The node in node:function(...), which is the first argument.
 Leaf& self(lua_State* L, const char* function) {
   if (Leaf* leaf = toNode(L, 1)) return *leaf;
-  throw Error(std::string("expected a node before ") + function + ", found " + typeAt(L, 1) +
-              ": write node:" + function + "(...), with a colon");
+  throw Error(
+      fmt::format("expected a node before {0}, found {1}: write node:{0}(...), with a colon", function, typeAt(L, 1)));
 }
 
 void mustBeTrusted(lua_State* L, const char* what) {
-  if (!State::of(L).trusted()) throw Error(std::string(what) + " is not for untrusted scripts");
+  if (!State::of(L).trusted()) throw Error(fmt::format("{} is not for untrusted scripts", what));
 }
 
-/// Pushes a node that may lie outside what the script may touch: nil then.
+/// Pushes a node, or nil if the script must not use it.
 int pushAllowed(lua_State* L, Leaf* leaf) {
   pushNode(L, leaf && State::of(L).allows(*leaf) ? leaf : nullptr);
   return 1;
@@ -70,12 +78,12 @@ int nodeNew(lua_State* L) {
   mustBeTrusted(L, "node:new");
   Leaf& node = self(L, "new");
   if (!node.asNode())
-    throw Error("cannot make a child of " + node.path() + ": a " + node.classObject()->name() +
-                " cannot have children");
+    throw Error(
+        fmt::format("cannot make a child of {}: a {} cannot have children", node.path(), node.classObject()->name()));
   const std::string_view className = checkString(L, 2, "a class name");
   Leaf& made =
       node.asNode()->create(className, lua_isnoneornil(L, 3) ? std::string_view() : checkString(L, 3, "a name"));
-  Ref<Leaf> alive(&made);
+  Ref<Leaf> alive(&made);  // a setter that apply() calls may remove it
   State::of(L).runtime().settings.apply();
   pushNode(L, alive.get());
   return 1;
@@ -86,12 +94,12 @@ int nodeDelete(lua_State* L) {
   return 0;
 }
 
-/// node:attachScript, and node:attach where the class has no method of that name.
+/// node:attachScript, and node:attach unless the class has a method of that name.
 int nodeAttachScript(lua_State* L) {
   mustBeTrusted(L, "node:attachScript");
   Leaf& node = self(L, "attachScript");
   const std::string file(checkString(L, 2, "a script file"));
-  // What follows is handed on as it is: the script runs in the same state.
+  // The script runs in the same state, so it gets the other arguments as they are.
   std::vector<int> arguments;
   for (int i = 3, n = lua_gettop(L); i <= n; ++i)
     lua_pushvalue(L, i), arguments.push_back(luaL_ref(L, LUA_REGISTRYINDEX));
@@ -108,41 +116,43 @@ int nodeAttachScript(lua_State* L) {
 
 int nodeOn(lua_State* L) { return subscribe(L, self(L, "on"), 2); }
 
-/// A script's file given to a method that hides the built-in attach. Throws Error with the name that is never hidden.
+/// Throws Error if a script file is passed to a method `attach` that hides the built-in one.
 void refuseScript(const Leaf& node, const std::string& name, const std::vector<Value>& arguments) {
   if (name != "attach" || arguments.empty() || arguments[0].type() != Value::Type::string ||
       !arguments[0].toString().ends_with(".lua"))
     return;
-  throw Error("attach is a method of class " + node.classObject()->name() + " itself: write node:attachScript(\"" +
-              arguments[0].toString() + "\") to attach a script to " + node.path());
+  throw Error(
+      fmt::format("attach is a method of class {} itself: write node:attachScript(\"{}\") to attach a script to {}",
+                  node.classObject()->name(), arguments[0].toString(), node.path()));
 }
 
-/// A method as the script calls it; its name is the upvalue.
+/// True if a config calls a method that would set an overridden property or variable.
+bool isShielded(Runtime& runtime, const Leaf& node, const std::string& method, const std::vector<Value>& arguments) {
+  if (!runtime.inConfig) return false;
+  if (isGroup(node) && method == "set" && !arguments.empty() && runtime.settings.shields(node, arguments[0].plain()))
+    return true;
+  const Property* property = node.classObject()->propertySetBy(method);
+  return property && runtime.settings.shields(node, property->name);
+}
+
+/// Calls a method of a node. The upvalue is its name.
 int callNodeMethod(lua_State* L) {
   const std::string name = lua_tostring(L, lua_upvalueindex(1));
   Leaf& node = self(L, name.c_str());
   std::vector<Value> arguments;
   for (int i = 2; i <= lua_gettop(L); ++i) arguments.push_back(toValue(L, i));
   refuseScript(node, name, arguments);
-  Runtime& runtime = State::of(L).runtime();
-  if (runtime.inConfig) {
-    if (isGroup(node) && name == "set" && !arguments.empty() && runtime.settings.shields(node, arguments[0].plain()))
-      return 0;
-    if (name.size() > 3 && name.starts_with("set"))
-      for (const Property* p : node.classObject()->properties())
-        if (p->name.size() + 3 == name.size() && std::equal(p->name.begin() + 1, p->name.end(), name.begin() + 4) &&
-            (p->name[0] | 32) == (name[3] | 32) && runtime.settings.shields(node, p->name))
-          return 0;
-  }
+  if (isShielded(State::of(L).runtime(), node, name, arguments)) return 0;
   pushValue(L, callMethod(node, name, arguments));
   return 1;
 }
 
+/// Pushes the function that calls a method of a node. Upvalue 2 of nodeIndex keeps these functions.
 void pushMethod(lua_State* L, std::string_view name) {
   lua_pushvalue(L, 2);
   if (lua_rawget(L, lua_upvalueindex(2)) != LUA_TNIL) return;
   lua_pop(L, 1);
-  lua_pushlstring(L, name.data(), name.size());
+  pushText(L, name);
   lua_pushcclosure(L, guarded<callNodeMethod>, 1);
   lua_pushvalue(L, 2);
   lua_pushvalue(L, -2);
@@ -155,11 +165,11 @@ void pushMethod(lua_State* L, std::string_view name) {
     names.insert(names.end(), builtins().begin(), builtins().end());
     for (const Method* m : leaf.classObject()->methods()) names.push_back(m->name);
   }
-  throw Error(leaf.path() + " (class " + leaf.classObject()->name() + ") has no property" +
-              (readable ? " or method '" : " '") + std::string(name) + "'." + didYouMean(name, names));
+  throw Error(fmt::format("{} (class {}) has no property{} '{}'.{}", leaf.path(), leaf.classObject()->name(),
+                          readable ? " or method" : "", name, didYouMean(name, names)));
 }
 
-/// Upvalues: the functions that every node has, the methods used so far by name.
+/// node.key. Upvalues: the functions that every node has, and those of pushMethod(), both by name.
 int nodeIndex(lua_State* L) {
   lua_settop(L, 2);
   const std::string_view key = checkString(L, 2, "the name of a property or method");
@@ -168,6 +178,7 @@ int nodeIndex(lua_State* L) {
     return 1;
   }
   Leaf& leaf = self(L, "find");
+  // Built-in members first, unless the class hides them; then properties, methods, variables of a group.
   const bool own = isBuiltin(key) && hidesBuiltin(*leaf.classObject(), key);
   lua_pushvalue(L, 2);
   if (!own && lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL) return 1;
@@ -187,11 +198,12 @@ int nodeIndex(lua_State* L) {
   return 1;
 }
 
+/// node.key = value.
 int nodeNewIndex(lua_State* L) {
   const std::string_view key = checkString(L, 2, "the name of a property");
   Leaf& leaf = self(L, "find");
   if (isBuiltin(key) && !leaf.classObject()->property(key))
-    throw Error("cannot set " + leaf.path() + "." + std::string(key) + ": it is read only");
+    throw Error(fmt::format("cannot set {}.{}: it is read only", leaf.path(), key));
   Runtime& runtime = State::of(L).runtime();
   if (runtime.inConfig && runtime.settings.shields(leaf, key)) return 0;
   if (!isGroup(leaf) && !leaf.classObject()->property(key)) throwUnknown(leaf, key, false);
@@ -201,7 +213,7 @@ int nodeNewIndex(lua_State* L) {
 
 int nodeText(lua_State* L) {
   const auto* n = static_cast<NodeRef*>(luaL_checkudata(L, 1, kNodeType));
-  pushValue(L, n->ref ? n->ref->path() : "dead node (was " + n->path + ")");
+  pushText(L, n->ref ? n->ref->path() : fmt::format("dead node (was {})", n->path));
   return 1;
 }
 
@@ -230,6 +242,7 @@ void openNodes(lua_State* L) {
                                      {"attach", guarded<nodeAttachScript>},
                                      {"on", guarded<nodeOn>},
                                      {nullptr, nullptr}};
+  // The metatable of nodes.
   luaL_newmetatable(L, kNodeType);
   luaL_newlib(L, kFunctions);
   lua_newtable(L);
@@ -246,6 +259,7 @@ void openNodes(lua_State* L) {
   lua_pop(L, 1);
 
   constexpr luaL_Reg kSubscription[] = {{"remove", guarded<subscriptionRemove>}, {nullptr, nullptr}};
+  // The metatable of subscriptions.
   luaL_newmetatable(L, kSubscriptionType);
   luaL_newlib(L, kSubscription);
   lua_setfield(L, -2, "__index");
@@ -255,7 +269,8 @@ void openNodes(lua_State* L) {
   lua_setfield(L, -2, "__metatable");
   lua_pop(L, 1);
 
-  lua_newtable(L);  // nodes by id, kept as long as a script holds them
+  // The cache of nodes by id, with weak references.
+  lua_newtable(L);
   lua_newtable(L);
   lua_pushliteral(L, "v");
   lua_setfield(L, -2, "__mode");
@@ -283,8 +298,10 @@ Leaf* toNode(lua_State* L, int index) {
   const auto* n = static_cast<NodeRef*>(luaL_testudata(L, index, kNodeType));
   if (!n) return nullptr;
   if (Leaf* leaf = n->ref.get()) return leaf;
-  throw Error("this node is gone: it was " + n->path +
-              " and has been deleted. Ask node.alive before you use a node that may die.");
+  throw Error(
+      fmt::format("this node is gone: it was {} and has been deleted. Ask node.alive before you use a node that "
+                  "may die.",
+                  n->path));
 }
 
 void deleteNode(lua_State* L, Leaf& node) {
@@ -292,48 +309,20 @@ void deleteNode(lua_State* L, Leaf& node) {
   const Leaf* top = &node;
   while (top->parent() && top->parent()->parent()) top = top->parent();
   if (!node.parent() || (node.isLinked() && (top->name() == "classes" || top->name() == "plugins")))
-    throw Error("cannot delete " + node.path() + ": it belongs to the kernel");
+    throw Error(fmt::format("cannot delete {}: it belongs to the kernel", node.path()));
   node.parent()->remove(node);
 }
 
 int subscribe(lua_State* L, Leaf& node, int channelIndex) {
   const std::string channel(checkString(L, channelIndex, "a channel"));
   if (!lua_isfunction(L, channelIndex + 1))
-    throw Error("expected a function(self, event) to handle '" + channel + "', found " + typeAt(L, channelIndex + 1));
+    throw Error(
+        fmt::format("expected a function(self, event) to handle '{}', found {}", channel, typeAt(L, channelIndex + 1)));
   lua_settop(L, channelIndex + 1);
   const std::shared_ptr<Subscription> made = State::of(L).runtime().subscribe(L, node, channel);
   new (lua_newuserdatauv(L, sizeof(SubscriptionRef), 0)) SubscriptionRef(made);
   luaL_setmetatable(L, kSubscriptionType);
   return 1;
-}
-
-bool isGroup(const Leaf& leaf) {
-  ClassObject& c = *leaf.classObject();
-  return c.method("get") && c.method("set") && c.property("names");
-}
-
-bool hasMember(const Leaf& leaf, std::string_view name) {
-  if (leaf.classObject()->property(name)) return true;
-  if (!isGroup(leaf)) return false;
-  const std::vector<std::string> names = memberNames(leaf);
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-void setMember(Leaf& leaf, std::string_view name, const Value& value) {
-  if (!leaf.classObject()->property(name) && isGroup(leaf))
-    callMethod(leaf, "set", std::array<Value, 2>{Value(name), value});
-  else
-    setProperty(leaf, name, value);
-}
-
-std::vector<std::string> memberNames(const Leaf& leaf) {
-  std::vector<std::string> names;
-  for (const Property* p : leaf.classObject()->properties()) names.push_back(p->name);
-  if (isGroup(leaf)) {
-    const Value variables = getProperty(leaf, "names");
-    for (const Value& n : variables.toList()) names.push_back(n.plain());
-  }
-  return names;
 }
 
 }  // namespace spark::script

@@ -1,0 +1,48 @@
+#include "subscription.h"
+
+#include "nodes.h"
+#include "restore.h"
+#include "runtime.h"
+#include "values.h"
+
+namespace spark::script {
+
+Subscription::~Subscription() { state->release(function); }
+
+void Subscription::remove() {
+  if (!removed && node) channel->remove(number);
+  removed = true;
+}
+
+void Subscription::run(const Event& event) {
+  if (removed || state->closed() || !node || node->kernel().isEnding()) return;
+  if (!owner) return remove();  // the node of the script has been removed
+  Runtime& runtime = state->runtime();
+  const auto keep = runtime.shared_from_this();  // the handler may remove the script server
+  const Restore running(runtime.scriptNode, owner);
+  const auto failure = state->run(state->trusted() ? kHandlerBudget : kSandboxBudget, [&](lua_State* L) {
+    lua_rawgeti(L, LUA_REGISTRYINDEX, function);
+    // The arguments: self and a table with the event.
+    pushNode(L, node.get());
+    lua_createtable(L, 0, 5);
+    pushText(L, event.name);
+    lua_setfield(L, -2, "name");
+    lua_pushnumber(L, event.time);
+    lua_setfield(L, -2, "time");
+    lua_pushnumber(L, event.step);
+    lua_setfield(L, -2, "step");
+    lua_pushinteger(L, event.cycle);
+    lua_setfield(L, -2, "cycle");
+    if (event.data)
+      pushValue(L, *event.data);
+    else
+      lua_pushnil(L);
+    lua_setfield(L, -2, "data");
+    lua_call(L, 2, 0);
+  });
+  if (!failure) return;
+  runtime.report(*failure, *this);
+  if (failure->exhausted) remove();
+}
+
+}  // namespace spark::script
