@@ -183,8 +183,8 @@ struct Service::Impl {
   std::thread thread;
 };
 
-Service::Service(ServiceSettings settings, Exchange& exchange, Log& log)
-    : impl_(std::make_unique<Impl>(std::move(settings), exchange, log)) {}
+Service::Service(const ServiceSettings& settings, Exchange& exchange, Log& log)
+    : impl_(std::make_unique<Impl>(settings, exchange, log)) {}
 Service::~Service() = default;
 unsigned short Service::port() const { return impl_->port; }
 int Service::viewers() const { return impl_->viewers.load(std::memory_order_relaxed); }

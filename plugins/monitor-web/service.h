@@ -27,7 +27,7 @@ class Service {
  public:
   /// Opens the port and starts the thread. If the port is in use, opens a free one and logs that. `exchange` and `log`
   /// must outlive it. Throws Error if no port can be opened.
-  Service(ServiceSettings settings, Exchange& exchange, Log& log);
+  Service(const ServiceSettings& settings, Exchange& exchange, Log& log);
   /// Closes all connections and joins the thread.
   ~Service();
 

@@ -39,7 +39,7 @@ void GameStateAspect::describe(Description<GameStateAspect>& d) {
   d.method("setScores", &G::setScores).parameters({"left", "right"}).doc("Sets the score.");
 }
 
-void GameStateAspect::setModeText(std::string name) {
+void GameStateAspect::setModeText(const std::string& name) {
   PlayMode mode = mode_;
   soccer::playModeFromName(name, mode);
   setMode(mode);
@@ -230,7 +230,8 @@ Vec3 GameStateAspect::nextStartPosition(Side side) {
   const int columns = std::max(1, static_cast<int>((s.fieldLength / 2 - 2 * r) / spacingX));
   const int n = team(side).starts++ % (perColumn * columns);
   const double firstX = -direction(side) * (s.fieldLength / 2 - 2 * r);
-  return {firstX + direction(side) * spacingX * (n / perColumn), firstY - spacingY * (n % perColumn), r};
+  const int column = n / perColumn;
+  return {firstX + direction(side) * spacingX * column, firstY - spacingY * (n % perColumn), r};
 }
 
 void GameStateAspect::agentLeaving(AgentAspect& agent) {

@@ -115,7 +115,7 @@ class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoin
 
   // Properties and methods of scripts.
   std::string modeText() const { return soccer::playModeName(mode_); }
-  void setModeText(std::string name);
+  void setModeText(const std::string& name);
   std::vector<int> scoreList() const { return {teams_[0].score, teams_[1].score}; }
   std::string leftName() const { return teams_[0].name; }
   std::string rightName() const { return teams_[1].name; }

@@ -90,7 +90,8 @@ soccer::Polar RestrictedVisionPerceptor::direction(const Vec3f& view) const {
 bool RestrictedVisionPerceptor::inCone(const soccer::Polar& p) const {
   // As in the installed base: integer halves in the head's frame, the whole values with static axes.
   const int divisor = staticAxis_ ? 1 : 2;
-  return std::abs(p.horizontal) <= cone_[0] / divisor && std::abs(p.vertical) <= cone_[1] / divisor;
+  const int maxHorizontal = cone_[0] / divisor, maxVertical = cone_[1] / divisor;
+  return std::abs(p.horizontal) <= maxHorizontal && std::abs(p.vertical) <= maxVertical;
 }
 
 bool RestrictedVisionPerceptor::isClearlyOutside(const Vec3f& view) const {
@@ -109,6 +110,7 @@ bool RestrictedVisionPerceptor::measure(const Vec3f& view, soccer::Polar& out) {
   if (staticAxis_ || nextCached_ == cache_.size()) return out = direction(view), inCone(out);
   CachedDirection& cached = cache_[nextCached_++];
   // Compare bits: angles differ for zeros of different sign.
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
   if (std::memcmp(cached.view.data(), view.data(), 3 * sizeof(float)) != 0) {
     cached.view = view;
     cached.polar = direction(view);
@@ -174,11 +176,14 @@ void RestrictedVisionPerceptor::beginSense() {
   origin_ = soccer::worldPosition(*this);
   cache_.resize(std::min(eye_.objects().size(), kMaxCached));
   nextCached_ = 0;
-  const double width = degToRad(std::min(cone_[0], 360) / 2), height = degToRad(std::min(cone_[1], 360) / 2);
+  const int halfPan = std::min(cone_[0], 360) / 2, halfTilt = std::min(cone_[1], 360) / 2;  // whole degrees
+  const double width = degToRad(halfPan), height = degToRad(halfTilt);
   halfWidth_ = {std::sin(width), std::cos(width)};
   halfHeight_ = {std::sin(height), std::cos(height)};
-  for (std::size_t i = 0; i < 2; ++i)
-    halfWindow_[i] = std::tan(static_cast<float>(degToRad(std::min(cone_[i], 178) / 2)));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const int half = std::min(cone_[i], 178) / 2;
+    halfWindow_[i] = std::tan(static_cast<float>(degToRad(half)));
+  }
 }
 
 void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {

@@ -28,7 +28,7 @@ Vec3 SafeReposition::find(const Pitch& pitch, const Player& player, const Vec3& 
   const int attempts = std::min(pitch.settings().maxNumSafeRepositionAttempts, kMaxAttempts);
   for (int n = 0; n < attempts; ++n) {
     const Candidate c = takeNearest();
-    const Vec3 position(target.x() + stepX_ * c.i, target.y() + stepY_ * c.j, target.z());
+    Vec3 position(target.x() + stepX_ * c.i, target.y() + stepY_ * c.j, target.z());
     if (isSafe(pitch, player, position.x(), position.y(), avoidBall)) return position;
     addCandidate(c.i + 1, c.j);
     addCandidate(c.i, c.j + 1);

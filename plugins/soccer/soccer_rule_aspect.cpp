@@ -124,7 +124,7 @@ void SoccerRuleAspect::dropBall(const Vec3& position) {
   game_->setMode(PlayMode::playOn);
 }
 
-void SoccerRuleAspect::reportFoul(int type, std::string team, int unum) {
+void SoccerRuleAspect::reportFoul(int type, const std::string& team, int unum) {
   if (fouls_.size() >= kMaxFouls) fouls_.erase(fouls_.begin());
   fouls_.push_back({++foulCount_, type,
                     team == "left"    ? Side::left

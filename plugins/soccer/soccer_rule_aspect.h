@@ -87,7 +87,7 @@ class SoccerRuleAspect : public SoccerControlAspect {
   // Fouls.
 
   /// Reports a foul to monitors. `type`: soccer::Foul; `team`: left, right or none.
-  void reportFoul(int type, std::string team, int unum);
+  void reportFoul(int type, const std::string& team, int unum);
   /// The last fouls (at most 64), oldest first.
   std::span<const Foul> fouls() const { return fouls_; }
 

@@ -86,6 +86,7 @@ void report(const Options& o, const std::vector<Tally>& before, const std::vecto
 }
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): what fails here ends the program
 int main(int argc, char** argv) {
   Options o;
   if (const int code = usage(argc, argv, o); code >= 0) return code;
@@ -98,6 +99,7 @@ int main(int argc, char** argv) {
   std::vector<Tally> before(static_cast<std::size_t>(o.count + o.stalled));
   const auto tallies = [&] {
     std::vector<Tally> out;
+    out.reserve(all.size());
     for (const auto& s : all) out.push_back(s->tally());
     return out;
   };

@@ -225,7 +225,8 @@ int drawRandom(lua_State* L) {
   // Unsigned, because the range may be up to 2^64, which becomes 0.
   const std::uint64_t range = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low) + 1;
   const std::uint64_t drawn = range == 0 ? stream.numbers.bits() : stream.numbers.below(range);
-  lua_pushinteger(L, static_cast<lua_Integer>(static_cast<std::uint64_t>(low) + drawn));
+  const std::uint64_t chosen = static_cast<std::uint64_t>(low) + drawn;
+  lua_pushinteger(L, static_cast<lua_Integer>(chosen));
   return 1;
 }
 

@@ -306,7 +306,7 @@ void HumanoidPlayer::look() {
 }
 
 void HumanoidPlayer::say(spark::Predicates& actions) const {
-  const auto cycle = static_cast<long>(percepts_.now / kCycle + 0.5);
+  const long cycle = std::lround(percepts_.now / kCycle);
   if (cycle % kSaySlots != 2 * (unum_ - 1) || !localisation_.known() || percepts_.now - ballAt_ > 1) return;
   const auto cm = [](double m) { return std::clamp(static_cast<int>(std::lround(m * 100)), -9999, 9999); };
   actions.open("say").add(fmt::format("{}:{}:{}:{}", unum_, cm(ball_.x()), cm(ball_.y()), cm(toBall()))).close();
