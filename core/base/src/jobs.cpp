@@ -116,7 +116,6 @@ Jobs::Jobs() : impl_(std::make_unique<Impl>()) {}
 Jobs::~Jobs() { impl_->stop(); }
 
 void Jobs::setThreads(int count) {
-  SPARK_ASSERT(count >= 1);
   impl_->stop();
   constexpr int kMaxThreads = 64;
   count = std::min(count, kMaxThreads);
