@@ -1,10 +1,10 @@
--- A crowd of sphere agents on a field that grows with it, for measurements and your own swarms: no referee and no halves; the range of
--- vision is `range`.
+-- A crowd of sphere agents on a field that grows with it, for measurements and your own swarms: no referee and no
+-- halves; the range of vision is `range`.
 --
 --     sparkhost --config crowd.lua --set agents=1000
 --
--- Agents join as in soccer: (scene rsg/agent/sphere.rsg), then (init (unum n)(teamname A)) or B, which moves them to the field side by side, and
--- (drive x y z) from then on; over the network, or as behaviours below /usr/agent.
+-- Agents join as in soccer: (scene rsg/agent/sphere.rsg), then (init (unum n)(teamname A)) or B, which moves them to
+-- the field side by side, and (drive x y z) from then on; over the network, or as behaviours below /usr/agent.
 include "house.lua"
 include "materials.lua"
 include "soccer-house.lua"

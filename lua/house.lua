@@ -7,11 +7,12 @@
 --     web()
 --     control() drawing()
 --
--- and adds its own nodes. Each function loads the plugins it needs, builds one server with its helpers, and returns the server,
--- so that a config can set properties or swap a helper. A config may also write the same lines itself.
+-- and adds its own nodes. Each function loads the plugins it needs, builds one server with its helpers, and returns the
+-- server, so that a config can set properties or swap a helper. A config may also write the same lines itself.
 --
 -- `host` describes the program that runs the config: host.share (the folder with lua/ and scenes/, "" when there is
--- none), host.scenePaths (folders from --scene-path) and host.alone (true in a batch). Programs that embed the kernel may leave it out.
+-- none), host.scenePaths (folders from --scene-path) and host.alone (true in a batch). Programs that embed the kernel
+-- may leave it out.
 host = host or { share = "", scenePaths = {} }
 
 --- File server. Folders given by --scene-path contain rsg/... and are searched before the scenes that come with Spark.
@@ -39,8 +40,9 @@ function scene()
   return server
 end
 
---- Physics server, its engine, and a world with a space in the active scene. `engine`: its class; `properties`: of the engine, set before the
---- world is made; `solver`: class of the solver below the engine that replaces its own ("ArticulatedSolver"); nil: none.
+--- Physics server, its engine, and a world with a space in the active scene. `engine`: its class; `properties`: of the
+--- engine, set before the world is made; `solver`: class of the solver below the engine that replaces its own
+--- ("ArticulatedSolver"); nil: none.
 function physics(engine, properties, solver)
   plugin "physics"
   plugin "physics-ode"
@@ -115,8 +117,9 @@ function monitors(t)
   return server
 end
 
---- The page on which browsers show the match: `--set web=false` leaves it out, `--set webPort=0` takes a free port, `--set webLogs=FOLDER` lets
---- the viewer play recorded games. After monitors(); without, it makes a monitor server that has no port. A simulation of a batch has none.
+--- The page on which browsers show the match: `--set web=false` leaves it out, `--set webPort=0` takes a free port,
+--- `--set webLogs=FOLDER` lets the viewer play recorded games. After monitors(); without, it makes a monitor server
+--- that has no port. A simulation of a batch has none.
 function web()
   local wanted = option{ name = "web", default = true, doc = "The match can be watched in a browser." }
   local port   = option{ name = "webPort", default = 3280, doc = "Its port; 0: a free one." }
@@ -147,7 +150,8 @@ function control()
 end
 
 --- Drawings of agents for viewers: --set drawings=32769 opens the UDP port of the installed base's viewer, --set
---- forwardDrawings=host:port forwards all packets to another one. A simulation of a batch keeps none, but robots may have the effector.
+--- forwardDrawings=host:port forwards all packets to another one. A simulation of a batch keeps none, but robots may
+--- have the effector.
 function drawing()
   local port = option{ name = "drawings", default = -1, doc = "UDP port at which agents' drawings come in, e.g. 32769; -1: none, 0: any free one." }
   local forward = option{ name = "forwardDrawings", default = "", doc = "host:port of another viewer that gets agents' drawings too." }
@@ -158,8 +162,9 @@ function drawing()
   return server
 end
 
---- The status of a game: Status.score = {2, 1}. The host's status line, the columns of a batch and the page show it. `values`: what it is at first;
---- playMode (text), score (numbers) and teams (names) are understood, all others are shown by their names.
+--- The status of a game: Status.score = {2, 1}. The host's status line, the columns of a batch and the page show it.
+--- `values`: what it is at first; playMode (text), score (numbers) and teams (names) are understood, all others are
+--- shown by their names.
 function status(values)
   plugin "scene"
   local group = new("StatusVariables", "/sys/variables/Status")

@@ -2,7 +2,8 @@
 --
 --     sparkhost --config logplayer.lua --set file=game.log
 --
--- Monitors may send (p) pause, (f) and (b) one record forward or back, (l) the other direction, (speed 2), (record 150).
+-- Monitors may send (p) pause, (f) and (b) one record forward or back, (l) the other direction, (speed 2), (record
+-- 150).
 include "house.lua"
 
 local file    = option{ name = "file", default = "sparkmonitor.log", doc = "The log: what --set monitorLog=... of a soccer house, or rcssserver3d, wrote." }

@@ -1,5 +1,5 @@
--- Materials and meshes that scenes name. Nothing in a simulation looks at either; monitors pass the names on to viewers, and a name that
--- is not known is warned about.
+-- Materials and meshes that scenes name. Nothing in a simulation looks at either; monitors pass the names on to
+-- viewers, and a name that is not known is warned about.
 --
 --     include "materials.lua"
 --     materials()             -- after scene()
@@ -12,8 +12,8 @@ local colours = {
   matTeam = { 0.5, 0.5, 0.5, 1 },  matNum = { 0.9, 0.9, 0.9, 1 },  matLeft = { 0, 0.75, 1, 1 },    matRight = { 1, 0.1, 0.1, 1 },
 }
 
--- Which materials the installed base's meshes have, in the order in which monitors get them. The meshes themselves are the viewers'; where
--- models/*.obj is there, the file decides.
+-- Which materials the installed base's meshes have, in the order in which monitors get them. The meshes themselves are
+-- the viewers'; where models/*.obj is there, the file decides.
 local function declareMeshes(server)
   local function mesh(name, ...) server:defineMesh("models/" .. name .. ".obj", ...) end
   mesh("naosoccerfield", "None_rcs-naofield.png")

@@ -1,4 +1,5 @@
--- The five types of the heterogeneous Nao, as its scene files read them: NaoType[0]['UseToe']. Truth values are words there.
+-- The five types of the heterogeneous Nao, as its scene files read them: NaoType[0]['UseToe']. Truth values are words
+-- there.
 local function naoType(t)
   return {
     Hip1RelTorso_X = t.hip or 0.055, Hip1RelTorso_Z = -0.115, ThighRelHip2_Z = t.thigh or -0.04, AnkleRelShank_Z = t.ankle or -0.055,

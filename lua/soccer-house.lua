@@ -16,9 +16,11 @@ function soccerVariables(values)
   return soccer
 end
 
---- Rules are control aspects below game control and run in this order; the referee makes the rules of play below itself. `rules` sets their
---- properties, or switches one off: soccerRules{ PassModeRule = false, GoalRule = { enabled = true } }. Offside is another aspect:
---- new("OffsideAspect", ...). TeamlessAspect: robots collide with static colliders only until they have a team, because all are created at one position.
+--- Rules are control aspects below game control and run in this order; the referee makes the rules of play below
+--- itself. `rules` sets their properties, or switches one off:
+--- soccerRules{ PassModeRule = false, GoalRule = { enabled = true } }. Offside is another aspect:
+--- new("OffsideAspect", ...). TeamlessAspect: robots collide with static colliders only until they have a team, because
+--- all are created at one position.
 function soccerRules(rules)
   for _, class in ipairs { "TeamlessAspect", "GameStateAspect", "BallStateAspect", "SoccerRuleAspect" } do
     new(class, "/sys/server/gamecontrol/" .. class)
@@ -31,8 +33,8 @@ function soccerRules(rules)
   end
 end
 
---- The automatic referee of humanoids: each foul is a control aspect of its own, judged in this order after the rules of play. Leave one
---- out, or say --set /sys/server/gamecontrol/ChargingFoulAspect.enabled=false.
+--- The automatic referee of humanoids: each foul is a control aspect of its own, judged in this order after the rules
+--- of play. Leave one out, or say --set /sys/server/gamecontrol/ChargingFoulAspect.enabled=false.
 function soccerFouls()
   for _, class in ipairs { "PlayerContactAspect", "IncapableFoulAspect", "CrowdingFoulAspect", "IllegalDefenceAspect", "TouchingFoulAspect",
                            "ChargingFoulAspect", "BallHoldingAspect", "SelfCollisionAspect", "PenaltyAspect" } do
@@ -49,7 +51,8 @@ function soccerMonitor()
   if file ~= "" then new("MonitorLog", "/sys/server/monitor/log").file = file end
 end
 
---- Players inside the host: objects of `class` from the plugin `from` for each team named in `teams` ("Red Blue"; "": none), numbered from 1.
+--- Players inside the host: objects of `class` from the plugin `from` for each team named in `teams` ("Red Blue"; "":
+--- none), numbered from 1.
 function soccerTeams(from, class, teams, players)
   for team in teams:gmatch("%S+") do
     plugin(from)
@@ -60,8 +63,8 @@ function soccerTeams(from, class, teams, players)
   end
 end
 
--- Differences between versions of the installed base, by the node that has the property. All other defaults are those of M, the
--- mainline server 0.7.3.
+-- Differences between versions of the installed base, by the node that has the property. All other defaults are those
+-- of M, the mainline server 0.7.3.
 local versions = {
   M = {
     ["/sys/server/gamecontrol"] = { agentStep = 0.02 },

@@ -3,8 +3,8 @@
 --     sparkhost --config soccer-sphere.lua                            -- waits for teams from the network
 --     sparkhost --config soccer-sphere.lua --set "team=Red Blue"      -- plays by itself; --set changes any option below
 --
--- Three statements suffice: plugin "x" loads classes, new("Class", "/path") makes a node, node.x = v sets a property. The functions of the
--- included files say just these, for one server and its helpers each.
+-- Three statements suffice: plugin "x" loads classes, new("Class", "/path") makes a node, node.x = v sets a property.
+-- The functions of the included files say just these, for one server and its helpers each.
 include "house.lua"
 include "materials.lua"
 include "soccer-house.lua"

@@ -1,8 +1,10 @@
--- Soccer on the Standard Platform League's field, 9 x 6 m, with the Nao V4 (rsg/agent/naov4/nao.rsg); the rules are the 3D league's.
+-- Soccer on the Standard Platform League's field, 9 x 6 m, with the Nao V4 (rsg/agent/naov4/nao.rsg); the rules are the
+-- 3D league's.
 --
 --     sparkhost --config soccer-spl.lua
 --
--- Motors get warm and draw on the battery with --set /sys/server/physics.jointHeating=true --set /sys/server/physics.batteryDischarge=true.
+-- Motors get warm and draw on the battery with --set /sys/server/physics.jointHeating=true --set
+-- /sys/server/physics.batteryDischarge=true.
 league = {
   compat = "F",                                  -- percepts are those of the SPL's server
   variables = {

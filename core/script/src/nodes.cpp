@@ -231,6 +231,15 @@ int subscriptionFree(lua_State* L) {
   static_cast<SubscriptionRef*>(lua_touserdata(L, 1))->~SubscriptionRef();
   return 0;
 }
+
+/// Adds the destructor to the metatable on top of the stack, lets scripts see `name` instead of it, and pops it.
+void finishMetatable(lua_State* L, lua_CFunction destroy, const char* name) {
+  lua_pushcfunction(L, destroy);
+  lua_setfield(L, -2, "__gc");
+  lua_pushstring(L, name);
+  lua_setfield(L, -2, "__metatable");
+  lua_pop(L, 1);
+}
 }  // namespace
 
 void openNodes(lua_State* L) {
@@ -252,22 +261,14 @@ void openNodes(lua_State* L) {
   lua_setfield(L, -2, "__newindex");
   lua_pushcfunction(L, guarded<nodeText>);
   lua_setfield(L, -2, "__tostring");
-  lua_pushcfunction(L, nodeFree);
-  lua_setfield(L, -2, "__gc");
-  lua_pushliteral(L, "node");
-  lua_setfield(L, -2, "__metatable");
-  lua_pop(L, 1);
+  finishMetatable(L, nodeFree, "node");
 
   constexpr luaL_Reg kSubscription[] = {{"remove", guarded<subscriptionRemove>}, {nullptr, nullptr}};
   // The metatable of subscriptions.
   luaL_newmetatable(L, kSubscriptionType);
   luaL_newlib(L, kSubscription);
   lua_setfield(L, -2, "__index");
-  lua_pushcfunction(L, subscriptionFree);
-  lua_setfield(L, -2, "__gc");
-  lua_pushliteral(L, "subscription");
-  lua_setfield(L, -2, "__metatable");
-  lua_pop(L, 1);
+  finishMetatable(L, subscriptionFree, "subscription");
 
   // The cache of nodes by id, with weak references.
   lua_newtable(L);

@@ -1,0 +1,211 @@
+#include "plugin_files.h"
+
+#include <dlfcn.h>
+#include <elf.h>
+#include <sys/resource.h>
+
+#include "temporary_folder.h"
+
+// Which files are taken as plugins, and what is in memory of them. A refusal names file and reason, and nothing else
+// suffers.
+
+using namespace spark;
+using namespace spark::test;
+
+TEST_CASE("Each bad file of a folder is refused by name and reason, and scanning goes on") {
+  House house(false);
+  const auto problems = house.kernel.plugins().scan(fixtures("bad-plugins"));
+  const std::pair<const char*, const char*> expected[] = {
+      {"bad-name", "its name '../escaped' is none"},
+      {"missing-dependency", "libspark-gone.so.1: cannot open shared object file"},
+      {"missing-symbol", "undefined symbol: _Z30sparkFunctionThatNobodyDefinesv"},
+      {"newer-abi", "it was built for the newer plugin ABI"},
+      {"no-descriptor", "it has no symbol sparkPlugin"},
+      {"no-headers", "it does not say which headers it was built with"},
+      {"not-a-library", "it is no shared library"},
+      {"older-abi", "it was built for the older plugin ABI"},
+      {"other-headers", "this host has another version of api/of_the_future.h, spark/node.h, or none"},
+      {"other-sanitizer", "it was built with"},
+      {"wrong-magic", "its descriptor lacks the magic word SPARKPLG"},
+  };
+  REQUIRE(problems.size() == std::size(expected));
+  for (std::size_t i = 0; i < std::size(expected); ++i) {
+    CHECK_THAT(problems[i], Catch::Contains(bad(expected[i].first).string()) && Catch::Contains(expected[i].second));
+    CHECK_THAT(house.text, Catch::Contains(problems[i]));
+  }
+  // Those that fail only when their classes are registered are listed.
+  std::vector<std::string> listed;
+  for (const auto& p : house.kernel.root().child("plugins")->asNode()->children()) listed.push_back(p->name());
+  CHECK(listed ==
+        std::vector<std::string>{"duplicate-class", "own-base", "throws-no-exception", "throws-while-registering"});
+  for (const auto& [name, reason] : expected) CHECK_FALSE(isMapped(bad(name)));
+}
+
+TEST_CASE("One file alone is refused with the same words") {
+  House house(false);
+  for (const char* name :
+       {"bad-name", "missing-dependency", "missing-symbol", "newer-abi", "no-descriptor", "no-headers", "not-a-library",
+        "older-abi", "other-headers", "other-sanitizer", "wrong-magic", "duplicate-class", "own-base",
+        "throws-no-exception", "throws-while-registering"}) {
+    CAPTURE(name);
+    CHECK_THAT(refusal([&] { house.kernel.plugins().useFile(bad(name)); }), Catch::Contains(bad(name).string()));
+    CHECK(house.kernel.root().child("plugins")->asNode()->children().empty());
+    CHECK_FALSE(isMapped(bad(name)));
+  }
+  CHECK_THAT(refusal([&] { house.kernel.plugins().useFile("/nowhere/x.so"); }),
+             Catch::Contains("/nowhere/x.so") && Catch::Contains("No such file"));
+}
+
+TEST_CASE("A plugin fits as long as the headers that it includes are the host's, whatever their comments say") {
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  const auto variant = [](const std::string& name) { return fixtures("abi-plugins") / (name + ".so"); };
+  CHECK(loader.useFile(variant("other-comments")).registered());
+  CHECK(loader.useFile(variant("other-unused")).registered());
+  CHECK_THAT(refusal([&] { loader.useFile(variant("other-layout")); }),
+             Catch::Contains(variant("other-layout").string()) &&
+                 Catch::Contains("this host has another version of api/drawing.h, or none") &&
+                 Catch::Contains("Build it again with this host's headers"));
+}
+
+TEST_CASE("A file that is cut off, empty or a folder is refused") {
+  House house(false);
+  const test::TemporaryFolder folder;
+  fs::copy_file(good("fixture-base"), folder.path() / "cut.so");
+  fs::resize_file(folder.path() / "cut.so", fs::file_size(good("fixture-base")) / 3);
+  std::ofstream(folder.path() / "empty.so").flush();
+  fs::create_directory(folder.path() / "folder.so");
+  std::ofstream(folder.path() / "readme.txt") << "not looked at";
+  const auto problems = house.kernel.plugins().scan(folder.path());
+  REQUIRE(problems.size() == 3);
+  CHECK_THAT(problems[0], Catch::Contains("cut.so") && Catch::Contains("it is cut off"));
+  CHECK_THAT(problems[1], Catch::Contains("empty.so") && Catch::Contains("it is no shared library"));
+  CHECK_THAT(problems[2], Catch::Contains("folder.so"));
+  CHECK_THAT(house.kernel.plugins().scan(folder.path() / "nowhere").at(0),
+             Catch::Contains("cannot read plugin folder"));
+}
+
+TEST_CASE("A file one of whose segments lies where nothing is loaded is refused") {
+  const std::string whole = bytesOf(good("fixture-base"));
+  Elf64_Ehdr head;
+  REQUIRE(whole.size() > sizeof head);
+  std::memcpy(&head, whole.data(), sizeof head);
+  const test::TemporaryFolder folder;
+  std::size_t moved = 0;
+  for (int i = 0; i < head.e_phnum; ++i) {
+    const std::size_t at = head.e_phoff + static_cast<std::size_t>(i) * sizeof(Elf64_Phdr);
+    Elf64_Phdr p;
+    std::memcpy(&p, whole.data() + at, sizeof p);
+    if (p.p_type == PT_LOAD || p.p_type == PT_NULL || p.p_type == PT_GNU_STACK) continue;
+    p.p_vaddr += 1 << 30;
+    std::string bytes = whole;
+    std::memcpy(bytes.data() + at, &p, sizeof p);
+    overwrite(folder.path() / ("segment" + std::to_string(i) + ".so"), bytes);
+    ++moved;
+  }
+  REQUIRE(moved >= 2);
+  House house(false);
+  CHECK(house.kernel.plugins().scan(folder.path()).size() == moved);
+}
+
+TEST_CASE("A file that is overwritten while its plugin runs harms nobody, and loading again gives the new version") {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "fixture-base.so";
+  fs::copy_file(good("fixture-base"), file);
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  loader.scan(folder.path());
+  loader.use("fixture-base");
+  const std::string whole = bytesOf(file);
+  overwrite(file, whole.substr(0, whole.size() / 3));  // a copy that is under way
+  Leaf& made = house.kernel.create("FixtureBase", "/usr/a");
+  house.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
+  CHECK(getProperty(made, "number") == Value(2.0));
+  overwrite(file, withVersion(whole, "1.2", "1.3"));
+  house.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
+  CHECK(getProperty(made, "number") == Value(3.0));
+  CHECK(house.kernel.root().require<Plugin>("/plugins/fixture-base").version() == "1.2");
+  made.parent()->remove(made);
+  loader.unload("fixture-base");
+  CHECK_FALSE(isMapped(file));
+  const Plugin& again = loader.use("fixture-base");  // without a scan
+  CHECK(again.version() == "1.3");
+  CHECK(again.file() == file.string());
+  CHECK(house.kernel.create("FixtureBase", "/usr/a").classObject()->plugin() == &again);
+}
+
+TEST_CASE("A file that is broken when it is to be loaded again is refused, and may be repaired") {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "fixture-base.so";
+  fs::copy_file(good("fixture-base"), file);
+  const std::string whole = bytesOf(file);
+  House house(false);
+  Loader& loader = house.kernel.plugins();
+  loader.useFile(file);
+  loader.unload("fixture-base");
+  overwrite(file, whole.substr(0, 4000));  // of a file with debug information half would do
+  CHECK_THAT(refusal([&] { loader.use("fixture-base"); }),
+             Catch::Contains(file.string()) && Catch::Contains("it is cut off"));
+  fs::remove(file);
+  CHECK_THAT(refusal([&] { loader.use("fixture-base"); }), Catch::Contains("there is no plugin 'fixture-base'"));
+  overwrite(file, whole);
+  CHECK(loader.use("fixture-base").registered());
+}
+
+TEST_CASE("Kernels share a file that is the same, and each keeps the version that it loaded") {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "fixture-base.so";
+  fs::copy_file(good("fixture-base"), file);
+  const auto codeOf = [](House& house) {
+    return reinterpret_cast<const void*>(house.kernel.classOf("FixtureBase").hooks().front()->run);
+  };
+  House a(false), b(false), c(false);
+  a.kernel.plugins().useFile(file);
+  b.kernel.plugins().useFile(file);
+  CHECK(codeOf(a) == codeOf(b));
+  overwrite(file, withVersion(bytesOf(file), "1.2", "1.5"));
+  CHECK(c.kernel.plugins().useFile(file).version() == "1.5");
+  CHECK(codeOf(a) != codeOf(c));
+  CHECK(a.kernel.plugins().useFile(file).version() == "1.2");
+  CHECK(b.kernel.plugins().use("fixture-base").version() == "1.2");
+}
+
+TEST_CASE("Debuggers find a plugin's code under its file's name") {
+  House house(false);
+  house.kernel.plugins().useFile(good("fixture-base"));
+  Dl_info info = {};
+  REQUIRE(dladdr(reinterpret_cast<const void*>(house.kernel.classOf("FixtureBase").hooks().front()->run), &info) != 0);
+  CHECK(std::string(info.dli_fname) == good("fixture-base").string());
+}
+
+TEST_CASE("Where no private copy can be made the file itself is loaded") {
+  House house(false);
+  rlimit before = {};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const rlimit none{100, before.rlim_max};
+  REQUIRE(setrlimit(RLIMIT_FSIZE, &none) == 0);
+  Plugin& plugin = house.kernel.plugins().useFile(good("fixture-base"));
+  setrlimit(RLIMIT_FSIZE, &before);
+  CHECK(plugin.registered());
+  CHECK(isMapped(good("fixture-base")));
+  house.kernel.plugins().unload("fixture-base");
+  CHECK_FALSE(isMapped(good("fixture-base")));
+}
+
+TEST_CASE("A library that a plugin finds relative to its own file is found, and goes with it") {
+  const test::TemporaryFolder folder;
+  fs::copy(fixtures("neighbour-plugins"), folder.path() / "elsewhere", fs::copy_options::recursive);
+  House house(false);
+  const fs::path file = folder.path() / "elsewhere" / "with-neighbour.so",
+                 library = folder.path() / "elsewhere" / "lib" / "libfixture-neighbour.so";
+  house.kernel.plugins().useFile(file);
+  CHECK(getProperty(house.kernel.create("WithNeighbour", "/usr/a"), "answer") == Value(42));
+  CHECK(isMapped(library));
+  house.kernel.root().child("usr")->asNode()->removeChildren();
+  house.kernel.plugins().unload("with-neighbour");
+  CHECK_FALSE(isMapped(file));
+  CHECK_FALSE(isMapped(library));
+  fs::remove(library);
+  CHECK_THAT(refusal([&] { house.kernel.plugins().use("with-neighbour"); }),
+             Catch::Contains(file.string()) && Catch::Contains("libfixture-neighbour.so: cannot open"));
+}
