@@ -28,13 +28,14 @@ struct Installation {
 inline Installation installed() { return {.plugins = SPARK_PLUGIN_DIR, .share = SPARK_SHARE_DIR, .scenePaths = {}}; }
 #endif
 
-/// Gives `kernel` the plugins, configs and scenes of an installation: then scripts(kernel).runConfig("boxes.lua") works.
+/// Gives `kernel` the plugins, configs and scenes of an installation: then scripts(kernel).runConfig("boxes.lua")
+/// works.
 inline void useInstallation(Kernel& kernel, const Installation& from) {
   kernel.plugins().scan(from.plugins);
   scripts(kernel).addFolder(from.share / "lua");
   List paths(from.scenePaths.begin(), from.scenePaths.end());
   scripts(kernel).setGlobal("host", List{List{"share", from.share.string()}, List{"scenePaths", std::move(paths)},
-                                      List{"alone", from.alone}});
+                                         List{"alone", from.alone}});
 }
 
 }  // namespace spark

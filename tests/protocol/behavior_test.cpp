@@ -123,7 +123,7 @@ TEST_CASE("A behaviour written in Lua hears percepts and acts") {
       self.actions = string.format("(he1 %.2f)", time[2][2] * 100)
     end)
   )lua",
-                            "test", true);
+                               "test", true);
   for (int i = 0; i < 5; ++i) a.cycle();
   REQUIRE(deeds() == std::vector<std::string>{"1 he1 6"});
 }

@@ -49,9 +49,10 @@ struct Cinema : House {
 std::vector<std::string> record(const std::filesystem::path& log, const std::string& encoder = "SexpMonitor") {
   House house;
   scripts(house.kernel).addFolder(pluginFolder().parent_path() / "share" / "spark" / "lua");
-  scripts(house.kernel).run(fmt::format("host = {{ share = '{}', scenePaths = {{}} }}",
-                                     (pluginFolder().parent_path() / "share" / "spark").string()),
-                         "test");
+  scripts(house.kernel)
+      .run(fmt::format("host = {{ share = '{}', scenePaths = {{}} }}",
+                       (pluginFolder().parent_path() / "share" / "spark").string()),
+           "test");
   for (const char* port : {"agents", "monitors"})
     scripts(house.kernel).addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
   scripts(house.kernel).addOverride("team", "Red Blue");

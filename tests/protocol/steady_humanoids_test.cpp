@@ -5,8 +5,8 @@
 
 #include "allocations.h"
 #include "api/agents.h"
-#include "test_support.h"
 #include "spark/script_server.h"
+#include "test_support.h"
 
 // Two teams of humanoids in the house of lua/soccer.lua that move all their motors, and all that is sensed, encoded and
 // sent meanwhile. They come over connections as others do, but without sockets.

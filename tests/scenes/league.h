@@ -3,8 +3,8 @@
 /// A league's house without network and rules, from the same scripts as the configs.
 
 #include "api/agents.h"
-#include "test_support.h"
 #include "spark/script_server.h"
+#include "test_support.h"
 
 namespace spark::test {
 

@@ -22,8 +22,8 @@ void World::configureByText(const std::string& text) {
 void World::prepare() {
   scripts(kernel).addFolder(SPARK_SOURCES "/lua");
   scripts(kernel).run("host = { share = '" SPARK_SOURCES "', scenePaths = { '" SPARK_SOURCES
-                   "/tests/scenarios/scenes' }, alone = true }",
-                   "host");
+                      "/tests/scenarios/scenes' }, alone = true }",
+                      "host");
 }
 
 void World::finish() {

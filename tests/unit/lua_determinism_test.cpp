@@ -59,7 +59,7 @@ TEST_CASE("random numbers come from the kernel's seed, one stream for each scrip
     LuaHouse h;
     h.kernel.setSeed(seed);
     scripts(h.kernel).attachText(h.thing("/usr/a"), "self.anything = {math.random(), math.random(6), math.random(0)}",
-                              "script", true);
+                                 "script", true);
     return Value(
         List{h.run("return {math.random(), math.random(1, 1000000)}"), h.run("return get('/usr/a').anything")});
   };

@@ -6,8 +6,8 @@
 #include "api/drawing.h"
 #include "api/phases.h"
 #include "packets.h"
-#include "test_support.h"
 #include "spark/script_server.h"
+#include "test_support.h"
 
 using namespace spark;
 using namespace spark::test;

@@ -16,7 +16,8 @@ namespace {
 /// A stage with a ScriptItem in place of the test item.
 struct ScriptStage : Stage {
   ScriptStage() {
-    scripts(kernel).run("delete '/sys/server/monitor/item' item = new('ScriptItem', '/sys/server/monitor/game')", "test");
+    scripts(kernel).run("delete '/sys/server/monitor/item' item = new('ScriptItem', '/sys/server/monitor/game')",
+                        "test");
   }
   void act() { kernel.events().channel("act").emit({"", 0, 0.02, 1, nullptr}); }
   void run(const std::string& text) { scripts(kernel).run(text, "test"); }

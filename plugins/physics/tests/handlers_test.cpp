@@ -273,7 +273,7 @@ TEST_CASE("Lua reacts to collisions") {
       print(self.path, "met", other, depth > 0)
     end)
   )",
-                            "test", true);
+                               "test", true);
   g.step();
   CHECK_THAT(g.text,
              Catch::Contains("ScriptHandler") && Catch::Contains("met") && Catch::Contains("/usr/scene/ground"));

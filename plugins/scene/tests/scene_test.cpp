@@ -291,8 +291,8 @@ TEST_CASE("lights and cameras hold their values") {
 TEST_CASE("a game in Lua reports by a group of variables, which are state") {
   Fixture f;
   f.kernel.create("StatusVariables", "/sys/variables/Status");
-  scripts(f.kernel).run("Status.round = 3 Status.teams = {'East', 'West'} Status.playMode = 'Push' Status.score = {2, 1}",
-                     "test");
+  scripts(f.kernel).run(
+      "Status.round = 3 Status.teams = {'East', 'West'} Status.playMode = 'Push' Status.score = {2, 1}", "test");
   const auto reported = [&] {
     std::string text;
     for (const StatusEntry& e : StatusReporters().read(f.kernel)) text += e.name + " " + e.value.text() + "; ";

@@ -16,12 +16,9 @@ namespace spark {
 
 /// A Leaf that owns children, in the order in which they were added.
 class Node : public Leaf {
+  SPARK_CLASS(Node, Leaf)
+
  public:
-  // As SPARK_CLASS(Node, Leaf).
-  static constexpr const char* kClassName = "Node";
-  using ClassSelf = Node;
-  using ClassBase = Leaf;
-  static constexpr InterfaceId kInterface{"Node", 1};
   /// Describes the class.
   static void describe(Description<Node>& d);
 

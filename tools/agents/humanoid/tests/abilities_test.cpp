@@ -5,8 +5,8 @@
 
 #include "api/physics.h"
 #include "humanoid/nao.h"
-#include "test_support.h"
 #include "spark/script_server.h"
+#include "test_support.h"
 
 // What one player of each type can do, alone on the field of lua/soccer.lua. Physics by the articulated solver, no
 // clock, no sockets: the same in every run.
