@@ -13,8 +13,8 @@ test("the sphere match: all robots, names, clock, and a goal", async (t) => {
   const page = await openPage(t, host.url);
   const seen = await until(page, "22 robots", (s) => s.source === "live" && s.robots.length === 22);
   assert.deepEqual([...seen.robots].sort(), everybody);
-  assert.equal(await part(page, "team-left").innerText(), "Red");
-  assert.equal(await part(page, "team-right").innerText(), "Blue");
+  await untilText(page, "team-left", (text) => text === "Red");
+  await untilText(page, "team-right", (text) => text === "Blue");
   await until(page, "that time goes on", (s, time) => s.time > time + 1, seen.time);
   await untilText(page, "rtf", (text) => /\d/.test(text));
   await drawn(page);

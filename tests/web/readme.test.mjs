@@ -35,8 +35,8 @@ test("the tutorial's game in Lua has its teams, its score and its modes on the p
   const host = await startHostIn(folder, t, "--config", "sumo.lua", "--set", "brains=true", "--set", "bouts=1000", "--seed", "4"); // Red wins the first bout soon
   const page = await openPage(t, `${host.url}?${looks}&view=orbit&panel=inspect`);
   await untilText(page, "play-mode", (text) => text === "Fight");
-  assert.equal(await part(page, "team-left").innerText(), "Red");
-  assert.equal(await part(page, "team-right").innerText(), "Blue");
+  await untilText(page, "team-left", (text) => text === "Red");
+  await untilText(page, "team-right", (text) => text === "Blue");
   await untilText(page, "score-left", (text) => Number(text) > 0);
   await untilText(page, "announcer", (text) => /^Point for (Red|Blue)/.test(text));
   await picture(page, "sumo");
