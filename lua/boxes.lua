@@ -10,7 +10,7 @@ local half = option{ name = "half", default = 6.0, doc = "Half the yard's edge, 
 files()
 scene()
 materials()
-physics()
+physics(engineOption())
 simulation()
 web()
 

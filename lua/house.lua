@@ -40,27 +40,31 @@ function scene()
   return server
 end
 
---- Physics server, its engine, and a world with a space in the active scene. `engine`: its class; `properties`: of the
---- engine, set before the world is made; `solver`: class of the solver below the engine that replaces its own
---- ("ArticulatedSolver"); nil: none.
-function physics(engine, properties, solver)
+--- Physics server with collision detection and engine, and a world with a space in the active scene. `engine`: the
+--- engine's class, OdeEngine by default; `properties`: of the server, set before the world is made.
+function physics(engine, properties, more)
+  if more then error("physics(engine, properties): the engine's class is one argument, such as physics(\"ArticulatedEngine\")", 2) end
   plugin "physics"
   plugin "physics-ode"
   local server = new("PhysicsServer", "/sys/server/physics")
+  for name, value in pairs(properties or {}) do server[name] = value end
+  new("OdeCollision", "/sys/server/physics/collision")
+  if engine == "ArticulatedEngine" then plugin "physics-articulated" end
   local node = new(engine or "OdeEngine", "/sys/server/physics/engine")
-  for name, value in pairs(properties or {}) do node[name] = value end
-  if solver == "ArticulatedSolver" then plugin "physics-articulated" end
-  if solver then new(solver, "/sys/server/physics/engine/solver") end
+  if engine == "ArticulatedEngine" then node:new("OdeEngine", "deferred") end
   new("World", "/usr/scene/world")
   new("Space", "/usr/scene/space")
   return server
 end
 
---- The class of solver that --set solver=... names, for physics(). `default`: "dense" unless the config says otherwise.
-function solverOption(default)
+--- The engine's class that --set solver=... or --set engine=... names, for physics(). `default`: the solver, "dense"
+--- unless the config says otherwise.
+function engineOption(default)
   local solver = option{ name = "solver", default = default or "dense", choices = { "dense", "articulated" },
-                         doc = "dense: the engine's own, which repeats recorded sessions; articulated: the same physics many times faster for robots." }
-  return solver == "articulated" and "ArticulatedSolver" or nil
+                         doc = "dense: ODE's own, which repeats recorded sessions; articulated: the same physics many times faster for robots." }
+  local engine = option{ name = "engine", default = solver == "articulated" and "ArticulatedEngine" or "OdeEngine",
+                         doc = "Class of the engine, in place of the one that `solver` means." }
+  return engine
 end
 
 --- The run loop, which emits the phases; sparkhost calls its run().

@@ -19,7 +19,7 @@ local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class 
 files()                                 -- /sys/server/file: the folder scenes/ is known as rsg/
 scene()                                 -- /sys/server/scene, and an empty scene at /usr/scene
 materials()                             -- /sys/server/material: names for viewers
-physics(nil, nil, solverOption())         -- /sys/server/physics with an engine; a world and a space in the scene
+physics(engineOption())                 -- /sys/server/physics with an engine; a world and a space in the scene
 simulation()                            -- /sys/server/simulation: the run loop
 agents{ parser = parser }               -- /sys/server/gamecontrol with a parser, and a TCP port
 monitors{ encoder = encoder }           -- /sys/server/monitor with an encoder, and a TCP port

@@ -21,15 +21,15 @@ local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
 local compat  = compatOption(league.compat)
 
-local solver  = solverOption(league.solver)
-local exact   = option{ name = "exactReplay", default = solver == nil,
-                        doc = "Physics repeats recorded sessions of the installed base to the last digit, with the dense solver." }
+local engine  = engineOption(league.solver)
+local exact   = option{ name = "exactReplay", default = engine == "OdeEngine",
+                        doc = "Physics repeats recorded sessions of the installed base to the last digit, with OdeEngine." }
 
 -- the servers
 files()
 scene()
 materials()
-physics("OdeEngine", { exactReplay = exact }, solver)
+physics(engine, { exactReplay = exact })
 simulation()
 agents{ parser = parser }
 monitors{ encoder = encoder }

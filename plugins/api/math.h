@@ -35,6 +35,21 @@ struct Pose {
   Mat3 rotation = Mat3::Identity();
 };
 
+/// The composition outer * inner: `inner` is given in the frame of `outer`, the result in that of which `outer` is
+/// given.
+inline Pose compose(const Pose& outer, const Pose& inner) {
+  return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
+}
+/// The rotation of a quaternion w x y z of length 1.
+inline Mat3 rotationOf(const std::array<double, 4>& q) {
+  const double xx = 2 * q[1] * q[1], yy = 2 * q[2] * q[2], zz = 2 * q[3] * q[3];
+  Mat3 m;
+  m << 1 - yy - zz, 2 * (q[1] * q[2] - q[0] * q[3]), 2 * (q[1] * q[3] + q[0] * q[2]),  //
+      2 * (q[1] * q[2] + q[0] * q[3]), 1 - xx - zz, 2 * (q[2] * q[3] - q[0] * q[1]),   //
+      2 * (q[1] * q[3] - q[0] * q[2]), 2 * (q[2] * q[3] + q[0] * q[1]), 1 - xx - yy;
+  return m;
+}
+
 constexpr double kPi = std::numbers::pi;
 inline double degToRad(double deg) { return deg * (kPi / 180.0); }
 inline double radToDeg(double rad) { return rad * (180.0 / kPi); }

@@ -252,13 +252,13 @@ class BodyController : public SceneNode {
 /// The physics server, at /sys/server/physics.
 class IPhysicsServer {
  public:
-  SPARK_INTERFACE(IPhysicsServer, 1);
+  SPARK_INTERFACE(IPhysicsServer, 2);
   static constexpr const char* kPath = "/sys/server/physics";
   virtual ~IPhysicsServer() = default;
-  /// The engine below the server. Throws Error when there is none.
-  virtual engine::IEngine& engine() = 0;
-  /// The world of the active scene. Throws Error when there is none.
-  virtual engine::World world() = 0;
+  /// The model and the state of the active scene's world. Throw Error when there is none. Valid until the tree changes;
+  /// in the sense phase several threads may read them.
+  virtual const engine::Model& model() = 0;
+  virtual const engine::State& state() = 0;
   /// Appends all bodies of a subtree, `root` included, in tree order.
   virtual void bodies(Node& root, std::vector<IRigidBody*>& out) = 0;
   /// All contacts of the last step, solved or not. `forceOnA` is valid where `feedback` is set; the property

@@ -48,11 +48,12 @@ namespace spark::articulated {
 
 /// A body in the system of equations, with its connection to its parent. Symbols are those of the head of this file.
 struct Node {
-  engine::SolverBody* body = nullptr;  ///< owned by the engine
-  Index parent = kNone;                ///< node, before this one; kNone: root
-  Index joint = kNone;                 ///< tree joint, index in SolverStep::joints; kNone: a free root
-  Index firstRow = 0, rowCount = 0;    ///< rows of that joint, at most 6
-  Index firstFolded = kNone;           ///< first folded row, see Row::nextFolded
+  const engine::Body* body = nullptr;       ///< in the model
+  engine::DynamicState* dynamic = nullptr;  ///< in the state
+  Index parent = kNone;                     ///< node, before this one; kNone: root
+  Index joint = kNone;                      ///< tree joint, index in Model::joints; kNone: a free root
+  Index firstRow = 0, rowCount = 0;         ///< rows of that joint, at most 6
+  Index firstFolded = kNone;                ///< first folded row, see Row::nextFolded
   RigidBodyState state;
   Mat3 worldInertia;    ///< kg m^2, about the centre of mass, world axes
   bool changed = true;  ///< a row of it or of a node below began or ceased to hold: factor() has to renew it

@@ -14,36 +14,12 @@ Vec3 gyroscopicTorque(const Mat3& inertia, const Vec3& angularVelocity, double d
   return inertia * (implicitInertia.inverse() * rate) - rate;
 }
 
-namespace {
-
-/// Writes the rotation matrix of a unit quaternion q (w x y z) as 3 rows of 4 elements.
-void writeRotation(const double* q, double* rows) {
-  const double xx = 2 * q[1] * q[1], yy = 2 * q[2] * q[2], zz = 2 * q[3] * q[3];
-  const double r[] = {1 - yy - zz,
-                      2 * (q[1] * q[2] - q[0] * q[3]),
-                      2 * (q[1] * q[3] + q[0] * q[2]),
-                      0,
-                      2 * (q[1] * q[2] + q[0] * q[3]),
-                      1 - xx - zz,
-                      2 * (q[2] * q[3] - q[0] * q[1]),
-                      0,
-                      2 * (q[1] * q[3] - q[0] * q[2]),
-                      2 * (q[2] * q[3] + q[0] * q[1]),
-                      1 - xx - yy,
-                      0};
-  std::copy(r, r + 12, rows);
-}
-
-}  // namespace
-
-void integrate(engine::SolverBody& body, const Vec3& linearVelocity, const Vec3& angularVelocity, double dt) {
-  for (int i = 0; i < 3; ++i) {
-    body.linearVelocity[i] = linearVelocity[i];
-    body.angularVelocity[i] = angularVelocity[i];
-    body.position[i] += dt * linearVelocity[i];
-  }
+void integrate(engine::DynamicState& body, const Vec3& linearVelocity, const Vec3& angularVelocity, double dt) {
+  body.linearVelocity = linearVelocity;
+  body.angularVelocity = angularVelocity;
+  body.position += dt * linearVelocity;
   // q += dt / 2 (0, w) q, brought back to length 1.
-  double* q = body.quaternion;
+  std::array<double, 4>& q = body.quaternion;
   const Quaternion rate = Quaternion{0, angularVelocity} * Quaternion::of(q);
   const double half = 0.5 * dt;
   const double moved[] = {q[0] + half * rate.w, q[1] + half * rate.v.x(), q[2] + half * rate.v.y(),
@@ -51,8 +27,11 @@ void integrate(engine::SolverBody& body, const Vec3& linearVelocity, const Vec3&
   const double scale =
       1 / std::sqrt(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2] + moved[3] * moved[3]);
   for (int i = 0; i < 4; ++i) q[i] = moved[i] * scale;
-  writeRotation(q, body.rotation);
-  for (int i = 0; i < 3; ++i) body.force[i] = body.torque[i] = 0;
+  body.rotation = rotationOf(q);
+  body.force.setZero();
+  body.torque.setZero();
+  body.awake = true;
+  body.mark = 0;
 }
 
 }  // namespace spark::articulated

@@ -13,6 +13,6 @@ Vec3 gyroscopicTorque(const Mat3& inertia, const Vec3& angularVelocity, double d
 
 /// Sets a body's velocities [m/s, rad/s, world frame], moves it by them for `dt` [s] (semi-implicit Euler), and clears
 /// its force and torque.
-void integrate(engine::SolverBody& body, const Vec3& linearVelocity, const Vec3& angularVelocity, double dt);
+void integrate(engine::DynamicState& body, const Vec3& linearVelocity, const Vec3& angularVelocity, double dt);
 
 }  // namespace spark::articulated

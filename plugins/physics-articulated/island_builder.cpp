@@ -4,23 +4,18 @@
 
 namespace spark::articulated {
 
-namespace {
-
-Index treeOf(const Topology& topology, const engine::SolverBody& body) { return topology.treeOf[body.index]; }
-
-}  // namespace
-
 IslandContents IslandBuilder::operator[](std::size_t i) const {
   const Range& r = ranges_[islands_[i]];
   const std::span trees(trees_), contacts(contacts_);
   return {trees.subspan(r.firstTree, r.trees), contacts.subspan(r.firstContact, r.contacts), r.bodies};
 }
 
-void IslandBuilder::build(const engine::SolverStep& step, const Topology& topology) {
+void IslandBuilder::build(const engine::Step& step, const Topology& topology) {
   // Contacts between bodies connect trees; the static world connects nothing.
   sets_.reset(topology.trees.size());
-  for (const engine::SolverPair& pair : step.pairs)
-    if (pair.a && pair.b) sets_.merge(treeOf(topology, *pair.a), treeOf(topology, *pair.b));
+  for (const engine::Contact& contact : step.contacts)
+    if (const ContactBodies pair(contact); pair.b != kNone)
+      sets_.merge(topology.treeOf[pair.a], topology.treeOf[pair.b]);
   // A counting sort of trees and contacts by island.
   count(step, topology);
   layOut();
@@ -28,7 +23,7 @@ void IslandBuilder::build(const engine::SolverStep& step, const Topology& topolo
 }
 
 /// Counts trees, contacts, bodies and coupling rows of each island, and finds out whether it is awake.
-void IslandBuilder::count(const engine::SolverStep& step, const Topology& topology) {
+void IslandBuilder::count(const engine::Step& step, const Topology& topology) {
   const std::size_t n = topology.trees.size();
   ranges_.assign(n, {});
   for (Index t = 0; t < n; ++t) {
@@ -37,14 +32,17 @@ void IslandBuilder::count(const engine::SolverStep& step, const Topology& topolo
     ++r.trees;
     r.bodies += tree.end - tree.begin;
     r.couplingRows += kMaxJointRows * (tree.loopEnd - tree.loopBegin);
-    for (Index i = tree.begin; i < tree.end && !r.awake; ++i) r.awake = step.bodies[topology.treeBodies[i].body]->awake;
+    for (Index i = tree.begin; i < tree.end && !r.awake; ++i) {
+      const Index body = topology.treeBodies[i].body;
+      r.awake = step.state.bodies[body].awake && step.steps(body);
+    }
   }
   std::size_t contacts = 0;
-  for (const engine::SolverPair& pair : step.pairs)
-    if (pair.a) {
-      Range& r = rangeOf(treeOf(topology, *pair.a));
+  for (const engine::Contact& contact : step.contacts)
+    if (const ContactBodies pair(contact); pair.a != kNone) {
+      Range& r = rangeOf(topology.treeOf[pair.a]);
       ++r.contacts, ++contacts;
-      if (pair.b) r.couplingRows += kMaxContactRows;
+      if (pair.b != kNone) r.couplingRows += kMaxContactRows;
     }
   trees_.resize(n);
   contacts_.resize(contacts);
@@ -73,14 +71,15 @@ void IslandBuilder::layOut() {
 }
 
 /// Writes trees and contacts to the ranges of their islands, in their own order.
-void IslandBuilder::fill(const engine::SolverStep& step, const Topology& topology) {
+void IslandBuilder::fill(const engine::Step& step, const Topology& topology) {
   for (Index t = 0; t < topology.trees.size(); ++t) {
     Range& r = rangeOf(t);
     trees_[r.firstTree + r.trees++] = t;
   }
-  for (std::size_t c = 0; c < step.pairs.size(); ++c) {
-    if (!step.pairs[c].a) continue;
-    Range& r = rangeOf(treeOf(topology, *step.pairs[c].a));
+  for (std::size_t c = 0; c < step.contacts.size(); ++c) {
+    const ContactBodies pair(step.contacts[c]);
+    if (pair.a == kNone) continue;
+    Range& r = rangeOf(topology.treeOf[pair.a]);
     contacts_[r.firstContact + r.contacts++] = toIndex(c);
   }
 }

@@ -12,7 +12,7 @@ namespace spark::articulated {
 class IslandBuilder {
  public:
   /// Finds the islands. Islands whose bodies are all asleep are left out.
-  void build(const engine::SolverStep& step, const Topology& topology);
+  void build(const engine::Step& step, const Topology& topology);
   /// Number of awake islands.
   std::size_t size() const { return islands_.size(); }
   /// Island i, 0..size()-1, in order of its first tree. Valid until the next build().
@@ -31,9 +31,9 @@ class IslandBuilder {
     bool awake = false;
   };
   Range& rangeOf(Index tree) { return ranges_[sets_.find(tree)]; }
-  void count(const engine::SolverStep& step, const Topology& topology);
+  void count(const engine::Step& step, const Topology& topology);
   void layOut();
-  void fill(const engine::SolverStep& step, const Topology& topology);
+  void fill(const engine::Step& step, const Topology& topology);
   DisjointSets sets_;                    ///< of trees
   std::vector<Range> ranges_;            ///< by tree; only those of the islands' first trees are used
   std::vector<Index> trees_, contacts_;  ///< island by island

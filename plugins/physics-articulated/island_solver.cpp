@@ -16,15 +16,6 @@ constexpr double kMinSoftness = 1e-11;
 /// 1 rad/s if that is larger.
 constexpr double kVelocityTolerance = 1e-11;
 
-Vec3 toVec(const double* v) { return {v[0], v[1], v[2]}; }
-
-/// From 3 rows of 4 elements.
-Mat3 toMat(const double* r) {
-  Mat3 m;
-  m << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
-  return m;
-}
-
 }  // namespace
 
 void IslandSolver::reserve(std::size_t bodies, std::size_t rows, std::size_t couplingRows, std::size_t depth) {
@@ -46,11 +37,11 @@ void IslandSolver::clear() {
   pyramidRows_.clear();
 }
 
-/// The node of a body; kNone for the world (nullptr).
-Index IslandSolver::nodeOf(const WorldView& world, const engine::SolverBody* body) const {
-  if (!body) return kNone;
-  const Index tree = world.topology.treeOf[body->index];
-  return world.firstNode[tree] + world.topology.treeBodyOf[body->index] - world.topology.trees[tree].begin;
+/// The node of a body; kNone for the world.
+Index IslandSolver::nodeOf(const WorldView& world, Index body) const {
+  if (body == kNone) return kNone;
+  const Index tree = world.topology.treeOf[body];
+  return world.firstNode[tree] + world.topology.treeBodyOf[body] - world.topology.trees[tree].begin;
 }
 
 /// Fills the nodes, tree by tree: state, inertia in world axes, gravity and gyroscopic torque.
@@ -63,9 +54,10 @@ void IslandSolver::readBodies(WorldView& world, const IslandContents& island) {
     world.firstNode[t] = first;
     for (Index i = tree.begin; i < tree.end; ++i, ++next) {
       const TreeBody& treeBody = world.topology.treeBodies[i];
-      engine::SolverBody& body = *world.step.bodies[treeBody.body];
+      engine::DynamicState& dynamic = world.step.state.bodies[treeBody.body];
       Node& n = node(next);
-      n.body = &body;
+      n.body = &world.step.model.bodies[treeBody.body];
+      n.dynamic = &dynamic;
       n.parent = treeBody.parent == kNone ? kNone : treeBody.parent - tree.begin + first;
       n.joint = treeBody.treeJoint;
       n.rowCount = 0;
@@ -73,21 +65,21 @@ void IslandSolver::readBodies(WorldView& world, const IslandContents& island) {
       n.changed = true;
       n.connected = false;
       RigidBodyState& s = n.state;
-      s.position = toVec(body.position);
-      s.linearVelocity = toVec(body.linearVelocity), s.angularVelocity = toVec(body.angularVelocity);
-      s.rotation = toMat(body.rotation);
-      s.orientation = Quaternion::of(body.quaternion);
-      s.force = toVec(body.force), s.torque = toVec(body.torque);
+      s.position = dynamic.position;
+      s.linearVelocity = dynamic.linearVelocity, s.angularVelocity = dynamic.angularVelocity;
+      s.rotation = dynamic.rotation;
+      s.orientation = Quaternion::of(dynamic.quaternion);
+      s.force = dynamic.force, s.torque = dynamic.torque;
     }
   }
   // In a separate loop: the one above only copies, so that the cache misses of many bodies overlap.
   double fastest = 1;
   for (Node& n : system_.trees.nodes) {
-    const engine::SolverBody& body = *n.body;
+    const engine::Body& body = *n.body;
     RigidBodyState& s = n.state;
     n.worldInertia.noalias() = s.rotation * body.inertia * s.rotation.transpose();
-    if (body.gravity) s.force += body.mass * world.step.parameters.gravity;
-    if (body.gyroscopic) s.torque += gyroscopicTorque(n.worldInertia, s.angularVelocity, world.step.dt);
+    if (body.gravity) s.force += body.mass * world.step.model.parameters.gravity;
+    s.torque += gyroscopicTorque(n.worldInertia, s.angularVelocity, world.step.dt);
     fastest = std::max({fastest, s.linearVelocity.cwiseAbs().maxCoeff(), s.angularVelocity.cwiseAbs().maxCoeff()});
   }
   motionTolerance_ = kVelocityTolerance * fastest * constants_.inverseDt;
@@ -95,12 +87,12 @@ void IslandSolver::readBodies(WorldView& world, const IslandContents& island) {
 
 /// Appends the rows of a joint, with the states of the last step.
 IslandSolver::RowRange IslandSolver::addJoint(WorldView& world, Index index) {
-  const engine::SolverJoint& joint = *world.step.joints[index];
+  const engine::Joint& joint = world.step.model.joints[index];
   const Index a = nodeOf(world, joint.a), b = nodeOf(world, joint.b);
   Rows& rows = system_.rows;
   RowRange range{index, rows.size(), 0};
-  range.count = writeJointRows(joint, node(a).state, b == kNone ? nullptr : &node(b).state, constants_,
-                               rows.prepare(kMaxJointRows));
+  range.count = writeJointRows(joint, world.step.state.motors[index], node(a).state,
+                               b == kNone ? nullptr : &node(b).state, constants_, rows.prepare(kMaxJointRows));
   rows.commit(range.count);
   const JointWarmStart& last = world.joints[index];
   for (Index i = range.first; i < range.end(); ++i) {
@@ -173,7 +165,7 @@ void IslandSolver::readContacts(WorldView& world, const IslandContents& island) 
   Rows& rows = system_.rows;
   for (const Index c : island.contacts) {
     const engine::Contact& contact = world.step.contacts[c];
-    const engine::SolverPair& pair = world.step.pairs[c];
+    const ContactBodies pair(contact);
     const Index a = nodeOf(world, pair.a), b = nodeOf(world, pair.b);
     RowRange range{c, rows.size(), 0};
     range.count = writeContactRows(contact, pair.reversed, node(a).state, b == kNone ? nullptr : &node(b).state,
@@ -231,13 +223,13 @@ bool IslandSolver::solve() {
 }
 
 bool IslandSolver::step(WorldView& world, const IslandContents& island) {
-  const engine::SolverStep& step = world.step;
-  constants_ = {1 / step.dt, step.parameters.erp, step.parameters.cfm, step.parameters.contactSurfaceLayer};
+  const engine::WorldParameters& p = world.step.model.parameters;
+  constants_ = {1 / world.step.dt, p.erp, p.cfm, p.contactSurfaceLayer};
   clear();
   readBodies(world, island);
   readJoints(world, island);
   readContacts(world, island);
-  if (system_.coupling.size() > static_cast<std::size_t>(step.maxCouplingRows)) return false;
+  if (system_.coupling.size() > static_cast<std::size_t>(world.maxCouplingRows)) return false;
   setExternalForces();
   if (!solve()) return false;
   writeResult(world);
@@ -249,8 +241,7 @@ void IslandSolver::writeResult(WorldView& world) {
   // The new velocity is dt u.
   for (Node& n : system_.trees.nodes) {
     const double dt = world.step.dt;
-    integrate(*n.body, dt * n.motion.linear(), dt * n.motion.angular(), dt);
-    n.body->awake = true;
+    integrate(*n.dynamic, dt * n.motion.linear(), dt * n.motion.angular(), dt);
   }
   writeFeedback(world);
 }
@@ -279,18 +270,17 @@ SpatialVector IslandSolver::totalForce(const RowRange& range, SpatialVector Row:
 
 void IslandSolver::writeFeedback(WorldView& world) const {
   for (const RowRange& range : joints_) {
-    engine::SolverJoint& joint = *world.step.joints[range.source];
+    const engine::Joint& joint = world.step.model.joints[range.source];
     if (!joint.wantsFeedback) continue;
     const SpatialVector onA = totalForce(range, &Row::jacobianA);
-    const SpatialVector onB = joint.b ? totalForce(range, &Row::jacobianB) : SpatialVector::zero();
-    joint.forceA = onA.linear(), joint.torqueA = onA.angular();
-    joint.forceB = onB.linear(), joint.torqueB = onB.angular();
+    const SpatialVector onB = joint.b != kNone ? totalForce(range, &Row::jacobianB) : SpatialVector::zero();
+    world.step.state.joints[range.source] = {onA.linear(), onA.angular(), onB.linear(), onB.angular()};
   }
   for (const RowRange& range : contacts_) {
     engine::Contact& contact = world.step.contacts[range.source];
     if (!contact.feedback) continue;
     const Vec3 onBodyA = totalForce(range, &Row::jacobianA).linear();
-    contact.forceOnA = world.step.pairs[range.source].reversed ? Vec3(-onBodyA) : onBodyA;
+    contact.forceOnA = ContactBodies(contact).reversed ? Vec3(-onBodyA) : onBodyA;
   }
 }
 

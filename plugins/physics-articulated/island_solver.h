@@ -11,7 +11,8 @@ namespace spark::articulated {
 /// What the islands of a world share during a step. Several threads may use it: each tree, joint and contact belongs to
 /// one island. References are valid during the step.
 struct WorldView {
-  engine::SolverStep& step;
+  engine::Step& step;
+  int maxCouplingRows;  ///< islands with more coupling rows are deferred
   const Topology& topology;
   std::vector<JointWarmStart>& joints;  ///< by joint of the step
   ContactWarmStart& contacts;
@@ -21,7 +22,7 @@ struct WorldView {
 /// The content of an island. Valid during the step.
 struct IslandContents {
   std::span<const Index> trees;     ///< indices in Topology::trees
-  std::span<const Index> contacts;  ///< indices in SolverStep::contacts
+  std::span<const Index> contacts;  ///< indices in Step::contacts
   std::size_t bodies = 0;
 };
 
@@ -34,7 +35,7 @@ class IslandSolver {
   /// rows, and trees of up to `depth` bodies from root to leaf.
   void reserve(std::size_t bodies, std::size_t rows, std::size_t couplingRows, std::size_t depth);
   /// Steps the island. Returns false, with its bodies, joints and contacts unchanged, if it has too many coupling rows
-  /// (SolverStep::maxCouplingRows) or no solution was found.
+  /// (WorldView::maxCouplingRows) or no solution was found.
   bool step(WorldView& world, const IslandContents& island);
   /// For its counters.
   const Pivoting& pivoting() const { return pivoting_; }
@@ -42,7 +43,7 @@ class IslandSolver {
  private:
   /// The rows of a joint or contact: `first` .. `first + count - 1`.
   struct RowRange {
-    Index source, first, count;  ///< source: index in SolverStep::joints or contacts
+    Index source, first, count;  ///< source: index in Model::joints or Step::contacts
     Index end() const { return first + count; }
   };
   void clear();
@@ -61,7 +62,7 @@ class IslandSolver {
   void writeWarmStart(WorldView& world) const;
   void writeFeedback(WorldView& world) const;
   SpatialVector totalForce(const RowRange& rows, SpatialVector Row::*jacobian) const;
-  Index nodeOf(const WorldView& world, const engine::SolverBody* body) const;
+  Index nodeOf(const WorldView& world, Index body) const;
   Node& node(Index i) { return system_.trees.nodes[i]; }
 
   System system_;

@@ -15,9 +15,8 @@ namespace spark::articulated {
 
 namespace {
 
+using engine::JointAxis;
 using engine::JointType;
-using engine::SolverAxis;
-using engine::SolverJoint;
 
 /// Whether an axis is at a stop, and by how much it is beyond it [rad or m]: negative at the low stop.
 struct StopContact {
@@ -27,7 +26,8 @@ struct StopContact {
 
 /// Writes the rows of one joint, from `next` on.
 struct JointWriter {
-  const SolverJoint& joint;
+  const engine::Joint& joint;
+  const engine::Motors& motors;
   RigidBodyState& a;
   RigidBodyState* b;
   const StepConstants& constants;
@@ -96,23 +96,23 @@ struct JointWriter {
   // ---- motors and stops ("Stops and motor parameters") ----
 
   /// The stop that an axis at `position` has reached.
-  static StopContact stopAt(const SolverAxis& axis, double position) {
+  static StopContact stopAt(const JointAxis& axis, double position) {
     if (position <= axis.lowStop) return {Stop::low, position - axis.lowStop};
     if (position >= axis.highStop) return {Stop::high, position - axis.highStop};
     return {};
   }
   /// Whether a rotational axis has stops that it can reach.
-  static bool hasAngularStops(const SolverAxis& axis) {
+  static bool hasAngularStops(const JointAxis& axis) {
     return (axis.lowStop >= -kPi || axis.highStop <= kPi) && axis.lowStop <= axis.highStop;
   }
 
   /// The force of a motor at a stop. It presses with its full force, or drives away from the stop with a fraction of it
   /// (the fudge factor), which avoids a jump off the stop.
-  static double motorForceAtStop(const SolverAxis& axis, Stop stop) {
-    double force = axis.maxForce;
-    if (axis.velocity > 0 || (axis.velocity == 0 && stop == Stop::high)) force = -force;
-    if ((stop == Stop::low && axis.velocity > 0) || (stop == Stop::high && axis.velocity < 0))
-      force *= axis.fudgeFactor;
+  static double motorForceAtStop(const JointAxis& axis, const engine::Motor& motor, Stop stop) {
+    double force = motor.maxForce;
+    if (motor.velocity > 0 || (motor.velocity == 0 && stop == Stop::high)) force = -force;
+    if ((stop == Stop::low && motor.velocity > 0) || (stop == Stop::high && motor.velocity < 0))
+      force *= axis.ode.fudgeFactor;
     return force;
   }
   /// Adds -force along the row to the forces on the bodies.
@@ -128,30 +128,31 @@ struct JointWriter {
   /// is the present velocity of a relative to b along the axis, for bounce.
   void addAxis(Index index, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const StopContact& contact,
                double velocity) {
-    const SolverAxis& axis = joint.axes[index];
+    const JointAxis& axis = joint.axes[index];
+    const engine::Motor& motor = motors[index];
     const Stop stop = contact.stop;
     const bool stopped = stop != Stop::none;
     const bool locked = stopped && axis.lowStop == axis.highStop;
-    const bool powered = axis.maxForce > 0 && !locked;
+    const bool powered = motor.maxForce > 0 && !locked;
     if (!powered && !stopped) return;
     // At a stop the motor acts as a given force: the row belongs to the stop.
-    if (powered && stopped) subtractForce(jacobianA, jacobianB, motorForceAtStop(axis, stop));
-    Row& row = add(jacobianA, jacobianB, axis.velocity, axis.cfm);
+    if (powered && stopped) subtractForce(jacobianA, jacobianB, motorForceAtStop(axis, motor, stop));
+    Row& row = add(jacobianA, jacobianB, motor.velocity, axis.ode.cfm);
     row.axis = static_cast<std::uint8_t>(index);
     row.stop = stop;
     // A motor reaches its target velocity with a force of at most maxForce.
     if (!stopped) {
-      row.low = -axis.maxForce, row.high = axis.maxForce;
+      row.low = -motor.maxForce, row.high = motor.maxForce;
       return;
     }
     // A stop pushes only away from itself; equal stops push both ways and do not bounce.
-    row.softness = softness(axis.stopCfm);
-    double target = -constants.inverseDt * axis.stopErp * contact.excess;
+    row.softness = softness(axis.ode.stopCfm);
+    double target = -constants.inverseDt * axis.ode.stopErp * contact.excess;
     if (!locked) {
       (stop == Stop::low ? row.low : row.high) = 0;
-      const double rebound = -axis.bounce * velocity;
-      if (axis.bounce > 0 && stop == Stop::low && velocity < 0) target = std::max(target, rebound);
-      if (axis.bounce > 0 && stop == Stop::high && velocity > 0) target = std::min(target, rebound);
+      const double rebound = -axis.ode.bounce * velocity;
+      if (axis.ode.bounce > 0 && stop == Stop::low && velocity < 0) target = std::max(target, rebound);
+      if (axis.ode.bounce > 0 && stop == Stop::high && velocity > 0) target = std::min(target, rebound);
     }
     row.target = target * constants.inverseDt;
   }
@@ -163,7 +164,7 @@ struct JointWriter {
 
   // ---- joint types ----
 
-  void writeBall() { addBall(joint.erp, joint.cfm); }
+  void writeBall() { addBall(joint.ode.erp, joint.ode.cfm); }
 
   void writeHinge() {
     addBall(constants.erp, constants.cfm);
@@ -195,7 +196,7 @@ struct JointWriter {
           constants.cfm);
     // Motor and stops along the axis.
     if (!b && joint.reversed) axis = -axis;
-    const SolverAxis& limits = joint.axes[0];
+    const JointAxis& limits = joint.axes[0];
     const bool hasStops =
         (limits.lowStop > -HUGE_VAL || limits.highStop < HUGE_VAL) && limits.lowStop <= limits.highStop;
     const StopContact contact = hasStops ? stopAt(limits, -axis.dot(offset)) : StopContact{};
@@ -234,7 +235,8 @@ struct JointWriter {
     const Vec3 error = anchorError(armA, armB);
     Vec3 p, q;
     perpendicularBasis(axis1, p, q);
-    addPoint(axis1, armA, armB, constants.inverseDt * joint.suspensionErp * axis1.dot(error), joint.suspensionCfm);
+    addPoint(axis1, armA, armB, constants.inverseDt * joint.ode.suspensionErp * axis1.dot(error),
+             joint.ode.suspensionCfm);
     addPoint(p, armA, armB, errorGain() * p.dot(error), constants.cfm);
     addPoint(q, armA, armB, errorGain() * q.dot(error), constants.cfm);
     // The angle between the axes stays as set; the error is the sine of the difference of the two angles.
@@ -252,7 +254,7 @@ struct JointWriter {
   }
 
   void writeFixed() {
-    addBall(joint.erp, joint.cfm);
+    addBall(joint.ode.erp, joint.ode.cfm);
     addSameRotation();
   }
 
@@ -262,7 +264,7 @@ struct JointWriter {
     for (Index i = 0; i < count; ++i) {
       const Vec3& v = joint.axisA[i];
       const Vec3 axis = joint.frame[i] == 1 ? fromA(v) : joint.frame[i] == 2 ? fromB(v) : v;
-      addAngularAxis(i, axis, stopAt(joint.axes[i], joint.angle[i]));
+      addAngularAxis(i, axis, stopAt(joint.axes[i], joint.userAngle[i]));
     }
   }
 
@@ -309,9 +311,9 @@ struct JointWriter {
 
 }  // namespace
 
-Index writeJointRows(const SolverJoint& joint, RigidBodyState& a, RigidBodyState* b, const StepConstants& constants,
-                     Row* out) {
-  JointWriter writer{joint, a, b, constants, out};
+Index writeJointRows(const engine::Joint& joint, const engine::Motors& motors, RigidBodyState& a, RigidBodyState* b,
+                     const StepConstants& constants, Row* out) {
+  JointWriter writer{joint, motors, a, b, constants, out};
   writer.write();
   return toIndex(static_cast<std::size_t>(writer.next - out));
 }

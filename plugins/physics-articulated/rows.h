@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-#include "api/solver.h"
+#include "api/engine.h"
 #include "index.h"
 #include "rotation.h"
 #include "spatial.h"
@@ -109,8 +109,20 @@ inline constexpr Index kMaxJointRows = 6, kMaxContactRows = 3;
 /// Writes the rows of a joint between bodies `a` and `b` (nullptr: the world) to `out`, which has room for
 /// kMaxJointRows. Returns their number. Sets Jacobians, target, softness, bounds, axis and stop. A motor at a stop has
 /// no row of its own: its force is added to `force` and `torque` of the bodies.
-Index writeJointRows(const engine::SolverJoint& joint, RigidBodyState& a, RigidBodyState* b,
+Index writeJointRows(const engine::Joint& joint, const engine::Motors& motors, RigidBodyState& a, RigidBodyState* b,
                      const StepConstants& constants, Row* out);
+
+/// The bodies of a contact that is a constraint.
+struct ContactBodies {
+  Index a = kNone, b = kNone;  ///< b kNone: the static world; a kNone: the contact is no constraint
+  bool reversed = false;       ///< geom A is static: a is the body of geom B, and the normal points out of a
+  explicit ContactBodies(const engine::Contact& c) {
+    if (!c.solve) return;
+    reversed = c.bodyA == kNone;
+    a = reversed ? c.bodyB : c.bodyA;
+    b = reversed ? kNone : c.bodyB;
+  }
+};
 
 /// Writes the rows of a contact to `out`, which has room for kMaxContactRows: the normal, then two of friction unless
 /// mu is 0. Returns their number. Sets Jacobians, target, softness, bounds and normalRow (0, counted from `out`).

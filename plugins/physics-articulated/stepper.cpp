@@ -4,24 +4,25 @@
 
 namespace spark::articulated {
 
-/// What is kept for the world of a step, with the topology of its present structure.
-Stepper::WorldData& Stepper::worldOf(const engine::SolverStep& step) {
+/// What is kept for a world, with the topology of its present structure.
+Stepper::WorldData& Stepper::worldOf(const engine::Model& model) {
   WorldData* world = nullptr;
   for (const auto& w : worlds_)
-    if (w->id == step.world) world = w.get();
+    if (w->id == model.id) world = w.get();
   if (!world) world = worlds_.emplace_back(std::make_unique<WorldData>()).get();
-  if (world->built && world->structure == step.structure) return *world;
-  world->id = step.world;
+  if (world->built && world->structure == model.structure) return *world;
+  world->id = model.id;
   world->built = true;
-  world->structure = step.structure;
-  world->topology.build(step);
-  world->joints.assign(step.joints.size(), {});
+  world->structure = model.structure;
+  world->topology.build(model);
+  world->joints.assign(model.joints.size(), {});
   world->firstNode.assign(world->topology.trees.size(), 0);
+  world->deferredBodies.assign(model.bodies.size(), 0);
   return *world;
 }
 
-void Stepper::forget(engine::World world) {
-  std::erase_if(worlds_, [&](const auto& w) { return w->id == world; });
+void Stepper::forget(const engine::Model& model) {
+  std::erase_if(worlds_, [&](const auto& w) { return w->id == model.id; });
 }
 
 /// Allocates memory for the islands of the step. Which thread gets which island is not fixed: each has room for the
@@ -34,35 +35,33 @@ void Stepper::reserve(const WorldData& world, std::size_t threads, int couplingR
     solver->reserve(islands.maxBodies(), islands.maxRows(), coupling, world.topology.maxDepth);
 }
 
-/// Marks the bodies of deferred islands, and returns their number.
-std::size_t Stepper::markDeferred(const engine::SolverStep& step, const WorldData& world) {
-  std::size_t bodies = 0;
+/// Marks the bodies of deferred islands. Returns whether there are any.
+bool Stepper::markDeferred(WorldData& world) {
+  bool any = false;
   for (std::size_t i = 0; i < world.islands.size(); ++i) {
     if (!world.deferred[i]) continue;
+    if (!std::exchange(any, true)) std::fill(world.deferredBodies.begin(), world.deferredBodies.end(), 0);
     ++deferredIslands_;
-    const IslandContents island = world.islands[i];
-    bodies += island.bodies;
-    for (const Index t : island.trees) {
+    for (const Index t : world.islands[i].trees) {
       const Tree& tree = world.topology.trees[t];
-      for (Index b = tree.begin; b < tree.end; ++b) step.bodies[world.topology.treeBodies[b].body]->deferred = true;
+      for (Index b = tree.begin; b < tree.end; ++b) world.deferredBodies[world.topology.treeBodies[b].body] = 1;
     }
   }
-  return bodies;
+  return any;
 }
 
-std::size_t Stepper::step(engine::SolverStep& step, std::size_t threads, const ParallelFor& parallelFor) {
-  WorldData& world = worldOf(step);
-  for (engine::SolverBody* body : step.bodies) body->deferred = false;
+std::span<const std::uint8_t> Stepper::step(engine::Step& step, int mostRows, std::size_t threads,
+                                            const ParallelFor& parallelFor) {
+  WorldData& world = worldOf(step.model);
   world.islands.build(step, world.topology);
   const std::size_t n = world.islands.size();
-  if (n == 0) return 0;
+  if (n == 0) return {};
   // Prepare all that the threads share or must not allocate.
-  step.maxCouplingRows = std::min(step.maxCouplingRows, maxCouplingRows);
-  reserve(world, threads, step.maxCouplingRows);
+  reserve(world, threads, mostRows);
   world.deferred.assign(n, 0);
   islands_ += static_cast<std::int64_t>(n);
   world.contacts.match(step.contacts);
-  WorldView view{step, world.topology, world.joints, world.contacts, world.firstNode};
+  WorldView view{step, mostRows, world.topology, world.joints, world.contacts, world.firstNode};
   // Each thread takes the next island until none remains.
   std::atomic<std::size_t> next{0};
   const auto work = [&](std::size_t thread) {
@@ -74,7 +73,11 @@ std::size_t Stepper::step(engine::SolverStep& step, std::size_t threads, const P
     work(0);
   else
     parallelFor(std::min(threads, n), work);
-  return markDeferred(step, world);
+
+  const bool some = markDeferred(world);
+  for (Index i = 0; i < step.state.bodies.size(); ++i)
+    if (step.state.bodies[i].awake && step.steps(i) && !(some && world.deferredBodies[i])) step.state.markMoved(i);
+  return some ? std::span<const std::uint8_t>(world.deferredBodies) : std::span<const std::uint8_t>();
 }
 
 std::int64_t Stepper::passes() const {

@@ -16,14 +16,16 @@ using ParallelFor = std::function<void(std::size_t n, const std::function<void(s
 class Stepper {
  public:
   std::uint32_t maxPasses = 30;  ///< see Pivoting; to be set before the first step
-  int maxCouplingRows = 600;     ///< islands with more coupling rows are deferred to the engine; at least 0
+  int maxCouplingRows = 600;     ///< islands with more coupling rows are to be deferred; at least 0
 
-  /// Steps the world (see ISolver::step) with up to `threads` threads, at least 1; results do not depend on their
-  /// number. `parallelFor` may be empty if `threads` is 1. Lowers step.maxCouplingRows to this stepper's. Returns the
-  /// number of deferred bodies.
-  std::size_t step(engine::SolverStep& step, std::size_t threads, const ParallelFor& parallelFor);
+  /// Steps the world (see IEngine::step) with up to `threads` threads, at least 1; results do not depend on their
+  /// number. `parallelFor` may be empty if `threads` is 1. Islands with more than `mostRows` coupling rows, and those
+  /// without a solution, are deferred and left unchanged. Returns which bodies are in them (see Step::only); empty:
+  /// none. Valid until the next step.
+  std::span<const std::uint8_t> step(engine::Step& step, int mostRows, std::size_t threads,
+                                     const ParallelFor& parallelFor);
   /// Drops what is kept for a world.
-  void forget(engine::World world);
+  void forget(const engine::Model& model);
 
   /// Number of awake islands since construction, deferred ones included.
   std::int64_t islands() const { return islands_; }
@@ -37,19 +39,20 @@ class Stepper {
  private:
   /// What is kept for a world between steps, and memory that its steps use.
   struct WorldData {
-    engine::World id = engine::World::none;
+    std::uint64_t id = 0;
     bool built = false;           ///< topology is that of `structure`
-    std::uint64_t structure = 0;  ///< SolverStep::structure
+    std::uint64_t structure = 0;  ///< Model::structure
     Topology topology;
     std::vector<JointWarmStart> joints;
     ContactWarmStart contacts;
     std::vector<Index> firstNode;  ///< see WorldView
     IslandBuilder islands;
-    std::vector<char> deferred;  ///< by island of the step
+    std::vector<char> deferred;                ///< by island of the step
+    std::vector<std::uint8_t> deferredBodies;  ///< by body of the step
   };
-  WorldData& worldOf(const engine::SolverStep& step);
+  WorldData& worldOf(const engine::Model& model);
   void reserve(const WorldData& world, std::size_t threads, int couplingRows);
-  std::size_t markDeferred(const engine::SolverStep& step, const WorldData& world);
+  bool markDeferred(WorldData& world);
   std::vector<std::unique_ptr<WorldData>> worlds_;
   std::vector<std::unique_ptr<IslandSolver>> solvers_;  ///< by thread
   std::int64_t islands_ = 0, deferredIslands_ = 0;

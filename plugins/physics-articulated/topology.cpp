@@ -9,11 +9,11 @@ namespace spark::articulated {
 struct Topology::JointsOfBodies {
   std::vector<Index> start, joints;
 
-  explicit JointsOfBodies(const engine::SolverStep& step) : start(step.bodies.size() + 2, 0) {
+  explicit JointsOfBodies(const engine::Model& model) : start(model.bodies.size() + 2, 0) {
     const auto forEachEnd = [&](auto&& visit) {
-      for (std::size_t j = 0; j < step.joints.size(); ++j)
-        for (const engine::SolverBody* body : {step.joints[j]->a, step.joints[j]->b})
-          if (body) visit(body->index, toIndex(j));
+      for (std::size_t j = 0; j < model.joints.size(); ++j)
+        for (const Index body : {model.joints[j].a, model.joints[j].b})
+          if (body != kNone) visit(body, toIndex(j));
     };
     // Counting sort. start is shifted by one, so that filling the list moves it to its final place.
     forEachEnd([&](Index body, Index) { ++start[body + 2]; });
@@ -27,7 +27,7 @@ struct Topology::JointsOfBodies {
 };
 
 /// Adds the tree of `root`, breadth first. `worldJoint` connects the root to the world, unless it is kNone.
-void Topology::growTree(const engine::SolverStep& step, const JointsOfBodies& joints, Index root, Index worldJoint,
+void Topology::growTree(const engine::Model& model, const JointsOfBodies& joints, Index root, Index worldJoint,
                         std::vector<bool>& used) {
   Tree tree{toIndex(treeBodies.size()), 0, toIndex(loopJoints.size()), 0};
   const auto add = [&](Index body, Index parent, Index joint) {
@@ -41,11 +41,11 @@ void Topology::growTree(const engine::SolverStep& step, const JointsOfBodies& jo
     const Index body = treeBodies[parent].body;
     for (const Index joint : joints.of(body)) {
       if (used[joint]) continue;
-      const engine::SolverJoint& j = *step.joints[joint];
-      const engine::SolverBody* other = j.a->index == body ? j.b : j.a;
+      const engine::Joint& j = model.joints[joint];
+      const Index other = j.a == body ? j.b : j.a;
       // A joint to a new body makes it a child; a joint to the world or to a body of this tree closes a loop.
-      if (other && treeBodyOf[other->index] == kNone) {
-        add(other->index, parent, joint);
+      if (other != kNone && treeBodyOf[other] == kNone) {
+        add(other, parent, joint);
         continue;
       }
       used[joint] = true;
@@ -66,18 +66,18 @@ void Topology::findMaxDepth() {
   }
 }
 
-void Topology::build(const engine::SolverStep& step) {
-  const JointsOfBodies joints(step);
-  const std::size_t n = step.bodies.size();
+void Topology::build(const engine::Model& model) {
+  const JointsOfBodies joints(model);
+  const std::size_t n = model.bodies.size();
   treeBodies.clear();
   trees.clear();
   loopJoints.clear();
   treeBodyOf.assign(n, kNone);
   treeOf.assign(n, kNone);
-  std::vector<bool> used(step.joints.size(), false);
+  std::vector<bool> used(model.joints.size(), false);
   const auto worldJointOf = [&](Index body) {
     for (const Index joint : joints.of(body))
-      if (!step.joints[joint]->b) return joint;
+      if (model.joints[joint].b == kNone) return joint;
     return kNone;
   };
   // Bodies with a joint to the world are roots if they can be: their joint is then part of the tree, not a loop.
@@ -85,7 +85,7 @@ void Topology::build(const engine::SolverStep& step) {
     for (Index body = 0; body < n; ++body) {
       if (treeBodyOf[body] != kNone) continue;
       const Index joint = worldJointOf(body);
-      if (!connectedToWorld || joint != kNone) growTree(step, joints, body, joint, used);
+      if (!connectedToWorld || joint != kNone) growTree(model, joints, body, joint, used);
     }
   findMaxDepth();
 }

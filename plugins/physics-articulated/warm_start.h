@@ -27,7 +27,7 @@ class ContactWarmStart {
 
  private:
   struct Entry {
-    engine::Geom a = engine::Geom::none, b = engine::Geom::none;
+    engine::Index a = engine::kNone, b = engine::kNone;
     States states{};
     Index match = kNone;  ///< in last_
   };

@@ -1,274 +1,305 @@
 #include "ode_engine.h"
 
 #include <algorithm>
+#include <atomic>
 
+#include "api/single_precision.h"
+#include "ode_collision.h"
 #include "spark/plugin.h"
 #include "spark/prefetch.h"
 
 namespace spark {
 
 using namespace ode;
-using engine::Body;
-using engine::Space;
-using engine::World;
+using engine::Contact;
+using engine::DynamicState;
+using engine::Index;
+using engine::kNone;
+using engine::Model;
 
-OdeEngine::~OdeEngine() {
-  while (!worlds_.empty()) destroyWorld(handle(*worlds_.back()));
+WorldData::WorldData(const Model& m, Jobs& jobs)
+    : model(m.id),
+      id(dWorldCreate()),
+      threads(std::make_unique<IslandThreads>(jobs)),
+      contactJoints(dJointGroupCreate(0)),
+      exactReplay(m.exactReplay) {
+  threads->attachTo(id);
+  dWorldSetData(id, this);
+  dWorldSetAutoDisableFlag(id, 0);
 }
 
-World OdeEngine::createWorld() {
-  const MessageCapture capture(odeMessage_);
-  auto w = std::make_unique<WorldData>();
-  w->id = dWorldCreate();
-  w->threads = std::make_unique<IslandThreads>(kernel().jobs());
-  w->threads->attachTo(w->id);
-  w->root = dHashSpaceCreate(nullptr);
-  dSpaceSetCleanup(w->root, 0);
-  w->contactJoints = dJointGroupCreate(0);
-  w->exactReplay = exactReplay_;
-  const World created = handle(*w);
-  worlds_.push_back(std::move(w));
-  setWorldParameters(created, {});
-  return created;
+WorldData::~WorldData() {
+  dJointGroupDestroy(contactJoints);
+  for (const auto& j : joints) dJointDestroy(j->joint);
+  for (const BodyData& b : bodies) dBodyDestroy(b.body);
+  dWorldSetStepThreadingImplementation(id, nullptr, nullptr);
+  dWorldDestroy(id);
 }
 
-void OdeEngine::destroyWorld(World world) {
-  const MessageCapture capture(odeMessage_);
-  WorldData& w = *data(world);
-  if (auto* solver = childOf<engine::ISolver>()) solver->forget(world);
-
-  // Joints before bodies, geoms before spaces.
-  dJointGroupDestroy(w.contactJoints);
-  while (!w.joints.empty()) destroyJoint(handle(*w.joints.back()));
-  while (!w.geoms.empty()) destroyGeom(handle(*w.geoms.back()));
-  while (!w.bodies.empty()) destroyBody(handle(*w.bodies.back()));
-  // From the last: inner spaces were created after the spaces around them.
-  while (!w.spaces.empty()) destroySpace(handle(*w.spaces.back()));
-  dSpaceDestroy(w.root);
-  dWorldSetStepThreadingImplementation(w.id, nullptr, nullptr);
-  dWorldDestroy(w.id);
-  removeFrom(worlds_, &w);
+WorldData& OdeEngine::world(const Model& model) {
+  for (const auto& w : worlds_)
+    if (w->model == model.id) return *w;
+  throw Error(fmt::format("{}: the world was not compiled", path()));
 }
 
-void OdeEngine::setWorldParameters(World world, const engine::WorldParameters& p) {
-  WorldData& w = *data(world);
-  if (!inRange(p.gravity)) throw Error("expected a finite gravity for the world");
-  const Vec3 gravity = rounded(w, p.gravity);
-  dWorldSetGravity(w.id, gravity.x(), gravity.y(), gravity.z());
-  dWorldSetERP(w.id, p.erp);
-  dWorldSetCFM(w.id, rounded(w, p.cfm));
-  dWorldSetContactSurfaceLayer(w.id, rounded(w, p.contactSurfaceLayer));
-  dWorldSetAutoDisableFlag(w.id, 0);  // see autoDisable()
-  w.parameters = {gravity, p.erp, rounded(w, p.cfm), p.autoDisable, rounded(w, p.contactSurfaceLayer)};
-  for (const auto& j : w.joints) mirror::worldParametersSet(*j);
+void OdeEngine::forget(const Model& model) {
+  const MessageCapture capture(messages_.last);
+  std::erase_if(worlds_, [&](const auto& w) { return w->model == model.id; });
 }
 
-Space OdeEngine::createSpace(World world, Space parent) {
-  WorldData& w = *data(world);
-  auto s = std::make_unique<SpaceData>();
-  s->world = &w;
-  s->top = w.exactReplay && parent == Space::none;
-  const dSpaceID around = s->top ? nullptr : parent == Space::none ? w.root : data(parent)->id;
-  // ODE's sweep-and-prune spaces do not compute their own bounds: inside another space they would overlap everything.
-  const bool sweepAndPrune = !w.exactReplay && parent == Space::none;
-  s->id = sweepAndPrune ? dSweepAndPruneSpaceCreate(around, dSAP_AXES_XYZ) : dHashSpaceCreate(around);
-  dSpaceSetCleanup(s->id, 0);
-  dGeomSetData(reinterpret_cast<dGeomID>(s->id), s.get());
-  const Space created = handle(*s);
-  w.spaces.push_back(std::move(s));
-  return created;
-}
-
-void OdeEngine::destroySpace(Space space) {
-  SpaceData* s = data(space);
-  dSpaceDestroy(s->id);
-  removeFrom(s->world->spaces, s);
-}
-
-void OdeEngine::setInnerCollision(Space space, bool on) { data(space)->inner = on; }
+// ---- compile ----
 
 namespace {
 
-void setSurface(dSurfaceParameters& to, const engine::Surface& s, const WorldData& w) {
+/// Copies the state of a body that ODE has just moved, while it is in the caches.
+void readState(dBodyID body) {
+  WorldData& w = *static_cast<WorldData*>(dWorldGetData(dBodyGetWorld(body)));
+  const auto i = static_cast<Index>(reinterpret_cast<std::uintptr_t>(dBodyGetData(body)));
+  const BodyData& b = w.bodies[i];
+  DynamicState& s = w.state->bodies[i];
+  std::copy_n(b.position, 3, s.position.data());
+  std::copy_n(b.quaternion, 4, s.quaternion.data());
+  s.rotation = toMat(b.rotation);
+  std::copy_n(b.linearVelocity, 3, s.linearVelocity.data());
+  std::copy_n(b.angularVelocity, 3, s.angularVelocity.data());
+  s.force.setZero();
+  s.torque.setZero();
+  s.awake = true;
+  s.mark = w.mark;
+  w.enabled[i] = 1;
+  if (w.listOrder) w.order.push_back(i);
+}
+
+BodyData createBody(WorldData& w, std::uint64_t id) {
+  BodyData b;
+  b.id = id;
+  b.body = dBodyCreate(w.id);
+  dBodySetMovedCallback(b.body, readState);
+  // ODE's getters return pointers into the body, which stay valid as long as it lives.
+  b.position = const_cast<dReal*>(dBodyGetPosition(b.body));
+  b.quaternion = const_cast<dReal*>(dBodyGetQuaternion(b.body));
+  b.rotation = const_cast<dReal*>(dBodyGetRotation(b.body));
+  b.linearVelocity = const_cast<dReal*>(dBodyGetLinearVel(b.body));
+  b.angularVelocity = const_cast<dReal*>(dBodyGetAngularVel(b.body));
+  b.force = const_cast<dReal*>(dBodyGetForce(b.body));
+  b.torque = const_cast<dReal*>(dBodyGetTorque(b.body));
+  return b;
+}
+
+void setMass(BodyData& b, const engine::Body& from) {
+  if (b.gravity != from.gravity) dBodySetGravityMode(b.body, b.gravity = from.gravity);
+  if (b.mass == from.mass && b.inertia == from.inertia) return;
+  dMass m;
+  dMassSetZero(&m);
+  m.mass = b.mass = from.mass;
+  b.inertia = from.inertia;
+  toOde(from.inertia, m.I);
+  dBodySetMass(b.body, &m);
+}
+
+/// Brings ODE's bodies up to date with the model.
+void compileBodies(WorldData& w, const Model& model) {
+  // Both lists are in order of identity.
+  std::size_t next = 0;
+  std::erase_if(w.bodies, [&](const BodyData& b) {
+    while (next < model.bodies.size() && model.bodies[next].id < b.id) ++next;
+    if (next < model.bodies.size() && model.bodies[next].id == b.id) return false;
+    dBodyDestroy(b.body);
+    return true;
+  });
+  while (w.bodies.size() < model.bodies.size()) w.bodies.push_back(createBody(w, model.bodies[w.bodies.size()].id));
+  for (std::size_t i = 0; i < w.bodies.size(); ++i) {
+    setMass(w.bodies[i], model.bodies[i]);
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the index, for visitNeighbours()
+    dBodySetData(w.bodies[i].body, reinterpret_cast<void*>(i));
+  }
+  // ODE's own flags are found out anew.
+  w.needed.assign(w.bodies.size(), 0);
+  w.enabled.resize(w.bodies.size());
+  for (std::size_t i = 0; i < w.bodies.size(); ++i) w.enabled[i] = dBodyIsEnabled(w.bodies[i].body) != 0;
+  // A step must not allocate.
+  for (std::vector<Index>* list : {&w.excluded, &w.visitStack, &w.order}) list->reserve(w.bodies.size());
+}
+
+}  // namespace
+
+void OdeEngine::compile(const Model& model, const engine::State&) {
+  const MessageCapture capture(messages_.last);
+  auto found = std::find_if(worlds_.begin(), worlds_.end(), [&](const auto& w) { return w->model == model.id; });
+  if (found == worlds_.end()) {
+    worlds_.push_back(std::make_unique<WorldData>(model, kernel().jobs()));
+    found = std::prev(worlds_.end());
+  }
+  WorldData& w = **found;
+  const engine::WorldParameters& p = model.parameters;
+  dWorldSetGravity(w.id, p.gravity.x(), p.gravity.y(), p.gravity.z());
+  dWorldSetERP(w.id, p.erp);
+  dWorldSetCFM(w.id, p.cfm);
+  dWorldSetContactSurfaceLayer(w.id, p.contactSurfaceLayer);
+
+  // Removed joints before the bodies that they connect.
+  std::size_t next = 0, kept = 0;
+  for (std::size_t i = 0; i < w.joints.size(); ++i) {
+    while (next < model.joints.size() && model.joints[next].id < w.joints[i]->id) ++next;
+    if (next < model.joints.size() && model.joints[next].id == w.joints[i]->id) {
+      w.motors[kept] = w.motors[i];
+      std::swap(w.joints[kept++], w.joints[i]);
+    } else {
+      dJointDestroy(w.joints[i]->joint);
+    }
+  }
+  w.joints.resize(kept);
+  w.motors.resize(kept);
+  compileBodies(w, model);
+  compileJoints(w, model);
+  w.jointRowsCounted = false;
+  // Joints were set with the bodies at other places: their states have to be passed again.
+  static std::atomic<std::uint32_t> marks = 0;
+  w.mark = ++marks;
+  messages_.report(*this);
+}
+
+// ---- step ----
+
+namespace {
+
+/// Finds the bodies whose state ODE needs: those that are awake, and those that joints and contacts connect to one.
+/// Returns the number of awake ones.
+std::size_t findNeeded(WorldData& w, const engine::Step& step) {
+  std::size_t awake = 0;
+  for (Index i = 0; i < w.bodies.size(); ++i) {
+    w.needed[i] = step.steps(i) && step.state.bodies[i].awake;
+    awake += w.needed[i];
+  }
+  if (awake == 0 || awake == w.bodies.size()) return awake;
+  const auto join = [&](Index a, Index b) {
+    const bool differ = w.needed[a] != w.needed[b];
+    if (differ) w.needed[a] = w.needed[b] = 1;
+    return differ;
+  };
+  for (bool more = true; more;) {
+    more = false;
+    for (const auto& [a, b] : w.links) more |= join(a, b);
+    for (const Contact& c : step.contacts)
+      if (c.solve && c.bodyA != kNone && c.bodyB != kNone) more |= join(c.bodyA, c.bodyB);
+  }
+  return awake;
+}
+
+/// Copies the state of the bodies that ODE needs to ODE, where it is another, without change of a bit, and enables
+/// those that are awake.
+void writeState(WorldData& w, const engine::Step& step) {
+  constexpr std::size_t kAhead = 4;       // prefetch distance [bodies]
+  constexpr std::size_t kOdeForces = 64;  // bytes in an ODE body from its force to its torque
+  const std::size_t n = w.bodies.size();
+  for (Index i = 0; i < n; ++i) {
+    if (i + kAhead < n && w.needed[i + kAhead]) prefetch(w.bodies[i + kAhead].force, kOdeForces);
+    const BodyData& b = w.bodies[i];
+    DynamicState& s = step.state.bodies[i];
+    const bool active = w.needed[i] && s.awake;
+    if (active != (w.enabled[i] != 0)) (w.enabled[i] = active) ? dBodyEnable(b.body) : dBodyDisable(b.body);
+    if (!w.needed[i]) continue;
+    std::copy_n(s.force.data(), 3, b.force);
+    std::copy_n(s.torque.data(), 3, b.torque);
+    if (std::exchange(s.mark, w.mark) == w.mark) continue;
+    std::copy_n(s.position.data(), 3, b.position);
+    std::copy_n(s.quaternion.data(), 4, b.quaternion);
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column) b.rotation[4 * row + column] = s.rotation(row, column);
+    std::copy_n(s.linearVelocity.data(), 3, b.linearVelocity);
+    std::copy_n(s.angularVelocity.data(), 3, b.angularVelocity);
+  }
+}
+
+void setSurface(dSurfaceParameters& to, const engine::Surface& s, bool exactReplay) {
+  const auto rounded = [exactReplay](double v) { return exactReplay ? roundToFloat(v) : v; };
   to.mode = (s.bounceOn ? dContactBounce : 0) | (s.softErpOn ? dContactSoftERP : 0) |
             (s.softCfmOn ? dContactSoftCFM : 0) | (s.slipOn ? dContactSlip1 | dContactSlip2 : 0) |
             (s.pyramid ? dContactApprox1 : 0);
-  to.mu = rounded(w, s.mu);
-  to.bounce = rounded(w, s.bounce);
-  to.bounce_vel = rounded(w, s.bounceVelocity);
-  to.soft_erp = rounded(w, s.softErp);
-  to.soft_cfm = rounded(w, s.softCfm);
-  to.slip1 = rounded(w, s.slip1);
-  to.slip2 = rounded(w, s.slip2);
+  to.mu = rounded(s.mu);
+  to.bounce = rounded(s.bounce);
+  to.bounce_vel = rounded(s.bounceVelocity);
+  to.soft_erp = rounded(s.softErp);
+  to.soft_cfm = rounded(s.softCfm);
+  to.slip1 = rounded(s.slip1);
+  to.slip2 = rounded(s.slip2);
+}
+
+/// True when the contact is a constraint of this step.
+bool counts(const Contact& c, const engine::Step& step) {
+  return c.solve && step.steps(c.bodyA != kNone ? c.bodyA : c.bodyB);
 }
 
 /// Records a contact of a body in this step; `rows` are those of a contact with a static geom, else 0.
-void recordContact(WorldData& w, BodyData& b, int rows) {
+void recordContact(WorldData& w, Index body, int rows) {
+  if (body == kNone) return;
+  BodyData& b = w.bodies[body];
   if (b.lastContactStep != w.steps) b.staticRows = 0;
   b.lastContactStep = w.steps;
   b.staticRows += rows;
   w.maxStaticRows = std::max(w.maxStaticRows, b.staticRows);
 }
 
-}  // namespace
-
-void OdeEngine::findContactPairs(WorldData& w, const engine::Contacts& contacts) {
-  w.contactPairs.clear();
+void addContactJoints(WorldData& w, const engine::Step& step) {
   w.couplingRows = w.staticRows = w.maxStaticRows = 0;
-  for (const engine::Contact& c : contacts) {
-    engine::SolverPair& pair = w.contactPairs.emplace_back();
-    if (!c.solve) continue;
-    BodyData* a = data(c.geomA)->body;
-    BodyData* b = data(c.geomB)->body;
-    pair.reversed = !a;
-    pair.a = a ? a : b;
-    pair.b = a ? b : nullptr;
-    const bool both = a && b;
-    (both ? w.couplingRows : w.staticRows) += kContactRows;
-    if (a) recordContact(w, *a, both ? 0 : kContactRows);
-    if (b) recordContact(w, *b, both ? 0 : kContactRows);
-  }
-}
-
-namespace {
-
-bool isDeferred(const engine::SolverPair& pair) { return pair.a && (pair.a->deferred || (pair.b && pair.b->deferred)); }
-
-}  // namespace
-
-void OdeEngine::addContactJoints(WorldData& w, const engine::Contacts& contacts) {
   w.feedback.clear();
   // ODE keeps pointers to the elements: the vector must not reallocate below.
-  if (w.feedback.capacity() < contacts.size()) w.feedback.reserve(contacts.size() * 2);
+  if (w.feedback.capacity() < step.contacts.size()) w.feedback.reserve(step.contacts.size() * 2);
   dContact contact{};
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const engine::SolverPair& pair = w.contactPairs[i];
-    if (!isDeferred(pair)) continue;
-    const engine::Contact& c = contacts[i];
+  for (const Contact& c : step.contacts) {
+    if (!counts(c, step)) continue;
+    const bool both = c.bodyA != kNone && c.bodyB != kNone;
+    (both ? w.couplingRows : w.staticRows) += kContactRows;
+    recordContact(w, c.bodyA, both ? 0 : kContactRows);
+    recordContact(w, c.bodyB, both ? 0 : kContactRows);
 
     // The contact in ODE's form.
-    setSurface(contact.surface, c.surface, w);
+    setSurface(contact.surface, c.surface, w.exactReplay);
     for (int k = 0; k < 3; ++k) contact.geom.pos[k] = c.position[k], contact.geom.normal[k] = c.normal[k];
     contact.geom.depth = c.depth;
-    contact.geom.g1 = data(c.geomA)->id;
-    contact.geom.g2 = data(c.geomB)->id;
 
     // Its joint, with the bodies in the order of the geoms.
     const dJointID joint = dJointCreateContact(w.id, w.contactJoints, &contact);
-    const dBodyID a = data(pair.a)->id;
-    if (pair.reversed)
-      dJointAttach(joint, nullptr, a);
-    else
-      dJointAttach(joint, a, pair.b ? data(pair.b)->id : nullptr);
-    if (c.feedback) {
-      w.feedback.push_back({});
-      dJointSetFeedback(joint, &w.feedback.back());
-    }
+    dJointAttach(joint, c.bodyA != kNone ? w.bodies[c.bodyA].body : nullptr,
+                 c.bodyB != kNone ? w.bodies[c.bodyB].body : nullptr);
+    if (!c.feedback) continue;
+    w.feedback.push_back({});
+    dJointSetFeedback(joint, &w.feedback.back());
   }
 }
 
-void OdeEngine::readFeedback(WorldData& w, engine::Contacts& contacts) {
+void readContacts(const WorldData& w, const engine::Step& step) {
   if (w.feedback.empty()) return;
   std::size_t next = 0;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    engine::Contact& c = contacts[i];
-    const engine::SolverPair& pair = w.contactPairs[i];
-    if (!c.feedback || !isDeferred(pair)) continue;
+  for (Contact& c : step.contacts) {
+    if (!c.feedback || !counts(c, step)) continue;
     const Vec3 onFirst = toVec(w.feedback[next++].f1);
     // ODE reverses a joint whose first body is the world.
-    c.forceOnA = pair.reversed ? Vec3(-onFirst) : onFirst;
+    c.forceOnA = c.bodyA == kNone ? Vec3(-onFirst) : onFirst;
   }
 }
 
-void OdeEngine::stepByOde(WorldData& w, engine::Contacts& contacts, double dt) {
-  addContactJoints(w, contacts);
-  // Disabled bodies are skipped. Islands do not touch, so ODE does not wake the bodies that the solver has stepped.
-  for (BodyData* b : w.solved) dBodyDisable(b->id);
-  solve(w, dt);
-  for (BodyData* b : w.solved) dBodyEnable(b->id);
-  readFeedback(w, contacts);
-  dJointGroupEmpty(w.contactJoints);
-}
+}  // namespace
 
-void OdeEngine::autoDisable(WorldData& w, double dt) {
-  for (const auto& body : w.bodies) {
-    BodyData& b = *body;
-    // A body without joints and contacts is in free flight: it does not fall asleep.
-    if ((b.joints == 0 && b.lastContactStep != w.steps) || !b.awake) continue;
-    if (dCalcVectorDot3(b.linearVelocity, b.linearVelocity) > kIdleSpeedSquared ||
-        dCalcVectorDot3(b.angularVelocity, b.angularVelocity) > kIdleSpeedSquared) {
-      b.idleStepsLeft = kIdleSteps;
-      b.idleTimeLeft = 0;
-      continue;
-    }
-    // Idle: asleep when both counters have run out.
-    --b.idleStepsLeft;
-    b.idleTimeLeft -= dt;
-    if (b.idleStepsLeft > 0 || b.idleTimeLeft > 0) continue;
-    setAwake(b, false);
-    dBodySetLinearVel(b.id, 0, 0, 0);
-    dBodySetAngularVel(b.id, 0, 0, 0);
-  }
-}
-
-void OdeEngine::checkBodies(WorldData& w, bool byOde) {
-  // ODE's solver has evicted the bodies from the caches: prefetch them, first the data here, then ODE's.
-  constexpr std::size_t kFar = 8, kNear = 4;  // prefetch distances [bodies]
-  constexpr std::size_t kOdeState = 224;      // bytes in an ODE body from its position to its angular velocity
-  const std::size_t n = w.bodies.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    if (i + kFar < n) prefetch(w.bodies[i + kFar].get(), sizeof(BodyData));
-    if (i + kNear < n) prefetch(w.bodies[i + kNear]->position, kOdeState);
-    BodyData& b = *w.bodies[i];
-
-    // ODE's step puts no body to sleep, but it wakes bodies that are connected to an awake one.
-    if (!b.awake && byOde) b.awake = dBodyIsEnabled(b.id) != 0;
-    if (!b.awake) continue;
-    if (inRange(b.position, 3) && inRange(b.quaternion, 4) && inRange(b.linearVelocity, 3) &&
-        inRange(b.angularVelocity, 3)) {
-      std::copy(b.position, b.position + 3, b.lastValid.position);
-      std::copy(b.quaternion, b.quaternion + 4, b.lastValid.quaternion);
-      continue;
-    }
-
-    // The state is invalid: reset the body.
-    dBodySetPosition(b.id, b.lastValid.position[0], b.lastValid.position[1], b.lastValid.position[2]);
-    dBodySetQuaternion(b.id, b.lastValid.quaternion);
-    dBodySetLinearVel(b.id, 0, 0, 0);
-    dBodySetAngularVel(b.id, 0, 0, 0);
-    w.repaired.push_back(handle(b));
-  }
-}
-
-void OdeEngine::step(World world, engine::Contacts& contacts, double dt) {
-  WorldData& w = *data(world);
-  const MessageCapture capture(odeMessage_);
+void OdeEngine::step(engine::Step& step) {
+  WorldData& w = world(step.model);
+  const MessageCapture capture(messages_.last);
   ++w.steps;
-  w.repaired.clear();
-  if (std::none_of(w.bodies.begin(), w.bodies.end(), [](const auto& b) { return b->awake; })) return;
-  findContactPairs(w, contacts);
-  if (w.parameters.autoDisable) autoDisable(w, dt);
-
-  // The solver steps the islands that it can handle, ODE the deferred ones; without a solver all are deferred.
-  engine::ISolver* const replacement = solver();
-  const bool byOde = !replacement || stepBySolver(w, *replacement, contacts, rounded(w, dt)) > 0;
-  if (byOde) stepByOde(w, contacts, rounded(w, dt));
-
-  checkBodies(w, byOde);
-  ++w.angleVersion;
-  if (byOde) cacheAngles(w);
-  if (!odeMessage_.empty()) report();
-}
-
-std::span<const Body> OdeEngine::repaired(World world) const { return data(world)->repaired; }
-
-void OdeEngine::report() {
-  ++messages_;
-  if ((messages_ & (messages_ - 1)) == 0)
-    kernel().log().warning("{}: ODE reports: {} (message {})", path(), odeMessage_, messages_);
-  odeMessage_.clear();
+  w.awake = findNeeded(w, step);
+  if (w.awake == 0) return;
+  passMotors(w, step.state);
+  writeState(w, step);
+  addContactJoints(w, step);
+  w.state = &step.state;
+  solve(w, step);
+  for (const Index i : w.order) step.state.markMoved(i);
+  readJoints(w, step);
+  readContacts(w, step);
+  dJointGroupEmpty(w.contactJoints);
+  messages_.report(*this);
 }
 
 }  // namespace spark
 
-SPARK_PLUGIN("physics-ode", "1.0", "The Open Dynamics Engine as engine of the physics server.", spark::OdeEngine)
+SPARK_PLUGIN("physics-ode", "1.0", "The Open Dynamics Engine: collision detection and dynamics.", spark::OdeCollision,
+             spark::OdeEngine)

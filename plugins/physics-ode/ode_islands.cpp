@@ -16,6 +16,8 @@
 namespace spark {
 
 using namespace ode;
+using engine::Index;
+using engine::kNone;
 
 int ode::rowsOf(engine::JointType type) {
   switch (type) {
@@ -30,119 +32,131 @@ int ode::rowsOf(engine::JointType type) {
 namespace {
 
 /// Root of the set of a body.
-BodyData* rootOf(BodyData* b) {
-  while (b->islandParent != b) b = b->islandParent = b->islandParent->islandParent;
+Index rootOf(WorldData& w, Index b) {
+  const auto parent = [&](Index i) -> Index& { return w.bodies[i].islandParent; };
+  while (parent(b) != b) b = parent(b) = parent(parent(b));
   return b;
 }
 
-/// Joins the sets of two bodies that a constraint with `rows` rows connects; nullptr is the static world.
-void unite(BodyData* a, BodyData* b, int rows) {
-  if (!a) std::swap(a, b);
-  if (!a) return;
-  a = rootOf(a);
-  a->islandRows += rows;
-  if (!b || (b = rootOf(b)) == a) return;
-  b->islandParent = a;
-  a->islandRows += b->islandRows;
+int& rowsAt(WorldData& w, Index b) { return w.bodies[rootOf(w, b)].islandRows; }
+
+/// Joins the sets of two bodies that a constraint with `rows` rows connects; kNone is the static world.
+void unite(WorldData& w, Index a, Index b, int rows) {
+  if (a == kNone) std::swap(a, b);
+  if (a == kNone) return;
+  a = rootOf(w, a);
+  w.bodies[a].islandRows += rows;
+  if (b == kNone || (b = rootOf(w, b)) == a) return;
+  w.bodies[b].islandParent = a;
+  w.bodies[a].islandRows += w.bodies[b].islandRows;
 }
 
 /// Makes the sets of bodies that joints connect.
-void findJointSets(WorldData& w) {
-  for (const auto& b : w.bodies) b->islandParent = b.get(), b->islandRows = 0;
-  for (const auto& j : w.joints) unite(data(j->a), data(j->b), rowsOf(j->type));
+void findJointSets(WorldData& w, const engine::Model& model) {
+  for (Index i = 0; i < w.bodies.size(); ++i) w.bodies[i].islandParent = i, w.bodies[i].islandRows = 0;
+  for (const engine::Joint& j : model.joints) unite(w, j.a, j.b, rowsOf(j.type));
 }
 
 /// Makes the sets of bodies that joints and contacts connect.
-void findIslands(WorldData& w) {
-  findJointSets(w);
-  for (const engine::SolverPair& p : w.contactPairs) unite(data(p.a), data(p.b), kContactRows);
+void findIslands(WorldData& w, const engine::Step& step) {
+  findJointSets(w, step.model);
+  for (const engine::Contact& c : step.contacts)
+    if (c.solve) unite(w, c.bodyA, c.bodyB, kContactRows);
 }
 
 /// Counts the most rows and the most bodies in a set that joints connect, when the structure changed.
-void countJointSets(WorldData& w) {
-  if (w.jointRowsAt == w.structure) return;
-  w.jointRowsAt = w.structure;
+void countJointSets(WorldData& w, const engine::Model& model) {
+  if (std::exchange(w.jointRowsCounted, true)) return;
   w.maxJointRows = w.maxJointBodies = 0;
-  findJointSets(w);
-  for (const auto& b : w.bodies) w.maxJointRows = std::max(w.maxJointRows, std::exchange(b->islandRows, 0));
-  for (const auto& b : w.bodies) w.maxJointBodies = std::max(w.maxJointBodies, ++rootOf(b.get())->islandRows);
+  findJointSets(w, model);
+  for (BodyData& b : w.bodies) w.maxJointRows = std::max(w.maxJointRows, std::exchange(b.islandRows, 0));
+  for (Index i = 0; i < w.bodies.size(); ++i) w.maxJointBodies = std::max(w.maxJointBodies, ++rowsAt(w, i));
 }
 
 /// Upper bound on the rows of an island. n contacts between bodies connect at most n + 1 sets of joints.
-std::int64_t maxIslandRows(WorldData& w) {
-  countJointSets(w);
+std::int64_t maxIslandRows(WorldData& w, const engine::Model& model) {
+  countJointSets(w, model);
   const std::int64_t sets = 1 + w.couplingRows / kContactRows;
   return w.couplingRows + sets * w.maxJointRows +
          std::min<std::int64_t>(w.staticRows, sets * w.maxJointBodies * w.maxStaticRows);
 }
 
+bool enabled(const WorldData& w, Index i) { return w.enabled[i] != 0; }
+
 /// Disables the awake bodies of large islands, or of all others, and lists them in w.excluded.
 void exclude(WorldData& w, int directRows, bool large) {
   w.excluded.clear();
-  for (const auto& b : w.bodies)
-    if ((rootOf(b.get())->islandRows > directRows) == large && dBodyIsEnabled(b->id)) {
-      dBodyDisable(b->id);
-      w.excluded.push_back(b.get());
+  for (Index i = 0; i < w.bodies.size(); ++i)
+    if ((rowsAt(w, i) > directRows) == large && enabled(w, i)) {
+      dBodyDisable(w.bodies[i].body);
+      w.excluded.push_back(i);
     }
 }
 
 /// Enables the bodies of w.excluded again.
 void include(WorldData& w) {
-  for (BodyData* b : w.excluded) dBodyEnable(b->id);
+  for (const Index i : w.excluded) dBodyEnable(w.bodies[i].body);
 }
 
-/// Pushes the bodies that are connected to `b` and were not visited in this step.
-void visitNeighbours(WorldData& w, const BodyData& b) {
-  for (int i = 0; const dJointID joint = dBodyGetJoint(b.id, i); ++i)
+/// Pushes the bodies that are connected to body `i` and were not visited in this step.
+void visitNeighbours(WorldData& w, Index i) {
+  for (int k = 0; const dJointID joint = dBodyGetJoint(w.bodies[i].body, k); ++k)
     for (int side = 0; side < 2; ++side) {
       const dBodyID other = dJointGetBody(joint, side);
-      auto* found = other ? static_cast<BodyData*>(dBodyGetData(other)) : nullptr;
-      if (!found || found->visitedStep == w.steps) continue;
-      found->visitedStep = w.steps;
-      w.visitStack.push_back(found);
+      if (!other) continue;
+      const auto found = static_cast<Index>(reinterpret_cast<std::uintptr_t>(dBodyGetData(other)));
+      if (std::exchange(w.bodies[found].visitedStep, w.steps) != w.steps) w.visitStack.push_back(found);
     }
 }
 
-/// Marks the geoms of all bodies that dWorldStep is going to move as moved, in the order in which it moves them in one
-/// thread. A geom that is marked already keeps its position in the space's list, so the threads of the step cannot
-/// change the order. Islands are traversed as in ODE: depth first, from the youngest body.
-void moveGeomsInOrder(WorldData& w) {
-  for (auto youngest = w.bodies.rbegin(); youngest != w.bodies.rend(); ++youngest) {
-    if ((*youngest)->visitedStep == w.steps || !dBodyIsEnabled((*youngest)->id)) continue;
-    (*youngest)->visitedStep = w.steps;
-    w.visitStack.assign(1, youngest->get());
+/// Appends the bodies that dWorldStep is going to move to w.order, in the order in which it moves them in one thread:
+/// recorded sessions depend on it, because the order of geoms in a hash space is that of their last moves. Islands are
+/// traversed as in ODE: depth first, from the youngest body.
+void findOrder(WorldData& w) {
+  for (auto youngest = static_cast<Index>(w.bodies.size()); youngest-- > 0;) {
+    if (w.bodies[youngest].visitedStep == w.steps || !dBodyIsEnabled(w.bodies[youngest].body)) continue;
+    w.bodies[youngest].visitedStep = w.steps;
+    w.visitStack.assign(1, youngest);
     while (!w.visitStack.empty()) {
-      const BodyData& b = *w.visitStack.back();
+      const Index i = w.visitStack.back();
       w.visitStack.pop_back();
-      dBodySetPosition(b.id, b.position[0], b.position[1], b.position[2]);
-      visitNeighbours(w, b);
+      w.order.push_back(i);
+      visitNeighbours(w, i);
     }
   }
 }
 
 /// Number of awake bodies from which on several threads pay off.
-constexpr std::ptrdiff_t kParallelBodies = 40;
+constexpr std::size_t kParallelBodies = 40;
 
 }  // namespace
 
 void OdeEngine::solveDirectly(WorldData& w, double dt) {
-  const auto awake =
-      std::count_if(w.bodies.begin(), w.bodies.end(), [](const auto& b) { return dBodyIsEnabled(b->id); });
-  w.threads->setParallel(awake >= kParallelBodies);
-  if (w.threads->parallel() && w.exactReplay) moveGeomsInOrder(w);
+  w.threads->setParallel(w.awake >= kParallelBodies);
+  // In one thread ODE's callback tells the order.
+  w.listOrder = w.exactReplay && !w.threads->parallel();
+  if (w.exactReplay && !w.listOrder) findOrder(w);
   dWorldStep(w.id, dt);
-  w.threads->takeMessage(odeMessage_);
+  w.threads->takeMessage(messages_.last);
 }
 
-void OdeEngine::solve(WorldData& w, double dt) {
+void OdeEngine::solve(WorldData& w, const engine::Step& step) {
+  w.order.clear();
+  solveIslands(w, step);
+  if (w.exactReplay) return;  // where alone the order counts
+  for (Index i = 0; i < w.bodies.size(); ++i)
+    if (w.enabled[i] && step.steps(i)) w.order.push_back(i);
+}
+
+void OdeEngine::solveIslands(WorldData& w, const engine::Step& step) {
   // Rows of the largest awake island; 0 when none can be too large.
   int largest = 0;
-  if (maxIslandRows(w) > directRows_) {
-    findIslands(w);
-    for (const auto& b : w.bodies)
-      if (dBodyIsEnabled(b->id)) largest = std::max(largest, rootOf(b.get())->islandRows);
+  if (maxIslandRows(w, step.model) > directRows_) {
+    findIslands(w, step);
+    for (Index i = 0; i < w.bodies.size(); ++i)
+      if (enabled(w, i)) largest = std::max(largest, rowsAt(w, i));
   }
-  if (largest <= directRows_) return solveDirectly(w, dt);
+  if (largest <= directRows_) return solveDirectly(w, step.dt);
   if (++approximateSteps_ == 1)
     kernel().log().info(
         "{}: an island has {} constraint rows, more than the direct solver accepts (directRows: {}). Such islands are "
@@ -151,7 +165,7 @@ void OdeEngine::solve(WorldData& w, double dt) {
 
   // The direct solver, without the large islands.
   exclude(w, directRows_, true);
-  solveDirectly(w, dt);
+  solveDirectly(w, step.dt);
   include(w);
 
   // The iterative solver with only these, in one thread and always with the same seed.
@@ -160,7 +174,8 @@ void OdeEngine::solve(WorldData& w, double dt) {
     const std::lock_guard lock(quickStepMutex());
     dRandSetSeed(1);
     w.threads->setSingleThreaded(true);
-    dWorldQuickStep(w.id, dt);
+    w.listOrder = w.exactReplay;
+    dWorldQuickStep(w.id, step.dt);
     w.threads->setSingleThreaded(false);
   }
   include(w);

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "spark/kernel.h"
+
 namespace spark::ode {
 namespace {
 
@@ -56,6 +58,14 @@ MessageCapture::MessageCapture(std::string& text) : previous_(receiver) {
 }
 
 MessageCapture::~MessageCapture() { receiver = previous_; }
+
+void Messages::report(const Leaf& node) {
+  if (last.empty()) return;
+  ++count;
+  if ((count & (count - 1)) == 0)
+    node.kernel().log().warning("{}: ODE reports: {} (message {})", node.path(), last, count);
+  last.clear();
+}
 
 std::mutex& meshMutex() {
   static std::mutex mutex;

@@ -5,6 +5,8 @@
 #include <mutex>
 #include <string>
 
+#include "spark/node.h"
+
 namespace spark::ode {
 
 /// Keeps ODE initialised while an object of this class exists, in any thread.
@@ -28,6 +30,14 @@ class MessageCapture {
 
  private:
   std::string* previous_;
+};
+
+/// The messages from ODE to one node.
+struct Messages {
+  std::string last;        ///< the last one that was not reported yet; a MessageCapture writes it
+  std::int64_t count = 0;  ///< of reported ones
+  /// Logs the last message, if there is one, as from `node`: the 1st, 2nd, 4th, 8th ... time.
+  void report(const Leaf& node);
 };
 
 /// Lock for collisions with triangle meshes: Debian's ODE has one set of mesh caches per process.

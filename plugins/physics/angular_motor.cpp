@@ -111,7 +111,7 @@ void AngularMotor::loadState(StateReader& in) {
 }
 
 void AngularMotor::apply() {
-  if (engine()) engine()->setAngularMotor(handle(), axes_, euler_);
+  if (world()) world()->setAngularMotor(handle(), axes_, euler_);
 }
 
 void AngularMotor::setNumAxes(int n) {
@@ -124,12 +124,12 @@ void AngularMotor::setMotorAxis(int axis, int frame, const Vec3& direction) {
   if (frame < 0 || frame > 2)
     throw Error(fmt::format("{}: expected 0 (world), 1 (first body) or 2 (second body), found {}", where(), frame));
   frames_[axis] = frame;
-  withBodies([this, axis, frame, direction] { engine()->setAxis(handle(), axis, direction, frame); });
+  withBodies([this, axis, frame, direction] { world()->setAxis(handle(), axis, direction, frame); });
 }
 
 void AngularMotor::setAxisAngle(int axis, double deg) {
   expectAxis(axis);
-  if (engine()) engine()->setMotorAngle(handle(), axis, degToRad(deg));
+  if (world()) world()->setMotorAngle(handle(), axis, degToRad(deg));
 }
 
 double AngularMotor::axisAngle(int axis) const {

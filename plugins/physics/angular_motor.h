@@ -32,7 +32,7 @@ class AngularMotor : public Joint, public IMotor {
   void loadState(StateReader& in) override;
 
  private:
-  /// Passes number of axes and mode to the engine.
+  /// Passes number of axes and mode to the model.
   void apply();
   int numAxes() const { return axes_; }
   void setNumAxes(int n);
@@ -50,7 +50,7 @@ class AngularMotor : public Joint, public IMotor {
     batteryPath_ = std::move(path);
     battery_.lookAgain();
   }
-  bool modelled() const { return maxTorque_ > 0 && engine(); }
+  bool modelled() const { return maxTorque_ > 0 && world(); }
   bool tooHot() const { return temperature_ > protectionTemperature_; }
   /// Before the step: sets the maximum torque from stiffness, temperature and battery.
   void prepare(const Event&);

@@ -45,10 +45,10 @@ void Collider::onLink() {
   World& world = World::of(*this);
   outer_ = parent()->as<TransformCollider>();
   auto* above = ancestor<Space>();
-  space_ = above ? above->handle() : world.space();
+  space_ = above ? above->shared() : world.space();
   // Only a body that is linked before its colliders is found.
   body_ = outer_ ? outer_->body_ : Ref<RigidBody>(parent()->childOf<RigidBody>());
-  if (body_ && body_->handle() == engine::Body::none) body_ = {};
+  if (body_ && body_->handle() == physics::BodyHandle::none) body_ = {};
   reshape();
 }
 
@@ -65,17 +65,17 @@ void Collider::onUnlink() {
 }
 
 void Collider::destroyGeom() {
-  if (engine() && geom_ != engine::Geom::none) engine()->destroyGeom(geom_);
-  geom_ = engine::Geom::none;
+  if (world() && geom_ != physics::GeomHandle::none) world()->destroyGeom(geom_);
+  geom_ = physics::GeomHandle::none;
 }
 
 void Collider::reshape() {
-  if (!engine()) return;
+  if (!world()) return;
   const auto s = shape();
   if (!s) return destroyGeom();
   try {
-    if (geom_ != engine::Geom::none) return engine()->setShape(geom_, *s);
-    geom_ = engine()->createGeom(space_->id(), *s, &outermost());
+    if (geom_ != physics::GeomHandle::none) return world()->setShape(geom_, *s);
+    geom_ = world()->createGeom(space_->handle(), *s, &outermost());
   } catch (const Error& e) {
     throw Error(fmt::format("{}: cannot take that shape", where()), e);
   }
@@ -89,11 +89,11 @@ Collider& Collider::outermost() {
 }
 
 void Collider::attach(const Pose& base) {
-  if (geom_ != engine::Geom::none && engine()) {
+  if (geom_ != physics::GeomHandle::none && world()) {
     if (body_) {
-      engine()->setBody(geom_, body_->handle(), offset());
+      world()->setBody(geom_, body_->handle(), offset());
     } else {
-      engine()->setPose(geom_, physics::compose(base, offset()));
+      world()->setPose(geom_, compose(base, offset()));
     }
   }
   for (const auto& child : children())
@@ -185,8 +185,8 @@ void Collider::findHandlers(bool defaultOnTransform) {
 }
 
 Pose Collider::geomPose() const {
-  return engine() && geom_ != engine::Geom::none ? engine()->pose(geom_)
-                                                 : physics::compose(physics::frameOf(*this), local_);
+  return world() && geom_ != physics::GeomHandle::none ? world()->pose(geom_)
+                                                       : compose(physics::frameOf(*this), local_);
 }
 
 Vec3 Collider::toShape(const Vec3& p) const {
@@ -231,8 +231,8 @@ void Collider::bounds(Vec3& low, Vec3& high) const {
   // Start with an empty box.
   low = Vec3::Constant(HUGE_VAL);
   high = -low;
-  if (engine() && geom_ != engine::Geom::none) {
-    const Pose p = engine()->pose(geom_);
+  if (world() && geom_ != physics::GeomHandle::none) {
+    const Pose p = world()->pose(geom_);
     if (const auto half = halfExtent(p.rotation)) {
       low = p.position - *half;
       high = p.position + *half;

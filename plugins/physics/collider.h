@@ -53,9 +53,9 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   void onLink() override;
   void onMoved() override;
   void onUnlink() override;
-  /// Passes a changed shape to the engine. Throws Error when the engine rejects it.
+  /// Passes a changed shape to the model. Throws Error when it rejects it.
   void reshape();
-  /// Sets a parameter of the shape. When the engine rejects the new shape, restores the old value and throws Error.
+  /// Sets a parameter of the shape. When the model rejects the new shape, restores the old value and throws Error.
   template <class T>
   void change(T& member, T value) {
     std::swap(member, value);
@@ -66,8 +66,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
       throw;
     }
   }
-  /// The engine of its world; nullptr when it is not linked or the engine is gone.
-  engine::IEngine* engine() const { return space_ ? space_->world()->engine() : nullptr; }
+  /// Its world; nullptr when it is not linked.
+  physics::WorldModel* world() const { return space_ ? space_->world().get() : nullptr; }
   /// World pose of the shape.
   Pose geomPose() const;
   /// Colliders among its children; cached until something changes below.
@@ -80,8 +80,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   /// The outermost collider around it (or this), which contacts are reported for.
   Collider& outermost();
   /// Pose in the frame of the body, or of the nearest transform when static.
-  Pose offset() const { return outer_ ? physics::compose(outer_->offset(), local_) : local_; }
-  /// Passes the pose of the geom, and of those of inner colliders, to the engine; static ones are relative to `base`.
+  Pose offset() const { return outer_ ? compose(outer_->offset(), local_) : local_; }
+  /// Passes the pose of the geom, and of those of inner colliders, to the model; static ones are relative to `base`.
   void attach(const Pose& base);
   void attach() { attach(body_ ? Pose{} : physics::frameOf(*this)); }
   void destroyGeom();
@@ -93,8 +93,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   void addNotCollideWithColliderName(std::string name, bool on);
   bool isStaticInWorld() const { return !outer_ && !body_; }
 
-  std::shared_ptr<physics::SpaceHandle> space_;
-  engine::Geom geom_{};
+  std::shared_ptr<physics::SharedSpace> space_;
+  physics::GeomHandle geom_ = physics::GeomHandle::none;
   Ref<RigidBody> body_;
   const CollisionGroup* group_ = nullptr;
   Collider* outer_ = nullptr;  ///< the TransformCollider it is part of

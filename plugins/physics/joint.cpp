@@ -67,33 +67,20 @@ void Joint::describe(Description<Joint>& d) {
 
 void Joint::onLink() {
   PhysicsObject::onLink();
-  world_ = World::of(*this).handle();
-  if (acts()) joint_ = world_->engine()->createJoint(world_->id(), jointType());
+  world_ = World::of(*this).model();
+  if (acts()) joint_ = world_->createJoint(jointType());
 }
 
 void Joint::onUnlink() {
-  if (engine()) engine()->destroyJoint(joint_);
-  joint_ = engine::Joint::none;
+  if (world()) world()->destroyJoint(joint_);
+  joint_ = physics::JointHandle::none;
   attached_ = false;
   pending_.clear();
   world_.reset();
   PhysicsObject::onUnlink();
 }
 
-int Joint::axes() const {
-  switch (jointType()) {
-    case JointType::hinge:
-    case JointType::slider:
-      return 1;
-    case JointType::universal:
-    case JointType::hinge2:
-      return 2;
-    case JointType::angularMotor:
-      return 3;
-    default:
-      return 0;
-  }
-}
+int Joint::axes() const { return physics::axesOf(jointType()); }
 
 void Joint::expectAxis(int axis) const {
   if (axis >= 0 && axis < axes()) return;
@@ -105,13 +92,13 @@ void Joint::expectAxis(int axis) const {
 
 void Joint::setParameter(JointParameter p, int axis, double v) {
   if (axis < 0 || axis >= axes()) return;
-  if (engine()) engine()->setParameter(joint_, p, axis, v);
+  if (world()) world()->setParameter(joint_, p, axis, v);
 }
 
 double Joint::feedbackTorque() const {
-  if (!feedback_ || !engine()) return 0;
+  if (!feedback_ || !world()) return 0;
   Vec3 force1, torque1, force2, torque2;
-  engine()->feedback(joint_, force1, torque1, force2, torque2);
+  world()->feedback(joint_, force1, torque1, force2, torque2);
   // The torque of an angular motor is that on its first body.
   return jointType() == JointType::angularMotor ? torque1.norm() : torque1.norm() + torque2.norm();
 }
@@ -129,12 +116,12 @@ Ref<RigidBody> Joint::bodyAt(const std::string& path) {
 }
 
 void Joint::attach(std::string first, std::string second) {
-  if (!engine()) return;
+  if (!world()) return;
   bodies_[0] = bodyAt(first);
   bodies_[1] = bodyAt(second);
-  const auto handle = [](const Ref<RigidBody>& b) { return b ? b->handle() : engine::Body::none; };
+  const auto handle = [](const Ref<RigidBody>& b) { return b ? b->handle() : physics::BodyHandle::none; };
   try {
-    engine()->attach(joint_, handle(bodies_[0]), handle(bodies_[1]));
+    world()->attach(joint_, handle(bodies_[0]), handle(bodies_[1]));
   } catch (const Error& e) {
     bodies_[0] = bodies_[1] = {};
     throw Error(fmt::format("{}: cannot attach '{}' and '{}'", where(), first, second), e);
@@ -147,20 +134,20 @@ void Joint::attach(std::string first, std::string second) {
 }
 
 void Joint::setAnchor(const Vec3& local) {
-  if (engine() && !local.allFinite())
+  if (world() && !local.allFinite())
     throw RefusedValue(fmt::format("{}: expected finite numbers for the anchor", where()));
   withBodies([this, local] {
     const Pose frame = physics::frameOf(*this);
-    engine()->setAnchor(joint_, frame.position + frame.rotation * local);
+    world()->setAnchor(joint_, frame.position + frame.rotation * local);
   });
 }
 
 void Joint::setAxisLocal(int axis, const Vec3& direction) {
-  if (engine() && !(direction.norm() >= kShortestAxis))
+  if (world() && !(direction.norm() >= kShortestAxis))
     throw Error(fmt::format("{}: cannot set the axis", where()), Error("expected an axis longer than 0"));
   withBodies([this, axis, direction] {
     try {
-      engine()->setAxis(joint_, axis, physics::frameOf(*this).rotation * direction);
+      world()->setAxis(joint_, axis, physics::frameOf(*this).rotation * direction);
     } catch (const Error& e) {
       throw Error(fmt::format("{}: cannot set the axis", where()), e);
     }
@@ -169,7 +156,7 @@ void Joint::setAxisLocal(int axis, const Vec3& direction) {
 
 void Joint::enableFeedback(bool on) {
   feedback_ = on;
-  if (engine()) engine()->setFeedback(joint_, on);
+  if (world()) world()->setFeedback(joint_, on);
 }
 
 void Joint::saveState(StateWriter& out) const {

@@ -18,18 +18,18 @@ class Joint : public PhysicsObject, public IJoint {
   Leaf& leaf() override { return *this; }
   IRigidBody* body(int index) const override { return bodies_[index == 0 ? 0 : 1].get(); }
   int axes() const override;
-  Vec3 anchor() const override { return engine() ? engine()->anchor(joint_) : Vec3(Vec3::Zero()); }
-  Vec3 axisNow(int axis) const override { return engine() ? engine()->axis(joint_, axis) : Vec3(Vec3::Zero()); }
-  double angle(int axis) const override { return engine() ? engine()->angle(joint_, axis) : 0; }
-  double angleRate(int axis) const override { return engine() ? engine()->angleRate(joint_, axis) : 0; }
+  Vec3 anchor() const override { return world() ? world()->anchor(joint_) : Vec3(Vec3::Zero()); }
+  Vec3 axisNow(int axis) const override { return world() ? world()->axis(joint_, axis) : Vec3(Vec3::Zero()); }
+  double angle(int axis) const override { return world() ? world()->angle(joint_, axis) : 0; }
+  double angleRate(int axis) const override { return world() ? world()->angleRate(joint_, axis) : 0; }
   double parameter(engine::JointParameter p, int axis) const override {
-    return engine() ? engine()->parameter(joint_, p, axis) : 0;
+    return world() ? world()->parameter(joint_, p, axis) : 0;
   }
   void setParameter(engine::JointParameter p, int axis, double v) override;
   void drive(int axis, double speed) override {
-    if (engine()) engine()->drive(joint_, axis, speed);
+    if (world()) world()->drive(joint_, axis, speed);
   }
-  bool atStop(int axis) const override { return engine() && engine()->atStop(joint_, axis); }
+  bool atStop(int axis) const override { return world() && world()->atStop(joint_, axis); }
   double maxSpeed(int axis) const override { return axis == 0 || axis == 1 ? maxSpeed_[axis] : 0; }
   double feedbackTorque() const override;
   bool feedback() const override { return feedback_; }
@@ -42,15 +42,15 @@ class Joint : public PhysicsObject, public IJoint {
   /// Called after the bodies were attached, for settings that depend on their current poses.
   virtual void attached() {}
 
-  /// False: the class is accepted in scenes, but the engine has no such joint.
+  /// False: the class is accepted in scenes, but has no effect.
   virtual bool acts() const { return true; }
-  /// The engine of the joint; nullptr when it is not linked, does not act, or the engine was removed.
-  engine::IEngine* engine() const { return joint_ != engine::Joint::none ? world_->engine() : nullptr; }
-  engine::Joint handle() const { return joint_; }
-  /// Calls `f` now, or as soon as bodies are attached. For settings that an engine can only store with bodies.
+  /// The world of the joint; nullptr when it is not linked or does not act.
+  physics::WorldModel* world() const { return joint_ != physics::JointHandle::none ? world_.get() : nullptr; }
+  physics::JointHandle handle() const { return joint_; }
+  /// Calls `f` now, or as soon as bodies are attached. For settings that need the places of the bodies.
   template <class F>
   void withBodies(F f) {
-    if (!engine()) return;
+    if (!world()) return;
     if (attached_)
       f();
     else
@@ -95,8 +95,8 @@ class Joint : public PhysicsObject, public IJoint {
   void setMaxSpeed1(double v) { maxSpeed_[0] = std::abs(v); }
   void setMaxSpeed2(double v) { maxSpeed_[1] = std::abs(v); }
 
-  std::shared_ptr<physics::WorldHandle> world_;
-  engine::Joint joint_{};
+  std::shared_ptr<physics::WorldModel> world_;
+  physics::JointHandle joint_ = physics::JointHandle::none;
   Ref<RigidBody> bodies_[2];
   std::vector<std::function<void()>> pending_;  ///< anchors and axes that were set before attach(), in that order
   bool attached_ = false;

@@ -154,7 +154,7 @@ class FixedJoint : public Generic6DOFJoint {
 
  protected:
   void attached() override {
-    if (engine()) engine()->setFixed(handle());
+    if (world()) world()->setFixed(handle());
   }
 };
 

@@ -14,6 +14,8 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
   d.doc("Steps the world of the active scene with the engine below it.");
   d.implements<IPhysicsServer>();
   d.link(&S::scene_, At<ISceneServer>());
+  d.link(&S::engine_, Child<engine::IEngine>());
+  d.link(&S::collision_, Child<engine::ICollision>());
   d.property("jointHeating", &S::jointHeating_).doc("Modelled motors change their temperature.");
   d.property("batteryDischarge", &S::batteryDischarge_).doc("Modelled motors drain their batteries.");
   d.property("defaultHandlerOnTransformCollider", &S::defaultOnTransform, &S::setDefaultOnTransform)
@@ -25,6 +27,11 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
       .doc(
           "Measures the force of every solved contact, for plugins that read contacts. The last digits of the dense "
           "solver's results may differ from a run without.");
+  d.property("exactReplay", &S::exactReplay_)
+      .doc(
+          "Worlds made from now on repeat recorded sessions of the installed base to the last digit, with OdeCollision "
+          "and OdeEngine: numbers that enter them are rounded to single precision, and contacts are solved in the "
+          "order in which ODE's hash spaces report them.");
   d.property("contactsPerPair", &S::contactsPerPair_)
       .range(1, 16)
       .doc("Maximum number of contact points of two colliders.");
@@ -32,22 +39,24 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
   d.on<&PhysicsServer::place>(phase::kPlace);
 }
 
-engine::IEngine& PhysicsServer::engine() {
-  Leaf* found = find("engine");
-  if (!found)
-    throw Error(
-        fmt::format("{0} has no engine below it: add one, for instance new(\"OdeEngine\", \"{0}/engine\")", path()));
-  return require<engine::IEngine>("engine");
+void PhysicsServer::expectEngines() const {
+  const auto expect = [&](bool found, const char* what, const char* name, const char* className) {
+    if (!found)
+      throw Error(fmt::format("{0} has no {1} below it: add one, for instance new(\"{3}\", \"{0}/{2}\")", path(), what,
+                              name, className));
+  };
+  expect(static_cast<bool>(engine_), "engine", "engine", "OdeEngine");
+  expect(static_cast<bool>(collision_), "collision detection", "collision", "OdeCollision");
 }
 
 World* PhysicsServer::findWorld() {
   Node* scene = scene_ ? scene_->activeScene() : find<Node>(ISceneServer::kDefaultScene);
   auto* world = scene ? scene->childOf<World>() : nullptr;
-  return world && world->handle() && world->handle()->engine() ? world : nullptr;
+  return world && world->model() ? world : nullptr;
 }
 
-engine::World PhysicsServer::world() {
-  if (World* w = findWorld()) return w->handle()->id();
+physics::WorldModel& PhysicsServer::expectWorld() {
+  if (World* w = findWorld()) return *w->model();
   throw Error(fmt::format("{}: the active scene has no world: make one, new(\"World\", \"/usr/scene/world\")", path()));
 }
 
@@ -68,8 +77,8 @@ void PhysicsServer::collect(const Node& scene) {
   scene.collect(objects);
   for (PhysicsObject* object : objects) {
     if (auto body = object->as<RigidBody>()) {
-      if (body->transform() && body->world() == world_->handle())
-        bodies_.push_back({body, body->transform(), body->transform()->transform(), 0});
+      if (body->transform() && body->world() == world_->model())
+        bodies_.push_back({body, body->transform(), body->transform()->transform(), 0, engine::kNone});
     } else if (auto collider = object->as<Collider>()) {
       collider->refreshHandlers(defaultOnTransform_);
       collider->setGroup(nullptr);
@@ -113,12 +122,7 @@ bool PhysicsServer::refresh() {
   for (Placed& p : bodies_)
     for (const Transform* t = p.above; t; t = t->transform()) ++p.depth;
   std::stable_sort(bodies_.begin(), bodies_.end(), [](const Placed& a, const Placed& b) { return a.depth < b.depth; });
-
-  // The arrays of IEngine::posesOfAwake().
-  handles_.clear();
-  for (const Placed& p : bodies_) handles_.push_back(p.body->handle());
-  awake_.resize(bodies_.size());
-  poses_.resize(bodies_.size());
+  structure_ = 0;
   return true;
 }
 
@@ -141,6 +145,8 @@ void PhysicsServer::shiftSurroundings() {
 
 void PhysicsServer::physics(const Event& event) {
   if (event.step <= 0 || !refresh()) return;
+  if (!engine_ || !collision_) return lacksEngines();
+  lacking_ = false;
   const InUse stepping(*this, "a step is under way");
   if (scene_) scene_->place();
   shiftSurroundings();
@@ -151,19 +157,21 @@ void PhysicsServer::physics(const Event& event) {
 }
 
 void PhysicsServer::solve(const Event& event) {
-  const std::shared_ptr<physics::WorldHandle> world = world_->handle();
-  engine::IEngine& e = *world->engine();
+  const std::shared_ptr<physics::WorldModel> world = world_->model();
+  engine::IEngine& engine = *engine_;
+  engine::ICollision& collision = *collision_;
+  const InUse solving(engine.leaf(), "a step is under way"), detecting(collision.leaf(), "a step is under way");
 
   // Contacts and their handlers.
   contacts_.clear();
   contactsAt_ = kernel().structureVersion();
-  e.detect(world->id(), physics::pairCounts, contactsPerPair_, contacts_);
+  world->detect(collision, physics::pairCounts, contactsPerPair_, contacts_);
   physics::runHandlers(contacts_, kernel());
 
   // One step. Handlers must not see feedback that only measureForces requested.
   measured_.clear();
   if (measureForces_) physics::measure(contacts_, measured_);
-  e.step(world->id(), contacts_, event.step);
+  world->step(engine, contacts_, event.step);
   for (const std::size_t i : measured_) contacts_[i].feedback = false;
   physics::runSolved(contacts_);
   for (const std::size_t i : measured_) contacts_[i].feedback = true;
@@ -175,7 +183,7 @@ std::span<const engine::Contact> PhysicsServer::contacts() const {
 }
 
 void PhysicsServer::reportFaults() {
-  for (const engine::Body handle : world_->handle()->engine()->repaired(world_->handle()->id()))
+  for (const physics::BodyHandle handle : world_->model()->repaired())
     for (const Placed& p : bodies_)
       if (p.body->handle() == handle && p.body->countFault())
         kernel().log().error(
@@ -191,30 +199,43 @@ constexpr std::size_t kTransform = 384;  // bytes of a transform that place() re
 
 void PhysicsServer::place(const Event&) {
   if (!refresh()) return;
-  world_->handle()->engine()->posesOfAwake(handles_, awake_, poses_);
+  const physics::WorldModel& world = *world_->model();
+  if (std::exchange(structure_, world.model().structure) != structure_)
+    for (Placed& p : bodies_) p.index = world.index(p.body->handle());
+  const std::vector<engine::DynamicState>& states = world.state().bodies;
 
   // The bodies of a robot share the transform above: its inverse is computed once.
   const Transform* inverted = nullptr;
   Matrix inverse;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (i + kAhead < bodies_.size() && awake_[i + kAhead]) prefetch(bodies_[i + kAhead].transform, kTransform);
+    if (i + kAhead < bodies_.size() && bodies_[i + kAhead].moving) prefetch(bodies_[i + kAhead].transform, kTransform);
     Placed& p = bodies_[i];
+    const engine::DynamicState& state = states[p.index];
 
     // Skip bodies that sleep and whose transform is up to date. One that was awake at the last placing and still is
     // needs no check.
-    if (!awake_[i] || !p.moving) {
-      p.moving = awake_[i];
+    if (!state.awake || !p.moving) {
+      p.moving = state.awake;
       if (!p.body->takeUnplaced()) continue;
-      if (!awake_[i]) poses_[i] = p.body->pose();
     }
 
+    const Matrix pose = toMatrix({state.position, state.rotation});
     if (p.above && p.above != inverted) {
       inverse = rigidInverse(p.above->worldNow());
       inverted = p.above;
     }
-    p.transform->setLocalFromBody(p.above ? Matrix(inverse * poses_[i]) : poses_[i]);
+    p.transform->setLocalFromBody(p.above ? Matrix(inverse * pose) : pose);
   }
   if (scene_) scene_->place();
+}
+
+void PhysicsServer::lacksEngines() {
+  if (std::exchange(lacking_, true)) return;
+  try {
+    expectEngines();
+  } catch (const Error& e) {
+    kernel().log().error("{}. Nothing moves until then.", e.what());
+  }
 }
 
 }  // namespace spark

@@ -4,23 +4,27 @@
 ///
 ///     physics  place transforms that were moved by hand (bodies follow) -> shift the surroundings of re-centred bodies
 ///              -> detect contacts -> handlers -> step -> feedback -> faults -> script handlers
-///     place    poses of awake bodies, read in one call -> transforms, outer ones first -> world matrices
+///     place    poses of awake bodies -> transforms, outer ones first -> world matrices
 
 #include "collider.h"
 #include "handlers.h"
 
 namespace spark {
 
-/// Steps the world of the active scene. The engine is its child `engine`.
+/// Steps the world of the active scene. Its child `collision` detects contacts, its child `engine` solves them.
 class PhysicsServer : public Node, public IPhysicsServer {
   SPARK_CLASS(PhysicsServer, Node)
  public:
   static void describe(Description<PhysicsServer>& d);
-  engine::IEngine& engine() override;
-  engine::World world() override;
+  const engine::Model& model() override { return expectWorld().model(); }
+  const engine::State& state() override { return expectWorld().state(); }
   void bodies(Node& root, std::vector<IRigidBody*>& out) override;
   std::span<const engine::Contact> contacts() const override;
   ICollider& colliderOf(void* owner) const override { return *static_cast<Collider*>(owner); }
+  /// Throws Error, with what to do, unless there are an engine and a collision detection.
+  void expectEngines() const;
+  /// True: worlds made from now on have Model::exactReplay.
+  bool exactReplay() const { return exactReplay_; }
   /// True: modelled motors change their temperature.
   bool jointHeating() const { return jointHeating_; }
   /// True: modelled motors drain their batteries.
@@ -33,10 +37,13 @@ class PhysicsServer : public Node, public IPhysicsServer {
     Transform* transform;  ///< the transform that the body moves
     Transform* above;      ///< the transform above that one; nullptr: none
     int depth;             ///< number of transforms above the body
+    engine::Index index;   ///< of the body in the model, when `structure` was its structure
     bool moving = false;   ///< awake at the last placing: RigidBody::takeUnplaced() need not be called
   };
-  /// The world of the active scene; nullptr when there is none, or no engine.
+  /// The world of the active scene; nullptr when there is none.
   World* findWorld();
+  /// The same; throws Error when there is none.
+  physics::WorldModel& expectWorld();
   /// Collects bodies, colliders and handlers again when the shape of the scene changed. False when there is no world.
   bool refresh();
   void collect(const Node& scene);
@@ -50,25 +57,29 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void place(const Event& event);
   /// Keeps the world poses of colliders and transforms around bodies whose origin moved to their centre of mass.
   void shiftSurroundings();
-  /// Logs the bodies that the engine had to reset.
+  /// Logs the bodies that had to be reset.
   void reportFaults();
+  /// Logs once that the world cannot be stepped.
+  void lacksEngines();
   bool defaultOnTransform() const { return defaultOnTransform_; }
   void setDefaultOnTransform(bool on);
 
-  bool jointHeating_ = false, batteryDischarge_ = false, defaultOnTransform_ = true, measureForces_ = false;
+  bool jointHeating_ = false, batteryDischarge_ = false, defaultOnTransform_ = true, measureForces_ = false,
+       exactReplay_ = false;
   int contactsPerPair_ = 4;
 
+  bool lacking_ = false;  ///< lacksEngines() has said so
   TreeWatch tree_;
   World* world_ = nullptr;
   Link<ISceneServer> scene_;
+  Link<engine::IEngine> engine_;
+  Link<engine::ICollision> collision_;
   std::vector<Placed> bodies_;
+  std::uint64_t structure_ = 0;  ///< Model::structure for which their indices are
   std::vector<Ref<ScriptHandler>> scripts_;
   engine::Contacts contacts_;
   std::uint64_t contactsAt_ = 0;       ///< version of the tree when they were detected
   std::vector<std::size_t> measured_;  ///< indices of contacts that have feedback only because of measureForces
-  std::vector<engine::Body> handles_;  ///< of bodies_, in the same order
-  std::vector<std::uint8_t> awake_;    ///< of bodies_: 1 for an awake one
-  std::vector<Matrix> poses_;          ///< of bodies_
 };
 
 }  // namespace spark

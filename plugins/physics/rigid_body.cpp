@@ -72,98 +72,98 @@ void RigidBody::onLink() {
   Body::onLink();
   World& world = World::of(*this);
   worldNode_ = Ref<World>(&world);
-  world_ = world.handle();
-  body_ = engine()->createBody(world_->id());
+  world_ = world.model();
+  body_ = world_->createBody();
   const Pose pose = physics::frameOf(*this);
-  engine()->setPosition(body_, pose.position);
-  engine()->setRotation(body_, pose.rotation);
-  engine()->setMass(body_, mass_);
-  engine()->setGravityMode(body_, gravity_);
+  world_->setPosition(body_, pose.position);
+  world_->setRotation(body_, pose.rotation);
+  world_->setMass(body_, mass_);
+  world_->setGravityMode(body_, gravity_);
 }
 
 void RigidBody::onUnlink() {
-  if (engine() && body_ != engine::Body::none) engine()->destroyBody(body_);
-  body_ = engine::Body::none;
+  if (world_) world_->destroyBody(body_);
+  body_ = physics::BodyHandle::none;
   world_.reset();
   Body::onUnlink();
 }
 
 engine::BodyState RigidBody::state() const {
-  if (engine()) return engine()->state(body_);
+  if (world_) return world_->state(body_);
   const Pose p = physics::frameOf(*this);
   return {p.position, Vec3::Zero(), Vec3::Zero(), p.rotation};
 }
 
 void RigidBody::wake() {
   placed_ = false;
-  if (!engine()->enabled(body_)) engine()->setEnabled(body_, true);
+  if (!world_->enabled(body_)) world_->setEnabled(body_, true);
 }
 
 void RigidBody::setPose(const Pose& pose) {
-  if (!engine()) return;
-  engine()->setPosition(body_, pose.position);
-  engine()->setRotation(body_, pose.rotation);
+  if (!world_) return;
+  world_->setPosition(body_, pose.position);
+  world_->setRotation(body_, pose.rotation);
   wake();
 }
 
 void RigidBody::setPosition(const Vec3& position) {
-  if (!engine()) return;
-  engine()->setPosition(body_, position);
+  if (!world_) return;
+  world_->setPosition(body_, position);
   wake();
 }
 
 void RigidBody::setVelocity(const Vec3& v) {
-  if (!engine()) return;
-  engine()->setLinearVelocity(body_, v);
+  if (!world_) return;
+  world_->setLinearVelocity(body_, v);
   if (!v.isZero(0)) wake();
 }
 
 void RigidBody::setAngularVelocity(const Vec3& w) {
-  if (!engine()) return;
-  engine()->setAngularVelocity(body_, w);
+  if (!world_) return;
+  world_->setAngularVelocity(body_, w);
   if (!w.isZero(0)) wake();
 }
 
 void RigidBody::addForce(const Vec3& f) {
-  if (!engine() || f.isZero(0)) return;
-  engine()->addForce(body_, f);
+  if (!world_ || f.isZero(0)) return;
+  world_->addForce(body_, f);
   wake();
 }
 
 void RigidBody::addTorque(const Vec3& t) {
-  if (!engine() || t.isZero(0)) return;
-  engine()->addTorque(body_, t);
+  if (!world_ || t.isZero(0)) return;
+  world_->addTorque(body_, t);
   wake();
 }
 
 void RigidBody::addDrag(double linear, double angular) {
-  if (engine()) engine()->addDrag(body_, linear, angular);
+  if (world_) world_->addDrag(body_, linear, angular);
 }
 
-bool RigidBody::enabled() const { return engine() && engine()->enabled(body_); }
+bool RigidBody::enabled() const { return world_ && world_->enabled(body_); }
 
 void RigidBody::enable() {
-  if (engine()) engine()->setEnabled(body_, true);
+  if (world_) world_->setEnabled(body_, true);
 }
 
 void RigidBody::disable() {
-  if (engine()) engine()->setEnabled(body_, false);
+  if (world_) world_->setEnabled(body_, false);
 }
 
 void RigidBody::useGravity(bool on) {
   gravity_ = on;
-  if (engine()) engine()->setGravityMode(body_, on);
+  if (world_) world_->setGravityMode(body_, on);
 }
 
 void RigidBody::follow(const Matrix& world) {
   // The transform still has the origin before the pending shift.
-  setPose(physics::compose(toPose(world), {-pendingShift_, Mat3::Identity()}));
+  setPose(compose(toPose(world), {-pendingShift_, Mat3::Identity()}));
 }
 
 void RigidBody::applyMass(const engine::Mass& mass) {
-  if (engine()) {
+  if (world_) {
     try {
-      engine()->setMass(body_, mass);
+      world_->setMass(body_, mass);
     } catch (const Error& e) {
       throw Error(fmt::format("{}: cannot set the mass; it stays {:f} kg", where(), mass_.mass), e);
     }
@@ -178,11 +178,11 @@ void RigidBody::add(const engine::Mass& part, const std::vector<double>& matrix)
   const engine::Mass sum = physics::addMass(mass_, part, at);
   applyMass(physics::centred(sum));
 
-  // The engine's origin is the centre of mass: move it there, and the surroundings back by the same offset.
+  // The body's origin is the centre of mass: move it there, and the surroundings back by the same offset.
   const Vec3 center = sum.center;
-  if (engine()) {
-    const engine::BodyState s = engine()->state(body_);
-    engine()->setPosition(body_, s.position + s.rotation * center);
+  if (world_) {
+    const engine::BodyState s = world_->state(body_);
+    world_->setPosition(body_, s.position + s.rotation * center);
     placed_ = false;
   }
   shift_ -= center;
@@ -213,16 +213,11 @@ void RigidBody::setMassParameters(double m, const Vec3& center, const Vec3& diag
 }
 
 bool RigidBody::takeUnplaced() {
-  if (!engine()) return false;
-  const bool awake = engine()->enabled(body_);
+  if (!world_) return false;
+  const bool awake = world_->enabled(body_);
   const bool unplaced = awake || !placed_;
   placed_ = !awake;
   return unplaced;
-}
-
-Matrix RigidBody::pose() const {
-  const engine::BodyState s = state();
-  return toMatrix({s.position, s.rotation});
 }
 
 bool RigidBody::countFault() {
@@ -236,7 +231,7 @@ void RigidBody::saveState(StateWriter& out) const {
   for (int i = 0; i < 3; ++i) out.write(shift_[i]);
   for (int i = 0; i < 3; ++i) out.write(pendingShift_[i]);
   std::vector<double> numbers;
-  if (engine()) engine()->saveBody(body_, numbers);
+  if (world_) world_->saveBody(body_, numbers);
   out.write(static_cast<std::int64_t>(numbers.size()));
   for (double v : numbers) out.write(v);
 }
@@ -253,7 +248,7 @@ void RigidBody::loadState(StateReader& in) {
   std::vector<double> numbers(count);
   for (double& v : numbers) v = in.readNumber();
   applyMass(mass);
-  if (engine()) engine()->loadBody(body_, numbers);
+  if (world_) world_->loadBody(body_, numbers);
   placed_ = false;
   if (worldNode_ && !pendingShift_.isZero(0)) worldNode_->markRecentred();
 }

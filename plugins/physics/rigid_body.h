@@ -39,21 +39,19 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   Transform* bodyTransform() const override { return transform(); }
   void follow(const Matrix& world) override;
 
-  /// The engine's body; none while the node is not linked.
-  engine::Body handle() const { return body_; }
+  /// The body in the model; none while the node is not linked.
+  physics::BodyHandle handle() const { return body_; }
   /// The world of the body; empty while the node is not linked.
-  const std::shared_ptr<physics::WorldHandle>& world() const { return world_; }
+  const std::shared_ptr<physics::WorldModel>& world() const { return world_; }
   const engine::Mass& massDistribution() const { return mass_; }
 
   /// For the place phase: returns true when the transform must be written, because the body is awake or was moved while
   /// it slept, and clears that mark for a sleeping body.
   bool takeUnplaced();
-  /// Current world pose as a matrix.
-  Matrix pose() const;
   /// Returns and clears the offset by which colliders and transforms around the body must move, in its frame [m],
   /// because its origin moved to the centre of mass.
   Vec3 takeShift();
-  /// Counts a reset by the engine. Returns true for the 1st, 2nd, 4th, 8th ... of this body, which are logged.
+  /// Counts a reset after a fault. Returns true for the 1st, 2nd, 4th, 8th ... of this body, which are logged.
   bool countFault();
 
  protected:
@@ -63,10 +61,9 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   void loadState(StateReader& in) override;
 
  private:
-  engine::IEngine* engine() const { return world_ ? world_->engine() : nullptr; }
   /// Wakes the body and marks its transform as out of date.
   void wake();
-  /// Sets the mass. Throws Error, and keeps the old mass, when the engine rejects it.
+  /// Sets the mass. Throws Error, and keeps the old mass, when no body can have it.
   void applyMass(const engine::Mass& mass);
   /// Adds a mass at the pose given by `matrix` and moves the origin to the common centre of mass.
   void add(const engine::Mass& part, const std::vector<double>& matrix);
@@ -113,15 +110,15 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   void useGravity(bool on);
   void addForceBy(const Vec3& f) { addForce(f); }
 
-  std::shared_ptr<physics::WorldHandle> world_;
-  engine::Body body_ = engine::Body::none;
+  std::shared_ptr<physics::WorldModel> world_;
+  physics::BodyHandle body_ = physics::BodyHandle::none;
   engine::Mass mass_;
   Ref<World> worldNode_;
   Vec3 shift_ = Vec3::Zero();         ///< position of the original origin in the body's frame [m]
   Vec3 pendingShift_ = Vec3::Zero();  ///< the part of it that takeShift() has not returned yet [m]
   bool gravity_ = true;
   bool placed_ = false;  ///< the body sleeps and its transform is up to date
-  unsigned faults_ = 0;  ///< resets by the engine
+  unsigned faults_ = 0;  ///< resets
 };
 
 }  // namespace spark

@@ -1,5 +1,7 @@
 #include "world.h"
 
+#include "physics_server.h"
+
 namespace spark {
 
 Pose physics::poseFrom(const std::vector<double>& n) {
@@ -45,7 +47,7 @@ void World::describe(Description<World>& d) {
 
 World& World::of(const Leaf& node) {
   for (Node* up = node.parent(); up; up = up->parent())
-    if (auto* world = up->childOf<World>(); world && world->handle() && world->handle()->engine()) return *world;
+    if (auto* world = up->childOf<World>(); world && world->model()) return *world;
   throw Error(
       fmt::format("{}: expected a World in its scene, found none. Make one before importing bodies: new(\"World\", "
                   "\"/usr/scene/world\")",
@@ -54,19 +56,16 @@ World& World::of(const Leaf& node) {
 
 void World::onLink() {
   PhysicsObject::onLink();
-  auto& server = kernel().root().require<IPhysicsServer>();
-  engine::IEngine& e = server.engine();
-  // IEngine has no node of its own: the handle refers to the child of the server that offers it.
-  Leaf* engineLeaf = kernel().root().find("/sys/server/physics/engine");
-  if (!engineLeaf) engineLeaf = kernel().root().find("/sys/server/physics");
-  handle_ = std::make_shared<physics::WorldHandle>(physics::EngineUse{Ref<Leaf>(engineLeaf), &e}, path());
+  auto& server = kernel().root().require<PhysicsServer>(IPhysicsServer::kPath);
+  server.expectEngines();
+  model_ = std::make_shared<physics::WorldModel>(server.exactReplay());
   apply();
 }
 
-const std::shared_ptr<physics::SpaceHandle>& World::space() {
+const std::shared_ptr<physics::SharedSpace>& World::space() {
   if (parent())
-    if (auto* first = parent()->childOf<Space>(); first && first->handle()) return first->handle();
-  if (!ownSpace_) ownSpace_ = std::make_shared<physics::SpaceHandle>(handle_, nullptr);
+    if (auto* first = parent()->childOf<Space>(); first && first->shared()) return first->shared();
+  if (!ownSpace_) ownSpace_ = std::make_shared<physics::SharedSpace>(model_, nullptr);
   return ownSpace_;
 }
 
@@ -77,8 +76,7 @@ void World::setGravity(const Vec3& g) {
 }
 
 void World::apply() {
-  if (!handle_) return;
-  if (auto* e = handle_->engine()) e->setWorldParameters(handle_->id(), parameters_);
+  if (model_) model_->setParameters(parameters_);
 }
 
 void Space::describe(Description<Space>& d) {
@@ -96,18 +94,17 @@ void Space::onLink() {
 
   // A space inside another is nested. The first beside the world is a top-level space, others are nested in it.
   if (auto* above = ancestor<Space>())
-    handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), above->handle());
+    shared_ = std::make_shared<physics::SharedSpace>(world.model(), above->shared());
   else if (world.parent()->childOf<Space>() == this)
-    handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), nullptr);
+    shared_ = std::make_shared<physics::SharedSpace>(world.model(), nullptr);
   else
-    handle_ = std::make_shared<physics::SpaceHandle>(world.handle(), world.space());
+    shared_ = std::make_shared<physics::SharedSpace>(world.model(), world.space());
   disableInnerCollision(innerOff_);
 }
 
 void Space::disableInnerCollision(bool off) {
   innerOff_ = off;
-  if (!handle_) return;
-  if (auto* e = handle_->world()->engine()) e->setInnerCollision(handle_->id(), !off);
+  if (shared_) shared_->world()->setInnerCollision(shared_->handle(), !off);
 }
 
 }  // namespace spark

@@ -26,11 +26,10 @@ class World : public PhysicsObject {
  public:
   static void describe(Description<World>& d);
 
-  /// The engine's world; created when the node is linked.
-  const std::shared_ptr<physics::WorldHandle>& handle() const { return handle_; }
+  /// Model and state; made when the node is linked.
+  const std::shared_ptr<physics::WorldModel>& model() const { return model_; }
   /// The space of colliders without a Space above them: the scene's first Space, else one that the world owns.
-  const std::shared_ptr<physics::SpaceHandle>& space();
-  const engine::WorldParameters& parameters() const { return parameters_; }
+  const std::shared_ptr<physics::SharedSpace>& space();
   /// The world of a node: a child of its nearest ancestor that has one. Throws Error when there is none.
   static World& of(const Leaf& node);
 
@@ -54,12 +53,11 @@ class World : public PhysicsObject {
   void setAutoDisable(bool on) { parameters_.autoDisable = on, apply(); }
   double surfaceLayer() const { return parameters_.contactSurfaceLayer; }
   void setSurfaceLayer(double v) { parameters_.contactSurfaceLayer = v, apply(); }
-  /// Passes the parameters to the engine.
   void apply();
 
   engine::WorldParameters parameters_;
-  std::shared_ptr<physics::WorldHandle> handle_;
-  std::shared_ptr<physics::SpaceHandle> ownSpace_;
+  std::shared_ptr<physics::WorldModel> model_;
+  std::shared_ptr<physics::SharedSpace> ownSpace_;
   bool recentred_ = false;
 };
 
@@ -68,8 +66,8 @@ class Space : public PhysicsObject {
   SPARK_CLASS(Space, PhysicsObject)
  public:
   static void describe(Description<Space>& d);
-  /// The engine's space; created when the node is linked.
-  const std::shared_ptr<physics::SpaceHandle>& handle() const { return handle_; }
+  /// The space in the model; created when the node is linked.
+  const std::shared_ptr<physics::SharedSpace>& shared() const { return shared_; }
 
  protected:
   void onLink() override;
@@ -77,7 +75,7 @@ class Space : public PhysicsObject {
  private:
   void disableInnerCollision(bool off);
   bool innerOff() const { return innerOff_; }
-  std::shared_ptr<physics::SpaceHandle> handle_;
+  std::shared_ptr<physics::SharedSpace> shared_;
   bool innerOff_ = false;
 };
 

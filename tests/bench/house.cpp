@@ -16,6 +16,12 @@ namespace {
 /// Heaps are solved exactly, however large: raw ODE knows nothing else.
 constexpr std::int64_t kAllRows = 1'000'000;
 
+/// ODE's engine: that of the physics server, or the one below the articulated engine, for islands that it defers.
+Leaf& odeEngine(Kernel& kernel) {
+  Leaf* below = kernel.root().find("/sys/server/physics/engine/deferred");
+  return below ? *below : kernel.root().require<Leaf>("/sys/server/physics/engine");
+}
+
 fs::path bin() { return fs::canonical("/proc/self/exe").parent_path(); }
 
 /// A ground and 1,000 boxes that fall on it, each for itself, and never sleep: every cycle has the same work.
@@ -75,8 +81,7 @@ void House::build() {
   }
   simulation_ = &kernel_.root().require<Leaf>("/sys/server/simulation");
   setProperty(*simulation_, "rate", "max");
-  if (setup_.world.motion == World::Motion::heap)
-    setProperty(kernel_.root().require<Leaf>("/sys/server/physics/engine"), "directRows", kAllRows);
+  if (setup_.world.motion == World::Motion::heap) setProperty(odeEngine(kernel_), "directRows", kAllRows);
   entrance_.open(kernel_);
 }
 

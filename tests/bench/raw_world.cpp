@@ -6,11 +6,22 @@
 #include <utility>
 
 #include "api/agents.h"
+#include "physics-ode/ode_collision.h"
 #include "physics-ode/ode_engine.h"
 #include "physics/collider.h"
 #include "spark/error.h"
 
 namespace spark::bench {
+
+struct RawWorld::Source {
+  const engine::Model& model;
+  const ode::WorldData& dynamics;
+  const ode::CollisionWorld& collision;
+  explicit Source(House& house);
+  dBodyID bodyOf(const IRigidBody& body) const;
+  engine::Index indexOf(const IRigidBody* body) const;
+  engine::Index indexOf(IJoint& joint) const;
+};
 
 namespace {
 /// The surface that two colliders' handlers give together (scene-language section 3.3).
@@ -42,140 +53,176 @@ const engine::Surface* surfaceOf(const Collider& c) {
   return h.contact ? h.contact->surface() : h.fallback ? fallback.surface() : nullptr;
 }
 
-ode::WorldData& worldOf(Kernel& kernel) {
-  return *ode::data(kernel.root().require<IPhysicsServer>("/sys/server/physics").world());
-}
+IPhysicsServer& serverOf(House& house) { return house.kernel().root().require<IPhysicsServer>(IPhysicsServer::kPath); }
 
-dBodyID bodyOf(const IRigidBody& body, const ode::WorldData& w) {
-  // Bodies do not tell their ids; no two stand at the same place, and numbers cross the engine's interface in single
-  // precision at least.
-  const Vec3 p = body.state().position;
-  for (const auto& b : w.bodies)
-    if (const dReal* q = dBodyGetPosition(b->id); (Vec3(q[0], q[1], q[2]) - p).cwiseAbs().maxCoeff() <= 4e-6)
-      return b->id;
-  throw Error("a body of the house is not in the engine");
+const std::vector<AgentAspect*>& agentsOf(House& house) {
+  return house.kernel().root().require<IGameControl>("/sys/server/gamecontrol").agents();
 }
 }  // namespace
 
+// ---- taking over ----
+
+RawWorld::Source::Source(House& house)
+    : model(serverOf(house).model()),
+      dynamics(house.kernel().root().require<OdeEngine>("/sys/server/physics/engine").world(model)),
+      collision(house.kernel().root().require<OdeCollision>("/sys/server/physics/collision").world(model)) {
+  const auto expect = [&](const char* what, std::size_t found, std::size_t wanted) {
+    if (found != wanted)
+      throw Error(
+          fmt::format("{}: expected {} {} in ODE as in the model, found {}", house.world().name, wanted, what, found));
+  };
+  expect("bodies", dynamics.bodies.size(), model.bodies.size());
+  expect("joints", dynamics.joints.size(), model.joints.size());
+  expect("spaces", collision.spaces.size(), model.spaces.size());
+  expect("geoms", collision.geoms.size(), model.geoms.size());
+}
+
+engine::Index RawWorld::Source::indexOf(const IRigidBody* body) const {
+  if (!body) return engine::kNone;
+  const auto& node = static_cast<const RigidBody&>(*body);
+  return node.world()->index(node.handle());
+}
+
+dBodyID RawWorld::Source::bodyOf(const IRigidBody& body) const { return dynamics.bodies.at(indexOf(&body)).body; }
+
+/// The joint of that type between the same bodies: robots have no two of them.
+engine::Index RawWorld::Source::indexOf(IJoint& joint) const {
+  engine::Index a = indexOf(joint.body(0)), b = indexOf(joint.body(1));
+  if (a == engine::kNone) std::swap(a, b);
+  const auto is = [&](const engine::Joint& j) { return j.type == joint.jointType() && j.a == a && j.b == b; };
+  const auto found = std::find_if(model.joints.begin(), model.joints.end(), is);
+  if (found == model.joints.end() || std::find_if(std::next(found), model.joints.end(), is) != model.joints.end())
+    throw Error(fmt::format("{}: expected one joint of its type between its bodies", joint.leaf().path()));
+  return static_cast<engine::Index>(found - model.joints.begin());
+}
+
 RawWorld::RawWorld(House& house) {
-  ode::WorldData& w = worldOf(house.kernel());
-  world_ = w.id;
-  root_ = w.root;
-  for (const auto& s : w.spaces)
-    if (s->inner) spaces_.push_back(s->id);
+  const Source from(house);
+  world_ = from.dynamics.id;
+  root_ = from.collision.root;
   group_ = dJointGroupCreate(0);
-  for (const auto& b : w.bodies) {
-    dBodySetAutoDisableFlag(b->id, w.parameters.autoDisable ? 1 : 0);
-    bodyIds_.push_back(b->id);
-  }
-  joints_ = static_cast<int>(w.joints.size());
+  joints_ = static_cast<int>(from.dynamics.joints.size());
   perPair_ = static_cast<int>(
       getProperty(house.kernel().root().require<Leaf>("/sys/server/physics"), "contactsPerPair").toInteger());
   step_ = getProperty(house.kernel().root().require<Leaf>("/sys/server/simulation"), "step").toNumber();
-  // What needs the house's own view comes before geoms forget their owners.
-  takeDrags(house.kernel());
-  takeMotors(house);
-  takeDrivers(house);
-  takeGeoms(w.geoms);
+  takeBodies(from);
+  takeGeoms(from);
+  takeSurfaces(from);
+  takeDrags(house, from);
+  takeMotors(house, from);
+  takeDrivers(house, from);
+  follow(house);
 }
 
-void RawWorld::takeGeoms(const std::vector<std::unique_ptr<ode::GeomData>>& geoms) {
+void RawWorld::takeBodies(const Source& from) {
+  for (const ode::BodyData& b : from.dynamics.bodies) {
+    dBodySetAutoDisableFlag(b.body, from.model.parameters.autoDisable ? 1 : 0);
+    bodyIds_.push_back(b.body);
+  }
+}
+
+void RawWorld::takeGeoms(const Source& from) {
+  for (const auto& s : from.collision.spaces)
+    if (s->inner) spaces_.push_back(s->space);
+  for (const auto& g : from.collision.geoms) {
+    // The host's geoms have no bodies in ODE: it places them itself.
+    if (g->body != engine::kNone) {
+      dGeomSetBody(g->geom, bodyIds_[g->body]);
+      if (!g->centred) {
+        dMatrix3 rotation;
+        ode::toOde(g->offset.rotation, rotation);
+        const Vec3& p = g->offset.position;
+        dGeomSetOffsetPosition(g->geom, p.x(), p.y(), p.z());
+        dGeomSetOffsetRotation(g->geom, rotation);
+      }
+    }
+    geoms_.push_back(std::make_unique<Geom>());
+    dGeomSetData(g->geom, geoms_.back().get());
+  }
+}
+
+void RawWorld::takeSurfaces(const Source& from) {
+  const std::vector<engine::Geom>& geoms = from.model.geoms;
   std::vector<const engine::Surface*> kinds;
   std::map<std::string, std::vector<std::size_t>> byName;
-  for (const auto& g : geoms) {
-    const auto& owner = *static_cast<const Collider*>(g->owner);
-    auto raw = std::make_unique<Geom>();
-    if (const engine::Surface* s = surfaceOf(owner)) {
-      const auto known =
-          std::find_if(kinds.begin(), kinds.end(), [&](const engine::Surface* k) { return same(*k, *s); });
-      raw->surface = static_cast<std::size_t>(known - kinds.begin());
-      if (known == kinds.end()) kinds.push_back(s);
-      raw->solid = true;
-    }
-    byName[owner.name()].push_back(geoms_.size());
-    dGeomSetData(g->id, raw.get());
-    geoms_.push_back(std::move(raw));
+  for (std::size_t i = 0; i < geoms.size(); ++i) {
+    const auto& owner = *static_cast<const Collider*>(geoms[i].owner);
+    byName[owner.name()].push_back(i);
+    const engine::Surface* s = surfaceOf(owner);
+    if (!s) continue;
+    const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const engine::Surface* k) { return same(*k, *s); });
+    geoms_[i]->surface = static_cast<std::size_t>(known - kinds.begin());
+    if (known == kinds.end()) kinds.push_back(s);
+    geoms_[i]->solid = true;
   }
   surfaceCount_ = kinds.size();
   for (const engine::Surface* a : kinds)
     for (const engine::Surface* b : kinds) surfaces_.push_back(combine(*a, *b));
+
+  // Pairs that exclude each other by name.
   for (std::size_t i = 0; i < geoms.size(); ++i) {
-    const Value names = getProperty(*static_cast<const Collider*>(geoms[i]->owner), "notCollideWith");
+    const Value names = getProperty(*static_cast<const Collider*>(geoms[i].owner), "notCollideWith");
     for (const Value& name : names.toList())
       for (const std::size_t k : byName[name.toString()])
-        if (geoms[i]->space == geoms[k]->space)
+        if (geoms[i].space == geoms[k].space)
           geoms_[i]->never.push_back(geoms_[k].get()), geoms_[k]->never.push_back(geoms_[i].get());
   }
 }
 
 RawWorld::~RawWorld() { dJointGroupDestroy(group_); }
 
-void RawWorld::takeDrags(Kernel& kernel) {
-  const ode::WorldData& w = worldOf(kernel);
+void RawWorld::takeDrags(House& house, const Source& from) {
   std::vector<BodyController*> controllers;
-  kernel.root().require<Node>("/usr/scene").collect(controllers);
+  house.kernel().root().require<Node>("/usr/scene").collect(controllers);
   for (BodyController* c : controllers)
     if (c->classObject()->name() == "DragController" && c->ancestor<IRigidBody>())
-      drags_.push_back({bodyOf(*c->ancestor<IRigidBody>(), w), getProperty(*c, "linearDrag").toNumber(),
+      drags_.push_back({from.bodyOf(*c->ancestor<IRigidBody>()), getProperty(*c, "linearDrag").toNumber(),
                         getProperty(*c, "angularDrag").toNumber()});
 }
 
-/// The engine's joint is the one in which a number that nobody else has turns up.
-const ode::JointData& jointOf(IJoint& joint, const ode::WorldData& w) {
-  constexpr double kMark = 0.123046875;  // the same in single precision
-  const double before = joint.parameter(engine::JointParameter::velocity, 0);
-  joint.setParameter(engine::JointParameter::velocity, 0, kMark);
-  const auto found = std::find_if(w.joints.begin(), w.joints.end(), [](const auto& j) {
-    return (j->type == engine::JointType::hinge && dJointGetHingeParam(j->id, dParamVel) == kMark) ||
-           (j->type == engine::JointType::universal && dJointGetUniversalParam(j->id, dParamVel) == kMark);
-  });
-  if (found == w.joints.end()) throw Error(joint.leaf().path() + " is not in the engine");
-  joint.setParameter(engine::JointParameter::velocity, 0, before);
-  return **found;
-}
-
-void RawWorld::takeMotors(House& house) {
+void RawWorld::takeMotors(House& house, const Source& from) {
   if (!house.world().humanoid() || house.world().motion == World::Motion::rest) return;
-  const ode::WorldData& w = worldOf(house.kernel());
-  for (const AgentAspect* agent : house.kernel().root().require<IGameControl>("/sys/server/gamecontrol").agents()) {
+  for (const AgentAspect* agent : agentsOf(house)) {
     std::vector<Effector*> effectors;
     agent->collect(effectors);
     for (const Effector* e : effectors) {
       const int index = motorIndex(e->predicate());
       IJoint* joint = e->parent()->as<IJoint>();
       if (index < 0 || !joint) continue;
-      const ode::JointData& data = jointOf(*joint, w);
-      const bool universal = data.type == engine::JointType::universal;
-      for (int axis = 0; axis < (universal ? 2 : 1); ++axis) motors_.push_back({data.id, axis, universal, index});
+      const dJointID id = from.dynamics.joints[from.indexOf(*joint)]->joint;
+      const bool universal = joint->jointType() == engine::JointType::universal;
+      for (int axis = 0; axis < (universal ? 2 : 1); ++axis) motors_.push_back({id, axis, universal, index});
     }
   }
 }
 
-void RawWorld::takeDrivers(House& house) {
+void RawWorld::takeDrivers(House& house, const Source& from) {
   if (house.world().kind != World::Kind::spheres) return;
-  const ode::WorldData& w = worldOf(house.kernel());
   std::size_t index = 0;
-  for (const AgentAspect* agent : house.kernel().root().require<IGameControl>("/sys/server/gamecontrol").agents()) {
+  for (const AgentAspect* agent : agentsOf(house)) {
     std::vector<IRigidBody*> bodies;
     agent->collect(bodies);
-    for (IRigidBody* b : bodies) drivers_.push_back({bodyOf(*b, w), index, index % 2 ? -60.0 : 60.0});
+    for (IRigidBody* b : bodies) drivers_.push_back({from.bodyOf(*b), index, index % 2 ? -60.0 : 60.0});
     ++index;
   }
 }
 
+// ---- stepping ----
+
 void RawWorld::follow(House& house) {
-  const ode::WorldData& w = worldOf(house.kernel());
-  if (w.bodies.size() != bodyIds_.size())
-    throw Error(fmt::format("expected {} bodies as in the house's twin, found {}", bodyIds_.size(), w.bodies.size()));
+  const std::vector<engine::DynamicState>& states = serverOf(house).state().bodies;
+  if (states.size() != bodyIds_.size())
+    throw Error(fmt::format("expected {} bodies as in the house's twin, found {}", bodyIds_.size(), states.size()));
   for (std::size_t i = 0; i < bodyIds_.size(); ++i) {
-    const dBodyID from = w.bodies[i]->id, to = bodyIds_[i];
-    const dReal *p = dBodyGetPosition(from), *v = dBodyGetLinearVel(from), *r = dBodyGetAngularVel(from);
-    dBodySetPosition(to, p[0], p[1], p[2]);
-    dBodySetQuaternion(to, dBodyGetQuaternion(from));
-    dBodySetLinearVel(to, v[0], v[1], v[2]);
-    dBodySetAngularVel(to, r[0], r[1], r[2]);
-    if (dBodyIsEnabled(from) && !dBodyIsEnabled(to)) dBodyEnable(to);
-    if (!dBodyIsEnabled(from)) dBodyDisable(to);
+    const dBodyID to = bodyIds_[i];
+    const engine::DynamicState& s = states[i];
+    const Vec3 &p = s.position, &v = s.linearVelocity, &r = s.angularVelocity;
+    dBodySetPosition(to, p.x(), p.y(), p.z());
+    dBodySetQuaternion(to, s.quaternion.data());
+    dBodySetLinearVel(to, v.x(), v.y(), v.z());
+    dBodySetAngularVel(to, r.x(), r.y(), r.z());
+    if (s.awake && !dBodyIsEnabled(to)) dBodyEnable(to);
+    if (!s.awake) dBodyDisable(to);
   }
   cycle_ = house.cycles();
 }

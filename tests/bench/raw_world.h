@@ -2,10 +2,10 @@
 /// \file
 /// The same problem without a host: plain ODE calls on the bodies, joints and geoms that a house made.
 ///
-/// Taken over once from the engine: ids of world, spaces, bodies, joints; who collides with whom; the surface of each
-/// pair of materials, combined beforehand. Then a cycle is what an ODE programmer would write: forces, motors,
-/// dSpaceCollide with a near callback that makes contact joints, dWorldStep, dJointGroupEmpty. ODE's own auto-disable
-/// is on where the house's is.
+/// Taken over once from the engine and the collision detection: ids of world, spaces, bodies, geoms, joints; which
+/// geoms collide; the surface of each pair of materials, combined beforehand. Geoms are attached to their bodies, which
+/// the host does not do. Then a cycle is what an ODE programmer would write: forces, motors, dSpaceCollide with a near
+/// callback that makes contact joints, dWorldStep, dJointGroupEmpty. ODE's own auto-disable is on where the house's is.
 
 #include <ode/ode.h>
 
@@ -15,15 +15,12 @@
 
 #include "house.h"
 
-namespace spark::ode {
-struct GeomData;
-}
-
 namespace spark::bench {
 
 /// A house's physics, stepped by hand. The house must not be stepped any more.
 class RawWorld {
  public:
+  /// Takes over a house with the dense solver that was stepped before, in its present state. The house must outlive it.
   explicit RawWorld(House& house);
   ~RawWorld();
   /// Puts all bodies where an equal house has them, as fast and as awake: both go on from one state.
@@ -58,10 +55,14 @@ class RawWorld {
     std::size_t agent;
     double factor;
   };
-  void takeGeoms(const std::vector<std::unique_ptr<ode::GeomData>>& geoms);
-  void takeDrags(Kernel& kernel);
-  void takeMotors(House& house);
-  void takeDrivers(House& house);
+  /// The model of a house, and ODE's objects with the same indices.
+  struct Source;
+  void takeBodies(const Source& from);
+  void takeGeoms(const Source& from);
+  void takeSurfaces(const Source& from);
+  void takeDrags(House& house, const Source& from);
+  void takeMotors(House& house, const Source& from);
+  void takeDrivers(House& house, const Source& from);
   void act();
   void near(dGeomID a, dGeomID b);
   static void nearCallback(void* self, dGeomID a, dGeomID b);

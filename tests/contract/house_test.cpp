@@ -15,6 +15,7 @@ struct SmallHouse : AllPlugins {
     kernel.create("FileServer", "/sys/server/file");
     kernel.create("SceneServer", "/sys/server/scene");
     kernel.create("PhysicsServer", "/sys/server/physics");
+    kernel.create("OdeCollision", "/sys/server/physics/collision");
     kernel.create("OdeEngine", "/sys/server/physics/engine");
     kernel.create("Simulation", "/sys/server/simulation");
     setProperty(*kernel.root().find("/sys/server/simulation"), "rate", "max");

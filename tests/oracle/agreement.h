@@ -1,18 +1,18 @@
 #pragma once
 /// \file
-/// When a solver agrees with ODE.
+/// When an engine agrees with ODE.
 
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
 #include <cstdio>
 
-#include "shadow_solver.h"
+#include "shadow_engine.h"
 
 namespace spark::oracle {
 
 /// Prints the differences, and fails unless velocities agree to 1e-8 of the largest, forces to 1e-6, all bodies on
-/// sleep, and nothing was deferred to ODE.
+/// sleep and on having moved, and nothing was deferred.
 inline void expectAgreement(const std::string& world, const Agreement& a) {
   fmt::print("{:<44} {:>5} steps {:>7} bodies {:>6} forces   speed {:.1e}   spin {:.1e}   force {:.1e}\n", world,
              a.steps, a.compared, a.feedbacks, a.speed, a.spin, a.force);
@@ -21,6 +21,7 @@ inline void expectAgreement(const std::string& world, const Agreement& a) {
   CHECK(a.compared > 0);
   CHECK(a.deferred == 0);
   CHECK(a.disagreedOnSleep == 0);
+  CHECK(a.disagreedOnMoved == 0);
   CHECK(a.speed < 1e-8);
   CHECK(a.spin < 1e-8);
   CHECK(a.place < 1e-8);

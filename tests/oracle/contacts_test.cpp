@@ -36,13 +36,13 @@ TEST_CASE("single things fall, bounce, slide and come to rest as with ODE") {
     OracleHouse h;
     h.ground();
     for (int i = 0; i < 4; ++i) {
-      const Body b = h.body({3.0 * i, 0, 0.8});
+      const BodyHandle b = h.body({3.0 * i, 0, 0.8});
       const engine::ShapeDescription shapes[] = {box(0.5, 0.4, 0.3), round(Shape::sphere, 0.25),
                                                  round(Shape::capsule, 0.15, 0.3), round(Shape::cylinder, 0.2, 0.3)};
       h.geom(shapes[i], b);
-      h.ode.setMass(b, {1.5, Vec3::Zero(), Mat3(Vec3(0.03, 0.05, 0.04).asDiagonal())});
-      h.ode.setRotation(b, Mat3(Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized())));
-      h.ode.setLinearVelocity(b, {1, 0.5, 0});
+      h.world.setMass(b, {1.5, Vec3::Zero(), Mat3(Vec3(0.03, 0.05, 0.04).asDiagonal())});
+      h.world.setRotation(b, Mat3(Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized())));
+      h.world.setLinearVelocity(b, {1, 0.5, 0});
     }
     h.run(200, surface);
     expectAgreement(std::string("single things, ") + name, h.shadow.agreement());
@@ -62,8 +62,8 @@ TEST_CASE("a heap falls, is pushed and falls asleep as with ODE") {
     OracleHouse h;
     h.ground();
     for (int i = 0; i < 12; ++i) {
-      const Body b = h.block({0.13 * (i % 3), 0.17 * (i % 2), 0.4 + 0.4 * i}, {0.5, 0.4, 0.3}, 1 + 0.1 * i);
-      h.ode.setRotation(b, Mat3(Eigen::AngleAxisd(0.3 * i, Vec3(1, 2, 3).normalized())));
+      const BodyHandle b = h.block({0.13 * (i % 3), 0.17 * (i % 2), 0.4 + 0.4 * i}, {0.5, 0.4, 0.3}, 1 + 0.1 * i);
+      h.world.setRotation(b, Mat3(Eigen::AngleAxisd(0.3 * i, Vec3(1, 2, 3).normalized())));
     }
     h.run(150, surface);
     expectAgreement(std::string("heap, ") + name, h.shadow.agreement());
@@ -73,17 +73,17 @@ TEST_CASE("a heap falls, is pushed and falls asleep as with ODE") {
 TEST_CASE("a ball wakes a row of sleeping boxes as with ODE") {
   OracleHouse h;
   h.ground();
-  std::vector<Body> row;
+  std::vector<BodyHandle> row;
   for (int i = 0; i < 5; ++i) row.push_back(h.block({0.31 * i, 0, 0.1495}, {0.3, 0.3, 0.3}, 1));
-  const Body ball = h.ball({-2, 0, 0.15}, 0.15, 0.5);
+  const BodyHandle ball = h.ball({-2, 0, 0.15}, 0.15, 0.5);
   h.run(40, soft());
-  REQUIRE_FALSE(h.ode.enabled(row[0]));
-  h.ode.setEnabled(ball, true);
-  h.ode.setLinearVelocity(ball, {6, 0, 0});
+  REQUIRE_FALSE(h.world.enabled(row[0]));
+  h.world.setEnabled(ball, true);
+  h.world.setLinearVelocity(ball, {6, 0, 0});
   bool woke = false;
   for (int i = 0; i < 200; ++i) {
     h.run(1, soft());
-    woke = woke || h.ode.enabled(row[0]);
+    woke = woke || h.world.enabled(row[0]);
   }
   CHECK(woke);
   expectAgreement("ball against sleeping boxes", h.shadow.agreement());
@@ -93,9 +93,9 @@ TEST_CASE("what spins in the air without gravity goes on as with ODE") {
   OracleHouse h;
   h.setGravity(0);
   for (int i = 0; i < 5; ++i) {
-    const Body b = h.block({2.0 * i, 0, 0}, {0.9, 0.4, 0.1 + 0.1 * i}, 2, true);
-    h.ode.setAngularVelocity(b, {3.0 * i, 20 - 5.0 * i, 11});
-    h.ode.setLinearVelocity(b, {1, 2, 3});
+    const BodyHandle b = h.block({2.0 * i, 0, 0}, {0.9, 0.4, 0.1 + 0.1 * i}, 2, true);
+    h.world.setAngularVelocity(b, {3.0 * i, 20 - 5.0 * i, 11});
+    h.world.setLinearVelocity(b, {1, 2, 3});
   }
   h.run(200);
   expectAgreement("spinning", h.shadow.agreement());
@@ -104,11 +104,11 @@ TEST_CASE("what spins in the air without gravity goes on as with ODE") {
 TEST_CASE("forces and torques from outside act as with ODE, on what has no gravity too") {
   OracleHouse h;
   h.ground();
-  const Body a = h.block({0, 0, 0.5}, {0.3, 0.4, 0.5}, 2), b = h.block({3, 0, 1}, {0.5, 0.4, 0.3}, 1);
-  h.ode.setGravityMode(b, false);
+  const BodyHandle a = h.block({0, 0, 0.5}, {0.3, 0.4, 0.5}, 2), b = h.block({3, 0, 1}, {0.5, 0.4, 0.3}, 1);
+  h.world.setGravityMode(b, false);
   for (int i = 0; i < 100; ++i) {
-    h.ode.addForce(a, {3.0 * std::sin(0.1 * i), 1, 25});
-    h.ode.addTorque(b, {0.3, 0.1, -0.2 * std::cos(0.2 * i)});
+    h.world.addForce(a, {3.0 * std::sin(0.1 * i), 1, 25});
+    h.world.addTorque(b, {0.3, 0.1, -0.2 * std::cos(0.2 * i)});
     h.run(1, soft());
   }
   expectAgreement("pushed", h.shadow.agreement());

@@ -1,6 +1,6 @@
 #include "pitch.h"
 
-// Whole houses whose physics the articulated solver does, without a shadow.
+// Whole houses whose physics the articulated engine does, without a shadow.
 
 using namespace spark;
 using namespace spark::oracle;
@@ -15,6 +15,7 @@ const std::vector<Pitch::Place> kPlaces{{-0.4, 0.1}, {-0.4, 0.1}, {-3, 1}, {-4, 
 void stir(Pitch& p) {
   p.push(0, {1, 0, 0});
   p.push(1, {-1, 0, 0});
+  p.playOn();
   p.ball().setVelocity({0.5, 0.1, 1});
   // The same for all time: a loaded house need not know how long it went on.
   p.move([](std::size_t motor, int) { return 2 * std::sin(0.7 * static_cast<double>(motor)); });
@@ -64,24 +65,23 @@ TEST_CASE("a saved world goes on bit for bit, in the same house and in another w
   CHECK((saved(other) == end));
 }
 
-TEST_CASE("one word of the config says which solver steps") {
+TEST_CASE("one word of the config says which engine steps") {
   for (const bool articulated : {false, true}) {
     Pitch p({{-2, 0}}, articulated ? kArticulated : Pitch::Settings{});
-    Leaf* solver = p.kernel.root().find("/sys/server/physics/engine/solver");
-    REQUIRE((solver != nullptr) == articulated);
+    Leaf& engine = p.kernel.root().require<Leaf>("/sys/server/physics/engine");
+    REQUIRE(engine.classObject()->name() == (articulated ? "ArticulatedEngine" : "OdeEngine"));
     if (!articulated) continue;
-    CHECK(solver->classObject()->name() == "ArticulatedSolver");
-    const auto solved = [&] { return getProperty(*solver, "islands").toInteger(); };
+    const auto solved = [&] { return getProperty(engine, "islands").toInteger(); };
     const auto before = solved();
     p.push(0, {0.2, 0, 0});
     p.move();
     p.run(20);
     CHECK(solved() > before);
-    CHECK(getProperty(*solver, "deferredIslands").toInteger() == 0);
+    CHECK(getProperty(engine, "deferredIslands").toInteger() == 0);
   }
 }
 
-TEST_CASE("what the two solvers make of a second of play is the same to what anybody could measure") {
+TEST_CASE("what the two engines make of a second of play is the same to what anybody could measure") {
   Pitch dense({{-2, 0}, {-3, 1}}), articulated({{-2, 0}, {-3, 1}}, kArticulated);
   for (Pitch* p : {&dense, &articulated}) {
     p->move();

@@ -11,7 +11,7 @@ constexpr JointType kTypes[] = {JointType::ball,   JointType::hinge,     JointTy
 /// What is done to the axes of a chain's joints.
 enum class Drive { none, motors, weakMotors, stops, motorsAndStops, locked };
 
-void drive(OracleHouse& h, Joint j, Drive how, int i) {
+void drive(OracleHouse& h, JointHandle j, Drive how, int i) {
   for (int axis = 0; axis < 2; ++axis) {
     const double sign = (i + axis) % 2 ? 1 : -1;
     if (how == Drive::motors) h.motor(j, axis, 1.5 * sign, 40);
@@ -25,26 +25,26 @@ void drive(OracleHouse& h, Joint j, Drive how, int i) {
 /// A chain that hangs from the world, or lies in the air, of bodies that stand at all angles. `order`: 0 older body
 /// first, 1 younger first, 2 in turn.
 struct Chain : OracleHouse {
-  std::vector<Body> bodies;
-  std::vector<Joint> joints;
+  std::vector<BodyHandle> bodies;
+  std::vector<JointHandle> joints;
   Chain(JointType type, int links, int order, Drive how, bool hangs = true, bool closed = false) {
-    Body last = Body::none;
+    BodyHandle last = BodyHandle::none;
     for (int i = 0; i < links; ++i) {
       const double angle = closed ? 2 * M_PI * i / links : 0;
       const Vec3 at = closed ? Vec3(std::cos(angle), std::sin(angle), 3) : Vec3(0.4 * i, 0.02 * i, 3);
-      const Body b = block(at, {0.3, 0.12, 0.1 + 0.01 * i}, 1 + 0.2 * (i % 3), true);
-      ode.setRotation(b, Mat3(Eigen::AngleAxisd(0.5 * i, Vec3(1, 2, 3).normalized())));
-      ode.setAngularVelocity(b, {0.3, 0.2 * (i % 3), -0.4});
+      const BodyHandle b = block(at, {0.3, 0.12, 0.1 + 0.01 * i}, 1 + 0.2 * (i % 3), true);
+      world.setRotation(b, Mat3(Eigen::AngleAxisd(0.5 * i, Vec3(1, 2, 3).normalized())));
+      world.setAngularVelocity(b, {0.3, 0.2 * (i % 3), -0.4});
       bodies.push_back(b);
-      if (last != Body::none || hangs)
-        connect(type, last, b, last == Body::none ? Vec3(at - Vec3(0.2, 0, 0)) : middle(last, b), order, how, i);
+      if (last != BodyHandle::none || hangs)
+        connect(type, last, b, last == BodyHandle::none ? Vec3(at - Vec3(0.2, 0, 0)) : middle(last, b), order, how, i);
       last = b;
     }
     if (closed) connect(type, last, bodies[0], middle(last, bodies[0]), order, how, links);
   }
-  Vec3 middle(Body a, Body b) const { return (position(a) + position(b)) / 2; }
-  void connect(JointType type, Body a, Body b, const Vec3& at, int order, Drive how, int i) {
-    if (a == Body::none && type == JointType::hinge2) type = JointType::universal;  // a wheel needs two bodies
+  Vec3 middle(BodyHandle a, BodyHandle b) const { return (position(a) + position(b)) / 2; }
+  void connect(JointType type, BodyHandle a, BodyHandle b, const Vec3& at, int order, Drive how, int i) {
+    if (a == BodyHandle::none && type == JointType::hinge2) type = JointType::universal;  // a wheel needs two bodies
     const bool turned = order == 1 || (order == 2 && i % 2);
     joints.push_back(turned ? join(type, b, a, at, 0.1 * i) : join(type, a, b, at, 0.1 * i));
     drive(*this, joints.back(), how, i);
@@ -99,18 +99,18 @@ TEST_CASE("angular motors hold and turn balls as with ODE, in every frame, with 
   for (const bool euler : {false, true})
     for (const int order : {0, 1, 2}) {
       OracleHouse h;
-      Body last = Body::none;
-      std::vector<std::pair<Joint, int>> motors;
+      BodyHandle last = BodyHandle::none;
+      std::vector<std::pair<JointHandle, int>> motors;
       for (int i = 0; i < 5; ++i) {
-        const Body b = h.block({0.4 * i, 0, 3}, {0.3, 0.12, 0.1}, 1, true);
+        const BodyHandle b = h.block({0.4 * i, 0, 3}, {0.3, 0.12, 0.1}, 1, true);
         const bool turned = order == 1 || (order == 2 && i % 2);
-        const Body first = turned ? b : last, second = turned ? last : b;
+        const BodyHandle first = turned ? b : last, second = turned ? last : b;
         h.join(JointType::ball, first, second, {0.4 * i - 0.2, 0, 3});
-        const Joint m = h.join(JointType::angularMotor, first, second, {0, 0, 0});
+        const JointHandle m = h.join(JointType::angularMotor, first, second, {0, 0, 0});
         if (euler) {
-          h.ode.setAngularMotor(m, 3, true);
-          h.ode.setAxis(m, 0, {0, 0, 1}, 1);
-          h.ode.setAxis(m, 2, {1, 0, 0}, 2);
+          h.world.setAngularMotor(m, 3, true);
+          h.world.setAxis(m, 0, {0, 0, 1}, 1);
+          h.world.setAxis(m, 2, {1, 0, 0}, 2);
         }
         for (int axis = 0; axis < 3; ++axis) {
           if ((i + axis) % 3 == 0) h.motor(m, axis, 0.8, i % 2 ? 20 : 0.4);
@@ -122,7 +122,7 @@ TEST_CASE("angular motors hold and turn balls as with ODE, in every frame, with 
       for (int n = 0; n < 80; ++n) {
         for (const auto& [m, i] : motors)
           for (int axis = 0; axis < 3 && !euler; ++axis)
-            h.ode.setMotorAngle(m, axis, 0.3 * std::sin(0.1 * n + i + axis));
+            h.world.setMotorAngle(m, axis, 0.3 * std::sin(0.1 * n + i + axis));
         h.run(1);
       }
       expectAgreement(fmt::format("angular motors, {}, order {}", euler ? "Euler" : "user", order),
@@ -133,16 +133,16 @@ TEST_CASE("angular motors hold and turn balls as with ODE, in every frame, with 
 TEST_CASE("a tree of all joints falls on the ground, lies and is driven as with ODE") {
   OracleHouse h;
   h.ground();
-  const Body trunk = h.block({0, 0, 1.2}, {0.4, 0.4, 0.4}, 3);
+  const BodyHandle trunk = h.block({0, 0, 1.2}, {0.4, 0.4, 0.4}, 3);
   for (int limb = 0; limb < 6; ++limb) {
     const double angle = M_PI / 3 * limb;
     const Vec3 out(std::cos(angle), std::sin(angle), 0);
-    Body last = trunk;
+    BodyHandle last = trunk;
     for (int i = 0; i < 3; ++i) {
-      const Body b = h.ball(Vec3(0, 0, 1.2) + out * (0.5 + 0.35 * i), 0.12, 0.6);
-      const Joint j = limb % 2
-                          ? h.join(kTypes[(limb + i) % 6], last, b, Vec3(0, 0, 1.2) + out * (0.35 + 0.35 * i), 0.2 * i)
-                          : h.join(kTypes[(limb + i) % 6], b, last, Vec3(0, 0, 1.2) + out * (0.35 + 0.35 * i), 0.2 * i);
+      const BodyHandle b = h.ball(Vec3(0, 0, 1.2) + out * (0.5 + 0.35 * i), 0.12, 0.6);
+      const JointHandle j =
+          limb % 2 ? h.join(kTypes[(limb + i) % 6], last, b, Vec3(0, 0, 1.2) + out * (0.35 + 0.35 * i), 0.2 * i)
+                   : h.join(kTypes[(limb + i) % 6], b, last, Vec3(0, 0, 1.2) + out * (0.35 + 0.35 * i), 0.2 * i);
       h.motor(j, 0, i % 2 ? 2 : -2, 8);
       h.stops(j, 0, -0.6, 0.6);
       last = b;
@@ -155,30 +155,31 @@ TEST_CASE("a tree of all joints falls on the ground, lies and is driven as with 
 TEST_CASE("bodies that are half a turn away from where a joint wants them are turned back as with ODE") {
   for (const JointType type : {JointType::fixed, JointType::slider}) {
     OracleHouse h;
-    const Body a = h.block({0, 0, 3}, {0.3, 0.12, 0.1}, 1, true), b = h.block({0.4, 0, 3}, {0.3, 0.12, 0.1}, 1, true);
+    const BodyHandle a = h.block({0, 0, 3}, {0.3, 0.12, 0.1}, 1, true),
+                     b = h.block({0.4, 0, 3}, {0.3, 0.12, 0.1}, 1, true);
     h.join(type, a, b, {0.2, 0, 3});
-    h.ode.setRotation(b, Vec3(-1, -1, 1).asDiagonal());  // exactly: the quaternion's w is 0
+    h.world.setRotation(b, Vec3(-1, -1, 1).asDiagonal());  // exactly: the quaternion's w is 0
     h.run(1);
     expectAgreement(fmt::format("{}, half a turn", nameOf(type)), h.shadow.agreement());
-    CHECK(h.ode.state(b).angularVelocity.norm() > 1);
+    CHECK(h.world.state(b).angularVelocity.norm() > 1);
   }
 }
 
 TEST_CASE("a car on suspended wheels drives as with ODE") {
   OracleHouse h;
   h.ground();
-  const Body chassis = h.block({0, 0, 0.5}, {1.2, 0.6, 0.2}, 8);
+  const BodyHandle chassis = h.block({0, 0, 0.5}, {1.2, 0.6, 0.2}, 8);
   for (int i = 0; i < 4; ++i) {
     const Vec3 at(i < 2 ? 0.5 : -0.5, i % 2 ? 0.4 : -0.4, 0.3);
-    const Body wheel = h.ball(at, 0.25, 0.8);
-    const Joint j = h.ode.createJoint(h.world, JointType::hinge2);
-    h.ode.attach(j, chassis, wheel);
-    h.ode.setAnchor(j, at);
-    h.ode.setAxis(j, 1, {0, 1, 0});
-    h.ode.setAxis(j, 0, {0, 0, 1});
-    h.ode.setFeedback(j, true);
-    h.ode.setParameter(j, JointParameter::suspensionErp, 0, 0.4);
-    h.ode.setParameter(j, JointParameter::suspensionCfm, 0, 0.01);
+    const BodyHandle wheel = h.ball(at, 0.25, 0.8);
+    const JointHandle j = h.world.createJoint(JointType::hinge2);
+    h.world.attach(j, chassis, wheel);
+    h.world.setAnchor(j, at);
+    h.world.setAxis(j, 1, {0, 1, 0});
+    h.world.setAxis(j, 0, {0, 0, 1});
+    h.world.setFeedback(j, true);
+    h.world.setParameter(j, JointParameter::suspensionErp, 0, 0.4);
+    h.world.setParameter(j, JointParameter::suspensionCfm, 0, 0.01);
     if (i < 2) {
       h.stops(j, 0, -0.5, 0.5);
       h.motor(j, 0, 0.3, 5);
@@ -202,17 +203,17 @@ TEST_CASE("joints without any give, and of their own softness, act as with ODE")
     engine::WorldParameters p;
     p.cfm = 0;
     p.erp = 0.5;
-    h.ode.setWorldParameters(h.world, p);
-    Body last = Body::none;
+    h.world.setParameters(p);
+    BodyHandle last = BodyHandle::none;
     for (int i = 0; i < 5; ++i) {
-      const Body b = h.block({0.4 * i, 0, 3}, {0.3, 0.12, 0.1}, 1, true);
-      const Joint j = h.join(type, last, b, {0.4 * i - 0.2, 0, 3}, 0.1 * i);
+      const BodyHandle b = h.block({0.4 * i, 0, 3}, {0.3, 0.12, 0.1}, 1, true);
+      const JointHandle j = h.join(type, last, b, {0.4 * i - 0.2, 0, 3}, 0.1 * i);
       if (type == JointType::hinge) h.motor(j, 0, 1, 3);
       last = b;
       if (i == 2) {
         p.cfm = 1e-2;
         p.erp = 0.1;
-        h.ode.setWorldParameters(h.world, p);
+        h.world.setParameters(p);
       }
     }
     h.run(60);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// An engine with a shadow below it, and short ways to worlds of boxes, chains and loops.
+/// A world that a shadow engine steps, and short ways to boxes, chains and loops.
 
 #include <Eigen/Geometry>
 
@@ -9,65 +9,64 @@
 
 namespace spark::oracle {
 
-using engine::Body;
-using engine::Joint;
 using engine::JointParameter;
 using engine::JointType;
 using engine::Shape;
+using physics::BodyHandle;
+using physics::JointHandle;
 
 struct OracleHouse : test::EngineHouse {
-  ShadowSolver& shadow;
-  OracleHouse() : shadow(watch(kernel)) { setGravity(9.81, true); }
+  ShadowEngine& shadow;
+  OracleHouse() : shadow(watch(kernel, "/sys/shadow")) { setGravity(9.81, true); }
 
   /// A body of a box's mass and, unless `ghost`, shape.
-  Body block(const Vec3& at, const Vec3& edges, double mass, bool ghost = false) {
-    const Body b = body(at);
+  BodyHandle block(const Vec3& at, const Vec3& edges, double mass, bool ghost = false) {
+    const BodyHandle b = body(at);
     const Vec3 squares = edges.cwiseProduct(edges);
-    ode.setMass(b, {mass, Vec3::Zero(), Mat3((Vec3::Constant(squares.sum()) - squares).asDiagonal()) * (mass / 12)});
+    world.setMass(b, {mass, Vec3::Zero(), Mat3((Vec3::Constant(squares.sum()) - squares).asDiagonal()) * (mass / 12)});
     if (!ghost) geom(test::box(edges.x(), edges.y(), edges.z()), b);
     return b;
   }
-  Body ball(const Vec3& at, double radius, double mass) {
-    const Body b = body(at);
-    ode.setMass(b, {mass, Vec3::Zero(), Mat3::Identity() * (0.4 * mass * radius * radius)});
+  BodyHandle ball(const Vec3& at, double radius, double mass) {
+    const BodyHandle b = body(at);
+    world.setMass(b, {mass, Vec3::Zero(), Mat3::Identity() * (0.4 * mass * radius * radius)});
     geom(test::round(Shape::sphere, radius), b);
     return b;
   }
   void ground() { geom(test::plane(0, 0, 1, 0)); }
 
   /// A joint at `at` with axes that suit its type; `turn` turns them. Forces are asked for.
-  Joint join(JointType type, Body a, Body b, const Vec3& at, double turn = 0) {
-    const Joint j = ode.createJoint(world, type);
-    ode.attach(j, a, b);
-    ode.setAnchor(j, at);
+  JointHandle join(JointType type, BodyHandle a, BodyHandle b, const Vec3& at, double turn = 0) {
+    const JointHandle j = world.createJoint(type);
+    world.attach(j, a, b);
+    world.setAnchor(j, at);
     const Mat3 tilt = Eigen::AngleAxisd(0.3 + turn, Vec3(3, 1, 2).normalized()).toRotationMatrix();
-    if (type == JointType::angularMotor) ode.setAngularMotor(j, 3, false);
-    ode.setAxis(j, 0, tilt * Vec3::UnitZ(), 1);
-    ode.setAxis(j, 1, tilt * Vec3::UnitX(), 0);
-    ode.setAxis(j, 2, tilt * Vec3::UnitY(), 2);
-    ode.setFixed(j);
-    ode.setFeedback(j, true);
+    if (type == JointType::angularMotor) world.setAngularMotor(j, 3, false);
+    world.setAxis(j, 0, tilt * Vec3::UnitZ(), 1);
+    world.setAxis(j, 1, tilt * Vec3::UnitX(), 0);
+    world.setAxis(j, 2, tilt * Vec3::UnitY(), 2);
+    world.setFixed(j);
+    world.setFeedback(j, true);
     return j;
   }
-  void motor(Joint j, int axis, double speed, double force) {
-    ode.setParameter(j, JointParameter::velocity, axis, speed);
-    ode.setParameter(j, JointParameter::maxForce, axis, force);
+  void motor(JointHandle j, int axis, double speed, double force) {
+    world.setParameter(j, JointParameter::velocity, axis, speed);
+    world.setParameter(j, JointParameter::maxForce, axis, force);
   }
-  void stops(Joint j, int axis, double low, double high, double bounce = 0) {
-    ode.setParameter(j, JointParameter::lowStop, axis, low);
-    ode.setParameter(j, JointParameter::highStop, axis, high);
-    ode.setParameter(j, JointParameter::bounce, axis, bounce);
-    ode.setParameter(j, JointParameter::stopErp, axis, 0.4);
-    ode.setParameter(j, JointParameter::fudgeFactor, axis, 0.6);
+  void stops(JointHandle j, int axis, double low, double high, double bounce = 0) {
+    world.setParameter(j, JointParameter::lowStop, axis, low);
+    world.setParameter(j, JointParameter::highStop, axis, high);
+    world.setParameter(j, JointParameter::bounce, axis, bounce);
+    world.setParameter(j, JointParameter::stopErp, axis, 0.4);
+    world.setParameter(j, JointParameter::fudgeFactor, axis, 0.6);
   }
   /// Steps in which each contact is solved and its force asked for.
   void run(int steps, const engine::Surface& surface = {}) {
     for (int i = 0; i < steps; ++i) {
       contacts.clear();
-      ode.detect(world, nullptr, 4, contacts);
+      detect();
       for (auto& c : contacts) c.solve = c.feedback = true, c.surface = surface;
-      ode.step(world, contacts, 0.02);
-      shadow.compare();
+      world.step(shadow, contacts, 0.02);
     }
   }
 };

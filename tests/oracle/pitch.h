@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The house of lua/soccer.lua with humanoids inside it, without network, stepped cycle by cycle; with the solver that
+/// The house of lua/soccer.lua with humanoids inside it, without network, stepped cycle by cycle; with the engine that
 /// is asked for.
 
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@
 
 #include "api/agents.h"
 #include "api/physics.h"
-#include "shadow_solver.h"
+#include "shadow_engine.h"
 #include "spark/script_server.h"
 #include "spark/state.h"
 #include "test_support.h"
@@ -87,7 +87,8 @@ class Pitch : test::House {
   void run(int cycles) { callMethod(simulation(), "runCycles", std::vector<Value>{cycles}); }
   Leaf& simulation() { return kernel.root().require<Leaf>("/sys/server/simulation"); }
   std::uint64_t hash() { return stateHash(kernel.root().require<Leaf>("/usr/scene")); }
-  ShadowSolver& watch() { return oracle::watch(kernel); }
+  /// Has a ShadowEngine step the world from now on.
+  ShadowEngine& watch() { return oracle::watch(kernel); }
 
   /// From now on all motors of all robots swing, or do what `speed` says.
   void move(const std::function<double(std::size_t motor, int cycle)>& speed = swing) {
@@ -99,6 +100,10 @@ class Pitch : test::House {
   /// As fast as the motors can, this way and that.
   static double wild(std::size_t motor, int cycle) {
     return (cycle / 4 * 7919 + static_cast<int>(motor) * 104729) % 3 * 6.0 - 6;
+  }
+  /// From now on the rules let the ball roll: before kick-off they put it back in each cycle.
+  void playOn() {
+    setProperty(kernel.root().require<Leaf>("/sys/server/gamecontrol/GameStateAspect"), "playMode", "PlayOn");
   }
   /// Pushes all bodies of a robot.
   void push(std::size_t robot, const Vec3& velocity) {

@@ -6,7 +6,7 @@ using namespace spark::oracle;
 
 TEST_CASE("humanoids stand as with ODE") {
   Pitch p({{-2, 0}, {-3, 1}});
-  const ShadowSolver& shadow = p.watch();
+  const ShadowEngine& shadow = p.watch();
   for (const std::size_t robot : {0, 1}) p.push(robot, {0.05, 0, 0});
   p.run(80);
   expectAgreement("humanoids, standing", shadow.agreement());
@@ -14,7 +14,7 @@ TEST_CASE("humanoids stand as with ODE") {
 
 TEST_CASE("humanoids that move all their motors, and fall, do it as with ODE") {
   Pitch p({{-2, 0}, {-3, 1}, {-4, -1}});
-  const ShadowSolver& shadow = p.watch();
+  const ShadowEngine& shadow = p.watch();
   p.move();
   p.run(200);
   expectAgreement("humanoids, moving", shadow.agreement());
@@ -22,7 +22,7 @@ TEST_CASE("humanoids that move all their motors, and fall, do it as with ODE") {
 
 TEST_CASE("humanoids with all motors at full speed go wild as with ODE") {
   Pitch p({{-2, 0}, {-3, 1}});
-  const ShadowSolver& shadow = p.watch();
+  const ShadowEngine& shadow = p.watch();
   p.move(Pitch::wild);
   p.run(150);
   expectAgreement("humanoids, wild", shadow.agreement());
@@ -30,7 +30,7 @@ TEST_CASE("humanoids with all motors at full speed go wild as with ODE") {
 
 TEST_CASE("humanoids whose motors are too weak for what they are told sink as with ODE") {
   Pitch p({{-2, 0}, {-3, 1}});
-  const ShadowSolver& shadow = p.watch();
+  const ShadowEngine& shadow = p.watch();
   p.weaken(0.6);
   p.move(Pitch::wild);
   p.run(150);
@@ -39,11 +39,12 @@ TEST_CASE("humanoids whose motors are too weak for what they are told sink as wi
 
 TEST_CASE("humanoids that run into each other and into the ball fall into a heap as with ODE") {
   Pitch p({{-0.4, 0.1}, {-0.4, 0.1}, {-0.8, 0.1}, {-0.4, -0.5}});
-  const ShadowSolver& shadow = p.watch();
+  const ShadowEngine& shadow = p.watch();
   p.push(0, {1, 0, 0});
   p.push(1, {-1, 0, 0});
   p.push(2, {1.5, 0, 0});
   p.push(3, {0, -1, 0});
+  p.playOn();
   p.ball().setVelocity({1, 0.3, 1});
   p.run(60);
   p.move();
@@ -53,8 +54,17 @@ TEST_CASE("humanoids that run into each other and into the ball fall into a heap
 
 TEST_CASE("a ball that is kicked bounces, rolls and hits a robot as with ODE") {
   Pitch p({{-2, 0.05}});
-  const ShadowSolver& shadow = p.watch();
+  const ShadowEngine& shadow = p.watch();
+  std::vector<IRigidBody*> robot;
+  p.robots()[0]->collect(robot);
+  REQUIRE_FALSE(robot[0]->enabled());
+  p.playOn();
   p.ball().setVelocity({-5, 0, 0.8});
-  p.run(150);
+  bool woke = false;
+  for (int i = 0; i < 150; ++i) {
+    p.run(1);
+    woke = woke || robot[0]->enabled();
+  }
+  CHECK(woke);
   expectAgreement("ball and humanoid", shadow.agreement());
 }

@@ -40,8 +40,8 @@ struct Humanoids {
   template <class F>
   void drive(Scene& scene, F&& speed, double maxTorque) {
     for (std::size_t i = 0; i < joints.size(); ++i) {
-      scene.engine.setParameter(scene.joints[joints[i]], engine::JointParameter::velocity, 0, speed(i));
-      scene.engine.setParameter(scene.joints[joints[i]], engine::JointParameter::maxForce, 0, maxTorque);
+      scene.world.setParameter(scene.joints[joints[i]], engine::JointParameter::velocity, 0, speed(i));
+      scene.world.setParameter(scene.joints[joints[i]], engine::JointParameter::maxForce, 0, maxTorque);
     }
   }
 
@@ -59,9 +59,9 @@ struct Humanoids {
     if (lengths.minCoeff() > 0.05 || lengths.x() >= 0.1 || parent < 0) twins.box(lengths, body);
     if (parent < 0) return body;
     const std::size_t joint = twins.joint(engine::JointType::hinge, parent, static_cast<int>(body), false);
-    twins.forBothJoints(joint, [&](engine::IEngine& e, engine::Joint j) {
-      e.setAnchor(j, origin_ + anchor);
-      e.setAxis(j, 0, axis);
+    twins.forBothJoints(joint, [&](physics::WorldModel& w, physics::JointHandle j) {
+      w.setAnchor(j, origin_ + anchor);
+      w.setAxis(j, 0, axis);
     });
     twins.set(joint, engine::JointParameter::lowStop, 0, -1.2);
     twins.set(joint, engine::JointParameter::highStop, 0, 1.2);

@@ -12,19 +12,19 @@ void configure(Twins& t, std::size_t joint, JointType type, const Vec3& anchor) 
   const Vec3 axis1 = t.randomVector(1).normalized(), other = t.randomVector(1);
   const Vec3 axis2 = (other - other.dot(axis1) * axis1).normalized(), axis3 = axis1.cross(axis2);
   const bool euler = t.randomInt(2) == 0;
-  t.forBothJoints(joint, [&](engine::IEngine& e, engine::Joint j) {
-    e.setAnchor(j, anchor);
+  t.forBothJoints(joint, [&](physics::WorldModel& w, physics::JointHandle j) {
+    w.setAnchor(j, anchor);
     if (type == JointType::angularMotor) {
-      e.setAngularMotor(j, 3, euler);
-      e.setAxis(j, 0, axis1, 1);
-      if (!euler) e.setAxis(j, 1, axis2, 0);
-      e.setAxis(j, 2, euler ? axis2 : axis3, 2);
-      if (!euler) e.setMotorAngle(j, 1, 0.2);
+      w.setAngularMotor(j, 3, euler);
+      w.setAxis(j, 0, axis1, 1);
+      if (!euler) w.setAxis(j, 1, axis2, 0);
+      w.setAxis(j, 2, euler ? axis2 : axis3, 2);
+      if (!euler) w.setMotorAngle(j, 1, 0.2);
     } else {
-      e.setAxis(j, 0, axis1);
-      e.setAxis(j, 1, axis2);
+      w.setAxis(j, 0, axis1);
+      w.setAxis(j, 1, axis2);
     }
-    e.setFixed(j);
+    w.setFixed(j);
   });
   for (int axis = 0; axis < 3; ++axis) {
     if (t.randomInt(2)) {
@@ -53,7 +53,7 @@ const char* kNames[] = {"ball", "hinge", "hinge2", "slider", "universal", "fixed
 TEST_CASE("a free body moves as with ODE, with gyroscopic torque and gravity mode") {
   Twins t;
   const std::size_t a = t.randomBody({0, 0, 1}), b = t.randomBody({3, 0, 1});
-  t.forBoth([&](Scene& s) { s.engine.setGravityMode(s.bodies[b], false); });
+  t.forBoth([&](Scene& s) { s.world.setGravityMode(s.bodies[b], false); });
   (void)a;
   t.shake();
   t.checkSteps(50);

@@ -1,8 +1,8 @@
-// Prints the time of a step with ODE's dense solver and with the articulated solver, through the engine and with the
-// same contacts: medians of this thread's CPU time, in microseconds per robot (or box) and step.
+// Prints the time of a world's step with ODE's dense solver and with the articulated solver, with the same contacts:
+// medians of this thread's CPU time, in microseconds per robot (or box) and step.
 //
-//     dense   the engine with ODE's solver
-//     engine  the engine with the articulated solver
+//     dense   the world with OdeEngine
+//     world   the world with the articulated engine
 //     solver  the articulated solver's part of that
 //     times   dense / solver
 //
@@ -15,6 +15,7 @@
 
 #include "humanoids.h"
 #include "spark/describe.h"
+#include "spark/link.h"
 #include "stepper.h"
 
 using namespace spark;
@@ -34,48 +35,62 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// The articulated solver, with a clock.
-class TimedSolver : public Leaf, public engine::ISolver {
-  SPARK_CLASS(TimedSolver, Leaf)
+/// The articulated engine in one thread, with a clock.
+class TimedEngine : public spark::Node, public engine::IEngine {
+  SPARK_CLASS(TimedEngine, spark::Node)
  public:
-  static void describe(Description<TimedSolver>& d) {
+  static void describe(Description<TimedEngine>& d) {
     d.doc("Measures the time of the articulated solver.");
-    d.implements<engine::ISolver>();
+    d.implements<engine::IEngine>();
+    d.link(&TimedEngine::deferred_, Child<engine::IEngine>());
   }
-  std::size_t step(engine::SolverStep& step) override {
+  Leaf& leaf() override { return *this; }
+  void compile(const engine::Model& model, const engine::State& state) override { deferred_->compile(model, state); }
+  void step(engine::Step& step) override {
     const double start = now();
-    const std::size_t deferred = stepper.step(step, 1, {});
+    const auto others = stepper.step(step, stepper.maxCouplingRows, 1, {});
     spent = now() - start;
-    return deferred;
+    if (others.empty()) return;
+    engine::Step rest{step.model, step.state, step.contacts, step.dt, others};
+    deferred_->step(rest);
   }
-  void forget(engine::World world) override { stepper.forget(world); }
+  void forget(const engine::Model& model) override {
+    stepper.forget(model);
+    deferred_->forget(model);
+  }
   articulated::Stepper stepper;
   double spent = 0;  ///< in the last step [us]
+
+ private:
+  Link<engine::IEngine> deferred_;
 };
 
-/// A scene in both engines, stepped in turns, and the times of all steps [us].
+/// A scene in both worlds, stepped in turns, and the times of all steps [us].
 struct Timing {
   Twins twins;
-  TimedSolver& timed;
-  std::vector<double> dense, engine, solver;
+  TimedEngine& timed;
+  std::vector<double> dense, world, solver;
   double contacts = 0;
 
-  Timing() : timed(replaceSolver(twins)) {
+  Timing() : timed(replaceEngine(twins)) {
     twins.ground();
     twins.parameters.cfm = 1e-3;
     twins.apply();
   }
-  static TimedSolver& replaceSolver(Twins& t) {
-    t.solver().parent()->remove(t.solver());
-    t.kernel.registerClass<TimedSolver>();
-    return t.kernel.create<TimedSolver>("TimedSolver", "/sys/solved/solver");
+  static TimedEngine& replaceEngine(Twins& t) {
+    t.articulated().parent()->remove(t.articulated());
+    t.kernel.registerClass<TimedEngine>();
+    auto& made = t.kernel.create<TimedEngine>("TimedEngine", Twins::kSolvedEngine);
+    made.spark::Node::create("OdeEngine", "deferred");
+    t.solved.engine = &made;
+    return made;
   }
   void step(Scene& scene) {
     twins.detectContacts(scene);
     contacts = static_cast<double>(scene.contacts.size());
     const double start = now();
-    scene.engine.step(scene.world, scene.contacts, twins.dt);
-    (&scene == &twins.plain ? dense : engine).push_back(now() - start);
+    scene.step(twins.dt);
+    (&scene == &twins.plain ? dense : world).push_back(now() - start);
     if (&scene == &twins.solved) solver.push_back(timed.spent);
   }
   /// Steps both scenes in alternating blocks: within a block, a step finds the caches as the same world's last step
@@ -92,12 +107,12 @@ struct Timing {
   }
   /// Prints the medians per robot or box, of which there are `count`.
   void print(const char* name, int count) const {
-    const double d = median(dense) / count, e = median(engine) / count, a = median(solver) / count;
+    const double d = median(dense) / count, w = median(world) / count, a = median(solver) / count;
     const articulated::Stepper& s = timed.stepper;
-    fmt::print("{:<28} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>8}\n", "", "contacts", "dense", "engine", "solver",
+    fmt::print("{:<28} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>8}\n", "", "contacts", "dense", "world", "solver",
                "times", "passes", "exact", "deferred");
     fmt::print("{:<28} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.2f} {:>8.1f} {:>8.2f} {:>6} {:>8}\n", name, contacts / count, d,
-               e, a, d / a, static_cast<double>(s.passes()) / static_cast<double>(s.islands()), s.exactSolutions(),
+               w, a, d / a, static_cast<double>(s.passes()) / static_cast<double>(s.islands()), s.exactSolutions(),
                s.deferredIslands());
   }
 };

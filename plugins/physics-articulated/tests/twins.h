@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// The same scene in two engines: one uses ODE's direct solver, the other the articulated solver. Before each step the
+/// The same scene in two worlds: ODE's direct solver steps one, the articulated engine the other. Before each step the
 /// second takes over the first one's state; after it, states and forces of both must agree.
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "api/engine.h"
+#include "../../physics/world_model.h"
 #include "test_support.h"
 
 namespace spark::test {
@@ -17,16 +17,17 @@ inline constexpr engine::JointType kTypes[] = {
     engine::JointType::ball,      engine::JointType::hinge, engine::JointType::hinge2,      engine::JointType::slider,
     engine::JointType::universal, engine::JointType::fixed, engine::JointType::angularMotor};
 
-/// A world of one engine, with its bodies and joints in order of creation.
+/// A world with its engine, and its bodies and joints in order of creation.
 struct Scene {
-  engine::IEngine& engine;
-  engine::World world;
-  engine::Space space;
+  engine::ICollision& collision;
+  engine::IEngine* engine = nullptr;  ///< the kernel's
+  physics::WorldModel world;
+  physics::SpaceHandle space = world.createSpace(physics::SpaceHandle::none);
   engine::Contacts contacts;
-  std::vector<engine::Body> bodies;
-  std::vector<engine::Joint> joints;
-  explicit Scene(engine::IEngine& e)
-      : engine(e), world(e.createWorld()), space(e.createSpace(world, engine::Space::none)) {}
+  std::vector<physics::BodyHandle> bodies;
+  std::vector<physics::JointHandle> joints;
+  explicit Scene(engine::ICollision& c) : collision(c) {}
+  void step(double dt) { world.step(*engine, contacts, dt); }
 };
 
 /// Largest differences between the two worlds. Velocities and feedback are relative to the largest in the world;
@@ -35,31 +36,36 @@ struct Differences {
   double velocity = 0, position = 0, feedback = 0;
 };
 
-/// Builds the scene in both engines and steps it. Random numbers come from `random` alone, so a scene depends only on
+/// Builds the scene in both worlds and steps it. Random numbers come from `random` alone, so a scene depends only on
 /// its seed.
 class Twins : public House {
  public:
-  Scene plain, solved;  ///< by ODE alone; by the articulated solver
+  Scene plain, solved;  ///< by ODE alone; by the articulated engine
   engine::WorldParameters parameters;
   engine::Surface surface;  ///< of all contacts
   double dt = 0.02;         ///< s
   std::mt19937 random;
 
   explicit Twins(unsigned seed = 1)
-      : plain(make(kernel, "/sys/plain")), solved(make(kernel, "/sys/solved")), random(seed) {
+      : plain(makeCollision(kernel, "/sys/plain/collision")),
+        solved(makeCollision(kernel, "/sys/solved/collision")),
+        random(seed) {
     kernel.plugins().use("physics-articulated");
-    newSolver();
+    plain.engine = &kernel.create<engine::IEngine>("OdeEngine", "/sys/plain/engine");
+    newEngine();
     parameters.autoDisable = false;
     apply();
   }
-  /// Replaces the solver by a new one, which has no warm start.
-  void newSolver() {
-    if (solver_) solver_->parent()->remove(*solver_);
-    solver_ = &kernel.create("ArticulatedSolver", "/sys/solved/solver");
+  /// Replaces the articulated engine by a new one, which has no warm start.
+  void newEngine() {
+    if (Leaf* old = kernel.root().find(kSolvedEngine)) old->parent()->remove(*old);
+    auto& made = kernel.create<Node>("ArticulatedEngine", kSolvedEngine);
+    made.create("OdeEngine", "deferred");
+    solved.engine = made.as<engine::IEngine>();
   }
   /// Sets `parameters` in both worlds.
   void apply() {
-    forBoth([&](Scene& s) { s.engine.setWorldParameters(s.world, parameters); });
+    forBoth([&](Scene& s) { s.world.setParameters(parameters); });
   }
   /// Calls f for both scenes.
   template <class F>
@@ -91,10 +97,10 @@ class Twins : public House {
   /// Adds a body; returns its index in Scene::bodies.
   std::size_t body(const Vec3& at, double mass, const Mat3& inertia, const Mat3& rotation = Mat3::Identity()) {
     forBoth([&](Scene& s) {
-      const engine::Body b = s.engine.createBody(s.world);
-      s.engine.setMass(b, {mass, Vec3::Zero(), inertia});
-      s.engine.setPosition(b, at);
-      s.engine.setRotation(b, rotation);
+      const physics::BodyHandle b = s.world.createBody();
+      s.world.setMass(b, {mass, Vec3::Zero(), inertia});
+      s.world.setPosition(b, at);
+      s.world.setRotation(b, rotation);
       s.bodies.push_back(b);
     });
     return plain.bodies.size() - 1;
@@ -106,15 +112,15 @@ class Twins : public House {
   /// Adds a geom to a body; -1: static.
   void geom(const engine::ShapeDescription& shape, int body) {
     forBoth([&](Scene& s) {
-      const engine::Geom g = s.engine.createGeom(s.space, shape, nullptr);
-      s.engine.setBody(g, body < 0 ? engine::Body::none : s.bodies[static_cast<std::size_t>(body)], {});
+      const physics::GeomHandle g = s.world.createGeom(s.space, shape, nullptr);
+      s.world.setBody(g, body < 0 ? physics::BodyHandle::none : s.bodies[static_cast<std::size_t>(body)], {});
     });
   }
   /// Geoms that are added from now on are in a new space and do not collide with each other.
   void newSpace() {
     forBoth([&](Scene& s) {
-      s.space = s.engine.createSpace(s.world, engine::Space::none);
-      s.engine.setInnerCollision(s.space, false);
+      s.space = s.world.createSpace(physics::SpaceHandle::none);
+      s.world.setInnerCollision(s.space, false);
     });
   }
   /// A static plane at z = 0.
@@ -131,21 +137,21 @@ class Twins : public House {
   /// Adds a joint between two bodies; -1: the world. Returns its index in Scene::joints.
   std::size_t joint(engine::JointType type, int a, int b, bool feedback = true) {
     forBoth([&](Scene& s) {
-      const auto of = [&](int i) { return i < 0 ? engine::Body::none : s.bodies[static_cast<std::size_t>(i)]; };
-      const engine::Joint j = s.engine.createJoint(s.world, type);
-      s.engine.attach(j, of(a), of(b));
-      s.engine.setFeedback(j, feedback);
+      const auto of = [&](int i) { return i < 0 ? physics::BodyHandle::none : s.bodies[static_cast<std::size_t>(i)]; };
+      const physics::JointHandle j = s.world.createJoint(type);
+      s.world.attach(j, of(a), of(b));
+      s.world.setFeedback(j, feedback);
       s.joints.push_back(j);
     });
     return plain.joints.size() - 1;
   }
-  /// Calls f(engine, joint) in both scenes.
+  /// Calls f(world, joint) for both scenes.
   template <class F>
   void forBothJoints(std::size_t joint, F&& f) {
-    forBoth([&](Scene& s) { f(s.engine, s.joints[joint]); });
+    forBoth([&](Scene& s) { f(s.world, s.joints[joint]); });
   }
   void set(std::size_t joint, engine::JointParameter p, int axis, double v) {
-    forBothJoints(joint, [&](engine::IEngine& e, engine::Joint j) { e.setParameter(j, p, axis, v); });
+    forBothJoints(joint, [&](physics::WorldModel& w, physics::JointHandle j) { w.setParameter(j, p, axis, v); });
   }
 
   /// Gives all bodies random velocities, forces and torques.
@@ -154,10 +160,10 @@ class Twins : public House {
       const Vec3 v = randomVector(speed), w = randomVector(3 * speed), f = randomVector(2 * speed),
                  q = randomVector(speed);
       forBoth([&](Scene& s) {
-        s.engine.setLinearVelocity(s.bodies[i], v);
-        s.engine.setAngularVelocity(s.bodies[i], w);
-        s.engine.addForce(s.bodies[i], f);
-        s.engine.addTorque(s.bodies[i], q);
+        s.world.setLinearVelocity(s.bodies[i], v);
+        s.world.setAngularVelocity(s.bodies[i], w);
+        s.world.addForce(s.bodies[i], f);
+        s.world.addTorque(s.bodies[i], q);
       });
     }
   }
@@ -184,7 +190,7 @@ class Twins : public House {
     Differences d;
     forBoth([&](Scene& s) {
       detectContacts(s);
-      s.engine.step(s.world, s.contacts, dt);
+      s.step(dt);
     });
     REQUIRE(plain.contacts.size() == solved.contacts.size());
     compare(d);
@@ -193,7 +199,7 @@ class Twins : public House {
   /// Fills Scene::contacts.
   void detectContacts(Scene& s) {
     s.contacts.clear();
-    s.engine.detect(s.world, nullptr, 4, s.contacts);
+    s.world.detect(s.collision, nullptr, 4, s.contacts);
     for (auto& c : s.contacts) c.solve = c.feedback = true, c.surface = surface;
   }
   /// Copies the state of `plain` to `solved`.
@@ -201,18 +207,21 @@ class Twins : public House {
     std::vector<double> state;
     for (std::size_t i = 0; i < plain.bodies.size(); ++i) {
       state.clear();
-      plain.engine.saveBody(plain.bodies[i], state);
-      solved.engine.loadBody(solved.bodies[i], state);
+      plain.world.saveBody(plain.bodies[i], state);
+      solved.world.loadBody(solved.bodies[i], state);
     }
   }
-  Leaf& solver() { return *solver_; }
-  /// A counter of the solver.
-  std::int64_t counted(const char* property) { return getProperty(*solver_, property).toInteger(); }
+  /// The articulated engine.
+  Leaf& articulated() { return kernel.root().require<Leaf>(kSolvedEngine); }
+  /// A counter of the articulated engine.
+  std::int64_t counted(const char* property) { return getProperty(articulated(), property).toInteger(); }
+  /// Path of the engine of `solved`.
+  static constexpr const char* kSolvedEngine = "/sys/solved/engine";
 
  private:
-  static engine::IEngine& make(Kernel& kernel, const char* path) {
+  static engine::ICollision& makeCollision(Kernel& kernel, const char* path) {
     kernel.plugins().use("physics-ode");
-    return kernel.create<engine::IEngine>("OdeEngine", path);
+    return kernel.create<engine::ICollision>("OdeCollision", path);
   }
   void compare(Differences& d) {
     double largestVelocity = 1e-3, largestForce = 1e-3;
@@ -223,16 +232,16 @@ class Twins : public House {
       if (!a.allFinite() || !b.allFinite()) difference = HUGE_VAL;
     };
     for (std::size_t i = 0; i < plain.bodies.size(); ++i) {
-      const engine::BodyState a = plain.engine.state(plain.bodies[i]), b = solved.engine.state(solved.bodies[i]);
+      const engine::BodyState a = plain.world.state(plain.bodies[i]), b = solved.world.state(solved.bodies[i]);
       differ(a.linearVelocity, b.linearVelocity, velocity, largestVelocity);
       differ(a.angularVelocity, b.angularVelocity, velocity, largestVelocity);
       d.position = std::max({d.position, (a.position - b.position).norm(), (a.rotation - b.rotation).norm()});
-      CHECK(plain.engine.enabled(plain.bodies[i]) == solved.engine.enabled(solved.bodies[i]));
+      CHECK(plain.world.enabled(plain.bodies[i]) == solved.world.enabled(solved.bodies[i]));
     }
     for (std::size_t i = 0; i < plain.joints.size(); ++i) {
       Vec3 a[4], b[4];
-      plain.engine.feedback(plain.joints[i], a[0], a[1], a[2], a[3]);
-      solved.engine.feedback(solved.joints[i], b[0], b[1], b[2], b[3]);
+      plain.world.feedback(plain.joints[i], a[0], a[1], a[2], a[3]);
+      solved.world.feedback(solved.joints[i], b[0], b[1], b[2], b[3]);
       for (int k = 0; k < 4; ++k) differ(a[k], b[k], force, largestForce);
     }
     for (std::size_t i = 0; i < plain.contacts.size(); ++i)
@@ -240,7 +249,6 @@ class Twins : public House {
     d.velocity = velocity / largestVelocity;
     d.feedback = force / largestForce;
   }
-  Leaf* solver_ = nullptr;
 };
 
 }  // namespace spark::test

@@ -25,12 +25,12 @@ void addRandomMechanism(Twins& t, int bodies, int joints, double cfm, bool boxes
     const std::size_t j = t.joint(type, a, b);
     const Vec3 anchor = t.randomVector(0.3) + Vec3(0.5, 0.3, 0.5), axis1 = t.randomVector(1).normalized();
     const Vec3 axis2 = axis1.cross(t.randomVector(1)).normalized();
-    t.forBothJoints(j, [&](engine::IEngine& e, engine::Joint joint) {
-      e.setAnchor(joint, anchor);
-      if (type == JointType::angularMotor) e.setAngularMotor(joint, 2, false);
-      e.setAxis(joint, 0, axis1, 1);
-      e.setAxis(joint, 1, axis2, 2);
-      e.setFixed(joint);
+    t.forBothJoints(j, [&](physics::WorldModel& w, physics::JointHandle joint) {
+      w.setAnchor(joint, anchor);
+      if (type == JointType::angularMotor) w.setAngularMotor(joint, 2, false);
+      w.setAxis(joint, 0, axis1, 1);
+      w.setAxis(joint, 1, axis2, 2);
+      w.setFixed(joint);
     });
     for (int axis = 0; axis < 2; ++axis) {
       t.set(j, JointParameter::cfm, axis, cfm);
@@ -88,10 +88,10 @@ TEST_CASE("redundant contacts with a CFM of 0 do no harm") {
   for (int i = 0; i < 3; ++i) t.box({0.3, 0.3, 0.3}, t.body({0, 0, 0.15 + 0.299 * i}, 1, Mat3::Identity() * 0.015));
   for (int i = 0; i < 100; ++i) {
     t.detectContacts(t.solved);
-    t.solved.engine.step(t.solved.world, t.solved.contacts, t.dt);
+    t.solved.step(t.dt);
   }
   for (int i = 0; i < 3; ++i) {
-    const engine::BodyState s = t.solved.engine.state(t.solved.bodies[static_cast<std::size_t>(i)]);
+    const engine::BodyState s = t.solved.world.state(t.solved.bodies[static_cast<std::size_t>(i)]);
     CHECK(s.position.z() == Approx(0.15 + 0.3 * i).margin(0.02));
     CHECK(s.linearVelocity.norm() < 0.05);
   }
@@ -130,12 +130,12 @@ TEST_CASE("the warm start does not change a digit of the result") {
       t->box({0.2, 0.2, 0.2}, t->body({1 + 0.02 * i, 0, 0.1 + 0.19 * i}, 1, Mat3::Identity() * 0.01));
   }
   for (int i = 0; i < 60; ++i) {
-    fresh.newSolver();
+    fresh.newEngine();
     std::vector<double> states[2];
     for (Twins* t : {&used, &fresh}) {
       t->detectContacts(t->solved);
-      t->solved.engine.step(t->solved.world, t->solved.contacts, t->dt);
-      for (const engine::Body b : t->solved.bodies) t->solved.engine.saveBody(b, states[t == &fresh]);
+      t->solved.step(t->dt);
+      for (const physics::BodyHandle b : t->solved.bodies) t->solved.world.saveBody(b, states[t == &fresh]);
     }
     REQUIRE(states[0] == states[1]);
   }
@@ -153,8 +153,8 @@ TEST_CASE("several threads give the digits of one thread") {
     t.shake();
     std::vector<double> out;
     for (int k = 0; k < 20; ++k) {
-      t.solved.engine.step(t.solved.world, t.solved.contacts, t.dt);
-      for (const engine::Body b : t.solved.bodies) t.solved.engine.saveBody(b, out);
+      t.solved.step(t.dt);
+      for (const physics::BodyHandle b : t.solved.bodies) t.solved.world.saveBody(b, out);
     }
     CHECK(t.counted("islands") == 12 * 20);
     CHECK(t.counted("deferredIslands") == 0);

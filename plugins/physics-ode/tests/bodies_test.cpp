@@ -6,41 +6,41 @@
 
 using namespace spark;
 using namespace spark::test;
-using engine::Body;
+using physics::BodyHandle;
 
 TEST_CASE("a falling body is where the solver's integration puts it, and near where physics does") {
   EngineHouse house;
   house.setGravity(9.81);
-  const Body b = house.body({0, 0, 100});
+  const BodyHandle b = house.body({0, 0, 100});
   const double dt = 0.001;
   for (int i = 0; i < 1000; ++i) house.step(dt);
   // Semi-implicit Euler: z = z0 - g dt^2 n (n + 1) / 2.
   CHECK(house.position(b).z() == Approx(100 - 9.81 * dt * dt * 1000 * 1001 / 2).epsilon(1e-12));
   CHECK(house.position(b).z() == Approx(100 - 9.81 / 2).epsilon(1e-4));
-  CHECK(house.ode.state(b).linearVelocity.z() == Approx(-9.81).epsilon(1e-9));
+  CHECK(house.world.state(b).linearVelocity.z() == Approx(-9.81).epsilon(1e-9));
 }
 
 TEST_CASE("a force acts for one step, in proportion to mass") {
   EngineHouse house;
   house.setGravity(0);
-  const Body b = house.body({0, 0, 0});
-  house.ode.setMass(b, {2.0, Vec3::Zero(), Mat3::Identity() * 0.5});
-  house.ode.addForce(b, {4, 0, 0});
-  house.ode.addTorque(b, {0, 0, 1});
-  CHECK(house.ode.force(b).x() == 4);
+  const BodyHandle b = house.body({0, 0, 0});
+  house.world.setMass(b, {2.0, Vec3::Zero(), Mat3::Identity() * 0.5});
+  house.world.addForce(b, {4, 0, 0});
+  house.world.addTorque(b, {0, 0, 1});
+  CHECK(house.world.force(b).x() == 4);
   house.step(0.1);
-  CHECK(house.ode.state(b).linearVelocity.x() == Approx(0.2));
-  CHECK(house.ode.state(b).angularVelocity.z() == Approx(0.2));
-  CHECK(house.ode.force(b).isZero(0));
+  CHECK(house.world.state(b).linearVelocity.x() == Approx(0.2));
+  CHECK(house.world.state(b).angularVelocity.z() == Approx(0.2));
+  CHECK(house.world.force(b).isZero(0));
   house.step(0.1);
-  CHECK(house.ode.state(b).linearVelocity.x() == Approx(0.2));
+  CHECK(house.world.state(b).linearVelocity.x() == Approx(0.2));
 }
 
 TEST_CASE("gravity can be taken from one body") {
   EngineHouse house;
   house.setGravity(9.81);
-  const Body light = house.body({0, 0, 1}), heavy = house.body({3, 0, 1});
-  house.ode.setGravityMode(light, false);
+  const BodyHandle light = house.body({0, 0, 1}), heavy = house.body({3, 0, 1});
+  house.world.setGravityMode(light, false);
   house.step();
   CHECK(house.position(light).z() == 1);
   CHECK(house.position(heavy).z() < 1);
@@ -48,48 +48,46 @@ TEST_CASE("gravity can be taken from one body") {
 
 TEST_CASE("masses that no body can have are refused with a sentence") {
   EngineHouse house;
-  const Body b = house.body({0, 0, 0});
-  CHECK_THROWS_WITH(house.ode.setMass(b, {0, Vec3::Zero(), Mat3::Identity()}), Catch::Contains("mass above 0 kg"));
-  CHECK_THROWS_WITH(house.ode.setMass(b, {1, Vec3(0.1, 0, 0), Mat3::Identity()}), Catch::Contains("centre of mass"));
-  CHECK_THROWS_WITH(house.ode.setMass(b, {1, Vec3::Zero(), -Mat3::Identity()}), Catch::Contains("positive definite"));
-  CHECK_THROWS_WITH(house.ode.setMass(b, {std::nan(""), Vec3::Zero(), Mat3::Identity()}), Catch::Contains("finite"));
+  const BodyHandle b = house.body({0, 0, 0});
+  CHECK_THROWS_WITH(house.world.setMass(b, {0, Vec3::Zero(), Mat3::Identity()}), Catch::Contains("mass above 0 kg"));
+  CHECK_THROWS_WITH(house.world.setMass(b, {1, Vec3(0.1, 0, 0), Mat3::Identity()}), Catch::Contains("centre of mass"));
+  CHECK_THROWS_WITH(house.world.setMass(b, {1, Vec3::Zero(), -Mat3::Identity()}), Catch::Contains("positive definite"));
+  CHECK_THROWS_WITH(house.world.setMass(b, {std::nan(""), Vec3::Zero(), Mat3::Identity()}), Catch::Contains("finite"));
 }
 
 TEST_CASE("numbers that are none do not get into a body") {
   EngineHouse house;
   house.setGravity(0);
-  const Body b = house.body({1, 2, 3});
+  const BodyHandle b = house.body({1, 2, 3});
   const double nan = std::nan(""), inf = HUGE_VAL;
-  house.ode.setPosition(b, {nan, 0, 0});
-  house.ode.setRotation(b, Mat3::Constant(inf));
-  house.ode.setRotation(b, Mat3::Zero());
-  house.ode.setLinearVelocity(b, {inf, 0, 0});
-  house.ode.setAngularVelocity(b, {0, nan, 0});
-  house.ode.addForce(b, {nan, 0, 0});
-  house.ode.addTorque(b, {0, 0, inf});
-  house.ode.setForce(b, {nan, 0, 0});
-  house.ode.setTorque(b, {0, 0, inf});
+  house.world.setPosition(b, {nan, 0, 0});
+  house.world.setRotation(b, Mat3::Constant(inf));
+  house.world.setRotation(b, Mat3::Zero());
+  house.world.setLinearVelocity(b, {inf, 0, 0});
+  house.world.setAngularVelocity(b, {0, nan, 0});
+  house.world.addForce(b, {nan, 0, 0});
+  house.world.addTorque(b, {0, 0, inf});
   house.step();
   CHECK(house.position(b) == Vec3(1, 2, 3));
-  CHECK(house.ode.repaired(house.world).empty());
+  CHECK(house.world.repaired().empty());
 }
 
 TEST_CASE("a body that flies apart is put back to its last good pose, at rest, and named once") {
   EngineHouse house;
   house.setGravity(0);
-  const Body bad = house.body({1, 2, 3}), good = house.body({5, 0, 0});
-  house.ode.setLinearVelocity(bad, {1, 0, 0});
+  const BodyHandle bad = house.body({1, 2, 3}), good = house.body({5, 0, 0});
+  house.world.setLinearVelocity(bad, {1, 0, 0});
   house.step(0.5);
   CHECK(house.position(bad).x() == 1.5);
-  house.ode.addForce(bad, {1e300, 0, 0});
-  house.ode.addForce(bad, {1e308, 0, 0});
+  house.world.addForce(bad, {1e300, 0, 0});
+  house.world.addForce(bad, {1e308, 0, 0});
   house.step(0.5);
-  REQUIRE(house.ode.repaired(house.world).size() == 1);
-  CHECK(house.ode.repaired(house.world)[0] == bad);
+  REQUIRE(house.world.repaired().size() == 1);
+  CHECK(house.world.repaired()[0] == bad);
   CHECK(house.position(bad) == Vec3(1.5, 2, 3));
-  CHECK(house.ode.state(bad).linearVelocity.isZero(0));
+  CHECK(house.world.state(bad).linearVelocity.isZero(0));
   house.step(0.5);
-  CHECK(house.ode.repaired(house.world).empty());
+  CHECK(house.world.repaired().empty());
   CHECK(house.position(good) == Vec3(5, 0, 0));
 }
 
@@ -97,32 +95,27 @@ TEST_CASE("no force is so large that it ends the process, to the last digit or n
   for (const double most : {1e39, 1e155, 1e308})
     for (const bool exact : {false, true}) {
       INFO(most << (exact ? ", exact" : ""));
-      EngineHouse house;
-      setProperty(house.kernel.root().require<Leaf>("/sys/server/physics/engine"), "exactReplay", exact);
-      const engine::World world = house.ode.createWorld();
-      const Body a = house.ode.createBody(world), b = house.ode.createBody(world), other = house.ode.createBody(world);
-      for (const Body body : {a, b, other}) {
-        house.ode.setMass(body, {1, Vec3::Zero(), Mat3::Identity()});
-        house.ode.setGravityMode(body, false);
+      EngineHouse house(exact);
+      const BodyHandle a = house.world.createBody(), b = house.world.createBody(), other = house.world.createBody();
+      for (const BodyHandle body : {a, b, other}) {
+        house.world.setMass(body, {1, Vec3::Zero(), Mat3::Identity()});
+        house.world.setGravityMode(body, false);
       }
-      const engine::Joint joint = house.ode.createJoint(world, engine::JointType::hinge);
-      house.ode.attach(joint, a, b);
-      house.ode.setAxis(joint, 0, Vec3::UnitX());
-      engine::Contacts none;
+      const physics::JointHandle joint = house.world.createJoint(engine::JointType::hinge);
+      house.world.attach(joint, a, b);
+      house.world.setAxis(joint, 0, Vec3::UnitX());
       const auto step = [&] {
-        house.ode.step(world, none, 0.02);
-        CHECK(house.ode.state(a).position.isZero(0));
-        CHECK(house.ode.state(a).rotation.allFinite());
+        house.step();
+        CHECK(house.position(a).isZero(0));
+        CHECK(house.world.state(a).rotation.allFinite());
       };
-      house.ode.addTorque(a, {most, most, most});
-      house.ode.addTorque(a, {most, most, most});
+      house.world.addTorque(a, {most, most, most});
+      house.world.addTorque(a, {most, most, most});
       step();
-      house.ode.setTorque(a, {most, 0, 0});
+      house.world.setParameter(joint, engine::JointParameter::maxForce, 0, most);
+      house.world.setParameter(joint, engine::JointParameter::velocity, 0, most);
       step();
-      house.ode.setParameter(joint, engine::JointParameter::maxForce, 0, most);
-      house.ode.setParameter(joint, engine::JointParameter::velocity, 0, most);
-      step();
-      CHECK(house.ode.state(other).position.isZero(0));
+      CHECK(house.position(other).isZero(0));
     }
 }
 
@@ -130,49 +123,33 @@ TEST_CASE("a body at rest on the ground falls asleep after ten steps, and not in
   EngineHouse house;
   house.setGravity(9.81, true);
   house.geom(plane(0, 0, 1, 0));
-  const Body b = house.body({0, 0, 0.4995}), floating = house.body({5, 0, 5});
-  house.ode.setGravityMode(floating, false);
+  const BodyHandle b = house.body({0, 0, 0.4995}), floating = house.body({5, 0, 5});
+  house.world.setGravityMode(floating, false);
   house.geom(box(1, 1, 1), b);
   int steps = 0;
-  while (house.ode.enabled(b) && steps < 200) house.step(), ++steps;
+  while (house.world.enabled(b) && steps < 200) house.step(), ++steps;
   CHECK(steps >= 10);
-  CHECK_FALSE(house.ode.enabled(b));
-  CHECK(house.ode.enabled(floating));
-  CHECK(house.ode.state(b).linearVelocity.isZero(0));
-  house.ode.setEnabled(b, true);
+  CHECK_FALSE(house.world.enabled(b));
+  CHECK(house.world.enabled(floating));
+  CHECK(house.world.state(b).linearVelocity.isZero(0));
+  house.world.setEnabled(b, true);
   house.step();
-  CHECK(house.ode.enabled(b));
-}
-
-TEST_CASE("where those are that are awake comes in one call") {
-  EngineHouse house;
-  const Mat3 turned = Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-  std::vector<Body> bodies{house.body({1, 0, 0}), house.body({2, 0, 0}), house.body({3, 4, 5})};
-  house.ode.setEnabled(bodies[1], false);
-  house.ode.setRotation(bodies[2], turned);
-  std::vector<std::uint8_t> awake(3, 7);
-  std::vector<Matrix> out(3, Matrix::Zero());
-  house.ode.posesOfAwake(bodies, awake, out);
-  CHECK(awake == std::vector<std::uint8_t>{1, 0, 1});
-  CHECK(out[0] == translation({1, 0, 0}));
-  CHECK(out[1].isZero(0));
-  const engine::BodyState s = house.ode.state(bodies[2]);
-  CHECK(out[2] == toMatrix({s.position, s.rotation}));
+  CHECK(house.world.enabled(b));
 }
 
 TEST_CASE("drag slows what moves, and leaves what sleeps alone") {
   EngineHouse house;
-  const Body moving = house.body({0, 0, 5}), asleep = house.body({9, 0, 5});
-  for (const Body b : {moving, asleep}) {
-    house.ode.setLinearVelocity(b, {2, 0, -1});
-    house.ode.setAngularVelocity(b, {0, 3, 0});
+  const BodyHandle moving = house.body({0, 0, 5}), asleep = house.body({9, 0, 5});
+  for (const BodyHandle b : {moving, asleep}) {
+    house.world.setLinearVelocity(b, {2, 0, -1});
+    house.world.setAngularVelocity(b, {0, 3, 0});
   }
-  house.ode.setEnabled(asleep, false);
-  for (const Body b : {moving, asleep}) house.ode.addDrag(b, 0.5, 0.25);
-  CHECK(house.ode.force(moving) == Vec3(-1, 0, 0.5));
-  CHECK(house.ode.torque(moving) == Vec3(0, -0.75, 0));
-  CHECK(house.ode.force(asleep).isZero(0));
-  CHECK_FALSE(house.ode.enabled(asleep));
+  house.world.setEnabled(asleep, false);
+  for (const BodyHandle b : {moving, asleep}) house.world.addDrag(b, 0.5, 0.25);
+  CHECK(house.world.force(moving) == Vec3(-1, 0, 0.5));
+  CHECK(house.world.torque(moving) == Vec3(0, -0.75, 0));
+  CHECK(house.world.force(asleep).isZero(0));
+  CHECK_FALSE(house.world.enabled(asleep));
 }
 
 TEST_CASE("the plugin stays while an engine lives, and goes afterwards") {
@@ -199,15 +176,15 @@ TEST_CASE("ODE is closed with the last engine, and its messages have no handler 
 TEST_CASE("a body that is turned by its own rotation again and again keeps right angles") {
   EngineHouse house;
   house.setGravity(0);
-  const Body b = house.body({0, 0, 0});
+  const BodyHandle b = house.body({0, 0, 0});
   Mat3 tilted = Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   tilted(1, 2) += 1e-7;  // as single precision leaves it
-  house.ode.setRotation(b, tilted);
+  house.world.setRotation(b, tilted);
   for (int i = 0; i < 300; ++i) {
-    const Mat3 r = house.ode.state(b).rotation;
-    house.ode.setRotation(b, tilted * r.transpose() * r);
+    const Mat3 r = house.world.state(b).rotation;
+    house.world.setRotation(b, tilted * r.transpose() * r);
   }
-  const Mat3 r = house.ode.state(b).rotation;
+  const Mat3 r = house.world.state(b).rotation;
   CHECK((r * r.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-4);
   CHECK((r - tilted).cwiseAbs().maxCoeff() < 1e-3);
 }
@@ -215,24 +192,14 @@ TEST_CASE("a body that is turned by its own rotation again and again keeps right
 TEST_CASE("a body that flies away is put back before the space's cells end") {
   for (const bool exact : {false, true}) {
     CAPTURE(exact);
-    EngineHouse house;
-    setProperty(*house.kernel.root().find("/sys/server/physics/engine"), "exactReplay", exact);
-    const engine::World world = house.ode.createWorld();
-    const engine::Space space = house.ode.createSpace(world, engine::Space::none);
+    EngineHouse house(exact);
     for (int i = 0; i < 2; ++i) {
-      const Body b = house.ode.createBody(world);
-      const engine::Geom g = house.ode.createGeom(space, round(engine::Shape::sphere, 0.01), nullptr);
-      house.ode.setBody(g, b, {});
-      house.ode.setPosition(b, {1.0 * i, 0, 0});
-      house.ode.setLinearVelocity(b, {9e7, 0, 0});
+      const BodyHandle b = house.body({1.0 * i, 0, 0});
+      house.geom(round(engine::Shape::sphere, 0.01), b);
+      house.world.setLinearVelocity(b, {9e7, 0, 0});
     }
-    for (int i = 0; i < 200; ++i) {
-      house.contacts.clear();
-      house.ode.detect(world, nullptr, 4, house.contacts);
-      house.ode.step(world, house.contacts, 0.02);
-    }
-    CHECK(house.ode.state(house.ode.createBody(world)).position.isZero(0));  // it still lives
-    house.ode.destroyWorld(world);
+    for (int i = 0; i < 200; ++i) house.step();
+    CHECK(house.position(house.world.createBody()).isZero(0));  // it still lives
   }
 }
 
@@ -241,21 +208,18 @@ TEST_CASE("exact replay rounds every component of what crosses the engine, and n
   REQUIRE(rounded != v);
   for (const bool exact : {false, true}) {
     CAPTURE(exact);
-    EngineHouse house;
-    setProperty(*house.kernel.root().find("/sys/server/physics/engine"), "exactReplay", exact);
-    const engine::World world = house.ode.createWorld();
-    const Body b = house.ode.createBody(world);
-    house.ode.addForce(b, v);
-    house.ode.addTorque(b, v);
+    EngineHouse house(exact);
+    const BodyHandle b = house.world.createBody();
+    house.world.addForce(b, v);
+    house.world.addTorque(b, v);
     const Vec3& wanted = exact ? rounded : v;
     for (int i = 0; i < 3; ++i) {
-      CHECK(house.ode.force(b)[i] == wanted[i]);
-      CHECK(house.ode.torque(b)[i] == wanted[i]);
+      CHECK(house.world.force(b)[i] == wanted[i]);
+      CHECK(house.world.torque(b)[i] == wanted[i]);
     }
-    const engine::Joint hinge = house.ode.createJoint(world, engine::JointType::hinge);
-    house.ode.attach(hinge, b, Body::none);
-    house.ode.setAnchor(hinge, v);  // the body is at 0: the anchor is returned as it was stored
-    for (int i = 0; i < 3; ++i) CHECK(house.ode.anchor(hinge)[i] == wanted[i]);
-    house.ode.destroyWorld(world);
+    const physics::JointHandle hinge = house.world.createJoint(engine::JointType::hinge);
+    house.world.attach(hinge, b, BodyHandle::none);
+    house.world.setAnchor(hinge, v);  // the body is at 0: the anchor is returned as it was stored
+    for (int i = 0; i < 3; ++i) CHECK(house.world.anchor(hinge)[i] == wanted[i]);
   }
 }

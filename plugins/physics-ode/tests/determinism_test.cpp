@@ -6,21 +6,21 @@
 
 using namespace spark;
 using namespace spark::test;
-using engine::Body;
 using engine::Shape;
+using physics::BodyHandle;
 
 namespace {
 
 /// A heap of thirty things over the ground; the same each time.
 struct Heap : EngineHouse {
-  std::vector<Body> bodies;
+  std::vector<BodyHandle> bodies;
   explicit Heap(bool autoDisable = true) {
     setGravity(9.81, autoDisable);
     geom(plane(0, 0, 1, 0));
     for (int i = 0; i < 30; ++i) {
-      const Body b = body({0.13 * (i % 3), 0.17 * (i % 2), 0.6 + 0.55 * i});
-      ode.setRotation(b, Mat3(Eigen::AngleAxisd(0.3 * i, Vec3(1, 2, 3).normalized())));
-      ode.setMass(b, {1.0, Vec3::Zero(), Mat3::Identity() * 0.05});
+      const BodyHandle b = body({0.13 * (i % 3), 0.17 * (i % 2), 0.6 + 0.55 * i});
+      world.setRotation(b, Mat3(Eigen::AngleAxisd(0.3 * i, Vec3(1, 2, 3).normalized())));
+      world.setMass(b, {1.0, Vec3::Zero(), Mat3::Identity() * 0.05});
       const engine::ShapeDescription shapes[] = {box(0.5, 0.4, 0.3), round(Shape::sphere, 0.25),
                                                  round(Shape::capsule, 0.15, 0.3), round(Shape::cylinder, 0.2, 0.3)};
       geom(shapes[i % 4], b);
@@ -36,12 +36,12 @@ struct Heap : EngineHouse {
   }
   std::vector<double> saved() const {
     std::vector<double> out;
-    for (const Body b : bodies) ode.saveBody(b, out);
+    for (const BodyHandle b : bodies) world.saveBody(b, out);
     return out;
   }
   void load(const std::vector<double>& all) {
     const std::size_t each = all.size() / bodies.size();
-    for (std::size_t i = 0; i < bodies.size(); ++i) ode.loadBody(bodies[i], std::span(all).subspan(i * each, each));
+    for (std::size_t i = 0; i < bodies.size(); ++i) world.loadBody(bodies[i], std::span(all).subspan(i * each, each));
   }
 };
 
@@ -71,7 +71,7 @@ TEST_CASE("a heap goes on bit for bit from a saved state, in the same house and 
   a.load(middle);
   a.run(400);
   CHECK(a.saved() == end);
-  CHECK_THROWS_WITH(a.ode.loadBody(a.bodies[0], std::span(middle).subspan(0, 5)),
+  CHECK_THROWS_WITH(a.world.loadBody(a.bodies[0], std::span(middle).subspan(0, 5)),
                     Catch::Contains("saved state, found 5"));
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("sleeping is ODE's: a box dropped by plain ODE calls falls asleep in t
   EngineHouse house;
   house.setGravity(9.81, true);
   house.geom(plane(0, 0, 1, 0));
-  const Body b = house.body({0, 0, 0.6});
+  const BodyHandle b = house.body({0, 0, 0.6});
   house.geom(box(1, 1, 1), b);
 
   const dWorldID world = dWorldCreate();
@@ -104,9 +104,9 @@ TEST_CASE("sleeping is ODE's: a box dropped by plain ODE calls falls asleep in t
     }
     dWorldStep(world, 0.02);
     dJointGroupEmpty(group);
-    REQUIRE(house.ode.enabled(b) == bool(dBodyIsEnabled(plain)));
+    REQUIRE(house.world.enabled(b) == bool(dBodyIsEnabled(plain)));
     REQUIRE(house.position(b).z() == dBodyGetPosition(plain)[2]);
-    slept = slept || !house.ode.enabled(b);
+    slept = slept || !house.world.enabled(b);
   }
   CHECK(slept);
   dJointGroupDestroy(group);

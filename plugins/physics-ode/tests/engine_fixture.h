@@ -1,49 +1,59 @@
 #pragma once
 /// \file
-/// A house with only the engine, and short ways to bodies and geoms.
+/// A world with ODE's collision detection and engine, and short ways to bodies and geoms.
 
 #include <catch2/catch.hpp>
 
-#include "api/engine.h"
+#include "../../physics/world_model.h"
 #include "test_support.h"
 
 namespace spark::test {
 
 struct EngineHouse : House {
-  engine::IEngine& ode;
-  engine::World world;
-  engine::Space space;
+  engine::ICollision& collision;
+  engine::IEngine& engine;
+  physics::WorldModel world;
+  physics::SpaceHandle space;
   engine::Contacts contacts;
-  EngineHouse() : ode(make(*this)), world(ode.createWorld()), space(ode.createSpace(world, engine::Space::none)) {}
-  static engine::IEngine& make(House& h) {
+  explicit EngineHouse(bool exactReplay = false)
+      : collision(make<engine::ICollision>(*this, "OdeCollision", "/sys/server/physics/collision")),
+        engine(make<engine::IEngine>(*this, "OdeEngine", "/sys/server/physics/engine")),
+        world(exactReplay),
+        space(world.createSpace(physics::SpaceHandle::none)) {}
+  template <class Interface>
+  static Interface& make(House& h, const char* name, const char* path) {
     h.kernel.plugins().use("physics-ode");
-    return h.kernel.create<engine::IEngine>("OdeEngine", "/sys/server/physics/engine");
+    return h.kernel.create<Interface>(name, path);
   }
   void setGravity(double g, bool autoDisable = false) {
     engine::WorldParameters p;
     p.gravity = {0, 0, -g};
     p.autoDisable = autoDisable;
-    ode.setWorldParameters(world, p);
+    world.setParameters(p);
   }
-  engine::Body body(const Vec3& at) {
-    const engine::Body b = ode.createBody(world);
-    ode.setPosition(b, at);
+  physics::BodyHandle body(const Vec3& at) {
+    const physics::BodyHandle b = world.createBody();
+    world.setPosition(b, at);
     return b;
   }
-  engine::Geom geom(const engine::ShapeDescription& shape, engine::Body b = engine::Body::none,
-                    const Pose& offset = {}) {
-    const engine::Geom g = ode.createGeom(space, shape, nullptr);
-    ode.setBody(g, b, offset);
+  physics::GeomHandle geom(const engine::ShapeDescription& shape, physics::BodyHandle b = physics::BodyHandle::none,
+                           const Pose& offset = {}) {
+    const physics::GeomHandle g = world.createGeom(space, shape, nullptr);
+    world.setBody(g, b, offset);
     return g;
+  }
+  /// Appends to `contacts`.
+  void detect(int perPair = 4, engine::PairFilter filter = nullptr) {
+    world.detect(collision, filter, perPair, contacts);
   }
   /// One step of dt in which all contacts are solved with `surface`.
   void step(double dt = 0.02, const engine::Surface& surface = {}) {
     contacts.clear();
-    ode.detect(world, nullptr, 4, contacts);
+    detect();
     for (auto& c : contacts) c.solve = true, c.surface = surface;
-    ode.step(world, contacts, dt);
+    world.step(engine, contacts, dt);
   }
-  Vec3 position(engine::Body b) const { return ode.state(b).position; }
+  Vec3 position(physics::BodyHandle b) const { return world.state(b).position; }
 };
 
 inline engine::ShapeDescription box(double x, double y, double z) {

@@ -4,9 +4,9 @@
 
 using namespace spark;
 using namespace spark::test;
-using engine::Body;
 using engine::Shape;
 using engine::ShapeDescription;
+using physics::BodyHandle;
 
 namespace {
 
@@ -38,22 +38,22 @@ TEST_CASE("every pair of solids that overlap a little in z touches with a normal
       INFO(first << " above " << second);
       const bool meshes = first == "mesh" && second == "mesh";  // ODE finds them, with rough normals
       // Off the axis and turned a little, so that no special case of edges and corners decides.
-      const Body upper = house.body({0.05, 0.03, 0.97});
-      house.ode.setRotation(upper, Mat3(Eigen::AngleAxisd(0.2, Vec3::UnitZ())));
-      const engine::Geom a = house.geom(shapeOf(first), upper);
+      const BodyHandle upper = house.body({0.05, 0.03, 0.97});
+      house.world.setRotation(upper, Mat3(Eigen::AngleAxisd(0.2, Vec3::UnitZ())));
+      const physics::GeomHandle a = house.geom(shapeOf(first), upper);
       house.geom(shapeOf(second));
-      house.ode.detect(house.world, nullptr, 4, house.contacts);
+      house.detect(4);
       REQUIRE_FALSE(house.contacts.empty());
       CHECK(house.contacts.size() <= 4);
       for (const auto& c : house.contacts) {
-        CHECK(c.geomA == a);
+        CHECK(c.geomA == house.world.index(a));
         if (!meshes) CHECK(c.normal.z() > 0.95);
         CHECK(c.normal.norm() == Approx(1).epsilon(1e-6));
       }
       if (!meshes) CHECK(deepest(house.contacts) == Approx(0.03).margin(0.01));
       house.contacts.clear();
-      house.ode.setPosition(upper, {0.05, 0.03, 1.05});
-      house.ode.detect(house.world, nullptr, 4, house.contacts);
+      house.world.setPosition(upper, {0.05, 0.03, 1.05});
+      house.detect(4);
       CHECK(house.contacts.empty());
     }
 }
@@ -68,12 +68,12 @@ TEST_CASE("every solid rests on a plane and on every other solid for a second") 
       EngineHouse house;
       house.setGravity(9.81);
       INFO(first << " on " << second);
-      const Body b = house.body({0, 0, 1.0});
+      const BodyHandle b = house.body({0, 0, 1.0});
       house.geom(shapeOf(first), b);
       house.geom(shapeOf(second));
       for (int i = 0; i < 50; ++i) house.step();
       CHECK(house.position(b).z() == Approx(1.0).margin(0.06));
-      CHECK(house.ode.repaired(house.world).empty());
+      CHECK(house.world.repaired().empty());
     }
 }
 
@@ -84,11 +84,11 @@ TEST_CASE("a ray meets every solid and the plane at its distance") {
     for (const bool attached : {false, true}) {
       EngineHouse house;
       INFO("ray down on " << name << (attached ? ", on a body" : ", static"));
-      const Body carrier = attached ? house.body({0.05, 0.02, 1.0}) : Body::none;
+      const BodyHandle carrier = attached ? house.body({0.05, 0.02, 1.0}) : BodyHandle::none;
       // From 2 m above the origin down: the surface is 1.5 m away.
       house.geom(ray(attached ? Vec3(0, 0, 1.0) : Vec3(0.05, 0.02, 2.0), {0, 0, -1}, 3), carrier);
       house.geom(shapeOf(name));
-      house.ode.detect(house.world, nullptr, 4, house.contacts);
+      house.detect(4);
       REQUIRE_FALSE(house.contacts.empty());
       CHECK(house.contacts.front().depth == Approx(1.5).margin(0.01));
       CHECK(house.contacts.front().position.z() == Approx(0.5).margin(0.01));
@@ -101,7 +101,7 @@ TEST_CASE("rays and planes do not meet their like") {
   house.geom(plane(1, 0, 0, 0));
   house.geom(ray({0, 0, 2}, {1, 0, 0}, 3), house.body({0, 0, 0}));
   house.geom(ray({1, -1, 2}, {0, 1, 0}, 3), house.body({0, 0, 0}));
-  house.ode.detect(house.world, nullptr, 4, house.contacts);
+  house.detect(4);
   for (const auto& c : house.contacts) CHECK(c.geomA != c.geomB);
   CHECK(house.contacts.size() <= 1);  // one of the rays runs into the plane x = 0
 }
@@ -112,90 +112,90 @@ TEST_CASE("a geom at an offset collides where it is, on a body and in the world,
     house.setGravity(0);
     INFO(name);
     house.geom(box(1, 1, 1));
-    const Body b = house.body({0, 0, 5});
-    house.ode.setRotation(b, Mat3(Eigen::AngleAxisd(kPi, Vec3::UnitX())));
+    const BodyHandle b = house.body({0, 0, 5});
+    house.world.setRotation(b, Mat3(Eigen::AngleAxisd(kPi, Vec3::UnitX())));
     // Upside down, an offset up is 4 m lower than the body.
-    const engine::Geom g = house.geom(shapeOf(name), b, {Vec3(0, 0, 4.02), Mat3::Identity()});
-    CHECK(house.ode.pose(g).position.z() == Approx(0.98));
-    house.ode.detect(house.world, nullptr, 4, house.contacts);
+    const physics::GeomHandle g = house.geom(shapeOf(name), b, {Vec3(0, 0, 4.02), Mat3::Identity()});
+    CHECK(house.world.pose(g).position.z() == Approx(0.98));
+    house.detect(4);
     CHECK_FALSE(house.contacts.empty());
-    house.ode.destroyBody(b);
-    CHECK(house.ode.pose(g).position.z() == Approx(0.98));
-    house.ode.setPose(g, {Vec3(0, 0, 7), Mat3::Identity()});
-    CHECK(house.ode.pose(g).position.z() == 7);
+    house.world.destroyBody(b);
+    CHECK(house.world.pose(g).position.z() == Approx(0.98));
+    house.world.setPose(g, {Vec3(0, 0, 7), Mat3::Identity()});
+    CHECK(house.world.pose(g).position.z() == 7);
   }
 }
 
 TEST_CASE("a plane stays where its numbers put it, whatever body it is attached to") {
   EngineHouse house;
   house.setGravity(0);
-  const Body carrier = house.body({0, 0, 10}), b = house.body({0, 0, 0.45});
+  const BodyHandle carrier = house.body({0, 0, 10}), b = house.body({0, 0, 0.45});
   const auto ground = house.geom(plane(0, 0, 2, 0), carrier);  // a normal of length 2
-  house.ode.setPose(ground, {Vec3(0, 0, 3), Mat3::Identity()});
+  house.world.setPose(ground, {Vec3(0, 0, 3), Mat3::Identity()});
   house.geom(box(1, 1, 1), b);
-  house.ode.detect(house.world, nullptr, 4, house.contacts);
+  house.detect(4);
   REQUIRE(house.contacts.size() == 4);
   CHECK(house.contacts[0].depth == Approx(0.05));
-  CHECK(house.contacts[0].geomB == ground);
+  CHECK(house.contacts[0].geomB == house.world.index(ground));
 }
 
 TEST_CASE("a shape can change, and collide or not") {
   EngineHouse house;
   house.setGravity(0);
-  const Body b = house.body({0, 0, 2});
+  const BodyHandle b = house.body({0, 0, 2});
   const auto g = house.geom(round(Shape::sphere, 0.5), b);
   house.geom(plane(0, 0, 1, 0));
-  house.ode.detect(house.world, nullptr, 4, house.contacts);
+  house.detect(4);
   CHECK(house.contacts.empty());
-  house.ode.setShape(g, round(Shape::sphere, 2.5));
-  house.ode.detect(house.world, nullptr, 4, house.contacts);
+  house.world.setShape(g, round(Shape::sphere, 2.5));
+  house.detect(4);
   CHECK(house.contacts.size() == 1);
   house.contacts.clear();
-  house.ode.setCollides(g, false);
-  house.ode.setShape(g, box(5, 5, 5));
-  house.ode.detect(house.world, nullptr, 4, house.contacts);
+  house.world.setCollides(g, false);
+  house.world.setShape(g, box(5, 5, 5));
+  house.detect(4);
   CHECK(house.contacts.empty());
-  house.ode.setCollides(g, true);
-  house.ode.detect(house.world, nullptr, 4, house.contacts);
+  house.world.setCollides(g, true);
+  house.detect(4);
   CHECK(house.contacts.size() == 4);
 }
 
 TEST_CASE("geoms of one body, and bodies with a joint, do not collide") {
   EngineHouse house;
   house.setGravity(0);
-  const Body a = house.body({0, 0, 0}), b = house.body({0.5, 0, 0}), c = house.body({0.9, 0, 0});
+  const BodyHandle a = house.body({0, 0, 0}), b = house.body({0.5, 0, 0}), c = house.body({0.9, 0, 0});
   house.geom(box(1, 1, 1), a);
   house.geom(box(1, 1, 1), a, {Vec3(0, 0, 0.1), Mat3::Identity()});
   house.geom(box(0.9, 0.9, 0.9), b);
   house.geom(box(0.9, 0.9, 0.9), c);
-  const auto joint = house.ode.createJoint(house.world, engine::JointType::hinge);
-  house.ode.attach(joint, a, b);
-  house.ode.detect(house.world, nullptr, 1, house.contacts);
+  const auto joint = house.world.createJoint(engine::JointType::hinge);
+  house.world.attach(joint, a, b);
+  house.detect(1);
   // a (two geoms) and b both still meet c.
   CHECK(house.contacts.size() == 3);
   house.contacts.clear();
-  house.ode.destroyJoint(joint);
-  house.ode.detect(house.world, nullptr, 1, house.contacts);
+  house.world.destroyJoint(joint);
+  house.detect(1);
   CHECK(house.contacts.size() == 5);
 }
 
 TEST_CASE("a space collides its own geoms once, or not at all, and its geoms with those around") {
   EngineHouse house;
   house.setGravity(0);
-  const auto inner = house.ode.createSpace(house.world, house.space);
-  const auto put = [&](engine::Space space, const Vec3& at) {
-    house.ode.setBody(house.ode.createGeom(space, box(1, 1, 1), nullptr), house.body(at), {});
+  const auto inner = house.world.createSpace(house.space);
+  const auto put = [&](physics::SpaceHandle space, const Vec3& at) {
+    house.world.setBody(house.world.createGeom(space, box(1, 1, 1), nullptr), house.body(at), {});
   };
   put(inner, {0, 0, 0});
   put(inner, {0.5, 0, 0});
   // Two things outside that both touch the inner space: its own pair must still come once.
   put(house.space, {0, 0.9, 0});
   put(house.space, {0, -0.9, 0});
-  house.ode.detect(house.world, nullptr, 1, house.contacts);
+  house.detect(1);
   CHECK(house.contacts.size() == 5);
   house.contacts.clear();
-  house.ode.setInnerCollision(inner, false);
-  house.ode.detect(house.world, nullptr, 1, house.contacts);
+  house.world.setInnerCollision(inner, false);
+  house.detect(1);
   CHECK(house.contacts.size() == 4);
 }
 
@@ -204,9 +204,9 @@ TEST_CASE("the filter refuses pairs and is given the owners") {
   house.setGravity(0);
   int first = 1, second = 2, third = 3;
   for (int* owner : {&first, &second, &third})
-    house.ode.setBody(house.ode.createGeom(house.space, box(1, 1, 1), owner), house.body({0, 0, *owner * 0.1}), {});
+    house.world.setBody(house.world.createGeom(house.space, box(1, 1, 1), owner), house.body({0, 0, *owner * 0.1}), {});
   const auto odd = [](void* a, void* b) { return *static_cast<int*>(a) % 2 == 1 && *static_cast<int*>(b) % 2 == 1; };
-  house.ode.detect(house.world, odd, 1, house.contacts);
+  house.detect(1, odd);
   REQUIRE(house.contacts.size() == 1);
   CHECK(house.contacts[0].ownerA == &third);  // the younger first
   CHECK(house.contacts[0].ownerB == &first);
@@ -227,16 +227,16 @@ TEST_CASE("shapes that cannot be are refused with a sentence") {
 TEST_CASE("a contact's force is the weight it carries, on whichever side the body is") {
   EngineHouse house;
   house.setGravity(9.81);
-  const Body b = house.body({0, 0, 0.4995});
-  house.ode.setMass(b, {3.0, Vec3::Zero(), Mat3::Identity() * 0.5});
+  const BodyHandle b = house.body({0, 0, 0.4995});
+  house.world.setMass(b, {3.0, Vec3::Zero(), Mat3::Identity() * 0.5});
   house.geom(box(1, 1, 1), b);
   house.geom(plane(0, 0, 1, 0));
   double sum = 0;
   for (int i = 0; i < 100; ++i) {
     house.contacts.clear();
-    house.ode.detect(house.world, nullptr, 4, house.contacts);
+    house.detect(4);
     for (auto& c : house.contacts) c.solve = c.feedback = true;
-    house.ode.step(house.world, house.contacts, 0.02);
+    house.world.step(house.engine, house.contacts, 0.02);
   }
   for (const auto& c : house.contacts) sum += c.forceOnA.z();
   CHECK(sum == Approx(3 * 9.81).epsilon(0.01));

@@ -4,18 +4,18 @@
 
 using namespace spark;
 using namespace spark::test;
-using engine::Body;
-using engine::Joint;
 using engine::JointParameter;
 using engine::JointType;
+using physics::BodyHandle;
+using physics::JointHandle;
 
 namespace {
 
 /// Dolls of a trunk and four motorised limbs of two parts, each in a space of its own, that fall on a ground and on
 /// each other; between them balls, in the space around. All of it is the same each time.
 struct Crowd : EngineHouse {
-  std::vector<Body> bodies;
-  std::vector<Joint> motors;
+  std::vector<BodyHandle> bodies;
+  std::vector<JointHandle> motors;
   int steps = 0;
 
   Crowd(bool exactReplay, int threads, int dolls = 22) : Crowd(prepared(exactReplay, threads), dolls) {}
@@ -24,8 +24,8 @@ struct Crowd : EngineHouse {
   void next() {
     ++steps;
     for (std::size_t i = 0; i < motors.size(); ++i)
-      ode.setParameter(motors[i], JointParameter::velocity, 0,
-                       2 * std::sin(0.1 * steps + 0.7 * static_cast<double>(i)));
+      world.setParameter(motors[i], JointParameter::velocity, 0,
+                         2 * std::sin(0.1 * steps + 0.7 * static_cast<double>(i)));
     engine::Surface s;
     s.softErpOn = s.slipOn = true;
     s.softErp = 0.4;
@@ -35,7 +35,7 @@ struct Crowd : EngineHouse {
   /// Everything that another step could differ by: bodies, and contacts in their order.
   std::vector<double> all() const {
     std::vector<double> out;
-    for (const Body b : bodies) ode.saveBody(b, out);
+    for (const BodyHandle b : bodies) world.saveBody(b, out);
     for (const engine::Contact& c : contacts)
       out.insert(out.end(), {c.position.x(), c.position.y(), c.position.z(), c.depth});
     return out;
@@ -48,51 +48,46 @@ struct Crowd : EngineHouse {
   };
   static Prepared prepared(bool exactReplay, int threads) { return {exactReplay, threads}; }
 
-  Crowd(Prepared p, int dolls) {
-    setProperty(dynamic_cast<Leaf&>(ode), "exactReplay", p.exactReplay);
-    ode.destroySpace(space);
-    ode.destroyWorld(world);
-    world = ode.createWorld();
-    space = ode.createSpace(world, engine::Space::none);
+  Crowd(Prepared p, int dolls) : EngineHouse(p.exactReplay) {
     kernel.jobs().setThreads(p.threads);
     setGravity(9.81, true);
     geom(plane(0, 0, 1, 0));
     for (int i = 0; i < dolls; ++i) addDoll(Vec3(0.9 * (i % 5), 0.7 * (i / 5), 0.8 + 0.11 * (i % 7)));
     for (int i = 0; i < 6; ++i) geom(round(engine::Shape::sphere, 0.12), add({0.8 * i, 0.3, 0.5}, 0.4));
   }
-  Body add(const Vec3& at, double mass) {
-    const Body b = body(at);
-    ode.setMass(b, {mass, Vec3::Zero(), Mat3::Identity() * mass * 0.01});
+  BodyHandle add(const Vec3& at, double mass) {
+    const BodyHandle b = body(at);
+    world.setMass(b, {mass, Vec3::Zero(), Mat3::Identity() * mass * 0.01});
     bodies.push_back(b);
     return b;
   }
-  Body addPart(engine::Space inner, const Vec3& at, const Vec3& edges) {
-    const Body b = add(at, 0.5);
-    ode.setBody(ode.createGeom(inner, box(edges.x(), edges.y(), edges.z()), nullptr), b, {});
+  BodyHandle addPart(physics::SpaceHandle inner, const Vec3& at, const Vec3& edges) {
+    const BodyHandle b = add(at, 0.5);
+    world.setBody(world.createGeom(inner, box(edges.x(), edges.y(), edges.z()), nullptr), b, {});
     return b;
   }
   void addDoll(const Vec3& at) {
-    const engine::Space inner = ode.createSpace(world, space);
-    const Body trunk = addPart(inner, at, {0.3, 0.2, 0.3});
+    const physics::SpaceHandle inner = world.createSpace(space);
+    const BodyHandle trunk = addPart(inner, at, {0.3, 0.2, 0.3});
     for (int limb = 0; limb < 4; ++limb) {
       const Vec3 root = at + Vec3(limb % 2 ? 0.2 : -0.2, 0, limb / 2 ? 0.1 : -0.25);
-      Body above = trunk;
+      BodyHandle above = trunk;
       for (int part = 0; part < 2; ++part) {
         const Vec3 middle = root - Vec3(0, 0, 0.22 * part);
-        const Body below = addPart(inner, middle, {0.08, 0.08, 0.2});
+        const BodyHandle below = addPart(inner, middle, {0.08, 0.08, 0.2});
         hinge(above, below, middle + Vec3(0, 0, 0.11), part ? Vec3::UnitX() : Vec3::UnitY());
         above = below;
       }
     }
   }
-  void hinge(Body above, Body below, const Vec3& anchor, const Vec3& axis) {
-    const Joint j = ode.createJoint(world, JointType::hinge);
-    ode.attach(j, above, below);
-    ode.setAnchor(j, anchor);
-    ode.setAxis(j, 0, axis, 0);
-    ode.setParameter(j, JointParameter::lowStop, 0, -1);
-    ode.setParameter(j, JointParameter::highStop, 0, 1);
-    ode.setParameter(j, JointParameter::maxForce, 0, 8);
+  void hinge(BodyHandle above, BodyHandle below, const Vec3& anchor, const Vec3& axis) {
+    const JointHandle j = world.createJoint(JointType::hinge);
+    world.attach(j, above, below);
+    world.setAnchor(j, anchor);
+    world.setAxis(j, 0, axis, 0);
+    world.setParameter(j, JointParameter::lowStop, 0, -1);
+    world.setParameter(j, JointParameter::highStop, 0, 1);
+    world.setParameter(j, JointParameter::maxForce, 0, 8);
     motors.push_back(j);
   }
 };
@@ -128,11 +123,11 @@ TEST_CASE("the number of threads may change while a world runs") {
 
 TEST_CASE("knots are solved as in one thread, whatever the others do") {
   Crowd one(true, 1), two(true, 2);
-  for (Crowd* c : {&one, &two}) setProperty(dynamic_cast<Leaf&>(c->ode), "directRows", 60);
+  for (Crowd* c : {&one, &two}) setProperty(c->engine.leaf(), "directRows", 60);
   for (int i = 0; i < 60; ++i) {
     one.next();
     two.next();
   }
-  CHECK(getProperty(dynamic_cast<Leaf&>(one.ode), "approximateSteps").toInteger() > 0);
+  CHECK(getProperty(one.engine.leaf(), "approximateSteps").toInteger() > 0);
   CHECK(one.all() == two.all());
 }

@@ -2,21 +2,21 @@
 
 using namespace spark;
 using namespace spark::test;
-using engine::Body;
+using physics::BodyHandle;
 
 namespace {
 
 /// A knot of boxes in one place, and a box that rests far away.
 struct Knot : EngineHouse {
-  std::vector<Body> bodies;
-  Body calm;
+  std::vector<BodyHandle> bodies;
+  BodyHandle calm;
   Leaf& leaf;
   explicit Knot(int n) : leaf(*kernel.root().find("/sys/server/physics/engine")) {
     setGravity(9.81, true);
     geom(plane(0, 0, 1, 0));
     for (int i = 0; i < n; ++i) {
       bodies.push_back(body({0.001 * i, 0.0015 * (i * 7 % 11), 0.3 + 0.0007 * (i * 5 % 13)}));
-      ode.setMass(bodies.back(), {1, Vec3::Zero(), Mat3::Identity() * 0.03});
+      world.setMass(bodies.back(), {1, Vec3::Zero(), Mat3::Identity() * 0.03});
       geom(box(0.4, 0.4, 0.4), bodies.back());
     }
     calm = body({50, 0, 0.1995});
@@ -24,8 +24,8 @@ struct Knot : EngineHouse {
   }
   std::vector<double> saved() const {
     std::vector<double> out;
-    for (const Body b : bodies) ode.saveBody(b, out);
-    ode.saveBody(calm, out);
+    for (const BodyHandle b : bodies) world.saveBody(b, out);
+    world.saveBody(calm, out);
     return out;
   }
 };
@@ -42,7 +42,7 @@ TEST_CASE("an island that is too large for the direct solver is solved approxima
   CHECK_THAT(a.text, Catch::Contains("directRows"));
   CHECK(a.text.find("directRows") == a.text.rfind("directRows"));
   double farthest = 0;
-  for (const Body body : a.bodies) farthest = std::max(farthest, a.position(body).norm());
+  for (const BodyHandle body : a.bodies) farthest = std::max(farthest, a.position(body).norm());
   CHECK(farthest > 0.6);
   CHECK(farthest < 50);
 }
@@ -53,10 +53,10 @@ TEST_CASE("a knot does not touch what is not in it") {
   REQUIRE(approximate(a) > 0);
   CHECK(approximate(alone) == 0);
   std::vector<double> beside, single;
-  a.ode.saveBody(a.calm, beside);
-  alone.ode.saveBody(alone.calm, single);
+  a.world.saveBody(a.calm, beside);
+  alone.world.saveBody(alone.calm, single);
   CHECK(beside == single);
-  CHECK_FALSE(a.ode.enabled(a.calm));
+  CHECK_FALSE(a.world.enabled(a.calm));
 }
 
 TEST_CASE("small islands are left to the direct solver, however many there are") {

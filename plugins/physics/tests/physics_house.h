@@ -24,6 +24,7 @@ struct PhysicsHouse : House {
     h.kernel.events().define(phase::kPlace, Order::parentsFirst, "after the step");
     h.kernel.create("SceneServer", "/sys/server/scene");
     h.kernel.create("PhysicsServer", "/sys/server/physics");
+    h.kernel.create("OdeCollision", "/sys/server/physics/collision");
     h.kernel.create("OdeEngine", "/sys/server/physics/engine");
     Leaf& scene = h.kernel.create("Scene", "/usr/scene");
     h.kernel.create("World", "/usr/scene/world");

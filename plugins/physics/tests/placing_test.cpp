@@ -77,9 +77,10 @@ TEST_CASE("the server lists the bodies of a subtree in tree order") {
   bodies.clear();
   server.bodies(house.scene, bodies);
   CHECK(bodies.size() == 3);
-  CHECK(server.world() != engine::World::none);
+  CHECK(server.model().bodies.size() == 3);
+  CHECK(server.state().bodies.size() == 3);
   house.scene.remove(*house.scene.find("world"));
-  CHECK_THROWS_WITH(server.world(), Catch::Contains("has no world"));
+  CHECK_THROWS_WITH(server.model(), Catch::Contains("has no world"));
 }
 
 TEST_CASE("a second robot that comes and goes leaves the first as it was") {

@@ -53,6 +53,7 @@ struct ReferenceHouse {
     kernel.create("SceneServer", "/sys/server/scene");
     importer = &kernel.create("RsgImporter", "/sys/server/scene/rsg");
     kernel.create("PhysicsServer", "/sys/server/physics");
+    kernel.create("OdeCollision", "/sys/server/physics/collision");
     kernel.create("OdeEngine", "/sys/server/physics/engine");
     scene = &kernel.create<Node>("Scene", "/usr/scene");
     scene->create("World", "world");

@@ -53,6 +53,7 @@ struct MatchHouse : House {
     kernel.create("RsgImporter", "/sys/server/scene/rsg");
     kernel.create("Scene", "/usr/scene");
     kernel.create("PhysicsServer", "/sys/server/physics");
+    kernel.create("OdeCollision", "/sys/server/physics/collision");
     kernel.create("OdeEngine", "/sys/server/physics/engine");
     kernel.create("World", "/usr/scene/world");
     kernel.create("Space", "/usr/scene/space");

@@ -1,4 +1,4 @@
--- With the world and all that is in it gone, the engine may go too: a new one starts a new world.
+-- World and engine go, new ones come: a new world starts.
 -- expect: the new ball fell to 44
 include "house.lua"
 files() scene() physics() simulation()

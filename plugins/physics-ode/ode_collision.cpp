@@ -1,0 +1,422 @@
+#include "ode_collision.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "spark/prefetch.h"
+
+namespace spark {
+
+using namespace ode;
+using engine::Contact;
+using engine::Index;
+using engine::kNone;
+using engine::Model;
+using engine::Shape;
+using engine::ShapeDescription;
+using engine::State;
+
+namespace {
+
+/// Upper limit of contact points per pair of geoms, whatever detect() is called with.
+constexpr int kMaxPerPair = 16;
+
+// ---- shapes and poses ----
+
+/// A rotation that turns the z axis to `direction`.
+Mat3 alongZ(const Vec3& direction) {
+  const Vec3 z = direction.normalized();
+  const Vec3 x = z.unitOrthogonal();
+  Mat3 m;
+  m << x, z.cross(x), z;
+  return m;
+}
+
+/// Creates ODE's geom for g.shape.
+void createShape(GeomData& g, dSpaceID space) {
+  const ShapeDescription& s = g.shape;
+  switch (s.shape) {
+    case Shape::box:
+      g.geom = dCreateBox(space, s.lengths.x(), s.lengths.y(), s.lengths.z());
+      break;
+    case Shape::sphere:
+      g.geom = dCreateSphere(space, s.radius);
+      break;
+    case Shape::capsule:
+      g.geom = dCreateCapsule(space, s.radius, s.length);
+      break;
+    case Shape::cylinder:
+      g.geom = dCreateCylinder(space, s.radius, s.length);
+      break;
+    case Shape::plane: {
+      const double n = std::hypot(s.plane[0], s.plane[1], s.plane[2]);
+      g.geom = dCreatePlane(space, s.plane[0] / n, s.plane[1] / n, s.plane[2] / n, s.plane[3] / n);
+      break;
+    }
+    case Shape::ray:
+      g.geom = dCreateRay(space, s.length);
+      break;
+    case Shape::mesh:
+      g.mesh.reset(dGeomTriMeshDataCreate());
+      dGeomTriMeshDataBuildDouble(g.mesh.get(), s.vertices.data(), 3 * sizeof(double),
+                                  static_cast<int>(s.vertices.size() / 3), s.triangles.data(),
+                                  static_cast<int>(s.triangles.size()), 3 * sizeof(std::uint32_t));
+      g.geom = dCreateTriMesh(space, g.mesh.get(), nullptr, nullptr, nullptr);
+      break;
+  }
+  dGeomSetData(g.geom, &g);
+  // ODE's getter returns a pointer into the geom, which stays valid as long as it lives.
+  g.rotation = s.shape == Shape::plane ? nullptr : const_cast<dReal*>(dGeomGetRotation(g.geom));
+}
+
+/// Changes the dimensions of ODE's geom, so that it keeps its position in the space's list. Returns false when the geom
+/// must be created again.
+bool reshape(const GeomData& g, const ShapeDescription& s) {
+  if (s.shape != g.shape.shape) return false;
+  switch (s.shape) {
+    case Shape::box:
+      dGeomBoxSetLengths(g.geom, s.lengths.x(), s.lengths.y(), s.lengths.z());
+      return true;
+    case Shape::sphere:
+      dGeomSphereSetRadius(g.geom, s.radius);
+      return true;
+    case Shape::capsule:
+      dGeomCapsuleSetParams(g.geom, s.radius, s.length);
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool same(const ShapeDescription& a, const ShapeDescription& b) {
+  return a.shape == b.shape && a.lengths == b.lengths && a.radius == b.radius && a.length == b.length &&
+         std::equal(a.plane, a.plane + 4, b.plane) && a.rayOrigin == b.rayOrigin && a.rayDirection == b.rayDirection &&
+         a.vertices == b.vertices && a.triangles == b.triangles;
+}
+
+/// Writes a pose to ODE's geom, without change of a bit, and marks it as moved.
+void setPose(const GeomData& g, const Vec3& position, const Mat3& rotation) {
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) g.rotation[4 * row + column] = rotation(row, column);
+  dGeomSetPosition(g.geom, position.x(), position.y(), position.z());
+}
+
+/// Brings a geom to its body, or to its place in the world. Sums are from left to right, as in ODE.
+void place(const GeomData& g, const State& state) {
+  if (!g.rotation) return;  // a plane is given in the world frame
+  if (g.body == kNone) return setPose(g, g.offset.position, g.offset.rotation);
+  const engine::DynamicState& b = state.bodies[g.body];
+  if (g.centred) return setPose(g, b.position, b.rotation);
+  const Mat3& r = b.rotation;
+  const Vec3& p = g.offset.position;
+  const Mat3& o = g.offset.rotation;
+  Vec3 position;
+  Mat3 rotation;
+  for (int i = 0; i < 3; ++i) {
+    position[i] = r(i, 0) * p[0] + r(i, 1) * p[1] + r(i, 2) * p[2] + b.position[i];
+    for (int j = 0; j < 3; ++j) rotation(i, j) = r(i, 0) * o(0, j) + r(i, 1) * o(1, j) + r(i, 2) * o(2, j);
+  }
+  setPose(g, position, rotation);
+}
+
+/// Takes body and offset from the model.
+void takePlace(GeomData& g, const engine::Geom& from) {
+  // Origin and direction of a ray are a pose of ODE's shape.
+  const Pose base =
+      from.shape.shape == Shape::ray ? Pose{from.shape.rayOrigin, alongZ(from.shape.rayDirection)} : Pose{};
+  g.body = from.body;
+  g.offset = compose(from.offset, base);
+  g.centred = g.body != kNone && g.offset.position.isZero(0) && g.offset.rotation.isIdentity(0);
+}
+
+void setCollides(GeomData& g, bool on) {
+  if (std::exchange(g.collides, on) == on) return;
+  on ? dGeomEnable(g.geom) : dGeomDisable(g.geom);
+}
+
+}  // namespace
+
+// ---- worlds ----
+
+CollisionWorld::CollisionWorld(const Model& m)
+    : model(m.id), exactReplay(m.exactReplay), root(dHashSpaceCreate(nullptr)) {
+  dSpaceSetCleanup(root, 0);
+}
+
+CollisionWorld::~CollisionWorld() {
+  for (const auto& g : geoms) dGeomDestroy(g->geom);
+  // From the last: inner spaces were created after the spaces around them.
+  for (auto s = spaces.rbegin(); s != spaces.rend(); ++s) dSpaceDestroy((*s)->space);
+  dSpaceDestroy(root);
+}
+
+bool CollisionWorld::joined(Index a, Index b) const {
+  const auto first = joinedTo.begin() + firstJoined[a], last = joinedTo.begin() + firstJoined[a + 1];
+  return std::binary_search(first, last, b);
+}
+
+namespace {
+
+/// Removes the elements of `kept` whose identity is not among those of `wanted`; both are in order of identity.
+template <class Data, class Element, class Destroy>
+void removeOthers(std::vector<std::unique_ptr<Data>>& kept, const std::vector<Element>& wanted, Destroy destroy) {
+  std::size_t next = 0;
+  std::erase_if(kept, [&](const auto& k) {
+    while (next < wanted.size() && wanted[next].id < k->id) ++next;
+    if (next < wanted.size() && wanted[next].id == k->id) return false;
+    destroy(*k);
+    return true;
+  });
+}
+
+void createSpace(CollisionWorld& w, const Model& model, Index index) {
+  const engine::Space& from = model.spaces[index];
+  auto s = std::make_unique<SpaceData>();
+  s->id = from.id;
+  s->top = w.exactReplay && from.parent == kNone;
+  const dSpaceID around = s->top ? nullptr : from.parent == kNone ? w.root : w.spaces[from.parent]->space;
+  // ODE's sweep-and-prune spaces do not compute their own bounds: inside another space they would overlap everything.
+  const bool sweepAndPrune = !w.exactReplay && from.parent == kNone;
+  s->space = sweepAndPrune ? dSweepAndPruneSpaceCreate(around, dSAP_AXES_XYZ) : dHashSpaceCreate(around);
+  dSpaceSetCleanup(s->space, 0);
+  dGeomSetData(reinterpret_cast<dGeomID>(s->space), s.get());
+  w.spaces.push_back(std::move(s));
+}
+
+void createGeom(CollisionWorld& w, const Model& model, const State& state, Index index) {
+  const engine::Geom& from = model.geoms[index];
+  auto g = std::make_unique<GeomData>();
+  g->id = from.id;
+  g->owner = from.owner;
+  g->shape = from.shape;
+  createShape(*g, w.spaces[from.space]->space);
+  takePlace(*g, from);
+  place(*g, state);
+  setCollides(*g, from.collides);
+  w.geoms.push_back(std::move(g));
+}
+
+/// Lists the geoms of each body, and the bodies that joints connect it to.
+void listByBody(CollisionWorld& w, const Model& model) {
+  const std::size_t n = model.bodies.size();
+  // A counting sort; `first` is shifted by one, so that filling the list moves it to its final place.
+  const auto sortByBody = [n](std::vector<Index>& first, std::vector<Index>& list, auto forEach) {
+    first.assign(n + 2, 0);
+    forEach([&](Index body, Index) { ++first[body + 2]; });
+    for (std::size_t i = 2; i < first.size(); ++i) first[i] += first[i - 1];
+    list.resize(first.back());
+    forEach([&](Index body, Index element) { list[first[body + 1]++] = element; });
+  };
+  sortByBody(w.firstGeom, w.geomsOf, [&](auto visit) {
+    // The youngest first, as a body of ODE has its geoms.
+    for (auto g = static_cast<Index>(model.geoms.size()); g-- > 0;)
+      if (model.geoms[g].body != kNone) visit(model.geoms[g].body, g);
+  });
+  sortByBody(w.firstJoined, w.joinedTo, [&](auto visit) {
+    for (const engine::Joint& j : model.joints)
+      if (j.b != kNone) visit(j.a, j.b), visit(j.b, j.a);
+  });
+  for (std::size_t i = 0; i < n; ++i)
+    std::sort(w.joinedTo.begin() + w.firstJoined[i], w.joinedTo.begin() + w.firstJoined[i + 1]);
+}
+
+/// Gives the geoms the new poses of the bodies that moved.
+void followBodies(const CollisionWorld& w, const State& state) {
+  constexpr std::size_t kAhead = 6;  // prefetch distance [bodies]
+  for (std::size_t k = 0; k < state.moved.size(); ++k) {
+    if (k + kAhead < state.moved.size())
+      if (const Index far = state.moved[k + kAhead]; w.firstGeom[far] < w.firstGeom[far + 1])
+        prefetch(w.geoms[w.geomsOf[w.firstGeom[far]]].get(), sizeof(GeomData) / 2);
+    const Index i = state.moved[k];
+    for (Index g = w.firstGeom[i]; g < w.firstGeom[i + 1]; ++g) place(*w.geoms[w.geomsOf[g]], state);
+  }
+}
+
+}  // namespace
+
+void OdeCollision::compile(const Model& model, const State& state) {
+  const MessageCapture capture(messages_.last);
+  auto found = std::find_if(worlds_.begin(), worlds_.end(), [&](const auto& w) { return w->model == model.id; });
+  if (found == worlds_.end()) {
+    worlds_.push_back(std::make_unique<CollisionWorld>(model));
+    found = std::prev(worlds_.end());
+  }
+  CollisionWorld& w = **found;
+
+  // Removed elements.
+  removeOthers(w.geoms, model.geoms, [](const GeomData& g) { dGeomDestroy(g.geom); });
+  // Inner spaces before the spaces around them.
+  std::reverse(w.spaces.begin(), w.spaces.end());
+  std::vector<std::uint64_t> alive;
+  for (const engine::Space& s : model.spaces) alive.push_back(s.id);
+  std::erase_if(w.spaces, [&](const auto& s) {
+    if (std::binary_search(alive.begin(), alive.end(), s->id)) return false;
+    dSpaceDestroy(s->space);
+    return true;
+  });
+  std::reverse(w.spaces.begin(), w.spaces.end());
+
+  const bool restructured = w.builtAt != model.structure;
+  const auto oldGeoms = static_cast<Index>(w.geoms.size());
+  // New spaces and geoms, in order of creation.
+  while (w.spaces.size() < model.spaces.size() || w.geoms.size() < model.geoms.size()) {
+    const auto space = static_cast<Index>(w.spaces.size()), geom = static_cast<Index>(w.geoms.size());
+    if (geom == model.geoms.size() || (space < model.spaces.size() && model.spaces[space].id < model.geoms[geom].id))
+      createSpace(w, model, space);
+    else
+      createGeom(w, model, state, geom);
+  }
+  for (Index i = 0; i < model.spaces.size(); ++i) w.spaces[i]->inner = model.spaces[i].inner;
+
+  if (restructured) {
+    for (Index i = 0; i < w.geoms.size(); ++i) {
+      GeomData& g = *w.geoms[i];
+      g.index = i;
+      g.body = model.geoms[i].body;
+      g.jointed = g.body != kNone && model.bodies[g.body].joints > 0;
+    }
+    w.builtAt = model.structure;
+  }
+  // Changed ones. A model that was compiled before lists them.
+  for (const Index i : model.editedGeoms) {
+    if (i >= oldGeoms) continue;
+    GeomData& g = *w.geoms[i];
+    const engine::Geom& from = model.geoms[i];
+    if (!same(g.shape, from.shape)) {
+      if (reshape(g, from.shape)) {
+        g.shape = from.shape;
+      } else {
+        dGeomDestroy(g.geom);
+        g.mesh.reset();
+        g.shape = from.shape;
+        createShape(g, w.spaces[from.space]->space);
+        if (!g.collides) dGeomDisable(g.geom);
+      }
+    }
+    takePlace(g, from);
+    g.jointed = g.body != kNone && model.bodies[g.body].joints > 0;
+    place(g, state);
+    setCollides(g, from.collides);
+  }
+  if (restructured || !model.editedGeoms.empty()) listByBody(w, model);
+  messages_.report(*this);
+}
+
+void OdeCollision::forget(const Model& model) {
+  std::erase_if(worlds_, [&](const auto& w) { return w->model == model.id; });
+}
+
+CollisionWorld& OdeCollision::world(const Model& model) {
+  for (const auto& w : worlds_)
+    if (w->model == model.id) return *w;
+  throw Error(fmt::format("{}: the world was not compiled", path()));
+}
+
+// ---- detection ----
+
+namespace {
+
+/// True when `a` is the first geom of a contact with `b`: movable geoms come before static ones, planes come last;
+/// among equals the younger comes first. So a robot's foot comes before the ground and before older objects on it, and
+/// handlers that use only direct contacts get them.
+bool comesFirst(const GeomData& a, const GeomData& b) {
+  const auto rank = [](const GeomData& g) { return g.shape.shape == Shape::plane ? 0 : g.body != kNone ? 2 : 1; };
+  const int ra = rank(a), rb = rank(b);
+  return ra != rb ? ra > rb : a.id > b.id;
+}
+
+/// True for two planes or two rays, which have no contacts, and for two geoms of one body.
+bool neverCollide(const GeomData& a, const GeomData& b) {
+  const Shape s = a.shape.shape;
+  return (a.body == b.body && a.body != kNone) || (s == b.shape.shape && (s == Shape::plane || s == Shape::ray));
+}
+
+/// What ODE's callback needs.
+struct Detection {
+  CollisionWorld& w;
+  engine::PairFilter filter;
+};
+
+void near(void* detection, dGeomID o1, dGeomID o2);
+
+/// Exact replay: the geoms of a space are collided with each other when the space first overlaps something.
+void collideInside(Detection& d, dGeomID o) {
+  if (!dGeomIsSpace(o)) return;
+  SpaceData& s = *static_cast<SpaceData*>(dGeomGetData(o));
+  if (!s.inner || s.collidedAt == d.w.detections) return;
+  s.collidedAt = d.w.detections;
+  dSpaceCollide(s.space, &d, near);
+}
+
+/// ODE's callback for two geoms or spaces whose bounds overlap: collects pairs of geoms.
+void near(void* detection, dGeomID o1, dGeomID o2) {
+  Detection& d = *static_cast<Detection*>(detection);
+  if (dGeomIsSpace(o1) || dGeomIsSpace(o2)) {
+    dSpaceCollide2(o1, o2, detection, near);
+    if (d.w.exactReplay) collideInside(d, o1), collideInside(d, o2);
+    return;
+  }
+  auto* a = static_cast<GeomData*>(dGeomGetData(o1));
+  auto* b = static_cast<GeomData*>(dGeomGetData(o2));
+  if (neverCollide(*a, *b)) return;
+  if (a->jointed && b->jointed && d.w.joined(a->body, b->body)) return;
+  if (!d.w.exactReplay && !comesFirst(*a, *b)) std::swap(a, b);
+  if (d.filter && !d.filter(a->owner, b->owner)) return;
+  d.w.pairs.push_back({a, b});
+}
+
+/// Narrow phase: writes at most `max` contact points to `found` and returns their number.
+int collide(const Pair& pair, int max, dContactGeom* found) {
+  if (pair.a->shape.shape != Shape::mesh && pair.b->shape.shape != Shape::mesh)
+    return dCollide(pair.a->geom, pair.b->geom, max, found, sizeof(dContactGeom));
+  const std::lock_guard lock(meshMutex());
+  return dCollide(pair.a->geom, pair.b->geom, max, found, sizeof(dContactGeom));
+}
+
+}  // namespace
+
+void OdeCollision::detect(const Model& model, const State& state, engine::PairFilter filter, int perPair,
+                          engine::Contacts& out) {
+  CollisionWorld& w = world(model);
+  const MessageCapture capture(messages_.last);
+  followBodies(w, state);
+
+  // Broad phase: the close pairs, in ODE's order (exact replay) or sorted by age.
+  ++w.detections;
+  w.pairs.clear();
+  Detection detection{w, filter};
+  if (w.exactReplay) {
+    for (const auto& space : w.spaces)
+      if (space->top) dSpaceCollide(space->space, &detection, near);
+  } else {
+    if (dSpaceGetNumGeoms(w.root) > 1) dSpaceCollide(w.root, &detection, near);
+    for (const auto& space : w.spaces)
+      if (space->inner) dSpaceCollide(space->space, &detection, near);
+    std::sort(w.pairs.begin(), w.pairs.end());
+  }
+
+  // Narrow phase.
+  dContactGeom found[kMaxPerPair];
+  const int max = std::clamp(perPair, 1, kMaxPerPair);
+  for (const Pair& pair : w.pairs) {
+    const int n = collide(pair, max, found);
+    for (int i = 0; i < n; ++i) {
+      const dContactGeom& g = found[i];
+      // Degenerate shapes may give a normal that is not finite.
+      if (!toVec(g.pos).allFinite() || !toVec(g.normal).allFinite() || !std::isfinite(g.depth)) continue;
+      Contact& c = out.emplace_back();
+      c.geomA = pair.a->index;
+      c.geomB = pair.b->index;
+      c.bodyA = pair.a->body;
+      c.bodyB = pair.b->body;
+      c.ownerA = pair.a->owner;
+      c.ownerB = pair.b->owner;
+      c.position = toVec(g.pos);
+      c.normal = toVec(g.normal);
+      c.depth = g.depth;
+    }
+  }
+  messages_.report(*this);
+}
+
+}  // namespace spark

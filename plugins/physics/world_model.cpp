@@ -1,0 +1,488 @@
+#include "world_model.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <atomic>
+
+#include "api/single_precision.h"
+
+namespace spark::physics {
+
+using engine::DynamicState;
+using engine::Index;
+using engine::kNone;
+using engine::Shape;
+using engine::ShapeDescription;
+
+namespace {
+
+/// Identities of worlds. Never reused, so that an engine does not take one world for another.
+std::uint64_t nextWorld() {
+  static std::atomic<std::uint64_t> worlds = 0;
+  return ++worlds;
+}
+
+/// A new index after compact().
+void remap(Index& index, const std::vector<Index>& now) {
+  if (index != kNone) index = now[index];
+}
+void remap(std::vector<Index>& list, const std::vector<Index>& now) {
+  for (Index& i : list) i = now[i];
+  std::erase(list, kNone);
+}
+
+}  // namespace
+
+WorldModel::WorldModel(bool exactReplay) {
+  model_.id = nextWorld();
+  model_.exactReplay = exactReplay;
+  setParameters({});
+}
+
+WorldModel::~WorldModel() { forgetEngines(); }
+
+double WorldModel::rounded(double v) const { return model_.exactReplay ? roundToFloat(v) : v; }
+Vec3 WorldModel::rounded(const Vec3& v) const { return model_.exactReplay ? roundToFloat(v) : v; }
+Mat3 WorldModel::rounded(const Mat3& m) const { return model_.exactReplay ? roundToFloat(m) : m; }
+
+void WorldModel::setParameters(const engine::WorldParameters& p) {
+  if (!inRange(p.gravity)) throw Error("expected a finite gravity for the world");
+  model_.parameters = {rounded(p.gravity), p.erp, rounded(p.cfm), p.autoDisable, rounded(p.contactSurfaceLayer)};
+  ++model_.dynamics;
+}
+
+// ---- spaces ----
+
+SpaceHandle WorldModel::createSpace(SpaceHandle parent) {
+  model_.spaces.push_back({nextId_++, spaces_[parent], true});
+  ++model_.structure;
+  return spaces_.add();
+}
+
+void WorldModel::destroySpace(SpaceHandle space) {
+  spaces_.remove(space);
+  ++model_.structure;
+  compactWhenMany();
+}
+
+void WorldModel::setInnerCollision(SpaceHandle space, bool on) {
+  model_.spaces[spaces_[space]].inner = on;
+  ++model_.collision;
+}
+
+// ---- bodies ----
+
+BodyHandle WorldModel::createBody() {
+  model_.bodies.emplace_back().id = nextId_++;
+  state_.bodies.emplace_back();
+  watch_.emplace_back();
+  // A step must not allocate.
+  state_.moved.reserve(state_.bodies.capacity());
+  repaired_.reserve(state_.bodies.capacity());
+  ++model_.structure;
+  return bodies_.add();
+}
+
+void WorldModel::destroyBody(BodyHandle body) {
+  const Index i = bodies_[body];
+  for (Index g = 0; g < model_.geoms.size(); ++g) {
+    if (model_.geoms[g].body != i || !geoms_.alive(g)) continue;
+    model_.geoms[g].offset = poseOf(g);
+    model_.geoms[g].body = kNone;
+    markEdited(g);
+  }
+  for (engine::Joint& j : model_.joints)
+    if (j.a == i || j.b == i) detach(j);
+  bodies_.remove(body);
+  ++model_.structure;
+  compactWhenMany();
+}
+
+void WorldModel::setMass(BodyHandle body, const engine::Mass& mass) {
+  const bool finite = std::isfinite(mass.mass) && mass.center.allFinite() && mass.inertia.allFinite();
+  if (!finite || mass.mass <= 0)
+    throw Error(fmt::format("expected a mass above 0 kg and finite numbers, found {:f} kg", mass.mass));
+  if (mass.center.norm() > 1e-9)
+    throw Error("expected a centre of mass at the body's origin; move the body there first");
+  if (Eigen::LLT<Mat3>(mass.inertia).info() != Eigen::Success || !mass.inertia.isApprox(mass.inertia.transpose(), 1e-9))
+    throw Error(
+        "expected a symmetric, positive definite inertia: no real body has the one given. Check its diagonal and "
+        "products of inertia");
+  engine::Body& b = model_.bodies[bodies_[body]];
+  b.mass = mass.mass;
+  b.inertia = mass.inertia;
+  b.inverseInertia = mass.inertia.inverse();
+  ++model_.dynamics;
+}
+
+engine::BodyState WorldModel::state(BodyHandle body) const {
+  const DynamicState& s = of(body);
+  return {rounded(s.position), rounded(s.linearVelocity), rounded(s.angularVelocity), rounded(s.rotation)};
+}
+
+void WorldModel::setPosition(BodyHandle body, const Vec3& wanted) {
+  if (!inRange(wanted)) return;
+  const Index i = bodies_[body];
+  state_.bodies[i].position = watch_[i].validPosition = rounded(wanted);
+  state_.bodies[i].mark = 0;
+  state_.markMoved(i);
+}
+
+namespace {
+
+/// Largest deviation from orthonormality that is accepted as rounding to single precision. Larger ones are corrected
+/// before they grow: a caller that composes a body's rotation with itself several times in one step doubles the error
+/// each time.
+constexpr double kOrthonormal = 1e-5;
+
+/// `m` if it is orthonormal up to rounding; else the result of the Gram-Schmidt process on its rows.
+Mat3 corrected(const Mat3& m) {
+  if ((m * m.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() <= kOrthonormal) return m;
+  Mat3 out;
+  out.row(0) = m.row(0).normalized();
+  out.row(1) = (m.row(1) - m.row(1).dot(out.row(0)) * out.row(0)).normalized();
+  out.row(2) = out.row(0).cross(out.row(1));
+  return out;
+}
+
+}  // namespace
+
+void WorldModel::setRotation(BodyHandle body, const Mat3& wanted) {
+  if (!inRange(wanted.data(), 9) || std::abs(wanted.determinant()) < 1e-6) return;
+  ++poses_;
+  const Mat3 r = rounded(corrected(wanted));
+  const Index i = bodies_[body];
+  state_.bodies[i].rotation = orthogonalized(r);
+  state_.bodies[i].quaternion = watch_[i].validQuaternion = normalized(quaternionOf(r));
+  state_.bodies[i].mark = 0;
+  state_.markMoved(i);
+}
+
+void WorldModel::setLinearVelocity(BodyHandle body, const Vec3& wanted) {
+  if (!inRange(wanted)) return;
+  of(body).linearVelocity = rounded(wanted);
+  of(body).mark = 0;
+}
+
+void WorldModel::setAngularVelocity(BodyHandle body, const Vec3& wanted) {
+  if (!inRange(wanted)) return;
+  of(body).angularVelocity = rounded(wanted);
+  of(body).mark = 0;
+}
+
+void WorldModel::addForce(BodyHandle body, const Vec3& wanted) {
+  if (wanted.allFinite()) of(body).force += rounded(bounded(wanted));
+}
+
+void WorldModel::addTorque(BodyHandle body, const Vec3& wanted) {
+  if (wanted.allFinite()) of(body).torque += rounded(bounded(wanted));
+}
+
+void WorldModel::addDrag(BodyHandle body, double linear, double angular) {
+  const DynamicState& s = of(body);
+  if (!s.awake) return;
+  addForce(body, rounded(s.linearVelocity) * -linear);
+  addTorque(body, rounded(s.angularVelocity) * -angular);
+}
+
+void WorldModel::setEnabled(BodyHandle body, bool on) {
+  const Index i = bodies_[body];
+  state_.bodies[i].awake = on;
+  if (!on) return;
+  watch_[i].idleStepsLeft = Watch{}.idleStepsLeft;
+  watch_[i].idleTimeLeft = 0;
+}
+
+void WorldModel::setGravityMode(BodyHandle body, bool on) {
+  model_.bodies[bodies_[body]].gravity = on;
+  ++model_.dynamics;
+}
+
+namespace {
+// Position, quaternion, rotation (three rows of four, the fourth 0), velocities, accumulated force and torque; then
+// awake, gravity and the two counters of auto-disable.
+constexpr std::size_t kSaved = 3 + 4 + 12 + 3 + 3 + 3 + 3 + 4;
+}  // namespace
+
+void WorldModel::saveBody(BodyHandle body, std::vector<double>& out) const {
+  const Index i = bodies_[body];
+  const DynamicState& s = state_.bodies[i];
+  const auto put = [&](const double* from, int n) { out.insert(out.end(), from, from + n); };
+  put(s.position.data(), 3);
+  put(s.quaternion.data(), 4);
+  for (int row = 0; row < 3; ++row) {
+    const double numbers[] = {s.rotation(row, 0), s.rotation(row, 1), s.rotation(row, 2), 0};
+    put(numbers, 4);
+  }
+  for (const Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) put(v->data(), 3);
+  const double rest[] = {double(s.awake), double(model_.bodies[i].gravity), double(watch_[i].idleStepsLeft),
+                         watch_[i].idleTimeLeft};
+  put(rest, 4);
+}
+
+void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
+  if (in.size() != kSaved)
+    throw Error(fmt::format("expected {} numbers of a body's saved state, found {}", kSaved, in.size()));
+  const Index i = bodies_[body];
+  DynamicState& s = state_.bodies[i];
+  const double* p = in.data();
+  const auto take = [&](double* to, int n) {
+    std::copy(p, p + n, to);
+    p += n;
+  };
+  take(s.position.data(), 3);
+  take(s.quaternion.data(), 4);
+  for (int row = 0; row < 3; ++row) {
+    double numbers[4];
+    take(numbers, 4);
+    s.rotation.row(row) = Vec3(numbers[0], numbers[1], numbers[2]);
+  }
+  for (Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) take(v->data(), 3);
+  s.mark = 0;
+  ++poses_;
+  s.awake = *p++ != 0;
+  if (const bool gravity = *p++ != 0; gravity != model_.bodies[i].gravity) setGravityMode(body, gravity);
+  watch_[i].idleStepsLeft = static_cast<int>(*p++);
+  watch_[i].idleTimeLeft = *p;
+  watch_[i].validPosition = s.position;
+  watch_[i].validQuaternion = s.quaternion;
+  state_.markMoved(i);
+}
+
+// ---- geoms ----
+
+namespace {
+
+void expectLength(double v, const char* what) {
+  if (!std::isfinite(v) || v < 0) throw Error(fmt::format("expected {} of 0 m or more, found {}", what, v));
+}
+
+/// Throws Error for a malformed mesh.
+void checkMesh(const ShapeDescription& s) {
+  const std::size_t points = s.vertices.size() / 3;
+  if (points == 0 || s.vertices.size() % 3 || s.triangles.empty() || s.triangles.size() % 3)
+    throw Error(fmt::format("expected three numbers a vertex and three indices a triangle, found {} and {}",
+                            s.vertices.size(), s.triangles.size()));
+  for (double v : s.vertices)
+    if (!std::isfinite(v)) throw Error("a vertex of the mesh is not finite");
+  for (std::uint32_t i : s.triangles)
+    if (i >= points) throw Error(fmt::format("a triangle of the mesh names vertex {} of {}", i, points));
+}
+
+}  // namespace
+
+void checkShape(const ShapeDescription& s) {
+  switch (s.shape) {
+    case Shape::box:
+      for (int i = 0; i < 3; ++i) expectLength(s.lengths[i], "an edge of a box");
+      break;
+    case Shape::sphere:
+      expectLength(s.radius, "a sphere's radius");
+      break;
+    case Shape::capsule:
+    case Shape::cylinder:
+      expectLength(s.radius, "a radius");
+      expectLength(s.length, "a length");
+      break;
+    case Shape::plane:
+      if (const double n = std::hypot(s.plane[0], s.plane[1], s.plane[2]);
+          !(n > 1e-12) || !std::isfinite(n) || !std::isfinite(s.plane[3]))
+        throw Error("expected a plane with a normal longer than 0 m and finite numbers");
+      break;
+    case Shape::ray:
+      expectLength(s.length, "a ray's length");
+      if (!(s.rayDirection.norm() > 1e-12) || !s.rayDirection.allFinite() || !s.rayOrigin.allFinite())
+        throw Error("expected a ray with a direction longer than 0 m and finite numbers");
+      break;
+    case Shape::mesh:
+      checkMesh(s);
+      break;
+  }
+}
+
+GeomHandle WorldModel::createGeom(SpaceHandle space, const ShapeDescription& shape, void* owner) {
+  checkShape(shape);
+  engine::Geom& g = model_.geoms.emplace_back();
+  g.id = nextId_++;
+  g.space = spaces_[space];
+  g.shape = shape;
+  g.owner = owner;
+  geomEdited_.push_back(0);
+  ++model_.structure;
+  return geoms_.add();
+}
+
+void WorldModel::destroyGeom(GeomHandle geom) {
+  geoms_.remove(geom);
+  ++model_.structure;
+  compactWhenMany();
+}
+
+void WorldModel::markEdited(Index geom) {
+  ++model_.collision;
+  if (!std::exchange(geomEdited_[geom], 1)) model_.editedGeoms.push_back(geom);
+}
+
+void WorldModel::setShape(GeomHandle geom, const ShapeDescription& shape) {
+  checkShape(shape);
+  model_.geoms[geoms_[geom]].shape = shape;
+  markEdited(geoms_[geom]);
+}
+
+void WorldModel::setBody(GeomHandle geom, BodyHandle body, const Pose& offset) {
+  if (!inRange(offset.position) || !inRange(offset.rotation.data(), 9))
+    throw Error("expected a finite offset of a collider");
+  engine::Geom& g = model_.geoms[geoms_[geom]];
+  g.body = g.shape.shape == Shape::plane ? kNone : bodies_[body];
+  g.offset = offset;
+  markEdited(geoms_[geom]);
+}
+
+void WorldModel::setPose(GeomHandle geom, const Pose& pose) {
+  engine::Geom& g = model_.geoms[geoms_[geom]];
+  if (g.body != kNone || !inRange(pose.position) || !inRange(pose.rotation.data(), 9)) return;
+  g.offset = pose;
+  markEdited(geoms_[geom]);
+}
+
+Pose WorldModel::poseOf(Index geom) const {
+  const engine::Geom& g = model_.geoms[geom];
+  if (g.body == kNone) return g.offset;
+  const DynamicState& s = state_.bodies[g.body];
+  return compose({s.position, s.rotation}, g.offset);
+}
+
+void WorldModel::setCollides(GeomHandle geom, bool on) {
+  model_.geoms[geoms_[geom]].collides = on;
+  markEdited(geoms_[geom]);
+}
+
+// ---- removed elements ----
+
+void WorldModel::compact() {
+  if (bodies_.removed() > 0) {
+    const std::vector<Index> now = bodies_.compact(model_.bodies, state_.bodies, watch_);
+    for (engine::Geom& g : model_.geoms) remap(g.body, now);
+    for (engine::Joint& j : model_.joints) remap(j.a, now), remap(j.b, now);
+    remap(state_.moved, now);
+  }
+  if (spaces_.removed() > 0) {
+    const std::vector<Index> now = spaces_.compact(model_.spaces);
+    for (engine::Space& s : model_.spaces) remap(s.parent, now);
+    for (engine::Geom& g : model_.geoms) remap(g.space, now);
+  }
+  if (geoms_.removed() > 0) remap(model_.editedGeoms, geoms_.compact(model_.geoms, geomEdited_));
+  if (joints_.removed() > 0) joints_.compact(model_.joints, state_.joints, state_.motors, angles_);
+}
+
+/// While a world is edited and not stepped, removed elements must not pile up.
+void WorldModel::compactWhenMany() {
+  const auto many = [](const auto& handles) {
+    return handles.removed() > 64 && handles.removed() > handles.size() / 2;
+  };
+  if (many(bodies_) || many(spaces_) || many(geoms_) || many(joints_)) compact();
+}
+
+// ---- steps ----
+
+template <class Interface>
+void WorldModel::Compiled<Interface>::bring(Interface& e, const engine::Model& model, const engine::State& state,
+                                            std::uint64_t version) {
+  if (leaf.get() != &e.leaf()) {
+    forget(model);
+    leaf = Ref<Leaf>(&e.leaf());
+    engine = &e;
+  } else if (structure == model.structure && part == version) {
+    return;
+  }
+  e.compile(model, state);
+  structure = model.structure;
+  part = version;
+}
+
+template <class Interface>
+void WorldModel::Compiled<Interface>::forget(const engine::Model& model) {
+  if (leaf) engine->forget(model);
+  leaf = {};
+}
+
+void WorldModel::forgetEngines() {
+  collision_.forget(model_);
+  engine_.forget(model_);
+}
+
+void WorldModel::detect(engine::ICollision& collision, engine::PairFilter filter, int perPair, engine::Contacts& out) {
+  compact();
+  collision_.bring(collision, model_, state_, model_.collision);
+  for (const Index g : model_.editedGeoms) geomEdited_[g] = 0;
+  model_.editedGeoms.clear();
+  collision.detect(model_, state_, filter, perPair, out);
+  for (const Index i : state_.moved) state_.bodies[i].moved = false;
+  state_.moved.clear();
+}
+
+void WorldModel::putToSleep(const engine::Contacts& contacts, double dt) {
+  for (const engine::Contact& c : contacts) {
+    if (!c.solve) continue;
+    if (c.bodyA != kNone) watch_[c.bodyA].lastContactStep = steps_;
+    if (c.bodyB != kNone) watch_[c.bodyB].lastContactStep = steps_;
+  }
+  constexpr double kIdleSpeedSquared = 0.01 * 0.01;  // (m/s)^2 and (rad/s)^2
+  for (Index i = 0; i < state_.bodies.size(); ++i) {
+    DynamicState& s = state_.bodies[i];
+    Watch& w = watch_[i];
+    // A body without joints and contacts is in free flight: it does not fall asleep.
+    if (!s.awake || (model_.bodies[i].joints == 0 && w.lastContactStep != steps_)) continue;
+    if (dot(s.linearVelocity, s.linearVelocity) > kIdleSpeedSquared ||
+        dot(s.angularVelocity, s.angularVelocity) > kIdleSpeedSquared) {
+      w.idleStepsLeft = Watch{}.idleStepsLeft;
+      w.idleTimeLeft = 0;
+      continue;
+    }
+    // Idle: asleep when both counters have run out.
+    --w.idleStepsLeft;
+    w.idleTimeLeft -= dt;
+    if (w.idleStepsLeft > 0 || w.idleTimeLeft > 0) continue;
+    s.awake = false;
+    s.linearVelocity.setZero();
+    s.angularVelocity.setZero();
+    s.mark = 0;
+  }
+}
+
+void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, double dt) {
+  compact();
+  engine_.bring(engine, model_, state_, model_.dynamics);
+  ++steps_;
+  repaired_.clear();
+  if (std::none_of(state_.bodies.begin(), state_.bodies.end(), [](const DynamicState& s) { return s.awake; })) return;
+  if (model_.parameters.autoDisable) putToSleep(contacts, dt);
+  engine::Step step{model_, state_, contacts, rounded(dt), {}};
+  engine.step(step);
+  ++poses_;
+  checkBodies();
+}
+
+void WorldModel::checkBodies() {
+  for (Index i = 0; i < state_.bodies.size(); ++i) {
+    DynamicState& s = state_.bodies[i];
+    if (!s.awake) continue;
+    Watch& w = watch_[i];
+    if (inRange(s.position) && inRange(s.quaternion.data(), 4) && inRange(s.linearVelocity) &&
+        inRange(s.angularVelocity)) {
+      w.validPosition = s.position;
+      w.validQuaternion = s.quaternion;
+      continue;
+    }
+    s.position = w.validPosition;
+    s.quaternion = w.validQuaternion;
+    s.rotation = rotationOf(s.quaternion);
+    s.linearVelocity.setZero();
+    s.angularVelocity.setZero();
+    s.mark = 0;
+    state_.markMoved(i);
+    repaired_.push_back(bodies_.handleOf(i));
+  }
+}
+
+}  // namespace spark::physics

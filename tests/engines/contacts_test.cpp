@@ -1,0 +1,85 @@
+#include "engine_world.h"
+
+// What every engine does with contacts.
+
+using namespace spark;
+using namespace spark::test;
+
+TEST_CASE("a box slides as its friction lets it, and stops") {
+  withEngines([](EngineWorld& w) {
+    w.ground();
+    w.surface.pyramid = true;
+    w.surface.mu = 0.4;
+    const BodyHandle b = w.block({0, 0, 0.1}, {0.6, 0.6, 0.2}, 2);
+    w.world.setLinearVelocity(b, {3, 0, 0});
+    w.run(0.4);
+    CHECK(w.velocity(b).x() == Approx(3 - 0.4 * 9.81 * 0.4).epsilon(0.03));
+    w.run(1);
+    CHECK(w.velocity(b).norm() < 0.01);
+    CHECK(w.position(b).x() == Approx(9 / (2 * 0.4 * 9.81)).epsilon(0.03));
+  });
+}
+
+TEST_CASE("a stack stands, and each contact carries what lies on it") {
+  withEngines([](EngineWorld& w) {
+    w.ground();
+    std::vector<BodyHandle> stack;
+    for (int i = 0; i < 5; ++i) stack.push_back(w.block({0, 0, 0.2 + 0.4 * i}, {0.4, 0.4, 0.4}, 1 + i));
+    w.run(3);
+    for (int i = 0; i < 5; ++i) CHECK((w.position(stack[i]) - Vec3(0, 0, 0.2 + 0.4 * i)).norm() < 0.02);
+    std::vector<double> carried(5, 0);
+    for (const engine::Contact& c : w.contacts) {
+      const engine::Index lower = c.bodyB == engine::kNone ? c.bodyA : std::min(c.bodyA, c.bodyB);
+      const engine::Index upper = c.bodyB == engine::kNone ? c.bodyA : std::max(c.bodyA, c.bodyB);
+      carried[upper] += std::abs(c.forceOnA.z());
+      CHECK(lower <= upper);
+    }
+    double above = 0;
+    for (int i = 5; i-- > 0;) {
+      above += (1 + i) * 9.81;
+      CHECK(carried[i] == Approx(above).epsilon(0.02));
+    }
+  });
+}
+
+TEST_CASE("a ball bounces to the height of its restitution, or not at all") {
+  withEngines([](EngineWorld& w) {
+    for (const double bounce : {0.0, 0.5, 0.8}) {
+      INFO(bounce);
+      EngineWorld own(w.kind);
+      own.ground();
+      own.dt = 0.002;
+      own.surface.bounceOn = bounce > 0;
+      own.surface.bounce = bounce;
+      own.surface.bounceVelocity = 0.1;
+      const BodyHandle b = own.sphere({0, 0, 1.1}, 0.1);
+      double highest = 0;
+      own.run(0.46);  // it falls 1 m in 0.45 s
+      for (int i = 0; i < 400; ++i) {
+        own.run(own.dt);
+        highest = std::max(highest, own.position(b).z());
+      }
+      CHECK(highest - 0.1 == Approx(bounce * bounce).margin(0.03));
+    }
+  });
+}
+
+TEST_CASE("contacts have their geoms, bodies and owners; a normal points into A") {
+  withEngines([](EngineWorld& w) {
+    int groundOwner = 0, ballOwner = 0;
+    const GeomHandle floor = w.geom({.shape = Shape::plane}, BodyHandle::none, {}, &groundOwner);
+    const BodyHandle b = w.body({0, 0, 0.09});
+    const GeomHandle round = w.geom({.shape = Shape::sphere, .radius = 0.1}, b, {}, &ballOwner);
+    w.detect();
+    REQUIRE(w.contacts.size() == 1);
+    const engine::Contact& c = w.contacts[0];
+    const bool first = c.geomA == w.world.index(round);
+    CHECK((first ? c.geomB : c.geomA) == w.world.index(floor));
+    CHECK((first ? c.bodyA : c.bodyB) == w.world.index(b));
+    CHECK((first ? c.bodyB : c.bodyA) == engine::kNone);
+    CHECK((first ? c.ownerA : c.ownerB) == &ballOwner);
+    CHECK((first ? c.ownerB : c.ownerA) == &groundOwner);
+    CHECK(c.normal.z() == Approx(first ? 1 : -1));
+    CHECK(c.depth == Approx(0.01));
+  });
+}

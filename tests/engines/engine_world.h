@@ -1,0 +1,159 @@
+#pragma once
+/// \file
+/// A world with one of the engines, and short ways to bodies, shapes and joints.
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <optional>
+
+#include "../../plugins/physics/world_model.h"
+#include "test_support.h"
+
+namespace spark::test {
+
+using engine::JointParameter;
+using engine::JointType;
+using engine::Shape;
+using physics::BodyHandle;
+using physics::GeomHandle;
+using physics::JointHandle;
+
+/// An engine, and what it leaves out.
+struct EngineKind {
+  const char* name;  ///< its class
+  const char* plugin;
+  bool rotation = true;  ///< bodies turn
+  bool joints = true;
+};
+
+/// All engines. The last is an example of how little one must do.
+inline constexpr EngineKind kEngines[] = {
+    {"OdeEngine", "physics-ode"},
+    {"ArticulatedEngine", "physics-articulated"},
+    {"PointMassEngine", "point-masses", false, false},
+};
+
+struct EngineWorld : House {
+  const EngineKind& kind;
+  engine::ICollision* collision;
+  engine::IEngine* engine;
+  physics::WorldModel world;
+  physics::SpaceHandle space;
+  engine::Contacts contacts;
+  engine::Surface surface;  ///< of all contacts
+  double dt = 0.01;         ///< s
+
+  explicit EngineWorld(const EngineKind& k) : kind(k), space(world.createSpace(physics::SpaceHandle::none)) {
+    kernel.plugins().scan(pluginFolder().parent_path() / "tests" / "engine-plugins");
+    kernel.plugins().use("physics-ode");
+    kernel.plugins().use(k.plugin);
+    makeEngine();
+    makeCollision();
+    setGravity(9.81);
+  }
+  void makeCollision() { collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision"); }
+  void makeEngine() {
+    engine = &kernel.create<engine::IEngine>(kind.name, "/sys/engine");
+    if (std::string(kind.name) == "ArticulatedEngine") kernel.create("OdeEngine", "/sys/engine/deferred");
+  }
+  /// Removes the engine, or the collision detection, and makes a new one.
+  void replaceEngine() {
+    engine->leaf().parent()->remove(engine->leaf());
+    makeEngine();
+  }
+  void replaceCollision() {
+    collision->leaf().parent()->remove(collision->leaf());
+    makeCollision();
+  }
+  void setGravity(double g, bool autoDisable = false) {
+    engine::WorldParameters p;
+    p.gravity = {0, 0, -g};
+    p.autoDisable = autoDisable;
+    world.setParameters(p);
+  }
+
+  BodyHandle body(const Vec3& at, double mass = 1, const Mat3& inertia = Mat3::Identity() * 0.1) {
+    const BodyHandle b = world.createBody();
+    world.setPosition(b, at);
+    world.setMass(b, {mass, Vec3::Zero(), inertia});
+    return b;
+  }
+  GeomHandle geom(const engine::ShapeDescription& shape, BodyHandle b = BodyHandle::none, const Pose& offset = {},
+                  void* owner = nullptr) {
+    const GeomHandle g = world.createGeom(space, shape, owner);
+    world.setBody(g, b, offset);
+    return g;
+  }
+  /// A body with a box of its size and mass.
+  BodyHandle block(const Vec3& at, const Vec3& edges, double mass = 1) {
+    const Vec3 squares = edges.cwiseProduct(edges);
+    const BodyHandle b = body(at, mass, Mat3((Vec3::Constant(squares.sum()) - squares).asDiagonal()) * (mass / 12));
+    geom({.shape = Shape::box, .lengths = edges}, b);
+    return b;
+  }
+  BodyHandle sphere(const Vec3& at, double radius, double mass = 1) {
+    const BodyHandle b = body(at, mass, Mat3::Identity() * (0.4 * mass * radius * radius));
+    geom({.shape = Shape::sphere, .radius = radius}, b);
+    return b;
+  }
+  /// A static plane at z = 0.
+  void ground() { geom({.shape = Shape::plane}); }
+  JointHandle joint(JointType type, BodyHandle a, BodyHandle b, const Vec3& at, const Vec3& axis = Vec3::UnitZ(),
+                    const Vec3& second = Vec3::UnitX()) {
+    const JointHandle j = world.createJoint(type);
+    world.attach(j, a, b);
+    world.setAnchor(j, at);
+    if (type == JointType::angularMotor) world.setAngularMotor(j, 2, false);
+    world.setAxis(j, 0, axis, 1);
+    world.setAxis(j, 1, second, 2);
+    world.setFixed(j);
+    return j;
+  }
+  void motor(JointHandle j, int axis, double speed, double force) {
+    world.setParameter(j, JointParameter::maxForce, axis, force);
+    world.drive(j, axis, speed);
+  }
+  void stops(JointHandle j, int axis, double low, double high) {
+    world.setParameter(j, JointParameter::lowStop, axis, low);
+    world.setParameter(j, JointParameter::highStop, axis, high);
+    world.setParameter(j, JointParameter::stopErp, axis, 0.5);
+  }
+
+  void detect() {
+    contacts.clear();
+    world.detect(*collision, nullptr, 4, contacts);
+    for (engine::Contact& c : contacts) {
+      c.solve = c.bodyA != engine::kNone || c.bodyB != engine::kNone;
+      c.feedback = true;
+      c.surface = surface;
+    }
+  }
+  /// Steps in which all contacts are solved.
+  void run(double seconds) {
+    for (int i = 0, n = static_cast<int>(std::lround(seconds / dt)); i < n; ++i) {
+      detect();
+      world.step(*engine, contacts, dt);
+    }
+  }
+  Vec3 position(BodyHandle b) const { return world.state(b).position; }
+  Vec3 velocity(BodyHandle b) const { return world.state(b).linearVelocity; }
+  Vec3 spin(BodyHandle b) const { return world.state(b).angularVelocity; }
+  std::vector<double> saved(std::span<const BodyHandle> bodies) const {
+    std::vector<double> out;
+    for (const BodyHandle b : bodies) world.saveBody(b, out);
+    return out;
+  }
+};
+
+/// Runs a test once with each engine, or with those that have joints.
+template <class F>
+void withEngines(F&& f, bool needsJoints = false) {
+  for (const EngineKind& kind : kEngines) {
+    if (needsJoints && !kind.joints) continue;
+    INFO(kind.name);
+    EngineWorld w(kind);
+    f(w);
+  }
+}
+
+}  // namespace spark::test

@@ -1,0 +1,171 @@
+#include "engine_world.h"
+
+// What every engine with joints does with them.
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// A child on a parent that is fixed to the world, in no gravity.
+struct Pair {
+  EngineWorld& w;
+  BodyHandle child, parent;
+  explicit Pair(EngineWorld& world) : w(world), child(w.body({0, 0, 0})), parent(w.body({0, 0, 1})) {
+    w.setGravity(0);
+    w.joint(JointType::fixed, parent, BodyHandle::none, {0, 0, 1});
+  }
+  /// How far the point of the child that was at the anchor is from it now.
+  double apart() const {
+    const engine::BodyState s = w.world.state(child);
+    return (s.position + s.rotation * Vec3(0, 0, 0.5) - Vec3(0, 0, 0.5)).norm();
+  }
+};
+
+void withPairs(const std::function<void(EngineWorld&, Pair&)>& f) {
+  withEngines(
+      [&](EngineWorld& w) {
+        Pair pair(w);
+        f(w, pair);
+      },
+      true);
+}
+
+}  // namespace
+
+TEST_CASE("each joint takes from the child what its type takes, and no more") {
+  // Which rotations of the child about x, y and z, and which translation along z, are free.
+  struct Freedom {
+    JointType type;
+    bool turns[3], slides;
+  };
+  for (const Freedom& free :
+       {Freedom{JointType::ball, {true, true, true}, false}, Freedom{JointType::hinge, {false, false, true}, false},
+        Freedom{JointType::universal, {true, false, true}, false},
+        Freedom{JointType::slider, {false, false, false}, true},
+        Freedom{JointType::fixed, {false, false, false}, false}})
+    for (int direction = 0; direction < 4; ++direction)
+      withPairs([&](EngineWorld& w, const Pair& p) {
+        CAPTURE(int(free.type), direction);
+        w.joint(free.type, p.child, p.parent, {0, 0, 0.5});
+        if (direction < 3)
+          w.world.setAngularVelocity(p.child, 0.5 * Vec3::Unit(direction));
+        else
+          w.world.setLinearVelocity(p.child, {0, 0, 0.5});
+        w.run(0.1);
+        const double speed = direction < 3 ? w.spin(p.child)[direction] : w.velocity(p.child).z();
+        const bool expected = direction < 3 ? free.turns[direction] : free.slides;
+        if (expected)
+          CHECK(speed > 0.05);
+        else
+          CHECK(std::abs(speed) < 0.01);
+        if (free.type != JointType::slider) CHECK(p.apart() < 2e-3);
+      });
+}
+
+TEST_CASE("a hinge's angle and rate are those of the first body relative to the second") {
+  withPairs([](EngineWorld& w, const Pair& p) {
+    const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+    w.world.setAngularVelocity(p.child, {0, 0, 1});
+    w.run(0.5);
+    CHECK(w.world.angle(j, 0) == Approx(0.5).margin(0.01));
+    CHECK(w.world.angleRate(j, 0) == Approx(1).margin(0.01));
+  });
+}
+
+TEST_CASE("a motor has its speed soon, is as strong as its force, and stops drive it no further") {
+  for (const JointType type : {JointType::hinge, JointType::universal, JointType::slider})
+    withPairs([&](EngineWorld& w, const Pair& p) {
+      CAPTURE(int(type));
+      const JointHandle j = w.joint(type, p.child, p.parent, {0, 0, 0.5});
+      w.motor(j, 0, 1.5, 100);
+      w.run(0.2);
+      CHECK(w.world.angleRate(j, 0) == Approx(1.5).epsilon(0.02));
+      w.stops(j, 0, -0.4, 0.8);
+      w.run(2);
+      CHECK(w.world.angle(j, 0) == Approx(0.8).margin(0.02));
+      CHECK(w.world.atStop(j, 0));
+      w.motor(j, 0, -1.5, 100);
+      w.run(2);
+      CHECK(w.world.angle(j, 0) == Approx(-0.4).margin(0.02));
+    });
+  withPairs([](EngineWorld& w, const Pair& p) {
+    const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+    w.motor(j, 0, 100, 0.05);
+    w.run(1);
+    CHECK(w.world.angleRate(j, 0) == Approx(0.5).epsilon(0.02));  // 0.05 Nm for 1 s on 0.1 kg m^2
+  });
+}
+
+TEST_CASE("a wheel steers, rolls and is sprung") {
+  withPairs([](EngineWorld& w, const Pair& p) {
+    const BodyHandle wheel = w.body({0, 0.5, 1}, 1, Mat3::Identity() * 0.02);
+    const JointHandle j = w.joint(JointType::hinge2, p.parent, wheel, {0, 0.5, 1}, Vec3::UnitZ(), Vec3::UnitX());
+    w.motor(j, 1, 3, 50);
+    w.stops(j, 0, 0, 0);
+    w.run(1);
+    CHECK(std::abs(w.world.angleRate(j, 1)) == Approx(3).epsilon(0.02));
+    CHECK(std::abs(w.world.angle(j, 0)) < 0.02);
+    w.world.setParameter(j, JointParameter::suspensionErp, 0, 0.4);
+    w.world.setParameter(j, JointParameter::suspensionCfm, 0, 0.05);
+    w.world.addForce(wheel, {0, 0, 200});
+    w.run(0.02);
+    CHECK(w.position(wheel).z() > 1.005);
+    w.run(1);
+    CHECK(w.position(wheel).z() == Approx(1).margin(0.01));
+  });
+}
+
+TEST_CASE("an angular motor drives its axes") {
+  withPairs([](EngineWorld& w, const Pair& p) {
+    w.joint(JointType::ball, p.child, p.parent, {0, 0, 0.5});
+    const JointHandle j = w.joint(JointType::angularMotor, p.child, p.parent, {0, 0, 0.5});
+    w.motor(j, 0, 1.5, 50);
+    w.motor(j, 1, 0, 50);
+    w.run(0.3);
+    CHECK(w.spin(p.child).z() == Approx(1.5).epsilon(0.02));
+    CHECK(std::abs(w.spin(p.child).x()) < 0.02);
+  });
+}
+
+TEST_CASE("a chain of bodies and a closed loop hold together") {
+  withEngines(
+      [](EngineWorld& w) {
+        // A hanging ring of eight links.
+        std::vector<BodyHandle> ring;
+        const auto at = [](double i) { return Vec3(std::sin(i * kPi / 4), 0, 3 + std::cos(i * kPi / 4)); };
+        for (int i = 0; i < 8; ++i) ring.push_back(w.body(at(i), 0.5, Mat3::Identity() * 0.01));
+        w.joint(JointType::hinge, ring[0], BodyHandle::none, at(0), Vec3::UnitY());
+        std::vector<JointHandle> joints;
+        for (int i = 0; i < 8; ++i)
+          joints.push_back(w.joint(JointType::hinge, ring[i], ring[(i + 1) % 8], at(i + 0.5), Vec3::UnitY()));
+        w.run(2);
+        for (int i = 0; i < 8; ++i) {
+          const engine::Joint& j = w.world.model().joints[w.world.index(joints[i])];
+          const engine::DynamicState &a = w.world.state().bodies[j.a], &b = w.world.state().bodies[j.b];
+          CHECK((a.position + a.rotation * j.anchorA - b.position - b.rotation * j.anchorB).norm() < 0.02);
+        }
+      },
+      true);
+}
+
+TEST_CASE("a joint's feedback is its load") {
+  withEngines(
+      [](EngineWorld& w) {
+        for (const bool worldFirst : {false, true}) {
+          const BodyHandle b = w.body({5, worldFirst ? 3.0 : 0.0, 1}, 2);
+          const JointHandle j = w.world.createJoint(JointType::fixed);
+          if (worldFirst)
+            w.world.attach(j, BodyHandle::none, b);
+          else
+            w.world.attach(j, b, BodyHandle::none);
+          w.world.setFixed(j);
+          w.world.setFeedback(j, true);
+          w.run(1);
+          Vec3 f1, t1, f2, t2;
+          w.world.feedback(j, f1, t1, f2, t2);
+          CHECK((worldFirst ? f2 : f1).z() == Approx(2 * 9.81).epsilon(0.01));
+        }
+      },
+      true);
+}

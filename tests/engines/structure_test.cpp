@@ -1,0 +1,122 @@
+#include "engine_world.h"
+
+// Worlds that change while they are stepped.
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// A yard into which things fall and from which they are taken, at every moment of a step.
+struct Traffic {
+  EngineWorld& w;
+  std::vector<BodyHandle> bodies;
+  std::vector<JointHandle> joints;
+  int made = 0;
+  explicit Traffic(EngineWorld& world) : w(world) {
+    w.setGravity(9.81, true);
+    w.ground();
+  }
+  void add() {
+    const double x = 0.35 * (made % 5), y = 0.3 * (made % 3);
+    const BodyHandle a = w.block({x, y, 1.0 + 0.1 * (made % 7)}, {0.3, 0.2, 0.25});
+    bodies.push_back(a);
+    if (++made % 3 == 0 && bodies.size() > 1) {
+      const BodyHandle other = bodies[bodies.size() - 2];
+      const JointHandle j = w.joint(JointType::hinge, a, other, (w.position(a) + w.position(other)) / 2, Vec3::UnitY());
+      w.motor(j, 0, 0.5, 2);
+      joints.push_back(j);
+    }
+  }
+  void removeBody(std::size_t i) {
+    w.world.destroyBody(bodies[i]);  // its geom stays, static
+    bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  bool sound() const {
+    for (const BodyHandle b : bodies)
+      if (!w.position(b).allFinite() || w.position(b).norm() > 100) return false;
+    return true;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("bodies, geoms and joints come and go between any two steps") {
+  withEngines([](EngineWorld& w) {
+    Traffic t(w);
+    for (int i = 0; i < 120; ++i) {
+      if (i % 4 == 0) t.add();
+      if (i % 9 == 5 && t.bodies.size() > 3) t.removeBody(static_cast<std::size_t>(i) % t.bodies.size());
+      if (i % 13 == 7 && !t.joints.empty()) {
+        w.world.destroyJoint(t.joints.back());
+        t.joints.pop_back();
+      }
+      if (i % 17 == 3) {  // comes and goes without having been seen
+        const BodyHandle b = w.block({0, 0, 9}, {1, 1, 1});
+        w.world.destroyBody(b);
+      }
+      if (i % 11 == 2 && !t.bodies.empty()) w.world.setPosition(t.bodies[0], {0, 0, 2});
+      w.run(w.dt);
+      REQUIRE(t.sound());
+    }
+    CHECK(t.bodies.size() > 10);
+  });
+}
+
+TEST_CASE("contacts between detection and step may be left out, or of bodies that are gone") {
+  withEngines([](EngineWorld& w) {
+    w.ground();
+    const BodyHandle resting = w.block({0, 0, 0.499}, {1, 1, 1});
+    w.detect();
+    REQUIRE(w.contacts.size() == 4);
+    w.contacts.clear();
+    w.world.step(*w.engine, w.contacts, w.dt);
+    CHECK(w.velocity(resting).z() < 0);
+  });
+}
+
+TEST_CASE("engine and collision detection can be replaced at any time: the world goes on, bit for bit") {
+  withEngines([](EngineWorld& w) {
+    EngineWorld other(w.kind);
+    Traffic same(other), changed(w);
+    for (int i = 0; i < 60; ++i) {
+      if (i % 5 == 0) same.add(), changed.add();
+      if (i % 7 == 3) w.replaceEngine();
+      if (i % 11 == 6) w.replaceCollision();
+      other.run(other.dt);
+      w.run(w.dt);
+      REQUIRE(w.saved(changed.bodies) == other.saved(same.bodies));
+    }
+  });
+}
+
+TEST_CASE("a world may end before its engine, and an engine before the world") {
+  withEngines([](EngineWorld& w) {
+    {
+      physics::WorldModel second;
+      const BodyHandle b = second.createBody();
+      engine::Contacts none;
+      second.detect(*w.collision, nullptr, 4, none);
+      second.step(*w.engine, none, 0.01);
+      CHECK(second.state(b).position.z() < 0);
+    }
+    w.run(0.1);
+    w.engine->leaf().parent()->remove(w.engine->leaf());
+    w.collision->leaf().parent()->remove(w.collision->leaf());
+    w.makeEngine();
+    w.makeCollision();
+    w.run(0.1);
+  });
+}
+
+TEST_CASE("a world that repeats itself gives the same numbers twice, and what one does not know of another") {
+  withEngines([](EngineWorld& w) {
+    EngineWorld other(w.kind);
+    Traffic a(w), b(other);
+    for (int i = 0; i < 10; ++i) a.add();
+    w.run(0.5);
+    for (int i = 0; i < 10; ++i) b.add();
+    other.run(0.5);
+    CHECK(w.saved(a.bodies) == other.saved(b.bodies));
+  });
+}

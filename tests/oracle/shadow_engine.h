@@ -1,0 +1,79 @@
+#pragma once
+/// \file
+/// Compares an engine with ODE: both step the same world from the same state.
+
+#include <string>
+#include <vector>
+
+#include "api/engine.h"
+#include "spark/describe.h"
+#include "spark/kernel.h"
+#include "spark/link.h"
+
+namespace spark::oracle {
+
+/// Largest differences between the two steps from the same state, over many steps. Errors of velocities and forces are
+/// relative to the largest in the world, but at least to ODE's thresholds of sleep (0.01 m/s, 0.01 rad/s) and to 1 N or
+/// 1 Nm; errors of positions are in m.
+struct Agreement {
+  std::size_t steps = 0, compared = 0;               ///< compared: sum over all steps of the bodies that were compared
+  std::size_t deferred = 0;                          ///< bodies that were deferred
+  std::size_t feedbacks = 0;                         ///< forces of joints and contacts that were compared
+  std::size_t disagreedOnSleep = 0;                  ///< bodies that were awake after one of the steps only
+  std::size_t disagreedOnMoved = 0;                  ///< bodies that only one of the steps marked as moved
+  double speed = 0, spin = 0, place = 0, force = 0;  ///< linear and angular velocity, position, forces and torques
+  std::size_t worstStep = 0;                         ///< in which the last of the maxima was found
+};
+
+/// The engine below a tested one: remembers which bodies were deferred, and leaves them unchanged.
+class DeferralRecorder : public Leaf, public engine::IEngine {
+  SPARK_CLASS(DeferralRecorder, Leaf)
+ public:
+  static void describe(Description<DeferralRecorder>& d);
+  Leaf& leaf() override { return *this; }
+  void compile(const engine::Model&, const engine::State&) override {}
+  void step(engine::Step& step) override;
+  void forget(const engine::Model&) override {}
+  /// Forgets the last step.
+  void clear() { deferred_.clear(); }
+  /// True if the body was deferred since clear().
+  bool deferred(engine::Index body) const { return body < deferred_.size() && deferred_[body]; }
+
+ private:
+  std::vector<bool> deferred_;  ///< by body; empty: none
+};
+
+/// An engine that lets its child `tested` step the world, keeps the result, restores the world and lets its child
+/// `judge` step it. So the world continues as with the judge alone, and no step inherits another's error.
+class ShadowEngine : public Node, public engine::IEngine {
+  SPARK_CLASS(ShadowEngine, Node)
+ public:
+  static void describe(Description<ShadowEngine>& d);
+  Leaf& leaf() override { return *this; }
+  void compile(const engine::Model& model, const engine::State& state) override;
+  void step(engine::Step& step) override;
+  void forget(const engine::Model& model) override;
+  const Agreement& agreement() const { return agreement_; }
+
+ private:
+  /// What a step writes.
+  struct Result {
+    engine::State state;
+    std::vector<Vec3> contactForces;
+    static Result of(const engine::Step& step);
+    void restore(engine::Step& step) const;
+  };
+  void compare(const Result& tested, const engine::Step& judged);
+  void compareForces(const Result& tested, const engine::Step& judged);
+  /// Counts an error. NaN is the worst one, and remains it.
+  void record(double error, double& worst);
+
+  Link<engine::IEngine> tested_, judge_;
+  Link<DeferralRecorder> recorder_;
+  Agreement agreement_;
+};
+
+/// Replaces the engine at `path` by a ShadowEngine with an ArticulatedEngine as `tested` and an OdeEngine as `judge`.
+ShadowEngine& watch(Kernel& kernel, const std::string& path = "/sys/server/physics/engine");
+
+}  // namespace spark::oracle
