@@ -48,8 +48,10 @@ function physics(engine, properties, more)
   plugin "physics-ode"
   local server = new("PhysicsServer", "/sys/server/physics")
   for name, value in pairs(properties or {}) do server[name] = value end
-  new("OdeCollision", "/sys/server/physics/collision")
-  if engine == "ArticulatedEngine" then plugin "physics-articulated" end
+  -- MuJoCo finds its own contacts.
+  if engine ~= "MujocoEngine" then new("OdeCollision", "/sys/server/physics/collision") end
+  local plugins = { ArticulatedEngine = "physics-articulated", MujocoEngine = "physics-mujoco" }
+  if plugins[engine] then plugin(plugins[engine]) end
   local node = new(engine or "OdeEngine", "/sys/server/physics/engine")
   if engine == "ArticulatedEngine" then node:new("OdeEngine", "deferred") end
   new("World", "/usr/scene/world")

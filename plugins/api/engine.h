@@ -57,6 +57,8 @@ class IEngine {
   /// Does not throw, and does not allocate while structure and number of contacts repeat. Results may be no numbers:
   /// the caller puts such bodies back.
   virtual void step(Step& step) = 0;
+  /// False: the engine steps all bodies always, and none is put to sleep.
+  virtual bool sleeps() const { return true; }
   /// Drops what was kept for a model that ends, or that another engine takes over.
   virtual void forget(const Model& model) = 0;
 };

@@ -456,7 +456,7 @@ void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, doubl
   ++steps_;
   repaired_.clear();
   if (std::none_of(state_.bodies.begin(), state_.bodies.end(), [](const DynamicState& s) { return s.awake; })) return;
-  if (model_.parameters.autoDisable) putToSleep(contacts, dt);
+  if (model_.parameters.autoDisable && engine.sleeps()) putToSleep(contacts, dt);
   engine::Step step{model_, state_, contacts, rounded(dt), {}};
   engine.step(step);
   ++poses_;

@@ -9,6 +9,7 @@ TEST_CASE("a body falls as semi-implicit Euler has it, and near where physics ha
   withEngines([](EngineWorld& w) {
     const BodyHandle b = w.body({0, 0, 100});
     w.dt = 0.001;
+    if (w.engine->leaf().classObject()->property("substeps")) setProperty(w.engine->leaf(), "substeps", 1);
     w.run(1);
     CHECK(w.position(b).z() == Approx(100 - 9.81 * 0.001 * 0.001 * 1000 * 1001 / 2).epsilon(1e-12));
     CHECK(w.velocity(b).z() == Approx(-9.81).epsilon(1e-9));
@@ -24,7 +25,7 @@ TEST_CASE("a force acts for one step in proportion to mass; gravity can be taken
     w.run(0.01);
     CHECK(w.velocity(heavy).x() == Approx(0.02));
     if (w.kind.rotation) CHECK(w.spin(heavy).z() == Approx(0.02));
-    CHECK(w.velocity(heavy).z() == 0);
+    CHECK(std::abs(w.velocity(heavy).z()) < 1e-12);
     CHECK(w.velocity(falling).z() < 0);
     CHECK(w.world.force(heavy).isZero(0));
     w.run(0.01);
@@ -33,16 +34,17 @@ TEST_CASE("a force acts for one step in proportion to mass; gravity can be taken
 }
 
 TEST_CASE("a torque-free body keeps its angular momentum about its axis of symmetry") {
-  withEngines([](EngineWorld& w) {
-    if (!w.kind.rotation) return;
-    w.setGravity(0);
-    const BodyHandle b = w.body({0, 0, 0}, 1, Vec3(0.1, 0.1, 0.3).asDiagonal());
-    w.world.setAngularVelocity(b, {0, 0, 5});
-    w.run(1);
-    CHECK(w.spin(b).isApprox(Vec3(0, 0, 5), 1e-9));
-    const Vec3 x = w.world.state(b).rotation.col(0);
-    CHECK(std::atan2(x.y(), x.x()) == Approx(5 - 2 * kPi).margin(0.02));
-  });
+  withEngines(
+      [](EngineWorld& w) {
+        w.setGravity(0);
+        const BodyHandle b = w.body({0, 0, 0}, 1, Vec3(0.1, 0.1, 0.3).asDiagonal());
+        w.world.setAngularVelocity(b, {0, 0, 5});
+        w.run(1);
+        CHECK(w.spin(b).isApprox(Vec3(0, 0, 5), 1e-9));
+        const Vec3 x = w.world.state(b).rotation.col(0);
+        CHECK(std::atan2(x.y(), x.x()) == Approx(5 - 2 * kPi).margin(0.02));
+      },
+      {&EngineKind::rotation});
 }
 
 TEST_CASE("a body that flies apart is put back, at rest, and named once; others go on") {
@@ -65,51 +67,57 @@ TEST_CASE("a body that flies apart is put back, at rest, and named once; others 
 }
 
 TEST_CASE("what lies still falls asleep and is left alone; a touch wakes it; what flies does not sleep") {
-  withEngines([](EngineWorld& w) {
-    w.setGravity(9.81, true);
-    w.ground();
-    const BodyHandle lying = w.block({0, 0, 0.4999}, {1, 1, 1}), floating = w.body({5, 0, 5});
-    w.world.setGravityMode(floating, false);
-    w.run(2);
-    CHECK_FALSE(w.world.enabled(lying));
-    CHECK(w.world.enabled(floating));
-    const Vec3 place = w.position(lying);
-    w.run(0.5);
-    CHECK(w.position(lying) == place);
-    const BodyHandle thrown = w.block({0, 0, 1.6}, {0.5, 0.5, 0.5});
-    w.world.setLinearVelocity(thrown, {0, 0, -3});
-    w.run(0.2);
-    CHECK(w.world.enabled(lying));
-  });
+  withEngines(
+      [](EngineWorld& w) {
+        w.setGravity(9.81, true);
+        w.ground();
+        const BodyHandle lying = w.block({0, 0, 0.4999}, {1, 1, 1}), floating = w.body({5, 0, 5});
+        w.world.setGravityMode(floating, false);
+        w.run(2);
+        CHECK_FALSE(w.world.enabled(lying));
+        CHECK(w.world.enabled(floating));
+        const Vec3 place = w.position(lying);
+        w.run(0.5);
+        CHECK(w.position(lying) == place);
+        const BodyHandle thrown = w.block({0, 0, 1.6}, {0.5, 0.5, 0.5});
+        w.world.setLinearVelocity(thrown, {0, 0, -3});
+        w.run(0.2);
+        CHECK(w.world.enabled(lying));
+      },
+      {&EngineKind::sleep});
 }
 
 TEST_CASE("a saved world goes on bit for bit, in the same house and in a new one") {
-  withEngines([](EngineWorld& w) {
-    const auto heap = [](EngineWorld& in) {
-      in.setGravity(9.81, true);
-      in.ground();
-      std::vector<BodyHandle> bodies;
-      for (int i = 0; i < 8; ++i) bodies.push_back(in.block({0.1 * (i % 3), 0.07 * i, 0.6 + 1.05 * i}, {1, 0.9, 0.8}));
-      return bodies;
-    };
-    const std::vector<BodyHandle> bodies = heap(w);
-    w.run(0.7);
-    const std::vector<double> middle = w.saved(bodies);
-    w.run(2);
-    const std::vector<double> end = w.saved(bodies);
-    REQUIRE(middle != end);
-    const auto load = [&](EngineWorld& in, const std::vector<BodyHandle>& to) {
-      const std::size_t each = middle.size() / to.size();
-      for (std::size_t i = 0; i < to.size(); ++i) in.world.loadBody(to[i], std::span(middle).subspan(i * each, each));
-    };
-    load(w, bodies);
-    w.run(2);
-    CHECK(w.saved(bodies) == end);
-    EngineWorld other(w.kind);
-    const std::vector<BodyHandle> twins = heap(other);
-    other.run(0.1);
-    load(other, twins);
-    other.run(2);
-    CHECK(other.saved(twins) == end);
-  });
+  withEngines(
+      [](EngineWorld& w) {
+        const auto heap = [](EngineWorld& in) {
+          in.setGravity(9.81, true);
+          in.ground();
+          std::vector<BodyHandle> bodies;
+          for (int i = 0; i < 8; ++i)
+            bodies.push_back(in.block({0.1 * (i % 3), 0.07 * i, 0.6 + 1.05 * i}, {1, 0.9, 0.8}));
+          return bodies;
+        };
+        const std::vector<BodyHandle> bodies = heap(w);
+        w.run(0.7);
+        const std::vector<double> middle = w.saved(bodies);
+        w.run(2);
+        const std::vector<double> end = w.saved(bodies);
+        REQUIRE(middle != end);
+        const auto load = [&](EngineWorld& in, const std::vector<BodyHandle>& to) {
+          const std::size_t each = middle.size() / to.size();
+          for (std::size_t i = 0; i < to.size(); ++i)
+            in.world.loadBody(to[i], std::span(middle).subspan(i * each, each));
+        };
+        load(w, bodies);
+        w.run(2);
+        CHECK(w.saved(bodies) == end);
+        EngineWorld other(w.kind);
+        const std::vector<BodyHandle> twins = heap(other);
+        other.run(0.1);
+        load(other, twins);
+        other.run(2);
+        CHECK(other.saved(twins) == end);
+      },
+      {&EngineKind::restores});
 }

@@ -6,18 +6,20 @@ using namespace spark;
 using namespace spark::test;
 
 TEST_CASE("a box slides as its friction lets it, and stops") {
-  withEngines([](EngineWorld& w) {
-    w.ground();
-    w.surface.pyramid = true;
-    w.surface.mu = 0.4;
-    const BodyHandle b = w.block({0, 0, 0.1}, {0.6, 0.6, 0.2}, 2);
-    w.world.setLinearVelocity(b, {3, 0, 0});
-    w.run(0.4);
-    CHECK(w.velocity(b).x() == Approx(3 - 0.4 * 9.81 * 0.4).epsilon(0.03));
-    w.run(1);
-    CHECK(w.velocity(b).norm() < 0.01);
-    CHECK(w.position(b).x() == Approx(9 / (2 * 0.4 * 9.81)).epsilon(0.03));
-  });
+  withEngines(
+      [](EngineWorld& w) {
+        w.ground();
+        w.surface.pyramid = true;
+        w.surface.mu = 0.4;
+        const BodyHandle b = w.block({0, 0, 0.1}, {0.6, 0.6, 0.2}, 2);
+        w.world.setLinearVelocity(b, {3, 0, 0});
+        w.run(0.4);
+        CHECK(w.velocity(b).x() == Approx(3 - 0.4 * 9.81 * 0.4).epsilon(0.03));
+        w.run(1);
+        CHECK(w.velocity(b).norm() < 0.01);
+        CHECK(w.position(b).x() == Approx(9 / (2 * 0.4 * 9.81)).epsilon(0.03));
+      },
+      {&EngineKind::surfaces});
 }
 
 TEST_CASE("a stack stands, and each contact carries what lies on it") {
@@ -43,25 +45,27 @@ TEST_CASE("a stack stands, and each contact carries what lies on it") {
 }
 
 TEST_CASE("a ball bounces to the height of its restitution, or not at all") {
-  withEngines([](EngineWorld& w) {
-    for (const double bounce : {0.0, 0.5, 0.8}) {
-      INFO(bounce);
-      EngineWorld own(w.kind);
-      own.ground();
-      own.dt = 0.002;
-      own.surface.bounceOn = bounce > 0;
-      own.surface.bounce = bounce;
-      own.surface.bounceVelocity = 0.1;
-      const BodyHandle b = own.sphere({0, 0, 1.1}, 0.1);
-      double highest = 0;
-      own.run(0.46);  // it falls 1 m in 0.45 s
-      for (int i = 0; i < 400; ++i) {
-        own.run(own.dt);
-        highest = std::max(highest, own.position(b).z());
-      }
-      CHECK(highest - 0.1 == Approx(bounce * bounce).margin(0.03));
-    }
-  });
+  withEngines(
+      [](EngineWorld& w) {
+        for (const double bounce : {0.0, 0.5, 0.8}) {
+          INFO(bounce);
+          EngineWorld own(w.kind);
+          own.ground();
+          own.dt = 0.002;
+          own.surface.bounceOn = bounce > 0;
+          own.surface.bounce = bounce;
+          own.surface.bounceVelocity = 0.1;
+          const BodyHandle b = own.sphere({0, 0, 1.1}, 0.1);
+          double highest = 0;
+          own.run(0.46);  // it falls 1 m in 0.45 s
+          for (int i = 0; i < 400; ++i) {
+            own.run(own.dt);
+            highest = std::max(highest, own.position(b).z());
+          }
+          CHECK(highest - 0.1 == Approx(bounce * bounce).margin(0.03));
+        }
+      },
+      {&EngineKind::surfaces});
 }
 
 TEST_CASE("contacts have their geoms, bodies and owners; a normal points into A") {

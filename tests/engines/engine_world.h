@@ -24,13 +24,34 @@ struct EngineKind {
   const char* plugin;
   bool rotation = true;  ///< bodies turn
   bool joints = true;
+  bool loops = true;        ///< joints may close loops, and motors may drive the angles of others
+  bool jointForces = true;  ///< joints measure their load
+  bool sleep = true;        ///< what lies still is left alone
+  bool surfaces = true;     ///< a contact has the surface that it is given
+  bool restores = true;     ///< a saved state goes on bit for bit
+  bool built() const {
+    return std::string(plugin) == "point-masses" ||
+           std::filesystem::exists(pluginFolder() / (std::string(plugin) + ".so"));
+  }
 };
 
 /// All engines. The last is an example of how little one must do.
-inline constexpr EngineKind kEngines[] = {
-    {"OdeEngine", "physics-ode"},
-    {"ArticulatedEngine", "physics-articulated"},
-    {"PointMassEngine", "point-masses", false, false},
+inline const EngineKind kEngines[] = {
+    {.name = "OdeEngine", .plugin = "physics-ode"},
+    {.name = "ArticulatedEngine", .plugin = "physics-articulated"},
+    {.name = "MujocoEngine",
+     .plugin = "physics-mujoco",
+     .loops = false,
+     .jointForces = false,
+     .sleep = false,
+     .surfaces = false,
+     .restores = false},
+    {.name = "PointMassEngine",
+     .plugin = "point-masses",
+     .rotation = false,
+     .joints = false,
+     .loops = false,
+     .jointForces = false},
 };
 
 struct EngineWorld : House {
@@ -51,17 +72,24 @@ struct EngineWorld : House {
     makeCollision();
     setGravity(9.81);
   }
-  void makeCollision() { collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision"); }
+  /// Its own, or ODE's.
+  void makeCollision() {
+    collision = engine->leaf().as<engine::ICollision>();
+    if (!collision) collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision");
+  }
   void makeEngine() {
     engine = &kernel.create<engine::IEngine>(kind.name, "/sys/engine");
     if (std::string(kind.name) == "ArticulatedEngine") kernel.create("OdeEngine", "/sys/engine/deferred");
   }
   /// Removes the engine, or the collision detection, and makes a new one.
   void replaceEngine() {
+    const bool both = &collision->leaf() == &engine->leaf();
     engine->leaf().parent()->remove(engine->leaf());
     makeEngine();
+    if (both) makeCollision();
   }
   void replaceCollision() {
+    if (&collision->leaf() == &engine->leaf()) return replaceEngine();
     collision->leaf().parent()->remove(collision->leaf());
     makeCollision();
   }
@@ -145,11 +173,11 @@ struct EngineWorld : House {
   }
 };
 
-/// Runs a test once with each engine, or with those that have joints.
+/// Runs a test once with each engine that has what it needs.
 template <class F>
-void withEngines(F&& f, bool needsJoints = false) {
+void withEngines(F&& f, std::initializer_list<bool EngineKind::*> needs = {}) {
   for (const EngineKind& kind : kEngines) {
-    if (needsJoints && !kind.joints) continue;
+    if (!kind.built() || !std::all_of(needs.begin(), needs.end(), [&](auto need) { return kind.*need; })) continue;
     INFO(kind.name);
     EngineWorld w(kind);
     f(w);

@@ -22,13 +22,14 @@ struct Pair {
   }
 };
 
-void withPairs(const std::function<void(EngineWorld&, Pair&)>& f) {
+void withPairs(const std::function<void(EngineWorld&, Pair&)>& f,
+               std::initializer_list<bool EngineKind::*> needs = {&EngineKind::joints}) {
   withEngines(
       [&](EngineWorld& w) {
         Pair pair(w);
         f(w, pair);
       },
-      true);
+      needs);
 }
 
 }  // namespace
@@ -117,15 +118,17 @@ TEST_CASE("a wheel steers, rolls and is sprung") {
 }
 
 TEST_CASE("an angular motor drives its axes") {
-  withPairs([](EngineWorld& w, const Pair& p) {
-    w.joint(JointType::ball, p.child, p.parent, {0, 0, 0.5});
-    const JointHandle j = w.joint(JointType::angularMotor, p.child, p.parent, {0, 0, 0.5});
-    w.motor(j, 0, 1.5, 50);
-    w.motor(j, 1, 0, 50);
-    w.run(0.3);
-    CHECK(w.spin(p.child).z() == Approx(1.5).epsilon(0.02));
-    CHECK(std::abs(w.spin(p.child).x()) < 0.02);
-  });
+  withPairs(
+      [](EngineWorld& w, const Pair& p) {
+        w.joint(JointType::ball, p.child, p.parent, {0, 0, 0.5});
+        const JointHandle j = w.joint(JointType::angularMotor, p.child, p.parent, {0, 0, 0.5});
+        w.motor(j, 0, 1.5, 50);
+        w.motor(j, 1, 0, 50);
+        w.run(0.3);
+        CHECK(w.spin(p.child).z() == Approx(1.5).epsilon(0.02));
+        CHECK(std::abs(w.spin(p.child).x()) < 0.02);
+      },
+      {&EngineKind::joints, &EngineKind::loops});
 }
 
 TEST_CASE("a chain of bodies and a closed loop hold together") {
@@ -146,7 +149,7 @@ TEST_CASE("a chain of bodies and a closed loop hold together") {
           CHECK((a.position + a.rotation * j.anchorA - b.position - b.rotation * j.anchorB).norm() < 0.02);
         }
       },
-      true);
+      {&EngineKind::joints, &EngineKind::loops});
 }
 
 TEST_CASE("a joint's feedback is its load") {
@@ -167,5 +170,5 @@ TEST_CASE("a joint's feedback is its load") {
           CHECK((worldFirst ? f2 : f1).z() == Approx(2 * 9.81).epsilon(0.01));
         }
       },
-      true);
+      {&EngineKind::joints, &EngineKind::jointForces});
 }

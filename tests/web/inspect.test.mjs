@@ -26,8 +26,8 @@ test("a click on a robot selects it, its node and its properties", async (t) => 
   }, key);
   const path = await part(page, "inspector-selected").innerText();
   assert.match(path, /AgentAspect/);
-  await property(page, "name").locator('[data-testid="property-value"]').waitFor();
-  assert.equal(await property(page, "name").locator('[data-testid="property-value"]').innerText(), path.split("/").pop());
+  await until(page, "the node's name", (_, name) =>
+    document.querySelector('[data-property="name"] [data-testid="property-value"]')?.textContent === name, path.split("/").pop());
   assert.match(await host.ctl("get", `${path}.name`), new RegExp(`= ${path.split("/").pop()}\n`));
   await shoot(page, "inspect-robot");
 });
@@ -39,9 +39,9 @@ test("the tree leads to any node, numbers are plotted", async (t) => {
   await part(page, "inspector-filter").fill("GameStateAspect");
   await page.locator('[data-testid="tree-item"][data-path="/sys/server/gamecontrol/GameStateAspect"]').click();
   const time = property(page, "time");
-  const before = Number.parseFloat(await time.locator('[data-testid="property-value"]').innerText());
-  await until(page, "that the time goes on", (_, least) =>
-    Number.parseFloat(document.querySelector('[data-property="time"] [data-testid="property-value"]').textContent) > least, before);
+  const shown = `Number.parseFloat(document.querySelector('[data-property="time"] [data-testid="property-value"]')?.textContent)`;
+  await until(page, "the time", `() => ${shown} >= 0`);
+  await until(page, "that the time goes on", `(_, before) => ${shown} > before`, await page.evaluate(shown));
   assert.equal(await time.locator('[data-testid="property-unit"]').innerText(), "s");
   await time.locator('[data-testid="property-plot"]').click();
   await part(page, "inspector-tab-plots").click();

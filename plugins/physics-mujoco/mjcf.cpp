@@ -1,0 +1,324 @@
+#include "mjcf.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <iterator>
+
+namespace spark::mujoco {
+
+using engine::Geom;
+using engine::Joint;
+using engine::JointType;
+using engine::Model;
+using engine::Shape;
+
+namespace {
+
+Mat3 rotationWhenSet(const std::array<double, 4>& q) {
+  // All zeros: a fixed joint that was never set.
+  return q == std::array<double, 4>{} ? Mat3(Mat3::Identity()) : rotationOf(q);
+}
+
+/// The pose of body b in body a where the joint's coordinates are 0.
+Pose zeroOfB(const Joint& j, const Pose& now) {
+  Mat3 r = Mat3::Identity();
+  switch (j.type) {
+    case JointType::hinge:
+    case JointType::fixed:
+      r = rotationWhenSet(j.initialRotationA);
+      break;
+    case JointType::slider: {
+      r = rotationWhenSet(j.initialRotationA);
+      // anchorB is a's centre in b.
+      return {-(r * j.anchorB), r};
+    }
+    case JointType::universal: {
+      // The frame of (axis 1, axis 2) and that of (axis 2, axis 1) differ by an exchange of x and y.
+      Mat3 exchange;
+      exchange << 0, 1, 0, 1, 0, 0, 0, 0, -1;
+      r = rotationOf(j.initialRotationA) * exchange * rotationOf(j.initialRotationB).transpose();
+      break;
+    }
+    case JointType::hinge2: {
+      // Axis 2, its zero direction and theirs, in a and in b.
+      Mat3 inA, inB;
+      inA.col(0) = j.axisA[0], inA.col(1) = j.planeA[0], inA.col(2) = j.planeA[1];
+      const Vec3 axis2InA = j.cosAxes * j.axisA[0] + j.sinAxes * j.planeA[0];
+      const Vec3 axis1InB = j.cosAxes * j.axisB[1] + j.sinAxes * j.planeB[0];
+      inA.col(1) = axis2InA, inA.col(2) = j.axisA[0].cross(axis2InA);
+      inB.col(0) = axis1InB, inB.col(1) = j.axisB[1], inB.col(2) = axis1InB.cross(j.axisB[1]);
+      r = inA * inB.inverse();
+      break;
+    }
+    default:
+      r = now.rotation;
+      break;
+  }
+  return {j.anchorA - r * j.anchorB, r};
+}
+
+Pose inverse(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
+
+Pose poseOf(const engine::State& state, Index body) {
+  if (body == kNone) return {};
+  return {state.bodies[body].position, state.bodies[body].rotation};
+}
+
+bool canBeInTree(const Joint& j) { return j.a != kNone && j.type != JointType::angularMotor; }
+
+}  // namespace
+
+Trees::Trees(const Model& model, const engine::State& state) : linkOf(model.bodies.size(), kNone) {
+  std::vector<std::vector<Index>> jointsOf(model.bodies.size());
+  for (Index i = 0; i < model.joints.size(); ++i) {
+    const Joint& j = model.joints[i];
+    if (!canBeInTree(j)) continue;
+    jointsOf[j.a].push_back(i);
+    if (j.b != kNone) jointsOf[j.b].push_back(i);
+  }
+  std::vector<bool> used(model.joints.size(), false);
+  const auto add = [&](Index body, Index parent, Index joint) {
+    Link link{body, parent, joint, true, {}};
+    const Pose above = parent == kNone ? Pose{} : poseOf(state, links[parent].body), own = poseOf(state, body);
+    link.zero = compose(inverse(above), own);
+    if (joint != kNone) {
+      const Joint& j = model.joints[joint];
+      used[joint] = true;
+      link.childIsA = j.a == body;
+      const Pose b = zeroOfB(j, compose(inverse(poseOf(state, j.a)), poseOf(state, j.b)));
+      link.zero = link.childIsA ? inverse(b) : b;
+    }
+    linkOf[body] = static_cast<Index>(links.size());
+    links.push_back(link);
+  };
+  // Bodies that a joint connects to the world are roots if they can be.
+  for (const bool toWorld : {true, false})
+    for (Index body = 0; body < model.bodies.size(); ++body) {
+      if (linkOf[body] != kNone) continue;
+      Index joint = kNone;
+      for (const Index j : jointsOf[body])
+        if (joint == kNone && model.joints[j].b == kNone) joint = j;
+      if (toWorld && joint == kNone) continue;
+      const std::size_t first = links.size();
+      add(body, kNone, joint);
+      for (std::size_t at = first; at < links.size(); ++at)
+        for (const Index j : jointsOf[links[at].body]) {
+          if (used[j]) continue;
+          const Joint& joint = model.joints[j];
+          const Index other = joint.a == links[at].body ? joint.b : joint.a;
+          if (other != kNone && linkOf[other] == kNone) add(other, static_cast<Index>(at), j);
+        }
+    }
+  for (Index i = 0; i < model.joints.size(); ++i)
+    if (model.joints[i].a != kNone && !used[i]) leftOver.push_back(i);
+}
+
+std::string bodyName(Index body) { return fmt::format("b{}", body); }
+std::string geomName(Index geom) { return fmt::format("g{}", geom); }
+std::string jointName(Index joint, int coordinate) { return fmt::format("j{}_{}", joint, coordinate); }
+
+int coordinatesOf(JointType type) {
+  switch (type) {
+    case JointType::hinge:
+    case JointType::slider:
+    case JointType::ball:
+      return 1;
+    case JointType::universal:
+      return 2;
+    case JointType::hinge2:
+      return 3;
+    default:
+      return 0;
+  }
+}
+
+namespace {
+
+/// Writes the elements of a world.
+struct Writer {
+  const Model& model;
+  const Trees& trees;
+  std::string out;
+  std::vector<std::vector<Index>> children, geoms;  // by link; by body
+
+  template <class... A>
+  void put(fmt::format_string<A...> format, A&&... arguments) {
+    fmt::format_to(std::back_inserter(out), format, std::forward<A>(arguments)...);
+  }
+  static std::string text(const Vec3& v) { return fmt::format("{:.17g} {:.17g} {:.17g}", v.x(), v.y(), v.z()); }
+  void putPose(const Pose& p) {
+    const Eigen::Quaterniond q(p.rotation);
+    put(R"( pos="{}" quat="{:.17g} {:.17g} {:.17g} {:.17g}")", text(p.position), q.w(), q.x(), q.y(), q.z());
+  }
+
+  void putGeom(Index index) {
+    const Geom& g = model.geoms[index];
+    const engine::ShapeDescription& s = g.shape;
+    if (s.shape == Shape::ray) return;
+    put(R"(<geom name="{}" contype="{}" conaffinity="{}")", geomName(index), g.collides ? 1 : 0, g.collides ? 1 : 0);
+    // No shape of MuJoCo's may be without extent.
+    const auto length = [](double v) { return std::max(v, 1e-6); };
+    Pose pose = g.offset;
+    switch (s.shape) {
+      case Shape::box:
+        put(R"( type="box" size="{:.17g} {:.17g} {:.17g}")", length(s.lengths.x() / 2), length(s.lengths.y() / 2),
+            length(s.lengths.z() / 2));
+        break;
+      case Shape::sphere:
+        put(R"( type="sphere" size="{:.17g}")", length(s.radius));
+        break;
+      case Shape::capsule:
+      case Shape::cylinder:
+        put(R"( type="{}" size="{:.17g} {:.17g}")", s.shape == Shape::capsule ? "capsule" : "cylinder",
+            length(s.radius), length(s.length / 2));
+        break;
+      case Shape::plane: {
+        const Vec3 normal(s.plane[0], s.plane[1], s.plane[2]);
+        pose.rotation = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+        pose.position = normal * (s.plane[3] / normal.squaredNorm());
+        put(R"( type="plane" size="0 0 1")");
+        break;
+      }
+      default:
+        put(R"( type="mesh" mesh="m{}")", index);
+        break;
+    }
+    putPose(pose);
+    put("/>\n");
+  }
+
+  void putRange(const engine::JointAxis& a, bool childIsA) {
+    if (!(a.lowStop <= a.highStop) || (std::isinf(a.lowStop) && std::isinf(a.highStop))) return;
+    // MuJoCo's limits are two-sided; a million turns or metres are as good as none.
+    const double low = std::max(a.lowStop, -1e6), high = std::min(a.highStop, 1e6);
+    // Equal stops lock the axis: MuJoCo wants a range.
+    const double least = low == high ? 1e-6 : 0;
+    put(R"( limited="true" range="{:.17g} {:.17g}")", (childIsA ? low : -high) - least,
+        (childIsA ? high : -low) + least);
+  }
+
+  /// The joint of a link, in the frame of its body. Coordinates are those of the child relative to the parent, which
+  /// are the joint's, or their opposites where the child is body b.
+  void putJoint(const Link& link) {
+    if (link.joint == kNone) return put("<freejoint/>\n");
+    const Joint& j = model.joints[link.joint];
+    const double sign = link.childIsA ? 1 : -1;
+    const Vec3 at = link.childIsA ? j.anchorA : j.anchorB;
+    const Mat3 parentInChild = link.zero.rotation.transpose();
+    // Axis 1 is fixed in a, axis 2 in b; each in the child's frame, at zero.
+    const auto inChild = [&](const Vec3& axis, bool inA) {
+      return Vec3(sign * (inA == link.childIsA ? axis : Vec3(parentInChild * axis)));
+    };
+    const auto axial = [&](int coordinate, const char* type, const Vec3& axis, const engine::JointAxis* limits) {
+      put(R"(<joint name="{}" type="{}" pos="{}" axis="{}")", jointName(link.joint, coordinate), type, text(at),
+          text(axis));
+      if (limits) putRange(*limits, true);
+    };
+    switch (j.type) {
+      case JointType::hinge:
+        axial(0, "hinge", inChild(j.axisA[0], true), &j.axes[0]);
+        put("/>\n");
+        break;
+      case JointType::slider:
+        axial(0, "slide", (j.reversed ? -1 : 1) * inChild(j.axisA[0], true), &j.axes[0]);
+        put("/>\n");
+        break;
+      case JointType::ball:
+        put(R"(<joint name="{}" type="ball" pos="{}"/>)", jointName(link.joint, 0), text(at));
+        break;
+      case JointType::universal:
+        // The first joint of a body is the one next to the parent.
+        if (link.childIsA) {
+          axial(1, "hinge", inChild(j.axisB[1], false), &j.axes[j.reversed ? 0 : 1]);
+          put("/>\n");
+          axial(0, "hinge", inChild(j.axisA[0], true), &j.axes[j.reversed ? 1 : 0]);
+        } else {
+          axial(0, "hinge", inChild(j.axisA[0], true), &j.axes[0]);
+          put("/>\n");
+          axial(1, "hinge", inChild(j.axisB[1], false), &j.axes[1]);
+        }
+        put("/>\n");
+        break;
+      case JointType::hinge2: {
+        // A spring along axis 1, as ODE's ERP and CFM mean one (ODE manual, "Soft constraint and CFM").
+        const auto suspension = [&] {
+          const double dt = 0.02, erp = j.ode.suspensionErp, cfm = std::max(j.ode.suspensionCfm, 1e-7);
+          axial(0, "slide", inChild(j.axisA[0], true), nullptr);
+          put(R"( stiffness="{:.17g}" damping="{:.17g}"/>)", erp / (cfm * dt), (1 - erp) / cfm);
+        };
+        const auto steering = [&] {
+          axial(1, "hinge", inChild(j.axisA[0], true), &j.axes[0]);
+          put("/>\n");
+        };
+        const auto rolling = [&] {
+          axial(2, "hinge", inChild(j.axisB[1], false), nullptr);
+          put("/>\n");
+        };
+        if (link.childIsA)
+          rolling(), suspension(), steering();
+        else
+          suspension(), steering(), rolling();
+        break;
+      }
+      default:
+        break;
+    }
+  }
+
+  void putLink(std::size_t index) {
+    const Link& link = trees.links[index];
+    const engine::Body& b = model.bodies[link.body];
+    put(R"(<body name="{}")", bodyName(link.body));
+    putPose(link.zero);
+    put(">\n");
+    const Mat3& i = b.inertia;
+    put(R"(<inertial pos="0 0 0" mass="{:.17g}" fullinertia="{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}"/>)",
+        b.mass, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2));
+    put("\n");
+    putJoint(link);
+    for (const Index g : geoms[link.body]) putGeom(g);
+    for (const Index child : children[index]) putLink(child);
+    put("</body>\n");
+  }
+
+  void putMeshes() {
+    put("<asset>\n");
+    for (Index i = 0; i < model.geoms.size(); ++i) {
+      const engine::ShapeDescription& s = model.geoms[i].shape;
+      if (s.shape != Shape::mesh) continue;
+      put(R"(<mesh name="m{}" vertex="{}" face="{}"/>)", i, fmt::join(s.vertices, " "), fmt::join(s.triangles, " "));
+    }
+    put("</asset>\n");
+  }
+};
+
+}  // namespace
+
+std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes) {
+  Writer w{model, trees, {}, {}, {}};
+  w.children.resize(trees.links.size());
+  for (Index i = 0; i < trees.links.size(); ++i)
+    if (trees.links[i].parent != kNone) w.children[trees.links[i].parent].push_back(i);
+  w.geoms.resize(model.bodies.size());
+  for (Index i = 0; i < model.geoms.size(); ++i)
+    if (model.geoms[i].body != kNone) w.geoms[model.geoms[i].body].push_back(i);
+
+  w.put("<mujoco>\n");
+  w.put(R"(<compiler angle="radian" inertiafromgeom="false" balanceinertia="true"/>)");
+  w.put(R"(<option timestep="{:.17g}" gravity="{}"/>)", step, Writer::text(model.parameters.gravity));
+  w.put(R"(<size nconmax="{}" njmax="{}"/>)", sizes.contacts, sizes.rows);
+  // Motors are dry friction about a moving reference (see mujoco_world.cpp): stiff. Stops are firm.
+  w.put(R"(<default><joint solreffriction="0.01 1" solimpfriction="0.9999 0.9999 0.001" solreflimit="0.01 1" )"
+        R"(solimplimit="0.95 0.99 0.001"/></default>)");
+  w.putMeshes();
+  w.put("<worldbody>\n");
+  for (Index i = 0; i < model.geoms.size(); ++i)
+    if (model.geoms[i].body == kNone) w.putGeom(i);
+  for (std::size_t i = 0; i < trees.links.size(); ++i)
+    if (trees.links[i].parent == kNone) w.putLink(i);
+  w.put("</worldbody>\n</mujoco>\n");
+  return std::move(w.out);
+}
+
+}  // namespace spark::mujoco

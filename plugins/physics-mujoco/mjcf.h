@@ -1,0 +1,49 @@
+#pragma once
+/// \file
+/// A model as MJCF text, MuJoCo's own language of models.
+
+#include <string>
+#include <vector>
+
+#include "api/model.h"
+
+namespace spark::mujoco {
+
+using engine::Index;
+using engine::kNone;
+
+/// A body in its tree, parents first.
+struct Link {
+  Index body = 0;
+  Index parent = kNone;  ///< index in Tree::links; kNone: a root
+  Index joint = kNone;   ///< the joint to the parent, or of a root to the world; kNone: a root that is free
+  bool childIsA = true;  ///< the body is body a of that joint
+  Pose zero;             ///< of the body in its parent, or in the world, where the joint's coordinates are 0
+};
+
+/// The trees that joints make of the bodies of a model. Joints that close a loop, and angular motors, are left over.
+struct Trees {
+  std::vector<Link> links;
+  std::vector<Index> linkOf;    ///< by body
+  std::vector<Index> leftOver;  ///< joints
+  explicit Trees(const engine::Model& model, const engine::State& state);
+};
+
+/// Sizes of MuJoCo's buffers, which 2.2.2 has to be told.
+struct Sizes {
+  int contacts = 100, rows = 500;
+};
+
+// Names of MuJoCo's elements: b and the body's index, g and the geom's, j and the joint's with the coordinate's.
+std::string bodyName(Index body);
+std::string geomName(Index geom);
+std::string jointName(Index joint, int coordinate);
+
+/// The number of coordinates that a joint has in MuJoCo: hinge and slider 1, universal 2, hinge2 3 (suspension,
+/// steering, rolling), fixed 0; a ball has one joint of its own kind.
+int coordinatesOf(engine::JointType type);
+
+/// The text. `step` is that of one of MuJoCo's steps [s].
+std::string toMjcf(const engine::Model& model, const Trees& trees, double step, const Sizes& sizes);
+
+}  // namespace spark::mujoco

@@ -1,0 +1,55 @@
+#pragma once
+/// \file
+/// MuJoCo as engine and collision detection of the physics server.
+
+#include <memory>
+
+#include "mujoco_world.h"
+#include "spark/describe.h"
+#include "spark/kernel.h"
+
+namespace spark {
+
+/// Rigid bodies by MuJoCo. It detects its own contacts.
+class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollision {
+  SPARK_CLASS(MujocoEngine, Leaf)
+ public:
+  static void describe(Description<MujocoEngine>& d) {
+    d.doc("Rigid bodies and contacts by MuJoCo, in coordinates of joints.");
+    d.implements<engine::IEngine>();
+    d.implements<engine::ICollision>();
+    d.property("version", &MujocoEngine::version).doc("Version of the library.");
+    d.property("substeps", &MujocoEngine::substeps_)
+        .range(1, 1000)
+        .doc("Number of MuJoCo's steps in a step of the simulation.");
+    d.property("compilations", &MujocoEngine::compilations).doc("Number of models that were compiled.");
+  }
+  Leaf& leaf() override { return *this; }
+  void compile(const engine::Model& model, const engine::State& state) override;
+  void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int perPair,
+              engine::Contacts& out) override;
+  void step(engine::Step& step) override;
+  bool sleeps() const override { return false; }
+  void forget(const engine::Model& model) override;
+
+ private:
+  /// What is kept of a model.
+  struct Known {
+    std::uint64_t id = 0, structure = 0, collision = 0, dynamics = 0;
+    std::unique_ptr<mujoco::MujocoWorld> world;
+    bool full = false;  ///< no more room can be had
+  };
+  std::string version() const { return mj_versionString(); }
+  std::int64_t compilations() const { return compilations_; }
+  Known& of(const engine::Model& model);
+  void build(Known& known, const engine::Model& model, const engine::State& state, double step,
+             const mujoco::Sizes& sizes);
+
+  mujoco::LibraryGuard library_;
+  std::vector<Known> worlds_;
+  int substeps_ = 4;
+  std::int64_t compilations_ = 0;
+  bool warned_ = false;
+};
+
+}  // namespace spark

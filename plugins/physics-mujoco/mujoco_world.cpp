@@ -1,0 +1,335 @@
+#include "mujoco_world.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <atomic>
+
+// Motors: MuJoCo solves dry friction of a joint as a constraint whose force is bounded, and which demands an
+// acceleration that brings the velocity to 0. With the motor's speed as reference in place of 0, and its force as the
+// bound, that is a motor as Spark has it: a constraint on the speed, with a bounded force.
+
+namespace spark::mujoco {
+
+using engine::Contact;
+using engine::DynamicState;
+using engine::Joint;
+using engine::JointType;
+using engine::Model;
+using engine::State;
+
+namespace {
+
+std::uint64_t pairOf(Index a, Index b) { return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b); }
+bool contains(const std::vector<std::uint64_t>& sorted, std::uint64_t pair) {
+  return std::binary_search(sorted.begin(), sorted.end(), pair);
+}
+
+Vec3 toVec(const mjtNum* v) { return {v[0], v[1], v[2]}; }
+
+const DynamicState& worldState() {
+  static const DynamicState state;
+  return state;
+}
+
+/// The angle of a rotation about `axis`, of length 1 [rad, -pi..pi].
+double angleAbout(const Mat3& rotation, const Vec3& axis) {
+  const Eigen::Quaterniond q(rotation);
+  const double angle = 2 * std::atan2(q.vec().dot(axis), q.w());
+  return angle > kPi ? angle - 2 * kPi : angle < -kPi ? angle + 2 * kPi : angle;
+}
+
+}  // namespace
+
+MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, const Sizes& sizes)
+    : sizes_(sizes), trees_(model, state), m_(compile(toMjcf(model, trees_, step, sizes))), d_(mj_makeData(m_.get())) {
+  if (!d_) throw Error("MuJoCo has no memory for the world");
+  static std::atomic<std::uint32_t> marks = 1u << 31;  // those of other engines begin at 1
+  mark_ = ++marks;
+  for (Index i = 0; i < model.bodies.size(); ++i)
+    bodyId_.push_back(mj_name2id(m_.get(), mjOBJ_BODY, bodyName(i).c_str()));
+  for (Index i = 0; i < trees_.links.size(); ++i)
+    rootOf_.push_back(trees_.links[i].parent == kNone ? i : rootOf_[trees_.links[i].parent]);
+  geomOf_.assign(m_->ngeom, kNone);
+  for (Index i = 0; i < model.geoms.size(); ++i)
+    if (const int id = mj_name2id(m_.get(), mjOBJ_GEOM, geomName(i).c_str()); id >= 0) geomOf_[id] = i;
+  for (const Index i : trees_.leftOver)
+    if (model.joints[i].b != kNone) joined_.push_back(pairOf(model.joints[i].a, model.joints[i].b));
+  std::sort(joined_.begin(), joined_.end());
+
+  // The motors of the coordinates.
+  motors_.resize(m_->nv);
+  for (const Link& link : trees_.links) {
+    if (link.joint == kNone) continue;
+    const Joint& j = model.joints[link.joint];
+    if (j.type == JointType::ball) continue;
+    for (int c = 0; c < coordinatesOf(j.type); ++c) {
+      const int id = mj_name2id(m_.get(), mjOBJ_JOINT, jointName(link.joint, c).c_str());
+      // Of a wheel the suspension has no motor.
+      const int axis = j.type == JointType::hinge2 ? c - 1 : c;
+      const bool swapped = j.type == JointType::universal && j.reversed;
+      if (axis >= 0) motors_[m_->jnt_dofadr[id]] = {link.joint, swapped ? 1 - axis : axis, 1};
+    }
+  }
+}
+
+bool MujocoWorld::isFull() const {
+  return d_->warning[mjWARN_CONTACTFULL].number > 0 || d_->warning[mjWARN_CNSTRFULL].number > 0;
+}
+
+// ---- state ----
+
+bool MujocoWorld::isStale(const State& state) const {
+  return std::any_of(state.bodies.begin(), state.bodies.end(), [&](const DynamicState& s) { return s.mark != mark_; });
+}
+
+void MujocoWorld::take(const Model& model, const State& state) {
+  for (const Link& link : trees_.links) takeLink(model, state, link);
+}
+
+void MujocoWorld::takeLink(const Model& model, const State& state, const Link& link) {
+  const DynamicState& child = state.bodies[link.body];
+  const DynamicState& parent = link.parent == kNone ? worldState() : state.bodies[trees_.links[link.parent].body];
+  const int body = bodyId_[link.body], first = m_->body_jntadr[body], count = m_->body_jntnum[body];
+  const Mat3 delta = link.zero.rotation.transpose() * parent.rotation.transpose() * child.rotation;
+  const Vec3 spin = child.angularVelocity - parent.angularVelocity;
+  std::vector<int> hinges;
+  for (int i = first; i < first + count; ++i) {
+    mjtNum *q = d_->qpos + m_->jnt_qposadr[i], *v = d_->qvel + m_->jnt_dofadr[i];
+    switch (m_->jnt_type[i]) {
+      case mjJNT_FREE: {
+        std::copy_n(child.position.data(), 3, q);
+        std::copy_n(child.quaternion.data(), 4, q + 3);
+        const Vec3 local = child.rotation.transpose() * child.angularVelocity;
+        std::copy_n(child.linearVelocity.data(), 3, v);
+        std::copy_n(local.data(), 3, v + 3);
+        break;
+      }
+      case mjJNT_BALL: {
+        const Eigen::Quaterniond rotation(delta);
+        const Vec3 local = child.rotation.transpose() * spin;
+        q[0] = rotation.w(), q[1] = rotation.x(), q[2] = rotation.y(), q[3] = rotation.z();
+        std::copy_n(local.data(), 3, v);
+        break;
+      }
+      case mjJNT_SLIDE: {
+        // From where the parent holds the anchor to where the child has it, along the joint's axis 1.
+        const Joint& j = model.joints[link.joint];
+        const double sign = (link.childIsA ? 1 : -1) * (j.type == JointType::slider && j.reversed ? -1 : 1);
+        const DynamicState &a = link.childIsA ? child : parent, &b = link.childIsA ? parent : child;
+        const Vec3 axis = a.rotation * j.axisA[0];
+        const Vec3 armA = j.type == JointType::slider ? Vec3(Vec3::Zero()) : Vec3(a.rotation * j.anchorA);
+        const Vec3 armB = b.rotation * j.anchorB;
+        q[0] = sign * axis.dot(a.position + armA - b.position - armB);
+        v[0] = sign * axis.dot(a.linearVelocity + a.angularVelocity.cross(armA) - b.linearVelocity -
+                               b.angularVelocity.cross(armB));
+        break;
+      }
+      default:
+        hinges.push_back(i);
+        break;
+    }
+  }
+  if (hinges.empty()) return;
+  const auto axis = [&](int i) { return toVec(m_->jnt_axis + 3 * i); };
+  if (hinges.size() == 1) {
+    d_->qpos[m_->jnt_qposadr[hinges[0]]] = angleAbout(delta, axis(hinges[0]));
+    d_->qvel[m_->jnt_dofadr[hinges[0]]] = spin.dot(child.rotation * axis(hinges[0]));
+    return;
+  }
+  // Two perpendicular axes: in the frame of both, delta is a rotation about x, then one about y.
+  const Vec3 x = axis(hinges[0]), y = axis(hinges[1]);
+  Mat3 frame;
+  frame << x, y, x.cross(y);
+  const Mat3 r = frame.transpose() * delta * frame;
+  d_->qpos[m_->jnt_qposadr[hinges[0]]] = std::atan2(r(2, 1), r(1, 1));
+  d_->qpos[m_->jnt_qposadr[hinges[1]]] = std::atan2(r(0, 2), r(0, 0));
+  d_->qvel[m_->jnt_dofadr[hinges[0]]] = spin.dot(parent.rotation * link.zero.rotation * x);
+  d_->qvel[m_->jnt_dofadr[hinges[1]]] = spin.dot(child.rotation * y);
+}
+
+void MujocoWorld::give(State& state) const {
+  for (Index i = 0; i < state.bodies.size(); ++i) {
+    DynamicState& s = state.bodies[i];
+    const int id = bodyId_[i];
+    s.position = toVec(d_->xpos + 3 * id);
+    std::copy_n(d_->xquat + 4 * id, 4, s.quaternion.begin());
+    s.rotation = rotationOf(s.quaternion);
+    mjtNum velocity[6];  // rotation, translation
+    mj_objectVelocity(m_.get(), d_.get(), mjOBJ_BODY, id, velocity, 0);
+    s.angularVelocity = toVec(velocity);
+    s.linearVelocity = toVec(velocity + 3);
+    s.force.setZero();
+    s.torque.setZero();
+    s.awake = true;
+    s.mark = mark_;
+    state.markMoved(i);
+  }
+}
+
+// ---- contacts ----
+
+bool MujocoWorld::mayTouch(void* world, int geom1, int geom2) {
+  const MujocoWorld& w = *static_cast<MujocoWorld*>(world);
+  const Index i = w.geomOf_[geom1], k = w.geomOf_[geom2];
+  const engine::Geom &a = w.model_->geoms[i], &b = w.model_->geoms[k];
+  if (a.space == b.space && !w.model_->spaces[a.space].inner) return false;
+  if (a.body != kNone && b.body != kNone && contains(w.joined_, pairOf(a.body, b.body))) return false;
+  if (!w.withGhosts_ && contains(w.ghosts_, pairOf(i, k))) return false;
+  return !w.filter_ || w.filter_(a.owner, b.owner);
+}
+
+void MujocoWorld::prepare(const Model& model) {
+  model_ = &model;
+  const Session session(message_, m_.get(), mayTouch, this);
+  mj_step1(m_.get(), d_.get());
+}
+
+void MujocoWorld::detect(const Model& model, const State& state, engine::PairFilter filter, engine::Contacts& out) {
+  filter_ = filter;
+  const bool stale = isStale(state);
+  if (stale) take(model, state);
+  withGhosts_ = true;
+  // The filter may have changed as well: groups of colliders are detached and joined again.
+  prepare(model);
+  listed_.clear();
+  for (int i = 0; i < d_->ncon; ++i) {
+    const mjContact& from = d_->contact[i];
+    Index a = geomOf_[from.geom1], b = geomOf_[from.geom2];
+    // Movable geoms come before static ones, planes come last; among equals the younger comes first.
+    const auto rank = [&](Index g) {
+      const engine::Geom& geom = model.geoms[g];
+      return geom.shape.shape == engine::Shape::plane ? 0 : geom.body != kNone ? 2 : 1;
+    };
+    const bool swapped = rank(b) > rank(a) || (rank(a) == rank(b) && b > a);
+    if (swapped) std::swap(a, b);
+    Contact& c = out.emplace_back();
+    c.geomA = a, c.geomB = b;
+    c.bodyA = model.geoms[a].body, c.bodyB = model.geoms[b].body;
+    c.ownerA = model.geoms[a].owner, c.ownerB = model.geoms[b].owner;
+    c.position = toVec(from.pos);
+    // MuJoCo's normal points from the first geom to the second.
+    c.normal = (swapped ? 1 : -1) * toVec(from.frame);
+    c.depth = std::max(0.0, -from.dist);
+    listed_.push_back(i);
+  }
+}
+
+void MujocoWorld::releaseUnsolved(std::span<const Contact> contacts) {
+  ghosts_.clear();
+  if (contacts.size() != listed_.size()) return;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (contacts[i].solve) continue;
+    ghosts_.push_back(pairOf(contacts[i].geomA, contacts[i].geomB));
+    const mjContact& c = d_->contact[listed_[i]];
+    if (c.efc_address < 0) continue;
+    const int rows = c.dim == 1 ? 1 : m_->opt.cone == mjCONE_PYRAMIDAL ? 2 * (c.dim - 1) : c.dim;
+    for (int row = c.efc_address; row < c.efc_address + rows; ++row) d_->efc_D[row] = 1e-15, d_->efc_R[row] = 1e15;
+  }
+  std::sort(ghosts_.begin(), ghosts_.end());
+}
+
+void MujocoWorld::readContactForces(std::span<Contact> contacts) const {
+  if (contacts.size() != listed_.size()) return;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    Contact& c = contacts[i];
+    if (!c.feedback || !c.solve) continue;
+    mjtNum force[6];  // in the contact's frame, on the second geom
+    mj_contactForce(m_.get(), d_.get(), listed_[i], force);
+    const mjContact& from = d_->contact[listed_[i]];
+    Vec3 onSecond = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) onSecond += force[k] * toVec(from.frame + 3 * k);
+    c.forceOnA = geomOf_[from.geom2] == c.geomA ? onSecond : Vec3(-onSecond);
+  }
+}
+
+// ---- steps ----
+
+bool MujocoWorld::passForces(const Model& model, const State& state) {
+  for (Index i = 0; i < state.bodies.size(); ++i) {
+    mjtNum* to = d_->xfrc_applied + 6 * bodyId_[i];
+    Vec3 force = state.bodies[i].force;
+    if (!model.bodies[i].gravity) force -= model.bodies[i].mass * model.parameters.gravity;
+    std::copy_n(force.data(), 3, to);
+    std::copy_n(state.bodies[i].torque.data(), 3, to + 3);
+  }
+  bool other = false;
+  for (int dof = 0; dof < m_->nv; ++dof) {
+    if (motors_[dof].joint == kNone) continue;
+    const double most = state.motors[motors_[dof].joint][motors_[dof].axis].maxForce;
+    other |= (most > 0) != (m_->dof_frictionloss[dof] > 0);
+    m_->dof_frictionloss[dof] = most;
+  }
+  return other;
+}
+
+void MujocoWorld::passSpeeds(const State& state) {
+  for (int row = 0; row < d_->nefc; ++row) {
+    if (d_->efc_type[row] != mjCNSTR_FRICTION_DOF) continue;
+    const DofMotor& motor = motors_[d_->efc_id[row]];
+    if (motor.joint == kNone) continue;
+    const engine::Motor& wanted = state.motors[motor.joint][motor.axis];
+    d_->efc_frictionloss[row] = wanted.maxForce;
+    d_->efc_aref[row] += d_->efc_KBIP[4 * row + 1] * motor.sign * wanted.velocity;
+  }
+}
+
+bool MujocoWorld::run(engine::Step& step, int times) {
+  const auto bad = [&] {
+    return d_->warning[mjWARN_BADQPOS].number + d_->warning[mjWARN_BADQVEL].number + d_->warning[mjWARN_BADQACC].number;
+  };
+  if (passForces(step.model, step.state)) prepare(step.model);
+  releaseUnsolved(step.contacts);
+  const Session session(message_, m_.get(), mayTouch, this);
+  for (int i = 0; i < times; ++i) {
+    passSpeeds(step.state);
+    mj_step2(m_.get(), d_.get());
+    if (i == 0) readContactForces(step.contacts);
+    withGhosts_ = i + 1 == times;
+    prepare(step.model);
+    if (bad() > 0) return false;
+  }
+  return true;
+}
+
+void MujocoWorld::stopBadTree(State& state, std::vector<Index>& stopped) {
+  int dof = -1;
+  for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
+    mjWarningStat& w = d_->warning[kind];
+    // A place among the positions stands for its joint's first degree of freedom.
+    if (w.number > 0 && kind != mjWARN_BADQPOS) dof = w.lastinfo;
+    if (w.number > 0 && kind == mjWARN_BADQPOS)
+      for (int j = 0; j < m_->njnt; ++j)
+        if (m_->jnt_qposadr[j] <= w.lastinfo) dof = m_->jnt_dofadr[j];
+    w = {};
+  }
+  const int body = dof >= 0 && dof < m_->nv ? m_->dof_bodyid[dof] : -1;
+  const auto found = std::find(bodyId_.begin(), bodyId_.end(), body);
+  for (Index i = 0; i < trees_.links.size(); ++i) {
+    // Without a culprit all are stopped.
+    const bool bad =
+        found == bodyId_.end() || rootOf_[i] == rootOf_[trees_.linkOf[static_cast<Index>(found - bodyId_.begin())]];
+    if (!bad) continue;
+    DynamicState& s = state.bodies[trees_.links[i].body];
+    for (Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) v->setZero();
+    stopped.push_back(trees_.links[i].body);
+  }
+}
+
+void MujocoWorld::step(engine::Step& step, int times) {
+  if (isStale(step.state)) {
+    take(step.model, step.state);
+    prepare(step.model);
+  }
+  std::vector<Index> stopped;
+  while (!run(step, times) && stopped.size() < 2 * step.state.bodies.size()) {
+    stopBadTree(step.state, stopped);
+    mj_resetData(m_.get(), d_.get());
+    take(step.model, step.state);
+    prepare(step.model);
+  }
+  give(step.state);
+  // The physics server puts bodies back whose speed is none.
+  for (const Index i : stopped) step.state.bodies[i].linearVelocity.setConstant(HUGE_VAL);
+}
+
+}  // namespace spark::mujoco

@@ -1,0 +1,75 @@
+#pragma once
+/// \file
+/// A world in MuJoCo: its model and data, and how the state goes there and back.
+
+#include "api/engine.h"
+#include "library.h"
+#include "mjcf.h"
+
+namespace spark::mujoco {
+
+class MujocoWorld {
+ public:
+  /// Compiles the model for steps of `step` seconds. Throws Error with MuJoCo's message.
+  MujocoWorld(const engine::Model& model, const engine::State& state, double step, const Sizes& sizes);
+
+  /// Appends the contacts of the present poses.
+  void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, engine::Contacts& out);
+  /// Steps `times` times.
+  void step(engine::Step& step, int times);
+
+  const Trees& trees() const { return trees_; }
+  /// True when MuJoCo had too little room for contacts or constraints: it dropped some, and wants larger sizes.
+  bool isFull() const;
+  const Sizes& sizes() const { return sizes_; }
+  double stepSize() const { return m_->opt.timestep; }
+  const std::string& message() const { return message_; }
+
+ private:
+  /// The motor that acts on a degree of freedom.
+  struct DofMotor {
+    Index joint = kNone;
+    int axis = 0;
+    double sign = 1;  ///< of the coordinate against the joint's
+  };
+  /// Writes the state of all bodies to MuJoCo's coordinates.
+  void take(const engine::Model& model, const engine::State& state);
+  void takeLink(const engine::Model& model, const engine::State& state, const Link& link);
+  /// True when somebody else has written a body since give().
+  bool isStale(const engine::State& state) const;
+  /// Writes MuJoCo's poses and velocities to the state.
+  void give(engine::State& state) const;
+  /// Positions, contacts and constraints of the present coordinates.
+  void prepare(const engine::Model& model);
+  /// Passes the motors' forces. Returns true when a motor began or ceased to act: prepare() has to run again.
+  bool passForces(const engine::Model& model, const engine::State& state);
+  void passSpeeds(const engine::State& state);
+  /// Steps `times` times from the present coordinates. Returns false when MuJoCo met numbers that are too large or
+  /// none; it has reset all coordinates then.
+  bool run(engine::Step& step, int times);
+  /// Puts the bodies of the tree whose numbers were bad to rest in the state, without forces, and lists them.
+  void stopBadTree(engine::State& state, std::vector<Index>& stopped);
+  /// Takes the force of contacts that are not to be solved.
+  void releaseUnsolved(std::span<const engine::Contact> contacts);
+  void readContactForces(std::span<engine::Contact> contacts) const;
+  static bool mayTouch(void* world, int geom1, int geom2);
+
+  Sizes sizes_;
+  Trees trees_;
+  ModelPointer m_;
+  DataPointer d_;
+  std::vector<int> bodyId_;            ///< MuJoCo's, by body
+  std::vector<Index> rootOf_;          ///< by link: the first of its tree
+  std::vector<Index> geomOf_;          ///< by MuJoCo's geom
+  std::vector<DofMotor> motors_;       ///< by degree of freedom
+  std::vector<std::uint64_t> joined_;  ///< pairs of bodies that a left over joint connects, sorted
+  std::vector<std::uint64_t> ghosts_;  ///< pairs of geoms whose contacts are not solved, sorted
+  bool withGhosts_ = true;             ///< prepare() reports their contacts
+  std::vector<int> listed_;            ///< MuJoCo's contacts, in the order of the last detect()
+  engine::PairFilter filter_ = nullptr;
+  const engine::Model* model_ = nullptr;  ///< while MuJoCo runs
+  std::uint32_t mark_;                    ///< see DynamicState::mark
+  std::string message_;                   ///< MuJoCo's last one
+};
+
+}  // namespace spark::mujoco

@@ -1,0 +1,142 @@
+#include <chrono>
+#include <fstream>
+
+#include "engine_world.h"
+
+// Writes docs/engines.md: what each engine can do, how accurate it is, and what it costs.
+//
+//     build/release/tests/test-engines "[.table]"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// Energy that a pendulum of 1 m and 1 kg has gained after 10 s, as part of what it swings with.
+double pendulum(EngineWorld& w) {
+  const BodyHandle b = w.body({1, 0, 2}, 1, Mat3::Identity() * 1e-4);
+  w.joint(JointType::hinge, b, BodyHandle::none, {0, 0, 2}, Vec3::UnitY());
+  const auto energy = [&] {
+    return 0.5 * w.velocity(b).squaredNorm() + 0.5e-4 * w.spin(b).squaredNorm() + 9.81 * w.position(b).z();
+  };
+  const double before = energy();
+  w.run(10);
+  return (energy() - before) / 9.81;
+}
+
+/// How far the points of a hinge are apart that carries 100 kg [m].
+double gap(EngineWorld& w) {
+  const BodyHandle b = w.body({0.5, 0, 2}, 100, Mat3::Identity() * 10);
+  const JointHandle j = w.joint(JointType::hinge, b, BodyHandle::none, {0, 0, 2}, Vec3::UnitZ());
+  w.run(2);
+  const engine::Joint& joint = w.world.model().joints[w.world.index(j)];
+  const engine::DynamicState& a = w.world.state().bodies[joint.a];
+  return (a.position + a.rotation * joint.anchorA - joint.anchorB).norm();
+}
+
+/// How far a motor of 5 rad/s presses 10 kg m^2 beyond its stop [rad].
+double overshoot(EngineWorld& w) {
+  w.setGravity(0);
+  const BodyHandle b = w.body({0, 0, 2}, 1, Mat3::Identity());
+  const JointHandle j = w.joint(JointType::hinge, b, BodyHandle::none, {0, 0, 2});
+  w.motor(j, 0, 5, 20);
+  w.stops(j, 0, -0.5, 0.5);
+  double farthest = 0;
+  for (int i = 0; i < 200; ++i) {
+    w.run(w.dt);
+    farthest = std::max(farthest, w.world.angle(j, 0) - 0.5);
+  }
+  return farthest;
+}
+
+/// How deep the lowest of ten boxes of 1 kg is in the ground [m].
+double penetration(EngineWorld& w) {
+  w.ground();
+  std::vector<BodyHandle> stack;
+  for (int i = 0; i < 10; ++i) stack.push_back(w.block({0, 0, 0.2 + 0.4 * i}, {0.4, 0.4, 0.4}));
+  w.run(3);
+  return 0.2 - w.position(stack[0]).z();
+}
+
+/// Processor time of a step of 100 boxes that lie on the ground [us].
+double boxesCost(EngineWorld& w) {
+  w.ground();
+  for (int i = 0; i < 100; ++i) w.block({(i % 10) * 1.0, (i / 10) * 1.0, 0.2}, {0.4, 0.4, 0.4});
+  w.run(0.2);
+  const auto begin = std::chrono::steady_clock::now();
+  w.run(1);
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count() * w.dt;
+}
+
+/// Processor time of a step of eight trees of 23 bodies with moving motors [us].
+double treesCost(EngineWorld& w) {
+  w.setGravity(0);
+  std::vector<JointHandle> joints;
+  for (int tree = 0; tree < 8; ++tree) {
+    std::vector<BodyHandle> bodies;
+    for (int i = 0; i < 23; ++i) {
+      bodies.push_back(w.body({3.0 * tree, 0.2 * (i % 4), 0.2 * (i / 4)}, 0.5, Mat3::Identity() * 0.002));
+      if (i == 0) continue;
+      const BodyHandle above = bodies[static_cast<std::size_t>((i - 1) / 2)];
+      joints.push_back(w.joint(JointType::hinge, bodies.back(), above,
+                               (w.position(bodies.back()) + w.position(above)) / 2, Vec3::Unit(i % 3)));
+      w.motor(joints.back(), 0, 0.3, 5);
+    }
+  }
+  w.run(0.2);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 100; ++i) {
+    for (std::size_t k = 0; k < joints.size(); ++k)
+      w.world.drive(joints[k], 0, 0.5 * std::sin(0.1 * i + 0.3 * double(k)));
+    w.run(w.dt);
+  }
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count() / 100;
+}
+
+}  // namespace
+
+TEST_CASE("the table of engines", "[.table]") {
+  std::string head = "| |", line = "|---|";
+  std::vector<const EngineKind*> kinds;
+  for (const EngineKind& k : kEngines)
+    if (k.built()) kinds.push_back(&k), head += fmt::format(" {} |", k.name), line += "---|";
+  const auto row = [&](const char* name, auto&& cell) {
+    std::string out = fmt::format("| {} |", name);
+    for (const EngineKind* k : kinds) out += fmt::format(" {} |", cell(*k));
+    return out + "\n";
+  };
+  const auto can = [&](const char* name, bool EngineKind::*what) {
+    return row(name, [&](const EngineKind& k) { return k.*what ? "yes" : "no"; });
+  };
+  const auto number = [&](const char* name, const char* format, auto&& measure, bool EngineKind::*needs = nullptr) {
+    return row(name, [&](const EngineKind& k) {
+      if (needs && !(k.*needs)) return std::string("-");
+      EngineWorld w(k);
+      return fmt::format(fmt::runtime(format), measure(w));
+    });
+  };
+  std::ofstream out(SPARK_SOURCES "/docs/engines.md");
+  out << "# Engines\n\nWhat each engine can do, how accurate it is and what it costs, in steps of 10 ms. "
+         "`build/release/tests/test-engines "
+         "\"[.table]\"` measures and\nwrites this page; `tests/engines` holds every \"yes\" and \"no\" to its word. "
+         "PointMassEngine is an example of an "
+         "engine (`tests/fixtures`).\n\n"
+      << head << "\n"
+      << line << "\n"
+      << can("rotation", &EngineKind::rotation) << can("joints", &EngineKind::joints)
+      << can("joints that close loops, angular motors", &EngineKind::loops)
+      << can("forces of joints", &EngineKind::jointForces) << can("sleep", &EngineKind::sleep)
+      << can("surfaces of contacts: bounce, slip, friction as a force", &EngineKind::surfaces)
+      << can("goes on bit for bit from a saved state, or when it is replaced", &EngineKind::restores)
+      << number("energy of a pendulum after 10 s, of what it swings with", "{:+.3f}", pendulum, &EngineKind::joints)
+      << number(
+             "gap in a hinge with 100 kg [mm]", "{:.3f}", [](EngineWorld& w) { return 1e3 * gap(w); },
+             &EngineKind::joints)
+      << number(
+             "a motor's way beyond its stop [mrad]", "{:.2f}", [](EngineWorld& w) { return 1e3 * overshoot(w); },
+             &EngineKind::joints)
+      << number("depth of the lowest of ten boxes in the ground [mm]", "{:.2f}",
+                [](EngineWorld& w) { return 1e3 * penetration(w); })
+      << number("step of 100 boxes on the ground [us]", "{:.0f}", boxesCost)
+      << number("step of 8 robots of 23 bodies, in the air [us]", "{:.0f}", treesCost, &EngineKind::joints);
+}
