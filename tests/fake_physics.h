@@ -61,6 +61,7 @@ class FakeJoint : public SceneNode, public IJoint, public IMotor {
     setParameter(engine::JointParameter::velocity, axis, speed);
     if (bodies[0] && speed != 0) bodies[0]->enable();
   }
+  void control(int axis, const engine::Control& control) override { controls[axis] = control; }
   bool atStop(int axis) const override {
     return angles[axis] <= parameter(engine::JointParameter::lowStop, axis) ||
            angles[axis] >= parameter(engine::JointParameter::highStop, axis);
@@ -78,6 +79,7 @@ class FakeJoint : public SceneNode, public IJoint, public IMotor {
   engine::JointType type = engine::JointType::hinge;
   std::array<IRigidBody*, 2> bodies{};
   std::array<double, 3> angles{}, rates{}, maxSpeeds{};
+  std::array<engine::Control, 3> controls{};
   std::map<std::pair<engine::JointParameter, int>, double> parameters;
   double torque = 0;
   bool measures = false;

@@ -11,6 +11,7 @@
 
 #include "api/model.h"
 #include "spark/abi/api/engine.h"
+#include "spark/kernel.h"
 
 namespace spark::engine {
 
@@ -43,6 +44,16 @@ struct Step {
   bool steps(Index body) const { return only.empty() || only[body] != 0; }
 };
 
+/// Says once, as from `node`, that an engine leaves out the inertia of rotors, when a joint has one.
+inline void warnOfArmature(const Model& model, const Leaf& node, bool& said) {
+  const auto hasOne = [](const Joint& j) {
+    return std::any_of(j.axes.begin(), j.axes.end(), [](const JointAxis& a) { return a.armature > 0; });
+  };
+  if (said || !std::any_of(model.joints.begin(), model.joints.end(), hasOne)) return;
+  said = true;
+  node.kernel().log().warning("{}: the inertia of rotors (armature) has no effect with this engine", node.path());
+}
+
 /// Steps worlds.
 class IEngine {
  public:
@@ -57,6 +68,9 @@ class IEngine {
   /// Does not throw, and does not allocate while structure and number of contacts repeat. Results may be no numbers:
   /// the caller puts such bodies back.
   virtual void step(Step& step) = 0;
+  /// True: the engine applies State::controls and JointAxis::damping in its own steps. False: both come as forces on
+  /// the bodies, once in each step; dry friction of controlled axes comes as a motor of speed 0.
+  virtual bool controls() const { return false; }
   /// False: the engine steps all bodies always, and none is put to sleep.
   virtual bool sleeps() const { return true; }
   /// Drops what was kept for a model that ends, or that another engine takes over.

@@ -7,6 +7,7 @@
 /// element is removed, identities (`id`) never. An engine that keeps something of its own for an element matches it by
 /// identity in IEngine::compile().
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -96,13 +97,19 @@ enum class JointParameter {
   stopErp,
   stopCfm,
   suspensionErp,
-  suspensionCfm
+  suspensionCfm,
+  armature,
+  damping,
+  dryFriction
 };
 
 /// One axis of a joint. Angles and velocities are those of body a relative to b. Stops with lowStop above highStop have
 /// no effect, except on angular motors. Forces are in N for sliders, in Nm for rotation.
 struct JointAxis {
   double lowStop = -HUGE_VAL, highStop = HUGE_VAL;  ///< rad or m; equal stops lock the axis; infinite: no stop
+  double armature = 0;                              ///< inertia of the motor's rotor about the axis [kg m^2 or kg]
+  double damping = 0;                               ///< force per velocity, against it [N m s or N s/m]
+  double dryFriction = 0;                           ///< largest force of dry friction [Nm or N]
   /// Read by ODE's solver and the articulated one; names as in the section "Stop and motor parameters" of the ODE
   /// manual.
   struct Ode {
@@ -231,6 +238,27 @@ struct Motor {
 /// The motors of a joint, by axis.
 using Motors = std::array<Motor, 3>;
 
+/// The controller of one axis of a joint, in place of its motor: a force of
+///
+///     stiffness (position - angle) + damping (velocity - rate) + force,   at most maxForce,
+///
+/// in each of an engine's own steps. Units as in JointAxis.
+struct Control {
+  double stiffness = 0, damping = 0;  ///< kp [Nm/rad or N/m] and kd [N m s or N s/m], 0 or more
+  double position = 0, velocity = 0;  ///< targets [rad and rad/s, or m and m/s]
+  double force = 0;                   ///< feed-forward [Nm or N]; alone it is a motor that is given its torque
+  double maxForce = HUGE_VAL;         ///< bound of the sum [Nm or N]
+  double at(double angle, double rate) const {
+    return std::clamp(stiffness * (position - angle) + damping * (velocity - rate) + force, -maxForce, maxForce);
+  }
+};
+/// A controller and the axis that it acts on.
+struct AxisControl {
+  Index joint = kNone;
+  int axis = 0;
+  Control control;
+};
+
 /// What a step measures at a joint with `wantsFeedback`: force [N] and torque about the body's centre [Nm] on a and b.
 struct JointState {
   Vec3 forceA = Vec3::Zero(), torqueA = Vec3::Zero(), forceB = Vec3::Zero(), torqueB = Vec3::Zero();
@@ -241,6 +269,7 @@ struct State {
   std::vector<DynamicState> bodies;
   std::vector<JointState> joints;
   std::vector<Motors> motors;  ///< by joint
+  std::vector<AxisControl> controls;
   /// The bodies whose pose changed since the last detect(), each once, in the order in which they did.
   std::vector<Index> moved;
   /// Appends a body to `moved`, once.

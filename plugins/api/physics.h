@@ -52,7 +52,7 @@ class IRigidBody {
 /// A joint, for sensors and effectors. Offered by HingeJoint and all other joint classes.
 class IJoint {
  public:
-  SPARK_INTERFACE(IJoint, 2);
+  SPARK_INTERFACE(IJoint, 3);
   virtual ~IJoint() = default;
   /// The node that offers it.
   virtual Leaf& leaf() = 0;
@@ -73,6 +73,8 @@ class IJoint {
   virtual void setParameter(engine::JointParameter p, int axis, double v) = 0;
   /// Sets the target speed of the motor [rad/s; slider: m/s]. A speed other than 0 wakes the child link.
   virtual void drive(int axis, double speed) = 0;
+  /// Puts a controller in place of the axis' motor, or changes its targets. Wakes the child link.
+  virtual void control(int axis, const engine::Control& control) = 0;
   /// True when the axis is at its lower or upper stop, or beyond.
   virtual bool atStop(int axis) const = 0;
   /// Largest speed that effectors may command [rad/s]; 0: unlimited.
@@ -249,10 +251,18 @@ class BodyController : public SceneNode {
   Link<IRigidBody> body_;
 };
 
+/// Where a ray meets a collider first.
+struct RayHit {
+  ICollider* collider;
+  double distance;  ///< from the ray's origin [m]
+  Vec3 position;    ///< world frame [m]
+  Vec3 normal;      ///< of the surface, against the ray; length 1
+};
+
 /// The physics server, at /sys/server/physics.
 class IPhysicsServer {
  public:
-  SPARK_INTERFACE(IPhysicsServer, 2);
+  SPARK_INTERFACE(IPhysicsServer, 3);
   static constexpr const char* kPath = "/sys/server/physics";
   virtual ~IPhysicsServer() = default;
   /// The model and the state of the active scene's world. Throw Error when there is none. Valid until the tree changes;
@@ -265,6 +275,13 @@ class IPhysicsServer {
   /// measureForces sets it for every solved contact. Valid until the next step or change of the tree; empty after such
   /// a change.
   virtual std::span<const engine::Contact> contacts() const = 0;
+  /// The first collider on the way from `from` along `direction` (any length above 0), at most `length` far [m];
+  /// nothing below `except` counts. A collider that contains the origin is met where the ray leaves it. Throws Error
+  /// when there is no world. Several threads may ask at once in the sense phase; so it is for overlaps().
+  virtual std::optional<RayHit> castRay(const Vec3& from, const Vec3& direction, double length,
+                                        const Node* except = nullptr) = 0;
+  /// Appends the colliders that a sphere touches, in order of creation.
+  virtual void overlaps(const Vec3& center, double radius, std::vector<ICollider*>& out) = 0;
   /// The collider that is the `owner` of a contact.
   virtual ICollider& colliderOf(void* owner) const = 0;
 };

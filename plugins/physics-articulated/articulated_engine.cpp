@@ -7,7 +7,10 @@
 
 namespace spark {
 
-void ArticulatedEngine::compile(const engine::Model& model, const engine::State&) { std::erase(known_, model.id); }
+void ArticulatedEngine::compile(const engine::Model& model, const engine::State&) {
+  std::erase(known_, model.id);
+  engine::warnOfArmature(model, *this, armatureSaid_);
+}
 
 void ArticulatedEngine::forget(const engine::Model& model) {
   stepper_.forget(model);

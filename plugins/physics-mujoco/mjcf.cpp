@@ -210,10 +210,12 @@ struct Writer {
     const auto inChild = [&](const Vec3& axis, bool inA) {
       return Vec3(sign * (inA == link.childIsA ? axis : Vec3(parentInChild * axis)));
     };
-    const auto axial = [&](int coordinate, const char* type, const Vec3& axis, const engine::JointAxis* limits) {
+    const auto axial = [&](int coordinate, const char* type, const Vec3& axis, const engine::JointAxis* own,
+                           bool limited = true) {
       put(R"(<joint name="{}" type="{}" pos="{}" axis="{}")", jointName(link.joint, coordinate), type, text(at),
           text(axis));
-      if (limits) putRange(*limits, true);
+      if (own) put(R"( armature="{:.17g}" damping="{:.17g}")", own->armature, own->damping);
+      if (own && limited) putRange(*own, true);
     };
     switch (j.type) {
       case JointType::hinge:
@@ -252,7 +254,7 @@ struct Writer {
           put("/>\n");
         };
         const auto rolling = [&] {
-          axial(2, "hinge", inChild(j.axisB[1], false), nullptr);
+          axial(2, "hinge", inChild(j.axisB[1], false), &j.axes[1], false);
           put("/>\n");
         };
         if (link.childIsA)

@@ -30,6 +30,7 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
               engine::Contacts& out) override;
   void step(engine::Step& step) override;
   bool sleeps() const override { return false; }
+  bool controls() const override { return true; }
   void forget(const engine::Model& model) override;
 
  private:

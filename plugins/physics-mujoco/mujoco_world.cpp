@@ -67,7 +67,9 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, co
       // Of a wheel the suspension has no motor.
       const int axis = j.type == JointType::hinge2 ? c - 1 : c;
       const bool swapped = j.type == JointType::universal && j.reversed;
-      if (axis >= 0) motors_[m_->jnt_dofadr[id]] = {link.joint, swapped ? 1 - axis : axis, 1};
+      if (axis < 0) continue;
+      motors_[m_->jnt_dofadr[id]] = {link.joint, swapped ? 1 - axis : axis, 1};
+      dofs_[{link.joint, swapped ? 1 - axis : axis}] = id;
     }
   }
 }
@@ -262,6 +264,15 @@ bool MujocoWorld::passForces(const Model& model, const State& state) {
   return other;
 }
 
+void MujocoWorld::applyControls(const State& state) {
+  for (const engine::AxisControl& c : state.controls) {
+    const auto found = dofs_.find({c.joint, c.axis});
+    if (found == dofs_.end()) continue;
+    const int joint = found->second, dof = m_->jnt_dofadr[joint];
+    d_->qfrc_applied[dof] = c.control.at(d_->qpos[m_->jnt_qposadr[joint]], d_->qvel[dof]);
+  }
+}
+
 void MujocoWorld::passSpeeds(const State& state) {
   for (int row = 0; row < d_->nefc; ++row) {
     if (d_->efc_type[row] != mjCNSTR_FRICTION_DOF) continue;
@@ -282,6 +293,7 @@ bool MujocoWorld::run(engine::Step& step, int times) {
   const Session session(message_, m_.get(), mayTouch, this);
   for (int i = 0; i < times; ++i) {
     passSpeeds(step.state);
+    applyControls(step.state);
     mj_step2(m_.get(), d_.get());
     if (i == 0) readContactForces(step.contacts);
     withGhosts_ = i + 1 == times;

@@ -2,6 +2,8 @@
 /// \file
 /// A world in MuJoCo: its model and data, and how the state goes there and back.
 
+#include <map>
+
 #include "api/engine.h"
 #include "library.h"
 #include "mjcf.h"
@@ -44,6 +46,7 @@ class MujocoWorld {
   /// Passes the motors' forces. Returns true when a motor began or ceased to act: prepare() has to run again.
   bool passForces(const engine::Model& model, const engine::State& state);
   void passSpeeds(const engine::State& state);
+  void applyControls(const engine::State& state);
   /// Steps `times` times from the present coordinates. Returns false when MuJoCo met numbers that are too large or
   /// none; it has reset all coordinates then.
   bool run(engine::Step& step, int times);
@@ -58,14 +61,15 @@ class MujocoWorld {
   Trees trees_;
   ModelPointer m_;
   DataPointer d_;
-  std::vector<int> bodyId_;            ///< MuJoCo's, by body
-  std::vector<Index> rootOf_;          ///< by link: the first of its tree
-  std::vector<Index> geomOf_;          ///< by MuJoCo's geom
-  std::vector<DofMotor> motors_;       ///< by degree of freedom
-  std::vector<std::uint64_t> joined_;  ///< pairs of bodies that a left over joint connects, sorted
-  std::vector<std::uint64_t> ghosts_;  ///< pairs of geoms whose contacts are not solved, sorted
-  bool withGhosts_ = true;             ///< prepare() reports their contacts
-  std::vector<int> listed_;            ///< MuJoCo's contacts, in the order of the last detect()
+  std::vector<int> bodyId_;                    ///< MuJoCo's, by body
+  std::vector<Index> rootOf_;                  ///< by link: the first of its tree
+  std::vector<Index> geomOf_;                  ///< by MuJoCo's geom
+  std::vector<DofMotor> motors_;               ///< by degree of freedom
+  std::map<std::pair<Index, int>, int> dofs_;  ///< MuJoCo's joint, by joint and axis
+  std::vector<std::uint64_t> joined_;          ///< pairs of bodies that a left over joint connects, sorted
+  std::vector<std::uint64_t> ghosts_;          ///< pairs of geoms whose contacts are not solved, sorted
+  bool withGhosts_ = true;                     ///< prepare() reports their contacts
+  std::vector<int> listed_;                    ///< MuJoCo's contacts, in the order of the last detect()
   engine::PairFilter filter_ = nullptr;
   const engine::Model* model_ = nullptr;  ///< while MuJoCo runs
   std::uint32_t mark_;                    ///< see DynamicState::mark

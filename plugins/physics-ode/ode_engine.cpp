@@ -153,6 +153,7 @@ void OdeEngine::compile(const Model& model, const engine::State&) {
   compileBodies(w, model);
   compileJoints(w, model);
   w.jointRowsCounted = false;
+  engine::warnOfArmature(model, *this, armatureSaid_);
   // Joints were set with the bodies at other places: their states have to be passed again.
   static std::atomic<std::uint32_t> marks = 0;
   w.mark = ++marks;

@@ -64,6 +64,7 @@ class OdeEngine : public Node, public engine::IEngine {
   ode::Messages messages_;
   std::int64_t approximateSteps_ = 0;
   int directRows_ = 1200;
+  bool armatureSaid_ = false;
 };
 
 }  // namespace spark

@@ -196,7 +196,10 @@ void compileJoints(WorldData& w, const Model& model) {
     j->joint = createJoint(w.id, from.type);
     // All parameters are passed once.
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    for (JointAxis& a : j->axes) a = {kUnknown, kUnknown, {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown}};
+    for (JointAxis& a : j->axes) {
+      a.lowStop = a.highStop = kUnknown;
+      a.ode = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+    }
     j->ode = {kUnknown, kUnknown, kUnknown, kUnknown};
     w.joints.push_back(std::move(j));
     w.motors.emplace_back();

@@ -9,9 +9,9 @@ using engine::JointType;
 
 namespace {
 
-constexpr int kParameters = 11;         // number of JointParameter values
+constexpr int kSavedParameters = 11;    // those of JointParameter that are state: the first ones
 constexpr double kShortestAxis = 1e-9;  // shorter axes are refused
-static_assert(static_cast<int>(JointParameter::suspensionCfm) == kParameters - 1);
+static_assert(static_cast<int>(JointParameter::suspensionCfm) == kSavedParameters - 1);
 
 }  // namespace
 
@@ -51,6 +51,11 @@ void Joint::describe(Description<Joint>& d) {
   axis("AngularMotorVelocity", &J::setDeg<P::velocity>, &J::getDeg<P::velocity>, "deg/s", "Target speed of the motor.");
   axis("MaxMotorForce", &J::set<P::maxForce>, &J::get<P::maxForce>, "N or Nm",
        "Maximum force or torque of the motor; 0: no motor.");
+  axis("Armature", &J::set<P::armature>, &J::get<P::armature>, "kg m^2 or kg",
+       "Inertia of the motor's rotor about the axis.");
+  axis("Damping", &J::set<P::damping>, &J::get<P::damping>, "N m s or N s/m", "Force per velocity, against it.");
+  axis("DryFriction", &J::set<P::dryFriction>, &J::get<P::dryFriction>, "Nm or N",
+       "Largest force of dry friction; of an axis with a controller.");
 
   d.property("jointMaxSpeed1", &J::maxSpeed1, &J::setMaxSpeed1)
       .unit("rad/s")
@@ -161,12 +166,25 @@ void Joint::enableFeedback(bool on) {
 
 void Joint::saveState(StateWriter& out) const {
   for (int axis = 0; axis < axes(); ++axis)
-    for (int p = 0; p < kParameters; ++p) out.write(parameter(static_cast<JointParameter>(p), axis));
+    for (int p = 0; p < kSavedParameters; ++p) out.write(parameter(static_cast<JointParameter>(p), axis));
+  for (int axis = 0; axis < axes(); ++axis) {
+    const engine::Control* c = world() ? world()->controlOf(joint_, axis) : nullptr;
+    out.write(c != nullptr);
+    if (!c) continue;
+    for (const double v : {c->stiffness, c->damping, c->position, c->velocity, c->force, c->maxForce}) out.write(v);
+  }
 }
 
 void Joint::loadState(StateReader& in) {
   for (int axis = 0; axis < axes(); ++axis)
-    for (int p = 0; p < kParameters; ++p) setParameter(static_cast<JointParameter>(p), axis, in.readNumber());
+    for (int p = 0; p < kSavedParameters; ++p) setParameter(static_cast<JointParameter>(p), axis, in.readNumber());
+  for (int axis = 0; axis < axes(); ++axis) {
+    if (world()) world()->removeControl(joint_, axis);
+    if (!in.readBool()) continue;
+    engine::Control c;
+    for (double* v : {&c.stiffness, &c.damping, &c.position, &c.velocity, &c.force, &c.maxForce}) *v = in.readNumber();
+    if (world()) world()->control(joint_, axis, c);
+  }
 }
 
 }  // namespace spark

@@ -29,6 +29,9 @@ class Joint : public PhysicsObject, public IJoint {
   void drive(int axis, double speed) override {
     if (world()) world()->drive(joint_, axis, speed);
   }
+  void control(int axis, const engine::Control& control) override {
+    if (world()) world()->control(joint_, axis, control);
+  }
   bool atStop(int axis) const override { return world() && world()->atStop(joint_, axis); }
   double maxSpeed(int axis) const override { return axis == 0 || axis == 1 ? maxSpeed_[axis] : 0; }
   double feedbackTorque() const override;

@@ -5,6 +5,7 @@
 #include "api/phases.h"
 #include "colliders.h"
 #include "contact_loop.h"
+#include "queries.h"
 #include "spark/prefetch.h"
 
 namespace spark {
@@ -180,6 +181,36 @@ void PhysicsServer::solve(const Event& event) {
 std::span<const engine::Contact> PhysicsServer::contacts() const {
   if (contactsAt_ != kernel().structureVersion()) return {};  // owners may have been removed
   return contacts_;
+}
+
+namespace {
+bool isBelow(const Leaf& node, const Node& above) {
+  for (const Leaf* up = &node; up; up = up->parent())
+    if (up == &above) return true;
+  return false;
+}
+}  // namespace
+
+std::optional<RayHit> PhysicsServer::castRay(const Vec3& from, const Vec3& direction, double length,
+                                             const Node* except) {
+  const physics::WorldModel& world = expectWorld();
+  const double norm = direction.norm();
+  if (!from.allFinite() || !(norm > 0) || !std::isfinite(norm))
+    throw Error(fmt::format("{}: expected a ray with finite numbers and a direction longer than 0", path()));
+  const Vec3 unit = direction / norm;
+  const auto hit = physics::castRay(world.model(), world.state(), from, unit, length, [&](const engine::Geom& g) {
+    return !except || !isBelow(colliderOf(g.owner).leaf(), *except);
+  });
+  if (!hit) return std::nullopt;
+  return RayHit{&colliderOf(world.model().geoms[hit->geom].owner), hit->distance, from + hit->distance * unit,
+                hit->normal};
+}
+
+void PhysicsServer::overlaps(const Vec3& center, double radius, std::vector<ICollider*>& out) {
+  const physics::WorldModel& world = expectWorld();
+  std::vector<engine::Index> geoms;
+  physics::findOverlaps(world.model(), world.state(), center, radius, geoms);
+  for (const engine::Index i : geoms) out.push_back(&colliderOf(world.model().geoms[i].owner));
 }
 
 void PhysicsServer::reportFaults() {

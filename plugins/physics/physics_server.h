@@ -20,6 +20,8 @@ class PhysicsServer : public Node, public IPhysicsServer {
   const engine::State& state() override { return expectWorld().state(); }
   void bodies(Node& root, std::vector<IRigidBody*>& out) override;
   std::span<const engine::Contact> contacts() const override;
+  std::optional<RayHit> castRay(const Vec3& from, const Vec3& direction, double length, const Node* except) override;
+  void overlaps(const Vec3& center, double radius, std::vector<ICollider*>& out) override;
   ICollider& colliderOf(void* owner) const override { return *static_cast<Collider*>(owner); }
   /// Throws Error, with what to do, unless there are an engine and a collision detection.
   void expectEngines() const;

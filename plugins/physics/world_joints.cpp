@@ -58,9 +58,10 @@ template <class J, class M>
 auto* parameterOf(J& j, M& motors, JointParameter p, int axis) {
   auto& a = j.axes[axis];
   auto& m = motors[axis];
-  decltype(&a.lowStop) const all[] = {&a.lowStop,         &a.highStop,          &m.velocity,         &m.maxForce,
-                                      &a.ode.fudgeFactor, &a.ode.bounce,        &a.ode.cfm,          &a.ode.stopErp,
-                                      &a.ode.stopCfm,     &j.ode.suspensionErp, &j.ode.suspensionCfm};
+  decltype(&a.lowStop)
+      const all[] = {&a.lowStop,           &a.highStop, &m.velocity,    &m.maxForce,    &a.ode.fudgeFactor,
+                     &a.ode.bounce,        &a.ode.cfm,  &a.ode.stopErp, &a.ode.stopCfm, &j.ode.suspensionErp,
+                     &j.ode.suspensionCfm, &a.armature, &a.damping,     &a.dryFriction};
   return all[static_cast<int>(p)];
 }
 
@@ -376,6 +377,8 @@ void WorldModel::setParameter(JointHandle joint, JointParameter p, int axis, dou
   const double v = rounded(noStop ? wanted : bounded(wanted));
   if (p == JointParameter::maxForce && v < 0) return;
   if (p == JointParameter::fudgeFactor && (v < 0 || v > 1)) return;
+  if (p >= JointParameter::armature && v < 0) return;
+  damped_ |= p == JointParameter::damping && v > 0;
   *parameterOf(j, state_.motors[joints_[joint]], p, axis) = v;
   if (p != JointParameter::velocity && p != JointParameter::maxForce) ++model_.dynamics;
 }
@@ -392,6 +395,66 @@ void WorldModel::drive(JointHandle joint, int axis, double speed) {
   // Wake the first body of attach().
   if (speed == 0 || j.reversed || j.a == kNone || state_.bodies[j.a].awake) return;
   setEnabled(bodies_.handleOf(j.a), true);
+}
+
+void WorldModel::control(JointHandle joint, int axis, const engine::Control& wanted) {
+  const Index index = joints_[joint];
+  const Joint& j = model_.joints[index];
+  const double numbers[] = {wanted.stiffness, wanted.damping, wanted.position, wanted.velocity, wanted.force};
+  if (axis < 0 || axis >= axesOf(j.type) || !inRange(numbers, 5) || wanted.stiffness < 0 || wanted.damping < 0 ||
+      !(wanted.maxForce >= 0))
+    return;
+  const auto isIt = [&](const engine::AxisControl& c) { return c.joint == index && c.axis == axis; };
+  auto found = std::find_if(state_.controls.begin(), state_.controls.end(), isIt);
+  if (found == state_.controls.end()) {
+    state_.controls.push_back({index, axis, {}});
+    found = std::prev(state_.controls.end());
+  }
+  found->control = wanted;
+  // In place of the motor there is dry friction.
+  state_.motors[index][axis] = {0, j.axes[axis].dryFriction};
+  if (!j.reversed && j.a != kNone && !state_.bodies[j.a].awake) setEnabled(bodies_.handleOf(j.a), true);
+}
+
+const engine::Control* WorldModel::controlOf(JointHandle joint, int axis) const {
+  for (const engine::AxisControl& c : state_.controls)
+    if (c.joint == joints_[joint] && c.axis == axis) return &c.control;
+  return nullptr;
+}
+
+void WorldModel::removeControl(JointHandle joint, int axis) {
+  std::erase_if(state_.controls,
+                [&](const engine::AxisControl& c) { return c.joint == joints_[joint] && c.axis == axis; });
+}
+
+/// Adds a force along an axis to both bodies: of a relative to b.
+void WorldModel::addAlong(const Joint& j, int axis, double force) {
+  if (j.a == kNone || force == 0) return;
+  const Vec3 along = (j.reversed ? -force : force) * worldAxis(j, axis);
+  DynamicState& a = state_.bodies[j.a];
+  DynamicState* b = j.b == kNone ? nullptr : &state_.bodies[j.b];
+  if (j.type != JointType::slider) {
+    a.torque += along;
+    if (b) b->torque -= along;
+    return;
+  }
+  // Halfway between the centres: the pair gets no torque.
+  const Vec3 arm = b ? Vec3(0.5 * (b->position - a.position)) : Vec3(Vec3::Zero());
+  a.force += along;
+  a.torque += arm.cross(along);
+  if (!b) return;
+  b->force -= along;
+  b->torque += arm.cross(along);
+}
+
+void WorldModel::applyControls() {
+  for (const engine::AxisControl& c : state_.controls)
+    addAlong(model_.joints[c.joint], c.axis, c.control.at(angleOf(c.joint, c.axis), rateOf(c.joint, c.axis)));
+  if (!damped_) return;
+  for (Index i = 0; i < model_.joints.size(); ++i)
+    for (int axis = 0; axis < axesOf(model_.joints[i].type); ++axis)
+      if (const double damping = model_.joints[i].axes[axis].damping; damping > 0)
+        addAlong(model_.joints[i], axis, -damping * rateOf(i, axis));
 }
 
 bool WorldModel::atStop(JointHandle joint, int axis) const {
@@ -455,13 +518,17 @@ double WorldModel::eulerAngle(const Joint& j, int axis) const {
   return -std::atan2(zero0.dot(axes[1]), zero0.dot(axes[1].cross(axes[2])));
 }
 
-double WorldModel::angle(JointHandle joint, int axis) const {
-  const Joint& j = of(joint);
+double WorldModel::angle(JointHandle joint, int axis) const { return angleOf(joints_[joint], axis); }
+
+double WorldModel::angleRate(JointHandle joint, int axis) const { return rateOf(joints_[joint], axis); }
+
+double WorldModel::angleOf(Index joint, int axis) const {
+  const Joint& j = model_.joints[joint];
   if (axis < 0 || axis >= axesOf(j.type) || !attached(j)) return 0;
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
   switch (j.type) {
     case JointType::hinge:
-      return hingeAngle(joints_[joint]);
+      return hingeAngle(joint);
     case JointType::slider: {
       const Vec3 along = times(a->rotation, j.axisA[0]);
       const Vec3 offset = b ? Vec3(a->position - times(b->rotation, j.anchorB) - b->position) : a->position - j.anchorB;
@@ -478,8 +545,8 @@ double WorldModel::angle(JointHandle joint, int axis) const {
   }
 }
 
-double WorldModel::angleRate(JointHandle joint, int axis) const {
-  const Joint& j = of(joint);
+double WorldModel::rateOf(Index joint, int axis) const {
+  const Joint& j = model_.joints[joint];
   if (axis < 0 || axis >= axesOf(j.type) || !attached(j)) return 0;
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
   if (j.type == JointType::angularMotor && axis >= j.motorAxes) return 0;

@@ -372,7 +372,11 @@ void WorldModel::compact() {
     for (engine::Geom& g : model_.geoms) remap(g.space, now);
   }
   if (geoms_.removed() > 0) remap(model_.editedGeoms, geoms_.compact(model_.geoms, geomEdited_));
-  if (joints_.removed() > 0) joints_.compact(model_.joints, state_.joints, state_.motors, angles_);
+  if (joints_.removed() > 0) {
+    const std::vector<Index> now = joints_.compact(model_.joints, state_.joints, state_.motors, angles_);
+    for (engine::AxisControl& c : state_.controls) remap(c.joint, now);
+    std::erase_if(state_.controls, [](const engine::AxisControl& c) { return c.joint == kNone; });
+  }
 }
 
 /// While a world is edited and not stepped, removed elements must not pile up.
@@ -457,6 +461,7 @@ void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, doubl
   repaired_.clear();
   if (std::none_of(state_.bodies.begin(), state_.bodies.end(), [](const DynamicState& s) { return s.awake; })) return;
   if (model_.parameters.autoDisable && engine.sleeps()) putToSleep(contacts, dt);
+  if (!engine.controls()) applyControls();
   engine::Step step{model_, state_, contacts, rounded(dt), {}};
   engine.step(step);
   ++poses_;

@@ -176,6 +176,12 @@ class WorldModel {
   double parameter(JointHandle joint, engine::JointParameter p, int axis) const;
   /// Sets JointParameter::velocity; a speed other than 0 wakes the first body of attach().
   void drive(JointHandle joint, int axis, double speed);
+  /// Puts a controller in place of the axis' motor, or changes its targets; numbers that make no sense are ignored. A
+  /// controller wakes the first body of attach().
+  void control(JointHandle joint, int axis, const engine::Control& control);
+  /// The controller of an axis; nullptr: none. Valid until one is added or removed.
+  const engine::Control* controlOf(JointHandle joint, int axis) const;
+  void removeControl(JointHandle joint, int axis);
   /// True when the axis is at one of its stops or beyond.
   bool atStop(JointHandle joint, int axis) const;
   double angle(JointHandle joint, int axis) const;      ///< first body relative to the second [rad; slider: m]
@@ -240,6 +246,9 @@ class WorldModel {
   void compact();
   void compactWhenMany();
   void putToSleep(const engine::Contacts& contacts, double dt);
+  /// Adds the forces of controllers and of damping to those on the bodies.
+  void applyControls();
+  void addAlong(const engine::Joint& joint, int axis, double force);
   void checkBodies();
 
   // Joints (world_joints.cpp).
@@ -254,6 +263,8 @@ class WorldModel {
   void setEulerReferences(engine::Joint& j);
   std::array<Vec3, 3> eulerAxes(const engine::Joint& j) const;
   double eulerAngle(const engine::Joint& j, int axis) const;
+  double angleOf(engine::Index joint, int axis) const;
+  double rateOf(engine::Index joint, int axis) const;
   double hingeAngle(engine::Index joint) const;
   double universalAngle(const engine::Joint& j, int axis) const;
   double hinge2Angle(const engine::Joint& j, int axis) const;
@@ -269,6 +280,7 @@ class WorldModel {
   std::vector<Watch> watch_;                 ///< by body
   mutable std::vector<CachedAngle> angles_;  ///< by joint
   std::uint64_t poses_ = 1;                  ///< changes when the angle of a joint may have changed
+  bool damped_ = false;                      ///< an axis has damping
   std::vector<BodyHandle> repaired_;
   std::uint64_t nextId_ = 1, steps_ = 0, attachments_ = 0, assemblies_ = 0;
   Compiled<engine::ICollision> collision_;

@@ -26,6 +26,7 @@ struct EngineKind {
   bool joints = true;
   bool loops = true;        ///< joints may close loops, and motors may drive the angles of others
   bool jointForces = true;  ///< joints measure their load
+  bool armature = false;    ///< the inertia of rotors counts
   bool sleep = true;        ///< what lies still is left alone
   bool surfaces = true;     ///< a contact has the surface that it is given
   bool restores = true;     ///< a saved state goes on bit for bit
@@ -43,6 +44,7 @@ inline const EngineKind kEngines[] = {
      .plugin = "physics-mujoco",
      .loops = false,
      .jointForces = false,
+     .armature = true,
      .sleep = false,
      .surfaces = false,
      .restores = false},

@@ -172,3 +172,56 @@ TEST_CASE("a joint's feedback is its load") {
       },
       {&EngineKind::joints, &EngineKind::jointForces});
 }
+
+TEST_CASE("a controller brings its axis to its target, with the force that it may use and no more") {
+  for (const JointType type : {JointType::hinge, JointType::slider})
+    withPairs([&](EngineWorld& w, const Pair& p) {
+      CAPTURE(int(type));
+      const JointHandle j = w.joint(type, p.child, p.parent, {0, 0, 0.5});
+      w.world.control(j, 0, {.stiffness = 20, .damping = 4, .position = 0.4});
+      w.run(4);
+      CHECK(w.world.angle(j, 0) == Approx(0.4).margin(0.002));
+      CHECK(std::abs(w.world.angleRate(j, 0)) < 0.005);
+      w.world.control(j, 0, {.stiffness = 20, .damping = 4, .position = -0.3});
+      w.run(4);
+      CHECK(w.world.angle(j, 0) == Approx(-0.3).margin(0.002));
+    });
+  withPairs([](EngineWorld& w, const Pair& p) {
+    const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+    w.world.control(j, 0, {.stiffness = 1000, .position = 3, .maxForce = 0.05});
+    w.run(1);
+    CHECK(w.world.angleRate(j, 0) == Approx(0.5).epsilon(0.01));  // 0.05 Nm for 1 s on 0.1 kg m^2
+    w.world.control(j, 0, {.force = -0.05});
+    w.run(1);
+    CHECK(std::abs(w.world.angleRate(j, 0)) < 0.005);
+  });
+}
+
+TEST_CASE("damping slows an axis, dry friction stops it; a rotor's inertia counts where the engine has it") {
+  withPairs([](EngineWorld& w, const Pair& p) {
+    const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+    w.world.setParameter(j, JointParameter::damping, 0, 0.2);
+    w.world.setAngularVelocity(p.child, {0, 0, 2});
+    w.run(0.5);
+    CHECK(w.world.angleRate(j, 0) == Approx(2 * std::exp(-0.2 / 0.1 * 0.5)).epsilon(0.02));
+  });
+  withPairs([](EngineWorld& w, const Pair& p) {
+    const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+    w.world.setParameter(j, JointParameter::dryFriction, 0, 0.1);
+    w.world.control(j, 0, {.force = 0.09});
+    w.run(1);
+    CHECK(std::abs(w.world.angleRate(j, 0)) < 1e-3);
+    w.world.control(j, 0, {.force = 0.15});
+    w.run(1);
+    CHECK(w.world.angleRate(j, 0) == Approx(0.5).epsilon(0.02));
+  });
+  withPairs(
+      [](EngineWorld& w, const Pair& p) {
+        const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+        w.world.setParameter(j, JointParameter::armature, 0, 0.3);
+        w.world.control(j, 0, {.force = 0.2});
+        w.run(1);
+        CHECK(w.world.angleRate(j, 0) == Approx(0.5).epsilon(0.01));  // 0.2 Nm for 1 s on 0.1 + 0.3 kg m^2
+      },
+      {&EngineKind::joints, &EngineKind::armature});
+}

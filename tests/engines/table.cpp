@@ -125,7 +125,8 @@ TEST_CASE("the table of engines", "[.table]") {
       << line << "\n"
       << can("rotation", &EngineKind::rotation) << can("joints", &EngineKind::joints)
       << can("joints that close loops, angular motors", &EngineKind::loops)
-      << can("forces of joints", &EngineKind::jointForces) << can("sleep", &EngineKind::sleep)
+      << can("forces of joints", &EngineKind::jointForces) << can("inertia of rotors (armature)", &EngineKind::armature)
+      << can("sleep", &EngineKind::sleep)
       << can("surfaces of contacts: bounce, slip, friction as a force", &EngineKind::surfaces)
       << can("goes on bit for bit from a saved state, or when it is replaced", &EngineKind::restores)
       << number("energy of a pendulum after 10 s, of what it swings with", "{:+.3f}", pendulum, &EngineKind::joints)

@@ -95,3 +95,27 @@ TEST_CASE("a second robot that comes and goes leaves the first as it was") {
   }
   CHECK(house.world(first).z() == Approx(5 - 9.81 * 0.0004 * 8 * 9 / 2).epsilon(1e-5));
 }
+
+TEST_CASE("rays and overlaps find colliders, and nothing below the node that asks") {
+  PhysicsHouse house;
+  Node& near = house.box("near", {2, 0, 1}, {1, 1, 1});
+  Node& far = house.box("far", {5, 0, 1}, {1, 1, 1});
+  auto& server = house.kernel.root().require<IPhysicsServer>(IPhysicsServer::kPath);
+  const auto hit = server.castRay({0, 0, 1}, {3, 0, 0}, 10);
+  REQUIRE(hit);
+  CHECK(&hit->collider->leaf() == near.find("collider"));
+  CHECK(hit->distance == Approx(1.5));
+  CHECK(hit->position == Vec3(1.5, 0, 1));
+  CHECK(hit->normal == Vec3(-1, 0, 0));
+  const auto beyond = server.castRay({0, 0, 1}, {1, 0, 0}, 10, &near);
+  REQUIRE(beyond);
+  CHECK(&beyond->collider->leaf() == far.find("collider"));
+  CHECK_FALSE(server.castRay({0, 0, 1}, {1, 0, 0}, 1));
+  CHECK_THROWS_WITH(server.castRay({0, 0, 1}, {0, 0, 0}, 1), Catch::Contains("direction longer than 0"));
+  std::vector<ICollider*> found;
+  server.overlaps({3.5, 0, 1}, 1.1, found);
+  CHECK(found.size() == 2);
+  found.clear();
+  server.overlaps({3.5, 0, 1}, 0.9, found);
+  CHECK(found.empty());
+}

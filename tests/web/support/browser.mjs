@@ -10,12 +10,20 @@ const sandbox = process.getuid?.() === 0 ? ["--no-sandbox"] : [];
 /** Milliseconds that a condition may take; generous, since machines are busy. */
 export const patience = 60000;
 
+const browsers = new WeakMap(); // by test
+
+/** Closes the pages of a test: before its host ends, or they would report that it is gone. */
+export async function closePages(t) {
+  for (const browser of browsers.get(t) ?? []) await browser.close();
+}
+
 /**
  * A page in a browser of its own, closed after the test. Whatever it reports as an error fails the test.
  * Options are those of playwright's contexts (viewport, hasTouch, colorScheme, ...).
  */
 export async function openPage(t, url, options = {}) {
   const browser = await viewerPackage("playwright-core").chromium.launch({ executablePath: chromium, args: [...software, ...sandbox] });
+  browsers.set(t, [...(browsers.get(t) ?? []), browser]);
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, reducedMotion: "reduce", ...options });
   const page = await context.newPage();
   page.setDefaultTimeout(patience);

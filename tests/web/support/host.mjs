@@ -5,6 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { promisify } from "node:util";
+import { closePages } from "./browser.mjs";
 import { build } from "./places.mjs";
 
 const program = (name) => join(build, "bin", name);
@@ -35,6 +36,7 @@ export async function startHostIn(cwd, t, ...options) {
   const lines = createInterface({ input: child.stdout });
   const ended = new Promise((done) => child.once("exit", done));
   t.after(async () => {
+    await closePages(t);
     child.kill();
     await ended;
   });
