@@ -44,8 +44,15 @@ void MujocoEngine::compile(const engine::Model& model, const engine::State& stat
   known.collision = model.collision;
   known.dynamics = model.dynamics;
   const mujoco::Sizes least = sizesFor(model), old = known.world ? known.world->sizes() : least;
-  build(known, model, state, known.world ? known.world->stepSize() : kUsualStep / substeps_,
-        {std::max(least.contacts, old.contacts), std::max(least.rows, old.rows)});
+  const double step = known.world ? known.world->stepSize() : kUsualStep / substeps_;
+  known.world.reset();
+  try {
+    build(known, model, state, step, {std::max(least.contacts, old.contacts), std::max(least.rows, old.rows)});
+  } catch (const Error& e) {
+    // The log says so once; nothing moves until the model is another one.
+    if (std::exchange(known.refused, e.what()) != e.what())
+      kernel().log().error("{}: MuJoCo does not take this world, so nothing in it moves: {}", path(), e.what());
+  }
 }
 
 void MujocoEngine::build(Known& known, const engine::Model& model, const engine::State& state, double step,
@@ -60,14 +67,15 @@ void MujocoEngine::build(Known& known, const engine::Model& model, const engine:
 
 void MujocoEngine::detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int,
                           engine::Contacts& out) {
-  of(model).world->detect(model, state, filter, out);
+  if (Known& known = of(model); known.world) known.world->detect(model, state, filter, out);
 }
 
 void MujocoEngine::step(engine::Step& step) {
   Known& known = of(step.model);
+  if (!known.world) return;
   const double wanted = step.dt / substeps_;
   if (std::abs(known.world->stepSize() - wanted) > 1e-12)
-    build(known, step.model, step.state, wanted, known.world->sizes());
+    build(known, step.model, step.state, wanted, mujoco::Sizes(known.world->sizes()));
   known.world->step(step, substeps_);
   if (known.full || !known.world->isFull()) return;
   const mujoco::Sizes old = known.world->sizes();

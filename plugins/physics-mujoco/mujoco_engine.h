@@ -38,7 +38,8 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
   struct Known {
     std::uint64_t id = 0, structure = 0, collision = 0, dynamics = 0;
     std::unique_ptr<mujoco::MujocoWorld> world;
-    bool full = false;  ///< no more room can be had
+    bool full = false;    ///< no more room can be had
+    std::string refused;  ///< why the last model that was refused was
   };
   std::string version() const { return mj_versionString(); }
   std::int64_t compilations() const { return compilations_; }

@@ -122,3 +122,20 @@ TEST_CASE("a world that repeats itself gives the same numbers twice, and what on
     CHECK(w.saved(a.bodies) == other.saved(b.bodies));
   });
 }
+
+TEST_CASE("shapes and masses at the edge of sense end no engine") {
+  withEngines([](EngineWorld& w) {
+    w.ground();
+    const BodyHandle fine = w.block({3, 0, 2}, {0.4, 0.4, 0.4});
+    const BodyHandle odd = w.body({0, 0, 2}, 1e-12, Mat3::Identity() * 1e-18);
+    w.geom({.shape = Shape::box, .lengths = {0, 0, 0}}, odd);
+    w.geom({.shape = Shape::sphere, .radius = 0}, odd);
+    w.geom({.shape = Shape::cylinder, .radius = 1e6, .length = 0}, w.body({0, 0, 50}, 1e9, Mat3::Identity() * 1e12));
+    // A mesh of one triangle, and one of points in a line.
+    w.geom({.shape = Shape::mesh, .vertices = {0, 0, 0, 1, 0, 0, 0, 1, 0}, .triangles = {0, 1, 2}}, w.body({5, 5, 5}));
+    w.geom({.shape = Shape::mesh, .vertices = {0, 0, 0, 1, 0, 0, 2, 0, 0}, .triangles = {0, 1, 2}}, w.body({-5, 5, 5}));
+    w.run(0.2);
+    CHECK(w.position(fine).allFinite());
+    CHECK(w.position(odd).allFinite());
+  });
+}
