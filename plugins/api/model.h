@@ -80,7 +80,17 @@ struct Geom {
   Pose offset;             ///< in the body's frame; the world pose of a static geom; no meaning for planes
   ShapeDescription shape;  ///< valid: see checkShape()
   bool collides = true;    ///< false: it has no contacts
-  void* owner = nullptr;   ///< passed to the pair filter and stored in contacts
+  /// The surface as MuJoCo has it, read by that engine alone (MuJoCo's documentation, "Contact").
+  struct Mujoco {
+    Vec3 friction{1, 0.005, 0.0001};                         ///< sliding; torsional and rolling [m]
+    int condim = 3;                                          ///< dimensions of a contact: 1, 3, 4 or 6
+    int priority = 0;                                        ///< of two surfaces that of higher priority counts
+    std::array<double, 2> solref{0.02, 1};                   ///< time constant [s], damping ratio
+    std::array<double, 5> solimp{0.9, 0.95, 0.001, 0.5, 2};  ///< impedance: from, to, width [m], midpoint, power
+    double margin = 0, gap = 0;  ///< distance at which contacts begin, and that part of it without force [m]
+    bool operator==(const Mujoco&) const = default;
+  } mujoco;
+  void* owner = nullptr;  ///< passed to the pair filter and stored in contacts
 };
 
 /// Joint types of the ODE manual, section "Joint types and joint functions".

@@ -185,6 +185,9 @@ struct Writer {
         break;
     }
     putPose(pose);
+    const Geom::Mujoco& m = g.mujoco;
+    put(R"( friction="{}" condim="{}" priority="{}" solref="{:.17g}" solimp="{:.17g}" margin="{:.17g}" gap="{:.17g}")",
+        text(m.friction), m.condim, m.priority, fmt::join(m.solref, " "), fmt::join(m.solimp, " "), m.margin, m.gap);
     put("/>\n");
   }
 

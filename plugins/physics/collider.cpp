@@ -37,7 +37,57 @@ void Collider::describe(Description<Collider>& d) {
       .doc("true: excludes collisions with colliders of that name in the same space; false: allows them again.");
   d.property("notCollideWith", &Collider::notCollideWith)
       .doc("Names of the colliders of its space that it does not collide with.");
+  // MuJoCo's documentation, "Contact".
+  using C = Collider;
+  d.property("mujocoFriction", &C::mujocoFriction, &C::setMujocoFriction)
+      .min(0)
+      .doc("For MuJoCo: factor of sliding friction; torsional and rolling friction [m].");
+  d.property("mujocoCondim", &C::mujocoCondim, &C::setMujocoCondim)
+      .doc("For MuJoCo: dimensions of a contact: 1, 3, 4 or 6.");
+  d.property("mujocoPriority", &C::mujocoPriority, &C::setMujocoPriority)
+      .doc("For MuJoCo: of two surfaces that of higher priority counts.");
+  d.property("mujocoSolref", &C::mujocoSolref, &C::setMujocoSolref)
+      .doc("For MuJoCo: time constant [s] and damping ratio of contacts; or, negative, stiffness and damping.");
+  d.property("mujocoSolimp", &C::mujocoSolimp, &C::setMujocoSolimp)
+      .doc("For MuJoCo: impedance of contacts: fractions from and to, width [m], midpoint, power.");
+  d.property("mujocoMargin", &C::mujocoMargin, &C::setMujocoMargin)
+      .unit("m")
+      .min(0)
+      .doc("For MuJoCo: distance at which contacts begin.");
+  d.property("mujocoGap", &C::mujocoGap, &C::setMujocoGap)
+      .unit("m")
+      .min(0)
+      .doc("For MuJoCo: part of that distance without force.");
   d.abstract();
+}
+
+void Collider::setMujocoCondim(int n) {
+  if (n != 1 && n != 3 && n != 4 && n != 6)
+    throw Error(fmt::format("{}: expected 1, 3, 4 or 6 dimensions of a contact, found {}", where(), n));
+  mujoco_.condim = n;
+  applyMujoco();
+}
+
+namespace {
+template <std::size_t N>
+void take(std::array<double, N>& to, const std::vector<double>& from, const std::string& where) {
+  if (from.size() != N) throw Error(fmt::format("{}: expected {} numbers, found {}", where, N, from.size()));
+  std::copy(from.begin(), from.end(), to.begin());
+}
+}  // namespace
+
+void Collider::setMujocoSolref(const std::vector<double>& v) {
+  take(mujoco_.solref, v, where());
+  applyMujoco();
+}
+
+void Collider::setMujocoSolimp(const std::vector<double>& v) {
+  take(mujoco_.solimp, v, where());
+  applyMujoco();
+}
+
+void Collider::applyMujoco() {
+  if (world() && geom_ != physics::GeomHandle::none) world()->setMujoco(geom_, mujoco_);
 }
 
 void Collider::onLink() {
@@ -79,6 +129,7 @@ void Collider::reshape() {
   } catch (const Error& e) {
     throw Error(fmt::format("{}: cannot take that shape", where()), e);
   }
+  applyMujoco();
   attach();
 }
 

@@ -91,6 +91,22 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   void setRotation(const std::vector<double>& matrix);
   void addCollisionHandler(const std::string& className);
   void addNotCollideWithColliderName(std::string name, bool on);
+  // What MuJoCo alone reads.
+  const Vec3& mujocoFriction() const { return mujoco_.friction; }
+  void setMujocoFriction(const Vec3& v) { mujoco_.friction = v, applyMujoco(); }
+  int mujocoCondim() const { return mujoco_.condim; }
+  void setMujocoCondim(int n);
+  int mujocoPriority() const { return mujoco_.priority; }
+  void setMujocoPriority(int n) { mujoco_.priority = n, applyMujoco(); }
+  std::vector<double> mujocoSolref() const { return {mujoco_.solref.begin(), mujoco_.solref.end()}; }
+  void setMujocoSolref(const std::vector<double>& v);
+  std::vector<double> mujocoSolimp() const { return {mujoco_.solimp.begin(), mujoco_.solimp.end()}; }
+  void setMujocoSolimp(const std::vector<double>& v);
+  double mujocoMargin() const { return mujoco_.margin; }
+  void setMujocoMargin(double v) { mujoco_.margin = v, applyMujoco(); }
+  double mujocoGap() const { return mujoco_.gap; }
+  void setMujocoGap(double v) { mujoco_.gap = v, applyMujoco(); }
+  void applyMujoco();
   bool isStaticInWorld() const { return !outer_ && !body_; }
 
   std::shared_ptr<physics::SharedSpace> space_;
@@ -98,7 +114,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   Ref<RigidBody> body_;
   const CollisionGroup* group_ = nullptr;
   Collider* outer_ = nullptr;  ///< the TransformCollider it is part of
-  Pose local_;                 ///< in the frame of body, transform or outer collider
+  engine::Geom::Mujoco mujoco_;
+  Pose local_;  ///< in the frame of body, transform or outer collider
   bool solid_ = false, listens_ = false, hasBody_ = false;
   Handlers handlers_;
   std::vector<std::string> notCollideWith_;

@@ -352,6 +352,13 @@ Pose WorldModel::poseOf(Index geom) const {
   return compose({s.position, s.rotation}, g.offset);
 }
 
+void WorldModel::setMujoco(GeomHandle geom, const engine::Geom::Mujoco& surface) {
+  engine::Geom::Mujoco& own = model_.geoms[geoms_[geom]].mujoco;
+  if (own == surface) return;
+  own = surface;
+  markEdited(geoms_[geom]);
+}
+
 void WorldModel::setCollides(GeomHandle geom, bool on) {
   model_.geoms[geoms_[geom]].collides = on;
   markEdited(geoms_[geom]);

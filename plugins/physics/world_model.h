@@ -147,6 +147,8 @@ class WorldModel {
   void setPose(GeomHandle geom, const Pose& pose);
   /// World pose of a geom.
   Pose pose(GeomHandle geom) const { return poseOf(geoms_[geom]); }
+  /// Sets what MuJoCo alone reads.
+  void setMujoco(GeomHandle geom, const engine::Geom::Mujoco& surface);
   /// False: the geom is left out of detect(). True by default.
   void setCollides(GeomHandle geom, bool on);
   engine::Index index(GeomHandle geom) const { return geoms_[geom]; }

@@ -87,3 +87,27 @@ TEST_CASE("contacts have their geoms, bodies and owners; a normal points into A"
     CHECK(c.depth == Approx(0.01));
   });
 }
+
+TEST_CASE("MuJoCo slides and bounces as the colliders' own numbers have it") {
+  for (const EngineKind& kind : kEngines) {
+    if (std::string(kind.name) != "MujocoEngine" || !kind.built()) continue;
+    EngineWorld w(kind);
+    const GeomHandle ground = w.geom({.shape = Shape::plane});
+    w.world.setMujoco(ground, {.friction = {0.4, 0.005, 0.0001}});
+    const BodyHandle b = w.body({0, 0, 0.1}, 2);
+    w.world.setMujoco(w.geom({.shape = Shape::box, .lengths = {0.6, 0.6, 0.2}}, b), {.friction = {0.2, 0.005, 0.0001}});
+    w.world.setLinearVelocity(b, {3, 0, 0});
+    w.run(0.4);
+    CHECK(w.velocity(b).x() == Approx(3 - 0.4 * 9.81 * 0.4).epsilon(0.05));  // the larger friction of the two
+
+    const BodyHandle ball = w.body({5, 0, 1.1});
+    w.world.setMujoco(w.geom({.shape = Shape::sphere, .radius = 0.1}, ball), {.priority = 1, .solref = {-2000, 0}});
+    double highest = 0;
+    w.run(0.6);
+    for (int i = 0; i < 60; ++i) {
+      w.run(w.dt);
+      highest = std::max(highest, w.position(ball).z());
+    }
+    CHECK(highest > 0.6);
+  }
+}
