@@ -71,6 +71,8 @@ class IEngine {
   /// True: the engine applies State::controls and JointAxis::damping in its own steps. False: both come as forces on
   /// the bodies, once in each step; dry friction of controlled axes comes as a motor of speed 0.
   virtual bool controls() const { return false; }
+  /// False: Step::only has no effect, so the engine cannot be another one's deferred engine.
+  virtual bool stepsParts() const { return true; }
   /// False: the engine steps all bodies always, and none is put to sleep.
   virtual bool sleeps() const { return true; }
   /// Drops what was kept for a model that ends, or that another engine takes over.

@@ -20,7 +20,10 @@ void ArticulatedEngine::forget(const engine::Model& model) {
 
 void ArticulatedEngine::step(engine::Step& step) {
   Jobs& jobs = kernel().jobs();
-  engine::IEngine* const deferred = deferred_.get();
+  engine::IEngine* const deferred = deferred_ && deferred_->stepsParts() ? deferred_.get() : nullptr;
+  if (deferred_ && !deferred && !std::exchange(unfit_, true))
+    kernel().log().warning("{}: {} cannot step single islands; it has no effect here", path(),
+                           deferred_->leaf().path());
   const int mostRows = deferred ? stepper_.maxCouplingRows : std::numeric_limits<int>::max();
   const std::span<const std::uint8_t> others =
       stepper_.step(step, mostRows, static_cast<std::size_t>(jobs.threads()),

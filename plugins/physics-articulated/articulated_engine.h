@@ -52,7 +52,7 @@ class ArticulatedEngine : public Node, public engine::IEngine {
   /// The models that `deferred_` has compiled as they are now: it is told only when it is needed.
   std::vector<std::uint64_t> known_;
   Ref<Leaf> knownBy_;
-  bool armatureSaid_ = false;
+  bool armatureSaid_ = false, unfit_ = false;
   bool held_ = false;  ///< hold() was called
 };
 

@@ -139,6 +139,7 @@ namespace {
 struct Writer {
   const Model& model;
   const Trees& trees;
+  double cycle;  // the simulation's step [s]
   std::string out;
   std::vector<std::vector<Index>> children, geoms;  // by link; by body
 
@@ -235,9 +236,9 @@ struct Writer {
       case JointType::universal:
         // The first joint of a body is the one next to the parent.
         if (link.childIsA) {
-          axial(1, "hinge", inChild(j.axisB[1], false), &j.axes[j.reversed ? 0 : 1]);
+          axial(1, "hinge", inChild(j.axisB[1], false), &j.axes[1]);
           put("/>\n");
-          axial(0, "hinge", inChild(j.axisA[0], true), &j.axes[j.reversed ? 1 : 0]);
+          axial(0, "hinge", inChild(j.axisA[0], true), &j.axes[0]);
         } else {
           axial(0, "hinge", inChild(j.axisA[0], true), &j.axes[0]);
           put("/>\n");
@@ -248,7 +249,7 @@ struct Writer {
       case JointType::hinge2: {
         // A spring along axis 1, as ODE's ERP and CFM mean one (ODE manual, "Soft constraint and CFM").
         const auto suspension = [&] {
-          const double dt = 0.02, erp = j.ode.suspensionErp, cfm = std::max(j.ode.suspensionCfm, 1e-7);
+          const double dt = cycle, erp = j.ode.suspensionErp, cfm = std::max(j.ode.suspensionCfm, 1e-7);
           axial(0, "slide", inChild(j.axisA[0], true), nullptr);
           put(R"( stiffness="{:.17g}" damping="{:.17g}"/>)", erp / (cfm * dt), (1 - erp) / cfm);
         };
@@ -300,8 +301,8 @@ struct Writer {
 
 }  // namespace
 
-std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes) {
-  Writer w{model, trees, {}, {}, {}};
+std::string toMjcf(const Model& model, const Trees& trees, double step, double cycle, const Sizes& sizes) {
+  Writer w{model, trees, cycle, {}, {}, {}};
   w.children.resize(trees.links.size());
   for (Index i = 0; i < trees.links.size(); ++i)
     if (trees.links[i].parent != kNone) w.children[trees.links[i].parent].push_back(i);

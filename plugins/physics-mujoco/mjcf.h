@@ -43,7 +43,7 @@ std::string jointName(Index joint, int coordinate);
 /// steering, rolling), fixed 0; a ball has one joint of its own kind.
 int coordinatesOf(engine::JointType type);
 
-/// The text. `step` is that of one of MuJoCo's steps [s].
-std::string toMjcf(const engine::Model& model, const Trees& trees, double step, const Sizes& sizes);
+/// The text. `step` is that of one of MuJoCo's steps, `cycle` that of the simulation [s].
+std::string toMjcf(const engine::Model& model, const Trees& trees, double step, double cycle, const Sizes& sizes);
 
 }  // namespace spark::mujoco

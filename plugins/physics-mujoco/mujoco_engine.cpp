@@ -19,8 +19,6 @@ mujoco::Sizes sizesFor(const engine::Model& model) {
   return {50 + 12 * single + jointed, 200 + 50 * single + 5 * jointed};
 }
 
-constexpr double kUsualStep = 0.02;  // s
-
 }  // namespace
 
 MujocoEngine::Known& MujocoEngine::of(const engine::Model& model) {
@@ -37,32 +35,36 @@ void MujocoEngine::forget(const engine::Model& model) {
 void MujocoEngine::compile(const engine::Model& model, const engine::State& state) {
   Known& known = of(model);
   // Collision detection and dynamics are one here: each asks once.
-  if (known.world && known.structure == model.structure && known.collision == model.collision &&
-      known.dynamics == model.dynamics)
+  if (known.structure == model.structure && known.collision == model.collision && known.dynamics == model.dynamics)
     return;
   known.structure = model.structure;
   known.collision = model.collision;
   known.dynamics = model.dynamics;
-  const mujoco::Sizes least = sizesFor(model), old = known.world ? known.world->sizes() : least;
-  const double step = known.world ? known.world->stepSize() : kUsualStep / substeps_;
-  known.world.reset();
-  try {
-    build(known, model, state, step, {std::max(least.contacts, old.contacts), std::max(least.rows, old.rows)});
-  } catch (const Error& e) {
-    // The log says so once; nothing moves until the model is another one.
-    if (std::exchange(known.refused, e.what()) != e.what())
-      kernel().log().error("{}: MuJoCo does not take this world, so nothing in it moves: {}", path(), e.what());
-  }
+  const mujoco::Sizes least = sizesFor(model);
+  known.sizes = {std::max(least.contacts, known.sizes.contacts), std::max(least.rows, known.sizes.rows)};
+  build(known, model, state);
 }
 
-void MujocoEngine::build(Known& known, const engine::Model& model, const engine::State& state, double step,
-                         const mujoco::Sizes& sizes) {
-  known.world = std::make_unique<MujocoWorld>(model, state, step, sizes);
+void MujocoEngine::build(Known& known, const engine::Model& model, const engine::State& state) {
+  known.world.reset();
+  try {
+    known.world = std::make_unique<MujocoWorld>(model, state, known.cycle / known.substeps, known.cycle, known.sizes);
+  } catch (const Error& e) {
+    refuse(known, e.what());
+    return;
+  }
   ++compilations_;
   if (!known.world->trees().leftOver.empty() && !std::exchange(warned_, true))
     kernel().log().warning(
         "{}: {} joints have no effect in MuJoCo: those that close a loop of bodies, and angular motors", path(),
         known.world->trees().leftOver.size());
+}
+
+/// The log says so once; nothing moves until the model is another one.
+void MujocoEngine::refuse(Known& known, const std::string& why) {
+  known.world.reset();
+  if (std::exchange(known.refused, why) != why)
+    kernel().log().error("{}: MuJoCo does not take this world, so nothing in it moves: {}", path(), why);
 }
 
 void MujocoEngine::detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int,
@@ -72,21 +74,31 @@ void MujocoEngine::detect(const engine::Model& model, const engine::State& state
 
 void MujocoEngine::step(engine::Step& step) {
   Known& known = of(step.model);
-  if (!known.world) return;
-  const double wanted = step.dt / substeps_;
-  if (std::abs(known.world->stepSize() - wanted) > 1e-12)
-    build(known, step.model, step.state, wanted, mujoco::Sizes(known.world->sizes()));
-  known.world->step(step, substeps_);
+  if (known.world && (known.cycle != step.dt || known.substeps != substeps_)) {
+    known.cycle = step.dt;
+    known.substeps = substeps_;
+    build(known, step.model, step.state);
+  }
+  if (!known.world) {
+    for (engine::DynamicState& s : step.state.bodies) s.force.setZero(), s.torque.setZero();
+    return;
+  }
+  try {
+    known.world->step(step, substeps_);
+  } catch (const Error& e) {
+    return refuse(known, e.what());
+  }
   if (known.full || !known.world->isFull()) return;
-  const mujoco::Sizes old = known.world->sizes();
+  const mujoco::Sizes old = known.sizes;
   kernel().log().info("{}: MuJoCo's room of {} contacts and {} rows was too small; it is doubled", path(), old.contacts,
                       old.rows);
-  try {
-    build(known, step.model, step.state, wanted, {2 * old.contacts, 2 * old.rows});
-  } catch (const Error& e) {
-    known.full = true;
-    kernel().log().error("{}: {}. Contacts above that room are dropped", path(), e.what());
-  }
+  known.sizes = {2 * old.contacts, 2 * old.rows};
+  build(known, step.model, step.state);
+  if (known.world) return;
+  // There is no more room: on with the old one.
+  known.full = true;
+  known.sizes = old;
+  build(known, step.model, step.state);
 }
 
 }  // namespace spark

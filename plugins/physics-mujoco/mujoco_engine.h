@@ -30,6 +30,7 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
               engine::Contacts& out) override;
   void step(engine::Step& step) override;
   bool sleeps() const override { return false; }
+  bool stepsParts() const override { return false; }
   bool controls() const override { return true; }
   void forget(const engine::Model& model) override;
 
@@ -38,14 +39,17 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
   struct Known {
     std::uint64_t id = 0, structure = 0, collision = 0, dynamics = 0;
     std::unique_ptr<mujoco::MujocoWorld> world;
+    mujoco::Sizes sizes;
+    double cycle = 0.02;  ///< the simulation's step [s]
+    int substeps = 4;     ///< as the world has them
     bool full = false;    ///< no more room can be had
     std::string refused;  ///< why the last model that was refused was
   };
   std::string version() const { return mj_versionString(); }
   std::int64_t compilations() const { return compilations_; }
   Known& of(const engine::Model& model);
-  void build(Known& known, const engine::Model& model, const engine::State& state, double step,
-             const mujoco::Sizes& sizes);
+  void build(Known& known, const engine::Model& model, const engine::State& state);
+  void refuse(Known& known, const std::string& why);
 
   mujoco::LibraryGuard library_;
   std::vector<Known> worlds_;

@@ -40,8 +40,11 @@ double angleAbout(const Mat3& rotation, const Vec3& axis) {
 
 }  // namespace
 
-MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, const Sizes& sizes)
-    : sizes_(sizes), trees_(model, state), m_(compile(toMjcf(model, trees_, step, sizes))), d_(mj_makeData(m_.get())) {
+MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, double cycle, const Sizes& sizes)
+    : sizes_(sizes),
+      trees_(model, state),
+      m_(compile(toMjcf(model, trees_, step, cycle, sizes))),
+      d_(mj_makeData(m_.get())) {
   if (!d_) throw Error("MuJoCo has no memory for the world");
   static std::atomic<std::uint32_t> marks = 1u << 31;  // those of other engines begin at 1
   mark_ = ++marks;
@@ -66,10 +69,15 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, co
       const int id = mj_name2id(m_.get(), mjOBJ_JOINT, jointName(link.joint, c).c_str());
       // Of a wheel the suspension has no motor.
       const int axis = j.type == JointType::hinge2 ? c - 1 : c;
-      const bool swapped = j.type == JointType::universal && j.reversed;
       if (axis < 0) continue;
-      motors_[m_->jnt_dofadr[id]] = {link.joint, swapped ? 1 - axis : axis, 1};
-      dofs_[{link.joint, swapped ? 1 - axis : axis}] = id;
+      motors_[m_->jnt_dofadr[id]] = {link.joint, axis};
+      // The axes of the model's angles change places in a reversed universal joint, and some angles their sign.
+      const bool reversedUniversal = j.type == JointType::universal && j.reversed;
+      const int angle = reversedUniversal ? 1 - axis : axis;
+      const bool opposite = j.type == JointType::hinge2 ? axis == 1
+                            : reversedUniversal         ? angle == 1
+                                                        : j.type == JointType::hinge && j.reversed;
+      angles_[{link.joint, angle}] = {id, opposite ? -1.0 : 1.0};
     }
   }
 }
@@ -116,7 +124,7 @@ void MujocoWorld::takeLink(const Model& model, const State& state, const Link& l
       case mjJNT_SLIDE: {
         // From where the parent holds the anchor to where the child has it, along the joint's axis 1.
         const Joint& j = model.joints[link.joint];
-        const double sign = (link.childIsA ? 1 : -1) * (j.type == JointType::slider && j.reversed ? -1 : 1);
+        const double sign = j.type == JointType::slider && j.reversed ? -1 : 1;
         const DynamicState &a = link.childIsA ? child : parent, &b = link.childIsA ? parent : child;
         const Vec3 axis = a.rotation * j.axisA[0];
         const Vec3 armA = j.type == JointType::slider ? Vec3(Vec3::Zero()) : Vec3(a.rotation * j.anchorA);
@@ -186,6 +194,12 @@ void MujocoWorld::prepare(const Model& model) {
   mj_step1(m_.get(), d_.get());
 }
 
+void MujocoWorld::prepareAgain(const Model& model) {
+  listed_.clear();
+  withGhosts_ = true;
+  prepare(model);
+}
+
 void MujocoWorld::detect(const Model& model, const State& state, engine::PairFilter filter, engine::Contacts& out) {
   filter_ = filter;
   const bool stale = isStale(state);
@@ -218,16 +232,15 @@ void MujocoWorld::detect(const Model& model, const State& state, engine::PairFil
 
 void MujocoWorld::releaseUnsolved(std::span<const Contact> contacts) {
   ghosts_.clear();
-  if (contacts.size() != listed_.size()) return;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (contacts[i].solve) continue;
-    ghosts_.push_back(pairOf(contacts[i].geomA, contacts[i].geomB));
-    const mjContact& c = d_->contact[listed_[i]];
-    if (c.efc_address < 0) continue;
+  for (const Contact& c : contacts)
+    if (!c.solve) ghosts_.push_back(pairOf(c.geomA, c.geomB));
+  std::sort(ghosts_.begin(), ghosts_.end());
+  for (int i = 0; i < d_->ncon; ++i) {
+    const mjContact& c = d_->contact[i];
+    if (c.efc_address < 0 || !contains(ghosts_, pairOf(geomOf_[c.geom1], geomOf_[c.geom2]))) continue;
     const int rows = c.dim == 1 ? 1 : m_->opt.cone == mjCONE_PYRAMIDAL ? 2 * (c.dim - 1) : c.dim;
     for (int row = c.efc_address; row < c.efc_address + rows; ++row) d_->efc_D[row] = 1e-15, d_->efc_R[row] = 1e15;
   }
-  std::sort(ghosts_.begin(), ghosts_.end());
 }
 
 void MujocoWorld::readContactForces(std::span<Contact> contacts) const {
@@ -265,11 +278,13 @@ bool MujocoWorld::passForces(const Model& model, const State& state) {
 }
 
 void MujocoWorld::applyControls(const State& state) {
+  mju_zero(d_->qfrc_applied, m_->nv);
   for (const engine::AxisControl& c : state.controls) {
-    const auto found = dofs_.find({c.joint, c.axis});
-    if (found == dofs_.end()) continue;
-    const int joint = found->second, dof = m_->jnt_dofadr[joint];
-    d_->qfrc_applied[dof] = c.control.at(d_->qpos[m_->jnt_qposadr[joint]], d_->qvel[dof]);
+    const auto found = angles_.find({c.joint, c.axis});
+    if (found == angles_.end()) continue;
+    const auto [joint, sign] = found->second;
+    const int dof = m_->jnt_dofadr[joint];
+    d_->qfrc_applied[dof] = sign * c.control.at(sign * d_->qpos[m_->jnt_qposadr[joint]], sign * d_->qvel[dof]);
   }
 }
 
@@ -280,7 +295,7 @@ void MujocoWorld::passSpeeds(const State& state) {
     if (motor.joint == kNone) continue;
     const engine::Motor& wanted = state.motors[motor.joint][motor.axis];
     d_->efc_frictionloss[row] = wanted.maxForce;
-    d_->efc_aref[row] += d_->efc_KBIP[4 * row + 1] * motor.sign * wanted.velocity;
+    d_->efc_aref[row] += d_->efc_KBIP[4 * row + 1] * wanted.velocity;
   }
 }
 
@@ -288,7 +303,7 @@ bool MujocoWorld::run(engine::Step& step, int times) {
   const auto bad = [&] {
     return d_->warning[mjWARN_BADQPOS].number + d_->warning[mjWARN_BADQVEL].number + d_->warning[mjWARN_BADQACC].number;
   };
-  if (passForces(step.model, step.state)) prepare(step.model);
+  if (passForces(step.model, step.state)) prepareAgain(step.model);
   releaseUnsolved(step.contacts);
   const Session session(message_, m_.get(), mayTouch, this);
   for (int i = 0; i < times; ++i) {
@@ -330,14 +345,14 @@ void MujocoWorld::stopBadTree(State& state, std::vector<Index>& stopped) {
 void MujocoWorld::step(engine::Step& step, int times) {
   if (isStale(step.state)) {
     take(step.model, step.state);
-    prepare(step.model);
+    prepareAgain(step.model);
   }
   std::vector<Index> stopped;
   while (!run(step, times) && stopped.size() < 2 * step.state.bodies.size()) {
     stopBadTree(step.state, stopped);
     mj_resetData(m_.get(), d_.get());
     take(step.model, step.state);
-    prepare(step.model);
+    prepareAgain(step.model);
   }
   give(step.state);
   // The physics server puts bodies back whose speed is none.

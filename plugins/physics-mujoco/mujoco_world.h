@@ -12,8 +12,8 @@ namespace spark::mujoco {
 
 class MujocoWorld {
  public:
-  /// Compiles the model for steps of `step` seconds. Throws Error with MuJoCo's message.
-  MujocoWorld(const engine::Model& model, const engine::State& state, double step, const Sizes& sizes);
+  /// Compiles the model for steps of `step` seconds in a cycle of `cycle`. Throws Error with MuJoCo's message.
+  MujocoWorld(const engine::Model& model, const engine::State& state, double step, double cycle, const Sizes& sizes);
 
   /// Appends the contacts of the present poses.
   void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, engine::Contacts& out);
@@ -32,7 +32,6 @@ class MujocoWorld {
   struct DofMotor {
     Index joint = kNone;
     int axis = 0;
-    double sign = 1;  ///< of the coordinate against the joint's
   };
   /// Writes the state of all bodies to MuJoCo's coordinates.
   void take(const engine::Model& model, const engine::State& state);
@@ -43,6 +42,8 @@ class MujocoWorld {
   void give(engine::State& state) const;
   /// Positions, contacts and constraints of the present coordinates.
   void prepare(const engine::Model& model);
+  /// The same in a step, where the contacts of the last detect() have another order then: their forces are not read.
+  void prepareAgain(const engine::Model& model);
   /// Passes the motors' forces. Returns true when a motor began or ceased to act: prepare() has to run again.
   bool passForces(const engine::Model& model, const engine::State& state);
   void passSpeeds(const engine::State& state);
@@ -61,15 +62,16 @@ class MujocoWorld {
   Trees trees_;
   ModelPointer m_;
   DataPointer d_;
-  std::vector<int> bodyId_;                    ///< MuJoCo's, by body
-  std::vector<Index> rootOf_;                  ///< by link: the first of its tree
-  std::vector<Index> geomOf_;                  ///< by MuJoCo's geom
-  std::vector<DofMotor> motors_;               ///< by degree of freedom
-  std::map<std::pair<Index, int>, int> dofs_;  ///< MuJoCo's joint, by joint and axis
-  std::vector<std::uint64_t> joined_;          ///< pairs of bodies that a left over joint connects, sorted
-  std::vector<std::uint64_t> ghosts_;          ///< pairs of geoms whose contacts are not solved, sorted
-  bool withGhosts_ = true;                     ///< prepare() reports their contacts
-  std::vector<int> listed_;                    ///< MuJoCo's contacts, in the order of the last detect()
+  std::vector<int> bodyId_;       ///< MuJoCo's, by body
+  std::vector<Index> rootOf_;     ///< by link: the first of its tree
+  std::vector<Index> geomOf_;     ///< by MuJoCo's geom
+  std::vector<DofMotor> motors_;  ///< by degree of freedom
+  /// MuJoCo's joint, and the sign of its coordinate against the angle, by joint and axis of the angle.
+  std::map<std::pair<Index, int>, std::pair<int, double>> angles_;
+  std::vector<std::uint64_t> joined_;  ///< pairs of bodies that a left over joint connects, sorted
+  std::vector<std::uint64_t> ghosts_;  ///< pairs of geoms whose contacts are not solved, sorted
+  bool withGhosts_ = true;             ///< prepare() reports their contacts
+  std::vector<int> listed_;            ///< MuJoCo's contacts, in the order of the last detect()
   engine::PairFilter filter_ = nullptr;
   const engine::Model* model_ = nullptr;  ///< while MuJoCo runs
   std::uint32_t mark_;                    ///< see DynamicState::mark

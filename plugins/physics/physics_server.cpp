@@ -195,8 +195,9 @@ std::optional<RayHit> PhysicsServer::castRay(const Vec3& from, const Vec3& direc
                                              const Node* except) {
   const physics::WorldModel& world = expectWorld();
   const double norm = direction.norm();
-  if (!from.allFinite() || !(norm > 0) || !std::isfinite(norm))
-    throw Error(fmt::format("{}: expected a ray with finite numbers and a direction longer than 0", path()));
+  if (!from.allFinite() || !(norm > 0) || !std::isfinite(norm) || !(length >= 0))
+    throw Error(fmt::format(
+        "{}: expected a ray with finite numbers, a direction longer than 0 and a length of 0 or more", path()));
   const Vec3 unit = direction / norm;
   const auto hit = physics::castRay(world.model(), world.state(), from, unit, length, [&](const engine::Geom& g) {
     return !except || !isBelow(colliderOf(g.owner).leaf(), *except);

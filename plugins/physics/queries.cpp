@@ -21,7 +21,7 @@ struct Ray {
 
   Vec3 at(double t) const { return from + t * direction; }
   void take(double t, const Vec3& outwards) {
-    if (!(t >= 0) || t > nearest) return;
+    if (!(t >= 0) || !std::isfinite(t) || t > nearest) return;
     nearest = t;
     normal = outwards.dot(direction) > 0 ? Vec3(-outwards) : outwards;
     hit = true;

@@ -413,7 +413,7 @@ void WorldModel::control(JointHandle joint, int axis, const engine::Control& wan
   found->control = wanted;
   // In place of the motor there is dry friction.
   state_.motors[index][axis] = {0, j.axes[axis].dryFriction};
-  if (!j.reversed && j.a != kNone && !state_.bodies[j.a].awake) setEnabled(bodies_.handleOf(j.a), true);
+  if (j.a != kNone && !state_.bodies[j.a].awake) setEnabled(bodies_.handleOf(j.a), true);
 }
 
 const engine::Control* WorldModel::controlOf(JointHandle joint, int axis) const {
@@ -427,10 +427,19 @@ void WorldModel::removeControl(JointHandle joint, int axis) {
                 [&](const engine::AxisControl& c) { return c.joint == joints_[joint] && c.axis == axis; });
 }
 
-/// Adds a force along an axis to both bodies: of a relative to b.
+namespace {
+
+/// The sign of the rate of an axis' angle against the velocity of a relative to b about the axis.
+double angleSign(const Joint& j, int axis) {
+  if (j.type == JointType::hinge2) return axis == 1 ? -1 : 1;
+  return j.reversed && !(j.type == JointType::universal && axis == 0) ? -1 : 1;
+}
+
+}  // namespace
+
+/// Adds a force that increases the angle of an axis.
 void WorldModel::addAlong(const Joint& j, int axis, double force) {
-  if (j.a == kNone || force == 0) return;
-  const Vec3 along = (j.reversed ? -force : force) * worldAxis(j, axis);
+  const Vec3 along = angleSign(j, axis) * force * worldAxis(j, axis);
   DynamicState& a = state_.bodies[j.a];
   DynamicState* b = j.b == kNone ? nullptr : &state_.bodies[j.b];
   if (j.type != JointType::slider) {
@@ -448,13 +457,23 @@ void WorldModel::addAlong(const Joint& j, int axis, double force) {
 }
 
 void WorldModel::applyControls() {
+  // Forces on what sleeps would pile up.
+  const auto acts = [&](const Joint& j) {
+    return attached(j) && (state_.bodies[j.a].awake || (j.b != kNone && state_.bodies[j.b].awake));
+  };
+  const auto rate = [&](Index joint, int axis) {
+    const Joint& j = model_.joints[joint];
+    if (j.type == JointType::slider) return rateOf(joint, axis);
+    return angleSign(j, axis) * worldAxis(j, axis).dot(angularVelocity(stateAt(j.a)) - angularVelocity(stateAt(j.b)));
+  };
   for (const engine::AxisControl& c : state_.controls)
-    addAlong(model_.joints[c.joint], c.axis, c.control.at(angleOf(c.joint, c.axis), rateOf(c.joint, c.axis)));
+    if (const Joint& j = model_.joints[c.joint]; acts(j))
+      addAlong(j, c.axis, c.control.at(angleOf(c.joint, c.axis), rate(c.joint, c.axis)));
   if (!damped_) return;
   for (Index i = 0; i < model_.joints.size(); ++i)
     for (int axis = 0; axis < axesOf(model_.joints[i].type); ++axis)
-      if (const double damping = model_.joints[i].axes[axis].damping; damping > 0)
-        addAlong(model_.joints[i], axis, -damping * rateOf(i, axis));
+      if (const Joint& j = model_.joints[i]; j.axes[axis].damping > 0 && acts(j))
+        addAlong(j, axis, -j.axes[axis].damping * rate(i, axis));
 }
 
 bool WorldModel::atStop(JointHandle joint, int axis) const {

@@ -313,6 +313,10 @@ GeomHandle WorldModel::createGeom(SpaceHandle space, const ShapeDescription& sha
 }
 
 void WorldModel::destroyGeom(GeomHandle geom) {
+  // Until the arrays are compacted, queries must not meet it.
+  engine::Geom& g = model_.geoms[geoms_[geom]];
+  g.collides = false;
+  g.owner = nullptr;
   geoms_.remove(geom);
   ++model_.structure;
   compactWhenMany();
@@ -367,6 +371,8 @@ void WorldModel::setCollides(GeomHandle geom, bool on) {
 // ---- removed elements ----
 
 void WorldModel::compact() {
+  // Who keeps indices goes by the version.
+  if (bodies_.removed() + spaces_.removed() + geoms_.removed() + joints_.removed() > 0) ++model_.structure;
   if (bodies_.removed() > 0) {
     const std::vector<Index> now = bodies_.compact(model_.bodies, state_.bodies, watch_);
     for (engine::Geom& g : model_.geoms) remap(g.body, now);
@@ -403,6 +409,7 @@ void WorldModel::Compiled<Interface>::bring(Interface& e, const engine::Model& m
     forget(model);
     leaf = Ref<Leaf>(&e.leaf());
     engine = &e;
+    structure = part = UINT64_MAX;  // should the first compile() throw
   } else if (structure == model.structure && part == version) {
     return;
   }

@@ -179,7 +179,7 @@ class WorldModel {
   /// Sets JointParameter::velocity; a speed other than 0 wakes the first body of attach().
   void drive(JointHandle joint, int axis, double speed);
   /// Puts a controller in place of the axis' motor, or changes its targets; numbers that make no sense are ignored. A
-  /// controller wakes the first body of attach().
+  /// controller wakes body a of the joint.
   void control(JointHandle joint, int axis, const engine::Control& control);
   /// The controller of an axis; nullptr: none. Valid until one is added or removed.
   const engine::Control* controlOf(JointHandle joint, int axis) const;

@@ -225,3 +225,69 @@ TEST_CASE("damping slows an axis, dry friction stops it; a rotor's inertia count
       },
       {&EngineKind::joints, &EngineKind::armature});
 }
+
+TEST_CASE(
+    "a controller brings the angle to its target in every order of bodies, with the world, and about every axis") {
+  for (const JointType type : {JointType::hinge, JointType::slider, JointType::universal, JointType::hinge2})
+    for (const int order : {0, 1, 2, 3})
+      for (int axis = 0; axis < physics::axesOf(type); ++axis)
+        withPairs([&](EngineWorld& w, const Pair& p) {
+          if (type == JointType::hinge2 && order > 1) return;  // a wheel needs two bodies
+          CAPTURE(int(type), order, axis);
+          const BodyHandle none = BodyHandle::none;
+          const std::pair<BodyHandle, BodyHandle> orders[] = {
+              {p.child, p.parent}, {p.parent, p.child}, {p.child, none}, {none, p.child}};
+          const JointHandle j = w.joint(type, orders[order].first, orders[order].second, {0, 0, 0.5});
+          w.world.control(j, 1 - axis, {.stiffness = 20, .damping = 4});
+          w.world.control(j, axis, {.stiffness = 20, .damping = 4, .position = 0.3});
+          w.run(4);
+          CHECK(w.world.angle(j, axis) == Approx(0.3).margin(0.02));
+        });
+}
+
+TEST_CASE("joints keep their places when something else comes and goes") {
+  for (const JointType type : {JointType::hinge, JointType::slider, JointType::universal, JointType::hinge2})
+    for (const bool parentFirst : {false, true})
+      withPairs([&](EngineWorld& w, const Pair& p) {
+        CAPTURE(int(type), parentFirst);
+        const JointHandle j =
+            w.joint(type, parentFirst ? p.parent : p.child, parentFirst ? p.child : p.parent, {0, 0, 0.5});
+        w.world.control(j, 0, {.stiffness = 20, .damping = 4, .position = 0.25});
+        w.world.addForce(p.child, {0, 0, 3});
+        w.run(3);
+        const double before = w.world.angle(j, 0);
+        const Vec3 place = w.position(p.child);
+        CHECK(before == Approx(0.25).margin(0.02));
+        const BodyHandle other = w.body({9, 9, 9});
+        w.run(w.dt);
+        w.world.destroyBody(other);
+        w.run(w.dt);
+        CHECK(w.world.angle(j, 0) == Approx(before).margin(1e-3));
+        CHECK((w.position(p.child) - place).norm() < 1e-3);
+      });
+}
+
+TEST_CASE("a controller that is removed acts no more, and one of a sleeping body piles up nothing") {
+  withPairs([](EngineWorld& w, const Pair& p) {
+    const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+    w.world.control(j, 0, {.force = 0.1});
+    w.run(0.5);
+    const double rate = w.world.angleRate(j, 0);
+    CHECK(rate == Approx(0.5).epsilon(0.05));
+    w.world.removeControl(j, 0);
+    w.run(1);
+    CHECK(w.world.angleRate(j, 0) == Approx(rate).epsilon(0.05));
+  });
+  withPairs(
+      [](EngineWorld& w, const Pair& p) {
+        const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+        w.world.control(j, 0, {.stiffness = 20, .damping = 2, .position = 0.001});
+        w.setGravity(0, true);
+        const BodyHandle flying = w.body({9, 9, 9});
+        w.world.setLinearVelocity(flying, {1, 0, 0});
+        w.run(20);
+        CHECK_FALSE(w.world.enabled(p.child));
+        CHECK(w.world.torque(p.child).norm() < 1);
+      },
+      {&EngineKind::joints, &EngineKind::sleep});
+}

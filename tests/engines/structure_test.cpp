@@ -1,3 +1,4 @@
+#include "../../plugins/physics/queries.h"
 #include "engine_world.h"
 
 // Worlds that change while they are stepped.
@@ -138,4 +139,32 @@ TEST_CASE("shapes and masses at the edge of sense end no engine") {
     CHECK(w.position(fine).allFinite());
     CHECK(w.position(odd).allFinite());
   });
+}
+
+TEST_CASE("contacts that are not solid push nothing, also when something changes between detection and step") {
+  withEngines([](EngineWorld& w) {
+    w.setGravity(0);
+    w.geom({.shape = Shape::box, .lengths = {1, 1, 1}});
+    const BodyHandle ghost = w.sphere({0.1, 0, 0}, 0.3), other = w.body({5, 0, 0});
+    for (int i = 0; i < 20; ++i) {
+      w.detect();
+      REQUIRE_FALSE(w.contacts.empty());
+      for (engine::Contact& c : w.contacts) c.solve = false;
+      if (i == 5) w.world.setMass(other, {2, Vec3::Zero(), Mat3::Identity()});
+      if (i == 10) w.world.setPosition(other, {6, 0, 0});
+      w.world.step(*w.engine, w.contacts, i < 15 ? w.dt : w.dt / 2);
+    }
+    CHECK(w.velocity(ghost).norm() < 1e-6);
+  });
+}
+
+TEST_CASE("a geom that is removed is not met any more, before any step") {
+  EngineWorld w(kEngines[0]);
+  const GeomHandle g = w.geom({.shape = Shape::sphere, .radius = 1});
+  const auto hit = [&] {
+    return physics::castRay(w.world.model(), w.world.state(), {0, 0, 5}, -Vec3::UnitZ(), 10, {}).has_value();
+  };
+  CHECK(hit());
+  w.world.destroyGeom(g);
+  CHECK_FALSE(hit());
 }

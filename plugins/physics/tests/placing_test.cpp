@@ -112,6 +112,7 @@ TEST_CASE("rays and overlaps find colliders, and nothing below the node that ask
   CHECK(&beyond->collider->leaf() == far.find("collider"));
   CHECK_FALSE(server.castRay({0, 0, 1}, {1, 0, 0}, 1));
   CHECK_THROWS_WITH(server.castRay({0, 0, 1}, {0, 0, 0}, 1), Catch::Contains("direction longer than 0"));
+  CHECK_THROWS_WITH(server.castRay({0, 0, 1}, {1, 0, 0}, std::nan("")), Catch::Contains("length of 0 or more"));
   std::vector<ICollider*> found;
   server.overlaps({3.5, 0, 1}, 1.1, found);
   CHECK(found.size() == 2);
