@@ -43,7 +43,7 @@ end
 --- Physics server with collision detection and engine, and a world with a space in the active scene. `engine`: the
 --- engine's class, OdeEngine by default; `properties`: of the server, set before the world is made.
 function physics(engine, properties, more)
-  if more then error("physics(engine, properties): the engine's class is one argument, such as physics(\"ArticulatedEngine\")", 2) end
+  if more then error("physics(engine, properties): name the engine, such as physics(\"ArticulatedEngine\")", 2) end
   plugin "physics"
   plugin "physics-ode"
   local server = new("PhysicsServer", "/sys/server/physics")
@@ -63,7 +63,8 @@ end
 --- unless the config says otherwise.
 function engineOption(default)
   local solver = option{ name = "solver", default = default or "dense", choices = { "dense", "articulated" },
-                         doc = "dense: ODE's own, which repeats recorded sessions; articulated: the same physics many times faster for robots." }
+                         doc = "dense: ODE's own, which repeats recorded sessions; articulated: the same physics, " ..
+                               "many times faster for robots." }
   local engine = option{ name = "engine", default = solver == "articulated" and "ArticulatedEngine" or "OdeEngine",
                          doc = "Class of the engine, in place of the one that `solver` means." }
   return engine

@@ -23,7 +23,7 @@ local compat  = compatOption(league.compat)
 
 local engine  = engineOption(league.solver)
 local exact   = option{ name = "exactReplay", default = engine == "OdeEngine",
-                        doc = "Physics repeats recorded sessions of the installed base to the last digit, with OdeEngine." }
+                        doc = "Physics repeats recorded sessions of the installed base to the last digit (OdeEngine)." }
 
 -- the servers
 files()

@@ -26,8 +26,8 @@ class ICollision {
   /// model that the engine has not seen yet is all new.
   virtual void compile(const Model& model, const State& state) = 0;
   /// Appends contacts to `out`, in an order that depends on the world alone: at most `perPair` points for each pair of
-  /// geoms. Skips pairs of geoms of one body, pairs whose bodies a joint connects and pairs that the
-  /// filter rejects. Reads the new poses of the bodies in `state.moved`.
+  /// geoms, the first geom as comesFirst() has it. Skips pairs of geoms of one body, pairs whose bodies a joint
+  /// connects and pairs that the filter rejects. Reads the new poses of the bodies in `state.moved`.
   virtual void detect(const Model& model, const State& state, PairFilter filter, int perPair, Contacts& out) = 0;
   /// Drops what was kept for a model that ends, or that another engine takes over.
   virtual void forget(const Model& model) = 0;

@@ -95,6 +95,21 @@ struct Geom {
 
 /// Joint types of the ODE manual, section "Joint types and joint functions".
 enum class JointType { ball, hinge, hinge2, slider, universal, fixed, angularMotor };
+/// Number of axes with motor and stops of a joint.
+constexpr int axesOf(JointType type) {
+  switch (type) {
+    case JointType::hinge:
+    case JointType::slider:
+      return 1;
+    case JointType::universal:
+    case JointType::hinge2:
+      return 2;
+    case JointType::angularMotor:
+      return 3;
+    default:
+      return 0;
+  }
+}
 /// Names of the parameters of one axis of a joint: see JointAxis. The suspension parameters belong to axis 0 of hinge2.
 enum class JointParameter {
   lowStop,
@@ -224,15 +239,23 @@ struct BodyState {
   Mat3 rotation;
 };
 
+/// True when an element with this identity is in an array of the model, for an engine that compares its own with it.
+template <class Element>
+bool contains(const std::vector<Element>& elements, std::uint64_t id) {
+  const auto found = std::lower_bound(elements.begin(), elements.end(), id,
+                                      [](const Element& e, std::uint64_t wanted) { return e.id < wanted; });
+  return found != elements.end() && found->id == id;
+}
+
 /// The state of a body that a step changes, world frame. What is read together lies together, in cache lines.
 struct alignas(64) DynamicState {
   std::array<double, 4> quaternion{1, 0, 0, 0};  ///< w x y z, body to world, of length 1
   Vec3 position = Vec3::Zero();                  ///< of the centre of mass [m]
   bool awake = true;                             ///< false: the body sleeps
   bool moved = false;                            ///< it is in State::moved
-  /// Who wrote pose and velocities last: an engine that keeps them in memory of its own writes its mark, all others 0.
-  /// So it knows whether its own are the same.
-  std::uint32_t mark = 0;
+  /// For engines that keep poses and velocities in memory of their own: such an engine writes its mark
+  /// (State::newMark()) when both are the same, and everybody else who writes them writes 0.
+  mutable std::uint32_t mark = 0;
   Mat3 rotation = Mat3::Identity();     ///< the same as `quaternion`, as a matrix
   Vec3 angularVelocity = Vec3::Zero();  ///< rad/s
   Vec3 linearVelocity = Vec3::Zero();   ///< m/s
@@ -282,6 +305,9 @@ struct State {
   std::vector<AxisControl> controls;
   /// The bodies whose pose changed since the last detect(), each once, in the order in which they did.
   std::vector<Index> moved;
+  /// A mark for DynamicState::mark that nobody else has; never 0.
+  std::uint32_t newMark() const { return ++marks; }
+  mutable std::uint32_t marks = 0;  ///< number of marks so far
   /// Appends a body to `moved`, once.
   void markMoved(Index body) {
     if (std::exchange(bodies[body].moved, true)) return;
@@ -317,6 +343,16 @@ struct Contact {
   Surface surface;
   Vec3 forceOnA = Vec3::Zero();  ///< force on A, world frame [N]
 };
+
+/// True when `a` is the first geom of a contact with `b`: movable geoms come before static ones, planes come last;
+/// among equals the younger comes first. So a robot's foot comes before the ground and before older objects on it, and
+/// handlers that use only direct contacts get them. `G` is Geom, or has its members `shape`, `body` and `id`.
+template <class G>
+bool comesFirst(const G& a, const G& b) {
+  const auto rank = [](const G& g) { return g.shape.shape == Shape::plane ? 0 : g.body != kNone ? 2 : 1; };
+  const int ra = rank(a), rb = rank(b);
+  return ra != rb ? ra > rb : a.id > b.id;
+}
 
 /// The contacts of one step, grouped by geom pair, in the order of detection. Reused for all steps, to keep the
 /// capacity.

@@ -29,7 +29,7 @@ class LibraryGuard {
 /// Compiles MJCF text. Throws Error with MuJoCo's message.
 ModelPointer compile(const std::string& mjcf);
 
-/// While it exists, MuJoCo's warnings and errors in this thread are written to a string, and it asks `filter` whether
+/// While it exists, MuJoCo's warnings in this thread are written to a string, and it asks `filter` whether
 /// two geoms of `model` may collide: false discards the pair. MuJoCo ends the process at an error; here it throws
 /// Error.
 class Session {

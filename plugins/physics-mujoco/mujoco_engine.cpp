@@ -40,6 +40,7 @@ void MujocoEngine::compile(const engine::Model& model, const engine::State& stat
   known.structure = model.structure;
   known.collision = model.collision;
   known.dynamics = model.dynamics;
+  known.substeps = substeps_;
   const mujoco::Sizes least = sizesFor(model);
   known.sizes = {std::max(least.contacts, known.sizes.contacts), std::max(least.rows, known.sizes.rows)};
   build(known, model, state);
@@ -72,6 +73,14 @@ void MujocoEngine::detect(const engine::Model& model, const engine::State& state
   if (Known& known = of(model); known.world) known.world->detect(model, state, filter, out);
 }
 
+void MujocoEngine::report(MujocoWorld& world) {
+  const std::string message = world.takeMessage();
+  if (message.empty()) return;
+  ++messages_;
+  if ((messages_ & (messages_ - 1)) == 0)
+    kernel().log().warning("{}: MuJoCo reports: {} (message {})", path(), message, messages_);
+}
+
 void MujocoEngine::step(engine::Step& step) {
   Known& known = of(step.model);
   if (known.world && (known.cycle != step.dt || known.substeps != substeps_)) {
@@ -88,7 +97,7 @@ void MujocoEngine::step(engine::Step& step) {
   } catch (const Error& e) {
     return refuse(known, e.what());
   }
-  if (known.full || !known.world->isFull()) return;
+  if (known.full || !known.world->isFull()) return report(*known.world);
   const mujoco::Sizes old = known.sizes;
   kernel().log().info("{}: MuJoCo's room of {} contacts and {} rows was too small; it is doubled", path(), old.contacts,
                       old.rows);

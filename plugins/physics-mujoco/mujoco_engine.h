@@ -50,11 +50,13 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
   Known& of(const engine::Model& model);
   void build(Known& known, const engine::Model& model, const engine::State& state);
   void refuse(Known& known, const std::string& why);
+  /// Logs MuJoCo's last message: the 1st, 2nd, 4th, 8th ... time.
+  void report(mujoco::MujocoWorld& world);
 
   mujoco::LibraryGuard library_;
   std::vector<Known> worlds_;
   int substeps_ = 4;
-  std::int64_t compilations_ = 0;
+  std::int64_t compilations_ = 0, messages_ = 0;
   bool warned_ = false;
 };
 

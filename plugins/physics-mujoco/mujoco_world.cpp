@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <atomic>
 
 // Motors: MuJoCo solves dry friction of a joint as a constraint whose force is bounded, and which demands an
 // acceleration that brings the velocity to 0. With the motor's speed as reference in place of 0, and its force as the
@@ -41,13 +40,9 @@ double angleAbout(const Mat3& rotation, const Vec3& axis) {
 }  // namespace
 
 MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, double cycle, const Sizes& sizes)
-    : sizes_(sizes),
-      trees_(model, state),
-      m_(compile(toMjcf(model, trees_, step, cycle, sizes))),
-      d_(mj_makeData(m_.get())) {
+    : trees_(model, state), m_(compile(toMjcf(model, trees_, step, cycle, sizes))), d_(mj_makeData(m_.get())) {
   if (!d_) throw Error("MuJoCo has no memory for the world");
-  static std::atomic<std::uint32_t> marks = 1u << 31;  // those of other engines begin at 1
-  mark_ = ++marks;
+  mark_ = state.newMark();
   for (Index i = 0; i < model.bodies.size(); ++i)
     bodyId_.push_back(mj_name2id(m_.get(), mjOBJ_BODY, bodyName(i).c_str()));
   for (Index i = 0; i < trees_.links.size(); ++i)
@@ -61,6 +56,7 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, do
 
   // The motors of the coordinates.
   motors_.resize(m_->nv);
+  coordinates_.resize(model.joints.size());
   for (const Link& link : trees_.links) {
     if (link.joint == kNone) continue;
     const Joint& j = model.joints[link.joint];
@@ -77,7 +73,7 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, do
       const bool opposite = j.type == JointType::hinge2 ? axis == 1
                             : reversedUniversal         ? angle == 1
                                                         : j.type == JointType::hinge && j.reversed;
-      angles_[{link.joint, angle}] = {id, opposite ? -1.0 : 1.0};
+      coordinates_[link.joint][angle] = {id, opposite ? -1.0 : 1.0};
     }
   }
 }
@@ -88,12 +84,17 @@ bool MujocoWorld::isFull() const {
 
 // ---- state ----
 
-bool MujocoWorld::isStale(const State& state) const {
-  return std::any_of(state.bodies.begin(), state.bodies.end(), [&](const DynamicState& s) { return s.mark != mark_; });
-}
-
-void MujocoWorld::take(const Model& model, const State& state) {
-  for (const Link& link : trees_.links) takeLink(model, state, link);
+bool MujocoWorld::take(const Model& model, const State& state) {
+  // What was written in one body of a tree concerns the coordinates of all.
+  stale_.assign(trees_.links.size(), 0);
+  bool any = false;
+  for (Index i = 0; i < trees_.links.size(); ++i)
+    if (state.bodies[trees_.links[i].body].mark != mark_) stale_[rootOf_[i]] = 1, any = true;
+  if (!any) return false;
+  for (Index i = 0; i < trees_.links.size(); ++i)
+    if (stale_[rootOf_[i]]) takeLink(model, state, trees_.links[i]);
+  for (const DynamicState& s : state.bodies) s.mark = mark_;
+  return true;
 }
 
 void MujocoWorld::takeLink(const Model& model, const State& state, const Link& link) {
@@ -102,7 +103,7 @@ void MujocoWorld::takeLink(const Model& model, const State& state, const Link& l
   const int body = bodyId_[link.body], first = m_->body_jntadr[body], count = m_->body_jntnum[body];
   const Mat3 delta = link.zero.rotation.transpose() * parent.rotation.transpose() * child.rotation;
   const Vec3 spin = child.angularVelocity - parent.angularVelocity;
-  std::vector<int> hinges;
+  int hinges[2], hingeCount = 0;
   for (int i = first; i < first + count; ++i) {
     mjtNum *q = d_->qpos + m_->jnt_qposadr[i], *v = d_->qvel + m_->jnt_dofadr[i];
     switch (m_->jnt_type[i]) {
@@ -135,13 +136,13 @@ void MujocoWorld::takeLink(const Model& model, const State& state, const Link& l
         break;
       }
       default:
-        hinges.push_back(i);
+        hinges[hingeCount++] = i;
         break;
     }
   }
-  if (hinges.empty()) return;
+  if (hingeCount == 0) return;
   const auto axis = [&](int i) { return toVec(m_->jnt_axis + 3 * i); };
-  if (hinges.size() == 1) {
+  if (hingeCount == 1) {
     d_->qpos[m_->jnt_qposadr[hinges[0]]] = angleAbout(delta, axis(hinges[0]));
     d_->qvel[m_->jnt_dofadr[hinges[0]]] = spin.dot(child.rotation * axis(hinges[0]));
     return;
@@ -192,6 +193,7 @@ void MujocoWorld::prepare(const Model& model) {
   model_ = &model;
   const Session session(message_, m_.get(), mayTouch, this);
   mj_step1(m_.get(), d_.get());
+  prepared_ = true;
 }
 
 void MujocoWorld::prepareAgain(const Model& model) {
@@ -202,21 +204,14 @@ void MujocoWorld::prepareAgain(const Model& model) {
 
 void MujocoWorld::detect(const Model& model, const State& state, engine::PairFilter filter, engine::Contacts& out) {
   filter_ = filter;
-  const bool stale = isStale(state);
-  if (stale) take(model, state);
+  take(model, state);
   withGhosts_ = true;
-  // The filter may have changed as well: groups of colliders are detached and joined again.
   prepare(model);
   listed_.clear();
   for (int i = 0; i < d_->ncon; ++i) {
     const mjContact& from = d_->contact[i];
     Index a = geomOf_[from.geom1], b = geomOf_[from.geom2];
-    // Movable geoms come before static ones, planes come last; among equals the younger comes first.
-    const auto rank = [&](Index g) {
-      const engine::Geom& geom = model.geoms[g];
-      return geom.shape.shape == engine::Shape::plane ? 0 : geom.body != kNone ? 2 : 1;
-    };
-    const bool swapped = rank(b) > rank(a) || (rank(a) == rank(b) && b > a);
+    const bool swapped = !engine::comesFirst(model.geoms[a], model.geoms[b]);
     if (swapped) std::swap(a, b);
     Contact& c = out.emplace_back();
     c.geomA = a, c.geomB = b;
@@ -280,9 +275,8 @@ bool MujocoWorld::passForces(const Model& model, const State& state) {
 void MujocoWorld::applyControls(const State& state) {
   mju_zero(d_->qfrc_applied, m_->nv);
   for (const engine::AxisControl& c : state.controls) {
-    const auto found = angles_.find({c.joint, c.axis});
-    if (found == angles_.end()) continue;
-    const auto [joint, sign] = found->second;
+    const auto [joint, sign] = coordinates_[c.joint][c.axis];
+    if (joint < 0) continue;
     const int dof = m_->jnt_dofadr[joint];
     d_->qfrc_applied[dof] = sign * c.control.at(sign * d_->qpos[m_->jnt_qposadr[joint]], sign * d_->qvel[dof]);
   }
@@ -311,10 +305,16 @@ bool MujocoWorld::run(engine::Step& step, int times) {
     applyControls(step.state);
     mj_step2(m_.get(), d_.get());
     if (i == 0) readContactForces(step.contacts);
-    withGhosts_ = i + 1 == times;
-    prepare(step.model);
     if (bad() > 0) return false;
+    if (i + 1 == times) break;
+    withGhosts_ = false;
+    prepare(step.model);
   }
+  // Places and velocities of the bodies; the next detect() finds contacts.
+  mj_kinematics(m_.get(), d_.get());
+  mj_comPos(m_.get(), d_.get());
+  mj_comVel(m_.get(), d_.get());
+  prepared_ = false;
   return true;
 }
 
@@ -343,14 +343,12 @@ void MujocoWorld::stopBadTree(State& state, std::vector<Index>& stopped) {
 }
 
 void MujocoWorld::step(engine::Step& step, int times) {
-  if (isStale(step.state)) {
-    take(step.model, step.state);
-    prepareAgain(step.model);
-  }
+  if (take(step.model, step.state) || !prepared_) prepareAgain(step.model);
   std::vector<Index> stopped;
   while (!run(step, times) && stopped.size() < 2 * step.state.bodies.size()) {
     stopBadTree(step.state, stopped);
     mj_resetData(m_.get(), d_.get());
+    for (const DynamicState& s : step.state.bodies) s.mark = 0;
     take(step.model, step.state);
     prepareAgain(step.model);
   }

@@ -2,8 +2,6 @@
 /// \file
 /// A world in MuJoCo: its model and data, and how the state goes there and back.
 
-#include <map>
-
 #include "api/engine.h"
 #include "library.h"
 #include "mjcf.h"
@@ -23,9 +21,8 @@ class MujocoWorld {
   const Trees& trees() const { return trees_; }
   /// True when MuJoCo had too little room for contacts or constraints: it dropped some, and wants larger sizes.
   bool isFull() const;
-  const Sizes& sizes() const { return sizes_; }
-  double stepSize() const { return m_->opt.timestep; }
-  const std::string& message() const { return message_; }
+  /// MuJoCo's last warning since the last call; "": none.
+  std::string takeMessage() { return std::exchange(message_, {}); }
 
  private:
   /// The motor that acts on a degree of freedom.
@@ -33,11 +30,9 @@ class MujocoWorld {
     Index joint = kNone;
     int axis = 0;
   };
-  /// Writes the state of all bodies to MuJoCo's coordinates.
-  void take(const engine::Model& model, const engine::State& state);
+  /// Writes the state of the trees in which somebody else has written a body to MuJoCo's coordinates. False: of none.
+  bool take(const engine::Model& model, const engine::State& state);
   void takeLink(const engine::Model& model, const engine::State& state, const Link& link);
-  /// True when somebody else has written a body since give().
-  bool isStale(const engine::State& state) const;
   /// Writes MuJoCo's poses and velocities to the state.
   void give(engine::State& state) const;
   /// Positions, contacts and constraints of the present coordinates.
@@ -49,7 +44,7 @@ class MujocoWorld {
   void passSpeeds(const engine::State& state);
   void applyControls(const engine::State& state);
   /// Steps `times` times from the present coordinates. Returns false when MuJoCo met numbers that are too large or
-  /// none; it has reset all coordinates then.
+  /// none; all coordinates are to be reset then.
   bool run(engine::Step& step, int times);
   /// Puts the bodies of the tree whose numbers were bad to rest in the state, without forces, and lists them.
   void stopBadTree(engine::State& state, std::vector<Index>& stopped);
@@ -58,7 +53,6 @@ class MujocoWorld {
   void readContactForces(std::span<engine::Contact> contacts) const;
   static bool mayTouch(void* world, int geom1, int geom2);
 
-  Sizes sizes_;
   Trees trees_;
   ModelPointer m_;
   DataPointer d_;
@@ -66,12 +60,18 @@ class MujocoWorld {
   std::vector<Index> rootOf_;     ///< by link: the first of its tree
   std::vector<Index> geomOf_;     ///< by MuJoCo's geom
   std::vector<DofMotor> motors_;  ///< by degree of freedom
-  /// MuJoCo's joint, and the sign of its coordinate against the angle, by joint and axis of the angle.
-  std::map<std::pair<Index, int>, std::pair<int, double>> angles_;
-  std::vector<std::uint64_t> joined_;  ///< pairs of bodies that a left over joint connects, sorted
-  std::vector<std::uint64_t> ghosts_;  ///< pairs of geoms whose contacts are not solved, sorted
-  bool withGhosts_ = true;             ///< prepare() reports their contacts
-  std::vector<int> listed_;            ///< MuJoCo's contacts, in the order of the last detect()
+  /// MuJoCo's joint, -1: none, and the sign of its coordinate against the model's angle.
+  struct Coordinate {
+    int id = -1;
+    double sign = 1;
+  };
+  std::vector<std::array<Coordinate, 3>> coordinates_;  ///< by joint and axis of the angle
+  std::vector<std::uint64_t> joined_;                   ///< pairs of bodies that a left over joint connects, sorted
+  std::vector<std::uint64_t> ghosts_;                   ///< pairs of geoms whose contacts are not solved, sorted
+  std::vector<std::uint8_t> stale_;                     ///< of take(), by link: its tree has to be written
+  bool prepared_ = false;    ///< contacts and constraints are those of the present coordinates
+  bool withGhosts_ = true;   ///< prepare() reports their contacts
+  std::vector<int> listed_;  ///< MuJoCo's contacts, in the order of the last detect()
   engine::PairFilter filter_ = nullptr;
   const engine::Model* model_ = nullptr;  ///< while MuJoCo runs
   std::uint32_t mark_;                    ///< see DynamicState::mark

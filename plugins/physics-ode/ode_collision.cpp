@@ -157,18 +157,6 @@ bool CollisionWorld::joined(Index a, Index b) const {
 
 namespace {
 
-/// Removes the elements of `kept` whose identity is not among those of `wanted`; both are in order of identity.
-template <class Data, class Element, class Destroy>
-void removeOthers(std::vector<std::unique_ptr<Data>>& kept, const std::vector<Element>& wanted, Destroy destroy) {
-  std::size_t next = 0;
-  std::erase_if(kept, [&](const auto& k) {
-    while (next < wanted.size() && wanted[next].id < k->id) ++next;
-    if (next < wanted.size() && wanted[next].id == k->id) return false;
-    destroy(*k);
-    return true;
-  });
-}
-
 void createSpace(CollisionWorld& w, const Model& model, Index index) {
   const engine::Space& from = model.spaces[index];
   auto s = std::make_unique<SpaceData>();
@@ -243,18 +231,17 @@ void OdeCollision::compile(const Model& model, const State& state) {
   }
   CollisionWorld& w = **found;
 
-  // Removed elements.
-  removeOthers(w.geoms, model.geoms, [](const GeomData& g) { dGeomDestroy(g.geom); });
-  // Inner spaces before the spaces around them.
-  std::reverse(w.spaces.begin(), w.spaces.end());
-  std::vector<std::uint64_t> alive;
-  for (const engine::Space& s : model.spaces) alive.push_back(s.id);
-  std::erase_if(w.spaces, [&](const auto& s) {
-    if (std::binary_search(alive.begin(), alive.end(), s->id)) return false;
-    dSpaceDestroy(s->space);
+  // Removed elements; inner spaces before the spaces around them.
+  std::erase_if(w.geoms, [&](const auto& g) {
+    if (engine::contains(model.geoms, g->id)) return false;
+    dGeomDestroy(g->geom);
     return true;
   });
-  std::reverse(w.spaces.begin(), w.spaces.end());
+  for (std::size_t i = w.spaces.size(); i-- > 0;) {
+    if (engine::contains(model.spaces, w.spaces[i]->id)) continue;
+    dSpaceDestroy(w.spaces[i]->space);
+    w.spaces.erase(w.spaces.begin() + static_cast<std::ptrdiff_t>(i));
+  }
 
   const bool restructured = w.builtAt != model.structure;
   const auto oldGeoms = static_cast<Index>(w.geoms.size());
@@ -316,15 +303,6 @@ CollisionWorld& OdeCollision::world(const Model& model) {
 
 namespace {
 
-/// True when `a` is the first geom of a contact with `b`: movable geoms come before static ones, planes come last;
-/// among equals the younger comes first. So a robot's foot comes before the ground and before older objects on it, and
-/// handlers that use only direct contacts get them.
-bool comesFirst(const GeomData& a, const GeomData& b) {
-  const auto rank = [](const GeomData& g) { return g.shape.shape == Shape::plane ? 0 : g.body != kNone ? 2 : 1; };
-  const int ra = rank(a), rb = rank(b);
-  return ra != rb ? ra > rb : a.id > b.id;
-}
-
 /// True for two planes or two rays, which have no contacts, and for two geoms of one body.
 bool neverCollide(const GeomData& a, const GeomData& b) {
   const Shape s = a.shape.shape;
@@ -360,7 +338,7 @@ void near(void* detection, dGeomID o1, dGeomID o2) {
   auto* b = static_cast<GeomData*>(dGeomGetData(o2));
   if (neverCollide(*a, *b)) return;
   if (a->jointed && b->jointed && d.w.joined(a->body, b->body)) return;
-  if (!d.w.exactReplay && !comesFirst(*a, *b)) std::swap(a, b);
+  if (!d.w.exactReplay && !engine::comesFirst(*a, *b)) std::swap(a, b);
   if (d.filter && !d.filter(a->owner, b->owner)) return;
   d.w.pairs.push_back({a, b});
 }

@@ -1,7 +1,6 @@
 #include "ode_engine.h"
 
 #include <algorithm>
-#include <atomic>
 
 #include "api/single_precision.h"
 #include "ode_collision.h"
@@ -99,11 +98,8 @@ void setMass(BodyData& b, const engine::Body& from) {
 
 /// Brings ODE's bodies up to date with the model.
 void compileBodies(WorldData& w, const Model& model) {
-  // Both lists are in order of identity.
-  std::size_t next = 0;
   std::erase_if(w.bodies, [&](const BodyData& b) {
-    while (next < model.bodies.size() && model.bodies[next].id < b.id) ++next;
-    if (next < model.bodies.size() && model.bodies[next].id == b.id) return false;
+    if (engine::contains(model.bodies, b.id)) return false;
     dBodyDestroy(b.body);
     return true;
   });
@@ -123,7 +119,7 @@ void compileBodies(WorldData& w, const Model& model) {
 
 }  // namespace
 
-void OdeEngine::compile(const Model& model, const engine::State&) {
+void OdeEngine::compile(const Model& model, const engine::State& state) {
   const MessageCapture capture(messages_.last);
   auto found = std::find_if(worlds_.begin(), worlds_.end(), [&](const auto& w) { return w->model == model.id; });
   if (found == worlds_.end()) {
@@ -138,15 +134,14 @@ void OdeEngine::compile(const Model& model, const engine::State&) {
   dWorldSetContactSurfaceLayer(w.id, p.contactSurfaceLayer);
 
   // Removed joints before the bodies that they connect.
-  std::size_t next = 0, kept = 0;
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < w.joints.size(); ++i) {
-    while (next < model.joints.size() && model.joints[next].id < w.joints[i]->id) ++next;
-    if (next < model.joints.size() && model.joints[next].id == w.joints[i]->id) {
-      w.motors[kept] = w.motors[i];
-      std::swap(w.joints[kept++], w.joints[i]);
-    } else {
+    if (!engine::contains(model.joints, w.joints[i]->id)) {
       dJointDestroy(w.joints[i]->joint);
+      continue;
     }
+    w.motors[kept] = w.motors[i];
+    std::swap(w.joints[kept++], w.joints[i]);
   }
   w.joints.resize(kept);
   w.motors.resize(kept);
@@ -155,8 +150,7 @@ void OdeEngine::compile(const Model& model, const engine::State&) {
   w.jointRowsCounted = false;
   engine::warnOfArmature(model, *this, armatureSaid_);
   // Joints were set with the bodies at other places: their states have to be passed again.
-  static std::atomic<std::uint32_t> marks = 0;
-  w.mark = ++marks;
+  w.mark = state.newMark();
   messages_.report(*this);
 }
 

@@ -57,22 +57,6 @@ void setParameter(const JointData& j, int name, double v) {
   }
 }
 
-/// Number of axes that ODE's joint of a type has.
-int axesOf(JointType type) {
-  switch (type) {
-    case JointType::hinge:
-    case JointType::slider:
-      return 1;
-    case JointType::universal:
-    case JointType::hinge2:
-      return 2;
-    case JointType::angularMotor:
-      return 3;
-    default:
-      return 0;
-  }
-}
-
 /// Passes a parameter where it is another than before.
 void pass(const JointData& j, int name, double wanted, double& known) {
   if (wanted == known) return;
@@ -81,7 +65,7 @@ void pass(const JointData& j, int name, double wanted, double& known) {
 }
 
 void passParameters(JointData& j, const engine::Joint& from) {
-  for (int axis = 0; axis < axesOf(j.type); ++axis) {
+  for (int axis = 0; axis < engine::axesOf(j.type); ++axis) {
     const JointAxis& a = from.axes[axis];
     JointAxis& known = j.axes[axis];
     const int group = dParamGroup * axis;

@@ -240,11 +240,10 @@ Pose Collider::geomPose() const {
                                                        : compose(physics::frameOf(*this), local_);
 }
 
-Vec3 Collider::toShape(const Vec3& p) const {
-  const Pose frame = physics::frameOf(*this);
+double Collider::pointDepth(const Vec3& p) const {
+  const Pose frame = physics::frameOf(*this), own = geomPose();
   const Vec3 world = frame.position + frame.rotation * p;
-  const Pose own = geomPose();
-  return own.rotation.transpose() * (world - own.position);
+  return -physics::distanceTo(*shape(), own.rotation.transpose() * (world - own.position));
 }
 
 namespace {

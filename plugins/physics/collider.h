@@ -72,8 +72,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   Pose geomPose() const;
   /// Colliders among its children; cached until something changes below.
   const std::vector<const Collider*>& inner() const;
-  /// Transforms a point from the frame of the nearest transform into the shape's own frame [m].
-  Vec3 toShape(const Vec3& p) const;
+  /// Depth of a point, given in the frame of the nearest transform, below the surface [m]; negative outside.
+  double pointDepth(const Vec3& p) const;
   const std::vector<std::string>& notCollideWith() const { return notCollideWith_; }
 
  private:

@@ -41,12 +41,6 @@ double BoxCollider::length(int axis) const {
   return lengths_[axis];
 }
 
-double BoxCollider::pointDepth(const Vec3& at) const {
-  // Inside: the distance to the nearest face. Outside: that to the nearest point of the box.
-  const Vec3 beyond = toShape(at).cwiseAbs() - lengths_ / 2;
-  return (beyond.array() <= 0).all() ? -beyond.maxCoeff() : -beyond.cwiseMax(0).norm();
-}
-
 void SphereCollider::describe(Description<SphereCollider>& d) {
   d.doc("A sphere.");
   d.property("radius", &SphereCollider::radius, &SphereCollider::setRadius).unit("m").min(0).doc("Radius.");

@@ -67,7 +67,6 @@ class BoxCollider : public ConvexCollider, public IRobotBox {
  private:
   void setLengths(const Vec3& v) { change(lengths_, v); }
   double length(int axis) const;
-  double pointDepth(const Vec3& p) const;
   void addFreezeJointEffector(std::string name) { freezes_.push_back(std::move(name)); }
   Vec3 lengths_{1, 1, 1};  ///< full edges [m]
   std::vector<std::string> freezes_;
@@ -84,7 +83,6 @@ class SphereCollider : public ConvexCollider {
  private:
   double radius() const { return radius_; }
   void setRadius(double r) { change(radius_, r); }
-  double pointDepth(const Vec3& p) const { return radius_ - toShape(p).norm(); }
   double radius_ = 1;  ///< m
 };
 
@@ -121,14 +119,6 @@ class LongCollider : public ConvexCollider {
   void setRadius(double r) { setParams(r, length()); }
   void setLength(double l) { setParams(radius(), l); }
   void setParams(double r, double l) { change(size_, {r, l}); }
-  double pointDepth(const Vec3& at) const {
-    const Vec3 p = toShape(at);
-    // How far the point is outside of the mantle, and beyond the ends.
-    const double outside = std::hypot(p.x(), p.y()) - radius(), beyond = std::abs(p.z()) - length() / 2;
-    if constexpr (S == engine::Shape::capsule) return radius() - std::hypot(outside + radius(), std::max(0.0, beyond));
-    if (outside <= 0 && beyond <= 0) return -std::max(outside, beyond);
-    return -std::hypot(std::max(0.0, outside), std::max(0.0, beyond));
-  }
 
  private:
   std::array<double, 2> size_{1, 1};  ///< radius and length [m]

@@ -85,7 +85,7 @@ void Joint::onUnlink() {
   PhysicsObject::onUnlink();
 }
 
-int Joint::axes() const { return physics::axesOf(jointType()); }
+int Joint::axes() const { return engine::axesOf(jointType()); }
 
 void Joint::expectAxis(int axis) const {
   if (axis >= 0 && axis < axes()) return;

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "api/single_precision.h"
+#include "shapes.h"
 
 namespace spark::physics {
 
@@ -39,7 +40,10 @@ WorldModel::WorldModel(bool exactReplay) {
   setParameters({});
 }
 
-WorldModel::~WorldModel() { forgetEngines(); }
+WorldModel::~WorldModel() {
+  collision_.forget(model_);
+  engine_.forget(model_);
+}
 
 double WorldModel::rounded(double v) const { return model_.exactReplay ? roundToFloat(v) : v; }
 Vec3 WorldModel::rounded(const Vec3& v) const { return model_.exactReplay ? roundToFloat(v) : v; }
@@ -87,7 +91,7 @@ void WorldModel::destroyBody(BodyHandle body) {
   const Index i = bodies_[body];
   for (Index g = 0; g < model_.geoms.size(); ++g) {
     if (model_.geoms[g].body != i || !geoms_.alive(g)) continue;
-    model_.geoms[g].offset = poseOf(g);
+    model_.geoms[g].offset = poseOf(model_, state_, g);
     model_.geoms[g].body = kNone;
     markEdited(g);
   }
@@ -251,55 +255,6 @@ void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
 
 // ---- geoms ----
 
-namespace {
-
-void expectLength(double v, const char* what) {
-  if (!std::isfinite(v) || v < 0) throw Error(fmt::format("expected {} of 0 m or more, found {}", what, v));
-}
-
-/// Throws Error for a malformed mesh.
-void checkMesh(const ShapeDescription& s) {
-  const std::size_t points = s.vertices.size() / 3;
-  if (points == 0 || s.vertices.size() % 3 || s.triangles.empty() || s.triangles.size() % 3)
-    throw Error(fmt::format("expected three numbers a vertex and three indices a triangle, found {} and {}",
-                            s.vertices.size(), s.triangles.size()));
-  for (double v : s.vertices)
-    if (!std::isfinite(v)) throw Error("a vertex of the mesh is not finite");
-  for (std::uint32_t i : s.triangles)
-    if (i >= points) throw Error(fmt::format("a triangle of the mesh names vertex {} of {}", i, points));
-}
-
-}  // namespace
-
-void checkShape(const ShapeDescription& s) {
-  switch (s.shape) {
-    case Shape::box:
-      for (int i = 0; i < 3; ++i) expectLength(s.lengths[i], "an edge of a box");
-      break;
-    case Shape::sphere:
-      expectLength(s.radius, "a sphere's radius");
-      break;
-    case Shape::capsule:
-    case Shape::cylinder:
-      expectLength(s.radius, "a radius");
-      expectLength(s.length, "a length");
-      break;
-    case Shape::plane:
-      if (const double n = std::hypot(s.plane[0], s.plane[1], s.plane[2]);
-          !(n > 1e-12) || !std::isfinite(n) || !std::isfinite(s.plane[3]))
-        throw Error("expected a plane with a normal longer than 0 m and finite numbers");
-      break;
-    case Shape::ray:
-      expectLength(s.length, "a ray's length");
-      if (!(s.rayDirection.norm() > 1e-12) || !s.rayDirection.allFinite() || !s.rayOrigin.allFinite())
-        throw Error("expected a ray with a direction longer than 0 m and finite numbers");
-      break;
-    case Shape::mesh:
-      checkMesh(s);
-      break;
-  }
-}
-
 GeomHandle WorldModel::createGeom(SpaceHandle space, const ShapeDescription& shape, void* owner) {
   checkShape(shape);
   engine::Geom& g = model_.geoms.emplace_back();
@@ -349,13 +304,6 @@ void WorldModel::setPose(GeomHandle geom, const Pose& pose) {
   markEdited(geoms_[geom]);
 }
 
-Pose WorldModel::poseOf(Index geom) const {
-  const engine::Geom& g = model_.geoms[geom];
-  if (g.body == kNone) return g.offset;
-  const DynamicState& s = state_.bodies[g.body];
-  return compose({s.position, s.rotation}, g.offset);
-}
-
 void WorldModel::setMujoco(GeomHandle geom, const engine::Geom::Mujoco& surface) {
   engine::Geom::Mujoco& own = model_.geoms[geoms_[geom]].mujoco;
   if (own == surface) return;
@@ -371,7 +319,7 @@ void WorldModel::setCollides(GeomHandle geom, bool on) {
 // ---- removed elements ----
 
 void WorldModel::compact() {
-  // Who keeps indices goes by the version.
+  // Whoever keeps indices compares this version.
   if (bodies_.removed() + spaces_.removed() + geoms_.removed() + joints_.removed() > 0) ++model_.structure;
   if (bodies_.removed() > 0) {
     const std::vector<Index> now = bodies_.compact(model_.bodies, state_.bodies, watch_);
@@ -389,6 +337,7 @@ void WorldModel::compact() {
     const std::vector<Index> now = joints_.compact(model_.joints, state_.joints, state_.motors, angles_);
     for (engine::AxisControl& c : state_.controls) remap(c.joint, now);
     std::erase_if(state_.controls, [](const engine::AxisControl& c) { return c.joint == kNone; });
+    listControls();
   }
 }
 
@@ -422,11 +371,6 @@ template <class Interface>
 void WorldModel::Compiled<Interface>::forget(const engine::Model& model) {
   if (leaf) engine->forget(model);
   leaf = {};
-}
-
-void WorldModel::forgetEngines() {
-  collision_.forget(model_);
-  engine_.forget(model_);
 }
 
 void WorldModel::detect(engine::ICollision& collision, engine::PairFilter filter, int perPair, engine::Contacts& out) {

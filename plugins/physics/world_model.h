@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/engine.h"
+#include "queries.h"
 #include "rotations.h"
 
 namespace spark::physics {
@@ -75,9 +76,6 @@ class Handles {
   std::size_t removed_ = 0;
 };
 
-/// Number of axes with motor and stops of a joint.
-int axesOf(engine::JointType type);
-
 /// A world. Setters ignore numbers that are not finite or out of range; functions that throw say so. Const functions
 /// may be called from several threads, between two steps.
 class WorldModel {
@@ -133,7 +131,6 @@ class WorldModel {
   void loadBody(BodyHandle body, std::span<const double> in);
   /// The index in the model.
   engine::Index index(BodyHandle body) const { return bodies_[body]; }
-  BodyHandle bodyAt(engine::Index index) const { return bodies_.handleOf(index); }
 
   /// Creates a static geom at the identity pose. Throws Error for an invalid shape.
   GeomHandle createGeom(SpaceHandle space, const engine::ShapeDescription& shape, void* owner);
@@ -146,7 +143,7 @@ class WorldModel {
   /// Sets the world pose of a static geom. Planes ignore it.
   void setPose(GeomHandle geom, const Pose& pose);
   /// World pose of a geom.
-  Pose pose(GeomHandle geom) const { return poseOf(geoms_[geom]); }
+  Pose pose(GeomHandle geom) const { return poseOf(model_, state_, geoms_[geom]); }
   /// Sets what MuJoCo alone reads.
   void setMujoco(GeomHandle geom, const engine::Geom::Mujoco& surface);
   /// False: the geom is left out of detect(). True by default.
@@ -195,14 +192,12 @@ class WorldModel {
 
   /// Detects contacts: see ICollision::detect().
   void detect(engine::ICollision& collision, engine::PairFilter filter, int perPair, engine::Contacts& out);
-  /// `contacts` are those of the last detect(), and nothing was removed since.
   /// Puts bodies that have been idle long enough to sleep, steps the world, and puts bodies whose state is no number or
-  /// out of range back to their last valid pose, at rest.
+  /// out of range back to their last valid pose, at rest. `contacts` are those of the last detect(), and nothing was
+  /// removed since.
   void step(engine::IEngine& engine, engine::Contacts& contacts, double dt);
   /// The bodies that were put back after the last step. Valid until the next step.
   std::span<const BodyHandle> repaired() const { return repaired_; }
-  /// Makes engines forget the world: for one that is about to be replaced.
-  void forgetEngines();
 
  private:
   /// What is kept of a body beside model and state.
@@ -241,7 +236,6 @@ class WorldModel {
   double rounded(double v) const;
   Vec3 rounded(const Vec3& v) const;
   Mat3 rounded(const Mat3& m) const;
-  Pose poseOf(engine::Index geom) const;
   void markEdited(engine::Index geom);
   void detach(engine::Joint& joint);
   /// Removes dead elements from the arrays and gives the others their new indices.
@@ -251,9 +245,10 @@ class WorldModel {
   /// Adds the forces of controllers and of damping to those on the bodies.
   void applyControls();
   void addAlong(const engine::Joint& joint, int axis, double force);
+  void listControls();
   void checkBodies();
 
-  // Joints (world_joints.cpp).
+  // Joints (world_joints.cpp, world_axes.cpp).
   engine::Assembly& remember(engine::Joint& joint, engine::Assembly::Kind kind, int axis, const Vec3& world);
   void anchorSet(engine::Joint& j, const Vec3& world);
   void axisSet(engine::Joint& j, int axis, const Vec3& world, int frame);
@@ -278,19 +273,17 @@ class WorldModel {
   Handles<SpaceHandle> spaces_;
   Handles<GeomHandle> geoms_;
   Handles<JointHandle> joints_;
-  std::vector<std::uint8_t> geomEdited_;     ///< by geom: it is in Model::editedGeoms
-  std::vector<Watch> watch_;                 ///< by body
-  mutable std::vector<CachedAngle> angles_;  ///< by joint
-  std::uint64_t poses_ = 1;                  ///< changes when the angle of a joint may have changed
-  bool damped_ = false;                      ///< an axis has damping
+  std::vector<std::uint8_t> geomEdited_;                 ///< by geom: it is in Model::editedGeoms
+  std::vector<Watch> watch_;                             ///< by body
+  mutable std::vector<CachedAngle> angles_;              ///< by joint
+  std::uint64_t poses_ = 1;                              ///< changes when the angle of a joint may have changed
+  std::vector<std::array<engine::Index, 3>> controlAt_;  ///< by joint and axis: its place in State::controls
+  bool damped_ = false;                                  ///< an axis has damping
   std::vector<BodyHandle> repaired_;
   std::uint64_t nextId_ = 1, steps_ = 0, attachments_ = 0, assemblies_ = 0;
   Compiled<engine::ICollision> collision_;
   Compiled<engine::IEngine> engine_;
 };
-
-/// Throws Error for a shape that no engine can represent.
-void checkShape(const engine::ShapeDescription& shape);
 
 /// True when the magnitudes of `n` numbers (m, m/s, rad/s) sum up to less than 1e8; false also for NaN. Larger
 /// coordinates do not fit the cells of hash spaces.

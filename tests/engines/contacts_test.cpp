@@ -111,3 +111,19 @@ TEST_CASE("MuJoCo slides and bounces as the colliders' own numbers have it") {
     CHECK(highest > 0.6);
   }
 }
+
+TEST_CASE("the force of a contact is measured also when a body was moved by hand before the step") {
+  withEngines([](EngineWorld& w) {
+    w.ground();
+    const BodyHandle b = w.block({0, 0, 0.199}, {0.4, 0.4, 0.4}, 3), other = w.body({9, 0, 9});
+    w.run(1);
+    for (int i = 0; i < 20; ++i) {
+      w.world.setLinearVelocity(other, {0, 0, 1});
+      w.run(w.dt);
+    }
+    double sum = 0;
+    for (const engine::Contact& c : w.contacts) sum += std::abs(c.forceOnA.z());
+    CHECK(sum == Approx(3 * 9.81).epsilon(0.02));
+    CHECK(w.position(b).z() == Approx(0.2).margin(0.01));
+  });
+}

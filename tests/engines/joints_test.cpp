@@ -230,7 +230,7 @@ TEST_CASE(
     "a controller brings the angle to its target in every order of bodies, with the world, and about every axis") {
   for (const JointType type : {JointType::hinge, JointType::slider, JointType::universal, JointType::hinge2})
     for (const int order : {0, 1, 2, 3})
-      for (int axis = 0; axis < physics::axesOf(type); ++axis)
+      for (int axis = 0; axis < engine::axesOf(type); ++axis)
         withPairs([&](EngineWorld& w, const Pair& p) {
           if (type == JointType::hinge2 && order > 1) return;  // a wheel needs two bodies
           CAPTURE(int(type), order, axis);
