@@ -49,6 +49,8 @@ class FakeJoint : public SceneNode, public IJoint, public IMotor {
   int axes() const override { return 1; }
   Vec3 anchor() const override { return Vec3::Zero(); }
   Vec3 axisNow(int) const override { return Vec3::UnitZ(); }
+  void setWorldAnchor(const Vec3&) override {}
+  void setWorldAxis(int, const Vec3&) override {}
   double angle(int axis) const override { return angles[axis]; }
   double angleRate(int axis) const override { return rates[axis]; }
   double parameter(engine::JointParameter p, int axis) const override {

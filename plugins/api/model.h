@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,19 @@ struct WorldParameters {
   double cfm = 1e-5;                   ///< constraint force mixing, 0 or more
   bool autoDisable = true;             ///< bodies at rest fall asleep
   double contactSurfaceLayer = 0.001;  ///< allowed penetration depth of contacts [m]
+  /// Read by MuJoCo alone (MuJoCo's documentation, "option").
+  struct Mujoco {
+    double timestep = 0;               ///< of one of its steps [s]; 0: as the engine says
+    std::string integrator = "Euler";  ///< or "implicit"
+    std::string cone = "pyramidal";    ///< of friction; or "elliptic"
+    std::string solver = "Newton";     ///< or "PGS", "CG"
+    int iterations = 100;              ///< most of the solver
+    double tolerance = 1e-8;           ///< at which the solver stops
+    double impratio = 1;               ///< impedance of friction over that of the normal force
+    double density = 0;                ///< of the medium [kg/m^3]
+    double viscosity = 0;              ///< of the medium [Pa s]
+    Vec3 wind = Vec3::Zero();          ///< velocity of the medium [m/s]
+  } mujoco;
 };
 
 /// Mass distribution of a body.
@@ -47,6 +61,9 @@ struct Body {
   double mass = 1;       ///< kg, above 0
   /// Inertia about the centre of mass [kg m^2] and its inverse, body frame; positive definite.
   Mat3 inertia = Mat3::Identity(), inverseInertia = Mat3::Identity();
+  /// Origin of the link's frame in the body's frame [m], for engines in coordinates of joints: the point of a free body
+  /// whose place and velocity are its coordinates.
+  Vec3 linkOrigin = Vec3::Zero();
   bool gravity = true;  ///< the world's gravity acts on the body
   int joints = 0;       ///< number of attached joints
 };
@@ -146,6 +163,14 @@ struct JointAxis {
   } ode;
 };
 
+/// What MuJoCo alone reads of an axis (MuJoCo's documentation, "joint"): time constant [s] and damping ratio, and
+/// impedance, of the stops and of dry friction. A motor is dry friction about a moving reference, and stiff.
+struct MujocoAxis {
+  std::array<double, 2> stopSolref{0.01, 1}, frictionSolref{0.01, 1};
+  std::array<double, 5> stopSolimp{0.95, 0.99, 0.001, 0.5, 2}, frictionSolimp{0.9999, 0.9999, 0.001, 0.5, 2};
+  double stopMargin = 0;  ///< distance from a stop at which it begins to act [rad or m]
+};
+
 /// Where a body was when a joint was set.
 struct AssemblyPose {
   Vec3 position;
@@ -224,6 +249,7 @@ struct Model {
   std::vector<Space> spaces;
   std::vector<Geom> geoms;
   std::vector<Joint> joints;
+  std::vector<std::array<MujocoAxis, 3>> mujocoAxes;  ///< by joint
   /// Versions: `structure` changes with every element that is created, removed or attached, `collision` with spaces and
   /// geoms, `dynamics` with masses, joints and parameters.
   std::uint64_t structure = 0, collision = 0, dynamics = 0;

@@ -52,7 +52,7 @@ class IRigidBody {
 /// A joint, for sensors and effectors. Offered by HingeJoint and all other joint classes.
 class IJoint {
  public:
-  SPARK_INTERFACE(IJoint, 3);
+  SPARK_INTERFACE(IJoint, 4);
   virtual ~IJoint() = default;
   /// The node that offers it.
   virtual Leaf& leaf() = 0;
@@ -65,6 +65,10 @@ class IJoint {
   virtual Vec3 anchor() const = 0;
   /// Unit vector along an axis, world frame; zero when there is no such axis.
   virtual Vec3 axisNow(int axis) const = 0;
+  /// Sets the common point of both bodies, world frame [m]. Throws RefusedValue when it is not finite.
+  virtual void setWorldAnchor(const Vec3& world) = 0;
+  /// Sets the direction of an axis, world frame. Throws Error when its length is 0.
+  virtual void setWorldAxis(int axis, const Vec3& world) = 0;
   virtual double angle(int axis) const = 0;      ///< rad; slider: m
   virtual double angleRate(int axis) const = 0;  ///< rad/s; slider: m/s
   /// A parameter of an axis; 0 where the joint does not have it.
@@ -201,6 +205,8 @@ class ContactJointHandler : public CollisionHandler {
         .unit("N")
         .min(0)
         .doc("Maximum friction force along each tangent [N]; infinite by default.");
+    d.property("contactPyramid", &H::pyramid, &H::setPyramid)
+        .doc("contactMu is a coefficient: friction is bounded by it times the normal force.");
   }
   void onCollision(const Collision&) override {}
   const engine::Surface* surface() const override { return &surface_; }
@@ -228,6 +234,8 @@ class ContactJointHandler : public CollisionHandler {
   void setSlip(double v) { surface_.slip1 = surface_.slip2 = v; }
   double mu() const { return surface_.mu; }
   void setMu(double v) { surface_.mu = v; }
+  bool pyramid() const { return surface_.pyramid; }
+  void setPyramid(bool on) { surface_.pyramid = on; }
   engine::Surface surface_;
 };
 

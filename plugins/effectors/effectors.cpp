@@ -1,5 +1,6 @@
 #include "agent_sync_effector.h"
 #include "angular_motor_effector.h"
+#include "control_effector.h"
 #include "create_effector.h"
 #include "force_effector.h"
 #include "hinge2_effector.h"
@@ -12,4 +13,4 @@
 SPARK_PLUGIN("effectors", "1.0", "Effectors of robots: joints, motors, forces.", spark::HingeEffector,
              spark::UniversalJointEffector, spark::Hinge2Effector, spark::AngularMotorEffector,
              spark::StiffnessEffector, spark::AgentSyncEffector, spark::ForceEffector, spark::CreateEffector,
-             spark::HMDPEffector)
+             spark::HMDPEffector, spark::ControlEffector, spark::ActuatorEffector)

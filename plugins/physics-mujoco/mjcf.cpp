@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <iterator>
 
@@ -135,6 +136,15 @@ int coordinatesOf(JointType type) {
 
 namespace {
 
+/// Principal moments of inertia, and their axes.
+std::pair<Vec3, Mat3> principalAxes(const Mat3& inertia) {
+  if (inertia.isDiagonal(0)) return {inertia.diagonal(), Mat3::Identity()};
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
+  Mat3 axes = solver.eigenvectors();
+  if (axes.determinant() < 0) axes.col(2) *= -1;
+  return {solver.eigenvalues(), axes};
+}
+
 /// Writes the elements of a world.
 struct Writer {
   const Model& model;
@@ -185,6 +195,7 @@ struct Writer {
         put(R"( type="mesh" mesh="m{}")", index);
         break;
     }
+    if (g.body != kNone) pose.position -= model.bodies[g.body].linkOrigin;
     putPose(pose);
     const Geom::Mujoco& m = g.mujoco;
     put(R"( friction="{}" condim="{}" priority="{}" solref="{:.17g}" solimp="{:.17g}" margin="{:.17g}" gap="{:.17g}")",
@@ -192,14 +203,15 @@ struct Writer {
     put("/>\n");
   }
 
-  void putRange(const engine::JointAxis& a, bool childIsA) {
+  void putRange(const engine::JointAxis& a, const engine::MujocoAxis& m) {
+    put(R"( solreflimit="{:.17g}" solimplimit="{:.17g}" margin="{:.17g}")", fmt::join(m.stopSolref, " "),
+        fmt::join(m.stopSolimp, " "), m.stopMargin);
     if (!(a.lowStop <= a.highStop) || (std::isinf(a.lowStop) && std::isinf(a.highStop))) return;
     // MuJoCo's limits are two-sided; a million turns or metres are as good as none.
     const double low = std::max(a.lowStop, -1e6), high = std::min(a.highStop, 1e6);
     // Equal stops lock the axis: MuJoCo wants a range.
     const double least = low == high ? 1e-6 : 0;
-    put(R"( limited="true" range="{:.17g} {:.17g}")", (childIsA ? low : -high) - least,
-        (childIsA ? high : -low) + least);
+    put(R"( limited="true" range="{:.17g} {:.17g}")", low - least, high + least);
   }
 
   /// The joint of a link, in the frame of its body. Coordinates are those of the child relative to the parent, which
@@ -208,7 +220,7 @@ struct Writer {
     if (link.joint == kNone) return put("<freejoint/>\n");
     const Joint& j = model.joints[link.joint];
     const double sign = link.childIsA ? 1 : -1;
-    const Vec3 at = link.childIsA ? j.anchorA : j.anchorB;
+    const Vec3 at = (link.childIsA ? j.anchorA : j.anchorB) - model.bodies[link.body].linkOrigin;
     const Mat3 parentInChild = link.zero.rotation.transpose();
     // Axis 1 is fixed in a, axis 2 in b; each in the child's frame, at zero.
     const auto inChild = [&](const Vec3& axis, bool inA) {
@@ -218,8 +230,11 @@ struct Writer {
                            bool limited = true) {
       put(R"(<joint name="{}" type="{}" pos="{}" axis="{}")", jointName(link.joint, coordinate), type, text(at),
           text(axis));
-      if (own) put(R"( armature="{:.17g}" damping="{:.17g}")", own->armature, own->damping);
-      if (own && limited) putRange(*own, true);
+      if (!own) return;
+      const engine::MujocoAxis& m = model.mujocoAxes[link.joint][own - j.axes.data()];
+      put(R"( armature="{:.17g}" damping="{:.17g}" solreffriction="{:.17g}" solimpfriction="{:.17g}")", own->armature,
+          own->damping, fmt::join(m.frictionSolref, " "), fmt::join(m.frictionSolimp, " "));
+      if (limited) putRange(*own, m);
     };
     switch (j.type) {
       case JointType::hinge:
@@ -276,12 +291,15 @@ struct Writer {
     const Link& link = trees.links[index];
     const engine::Body& b = model.bodies[link.body];
     put(R"(<body name="{}")", bodyName(link.body));
-    putPose(link.zero);
+    Pose place = compose(link.zero, {b.linkOrigin, Mat3::Identity()});
+    if (link.parent != kNone) place.position -= model.bodies[trees.links[link.parent].body].linkOrigin;
+    putPose(place);
     put(">\n");
-    const Mat3& i = b.inertia;
-    put(R"(<inertial pos="0 0 0" mass="{:.17g}" fullinertia="{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}"/>)",
-        b.mass, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2));
-    put("\n");
+    // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
+    const auto [moments, axes] = principalAxes(b.inertia);
+    put(R"(<inertial mass="{:.17g}" diaginertia="{}")", b.mass, text(moments));
+    putPose({-b.linkOrigin, axes});
+    put("/>\n");
     putJoint(link);
     for (const Index g : geoms[link.body]) putGeom(g);
     for (const Index child : children[index]) putLink(child);
@@ -312,11 +330,12 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, double c
 
   w.put("<mujoco>\n");
   w.put(R"(<compiler angle="radian" inertiafromgeom="false" balanceinertia="true"/>)");
-  w.put(R"(<option timestep="{:.17g}" gravity="{}"/>)", step, Writer::text(model.parameters.gravity));
+  const engine::WorldParameters::Mujoco& o = model.parameters.mujoco;
+  w.put(R"(<option timestep="{:.17g}" gravity="{}" integrator="{}" cone="{}" solver="{}" iterations="{}")", step,
+        Writer::text(model.parameters.gravity), o.integrator, o.cone, o.solver, o.iterations);
+  w.put(R"( tolerance="{:.17g}" impratio="{:.17g}" density="{:.17g}" viscosity="{:.17g}" wind="{}"/>)", o.tolerance,
+        o.impratio, o.density, o.viscosity, Writer::text(o.wind));
   w.put(R"(<size nconmax="{}" njmax="{}"/>)", sizes.contacts, sizes.rows);
-  // Motors are dry friction about a moving reference (see mujoco_world.cpp): stiff. Stops are firm.
-  w.put(R"(<default><joint solreffriction="0.01 1" solimpfriction="0.9999 0.9999 0.001" solreflimit="0.01 1" )"
-        R"(solimplimit="0.95 0.99 0.001"/></default>)");
   w.putMeshes();
   w.put("<worldbody>\n");
   for (Index i = 0; i < model.geoms.size(); ++i)

@@ -28,6 +28,11 @@ MujocoEngine::Known& MujocoEngine::of(const engine::Model& model) {
   return worlds_.back();
 }
 
+int MujocoEngine::substepsOf(const engine::Model& model, double cycle) const {
+  const double own = model.parameters.mujoco.timestep;
+  return own > 0 ? static_cast<int>(std::clamp(std::round(cycle / own), 1.0, 1000.0)) : substeps_;
+}
+
 void MujocoEngine::forget(const engine::Model& model) {
   std::erase_if(worlds_, [&](const Known& known) { return known.id == model.id; });
 }
@@ -40,7 +45,7 @@ void MujocoEngine::compile(const engine::Model& model, const engine::State& stat
   known.structure = model.structure;
   known.collision = model.collision;
   known.dynamics = model.dynamics;
-  known.substeps = substeps_;
+  known.substeps = substepsOf(model, known.cycle);
   const mujoco::Sizes least = sizesFor(model);
   known.sizes = {std::max(least.contacts, known.sizes.contacts), std::max(least.rows, known.sizes.rows)};
   build(known, model, state);
@@ -83,9 +88,10 @@ void MujocoEngine::report(MujocoWorld& world) {
 
 void MujocoEngine::step(engine::Step& step) {
   Known& known = of(step.model);
-  if (known.world && (known.cycle != step.dt || known.substeps != substeps_)) {
+  const int substeps = substepsOf(step.model, step.dt);
+  if (known.world && (known.cycle != step.dt || known.substeps != substeps)) {
     known.cycle = step.dt;
-    known.substeps = substeps_;
+    known.substeps = substeps;
     build(known, step.model, step.state);
   }
   if (!known.world) {
@@ -93,7 +99,7 @@ void MujocoEngine::step(engine::Step& step) {
     return;
   }
   try {
-    known.world->step(step, substeps_);
+    known.world->step(step, substeps);
   } catch (const Error& e) {
     return refuse(known, e.what());
   }

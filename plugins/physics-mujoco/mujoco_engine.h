@@ -21,7 +21,7 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
     d.property("version", &MujocoEngine::version).doc("Version of the library.");
     d.property("substeps", &MujocoEngine::substeps_)
         .range(1, 1000)
-        .doc("Number of MuJoCo's steps in a step of the simulation.");
+        .doc("Number of MuJoCo's steps in a step of the simulation, unless the world has a mujocoTimestep.");
     d.property("compilations", &MujocoEngine::compilations).doc("Number of models that were compiled.");
   }
   Leaf& leaf() override { return *this; }
@@ -48,6 +48,8 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
   std::string version() const { return mj_versionString(); }
   std::int64_t compilations() const { return compilations_; }
   Known& of(const engine::Model& model);
+  /// Number of MuJoCo's steps in a cycle of that length [s].
+  int substepsOf(const engine::Model& model, double cycle) const;
   void build(Known& known, const engine::Model& model, const engine::State& state);
   void refuse(Known& known, const std::string& why);
   /// Logs MuJoCo's last message: the 1st, 2nd, 4th, 8th ... time.

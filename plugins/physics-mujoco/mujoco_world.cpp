@@ -34,6 +34,8 @@ const DynamicState& worldState() {
 double angleAbout(const Mat3& rotation, const Vec3& axis) {
   const Eigen::Quaterniond q(rotation);
   const double angle = 2 * std::atan2(q.vec().dot(axis), q.w());
+  // What the rounding of rotations leaves of 0 would decide whether a stop at 0 acts.
+  if (std::abs(angle) < 1e-15) return 0;
   return angle > kPi ? angle - 2 * kPi : angle < -kPi ? angle + 2 * kPi : angle;
 }
 
@@ -108,10 +110,13 @@ void MujocoWorld::takeLink(const Model& model, const State& state, const Link& l
     mjtNum *q = d_->qpos + m_->jnt_qposadr[i], *v = d_->qvel + m_->jnt_dofadr[i];
     switch (m_->jnt_type[i]) {
       case mjJNT_FREE: {
-        std::copy_n(child.position.data(), 3, q);
+        const Vec3 arm = child.rotation * model.bodies[link.body].linkOrigin;
+        const Vec3 position = child.position + arm;
+        std::copy_n(position.data(), 3, q);
         std::copy_n(child.quaternion.data(), 4, q + 3);
         const Vec3 local = child.rotation.transpose() * child.angularVelocity;
-        std::copy_n(child.linearVelocity.data(), 3, v);
+        const Vec3 velocity = child.linearVelocity + child.angularVelocity.cross(arm);
+        std::copy_n(velocity.data(), 3, v);
         std::copy_n(local.data(), 3, v + 3);
         break;
       }
@@ -162,7 +167,7 @@ void MujocoWorld::give(State& state) const {
   for (Index i = 0; i < state.bodies.size(); ++i) {
     DynamicState& s = state.bodies[i];
     const int id = bodyId_[i];
-    s.position = toVec(d_->xpos + 3 * id);
+    s.position = toVec(d_->xipos + 3 * id);
     std::copy_n(d_->xquat + 4 * id, 4, s.quaternion.begin());
     s.rotation = rotationOf(s.quaternion);
     mjtNum velocity[6];  // rotation, translation

@@ -35,6 +35,11 @@ void Collider::describe(Description<Collider>& d) {
   d.method("addNotCollideWithColliderName", &Collider::addNotCollideWithColliderName)
       .parameters({"name", "on"})
       .doc("true: excludes collisions with colliders of that name in the same space; false: allows them again.");
+  d.property("contactTypes", &Collider::contactTypes_)
+      .doc("Bits of the kinds of colliders that it is; MuJoCo's contype. Two collide if a bit of one is in the other's "
+           "contactAffinities.");
+  d.property("contactAffinities", &Collider::contactAffinities_)
+      .doc("Bits of the kinds of colliders that it collides with; MuJoCo's conaffinity.");
   d.property("notCollideWith", &Collider::notCollideWith)
       .doc("Names of the colliders of its space that it does not collide with.");
   // MuJoCo's documentation, "Contact".
@@ -68,21 +73,13 @@ void Collider::setMujocoCondim(int n) {
   applyMujoco();
 }
 
-namespace {
-template <std::size_t N>
-void take(std::array<double, N>& to, const std::vector<double>& from, const std::string& where) {
-  if (from.size() != N) throw Error(fmt::format("{}: expected {} numbers, found {}", where, N, from.size()));
-  std::copy(from.begin(), from.end(), to.begin());
-}
-}  // namespace
-
 void Collider::setMujocoSolref(const std::vector<double>& v) {
-  take(mujoco_.solref, v, where());
+  physics::take(mujoco_.solref, v, where());
   applyMujoco();
 }
 
 void Collider::setMujocoSolimp(const std::vector<double>& v) {
-  take(mujoco_.solimp, v, where());
+  physics::take(mujoco_.solimp, v, where());
   applyMujoco();
 }
 
@@ -186,6 +183,8 @@ void Collider::addNotCollideWithColliderName(std::string name, bool on) {
 }
 
 bool Collider::mayCollideWith(const Collider& other) const {
+  if (!((contactTypes_ & other.contactAffinities_) | (other.contactTypes_ & contactAffinities_))) return false;
+
   // A detached group collides only with itself and with static colliders.
   const auto detached = [](const CollisionGroup* group) { return group && group->detached(); };
   if (group_ != other.group_ && hasBody_ && other.hasBody_ && (detached(group_) || detached(other.group_)))

@@ -41,8 +41,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   /// Collects the handlers among the children. `defaultOnTransform`: a TransformCollider without a handler of its own
   /// gets the default surface; false: it takes over the handlers of its inner collider.
   void refreshHandlers(bool defaultOnTransform);
-  /// False when collisions of the two are excluded: they are in the same space and one lists the other's name, or one
-  /// is in a detached group that the other is not in.
+  /// False when collisions of the two are excluded: no bit of one's kinds is in the other's affinities, they are in the
+  /// same space and one lists the other's name, or one is in a detached group that the other is not in.
   bool mayCollideWith(const Collider& other) const;
   /// Sets the innermost group around the collider; nullptr: none.
   void setGroup(const CollisionGroup* group) { group_ = group; }
@@ -116,6 +116,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   Collider* outer_ = nullptr;  ///< the TransformCollider it is part of
   engine::Geom::Mujoco mujoco_;
   Pose local_;  ///< in the frame of body, transform or outer collider
+  std::int64_t contactTypes_ = 1, contactAffinities_ = 1;  ///< bits
   bool solid_ = false, listens_ = false, hasBody_ = false;
   Handlers handlers_;
   std::vector<std::string> notCollideWith_;

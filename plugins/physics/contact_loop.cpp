@@ -25,7 +25,9 @@ std::size_t endOfPair(const engine::Contacts& contacts, std::size_t i) {
 
 engine::Surface combine(const engine::Surface& a, const engine::Surface& b) {
   engine::Surface s;
-  s.mu = (a.mu + b.mu) / 2;
+  // A coefficient and a force have no mean: the coefficient counts.
+  s.pyramid = a.pyramid || b.pyramid;
+  s.mu = a.pyramid == b.pyramid ? (a.mu + b.mu) / 2 : a.pyramid ? a.mu : b.mu;
   mix(s.bounceOn, s.bounce, a.bounceOn, a.bounce, b.bounceOn, b.bounce);
   mix(s.bounceOn, s.bounceVelocity, a.bounceOn, a.bounceVelocity, b.bounceOn, b.bounceVelocity);
   mix(s.softErpOn, s.softErp, a.softErpOn, a.softErp, b.softErpOn, b.softErp);

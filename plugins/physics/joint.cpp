@@ -57,6 +57,20 @@ void Joint::describe(Description<Joint>& d) {
   axis("DryFriction", &J::set<P::dryFriction>, &J::get<P::dryFriction>, "Nm or N",
        "Largest force of dry friction; of an axis with a controller.");
 
+  // MuJoCo's documentation, "joint".
+  using M = engine::MujocoAxis;
+  const auto firmness = [&](const char* name, auto set, const char* numbers, const char* what) {
+    d.method(name, set).parameters({"axis", numbers}).doc(fmt::format("For MuJoCo: how firm {} are.", what));
+  };
+  const char *const solref = "time constant [s], damping ratio",
+                    *const solimp = "fractions from and to, width [rad or m], midpoint, power";
+  firmness("setMujocoStopSolref", &J::setMujoco<&M::stopSolref>, solref, "the stops");
+  firmness("setMujocoStopSolimp", &J::setMujoco<&M::stopSolimp>, solimp, "the stops");
+  firmness("setMujocoFrictionSolref", &J::setMujoco<&M::frictionSolref>, solref, "dry friction and motor");
+  firmness("setMujocoFrictionSolimp", &J::setMujoco<&M::frictionSolimp>, solimp, "dry friction and motor");
+  d.method("setMujocoStopMargin", &J::setMujocoMargin)
+      .parameters({"axis", "margin [rad or m]"})
+      .doc("For MuJoCo: distance from a stop at which it begins to act.");
   d.property("jointMaxSpeed1", &J::maxSpeed1, &J::setMaxSpeed1)
       .unit("rad/s")
       .doc("Maximum speed that effectors may command on the first axis; 0: no limit.");
@@ -139,24 +153,62 @@ void Joint::attach(std::string first, std::string second) {
 }
 
 void Joint::setAnchor(const Vec3& local) {
-  if (world() && !local.allFinite())
-    throw RefusedValue(fmt::format("{}: expected finite numbers for the anchor", where()));
+  expectFinite(local);
   withBodies([this, local] {
     const Pose frame = physics::frameOf(*this);
     world()->setAnchor(joint_, frame.position + frame.rotation * local);
   });
 }
 
+void Joint::setWorldAnchor(const Vec3& point) {
+  expectFinite(point);
+  withBodies([this, point] { world()->setAnchor(joint_, point); });
+}
+
 void Joint::setAxisLocal(int axis, const Vec3& direction) {
+  expectDirection(direction);
+  withBodies([this, axis, direction] { turnAxis(axis, physics::frameOf(*this).rotation * direction); });
+}
+
+void Joint::setWorldAxis(int axis, const Vec3& direction) {
+  expectDirection(direction);
+  withBodies([this, axis, direction] { turnAxis(axis, direction); });
+}
+
+void Joint::expectFinite(const Vec3& anchor) const {
+  if (world() && !anchor.allFinite())
+    throw RefusedValue(fmt::format("{}: expected finite numbers for the anchor", where()));
+}
+
+void Joint::expectDirection(const Vec3& direction) const {
   if (world() && !(direction.norm() >= kShortestAxis))
     throw Error(fmt::format("{}: cannot set the axis", where()), Error("expected an axis longer than 0"));
-  withBodies([this, axis, direction] {
-    try {
-      world()->setAxis(joint_, axis, physics::frameOf(*this).rotation * direction);
-    } catch (const Error& e) {
-      throw Error(fmt::format("{}: cannot set the axis", where()), e);
-    }
-  });
+}
+
+void Joint::turnAxis(int axis, const Vec3& direction) {
+  try {
+    world()->setAxis(joint_, axis, direction);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: cannot set the axis", where()), e);
+  }
+}
+
+template <class F>
+void Joint::changeMujoco(int axis, F change) {
+  expectAxis(axis);
+  if (!world()) return;
+  engine::MujocoAxis numbers = world()->mujoco(joint_, axis);
+  change(numbers);
+  world()->setMujoco(joint_, axis, numbers);
+}
+
+template <auto Member>
+void Joint::setMujoco(int axis, const std::vector<double>& numbers) {
+  changeMujoco(axis, [&](engine::MujocoAxis& m) { physics::take(m.*Member, numbers, where()); });
+}
+
+void Joint::setMujocoMargin(int axis, double margin) {
+  changeMujoco(axis, [&](engine::MujocoAxis& m) { m.stopMargin = std::max(0.0, margin); });
 }
 
 void Joint::enableFeedback(bool on) {

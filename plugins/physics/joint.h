@@ -32,6 +32,8 @@ class Joint : public PhysicsObject, public IJoint {
   void control(int axis, const engine::Control& control) override {
     if (world()) world()->control(joint_, axis, control);
   }
+  void setWorldAnchor(const Vec3& point) override;
+  void setWorldAxis(int axis, const Vec3& direction) override;
   bool atStop(int axis) const override { return world() && world()->atStop(joint_, axis); }
   double maxSpeed(int axis) const override { return axis == 0 || axis == 1 ? maxSpeed_[axis] : 0; }
   double feedbackTorque() const override;
@@ -89,6 +91,16 @@ class Joint : public PhysicsObject, public IJoint {
     expectAxis(axis);
     return radToDeg(parameter(P, axis));
   }
+  void expectFinite(const Vec3& anchor) const;
+  void expectDirection(const Vec3& direction) const;
+  /// Sets an axis to a world direction, with errors that name the joint.
+  void turnAxis(int axis, const Vec3& direction);
+  /// Changes what MuJoCo alone reads of an axis.
+  template <class F>
+  void changeMujoco(int axis, F change);
+  template <auto Member>
+  void setMujoco(int axis, const std::vector<double>& numbers);
+  void setMujocoMargin(int axis, double margin);
   void attach(std::string first, std::string second);
   /// The body at a path relative to the joint; empty, with a warning, when there is none.
   Ref<RigidBody> bodyAt(const std::string& path);

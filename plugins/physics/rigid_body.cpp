@@ -17,6 +17,11 @@ void RigidBody::describe(Description<RigidBody>& d) {
   d.property("angularVelocity", &B::angularVelocity, &B::setAngularVelocity)
       .unit("rad/s")
       .doc("Angular velocity, in the world.");
+  d.property("linkOrigin", &B::linkOrigin, &B::setLinkOrigin)
+      .unit("m")
+      .doc(
+          "Origin of its link's frame, in the body's frame, for engines in coordinates of joints: the point of a free "
+          "body whose place and velocity are its coordinates.");
   d.property("gravityOn", &B::usesGravity, &B::useGravity).doc("The world's gravity acts on it.");
 
   const auto solid = [&](const char* shape, auto set, auto setTotal, std::vector<std::string> lengths) {
@@ -78,6 +83,7 @@ void RigidBody::onLink() {
   world_->setPosition(body_, pose.position);
   world_->setRotation(body_, pose.rotation);
   world_->setMass(body_, mass_);
+  world_->setLinkOrigin(body_, linkOrigin_);
   world_->setGravityMode(body_, gravity_);
 }
 
@@ -148,6 +154,11 @@ void RigidBody::enable() {
 
 void RigidBody::disable() {
   if (world_) world_->setEnabled(body_, false);
+}
+
+void RigidBody::setLinkOrigin(const Vec3& origin) {
+  linkOrigin_ = origin;
+  if (world_) world_->setLinkOrigin(body_, origin);
 }
 
 void RigidBody::useGravity(bool on) {

@@ -1,5 +1,9 @@
 #include "world.h"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 #include "physics_server.h"
 
 namespace spark {
@@ -43,6 +47,49 @@ void World::describe(Description<World>& d) {
       .min(0)
       .state()
       .doc("Allowed penetration depth of contacts.");
+  // MuJoCo's documentation, "option".
+  using M = engine::WorldParameters::Mujoco;
+  d.property("mujocoTimestep", &World::mujoco<&M::timestep>, &World::setMujoco<&M::timestep, double>)
+      .unit("s")
+      .min(0)
+      .doc("For MuJoCo: one of its steps, of which a step of the simulation has a whole number; 0: as the engine says.");
+  d.property("mujocoIntegrator", &World::mujoco<&M::integrator>, &World::setMujocoName<&M::integrator>)
+      .doc("For MuJoCo: Euler or implicit.");
+  d.property("mujocoCone", &World::mujoco<&M::cone>, &World::setMujocoName<&M::cone>)
+      .doc("For MuJoCo: friction cones, pyramidal or elliptic.");
+  d.property("mujocoSolver", &World::mujoco<&M::solver>, &World::setMujocoName<&M::solver>)
+      .doc("For MuJoCo: Newton, CG or PGS.");
+  d.property("mujocoIterations", &World::mujoco<&M::iterations>, &World::setMujoco<&M::iterations, int>)
+      .range(1, 10000)
+      .doc("For MuJoCo: most iterations of the solver.");
+  d.property("mujocoTolerance", &World::mujoco<&M::tolerance>, &World::setMujoco<&M::tolerance, double>)
+      .range(0, 1)
+      .doc("For MuJoCo: improvement at which the solver stops.");
+  d.property("mujocoImpratio", &World::mujoco<&M::impratio>, &World::setMujoco<&M::impratio, double>)
+      .range(1e-6, 1e6)
+      .doc("For MuJoCo: impedance of friction over that of the normal force.");
+  d.property("mujocoDensity", &World::mujoco<&M::density>, &World::setMujoco<&M::density, double>)
+      .unit("kg/m^3")
+      .min(0)
+      .doc("For MuJoCo: density of the medium, whose drag acts on all bodies.");
+  d.property("mujocoViscosity", &World::mujoco<&M::viscosity>, &World::setMujoco<&M::viscosity, double>)
+      .unit("Pa s")
+      .min(0)
+      .doc("For MuJoCo: viscosity of the medium.");
+  d.property("mujocoWind", &World::mujoco<&M::wind>, &World::setMujoco<&M::wind, Vec3>)
+      .unit("m/s")
+      .doc("For MuJoCo: velocity of the medium, world frame.");
+}
+
+template <auto Member>
+void World::setMujocoName(std::string name) {
+  using M = engine::WorldParameters::Mujoco;
+  std::vector<std::string> names{"PGS", "CG", "Newton"};
+  if constexpr (Member == &M::integrator) names = {"Euler", "implicit"};
+  if constexpr (Member == &M::cone) names = {"pyramidal", "elliptic"};
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw Error(fmt::format("{}: expected {}, found '{}'", where(), fmt::join(names, " or "), name));
+  setMujoco<Member>(std::move(name));
 }
 
 World& World::of(const Leaf& node) {

@@ -53,6 +53,18 @@ class World : public PhysicsObject {
   void setAutoDisable(bool on) { parameters_.autoDisable = on, apply(); }
   double surfaceLayer() const { return parameters_.contactSurfaceLayer; }
   void setSurfaceLayer(double v) { parameters_.contactSurfaceLayer = v, apply(); }
+  /// What MuJoCo alone reads.
+  template <auto Member>
+  auto mujoco() const {
+    return parameters_.mujoco.*Member;
+  }
+  template <auto Member, class T>
+  void setMujoco(T v) {
+    parameters_.mujoco.*Member = std::move(v);
+    apply();
+  }
+  template <auto Member>
+  void setMujocoName(std::string name);
   void apply();
 
   engine::WorldParameters parameters_;

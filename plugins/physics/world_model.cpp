@@ -51,7 +51,10 @@ Mat3 WorldModel::rounded(const Mat3& m) const { return model_.exactReplay ? roun
 
 void WorldModel::setParameters(const engine::WorldParameters& p) {
   if (!inRange(p.gravity)) throw Error("expected a finite gravity for the world");
-  model_.parameters = {rounded(p.gravity), p.erp, rounded(p.cfm), p.autoDisable, rounded(p.contactSurfaceLayer)};
+  model_.parameters = p;
+  model_.parameters.gravity = rounded(p.gravity);
+  model_.parameters.cfm = rounded(p.cfm);
+  model_.parameters.contactSurfaceLayer = rounded(p.contactSurfaceLayer);
   ++model_.dynamics;
 }
 
@@ -197,6 +200,12 @@ void WorldModel::setEnabled(BodyHandle body, bool on) {
   watch_[i].idleTimeLeft = 0;
 }
 
+void WorldModel::setLinkOrigin(BodyHandle body, const Vec3& origin) {
+  if (!inRange(origin)) return;
+  model_.bodies[bodies_[body]].linkOrigin = origin;
+  ++model_.dynamics;
+}
+
 void WorldModel::setGravityMode(BodyHandle body, bool on) {
   model_.bodies[bodies_[body]].gravity = on;
   ++model_.dynamics;
@@ -334,7 +343,7 @@ void WorldModel::compact() {
   }
   if (geoms_.removed() > 0) remap(model_.editedGeoms, geoms_.compact(model_.geoms, geomEdited_));
   if (joints_.removed() > 0) {
-    const std::vector<Index> now = joints_.compact(model_.joints, state_.joints, state_.motors, angles_);
+    const std::vector<Index> now = joints_.compact(model_.joints, model_.mujocoAxes, state_.joints, state_.motors, angles_);
     for (engine::AxisControl& c : state_.controls) remap(c.joint, now);
     std::erase_if(state_.controls, [](const engine::AxisControl& c) { return c.joint == kNone; });
     listControls();

@@ -123,6 +123,8 @@ class WorldModel {
   void setEnabled(BodyHandle body, bool on);
   /// False: the body sleeps.
   bool enabled(BodyHandle body) const { return of(body).awake; }
+  /// See Body::linkOrigin.
+  void setLinkOrigin(BodyHandle body, const Vec3& origin);
   /// False: gravity does not act on the body.
   void setGravityMode(BodyHandle body, bool on);
   /// Appends the body's state, the counters of sleep included: a fixed number of values.
@@ -171,6 +173,11 @@ class WorldModel {
   Vec3 axis(JointHandle joint, int axis) const;  ///< unit vector; zero when the joint has no such axis
   /// Ignored for parameters and axes that the joint does not have, and for values that make no sense.
   void setParameter(JointHandle joint, engine::JointParameter p, int axis, double v);
+  /// What MuJoCo alone reads of an axis, 0 to 2.
+  const engine::MujocoAxis& mujoco(JointHandle joint, int axis) const {
+    return model_.mujocoAxes[joints_[joint]][axis];
+  }
+  void setMujoco(JointHandle joint, int axis, const engine::MujocoAxis& numbers);
   /// 0 for parameters and axes that the joint does not have.
   double parameter(JointHandle joint, engine::JointParameter p, int axis) const;
   /// Sets JointParameter::velocity; a speed other than 0 wakes the first body of attach().

@@ -9,8 +9,10 @@
 #include "hinge_perceptor.h"
 #include "hmdp_perceptor.h"
 #include "image_perceptor.h"
+#include "joint_perceptor.h"
 #include "perceptor_handler.h"
 #include "perfect_vision_perceptor.h"
+#include "pose_perceptors.h"
 #include "sonar_perceptor.h"
 #include "spark/plugin.h"
 #include "time_perceptor.h"
@@ -23,4 +25,5 @@ SPARK_PLUGIN("sensors", "1.0", "Perceptors of robots, and the collision handlers
              spark::AngularMotorPerceptor, spark::GyroRatePerceptor, spark::Accelerometer,
              spark::ForceResistancePerceptor, spark::CollisionPerceptor, spark::TouchPerceptor, spark::GPS,
              spark::BatteryPerceptor, spark::HMDPPerceptor, spark::PerfectVisionPerceptor, spark::SonarPerceptor,
-             spark::ImagePerceptor, spark::PerceptorHandler, spark::TouchPerceptorHandler)
+             spark::ImagePerceptor, spark::PerceptorHandler, spark::TouchPerceptorHandler,
+             spark::JointPerceptor, spark::PositionPerceptor, spark::OrientationPerceptor)

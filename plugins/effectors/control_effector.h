@@ -1,0 +1,69 @@
+#pragma once
+
+#include "api/joint_command.h"
+
+namespace spark {
+
+/// `(he1 30 0 25 0.6 0)`: the controller of the joint above it, from now on: target angle [deg] and rate [deg/s],
+/// stiffness [Nm/rad], damping [N m s/rad] and torque [Nm].
+class ControlEffector : public Effector {
+  SPARK_CLASS(ControlEffector, Effector)
+ public:
+  static void describe(Description<ControlEffector>& d) {
+    using E = ControlEffector;
+    d.doc("Sets the controller of the joint above it: (name deg deg/s stiffness damping torque).");
+    d.link(&E::joint_, Above<IJoint>()).required(kNoJointAbove);
+    d.property("maxForce", &E::maxForce_).unit("Nm").min(0).doc("Largest torque of the controller.");
+  }
+  std::string act(const Element& action) override {
+    IJoint* const joint = joint_.get();
+    if (!joint) return "there is no joint above it";
+    NumberArguments read(action);
+    double n[5];
+    for (std::size_t i = 0; i < 5; ++i)
+      if (!read(i, n[i])) return read.remark();
+    if (n[2] < 0 || n[3] < 0) return "expected a stiffness and a damping of 0 or more";
+    const double unit = joint->jointType() == engine::JointType::slider ? 1 : degToRad(1);
+    joint->control(0, {.stiffness = n[2], .damping = n[3], .position = unit * n[0], .velocity = unit * n[1],
+                       .force = n[4], .maxForce = maxForce_});
+    return read.remark();
+  }
+
+ private:
+  Link<IJoint> joint_;
+  double maxForce_ = HUGE_VAL;
+};
+
+/// `(name u)`: an actuator of MuJoCo on the joint above it: a force of gain u + bias - stiffness q - damping dq, for the
+/// joint's place q and rate dq [SI units].
+class ActuatorEffector : public Effector {
+  SPARK_CLASS(ActuatorEffector, Effector)
+ public:
+  static void describe(Description<ActuatorEffector>& d) {
+    using E = ActuatorEffector;
+    d.doc("Drives the joint above it with a force of gain u + bias - stiffness q - damping dq: (name u).");
+    d.link(&E::joint_, Above<IJoint>()).required(kNoJointAbove);
+    d.property("gain", &E::gain_).doc("Force per control [Nm or N].");
+    d.property("bias", &E::bias_).doc("Constant force [Nm or N].");
+    d.property("stiffness", &E::stiffness_).min(0).doc("Force per angle or place, against it [Nm/rad or N/m].");
+    d.property("damping", &E::damping_).min(0).doc("Force per rate, against it [N m s or N s/m].");
+    d.property("maxForce", &E::maxForce_).min(0).doc("Largest force [Nm or N].");
+    d.property("least", &E::least_).doc("Least control; smaller ones count as this.");
+    d.property("most", &E::most_).doc("Largest control; larger ones count as this.");
+  }
+  std::string act(const Element& action) override {
+    IJoint* const joint = joint_.get();
+    if (!joint) return "there is no joint above it";
+    NumberArguments read(action);
+    if (double u = 0; read(0, u))
+      joint->control(0, {.stiffness = stiffness_, .damping = damping_,
+                         .force = gain_ * std::max(least_, std::min(most_, u)) + bias_, .maxForce = maxForce_});
+    return read.remark();
+  }
+
+ private:
+  Link<IJoint> joint_;
+  double gain_ = 1, bias_ = 0, stiffness_ = 0, damping_ = 0, maxForce_ = HUGE_VAL, least_ = -HUGE_VAL, most_ = HUGE_VAL;
+};
+
+}  // namespace spark

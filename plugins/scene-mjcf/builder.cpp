@@ -1,0 +1,444 @@
+#include "builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "../physics/mass.h"
+#include "spark/access.h"
+
+namespace spark::mjcf {
+
+using engine::JointParameter;
+using engine::Shape;
+
+namespace {
+
+/// Of a body with several joints, the part of the mass that each body between them has.
+constexpr double kBetween = 0.01;
+
+Pose inverse(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
+List numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+template <std::size_t N>
+List numbers(const std::array<double, N>& a) {
+  return List(a.begin(), a.end());
+}
+List matrix(const Mat3& r) {
+  List out;
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) out.emplace_back(r(row, column));
+    out.emplace_back(0.0);
+  }
+  for (const double v : {0.0, 0.0, 0.0, 1.0}) out.emplace_back(v);
+  return out;
+}
+
+}  // namespace
+
+// ---- bodies ----
+
+void Builder::build(Node& root) {
+  Node& top = *root.create("Space", nameOf(model_.name, "model")).asNode();
+  top_ = &top;
+  try {
+    auto* const above = static_cast<SceneNode&>(*top.asNode()).transform();
+    placeBodies(above ? toPose(above->worldNow()) : Pose{});
+    for (Part& p : parts_)
+      if (p.carrier != 0 && &parts_[static_cast<std::size_t>(p.carrier)] == &p) makeBody(p);
+    for (Part& p : parts_)
+      if (p.node) makeJoints(p);
+    for (const Part& p : parts_) makeGeoms(p), makeSites(p);
+    exclude();
+    makeActuators();
+    makeSensors();
+    setOptions(root);
+  } catch (...) {
+    root.remove(top);
+    throw;
+  }
+}
+
+std::string Builder::nameOf(const std::string& given, const char* kind) {
+  std::string name = prefix_ + (given.empty() ? fmt::format("{}{}", kind, ++unnamed_) : given);
+  // What paths are made of.
+  for (char& c : name)
+    if (c == '/' || c == '[' || c == ']') c = '_';
+  return name;
+}
+
+void Builder::placeBodies(const Pose& root) {
+  rootPose_ = root;
+  parts_.resize(model_.bodies.size());
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Part& p = parts_[i];
+    const Body& b = model_.bodies[i];
+    p.body = &b;
+    if (i == 0) {
+      p.world = root;
+      continue;
+    }
+    const Part& parent = parts_[static_cast<std::size_t>(b.parent)];
+    p.world = compose(parent.world, b.pose);
+    const bool free = std::any_of(b.joints.begin(), b.joints.end(), [](const Joint& j) { return j.kind == JointKind::free; });
+    if (free && (b.parent != 0 || b.joints.size() > 1))
+      throw b.from.error("expected a free joint as the only one of a body in the world");
+    if (b.joints.empty()) {
+      p.carrier = parent.carrier;
+      p.inCarrier = compose(parent.inCarrier, b.pose);
+    } else {
+      p.carrier = static_cast<int>(i);
+      p.above = parent.carrier;
+    }
+    if (p.carrier == 0) continue;
+    // Masses of parts move to the carrier.
+    Part& carrier = parts_[static_cast<std::size_t>(p.carrier)];
+    if (&carrier == &p) {
+      p.mass = b.mass;
+    } else if (b.mass.mass > 0) {
+      const Mat3& r = p.inCarrier.rotation;
+      const auto about = [](engine::Mass m) {
+        const Pose at{std::exchange(m.center, Vec3::Zero()), Mat3::Identity()};
+        return std::pair{m, at};
+      };
+      const engine::Mass nothing{0, Vec3::Zero(), Mat3::Zero()};
+      const auto [own, ownAt] = about(carrier.mass);
+      const auto [part, partAt] = about({b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()});
+      const engine::Mass sum = physics::addMass(physics::addMass(nothing, own, ownAt), part, partAt);
+      carrier.mass = physics::centred(sum);
+      carrier.mass.center = sum.center;
+    }
+    if (!b.name.empty() && !bodies_.emplace(b.name, &p).second)
+      throw b.from.error(fmt::format("there are two bodies '{}'", b.name));
+  }
+}
+
+Node& Builder::transform(Node& parent, const std::string& name, const Pose& local) {
+  Node& node = *parent.create("Transform", name).asNode();
+  // As a body would do it: nothing below takes the pose, which is in single precision.
+  static_cast<Transform*>(node.requireAs(Transform::kInterface))->setLocalFromBody(toMatrix(local));
+  return node;
+}
+
+void Builder::makeBody(Part& p) {
+  const Body& b = *p.body;
+  if (!(p.mass.mass > 0)) throw b.from.error("a body that moves needs a mass above 0");
+  // The frame of a body of ours is that of the link, with the centre of mass as origin.
+  const Pose world = compose(p.world, {p.mass.center, Mat3::Identity()});
+  p.node = &transform(*top_, nameOf(b.name, "body"), compose(inverse(rootPose_), world));
+  try {
+    Leaf& body = p.node->create("RigidBody", "body");
+    const Mat3& i = p.mass.inertia;
+    callMethod(body, "setMassParameters",
+               List{p.mass.mass, 0.0, 0.0, 0.0, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)});
+    setProperty(body, "linkOrigin", numbers(-p.mass.center));
+    static_cast<IRigidBody*>(body.requireAs(IRigidBody::kInterface))->setPose(world);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: cannot make the body '{}'", b.from.where(), b.name), e);
+  }
+}
+
+// ---- joints ----
+
+void Builder::makeJoints(Part& p) {
+  const std::vector<Joint>& joints = p.body->joints;
+  if (joints.front().kind == JointKind::free) return;
+  const std::string above =
+      p.above == 0 ? "" : parts_[static_cast<std::size_t>(p.above)].node->name();
+  std::string parent = above.empty() ? "" : "../../" + above + "/body";
+  // A joint has one axis: between two of them there is a light body.
+  for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
+    if (k == 0)
+      leftOver_.add(joints[0].from, fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass",
+                                                joints.size(), kBetween));
+    const Pose world = compose(p.world, {p.mass.center, Mat3::Identity()});
+    const std::string name = fmt::format("{}-{}", p.node->name(), k + 1);
+    Node& between = transform(*top_, name, compose(inverse(rootPose_), world));
+    Leaf& body = between.create("RigidBody", "body");
+    const Mat3 i = kBetween * p.mass.inertia;
+    callMethod(body, "setMassParameters",
+               List{kBetween * p.mass.mass, 0.0, 0.0, 0.0, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)});
+    static_cast<IRigidBody*>(body.requireAs(IRigidBody::kInterface))->setPose(world);
+    makeJoint(p, joints[k], between, parent);
+    parent = "../../" + name + "/body";
+  }
+  if (joints.size() > 1)
+    setProperty(*p.node->child("body"), "mass", p.mass.mass * (1 - kBetween * static_cast<double>(joints.size() - 1)));
+  makeJoint(p, joints.back(), *p.node, parent);
+}
+
+void Builder::makeJoint(Part& p, const Joint& j, Node& child, const std::string& parent) {
+  const char* const kind = j.kind == JointKind::hinge ? "HingeJoint" : j.kind == JointKind::slide ? "SliderJoint" : "BallJoint";
+  try {
+    auto& made = child.create<IJoint>(kind, nameOf(j.name, "joint"));
+    Leaf& leaf = made.leaf();
+    callMethod(leaf, "attach", List{"../body", parent});
+    if (j.kind != JointKind::slide) made.setWorldAnchor(p.world.position + p.world.rotation * j.position);
+    if (j.kind != JointKind::ball) {
+      made.setWorldAxis(0, p.world.rotation * j.axis);
+      if (j.limited) {
+        made.setParameter(JointParameter::lowStop, 0, j.range[0]);
+        made.setParameter(JointParameter::highStop, 0, j.range[1]);
+      }
+      made.setParameter(JointParameter::armature, 0, j.armature);
+      made.setParameter(JointParameter::damping, 0, j.damping);
+      made.setParameter(JointParameter::dryFriction, 0, j.dryFriction);
+      const engine::MujocoAxis& n = j.numbers;
+      callMethod(leaf, "setMujocoStopSolref", List{0, numbers(n.stopSolref)});
+      callMethod(leaf, "setMujocoStopSolimp", List{0, numbers(n.stopSolimp)});
+      callMethod(leaf, "setMujocoStopMargin", List{0, n.stopMargin});
+      callMethod(leaf, "setMujocoFrictionSolref", List{0, numbers(n.frictionSolref)});
+      callMethod(leaf, "setMujocoFrictionSolimp", List{0, numbers(n.frictionSolimp)});
+      // A passive joint: its spring, or nothing beside dry friction.
+      made.control(0, {.stiffness = j.stiffness, .position = j.springAngle});
+    }
+    if (!j.name.empty() && !joints_.emplace(j.name, MadeJoint{&j, &made}).second)
+      throw Error(fmt::format("there are two joints '{}'", j.name));
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: cannot make the joint '{}'", j.from.where(), j.name), e);
+  }
+}
+
+// ---- geoms and sites ----
+
+void Builder::makeGeoms(const Part& p) {
+  Part& carrier = parts_[static_cast<std::size_t>(p.carrier)];
+  for (const Geom& g : p.body->geoms) {
+    // In the frame of the carrier's body, or in the world.
+    const Pose pose = p.carrier == 0 ? compose(p.world, g.pose)
+                                     : compose(Pose{-carrier.mass.center, Mat3::Identity()}, compose(p.inCarrier, g.pose));
+    try {
+      if (g.collides()) makeCollider(g, carrier, pose);
+      if (g.visible()) makeVisible(g, carrier.node ? *carrier.node : *top_, carrier.node ? pose : compose(inverse(rootPose_), pose));
+    } catch (const Error& e) {
+      throw Error(fmt::format("{}: cannot make the geom '{}'", g.from.where(), g.name), e);
+    }
+  }
+}
+
+void Builder::makeCollider(const Geom& g, Part& carrier, const Pose& pose) {
+  const engine::ShapeDescription& s = g.shape;
+  const char* const kinds[] = {"BoxCollider",   "SphereCollider", "CapsuleCollider", "CylinderCollider",
+                               "PlaneCollider", "",               "TriMeshCollider"};
+  Node& parent = carrier.node ? *carrier.node : *top_;
+  Node& c = *parent.create(kinds[static_cast<int>(s.shape)], nameOf(g.name, "geom")).asNode();
+  carrier.colliders.push_back(c.name());
+  switch (s.shape) {
+    case Shape::box:
+      callMethod(c, "setBoxLengths", numbers(s.lengths));
+      break;
+    case Shape::sphere:
+      callMethod(c, "setRadius", List{s.radius});
+      break;
+    case Shape::capsule:
+    case Shape::cylinder:
+      callMethod(c, "setParams", List{s.radius, s.length});
+      break;
+    case Shape::plane: {
+      const Vec3 normal = pose.rotation.col(2);
+      callMethod(c, "setParams", List{normal.x(), normal.y(), normal.z(), normal.dot(pose.position)});
+      break;
+    }
+    default: {
+      List vertices(s.vertices.begin(), s.vertices.end()), triangles;
+      for (const std::uint32_t t : s.triangles) triangles.emplace_back(static_cast<std::int64_t>(t));
+      setProperty(c, "vertices", vertices);
+      setProperty(c, "triangles", triangles);
+      break;
+    }
+  }
+  if (s.shape != Shape::plane) {
+    callMethod(c, "setRotation", matrix(pose.rotation));
+    callMethod(c, "setLocalPosition", numbers(pose.position));
+  }
+  const engine::Geom::Mujoco& m = g.contact;
+  setProperty(c, "mujocoFriction", numbers(m.friction));
+  setProperty(c, "mujocoCondim", m.condim);
+  setProperty(c, "mujocoPriority", m.priority);
+  setProperty(c, "mujocoSolref", numbers(m.solref));
+  setProperty(c, "mujocoSolimp", numbers(m.solimp));
+  setProperty(c, "mujocoMargin", m.margin);
+  setProperty(c, "mujocoGap", m.gap);
+  setProperty(c, "contactTypes", g.contactTypes);
+  setProperty(c, "contactAffinities", g.contactAffinities);
+  // For the other engines.
+  Leaf& surface = c.create("ContactJointHandler", "surface");
+  setProperty(surface, "contactBounceMode", false);
+  setProperty(surface, "contactMu", m.condim == 1 ? 0.0 : m.friction[0]);
+  setProperty(surface, "contactPyramid", true);
+}
+
+void Builder::makeVisible(const Geom& g, Node& parent, const Pose& pose) {
+  const engine::ShapeDescription& s = g.shape;
+  const char* const kinds[] = {"Box", "Sphere", "Capsule", "Cylinder"};
+  const auto kind = static_cast<std::size_t>(s.shape);
+  if (kind >= std::size(kinds)) return;
+  Leaf& shape = transform(parent, nameOf(g.name.empty() ? "" : g.name + "-shape", "shape"), pose).create(kinds[kind]);
+  if (s.shape == Shape::box)
+    callMethod(shape, "setExtents", numbers(s.lengths));
+  else if (s.shape == Shape::sphere)
+    callMethod(shape, "setRadius", List{s.radius});
+  else
+    callMethod(shape, "setParams", List{s.radius, s.length});
+  callMethod(shape, "setMaterial", List{"matGrey"});
+}
+
+void Builder::makeSites(const Part& p) {
+  const Part& carrier = parts_[static_cast<std::size_t>(p.carrier)];
+  for (const Site& s : p.body->sites) {
+    Node& made = carrier.node
+                     ? transform(*carrier.node, nameOf(s.name, "site"),
+                                 compose(Pose{-carrier.mass.center, Mat3::Identity()}, compose(p.inCarrier, s.pose)))
+                     : transform(*top_, nameOf(s.name, "site"), compose(inverse(rootPose_), compose(p.world, s.pose)));
+    if (!s.name.empty()) sites_.emplace(s.name, &made);
+  }
+}
+
+Builder::Part* Builder::partOf(const std::string& body, const Element& user) {
+  if (body == "world") return &parts_.front();
+  const auto found = bodies_.find(body);
+  if (found != bodies_.end()) return found->second;
+  for (Part& p : parts_)  // a static one
+    if (p.body->name == body && !body.empty()) return &p;
+  throw user.error(fmt::format("there is no body '{}'", body));
+}
+
+void Builder::exclude() {
+  for (const Exclusion& x : model_.exclusions) {
+    Part &a = parts_[static_cast<std::size_t>(partOf(x.body1, x.from)->carrier)],
+         &b = parts_[static_cast<std::size_t>(partOf(x.body2, x.from)->carrier)];
+    for (const std::string& first : a.colliders)
+      for (const std::string& second : b.colliders)
+        callMethod(*(a.node ? a.node : top_)->child(first), "addNotCollideWithColliderName", List{second, true});
+  }
+}
+
+// ---- actuators and sensors ----
+
+bool Builder::has(const char* className, const Element& user) {
+  if (top_->kernel().findClass(className)) return true;
+  leftOver_.add(user, fmt::format("<{}> is left out: there is no class {} (its plugin is not loaded)", user.tag(), className));
+  return false;
+}
+
+void Builder::makeActuators() {
+  // By joint, in the order of the file.
+  std::vector<std::pair<std::string, std::vector<const Actuator*>>> groups;
+  for (const Actuator& x : model_.actuators) {
+    auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == x.joint; });
+    if (found == groups.end()) found = groups.insert(groups.end(), {x.joint, {}});
+    found->second.push_back(&x);
+  }
+  for (const auto& [name, all] : groups) {
+    const auto joint = joints_.find(name);
+    if (joint == joints_.end()) throw all.front()->from.error(fmt::format("there is no joint '{}' to act on", name));
+    makeActuator(all, joint->second);
+  }
+}
+
+void Builder::makeActuator(const std::vector<const Actuator*>& all, const MadeJoint& on) {
+  const Actuator& first = *all.front();
+  if (on.joint->kind == JointKind::ball || on.joint->kind == JointKind::free)
+    return leftOver_.add(first.from, fmt::format("a <{}> on a {} joint is left out", first.from.tag(),
+                                                 on.joint->kind == JointKind::ball ? "ball" : "free"));
+  const double maxForce = std::min(on.joint->maxForce, all.size() == 1 ? first.maxForce : HUGE_VAL);
+  if (on.joint->stiffness > 0)
+    leftOver_.add(on.joint->from, "the attribute 'stiffness' of <joint> is left out where the joint has an actuator");
+  Node& parent = *on.made->leaf().asNode();
+
+  // name_pos, name_vel and name_tau: one controller.
+  const auto ending = [&](const char* end, bool (*fits)(const Actuator&)) -> const Actuator* {
+    for (const Actuator* x : all)
+      if (x->name.ends_with(end) && fits(*x)) return x;
+    return nullptr;
+  };
+  const Actuator* position = ending("_pos", [](const Actuator& x) { return x.bias[1] == -x.gain && x.bias[2] == 0; });
+  const Actuator* velocity = ending("_vel", [](const Actuator& x) { return x.bias[2] == -x.gain && x.bias[1] == 0; });
+  const Actuator* torque = ending("_tau", [](const Actuator& x) { return x.bias == std::array<double, 3>{}; });
+  if (all.size() == 3 && position && velocity && torque) {
+    on.made->control(0, {.stiffness = position->gain, .damping = velocity->gain, .maxForce = maxForce});
+    if (!has("ControlEffector", first.from)) return;
+    Leaf& effector = parent.create("ControlEffector", position->name.substr(0, position->name.size() - 4));
+    setProperty(effector, "maxForce", maxForce);
+    return;
+  }
+  for (std::size_t i = 1; i < all.size(); ++i)
+    leftOver_.add(all[i]->from, fmt::format("a second <{}> on a joint is left out", all[i]->from.tag()));
+  const double gear2 = first.gear * first.gear;
+  const engine::Control law{.stiffness = -gear2 * first.bias[1], .damping = -gear2 * first.bias[2],
+                            .force = first.gear * first.bias[0], .maxForce = maxForce};
+  if (law.stiffness < 0 || law.damping < 0)
+    return leftOver_.add(first.from, "an actuator that drives a joint away from its target is left out");
+  on.made->control(0, law);
+  if (!has("ActuatorEffector", first.from)) return;
+  Leaf& effector = parent.create("ActuatorEffector", first.name.empty() ? on.joint->name : first.name);
+  setProperty(effector, "gain", first.gear * first.gain);
+  setProperty(effector, "bias", law.force);
+  setProperty(effector, "stiffness", law.stiffness);
+  setProperty(effector, "damping", law.damping);
+  setProperty(effector, "maxForce", maxForce);
+  setProperty(effector, "least", first.controlRange[0]);
+  setProperty(effector, "most", first.controlRange[1]);
+}
+
+Node& Builder::frame(const Sensor& s) {
+  if (const auto site = sites_.find(s.object); site != sites_.end()) return *site->second;
+  const Part& part = *partOf(s.object, s.from);
+  const Part& carrier = parts_[static_cast<std::size_t>(part.carrier)];
+  if (!carrier.node) throw s.from.error(fmt::format("the body '{}' does not move", s.object));
+  const Pose link = compose(Pose{-carrier.mass.center, Mat3::Identity()}, part.inCarrier);
+  return transform(*carrier.node, nameOf(s.object + "-link", ""), link);
+}
+
+void Builder::makeSensors() {
+  for (const Sensor& s : model_.sensors) {
+    if (s.kind == "jointpos" || s.kind == "jointvel") {
+      const auto joint = joints_.find(s.object);
+      if (joint == joints_.end()) throw s.from.error(fmt::format("there is no joint '{}'", s.object));
+      // One perceptor tells angle and rate.
+      Node& parent = *joint->second.made->leaf().asNode();
+      const bool known = std::any_of(parent.children().begin(), parent.children().end(), [](const auto& c) {
+        return c->classObject()->name() == "JointPerceptor";
+      });
+      if (!known && has("JointPerceptor", s.from)) parent.create("JointPerceptor", s.name);
+    } else if (s.kind == "gyro" || s.kind == "accelerometer") {
+      const char* const kind = s.kind == "gyro" ? "GyroRatePerceptor" : "Accelerometer";
+      Node& site = frame(s);
+      if (has(kind, s.from)) site.parent()->create(kind, s.name);
+    } else if (s.kind == "framepos" || s.kind == "framequat") {
+      const char* const kind = s.kind == "framepos" ? "PositionPerceptor" : "OrientationPerceptor";
+      if (has(kind, s.from)) frame(s).create(kind, s.name);
+    } else {
+      leftOver_.element(s.from);
+    }
+  }
+}
+
+// ---- options ----
+
+void Builder::setOptions(Node& root) {
+  const Options& o = model_.options;
+  if (!o.any) return;
+  Leaf* world = nullptr;
+  for (Node* up = &root; up && !world; up = up->parent())
+    for (const auto& child : up->children())
+      if (child->classObject()->name() == "World") world = child.get();
+  if (!world) return;
+  if (!prefix_.empty()) {
+    leftOver_.add(model_.bodies.front().from, "the options of an attached model are left out: the world has its own");
+    return;
+  }
+  if (o.gravity) setProperty(*world, "gravity", numbers(*o.gravity));
+  const engine::WorldParameters::Mujoco& m = o.numbers;
+  setProperty(*world, "mujocoTimestep", m.timestep);
+  setProperty(*world, "mujocoIntegrator", m.integrator);
+  setProperty(*world, "mujocoCone", m.cone);
+  setProperty(*world, "mujocoSolver", m.solver);
+  setProperty(*world, "mujocoIterations", m.iterations);
+  setProperty(*world, "mujocoTolerance", m.tolerance);
+  setProperty(*world, "mujocoImpratio", m.impratio);
+  setProperty(*world, "mujocoDensity", m.density);
+  setProperty(*world, "mujocoViscosity", m.viscosity);
+  setProperty(*world, "mujocoWind", numbers(m.wind));
+}
+
+}  // namespace spark::mjcf

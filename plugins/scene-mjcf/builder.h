@@ -1,0 +1,73 @@
+#pragma once
+/// \file
+/// Makes nodes of an MJCF model.
+
+#include "api/physics.h"
+#include "model.h"
+#include "spark/kernel.h"
+
+namespace spark::mjcf {
+
+/// Makes the nodes of one model: bodies side by side below a Space, with their joints, colliders and shapes, and with
+/// the robot's perceptors and effectors.
+///
+/// A body without joints becomes part of its parent. Poses, anchors and axes are set in double precision.
+class Builder {
+ public:
+  /// `prefix` stands before all names, except those of perceptors and effectors.
+  Builder(const Model& model, std::string prefix, LeftOver& leftOver)
+      : model_(model), prefix_(std::move(prefix)), leftOver_(leftOver) {}
+  /// Builds below `root`. Throws Error with file:line:column; nothing is left then.
+  void build(Node& root);
+
+ private:
+  /// A body of the file that has joints, with what is part of it.
+  struct Part {
+    const Body* body = nullptr;
+    int carrier = 0;           ///< index of the body whose part it is; 0: the world
+    Pose inCarrier;            ///< of the body's frame
+    Pose world;                ///< of the body's frame, when built
+    engine::Mass mass;         ///< of a carrier: all of it, centre in its frame
+    Node* node = nullptr;      ///< of a carrier: its transform
+    int above = 0;             ///< of a carrier: the carrier that its joints connect it to
+    std::vector<std::string> colliders;
+  };
+  struct MadeJoint {
+    const Joint* joint;
+    IJoint* made;
+  };
+
+  void placeBodies(const Pose& root);
+  void makeBody(Part& part);
+  void makeJoints(Part& part);
+  void makeJoint(Part& part, const Joint& joint, Node& child, const std::string& parentPath);
+  void makeGeoms(const Part& part);
+  void makeCollider(const Geom& geom, Part& carrier, const Pose& pose);
+  void makeVisible(const Geom& geom, Node& parent, const Pose& pose);
+  void makeSites(const Part& part);
+  void exclude();
+  void makeActuators();
+  void makeActuator(const std::vector<const Actuator*>& all, const MadeJoint& joint);
+  void makeSensors();
+  void setOptions(Node& root);
+  Node& transform(Node& parent, const std::string& name, const Pose& local);
+  Node& frame(const Sensor& sensor);
+  Part* partOf(const std::string& body, const Element& user);
+  /// True when there is such a class; else says once that its nodes are left out.
+  bool has(const char* className, const Element& user);
+  std::string nameOf(const std::string& given, const char* kind);
+
+  const Model& model_;
+  std::string prefix_;
+  LeftOver& leftOver_;
+  Node* top_ = nullptr;
+  Pose rootPose_;
+  std::vector<Part> parts_;  ///< by body
+  std::map<std::string, MadeJoint, std::less<>> joints_;
+  std::map<std::string, Node*, std::less<>> sites_;
+  std::map<std::string, Part*, std::less<>> bodies_;
+  std::set<std::string, std::less<>> names_;
+  int unnamed_ = 0;
+};
+
+}  // namespace spark::mjcf

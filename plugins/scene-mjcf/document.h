@@ -1,0 +1,151 @@
+#pragma once
+/// \file
+/// MJCF files: elements with their places, attributes with their defaults, included files.
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <pugixml.hpp>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "spark/error.h"
+
+namespace spark::mjcf {
+
+/// A file and what it consists of.
+struct File {
+  std::string name, text;
+  pugi::xml_document xml;
+};
+
+/// An element of a file. Valid as long as its Document.
+struct Element {
+  pugi::xml_node node;
+  const File* file = nullptr;
+  std::string_view tag() const { return node.name(); }
+  /// "robot.xml:12:5"; a tab counts as one column.
+  std::string where() const;
+  /// The place and a text, to be thrown.
+  Error error(const std::string& text) const { return Error(where() + ": " + text); }
+};
+
+/// Reads a file by its name. Throws Error.
+using ReadFile = std::function<std::string(const std::string& name)>;
+
+/// A model: its main file, with what it includes in the places of the `include` elements.
+class Document {
+ public:
+  /// Largest nesting of elements, and largest number of included files.
+  static constexpr int kMaxDepth = 200, kMaxFiles = 100;
+
+  /// Throws Error with file:line:column for a text that is not XML or not a model.
+  Document(const std::string& name, ReadFile read);
+  const std::string& name() const { return files_.front()->name; }
+  /// The folder of the main file: "" or "a/b/".
+  const std::string& folder() const { return folder_; }
+  /// The element `mujoco`.
+  Element root() const { return {files_.front()->xml.document_element(), files_.front().get()}; }
+  /// The elements in `e`, with included ones. Throws Error for files that cannot be included.
+  std::vector<Element> children(const Element& e);
+
+ private:
+  Element load(const std::string& name, const Element* from);
+  void append(const Element& e, std::vector<Element>& out, int depth);
+
+  std::string folder_;
+  ReadFile read_;
+  std::vector<std::unique_ptr<File>> files_;
+};
+
+/// The default classes of a model (MuJoCo's documentation, "Default settings").
+class Defaults {
+ public:
+  /// Adds what the element `default` says. Throws Error.
+  void add(Document& document, const Element& element);
+  /// Calls visit(element) for the elements that apply to an element of this tag and class, the nearest first. Throws
+  /// Error, with the place of `user`, when there is no such class.
+  void forEach(const Element& user, std::string_view tag, const std::string& name,
+               const std::function<void(const Element&)>& visit) const;
+
+ private:
+  struct Class {
+    std::string parent;
+    std::map<std::string, std::vector<Element>, std::less<>> elements;  ///< by tag
+  };
+  void add(Document& document, const Element& element, const std::string& parent, int depth);
+  std::map<std::string, Class, std::less<>> classes_;
+};
+
+/// What of a model is left out: elements and attributes that nobody asked for.
+class LeftOver {
+ public:
+  /// Nobody reads this element. `why` "": Spark does not know it.
+  void element(const Element& e, const std::string& why = "");
+  void attribute(const Element& e, const std::string& name);
+  /// Something else: one sentence per `what`, with the first place.
+  void add(const Element& e, const std::string& what);
+  /// "a.xml:3:4: the element <tendon> is left out (and 3 more)", in order of the first places.
+  std::vector<std::string> sentences() const;
+
+ private:
+  struct Entry {
+    std::string what, where;
+    int times = 0;
+  };
+  std::vector<Entry> entries_;
+};
+
+/// The attributes of an element, with those of its default class. Reading a number marks an attribute as known;
+/// finish() names the others.
+class Attributes {
+ public:
+  /// `className` "": the default class of the whole model.
+  Attributes(const Element& e, const Defaults& defaults, const std::string& className, LeftOver& leftOver);
+  const Element& element() const { return element_; }
+  bool has(const char* name) { return find(name) != nullptr; }
+  /// "" where it is not there.
+  std::string text(const char* name, const char* otherwise = "");
+  /// One of `words`. Throws Error for another one.
+  std::string word(const char* name, std::initializer_list<const char*> words, const char* otherwise);
+  bool flag(const char* name, bool otherwise);
+  double number(const char* name, double otherwise);
+  int integer(const char* name, int otherwise);
+  /// Between `least` and `most` finite numbers; nullopt where the attribute is not there. Throws Error.
+  std::optional<std::vector<double>> numbers(const char* name, std::size_t least, std::size_t most);
+  /// Writes the first numbers of an array; the others stay. Returns false where the attribute is not there.
+  template <class Array>
+  bool fill(const char* name, Array& out) {
+    const auto found = numbers(name, 1, static_cast<std::size_t>(out.size()));
+    if (found)
+      for (std::size_t i = 0; i < found->size(); ++i) out[static_cast<int>(i)] = (*found)[i];
+    return found.has_value();
+  }
+  /// As fill(), but all numbers must be there.
+  template <class Array>
+  bool take(const char* name, Array& out) {
+    const auto found = numbers(name, out.size(), out.size());
+    if (found)
+      for (std::size_t i = 0; i < found->size(); ++i) out[static_cast<int>(i)] = (*found)[i];
+    return found.has_value();
+  }
+  /// Attributes that mean nothing to a simulation.
+  void ignore(std::initializer_list<const char*> names) {
+    for (const char* name : names) known_.insert(name);
+  }
+  /// Names the attributes that were not asked for.
+  void finish();
+
+ private:
+  const char* find(const char* name);
+  Element element_;
+  std::vector<Element> chain_;  ///< the element, then its defaults
+  LeftOver& leftOver_;
+  std::set<std::string, std::less<>> known_{"class"};
+};
+
+}  // namespace spark::mjcf

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "api/agents.h"
+#include "api/scene.h"
+
+namespace spark {
+
+/// `(pos (n torso_pos) (p 1.5 0 0.67))`: place of its transform in the world [m].
+class PositionPerceptor : public Perceptor {
+  SPARK_CLASS(PositionPerceptor, Perceptor)
+ public:
+  static void describe(Description<PositionPerceptor>& d) {
+    d.doc("Senses the place of its transform in the world: (pos (n name) (p x y z)) in m.");
+  }
+  void sense(Predicates& out, const Event&) override {
+    if (!transform()) return;
+    out.open("pos").pair("n", name()).open("p");
+    for (const float v : positionOf(transform()->world())) out.add(double(v));
+    out.close().close();
+  }
+};
+
+/// `(quat (n torso_quat) (q 1 0 0 0))`: rotation of its transform in the world, w x y z, of length 1.
+class OrientationPerceptor : public Perceptor {
+  SPARK_CLASS(OrientationPerceptor, Perceptor)
+ public:
+  static void describe(Description<OrientationPerceptor>& d) {
+    d.doc("Senses the rotation of its transform in the world: (quat (n name) (q w x y z)), of length 1.");
+  }
+  void sense(Predicates& out, const Event&) override {
+    if (!transform()) return;
+    const Eigen::Quaterniond q(toPose(transform()->world()).rotation);
+    out.open("quat").pair("n", name()).open("q");
+    for (const double v : {q.w(), q.x(), q.y(), q.z()}) out.add(v);
+    out.close().close();
+  }
+};
+
+}  // namespace spark
