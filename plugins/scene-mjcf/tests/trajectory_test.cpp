@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <ctime>
 #include <regex>
 
 #include "api/phases.h"
@@ -19,15 +20,20 @@ namespace {
 
 constexpr double kStep = 0.005, kCycle = 0.02;
 
-/// The league's world: a plane, air, and steps of 5 ms.
-std::string worldOf(const std::string& robot) {
+/// The league's world: a plane, air, and steps of 5 ms. `content`: what is in it beside.
+std::string worldWith(const std::string& content) {
   return R"(<mujoco model="world">
   <option timestep="0.005" density="1.2" viscosity="2e-5"/>
+  <size nconmax="1500" njmax="4000"/>
   <worldbody><geom name="ground" type="plane" size="0 0 1"/></worldbody>
-  <include file=")" +
-         robot + R"("/>
-</mujoco>)";
+  )" + content +
+         "\n</mujoco>";
 }
+std::string include(const std::string& file) { return "<include file=\"" + file + "\"/>"; }
+
+/// The places of many robots, 2 m apart.
+Vec3 placeOf(int robot) { return {2.0 * (robot % 6), 2.0 * (robot / 6), 0}; }
+std::string prefixOf(int robot) { return "r-" + std::to_string(robot) + "-"; }
 
 /// A target of a joint: angle and rate [rad, rad/s].
 struct Target {
@@ -42,7 +48,8 @@ struct Oracle {
   mjData* d = nullptr;
   std::vector<double> maxForce;  ///< by joint; 0: the free one
 
-  explicit Oracle(const std::string& robot) {
+  /// `count` above 1: so many of the robot, each with a prefix and a place of its own.
+  explicit Oracle(const std::string& robot, int count = 1) {
     std::ifstream file(SPARK_SOURCES "/scenes/robots/" + robot);
     std::string text(std::istreambuf_iterator<char>(file), {});
     // 2.2.2 does not know that attribute. The actuators are what control() computes.
@@ -54,15 +61,31 @@ struct Oracle {
     text.erase(actuators, text.find("</actuator>") + 11 - actuators);
     mjVFS files;
     mj_defaultVFS(&files);
-    add(files, robot, text);
-    add(files, "world.xml", worldOf(robot));
+    std::string content = include(robot);
+    if (count == 1) {
+      add(files, robot, text);
+    } else {
+      const std::size_t head = text.find("<compiler"), tail = text.find("<sensor>"), bodies = text.find("<worldbody>");
+      content = text.substr(head, bodies - head);
+      for (int i = 0; i < count; ++i) {
+        std::string one = text.substr(bodies, tail - bodies);
+        one = std::regex_replace(one, std::regex(R"x((name|body1|body2)=")x"), "$&" + prefixOf(i));
+        const std::size_t at = one.find("pos=\"0 0 ");
+        one.replace(at + 5, 3, fmt::format("{} {}", placeOf(i).x(), placeOf(i).y()));
+        content += one;
+      }
+    }
+    add(files, "world.xml", worldWith(content));
     char error[1000] = "";
     m = mj_loadXML("world.xml", &files, error, sizeof error);
     mj_deleteVFS(&files);
     INFO(error);
     REQUIRE(m);
     d = mj_makeData(m);
-    for (int j = 0; j < m->njnt; ++j) maxForce.push_back(limits[mj_id2name(m, mjOBJ_JOINT, j)]);
+    for (int j = 0; j < m->njnt; ++j) {
+      const std::string name = mj_id2name(m, mjOBJ_JOINT, j);
+      maxForce.push_back(limits[name.starts_with("r-") ? name.substr(name.find('-', 2) + 1) : name]);
+    }
   }
   ~Oracle() {
     mj_deleteData(d);
@@ -97,8 +120,11 @@ struct MjcfHouse : House {
   std::int64_t cycle = 0;
   TemporaryFolder folder;
 
-  explicit MjcfHouse(const std::string& robot) {
-    for (const char* plugin : {"files", "scene", "scene-mjcf", "physics", "physics-mujoco"}) kernel.plugins().use(plugin);
+  /// As Oracle. `engine`: the class of the engine.
+  explicit MjcfHouse(const std::string& robot, int count = 1, const std::string& engine = "MujocoEngine") {
+    for (const char* plugin :
+         {"files", "scene", "scene-mjcf", "physics", "physics-ode", "physics-articulated", "physics-mujoco"})
+      kernel.plugins().use(plugin);
     kernel.events().define(phase::kPrepare, Order::childrenFirst, "before the step");
     kernel.events().define(phase::kPhysics, Order::parentsFirst, "the step");
     kernel.events().define(phase::kPlace, Order::parentsFirst, "after the step");
@@ -108,11 +134,18 @@ struct MjcfHouse : House {
     kernel.create("SceneServer", "/sys/server/scene");
     kernel.create("MjcfImporter", "/sys/server/scene/mjcf");
     kernel.create("PhysicsServer", "/sys/server/physics");
-    kernel.create("MujocoEngine", "/sys/server/physics/engine");
+    if (engine != "MujocoEngine") kernel.create("OdeCollision", "/sys/server/physics/collision");
+    Leaf& node = kernel.create(engine, "/sys/server/physics/engine");
+    if (engine == "ArticulatedEngine") node.asNode()->create("OdeEngine", "deferred");
     scene = kernel.create("Scene", "/usr/scene").asNode();
     kernel.create("World", "/usr/scene/world");
-    folder.write("world.xml", worldOf(robot));
+    folder.write("world.xml", worldWith(count == 1 ? include(robot) : ""));
     callMethod(*scene, "importScene", List{"world.xml"});
+    for (int i = 0; count > 1 && i < count; ++i) {
+      Node& place = *scene->create("Transform").asNode();
+      callMethod(place, "setLocalPos", List{placeOf(i).x(), placeOf(i).y(), 0.0});
+      callMethod(place, "importScene", List{robot, prefixOf(i)});
+    }
     scene->collect(joints);
   }
   void step() {
@@ -195,6 +228,48 @@ TEST_CASE("A T1 that moves all joints moves as MuJoCo moves the file itself") {
   WARN("1 s moving: at most " << worst << " m and rad, without self-contact until " << reached << " s");
   CHECK(reached == Approx(1));
   CHECK(worst < 1e-9);
+}
+
+// What it costs: tools/accept engines.
+TEST_CASE("Many T1 cost little more than in MuJoCo alone", "[.cost]") {
+  for (const int count : {1, 14, 22}) {
+    Oracle oracle("t1.xml", count);
+    MjcfHouse house("t1.xml", count);
+    std::map<std::string, IJoint*> byName;
+    for (IJoint* j : house.joints) byName[j->leaf().name()] = j;
+    std::vector<double> plain, own;
+    const auto clock = [] {
+      timespec t{};
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+      return double(t.tv_sec) * 1e6 + double(t.tv_nsec) * 1e-3;
+    };
+    double worst = 0;
+    for (int cycle = 0; cycle < 60; ++cycle) {
+      const double time = cycle * kCycle;
+      for (int j = 0; j < oracle.m->njnt; ++j) {
+        if (oracle.m->jnt_type[j] != mjJNT_HINGE) continue;
+        const Target t = swinging(*oracle.m, j % 24, time);
+        byName.at(mj_id2name(oracle.m, mjOBJ_JOINT, j))
+            ->control(0, {.stiffness = 100, .damping = 3, .position = t.angle, .velocity = t.rate, .maxForce = oracle.maxForce[j]});
+      }
+      const double start = clock();
+      for (int i = 0; i < 4; ++i)
+        oracle.step(100, 3, [](const mjModel& m, int j, double t) { return swinging(m, j % 24, t); }, time);
+      const double between = clock();
+      house.step();
+      if (cycle < 10) continue;
+      plain.push_back(between - start);
+      own.push_back(clock() - between);
+    }
+    mj_kinematics(oracle.m, oracle.d);
+    for (int j = 0; j < oracle.m->njnt; ++j)
+      if (oracle.m->jnt_type[j] == mjJNT_HINGE)
+        worst = std::max(worst, std::abs(byName.at(mj_id2name(oracle.m, mjOBJ_JOINT, j))->angle(0) - oracle.d->qpos[oracle.m->jnt_qposadr[j]]));
+    std::sort(plain.begin(), plain.end());
+    std::sort(own.begin(), own.end());
+    const double a = plain[plain.size() / 2], b = own[own.size() / 2];
+    fmt::print("{{\"robots\": {}, \"mj_step\": {:.1f}, \"physics-mujoco\": {:.1f}, \"ratio\": {:.3f}, \"distance\": {:.3g}}}\n", count, a, b, b / a, worst);
+  }
 }
 
 TEST_CASE("K1 and PiPlus move as in MuJoCo") {
