@@ -57,7 +57,7 @@ inline void warnOfArmature(const Model& model, const Leaf& node, bool& said) {
 /// Steps worlds.
 class IEngine {
  public:
-  SPARK_INTERFACE(IEngine, 2);
+  SPARK_INTERFACE(IEngine, 3);
   virtual ~IEngine() = default;
   /// The node that offers it.
   virtual Leaf& leaf() = 0;
@@ -68,9 +68,12 @@ class IEngine {
   /// Does not throw, and does not allocate while structure and number of contacts repeat. Results may be no numbers:
   /// the caller puts such bodies back.
   virtual void step(Step& step) = 0;
-  /// True: the engine applies State::controls and JointAxis::damping in its own steps. False: both come as forces on
-  /// the bodies, once in each step; dry friction of controlled axes comes as a motor of speed 0.
+  /// True: the engine applies State::controls and JointAxis::damping itself. False: both come as forces on the bodies;
+  /// dry friction of controlled axes comes as a motor of speed 0.
   virtual bool controls() const { return false; }
+  /// The length of step that suits the engine [s], of which a step of the simulation has a whole number; 0: any. That of
+  /// the world (WorldParameters::timestep) comes first.
+  virtual double usualStep() const { return 0; }
   /// False: Step::only has no effect, so the engine cannot be another one's deferred engine.
   virtual bool stepsParts() const { return true; }
   /// False: the engine steps all bodies always, and none is put to sleep.

@@ -33,9 +33,9 @@ struct WorldParameters {
   double cfm = 1e-5;                   ///< constraint force mixing, 0 or more
   bool autoDisable = true;             ///< bodies at rest fall asleep
   double contactSurfaceLayer = 0.001;  ///< allowed penetration depth of contacts [m]
+  double timestep = 0;                 ///< of the engine's steps [s]; 0: as the engine says
   /// Read by MuJoCo alone (MuJoCo's documentation, "option").
   struct Mujoco {
-    double timestep = 0;               ///< of one of its steps [s]; 0: as the engine says
     std::string integrator = "Euler";  ///< or "implicit"
     std::string cone = "pyramidal";    ///< of friction; or "elliptic"
     std::string solver = "Newton";     ///< or "PGS", "CG"

@@ -166,7 +166,8 @@ class CollisionHandler : public SceneNode {
   /// Called before the solver for each contact point of the collider, in the physics phase. It may change the contact,
   /// but not the tree.
   virtual void onCollision(const Collision& collision) = 0;
-  /// Called after the solver for each contact point with feedback.
+  /// Called after the solver for each contact point with feedback. Where a step of the simulation has several of the
+  /// engine's, it is called after each, with a force that is divided by their number: their sum is the mean.
   virtual void onSolved(const Collision&) {}
   /// The contact surface of the collider; nullptr: this handler does not make contacts solid.
   virtual const engine::Surface* surface() const { return nullptr; }

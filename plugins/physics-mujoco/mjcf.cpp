@@ -149,7 +149,7 @@ std::pair<Vec3, Mat3> principalAxes(const Mat3& inertia) {
 struct Writer {
   const Model& model;
   const Trees& trees;
-  double cycle;  // the simulation's step [s]
+  double step;  // s
   std::string out;
   std::vector<std::vector<Index>> children, geoms;  // by link; by body
 
@@ -264,7 +264,7 @@ struct Writer {
       case JointType::hinge2: {
         // A spring along axis 1, as ODE's ERP and CFM mean one (ODE manual, "Soft constraint and CFM").
         const auto suspension = [&] {
-          const double dt = cycle, erp = j.ode.suspensionErp, cfm = std::max(j.ode.suspensionCfm, 1e-7);
+          const double dt = step, erp = j.ode.suspensionErp, cfm = std::max(j.ode.suspensionCfm, 1e-7);
           axial(0, "slide", inChild(j.axisA[0], true), nullptr);
           put(R"( stiffness="{:.17g}" damping="{:.17g}"/>)", erp / (cfm * dt), (1 - erp) / cfm);
         };
@@ -319,8 +319,13 @@ struct Writer {
 
 }  // namespace
 
-std::string toMjcf(const Model& model, const Trees& trees, double step, double cycle, const Sizes& sizes) {
-  Writer w{model, trees, cycle, {}, {}, {}};
+bool hasOwnDrag(const Model& model) {
+  const engine::WorldParameters::Mujoco& o = model.parameters.mujoco;
+  return (o.density > 0 || o.viscosity > 0) && o.integrator == "Euler";
+}
+
+std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes) {
+  Writer w{model, trees, step, {}, {}, {}};
   w.children.resize(trees.links.size());
   for (Index i = 0; i < trees.links.size(); ++i)
     if (trees.links[i].parent != kNone) w.children[trees.links[i].parent].push_back(i);
@@ -334,7 +339,7 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, double c
   w.put(R"(<option timestep="{:.17g}" gravity="{}" integrator="{}" cone="{}" solver="{}" iterations="{}")", step,
         Writer::text(model.parameters.gravity), o.integrator, o.cone, o.solver, o.iterations);
   w.put(R"( tolerance="{:.17g}" impratio="{:.17g}" density="{:.17g}" viscosity="{:.17g}" wind="{}"/>)", o.tolerance,
-        o.impratio, o.density, o.viscosity, Writer::text(o.wind));
+        o.impratio, hasOwnDrag(model) ? 0 : o.density, hasOwnDrag(model) ? 0 : o.viscosity, Writer::text(o.wind));
   w.put(R"(<size nconmax="{}" njmax="{}"/>)", sizes.contacts, sizes.rows);
   w.putMeshes();
   w.put("<worldbody>\n");

@@ -43,7 +43,11 @@ std::string jointName(Index joint, int coordinate);
 /// steering, rolling), fixed 0; a ball has one joint of its own kind.
 int coordinatesOf(engine::JointType type);
 
-/// The text. `step` is that of one of MuJoCo's steps, `cycle` that of the simulation [s].
-std::string toMjcf(const engine::Model& model, const Trees& trees, double step, double cycle, const Sizes& sizes);
+/// True when a medium drags at the bodies, and MuJoCo is not told: MujocoWorld does it, at a fraction of the cost. An
+/// implicit integrator needs MuJoCo's own.
+bool hasOwnDrag(const engine::Model& model);
+
+/// The text. `step`: length of a step [s].
+std::string toMjcf(const engine::Model& model, const Trees& trees, double step, const Sizes& sizes);
 
 }  // namespace spark::mujoco

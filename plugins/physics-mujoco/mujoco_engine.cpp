@@ -28,11 +28,6 @@ MujocoEngine::Known& MujocoEngine::of(const engine::Model& model) {
   return worlds_.back();
 }
 
-int MujocoEngine::substepsOf(const engine::Model& model, double cycle) const {
-  const double own = model.parameters.mujoco.timestep;
-  return own > 0 ? static_cast<int>(std::clamp(std::round(cycle / own), 1.0, 1000.0)) : substeps_;
-}
-
 void MujocoEngine::forget(const engine::Model& model) {
   std::erase_if(worlds_, [&](const Known& known) { return known.id == model.id; });
 }
@@ -45,7 +40,6 @@ void MujocoEngine::compile(const engine::Model& model, const engine::State& stat
   known.structure = model.structure;
   known.collision = model.collision;
   known.dynamics = model.dynamics;
-  known.substeps = substepsOf(model, known.cycle);
   const mujoco::Sizes least = sizesFor(model);
   known.sizes = {std::max(least.contacts, known.sizes.contacts), std::max(least.rows, known.sizes.rows)};
   build(known, model, state);
@@ -54,7 +48,7 @@ void MujocoEngine::compile(const engine::Model& model, const engine::State& stat
 void MujocoEngine::build(Known& known, const engine::Model& model, const engine::State& state) {
   known.world.reset();
   try {
-    known.world = std::make_unique<MujocoWorld>(model, state, known.cycle / known.substeps, known.cycle, known.sizes);
+    known.world = std::make_unique<MujocoWorld>(model, state, known.step, known.sizes);
   } catch (const Error& e) {
     refuse(known, e.what());
     return;
@@ -88,10 +82,8 @@ void MujocoEngine::report(MujocoWorld& world) {
 
 void MujocoEngine::step(engine::Step& step) {
   Known& known = of(step.model);
-  const int substeps = substepsOf(step.model, step.dt);
-  if (known.world && (known.cycle != step.dt || known.substeps != substeps)) {
-    known.cycle = step.dt;
-    known.substeps = substeps;
+  if (known.world && known.step != step.dt) {
+    known.step = step.dt;
     build(known, step.model, step.state);
   }
   if (!known.world) {
@@ -99,7 +91,7 @@ void MujocoEngine::step(engine::Step& step) {
     return;
   }
   try {
-    known.world->step(step, substeps);
+    known.world->step(step);
   } catch (const Error& e) {
     return refuse(known, e.what());
   }

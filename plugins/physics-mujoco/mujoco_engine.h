@@ -19,9 +19,6 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
     d.implements<engine::IEngine>();
     d.implements<engine::ICollision>();
     d.property("version", &MujocoEngine::version).doc("Version of the library.");
-    d.property("substeps", &MujocoEngine::substeps_)
-        .range(1, 1000)
-        .doc("Number of MuJoCo's steps in a step of the simulation, unless the world has a mujocoTimestep.");
     d.property("compilations", &MujocoEngine::compilations).doc("Number of models that were compiled.");
   }
   Leaf& leaf() override { return *this; }
@@ -32,6 +29,7 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
   bool sleeps() const override { return false; }
   bool stepsParts() const override { return false; }
   bool controls() const override { return true; }
+  double usualStep() const override { return 0.005; }
   void forget(const engine::Model& model) override;
 
  private:
@@ -40,16 +38,13 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
     std::uint64_t id = 0, structure = 0, collision = 0, dynamics = 0;
     std::unique_ptr<mujoco::MujocoWorld> world;
     mujoco::Sizes sizes;
-    double cycle = 0.02;  ///< the simulation's step [s]
-    int substeps = 4;     ///< as the world has them
+    double step = 0.005;  ///< s
     bool full = false;    ///< no more room can be had
     std::string refused;  ///< why the last model that was refused was
   };
   std::string version() const { return mj_versionString(); }
   std::int64_t compilations() const { return compilations_; }
   Known& of(const engine::Model& model);
-  /// Number of MuJoCo's steps in a cycle of that length [s].
-  int substepsOf(const engine::Model& model, double cycle) const;
   void build(Known& known, const engine::Model& model, const engine::State& state);
   void refuse(Known& known, const std::string& why);
   /// Logs MuJoCo's last message: the 1st, 2nd, 4th, 8th ... time.
@@ -57,7 +52,6 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
 
   mujoco::LibraryGuard library_;
   std::vector<Known> worlds_;
-  int substeps_ = 4;
   std::int64_t compilations_ = 0, messages_ = 0;
   bool warned_ = false;
 };

@@ -41,8 +41,8 @@ double angleAbout(const Mat3& rotation, const Vec3& axis) {
 
 }  // namespace
 
-MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, double cycle, const Sizes& sizes)
-    : trees_(model, state), m_(compile(toMjcf(model, trees_, step, cycle, sizes))), d_(mj_makeData(m_.get())) {
+MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, const Sizes& sizes)
+    : trees_(model, state), m_(compile(toMjcf(model, trees_, step, sizes))), d_(mj_makeData(m_.get())) {
   if (!d_) throw Error("MuJoCo has no memory for the world");
   mark_ = state.newMark();
   for (Index i = 0; i < model.bodies.size(); ++i)
@@ -55,6 +55,14 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, do
   for (const Index i : trees_.leftOver)
     if (model.joints[i].b != kNone) joined_.push_back(pairOf(model.joints[i].a, model.joints[i].b));
   std::sort(joined_.begin(), joined_.end());
+
+  wrenches_.resize(static_cast<std::size_t>(m_->nbody));
+  for (int body = 0; body < m_->nbody; ++body) {
+    const Vec3 i = toVec(m_->body_inertia + 3 * body);
+    const double mass = std::max(m_->body_mass[body], mjMINVAL);
+    Vec3& edges = boxes_.emplace_back();
+    for (int k = 0; k < 3; ++k) edges[k] = std::sqrt(std::max(mjMINVAL, i.sum() - 2 * i[k]) / mass * 6);
+  }
 
   // The motors of the coordinates.
   motors_.resize(m_->nv);
@@ -170,16 +178,23 @@ void MujocoWorld::give(State& state) const {
     s.position = toVec(d_->xipos + 3 * id);
     std::copy_n(d_->xquat + 4 * id, 4, s.quaternion.begin());
     s.rotation = rotationOf(s.quaternion);
-    mjtNum velocity[6];  // rotation, translation
-    mj_objectVelocity(m_.get(), d_.get(), mjOBJ_BODY, id, velocity, 0);
-    s.angularVelocity = toVec(velocity);
-    s.linearVelocity = toVec(velocity + 3);
+    s.angularVelocity = toVec(d_->cvel + 6 * id);
+    s.linearVelocity = velocityOf(id);
     s.force.setZero();
     s.torque.setZero();
     s.awake = true;
     s.mark = mark_;
     state.markMoved(i);
   }
+}
+
+Vec3 MujocoWorld::armOf(int body) const {
+  return toVec(d_->xipos + 3 * body) - toVec(d_->subtree_com + 3 * m_->body_rootid[body]);
+}
+
+Vec3 MujocoWorld::velocityOf(int body) const {
+  const mjtNum* spatial = d_->cvel + 6 * body;  // rotation, translation at the tree's centre of mass
+  return toVec(spatial + 3) + toVec(spatial).cross(armOf(body));
 }
 
 // ---- contacts ----
@@ -190,7 +205,6 @@ bool MujocoWorld::mayTouch(void* world, int geom1, int geom2) {
   const engine::Geom &a = w.model_->geoms[i], &b = w.model_->geoms[k];
   if (a.space == b.space && !w.model_->spaces[a.space].inner) return false;
   if (a.body != kNone && b.body != kNone && contains(w.joined_, pairOf(a.body, b.body))) return false;
-  if (!w.withGhosts_ && contains(w.ghosts_, pairOf(i, k))) return false;
   return !w.filter_ || w.filter_(a.owner, b.owner);
 }
 
@@ -203,14 +217,12 @@ void MujocoWorld::prepare(const Model& model) {
 
 void MujocoWorld::prepareAgain(const Model& model) {
   listed_.clear();
-  withGhosts_ = true;
   prepare(model);
 }
 
 void MujocoWorld::detect(const Model& model, const State& state, engine::PairFilter filter, engine::Contacts& out) {
   filter_ = filter;
   take(model, state);
-  withGhosts_ = true;
   prepare(model);
   listed_.clear();
   for (int i = 0; i < d_->ncon; ++i) {
@@ -259,14 +271,7 @@ void MujocoWorld::readContactForces(std::span<Contact> contacts) const {
 
 // ---- steps ----
 
-bool MujocoWorld::passForces(const Model& model, const State& state) {
-  for (Index i = 0; i < state.bodies.size(); ++i) {
-    mjtNum* to = d_->xfrc_applied + 6 * bodyId_[i];
-    Vec3 force = state.bodies[i].force;
-    if (!model.bodies[i].gravity) force -= model.bodies[i].mass * model.parameters.gravity;
-    std::copy_n(force.data(), 3, to);
-    std::copy_n(state.bodies[i].torque.data(), 3, to + 3);
-  }
+bool MujocoWorld::passMotors(const State& state) {
   bool other = false;
   for (int dof = 0; dof < m_->nv; ++dof) {
     if (motors_[dof].joint == kNone) continue;
@@ -277,13 +282,60 @@ bool MujocoWorld::passForces(const Model& model, const State& state) {
   return other;
 }
 
-void MujocoWorld::applyControls(const State& state) {
+/// The drag of the medium on a box of the body's inertia (MuJoCo's documentation, "Fluid forces", inertia model): force
+/// and torque at the centre of mass, world frame.
+void MujocoWorld::addDrag(const Model& model, int body, Vec3& force, Vec3& torque) const {
+  const engine::WorldParameters::Mujoco& medium = model.parameters.mujoco;
+  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> axes(d_->ximat + 9 * body);
+  const Vec3 v = axes.transpose() * (velocityOf(body) - medium.wind);
+  const Vec3 w = axes.transpose() * toVec(d_->cvel + 6 * body);
+  const Vec3& e = boxes_[static_cast<std::size_t>(body)];  // edges
+  const double diameter = e.sum() / 3, viscosity = medium.viscosity, density = medium.density;
+  Vec3 f = -3 * kPi * diameter * viscosity * v, t = -kPi * diameter * diameter * diameter * viscosity * w;
+  for (int i = 0; i < 3; ++i) {
+    const double a = e[(i + 1) % 3], b = e[(i + 2) % 3];
+    f[i] -= 0.5 * density * a * b * std::abs(v[i]) * v[i];
+    t[i] -= density * e[i] * (a * a * a * a + b * b * b * b) / 64 * std::abs(w[i]) * w[i];
+  }
+  force += axes * f;
+  torque += axes * t;
+}
+
+/// Forces on bodies as forces along the degrees of freedom. MuJoCo 2.2.2 would do so with a Jacobian of the whole world
+/// for each body, in most of the time of a step.
+void MujocoWorld::applyForces(const Model& model, const State& state) {
   mju_zero(d_->qfrc_applied, m_->nv);
+  const bool medium = hasOwnDrag(model);
+  std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
+  bool any = false;
+  for (Index i = 0; i < state.bodies.size(); ++i) {
+    const int body = bodyId_[i];
+    Vec3 force = state.bodies[i].force, torque = state.bodies[i].torque;
+    if (!model.bodies[i].gravity) force -= model.bodies[i].mass * model.parameters.gravity;
+    if (medium) addDrag(model, body, force, torque);
+    if (force.isZero(0) && torque.isZero(0)) continue;
+    any = true;
+    wrenches_[static_cast<std::size_t>(body)] = {torque + armOf(body).cross(force), force};
+  }
+  if (!any) return;
+  // From the leaves to the roots: all wrenches of a tree are about its centre of mass.
+  for (int body = m_->nbody - 1; body > 0; --body) {
+    const Wrench& own = wrenches_[static_cast<std::size_t>(body)];
+    const int first = m_->body_dofadr[body];
+    for (int dof = first; dof < first + m_->body_dofnum[body]; ++dof)
+      d_->qfrc_applied[dof] += toVec(d_->cdof + 6 * dof).dot(own.torque) + toVec(d_->cdof + 6 * dof + 3).dot(own.force);
+    Wrench& parent = wrenches_[static_cast<std::size_t>(m_->body_parentid[body])];
+    parent.torque += own.torque;
+    parent.force += own.force;
+  }
+}
+
+void MujocoWorld::applyControls(const State& state) {
   for (const engine::AxisControl& c : state.controls) {
     const auto [joint, sign] = coordinates_[c.joint][c.axis];
     if (joint < 0) continue;
     const int dof = m_->jnt_dofadr[joint];
-    d_->qfrc_applied[dof] = sign * c.control.at(sign * d_->qpos[m_->jnt_qposadr[joint]], sign * d_->qvel[dof]);
+    d_->qfrc_applied[dof] += sign * c.control.at(sign * d_->qpos[m_->jnt_qposadr[joint]], sign * d_->qvel[dof]);
   }
 }
 
@@ -298,23 +350,19 @@ void MujocoWorld::passSpeeds(const State& state) {
   }
 }
 
-bool MujocoWorld::run(engine::Step& step, int times) {
+bool MujocoWorld::run(engine::Step& step) {
   const auto bad = [&] {
     return d_->warning[mjWARN_BADQPOS].number + d_->warning[mjWARN_BADQVEL].number + d_->warning[mjWARN_BADQACC].number;
   };
-  if (passForces(step.model, step.state)) prepareAgain(step.model);
+  if (passMotors(step.state)) prepareAgain(step.model);
   releaseUnsolved(step.contacts);
   const Session session(message_, m_.get(), mayTouch, this);
-  for (int i = 0; i < times; ++i) {
-    passSpeeds(step.state);
-    applyControls(step.state);
-    mj_step2(m_.get(), d_.get());
-    if (i == 0) readContactForces(step.contacts);
-    if (bad() > 0) return false;
-    if (i + 1 == times) break;
-    withGhosts_ = false;
-    prepare(step.model);
-  }
+  passSpeeds(step.state);
+  applyForces(step.model, step.state);
+  applyControls(step.state);
+  mj_step2(m_.get(), d_.get());
+  readContactForces(step.contacts);
+  if (bad() > 0) return false;
   // Places and velocities of the bodies; the next detect() finds contacts.
   mj_kinematics(m_.get(), d_.get());
   mj_comPos(m_.get(), d_.get());
@@ -347,10 +395,10 @@ void MujocoWorld::stopBadTree(State& state, std::vector<Index>& stopped) {
   }
 }
 
-void MujocoWorld::step(engine::Step& step, int times) {
+void MujocoWorld::step(engine::Step& step) {
   if (take(step.model, step.state) || !prepared_) prepareAgain(step.model);
   std::vector<Index> stopped;
-  while (!run(step, times) && stopped.size() < 2 * step.state.bodies.size()) {
+  while (!run(step) && stopped.size() < 2 * step.state.bodies.size()) {
     stopBadTree(step.state, stopped);
     mj_resetData(m_.get(), d_.get());
     for (const DynamicState& s : step.state.bodies) s.mark = 0;

@@ -10,13 +10,12 @@ namespace spark::mujoco {
 
 class MujocoWorld {
  public:
-  /// Compiles the model for steps of `step` seconds in a cycle of `cycle`. Throws Error with MuJoCo's message.
-  MujocoWorld(const engine::Model& model, const engine::State& state, double step, double cycle, const Sizes& sizes);
+  /// Compiles the model for steps of `step` seconds. Throws Error with MuJoCo's message.
+  MujocoWorld(const engine::Model& model, const engine::State& state, double step, const Sizes& sizes);
 
   /// Appends the contacts of the present poses.
   void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, engine::Contacts& out);
-  /// Steps `times` times.
-  void step(engine::Step& step, int times);
+  void step(engine::Step& step);
 
   const Trees& trees() const { return trees_; }
   /// True when MuJoCo had too little room for contacts or constraints: it dropped some, and wants larger sizes.
@@ -40,12 +39,17 @@ class MujocoWorld {
   /// The same in a step, where the contacts of the last detect() have another order then: their forces are not read.
   void prepareAgain(const engine::Model& model);
   /// Passes the motors' forces. Returns true when a motor began or ceased to act: prepare() has to run again.
-  bool passForces(const engine::Model& model, const engine::State& state);
+  bool passMotors(const engine::State& state);
+  void applyForces(const engine::Model& model, const engine::State& state);
+  void addDrag(const engine::Model& model, int body, Vec3& force, Vec3& torque) const;
+  /// The centre of mass of one of MuJoCo's bodies, relative to that of its tree, and its velocity; world frame.
+  Vec3 armOf(int body) const;
+  Vec3 velocityOf(int body) const;
   void passSpeeds(const engine::State& state);
   void applyControls(const engine::State& state);
-  /// Steps `times` times from the present coordinates. Returns false when MuJoCo met numbers that are too large or
+  /// Steps from the present coordinates. Returns false when MuJoCo met numbers that are too large or
   /// none; all coordinates are to be reset then.
-  bool run(engine::Step& step, int times);
+  bool run(engine::Step& step);
   /// Puts the bodies of the tree whose numbers were bad to rest in the state, without forces, and lists them.
   void stopBadTree(engine::State& state, std::vector<Index>& stopped);
   /// Takes the force of contacts that are not to be solved.
@@ -68,9 +72,14 @@ class MujocoWorld {
   std::vector<std::array<Coordinate, 3>> coordinates_;  ///< by joint and axis of the angle
   std::vector<std::uint64_t> joined_;                   ///< pairs of bodies that a left over joint connects, sorted
   std::vector<std::uint64_t> ghosts_;                   ///< pairs of geoms whose contacts are not solved, sorted
+  /// A force, and its torque about the centre of mass of the tree.
+  struct Wrench {
+    Vec3 torque = Vec3::Zero(), force = Vec3::Zero();
+  };
+  std::vector<Wrench> wrenches_;  ///< of applyForces(), by MuJoCo's body
+  std::vector<Vec3> boxes_;       ///< by MuJoCo's body: edges of the box that has its inertia [m]
   std::vector<std::uint8_t> stale_;                     ///< of take(), by link: its tree has to be written
   bool prepared_ = false;    ///< contacts and constraints are those of the present coordinates
-  bool withGhosts_ = true;   ///< prepare() reports their contacts
   std::vector<int> listed_;  ///< MuJoCo's contacts, in the order of the last detect()
   engine::PairFilter filter_ = nullptr;
   const engine::Model* model_ = nullptr;  ///< while MuJoCo runs

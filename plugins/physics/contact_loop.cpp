@@ -83,15 +83,18 @@ void measure(engine::Contacts& contacts, std::vector<std::size_t>& added) {
   }
 }
 
-void runSolved(engine::Contacts& contacts) {
+void runSolved(engine::Contacts& contacts, int steps) {
   // From last to first: sensors sum forces in single precision, and this order gives the digits of the installed base.
   for (std::size_t i = contacts.size(); i-- > 0;) {
     engine::Contact& c = contacts[i];
     if (!c.feedback) continue;
     Collider& a = *static_cast<Collider*>(c.ownerA);
     Collider& b = *static_cast<Collider*>(c.ownerB);
+    const Vec3 force = c.forceOnA;
+    if (steps > 1) c.forceOnA /= steps;
     for (CollisionHandler* h : a.handlers().active) h->onSolved({a, b, c, true});
     for (CollisionHandler* h : b.handlers().active) h->onSolved({b, a, c, false});
+    c.forceOnA = force;
   }
 }
 

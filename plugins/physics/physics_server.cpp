@@ -162,20 +162,25 @@ void PhysicsServer::solve(const Event& event) {
   engine::IEngine& engine = *engine_;
   engine::ICollision& collision = *collision_;
   const InUse solving(engine.leaf(), "a step is under way"), detecting(collision.leaf(), "a step is under way");
+  const double own = world->model().parameters.timestep, usual = own > 0 ? own : engine.usualStep();
+  const int steps = usual > 0 ? static_cast<int>(std::clamp(std::round(event.step / usual), 1.0, 1000.0)) : 1;
+  world->keepForces(steps > 1);
+  for (int i = 0; i < steps; ++i) {
+    // Contacts and their handlers.
+    contacts_.clear();
+    contactsAt_ = kernel().structureVersion();
+    world->detect(collision, physics::pairCounts, contactsPerPair_, contacts_);
+    physics::runHandlers(contacts_, kernel());
 
-  // Contacts and their handlers.
-  contacts_.clear();
-  contactsAt_ = kernel().structureVersion();
-  world->detect(collision, physics::pairCounts, contactsPerPair_, contacts_);
-  physics::runHandlers(contacts_, kernel());
-
-  // One step. Handlers must not see feedback that only measureForces requested.
-  measured_.clear();
-  if (measureForces_) physics::measure(contacts_, measured_);
-  world->step(engine, contacts_, event.step);
-  for (const std::size_t i : measured_) contacts_[i].feedback = false;
-  physics::runSolved(contacts_);
-  for (const std::size_t i : measured_) contacts_[i].feedback = true;
+    // One step. Handlers must not see feedback that only measureForces requested.
+    measured_.clear();
+    if (measureForces_) physics::measure(contacts_, measured_);
+    if (i > 0) world->repeatForces();
+    world->step(engine, contacts_, event.step / steps);
+    for (const std::size_t k : measured_) contacts_[k].feedback = false;
+    physics::runSolved(contacts_, steps);
+    for (const std::size_t k : measured_) contacts_[k].feedback = true;
+  }
 }
 
 std::span<const engine::Contact> PhysicsServer::contacts() const {

@@ -47,12 +47,14 @@ void World::describe(Description<World>& d) {
       .min(0)
       .state()
       .doc("Allowed penetration depth of contacts.");
-  // MuJoCo's documentation, "option".
-  using M = engine::WorldParameters::Mujoco;
-  d.property("mujocoTimestep", &World::mujoco<&M::timestep>, &World::setMujoco<&M::timestep, double>)
+  d.property("timestep", &World::timestep, &World::setTimestep)
       .unit("s")
       .min(0)
-      .doc("For MuJoCo: one of its steps, of which a step of the simulation has a whole number; 0: as the engine says.");
+      .doc(
+          "Length of the engine's steps, of which a step of the simulation has a whole number: in each of them contacts "
+          "are found and controllers act. 0: as the engine says; MuJoCo's are 0.005 s, the others take one step.");
+  // MuJoCo's documentation, "option".
+  using M = engine::WorldParameters::Mujoco;
   d.property("mujocoIntegrator", &World::mujoco<&M::integrator>, &World::setMujocoName<&M::integrator>)
       .doc("For MuJoCo: Euler or implicit.");
   d.property("mujocoCone", &World::mujoco<&M::cone>, &World::setMujocoName<&M::cone>)

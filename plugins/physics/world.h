@@ -53,6 +53,8 @@ class World : public PhysicsObject {
   void setAutoDisable(bool on) { parameters_.autoDisable = on, apply(); }
   double surfaceLayer() const { return parameters_.contactSurfaceLayer; }
   void setSurfaceLayer(double v) { parameters_.contactSurfaceLayer = v, apply(); }
+  double timestep() const { return parameters_.timestep; }
+  void setTimestep(double v) { parameters_.timestep = v, apply(); }
   /// What MuJoCo alone reads.
   template <auto Member>
   auto mujoco() const {

@@ -421,11 +421,28 @@ void WorldModel::putToSleep(const engine::Contacts& contacts, double dt) {
   }
 }
 
+void WorldModel::keepForces(bool on) {
+  kept_.clear();
+  if (!on) return;
+  for (Index i = 0; i < state_.bodies.size(); ++i)
+    if (const DynamicState& s = state_.bodies[i]; bodies_.alive(i) && !(s.force.isZero(0) && s.torque.isZero(0)))
+      kept_.push_back({bodies_.handleOf(i), s.force, s.torque});
+}
+
+void WorldModel::repeatForces() {
+  again_ = true;
+  for (const KeptForce& k : kept_) {
+    if (bodies_[k.body] == kNone) continue;  // a handler removed it
+    of(k.body).force += k.force;
+    of(k.body).torque += k.torque;
+  }
+}
+
 void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, double dt) {
   compact();
   engine_.bring(engine, model_, state_, model_.dynamics);
   ++steps_;
-  repaired_.clear();
+  if (!std::exchange(again_, false)) repaired_.clear();
   if (std::none_of(state_.bodies.begin(), state_.bodies.end(), [](const DynamicState& s) { return s.awake; })) return;
   if (model_.parameters.autoDisable && engine.sleeps()) putToSleep(contacts, dt);
   if (!engine.controls()) applyControls();

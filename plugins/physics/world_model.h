@@ -203,7 +203,12 @@ class WorldModel {
   /// out of range back to their last valid pose, at rest. `contacts` are those of the last detect(), and nothing was
   /// removed since.
   void step(engine::IEngine& engine, engine::Contacts& contacts, double dt);
-  /// The bodies that were put back after the last step. Valid until the next step.
+  /// Keeps the forces and torques on the bodies, for a step of the simulation that has several of the engine's.
+  void keepForces(bool on);
+  /// Adds the kept ones again, before a further step of the engine.
+  void repeatForces();
+  /// The bodies that were put back after the last step. Valid until the next step of the
+  /// simulation.
   std::span<const BodyHandle> repaired() const { return repaired_; }
 
  private:
@@ -287,6 +292,12 @@ class WorldModel {
   std::vector<std::array<engine::Index, 3>> controlAt_;  ///< by joint and axis: its place in State::controls
   bool damped_ = false;                                  ///< an axis has damping
   std::vector<BodyHandle> repaired_;
+  struct KeptForce {
+    BodyHandle body;
+    Vec3 force, torque;
+  };
+  std::vector<KeptForce> kept_;
+  bool again_ = false;  ///< the next step is a further one
   std::uint64_t nextId_ = 1, steps_ = 0, attachments_ = 0, assemblies_ = 0;
   Compiled<engine::ICollision> collision_;
   Compiled<engine::IEngine> engine_;

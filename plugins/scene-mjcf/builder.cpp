@@ -429,7 +429,7 @@ void Builder::setOptions(Node& root) {
   }
   if (o.gravity) setProperty(*world, "gravity", numbers(*o.gravity));
   const engine::WorldParameters::Mujoco& m = o.numbers;
-  setProperty(*world, "mujocoTimestep", m.timestep);
+  setProperty(*world, "timestep", o.timestep);
   setProperty(*world, "mujocoIntegrator", m.integrator);
   setProperty(*world, "mujocoCone", m.cone);
   setProperty(*world, "mujocoSolver", m.solver);

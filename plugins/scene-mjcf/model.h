@@ -84,7 +84,8 @@ struct Exclusion {
 /// Options of the world that the file sets.
 struct Options {
   std::optional<Vec3> gravity;
-  bool any = false;  ///< there is an option element
+  bool any = false;        ///< there is an option element
+  double timestep = 0.002;  ///< s
   engine::WorldParameters::Mujoco numbers;
 };
 

@@ -129,7 +129,7 @@ void Reader::option(const Element& e) {
   o.any = true;
   if (Vec3 g(0, 0, -9.81); a.take("gravity", g)) o.gravity = g;
   engine::WorldParameters::Mujoco& m = o.numbers;
-  m.timestep = a.number("timestep", m.timestep > 0 ? m.timestep : 0.002);
+  o.timestep = a.number("timestep", o.timestep);
   const std::string integrator = a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, m.integrator.c_str());
   m.integrator = integrator == "RK4" ? "Euler" : integrator == "implicitfast" ? "implicit" : integrator;
   if (integrator != m.integrator)

@@ -9,7 +9,6 @@ TEST_CASE("a body falls as semi-implicit Euler has it, and near where physics ha
   withEngines([](EngineWorld& w) {
     const BodyHandle b = w.body({0, 0, 100});
     w.dt = 0.001;
-    if (w.engine->leaf().classObject()->property("substeps")) setProperty(w.engine->leaf(), "substeps", 1);
     w.run(1);
     CHECK(w.position(b).z() == Approx(100 - 9.81 * 0.001 * 0.001 * 1000 * 1001 / 2).epsilon(1e-12));
     CHECK(w.velocity(b).z() == Approx(-9.81).epsilon(1e-9));

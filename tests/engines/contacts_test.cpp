@@ -92,6 +92,7 @@ TEST_CASE("MuJoCo slides and bounces as the colliders' own numbers have it") {
   for (const EngineKind& kind : kEngines) {
     if (std::string(kind.name) != "MujocoEngine" || !kind.built()) continue;
     EngineWorld w(kind);
+    w.dt = 0.0025;
     const GeomHandle ground = w.geom({.shape = Shape::plane});
     w.world.setMujoco(ground, {.friction = {0.4, 0.005, 0.0001}});
     const BodyHandle b = w.body({0, 0, 0.1}, 2);
@@ -104,7 +105,7 @@ TEST_CASE("MuJoCo slides and bounces as the colliders' own numbers have it") {
     w.world.setMujoco(w.geom({.shape = Shape::sphere, .radius = 0.1}, ball), {.priority = 1, .solref = {-2000, 0}});
     double highest = 0;
     w.run(0.6);
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 240; ++i) {
       w.run(w.dt);
       highest = std::max(highest, w.position(ball).z());
     }
