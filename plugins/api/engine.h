@@ -68,9 +68,11 @@ class IEngine {
   /// Does not throw, and does not allocate while structure and number of contacts repeat. Results may be no numbers:
   /// the caller puts such bodies back.
   virtual void step(Step& step) = 0;
-  /// True: the engine applies State::controls and JointAxis::damping itself. False: both come as forces on the bodies;
-  /// dry friction of controlled axes comes as a motor of speed 0.
+  /// True: the engine applies State::controls itself. False: they come as forces on the bodies. In both cases dry
+  /// friction of controlled axes comes as a motor of speed 0.
   virtual bool controls() const { return false; }
+  /// True: the engine applies JointAxis::damping itself. False: it comes as forces on the bodies.
+  virtual bool damps() const { return controls(); }
   /// The length of step that suits the engine [s], of which a step of the simulation has a whole number; 0: any. That of
   /// the world (WorldParameters::timestep) comes first.
   virtual double usualStep() const { return 0; }

@@ -7,10 +7,7 @@
 
 namespace spark {
 
-void ArticulatedEngine::compile(const engine::Model& model, const engine::State&) {
-  std::erase(known_, model.id);
-  engine::warnOfArmature(model, *this, armatureSaid_);
-}
+void ArticulatedEngine::compile(const engine::Model& model, const engine::State&) { std::erase(known_, model.id); }
 
 void ArticulatedEngine::forget(const engine::Model& model) {
   stepper_.forget(model);

@@ -36,6 +36,7 @@ class ArticulatedEngine : public Node, public engine::IEngine {
   Leaf& leaf() override { return *this; }
   void compile(const engine::Model& model, const engine::State& state) override;
   void step(engine::Step& step) override;
+  bool damps() const override { return true; }
   void forget(const engine::Model& model) override;
 
  private:
@@ -52,7 +53,7 @@ class ArticulatedEngine : public Node, public engine::IEngine {
   /// The models that `deferred_` has compiled as they are now: it is told only when it is needed.
   std::vector<std::uint64_t> known_;
   Ref<Leaf> knownBy_;
-  bool armatureSaid_ = false, unfit_ = false;
+  bool unfit_ = false;
   bool held_ = false;  ///< hold() was called
 };
 

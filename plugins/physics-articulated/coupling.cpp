@@ -54,7 +54,7 @@ void Coupling::factor(const Rows& rows) {
     // First L_ij D_j = A_ij - sum over k < j of (L_ik D_k) L_jk.
     for (std::size_t j = 0; j < i; ++j) li[j] = delassus_[row * n + active_[j]] - dot(li, lower_.data() + j * m, j);
     // Then D_i = A_ii - sum over j of L_ij D_j L_ij, and L_ij.
-    double pivot = delassus_[row * n + row] + rows[members_[row].row].softness;
+    double pivot = delassus_[row * n + row] + rows[members_[row].row].totalSoftness();
     const double least = kRounding * pivot;
     for (std::size_t j = 0; j < i; ++j) {
       const double scaled = li[j] * inverseD_[j];
@@ -68,7 +68,7 @@ void Coupling::factor(const Rows& rows) {
 void Coupling::solve(Elimination& trees, Rows& rows, bool useTargets) {
   active_.clear();
   for (std::size_t i = 0; i < members_.size(); ++i)
-    if (rows[members_[i].row].holds()) active_.push_back(toIndex(i));
+    if (rows[members_[i].row].active()) active_.push_back(toIndex(i));
   if (active_.empty()) return;
   factor(rows);
   const std::size_t m = active_.size();
@@ -76,7 +76,7 @@ void Coupling::solve(Elimination& trees, Rows& rows, bool useTargets) {
   // L^-1 (r - J u0).
   for (std::size_t i = 0; i < m; ++i) {
     const Member& member = members_[active_[i]];
-    const double target = useTargets ? rows[member.row].target : 0;
+    const double target = useTargets ? rows[member.row].totalTarget() : 0;
     forces_[i] = target - trees.predictedMotion(pathOf(member));
     forces_[i] -= dot(lower_.data() + i * m, forces_.data(), i);
   }

@@ -29,7 +29,7 @@ class Coupling {
   /// Computes path responses and the Delassus matrix of all rows. To be called after each Elimination::factor() that
   /// returned true.
   void assemble(const Elimination& trees, const Rows& rows);
-  /// Between Elimination::forward() and backward(): solves for the forces of the rows that hold, and applies them to
+  /// Between Elimination::forward() and backward(): solves for the total forces of the active rows, and applies them to
   /// the trees. With `useTargets` false, r is 0.
   void solve(Elimination& trees, Rows& rows, bool useTargets);
 
@@ -43,7 +43,7 @@ class Coupling {
   std::vector<Member> members_;
   std::vector<PathTerm> pathTerms_;
   std::vector<double> delassus_;  ///< members x members by rows; the lower triangle with the diagonal is valid
-  std::vector<Index> active_;     ///< members whose rows hold
+  std::vector<Index> active_;     ///< members whose rows are active
   std::vector<double> lower_;     ///< L below its unit diagonal, active x active by rows
   std::vector<double> inverseD_;  ///< 1 / D of the factorisation; 0 for redundant rows
   std::vector<double> forces_;    ///< x of the active rows

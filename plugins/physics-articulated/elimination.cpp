@@ -25,7 +25,7 @@ void setOwnInertia(Node& node, const Rows& rows) {
   }
 }
 
-/// The rows of a tree joint that hold. Missing rows and those that do not hold have 0 in J, K and r and 1 in D.
+/// The active rows of a tree joint. The others have 0 in J, K and r and 1 in D.
 struct ActiveRows {
   const SpatialVector* child[6];   ///< rows of J
   const SpatialVector* parent[6];  ///< rows of K
@@ -38,12 +38,12 @@ struct ActiveRows {
     target = kZero;
     for (int r = 0; r < 6; ++r) {
       child[r] = parent[r] = &kZero;
-      if (static_cast<Index>(r) >= node.rowCount || !rows[r].holds()) continue;
+      if (static_cast<Index>(r) >= node.rowCount || !rows[r].active()) continue;
       any = true;
       child[r] = childIsA ? &rows[r].jacobianA : &rows[r].jacobianB;
       parent[r] = childIsA ? &rows[r].jacobianB : &rows[r].jacobianA;
-      softness.set(r, rows[r].softness);
-      target.set(r, rows[r].target);
+      softness.set(r, rows[r].totalSoftness());
+      target.set(r, rows[r].totalTarget());
     }
   }
 };

@@ -26,8 +26,8 @@
 /// (Baraff 1996, "Linear-time dynamics using Lagrange multipliers"). With the terms of all children added, M is the
 /// articulated-body inertia of the body, and -f corresponds to its bias force (Featherstone 2008, chapter 7).
 ///
-/// Every block is 6 x 6. A row that does not hold (a motor at its bound, a stop that opens) has 0 in J and K and 1 in
-/// D, so that its force is 0; a force at a bound is part of f. A root that is connected to the world has no K.
+/// Every block is 6 x 6. A row that is not active (a motor at its bound, a stop that opens) has 0 in J and K and 1 in
+/// D, so that its force is 0; a force at a bound is part of f. An inertial force (rows.h) is part of x. A root that is connected to the world has no K.
 ///
 /// Rows of a contact with the static world concern one body alone. With D > 0 their forces are (r - J u) / D, which can
 /// be folded into that body: M += J^T D^-1 J, f += J^T D^-1 r. They are "folded rows".
@@ -61,7 +61,7 @@ struct Node {
   // Factorisation.
   SpatialMatrix inertia;        ///< M: of the body, its folded rows and its children
   SpatialLdlt inertiaFactor;    ///< of M
-  bool connected = false;       ///< a row of the tree joint holds; else the blocks below are invalid
+  bool connected = false;       ///< a row of the tree joint is active; else the blocks below are invalid
   SpatialMatrix halfJ;          ///< L_M^-1 J^T, one column per row of the joint
   SpatialMatrix halfK;          ///< L_W^-1 K, one row per row of the joint; only with a parent
   SpatialLdlt delassusFactor;   ///< of W

@@ -124,6 +124,12 @@ struct JointWriter {
     b->torque -= force * jacobianB.angular();
   }
 
+  /// A row of an inertial force alone (rows.h); `momentum`: that of the rotor.
+  void addInertial(const SpatialVector& jacobianA, const SpatialVector& jacobianB, double inertia, double momentum) {
+    Row& row = add(jacobianA, jacobianB, momentum / inertia, 0);
+    row.softness = 1 / inertia;
+  }
+
   /// The row of axis `index`: its stop's if it has reached one, else its motor's if it has one, else none. `velocity`
   /// is the present velocity of a relative to b along the axis, for bounce.
   void addAxis(Index index, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const StopContact& contact,
@@ -134,12 +140,21 @@ struct JointWriter {
     const bool stopped = stop != Stop::none;
     const bool locked = stopped && axis.lowStop == axis.highStop;
     const bool powered = motor.maxForce > 0 && !locked;
-    if (!powered && !stopped) return;
-    // At a stop the motor acts as a given force: the row belongs to the stop.
-    if (powered && stopped) subtractForce(jacobianA, jacobianB, motorForceAtStop(axis, motor, stop));
+    const double inertia = axis.armature + axis.damping / constants.inverseDt;
+    if (!powered && !stopped) {
+      if (inertia > 0) addInertial(jacobianA, jacobianB, inertia, axis.armature * velocity);
+      return;
+    }
+    // At a stop the motor acts as a given force: the row belongs to the stop. Dry friction does not press.
+    const bool friction = motor.velocity == 0 && motor.maxForce == axis.dryFriction;
+    if (powered && stopped && !friction) subtractForce(jacobianA, jacobianB, motorForceAtStop(axis, motor, stop));
     Row& row = add(jacobianA, jacobianB, motor.velocity, axis.ode.cfm);
     row.axis = static_cast<std::uint8_t>(index);
     row.stop = stop;
+    if (inertia > 0) {
+      row.inertia = inertia;
+      row.inertialTarget = axis.armature * velocity * constants.inverseDt / inertia;
+    }
     // A motor reaches its target velocity with a force of at most maxForce.
     if (!stopped) {
       row.low = -motor.maxForce, row.high = motor.maxForce;

@@ -10,6 +10,13 @@
 /// `high` it may be smaller. Together the rows are a linear complementarity problem with bounds (Cottle, Pang and Stone
 /// 1992, The Linear Complementarity Problem). The row's force on the bodies is J_A^T x and J_B^T x.
 ///
+/// Beside x there may be an inertial force along a row, of a rotor that turns with a joint's axis and of its damping:
+///
+///     y = I (s - J u),     I = armature + damping dt,     s = armature / I times the present velocity / dt.
+///
+/// It acts whether the equation holds or not. With the total force t = x + y a row that holds is J u + D' t = r' with
+/// D' = D / (1 + D I) and r' = (r + D I s) / (1 + D I); else y alone makes it J u + t / I = s.
+///
 /// CFM and ERP are those of ODE (Smith, ODE manual, "Joint error and the Error Reduction Parameter" and "Soft
 /// constraint and Constraint Force Mixing").
 
@@ -40,6 +47,7 @@ struct Row {
   double softness = 0;                      ///< D, at least 0
   double low = -HUGE_VAL, high = HUGE_VAL;  ///< low <= 0 <= high
   double force = 0;                         ///< x; set by System::solve()
+  double inertia = 0, inertialTarget = 0;   ///< I and s
   Index nodeA = kNone, nodeB = kNone;       ///< nodes of the island's trees; nodeB kNone: the static world
   RowState state = RowState::holds;
   std::uint8_t axis = kNoAxis;  ///< of the joint, 0..2, for the row of a motor or stop
@@ -49,6 +57,18 @@ struct Row {
   Index nextFolded = kNone;  ///< next folded row of the same body
 
   bool holds() const { return state == RowState::holds; }
+  /// The row is one of the equations: it holds, or has an inertial force.
+  bool active() const { return holds() || inertia > 0; }
+  /// D and r of the equation for the total force; the row is active.
+  double totalSoftness() const {
+    return !holds() ? 1 / inertia : inertia > 0 ? softness / (1 + softness * inertia) : softness;
+  }
+  double totalTarget() const {
+    if (!holds()) return inertialTarget;
+    if (inertia == 0) return target;
+    const double share = softness * inertia;
+    return (target + share * inertialTarget) / (1 + share);
+  }
   bool bounded() const { return low != -HUGE_VAL || high != HUGE_VAL; }
   /// The force while the equation does not hold; infinite where the state's bound is.
   double bound() const { return state == RowState::atLow ? low : state == RowState::atHigh ? high : 0; }

@@ -30,15 +30,18 @@ void System::readForces() {
   // Rows of tree joints.
   for (const Node& node : trees.nodes)
     for (int i = 0; Row & row : rows.range(node.firstRow, node.rowCount)) {
-      if (row.holds()) row.force = node.jointForces[i];
+      if (row.active()) row.force = node.jointForces[i];
       ++i;
     }
-  // Rows at bounds, and folded rows: x = D^-1 (r - J u). Coupling wrote its own.
+  // Rows at bounds, and folded rows: x = D^-1 (r - J u). Coupling wrote its own. The force of a row is without its
+  // inertial force.
   for (Row& row : rows) {
     if (!row.holds())
       row.force = row.bound();
     else if (row.folded)
       row.force = (row.target - trees.motionAlong(row)) / row.softness;
+    else if (row.inertia > 0)
+      row.force -= row.inertia * (row.inertialTarget - trees.motionAlong(row));
   }
 }
 

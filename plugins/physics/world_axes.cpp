@@ -167,24 +167,27 @@ void WorldModel::addAlong(const Joint& j, int axis, double force) {
   b->torque += arm.cross(along);
 }
 
+bool WorldModel::acts(const Joint& j) const {
+  return attached(j) && (state_.bodies[j.a].awake || (j.b != kNone && state_.bodies[j.b].awake));
+}
+
+double WorldModel::exactRate(Index joint, int axis) const {
+  const Joint& j = model_.joints[joint];
+  if (j.type == JointType::slider) return rateOf(joint, axis);
+  return angleSign(j, axis) * worldAxis(j, axis).dot(angularVelocity(stateAt(j.a)) - angularVelocity(stateAt(j.b)));
+}
+
 void WorldModel::applyControls() {
-  // Forces on what sleeps would pile up.
-  const auto acts = [&](const Joint& j) {
-    return attached(j) && (state_.bodies[j.a].awake || (j.b != kNone && state_.bodies[j.b].awake));
-  };
-  const auto rate = [&](Index joint, int axis) {
-    const Joint& j = model_.joints[joint];
-    if (j.type == JointType::slider) return rateOf(joint, axis);
-    return angleSign(j, axis) * worldAxis(j, axis).dot(angularVelocity(stateAt(j.a)) - angularVelocity(stateAt(j.b)));
-  };
   for (const engine::AxisControl& c : state_.controls)
     if (const Joint& j = model_.joints[c.joint]; acts(j))
-      addAlong(j, c.axis, c.control.at(angleOf(c.joint, c.axis), rate(c.joint, c.axis)));
-  if (!damped_) return;
+      addAlong(j, c.axis, c.control.at(angleOf(c.joint, c.axis), exactRate(c.joint, c.axis)));
+}
+
+void WorldModel::applyDamping() {
   for (Index i = 0; i < model_.joints.size(); ++i)
     for (int axis = 0; axis < axesOf(model_.joints[i].type); ++axis)
       if (const Joint& j = model_.joints[i]; j.axes[axis].damping > 0 && acts(j))
-        addAlong(j, axis, -j.axes[axis].damping * rate(i, axis));
+        addAlong(j, axis, -j.axes[axis].damping * exactRate(i, axis));
 }
 
 bool WorldModel::atStop(JointHandle joint, int axis) const {

@@ -446,6 +446,7 @@ void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, doubl
   if (std::none_of(state_.bodies.begin(), state_.bodies.end(), [](const DynamicState& s) { return s.awake; })) return;
   if (model_.parameters.autoDisable && engine.sleeps()) putToSleep(contacts, dt);
   if (!engine.controls()) applyControls();
+  if (!engine.damps() && damped_) applyDamping();
   engine::Step step{model_, state_, contacts, rounded(dt), {}};
   engine.step(step);
   ++poses_;

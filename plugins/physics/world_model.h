@@ -254,8 +254,13 @@ class WorldModel {
   void compact();
   void compactWhenMany();
   void putToSleep(const engine::Contacts& contacts, double dt);
-  /// Adds the forces of controllers and of damping to those on the bodies.
+  /// Add the forces of controllers and of damping to those on the bodies.
   void applyControls();
+  void applyDamping();
+  /// False for a joint whose bodies sleep: forces on them would pile up.
+  bool acts(const engine::Joint& joint) const;
+  /// The rate of an axis' angle, or place, without ODE's rounding [rad/s or m/s].
+  double exactRate(engine::Index joint, int axis) const;
   void addAlong(const engine::Joint& joint, int axis, double force);
   void listControls();
   void checkBodies();

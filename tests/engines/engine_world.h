@@ -39,7 +39,7 @@ struct EngineKind {
 /// All engines. The last is an example of how little one must do.
 inline const EngineKind kEngines[] = {
     {.name = "OdeEngine", .plugin = "physics-ode"},
-    {.name = "ArticulatedEngine", .plugin = "physics-articulated"},
+    {.name = "ArticulatedEngine", .plugin = "physics-articulated", .armature = true},
     {.name = "MujocoEngine",
      .plugin = "physics-mujoco",
      .loops = false,
