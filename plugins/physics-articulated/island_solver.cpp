@@ -37,6 +37,13 @@ void IslandSolver::clear() {
   pyramidRows_.clear();
 }
 
+/// A row cannot be at an infinite bound.
+void IslandSolver::makeFinite(Row& row) {
+  for (RowState* state : {&row.state, &row.frictionless})
+    if ((*state == RowState::atLow && std::isinf(row.low)) || (*state == RowState::atHigh && std::isinf(row.high)))
+      *state = RowState::holds;
+}
+
 /// The node of a body; kNone for the world.
 Index IslandSolver::nodeOf(const WorldView& world, Index body) const {
   if (body == kNone) return kNone;
@@ -99,9 +106,11 @@ IslandSolver::RowRange IslandSolver::addJoint(WorldView& world, Index index) {
     Row& row = rows[i];
     row.nodeA = a, row.nodeB = b;
     if (!row.bounded()) continue;
-    if (last.stop[row.axis] == row.stop) row.state = last.state[row.axis];
-    // A row cannot be at an infinite bound.
-    if (std::isinf(row.bound())) row.state = RowState::holds;
+    if (last.stop[row.axis] == row.stop) {
+      row.state = last.state[row.axis];
+      row.frictionless = last.frictionless[row.axis];
+    }
+    makeFinite(row);
     addBounded(i);
   }
   joints_.push_back(range);
@@ -175,8 +184,11 @@ void IslandSolver::readContacts(WorldView& world, const IslandContents& island) 
     for (Index i = range.first; i < range.end(); ++i) {
       Row& row = rows[i];
       row.nodeA = a, row.nodeB = b;
-      if (last) row.state = (*last)[i - range.first];
-      if (std::isinf(row.bound())) row.state = RowState::holds;
+      if (last) {
+        row.state = last->rows[i - range.first];
+        row.frictionless = last->frictionless;
+      }
+      if (row.normalRow == kNone) makeFinite(row);
       if (b == kNone && row.softness * kMaxFoldedStiffness > freeMobility(row.jacobianA, a))
         fold(i);
       else
@@ -203,11 +215,25 @@ void IslandSolver::setExternalForces() {
 }
 
 bool IslandSolver::solve() {
+  if (pyramidRows_.empty()) return pivoting_.solve(system_);
   // A friction pyramid is bounded by mu times the normal force that acts without this friction (ODE's dContactApprox1):
-  // solve without it first.
-  for (const Index i : pyramidRows_) system_.rows[i].state = RowState::off;
+  // solve without it first. Each of the two searches begins where its own one of the last step ended.
+  const auto exchange = [&] {
+    for (const BoundedRow& b : pivoting_.rows) {
+      Row& row = system_.rows[b.row];
+      if (row.state == row.frictionless) continue;
+      std::swap(row.state, row.frictionless);
+      system_.stateChanged(row);
+    }
+  };
+  for (const Index i : pyramidRows_) {
+    Row& row = system_.rows[i];
+    row.frictionless = row.state;
+    row.state = RowState::off;
+  }
+  exchange();
   if (!pivoting_.solve(system_)) return false;
-  if (pyramidRows_.empty()) return true;
+  exchange();
   for (const Index i : pyramidRows_) {
     Row& row = system_.rows[i];
     const double normalForce = std::abs(system_.rows[row.normalRow].force);
@@ -215,7 +241,8 @@ bool IslandSolver::solve() {
     row.high = normalForce == 0 ? 0 : row.high * normalForce;
     row.low = -row.high;
     if (row.high == 0) continue;
-    row.state = RowState::holds;
+    row.state = row.frictionless == RowState::off ? RowState::holds : row.frictionless;
+    makeFinite(row);
     system_.stateChanged(row);
     if (row.bounded()) addBounded(i);
   }
@@ -252,12 +279,14 @@ void IslandSolver::writeWarmStart(WorldView& world) const {
     for (const Row& row : system_.rows.range(range.first, range.count)) {
       if (row.axis == kNoAxis) continue;
       warmStart.state[row.axis] = row.state;
+      warmStart.frictionless[row.axis] = pyramidRows_.empty() ? row.state : row.frictionless;
       warmStart.stop[row.axis] = row.stop;
     }
   }
   for (const RowRange& range : contacts_) {
     ContactWarmStart::States& states = world.contacts.current(range.source);
-    for (Index i = 0; i < range.count; ++i) states[i] = system_.rows[range.first + i].state;
+    for (Index i = 0; i < range.count; ++i) states.rows[i] = system_.rows[range.first + i].state;
+    states.frictionless = system_.rows[range.first].frictionless;
   }
 }
 

@@ -47,6 +47,7 @@ class IslandSolver {
     Index end() const { return first + count; }
   };
   void clear();
+  static void makeFinite(Row& row);
   void readBodies(WorldView& world, const IslandContents& island);
   void readJoints(WorldView& world, const IslandContents& island);
   void readContacts(WorldView& world, const IslandContents& island);

@@ -10,13 +10,17 @@ namespace spark::articulated {
 /// States of the motors and stops of a joint, by axis. A state counts only while the axis is at the same stop.
 struct JointWarmStart {
   std::array<RowState, 3> state{RowState::holds, RowState::holds, RowState::holds};
+  std::array<RowState, 3> frictionless = state;  ///< see Row::frictionless
   std::array<Stop, 3> stop{Stop::none, Stop::none, Stop::none};
 };
 
 /// States of the rows of all contacts of a world.
 class ContactWarmStart {
  public:
-  using States = std::array<RowState, kMaxContactRows>;
+  struct States {
+    std::array<RowState, kMaxContactRows> rows{};
+    RowState frictionless = RowState::holds;  ///< of the normal row, see Row::frictionless
+  };
   /// Begins a step: the states written so far become the last step's. Contacts are matched with the last step's by
   /// their geoms; contacts of both steps are in the same order, with some added and some removed.
   void match(std::span<const engine::Contact> contacts);
