@@ -30,12 +30,14 @@ function files()
   return server
 end
 
---- Scene server with the importer of the scene language, and an empty active scene at /usr/scene.
+--- Scene server with the importers of RSG and MJCF, and an empty active scene at /usr/scene.
 function scene()
   plugin "scene"
   plugin "scene-rsg"
+  plugin "scene-mjcf"
   local server = new("SceneServer", "/sys/server/scene")
   new("RsgImporter", "/sys/server/scene/rsg")
+  new("MjcfImporter", "/sys/server/scene/mjcf")
   new("Scene", "/usr/scene")
   return server
 end

@@ -57,6 +57,12 @@ void Joint::describe(Description<Joint>& d) {
   axis("DryFriction", &J::set<P::dryFriction>, &J::get<P::dryFriction>, "Nm or N",
        "Largest force of dry friction; of an axis with a controller.");
 
+  d.method("setController", &J::setController)
+      .parameters({"axis", "stiffness [Nm/rad]", "damping [N m s/rad]", "position [rad]", "velocity [rad/s]", "force [Nm]",
+                   "maxForce [Nm]"})
+      .doc(
+          "Puts a controller in place of the axis' motor: stiffness (position - angle) + damping (velocity - rate) + "
+          "force, at most maxForce; of a slider m and N.");
   // MuJoCo's documentation, "joint".
   using M = engine::MujocoAxis;
   const auto firmness = [&](const char* name, auto set, const char* numbers, const char* what) {
@@ -205,6 +211,12 @@ void Joint::changeMujoco(int axis, F change) {
 template <auto Member>
 void Joint::setMujoco(int axis, const std::vector<double>& numbers) {
   changeMujoco(axis, [&](engine::MujocoAxis& m) { physics::take(m.*Member, numbers, where()); });
+}
+
+void Joint::setController(int axis, double stiffness, double damping, double position, double velocity, double force,
+                          double maxForce) {
+  expectAxis(axis);
+  control(axis, {stiffness, damping, position, velocity, force, maxForce});
 }
 
 void Joint::setMujocoMargin(int axis, double margin) {

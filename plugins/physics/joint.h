@@ -101,6 +101,8 @@ class Joint : public PhysicsObject, public IJoint {
   template <auto Member>
   void setMujoco(int axis, const std::vector<double>& numbers);
   void setMujocoMargin(int axis, double margin);
+  void setController(int axis, double stiffness, double damping, double position, double velocity, double force,
+                     double maxForce);
   void attach(std::string first, std::string second);
   /// The body at a path relative to the joint; empty, with a warning, when there is none.
   Ref<RigidBody> bodyAt(const std::string& path);

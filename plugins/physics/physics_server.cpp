@@ -220,13 +220,17 @@ void PhysicsServer::overlaps(const Vec3& center, double radius, std::vector<ICol
 }
 
 void PhysicsServer::reportFaults() {
+  // One line for all of them: a robot has many.
+  const RigidBody* first = nullptr;
+  std::size_t others = 0;
   for (const physics::BodyHandle handle : world_->model()->repaired())
     for (const Placed& p : bodies_)
-      if (p.body->handle() == handle && p.body->countFault())
-        kernel().log().error(
-            "{}: its position or speed was no number after the step; it was put back to its last good place, at rest. "
-            "Look for extreme forces, masses or joint parameters.",
-            p.body->path());
+      if (p.body->handle() == handle && p.body->countFault()) (first ? void(++others) : void(first = p.body));
+  if (!first) return;
+  kernel().log().error(
+      "{}{}: its position or speed was no number after the step; it was put back to its last good place, at rest. Look "
+      "for extreme forces, masses or joint parameters.",
+      first->path(), others > 0 ? fmt::format(" (and {} more)", others) : "");
 }
 
 namespace {

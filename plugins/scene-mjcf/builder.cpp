@@ -314,9 +314,11 @@ void Builder::exclude() {
 
 // ---- actuators and sensors ----
 
-bool Builder::has(const char* className, const Element& user) {
-  if (top_->kernel().findClass(className)) return true;
-  leftOver_.add(user, fmt::format("<{}> is left out: there is no class {} (its plugin is not loaded)", user.tag(), className));
+bool Builder::has(const char* className) {
+  const Kernel& kernel = top_->kernel();
+  const char* const base = std::string_view(className).ends_with("Effector") ? "Effector" : "Perceptor";
+  if (kernel.findClass(base) && kernel.findClass(className)) return true;
+  withoutParts_ = true;
   return false;
 }
 
@@ -356,7 +358,7 @@ void Builder::makeActuator(const std::vector<const Actuator*>& all, const MadeJo
   const Actuator* torque = ending("_tau", [](const Actuator& x) { return x.bias == std::array<double, 3>{}; });
   if (all.size() == 3 && position && velocity && torque) {
     on.made->control(0, {.stiffness = position->gain, .damping = velocity->gain, .maxForce = maxForce});
-    if (!has("ControlEffector", first.from)) return;
+    if (!has("ControlEffector")) return;
     Leaf& effector = parent.create("ControlEffector", position->name.substr(0, position->name.size() - 4));
     setProperty(effector, "maxForce", maxForce);
     return;
@@ -369,7 +371,7 @@ void Builder::makeActuator(const std::vector<const Actuator*>& all, const MadeJo
   if (law.stiffness < 0 || law.damping < 0)
     return leftOver_.add(first.from, "an actuator that drives a joint away from its target is left out");
   on.made->control(0, law);
-  if (!has("ActuatorEffector", first.from)) return;
+  if (!has("ActuatorEffector")) return;
   Leaf& effector = parent.create("ActuatorEffector", first.name.empty() ? on.joint->name : first.name);
   setProperty(effector, "gain", first.gear * first.gain);
   setProperty(effector, "bias", law.force);
@@ -399,14 +401,14 @@ void Builder::makeSensors() {
       const bool known = std::any_of(parent.children().begin(), parent.children().end(), [](const auto& c) {
         return c->classObject()->name() == "JointPerceptor";
       });
-      if (!known && has("JointPerceptor", s.from)) parent.create("JointPerceptor", s.name);
+      if (!known && has("JointPerceptor")) parent.create("JointPerceptor", s.name);
     } else if (s.kind == "gyro" || s.kind == "accelerometer") {
       const char* const kind = s.kind == "gyro" ? "GyroRatePerceptor" : "Accelerometer";
       Node& site = frame(s);
-      if (has(kind, s.from)) site.parent()->create(kind, s.name);
+      if (has(kind)) site.parent()->create(kind, s.name);
     } else if (s.kind == "framepos" || s.kind == "framequat") {
       const char* const kind = s.kind == "framepos" ? "PositionPerceptor" : "OrientationPerceptor";
-      if (has(kind, s.from)) frame(s).create(kind, s.name);
+      if (has(kind)) frame(s).create(kind, s.name);
     } else {
       leftOver_.element(s.from);
     }

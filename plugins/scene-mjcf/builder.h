@@ -19,6 +19,8 @@ class Builder {
       : model_(model), prefix_(std::move(prefix)), leftOver_(leftOver) {}
   /// Builds below `root`. Throws Error with file:line:column; nothing is left then.
   void build(Node& root);
+  /// After build(): sensors and actuators have no perceptors and effectors, because those classes are not there.
+  bool withoutParts() const { return withoutParts_; }
 
  private:
   /// A body of the file that has joints, with what is part of it.
@@ -53,8 +55,8 @@ class Builder {
   Node& transform(Node& parent, const std::string& name, const Pose& local);
   Node& frame(const Sensor& sensor);
   Part* partOf(const std::string& body, const Element& user);
-  /// True when there is such a class; else says once that its nodes are left out.
-  bool has(const char* className, const Element& user);
+  /// True when there is such a class of perceptors or effectors.
+  bool has(const char* className);
   std::string nameOf(const std::string& given, const char* kind);
 
   const Model& model_;
@@ -68,6 +70,7 @@ class Builder {
   std::map<std::string, Part*, std::less<>> bodies_;
   std::set<std::string, std::less<>> names_;
   int unnamed_ = 0;
+  bool withoutParts_ = false;
 };
 
 }  // namespace spark::mjcf

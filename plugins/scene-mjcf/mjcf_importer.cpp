@@ -34,6 +34,8 @@ void MjcfImporter::import(std::string_view file, Node& root, const List& argumen
   if (strict_ && !before.empty()) throw Error(fmt::format("{}", fmt::join(before, "; ")));
   builder.build(root);
   ++imports_;
+  if (builder.withoutParts())
+    kernel().log().info("{}: its sensors and actuators become no perceptors and effectors: those are of the plugins gamecontrol, sensors and effectors", file);
   for (const std::string& sentence : leftOver.sentences()) kernel().log().warning("{}", sentence);
 }
 
