@@ -43,12 +43,15 @@ class ISceneServer {
 /// An importer of a scene format. A child of the scene server.
 class ISceneImporter {
  public:
-  SPARK_INTERFACE(ISceneImporter, 1);
+  SPARK_INTERFACE(ISceneImporter, 2);
   virtual ~ISceneImporter() = default;
   /// True when `text` is in the format of this importer, judged by its beginning.
   virtual bool recognises(std::string_view text) const = 0;
   /// Creates the nodes of the file below `root`. `arguments` are those of the file's template. Throws Error.
   virtual void import(std::string_view file, Node& root, const List& arguments) = 0;
+  /// True: all transforms that it makes mean something. False: the scene server removes those that are empty or contain
+  /// only transforms, as the installed base does.
+  virtual bool keepsTransforms() const { return false; }
 };
 
 /// A named group of variables, which scene files read as `Name.variable`. A child of /sys/variables.

@@ -35,6 +35,11 @@ void Collider::describe(Description<Collider>& d) {
   d.method("addNotCollideWithColliderName", &Collider::addNotCollideWithColliderName)
       .parameters({"name", "on"})
       .doc("true: excludes collisions with colliders of that name in the same space; false: allows them again.");
+  d.method("addCollideWithColliderName", &Collider::addCollideWithColliderName)
+      .parameters({"name", "on"})
+      .doc("true: it collides with colliders of that name in the same space, whatever contactTypes say.");
+  d.property("collideWith", &Collider::collideWith)
+      .doc("Names of the colliders of its space that it collides with whatever contactTypes say.");
   d.property("contactTypes", &Collider::contactTypes_)
       .doc("Bits of the kinds of colliders that it is; MuJoCo's contype. Two collide if a bit of one is in the other's "
            "contactAffinities.");
@@ -182,8 +187,18 @@ void Collider::addNotCollideWithColliderName(std::string name, bool on) {
   if (on) notCollideWith_.push_back(std::move(name));
 }
 
+void Collider::addCollideWithColliderName(std::string name, bool on) {
+  std::erase(collideWith_, name);
+  if (on) collideWith_.push_back(std::move(name));
+}
+
 bool Collider::mayCollideWith(const Collider& other) const {
-  if (!((contactTypes_ & other.contactAffinities_) | (other.contactTypes_ & contactAffinities_))) return false;
+  const auto names = [](const std::vector<std::string>& list, const Collider& c) {
+    return std::find(list.begin(), list.end(), c.name()) != list.end();
+  };
+  if (!((contactTypes_ & other.contactAffinities_) | (other.contactTypes_ & contactAffinities_)) &&
+      (space_ != other.space_ || !(names(collideWith_, other) || names(other.collideWith_, *this))))
+    return false;
 
   // A detached group collides only with itself and with static colliders.
   const auto detached = [](const CollisionGroup* group) { return group && group->detached(); };
@@ -193,10 +208,7 @@ bool Collider::mayCollideWith(const Collider& other) const {
   // Colliders exclude each other by name within one space.
   if (notCollideWith_.empty() && other.notCollideWith_.empty()) return true;
   if (space_ != other.space_) return true;
-  const auto excludes = [](const Collider& a, const Collider& b) {
-    return std::find(a.notCollideWith_.begin(), a.notCollideWith_.end(), b.name()) != a.notCollideWith_.end();
-  };
-  return !excludes(*this, other) && !excludes(other, *this);
+  return !names(notCollideWith_, other) && !names(other.notCollideWith_, *this);
 }
 
 void Collider::refreshHandlers(bool defaultOnTransform) {

@@ -41,8 +41,9 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   /// Collects the handlers among the children. `defaultOnTransform`: a TransformCollider without a handler of its own
   /// gets the default surface; false: it takes over the handlers of its inner collider.
   void refreshHandlers(bool defaultOnTransform);
-  /// False when collisions of the two are excluded: no bit of one's kinds is in the other's affinities, they are in the
-  /// same space and one lists the other's name, or one is in a detached group that the other is not in.
+  /// False when collisions of the two are excluded: no bit of one's kinds is in the other's affinities (unless they are
+  /// in the same space and one asks for the other by name), they are in the same space and one excludes the other by
+  /// name, or one is in a detached group that the other is not in.
   bool mayCollideWith(const Collider& other) const;
   /// Sets the innermost group around the collider; nullptr: none.
   void setGroup(const CollisionGroup* group) { group_ = group; }
@@ -75,6 +76,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   /// Depth of a point, given in the frame of the nearest transform, below the surface [m]; negative outside.
   double pointDepth(const Vec3& p) const;
   const std::vector<std::string>& notCollideWith() const { return notCollideWith_; }
+  const std::vector<std::string>& collideWith() const { return collideWith_; }
 
  private:
   /// The outermost collider around it (or this), which contacts are reported for.
@@ -91,6 +93,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   void setRotation(const std::vector<double>& matrix);
   void addCollisionHandler(const std::string& className);
   void addNotCollideWithColliderName(std::string name, bool on);
+  void addCollideWithColliderName(std::string name, bool on);
   // What MuJoCo alone reads.
   const Vec3& mujocoFriction() const { return mujoco_.friction; }
   void setMujocoFriction(const Vec3& v) { mujoco_.friction = v, applyMujoco(); }
@@ -119,7 +122,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   std::int64_t contactTypes_ = 1, contactAffinities_ = 1;  ///< bits
   bool solid_ = false, listens_ = false, hasBody_ = false;
   Handlers handlers_;
-  std::vector<std::string> notCollideWith_;
+  std::vector<std::string> notCollideWith_, collideWith_;
   mutable std::vector<const Collider*> inner_;
   mutable std::uint64_t innerAt_ = 0;
 };

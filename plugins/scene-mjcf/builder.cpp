@@ -49,6 +49,7 @@ void Builder::build(Node& root) {
       if (p.node) makeJoints(p);
     for (const Part& p : parts_) makeGeoms(p), makeSites(p);
     exclude();
+    pair();
     makeActuators();
     makeSensors();
     setOptions(root);
@@ -202,13 +203,15 @@ void Builder::makeJoint(Part& p, const Joint& j, Node& child, const std::string&
 
 void Builder::makeGeoms(const Part& p) {
   Part& carrier = parts_[static_cast<std::size_t>(p.carrier)];
+  // Where a body is drawn by meshes alone, which viewers do not have, its collision shapes are shown.
+  const bool drawn = std::any_of(p.body->geoms.begin(), p.body->geoms.end(), [](const Geom& g) { return g.visible(); });
   for (const Geom& g : p.body->geoms) {
     // In the frame of the carrier's body, or in the world.
     const Pose pose = p.carrier == 0 ? compose(p.world, g.pose)
                                      : compose(Pose{-carrier.mass.center, Mat3::Identity()}, compose(p.inCarrier, g.pose));
     try {
-      if (g.collides()) makeCollider(g, carrier, pose);
-      if (g.visible()) makeVisible(g, carrier.node ? *carrier.node : *top_, carrier.node ? pose : compose(inverse(rootPose_), pose));
+      if (g.collides() || inPair(g.name)) makeCollider(g, carrier, pose);
+      if (g.visible() || !drawn) makeVisible(g, carrier.node ? *carrier.node : *top_, carrier.node ? pose : compose(inverse(rootPose_), pose));
     } catch (const Error& e) {
       throw Error(fmt::format("{}: cannot make the geom '{}'", g.from.where(), g.name), e);
     }
@@ -222,6 +225,7 @@ void Builder::makeCollider(const Geom& g, Part& carrier, const Pose& pose) {
   Node& parent = carrier.node ? *carrier.node : *top_;
   Node& c = *parent.create(kinds[static_cast<int>(s.shape)], nameOf(g.name, "geom")).asNode();
   carrier.colliders.push_back(c.name());
+  if (!g.name.empty() && !geoms_.emplace(g.name, &c).second) throw Error(fmt::format("there are two geoms '{}'", g.name));
   switch (s.shape) {
     case Shape::box:
       callMethod(c, "setBoxLengths", numbers(s.lengths));
@@ -300,6 +304,20 @@ Builder::Part* Builder::partOf(const std::string& body, const Element& user) {
   for (Part& p : parts_)  // a static one
     if (p.body->name == body && !body.empty()) return &p;
   throw user.error(fmt::format("there is no body '{}'", body));
+}
+
+bool Builder::inPair(const std::string& geom) const {
+  return !geom.empty() && std::any_of(model_.pairs.begin(), model_.pairs.end(),
+                                      [&](const Pair& p) { return p.geom1 == geom || p.geom2 == geom; });
+}
+
+void Builder::pair() {
+  for (const Pair& p : model_.pairs) {
+    const auto first = geoms_.find(p.geom1), second = geoms_.find(p.geom2);
+    if (first == geoms_.end() || second == geoms_.end())
+      throw p.from.error(fmt::format("there is no geom '{}'", first == geoms_.end() ? p.geom1 : p.geom2));
+    callMethod(*first->second, "addCollideWithColliderName", List{second->second->name(), true});
+  }
 }
 
 void Builder::exclude() {

@@ -48,6 +48,8 @@ class Builder {
   void makeVisible(const Geom& geom, Node& parent, const Pose& pose);
   void makeSites(const Part& part);
   void exclude();
+  void pair();
+  bool inPair(const std::string& geom) const;
   void makeActuators();
   void makeActuator(const std::vector<const Actuator*>& all, const MadeJoint& joint);
   void makeSensors();
@@ -66,7 +68,7 @@ class Builder {
   Pose rootPose_;
   std::vector<Part> parts_;  ///< by body
   std::map<std::string, MadeJoint, std::less<>> joints_;
-  std::map<std::string, Node*, std::less<>> sites_;
+  std::map<std::string, Node*, std::less<>> sites_, geoms_;  ///< geoms: their colliders
   std::map<std::string, Part*, std::less<>> bodies_;
   std::set<std::string, std::less<>> names_;
   int unnamed_ = 0;

@@ -17,6 +17,7 @@ class MjcfImporter : public Leaf, public ISceneImporter {
   /// Arguments: none, or a prefix for the names of all nodes but perceptors and effectors. Throws Error with
   /// file:line:column; the tree is then as before.
   void import(std::string_view file, Node& root, const List& arguments) override;
+  bool keepsTransforms() const override { return true; }
 
  private:
   bool strict_ = false;

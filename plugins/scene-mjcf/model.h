@@ -76,9 +76,16 @@ struct Sensor {
   std::string object;  ///< the joint, site or body that it belongs to
 };
 
+/// Two bodies that do not collide.
 struct Exclusion {
   Element from;
   std::string body1, body2;
+};
+
+/// Two geoms that collide, whatever their types say.
+struct Pair {
+  Element from;
+  std::string geom1, geom2;
 };
 
 /// Options of the world that the file sets.
@@ -97,6 +104,7 @@ struct Model {
   std::vector<Actuator> actuators;
   std::vector<Sensor> sensors;
   std::vector<Exclusion> exclusions;
+  std::vector<Pair> pairs;
 };
 
 /// Vertices and triangles of a mesh file: `read` reads it. Throws Error.

@@ -533,12 +533,15 @@ void Reader::site(const Element& e, const Scope& scope) {
 
 void Reader::contact(const Element& e) {
   for (const Element& child : document_.children(e)) {
-    if (child.tag() != "exclude") {
+    if (child.tag() != "exclude" && child.tag() != "pair") {
       leftOver_.element(child);
       continue;
     }
     Attributes a = attributes(child);
-    model_.exclusions.push_back({child, a.text("body1"), a.text("body2")});
+    if (child.tag() == "exclude")
+      model_.exclusions.push_back({child, a.text("body1"), a.text("body2")});
+    else
+      model_.pairs.push_back({child, a.text("geom1"), a.text("geom2")});
     a.ignore({"name"});
     a.finish();
   }

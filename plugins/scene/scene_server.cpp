@@ -81,13 +81,25 @@ void SceneServer::importScene(std::string_view file, Node& root, const List& arg
     std::uint64_t& first;
     bool outermost;
   } importing(firstImported_, kernel().lastId());
+  if (importing.outermost) kept_.clear();
+  const std::uint64_t before = kernel().lastId();
+  bool keeps = false;
   try {
-    importerFor(name).import(name, root, arguments);
+    ISceneImporter& importer = importerFor(name);
+    keeps = importer.keepsTransforms();
+    importer.import(name, root, arguments);
   } catch (...) {
     markModified();  // nodes that were created before the error are kept
     throw;
   }
-  if (flattenTransforms_ && rootAlive) spark::flattenTransforms(root, firstImported_);
+  if (keeps)
+    kept_.emplace_back(before + 1, kernel().lastId());
+  else if (flattenTransforms_ && rootAlive)
+    spark::flattenTransforms(root, [&](const Leaf& node) {
+      return node.id() >= firstImported_ && std::none_of(kept_.begin(), kept_.end(), [&](const auto& ids) {
+               return ids.first <= node.id() && node.id() <= ids.second;
+             });
+    });
   markModified();
 }
 
@@ -124,13 +136,13 @@ void Placement::place(Node& scene) {
   }
 }
 
-void flattenTransforms(Node& root, std::uint64_t firstId) {
+void flattenTransforms(Node& root, const std::function<bool(const Leaf&)>& removable) {
   // Children first. Grandchildren that move up are appended to the children of `root`, so the loop reaches them.
   for (std::size_t i = 0; i < root.children().size();) {
     Leaf& child = *root.children()[i];
     if (Node* node = child.asNode()) {
-      flattenTransforms(*node, firstId);
-      if (child.id() >= firstId && child.as<Transform>() && node->children().empty()) {
+      flattenTransforms(*node, removable);
+      if (child.as<Transform>() && node->children().empty() && removable(child)) {
         root.remove(child);
         continue;
       }
@@ -139,8 +151,8 @@ void flattenTransforms(Node& root, std::uint64_t firstId) {
   }
 
   // Then `root` itself, if it is a transform of the import that contains only transforms.
-  auto transform = root.id() >= firstId ? root.as<Transform>() : nullptr;
-  if (!transform || root.children().empty() || !root.parent() || !root.parent()->as<SceneNode>()) return;
+  auto transform = root.as<Transform>();
+  if (!transform || !removable(root) || root.children().empty() || !root.parent() || !root.parent()->as<SceneNode>()) return;
   for (const auto& child : root.children())
     if (!child->as<Transform>()) return;
   while (!root.children().empty()) {

@@ -2,6 +2,7 @@
 /// \file
 /// The scene server: the active scene, imports, world matrices.
 
+#include <functional>
 #include <map>
 
 #include "api/scene.h"
@@ -74,6 +75,8 @@ class SceneServer : public Node, public ISceneServer {
   bool flattenTransforms_ = true;
   std::uint64_t modified_ = 0;
   std::uint64_t firstImported_ = 0;  ///< first id of the nodes of the current import; 0: there is none
+  /// First and last ids of the nodes in the current import whose importers keep their transforms.
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> kept_;
   Link<Node> scene_;
   Links<ISceneImporter> importers_;
   Placement placement_;
@@ -82,8 +85,8 @@ class SceneServer : public Node, public ISceneServer {
 };
 
 /// Removes the transforms at and below `root` that are empty or contain only transforms; their children move up. World
-/// poses are unchanged (scene-language section 1.11). Transforms with an id below `firstId` are kept: they existed
-/// before the import, and other code may refer to them.
-void flattenTransforms(Node& root, std::uint64_t firstId = 0);
+/// poses are unchanged (scene-language section 1.11). Only those that `removable` agrees to: others existed before the
+/// import, and other code may refer to them.
+void flattenTransforms(Node& root, const std::function<bool(const Leaf&)>& removable);
 
 }  // namespace spark
