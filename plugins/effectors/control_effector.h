@@ -24,8 +24,12 @@ class ControlEffector : public Effector {
       if (!read(i, n[i])) return read.remark();
     if (n[2] < 0 || n[3] < 0) return "expected a stiffness and a damping of 0 or more";
     const double unit = joint->jointType() == engine::JointType::slider ? 1 : degToRad(1);
-    joint->control(0, {.stiffness = n[2], .damping = n[3], .position = unit * n[0], .velocity = unit * n[1],
-                       .force = n[4], .maxForce = maxForce_});
+    joint->control(0, {.stiffness = n[2],
+                       .damping = n[3],
+                       .position = unit * n[0],
+                       .velocity = unit * n[1],
+                       .force = n[4],
+                       .maxForce = maxForce_});
     return read.remark();
   }
 
@@ -34,8 +38,8 @@ class ControlEffector : public Effector {
   double maxForce_ = HUGE_VAL;
 };
 
-/// `(name u)`: an actuator of MuJoCo on the joint above it: a force of gain u + bias - stiffness q - damping dq, for the
-/// joint's place q and rate dq [SI units].
+/// `(name u)`: an actuator of MuJoCo on the joint above it: a force of gain u + bias - stiffness q - damping dq, for
+/// the joint's place q and rate dq [SI units].
 class ActuatorEffector : public Effector {
   SPARK_CLASS(ActuatorEffector, Effector)
  public:
@@ -56,8 +60,10 @@ class ActuatorEffector : public Effector {
     if (!joint) return "there is no joint above it";
     NumberArguments read(action);
     if (double u = 0; read(0, u))
-      joint->control(0, {.stiffness = stiffness_, .damping = damping_,
-                         .force = gain_ * std::max(least_, std::min(most_, u)) + bias_, .maxForce = maxForce_});
+      joint->control(0, {.stiffness = stiffness_,
+                         .damping = damping_,
+                         .force = gain_ * std::max(least_, std::min(most_, u)) + bias_,
+                         .maxForce = maxForce_});
     return read.remark();
   }
 

@@ -27,7 +27,8 @@
 /// articulated-body inertia of the body, and -f corresponds to its bias force (Featherstone 2008, chapter 7).
 ///
 /// Every block is 6 x 6. A row that is not active (a motor at its bound, a stop that opens) has 0 in J and K and 1 in
-/// D, so that its force is 0; a force at a bound is part of f. An inertial force (rows.h) is part of x. A root that is connected to the world has no K.
+/// D, so that its force is 0; a force at a bound is part of f. An inertial force (rows.h) is part of x. A root that is
+/// connected to the world has no K.
 ///
 /// Rows of a contact with the static world concern one body alone. With D > 0 their forces are (r - J u) / D, which can
 /// be folded into that body: M += J^T D^-1 J, f += J^T D^-1 r. They are "folded rows".

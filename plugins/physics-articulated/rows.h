@@ -51,7 +51,7 @@ struct Row {
   Index nodeA = kNone, nodeB = kNone;       ///< nodes of the island's trees; nodeB kNone: the static world
   RowState state = RowState::holds;
   RowState frictionless = RowState::holds;  ///< its state in the solution without the friction of pyramids
-  std::uint8_t axis = kNoAxis;  ///< of the joint, 0..2, for the row of a motor or stop
+  std::uint8_t axis = kNoAxis;              ///< of the joint, 0..2, for the row of a motor or stop
   Stop stop = Stop::none;
   Index normalRow = kNone;   ///< friction: `low` and `high` are multiples of this row's force
   bool folded = false;       ///< is part of body A's inertia and force, see elimination.h

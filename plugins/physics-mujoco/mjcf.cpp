@@ -70,7 +70,8 @@ bool canBeInTree(const Joint& j) { return j.a != kNone && j.type != JointType::a
 
 }  // namespace
 
-Trees::Trees(const Model& model, const engine::State& state) : linkOf(model.bodies.size(), kNone) {
+Trees::Trees(const Model& model, const engine::State& state) {
+  std::vector<bool> placed(model.bodies.size(), false);
   std::vector<std::vector<Index>> jointsOf(model.bodies.size());
   for (Index i = 0; i < model.joints.size(); ++i) {
     const Joint& j = model.joints[i];
@@ -90,13 +91,13 @@ Trees::Trees(const Model& model, const engine::State& state) : linkOf(model.bodi
       const Pose b = zeroOfB(j, compose(inverse(poseOf(state, j.a)), poseOf(state, j.b)));
       link.zero = link.childIsA ? inverse(b) : b;
     }
-    linkOf[body] = static_cast<Index>(links.size());
+    placed[body] = true;
     links.push_back(link);
   };
   // Bodies that a joint connects to the world are roots if they can be.
   for (const bool toWorld : {true, false})
     for (Index body = 0; body < model.bodies.size(); ++body) {
-      if (linkOf[body] != kNone) continue;
+      if (placed[body]) continue;
       Index joint = kNone;
       for (const Index j : jointsOf[body])
         if (joint == kNone && model.joints[j].b == kNone) joint = j;
@@ -108,7 +109,7 @@ Trees::Trees(const Model& model, const engine::State& state) : linkOf(model.bodi
           if (used[j]) continue;
           const Joint& joint = model.joints[j];
           const Index other = joint.a == links[at].body ? joint.b : joint.a;
-          if (other != kNone && linkOf[other] == kNone) add(other, static_cast<Index>(at), j);
+          if (other != kNone && !placed[other]) add(other, static_cast<Index>(at), j);
         }
     }
   for (Index i = 0; i < model.joints.size(); ++i)

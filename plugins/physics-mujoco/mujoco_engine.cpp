@@ -1,6 +1,7 @@
 #include "mujoco_engine.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "spark/plugin.h"
 
@@ -9,6 +10,12 @@ namespace spark {
 using mujoco::MujocoWorld;
 
 namespace {
+
+/// Steps after which a model that was compiled aside takes over: one, and one more for so many bodies. On a machine of
+/// 2026 it is ready in half that time.
+constexpr int kBodiesPerStep = 6;
+/// Steps for which a world that changes again and again may wait for its model.
+constexpr int kLongestWait = 400;
 
 /// Room for what touches usually: memory grows with the square of the rows, so it is doubled where it does not suffice.
 mujoco::Sizes sizesFor(const engine::Model& model) {
@@ -29,6 +36,7 @@ MujocoEngine::Known& MujocoEngine::of(const engine::Model& model) {
 }
 
 void MujocoEngine::forget(const engine::Model& model) {
+  abandon(of(model));
   std::erase_if(worlds_, [&](const Known& known) { return known.id == model.id; });
 }
 
@@ -42,22 +50,65 @@ void MujocoEngine::compile(const engine::Model& model, const engine::State& stat
   known.dynamics = model.dynamics;
   const mujoco::Sizes least = sizesFor(model);
   known.sizes = {std::max(least.contacts, known.sizes.contacts), std::max(least.rows, known.sizes.rows)};
-  build(known, model, state);
+  if (known.world && static_cast<int>(model.bodies.size()) > atOnce_ && known.pending.waited < kLongestWait)
+    buildAside(known, model, state);
+  else
+    build(known, model, state);
 }
 
 void MujocoEngine::build(Known& known, const engine::Model& model, const engine::State& state) {
+  abandon(known);
   known.world.reset();
+  mujoco::Trees trees(model, state);
+  const std::string text = mujoco::toMjcf(model, trees, known.step, known.sizes);
   try {
-    known.world = std::make_unique<MujocoWorld>(model, state, known.step, known.sizes);
+    begin(known, model, state, std::move(trees), mujoco::compileWorld(text));
   } catch (const Error& e) {
     refuse(known, e.what());
-    return;
   }
-  ++compilations_;
-  if (!known.world->trees().leftOver.empty() && !std::exchange(warned_, true))
+}
+
+void MujocoEngine::begin(Known& known, const engine::Model& model, const engine::State& state, mujoco::Trees trees,
+                         mujoco::Compiled compiled) {
+  if (!trees.leftOver.empty() && !std::exchange(warned_, true))
     kernel().log().warning(
         "{}: {} joints have no effect in MuJoCo: those that close a loop of bodies, and angular motors", path(),
-        known.world->trees().leftOver.size());
+        trees.leftOver.size());
+  known.world = std::make_unique<MujocoWorld>(model, state, std::move(trees), std::move(compiled));
+  ++compilations_;
+}
+
+void MujocoEngine::buildAside(Known& known, const engine::Model& model, const engine::State& state) {
+  known.world->bind(model);
+  const int waited = known.pending.waited;
+  abandon(known);
+  Pending& p = known.pending;
+  p.waited = waited;
+  p.stepsLeft = 1 + static_cast<int>(model.bodies.size()) / kBodiesPerStep;
+  p.trees.emplace(model, state);
+  p.compiled =
+      std::async(std::launch::async, mujoco::compileWorld, mujoco::toMjcf(model, *p.trees, known.step, known.sizes));
+}
+
+void MujocoEngine::abandon(Known& known) {
+  std::erase_if(abandoned_,
+                [](const auto& f) { return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
+  if (known.pending.trees) abandoned_.push_back(std::move(known.pending.compiled));
+  known.pending = {};
+}
+
+void MujocoEngine::takePending(Known& known, const engine::Model& model, const engine::State& state) {
+  Pending& p = known.pending;
+  if (!p.trees) return;
+  ++p.waited;
+  if (--p.stepsLeft > 0) return;
+  try {
+    // Always after so many steps, so that runs are alike: it waits where the machine was slower.
+    begin(known, model, state, std::move(*p.trees), p.compiled.get());
+  } catch (const Error& e) {
+    refuse(known, e.what());
+  }
+  p = {};
 }
 
 /// The log says so once; nothing moves until the model is another one.
@@ -95,7 +146,9 @@ void MujocoEngine::step(engine::Step& step) {
   } catch (const Error& e) {
     return refuse(known, e.what());
   }
-  if (known.full || !known.world->isFull()) return report(*known.world);
+  report(*known.world);
+  takePending(known, step.model, step.state);
+  if (!known.world || known.full || !known.world->isFull()) return;
   const mujoco::Sizes old = known.sizes;
   kernel().log().info("{}: MuJoCo's room of {} contacts and {} rows was too small; it is doubled", path(), old.contacts,
                       old.rows);

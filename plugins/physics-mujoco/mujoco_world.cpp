@@ -41,20 +41,33 @@ double angleAbout(const Mat3& rotation, const Vec3& axis) {
 
 }  // namespace
 
-MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, const Sizes& sizes)
-    : trees_(model, state), m_(compile(toMjcf(model, trees_, step, sizes))), d_(mj_makeData(m_.get())) {
-  if (!d_) throw Error("MuJoCo has no memory for the world");
-  mark_ = state.newMark();
-  for (Index i = 0; i < model.bodies.size(); ++i)
-    bodyId_.push_back(mj_name2id(m_.get(), mjOBJ_BODY, bodyName(i).c_str()));
-  for (Index i = 0; i < trees_.links.size(); ++i)
-    rootOf_.push_back(trees_.links[i].parent == kNone ? i : rootOf_[trees_.links[i].parent]);
-  geomOf_.assign(m_->ngeom, kNone);
+Compiled compileWorld(const std::string& mjcf) {
+  Compiled c;
+  c.model = compile(mjcf);
+  c.data.reset(mj_makeData(c.model.get()));
+  if (!c.data) throw Error("MuJoCo has no memory for the world");
+  return c;
+}
+
+MujocoWorld::MujocoWorld(const Model& model, const State& state, Trees trees, Compiled compiled)
+    : trees_(std::move(trees)), m_(std::move(compiled.model)), d_(std::move(compiled.data)), mark_(state.newMark()) {
+  const auto id = [&](int kind, const std::string& name) { return mj_name2id(m_.get(), kind, name.c_str()); };
+  for (Index i = 0; i < trees_.links.size(); ++i) {
+    const Link& link = trees_.links[i];
+    rootOf_.push_back(link.parent == kNone ? i : rootOf_[link.parent]);
+    Origin& from = origins_.emplace_back();
+    from.body = model.bodies[link.body].id;
+    from.mujocoBody = id(mjOBJ_BODY, bodyName(link.body));
+    if (link.joint == kNone) continue;
+    const Joint& j = model.joints[link.joint];
+    from.joint = j.id;
+    from.attachedAt = j.attachedAt;
+    if (j.type == JointType::ball) continue;
+    for (int c = 0; c < coordinatesOf(j.type); ++c) from.mujocoJoints[c] = id(mjOBJ_JOINT, jointName(link.joint, c));
+  }
+  geoms_.assign(m_->ngeom, 0);
   for (Index i = 0; i < model.geoms.size(); ++i)
-    if (const int id = mj_name2id(m_.get(), mjOBJ_GEOM, geomName(i).c_str()); id >= 0) geomOf_[id] = i;
-  for (const Index i : trees_.leftOver)
-    if (model.joints[i].b != kNone) joined_.push_back(pairOf(model.joints[i].a, model.joints[i].b));
-  std::sort(joined_.begin(), joined_.end());
+    if (const int geom = id(mjOBJ_GEOM, geomName(i)); geom >= 0) geoms_[geom] = model.geoms[i].id;
 
   wrenches_.resize(static_cast<std::size_t>(m_->nbody));
   for (int body = 0; body < m_->nbody; ++body) {
@@ -63,28 +76,73 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, double step, co
     Vec3& edges = boxes_.emplace_back();
     for (int k = 0; k < 3; ++k) edges[k] = std::sqrt(std::max(mjMINVAL, i.sum() - 2 * i[k]) / mass * 6);
   }
+  bind(model);
+}
 
-  // The motors of the coordinates.
-  motors_.resize(m_->nv);
-  coordinates_.resize(model.joints.size());
-  for (const Link& link : trees_.links) {
+namespace {
+/// The index of an element with this identity; kNone: it was removed.
+template <class Element>
+Index indexOf(const std::vector<Element>& elements, std::uint64_t id) {
+  const auto found = std::lower_bound(elements.begin(), elements.end(), id,
+                                      [](const Element& e, std::uint64_t wanted) { return e.id < wanted; });
+  return found != elements.end() && found->id == id ? static_cast<Index>(found - elements.begin()) : kNone;
+}
+}  // namespace
+
+void MujocoWorld::bind(const Model& model) {
+  // Trees of which something was removed or attached elsewhere move no more.
+  std::vector<std::uint8_t> gone(trees_.links.size(), 0);
+  for (Index i = 0; i < trees_.links.size(); ++i) {
+    Link& link = trees_.links[i];
+    const Origin& from = origins_[i];
+    link.body = indexOf(model.bodies, from.body);
+    link.joint = from.joint == 0 ? kNone : indexOf(model.joints, from.joint);
+    const bool same =
+        link.body != kNone &&
+        (from.joint == 0 || (link.joint != kNone && model.joints[link.joint].attachedAt == from.attachedAt));
+    if (!same) gone[rootOf_[i]] = 1;
+  }
+  bodyId_.assign(model.bodies.size(), -1);
+  motors_.assign(m_->nv, {});
+  coordinates_.assign(model.joints.size(), {});
+  std::vector<std::uint8_t> inTree(model.joints.size(), 0);
+  for (Index i = 0; i < trees_.links.size(); ++i) {
+    Link& link = trees_.links[i];
+    if (gone[rootOf_[i]]) link.body = link.joint = kNone;
+    if (link.body == kNone) continue;
+    bodyId_[link.body] = origins_[i].mujocoBody;
     if (link.joint == kNone) continue;
-    const Joint& j = model.joints[link.joint];
-    if (j.type == JointType::ball) continue;
-    for (int c = 0; c < coordinatesOf(j.type); ++c) {
-      const int id = mj_name2id(m_.get(), mjOBJ_JOINT, jointName(link.joint, c).c_str());
-      // Of a wheel the suspension has no motor.
-      const int axis = j.type == JointType::hinge2 ? c - 1 : c;
-      if (axis < 0) continue;
-      motors_[m_->jnt_dofadr[id]] = {link.joint, axis};
-      // The axes of the model's angles change places in a reversed universal joint, and some angles their sign.
-      const bool reversedUniversal = j.type == JointType::universal && j.reversed;
-      const int angle = reversedUniversal ? 1 - axis : axis;
-      const bool opposite = j.type == JointType::hinge2 ? axis == 1
-                            : reversedUniversal         ? angle == 1
-                                                        : j.type == JointType::hinge && j.reversed;
-      coordinates_[link.joint][angle] = {id, opposite ? -1.0 : 1.0};
-    }
+    inTree[link.joint] = 1;
+    bindMotors(model.joints[link.joint], link.joint, origins_[i].mujocoJoints);
+  }
+  joined_.clear();
+  for (Index i = 0; i < model.joints.size(); ++i)
+    if (const Joint& j = model.joints[i]; !inTree[i] && j.a != kNone && j.b != kNone)
+      joined_.push_back(pairOf(j.a, j.b));
+  std::sort(joined_.begin(), joined_.end());
+  geomOf_.assign(geoms_.size(), kNone);
+  for (std::size_t i = 0; i < geoms_.size(); ++i) {
+    const Index geom = geoms_[i] == 0 ? kNone : indexOf(model.geoms, geoms_[i]);
+    if (geom == kNone || (model.geoms[geom].body != kNone && bodyId_[model.geoms[geom].body] < 0)) continue;
+    geomOf_[i] = geom;
+  }
+  prepared_ = false;
+}
+
+void MujocoWorld::bindMotors(const Joint& j, Index joint, const std::array<int, 3>& mujocoJoints) {
+  for (int c = 0; c < 3; ++c) {
+    const int id = mujocoJoints[c];
+    // Of a wheel the suspension has no motor.
+    const int axis = j.type == JointType::hinge2 ? c - 1 : c;
+    if (id < 0 || axis < 0) continue;
+    motors_[m_->jnt_dofadr[id]] = {joint, axis};
+    // The axes of the model's angles change places in a reversed universal joint, and some angles their sign.
+    const bool reversedUniversal = j.type == JointType::universal && j.reversed;
+    const int angle = reversedUniversal ? 1 - axis : axis;
+    const bool opposite = j.type == JointType::hinge2 ? axis == 1
+                          : reversedUniversal         ? angle == 1
+                                                      : j.type == JointType::hinge && j.reversed;
+    coordinates_[joint][angle] = {id, opposite ? -1.0 : 1.0};
   }
 }
 
@@ -99,7 +157,8 @@ bool MujocoWorld::take(const Model& model, const State& state) {
   stale_.assign(trees_.links.size(), 0);
   bool any = false;
   for (Index i = 0; i < trees_.links.size(); ++i)
-    if (state.bodies[trees_.links[i].body].mark != mark_) stale_[rootOf_[i]] = 1, any = true;
+    if (const Index body = trees_.links[i].body; body != kNone && state.bodies[body].mark != mark_)
+      stale_[rootOf_[i]] = 1, any = true;
   if (!any) return false;
   for (Index i = 0; i < trees_.links.size(); ++i)
     if (stale_[rootOf_[i]]) takeLink(model, state, trees_.links[i]);
@@ -174,14 +233,15 @@ void MujocoWorld::takeLink(const Model& model, const State& state, const Link& l
 void MujocoWorld::give(State& state) const {
   for (Index i = 0; i < state.bodies.size(); ++i) {
     DynamicState& s = state.bodies[i];
+    s.force.setZero();
+    s.torque.setZero();
     const int id = bodyId_[i];
+    if (id < 0) continue;
     s.position = toVec(d_->xipos + 3 * id);
     std::copy_n(d_->xquat + 4 * id, 4, s.quaternion.begin());
     s.rotation = rotationOf(s.quaternion);
     s.angularVelocity = toVec(d_->cvel + 6 * id);
     s.linearVelocity = velocityOf(id);
-    s.force.setZero();
-    s.torque.setZero();
     s.awake = true;
     s.mark = mark_;
     state.markMoved(i);
@@ -202,6 +262,7 @@ Vec3 MujocoWorld::velocityOf(int body) const {
 bool MujocoWorld::mayTouch(void* world, int geom1, int geom2) {
   const MujocoWorld& w = *static_cast<MujocoWorld*>(world);
   const Index i = w.geomOf_[geom1], k = w.geomOf_[geom2];
+  if (i == kNone || k == kNone) return false;
   const engine::Geom &a = w.model_->geoms[i], &b = w.model_->geoms[k];
   if (a.space == b.space && !w.model_->spaces[a.space].inner) return false;
   if (a.body != kNone && b.body != kNone && contains(w.joined_, pairOf(a.body, b.body))) return false;
@@ -310,6 +371,7 @@ void MujocoWorld::applyForces(const Model& model, const State& state) {
   bool any = false;
   for (Index i = 0; i < state.bodies.size(); ++i) {
     const int body = bodyId_[i];
+    if (body < 0) continue;
     Vec3 force = state.bodies[i].force, torque = state.bodies[i].torque;
     if (!model.bodies[i].gravity) force -= model.bodies[i].mass * model.parameters.gravity;
     if (medium) addDrag(model, body, force, torque);
@@ -383,12 +445,13 @@ void MujocoWorld::stopBadTree(State& state, std::vector<Index>& stopped) {
     w = {};
   }
   const int body = dof >= 0 && dof < m_->nv ? m_->dof_bodyid[dof] : -1;
-  const auto found = std::find(bodyId_.begin(), bodyId_.end(), body);
+  const auto found =
+      std::find_if(origins_.begin(), origins_.end(), [&](const Origin& o) { return o.mujocoBody == body; });
   for (Index i = 0; i < trees_.links.size(); ++i) {
     // Without a culprit all are stopped.
     const bool bad =
-        found == bodyId_.end() || rootOf_[i] == rootOf_[trees_.linkOf[static_cast<Index>(found - bodyId_.begin())]];
-    if (!bad) continue;
+        found == origins_.end() || rootOf_[i] == rootOf_[static_cast<std::size_t>(found - origins_.begin())];
+    if (!bad || trees_.links[i].body == kNone) continue;
     DynamicState& s = state.bodies[trees_.links[i].body];
     for (Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) v->setZero();
     stopped.push_back(trees_.links[i].body);

@@ -8,10 +8,20 @@
 
 namespace spark::mujoco {
 
+/// A model and its data.
+struct Compiled {
+  ModelPointer model;
+  DataPointer data;
+};
+/// Compiles MJCF text; in any thread. Throws Error with MuJoCo's message.
+Compiled compileWorld(const std::string& mjcf);
+
 class MujocoWorld {
  public:
-  /// Compiles the model for steps of `step` seconds. Throws Error with MuJoCo's message.
-  MujocoWorld(const engine::Model& model, const engine::State& state, double step, const Sizes& sizes);
+  /// `trees` and `compiled` are those of toMjcf() for this model.
+  MujocoWorld(const engine::Model& model, const engine::State& state, Trees trees, Compiled compiled);
+  /// Goes on with another model, of which only those trees move that are unchanged: until it is compiled.
+  void bind(const engine::Model& model);
 
   /// Appends the contacts of the present poses.
   void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, engine::Contacts& out);
@@ -56,13 +66,22 @@ class MujocoWorld {
   void releaseUnsolved(std::span<const engine::Contact> contacts);
   void readContactForces(std::span<engine::Contact> contacts) const;
   static bool mayTouch(void* world, int geom1, int geom2);
+  void bindMotors(const engine::Joint& j, Index joint, const std::array<int, 3>& mujocoJoints);
+  /// What a link was made of: identities in the model, 0: none; and MuJoCo's numbers.
+  struct Origin {
+    std::uint64_t body = 0, joint = 0, attachedAt = 0;
+    int mujocoBody = -1;
+    std::array<int, 3> mujocoJoints{-1, -1, -1};
+  };
 
-  Trees trees_;
+  Trees trees_;                       ///< kNone as body and joint of a link: its tree is gone
+  std::vector<Origin> origins_;       ///< by link
+  std::vector<std::uint64_t> geoms_;  ///< by MuJoCo's geom: identity in the model; 0: none
   ModelPointer m_;
   DataPointer d_;
-  std::vector<int> bodyId_;       ///< MuJoCo's, by body
+  std::vector<int> bodyId_;       ///< MuJoCo's, by body; -1: it does not move yet
   std::vector<Index> rootOf_;     ///< by link: the first of its tree
-  std::vector<Index> geomOf_;     ///< by MuJoCo's geom
+  std::vector<Index> geomOf_;     ///< by MuJoCo's geom; kNone: it was removed
   std::vector<DofMotor> motors_;  ///< by degree of freedom
   /// MuJoCo's joint, -1: none, and the sign of its coordinate against the model's angle.
   struct Coordinate {
@@ -76,11 +95,11 @@ class MujocoWorld {
   struct Wrench {
     Vec3 torque = Vec3::Zero(), force = Vec3::Zero();
   };
-  std::vector<Wrench> wrenches_;  ///< of applyForces(), by MuJoCo's body
-  std::vector<Vec3> boxes_;       ///< by MuJoCo's body: edges of the box that has its inertia [m]
-  std::vector<std::uint8_t> stale_;                     ///< of take(), by link: its tree has to be written
-  bool prepared_ = false;    ///< contacts and constraints are those of the present coordinates
-  std::vector<int> listed_;  ///< MuJoCo's contacts, in the order of the last detect()
+  std::vector<Wrench> wrenches_;     ///< of applyForces(), by MuJoCo's body
+  std::vector<Vec3> boxes_;          ///< by MuJoCo's body: edges of the box that has its inertia [m]
+  std::vector<std::uint8_t> stale_;  ///< of take(), by link: its tree has to be written
+  bool prepared_ = false;            ///< contacts and constraints are those of the present coordinates
+  std::vector<int> listed_;          ///< MuJoCo's contacts, in the order of the last detect()
   engine::PairFilter filter_ = nullptr;
   const engine::Model* model_ = nullptr;  ///< while MuJoCo runs
   std::uint32_t mark_;                    ///< see DynamicState::mark

@@ -41,8 +41,9 @@ void Collider::describe(Description<Collider>& d) {
   d.property("collideWith", &Collider::collideWith)
       .doc("Names of the colliders of its space that it collides with whatever contactTypes say.");
   d.property("contactTypes", &Collider::contactTypes_)
-      .doc("Bits of the kinds of colliders that it is; MuJoCo's contype. Two collide if a bit of one is in the other's "
-           "contactAffinities.");
+      .doc(
+          "Bits of the kinds of colliders that it is; MuJoCo's contype. Two collide if a bit of one is in the other's "
+          "contactAffinities.");
   d.property("contactAffinities", &Collider::contactAffinities_)
       .doc("Bits of the kinds of colliders that it collides with; MuJoCo's conaffinity.");
   d.property("notCollideWith", &Collider::notCollideWith)

@@ -118,7 +118,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   const CollisionGroup* group_ = nullptr;
   Collider* outer_ = nullptr;  ///< the TransformCollider it is part of
   engine::Geom::Mujoco mujoco_;
-  Pose local_;  ///< in the frame of body, transform or outer collider
+  Pose local_;                                             ///< in the frame of body, transform or outer collider
   std::int64_t contactTypes_ = 1, contactAffinities_ = 1;  ///< bits
   bool solid_ = false, listens_ = false, hasBody_ = false;
   Handlers handlers_;

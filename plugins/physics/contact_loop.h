@@ -25,8 +25,8 @@ bool pairCounts(void* ownerA, void* ownerB);
 void runHandlers(engine::Contacts& contacts, Kernel& kernel);
 /// Sets `feedback` of every contact that is solved; appends the indices of those that did not have it to `added`.
 void measure(engine::Contacts& contacts, std::vector<std::size_t>& added);
-/// Calls the handlers after the solver, for contacts with `feedback`. `steps`: number of the engine's steps in one of the
-/// simulation, which the forces are divided by.
+/// Calls the handlers after the solver, for contacts with `feedback`. `steps`: number of the engine's steps in one of
+/// the simulation, which the forces are divided by.
 void runSolved(engine::Contacts& contacts, int steps);
 
 }  // namespace spark::physics

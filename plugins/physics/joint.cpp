@@ -58,8 +58,8 @@ void Joint::describe(Description<Joint>& d) {
        "Largest force of dry friction; of an axis with a controller.");
 
   d.method("setController", &J::setController)
-      .parameters({"axis", "stiffness [Nm/rad]", "damping [N m s/rad]", "position [rad]", "velocity [rad/s]", "force [Nm]",
-                   "maxForce [Nm]"})
+      .parameters({"axis", "stiffness [Nm/rad]", "damping [N m s/rad]", "position [rad]", "velocity [rad/s]",
+                   "force [Nm]", "maxForce [Nm]"})
       .doc(
           "Puts a controller in place of the axis' motor: stiffness (position - angle) + damping (velocity - rate) + "
           "force, at most maxForce; of a slider m and N.");

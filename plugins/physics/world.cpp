@@ -51,7 +51,8 @@ void World::describe(Description<World>& d) {
       .unit("s")
       .min(0)
       .doc(
-          "Length of the engine's steps, of which a step of the simulation has a whole number: in each of them contacts "
+          "Length of the engine's steps, of which a step of the simulation has a whole number: in each of them "
+          "contacts "
           "are found and controllers act. 0: as the engine says; MuJoCo's are 0.005 s, the others take one step.");
   // MuJoCo's documentation, "option".
   using M = engine::WorldParameters::Mujoco;

@@ -80,7 +80,8 @@ void Builder::placeBodies(const Pose& root) {
     }
     const Part& parent = parts_[static_cast<std::size_t>(b.parent)];
     p.world = compose(parent.world, b.pose);
-    const bool free = std::any_of(b.joints.begin(), b.joints.end(), [](const Joint& j) { return j.kind == JointKind::free; });
+    const bool free =
+        std::any_of(b.joints.begin(), b.joints.end(), [](const Joint& j) { return j.kind == JointKind::free; });
     if (free && (b.parent != 0 || b.joints.size() > 1))
       throw b.from.error("expected a free joint as the only one of a body in the world");
     if (b.joints.empty()) {
@@ -103,7 +104,8 @@ void Builder::placeBodies(const Pose& root) {
       };
       const engine::Mass nothing{0, Vec3::Zero(), Mat3::Zero()};
       const auto [own, ownAt] = about(carrier.mass);
-      const auto [part, partAt] = about({b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()});
+      const auto [part, partAt] =
+          about({b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()});
       const engine::Mass sum = physics::addMass(physics::addMass(nothing, own, ownAt), part, partAt);
       carrier.mass = physics::centred(sum);
       carrier.mass.center = sum.center;
@@ -143,14 +145,14 @@ void Builder::makeBody(Part& p) {
 void Builder::makeJoints(Part& p) {
   const std::vector<Joint>& joints = p.body->joints;
   if (joints.front().kind == JointKind::free) return;
-  const std::string above =
-      p.above == 0 ? "" : parts_[static_cast<std::size_t>(p.above)].node->name();
+  const std::string above = p.above == 0 ? "" : parts_[static_cast<std::size_t>(p.above)].node->name();
   std::string parent = above.empty() ? "" : "../../" + above + "/body";
   // A joint has one axis: between two of them there is a light body.
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     if (k == 0)
-      leftOver_.add(joints[0].from, fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass",
-                                                joints.size(), kBetween));
+      leftOver_.add(joints[0].from,
+                    fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass",
+                                joints.size(), kBetween));
     const Pose world = compose(p.world, {p.mass.center, Mat3::Identity()});
     const std::string name = fmt::format("{}-{}", p.node->name(), k + 1);
     Node& between = transform(*top_, name, compose(inverse(rootPose_), world));
@@ -168,7 +170,9 @@ void Builder::makeJoints(Part& p) {
 }
 
 void Builder::makeJoint(Part& p, const Joint& j, Node& child, const std::string& parent) {
-  const char* const kind = j.kind == JointKind::hinge ? "HingeJoint" : j.kind == JointKind::slide ? "SliderJoint" : "BallJoint";
+  const char* const kind = j.kind == JointKind::hinge   ? "HingeJoint"
+                           : j.kind == JointKind::slide ? "SliderJoint"
+                                                        : "BallJoint";
   try {
     auto& made = child.create<IJoint>(kind, nameOf(j.name, "joint"));
     Leaf& leaf = made.leaf();
@@ -207,11 +211,13 @@ void Builder::makeGeoms(const Part& p) {
   const bool drawn = std::any_of(p.body->geoms.begin(), p.body->geoms.end(), [](const Geom& g) { return g.visible(); });
   for (const Geom& g : p.body->geoms) {
     // In the frame of the carrier's body, or in the world.
-    const Pose pose = p.carrier == 0 ? compose(p.world, g.pose)
-                                     : compose(Pose{-carrier.mass.center, Mat3::Identity()}, compose(p.inCarrier, g.pose));
+    const Pose pose = p.carrier == 0
+                          ? compose(p.world, g.pose)
+                          : compose(Pose{-carrier.mass.center, Mat3::Identity()}, compose(p.inCarrier, g.pose));
     try {
       if (g.collides() || inPair(g.name)) makeCollider(g, carrier, pose);
-      if (g.visible() || !drawn) makeVisible(g, carrier.node ? *carrier.node : *top_, carrier.node ? pose : compose(inverse(rootPose_), pose));
+      if (g.visible() || !drawn)
+        makeVisible(g, carrier.node ? *carrier.node : *top_, carrier.node ? pose : compose(inverse(rootPose_), pose));
     } catch (const Error& e) {
       throw Error(fmt::format("{}: cannot make the geom '{}'", g.from.where(), g.name), e);
     }
@@ -220,12 +226,13 @@ void Builder::makeGeoms(const Part& p) {
 
 void Builder::makeCollider(const Geom& g, Part& carrier, const Pose& pose) {
   const engine::ShapeDescription& s = g.shape;
-  const char* const kinds[] = {"BoxCollider",   "SphereCollider", "CapsuleCollider", "CylinderCollider",
-                               "PlaneCollider", "",               "TriMeshCollider"};
+  const char* const kinds[] = {
+      "BoxCollider", "SphereCollider", "CapsuleCollider", "CylinderCollider", "PlaneCollider", "", "TriMeshCollider"};
   Node& parent = carrier.node ? *carrier.node : *top_;
   Node& c = *parent.create(kinds[static_cast<int>(s.shape)], nameOf(g.name, "geom")).asNode();
   carrier.colliders.push_back(c.name());
-  if (!g.name.empty() && !geoms_.emplace(g.name, &c).second) throw Error(fmt::format("there are two geoms '{}'", g.name));
+  if (!g.name.empty() && !geoms_.emplace(g.name, &c).second)
+    throw Error(fmt::format("there are two geoms '{}'", g.name));
   switch (s.shape) {
     case Shape::box:
       callMethod(c, "setBoxLengths", numbers(s.lengths));
@@ -384,8 +391,10 @@ void Builder::makeActuator(const std::vector<const Actuator*>& all, const MadeJo
   for (std::size_t i = 1; i < all.size(); ++i)
     leftOver_.add(all[i]->from, fmt::format("a second <{}> on a joint is left out", all[i]->from.tag()));
   const double gear2 = first.gear * first.gear;
-  const engine::Control law{.stiffness = -gear2 * first.bias[1], .damping = -gear2 * first.bias[2],
-                            .force = first.gear * first.bias[0], .maxForce = maxForce};
+  const engine::Control law{.stiffness = -gear2 * first.bias[1],
+                            .damping = -gear2 * first.bias[2],
+                            .force = first.gear * first.bias[0],
+                            .maxForce = maxForce};
   if (law.stiffness < 0 || law.damping < 0)
     return leftOver_.add(first.from, "an actuator that drives a joint away from its target is left out");
   on.made->control(0, law);
@@ -416,9 +425,8 @@ void Builder::makeSensors() {
       if (joint == joints_.end()) throw s.from.error(fmt::format("there is no joint '{}'", s.object));
       // One perceptor tells angle and rate.
       Node& parent = *joint->second.made->leaf().asNode();
-      const bool known = std::any_of(parent.children().begin(), parent.children().end(), [](const auto& c) {
-        return c->classObject()->name() == "JointPerceptor";
-      });
+      const bool known = std::any_of(parent.children().begin(), parent.children().end(),
+                                     [](const auto& c) { return c->classObject()->name() == "JointPerceptor"; });
       if (!known && has("JointPerceptor")) parent.create("JointPerceptor", s.name);
     } else if (s.kind == "gyro" || s.kind == "accelerometer") {
       const char* const kind = s.kind == "gyro" ? "GyroRatePerceptor" : "Accelerometer";

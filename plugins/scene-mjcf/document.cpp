@@ -46,9 +46,10 @@ Element Document::load(const std::string& name, const Element* from) {
   file->text = read_(name);
   const pugi::xml_parse_result result = file->xml.load_buffer(file->text.data(), file->text.size());
   if (!result)
-    throw Error(fmt::format("{}:{}: this is not XML: {}", name,
-                            lineAndColumn(file->text, static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0))),
-                            result.description()));
+    throw Error(
+        fmt::format("{}:{}: this is not XML: {}", name,
+                    lineAndColumn(file->text, static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0))),
+                    result.description()));
   if (!file->xml.document_element()) throw Error(fmt::format("{}:1:1: expected an element, found none", name));
   if (from && files_.size() > kMaxFiles)
     throw from->error(fmt::format("expected at most {} included files", kMaxFiles));
@@ -141,7 +142,8 @@ void LeftOver::attribute(const Element& e, const std::string& name) {
 std::vector<std::string> LeftOver::sentences() const {
   std::vector<std::string> out;
   for (const Entry& x : entries_)
-    out.push_back(fmt::format("{}: {}{}", x.where, x.what, x.times > 1 ? fmt::format(" (and {} more)", x.times - 1) : ""));
+    out.push_back(
+        fmt::format("{}: {}{}", x.where, x.what, x.times > 1 ? fmt::format(" (and {} more)", x.times - 1) : ""));
   return out;
 }
 

@@ -18,12 +18,14 @@ void MjcfImporter::describe(Description<MjcfImporter>& d) {
 }
 
 bool MjcfImporter::recognises(std::string_view text) const {
-  return text.substr(0, 4096).find("<mujoco") != std::string_view::npos && text.find('<') == text.find_first_not_of(" \t\r\n");
+  return text.substr(0, 4096).find("<mujoco") != std::string_view::npos &&
+         text.find('<') == text.find_first_not_of(" \t\r\n");
 }
 
 void MjcfImporter::import(std::string_view file, Node& root, const List& arguments) {
   if (arguments.size() > 1)
-    throw Error(fmt::format("cannot import '{}': expected one argument, a prefix for names, found {}", file, arguments.size()));
+    throw Error(
+        fmt::format("cannot import '{}': expected one argument, a prefix for names, found {}", file, arguments.size()));
   auto& files = kernel().root().require<IFileServer>();
   mjcf::LeftOver leftOver;
   mjcf::Document document(std::string(file), [&](const std::string& name) { return files.read(name); });
@@ -35,7 +37,10 @@ void MjcfImporter::import(std::string_view file, Node& root, const List& argumen
   builder.build(root);
   ++imports_;
   if (builder.withoutParts())
-    kernel().log().info("{}: its sensors and actuators become no perceptors and effectors: those are of the plugins gamecontrol, sensors and effectors", file);
+    kernel().log().info(
+        "{}: its sensors and actuators become no perceptors and effectors: those are of the plugins gamecontrol, "
+        "sensors and effectors",
+        file);
   for (const std::string& sentence : leftOver.sentences()) kernel().log().warning("{}", sentence);
 }
 

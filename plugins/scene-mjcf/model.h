@@ -15,7 +15,7 @@ namespace spark::mjcf {
 /// A collision shape and a visible one.
 struct Geom {
   Element from;
-  std::string name;              ///< "" when absent
+  std::string name;  ///< "" when absent
   engine::ShapeDescription shape;
   Pose pose;                     ///< in its body
   engine::Geom::Mujoco contact;  ///< its numbers of contacts
@@ -51,10 +51,10 @@ struct Site {
 struct Body {
   Element from;
   std::string name;
-  int parent = -1;            ///< index; -1: this is the world
-  Pose pose;                  ///< in its parent
+  int parent = -1;                                   ///< index; -1: this is the world
+  Pose pose;                                         ///< in its parent
   engine::Mass mass{0, Vec3::Zero(), Mat3::Zero()};  ///< inertia about its centre of mass, body axes; mass 0: none
-  bool hasInertial = false;   ///< an inertial element says so
+  bool hasInertial = false;                          ///< an inertial element says so
   std::vector<Joint> joints;
   std::vector<Geom> geoms;
   std::vector<Site> sites;
@@ -91,7 +91,7 @@ struct Pair {
 /// Options of the world that the file sets.
 struct Options {
   std::optional<Vec3> gravity;
-  bool any = false;        ///< there is an option element
+  bool any = false;         ///< there is an option element
   double timestep = 0.002;  ///< s
   engine::WorldParameters::Mujoco numbers;
 };

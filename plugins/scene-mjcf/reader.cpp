@@ -29,7 +29,9 @@ Vec3 toVec(const Array& a) {
 /// Mass, centre and inertia of a closed mesh of uniform density 1 (Eberly, "Polyhedral Mass Properties", 2002, as sums
 /// over tetrahedra from the origin).
 engine::Mass meshMass(const ShapeDescription& s) {
-  const auto vertex = [&](std::uint32_t i) { return Vec3(s.vertices[3 * i], s.vertices[3 * i + 1], s.vertices[3 * i + 2]); };
+  const auto vertex = [&](std::uint32_t i) {
+    return Vec3(s.vertices[3 * i], s.vertices[3 * i + 1], s.vertices[3 * i + 2]);
+  };
   double volume = 0;
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();  // integral of x x^T
@@ -130,7 +132,8 @@ void Reader::option(const Element& e) {
   if (Vec3 g(0, 0, -9.81); a.take("gravity", g)) o.gravity = g;
   engine::WorldParameters::Mujoco& m = o.numbers;
   o.timestep = a.number("timestep", o.timestep);
-  const std::string integrator = a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, m.integrator.c_str());
+  const std::string integrator =
+      a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, m.integrator.c_str());
   m.integrator = integrator == "RK4" ? "Euler" : integrator == "implicitfast" ? "implicit" : integrator;
   if (integrator != m.integrator)
     leftOver_.add(e, fmt::format("the integrator {} is left out; {} takes its place", integrator, m.integrator));
@@ -205,8 +208,7 @@ std::optional<Mat3> Reader::orientation(Attributes& a) {
     for (int i = 0; i < 3; ++i) {
       const char letter = compiler_.eulerSequence[static_cast<std::size_t>(i)];
       const bool fixedFrame = letter < 'a';
-      const Mat3 turn =
-          Eigen::AngleAxisd(angle(angles[i]), Vec3(Vec3::Unit((letter | 32) - 'x'))).toRotationMatrix();
+      const Mat3 turn = Eigen::AngleAxisd(angle(angles[i]), Vec3(Vec3::Unit((letter | 32) - 'x'))).toRotationMatrix();
       r = fixedFrame ? Mat3(turn * r) : Mat3(r * turn);
     }
     return r;
@@ -348,7 +350,8 @@ void Reader::joint(const Element& e, const Scope& scope) {
   j.dryFriction = a.number("frictionloss", 0);
   j.stiffness = a.number("stiffness", 0);
   j.springAngle = inUnits(a.number("springref", 0));
-  if (a.number("ref", 0) != 0) leftOver_.add(e, "the attribute 'ref' of <joint> is left out: angles count from the initial pose");
+  if (a.number("ref", 0) != 0)
+    leftOver_.add(e, "the attribute 'ref' of <joint> is left out: angles count from the initial pose");
   std::array<double, 2> force{-HUGE_VAL, HUGE_VAL};
   if (limited(a, "actuatorfrclimited", a.take("actuatorfrcrange", force)))
     j.maxForce = std::max(std::abs(force[0]), std::abs(force[1]));
@@ -385,9 +388,9 @@ ShapeDescription Reader::meshShape(Attributes& a) {
 
 ShapeDescription Reader::shape(Attributes& a, const Scope& scope, Pose& at) {
   ShapeDescription s;
-  const std::string kind = a.word(
-      "type", {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"},
-      a.has("mesh") ? "mesh" : "sphere");
+  const std::string kind =
+      a.word("type", {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"},
+             a.has("mesh") ? "mesh" : "sphere");
   Vec3 size = Vec3::Zero();
   const bool hasSize = a.fill("size", size);
   double length = 0;
@@ -493,7 +496,8 @@ void Reader::massOf(Attributes& a, Geom& g) {
 void Reader::finishMasses() {
   for (Body& b : model_.bodies) {
     if (b.from.tag() != "body") continue;
-    const bool fromGeoms = compiler_.inertiaFromGeom == "true" || (compiler_.inertiaFromGeom == "auto" && !b.hasInertial);
+    const bool fromGeoms =
+        compiler_.inertiaFromGeom == "true" || (compiler_.inertiaFromGeom == "auto" && !b.hasInertial);
     if (fromGeoms) {
       engine::Mass sum{0, Vec3::Zero(), Mat3::Zero()};
       for (const Geom& g : b.geoms)
@@ -573,7 +577,8 @@ void Reader::actuator(const Element& e) {
         a.text("dyntype", "none") != "none")
       return leftOver_.add(e, "a <general> whose gain is not fixed, or that has dynamics, is left out");
     x.gain = gain[0];
-    if (a.word("biastype", {"none", "affine", "muscle", "user"}, "none") == "affine") x.bias = {bias[0], bias[1], bias[2]};
+    if (a.word("biastype", {"none", "affine", "muscle", "user"}, "none") == "affine")
+      x.bias = {bias[0], bias[1], bias[2]};
   }
   std::array<double, 2> control{0, 0}, force{0, 0};
   if (const bool given = a.take("ctrlrange", control); limited(a, "ctrllimited", given)) x.controlRange = control;

@@ -8,10 +8,10 @@ namespace spark::mjcf {
 
 /// What the element `compiler` says.
 struct Compiler {
-  bool degrees = true;             ///< angles of the file
-  bool autolimits = true;          ///< a range alone makes a limit
+  bool degrees = true;     ///< angles of the file
+  bool autolimits = true;  ///< a range alone makes a limit
   std::string eulerSequence = "xyz";
-  std::string meshFolder;          ///< "" or "a/"
+  std::string meshFolder;  ///< "" or "a/"
   std::string inertiaFromGeom = "auto";
   std::array<int, 2> inertiaGroups{0, 5};
   double boundMass = 0, boundInertia = 0;

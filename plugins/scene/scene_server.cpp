@@ -152,7 +152,8 @@ void flattenTransforms(Node& root, const std::function<bool(const Leaf&)>& remov
 
   // Then `root` itself, if it is a transform of the import that contains only transforms.
   auto transform = root.as<Transform>();
-  if (!transform || !removable(root) || root.children().empty() || !root.parent() || !root.parent()->as<SceneNode>()) return;
+  if (!transform || !removable(root) || root.children().empty() || !root.parent() || !root.parent()->as<SceneNode>())
+    return;
   for (const auto& child : root.children())
     if (!child->as<Transform>()) return;
   while (!root.children().empty()) {

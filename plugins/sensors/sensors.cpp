@@ -25,5 +25,5 @@ SPARK_PLUGIN("sensors", "1.0", "Perceptors of robots, and the collision handlers
              spark::AngularMotorPerceptor, spark::GyroRatePerceptor, spark::Accelerometer,
              spark::ForceResistancePerceptor, spark::CollisionPerceptor, spark::TouchPerceptor, spark::GPS,
              spark::BatteryPerceptor, spark::HMDPPerceptor, spark::PerfectVisionPerceptor, spark::SonarPerceptor,
-             spark::ImagePerceptor, spark::PerceptorHandler, spark::TouchPerceptorHandler,
-             spark::JointPerceptor, spark::PositionPerceptor, spark::OrientationPerceptor)
+             spark::ImagePerceptor, spark::PerceptorHandler, spark::TouchPerceptorHandler, spark::JointPerceptor,
+             spark::PositionPerceptor, spark::OrientationPerceptor)

@@ -168,3 +168,41 @@ TEST_CASE("a geom that is removed is not met any more, before any step") {
   w.world.destroyGeom(g);
   CHECK_FALSE(hit());
 }
+
+TEST_CASE("MuJoCo compiles a large world aside: what is unchanged goes on, what is new waits, what is gone is gone") {
+  for (const EngineKind& kind : kEngines) {
+    if (std::string(kind.name) != "MujocoEngine" || !kind.built()) continue;
+    std::vector<double> heights;
+    for (int run = 0; run < 2; ++run) {
+      EngineWorld w(kind);
+      setProperty(w.engine->leaf(), "atOnce", 0);
+      w.ground();
+      const BodyHandle first = w.body({0, 0, 50}), removed = w.body({2, 0, 50}), third = w.body({4, 0, 50});
+      const JointHandle joint = w.joint(JointType::hinge, third, first, {2, 0, 50});
+      w.run(0.1);
+      const double before = w.position(third).z();
+      const auto compilations = [&] { return getProperty(w.engine->leaf(), "compilations").toInteger(); };
+      const std::int64_t atFirst = compilations();
+      // One goes and one comes: indices shift, and contacts of the removed body's geoms are nobody's.
+      w.world.destroyBody(removed);
+      const BodyHandle added = w.body({6, 0, 50});
+      w.run(w.dt);
+      CHECK(w.position(added).z() == 50);
+      CHECK(w.position(third).z() < before);
+      const double speed = w.velocity(third).z();
+      w.world.control(joint, 0, {.force = 0.5});
+      w.run(0.2);
+      CHECK(w.position(added).z() < 50);
+      CHECK(w.velocity(third).z() == Approx(speed - 9.81 * 0.2).epsilon(0.05));
+      CHECK(compilations() == atFirst + 1);
+      // A tree that is taken apart stands still until the model is in.
+      w.world.destroyJoint(joint);
+      w.run(0.5);
+      CHECK(compilations() == atFirst + 2);
+      heights.push_back(w.position(third).z());
+      heights.push_back(w.position(added).z());
+    }
+    CHECK(heights[0] == heights[2]);
+    CHECK(heights[1] == heights[3]);
+  }
+}

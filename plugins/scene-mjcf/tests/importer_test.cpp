@@ -86,8 +86,10 @@ TEST_CASE("a prefix stands before the names, a transform moves the whole, and th
 
 TEST_CASE("a body with several joints gets light bodies between them") {
   MjcfHouse h;
-  h.import("<mujoco model='m'><worldbody><body name='b' pos='0 0 1'><joint name='x' axis='1 0 0'/><joint name='y' axis='0 1 0'/>"
-           "<joint name='s' type='slide' axis='0 0 1'/><geom size='0.1' mass='3'/></body></worldbody></mujoco>");
+  h.import(
+      "<mujoco model='m'><worldbody><body name='b' pos='0 0 1'><joint name='x' axis='1 0 0'/><joint name='y' axis='0 1 "
+      "0'/>"
+      "<joint name='s' type='slide' axis='0 0 1'/><geom size='0.1' mass='3'/></body></worldbody></mujoco>");
   CHECK(h.at<IJoint>("m/b-1/x").body(1) == nullptr);
   CHECK(h.at<IJoint>("m/b-2/y").body(1) == &h.at<IRigidBody>("m/b-1/body"));
   CHECK(h.at<IJoint>("m/b/s").jointType() == engine::JointType::slider);
@@ -98,7 +100,8 @@ TEST_CASE("a body with several joints gets light bodies between them") {
 
 TEST_CASE("options are the world's, unless the model is attached with a prefix") {
   MjcfHouse h;
-  const char* const text = "<mujoco model='m'><option timestep='0.004' gravity='0 0 -1' density='1.2' cone='elliptic'/></mujoco>";
+  const char* const text =
+      "<mujoco model='m'><option timestep='0.004' gravity='0 0 -1' density='1.2' cone='elliptic'/></mujoco>";
   h.import(text, {"p"});
   Leaf& world = *h.kernel.root().find("/usr/scene/world");
   CHECK(getProperty(world, "timestep").toNumber() == 0);
@@ -125,8 +128,9 @@ TEST_CASE("kinds of geoms, and pairs that collide all the same") {
 TEST_CASE("a mesh file is a collider") {
   MjcfHouse h;
   h.folder.write("meshes/tent.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
-  h.import("<mujoco model='m'><compiler meshdir='meshes'/><asset><mesh name='t' file='tent.obj'/></asset><worldbody>"
-           "<body name='b'><freejoint/><geom name='g' type='mesh' mesh='t' density='6'/></body></worldbody></mujoco>");
+  h.import(
+      "<mujoco model='m'><compiler meshdir='meshes'/><asset><mesh name='t' file='tent.obj'/></asset><worldbody>"
+      "<body name='b'><freejoint/><geom name='g' type='mesh' mesh='t' density='6'/></body></worldbody></mujoco>");
   CHECK(h.at<IRigidBody>("m/b/body").mass() == Approx(1));
   CHECK(h.place("m/b/body").isApprox(Vec3(0.25, 0.25, 0.25)));
   CHECK(h.at<ICollider>("m/b/g").shape()->triangles.size() == 12);
@@ -137,11 +141,16 @@ TEST_CASE("a model that cannot be made leaves nothing behind") {
   const auto in = [](const std::string& s) { return "<mujoco model='m'><worldbody>" + s + "</worldbody></mujoco>"; };
   const std::pair<std::string, const char*> cases[] = {
       {in("<body><freejoint/></body>"), "m.xml:1:30: a body that moves needs a mass above 0"},
-      {in("<body name='a'><freejoint/><inertial mass='1' diaginertia='1 1 -1'/></body>"), "m.xml:1:30: cannot make the body 'a'"},
-      {in("<body><joint name='j'/><geom size='1'/><body><joint name='j'/><geom size='1'/></body></body>"), "there are two joints 'j'"},
-      {in("<body><geom size='1'/><body><freejoint/><geom size='1'/></body></body>"), "m.xml:1:52: expected a free joint as the only one"},
-      {"<mujoco model='m'><contact><exclude body1='x' body2='y'/></contact></mujoco>", "m.xml:1:28: there is no body 'x'"},
-      {"<mujoco model='m'><actuator><motor joint='q'/></actuator></mujoco>", "m.xml:1:29: there is no joint 'q' to act on"},
+      {in("<body name='a'><freejoint/><inertial mass='1' diaginertia='1 1 -1'/></body>"),
+       "m.xml:1:30: cannot make the body 'a'"},
+      {in("<body><joint name='j'/><geom size='1'/><body><joint name='j'/><geom size='1'/></body></body>"),
+       "there are two joints 'j'"},
+      {in("<body><geom size='1'/><body><freejoint/><geom size='1'/></body></body>"),
+       "m.xml:1:52: expected a free joint as the only one"},
+      {"<mujoco model='m'><contact><exclude body1='x' body2='y'/></contact></mujoco>",
+       "m.xml:1:28: there is no body 'x'"},
+      {"<mujoco model='m'><actuator><motor joint='q'/></actuator></mujoco>",
+       "m.xml:1:29: there is no joint 'q' to act on"},
   };
   for (const auto& [text, message] : cases) {
     CHECK_THAT(h.failure(text), Catch::Contains(message));
@@ -153,7 +162,8 @@ TEST_CASE("a model that cannot be made leaves nothing behind") {
 TEST_CASE("sensors and actuators become perceptors and effectors") {
   MjcfHouse h;
   for (const char* plugin : {"gamecontrol", "sensors", "effectors"}) h.kernel.plugins().use(plugin);
-  h.import(R"(<mujoco model='m'><worldbody><body name='b' pos='0 0 1'><joint name='j' axis='0 1 0' actuatorfrcrange='-3 3'/><geom size='0.1' pos='0.2 0 0' mass='1'/>
+  h.import(
+      R"(<mujoco model='m'><worldbody><body name='b' pos='0 0 1'><joint name='j' axis='0 1 0' actuatorfrcrange='-3 3'/><geom size='0.1' pos='0.2 0 0' mass='1'/>
     <body name='c'><joint name='k' axis='0 0 1'/><geom size='0.1' mass='1'/><site name='s'/></body></body></worldbody>
     <actuator><motor name='j1_tau' joint='j'/><position name='j1_pos' joint='j' kp='7'/><velocity name='j1_vel' joint='j' kv='2'/>
     <motor name='turn' joint='k' gear='2' ctrlrange='-1 1'/></actuator>
@@ -162,7 +172,8 @@ TEST_CASE("sensors and actuators become perceptors and effectors") {
   CHECK(h.kernel.root().find("/usr/scene/m/b/j/j1")->classObject()->name() == "ControlEffector");
   CHECK(h.kernel.root().find("/usr/scene/m/c/k/turn")->classObject()->name() == "ActuatorEffector");
   CHECK(getProperty(*h.kernel.root().find("/usr/scene/m/b/j/j1"), "maxForce").toNumber() == 3);
-  for (const char* path : {"m/b/j/q_j1", "m/c/g", "m/c/s/p", "m/b/b-link/o"}) CHECK(h.kernel.root().find("/usr/scene/" + std::string(path)));
+  for (const char* path : {"m/b/j/q_j1", "m/c/g", "m/c/s/p", "m/b/b-link/o"})
+    CHECK(h.kernel.root().find("/usr/scene/" + std::string(path)));
   CHECK_FALSE(h.kernel.root().find("/usr/scene/m/b/j/dq_j1"));
   std::vector<Perceptor*> perceptors;
   h.scene.collect(perceptors);

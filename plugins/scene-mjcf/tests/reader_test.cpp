@@ -31,7 +31,8 @@ struct Read {
           engine::ShapeDescription s{.shape = engine::Shape::mesh};
           for (int i = 0; i < 8; ++i)
             for (int k = 0; k < 3; ++k) s.vertices.push_back((i >> k) & 1);
-          s.triangles = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+          s.triangles = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                         2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
           return s;
         },
         leftOver);
@@ -62,8 +63,11 @@ TEST_CASE("angles are degrees unless the compiler says otherwise, and orientatio
   for (const char* way : {"quat='2 0 0 2'", "axisangle='0 0 3 90'", "xyaxes='0 2 0 -1 1 0'", "euler='0 0 90'"})
     CHECK(Read(world("<body " + std::string(way) + "/>")).body(1).pose.rotation.isApprox(quarter, 1e-12));
   CHECK(Read(world("<body zaxis='1 0 0'/>")).body(1).pose.rotation.col(2).isApprox(Vec3::UnitX()));
-  const std::string radian = "<mujoco><compiler angle='radian' eulerseq='XYZ'/><worldbody><body euler='0.1 0.2 0.3'/></worldbody></mujoco>";
-  const Mat3 fixed = (Eigen::AngleAxisd(0.3, Vec3::UnitZ()) * Eigen::AngleAxisd(0.2, Vec3::UnitY()) * Eigen::AngleAxisd(0.1, Vec3::UnitX())).toRotationMatrix();
+  const std::string radian =
+      "<mujoco><compiler angle='radian' eulerseq='XYZ'/><worldbody><body euler='0.1 0.2 0.3'/></worldbody></mujoco>";
+  const Mat3 fixed = (Eigen::AngleAxisd(0.3, Vec3::UnitZ()) * Eigen::AngleAxisd(0.2, Vec3::UnitY()) *
+                      Eigen::AngleAxisd(0.1, Vec3::UnitX()))
+                         .toRotationMatrix();
   CHECK(Read(radian).body(1).pose.rotation.isApprox(fixed));
 }
 
@@ -84,22 +88,26 @@ TEST_CASE("default classes are nested, and bodies pass one on") {
 }
 
 TEST_CASE("a body without an inertial element weighs what its geoms weigh") {
-  const Read r(world("<body><joint/><geom type='box' size='0.5 0.5 0.5' pos='1 0 0' density='10'/>"
-                     "<geom type='box' size='0.5 0.5 0.5' pos='-1 0 0' mass='30'/><geom size='1' group='4' density='0'/></body>"));
+  const Read r(world(
+      "<body><joint/><geom type='box' size='0.5 0.5 0.5' pos='1 0 0' density='10'/>"
+      "<geom type='box' size='0.5 0.5 0.5' pos='-1 0 0' mass='30'/><geom size='1' group='4' density='0'/></body>"));
   const engine::Mass& m = r.body(1).mass;
   CHECK(m.mass == Approx(40));
   CHECK(m.center.isApprox(Vec3(-0.5, 0, 0)));
   CHECK(m.inertia(0, 0) == Approx(40 / 6.0));
   CHECK(m.inertia(1, 1) == Approx(40 / 6.0 + 10 * 1.5 * 1.5 + 30 * 0.5 * 0.5));
-  const Read mesh("<mujoco><asset><mesh name='cube' file='c.stl' scale='2 1 1'/></asset><worldbody><body><joint/>"
-                  "<geom type='mesh' mesh='cube' density='12'/></body></worldbody></mujoco>");
+  const Read mesh(
+      "<mujoco><asset><mesh name='cube' file='c.stl' scale='2 1 1'/></asset><worldbody><body><joint/>"
+      "<geom type='mesh' mesh='cube' density='12'/></body></worldbody></mujoco>");
   CHECK(mesh.body(1).mass.mass == Approx(24));
   CHECK(mesh.body(1).mass.center.isApprox(Vec3(1, 0.5, 0.5)));
   CHECK(mesh.body(1).mass.inertia.isApprox(Mat3(Vec3(4, 10, 10).asDiagonal()), 1e-9));
 }
 
 TEST_CASE("a capsule may be given by its ends, and a joint's range is a limit") {
-  const Read r(world("<body><joint range='-90 45'/><joint range='1 2' limited='false'/><geom type='capsule' size='0.1' fromto='0 0 0 0 0 -2'/></body>"));
+  const Read r(
+      world("<body><joint range='-90 45'/><joint range='1 2' limited='false'/><geom type='capsule' size='0.1' "
+            "fromto='0 0 0 0 0 -2'/></body>"));
   const Geom& g = r.body(1).geoms[0];
   CHECK(g.shape.length == Approx(2));
   CHECK(g.pose.position.isApprox(Vec3(0, 0, -1)));
@@ -130,14 +138,17 @@ TEST_CASE("files include others, and none includes itself") {
   const Read r("<mujoco><include file='arm.xml'/><worldbody><body name='leg'/></worldbody></mujoco>", files);
   CHECK(r.model.bodies.size() == 3);
   CHECK(r.body(1).name == "arm");
-  CHECK(failure("<mujoco>\n <include file='loop.xml'/></mujoco>", files).find("loop.xml:1:9: a file includes itself") != std::string::npos);
+  CHECK(failure("<mujoco>\n <include file='loop.xml'/></mujoco>", files).find("loop.xml:1:9: a file includes itself") !=
+        std::string::npos);
   CHECK(failure("<mujoco><include file='self.xml'/></mujoco>", files).find("includes itself") != std::string::npos);
   CHECK(failure("<mujoco>\n <include file='no.xml'/></mujoco>").find("a.xml:2:2: cannot include 'no.xml'") == 0);
 }
 
 TEST_CASE("what is left out is named once, with its first place") {
-  const Read r("<mujoco><worldbody>\n<body colour='red'><joint/><geom size='1' solmix='2' wings='1'/><geom size='1' wings='1'/></body>\n"
-               "</worldbody><tendon/><keyframe/></mujoco>");
+  const Read r(
+      "<mujoco><worldbody>\n<body colour='red'><joint/><geom size='1' solmix='2' wings='1'/><geom size='1' "
+      "wings='1'/></body>\n"
+      "</worldbody><tendon/><keyframe/></mujoco>");
   CHECK(r.said() ==
         "a.xml:2:1: the attribute 'colour' of <body> is left out\n"
         "a.xml:2:28: the attribute 'wings' of <geom> is left out (and 1 more)\n"
@@ -149,14 +160,18 @@ TEST_CASE("errors say where, what was expected and what was found") {
       {"<mujoco><worldbody><body></worldbody></mujoco>", "a.xml:1:28: this is not XML: "},
       {"<robot/>", "a.xml:1:1: expected the element <mujoco>, found <robot>"},
       {"", "a.xml:1:1: this is not XML: No document element found"},
-      {"<mujoco><worldbody><body pos='1 2'/></worldbody></mujoco>", "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2'"},
-      {"<mujoco><worldbody><body pos='1 2 nan'/></worldbody></mujoco>", "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2 nan'"},
+      {"<mujoco><worldbody><body pos='1 2'/></worldbody></mujoco>",
+       "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2'"},
+      {"<mujoco><worldbody><body pos='1 2 nan'/></worldbody></mujoco>",
+       "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2 nan'"},
       {"<mujoco><worldbody><geom type='cone'/></worldbody></mujoco>", "a.xml:1:20: expected plane or hfield or sphere"},
-      {"<mujoco><worldbody><geom type='box' size='1 1'/></worldbody></mujoco>", "a.xml:1:20: expected 3 lengths above 0 in 'size' of a box, found less"},
+      {"<mujoco><worldbody><geom type='box' size='1 1'/></worldbody></mujoco>",
+       "a.xml:1:20: expected 3 lengths above 0 in 'size' of a box, found less"},
       {"<mujoco><worldbody><geom class='x'/></worldbody></mujoco>", "a.xml:1:20: there is no default class 'x'"},
       {"<mujoco><worldbody><geom type='mesh' mesh='m'/></worldbody></mujoco>", "a.xml:1:20: there is no <mesh> 'm'"},
       {"<mujoco><worldbody><joint/></worldbody></mujoco>", "a.xml:1:20: the world has no joints"},
-      {"<mujoco><compiler eulerseq='xyw'/></mujoco>", "a.xml:1:9: expected three of x y z X Y Z for 'eulerseq', found 'xyw'"},
+      {"<mujoco><compiler eulerseq='xyw'/></mujoco>",
+       "a.xml:1:9: expected three of x y z X Y Z for 'eulerseq', found 'xyw'"},
   };
   for (const auto& [text, message] : cases) CHECK_THAT(failure(text), Catch::StartsWith(message));
 }
