@@ -47,13 +47,13 @@ class ActuatorEffector : public Effector {
     using E = ActuatorEffector;
     d.doc("Drives the joint above it with a force of gain u + bias - stiffness q - damping dq: (name u).");
     d.link(&E::joint_, Above<IJoint>()).required(kNoJointAbove);
-    d.property("gain", &E::gain_).doc("Force per control [Nm or N].");
-    d.property("bias", &E::bias_).doc("Constant force [Nm or N].");
-    d.property("stiffness", &E::stiffness_).min(0).doc("Force per angle or place, against it [Nm/rad or N/m].");
-    d.property("damping", &E::damping_).min(0).doc("Force per rate, against it [N m s or N s/m].");
-    d.property("maxForce", &E::maxForce_).min(0).doc("Largest force [Nm or N].");
-    d.property("least", &E::least_).doc("Least control; smaller ones count as this.");
-    d.property("most", &E::most_).doc("Largest control; larger ones count as this.");
+    d.property("gain", &E::gain_).unit("Nm").doc("Force per control; on a slider N.");
+    d.property("bias", &E::bias_).unit("Nm").doc("Constant force; on a slider N.");
+    d.property("stiffness", &E::stiffness_).unit("Nm/rad").min(0).doc("Force per angle, against it; on a slider N/m.");
+    d.property("damping", &E::damping_).unit("N m s").min(0).doc("Force per rate, against it; on a slider N s/m.");
+    d.property("maxForce", &E::maxForce_).unit("Nm").min(0).doc("Largest force; on a slider N.");
+    d.property("least", &E::least_).unit("1").doc("Least control; smaller ones count as this.");
+    d.property("most", &E::most_).unit("1").doc("Largest control; larger ones count as this.");
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();
