@@ -309,6 +309,33 @@ Cost costOf(const std::string& engine, int robots) {
 
 }  // namespace
 
+// For tools/accept engines, which compares with MuJoCo of today (second_oracle.mjs): the angles of the joints at the
+// end.
+TEST_CASE("The angles of a T1 that stood and of one that moved", "[.angles]") {
+  for (const bool standing : {true, false}) {
+    Oracle limits("t1.xml");  // only for its ranges and limits
+    MjcfHouse house("t1.xml");
+    std::map<std::string, IJoint*> byName;
+    for (IJoint* j : house.joints) byName[j->leaf().name()] = j;
+    for (int cycle = 0; cycle < (standing ? 100 : 50); ++cycle) {
+      for (int j = 1; j < limits.m->njnt; ++j) {
+        const Target t = standing ? straight(*limits.m, j, 0) : swinging(*limits.m, j, cycle * kCycle);
+        byName.at(mj_id2name(limits.m, mjOBJ_JOINT, j))
+            ->control(0, {.stiffness = standing ? 200.0 : 100.0,
+                          .damping = standing ? 5.0 : 3.0,
+                          .position = t.angle,
+                          .velocity = t.rate,
+                          .maxForce = limits.maxForce[j]});
+      }
+      house.step();
+    }
+    std::string angles;
+    for (const auto& [name, joint] : byName)
+      angles += fmt::format("{}\"{}\": {:.17g}", angles.empty() ? "" : ", ", name, joint->angle(0));
+    fmt::print("{{\"motion\": \"{}\", \"angles\": {{{}}}}}\n", standing ? "standing" : "moving", angles);
+  }
+}
+
 // For tools/accept engines: a line of JSON for each engine and number of robots.
 TEST_CASE("Many T1 cost little more than in MuJoCo alone", "[.cost]") {
   for (const std::string engine : {"MujocoEngine", "ArticulatedEngine"})
