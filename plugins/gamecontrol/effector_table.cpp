@@ -10,7 +10,7 @@ std::size_t EffectorTable::rebuild(AgentAspect& root) {
   clear();
   std::vector<Effector*> effectors;
   root.collect(effectors);
-  for (Effector* e : effectors) entries_.push_back({e->predicate(), e, e});
+  for (Effector* e : effectors) entries_.push_back({e->predicate(), e});
 
   // Sort by predicate; of equal ones keep the last in tree order.
   std::stable_sort(entries_.begin(), entries_.end(),

@@ -8,18 +8,16 @@
 #include <vector>
 
 #include "api/agents.h"
-#include "spark/prefetch.h"
 
 namespace spark::gamecontrol {
 
 /// Finds the effector for an action. Agents usually send the same actions in the same order, so each entry remembers
-/// which entry was used after it: a lookup first tries that one, and loops prefetch along this chain.
+/// which entry was used after it: a lookup first tries that one.
 class EffectorTable {
   struct Entry {
     std::string predicate;
     Ref<Effector> effector;
-    const void* memory = nullptr;  ///< of the effector; for prefetching only, it may dangle
-    std::size_t next = 0;          ///< index of the entry that was used after this one the last time
+    std::size_t next = 0;  ///< index of the entry that was used after this one the last time
   };
 
  public:
@@ -32,20 +30,11 @@ class EffectorTable {
   const std::string& syncPredicate() const { return syncPredicate_; }
   /// True while a SceneEffector waits to load the robot, or has loaded it in the last prepare phase after a wait.
   bool loading() const;
-  /// Prefetches the first entry of the chain.
-  void prefetchFirst() const {
-    if (first_ < entries_.size()) prefetch(&entries_[first_], sizeof(Entry));
-  }
 
   /// Looks up the effectors for the actions of one cycle, in order.
   class Lookup {
    public:
-    /// Prefetches the first effectors of the chain.
-    explicit Lookup(EffectorTable& table) : table_(table), guess_(&table.first_), prefetched_(table.first_) {
-      for (std::size_t i = 0; i < kPrefetchDistance; ++i) advance();
-    }
-    /// Prefetches one more effector. Call it once per action, before find().
-    void advance() { prefetched_ = table_.prefetchNext(prefetched_); }
+    explicit Lookup(EffectorTable& table) : table_(table), guess_(&table.first_) {}
     /// The effector for `predicate`; nullptr if there is none or it was removed.
     Effector* find(std::string_view predicate) {
       auto& entries = table_.entries_;
@@ -61,19 +50,10 @@ class EffectorTable {
 
    private:
     EffectorTable& table_;
-    std::size_t* guess_;      ///< index of the entry that is tried first
-    std::size_t prefetched_;  ///< index of the entry to prefetch next
+    std::size_t* guess_;  ///< index of the entry that is tried first
   };
 
  private:
-  static constexpr std::size_t kPrefetchDistance = 4;   // effectors
-  static constexpr std::size_t kPrefetchedBytes = 256;  // of an effector, which most cycles use
-  /// Prefetches an effector; returns the index of the one after it.
-  std::size_t prefetchNext(std::size_t index) const {
-    if (index >= entries_.size()) return index;
-    prefetch(entries_[index].memory, kPrefetchedBytes);
-    return entries_[index].next;
-  }
   /// Binary search; the number of entries if there is none.
   std::size_t indexOf(std::string_view predicate) const;
 

@@ -15,15 +15,6 @@
 
 namespace spark {
 
-namespace {
-/// The participant `distance` places after index `i`, or nullptr.
-template <class Participants>
-auto* ahead(const Participants& all, std::size_t i, std::size_t distance) {
-  return i + distance < all.size() ? all[i + distance].get() : nullptr;
-}
-
-}  // namespace
-
 void GameControl::describe(Description<GameControl>& d) {
   d.doc("Creates agents for connections and behaviours, dispatches their actions, calls their perceptors.");
   d.link(&GameControl::joinPolicy_, Child<IJoinPolicy>())
@@ -249,7 +240,6 @@ void GameControl::takeTurn(const Event& event) {
   else
     for (const auto& p : participants_) p->promote();
   for (std::size_t i = 0; i < participants_.size(); ++i) {
-    if (auto* p = ahead(participants_, i, 2)) p->prefetchForExecute();
     if (lockstep_.hasBudget()) participants_[i]->countAnswer();
     participants_[i]->execute(agentLog(), cycle_);
     if (perceptDelay_ > 0) participants_[i]->promote();
@@ -263,16 +253,11 @@ void GameControl::sense(const Event& event) {
 
   // Update what several agents' perceptors share.
   ++round_;
-  for (std::size_t i = 0; i < participants_.size(); ++i) {
-    if (auto* p = ahead(participants_, i, 2)) p->prefetchForShare();
-    participants_[i]->share(round_);
-  }
+  for (const auto& p : participants_) p->share(round_);
 
   // Sense, agents in parallel.
   std::atomic<bool> faults = false;
   const auto one = [&](std::size_t i) {
-    for (std::size_t distance = Participant::kSenseStages; distance > 0; --distance)
-      if (auto* p = ahead(participants_, i, distance)) p->prefetchForSense(distance);
     if (!participants_[i]->sense(event)) faults = true;
   };
   kernel().jobs().run(participants_.size(), std::ref(one));  // std::ref: a copy would allocate

@@ -5,14 +5,12 @@
 #include <utility>
 
 #include "gamecontrol/scene_effector.h"
-#include "spark/prefetch.h"
 #include "spark/running.h"
 
 namespace spark::gamecontrol {
 
 namespace {
-constexpr std::size_t kMaxLineLength = 300;    // of a log line, which may contain text from a client
-constexpr std::size_t kPrefetchedBytes = 256;  // of a buffer, which most cycles use
+constexpr std::size_t kMaxLineLength = 300;  // of a log line, which may contain text from a client
 }  // namespace
 
 Participant::Participant(IConnection& connection)
@@ -70,11 +68,6 @@ bool Participant::isSync(std::string_view predicate) const {
   return predicate == (hasRobot_ ? std::string_view(effectors_.syncPredicate()) : kSync) && !predicate.empty();
 }
 
-void Participant::prefetchForExecute() const {
-  effectors_.prefetchFirst();
-  prefetch(actions_.pending().tokens().data(), kPrefetchedBytes);
-}
-
 void Participant::execute(AgentLog& log, std::int64_t cycle) {
   lockstep_.beginCycle();
   // In the cycle in which an agent connects, only its aspect is created.
@@ -85,7 +78,6 @@ void Participant::execute(AgentLog& log, std::int64_t cycle) {
   EffectorTable::Lookup lookup(effectors_);
   NowRunning now("act");
   for (const Element action : actions_.pending()) {
-    lookup.advance();
     const std::string_view head = action.head();
     if (head.empty()) continue;
     if (Effector* effector = lookup.find(head)) {
@@ -129,14 +121,7 @@ bool Participant::resolveRobot() {
   return first;
 }
 
-void Participant::prefetchForSense(std::size_t distance) const {
-  if (distance >= 3) return prefetch(this, sizeof *this);
-  if (distance == 2) return percepts_.prefetchTable();
-  percepts_.prefetchPerceptors();
-}
-
 bool Participant::sense(const Event& event) {
-  prefetch(message_.data(), kPrefetchedBytes);
   cycles_ = nextCycle();
   const bool fine = percepts_.sense(event, cycles_);
   encode();

@@ -120,17 +120,6 @@ class Participant {
   /// Wall time from percepts to the answer [s], smoothed; NaN if unknown.
   double latency() const { return latency_.seconds(); }
 
-  // Prefetching: see PerceptBuffer.
-
-  /// Before execute(), two agents ahead.
-  void prefetchForExecute() const;
-  /// Before share(), two agents ahead.
-  void prefetchForShare() const { percepts_.prefetchShared(); }
-  /// Number of prefetchForSense() stages: each one reads what the previous one has fetched.
-  static constexpr std::size_t kSenseStages = 3;
-  /// Before sense(), `distance` agents ahead, kSenseStages first, then fewer. Any thread.
-  void prefetchForSense(std::size_t distance) const;
-
   // ---- lockstep ----
 
   /// Lockstep waits for it: it can answer percepts with a sync predicate, was sent some, and has sent that predicate

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "spark/prefetch.h"
 #include "spark/running.h"
 
 namespace spark::gamecontrol {
@@ -33,15 +32,6 @@ void PerceptBuffer::dropRemoved() {
   for (const Ref<Perceptor>& p : perceptors_) called_.push_back(p.get());
 }
 
-void PerceptBuffer::prefetchShared() const {
-  for (const Shared& s : shared_) prefetch(s.called, kPerceptorBytes);
-}
-
-void PerceptBuffer::prefetchPerceptors() const {
-  for (std::size_t i = 0; i < std::min(called_.size(), 2 * kPrefetchDistance); ++i)
-    prefetch(called_[i], kPerceptorBytes);
-}
-
 void PerceptBuffer::share(std::uint64_t round, std::int64_t cycle) {
   if (shared_.empty()) return;
   NowRunning now("share");
@@ -50,15 +40,10 @@ void PerceptBuffer::share(std::uint64_t round, std::int64_t cycle) {
 }
 
 bool PerceptBuffer::sense(const Event& event, std::int64_t cycle) {
-  prefetch(percepts_.tokens().data(), kPerceptBytes);
-  for (std::size_t i = 0; i < std::min(called_.size(), 2 * kPrefetchDistance); ++i)
-    prefetch(called_[i]->parent(), kParentBytes);
-
   percepts_.clear();
   NowRunning now("sense");
   for (std::size_t i = 0; i < called_.size(); ++i) {
     Perceptor* p = called_[i];
-    if (i + kPrefetchDistance < called_.size()) prefetch(called_[i + kPrefetchDistance], kSenseBytes);
     if (!isDue(*p, cycle)) continue;
     const std::uint32_t before = percepts_.size();
     now.at(p);

@@ -11,7 +11,6 @@
 
 #include "api/agents.h"
 #include "gamecontrol/agent_log.h"
-#include "spark/prefetch.h"
 
 namespace spark::gamecontrol {
 
@@ -40,21 +39,8 @@ class PerceptBuffer {
   const Predicates& percepts() const { return percepts_; }
   Predicates& percepts() { return percepts_; }
 
-  // Prefetching: the memory of a crowd exceeds the caches, so game control requests that of the next agents while it
-  // works on one. These calls have no other effect.
-
-  /// What share() reads.
-  void prefetchShared() const;
-  /// The array of perceptors.
-  void prefetchTable() const { prefetch(called_.data(), std::span(called_).size_bytes()); }
-  /// The first perceptors; sense() prefetches the others.
-  void prefetchPerceptors() const;
-
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  static constexpr std::size_t kPrefetchDistance = 4;  // perceptors
-  // Bytes that most cycles use: of a perceptor, in sense(), of the node above it, of the percepts.
-  static constexpr std::size_t kPerceptorBytes = 448, kSenseBytes = 256, kParentBytes = 768, kPerceptBytes = 256;
 
   struct Shared {
     Ref<Perceptor> perceptor;
