@@ -21,13 +21,13 @@ web()
 control()
 
 local world = get "/usr/scene/world"
+world.timestep = timestep
 world.mujocoDensity, world.mujocoViscosity = 1.2, 2e-5    -- air
 get("/usr/scene/space"):new("PlaneCollider", "ground"):new("ContactJointHandler", "surface").contactBounceMode = false
 
 local place = get("/usr/scene"):new("Transform", "place")
 place:setLocalPos(0, 0, height)
 place:importScene(model)
-world.timestep = timestep
 
 -- A controller acts once in each of the engine's steps: one that is too stiff for the inertia that it moves, at least
 -- that of its rotor, makes the joint swing ever more.

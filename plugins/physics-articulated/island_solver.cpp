@@ -1,5 +1,7 @@
 #include "island_solver.h"
 
+#include <algorithm>
+
 #include "integration.h"
 
 namespace spark::articulated {
@@ -256,7 +258,14 @@ bool IslandSolver::step(WorldView& world, const IslandContents& island) {
   readBodies(world, island);
   readJoints(world, island);
   readContacts(world, island);
-  if (system_.coupling.size() > static_cast<std::size_t>(world.maxCouplingRows)) return false;
+  // Another engine would leave out armature and damping, which a controlled robot cannot do without.
+  const auto hasInertia = [&](const RowRange& r) {
+    const engine::Joint& j = world.step.model.joints[r.source];
+    return std::any_of(j.axes.begin(), j.axes.end(), [](const auto& a) { return a.armature > 0 || a.damping > 0; });
+  };
+  if (system_.coupling.size() > static_cast<std::size_t>(world.maxCouplingRows) &&
+      std::none_of(joints_.begin(), joints_.end(), hasInertia))
+    return false;
   setExternalForces();
   if (!solve()) return false;
   writeResult(world);

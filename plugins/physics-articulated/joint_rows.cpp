@@ -124,6 +124,11 @@ struct JointWriter {
     b->torque -= force * jacobianB.angular();
   }
 
+  /// The present velocity along a row.
+  double motionAlong(const SpatialVector& jacobianA, const SpatialVector& jacobianB) const {
+    const auto motion = [](const RigidBodyState& s) { return SpatialVector::of(s.linearVelocity, s.angularVelocity); };
+    return dot(jacobianA, motion(a)) + (b ? dot(jacobianB, motion(*b)) : 0);
+  }
   /// A row of an inertial force alone (rows.h); `momentum`: that of the rotor.
   void addInertial(const SpatialVector& jacobianA, const SpatialVector& jacobianB, double inertia, double momentum) {
     Row& row = add(jacobianA, jacobianB, momentum / inertia, 0);
@@ -131,9 +136,10 @@ struct JointWriter {
   }
 
   /// The row of axis `index`: its stop's if it has reached one, else its motor's if it has one, else none. `velocity`
-  /// is the present velocity of a relative to b along the axis, for bounce.
+  /// is the present velocity of a relative to b along the axis, for bounce. `drift`: what turns of the Jacobian add to
+  /// the acceleration along the row [m/s^2]; 0 for rotation about an axis that is fixed in both bodies.
   void addAxis(Index index, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const StopContact& contact,
-               double velocity) {
+               double velocity, double drift = 0) {
     const JointAxis& axis = joint.axes[index];
     const engine::Motor& motor = motors[index];
     const Stop stop = contact.stop;
@@ -141,8 +147,11 @@ struct JointWriter {
     const bool locked = stopped && axis.lowStop == axis.highStop;
     const bool powered = motor.maxForce > 0 && !locked;
     const double inertia = axis.armature + axis.damping / constants.inverseDt;
+    // Of the row itself: that of a slider has arms, which `velocity` is without.
+    const double momentum =
+        inertia > 0 ? axis.armature * (motionAlong(jacobianA, jacobianB) - drift / constants.inverseDt) : 0;
     if (!powered && !stopped) {
-      if (inertia > 0) addInertial(jacobianA, jacobianB, inertia, axis.armature * velocity);
+      if (inertia > 0) addInertial(jacobianA, jacobianB, inertia, momentum);
       return;
     }
     // At a stop the motor acts as a given force: the row belongs to the stop. Dry friction does not press.
@@ -153,7 +162,7 @@ struct JointWriter {
     row.stop = stop;
     if (inertia > 0) {
       row.inertia = inertia;
-      row.inertialTarget = axis.armature * velocity * constants.inverseDt / inertia;
+      row.inertialTarget = momentum * constants.inverseDt / inertia;
     }
     // A motor reaches its target velocity with a force of at most maxForce.
     if (!stopped) {
@@ -216,7 +225,15 @@ struct JointWriter {
         (limits.lowStop > -HUGE_VAL || limits.highStop < HUGE_VAL) && limits.lowStop <= limits.highStop;
     const StopContact contact = hasStops ? stopAt(limits, -axis.dot(offset)) : StopContact{};
     const double velocity = a.linearVelocity.dot(axis) - (b ? b->linearVelocity.dot(axis) : 0);
-    addAxis(0, SpatialVector::of(axis, arm.cross(axis)), SpatialVector::of(-axis, arm.cross(axis)), contact, velocity);
+    // What the turning axis adds to the second derivative of the slider's place.
+    double drift = 0;
+    if (b) {
+      const Vec3& w = a.angularVelocity;
+      const Vec3 turning = w.cross(axis);
+      drift = 2 * turning.dot(a.linearVelocity - b->linearVelocity) + w.cross(turning).dot(a.position - b->position);
+    }
+    addAxis(0, SpatialVector::of(axis, arm.cross(axis)), SpatialVector::of(-axis, arm.cross(axis)), contact, velocity,
+            drift);
   }
 
   void writeUniversal() {

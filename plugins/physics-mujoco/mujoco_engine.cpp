@@ -75,6 +75,7 @@ void MujocoEngine::begin(Known& known, const engine::Model& model, const engine:
         "{}: {} joints have no effect in MuJoCo: those that close a loop of bodies, and angular motors", path(),
         trees.leftOver.size());
   known.world = std::make_unique<MujocoWorld>(model, state, std::move(trees), std::move(compiled));
+  known.world->setFilter(known.filter);
   ++compilations_;
 }
 
@@ -120,7 +121,9 @@ void MujocoEngine::refuse(Known& known, const std::string& why) {
 
 void MujocoEngine::detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int,
                           engine::Contacts& out) {
-  if (Known& known = of(model); known.world) known.world->detect(model, state, filter, out);
+  Known& known = of(model);
+  known.filter = filter;
+  if (known.world) known.world->detect(model, state, filter, out);
 }
 
 void MujocoEngine::report(MujocoWorld& world) {

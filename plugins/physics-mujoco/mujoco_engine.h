@@ -57,6 +57,7 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
     bool full = false;    ///< no more room can be had
     std::string refused;  ///< why the last model that was refused was
     Pending pending;
+    engine::PairFilter filter = nullptr;  ///< of the last detect()
   };
   std::string version() const { return mj_versionString(); }
   std::int64_t compilations() const { return compilations_; }

@@ -20,6 +20,8 @@ class MujocoWorld {
  public:
   /// `trees` and `compiled` are those of toMjcf() for this model.
   MujocoWorld(const engine::Model& model, const engine::State& state, Trees trees, Compiled compiled);
+  /// Which pairs of geoms may collide until the next detect().
+  void setFilter(engine::PairFilter filter) { filter_ = filter; }
   /// Goes on with another model, of which only those trees move that are unchanged: until it is compiled.
   void bind(const engine::Model& model);
 

@@ -426,14 +426,16 @@ void WorldModel::keepForces(bool on) {
   kept_.clear();
   if (!on) return;
   for (Index i = 0; i < state_.bodies.size(); ++i)
-    if (const DynamicState& s = state_.bodies[i]; bodies_.alive(i) && !(s.force.isZero(0) && s.torque.isZero(0)))
+    if (const DynamicState& s = state_.bodies[i];
+        bodies_.alive(i) && s.awake && !(s.force.isZero(0) && s.torque.isZero(0)))
       kept_.push_back({bodies_.handleOf(i), s.force, s.torque});
 }
 
 void WorldModel::repeatForces() {
   again_ = true;
   for (const KeptForce& k : kept_) {
-    if (bodies_[k.body] == kNone) continue;  // a handler removed it
+    // A handler removed it, or it fell asleep, and would keep them.
+    if (bodies_[k.body] == kNone || !of(k.body).awake) continue;
     of(k.body).force += k.force;
     of(k.body).torque += k.torque;
   }
@@ -443,9 +445,11 @@ void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, doubl
   compact();
   engine_.bring(engine, model_, state_, model_.dynamics);
   ++steps_;
-  if (!std::exchange(again_, false)) repaired_.clear();
+  const bool first = !std::exchange(again_, false);
+  if (first) repaired_.clear();
   if (std::none_of(state_.bodies.begin(), state_.bodies.end(), [](const DynamicState& s) { return s.awake; })) return;
-  if (model_.parameters.autoDisable && engine.sleeps()) putToSleep(contacts, dt);
+  // Sleep counts steps of the simulation.
+  if (first && model_.parameters.autoDisable && engine.sleeps()) putToSleep(contacts, dt);
   if (!engine.controls()) applyControls();
   if (!engine.damps() && damped_) applyDamping();
   engine::Step step{model_, state_, contacts, rounded(dt), {}};

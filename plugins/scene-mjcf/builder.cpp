@@ -1,6 +1,6 @@
 #include "builder.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -47,12 +47,17 @@ void Builder::build(Node& root) {
       if (p.carrier != 0 && &parts_[static_cast<std::size_t>(p.carrier)] == &p) makeBody(p);
     for (Part& p : parts_)
       if (p.node) makeJoints(p);
-    for (const Part& p : parts_) makeGeoms(p), makeSites(p);
+    for (Part& p : parts_) makeGeoms(p), makeSites(p);
     exclude();
     pair();
     makeActuators();
     makeSensors();
-    setOptions(root);
+    if (!model_.options.empty() && !prefix_.empty())
+      leftOver_.add(model_.options.front().from,
+                    "the options of an attached model are left out: the world has its own");
+    if (const auto left = leftOver_.sentences(); strict_ && !left.empty())
+      throw Error(fmt::format("{}", fmt::join(left, "; ")));
+    if (prefix_.empty()) setOptions(root);
   } catch (...) {
     root.remove(top);
     throw;
@@ -64,7 +69,16 @@ std::string Builder::nameOf(const std::string& given, const char* kind) {
   // What paths are made of.
   for (char& c : name)
     if (c == '/' || c == '[' || c == ']') c = '_';
+  if (name == "." || name == "..") name += '_';
   return name;
+}
+
+/// A name that no other has: of bodies, which joints name, and of colliders, which exclude each other by name.
+std::string Builder::uniqueName(std::set<std::string>& taken, const std::string& given, const char* kind) {
+  const std::string name = nameOf(given, kind);
+  std::string unique = name;
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = fmt::format("{}~{}", name, i);
+  return unique;
 }
 
 void Builder::placeBodies(const Pose& root) {
@@ -96,6 +110,9 @@ void Builder::placeBodies(const Pose& root) {
     Part& carrier = parts_[static_cast<std::size_t>(p.carrier)];
     if (&carrier == &p) {
       p.mass = b.mass;
+    } else if (b.mass.mass > 0 && carrier.mass.mass <= 0) {
+      const Mat3& r = p.inCarrier.rotation;
+      carrier.mass = {b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()};
     } else if (b.mass.mass > 0) {
       const Mat3& r = p.inCarrier.rotation;
       const auto about = [](engine::Mass m) {
@@ -127,7 +144,7 @@ void Builder::makeBody(Part& p) {
   if (!(p.mass.mass > 0)) throw b.from.error("a body that moves needs a mass above 0");
   // The frame of a body of ours is that of the link, with the centre of mass as origin.
   const Pose world = compose(p.world, {p.mass.center, Mat3::Identity()});
-  p.node = &transform(*top_, nameOf(b.name, "body"), compose(inverse(rootPose_), world));
+  p.node = &transform(*top_, uniqueName(bodyNames_, b.name, "body"), compose(inverse(rootPose_), world));
   try {
     Leaf& body = p.node->create("RigidBody", "body");
     const Mat3& i = p.mass.inertia;
@@ -144,7 +161,10 @@ void Builder::makeBody(Part& p) {
 
 void Builder::makeJoints(Part& p) {
   const std::vector<Joint>& joints = p.body->joints;
-  if (joints.front().kind == JointKind::free) return;
+  if (joints.front().kind == JointKind::free) {
+    freeJoints_.insert(joints.front().name);
+    return;
+  }
   const std::string above = p.above == 0 ? "" : parts_[static_cast<std::size_t>(p.above)].node->name();
   std::string parent = above.empty() ? "" : "../../" + above + "/body";
   // A joint has one axis: between two of them there is a light body.
@@ -154,7 +174,7 @@ void Builder::makeJoints(Part& p) {
                     fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass",
                                 joints.size(), kBetween));
     const Pose world = compose(p.world, {p.mass.center, Mat3::Identity()});
-    const std::string name = fmt::format("{}-{}", p.node->name(), k + 1);
+    const std::string name = uniqueName(bodyNames_, fmt::format("{}-{}", p.body->name, k + 1), "between");
     Node& between = transform(*top_, name, compose(inverse(rootPose_), world));
     Leaf& body = between.create("RigidBody", "body");
     const Mat3 i = kBetween * p.mass.inertia;
@@ -205,8 +225,8 @@ void Builder::makeJoint(Part& p, const Joint& j, Node& child, const std::string&
 
 // ---- geoms and sites ----
 
-void Builder::makeGeoms(const Part& p) {
-  Part& carrier = parts_[static_cast<std::size_t>(p.carrier)];
+void Builder::makeGeoms(Part& p) {
+  const Part& carrier = parts_[static_cast<std::size_t>(p.carrier)];
   // Where a body is drawn by meshes alone, which viewers do not have, its collision shapes are shown.
   const bool drawn = std::any_of(p.body->geoms.begin(), p.body->geoms.end(), [](const Geom& g) { return g.visible(); });
   for (const Geom& g : p.body->geoms) {
@@ -215,7 +235,7 @@ void Builder::makeGeoms(const Part& p) {
                           ? compose(p.world, g.pose)
                           : compose(Pose{-carrier.mass.center, Mat3::Identity()}, compose(p.inCarrier, g.pose));
     try {
-      if (g.collides() || inPair(g.name)) makeCollider(g, carrier, pose);
+      if (g.collides() || inPair(g.name)) makeCollider(g, p, pose);
       if (g.visible() || !drawn)
         makeVisible(g, carrier.node ? *carrier.node : *top_, carrier.node ? pose : compose(inverse(rootPose_), pose));
     } catch (const Error& e) {
@@ -224,13 +244,14 @@ void Builder::makeGeoms(const Part& p) {
   }
 }
 
-void Builder::makeCollider(const Geom& g, Part& carrier, const Pose& pose) {
+void Builder::makeCollider(const Geom& g, Part& part, const Pose& pose) {
+  const Part& carrier = parts_[static_cast<std::size_t>(part.carrier)];
   const engine::ShapeDescription& s = g.shape;
   const char* const kinds[] = {
       "BoxCollider", "SphereCollider", "CapsuleCollider", "CylinderCollider", "PlaneCollider", "", "TriMeshCollider"};
   Node& parent = carrier.node ? *carrier.node : *top_;
-  Node& c = *parent.create(kinds[static_cast<int>(s.shape)], nameOf(g.name, "geom")).asNode();
-  carrier.colliders.push_back(c.name());
+  Node& c = *parent.create(kinds[static_cast<int>(s.shape)], uniqueName(colliderNames_, g.name, "geom")).asNode();
+  part.colliders.push_back(&c);
   if (!g.name.empty() && !geoms_.emplace(g.name, &c).second)
     throw Error(fmt::format("there are two geoms '{}'", g.name));
   switch (s.shape) {
@@ -329,11 +350,10 @@ void Builder::pair() {
 
 void Builder::exclude() {
   for (const Exclusion& x : model_.exclusions) {
-    Part &a = parts_[static_cast<std::size_t>(partOf(x.body1, x.from)->carrier)],
-         &b = parts_[static_cast<std::size_t>(partOf(x.body2, x.from)->carrier)];
-    for (const std::string& first : a.colliders)
-      for (const std::string& second : b.colliders)
-        callMethod(*(a.node ? a.node : top_)->child(first), "addNotCollideWithColliderName", List{second, true});
+    const Part &a = *partOf(x.body1, x.from), &b = *partOf(x.body2, x.from);
+    for (Node* first : a.colliders)
+      for (const Node* second : b.colliders)
+        callMethod(*first, "addNotCollideWithColliderName", List{second->name(), true});
   }
 }
 
@@ -357,19 +377,21 @@ void Builder::makeActuators() {
   }
   for (const auto& [name, all] : groups) {
     const auto joint = joints_.find(name);
-    if (joint == joints_.end()) throw all.front()->from.error(fmt::format("there is no joint '{}' to act on", name));
-    makeActuator(all, joint->second);
+    if (joint != joints_.end())
+      makeActuator(all, joint->second);
+    else if (freeJoints_.contains(name))
+      leftOver_.add(all.front()->from, fmt::format("a <{}> on a free joint is left out", all.front()->from.tag()));
+    else
+      throw all.front()->from.error(fmt::format("there is no joint '{}' to act on", name));
   }
 }
 
 void Builder::makeActuator(const std::vector<const Actuator*>& all, const MadeJoint& on) {
   const Actuator& first = *all.front();
-  if (on.joint->kind == JointKind::ball || on.joint->kind == JointKind::free)
-    return leftOver_.add(first.from, fmt::format("a <{}> on a {} joint is left out", first.from.tag(),
-                                                 on.joint->kind == JointKind::ball ? "ball" : "free"));
+  if (on.joint->kind == JointKind::ball)
+    return leftOver_.add(first.from, fmt::format("a <{}> on a ball joint is left out", first.from.tag()));
   const double maxForce = std::min(on.joint->maxForce, all.size() == 1 ? first.maxForce : HUGE_VAL);
-  if (on.joint->stiffness > 0)
-    leftOver_.add(on.joint->from, "the attribute 'stiffness' of <joint> is left out where the joint has an actuator");
+  const double spring = on.joint->stiffness;
   Node& parent = *on.made->leaf().asNode();
 
   // name_pos, name_vel and name_tau: one controller.
@@ -381,7 +403,13 @@ void Builder::makeActuator(const std::vector<const Actuator*>& all, const MadeJo
   const Actuator* position = ending("_pos", [](const Actuator& x) { return x.bias[1] == -x.gain && x.bias[2] == 0; });
   const Actuator* velocity = ending("_vel", [](const Actuator& x) { return x.bias[2] == -x.gain && x.bias[1] == 0; });
   const Actuator* torque = ending("_tau", [](const Actuator& x) { return x.bias == std::array<double, 3>{}; });
-  if (all.size() == 3 && position && velocity && torque) {
+  const bool plain = std::all_of(all.begin(), all.end(), [](const Actuator* x) {
+    return x->gear == 1 && std::isinf(x->maxForce) && std::isinf(x->controlRange[1]);
+  });
+  if (all.size() == 3 && position && velocity && torque && plain && torque->gain == 1) {
+    if (spring > 0)
+      leftOver_.add(on.joint->from,
+                    "the attribute 'stiffness' of <joint> is left out where the joint has a controller");
     on.made->control(0, {.stiffness = position->gain, .damping = velocity->gain, .maxForce = maxForce});
     if (!has("ControlEffector")) return;
     Leaf& effector = parent.create("ControlEffector", position->name.substr(0, position->name.size() - 4));
@@ -391,9 +419,11 @@ void Builder::makeActuator(const std::vector<const Actuator*>& all, const MadeJo
   for (std::size_t i = 1; i < all.size(); ++i)
     leftOver_.add(all[i]->from, fmt::format("a second <{}> on a joint is left out", all[i]->from.tag()));
   const double gear2 = first.gear * first.gear;
-  const engine::Control law{.stiffness = -gear2 * first.bias[1],
+  const double bias = first.gear * first.bias[0] + spring * on.joint->springAngle;
+  const double atFirst = std::clamp(0.0, first.controlRange[0], first.controlRange[1]);
+  const engine::Control law{.stiffness = spring - gear2 * first.bias[1],
                             .damping = -gear2 * first.bias[2],
-                            .force = first.gear * first.bias[0],
+                            .force = bias + first.gear * first.gain * atFirst,
                             .maxForce = maxForce};
   if (law.stiffness < 0 || law.damping < 0)
     return leftOver_.add(first.from, "an actuator that drives a joint away from its target is left out");
@@ -401,7 +431,7 @@ void Builder::makeActuator(const std::vector<const Actuator*>& all, const MadeJo
   if (!has("ActuatorEffector")) return;
   Leaf& effector = parent.create("ActuatorEffector", first.name.empty() ? on.joint->name : first.name);
   setProperty(effector, "gain", first.gear * first.gain);
-  setProperty(effector, "bias", law.force);
+  setProperty(effector, "bias", bias);
   setProperty(effector, "stiffness", law.stiffness);
   setProperty(effector, "damping", law.damping);
   setProperty(effector, "maxForce", maxForce);
@@ -415,7 +445,9 @@ Node& Builder::frame(const Sensor& s) {
   const Part& carrier = parts_[static_cast<std::size_t>(part.carrier)];
   if (!carrier.node) throw s.from.error(fmt::format("the body '{}' does not move", s.object));
   const Pose link = compose(Pose{-carrier.mass.center, Mat3::Identity()}, part.inCarrier);
-  return transform(*carrier.node, nameOf(s.object + "-link", ""), link);
+  Node& made = transform(*carrier.node, nameOf(s.object + "-link", ""), link);
+  sites_.emplace(s.object, &made);
+  return made;
 }
 
 void Builder::makeSensors() {
@@ -430,11 +462,17 @@ void Builder::makeSensors() {
       if (!known && has("JointPerceptor")) parent.create("JointPerceptor", s.name);
     } else if (s.kind == "gyro" || s.kind == "accelerometer") {
       const char* const kind = s.kind == "gyro" ? "GyroRatePerceptor" : "Accelerometer";
+      if (!has(kind)) continue;
       Node& site = frame(s);
-      if (has(kind)) site.parent()->create(kind, s.name);
+      if (!toPose(static_cast<Transform*>(site.requireAs(Transform::kInterface))->local()).rotation.isIdentity(1e-6))
+        leftOver_.add(s.from, fmt::format("the rotation of the site of a <{}> is left out", s.kind));
+      site.parent()->create(kind, s.name);
     } else if (s.kind == "framepos" || s.kind == "framequat") {
       const char* const kind = s.kind == "framepos" ? "PositionPerceptor" : "OrientationPerceptor";
-      if (has(kind)) frame(s).create(kind, s.name);
+      if (!has(kind)) continue;
+      if (s.objectType == "body")
+        leftOver_.add(s.from, fmt::format("the inertial frame of a body is left out; <{}> has the link's", s.kind));
+      frame(s).create(kind, s.name);
     } else {
       leftOver_.element(s.from);
     }
@@ -444,29 +482,21 @@ void Builder::makeSensors() {
 // ---- options ----
 
 void Builder::setOptions(Node& root) {
-  const Options& o = model_.options;
-  if (!o.any) return;
   Leaf* world = nullptr;
   for (Node* up = &root; up && !world; up = up->parent())
     for (const auto& child : up->children())
-      if (child->classObject()->name() == "World") world = child.get();
+      if (!world && child->classObject()->name() == "World") world = child.get();
   if (!world) return;
-  if (!prefix_.empty()) {
-    leftOver_.add(model_.bodies.front().from, "the options of an attached model are left out: the world has its own");
-    return;
+  std::vector<std::pair<const char*, Value>> before;
+  for (const Option& o : model_.options) {
+    try {
+      before.emplace_back(o.property, getProperty(*world, o.property));
+      setProperty(*world, o.property, o.value);
+    } catch (const Error& e) {
+      for (auto old = before.rbegin(); old != before.rend(); ++old) setProperty(*world, old->first, old->second);
+      throw Error(o.from.where() + ": cannot set an option", e);
+    }
   }
-  if (o.gravity) setProperty(*world, "gravity", numbers(*o.gravity));
-  const engine::WorldParameters::Mujoco& m = o.numbers;
-  setProperty(*world, "timestep", o.timestep);
-  setProperty(*world, "mujocoIntegrator", m.integrator);
-  setProperty(*world, "mujocoCone", m.cone);
-  setProperty(*world, "mujocoSolver", m.solver);
-  setProperty(*world, "mujocoIterations", m.iterations);
-  setProperty(*world, "mujocoTolerance", m.tolerance);
-  setProperty(*world, "mujocoImpratio", m.impratio);
-  setProperty(*world, "mujocoDensity", m.density);
-  setProperty(*world, "mujocoViscosity", m.viscosity);
-  setProperty(*world, "mujocoWind", numbers(m.wind));
 }
 
 }  // namespace spark::mjcf

@@ -67,6 +67,8 @@ void Document::append(const Element& e, std::vector<Element>& out, int depth) {
   for (const pugi::xml_node node : e.node.children()) {
     if (node.type() != pugi::node_element) continue;
     const Element child{node, e.file};
+    if (++listed_ > kMaxListed)
+      throw child.error(fmt::format("expected at most {} elements, included ones counted each time", kMaxListed));
     if (child.tag() != "include") {
       out.push_back(child);
       continue;
@@ -101,10 +103,10 @@ void Defaults::add(Document& document, const Element& element, const std::string
     if (child.tag() == "default")
       add(document, child, name, depth + 1);
     else
-      classes_[name].elements[std::string(child.tag())].push_back(child);
+      classes_[name].elements.push_back(child);
 }
 
-void Defaults::forEach(const Element& user, std::string_view tag, const std::string& name,
+void Defaults::forEach(const Element& user, std::span<const std::string_view> tags, const std::string& name,
                        const std::function<void(const Element&)>& visit) const {
   std::string at = name;
   for (int i = 0; i <= Document::kMaxDepth + 1; ++i) {
@@ -114,8 +116,9 @@ void Defaults::forEach(const Element& user, std::string_view tag, const std::str
       return;
     }
     // Of several elements in one class the last one counts first.
-    if (const auto elements = found->second.elements.find(tag); elements != found->second.elements.end())
-      std::for_each(elements->second.rbegin(), elements->second.rend(), visit);
+    const std::vector<Element>& elements = found->second.elements;
+    for (auto e = elements.rbegin(); e != elements.rend(); ++e)
+      if (std::find(tags.begin(), tags.end(), e->tag()) != tags.end()) visit(*e);
     if (at.empty()) return;
     at = found->second.parent;
   }
@@ -124,11 +127,12 @@ void Defaults::forEach(const Element& user, std::string_view tag, const std::str
 // ---- what is left out ----
 
 void LeftOver::add(const Element& e, const std::string& what) {
-  const auto known = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& x) { return x.what == what; });
-  if (known != entries_.end())
-    ++known->times;
+  if (const auto known = known_.find(what); known != known_.end())
+    ++entries_[known->second].times;
+  else if (entries_.size() == kMaxKinds)
+    ++more_;
   else
-    entries_.push_back({what, e.where(), 1});
+    known_.emplace(what, entries_.size()), entries_.push_back({what, e.where(), 1});
 }
 
 void LeftOver::element(const Element& e, const std::string& why) {
@@ -144,6 +148,7 @@ std::vector<std::string> LeftOver::sentences() const {
   for (const Entry& x : entries_)
     out.push_back(
         fmt::format("{}: {}{}", x.where, x.what, x.times > 1 ? fmt::format(" (and {} more)", x.times - 1) : ""));
+  if (more_ > 0) out.push_back(fmt::format("{} more elements and attributes are left out", more_));
   return out;
 }
 
@@ -151,7 +156,8 @@ std::vector<std::string> LeftOver::sentences() const {
 
 Attributes::Attributes(const Element& e, const Defaults& defaults, const std::string& className, LeftOver& leftOver)
     : element_(e), chain_{e}, leftOver_(leftOver) {
-  defaults.forEach(e, e.tag(), className, [&](const Element& d) { chain_.push_back(d); });
+  const std::string_view tags[] = {e.tag()};
+  defaults.forEach(e, tags, className, [&](const Element& d) { chain_.push_back(d); });
 }
 
 const char* Attributes::find(const char* name) {
@@ -179,15 +185,23 @@ bool Attributes::flag(const char* name, bool otherwise) {
 }
 
 std::optional<std::vector<double>> Attributes::numbers(const char* name, std::size_t least, std::size_t most) {
-  const char* const found = find(name);
-  if (!found) return std::nullopt;
-  const std::string_view text(found);
+  known_.insert(name);
+  for (const Element& e : chain_)
+    if (auto found = parse(e, name, least, most)) return found;
+  return std::nullopt;
+}
+
+std::optional<std::vector<double>> Attributes::parse(const Element& e, const char* name, std::size_t least,
+                                                     std::size_t most) {
+  const pugi::xml_attribute attribute = e.node.attribute(name);
+  if (!attribute) return std::nullopt;
+  const std::string_view text(attribute.value());
   std::vector<double> out;
   const auto refuse = [&] {
-    throw element_.error(fmt::format("expected {} for '{}' of <{}>, found '{}'",
-                                     least == most ? (most == 1 ? "a number" : fmt::format("{} numbers", most))
-                                                   : fmt::format("{} to {} numbers", least, most),
-                                     name, element_.tag(), text.substr(0, 80)));
+    throw e.error(fmt::format("expected {} for '{}' of <{}>, found '{}'",
+                              least == most ? (most == 1 ? "a number" : fmt::format("{} numbers", most))
+                                            : fmt::format("{} to {} numbers", least, most),
+                              name, e.tag(), text.substr(0, 80)));
   };
   std::size_t at = 0;
   while (true) {
@@ -218,8 +232,9 @@ int Attributes::integer(const char* name, int otherwise) {
 }
 
 void Attributes::finish() {
-  for (const pugi::xml_attribute a : element_.node.attributes())
-    if (!known_.contains(a.name())) leftOver_.attribute(element_, a.name());
+  for (const Element& e : chain_)
+    for (const pugi::xml_attribute a : e.node.attributes())
+      if (!known_.contains(a.name())) leftOver_.attribute(e, a.name());
 }
 
 }  // namespace spark::mjcf

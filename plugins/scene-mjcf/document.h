@@ -2,6 +2,7 @@
 /// \file
 /// MJCF files: elements with their places, attributes with their defaults, included files.
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -40,8 +41,9 @@ using ReadFile = std::function<std::string(const std::string& name)>;
 /// A model: its main file, with what it includes in the places of the `include` elements.
 class Document {
  public:
-  /// Largest nesting of elements, and largest number of included files.
-  static constexpr int kMaxDepth = 200, kMaxFiles = 100;
+  /// Largest nesting of included files and of default classes, largest number of files, and of elements that may be
+  /// listed, included ones counted as often as they are.
+  static constexpr int kMaxDepth = 200, kMaxFiles = 100, kMaxListed = 1'000'000;
 
   /// Throws Error with file:line:column for a text that is not XML or not a model.
   Document(const std::string& name, ReadFile read);
@@ -60,6 +62,7 @@ class Document {
   std::string folder_;
   ReadFile read_;
   std::vector<std::unique_ptr<File>> files_;
+  int listed_ = 0;
 };
 
 /// The default classes of a model (MuJoCo's documentation, "Default settings").
@@ -67,15 +70,15 @@ class Defaults {
  public:
   /// Adds what the element `default` says. Throws Error.
   void add(Document& document, const Element& element);
-  /// Calls visit(element) for the elements that apply to an element of this tag and class, the nearest first. Throws
-  /// Error, with the place of `user`, when there is no such class.
-  void forEach(const Element& user, std::string_view tag, const std::string& name,
+  /// Calls visit(element) for the elements that apply to an element of one of these tags and that class, the nearest
+  /// first. Throws Error, with the place of `user`, when there is no such class.
+  void forEach(const Element& user, std::span<const std::string_view> tags, const std::string& name,
                const std::function<void(const Element&)>& visit) const;
 
  private:
   struct Class {
     std::string parent;
-    std::map<std::string, std::vector<Element>, std::less<>> elements;  ///< by tag
+    std::vector<Element> elements;  ///< in the order of the file
   };
   void add(Document& document, const Element& element, const std::string& parent, int depth);
   std::map<std::string, Class, std::less<>> classes_;
@@ -93,19 +96,23 @@ class LeftOver {
   std::vector<std::string> sentences() const;
 
  private:
+  static constexpr std::size_t kMaxKinds = 100;  ///< more are counted only
   struct Entry {
     std::string what, where;
     int times = 0;
   };
   std::vector<Entry> entries_;
+  std::map<std::string, std::size_t, std::less<>> known_;  ///< index in entries_
+  int more_ = 0;
 };
 
-/// The attributes of an element, with those of its default class. Reading a number marks an attribute as known;
-/// finish() names the others.
+/// The attributes of an element, with those of its default classes. What is read is known; finish() names the others.
 class Attributes {
  public:
   /// `className` "": the default class of the whole model.
   Attributes(const Element& e, const Defaults& defaults, const std::string& className, LeftOver& leftOver);
+  /// Of the element alone.
+  Attributes(const Element& e, LeftOver& leftOver) : element_(e), chain_{e}, leftOver_(leftOver) {}
   const Element& element() const { return element_; }
   bool has(const char* name) { return find(name) != nullptr; }
   /// "" where it is not there.
@@ -117,13 +124,19 @@ class Attributes {
   int integer(const char* name, int otherwise);
   /// Between `least` and `most` finite numbers; nullopt where the attribute is not there. Throws Error.
   std::optional<std::vector<double>> numbers(const char* name, std::size_t least, std::size_t most);
-  /// Writes the first numbers of an array; the others stay. Returns false where the attribute is not there.
+  /// Writes the first numbers of an array: those of the defaults, then those of the element, which may be fewer. The
+  /// others stay. Returns the most numbers that one of them has.
   template <class Array>
-  bool fill(const char* name, Array& out) {
-    const auto found = numbers(name, 1, static_cast<std::size_t>(out.size()));
-    if (found)
+  std::size_t fill(const char* name, Array& out) {
+    known_.insert(name);
+    std::size_t most = 0;
+    for (std::size_t k = chain_.size(); k-- > 0;) {
+      const auto found = parse(chain_[k], name, 1, static_cast<std::size_t>(out.size()));
+      if (!found) continue;
       for (std::size_t i = 0; i < found->size(); ++i) out[static_cast<int>(i)] = (*found)[i];
-    return found.has_value();
+      most = std::max(most, found->size());
+    }
+    return most;
   }
   /// As fill(), but all numbers must be there.
   template <class Array>
@@ -142,6 +155,7 @@ class Attributes {
 
  private:
   const char* find(const char* name);
+  std::optional<std::vector<double>> parse(const Element& e, const char* name, std::size_t least, std::size_t most);
   Element element_;
   std::vector<Element> chain_;  ///< the element, then its defaults
   LeftOver& leftOver_;

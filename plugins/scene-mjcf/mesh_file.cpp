@@ -3,14 +3,27 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 
 #include "spark/error.h"
 
 namespace spark::mjcf {
 
+namespace {
+/// Files that a mesh file names, such as materials, are not opened: they would be any file of this machine.
+struct NoFiles : Assimp::IOSystem {
+  bool Exists(const char*) const override { return false; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
+  void Close(Assimp::IOStream*) override {}
+};
+}  // namespace
+
 engine::ShapeDescription readMesh(const std::string& name, const std::string& bytes) {
   Assimp::Importer importer;
+  importer.SetIOHandler(new NoFiles);  // which owns it
   const std::size_t dot = name.rfind('.');
   const std::string format = dot == std::string::npos ? "" : name.substr(dot + 1);
   const aiScene* const scene = importer.ReadFileFromMemory(

@@ -1,6 +1,6 @@
 #include "mjcf_importer.h"
 
-#include <fmt/ranges.h>
+#include <algorithm>
 
 #include "api/files.h"
 #include "builder.h"
@@ -18,8 +18,17 @@ void MjcfImporter::describe(Description<MjcfImporter>& d) {
 }
 
 bool MjcfImporter::recognises(std::string_view text) const {
-  return text.substr(0, 4096).find("<mujoco") != std::string_view::npos &&
-         text.find('<') == text.find_first_not_of(" \t\r\n");
+  constexpr std::string_view kMark = "\xef\xbb\xbf";  // of UTF-8
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+  // Declaration and comments come first.
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+    const std::string_view end = text.starts_with("<!--") ? "-->" : text.starts_with("<?") ? "?>" : "";
+    if (end.empty()) return text.starts_with("<mujoco");
+    const std::size_t at = text.find(end);
+    if (at == std::string_view::npos) return false;
+    text.remove_prefix(at + end.size());
+  }
 }
 
 void MjcfImporter::import(std::string_view file, Node& root, const List& arguments) {
@@ -31,9 +40,7 @@ void MjcfImporter::import(std::string_view file, Node& root, const List& argumen
   mjcf::Document document(std::string(file), [&](const std::string& name) { return files.read(name); });
   const mjcf::Model model = mjcf::readModel(
       document, [&](const std::string& name) { return mjcf::readMesh(name, files.read(name)); }, leftOver);
-  mjcf::Builder builder(model, arguments.empty() ? "" : arguments.front().plain(), leftOver);
-  const std::vector<std::string> before = leftOver.sentences();
-  if (strict_ && !before.empty()) throw Error(fmt::format("{}", fmt::join(before, "; ")));
+  mjcf::Builder builder(model, arguments.empty() ? "" : arguments.front().plain(), strict_, leftOver);
   builder.build(root);
   ++imports_;
   if (builder.withoutParts())

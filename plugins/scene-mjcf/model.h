@@ -3,12 +3,15 @@
 /// An MJCF model as plain data. SI units, radians; frames as in MuJoCo. "when absent" values are MuJoCo's.
 
 #include <array>
+#include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "api/model.h"
 #include "document.h"
+#include "spark/value.h"
 
 namespace spark::mjcf {
 
@@ -67,13 +70,14 @@ struct Actuator {
   double gear = 1, gain = 1;
   std::array<double, 3> bias{0, 0, 0};
   std::array<double, 2> controlRange{-HUGE_VAL, HUGE_VAL};
-  double maxForce = HUGE_VAL;
+  double forceRange = HUGE_VAL;  ///< of the actuator's own force
+  double maxForce = HUGE_VAL;    ///< of the force along the joint
 };
 
 struct Sensor {
   Element from;
   std::string kind, name;
-  std::string object;  ///< the joint, site or body that it belongs to
+  std::string object, objectType;  ///< the joint, site or body that it belongs to, and what that is
 };
 
 /// Two bodies that do not collide.
@@ -88,18 +92,17 @@ struct Pair {
   std::string geom1, geom2;
 };
 
-/// Options of the world that the file sets.
-struct Options {
-  std::optional<Vec3> gravity;
-  bool any = false;         ///< there is an option element
-  double timestep = 0.002;  ///< s
-  engine::WorldParameters::Mujoco numbers;
+/// An option that the file sets: a property of the world and its value.
+struct Option {
+  Element from;
+  const char* property;
+  Value value;
 };
 
 /// A whole model. bodies[0] is the world; parents come before their children.
 struct Model {
   std::string name;
-  Options options;
+  std::vector<Option> options;
   std::vector<Body> bodies;
   std::vector<Actuator> actuators;
   std::vector<Sensor> sensors;
@@ -110,8 +113,8 @@ struct Model {
 /// Vertices and triangles of a mesh file: `read` reads it. Throws Error.
 using ReadMesh = std::function<engine::ShapeDescription(const std::string& file)>;
 
-/// Most elements of a kind in a model.
-inline constexpr std::size_t kMaxElements = 20000;
+/// Limits of a model: bodies, elements with attributes, and numbers of all meshes.
+inline constexpr std::size_t kMaxBodies = 20'000, kMaxElements = 200'000, kMaxMeshNumbers = 30'000'000;
 
 /// Reads a model. What it does not take is named in `leftOver`. Throws Error with file:line:column.
 Model readModel(Document& document, const ReadMesh& readMesh, LeftOver& leftOver);

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "../physics/mass.h"
 
@@ -95,7 +96,7 @@ Model Reader::read() {
 }
 
 Attributes Reader::attributes(const Element& e, const std::string& childClass) {
-  if (++elements_ > 10 * kMaxElements) throw e.error(fmt::format("expected at most {} elements", 10 * kMaxElements));
+  if (++elements_ > kMaxElements) throw e.error(fmt::format("expected at most {} elements", kMaxElements));
   const char* const own = e.node.attribute("class").value();
   return Attributes(e, defaults_, *own ? own : childClass, leftOver_);
 }
@@ -120,31 +121,40 @@ void Reader::compiler(const Element& e) {
   c.boundInertia = a.number("boundinertia", c.boundInertia);
   if (a.text("coordinate", "local") != "local") throw e.error("expected the coordinate frame 'local'");
   // Bodies without joints become part of their parents in any case.
-  a.ignore({"texturedir", "discardvisual", "fusestatic", "strippath", "convexhull", "usethread", "balanceinertia",
+  a.ignore({"texturedir", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
             "exactmeshinertia", "alignfree"});
   a.finish();
 }
 
 void Reader::option(const Element& e) {
   Attributes a = attributes(e);
-  Options& o = model_.options;
-  o.any = true;
-  if (Vec3 g(0, 0, -9.81); a.take("gravity", g)) o.gravity = g;
-  engine::WorldParameters::Mujoco& m = o.numbers;
-  o.timestep = a.number("timestep", o.timestep);
-  const std::string integrator =
-      a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, m.integrator.c_str());
-  m.integrator = integrator == "RK4" ? "Euler" : integrator == "implicitfast" ? "implicit" : integrator;
-  if (integrator != m.integrator)
-    leftOver_.add(e, fmt::format("the integrator {} is left out; {} takes its place", integrator, m.integrator));
-  m.cone = a.word("cone", {"pyramidal", "elliptic"}, m.cone.c_str());
-  m.solver = a.word("solver", {"PGS", "CG", "Newton"}, m.solver.c_str());
-  m.iterations = a.integer("iterations", m.iterations);
-  m.tolerance = a.number("tolerance", m.tolerance);
-  m.impratio = a.number("impratio", m.impratio);
-  m.density = a.number("density", m.density);
-  m.viscosity = a.number("viscosity", m.viscosity);
-  a.take("wind", m.wind);
+  const auto set = [&](const char* property, Value v) { model_.options.push_back({e, property, std::move(v)}); };
+  const auto number = [&](const char* name, const char* property, double least) {
+    if (!a.has(name)) return;
+    const double v = a.number(name, 0);
+    if (v < least) throw e.error(fmt::format("expected at least {} for '{}' of <option>, found {}", least, name, v));
+    set(property, v);
+  };
+  const auto vector = [&](const char* name, const char* property) {
+    if (Vec3 v = Vec3::Zero(); a.take(name, v)) set(property, List{v.x(), v.y(), v.z()});
+  };
+  vector("gravity", "gravity");
+  vector("wind", "mujocoWind");
+  number("timestep", "timestep", 1e-6);
+  number("tolerance", "mujocoTolerance", 0);
+  number("impratio", "mujocoImpratio", 1e-6);
+  number("density", "mujocoDensity", 0);
+  number("viscosity", "mujocoViscosity", 0);
+  if (a.has("iterations")) set("mujocoIterations", std::max(1, a.integer("iterations", 100)));
+  if (a.has("cone")) set("mujocoCone", a.word("cone", {"pyramidal", "elliptic"}, ""));
+  if (a.has("solver")) set("mujocoSolver", a.word("solver", {"PGS", "CG", "Newton"}, ""));
+  if (a.has("integrator")) {
+    const std::string wanted = a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, "");
+    const std::string taken = wanted == "RK4" ? "Euler" : wanted == "implicitfast" ? "implicit" : wanted;
+    if (wanted != taken)
+      leftOver_.add(e, fmt::format("the integrator {} is left out; {} takes its place", wanted, taken));
+    set("mujocoIntegrator", taken);
+  }
   a.ignore({"jacobian"});
   a.finish();
   for (const Element& child : document_.children(e)) leftOver_.element(child);
@@ -170,8 +180,7 @@ void Reader::mesh(const Element& e) {
     const std::size_t slash = m.file.rfind('/'), start = slash == std::string::npos ? 0 : slash + 1;
     name = m.file.substr(start, m.file.rfind('.') - start);
   }
-  if (m.file.empty()) leftOver_.add(e, "a <mesh> without a file is left out");
-  a.ignore({"smoothnormal", "inertia", "texcoord", "normal", "maxhullvert", "content_type"});
+  a.ignore({"smoothnormal", "texcoord", "normal", "maxhullvert", "content_type"});
   a.finish();
   meshes_[name] = std::move(m);
 }
@@ -219,6 +228,7 @@ std::optional<Mat3> Reader::orientation(Attributes& a) {
 Pose Reader::pose(Attributes& a, const Scope& scope) {
   Pose p;
   a.take("pos", p.position);
+  if (!(p.position.cwiseAbs().maxCoeff() <= 1e6)) throw a.element().error("expected a place at most 1e6 m away");
   if (const auto r = orientation(a)) p.rotation = *r;
   return compose(scope.frame, p);
 }
@@ -234,16 +244,17 @@ bool Reader::fromTo(Attributes& a, const Scope& scope, Pose& pose, double& lengt
   return true;
 }
 
-bool Reader::limited(Attributes& a, const char* flag, bool hasRange) {
+bool Reader::limited(Attributes& a, const char* flag, const char* what,
+                     const std::optional<std::vector<double>>& range) {
   const std::string word = a.word(flag, {"true", "false", "auto"}, "auto");
-  return word == "auto" ? hasRange && compiler_.autolimits : word == "true";
+  const bool on = word == "auto" ? range && compiler_.autolimits : word == "true";
+  if (on && (!range || !((*range)[0] < (*range)[1])))
+    throw a.element().error(fmt::format("expected a lower and a higher number for '{}' of <{}>, which is limited", what,
+                                        a.element().tag()));
+  return on;
 }
 
 // ---- bodies ----
-
-void Reader::count(const Element& e) {
-  if (model_.bodies.size() > kMaxElements) throw e.error(fmt::format("expected at most {} bodies", kMaxElements));
-}
 
 void Reader::content(const Element& parent, const Scope& scope) {
   if (scope.depth > Document::kMaxDepth)
@@ -268,7 +279,7 @@ void Reader::content(const Element& parent, const Scope& scope) {
 }
 
 void Reader::body(const Element& e, const Scope& scope) {
-  count(e);
+  if (model_.bodies.size() > kMaxBodies) throw e.error(fmt::format("expected at most {} bodies", kMaxBodies));
   Attributes a = attributes(e, scope.childClass);
   Body b;
   b.from = e;
@@ -319,7 +330,7 @@ void Reader::joint(const Element& e, const Scope& scope) {
   j.from = e;
   if (e.tag() == "freejoint") {
     // Has no defaults.
-    Attributes a(e, Defaults(), "", leftOver_);
+    Attributes a(e, leftOver_);
     j.name = a.text("name");
     j.kind = JointKind::free;
     a.ignore({"group", "align"});
@@ -341,10 +352,15 @@ void Reader::joint(const Element& e, const Scope& scope) {
   j.position = scope.frame.position + scope.frame.rotation * j.position;
   if (!(j.axis.norm() > 1e-10)) throw e.error("expected an axis that is not 0");
   j.axis = scope.frame.rotation * j.axis.normalized();
-  const bool hasRange = a.take("range", j.range);
-  for (double& v : j.range) v = inUnits(v);
-  j.limited = limited(a, "limited", hasRange);
-  if (j.limited && j.kind == JointKind::ball) leftOver_.add(e, "the range of a ball joint is left out");
+  const auto range = a.numbers("range", 2, 2);
+  if (j.kind == JointKind::ball || j.kind == JointKind::free) {
+    const std::string text = kind;
+    for (const char* name : {"range", "armature", "damping", "frictionloss", "stiffness"})
+      if (a.has(name)) leftOver_.add(e, fmt::format("the attribute '{}' of a {} joint is left out", name, text));
+  } else {
+    j.limited = limited(a, "limited", "range", range);
+    if (range) j.range = {inUnits((*range)[0]), inUnits((*range)[1])};
+  }
   j.armature = a.number("armature", 0);
   j.damping = a.number("damping", 0);
   j.dryFriction = a.number("frictionloss", 0);
@@ -352,9 +368,9 @@ void Reader::joint(const Element& e, const Scope& scope) {
   j.springAngle = inUnits(a.number("springref", 0));
   if (a.number("ref", 0) != 0)
     leftOver_.add(e, "the attribute 'ref' of <joint> is left out: angles count from the initial pose");
-  std::array<double, 2> force{-HUGE_VAL, HUGE_VAL};
-  if (limited(a, "actuatorfrclimited", a.take("actuatorfrcrange", force)))
-    j.maxForce = std::max(std::abs(force[0]), std::abs(force[1]));
+  const auto force = a.numbers("actuatorfrcrange", 2, 2);
+  if (limited(a, "actuatorfrclimited", "actuatorfrcrange", force))
+    j.maxForce = std::max(std::abs((*force)[0]), std::abs((*force)[1]));
   engine::MujocoAxis& n = j.numbers;
   n.stopSolref = n.frictionSolref = {0.02, 1};
   n.stopSolimp = n.frictionSolimp = {0.9, 0.95, 0.001, 0.5, 2};
@@ -362,8 +378,8 @@ void Reader::joint(const Element& e, const Scope& scope) {
   a.fill("solimplimit", n.stopSolimp);
   a.fill("solreffriction", n.frictionSolref);
   a.fill("solimpfriction", n.frictionSolimp);
-  n.stopMargin = inUnits(a.number("margin", 0));
-  a.ignore({"group", "user"});
+  n.stopMargin = a.number("margin", 0);  // radians in any case
+  a.ignore({"group", "user", "limited"});
   a.finish();
   b.joints.push_back(j);
 }
@@ -375,35 +391,41 @@ ShapeDescription Reader::meshShape(Attributes& a) {
   const auto found = meshes_.find(name);
   if (found == meshes_.end()) throw a.element().error(fmt::format("there is no <mesh> '{}'", name));
   MeshAsset& m = found->second;
-  if (m.loaded) return *m.loaded;
+  const auto counted = [&] {
+    meshNumbers_ += m.loaded->vertices.size() + m.loaded->triangles.size();
+    if (meshNumbers_ > kMaxMeshNumbers)
+      throw a.element().error(fmt::format("the meshes of all geoms have more than {} numbers", kMaxMeshNumbers));
+    return *m.loaded;
+  };
+  if (m.loaded) return counted();
   if (m.file.empty()) throw m.from.error("expected an attribute 'file'");
   try {
-    m.loaded = readMesh_(document_.folder() + compiler_.meshFolder + m.file);
+    const std::filesystem::path path(document_.folder() + compiler_.meshFolder + m.file);
+    m.loaded = readMesh_(path.lexically_normal().string());
   } catch (const Error& e) {
     throw Error(fmt::format("{}: cannot read the mesh '{}'", m.from.where(), m.file), e);
   }
   for (std::size_t i = 0; i < m.loaded->vertices.size(); ++i) m.loaded->vertices[i] *= m.scale[static_cast<int>(i % 3)];
-  return *m.loaded;
+  return counted();
 }
 
 ShapeDescription Reader::shape(Attributes& a, const Scope& scope, Pose& at) {
   ShapeDescription s;
-  const std::string kind =
-      a.word("type", {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"},
-             a.has("mesh") ? "mesh" : "sphere");
+  const std::string kind = a.text("type", a.has("mesh") ? "mesh" : "sphere");
   Vec3 size = Vec3::Zero();
-  const bool hasSize = a.fill("size", size);
+  a.fill("size", size);
   double length = 0;
   const bool ends = fromTo(a, scope, at, length);
   if (!ends) at = pose(a, scope);
-  if (ends) size[kind == "box" || kind == "ellipsoid" ? 2 : 1] = length / 2;
+  const bool thick = kind == "box" || kind == "ellipsoid";
+  if (ends && thick) size = {size[0], size[0], length / 2};
+  if (ends && !thick) size[1] = length / 2;
   // Each kind needs so many of its lengths.
-  const int needed = kind == "sphere" ? 1 : kind == "capsule" || kind == "cylinder" ? 2 : kind == "box" ? 3 : 0;
-  for (int i = 0; i < needed; ++i)
-    if (!(size[i] > 0))
-      throw a.element().error(fmt::format("expected {} lengths above 0 in 'size' of a {}, found {}", needed, kind,
-                                          hasSize ? "less" : "none"));
-  if (kind == "box") {
+  const int needed = kind == "sphere" ? 1 : kind == "capsule" || kind == "cylinder" ? 2 : thick ? 3 : 0;
+  if (!(size.head(needed).array() > 0).all())
+    throw a.element().error(fmt::format("the 'size' of a {} needs {} above 0", kind,
+                                        needed == 1 ? "a length" : fmt::format("{} lengths", needed)));
+  if (thick) {
     s.shape = Shape::box;
     s.lengths = 2 * size;
   } else if (kind == "sphere") {
@@ -415,13 +437,10 @@ ShapeDescription Reader::shape(Attributes& a, const Scope& scope, Pose& at) {
     s.length = 2 * size[1];
   } else if (kind == "plane") {
     s.shape = Shape::plane;
-  } else if (kind == "mesh") {
+  } else {
     s = meshShape(a);
     s.shape = Shape::mesh;
-  } else {
-    throw Error("");  // the caller names the kind
   }
-  if (kind != "mesh" && a.has("mesh")) leftOver_.add(a.element(), "fitting a shape to a mesh is left out");
   return s;
 }
 
@@ -444,22 +463,35 @@ void Reader::geom(const Element& e, const Scope& scope) {
   a.fill("solimp", m.solimp);
   m.margin = a.number("margin", 0);
   m.gap = a.number("gap", 0);
-  const std::string type = a.text("type", a.has("mesh") ? "mesh" : "sphere");
+  const std::string type =
+      a.word("type", {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"},
+             a.has("mesh") ? "mesh" : "sphere");
   const bool counts = !b.hasInertial || compiler_.inertiaFromGeom == "true";
   const double density = a.number("density", 1000);
-  a.ignore({"material", "rgba", "user", "shellinertia", "solmix", "hfield", "fluidshape", "fluidcoef", "fitscale"});
-  if (type == "hfield" || type == "ellipsoid" || type == "sdf")
-    return leftOver_.add(e, fmt::format("a <geom> of type {} is left out", type));
+  a.ignore({"material", "rgba", "user", "hfield", "fitscale", "mass"});
+  if (type == "hfield" || type == "sdf") return leftOver_.add(e, fmt::format("a <geom> of type {} is left out", type));
+  if (type != "mesh" && a.has("mesh")) return leftOver_.add(e, "a <geom> that is fitted to a mesh is left out");
   // What is only seen, with a mesh that nobody needs to read.
   const bool weightless = !counts || (a.has("mass") ? a.number("mass", 0) == 0 : density == 0);
-  if (type == "mesh" && !g.collides() && (weightless || scope.body == 0)) return a.finish();
+  if (type == "mesh" && !g.collides() && (weightless || scope.body == 0)) {
+    a.ignore({"pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "size", "fromto"});
+    return a.finish();
+  }
   g.shape = shape(a, scope, g.pose);
-  massOf(a, g);
+  if (type == "ellipsoid") {
+    // Its mass counts.
+    leftOver_.add(e, "the shape of an ellipsoid is left out");
+    g.contactTypes = g.contactAffinities = 0;
+    g.group = 5;
+    massOf(a, g, Vec3(g.shape.lengths / 2));
+  } else {
+    massOf(a, g, std::nullopt);
+  }
   a.finish();
   b.geoms.push_back(std::move(g));
 }
 
-void Reader::massOf(Attributes& a, Geom& g) {
+void Reader::massOf(Attributes& a, Geom& g, const std::optional<Vec3>& ellipsoid) {
   if (g.shape.shape == Shape::plane || g.group < compiler_.inertiaGroups[0] || g.group > compiler_.inertiaGroups[1])
     return;
   const double density = a.number("density", 1000);
@@ -467,6 +499,13 @@ void Reader::massOf(Attributes& a, Geom& g) {
   const ShapeDescription& s = g.shape;
   const auto weighed = [&](double volume) { return given ? *given : density * volume; };
   engine::Mass m;
+  if (ellipsoid) {
+    const Vec3 squares = ellipsoid->cwiseProduct(*ellipsoid);
+    const double mass = weighed(4.0 / 3.0 * kPi * ellipsoid->prod());
+    const Vec3 moments = mass / 5 * (Vec3::Constant(squares.sum()) - squares);
+    g.mass = moved({mass, Vec3::Zero(), Mat3(moments.asDiagonal())}, g.pose);
+    return;
+  }
   switch (s.shape) {
     case Shape::box:
       m = physics::boxMass(weighed(physics::boxVolume(s.lengths)), s.lengths);
@@ -551,43 +590,66 @@ void Reader::contact(const Element& e) {
   }
 }
 
-void Reader::actuator(const Element& e) {
+namespace {
+constexpr std::string_view kActuators[] = {"general", "motor",    "position", "velocity", "intvelocity",
+                                           "damper",  "cylinder", "muscle",   "adhesion"};
+}  // namespace
+
+/// Applies what one element says to an actuator. All tags have one default in MuJoCo, whatever the tag. `meaning`: why
+/// it cannot be taken, "" if it can.
+void Reader::apply(const Element& e, Actuator& x, std::string& meaning) {
+  Attributes a(e, leftOver_);
   const std::string_view tag = e.tag();
-  if (tag != "motor" && tag != "position" && tag != "velocity" && tag != "general") return leftOver_.element(e);
-  Attributes a = attributes(e);
-  Actuator x;
-  x.from = e;
-  x.name = a.text("name");
-  x.joint = a.text("joint");
-  if (x.joint.empty()) return leftOver_.add(e, fmt::format("a <{}> that acts on no joint is left out", tag));
-  std::array<double, 6> gear{1, 0, 0, 0, 0, 0};
+  std::array<double, 6> gear{x.gear, 0, 0, 0, 0, 0};
   a.fill("gear", gear);
   x.gear = gear[0];
-  if (tag == "position") {
-    x.gain = a.number("kp", 1);
-    x.bias = {0, -x.gain, -a.number("kv", 0)};
+  if (tag == "motor") {
+    x.gain = 1, x.bias = {0, 0, 0}, meaning.clear();
+  } else if (tag == "position") {
+    x.gain = a.number("kp", x.gain);
+    x.bias = {0, -x.gain, -a.number("kv", 0)}, meaning.clear();
   } else if (tag == "velocity") {
-    x.gain = a.number("kv", 1);
-    x.bias = {0, 0, -x.gain};
+    x.gain = a.number("kv", x.gain);
+    x.bias = {0, 0, -x.gain}, meaning.clear();
   } else if (tag == "general") {
-    std::vector<double> gain = a.numbers("gainprm", 1, 10).value_or(std::vector<double>{1});
-    std::vector<double> bias = a.numbers("biasprm", 1, 10).value_or(std::vector<double>{});
-    bias.resize(10);
-    if (a.word("gaintype", {"fixed", "affine", "muscle", "user"}, "fixed") != "fixed" ||
-        a.text("dyntype", "none") != "none")
-      return leftOver_.add(e, "a <general> whose gain is not fixed, or that has dynamics, is left out");
+    std::array<double, 10> gain{x.gain}, bias{x.bias[0], x.bias[1], x.bias[2]};
+    a.fill("gainprm", gain);
+    a.fill("biasprm", bias);
     x.gain = gain[0];
-    if (a.word("biastype", {"none", "affine", "muscle", "user"}, "none") == "affine")
-      x.bias = {bias[0], bias[1], bias[2]};
+    const bool affine = x.bias != std::array<double, 3>{};
+    const std::string kind = a.word("biastype", {"none", "affine", "muscle", "user"}, affine ? "affine" : "none");
+    x.bias = kind == "affine" ? std::array<double, 3>{bias[0], bias[1], bias[2]} : std::array<double, 3>{};
+    if (a.word("gaintype", {"fixed", "affine", "muscle", "user"}, "fixed") != "fixed" ||
+        a.text("dyntype", "none") != "none" || kind == "muscle" || kind == "user")
+      meaning = "a <general> whose gain is not fixed, or that has dynamics, is left out";
+    a.ignore({"dynprm"});
+  } else {
+    meaning = fmt::format("the element <{}> is left out", tag);
   }
-  std::array<double, 2> control{0, 0}, force{0, 0};
-  if (const bool given = a.take("ctrlrange", control); limited(a, "ctrllimited", given)) x.controlRange = control;
-  if (const bool given = a.take("forcerange", force); limited(a, "forcelimited", given)) {
-    x.maxForce = std::abs(x.gear) * std::max(std::abs(force[0]), std::abs(force[1]));
-    if (force[0] != -force[1]) leftOver_.add(e, "a force range that is not symmetric is taken as symmetric");
+  const auto control = a.numbers("ctrlrange", 2, 2), force = a.numbers("forcerange", 2, 2);
+  if (limited(a, "ctrllimited", "ctrlrange", control)) x.controlRange = {(*control)[0], (*control)[1]};
+  if (limited(a, "forcelimited", "forcerange", force)) {
+    x.forceRange = std::max(std::abs((*force)[0]), std::abs((*force)[1]));
+    if ((*force)[0] != -(*force)[1]) leftOver_.add(e, "a force range that is not symmetric is taken as symmetric");
   }
-  a.ignore({"group", "user"});
-  a.finish();
+  a.ignore({"name", "class", "joint", "group", "user", "tendon", "site", "body", "jointinparent", "cranksite",
+            "slidersite"});
+  if (meaning.empty()) a.finish();
+}
+
+void Reader::actuator(const Element& e) {
+  Actuator x;
+  x.from = e;
+  x.name = e.node.attribute("name").value();
+  x.joint = e.node.attribute("joint").value();
+  if (++elements_ > kMaxElements) throw e.error(fmt::format("expected at most {} elements", kMaxElements));
+  std::vector<Element> chain{e};
+  defaults_.forEach(e, kActuators, e.node.attribute("class").value(), [&](const Element& d) { chain.push_back(d); });
+  std::string meaning;
+  for (std::size_t i = chain.size(); i-- > 0;) apply(chain[i], x, meaning);
+  if (!meaning.empty()) return leftOver_.add(e, meaning);
+  if (x.joint.empty()) return leftOver_.add(e, fmt::format("a <{}> that acts on no joint is left out", e.tag()));
+  x.maxForce = x.gear == 0 ? 0 : std::abs(x.gear) * x.forceRange;
   model_.actuators.push_back(x);
 }
 
@@ -599,7 +661,8 @@ void Reader::sensor(const Element& e) {
   s.name = a.text("name");
   for (const char* object : {"joint", "site", "objname"})
     if (s.object.empty()) s.object = a.text(object);
-  a.ignore({"objtype", "noise", "user"});
+  s.objectType = a.text("objtype");
+  a.ignore({"noise", "user"});
   a.finish();
   model_.sensors.push_back(s);
 }

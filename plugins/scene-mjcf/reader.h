@@ -2,6 +2,8 @@
 /// \file
 /// Reads the elements of an MJCF model.
 
+#include <map>
+
 #include "model.h"
 
 namespace spark::mjcf {
@@ -17,13 +19,12 @@ struct Compiler {
   double boundMass = 0, boundInertia = 0;
 };
 
-/// A file of the element `asset`, and its default size.
+/// A mesh of the element `asset`.
 struct MeshAsset {
   Element from;
   std::string file;
   Vec3 scale{1, 1, 1};
   std::optional<engine::ShapeDescription> loaded;
-  std::optional<std::vector<double>> vertices;  ///< given in the file itself
 };
 
 /// One run over a document.
@@ -61,12 +62,12 @@ class Reader {
   bool fromTo(Attributes& a, const Scope& scope, Pose& pose, double& length);
   std::optional<Mat3> orientation(Attributes& a);
   double angle(double v) const { return compiler_.degrees ? degToRad(v) : v; }
-  bool limited(Attributes& a, const char* flag, bool hasRange);
+  bool limited(Attributes& a, const char* flag, const char* what, const std::optional<std::vector<double>>& range);
   engine::ShapeDescription shape(Attributes& a, const Scope& scope, Pose& pose);
   engine::ShapeDescription meshShape(Attributes& a);
-  void massOf(Attributes& a, Geom& geom);
+  void massOf(Attributes& a, Geom& geom, const std::optional<Vec3>& ellipsoid);
+  void apply(const Element& e, Actuator& x, std::string& meaning);
   void finishMasses();
-  void count(const Element& e);
 
   Document& document_;
   const ReadMesh& readMesh_;
@@ -75,7 +76,7 @@ class Reader {
   Compiler compiler_;
   Defaults defaults_;
   std::map<std::string, MeshAsset, std::less<>> meshes_;
-  std::size_t elements_ = 0;
+  std::size_t elements_ = 0, meshNumbers_ = 0;
 };
 
 }  // namespace spark::mjcf

@@ -291,3 +291,24 @@ TEST_CASE("a controller that is removed acts no more, and one of a sleeping body
       },
       {&EngineKind::joints, &EngineKind::sleep});
 }
+
+TEST_CASE("the rotor of a slider between two bodies that turn adds no energy") {
+  withEngines(
+      [](EngineWorld& w) {
+        w.setGravity(0);
+        w.dt = 0.001;
+        const BodyHandle a = w.body({0, 0, 0}), b = w.body({0, 0, 1});
+        const JointHandle j = w.joint(JointType::slider, a, b, {0, 0, 0.5});
+        w.world.setParameter(j, JointParameter::armature, 0, 5);
+        // Both as one rigid body about y, which their slider would let come apart but for its rotor.
+        for (const BodyHandle body : {a, b}) w.world.setAngularVelocity(body, {0, 0.5, 0});
+        w.world.setLinearVelocity(a, {-0.25, 0, 0});
+        w.world.setLinearVelocity(b, {0.25, 0, 0});
+        w.run(1);
+        // 0.5 m apart, each feels 0.5 0.25 m/s^2 outwards, and their distance has an inertia of 0.5 + 5 kg.
+        CHECK(std::abs(w.world.angle(j, 0)) < 0.03);
+        CHECK(std::abs(w.world.angleRate(j, 0)) < 0.06);
+        CHECK(w.spin(a).y() == Approx(0.5).epsilon(0.05));
+      },
+      {&EngineKind::joints, &EngineKind::armature});
+}

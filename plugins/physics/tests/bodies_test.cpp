@@ -352,3 +352,32 @@ TEST_CASE("the plugin stays while its nodes live, and goes afterwards with the s
   house.kernel.plugins().unload("physics");
   CHECK(house.kernel.findClass("RigidBody") == nullptr);
 }
+
+TEST_CASE("several steps of the engine in one of the simulation: forces last, sleep and falls are the same") {
+  for (const double timestep : {0.0, 0.005, 0.001}) {
+    CAPTURE(timestep);
+    PhysicsHouse house;
+    setProperty(*house.kernel.root().find("/usr/scene/world"), "timestep", timestep);
+    Leaf& ground = house.scene.create("PlaneCollider", "ground");
+    setProperty(ground.asNode()->create("ContactJointHandler"), "contactBounceMode", false);
+    Node& box = house.box("box", {0, 0, 0.199}, {0.4, 0.4, 0.4});
+    setProperty(box.child("collider")->asNode()->create("ContactJointHandler"), "contactBounceMode", false);
+    IRigidBody& body = house.body(box);
+    // Pushed in each cycle against friction that holds it: no force may pile up while it sleeps.
+    for (int i = 0; i < 50; ++i) {
+      body.addForce({3, 0, 0});
+      house.step();
+    }
+    CHECK(std::abs(body.state().position.x()) < 2e-3);
+    house.step(15);
+    CHECK_FALSE(body.enabled());
+    // A force lasts for all steps of a cycle.
+    IRigidBody& flying = house.body(house.thing("flying", {5, 0, 50}));
+    flying.addForce({2, 0, 0});
+    house.step();
+    CHECK(flying.state().linearVelocity.x() == Approx(2 * 0.02).epsilon(1e-6));
+    house.step();
+    CHECK(flying.state().linearVelocity.x() == Approx(2 * 0.02).epsilon(1e-6));
+    CHECK(flying.state().linearVelocity.z() == Approx(-9.81 * 0.04).epsilon(1e-6));
+  }
+}

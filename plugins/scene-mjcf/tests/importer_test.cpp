@@ -65,8 +65,7 @@ TEST_CASE("bodies, joints and colliders stand where the file has them") {
   h.at<ICollider>("arm/lower/ball").bounds(low, high);
   CHECK(low.isApprox(Vec3(1.9, -0.1, 0.9), 1e-6));
   CHECK(toPose(h.at<Transform>("arm/upper/tip").worldNow()).position.isApprox(Vec3(1, 0, 1), 1e-6));
-  // Excluded by way of the arm that it is part of.
-  CHECK(getProperty(h.at<ICollider>("arm/upper/bar").leaf(), "notCollideWith").toList().size() == 2);
+  CHECK(getProperty(h.at<ICollider>("arm/upper/bar").leaf(), "notCollideWith").toList().size() == 1);
   h.step(25);
   CHECK(h.place("arm/lower/body").z() < 0.9);
 }
@@ -96,6 +95,45 @@ TEST_CASE("a body with several joints gets light bodies between them") {
   CHECK(h.at<IRigidBody>("m/b/body").mass() + 2 * h.at<IRigidBody>("m/b-1/body").mass() == Approx(3));
   CHECK_THAT(h.text, Catch::Contains("m.xml:1:57: a body with 3 joints gets light bodies"));
   h.step(10);
+}
+
+TEST_CASE("names that are alike do not mix up bodies and colliders") {
+  MjcfHouse h;
+  h.import(
+      "<mujoco model='m'><worldbody><body name='a-1' pos='5 0 0'><freejoint/><geom size='.1'/></body>"
+      "<body name='a' pos='0 0 1'><joint name='x' axis='1 0 0'/><joint name='y' axis='0 1 0'/><geom size='.1'/></body>"
+      "<body name='b/' pos='0 3 1'><joint name='p'/><geom size='.1'/><body name='b_' pos='0 1 0'><joint "
+      "name='q'/><geom size='.1'/></body></body>"
+      "</worldbody></mujoco>");
+  CHECK(h.at<IJoint>("m/a/y").body(1)->state().position.isApprox(Vec3(0, 0, 1)));
+  CHECK(h.at<IJoint>("m/b_~2/q").body(1) == &h.at<IRigidBody>("m/b_/body"));
+}
+
+TEST_CASE("the mass of a body may be that of a part alone") {
+  MjcfHouse h;
+  h.import(
+      "<mujoco model='m'><worldbody><body name='b'><joint/><body pos='1 0 0'><geom type='box' size='.1 .2 "
+      ".3'/></body></body></worldbody></mujoco>");
+  CHECK(h.at<IRigidBody>("m/b/body").mass() == Approx(48));
+  CHECK(h.place("m/b/body").isApprox(Vec3(1, 0, 0)));
+}
+
+TEST_CASE("options that cannot be set leave the world as it was") {
+  MjcfHouse h;
+  CHECK_THAT(h.failure("<mujoco model='m'><option timestep='0.001' gravity='1e300 0 0'/></mujoco>"),
+             Catch::Contains("m.xml:1:19: cannot set an option"));
+  Leaf& world = *h.kernel.root().find("/usr/scene/world");
+  CHECK(getProperty(world, "timestep").toNumber() == 0);
+  CHECK(getProperty(world, "gravity").toList()[2].toNumber() == -9.81);
+}
+
+TEST_CASE("strict covers what the tree cannot have") {
+  MjcfHouse h;
+  setProperty(*h.kernel.root().find("/sys/server/scene/mjcf"), "strict", true);
+  CHECK_THAT(
+      h.failure("<mujoco model='m'><worldbody><body><joint/><joint/><geom size='1'/></body></worldbody></mujoco>"),
+      Catch::Contains("2 joints gets light bodies"));
+  CHECK_FALSE(h.scene.child("m"));
 }
 
 TEST_CASE("options are the world's, unless the model is attached with a prefix") {

@@ -146,7 +146,7 @@ TEST_CASE("files include others, and none includes itself") {
 
 TEST_CASE("what is left out is named once, with its first place") {
   const Read r(
-      "<mujoco><worldbody>\n<body colour='red'><joint/><geom size='1' solmix='2' wings='1'/><geom size='1' "
+      "<mujoco><worldbody>\n<body colour='red'><joint/><geom size='1' rgba='1 1 1 1' wings='1'/><geom size='1' "
       "wings='1'/></body>\n"
       "</worldbody><tendon/><keyframe/></mujoco>");
   CHECK(r.said() ==
@@ -166,7 +166,7 @@ TEST_CASE("errors say where, what was expected and what was found") {
        "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2 nan'"},
       {"<mujoco><worldbody><geom type='cone'/></worldbody></mujoco>", "a.xml:1:20: expected plane or hfield or sphere"},
       {"<mujoco><worldbody><geom type='box' size='1 1'/></worldbody></mujoco>",
-       "a.xml:1:20: expected 3 lengths above 0 in 'size' of a box, found less"},
+       "a.xml:1:20: the 'size' of a box needs 3 lengths above 0"},
       {"<mujoco><worldbody><geom class='x'/></worldbody></mujoco>", "a.xml:1:20: there is no default class 'x'"},
       {"<mujoco><worldbody><geom type='mesh' mesh='m'/></worldbody></mujoco>", "a.xml:1:20: there is no <mesh> 'm'"},
       {"<mujoco><worldbody><joint/></worldbody></mujoco>", "a.xml:1:20: the world has no joints"},
@@ -181,4 +181,62 @@ TEST_CASE("a model that is nested too deep is refused") {
   for (int i = 0; i < 300; ++i) text += "<body>";
   for (int i = 0; i < 300; ++i) text += "</body>";
   CHECK_THAT(failure(world(text)), Catch::Contains("expected at most 200 elements in each other"));
+}
+
+TEST_CASE("a shorter list of an element changes the first numbers of its default") {
+  const Read r(
+      "<mujoco><default><geom solimp='.8 .9 .002 .4 3' size='.3 .3 .3'/></default><worldbody>"
+      "<geom type='box' solimp='.7' size='.1 .15'/></worldbody></mujoco>");
+  const Geom& g = r.body(0).geoms[0];
+  CHECK(g.contact.solimp == std::array<double, 5>{.7, .9, .002, .4, 3});
+  CHECK(g.shape.lengths.isApprox(Vec3(.2, .3, .6)));
+}
+
+TEST_CASE("actuators of all tags have one default") {
+  const Read r(
+      R"(<mujoco><default><motor gear='2'/><position kp='55'/></default><worldbody><body><joint name='j'/><geom size='1'/></body></worldbody>
+    <actuator><position joint='j' kp='100'/><general joint='j'/><motor joint='j'/></actuator></mujoco>)");
+  const std::vector<Actuator>& a = r.model.actuators;
+  CHECK(a[0].gear == 2);
+  CHECK(a[0].bias[1] == -100);
+  CHECK(a[1].gain == 55);
+  CHECK(a[1].bias[1] == -55);
+  CHECK(a[2].gain == 1);
+  CHECK(a[2].bias[1] == 0);
+}
+
+TEST_CASE("an ellipsoid has a mass, and a box may be given by its ends") {
+  const Read r(
+      world("<body><joint/><geom type='ellipsoid' size='.1 .2 .3' density='1000'/></body>"
+            "<body><joint/><geom type='box' size='.1' fromto='0 0 0 0 0 1'/></body>"));
+  CHECK(r.body(1).mass.mass == Approx(1000 * 4.0 / 3 * kPi * .006));
+  CHECK_FALSE(r.body(1).geoms[0].collides());
+  CHECK(r.body(2).geoms[0].shape.lengths.isApprox(Vec3(.2, .2, 1)));
+  CHECK_THAT(r.said(), Catch::Contains("the shape of an ellipsoid is left out"));
+}
+
+TEST_CASE("what nobody reads in a default is named, too") {
+  const Read r(
+      "<mujoco><default>\n<joint springdamper='.1 1'/></default><worldbody><body><joint/><geom "
+      "size='1'/></body></worldbody></mujoco>");
+  CHECK(r.said() == "a.xml:2:1: the attribute 'springdamper' of <joint> is left out\n");
+}
+
+TEST_CASE("files that include the next one twice end with an error, not with the machine") {
+  Files files;
+  for (int i = 0; i < 40; ++i) {
+    const std::string next = "<include file='" + std::to_string(i + 1) + ".xml'/>";
+    files[std::to_string(i) + ".xml"] = i == 39 ? "<mujoco/>" : "<mujoco>" + next + next + "</mujoco>";
+  }
+  CHECK_THAT(failure("<mujoco><include file='0.xml'/></mujoco>", files),
+             Catch::Contains("expected at most 1000000 elements"));
+}
+
+TEST_CASE("a limit needs a range, and options are checked") {
+  CHECK_THAT(failure(world("<body><joint limited='true'/></body>")),
+             Catch::StartsWith("a.xml:1:26: expected a lower and a higher number for 'range'"));
+  CHECK_THAT(failure(world("<body><joint range='2 1'/></body>")), Catch::StartsWith("a.xml:1:26: expected a lower"));
+  CHECK_THAT(failure("<mujoco><option density='-1'/></mujoco>"),
+             Catch::StartsWith("a.xml:1:9: expected at least 0 for 'density'"));
+  CHECK(Read("<mujoco><option gravity='0 0 -9'/></mujoco>").model.options.size() == 1);
 }
