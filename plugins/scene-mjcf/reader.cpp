@@ -354,9 +354,8 @@ void Reader::joint(const Element& e, const Scope& scope) {
   j.axis = scope.frame.rotation * j.axis.normalized();
   const auto range = a.numbers("range", 2, 2);
   if (j.kind == JointKind::ball || j.kind == JointKind::free) {
-    const std::string text = kind;
     for (const char* name : {"range", "armature", "damping", "frictionloss", "stiffness"})
-      if (a.has(name)) leftOver_.add(e, fmt::format("the attribute '{}' of a {} joint is left out", name, text));
+      if (a.has(name)) leftOver_.add(e, fmt::format("the attribute '{}' of a {} joint is left out", name, kind));
   } else {
     j.limited = limited(a, "limited", "range", range);
     if (range) j.range = {inUnits((*range)[0]), inUnits((*range)[1])};
