@@ -55,6 +55,15 @@ engine::Mass addMass(const engine::Mass& whole, const engine::Mass& part, const 
   return sum;
 }
 
+engine::Mass together(const engine::Mass& a, const engine::Mass& b) {
+  if (a.mass == 0) return b;
+  if (b.mass == 0) return a;
+  engine::Mass sum{a.mass + b.mass, Vec3::Zero(), Mat3::Zero()};
+  sum.center = (a.mass * a.center + b.mass * b.center) / sum.mass;
+  for (const engine::Mass& m : {a, b}) sum.inertia += m.inertia + pointInertia(m.mass, m.center - sum.center);
+  return sum;
+}
+
 engine::Mass centred(const engine::Mass& m) {
   return {m.mass, Vec3::Zero(), m.inertia - pointInertia(m.mass, m.center)};
 }

@@ -24,6 +24,8 @@ double cylinderVolume(double radius, double length);
 /// `whole` plus `part`, whose own centre is at the pose `at` in the frame of `whole`. The sum's `center` is the common
 /// centre of mass; its inertia is about the origin.
 engine::Mass addMass(const engine::Mass& whole, const engine::Mass& part, const Pose& at);
+/// Two masses in one frame, whose inertia is about their own centres; so is that of the sum. A mass of 0 adds nothing.
+engine::Mass together(const engine::Mass& a, const engine::Mass& b);
 /// The same mass with the origin moved to its centre of mass.
 engine::Mass centred(const engine::Mass& mass);
 

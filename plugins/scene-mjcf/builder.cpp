@@ -108,25 +108,9 @@ void Builder::placeBodies(const Pose& root) {
     if (p.carrier == 0) continue;
     // Masses of parts move to the carrier.
     Part& carrier = parts_[static_cast<std::size_t>(p.carrier)];
-    if (&carrier == &p) {
-      p.mass = b.mass;
-    } else if (b.mass.mass > 0 && carrier.mass.mass <= 0) {
-      const Mat3& r = p.inCarrier.rotation;
-      carrier.mass = {b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()};
-    } else if (b.mass.mass > 0) {
-      const Mat3& r = p.inCarrier.rotation;
-      const auto about = [](engine::Mass m) {
-        const Pose at{std::exchange(m.center, Vec3::Zero()), Mat3::Identity()};
-        return std::pair{m, at};
-      };
-      const engine::Mass nothing{0, Vec3::Zero(), Mat3::Zero()};
-      const auto [own, ownAt] = about(carrier.mass);
-      const auto [part, partAt] =
-          about({b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()});
-      const engine::Mass sum = physics::addMass(physics::addMass(nothing, own, ownAt), part, partAt);
-      carrier.mass = physics::centred(sum);
-      carrier.mass.center = sum.center;
-    }
+    const Mat3& r = p.inCarrier.rotation;
+    carrier.mass = physics::together(
+        carrier.mass, {b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()});
     if (!b.name.empty() && !bodies_.emplace(b.name, &p).second)
       throw b.from.error(fmt::format("there are two bodies '{}'", b.name));
   }

@@ -27,13 +27,13 @@ class Builder {
   /// A body of the file that has joints, with what is part of it.
   struct Part {
     const Body* body = nullptr;
-    int carrier = 0;               ///< index of the body whose part it is; 0: the world
-    Pose inCarrier;                ///< of the body's frame
-    Pose world;                    ///< of the body's frame, when built
-    engine::Mass mass;             ///< of a carrier: all of it, centre in its frame
-    Node* node = nullptr;          ///< of a carrier: its transform
-    int above = 0;                 ///< of a carrier: the carrier that its joints connect it to
-    std::vector<Node*> colliders;  ///< of the body's own geoms
+    int carrier = 0;                                   ///< index of the body whose part it is; 0: the world
+    Pose inCarrier;                                    ///< of the body's frame
+    Pose world;                                        ///< of the body's frame, when built
+    engine::Mass mass{0, Vec3::Zero(), Mat3::Zero()};  ///< of a carrier: all of it, centre in its frame
+    Node* node = nullptr;                              ///< of a carrier: its transform
+    int above = 0;                                     ///< of a carrier: the carrier that its joints connect it to
+    std::vector<Node*> colliders;                      ///< of the body's own geoms
   };
   struct MadeJoint {
     const Joint* joint;

@@ -539,14 +539,7 @@ void Reader::finishMasses() {
     if (fromGeoms) {
       engine::Mass sum{0, Vec3::Zero(), Mat3::Zero()};
       for (const Geom& g : b.geoms)
-        if (g.mass) {
-          engine::Mass part = *g.mass;
-          const Pose at{std::exchange(part.center, Vec3::Zero()), Mat3::Identity()};
-          sum = physics::addMass(sum, part, at);
-        }
-      const Vec3 center = sum.center;
-      if (sum.mass > 0) sum = physics::centred(sum);
-      sum.center = center;
+        if (g.mass) sum = physics::together(sum, *g.mass);
       b.mass = sum;
     }
     if (b.mass.mass <= 0 && compiler_.boundMass <= 0) continue;
