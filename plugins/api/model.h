@@ -95,6 +95,7 @@ struct Geom {
   Index space = kNone;     ///< the space that it is in
   Index body = kNone;      ///< the body that it moves with; kNone: static
   Pose offset;             ///< in the body's frame; the world pose of a static geom; no meaning for planes
+  bool centred = false;    ///< the offset is the identity, as of most parts of a robot
   ShapeDescription shape;  ///< valid: see checkShape()
   bool collides = true;    ///< false: it has no contacts
   /// The surface as MuJoCo has it, read by that engine alone (MuJoCo's documentation, "Contact").

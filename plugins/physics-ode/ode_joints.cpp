@@ -205,10 +205,12 @@ void compileJoints(WorldData& w, const Model& model) {
     w.joints[i]->assembledAt = 0;
   }
   w.links.clear();
+  w.measured.clear();
   for (Index i = 0; i < w.joints.size(); ++i) {
     JointData& j = *w.joints[i];
     const engine::Joint& from = model.joints[i];
     passParameters(j, from);
+    if (from.wantsFeedback) w.measured.push_back(i);
     if (from.b != kNone) w.links.push_back({from.a, from.b});
     if (j.assembledAt == from.assembledAt || from.a == kNone) continue;
     assemble(w, j, from);
@@ -228,11 +230,10 @@ void passMotors(WorldData& w, const engine::State& state) {
 }
 
 void readJoints(const WorldData& w, const engine::Step& step) {
-  for (std::size_t i = 0; i < w.joints.size(); ++i) {
-    const JointData& j = *w.joints[i];
+  for (const Index i : w.measured) {
     const Index a = step.model.joints[i].a;
-    if (!j.wantsFeedback || a == kNone || !step.steps(a) || !step.state.bodies[a].awake) continue;
-    const dJointFeedback& f = j.feedback;
+    if (a == kNone || !step.steps(a) || !step.state.bodies[a].awake) continue;
+    const dJointFeedback& f = w.joints[i]->feedback;
     step.state.joints[i] = {toVec(f.f1), toVec(f.t1), toVec(f.f2), toVec(f.t2)};
   }
 }

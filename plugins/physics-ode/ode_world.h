@@ -53,6 +53,7 @@ struct WorldData {
   std::vector<BodyData> bodies;
   std::vector<std::unique_ptr<JointData>> joints;   ///< ODE refers to their feedback
   std::vector<dJointFeedback> feedback;             ///< of each contact joint that needs it
+  std::vector<engine::Index> measured;              ///< the joints whose forces are measured
   std::vector<engine::Motors> motors;               ///< by joint, as passed to ODE
   std::vector<std::array<engine::Index, 2>> links;  ///< the bodies of each joint between two bodies
   std::vector<std::uint8_t> needed;                 ///< by body: it is awake, or connected to one that is

@@ -149,6 +149,7 @@ Pose poseOf(const engine::Model& model, const engine::State& state, Index geom) 
   const engine::Geom& g = model.geoms[geom];
   if (g.body == engine::kNone) return g.shape.shape == Shape::plane ? Pose{} : g.offset;
   const engine::DynamicState& s = state.bodies[g.body];
+  if (g.centred) return {s.position, s.rotation};
   return compose({s.position, s.rotation}, g.offset);
 }
 

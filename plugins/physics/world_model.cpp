@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 
-#include "api/single_precision.h"
 #include "shapes.h"
 
 namespace spark::physics {
@@ -44,10 +43,6 @@ WorldModel::~WorldModel() {
   collision_.forget(model_);
   engine_.forget(model_);
 }
-
-double WorldModel::rounded(double v) const { return model_.exactReplay ? roundToFloat(v) : v; }
-Vec3 WorldModel::rounded(const Vec3& v) const { return model_.exactReplay ? roundToFloat(v) : v; }
-Mat3 WorldModel::rounded(const Mat3& m) const { return model_.exactReplay ? roundToFloat(m) : m; }
 
 void WorldModel::setParameters(const engine::WorldParameters& p) {
   if (!inRange(p.gravity)) throw Error("expected a finite gravity for the world");
@@ -96,6 +91,7 @@ void WorldModel::destroyBody(BodyHandle body) {
     if (model_.geoms[g].body != i || !geoms_.alive(g)) continue;
     model_.geoms[g].offset = poseOf(model_, state_, g);
     model_.geoms[g].body = kNone;
+    model_.geoms[g].centred = false;
     markEdited(g);
   }
   for (engine::Joint& j : model_.joints)
@@ -303,6 +299,7 @@ void WorldModel::setBody(GeomHandle geom, BodyHandle body, const Pose& offset) {
   engine::Geom& g = model_.geoms[geoms_[geom]];
   g.body = g.shape.shape == Shape::plane ? kNone : bodies_[body];
   g.offset = offset;
+  g.centred = g.body != kNone && offset.position.isZero(0) && offset.rotation.isIdentity(0);
   markEdited(geoms_[geom]);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/engine.h"
+#include "api/single_precision.h"
 #include "queries.h"
 #include "rotations.h"
 
@@ -245,9 +246,11 @@ class WorldModel {
   const engine::DynamicState* stateAt(engine::Index body) const {
     return body == engine::kNone ? nullptr : &state_.bodies[body];
   }
-  double rounded(double v) const;
-  Vec3 rounded(const Vec3& v) const;
-  Mat3 rounded(const Mat3& m) const;
+  /// As the number enters an engine: rounded in exact replay.
+  template <class T>
+  T rounded(const T& v) const {
+    return model_.exactReplay ? T(roundToFloat(v)) : v;
+  }
   void markEdited(engine::Index geom);
   void detach(engine::Joint& joint);
   /// Removes dead elements from the arrays and gives the others their new indices.

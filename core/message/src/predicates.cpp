@@ -56,6 +56,11 @@ int Predicates::balance() {
   return problem;
 }
 
+void Predicates::grow() {
+  constexpr std::size_t kFirst = 64;
+  tokens_.reserve(std::max(kFirst, 2 * tokens_.capacity()));
+}
+
 /// Appends to the text store and returns the offset.
 std::size_t Predicates::store(std::string_view text) {
   const std::size_t begin = text_.size();
@@ -87,7 +92,7 @@ void Predicates::append(const Element& e) {
     Token t = e.owner_->tokens_[i];
     // Only longer texts refer to their buffer.
     if (t.kind == Token::Kind::text && t.size > Token::kShort) t.begin = store(e.owner_->textOf(e.owner_->tokens_[i]));
-    tokens_.push_back(t);
+    push(t);
   }
 }
 

@@ -130,7 +130,7 @@ class Predicates {
     t.size = 1;
     t.outer = open_;
     open_ = size();
-    tokens_.push_back(t);
+    push(t);
     return name.empty() ? *this : add(name);
   }
   /// Ends the innermost open list.
@@ -150,7 +150,7 @@ class Predicates {
       text.copy(t.letters, Token::kShort);
     else
       t.begin = store(text);
-    tokens_.push_back(t);
+    push(t);
     return *this;
   }
   /// Adds a text, which is copied.
@@ -160,7 +160,7 @@ class Predicates {
     Token t;
     t.kind = Token::Kind::number;
     t.number = number;
-    tokens_.push_back(t);
+    push(t);
     return *this;
   }
   /// Adds an integer.
@@ -168,7 +168,7 @@ class Predicates {
     Token t;
     t.kind = Token::Kind::integer;
     t.integer = integer;
-    tokens_.push_back(t);
+    push(t);
     return *this;
   }
   /// Adds an integer.
@@ -213,6 +213,15 @@ class Predicates {
   };
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
   std::size_t store(std::string_view text);
+  /// Adds a token. Perceptors add most of theirs here: without the way of a full vector it is a few instructions in
+  /// each of them.
+  [[gnu::always_inline]] void push(const Token& t) {
+    if (tokens_.size() == tokens_.capacity()) [[unlikely]]
+      grow();
+    if (tokens_.size() == tokens_.capacity()) __builtin_unreachable();
+    tokens_.push_back(t);
+  }
+  [[gnu::cold, gnu::noinline]] void grow();
 
   std::vector<Token> tokens_;
   std::string text_;            ///< the text store: all texts that are too long for their tokens
