@@ -135,9 +135,7 @@ void LeftOver::add(const Element& e, const std::string& what) {
     known_.emplace(what, entries_.size()), entries_.push_back({what, e.where(), 1});
 }
 
-void LeftOver::element(const Element& e, const std::string& why) {
-  add(e, fmt::format("the element <{}> is left out{}{}", e.tag(), why.empty() ? "" : ": ", why));
-}
+void LeftOver::element(const Element& e) { add(e, fmt::format("the element <{}> is left out", e.tag())); }
 
 void LeftOver::attribute(const Element& e, const std::string& name) {
   add(e, fmt::format("the attribute '{}' of <{}> is left out", name, e.tag()));

@@ -2,7 +2,6 @@
 /// \file
 /// MJCF files: elements with their places, attributes with their defaults, included files.
 
-#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -47,7 +46,6 @@ class Document {
 
   /// Throws Error with file:line:column for a text that is not XML or not a model.
   Document(const std::string& name, ReadFile read);
-  const std::string& name() const { return files_.front()->name; }
   /// The folder of the main file: "" or "a/b/".
   const std::string& folder() const { return folder_; }
   /// The element `mujoco`.
@@ -84,11 +82,10 @@ class Defaults {
   std::map<std::string, Class, std::less<>> classes_;
 };
 
-/// What of a model is left out: elements and attributes that nobody asked for.
+/// What of a model is left out: elements and attributes that are not read.
 class LeftOver {
  public:
-  /// Nobody reads this element. `why` "": Spark does not know it.
-  void element(const Element& e, const std::string& why = "");
+  void element(const Element& e);
   void attribute(const Element& e, const std::string& name);
   /// Something else: one sentence per `what`, with the first place.
   void add(const Element& e, const std::string& what);
@@ -125,20 +122,17 @@ class Attributes {
   /// Between `least` and `most` finite numbers; nullopt where the attribute is not there. Throws Error.
   std::optional<std::vector<double>> numbers(const char* name, std::size_t least, std::size_t most);
   /// Writes the first numbers of an array: those of the defaults, then those of the element, which may be fewer. The
-  /// others stay. Returns the most numbers that one of them has.
+  /// others stay.
   template <class Array>
-  std::size_t fill(const char* name, Array& out) {
+  void fill(const char* name, Array& out) {
     known_.insert(name);
-    std::size_t most = 0;
     for (std::size_t k = chain_.size(); k-- > 0;) {
       const auto found = parse(chain_[k], name, 1, static_cast<std::size_t>(out.size()));
       if (!found) continue;
       for (std::size_t i = 0; i < found->size(); ++i) out[static_cast<int>(i)] = (*found)[i];
-      most = std::max(most, found->size());
     }
-    return most;
   }
-  /// As fill(), but all numbers must be there.
+  /// Writes a whole array, as numbers() reads it. Returns false where the attribute is not there.
   template <class Array>
   bool take(const char* name, Array& out) {
     const auto found = numbers(name, out.size(), out.size());
@@ -150,7 +144,7 @@ class Attributes {
   void ignore(std::initializer_list<const char*> names) {
     for (const char* name : names) known_.insert(name);
   }
-  /// Names the attributes that were not asked for.
+  /// Names the attributes that were not read.
   void finish();
 
  private:
