@@ -46,7 +46,6 @@ struct Joint {
 };
 
 struct Site {
-  Element from;
   std::string name;
   Pose pose;  ///< in its body
 };

@@ -1,0 +1,112 @@
+#include "compiler.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace spark::mjcf {
+
+namespace {
+
+Mat3 turnTo(const Vec3& z) { return Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), z).toRotationMatrix(); }
+
+}  // namespace
+
+void Compiler::read(Attributes& a) {
+  degrees_ = a.word("angle", {"degree", "radian"}, degrees_ ? "degree" : "radian") == "degree";
+  autolimits_ = a.flag("autolimits", autolimits_);
+  eulerSequence_ = a.text("eulerseq", eulerSequence_.c_str());
+  if (eulerSequence_.size() != 3 || eulerSequence_.find_first_not_of("xyzXYZ") != std::string::npos)
+    throw a.element().error(fmt::format("expected three of x y z X Y Z for 'eulerseq', found '{}'", eulerSequence_));
+  std::string folder = a.text("meshdir", a.text("assetdir", meshFolder_.c_str()).c_str());
+  if (!folder.empty() && folder.back() != '/') folder += '/';
+  while (folder.starts_with("./")) folder.erase(0, 2);
+  meshFolder_ = folder;
+  inertiaFromGeom_ = a.word("inertiafromgeom", {"auto", "true", "false"}, inertiaFromGeom_.c_str());
+  a.take("inertiagrouprange", inertiaGroups_);
+  boundMass_ = a.number("boundmass", boundMass_);
+  boundInertia_ = a.number("boundinertia", boundInertia_);
+  if (a.text("coordinate", "local") != "local") throw a.element().error("expected the coordinate frame 'local'");
+  // Bodies without joints become part of their parents in any case.
+  a.ignore({"texturedir", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
+            "exactmeshinertia", "alignfree"});
+  a.finish();
+}
+
+void Compiler::raise(engine::Mass& mass) const {
+  if (mass.mass <= 0 && boundMass_ <= 0) return;
+  mass.mass = std::max(mass.mass, boundMass_);
+  if (boundInertia_ <= 0) return;
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(mass.inertia);
+  const Vec3 moments = axes.eigenvalues().cwiseMax(boundInertia_);
+  mass.inertia = axes.eigenvectors() * moments.asDiagonal() * axes.eigenvectors().transpose();
+}
+
+std::optional<Mat3> Compiler::orientation(Attributes& a) const {
+  std::array<double, 4> four{};
+  if (a.take("quat", four)) {
+    const Eigen::Quaterniond q(four[0], four[1], four[2], four[3]);
+    if (!(q.norm() > 1e-10)) throw a.element().error("expected a quaternion that is not 0");
+    return q.normalized().toRotationMatrix();
+  }
+  if (a.take("axisangle", four)) {
+    const Vec3 axis(four[0], four[1], four[2]);
+    if (!(axis.norm() > 1e-10)) throw a.element().error("expected an axis that is not 0 in 'axisangle'");
+    return Eigen::AngleAxisd(angle(four[3]), axis.normalized()).toRotationMatrix();
+  }
+  std::array<double, 6> six{};
+  if (a.take("xyaxes", six)) {
+    const Vec3 x = Vec3(six[0], six[1], six[2]).normalized(), along = Vec3(six[3], six[4], six[5]);
+    const Vec3 y = (along - x * x.dot(along)).normalized();
+    Mat3 r;
+    r << x, y, x.cross(y);
+    if (!r.allFinite()) throw a.element().error("expected two different directions in 'xyaxes'");
+    return r;
+  }
+  if (Vec3 z; a.take("zaxis", z)) {
+    if (!(z.norm() > 1e-10)) throw a.element().error("expected a direction that is not 0 in 'zaxis'");
+    return turnTo(z);
+  }
+  if (Vec3 angles; a.take("euler", angles)) {
+    Mat3 r = Mat3::Identity();
+    for (int i = 0; i < 3; ++i) {
+      const char letter = eulerSequence_[static_cast<std::size_t>(i)];
+      const bool fixedFrame = letter < 'a';
+      const Mat3 turn = Eigen::AngleAxisd(angle(angles[i]), Vec3(Vec3::Unit((letter | 32) - 'x'))).toRotationMatrix();
+      r = fixedFrame ? Mat3(turn * r) : Mat3(r * turn);
+    }
+    return r;
+  }
+  return std::nullopt;
+}
+
+Pose Compiler::pose(Attributes& a, const Pose& frame) const {
+  Pose p;
+  a.take("pos", p.position);
+  if (!(p.position.cwiseAbs().maxCoeff() <= 1e6)) throw a.element().error("expected a place at most 1e6 m away");
+  if (const auto r = orientation(a)) p.rotation = *r;
+  return compose(frame, p);
+}
+
+std::optional<Compiler::Span> Compiler::fromTo(Attributes& a, const Pose& frame) const {
+  std::array<double, 6> ends{};
+  if (!a.take("fromto", ends)) return std::nullopt;
+  const Vec3 from(ends[0], ends[1], ends[2]), to(ends[3], ends[4], ends[5]);
+  const double length = (to - from).norm();
+  if (!(length > 1e-10)) throw a.element().error("expected two different points in 'fromto'");
+  return Span{compose(frame, {(from + to) / 2, turnTo(from - to)}), length};
+}
+
+bool Compiler::limited(Attributes& a, const char* flag, const char* name,
+                       const std::optional<std::vector<double>>& range) const {
+  const std::string word = a.word(flag, {"true", "false", "auto"}, "auto");
+  const bool on = word == "auto" ? range && autolimits_ : word == "true";
+  if (on && (!range || !((*range)[0] < (*range)[1])))
+    throw a.element().error(fmt::format("expected a lower and a higher number for '{}' of <{}>, which is limited", name,
+                                        a.element().tag()));
+  return on;
+}
+
+}  // namespace spark::mjcf

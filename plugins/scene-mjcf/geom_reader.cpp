@@ -1,0 +1,116 @@
+#include "geom_reader.h"
+
+#include <fmt/format.h>
+
+#include "geom_mass.h"
+
+namespace spark::mjcf {
+
+using engine::Shape;
+using engine::ShapeDescription;
+
+std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose& frame) {
+  Geom g;
+  g.from = a.element();
+  g.name = a.text("name");
+  contact(a, g);
+  const std::string type =
+      a.word("type", {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"},
+             a.has("mesh") ? "mesh" : "sphere");
+  const double density = a.number("density", 1000);
+  const auto weight = [&] {
+    return Weight{density, a.has("mass") ? std::optional(a.number("mass", 0)) : std::nullopt};
+  };
+  a.ignore({"material", "rgba", "user", "hfield", "fitscale", "mass"});
+
+  // What is left out, and what is only seen: its mesh is not loaded.
+  const auto without = [&](const std::string& what) {
+    leftOver_.add(g.from, what);
+    return std::nullopt;
+  };
+  if (type == "hfield" || type == "sdf") return without(fmt::format("a <geom> of type {} is left out", type));
+  if (type != "mesh" && a.has("mesh")) return without("a <geom> that is fitted to a mesh is left out");
+  const bool world = body.parent < 0, counts = !body.hasInertial || compiler_.inertiaFromGeom() == "true";
+  const bool weightless = !counts || weight().of(1) == 0;
+  if (type == "mesh" && !g.collides() && (weightless || world)) {
+    a.ignore({"pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "size", "fromto"});
+    a.finish();
+    return std::nullopt;
+  }
+
+  place(a, type, frame, g);
+  const bool ellipsoid = type == "ellipsoid";
+  if (ellipsoid) {
+    // Its mass counts.
+    leftOver_.add(g.from, "the shape of an ellipsoid is left out");
+    g.contactTypes = g.contactAffinities = 0;
+    g.group = 5;
+  }
+  if (type != "plane" && compiler_.weighs(g.group)) {
+    const engine::Mass own =
+        ellipsoid ? ellipsoidMass(g.shape.lengths / 2, weight()) : shapeMass(g.shape, weight(), g.from);
+    if (ellipsoid || own.mass > 0) g.mass = moved(own, g.pose);
+  }
+  a.finish();
+  return g;
+}
+
+void GeomReader::contact(Attributes& a, Geom& g) const {
+  g.contactTypes = a.integer("contype", 1);
+  g.contactAffinities = a.integer("conaffinity", 1);
+  g.group = a.integer("group", 0);
+  engine::Geom::Mujoco& m = g.contact;
+  a.fill("friction", m.friction);
+  m.condim = a.integer("condim", 3);
+  if (m.condim != 1 && m.condim != 3 && m.condim != 4 && m.condim != 6)
+    throw g.from.error(fmt::format("expected 1, 3, 4 or 6 for 'condim', found {}", m.condim));
+  m.priority = a.integer("priority", 0);
+  a.fill("solref", m.solref);
+  a.fill("solimp", m.solimp);
+  m.margin = a.number("margin", 0);
+  m.gap = a.number("gap", 0);
+}
+
+/// Reads pose and shape.
+void GeomReader::place(Attributes& a, const std::string& type, const Pose& frame, Geom& g) {
+  Vec3 size = Vec3::Zero();
+  a.fill("size", size);
+  const bool thick = type == "box" || type == "ellipsoid";
+  if (const auto span = compiler_.fromTo(a, frame)) {
+    g.pose = span->pose;
+    if (thick)
+      size = {size[0], size[0], span->length / 2};
+    else
+      size[1] = span->length / 2;
+  } else {
+    g.pose = compiler_.pose(a, frame);
+  }
+  // Each kind needs some of its lengths.
+  const int needed = type == "sphere" ? 1 : type == "capsule" || type == "cylinder" ? 2 : thick ? 3 : 0;
+  if (!(size.head(needed).array() > 0).all())
+    throw g.from.error(fmt::format("the 'size' of a {} needs {} above 0", type,
+                                   needed == 1 ? "a length" : fmt::format("{} lengths", needed)));
+  g.shape = shape(a, type, size);
+}
+
+ShapeDescription GeomReader::shape(Attributes& a, const std::string& type, const Vec3& size) {
+  ShapeDescription s;
+  if (type == "box" || type == "ellipsoid") {
+    s.shape = Shape::box;
+    s.lengths = 2 * size;
+  } else if (type == "sphere") {
+    s.shape = Shape::sphere;
+    s.radius = size[0];
+  } else if (type == "capsule" || type == "cylinder") {
+    s.shape = type == "capsule" ? Shape::capsule : Shape::cylinder;
+    s.radius = size[0];
+    s.length = 2 * size[1];
+  } else if (type == "plane") {
+    s.shape = Shape::plane;
+  } else {
+    s = meshes_.shape(a);
+  }
+  return s;
+}
+
+}  // namespace spark::mjcf

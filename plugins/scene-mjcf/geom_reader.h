@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// Reads the geoms of an MJCF model.
+
+#include "compiler.h"
+#include "meshes.h"
+#include "model.h"
+
+namespace spark::mjcf {
+
+/// Reads geoms: their shapes, their masses and their numbers of contacts. Its parts must outlive it.
+class GeomReader {
+ public:
+  GeomReader(const Compiler& compiler, Meshes& meshes, LeftOver& leftOver)
+      : compiler_(compiler), meshes_(meshes), leftOver_(leftOver) {}
+  /// Reads an element `geom` of `body`; `frame`: of the `frame` elements around. nullopt for a geom that is left out,
+  /// or that is only seen and has a mesh. Throws Error.
+  std::optional<Geom> read(Attributes& a, const Body& body, const Pose& frame);
+
+ private:
+  void contact(Attributes& a, Geom& geom) const;
+  void place(Attributes& a, const std::string& type, const Pose& frame, Geom& geom);
+  engine::ShapeDescription shape(Attributes& a, const std::string& type, const Vec3& size);
+
+  const Compiler& compiler_;
+  Meshes& meshes_;
+  LeftOver& leftOver_;
+};
+
+}  // namespace spark::mjcf
