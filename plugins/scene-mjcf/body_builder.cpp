@@ -1,0 +1,121 @@
+#include "body_builder.h"
+
+#include <fmt/format.h>
+
+#include "spark/access.h"
+
+namespace spark::mjcf {
+
+using engine::JointParameter;
+
+namespace {
+
+/// Of a body with several joints, the part of the mass that each body between them has.
+constexpr double kBetween = 0.01;
+
+/// World pose of the frame of a body: that of the link, with the centre of mass as origin.
+Pose bodyPose(const PlacedBody& b) { return compose(b.world, {b.mass.center, Mat3::Identity()}); }
+
+/// Makes the body of a transform, with that share of the mass of `b`.
+Leaf& makeRigidBody(Node& transform, const PlacedBody& b, double share) {
+  Leaf& body = transform.create("RigidBody", "body");
+  const Mat3 i = share * b.mass.inertia;
+  callMethod(body, "setMassParameters",
+             List{share * b.mass.mass, 0.0, 0.0, 0.0, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)});
+  return body;
+}
+
+void setPose(Leaf& body, const Pose& world) {
+  static_cast<IRigidBody*>(body.requireAs(IRigidBody::kInterface))->setPose(world);
+}
+
+std::string bodyPath(const std::string& transform) { return "../../" + transform + "/body"; }
+
+/// `world`: pose of the child link's frame.
+void setAxis(IJoint& made, const Joint& j, const Pose& world) {
+  made.setWorldAxis(0, world.rotation * j.axis);
+  if (j.limited) {
+    made.setParameter(JointParameter::lowStop, 0, j.range[0]);
+    made.setParameter(JointParameter::highStop, 0, j.range[1]);
+  }
+  made.setParameter(JointParameter::armature, 0, j.armature);
+  made.setParameter(JointParameter::damping, 0, j.damping);
+  made.setParameter(JointParameter::dryFriction, 0, j.dryFriction);
+  const engine::MujocoAxis& n = j.numbers;
+  Leaf& leaf = made.leaf();
+  callMethod(leaf, "setMujocoStopSolref", List{0, toList(n.stopSolref)});
+  callMethod(leaf, "setMujocoStopSolimp", List{0, toList(n.stopSolimp)});
+  callMethod(leaf, "setMujocoStopMargin", List{0, n.stopMargin});
+  callMethod(leaf, "setMujocoFrictionSolref", List{0, toList(n.frictionSolref)});
+  callMethod(leaf, "setMujocoFrictionSolimp", List{0, toList(n.frictionSolimp)});
+  // A passive joint: its spring, or nothing beside dry friction.
+  made.control(0, {.stiffness = j.stiffness, .position = j.springAngle});
+}
+
+}  // namespace
+
+void BodyBuilder::build() {
+  for (PlacedBody& b : c_.bodies)
+    if (c_.bodies.isCarrier(b)) makeBody(b);
+  for (const PlacedBody& b : c_.bodies)
+    if (b.node) makeJoints(b);
+}
+
+void BodyBuilder::makeBody(PlacedBody& p) {
+  const Body& b = *p.body;
+  if (!(p.mass.mass > 0)) throw b.from.error("a body that moves needs a mass above 0");
+  p.node = &transformAt(c_.names.body(b.name, "body"), bodyPose(p));
+  try {
+    Leaf& body = makeRigidBody(*p.node, p, 1);
+    setProperty(body, "linkOrigin", toList(Vec3(-p.mass.center)));
+    setPose(body, bodyPose(p));
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: cannot make the body '{}'", b.from.where(), b.name), e);
+  }
+}
+
+void BodyBuilder::makeJoints(const PlacedBody& p) {
+  const std::vector<Joint>& joints = p.body->joints;
+  if (joints.front().kind == JointKind::free) {
+    c_.freeJoints.insert(joints.front().name);
+    return;
+  }
+  std::string parent = p.above == 0 ? "" : bodyPath(c_.bodies[p.above].node->name());
+  // A joint has one axis: between two of them there is a light body.
+  if (joints.size() > 1)
+    c_.leftOver.add(joints[0].from,
+                    fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass",
+                                joints.size(), kBetween));
+  for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
+    const std::string name = c_.names.body(fmt::format("{}-{}", p.body->name, k + 1), "between");
+    Node& between = transformAt(name, bodyPose(p));
+    setPose(makeRigidBody(between, p, kBetween), bodyPose(p));
+    makeJoint(p, joints[k], between, parent);
+    parent = bodyPath(name);
+  }
+  if (joints.size() > 1)
+    setProperty(*p.node->child("body"), "mass", p.mass.mass * (1 - kBetween * static_cast<double>(joints.size() - 1)));
+  makeJoint(p, joints.back(), *p.node, parent);
+}
+
+void BodyBuilder::makeJoint(const PlacedBody& p, const Joint& j, Node& child, const std::string& parent) {
+  const char* const kind = j.kind == JointKind::hinge   ? "HingeJoint"
+                           : j.kind == JointKind::slide ? "SliderJoint"
+                                                        : "BallJoint";
+  try {
+    auto& made = child.create<IJoint>(kind, c_.names.name(j.name, "joint"));
+    callMethod(made.leaf(), "attach", List{"../body", parent});
+    if (j.kind != JointKind::slide) made.setWorldAnchor(p.world.position + p.world.rotation * j.position);
+    if (j.kind != JointKind::ball) setAxis(made, j, p.world);
+    if (!j.name.empty() && !c_.joints.emplace(j.name, Construction::MadeJoint{&j, &made}).second)
+      throw Error(fmt::format("there are two joints '{}'", j.name));
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: cannot make the joint '{}'", j.from.where(), j.name), e);
+  }
+}
+
+Node& BodyBuilder::transformAt(const std::string& name, const Pose& world) {
+  return c_.transform(c_.top, name, compose(inverse(c_.bodies.root()), world));
+}
+
+}  // namespace spark::mjcf

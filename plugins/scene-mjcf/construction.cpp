@@ -1,0 +1,36 @@
+#include "construction.h"
+
+#include "spark/kernel.h"
+
+namespace spark::mjcf {
+
+Pose inverse(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
+
+Node& Construction::transform(Node& parent, const std::string& name, const Pose& local) {
+  Node& node = *parent.create("Transform", name).asNode();
+  // As a body would do it: nothing below takes the pose, which is in single precision.
+  static_cast<Transform*>(node.requireAs(Transform::kInterface))->setLocalFromBody(toMatrix(local));
+  return node;
+}
+
+Node& Construction::nodeOf(const PlacedBody& b) {
+  Node* const node = bodies.carrierOf(b).node;
+  return node ? *node : top;
+}
+
+Pose Construction::inNode(const PlacedBody& b, const Pose& local) {
+  if (b.carrier == 0) return compose(inverse(bodies.root()), compose(b.world, local));
+  // The origin of a body is its centre of mass.
+  const Pose link{-bodies.carrierOf(b).mass.center, Mat3::Identity()};
+  return compose(link, compose(b.inCarrier, local));
+}
+
+bool Construction::has(const char* className) {
+  const Kernel& kernel = top.kernel();
+  const char* const base = std::string_view(className).ends_with("Effector") ? "Effector" : "Perceptor";
+  if (kernel.findClass(base) && kernel.findClass(className)) return true;
+  withoutParts = true;
+  return false;
+}
+
+}  // namespace spark::mjcf

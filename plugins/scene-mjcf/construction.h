@@ -1,0 +1,47 @@
+#pragma once
+/// \file
+/// What the builders of one MJCF model share.
+
+#include "api/physics.h"
+#include "names.h"
+#include "placed_bodies.h"
+
+namespace spark::mjcf {
+
+/// A model on its way into the tree.
+struct Construction {
+  /// A joint of the file and the node that was made of it.
+  struct MadeJoint {
+    const Joint* joint;
+    IJoint* made;
+  };
+
+  /// Makes a transform. `local`: its pose in the transform above.
+  Node& transform(Node& parent, const std::string& name, const Pose& local);
+  /// The transform for what belongs to a body, and a pose in that transform: `local` is one in the body.
+  Node& nodeOf(const PlacedBody& body);
+  Pose inNode(const PlacedBody& body, const Pose& local);
+  /// True when there is such a class of perceptors or effectors.
+  bool has(const char* className);
+
+  const Model& model;
+  LeftOver& leftOver;
+  Node& top;  ///< all is below it
+  Names names;
+  PlacedBodies bodies;
+  std::map<std::string, MadeJoint, std::less<>> joints{};
+  std::set<std::string, std::less<>> freeJoints{};
+  std::map<std::string, Node*, std::less<>> sites{}, colliders{};  ///< colliders: by the names of geoms
+  bool withoutParts = false;                                       ///< has() found no class for a sensor or an actuator
+};
+
+Pose inverse(const Pose& p);
+
+// Values for properties and methods.
+inline List toList(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+template <std::size_t N>
+List toList(const std::array<double, N>& a) {
+  return List(a.begin(), a.end());
+}
+
+}  // namespace spark::mjcf

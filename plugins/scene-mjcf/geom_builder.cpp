@@ -1,0 +1,151 @@
+#include "geom_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "spark/access.h"
+
+namespace spark::mjcf {
+
+using engine::Shape;
+using engine::ShapeDescription;
+
+namespace {
+
+List matrix(const Mat3& r) {
+  List out;
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) out.emplace_back(r(row, column));
+    out.emplace_back(0.0);
+  }
+  for (const double v : {0.0, 0.0, 0.0, 1.0}) out.emplace_back(v);
+  return out;
+}
+
+/// Sets a collider's shape; `pose`: in its body, or in the world.
+void setShape(Leaf& collider, const ShapeDescription& s, const Pose& pose) {
+  switch (s.shape) {
+    case Shape::box:
+      callMethod(collider, "setBoxLengths", toList(s.lengths));
+      break;
+    case Shape::sphere:
+      callMethod(collider, "setRadius", List{s.radius});
+      break;
+    case Shape::capsule:
+    case Shape::cylinder:
+      callMethod(collider, "setParams", List{s.radius, s.length});
+      break;
+    case Shape::plane: {
+      const Vec3 normal = pose.rotation.col(2);
+      callMethod(collider, "setParams", List{normal.x(), normal.y(), normal.z(), normal.dot(pose.position)});
+      return;
+    }
+    default: {
+      List vertices(s.vertices.begin(), s.vertices.end()), triangles;
+      for (const std::uint32_t t : s.triangles) triangles.emplace_back(static_cast<std::int64_t>(t));
+      setProperty(collider, "vertices", vertices);
+      setProperty(collider, "triangles", triangles);
+      break;
+    }
+  }
+  callMethod(collider, "setRotation", matrix(pose.rotation));
+  callMethod(collider, "setLocalPosition", toList(pose.position));
+}
+
+void setContact(Node& collider, const Geom& g) {
+  const engine::Geom::Mujoco& m = g.contact;
+  setProperty(collider, "mujocoFriction", toList(m.friction));
+  setProperty(collider, "mujocoCondim", m.condim);
+  setProperty(collider, "mujocoPriority", m.priority);
+  setProperty(collider, "mujocoSolref", toList(m.solref));
+  setProperty(collider, "mujocoSolimp", toList(m.solimp));
+  setProperty(collider, "mujocoMargin", m.margin);
+  setProperty(collider, "mujocoGap", m.gap);
+  setProperty(collider, "contactTypes", g.contactTypes);
+  setProperty(collider, "contactAffinities", g.contactAffinities);
+  // For the other engines.
+  Leaf& surface = collider.create("ContactJointHandler", "surface");
+  setProperty(surface, "contactBounceMode", false);
+  setProperty(surface, "contactMu", m.condim == 1 ? 0.0 : m.friction[0]);
+  setProperty(surface, "contactPyramid", true);
+}
+
+}  // namespace
+
+void GeomBuilder::build() {
+  for (PlacedBody& b : c_.bodies) makeGeoms(b), makeSites(b);
+  for (const Exclusion& x : c_.model.exclusions) exclude(x);
+  for (const Pair& p : c_.model.pairs) pair(p);
+}
+
+void GeomBuilder::makeGeoms(PlacedBody& p) {
+  // Where a body is drawn by meshes alone, which viewers do not have, its collision shapes are shown.
+  const std::vector<Geom>& geoms = p.body->geoms;
+  const bool drawn = std::any_of(geoms.begin(), geoms.end(), [](const Geom& g) { return g.visible(); });
+  for (const Geom& g : geoms) {
+    try {
+      if (g.collides() || inPair(g.name)) makeCollider(g, p);
+      if (g.visible() || !drawn) makeVisible(g, p);
+    } catch (const Error& e) {
+      throw Error(fmt::format("{}: cannot make the geom '{}'", g.from.where(), g.name), e);
+    }
+  }
+}
+
+void GeomBuilder::makeCollider(const Geom& g, PlacedBody& p) {
+  const char* const kinds[] = {
+      "BoxCollider", "SphereCollider", "CapsuleCollider", "CylinderCollider", "PlaneCollider", "", "TriMeshCollider"};
+  const char* const kind = kinds[static_cast<int>(g.shape.shape)];
+  Node& collider = *c_.nodeOf(p).create(kind, c_.names.collider(g.name)).asNode();
+  p.colliders.push_back(&collider);
+  if (!g.name.empty() && !c_.colliders.emplace(g.name, &collider).second)
+    throw Error(fmt::format("there are two geoms '{}'", g.name));
+  setShape(collider, g.shape, p.carrier == 0 ? compose(p.world, g.pose) : c_.inNode(p, g.pose));
+  setContact(collider, g);
+}
+
+void GeomBuilder::makeVisible(const Geom& g, const PlacedBody& p) {
+  const ShapeDescription& s = g.shape;
+  const char* const kinds[] = {"Box", "Sphere", "Capsule", "Cylinder"};
+  const auto kind = static_cast<std::size_t>(s.shape);
+  if (kind >= std::size(kinds)) return;
+  const std::string name = c_.names.name(g.name.empty() ? "" : g.name + "-shape", "shape");
+  Leaf& shape = c_.transform(c_.nodeOf(p), name, c_.inNode(p, g.pose)).create(kinds[kind]);
+  if (s.shape == Shape::box)
+    callMethod(shape, "setExtents", toList(s.lengths));
+  else if (s.shape == Shape::sphere)
+    callMethod(shape, "setRadius", List{s.radius});
+  else
+    callMethod(shape, "setParams", List{s.radius, s.length});
+  callMethod(shape, "setMaterial", List{"matGrey"});
+}
+
+void GeomBuilder::makeSites(const PlacedBody& p) {
+  for (const Site& s : p.body->sites) {
+    Node& made = c_.transform(c_.nodeOf(p), c_.names.name(s.name, "site"), c_.inNode(p, s.pose));
+    if (!s.name.empty()) c_.sites.emplace(s.name, &made);
+  }
+}
+
+void GeomBuilder::exclude(const Exclusion& x) {
+  const PlacedBody &a = c_.bodies.find(x.body1, x.from), &b = c_.bodies.find(x.body2, x.from);
+  for (Node* first : a.colliders)
+    for (const Node* second : b.colliders)
+      callMethod(*first, "addNotCollideWithColliderName", List{second->name(), true});
+}
+
+void GeomBuilder::pair(const Pair& p) {
+  const auto first = c_.colliders.find(p.geom1), second = c_.colliders.find(p.geom2), none = c_.colliders.end();
+  if (first == none || second == none)
+    throw p.from.error(fmt::format("there is no geom '{}'", first == none ? p.geom1 : p.geom2));
+  callMethod(*first->second, "addCollideWithColliderName", List{second->second->name(), true});
+}
+
+bool GeomBuilder::inPair(const std::string& geom) const {
+  const std::vector<Pair>& pairs = c_.model.pairs;
+  return !geom.empty() &&
+         std::any_of(pairs.begin(), pairs.end(), [&](const Pair& p) { return p.geom1 == geom || p.geom2 == geom; });
+}
+
+}  // namespace spark::mjcf
