@@ -10,7 +10,8 @@ local model     = option{ name = "model", default = "rsg/robots/t1.xml", doc = "
 local height    = option{ name = "height", default = 0.0, doc = "How far above its own place it begins, in metres." }
 local engine    = option{ name = "engine", default = "MujocoEngine", doc = "Class of the engine." }
 local timestep  = option{ name = "timestep", default = 0.005, doc = "Length of the engine's steps, in seconds." }
-local stiffness = option{ name = "stiffness", default = 200.0, doc = "Of the controllers that hold every hinge where it is, at most, in Nm/rad; 0: none." }
+local stiffness = option{ name = "stiffness", default = 200.0,
+  doc = "Of the controllers that hold every hinge where it is, at most, in Nm/rad; 0: none." }
 
 files()
 scene()
@@ -36,7 +37,10 @@ local function hold(node)
     if child.class == "HingeJoint" then
       local rotor = child:getArmature(0)
       local most, damping = stiffness, stiffness / 40
-      if rotor > 0 then most, damping = math.min(most, 0.5 * rotor / timestep ^ 2), math.min(damping, 0.8 * rotor / timestep) end
+      if rotor > 0 then
+        most = math.min(most, 0.5 * rotor / timestep ^ 2)
+        damping = math.min(damping, 0.8 * rotor / timestep)
+      end
       child:setController(0, most, damping, 0, 0, 0, 1000)
     end
     hold(child)

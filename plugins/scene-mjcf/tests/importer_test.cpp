@@ -38,9 +38,11 @@ struct MjcfHouse : PhysicsHouse {
 
 const char* const kArm = R"(<mujoco model='arm'><compiler autolimits='true'/><worldbody>
   <body name='upper' pos='0 0 1'><joint name='shoulder' axis='0 1 0' range='-90 90'/>
-    <inertial mass='2' pos='0.5 0 0' diaginertia='0.1 0.2 0.3'/><geom name='bar' type='box' size='0.5 0.1 0.1' pos='0.5 0 0'/>
+    <inertial mass='2' pos='0.5 0 0' diaginertia='0.1 0.2 0.3'/>
+    <geom name='bar' type='box' size='0.5 0.1 0.1' pos='0.5 0 0'/>
     <site name='tip' pos='1 0 0'/>
-    <body name='lower' pos='1 0 0'><joint name='elbow' axis='0 0 1' damping='0.5'/><geom name='rod' type='capsule' size='0.05' fromto='0 0 0 1 0 0' mass='1'/>
+    <body name='lower' pos='1 0 0'><joint name='elbow' axis='0 0 1' damping='0.5'/>
+      <geom name='rod' type='capsule' size='0.05' fromto='0 0 0 1 0 0' mass='1'/>
       <body name='hand' pos='1 0 0'><geom name='ball' size='0.1' mass='1'/></body></body></body></worldbody>
   <contact><exclude body1='upper' body2='hand'/></contact></mujoco>)";
 
@@ -155,7 +157,8 @@ TEST_CASE("kinds of geoms, and pairs that collide all the same") {
   h.import(R"(<mujoco model='m'><worldbody><geom name='floor' type='plane' size='1 1 1' contype='2' conaffinity='2'/>
     <body name='through' pos='0 0 0.2'><freejoint/><geom size='0.1' contype='4' conaffinity='4'/></body>
     <body name='lies' pos='1 0 0.2'><freejoint/><geom size='0.1' contype='2' conaffinity='0'/></body>
-    <body name='paired' pos='2 0 0.2'><freejoint/><geom name='foot' size='0.1' contype='0' conaffinity='0'/></body></worldbody>
+    <body name='paired' pos='2 0 0.2'><freejoint/>
+      <geom name='foot' size='0.1' contype='0' conaffinity='0'/></body></worldbody>
     <contact><pair geom1='foot' geom2='floor'/></contact></mujoco>)");
   h.step(50);
   CHECK(h.place("m/through/body").z() < -1);
@@ -200,12 +203,14 @@ TEST_CASE("a model that cannot be made leaves nothing behind") {
 TEST_CASE("sensors and actuators become perceptors and effectors") {
   MjcfHouse h;
   for (const char* plugin : {"gamecontrol", "sensors", "effectors"}) h.kernel.plugins().use(plugin);
-  h.import(
-      R"(<mujoco model='m'><worldbody><body name='b' pos='0 0 1'><joint name='j' axis='0 1 0' actuatorfrcrange='-3 3'/><geom size='0.1' pos='0.2 0 0' mass='1'/>
+  h.import(R"(<mujoco model='m'><worldbody><body name='b' pos='0 0 1'>
+    <joint name='j' axis='0 1 0' actuatorfrcrange='-3 3'/><geom size='0.1' pos='0.2 0 0' mass='1'/>
     <body name='c'><joint name='k' axis='0 0 1'/><geom size='0.1' mass='1'/><site name='s'/></body></body></worldbody>
-    <actuator><motor name='j1_tau' joint='j'/><position name='j1_pos' joint='j' kp='7'/><velocity name='j1_vel' joint='j' kv='2'/>
+    <actuator><motor name='j1_tau' joint='j'/><position name='j1_pos' joint='j' kp='7'/>
+    <velocity name='j1_vel' joint='j' kv='2'/>
     <motor name='turn' joint='k' gear='2' ctrlrange='-1 1'/></actuator>
-    <sensor><jointpos name='q_j1' joint='j'/><jointvel name='dq_j1' joint='j'/><gyro name='g' site='s'/><framepos name='p' objtype='site' objname='s'/>
+    <sensor><jointpos name='q_j1' joint='j'/><jointvel name='dq_j1' joint='j'/><gyro name='g' site='s'/>
+    <framepos name='p' objtype='site' objname='s'/>
     <framequat name='o' objtype='body' objname='b'/></sensor></mujoco>)");
   CHECK(h.kernel.root().find("/usr/scene/m/b/j/j1")->classObject()->name() == "ControlEffector");
   CHECK(h.kernel.root().find("/usr/scene/m/c/k/turn")->classObject()->name() == "ActuatorEffector");

@@ -118,7 +118,8 @@ TEST_CASE("a capsule may be given by its ends, and a joint's range is a limit") 
 
 TEST_CASE("actuators are forces along joints") {
   const Read r(R"(<mujoco><worldbody><body><joint name='j'/><geom size='1'/></body></worldbody><actuator>
-    <motor joint='j' gear='3' forcerange='-2 2'/><position joint='j' kp='7'/><velocity joint='j' kv='5' ctrlrange='-1 1'/>
+    <motor joint='j' gear='3' forcerange='-2 2'/><position joint='j' kp='7'/>
+    <velocity joint='j' kv='5' ctrlrange='-1 1'/>
     <general joint='j' gainprm='4' biastype='affine' biasprm='1 -2 -3'/><muscle joint='j'/></actuator></mujoco>)");
   const std::vector<Actuator>& a = r.model.actuators;
   REQUIRE(a.size() == 4);
@@ -128,7 +129,7 @@ TEST_CASE("actuators are forces along joints") {
   CHECK(a[2].bias == std::array<double, 3>{0, 0, -5});
   CHECK(a[2].controlRange == std::array<double, 2>{-1, 1});
   CHECK(a[3].gain == 4);
-  CHECK(r.said() == "a.xml:3:73: the element <muscle> is left out\n");
+  CHECK(r.said() == "a.xml:4:73: the element <muscle> is left out\n");
 }
 
 TEST_CASE("files include others, and none includes itself") {
@@ -193,8 +194,8 @@ TEST_CASE("a shorter list of an element changes the first numbers of its default
 }
 
 TEST_CASE("actuators of all tags have one default") {
-  const Read r(
-      R"(<mujoco><default><motor gear='2'/><position kp='55'/></default><worldbody><body><joint name='j'/><geom size='1'/></body></worldbody>
+  const Read r(R"(<mujoco><default><motor gear='2'/><position kp='55'/></default>
+    <worldbody><body><joint name='j'/><geom size='1'/></body></worldbody>
     <actuator><position joint='j' kp='100'/><general joint='j'/><motor joint='j'/></actuator></mujoco>)");
   const std::vector<Actuator>& a = r.model.actuators;
   CHECK(a[0].gear == 2);
@@ -215,7 +216,7 @@ TEST_CASE("an ellipsoid has a mass, and a box may be given by its ends") {
   CHECK_THAT(r.said(), Catch::Contains("the shape of an ellipsoid is left out"));
 }
 
-TEST_CASE("what nobody reads in a default is named, too") {
+TEST_CASE("unread attributes of a default are named, too") {
   const Read r(
       "<mujoco><default>\n<joint springdamper='.1 1'/></default><worldbody><body><joint/><geom "
       "size='1'/></body></worldbody></mujoco>");

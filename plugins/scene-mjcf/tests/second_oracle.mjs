@@ -23,7 +23,8 @@ const target = (joint, time) => {
 
 // Three actuators for each joint: torque, position, velocity.
 for (let i = 0; i < model.nu; ++i) {
-  const row = 10 * i, [position, velocity] = [model.actuator_biasprm[row + 1] !== 0, model.actuator_biasprm[row + 2] !== 0];
+  const row = 10 * i;
+  const position = model.actuator_biasprm[row + 1] !== 0, velocity = model.actuator_biasprm[row + 2] !== 0;
   if (position) model.actuator_gainprm[row] = kp, model.actuator_biasprm[row + 1] = -kp;
   if (velocity) model.actuator_gainprm[row] = kd, model.actuator_biasprm[row + 2] = -kd;
 }
