@@ -187,11 +187,111 @@ TEST_CASE("the other joints have their own units and limits") {
   }
 }
 
+TEST_CASE("a control effector sets the controller of its joint") {
+  Robot robot;
+  const engine::Control& law = robot.joint->controls[0];
+  SECTION("hinge: degrees") {
+    auto& effector = robot.add(engine::JointType::hinge, "ControlEffector", "he1");
+    CHECK(effector.predicate() == "he1");
+    CHECK(robot.act(effector, "(he1 30 -90 25 0.6 1.5)").empty());
+    CHECK(law.position == Approx(kPi / 6));
+    CHECK(law.velocity == Approx(-kPi / 2));
+    CHECK(law.stiffness == 25);
+    CHECK(law.damping == 0.6);
+    CHECK(law.force == 1.5);
+    CHECK(std::isinf(law.maxForce));
+    setProperty(effector, "maxForce", 12.0);
+    CHECK(robot.act(effector, "(he1 0 0 0 0 -2 surplus)").empty());
+    CHECK(law.stiffness == 0);
+    CHECK(law.force == -2);
+    CHECK(law.maxForce == 12);
+  }
+  SECTION("slider: m and m/s") {
+    auto& effector = robot.add(engine::JointType::slider, "ControlEffector", "lift");
+    CHECK(robot.act(effector, "(lift 0.5 -0.25 100 10 0)").empty());
+    CHECK(law.position == 0.5);
+    CHECK(law.velocity == -0.25);
+  }
+}
+
+TEST_CASE("bad commands of a control effector are refused and change nothing") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "ControlEffector", "he1");
+  const engine::Control& law = robot.joint->controls[0];
+  CHECK(robot.act(he1, "(he1 0 0 25 0.5 7)").empty());
+  const std::pair<const char*, const char*> cases[] = {
+      {"(he1)", "expected a number as argument 1, found none"},
+      {"(he1 1 2 3 4)", "expected a number as argument 5, found none"},
+      {"(he1 1 (2) 3 4 5)", "expected a number as argument 2, found a list"},
+      {"(he1 1 2 nan 4 5)", "expected a finite number as argument 3, found nan"},
+      {"(he1 1 2 3 4 -inf)", "expected a finite number as argument 5, found -inf"},
+      {"(he1 1 2 -3 4 5)", "expected a stiffness and a damping of 0 or more"},
+      {"(he1 1 2 3 -4 5)", "expected a stiffness and a damping of 0 or more"},
+  };
+  for (const auto& [command, remark] : cases) {
+    CHECK(robot.act(he1, command) == remark);
+    CHECK(law.stiffness == 25);
+    CHECK(law.damping == 0.5);
+    CHECK(law.force == 7);
+  }
+  // Text counts as in the installed base.
+  CHECK(robot.act(he1, "(he1 1 2 3 4 x)") == "expected a number as argument 5, found 'x', which counts as 0");
+  CHECK(law.stiffness == 3);
+  CHECK(law.force == 0);
+}
+
+TEST_CASE("an actuator's control becomes a force beside its spring and damping") {
+  Robot robot;
+  auto& turn = robot.add(engine::JointType::hinge, "ActuatorEffector", "turn");
+  const engine::Control& law = robot.joint->controls[0];
+  CHECK(turn.predicate() == "turn");
+  CHECK(robot.act(turn, "(turn 2)").empty());
+  CHECK(law.force == 2);
+  CHECK(law.stiffness == 0);
+  CHECK(std::isinf(law.maxForce));
+  for (const auto& [name, v] : {std::pair{"gain", 3.0},
+                                {"bias", 0.5},
+                                {"stiffness", 40.0},
+                                {"damping", 4.0},
+                                {"maxForce", 9.0},
+                                {"least", -1.0},
+                                {"most", 2.0}})
+    setProperty(turn, name, v);
+  CHECK(robot.act(turn, "(turn 1.5 surplus)").empty());
+  CHECK(law.force == 3 * 1.5 + 0.5);
+  CHECK(law.stiffness == 40);
+  CHECK(law.damping == 4);
+  CHECK(law.position == 0);
+  CHECK(law.velocity == 0);
+  CHECK(law.maxForce == 9);
+  CHECK(robot.act(turn, "(turn 99)").empty());
+  CHECK(law.force == 3 * 2 + 0.5);
+  CHECK(robot.act(turn, "(turn -99)").empty());
+  CHECK(law.force == 3 * -1 + 0.5);
+}
+
+TEST_CASE("bad commands of an actuator are refused and change nothing") {
+  Robot robot;
+  auto& turn = robot.add(engine::JointType::hinge, "ActuatorEffector", "turn");
+  const engine::Control& law = robot.joint->controls[0];
+  CHECK(robot.act(turn, "(turn 2)").empty());
+  CHECK(robot.act(turn, "(turn)") == "expected a number as argument 1, found none");
+  CHECK(robot.act(turn, "(turn (3))") == "expected a number as argument 1, found a list");
+  CHECK(robot.act(turn, "(turn nan)") == "expected a finite number as argument 1, found nan");
+  CHECK(robot.act(turn, "(turn inf)") == "expected a finite number as argument 1, found inf");
+  CHECK(law.force == 2);
+  CHECK(robot.act(turn, "(turn x)") == "expected a number as argument 1, found 'x', which counts as 0");
+  CHECK(law.force == 0);
+}
+
 TEST_CASE("an effector without its joint reports that") {
   Robot robot;
   auto& lost = robot.transform->create<Effector>("HingeEffector", "lost");
   CHECK(robot.act(lost, "(lost 1)") == "there is no HingeJoint above it");
   CHECK(robot.text.find("/usr/robot/lost: expected a HingeJoint above it, found none") != std::string::npos);
+  for (const char* className : {"ControlEffector", "ActuatorEffector"})
+    CHECK(robot.act(robot.transform->create<Effector>(className, className), "(x 1 2 3 4 5)") ==
+          "there is no joint above it");
 }
 
 TEST_CASE("a force acts once, in the prepare phase, the last command of a cycle alone") {

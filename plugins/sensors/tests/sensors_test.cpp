@@ -78,6 +78,52 @@ TEST_CASE("joint sensors report degrees in the formats of the installed base") {
   }
 }
 
+TEST_CASE("the joint sensor reports angle and rate, in degrees unless the joint slides") {
+  Robot robot;
+  SECTION("hinge") {
+    auto& joint = robot.joint(engine::JointType::hinge);
+    joint.angles = {degToRad(-1.154), 9, 9};
+    joint.rates = {degToRad(30), 9, 9};
+    CHECK(robot.sense(joint.create("JointPerceptor", "q_hj1")) == "(HJ (n q_hj1) (ax -1.15) (vx 30.00))");
+  }
+  SECTION("slider: m and m/s") {
+    auto& joint = robot.joint(engine::JointType::slider);
+    joint.angles = {0.25, 0, 0};
+    joint.rates = {-1.5, 0, 0};
+    CHECK(robot.sense(joint.create("JointPerceptor", "lift")) == "(HJ (n lift) (ax 0.25) (vx -1.50))");
+  }
+  SECTION("the nearest joint above, of any type") {
+    auto& outer = robot.joint(engine::JointType::hinge);
+    outer.angles[0] = 1;
+    auto& inner = outer.create<FakeJoint>("FakeJoint", "inner");
+    inner.type = engine::JointType::slider;
+    CHECK(robot.sense(inner.create("JointPerceptor", "j")) == "(HJ (n j) (ax 0.00) (vx 0.00))");
+  }
+  SECTION("without a joint it is silent and logs why") {
+    CHECK(robot.sense(robot.transform->create("JointPerceptor", "lost")).empty());
+    CHECK_THAT(robot.text, Catch::Contains("/usr/robot/lost: expected "));
+  }
+}
+
+TEST_CASE("pose sensors report place and rotation of their transform in the world") {
+  Robot robot;
+  auto& head = robot.transform->create<Transform>("Transform", "head");
+  Leaf& place = head.create("PositionPerceptor", "head_pos");
+  Leaf& rotation = head.create("OrientationPerceptor", "head_quat");
+  CHECK(robot.sense(place) == "(pos (n head_pos) (p 0.00 0.00 0.00))");
+  CHECK(robot.sense(rotation) == "(quat (n head_quat) (q 1.00 0.00 0.00 0.00))");
+  robot.transform->setLocalPos({1, 2, 3});
+  robot.transform->setLocalRotationDeg(0, 0, 90);
+  head.setLocalPos({0.5f, 0, -0.25f});
+  CHECK(robot.sense(place) == "(pos (n head_pos) (p 1.00 2.50 2.75))");
+  CHECK(robot.sense(rotation) == "(quat (n head_quat) (q 0.71 0.00 0.00 0.71))");
+  // As of the last place phase.
+  robot.transform->setLocalRotationDeg(60, 0, 0);
+  CHECK(robot.sense(rotation) == "(quat (n head_quat) (q 0.71 0.00 0.00 0.71))");
+  head.updateWorld(true);
+  CHECK(robot.sense(rotation) == "(quat (n head_quat) (q 0.87 0.50 0.00 0.00))");
+}
+
 TEST_CASE("the angular motor's sensor reports the items that are switched on, and a temperature only after a change") {
   Robot robot;
   auto& hinge = robot.joint(engine::JointType::hinge);
