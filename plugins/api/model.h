@@ -281,7 +281,7 @@ struct alignas(64) DynamicState {
   bool awake = true;                             ///< false: the body sleeps
   bool moved = false;                            ///< it is in State::moved
   /// For engines that keep poses and velocities in memory of their own: such an engine writes its mark
-  /// (State::newMark()) when both are the same, and everybody else who writes them writes 0.
+  /// (State::newMark()) when both agree; all other code that writes a pose or a velocity writes 0.
   mutable std::uint32_t mark = 0;
   Mat3 rotation = Mat3::Identity();     ///< the same as `quaternion`, as a matrix
   Vec3 angularVelocity = Vec3::Zero();  ///< rad/s
@@ -332,7 +332,7 @@ struct State {
   std::vector<AxisControl> controls;
   /// The bodies whose pose changed since the last detect(), each once, in the order in which they did.
   std::vector<Index> moved;
-  /// A mark for DynamicState::mark that nobody else has; never 0.
+  /// A mark for DynamicState::mark that was not given before; never 0.
   std::uint32_t newMark() const { return ++marks; }
   mutable std::uint32_t marks = 0;  ///< number of marks so far
   /// Appends a body to `moved`, once.

@@ -76,7 +76,7 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
 
   mujoco::LibraryGuard library_;
   std::vector<Known> worlds_;
-  std::vector<std::future<mujoco::Compiled>> abandoned_;  ///< nobody waits for them
+  std::vector<std::future<mujoco::Compiled>> abandoned_;  ///< still compiling, not wanted any more
   int atOnce_ = 60;
   std::int64_t compilations_ = 0, messages_ = 0;
   bool warned_ = false;

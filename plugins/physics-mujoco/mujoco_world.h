@@ -41,7 +41,8 @@ class MujocoWorld {
     Index joint = kNone;
     int axis = 0;
   };
-  /// Writes the state of the trees in which somebody else has written a body to MuJoCo's coordinates. False: of none.
+  /// Writes to MuJoCo's coordinates the state of those trees in which other code has written a body. False: there was
+  /// none.
   bool take(const engine::Model& model, const engine::State& state);
   void takeLink(const engine::Model& model, const engine::State& state, const Link& link);
   /// Writes MuJoCo's poses and velocities to the state.

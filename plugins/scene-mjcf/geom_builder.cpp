@@ -82,7 +82,8 @@ void GeomBuilder::build() {
 void GeomBuilder::makeGeoms(PlacedBody& p) {
   // Where a body is drawn by meshes alone, which viewers do not have, its collision shapes are shown.
   const std::vector<Geom>& geoms = p.body->geoms;
-  const bool drawn = std::any_of(geoms.begin(), geoms.end(), [](const Geom& g) { return g.visible(); });
+  const bool drawn = std::any_of(geoms.begin(), geoms.end(),
+                                 [](const Geom& g) { return g.visible() && g.shape.shape != Shape::mesh; });
   for (const Geom& g : geoms) {
     try {
       if (g.collides() || inPair(g.name)) makeCollider(g, p);

@@ -9,6 +9,9 @@ namespace spark::mjcf {
 using engine::Shape;
 using engine::ShapeDescription;
 
+/// A group that is not shown.
+constexpr int kHidden = 5;
+
 std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose& frame) {
   Geom g;
   g.from = a.element();
@@ -40,16 +43,16 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
 
   place(a, type, frame, g);
   const bool ellipsoid = type == "ellipsoid";
-  if (ellipsoid) {
-    // Its mass counts.
-    leftOver_.add(g.from, "the shape of an ellipsoid is left out");
-    g.contactTypes = g.contactAffinities = 0;
-    g.group = 5;
-  }
-  if (type != "plane" && compiler_.weighs(g.group)) {
+  if (type != "plane" && !weightless && compiler_.weighs(g.group)) {
     const engine::Mass own =
         ellipsoid ? ellipsoidMass(g.shape.lengths / 2, weight()) : shapeMass(g.shape, weight(), g.from);
-    if (ellipsoid || own.mass > 0) g.mass = moved(own, g.pose);
+    if (own.mass > 0) g.mass = moved(own, g.pose);
+  }
+  if (ellipsoid) {
+    // Only its mass counts: nothing collides with it, and no viewer shows it.
+    leftOver_.add(g.from, "the shape of an ellipsoid is left out");
+    g.contactTypes = g.contactAffinities = 0;
+    g.group = kHidden;
   }
   a.finish();
   return g;
@@ -88,7 +91,7 @@ void GeomReader::place(Attributes& a, const std::string& type, const Pose& frame
   // Each kind needs some of its lengths.
   const int needed = type == "sphere" ? 1 : type == "capsule" || type == "cylinder" ? 2 : thick ? 3 : 0;
   if (!(size.head(needed).array() > 0).all())
-    throw g.from.error(fmt::format("the 'size' of a {} needs {} above 0", type,
+    throw g.from.error(fmt::format("the 'size' of {} {} needs {} above 0", type == "ellipsoid" ? "an" : "a", type,
                                    needed == 1 ? "a length" : fmt::format("{} lengths", needed)));
   g.shape = shape(a, type, size);
 }

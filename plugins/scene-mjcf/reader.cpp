@@ -213,6 +213,7 @@ Joint Reader::freeJoint(const Element& e) {
   Joint j;
   j.from = e;
   j.kind = JointKind::free;
+  count(e);
   Attributes a(e, leftOver_);
   j.name = a.text("name");
   a.ignore({"group", "align"});

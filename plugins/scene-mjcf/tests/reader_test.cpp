@@ -216,6 +216,36 @@ TEST_CASE("an ellipsoid has a mass, and a box may be given by its ends") {
   CHECK_THAT(r.said(), Catch::Contains("the shape of an ellipsoid is left out"));
 }
 
+TEST_CASE("an ellipsoid's mass counts by the group that the file gives it, and only where it is above 0") {
+  const std::string start = "<mujoco><compiler inertiagrouprange='0 4'/><worldbody><body><joint/>";
+  const std::string box = "<geom type='box' size='.5 .5 .5' density='1'/>", end = "</body></worldbody></mujoco>";
+  const auto mass = [&](const std::string& ellipsoid) { return Read(start + box + ellipsoid + end).body(1).mass.mass; };
+  CHECK(mass("<geom type='ellipsoid' size='.1 .2 .3' mass='2'/>") == Approx(3));
+  CHECK(mass("<geom type='ellipsoid' size='.1 .2 .3' mass='2' group='5'/>") == Approx(1));
+  CHECK(mass("<geom type='ellipsoid' size='.1 .2 .3' mass='0'/>") == Approx(1));
+  CHECK_THAT(failure(world("<body><geom type='ellipsoid'/></body>")), Catch::Contains("the 'size' of an ellipsoid"));
+}
+
+TEST_CASE("a flat mesh is refused only where its mass counts") {
+  const auto read = [](const std::string& content) {
+    LeftOver leftOver;
+    const std::string text =
+        "<mujoco><asset><mesh name='m' file='m.stl'/></asset><worldbody>" + content + "</worldbody></mujoco>";
+    Document document("a.xml", [&](const std::string&) { return text; });
+    const auto triangle = [](const std::string&) {
+      engine::ShapeDescription s{.shape = engine::Shape::mesh};
+      s.vertices = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+      s.triangles = {0, 1, 2};
+      return s;
+    };
+    return readModel(document, triangle, leftOver).bodies.back().mass.mass;
+  };
+  const std::string mesh = "<geom type='mesh' mesh='m'/>";
+  CHECK(read("<body><joint/><inertial pos='0 0 0' mass='3' diaginertia='1 1 1'/>" + mesh + "</body>") == 3);
+  CHECK(read("<body><joint/><geom size='1' mass='2'/><geom type='mesh' mesh='m' mass='0'/></body>") == Approx(2));
+  CHECK_THROWS_WITH(read("<body><joint/>" + mesh + "</body>"), Catch::Contains("the mesh has no volume"));
+}
+
 TEST_CASE("unread attributes of a default are named, too") {
   const Read r(
       "<mujoco><default>\n<joint springdamper='.1 1'/></default><worldbody><body><joint/><geom "
