@@ -23,7 +23,8 @@ struct Options {
   std::vector<std::string> ways{"host", "tcp"};
   int cycles = 0, threads = 1;
   double realtime = 0;
-  std::string solver = "dense", csv, history;
+  std::vector<std::string> solvers{"dense"};
+  std::string csv, history, chart;
   bool json = false, validate = false, micro = false, loading = false;
 };
 
@@ -62,10 +63,12 @@ void readOptions(CLI::App& app, Options& o) {
   app.add_option("--threads", o.threads, "Measures with so many host threads too")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  app.add_option("--solver", o.solver, "The host's solver; raw ODE is dWorldStep all the same")
+  app.add_option("--solver", o.solvers, "The host's solvers; raw ODE is dWorldStep with each")
+      ->delimiter(',')
       ->check(CLI::IsMember({"dense", "articulated"}))
       ->capture_default_str();
   app.add_option("--csv", o.csv, "Writes all rows to a file")->type_name("FILE");
+  app.add_option("--chart", o.chart, "Draws the CPU time of a cycle, raw ODE and host, as SVG")->type_name("FILE");
   app.add_option("--history", o.history,
                  "Appends the main figures to this machine's file in a folder, e.g. tests/bench/history")
       ->type_name("DIR")
@@ -91,22 +94,24 @@ int run(const Options& o) {
   Json all = Json::array();
   bool good = true;
   if (!o.json && o.realtime <= 0 && !o.validate) printHead();
-  for (const World& world : wanted(o)) {
-    const Setup setup{world, o.solver, o.threads};
-    Json rows;
-    if (o.realtime > 0) {
-      rows = realtime(setup, o.realtime, !o.json);
-    } else if (o.validate) {
-      rows = validate(setup, o.cycles > 0 ? o.cycles : 40, !o.json);
-      for (const Json& r : rows) good = good && r["same"].get<bool>();
-    } else {
-      rows = measureWorld(setup, o);
-      print(world, rows, o);
+  for (const World& world : wanted(o))
+    for (const std::string& solver : o.solvers) {
+      const Setup setup{world, solver, o.threads};
+      Json rows;
+      if (o.realtime > 0) {
+        rows = realtime(setup, o.realtime, !o.json);
+      } else if (o.validate) {
+        rows = validate(setup, o.cycles > 0 ? o.cycles : 40, !o.json);
+        for (const Json& r : rows) good = good && r["same"].get<bool>();
+      } else {
+        rows = measureWorld(setup, o);
+        print(world, rows, o);
+      }
+      all.insert(all.end(), rows.begin(), rows.end());
     }
-    all.insert(all.end(), rows.begin(), rows.end());
-  }
   if (o.json) fmt::print("{}\n", all.dump(1));
   if (!o.csv.empty()) writeCsv(all, o.csv);
+  if (!o.chart.empty()) writeChart(all, o.chart);
   if (!o.history.empty()) fmt::print(stderr, "appended to {}\n", appendHistory(all, o.history).string());
   return good ? 0 : 1;
 }

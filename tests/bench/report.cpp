@@ -11,7 +11,10 @@
 #include <fstream>
 #include <span>
 
+#include "bar_chart.h"
+#include "machine.h"
 #include "spark/error.h"
+#include "worlds.h"
 
 namespace spark::bench {
 
@@ -76,33 +79,15 @@ std::string shown(const Json& row, const char* name, const char* format) {
 }
 
 /// Model name of the processor, as a file name.
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  std::string name = "unknown";
-  for (std::string text; std::getline(info, text);)
-    if (text.starts_with("model name")) {
-      name = text.substr(text.find(':') + 2);
-      break;
-    }
+std::string processorAsName() {
   std::string out;
-  for (const char c : name)
+  for (const char c : test::processor())
     if (std::isalnum(static_cast<unsigned char>(c)))
       out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     else if (!out.empty() && out.back() != '-')
       out += '-';
   while (!out.empty() && out.back() == '-') out.pop_back();
   return out;
-}
-
-/// The commit that `folder` is of; "" outside of a repository.
-std::string commit(const fs::path& folder) {
-  const std::string command = fmt::format("git -C '{}' rev-parse --short HEAD 2>/dev/null", folder.string());
-  FILE* out = popen(command.c_str(), "r");
-  char text[64] = "";
-  if (!out || !std::fgets(text, sizeof text, out)) text[0] = 0;
-  if (out) pclose(out);
-  const std::string found(text);
-  return found.substr(0, found.find('\n'));
 }
 }  // namespace
 
@@ -142,12 +127,35 @@ void writeCsv(const Json& rows, const fs::path& file) {
   if (!out) throw Error(fmt::format("cannot write {}", file.string()));
 }
 
+void writeChart(const Json& rows, const fs::path& file) {
+  std::vector<test::BarGroup> groups;
+  for (const World& world : worlds()) {
+    test::BarGroup group{world.title + ", one cycle", {}};
+    for (const Json& r : rows) {
+      if (r["world"] != world.name || r["threads"] != 1 || r["way"] == "tcp") continue;
+      const bool raw = r["way"] == "raw";
+      if (raw && !group.bars.empty()) continue;  // of another solver of the host
+      group.bars.push_back({raw ? "ODE alone" : fmt::format("Spark, {} solver", r["solver"].get<std::string>()),
+                            number(r, "cpuMicros"),
+                            raw ? fmt::format("{:.0f} us", number(r, "cpuMicros"))
+                                : fmt::format("{:.0f} us, {:.2f} x", number(r, "cpuMicros"), number(r, "ratio")),
+                            raw});
+    }
+    if (!group.bars.empty()) groups.push_back(std::move(group));
+  }
+  std::ofstream out(file);
+  out << test::barChart("CPU time of a cycle: physics alone, and the whole host", groups,
+                        fmt::format("The host also parses actions, writes percepts and serves a monitor. {}; {}.",
+                                    test::machine(), test::commitAndDate(SPARK_SOURCES)));
+  if (!out) throw Error(fmt::format("cannot write {}", file.string()));
+}
+
 fs::path appendHistory(const Json& rows, const fs::path& folder) {
-  const fs::path file = folder / (processor() + ".csv");
+  const fs::path file = folder / (processorAsName() + ".csv");
   const bool fresh = !fs::exists(file);
   std::ofstream out(file, std::ios::app);
   if (fresh) out << "date,commit," << head(kHistory);
-  const std::string stamp = fmt::format("{:%Y-%m-%d},{},", fmt::gmtime(std::time(nullptr)), commit(folder));
+  const std::string stamp = fmt::format("{:%Y-%m-%d},{},", fmt::gmtime(std::time(nullptr)), test::commit(folder));
   for (const Json& r : rows) out << stamp << line(r, kHistory);
   if (!out) throw Error(fmt::format("cannot write {}", file.string()));
   return file;

@@ -1,9 +1,11 @@
 #include <chrono>
 #include <fstream>
 
+#include "bar_chart.h"
 #include "engine_world.h"
+#include "machine.h"
 
-// Writes docs/engines.md: what each engine can do, how accurate it is, and what it costs.
+// Writes docs/engines.md and its chart: what each engine can do, how accurate it is, and what it costs.
 //
 //     build/release/tests/test-engines "[.table]"
 
@@ -12,7 +14,7 @@ using namespace spark::test;
 
 namespace {
 
-/// Energy that a pendulum of 1 m and 1 kg has gained after 10 s, as part of what it swings with.
+/// Energy that a pendulum of 1 m and 1 kg has gained after 10 s, as a fraction of its potential energy at the start.
 double pendulum(EngineWorld& w) {
   const BodyHandle b = w.body({1, 0, 2}, 1, Mat3::Identity() * 1e-4);
   w.joint(JointType::hinge, b, BodyHandle::none, {0, 0, 2}, Vec3::UnitY());
@@ -24,7 +26,7 @@ double pendulum(EngineWorld& w) {
   return (energy() - before) / 9.81;
 }
 
-/// How far the points of a hinge are apart that carries 100 kg [m].
+/// Distance between the two anchors of a hinge that carries 100 kg [m].
 double gap(EngineWorld& w) {
   const BodyHandle b = w.body({0.5, 0, 2}, 100, Mat3::Identity() * 10);
   const JointHandle j = w.joint(JointType::hinge, b, BodyHandle::none, {0, 0, 2}, Vec3::UnitZ());
@@ -34,7 +36,7 @@ double gap(EngineWorld& w) {
   return (a.position + a.rotation * joint.anchorA - joint.anchorB).norm();
 }
 
-/// How far a motor of 5 rad/s presses 10 kg m^2 beyond its stop [rad].
+/// Overshoot of a motor of 5 rad/s and 20 Nm beyond its stop, with 1 kg m^2 on it [rad].
 double overshoot(EngineWorld& w) {
   w.setGravity(0);
   const BodyHandle b = w.body({0, 0, 2}, 1, Mat3::Identity());
@@ -49,7 +51,7 @@ double overshoot(EngineWorld& w) {
   return farthest;
 }
 
-/// How deep the lowest of ten boxes of 1 kg is in the ground [m].
+/// Penetration of the lowest of ten stacked boxes of 1 kg into the ground [m].
 double penetration(EngineWorld& w) {
   w.ground();
   std::vector<BodyHandle> stack;
@@ -115,12 +117,38 @@ TEST_CASE("the table of engines", "[.table]") {
       return fmt::format(fmt::runtime(format), measure(w));
     });
   };
+  // What a step costs is measured once, for the chart and for the table.
+  std::vector<BarGroup> groups;
+  const auto cost = [&](const char* name, auto&& measure, bool EngineKind::*needs = nullptr) {
+    BarGroup group{name, {}};
+    std::string out = fmt::format("| {} [us] |", name);
+    for (const EngineKind* k : kinds) {
+      if (needs && !(k->*needs)) {
+        out += " - |";
+        continue;
+      }
+      EngineWorld w(*k);
+      const double micros = measure(w);
+      out += fmt::format(" {:.0f} |", micros);
+      group.bars.push_back(
+          {k->name, micros, fmt::format("{:.0f} us", micros), std::string_view(k->name) == "OdeEngine"});
+    }
+    groups.push_back(std::move(group));
+    return out + "\n";
+  };
+  const std::string costs = cost("step of 8 robots of 23 bodies, in the air", treesCost, &EngineKind::joints) +
+                            cost("step of 100 boxes on the ground", boxesCost);
+  const std::string where = fmt::format("{}; {}", machine(), commitAndDate(SPARK_SOURCES));
+
+  std::ofstream chart(SPARK_SOURCES "/docs/pictures/engines.svg");
+  chart << barChart("CPU time of a step of 10 ms", groups, where + ".");
   std::ofstream out(SPARK_SOURCES "/docs/engines.md");
-  out << "# Engines\n\nWhat each engine can do, how accurate it is and what it costs, in steps of 10 ms. "
-         "`build/release/tests/test-engines "
-         "\"[.table]\"` measures and\nwrites this page; `tests/engines` holds every \"yes\" and \"no\" to its word. "
-         "PointMassEngine is an example of an "
-         "engine (`tests/fixtures`).\n\n"
+  out << "# Engines\n\n![CPU time of a step, by engine](pictures/engines.svg)\n\n"
+         "What each engine can do, how accurate it is and what it costs, in steps of 10 ms. "
+         "`build/release/tests/test-engines\n\"[.table]\"` measures, and writes this page and its chart; "
+         "`tests/engines` tests every \"yes\" and \"no\".\nPointMassEngine is an example of an engine "
+         "(`tests/fixtures`). Measured on "
+      << where << ".\n\n"
       << head << "\n"
       << line << "\n"
       << can("rotation", &EngineKind::rotation) << can("joints", &EngineKind::joints)
@@ -128,16 +156,16 @@ TEST_CASE("the table of engines", "[.table]") {
       << can("forces of joints", &EngineKind::jointForces) << can("inertia of rotors (armature)", &EngineKind::armature)
       << can("sleep", &EngineKind::sleep)
       << can("surfaces of contacts: bounce, slip, friction as a force", &EngineKind::surfaces)
-      << can("goes on bit for bit from a saved state, or when it is replaced", &EngineKind::restores)
-      << number("energy of a pendulum after 10 s, of what it swings with", "{:+.3f}", pendulum, &EngineKind::joints)
+      << can("continues bit for bit from a saved state, or when it is replaced", &EngineKind::restores)
+      << number("energy gained by a pendulum in 10 s, of its potential energy at the start", "{:+.3f}", pendulum,
+                &EngineKind::joints)
       << number(
              "gap in a hinge with 100 kg [mm]", "{:.3f}", [](EngineWorld& w) { return 1e3 * gap(w); },
              &EngineKind::joints)
       << number(
-             "a motor's way beyond its stop [mrad]", "{:.2f}", [](EngineWorld& w) { return 1e3 * overshoot(w); },
+             "overshoot of a motor beyond its stop [mrad]", "{:.2f}", [](EngineWorld& w) { return 1e3 * overshoot(w); },
              &EngineKind::joints)
-      << number("depth of the lowest of ten boxes in the ground [mm]", "{:.2f}",
+      << number("penetration of the lowest of ten boxes into the ground [mm]", "{:.2f}",
                 [](EngineWorld& w) { return 1e3 * penetration(w); })
-      << number("step of 100 boxes on the ground [us]", "{:.0f}", boxesCost)
-      << number("step of 8 robots of 23 bodies, in the air [us]", "{:.0f}", treesCost, &EngineKind::joints);
+      << costs;
 }

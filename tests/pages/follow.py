@@ -1,24 +1,32 @@
 #!/usr/bin/env python3
-"""Follows a page of docs/ word for word: writes its files, gives its commands, and compares what they say.
+"""Follows a page word for word: writes its files, gives its commands, and compares what they print.
 
     follow.py PAGE BUILD        runs all of it; BUILD is the build tree that the page calls build/release
     follow.py --files PAGE DIR  only writes the files into a folder
+    follow.py --skipped PAGE    prints the commands that are not followed, with the reasons
 
 What a fenced block is, its first line says:
 
     ```lua sumo.lua       a file, written into the working folder of the commands so far
     ```lua >>sumo.lua     text for the end of that file
     ```sh                 commands for bash, each of which must succeed; the next block goes on in their folder and environment
-    ```text               what the commands before it say on stdout and stderr: these lines, in this order. ... is any text, or any lines.
-    ```text like          the same, but numbers and hashes may be others
+    ```sh until Ctrl-C    commands that run until they are interrupted: after their first line of output they are
+    ```sh skip: REASON    commands that are not followed
+    ```text               what the commands before it print on stdout and stderr: these lines, in this order. ... is any text, or any lines.
+    ```text like          the same, but numbers and hashes may differ
     ```text rising        the same as like, with any bars of # . o, and a last number in the last bar's line that is greater than the first's
 
-Everything happens below a new folder, which is the commands' home. A block without such a first line is only read.
+Commands start in the checkout, with a new folder as home. Where the kernel allows it, they have a network of their own,
+so that fixed ports are free. Programs that a block leaves in the background run until the page ends. A block without
+such a first line is only read.
 """
+import fcntl
 import os
 import re
 import shutil
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -27,7 +35,9 @@ from pathlib import Path
 
 SOURCES = Path(__file__).resolve().parent.parent.parent
 NUMBER = r"-?[0-9]+(?:\.[0-9]+)?"
-SECONDS = 120  # for a block of commands
+SECONDS = 1200  # for a block of commands that hangs
+SKIP = "skip:"
+UNTIL_STOPPED = "until Ctrl-C"
 
 
 def blocks(page):
@@ -82,29 +92,75 @@ class Shell:
     """Commands of bash, one block after the other, in one environment and folder."""
 
     def __init__(self, home, build):
-        self.home, self.build = home, build
+        self.home, self.build, self.shells, self.blocks = home, build, [], 0
         self.state = home / ".state"
         self.state.write_text(f"cd {SOURCES}\n")
 
     def folder(self):
         return Path(self.run("pwd"))
 
-    def run(self, commands):
-        commands = commands.replace("build/release", self.build)
+    def start(self, commands, said):
+        """bash with these commands, which leave their folder and environment to the next block."""
+        commands = re.sub(r"(\$PWD/)?build/release", lambda _: self.build, commands)
         script = f". {self.state}\nset -eo pipefail\n{commands}\n{{ export -p; echo \"cd '$PWD'\"; }} >{self.state}\n"
         environment = {**os.environ, "HOME": str(self.home), "CXXFLAGS": "-Wall -Wextra -Werror", "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
         environment.pop("PYTHONUNBUFFERED", None)  # a line in pieces would have others' lines between them
-        shell = subprocess.Popen(["bash", "-c", script], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                 env=environment, start_new_session=True)
-        try:
-            said, _ = shell.communicate(timeout=SECONDS)
-        except subprocess.TimeoutExpired:
-            os.killpg(shell.pid, signal.SIGKILL)
-            said, _ = shell.communicate()
-            raise Failure(f"it took longer than {SECONDS} s, and said\n{said}") from None
-        if shell.returncode:
-            raise Failure(f"it ended with exit code {shell.returncode}, and said\n{said}")
-        return said.rstrip("\n")
+        return self.running(subprocess.Popen(["bash", "-c", script], stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT, env=environment,
+                                             start_new_session=True))
+
+    def running(self, shell):
+        self.shells.append(shell)
+        return shell
+
+    def output(self):
+        """A file for what a block prints. A pipe would stay open as long as programs in the background."""
+        self.blocks += 1
+        return open(self.home / f".output-{self.blocks}", "w+")
+
+    def run(self, commands):
+        with self.output() as said:
+            shell = self.start(commands, said)
+            try:
+                shell.wait(timeout=SECONDS)
+            except subprocess.TimeoutExpired:
+                raise Failure(f"it took longer than {SECONDS} s, and printed\n{text(said)}") from None
+            if shell.returncode:
+                raise Failure(f"it ended with exit code {shell.returncode}, and printed\n{text(said)}")
+            return text(said)
+
+    def run_until_stopped(self, commands):
+        with self.output() as said:
+            shell = self.start(f"exec {commands.strip()}", said)
+            end = time.monotonic() + SECONDS
+            while "\n" not in text(said, whole=True) and shell.poll() is None and time.monotonic() < end:
+                time.sleep(0.02)
+            early = shell.poll()
+            if early is not None:
+                raise Failure(f"it ended by itself with exit code {early}, and printed\n{text(said)}")
+            shell.send_signal(signal.SIGINT)
+            try:
+                shell.wait(timeout=SECONDS)
+            except subprocess.TimeoutExpired:
+                raise Failure(f"it did not end after Ctrl-C, and printed\n{text(said)}") from None
+            if shell.returncode:
+                raise Failure(f"it ended with exit code {shell.returncode} after Ctrl-C, and printed\n{text(said)}")
+            return text(said)
+
+    def close(self):
+        """Ends what is left in the background."""
+        for shell in self.shells:
+            try:
+                os.killpg(shell.pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+            shell.wait()
+
+
+def text(file, whole=False):
+    """What a file holds, without line ends at its end unless `whole`."""
+    file.seek(0)
+    said = file.read()
+    return said if whole else said.rstrip("\n")
 
 
 class Failure(Exception):
@@ -112,18 +168,29 @@ class Failure(Exception):
 
 
 def follow(page, build, home):
-    shell, said = Shell(home, build), None
+    shell = Shell(home, build)
+    try:
+        return follow_with(shell, page)
+    finally:
+        shell.close()
+
+
+def follow_with(shell, page):
+    said = None
     for line, kind, name, text in blocks(page):
         begun = time.monotonic()
         try:
             if kind == "text" and said is not None:
                 lost = missing(text, said, name)
                 if lost is not None:
-                    raise Failure(f"the page promises\n{lost}\nand the commands said\n{said}")
+                    raise Failure(f"the page promises\n{lost}\nand the commands printed\n{said}")
                 if name == "rising" and not is_rising(said):
                     raise Failure(f"the last bar is not the longest:\n{said}")
+            elif kind == "sh" and name.startswith(SKIP):
+                print(f"{page.name}:{line}: not followed: {name.removeprefix(SKIP).strip()}")
+                continue
             elif kind == "sh":
-                said = shell.run(text)
+                said = shell.run_until_stopped(text) if name == UNTIL_STOPPED else shell.run(text)
             elif name:
                 folder = shell.folder()
                 if folder.samefile(SOURCES):
@@ -141,18 +208,42 @@ def follow(page, build, home):
     return 0
 
 
+def own_network():
+    """Goes on in a network of its own with ports that are all free, or in this one where the kernel refuses it."""
+    if os.environ.get("SPARK_OWN_NETWORK") or not shutil.which("unshare"):
+        return
+    alone = ["unshare", "--net"] if os.getuid() == 0 else ["unshare", "--user", "--map-root-user", "--net"]
+    if subprocess.run([*alone, "true"], stderr=subprocess.DEVNULL).returncode == 0:
+        os.execvpe(alone[0], [*alone, sys.executable, *sys.argv], {**os.environ, "SPARK_OWN_NETWORK": "yes"})
+
+
+def raise_loopback():
+    """Switches the interface lo on (SIOCSIFFLAGS, IFF_UP; netdevice(7))."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
+        fcntl.ioctl(any_socket, 0x8914, struct.pack("16sh14x", b"lo", 1))
+
+
 def main(arguments):
     if len(arguments) == 3 and arguments[0] == "--files":
         for _, kind, name, text in blocks(Path(arguments[1])):
             if name and kind not in ("sh", "text"):
                 write(Path(arguments[2]), name, text)
         return 0
+    if len(arguments) == 2 and arguments[0] == "--skipped":
+        page = Path(arguments[1])
+        for line, kind, name, text in blocks(page):
+            if kind == "sh" and name.startswith(SKIP):
+                print(f"{page.name}:{line}: {name.removeprefix(SKIP).strip()}: {'; '.join(text.splitlines())}")
+        return 0
     if len(arguments) != 2:
         print(__doc__, file=sys.stderr)
         return 2
+    own_network()
+    if os.environ.get("SPARK_OWN_NETWORK"):
+        raise_loopback()
     home = Path(tempfile.mkdtemp(prefix="spark-page-"))
     try:
-        return follow(Path(arguments[0]), arguments[1], home)
+        return follow(Path(arguments[0]), os.path.abspath(arguments[1]), home)
     finally:
         shutil.rmtree(home, ignore_errors=True)
 

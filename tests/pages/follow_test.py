@@ -24,6 +24,14 @@ def page(*parts):
 MOVE = ("sh", "mkdir ~/game && cd ~/game && export WORD=red")
 
 
+def is_running(pid):
+    """Whether a process runs; one that has ended and was not waited for does not."""
+    try:
+        return "State:\tZ" not in Path(f"/proc/{pid}/status").read_text()
+    except FileNotFoundError:
+        return False
+
+
 class Pages(unittest.TestCase):
     def holds(self, *parts):
         code, errors = page(MOVE, *parts)
@@ -63,6 +71,21 @@ class Pages(unittest.TestCase):
     def test_a_command_that_fails_ends_it(self):
         self.breaks("exit code 1", ("sh", "false; echo more"))
         self.breaks("exit code 1", ("sh", "false | cat"))
+
+    def test_programs_in_the_background_run_on_until_the_page_ends(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.holds(("sh", f"sleep 1000 & echo $! >{folder}/pid; echo begun"), ("text", "begun"), ("sh", f"kill -0 $(cat {folder}/pid)"))
+            pid = int((Path(folder) / "pid").read_text())
+            self.assertFalse(is_running(pid))
+
+    def test_a_program_may_run_until_it_is_stopped(self):
+        ends = "trap 'echo done; exit 0' INT; echo begun; while true; do sleep 0.01; done"
+        self.holds(("sh until Ctrl-C", f'bash -c "{ends}"'), ("text", "begun\ndone"))
+        self.breaks("ended by itself with exit code 3", ("sh until Ctrl-C", 'bash -c "exit 3"'))
+        self.breaks("exit code 4 after Ctrl-C", ("sh until Ctrl-C", 'bash -c "' + ends.replace("exit 0", "exit 4") + '"'))
+
+    def test_commands_are_skipped_with_a_reason(self):
+        self.holds(("sh skip: needs two machines", "false"), ("sh", "echo one"), ("text", "one"))
 
     def test_a_page_without_commands_is_none(self):
         code, errors = page(("lua", "one"))

@@ -97,11 +97,10 @@ TEST_CASE("An agent built outside of the tree with the client library alone play
 
 TEST_CASE("What the pages show builds from the installed tree as it stands: a plugin, and a copied sensor") {
   const Installed spark;
-  const fs::path pages = spark.prefix / "share" / "doc" / "spark", readme = pages / "README.md",
-                 guide = pages / "docs" / "plugin-guide.md";
+  const fs::path pages = spark.prefix / "share" / "doc" / "spark", guide = pages / "docs" / "plugin-guide.md";
   const TemporaryFolder& folder = spark.folder;
-  folder.write("wind/CMakeLists.txt", block(readme, "cmake", "## A plugin of your own"));
-  folder.write("wind/wind.cpp", block(readme, "cpp", "## A plugin of your own"));
+  folder.write("wind/CMakeLists.txt", block(guide, "cmake CMakeLists.txt", "## A plugin of your own"));
+  folder.write("wind/wind.cpp", block(guide, "cpp wind.cpp", "## A plugin of your own"));
   folder.write("gyro/CMakeLists.txt", block(guide, "cmake", "## A copy of one of ours"));
   folder.write("gyro/my_sensors.cpp", block(guide, "cpp", "## A copy of one of ours"));
   // As the guide says: copied, and the class renamed.
@@ -135,9 +134,10 @@ TEST_CASE("What the pages show builds from the installed tree as it stands: a pl
 TEST_CASE("Documentation is installed where its links lead somewhere") {
   const Installed spark;
   const fs::path pages = spark.prefix / "share" / "doc" / "spark";
-  for (const char* page : {"README.md", "LICENSE", "docs/README.md", "docs/plugin-guide.md", "docs/first-robot.md",
-                           "docs/embedding.md", "docs/tutorial.md", "lua/README.md", "scenes/README.md",
-                           "plugins/sensors/README.md", "plugins/soccer/README.md", "tools/sparkbatch/README.md"})
+  for (const char* page :
+       {"README.md", "LICENSE", "CONTRIBUTING.md", "docs/README.md", "plugins/README.md", "docs/plugin-guide.md",
+        "docs/first-robot.md", "docs/embedding.md", "docs/tutorial.md", "lua/README.md", "scenes/README.md",
+        "plugins/sensors/README.md", "plugins/soccer/README.md", "tools/sparkbatch/README.md"})
     CHECK(fs::is_regular_file(pages / page));
   CHECK_FALSE(fs::exists(pages / "plugins" / "monitor-web" / "viewer" / "node_modules"));
 }

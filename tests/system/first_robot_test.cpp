@@ -12,7 +12,7 @@ using namespace spark::test;
 using Catch::Contains;
 
 TEST_CASE("The robot of docs/first-robot.md joins, sees the ball, and drives") {
-  const std::string page = textOf(SPARK_SOURCES "/docs/first-robot.md"), fence = "```python\n";
+  const std::string page = textOf(SPARK_SOURCES "/docs/first-robot.md"), fence = "```python first_robot.py\n";
   const auto begin = page.find(fence) + fence.size();
   TemporaryFolder folder;
   const std::string program = folder.write("first_robot.py", page.substr(begin, page.find("\n```", begin) + 1 - begin));

@@ -107,14 +107,13 @@ TEST_CASE("A flag for what a house does not have is an error in the user's words
     return f.errors;
   };
   CHECK_THAT(error({"--monitor-port", "3200"}),
-             Contains("--monitor-port 3200: the house of 'boxes.lua' has no port for monitors: add monitors{} of "
-                      "house.lua; or leave --monitor-port out."));
+             Contains("--monitor-port 3200: config 'boxes.lua' has no port for monitors: add monitors{} of "
+                      "house.lua; or omit --monitor-port."));
   CHECK_THAT(error({"--agent-port", "0"}),
-             Contains("--agent-port 0: the house of 'boxes.lua' has no agents and no port for them"));
-  CHECK_THAT(error({"--expect", "2"}),
-             Contains("--expect 2: the house of 'boxes.lua' has no agents and no port for them"));
+             Contains("--agent-port 0: config 'boxes.lua' has no agents and no port for them"));
+  CHECK_THAT(error({"--expect", "2"}), Contains("--expect 2: config 'boxes.lua' has no agents and no port for them"));
   CHECK_THAT(error({"--set", "web=false", "--web-port", "0"}),
-             Contains("--web-port 0: the house of 'boxes.lua' has no page for browsers"));
+             Contains("--web-port 0: config 'boxes.lua' has no page for browsers"));
   REQUIRE(runToEnd(host({"--config", "boxes.lua", "--check", "--web-port", "0", "--rate", "max", "--sync"})).code == 0);
 }
 
@@ -321,5 +320,5 @@ TEST_CASE("sparkctl without a house says so") {
   const Finished f = runToEnd({program("sparkctl"), "--pid", "1", "tree"});
   unsetenv("XDG_RUNTIME_DIR");
   REQUIRE(f.code == 1);
-  REQUIRE_THAT(f.errors, Contains("no house"));
+  REQUIRE_THAT(f.errors, Contains("no simulation"));
 }

@@ -62,7 +62,8 @@ TEST_CASE(
   }
   const auto made = matches(listed, " *([^\n]+)\n");
 
-  const auto started = matches(textOf(fs::path(SPARK_SOURCES) / "README.md"), "build/release/(bin/[a-z0-9-]+)");
+  auto started = matches(textOf(fs::path(SPARK_SOURCES) / "README.md"), "build/release/(bin/[a-z0-9-]+)");
+  started.merge(matches(textOf(fs::path(SPARK_SOURCES) / "docs" / "using.md"), "build/release/(bin/[a-z0-9-]+)"));
   REQUIRE(started.size() >= 5);
   for (const std::string& program : started) {
     INFO(program);
@@ -97,7 +98,9 @@ TEST_CASE("Every line of the page for those who used to edit spark.rb is taken b
   for (const std::string& setting : settings) {
     std::vector<std::string> command{(binFolder() / "sparkhost").string(), "--check"};
     if (setting.find("--config") == setting.npos) command.insert(command.end(), {"--config", "soccer.lua"});
-    std::istringstream words(setting);
+    std::string unquoted = setting;  // as the shell does
+    std::erase(unquoted, '"');
+    std::istringstream words(unquoted);
     for (std::string word; words >> word;) command.push_back(word == "FOLDER" ? folder.path().string() : word);
     const Finished f = runToEnd(command);
     INFO(setting << "\n" << f.errors);

@@ -50,24 +50,43 @@ class Check(unittest.TestCase):
     def fuzzer(self, text):
         self.program(self.tree / "build/fuzz/bin/fuzz-some", text)
 
-    def check(self):
+    def check(self, *arguments):
         path = f"{self.programs}:{os.environ['PATH']}"
-        return subprocess.run([self.tree / "tools/check"], env=dict(os.environ, PATH=path), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        return subprocess.run([self.tree / "tools/check", *arguments], env=dict(os.environ, PATH=path), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
-    def expect(self, code, last, *said):
-        result = self.check()
+    def expect(self, code, last, *said, mode="--all"):
+        result = self.check(*mode.split())
         self.assertEqual(result.returncode, code, result.stderr)
         self.assertEqual(result.stdout.strip().splitlines()[-1], last)
         for text in said:
             self.assertIn(text, result.stderr)
 
-    def test_all_stages_pass(self):
-        self.expect(0, "7 passed, 0 failed, 0 skipped", "release build", "asan tests", "fuzz runs", "CPU s; 0 compiled, 0 from the compiler cache")
-        self.assertEqual(len((self.tree / "build/check/stages").read_text().splitlines()), 12)
+    def stages(self, mode):
+        """Names of the stages that were kept."""
+        return [line[:14].strip() for line in (self.tree / f"build/check/stages-{mode}").read_text().splitlines()]
 
-    def test_more_cpu_time_than_the_budget_fails(self):
-        (self.tree / "tools/check.budget").write_text("# none\n0\n")
-        self.expect(1, "7 passed, 1 failed, 0 skipped", "more than tools/check.budget allows (0)")
+    def test_the_plain_check_looks_builds_and_tests(self):
+        self.expect(0, "3 passed, 0 failed, 0 skipped", "CPU s; 0 compiled, 0 from the compiler cache", mode="")
+        self.assertEqual(self.stages("plain"), ["format", "words", "release build", "release tests", "sum"])
+        self.assertEqual((self.tree / "build/check/summary-plain").read_text(), "3 passed, 0 failed, 0 skipped\n")
+
+    def test_all_adds_lint_sanitizers_and_fuzzers(self):
+        self.expect(0, "7 passed, 0 failed, 0 skipped", "release build", "asan tests", "fuzz runs")
+        self.assertEqual(len(self.stages("all")), 12)
+
+    def test_long_has_the_stages_of_all(self):
+        self.expect(0, "7 passed, 0 failed, 0 skipped", mode="--long")
+        self.assertEqual(len(self.stages("long")), 12)
+
+    def test_time_decides_nothing(self):
+        self.program("cmake", "sleep 0.5")  # a slow build
+        self.expect(0, "3 passed, 0 failed, 0 skipped", mode="")
+
+    def test_other_options_are_refused(self):
+        for mode in ("--fast", "--all --long"):
+            result = self.check(*mode.split())
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("usage: tools/check [--all | --long]", result.stderr)
 
     def test_a_file_that_is_formatted_otherwise_is_named(self):
         self.program("clang-format-14", "echo 'core/kernel/src/a.cpp:3:1: error: code should be clang-formatted' >&2; exit 1")

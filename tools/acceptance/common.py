@@ -26,6 +26,19 @@ def build(preset, *targets):
     subprocess.run(["cmake", "--build", "--preset", preset, *(["--target", *targets] if targets else [])], cwd=ROOT, stdout=sys.stderr, check=True)
 
 
+REPORTS = ROOT / "build/check"
+
+
+def last_check(*modes):
+    """(mode, last line, stages) of the latest tools/check here of these modes (plain, all, long), or None."""
+    ended = [(file.stat().st_mtime, mode) for mode in modes for file in [REPORTS / f"summary-{mode}"] if file.exists()]
+    if not ended:
+        return None
+    mode = max(ended)[1]
+    stages = [" ".join(line.split()) for line in (REPORTS / f"stages-{mode}").read_text().splitlines()]
+    return mode, (REPORTS / f"summary-{mode}").read_text().strip(), stages
+
+
 def tests(*patterns):
     """Runs the ctest programs of the release build whose names match; each pattern must match one."""
     with tempfile.NamedTemporaryFile(suffix=".xml") as report:

@@ -199,5 +199,8 @@ def write(rows):
     text = PAGE.read_text()
     before, _, rest = text.partition(BEGIN)
     _, _, after = rest.partition(END)
+    say("Drawing docs/pictures/performance.svg")
+    run([BIN / "sparkbench", "--only", "boxes1000,moving22,rest22", "--way", "host", "--solver", "dense,articulated",
+         "--chart", ROOT / "docs/pictures/performance.svg"])
     PAGE.write_text(before + BEGIN + "\n" + "\n".join(lines) + "\n" + END + after)
     say(f"Wrote {PAGE}")

@@ -84,7 +84,8 @@ ControlConnection::ControlConnection(const std::string& socket, double timeout) 
   const auto until = deadline();
   while ((socket_ = connectTo(socket)) < 0 && errno == EAGAIN && Clock::now() < until)
     poll(nullptr, 0, 20);  // the queue of connections is full: sleep 20 ms
-  if (socket_ < 0) throw std::runtime_error(fmt::format("no house answers at {}: {}", socket, std::strerror(errno)));
+  if (socket_ < 0)
+    throw std::runtime_error(fmt::format("no simulation answers at {}: {}", socket, std::strerror(errno)));
   ucred peer = {};
   socklen_t size = sizeof peer;
   if (getsockopt(socket_, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0 || peer.uid != geteuid()) {
@@ -105,10 +106,10 @@ void ControlConnection::wait(short events, Clock::time_point until) {
   while (true) {
     const auto remaining = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
     if (remaining <= 0)
-      throw std::runtime_error(
-          fmt::format("the house at {} did not answer within {:g} s: it is stopped, or in a very long cycle. --timeout "
-                      "waits longer.",
-                      name_, timeout_));
+      throw std::runtime_error(fmt::format(
+          "the simulation at {} did not answer within {:g} s: it is stopped, or in a very long cycle. --timeout "
+          "waits longer.",
+          name_, timeout_));
     if (poll(&p, 1, static_cast<int>(std::min<long long>(remaining, 1'000'000))) > 0) return;
   }
 }
@@ -123,7 +124,7 @@ Json ControlConnection::ask(const Json& request) {
     else if (errno == EAGAIN)
       wait(POLLOUT, until);
     else if (errno != EINTR)
-      throw std::runtime_error(fmt::format("the house has ended: {}", std::strerror(errno)));
+      throw std::runtime_error(fmt::format("the simulation has ended: {}", std::strerror(errno)));
   }
   return receive(until);
 }
@@ -140,11 +141,12 @@ Json ControlConnection::receive(Clock::time_point until) {
     else if (n < 0 && errno == EAGAIN)
       wait(POLLIN, until);
     else if (n == 0 || errno != EINTR)
-      throw std::runtime_error("the house has ended");
+      throw std::runtime_error("the simulation has ended");
   }
   Json answer = Json::parse(received_.substr(0, end));
   received_.erase(0, end + 1);
-  if (!answer.value("ok", false)) throw std::runtime_error(answer.value("error", "the house refused without a reason"));
+  if (!answer.value("ok", false))
+    throw std::runtime_error(answer.value("error", "the simulation refused without a reason"));
   return answer;
 }
 

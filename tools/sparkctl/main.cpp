@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <thread>
 
 #include "control_connection.h"
 #include "print.h"
@@ -31,20 +34,32 @@ Target split(const std::string& text, bool needsMember) {
   return {text, ""};
 }
 
-/// The socket that the options select; throws if there is not exactly one.
-std::string chooseSocket(const std::string& socket, int pid) {
-  if (!socket.empty()) return socket;
-  std::vector<std::string> skipped;
+/// The control sockets of running simulations, or of process `pid` if it is above 0.
+std::vector<std::string> sockets(int pid, std::vector<std::string>& skipped) {
+  skipped.clear();
   std::vector<std::string> all = findSockets(skipped);
-  for (const std::string& why : skipped) fmt::print(stderr, "sparkctl: {}: it is not looked into\n", why);
   if (pid > 0)
     std::erase_if(all, [&](const std::string& s) { return s.find(fmt::format("/{}.sock", pid)) == std::string::npos; });
+  return all;
+}
+
+/// The socket that the options select, for which it waits up to `patience` seconds; throws if there is not exactly one.
+std::string chooseSocket(const std::string& socket, int pid, double patience) {
+  if (!socket.empty()) return socket;
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(patience);
+  std::vector<std::string> skipped, all = sockets(pid, skipped);
+  while (all.empty() && Clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    all = sockets(pid, skipped);
+  }
+  for (const std::string& why : skipped) fmt::print(stderr, "sparkctl: {}: skipped\n", why);
   if (all.empty())
-    throw std::runtime_error(pid > 0 ? fmt::format("process {} has no house with a control socket", pid)
-                                     : "no house is running that has a control socket (plugin \"control\")");
+    throw std::runtime_error(pid > 0 ? fmt::format("process {} has no simulation with a control socket", pid)
+                                     : "no simulation with a control socket is running (plugin \"control\")");
   if (all.size() == 1) return all.front();
   throw std::runtime_error(
-      fmt::format("several houses are running; say which with --socket:\n  {}", fmt::join(all, "\n  ")));
+      fmt::format("several simulations are running; choose one with --socket:\n  {}", fmt::join(all, "\n  ")));
 }
 
 void print(const std::string& text) {
@@ -96,12 +111,15 @@ int main(int argc, char** argv) {
   std::string socket, path = "/", target, value;
   std::vector<std::string> arguments;
   int pid = 0, depth = -1;
-  double timeout = 10;
+  double timeout = 10, patience = 0;
   bool all = false, links = false;
   app.add_option("--socket", socket, "Path of the control socket, if several simulations run");
   app.add_option("--pid", pid, "Process of the simulation, if several run");
   app.add_option("--timeout", timeout, "Maximum time to wait for an answer [s]")
       ->check(CLI::Range(0.01, 1e6))
+      ->capture_default_str();
+  app.add_option("--wait", patience, "Maximum time to wait for a simulation to start [s]")
+      ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   app.require_subcommand(1);
   CLI::App* tree = app.add_subcommand("tree", "The tree below a path, with classes and their purpose");
@@ -136,7 +154,7 @@ int main(int argc, char** argv) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   try {
-    ControlConnection simulation(chooseSocket(socket, pid), timeout);
+    ControlConnection simulation(chooseSocket(socket, pid, patience), std::max(timeout, patience));
     if (*tree)
       print(treeText(simulation.ask({{"do", "tree"}, {"path", path}, {"depth", depth}, {"links", links}})["tree"], path,
                      all));

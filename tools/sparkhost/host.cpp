@@ -72,7 +72,7 @@ void Host::build() {
   for (const Options::Switch& s : options_.switches) {
     Leaf* node = kernel_.root().find(s.path);
     if (!node)
-      throw Error(fmt::format("{}: the house of '{}' has no {}; or leave {} out.", s.flag, options_.config, s.missing,
+      throw Error(fmt::format("{}: config '{}' has no {}; or omit {}.", s.flag, options_.config, s.missing,
                               s.flag.substr(0, s.flag.find(' '))));
     setProperty(*node, s.property, s.value);
   }
