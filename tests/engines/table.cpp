@@ -136,8 +136,8 @@ TEST_CASE("the table of engines", "[.table]") {
     groups.push_back(std::move(group));
     return out + "\n";
   };
-  const std::string costs = cost("step of 8 robots of 23 bodies, in the air", treesCost, &EngineKind::joints) +
-                            cost("step of 100 boxes on the ground", boxesCost);
+  std::string costs = cost("step of 8 robots of 23 bodies, in the air", treesCost, &EngineKind::joints);
+  costs += cost("step of 100 boxes on the ground", boxesCost);
   const std::string where = fmt::format("{}; {}", machine(), commitAndDate(SPARK_SOURCES));
 
   std::ofstream chart(SPARK_SOURCES "/docs/pictures/engines.svg");
@@ -147,7 +147,7 @@ TEST_CASE("the table of engines", "[.table]") {
          "What each engine can do, how accurate it is and what it costs, in steps of 10 ms. "
          "`build/release/tests/test-engines\n\"[.table]\"` measures, and writes this page and its chart; "
          "`tests/engines` tests every \"yes\" and \"no\".\nPointMassEngine is an example of an engine "
-         "(`tests/fixtures`). Measured on "
+         "(`tests/fixtures`).\n\nMeasured on "
       << where << ".\n\n"
       << head << "\n"
       << line << "\n"
