@@ -6,7 +6,7 @@
 #include "spark/predicates.h"
 #include "test_support.h"
 
-// The league of the Nao V4: its field, its robot, what its agents are told.
+// The league of the Nao V4: its field, its robot and its percepts.
 
 using namespace spark;
 using namespace spark::test;
@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// The list of that head, as `name` where it has one; throws when it is missing.
+/// The list with this head, and with this `name` if one is given; throws if there is none.
 Element find(const Predicates& message, std::string_view head, std::string_view name = {}) {
   for (const Element e : message)
     if (e.head() == head &&
@@ -26,7 +26,7 @@ Element find(const Predicates& message, std::string_view head, std::string_view 
 
 }  // namespace
 
-TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and is told what its sensors say") {
+TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and receives its sensor values") {
   Process host({(binFolder() / "sparkhost").string(), "--config", "soccer-spl.lua", "--rate", "max", "--agent-port",
                 "0", "--monitor-port", "0", "--log-level", "error"});
   const Json ports = Json::parse(host.line());
