@@ -200,9 +200,9 @@ TEST_CASE("(time t) and (score ...) set the game's clock and score") {
   CHECK(t.s.time() == Approx(123.52));
   t.s.trainer("(score (left 2)(right 1))");
   CHECK(t.s.score() == std::pair(2, 1));
-  CHECK(t.s.monitor().tellsNow("score_left"));
+  CHECK(t.s.monitor().lastMessageHas("score_left"));
   t.s.run(1);
-  CHECK(!t.s.monitor().tellsNow("score_left"));
+  CHECK(!t.s.monitor().lastMessageHas("score_left"));
   t.s.trainer("(kickOff Right)");
   t.s.trainer("(time 200)");  // later than the maximum duration of a kick-off
   CHECK(t.s.mode() == "PlayOn");
