@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Follows a page of docs/ word for word: writes its files, gives its commands, and compares what they say.
+"""Follows a page of docs/ word for word: writes its files, runs its commands, and compares their output.
 
-    follow.py PAGE BUILD        runs all of it; BUILD is the build tree that the page calls build/release
-    follow.py --files PAGE DIR  only writes the files into a folder
+    follow.py PAGE BUILD        runs the whole page; BUILD is the build tree that the page calls build/release
+    follow.py --files PAGE DIR  only writes the page's files into a folder
 
-What a fenced block is, its first line says:
+The first line of a fenced block gives its kind:
 
-    ```lua sumo.lua       a file, written into the working folder of the commands so far
-    ```lua >>sumo.lua     text for the end of that file
-    ```sh                 commands for bash, each of which must succeed; the next block goes on in their folder and environment
-    ```text               what the commands before it say on stdout and stderr: these lines, in this order. ... is any text, or any lines.
-    ```text like          the same, but numbers and hashes may be others
-    ```text rising        the same as like, with any bars of # . o, and a last number in the last bar's line that is greater than the first's
+    ```lua sumo.lua       a file, written into the current working folder of the commands
+    ```lua >>sumo.lua     text to append to that file
+    ```sh                 bash commands that must all succeed; the next block continues in their folder and environment
+    ```text               output of the commands before: these lines in this order; ... is any text or any lines
+    ```text like          the same, but numbers and hashes may differ
+    ```text rising        like, but with any bars of # . o, and the last bar's last number exceeds the first bar's
 
-Everything happens below a new folder, which is the commands' home. A block without such a first line is only read.
+All files are below a new folder, the home of the commands. A block without such a first line is ignored.
 """
 import os
 import re
@@ -27,7 +27,7 @@ from pathlib import Path
 
 SOURCES = Path(__file__).resolve().parent.parent.parent
 NUMBER = r"-?[0-9]+(?:\.[0-9]+)?"
-SECONDS = 120  # for a block of commands
+SECONDS = 120  # timeout of a block of commands
 
 
 def blocks(page):
@@ -52,20 +52,20 @@ def write(folder, name, text):
 
 
 def pattern(line, how):
-    """A regular expression for a line of a page: what may be otherwise is found first, all else is taken as it is."""
+    """A regular expression for a line of a page: variable parts become patterns, all other text is literal."""
     loose = [(r"\.\.\.", ".*")]
     if how == "rising":
         loose.append((r"[#.o]{10,}", "[#.o]+"))
     if how in ("like", "rising"):
         loose += [(r"\b[0-9a-f]{16}\b", "[0-9a-f]{16}"), (NUMBER, NUMBER)]
     if how == "rising":
-        loose.insert(0, loose.pop(1))  # bars hold dots
+        loose.insert(0, loose.pop(1))  # bars contain dots
     parts = re.split("(" + "|".join(f"(?:{what})" for what, _ in loose) + ")", line)
     return "".join(next(by for what, by in loose if re.fullmatch(what, part)) if i % 2 else re.escape(part) for i, part in enumerate(parts))
 
 
 def missing(wanted, said, how):
-    """The first line of a page that was not said behind those before it; None when all were."""
+    """The first line of a page that the output lacks after the lines before it; None if all were found."""
     rest = iter(said.split("\n"))
     for line in wanted.rstrip("\n").split("\n"):
         if line.strip() != "..." and not any(re.search(pattern(line, how), found) for found in rest):
@@ -93,7 +93,7 @@ class Shell:
         commands = commands.replace("build/release", self.build)
         script = f". {self.state}\nset -eo pipefail\n{commands}\n{{ export -p; echo \"cd '$PWD'\"; }} >{self.state}\n"
         environment = {**os.environ, "HOME": str(self.home), "CXXFLAGS": "-Wall -Wextra -Werror", "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
-        environment.pop("PYTHONUNBUFFERED", None)  # a line in pieces would have others' lines between them
+        environment.pop("PYTHONUNBUFFERED", None)  # unbuffered output could mix lines of several processes
         shell = subprocess.Popen(["bash", "-c", script], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                  env=environment, start_new_session=True)
         try:
