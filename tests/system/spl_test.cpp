@@ -55,7 +55,7 @@ TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and receives its se
   CHECK(find(message, "HJ", "hj1").named("ax").at(1).number() == Approx(0.5 * 59 * 0.02 * 180 / 3.14159265).margin(2));
   CHECK(find(message, "GPS", "torso").named("tf").size() == 17);
   CHECK(find(message, "GPS", "head").named("tf").size() == 17);
-  CHECK(find(message, "GPS", "torso").named("tf").at(12).number() == Approx(0.36).margin(0.03));  // it stands
+  CHECK(find(message, "GPS", "torso").named("tf").at(12).number() == Approx(0.36).margin(0.03));  // it is upright
   CHECK(find(message, "FRP", "rf").named("f").at(3).number() > 10);
   host.signal(15);
   host.line();
