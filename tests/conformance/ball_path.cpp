@@ -7,7 +7,7 @@
 namespace spark::test {
 namespace {
 
-/// The lists that stand next to each other at the top of `text`.
+/// The adjacent lists at the top level of `text`.
 std::vector<std::string> lists(const std::string& text) {
   std::vector<std::string> out;
   int depth = 0;
@@ -19,8 +19,8 @@ std::vector<std::string> lists(const std::string& text) {
   return out;
 }
 
-/// Whether a place is still the field's centre, where the ball waits.
-bool atCentre(const std::string& place) { return std::abs(std::strtod(place.c_str(), nullptr)) < 0.01; }
+/// True while the ball is at the center of the field, its initial position.
+bool atCenter(const std::string& position) { return std::abs(std::strtod(position.c_str(), nullptr)) < 0.01; }
 
 }  // namespace
 
@@ -37,20 +37,20 @@ void BallPath::feed(const std::string& message) {
   const std::size_t at = nodes[*node_].find("(SLT ");
   if (at == std::string::npos) return;
   std::istringstream in(nodes[*node_].substr(at + 5));
-  std::string number, place;
+  std::string number, position;
   for (int i = 0; i < 15 && in >> number; ++i)
-    if (i >= 12) place += (place.empty() ? "" : " ") + number;
-  if (places_.empty() || places_.back() != place) places_.push_back(place);
+    if (i >= 12) position += (position.empty() ? "" : " ") + number;
+  if (positions_.empty() || positions_.back() != position) positions_.push_back(position);
 }
 
 bool samePath(const std::vector<std::string>& recorded, const std::vector<std::string>& ours) {
   std::size_t next = 0;
-  while (next < ours.size() && atCentre(ours[next])) ++next;
+  while (next < ours.size() && atCenter(ours[next])) ++next;
   bool moved = false;
-  for (const std::string& place : recorded) {
-    if (!moved && atCentre(place)) continue;
+  for (const std::string& position : recorded) {
+    if (!moved && atCenter(position)) continue;
     moved = true;
-    while (next < ours.size() && ours[next] != place) ++next;
+    while (next < ours.size() && ours[next] != position) ++next;
     if (next++ == ours.size()) return false;
   }
   return moved;

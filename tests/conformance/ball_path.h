@@ -8,19 +8,19 @@
 
 namespace spark::test {
 
-/// The ball's places as full and diff messages tell them, each change once: "x y z" [m], six significant digits.
+/// The ball's positions in full and diff messages, with each change once: "x y z" [m], six significant digits.
 class BallPath {
  public:
   void feed(const std::string& message);
-  const std::vector<std::string>& places() const { return places_; }
+  const std::vector<std::string>& positions() const { return positions_; }
 
  private:
-  std::optional<std::size_t> node_;  ///< which of the scene's top nodes is the ball
-  std::vector<std::string> places_;
+  std::optional<std::size_t> node_;  ///< index of the ball among the scene's top nodes
+  std::vector<std::string> positions_;
 };
 
-/// True when everything that `recorded` has after its first move stands in `ours` too, in that order. Only where a
-/// message may have been lost on the recording's way may `ours` have more.
+/// True if `ours` contains all elements of `recorded` after its first move, in the same order. `ours` may have more,
+/// because messages may have been lost during the recording.
 bool samePath(const std::vector<std::string>& recorded, const std::vector<std::string>& ours);
 
 }  // namespace spark::test

@@ -1,13 +1,13 @@
 /// \file
-/// Replays recorded lockstep sessions of the installed base against a host of this build and says how far the sensors
-/// without noise are from the recorded ones.
+/// Replays recorded lockstep sessions of the original server against a host of this build and prints the deviation of
+/// the noise-free sensors from the recorded ones.
 ///
 ///     spark-conformance                         every session, as a Markdown table
 ///     spark-conformance mainline/nao0-rest ...  these
 ///
-/// Sessions are files below SPARK_REFERENCE_DIR/captures. Exit code 0: every printed digit is the recorded one; 1: not
-/// so; 77: no reference data. A session whose beam was recorded with noise is replayed with the beam that its monitor
-/// frames show.
+/// Sessions are files below SPARK_REFERENCE_DIR/captures. Exit code 0: all printed digits equal the recorded ones; 1:
+/// there are differences; 77: no reference data. A session whose beam was recorded with noise is replayed with the beam
+/// that its monitor frames show.
 
 #include <fmt/format.h>
 
@@ -39,8 +39,8 @@ const std::vector<std::string> kSessions{"mainline/nao0-rest",
                                          "spl/nao3-legs",
                                          "spl/ball-bounce-and-roll"};
 
-/// `(beam -2 0.5 30)` as the noise of the recording made it: x [m], y [m], angle [deg], from the torso's matrix in the
-/// frames that follow.
+/// `(beam -2 0.5 30)` with the noise of the recording: x [m], y [m], angle [deg], from the torso's matrix in the
+/// following frames.
 const std::map<std::string, std::string> kNoisyBeams{
     {"mainline/nao0-squat-after-beam", "(beam -2.0413 0.479276 20.387088)"},
     {"spl/nao0-squat-after-beam", "(beam -1.95753 0.516926 37.928452)"}};
@@ -65,10 +65,10 @@ Readings readingsOf(const std::string& message) {
 }
 
 struct Deviation {
-  std::map<std::string, double> greatest{{"HJ", 0}, {"GYR", 0}, {"ACC", 0}, {"FRP", 0}};
-  std::size_t compared = 0, differ = 0;  ///< numbers; how many of them are not the recorded ones
-  int shape = 0;                         ///< messages with other sensors than the recorded ones
-  std::string first;                     ///< where the first difference is
+  std::map<std::string, double> maxima{{"HJ", 0}, {"GYR", 0}, {"ACC", 0}, {"FRP", 0}};
+  std::size_t compared = 0, differ = 0;  ///< numbers compared; how many of them differ from the recorded ones
+  int shape = 0;                         ///< messages whose sensors differ from the recorded ones
+  std::string first;                     ///< the first difference
 
   void compare(int cycle, const std::string& recorded, const std::string& ours) {
     const Readings want = readingsOf(recorded), got = readingsOf(ours);
@@ -84,8 +84,8 @@ struct Deviation {
         ++compared;
         if (!(off > 0)) continue;
         ++differ;
-        double& most = greatest[channel.substr(0, channel.find(' '))];
-        most = std::max(most, off);
+        double& maximum = maxima[channel.substr(0, channel.find(' '))];
+        maximum = std::max(maximum, off);
         note(cycle, fmt::format("{} is {}, recorded {}", channel, found->second[i], numbers[i]));
       }
     }
@@ -108,7 +108,8 @@ struct Outcome {
 };
 
 Outcome replaySession(const std::string& name, const Recording& recording) {
-  // A frame each cycle: which half of them was recorded depends on when the agent came.
+  // A frame in every cycle: the recording has every second one, and which half depends on the cycle in which the agent
+  // came.
   std::vector<std::string> settings{"Soccer.BeamNoiseXY=0", "Soccer.BeamNoiseAngle=0",
                                     "/sys/server/monitor.interval=1"};
   if (name.starts_with("spl/")) settings.push_back("/sys/server/gamecontrol/parser.decimals=3");
@@ -132,19 +133,19 @@ Outcome replaySession(const std::string& name, const Recording& recording) {
     const std::string answer = agent.receive();
     out.sensors.compare(cycle, recording.answer(recording.agents.front(), cycle), answer);
     while (monitor.pending()) out.ball.feed(monitor.receive());
-    if (!recording.ball.empty()) monitor.send("(reqfullstate)");  // diffs leave out small ways
+    if (!recording.ball.empty()) monitor.send("(reqfullstate)");  // diffs omit small movements
     send(cycle + 1);
   }
   host.end();
   return out;
 }
 
-/// What is to be said of the ball, and whether it is as recorded.
+/// The report about the ball, and whether its path equals the recorded one.
 std::pair<std::string, bool> judgeBall(const std::string& name, const Recording& recording, const Outcome& o) {
   const bool thrown = name.ends_with("ball-bounce-and-roll");
   if (!thrown && recording.ball.empty()) return {"-", true};
-  const std::vector<std::string>& recorded = thrown ? o.recordedBall.places() : recording.ball;
-  const bool same = samePath(recorded, o.ball.places());
+  const std::vector<std::string>& recorded = thrown ? o.recordedBall.positions() : recording.ball;
+  const bool same = samePath(recorded, o.ball.positions());
   return {fmt::format("{} of {} places, the last {}", same ? "all" : "NOT all", recorded.size(), recorded.back()),
           same};
 }
@@ -154,11 +155,12 @@ bool report(const std::string& name, const std::filesystem::path& folder) {
   if (!std::filesystem::exists(file)) file += ".gz";
   const Recording recording = readRecording(file);
   const Outcome o = replaySession(name, recording);
-  const auto& most = o.sensors.greatest;
+  const auto& maximum = o.sensors.maxima;
   const auto [ball, ballSame] = judgeBall(name, recording, o);
   std::cout << fmt::format("| {}{} | {} | {} | {:g} | {:g} | {:g} | {:g} | {} | {} | {} |\n", name,
-                           kNoisyBeams.contains(name) ? " \\*" : "", o.cycles, o.sensors.compared, most.at("HJ"),
-                           most.at("GYR"), most.at("ACC"), most.at("FRP"), o.sensors.differ, o.sensors.shape, ball)
+                           kNoisyBeams.contains(name) ? " \\*" : "", o.cycles, o.sensors.compared, maximum.at("HJ"),
+                           maximum.at("GYR"), maximum.at("ACC"), maximum.at("FRP"), o.sensors.differ, o.sensors.shape,
+                           ball)
             << std::flush;
   if (!o.sensors.first.empty()) std::cerr << name << ": first at " << o.sensors.first << "\n";
   return o.sensors.none() && ballSame;

@@ -8,9 +8,9 @@
 #include "recording.h"
 #include "test_support.h"
 
-// Recorded sessions, replayed in lockstep: what agents are told must have the recorded shape to the byte, with numbers
-// left open, and what robots see must lie within the noise of what was seen. How far bodies follow the recording to the
-// last digit is measured elsewhere.
+// Recorded sessions, replayed in lockstep. Messages to agents must have the recorded shape to the byte, apart from
+// their numbers, and vision must agree with the recording within the noise. The conformance tool measures whether
+// bodies follow the recording to the last digit.
 
 using namespace spark::test;
 
@@ -18,19 +18,19 @@ namespace {
 
 struct Session {
   const char* name;
-  int looks;  ///< at least so many messages with See are compared by value, on any processor
-  bool ballIsMoved =
-      false;  ///< by a trainer, whose commands act a monitor's period sooner or later: where it is, is left open
+  int looks;  ///< minimum number of messages with See that are compared by value, on any processor
+  /// A trainer moves the ball. Its commands act up to one monitor period off, so the ball is not compared.
+  bool ballIsMoved = false;
 };
-/// Those of one agent. Its pose is known while all of its other senses agree with the recording, and unless it was
+/// Sessions of one agent. Its pose is known while all of its other percepts agree with the recording, unless it was
 /// beamed with noise.
 const Session kSessions[] = {{"nao0-rest", 90}, {"ball-bounce-and-roll", 120, true}, {"nao0-all-joints", 20},
                              {"nao3-legs", 40}, {"nao0-squat-after-beam", 0},        {"team-walks-and-kicks", 300}};
 
-constexpr int kJoining =
-    5;  ///< cycles in which a number may be told a message earlier or later: agents are not waited for yet
+/// Cycles in which the number may come a message earlier or later, because the simulation does not wait for agents yet.
+constexpr int kJoining = 5;
 
-/// One version of the installed base.
+/// One version of the original server.
 struct Version {
   const char* compat;
   const char* folder;
@@ -52,9 +52,9 @@ std::vector<std::string> settings(const Version& version, bool noise) {
           std::string("Soccer.VisionNoise=") + (noise ? "true" : "false")};
 }
 
-/// A message with what contacts and eyes decide set apart.
+/// A message with the parts that depend on contacts and vision separated.
 struct Parts {
-  std::vector<std::string> fixed;             ///< all but FRP; See stands as "See"
+  std::vector<std::string> fixed;             ///< all but FRP, with See as "See"
   std::map<std::string, std::string> forces;  ///< FRP by name
   std::string see;
   std::string fault;
@@ -62,7 +62,7 @@ struct Parts {
 
 Parts take(const std::string& message, int decimals) {
   Parts out;
-  std::string force;  // its joint must come next
+  std::string force;  // the percept of its joint must come next
   const std::vector<std::string> expressions = topLevel(message);
   if (expressions.empty()) out.fault = "something between expressions";
   for (const std::string& e : expressions) {
@@ -84,7 +84,7 @@ Parts take(const std::string& message, int decimals) {
   return out;
 }
 
-/// Before all agents play, who is there differs by a cycle.
+/// While agents join, the players present may differ by a cycle.
 std::string gsShape(std::string gs, bool joining) {
   if (joining) {
     gs = withoutAnnouncement(gs);
@@ -93,8 +93,8 @@ std::string gsShape(std::string gs, bool joining) {
   return shape(gs);
 }
 
-/// The first difference in shape, "" when there is none. GS may be that of one of the `near` cycles (trainers' commands
-/// come a cycle sooner or later).
+/// The first difference in shape, "" if there is none. GS may be that of one of the `near` cycles, because trainer
+/// commands act up to a cycle off.
 std::string difference(const Parts& ours, const Parts& recorded, const std::vector<Parts>& near, bool joining) {
   if (!ours.fault.empty()) return ours.fault;
   if (!recorded.fault.empty()) return "in the recording, " + recorded.fault;
@@ -118,7 +118,7 @@ std::string difference(const Parts& ours, const Parts& recorded, const std::vect
   return {};
 }
 
-/// True when all that has no noise is as recorded: the robot stands as it stood.
+/// True if all values without noise agree, so the robot has the recorded pose.
 bool samePose(const Parts& ours, const Parts& recorded) {
   const auto agree = [](const std::string& a, const std::string& b) {
     const std::vector<double> x = decimals(a), y = decimals(b);
@@ -138,8 +138,8 @@ bool samePose(const Parts& ours, const Parts& recorded) {
   return true;
 }
 
-// The model of the noise: standard deviations in parts of the distance, in deg, in deg; a calibration error of at most
-// 5 mm along each axis.
+// The noise model: standard deviations relative to the distance, in deg, in deg; and a calibration error of at most 5
+// mm along each axis.
 constexpr double kSigma[3] = {0.000965, 0.1480, 0.1225};
 constexpr double kCalibration = 0.005 * 1.7321;
 constexpr double kSigmas = 5.5;
@@ -147,10 +147,10 @@ constexpr double kCone = 60;  ///< deg
 
 double radians(double deg) { return deg * 3.14159265358979 / 180; }
 double degrees(double rad) { return rad * 180 / 3.14159265358979; }
-/// Deg by which the calibration error may turn the way to a point.
+/// The angle by which the calibration error may change the direction to a point [deg].
 double turn(const Seen& s) { return degrees(std::asin(std::min(1.0, kCalibration / s.distance))); }
 
-/// How far one may see what the other sees [m, deg, deg]; `rounding`: half of the last digit.
+/// The maximum difference between two views of a point [m, deg, deg]; `rounding`: half of the last digit.
 std::array<double, 3> tolerance(const Seen& s, double rounding) {
   return {kSigmas * kSigma[0] * s.distance + kCalibration + 2 * rounding,
           kSigmas * kSigma[1] + turn(s) / std::max(0.1, std::cos(radians(s.vertical))) + 2 * rounding,
@@ -158,9 +158,9 @@ std::array<double, 3> tolerance(const Seen& s, double rounding) {
 }
 
 bool close(const Seen& a, const Seen& b, double rounding) {
-  const std::array<double, 3> most = tolerance(a, rounding);
-  return std::abs(a.distance - b.distance) <= most[0] && std::abs(a.horizontal - b.horizontal) <= most[1] &&
-         std::abs(a.vertical - b.vertical) <= most[2];
+  const std::array<double, 3> limit = tolerance(a, rounding);
+  return std::abs(a.distance - b.distance) <= limit[0] && std::abs(a.horizontal - b.horizontal) <= limit[1] &&
+         std::abs(a.vertical - b.vertical) <= limit[2];
 }
 bool close(const Item& a, const Item& b, double rounding) {
   for (std::size_t i = 0; i < a.points.size(); ++i)
@@ -168,22 +168,22 @@ bool close(const Item& a, const Item& b, double rounding) {
   return true;
 }
 
-/// At the edge of the cone, or of the window to which lines are cut: noise decides whether it is seen.
+/// True at the edge of the view cone or of the window that clips lines, where noise decides whether an item is visible.
 bool atEdge(const Item& item) {
   return std::any_of(item.points.begin(), item.points.end(), [](const Seen& s) {
-    const double least = kCone - kSigmas * kSigma[1] - turn(s);
+    const double limit = kCone - kSigmas * kSigma[1] - turn(s);
     const double inWindow = degrees(std::atan2(std::tan(radians(s.vertical)), std::cos(radians(s.horizontal))));
-    return std::abs(s.horizontal) > least || std::abs(s.vertical) > least || std::abs(inWindow) > least;
+    return std::abs(s.horizontal) > limit || std::abs(s.vertical) > limit || std::abs(inWindow) > limit;
   });
 }
 
-/// What many comparisons of noisy with noise-free values say about the noise.
+/// The standard deviation of the noise, from comparisons of noisy with noise-free values.
 class Spread {
  public:
   void add(const Item& exact, const Item& noisy) {
     for (std::size_t i = 0; i < exact.points.size(); ++i) {
       const Seen &a = exact.points[i], &b = noisy.points[i];
-      if (a.distance < 15) continue;  // nearer, the calibration error and the last digit count
+      if (a.distance < 15) continue;  // closer, the calibration error and the last digit matter
       const double error[3] = {(b.distance - a.distance) / a.distance, b.horizontal - a.horizontal,
                                b.vertical - a.vertical};
       for (int k = 0; k < 3; ++k) squares_[k] += error[k] * error[k];
@@ -211,7 +211,7 @@ void unmatchedItem(Looks& looks, const Item& item, const char* who) {
                               item.points[0].horizontal, item.points[0].vertical);
 }
 
-/// Walks both lists in order. Items that only one has must be at the edge.
+/// Compares both lists in order. Items in only one of them must be at the edge of the view.
 void compareLooks(const std::string& exact, const std::string& noisy, double rounding, Looks& looks,
                   bool withBall = true) {
   std::vector<Item> a = items(exact), b = items(noisy);
@@ -235,7 +235,7 @@ void compareLooks(const std::string& exact, const std::string& noisy, double rou
   ++looks.compared;
 }
 
-/// The recorded messages of the cycles around, in which a trainer's command may show.
+/// The recorded messages of the adjacent cycles, in which the effect of a trainer command may appear.
 std::vector<Parts> around(const Recording& r, const std::string& agent, int cycle, int decimals) {
   std::vector<Parts> out;
   if (r.commands.empty()) return out;
@@ -243,7 +243,7 @@ std::vector<Parts> around(const Recording& r, const std::string& agent, int cycl
   return out;
 }
 
-/// Cycles after which the recorded robot is gone: its messages repeat.
+/// True if the recorded robot has been removed by now, because its messages repeat.
 bool isGone(const Recording& r, const std::string& agent, int cycle) {
   return !r.answer(agent, cycle + 4).empty() && r.answer(agent, cycle + 3) == r.answer(agent, cycle + 4);
 }
@@ -256,7 +256,7 @@ std::string complaints(const std::string& errors) {
   return out;
 }
 
-/// Announcements of numbers, in order.
+/// Appends the assigned numbers.
 void note(std::vector<std::string>& announced, const Parts& parts) {
   for (const std::string& e : parts.fixed)
     if (e.starts_with("(GS (unum ")) announced.push_back(e.substr(0, e.find("(sl ")));
@@ -264,8 +264,7 @@ void note(std::vector<std::string>& announced, const Parts& parts) {
 
 }  // namespace
 
-TEST_CASE(
-    "A player's recorded session replays with messages of the recorded shape, and what it sees lies within the noise") {
+TEST_CASE("A recorded session of a player gives messages of the recorded shape, and vision within the noise") {
   Spread all;
   for (const Version& version : kVersions) {
     for (const Session& session : kSessions) {
@@ -305,34 +304,34 @@ TEST_CASE(
                           << " contact forces not felt");
     }
   }
-  // the recorded noise is the model's
+  // The recorded noise agrees with the model.
   REQUIRE(all.count() > 5000);
   for (int k = 0; k < 3; ++k) CHECK(all.sigma(k) == Approx(kSigma[k]).epsilon(0.05));
 }
 
-TEST_CASE("The host's own noise is the recorded noise") {
+TEST_CASE("The host's noise has the recorded distribution") {
   const Recording recording = readRecording(captureFile(kVersions[1], "nao0-rest"));
   std::map<int, std::string> exact;
   replay(recording, settings(kVersions[1], false),
          [&](int cycle, const std::string&, const std::string& answer) { exact[cycle] = take(answer, 3).see; });
   Looks looks;
-  double most = 0;
+  double maxError = 0;
   replay(recording, settings(kVersions[1], true), [&](int cycle, const std::string&, const std::string& answer) {
     const std::string see = take(answer, 3).see;
     REQUIRE(see.empty() == exact[cycle].empty());
     if (see.empty()) return;
     compareLooks(exact[cycle], see, 0.0005, looks);
     for (const Item& item : items(see))
-      if (item.name.ends_with("lowerarm")) most = std::max(most, std::abs(item.points[0].distance - 0.185));
+      if (item.name.ends_with("lowerarm")) maxError = std::max(maxError, std::abs(item.points[0].distance - 0.185));
   });
   CHECK(looks.fault == "");
   CHECK(looks.unmatched * 50 <= looks.items);
   for (int k = 0; k < 3; ++k) CHECK(looks.spread.sigma(k) == Approx(kSigma[k]).epsilon(0.1));
-  CHECK(most > 0.001);  // the calibration error, near the head
-  CHECK(most < kCalibration + 0.002);
+  CHECK(maxError > 0.001);  // the calibration error matters most close to the head
+  CHECK(maxError < kCalibration + 0.002);
 }
 
-TEST_CASE("Four recorded players replay with messages of the recorded shape") {
+TEST_CASE("A recorded session of four players gives messages of the recorded shape") {
   for (const Version& version : kVersions) {
     CAPTURE(version.compat);
     const Recording recording = readRecording(captureFile(version, "four-agents"));
@@ -341,7 +340,8 @@ TEST_CASE("Four recorded players replay with messages of the recorded shape") {
     int heard = 0;
     replay(recording, settings(version, true), [&](int cycle, const std::string& agent, const std::string& answer) {
       CAPTURE(cycle, agent);
-      if (answer.empty()) {  // a killed robot's connection is closed; the recorded server repeated its last message
+      if (answer.empty()) {  // the recorded server repeats its last message to a killed robot, this host closes the
+                             // connection
         REQUIRE(isGone(recording, agent, cycle));
         gone.insert(agent);
         return;

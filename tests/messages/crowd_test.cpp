@@ -6,8 +6,8 @@
 #include "recording.h"
 #include "spark/predicates.h"
 
-// Twenty-two robots in view of each other. Clients judge servers by what arrives: a robot's messages all differ, none
-// is longer than the buffer into which clients read, and numbers are plain.
+// Twenty-two robots in view of each other. Clients depend on three properties of the messages: a robot's messages all
+// differ, none is longer than the buffer of a client, and numbers are plain decimals.
 
 using namespace spark;
 using namespace spark::test;
@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::size_t kBuffer = 8192;  ///< bytes
 constexpr int kTeam = 11, kPlaced = 30, kCycles = 150;
-/// Types of a team within its limits; 4 has the most joints.
+/// Types of a team within its limits; type 4 has the largest number of joints.
 constexpr int kTypes[kTeam] = {4, 4, 4, 4, 0, 0, 0, 0, 1, 1, 1};
 
-/// Where a player stands, as his team sees the field. Number 1 of each team looks at all others from his goal line.
+/// The beam position of a player in its team's coordinates. Number 1 of each team sees all others from its goal line.
 std::string beam(int unum) {
   if (unum == 1) return "(beam -14.5 0 0)";
   const int row = (unum - 2) / 2;
@@ -34,7 +34,7 @@ struct Player {
   int unum = 0, messages = 0;
 };
 
-/// What is wrong with the numbers of a message.
+/// The first number of a message that is not a plain decimal; "" if there is none.
 std::string numberFault(const std::string& message) {
   Predicates p;
   readSexp(message, p);
@@ -57,22 +57,22 @@ int robotsIn(const std::string& see) {
 
 }  // namespace
 
-TEST_CASE("Of twenty-two robots in view of each other none is told anything twice, too much or in odd numbers") {
+TEST_CASE("Twenty-two robots in view of each other get distinct messages of bounded size with plain numbers") {
   const std::string compat = GENERATE("M", "F", "L");
   CAPTURE(compat);
   LockstepHost host({"compat=" + compat, "Soccer.BeamNoiseXY=0", "Soccer.BeamNoiseAngle=0"});
   std::vector<std::unique_ptr<Player>> players;
-  host.halt(true);  // all join in one cycle: here each is read in turn
+  host.halt(true);  // so that all join in one cycle, although they connect one after the other
   for (const char side : {'a', 'b'})
     for (int unum = 1; unum <= kTeam; ++unum) {
       players.push_back(std::make_unique<Player>(host.agentPort));
-      players.back()->team = std::string(32, side);  // the longest name
+      players.back()->team = std::string(32, side);  // the maximum length of a name
       players.back()->unum = unum;
       players.back()->client.send("(scene rsg/agent/nao/nao_hetero.rsg " + std::to_string(kTypes[unum - 1]) + ")(syn)");
     }
   host.halt(false);
   std::size_t longest = 0;
-  int mostRobots = 0, mostLines = 0;
+  int maxRobots = 0, maxLines = 0;
   for (int cycle = 0; cycle < kCycles; ++cycle) {
     for (const auto& p : players) {
       CAPTURE(p->team, p->unum, cycle);
@@ -90,10 +90,10 @@ TEST_CASE("Of twenty-two robots in view of each other none is told anything twic
       for (const std::string& e : topLevel(message)) {
         if (!e.starts_with("(See ")) continue;
         REQUIRE(seeFault(e, compat == "F" ? 3 : 2) == "");
-        mostRobots = std::max(mostRobots, robotsIn(e));
+        maxRobots = std::max(maxRobots, robotsIn(e));
         const std::vector<Item> seen = items(e);
-        mostLines = std::max(mostLines, static_cast<int>(std::count_if(seen.begin(), seen.end(),
-                                                                       [](const Item& i) { return i.name == "L"; })));
+        maxLines = std::max(maxLines, static_cast<int>(std::count_if(seen.begin(), seen.end(),
+                                                                     [](const Item& i) { return i.name == "L"; })));
       }
       std::string answer = "(say 12345678901234567890)(syn)";
       if (++p->messages == 1)
@@ -103,11 +103,11 @@ TEST_CASE("Of twenty-two robots in view of each other none is told anything twic
       p->client.send(answer);
     }
   }
-  CHECK(mostRobots == 2 * kTeam);
-  CHECK(mostLines == (compat == "F" ? 0 : 18));  // all but three behind him
-  CHECK(longest > 4500);                         // it was a crowd
+  CHECK(maxRobots == 2 * kTeam);
+  CHECK(maxLines == (compat == "F" ? 0 : 18));  // all but three that are behind the player
+  CHECK(longest > 4500);                        // many robots were in view
   WARN("compat " << compat << ": the longest message had " << longest << " bytes, the most robots seen at once were "
-                 << mostRobots << ", lines " << mostLines);
+                 << maxRobots << ", lines " << maxLines);
   players.clear();
   host.end();
 }

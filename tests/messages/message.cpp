@@ -153,7 +153,7 @@ std::string seeFault(const std::string& see, int decimals) {
         return "line " + written(e);
       if (at == robots)
         if (const std::string fault = robotFault(e, decimals); !fault.empty()) return fault + " in " + written(e);
-      last = mark ? at + 1 : at;  // each mark once
+      last = mark ? at + 1 : at;  // each mark at most once
     }
   }
   return again == see ? std::string() : "spacing";

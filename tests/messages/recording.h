@@ -13,31 +13,31 @@
 
 namespace spark::test {
 
-/// A session: who sent what in which cycle, and what was answered.
+/// A session: the messages sent in each cycle, and the answers.
 struct Recording {
   struct Said {
     std::string from, message;
   };
-  std::vector<std::string> agents;                             ///< in the order in which they connected
+  std::vector<std::string> agents;                             ///< in order of connection
   std::map<int, std::vector<Said>> sent;                       ///< agents' messages, by cycle
   std::map<int, std::vector<std::string>> commands;            ///< trainers' messages, by cycle
   std::map<std::string, std::map<int, std::string>> answered;  ///< by agent and cycle
-  std::vector<std::string> frames;                             ///< what the monitor got
-  std::vector<std::string> ball;                               ///< where the recording says the ball was, "x y z" [m]
+  std::vector<std::string> frames;                             ///< messages to the monitor
+  std::vector<std::string> ball;                               ///< recorded positions of the ball, "x y z" [m]
   int cycles = 0;
 
-  /// What the agent was answered, "" when nothing was recorded.
+  /// The recorded answer to the agent; "" if there is none.
   const std::string& answer(const std::string& agent, int cycle) const;
 };
 /// Reads a .jsonl or .jsonl.gz file.
 Recording readRecording(const std::filesystem::path& file);
 
-/// A host of the humanoids' league in lockstep, as fast as it goes.
+/// A host of the humanoid league in lockstep at maximum rate.
 class LockstepHost {
  public:
   /// `settings`: K=V for --set.
   explicit LockstepHost(const std::vector<std::string>& settings);
-  /// Stops the program, or lets it go on: what clients do meanwhile it finds at once.
+  /// Stops or continues the program. It reads all messages sent meanwhile at once.
   void halt(bool on);
   /// Ends the host. Returns what it wrote to stderr.
   std::string end();
@@ -47,8 +47,8 @@ class LockstepHost {
   std::unique_ptr<Process> process_;
 };
 
-/// Sends what was sent, and hands each answer over: (cycle, agent, answer). An agent whose connection the host closes
-/// is handed over once more, with an empty answer. Returns what the host wrote to stderr.
+/// Sends the recorded messages and calls `each` with every answer: (cycle, agent, answer). When the host closes an
+/// agent's connection, `each` is called once more with an empty answer. Returns what the host wrote to stderr.
 std::string replay(const Recording& recording, const std::vector<std::string>& settings,
                    const std::function<void(int, const std::string&, const std::string&)>& each);
 

@@ -4,13 +4,13 @@
 #include "recording.h"
 #include "test_support.h"
 
-// The option that names a version of the installed base, as a client sees it.
+// The `compat` option, which selects a version of the original server, from a client's view.
 
 using namespace spark::test;
 
 namespace {
 
-/// A player of the host's first cycles: its messages, from the first with its robot.
+/// Joins in the host's first cycles; returns the player's messages, from the first one with its robot.
 std::vector<std::string> listen(const std::vector<std::string>& settings, int messages = 24) {
   LockstepHost host(settings);
   Client client(host.agentPort);
@@ -26,7 +26,7 @@ std::vector<std::string> listen(const std::vector<std::string>& settings, int me
 
 bool holds(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
 
-/// Messages between two with See.
+/// The number of messages from one with See to the next.
 int interval(const std::vector<std::string>& messages) {
   std::vector<int> at;
   for (int i = 0; i < static_cast<int>(messages.size()); ++i)
@@ -49,7 +49,7 @@ Finished check(const std::vector<std::string>& settings) {
 
 }  // namespace
 
-TEST_CASE("By itself the host speaks as the mainline server") {
+TEST_CASE("By default the host sends the messages of the mainline server") {
   const auto messages = listen({});
   const std::string text = all(messages);
   CHECK(holds(text, "(GS (unum 3) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))"));
@@ -59,7 +59,7 @@ TEST_CASE("By itself the host speaks as the mainline server") {
   CHECK(shape(all(listen({"compat=M"}))) == shape(text));
 }
 
-TEST_CASE("compat=F speaks as the SPL's server") {
+TEST_CASE("compat=F sends the messages of the SPL's server") {
   const auto messages = listen({"compat=F"});
   const std::string text = all(messages);
   CHECK(holds(messages.front(), "(GS (sl 0) (sr 0) (t 0.000) (pm BeforeKickOff) (k left) (ti () ()))"));
@@ -71,14 +71,14 @@ TEST_CASE("compat=F speaks as the SPL's server") {
   CHECK(interval(messages) == 3);
 }
 
-TEST_CASE("compat=L looks every second cycle, and is else the mainline") {
+TEST_CASE("With compat=L vision has an interval of two cycles, and the rest is as in the mainline") {
   const auto messages = listen({"compat=L"});
   CHECK(interval(messages) == 2);
   CHECK(holds(all(messages), "(GS (unum 3) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))"));
   CHECK(holds(all(messages), " (L (pol "));
 }
 
-TEST_CASE("What is set by itself wins over the version") {
+TEST_CASE("Individual settings take precedence over compat") {
   const auto messages = listen({"compat=F", "Soccer.FieldLinesSeen=true", "Soccer.VisionInterval=4",
                                 "/sys/server/gamecontrol/parser.decimals=1"});
   CHECK(holds(all(messages), " (L (pol "));
@@ -86,13 +86,13 @@ TEST_CASE("What is set by itself wins over the version") {
   CHECK(interval(messages) == 4);
 }
 
-TEST_CASE("An unknown version is an error that names those there are") {
+TEST_CASE("An unknown version is an error that lists the known ones") {
   const Finished f = check({"compat=G"});
   CHECK(f.code == 2);
   CHECK(holds(f.errors, "\"M\", \"F\", \"L\""));
 }
 
-TEST_CASE("Every variable of the installed base's league is set by its own name") {
+TEST_CASE("Every variable of the original league can be set by its name") {
   std::vector<std::string> settings;
   for (const char* number : {"FieldLength",
                              "FieldWidth",
@@ -164,7 +164,7 @@ TEST_CASE("Every variable of the installed base's league is set by its own name"
     settings.push_back(std::string("Soccer.") + flag + "=true");
   for (const char* text : {"SelfCollisionRecordFilename", "BallRecorder", "LeftGoalRecorder", "RightGoalRecorder"})
     settings.push_back(std::string("Soccer.") + text + "=x");
-  settings.push_back("Soccer.BallRadius=0.05");  // goals must have room for it
+  settings.push_back("Soccer.BallRadius=0.05");  // the goals must be wide enough for the ball
   const Finished f = check(settings);
   CHECK(f.errors == "");
   CHECK(f.code == 0);

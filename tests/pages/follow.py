@@ -5,7 +5,7 @@
     follow.py --files PAGE DIR  only writes the files into a folder
     follow.py --skipped PAGE    prints the commands that are not followed, with the reasons
 
-What a fenced block is, its first line says:
+The first line of a fenced block gives its kind:
 
     ```lua sumo.lua       a file, written into the working folder of the commands so far
     ```lua >>sumo.lua     text for the end of that file
@@ -62,20 +62,20 @@ def write(folder, name, text):
 
 
 def pattern(line, how):
-    """A regular expression for a line of a page: what may be otherwise is found first, all else is taken as it is."""
+    """A regular expression for a line of a page: variable parts become patterns, all other text is literal."""
     loose = [(r"\.\.\.", ".*")]
     if how == "rising":
         loose.append((r"[#.o]{10,}", "[#.o]+"))
     if how in ("like", "rising"):
         loose += [(r"\b[0-9a-f]{16}\b", "[0-9a-f]{16}"), (NUMBER, NUMBER)]
     if how == "rising":
-        loose.insert(0, loose.pop(1))  # bars hold dots
+        loose.insert(0, loose.pop(1))  # bars contain dots
     parts = re.split("(" + "|".join(f"(?:{what})" for what, _ in loose) + ")", line)
     return "".join(next(by for what, by in loose if re.fullmatch(what, part)) if i % 2 else re.escape(part) for i, part in enumerate(parts))
 
 
 def missing(wanted, said, how):
-    """The first line of a page that was not said behind those before it; None when all were."""
+    """The first line of a page that the output lacks after the lines before it; None if all were found."""
     rest = iter(said.split("\n"))
     for line in wanted.rstrip("\n").split("\n"):
         if line.strip() != "..." and not any(re.search(pattern(line, how), found) for found in rest):

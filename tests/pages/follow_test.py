@@ -1,4 +1,4 @@
-"""follow.py notices what a page promises and does not keep."""
+"""follow.py reports differences between a page and the output of its commands."""
 import contextlib
 import io
 import tempfile
@@ -9,7 +9,7 @@ import follow
 
 
 def page(*parts):
-    """The exit code for a page of these blocks, (first line, text), and what went to stderr."""
+    """The exit code and the stderr of a page with these blocks, each of them (first line, text)."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "page.md"
         file.write_text("".join(f"Some text.\n```{first}\n{text}\n```\n" for first, text in parts))
@@ -42,33 +42,33 @@ class Pages(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn(why, errors)
 
-    def test_files_are_written_where_commands_are(self):
+    def test_files_are_written_to_the_working_folder(self):
         self.holds(("lua a/b.lua", "one"), ("lua >>a/b.lua", "two"), ("sh", "cat ~/game/a/b.lua; echo $WORD"), ("text", "one\ntwo\nred"))
 
-    def test_the_build_tree_is_the_one_that_is_tested(self):
+    def test_build_release_is_the_tested_build_tree(self):
         self.holds(("sh", "echo build/release/bin"), ("text", "/some/build/bin"))
 
-    def test_lines_come_in_order_with_others_between_them(self):
+    def test_lines_must_come_in_order_and_may_have_others_between_them(self):
         self.holds(("sh", "echo one; echo two; echo three"), ("text", "one\n...\nthree"))
         self.breaks("the page promises\none", ("sh", "echo one; echo two"), ("text", "two\none"))
         self.breaks("the page promises\ntwo", ("sh", "echo one two"), ("text", "one\ntwo"))
 
-    def test_text_is_compared_to_the_letter(self):
+    def test_text_must_match_exactly(self):
         self.holds(("sh", "echo 'a (b) 12 ms'"), ("text", "a (b) ... ms"))
         self.breaks("the page promises\ntook 3 s", ("sh", "echo took 4 s"), ("text", "took 3 s"))
 
-    def test_alike_are_other_numbers_and_hashes_only(self):
+    def test_text_like_allows_other_numbers_and_hashes_only(self):
         self.holds(("sh", "echo 'score [3, 0] -1.5 http://127.0.0.1:80/ 0123456789abcdef'"),
                    ("text like", "score [12, 4] 0 http://127.0.0.1:40871/ fedcba9876543210"))
         self.breaks("the page promises\nwon 3", ("sh", "echo lost 3"), ("text like", "won 3"))
         self.breaks("the page promises\nscore 3", ("sh", "echo score None"), ("text like", "score 3"))
 
-    def test_bars_rise(self):
+    def test_text_rising_requires_growing_bars(self):
         wanted = "1  ####......oooo  20 %\n2  ########oooo  60 %"
         self.holds(("sh", "echo '1  #######oooo  7 %'; echo '2  ##########  8 %'"), ("text rising", wanted))
         self.breaks("the last bar is not the longest", ("sh", "echo '1  #######oooo  9 %'; echo '2  ##########  8 %'"), ("text rising", wanted))
 
-    def test_a_command_that_fails_ends_it(self):
+    def test_a_failing_command_ends_the_run(self):
         self.breaks("exit code 1", ("sh", "false; echo more"))
         self.breaks("exit code 1", ("sh", "false | cat"))
 
@@ -87,7 +87,7 @@ class Pages(unittest.TestCase):
     def test_commands_are_skipped_with_a_reason(self):
         self.holds(("sh skip: needs two machines", "false"), ("sh", "echo one"), ("text", "one"))
 
-    def test_a_page_without_commands_is_none(self):
+    def test_a_page_without_commands_fails(self):
         code, errors = page(("lua", "one"))
         self.assertEqual(code, 1)
         self.assertIn("there are no commands", errors)

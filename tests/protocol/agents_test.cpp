@@ -20,7 +20,7 @@ class TestFault : public Perceptor {
   }
 };
 
-/// Forgets to close a list, or closes one too many.
+/// Leaves a list open, or closes one too many.
 class TestSloppy : public Perceptor {
   SPARK_CLASS(TestSloppy, Perceptor)
  public:
@@ -45,18 +45,18 @@ class TestBomb : public Effector {
   }
 };
 
-/// Notes who comes and goes.
+/// Logs agents that connect and leave.
 class TestRule : public ControlAspect {
   SPARK_CLASS(TestRule, ControlAspect)
  public:
-  static void describe(Description<TestRule>& d) { d.doc("Notes who comes and goes."); }
+  static void describe(Description<TestRule>& d) { d.doc("Logs agents that connect and leave."); }
   void rule(const Event&) override {}
-  void agentConnected(AgentAspect& agent) override { deeds().push_back("come " + agent.path()); }
-  void agentLeaving(AgentAspect& agent) override { deeds().push_back("go " + agent.path()); }
+  void agentConnected(AgentAspect& agent) override { actionLog().push_back("come " + agent.path()); }
+  void agentLeaving(AgentAspect& agent) override { actionLog().push_back("go " + agent.path()); }
 };
 }  // namespace
 
-TEST_CASE("What an agent sensed last, and how long it took to answer, can be asked") {
+TEST_CASE("The last percepts of an agent and its answer latency are available") {
   Arena a;
   Client c = a.client();
   a.until([&] { return a.agents() == 1; });
@@ -73,32 +73,33 @@ TEST_CASE("What an agent sensed last, and how long it took to answer, can be ask
   REQUIRE(std::isnan(a.control->latency(agent)));
   c.send("(he1 1)");
   c.arrive();
-  realise(a, 1);
+  applyActions(a, 1);
   const double first = a.control->latency(agent);
   REQUIRE(first > 0);
   c.send("(he1 1)");
   c.arrive();
-  realise(a, 2);
+  applyActions(a, 2);
   REQUIRE(a.control->latency(agent) > 0);
-  REQUIRE(a.control->latency(agent) != first);  // two answers count
+  REQUIRE(a.control->latency(agent) != first);  // the second answer counts, too
   a.kernel.root().require<Node>("/usr/scene").create("AgentAspect", "stranger");
   const auto& stranger = a.kernel.root().require<AgentAspect>("/usr/scene/stranger");
   REQUIRE(a.control->percepts(stranger) == nullptr);
   REQUIRE(std::isnan(a.control->latency(stranger)));
 }
 
-TEST_CASE("A session opens as the installed base's do: silence, robot, percepts with the original's latency") {
+TEST_CASE(
+    "A session starts as on the original server with silence, the robot, then percepts with the original latency") {
   Arena a;
   Client c = a.client();
   a.until([&] { return a.agents() == 1; });
   const auto joined = a.cycles();
   REQUIRE(c.drain().empty());
   c.send("(scene robot 4 abc)");
-  a.until([&] { return !deeds().empty(); });
+  a.until([&] { return !actionLog().empty(); });
   const auto loaded = a.cycles();
   REQUIRE(loaded > joined);
-  REQUIRE(deeds() == Deeds{"argument \"4\"", "argument \"abc\""});
-  // Nothing in the loading cycle; sensed first in the next, sent one later.
+  REQUIRE(actionLog() == ActionLog{"argument \"4\"", "argument \"abc\""});
+  // No message in the loading cycle. The next cycle senses, and the one after it sends.
   a.cycle();
   REQUIRE(c.drain().empty());
   a.cycle();
@@ -109,12 +110,12 @@ TEST_CASE("A session opens as the installed base's do: silence, robot, percepts 
   REQUIRE(a.control->agentsSeen() == 1);
 }
 
-TEST_CASE("A perceptor of interval 3 senses when the agent's cycle count, from connecting on, is a multiple of 3") {
+TEST_CASE("A perceptor with interval 3 senses in every third cycle since the agent connected") {
   Arena a;
   Client c = a.client();
   a.until([&] { return a.agents() == 1; });
   c.send("(scene robot)(syn)");
-  // Connected in cycle 1, loaded in 2, sensed from 3 on: as recorded, the first message has it.
+  // Connected in cycle 1, loaded in 2, sensed from 3 on. As in the recordings, the first message has the percept.
   a.until([&] { return a.agents() == 1 && !a.kernel.root().find("/usr/scene/AgentAspect1/vision"); }, false);
   a.until(
       [&] {
@@ -130,7 +131,7 @@ TEST_CASE("A perceptor of interval 3 senses when the agent's cycle count, from c
   REQUIRE(seen == (counter % 3 == 0 ? "V..V.." : counter % 3 == 1 ? "..V..V" : ".V..V."));
 }
 
-TEST_CASE("init in the message that names the robot is lost with a warning") {
+TEST_CASE("An init in the message that names the robot is ignored with a warning") {
   Arena a;
   Client c = a.client();
   a.until([&] { return a.agents() == 1; });
@@ -138,29 +139,29 @@ TEST_CASE("init in the message that names the robot is lost with a warning") {
   std::vector<std::string> got;
   a.until([&] { return !(got = c.drain()).empty(); });
   REQUIRE(a.logged("no effector registered for predicate init"));
-  REQUIRE(deeds().empty());
+  REQUIRE(actionLog().empty());
   c.send("(init (unum 7)(teamname A))");
-  realise(a, 1);
-  REQUIRE(deeds() == Deeds{"1 init A 7"});
+  applyActions(a, 1);
+  REQUIRE(actionLog() == ActionLog{"1 init A 7"});
 }
 
-TEST_CASE("Messages are realised in order of agents' numbers, predicates in order") {
+TEST_CASE("Messages are applied in the order of agent numbers, and predicates in the order they were sent") {
   Arena a;
   Client one = robot(a), two = robot(a);
-  // The later one first on the wire.
+  // The second agent sends first.
   two.send("(he2 5)(he1 6)");
   two.send("(he1 7)");
   one.send("(he1 1)(he2 2)(he1 3)");
   two.arrive();
   one.arrive();
   a.cycle();
-  REQUIRE(deeds() == Deeds{"1 he1 1", "1 he2 2", "1 he1 3", "2 he2 5", "2 he1 6", "2 he1 7"});
+  REQUIRE(actionLog() == ActionLog{"1 he1 1", "1 he2 2", "1 he1 3", "2 he2 5", "2 he1 6", "2 he1 7"});
 }
 
-TEST_CASE("Each action finds its effector, in whatever order they come") {
+TEST_CASE("Each action finds its effector in any order of actions") {
   Arena a;
   Client c = robot(a);
-  Deeds expected;
+  ActionLog expected;
   const auto say = [&](std::initializer_list<const char*> motors) {
     std::string message;
     for (const char* m : motors) {
@@ -170,7 +171,7 @@ TEST_CASE("Each action finds its effector, in whatever order they come") {
     c.send(message);
     c.arrive();
     a.cycle();
-    REQUIRE(deeds() == expected);
+    REQUIRE(actionLog() == expected);
   };
   say({"he1", "he2"});
   say({"he1", "he2"});
@@ -179,7 +180,7 @@ TEST_CASE("Each action finds its effector, in whatever order they come") {
   say({"he1", "he2", "he1", "he2"});
 }
 
-TEST_CASE("A leaving client's agent goes at the start of the next cycle, the others stay") {
+TEST_CASE("The agent of a client that leaves is removed at the start of the next cycle, and the others stay") {
   Arena a;
   Client one = robot(a), two = robot(a);
   one.leave();
@@ -195,7 +196,7 @@ TEST_CASE("A leaving client's agent goes at the start of the next cycle, the oth
   REQUIRE(a.control->agents()[1]->number() == 3);
 }
 
-TEST_CASE("An agent that is removed loses its connection if that is wanted") {
+TEST_CASE("Removing an agent closes its connection only on request") {
   Arena a;
   Client c = robot(a);
   const bool close = GENERATE(true, false);
@@ -208,20 +209,20 @@ TEST_CASE("An agent that is removed loses its connection if that is wanted") {
     c.send("(he1 1)");
     a.cycle();
     a.cycle();
-    REQUIRE(deeds().empty());
+    REQUIRE(actionLog().empty());
   }
 }
 
-TEST_CASE("Control aspects hear of agents") {
+TEST_CASE("Control aspects are notified of agents that connect and leave") {
   Arena a;
   a.kernel.registerClass<TestRule>();
   a.kernel.create("TestRule", "/sys/server/gamecontrol/rule");
   { Client c = robot(a); }
-  realise(a, 2);
-  REQUIRE(deeds() == Deeds{"come /usr/scene/AgentAspect1", "go /usr/scene/AgentAspect1"});
+  applyActions(a, 2);
+  REQUIRE(actionLog() == ActionLog{"come /usr/scene/AgentAspect1", "go /usr/scene/AgentAspect1"});
 }
 
-TEST_CASE("A perceptor or effector that throws is named, its agent and the host go on") {
+TEST_CASE("A perceptor or effector that throws is named in the log, and its agent and the host go on") {
   Arena a;
   a.kernel.registerClass<TestFault>();
   a.kernel.registerClass<TestBomb>();
@@ -231,13 +232,13 @@ TEST_CASE("A perceptor or effector that throws is named, its agent and the host 
   a.cycle();
   c.drain();
   c.send("(bomb)(he1 1)");
-  realise(a, 1);
+  applyActions(a, 1);
   REQUIRE(a.logged("/usr/scene/AgentAspect1/fault (TestFault) threw and is asked no more: the sensor is broken"));
   REQUIRE(a.logged("/usr/scene/AgentAspect1/bomb (TestBomb) threw: the motor is broken"));
   REQUIRE(c.receive()->find("half") == std::string::npos);
 }
 
-TEST_CASE("Lists that a perceptor leaves open are closed, others' percepts stay whole, and the log names it once") {
+TEST_CASE("A perceptor that leaves lists open is named once, and the percepts of others stay intact") {
   Arena a;
   a.kernel.registerClass<TestSloppy>();
   Client c = robot(a);
@@ -249,7 +250,7 @@ TEST_CASE("Lists that a perceptor leaves open are closed, others' percepts stay 
     a.cycle();
     c.drain();
     c.send("(he1 1)");
-    realise(a, 1);
+    applyActions(a, 1);
     const std::string message = *c.receive();
     CAPTURE(message);
     CHECK_THAT(message, Catch::Contains("(OPEN (rt 1))(SURPLUS 1)("));
@@ -265,7 +266,7 @@ TEST_CASE("Lists that a perceptor leaves open are closed, others' percepts stay 
   CHECK(count("/usr/scene/AgentAspect1/surplus (TestSloppy) closed a list that was not open in sense()") == 1);
 }
 
-TEST_CASE("What a perceptor or effector throws need not be an exception, nor come in the simulation's thread") {
+TEST_CASE("A perceptor or effector may throw something other than an exception, and on a worker thread") {
   Arena a;
   a.kernel.jobs().setThreads(3);
   a.kernel.registerClass<TestFault>();
@@ -278,13 +279,13 @@ TEST_CASE("What a perceptor or effector throws need not be an exception, nor com
   }
   a.cycle();
   for (Client& c : clients) c.send("(odd)(he1 1)");
-  realise(a, 4);
+  applyActions(a, 4);
   REQUIRE(a.logged(
       "/usr/scene/AgentAspect4/odd (TestFault) threw and is asked no more: something that is no std::exception"));
   REQUIRE(a.logged("(TestBomb) threw something that is no std::exception"));
 }
 
-TEST_CASE("An aspect that somebody else removes is no agent from that moment on") {
+TEST_CASE("An agent aspect removed by other code is no longer an agent from that moment on") {
   Arena a;
   Client one = robot(a), two = robot(a);
   AgentAspect* first = a.control->agents()[0];
@@ -296,7 +297,7 @@ TEST_CASE("An aspect that somebody else removes is no agent from that moment on"
   REQUIRE(one.closed());
 }
 
-TEST_CASE("30 agents at once") {
+TEST_CASE("Thirty agents join at once") {
   Arena a;
   std::vector<Client> clients;
   for (int i = 0; i < 30; ++i) clients.push_back(a.client());
@@ -314,7 +315,7 @@ TEST_CASE("30 agents at once") {
   REQUIRE(a.get("messagesDropped").toInteger() == 0);
 }
 
-TEST_CASE("Two ports speak two languages at the same time") {
+TEST_CASE("Two ports use two message formats at the same time in one process") {
   Arena a;
   a.addPort("json", "JsonParser");
   Client sexp = robot(a);
@@ -325,7 +326,7 @@ TEST_CASE("Two ports speak two languages at the same time") {
   sexp.arrive();
   json.arrive();
   a.cycle();
-  REQUIRE(deeds() == Deeds{"1 he1 1.5", "1 init A 3", "2 he1 2.5", "2 init B 7", "2 he2 3"});
+  REQUIRE(actionLog() == ActionLog{"1 he1 1.5", "1 init A 3", "2 he1 2.5", "2 init B 7", "2 he2 3"});
   sexp.drain();
   json.drain();
   a.cycle();
@@ -333,13 +334,13 @@ TEST_CASE("Two ports speak two languages at the same time") {
   REQUIRE(json.receive()->starts_with(R"([["time",["now",)"));
 }
 
-TEST_CASE("The parser is swapped by exchanging one node") {
+TEST_CASE("Replacing the parser node changes the message format") {
   Arena a;
   Node& home = a.kernel.root().require<Node>("/sys/server/gamecontrol");
   home.remove(*home.child("parser"));
   home.create("JsonParser", "parser");
   Client c = robot(a, R"(["scene","robot"])");
   c.send(R"(["he1",2.5])");
-  realise(a, 1);
-  REQUIRE(deeds() == Deeds{"1 he1 2.5"});
+  applyActions(a, 1);
+  REQUIRE(actionLog() == ActionLog{"1 he1 2.5"});
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A house with network, parsers and game control, robots made of test doubles, and TCP clients, all in one thread: a
-/// client that waits for bytes polls the server meanwhile, so nothing here sleeps or depends on timing.
+/// A simulation with network, parsers and game control, robots made of test doubles, and TCP clients, all in one
+/// thread. A client that waits for bytes polls the server meanwhile, so no test sleeps or depends on timing.
 
 #include <arpa/inet.h>
 #include <linux/sockios.h>
@@ -22,13 +22,13 @@
 
 namespace spark::test {
 
-/// What the robots did, in order: "3 he1 1.5".
-inline std::vector<std::string>& deeds() {
+/// The actions of the robots, in order: "3 he1 1.5".
+inline std::vector<std::string>& actionLog() {
   static std::vector<std::string> list;
   return list;
 }
 
-/// `(time (now t))`, as every robot has it.
+/// `(time (now t))`, which every robot has.
 class TestClock : public Perceptor {
   SPARK_CLASS(TestClock, Perceptor)
  public:
@@ -47,7 +47,7 @@ class TestVision : public Perceptor {
   void sense(Predicates& out, const Event&) override { out.open("vision").close(); }
 };
 
-/// Much text, for clients that do not read.
+/// A long text, for clients that do not read.
 class TestNoise : public Perceptor {
   SPARK_CLASS(TestNoise, Perceptor)
  public:
@@ -55,14 +55,14 @@ class TestNoise : public Perceptor {
   void sense(Predicates& out, const Event&) override { out.open("noise").add(std::string(60000, 'x')).close(); }
 };
 
-/// Notes what it was told.
+/// Logs the values that it receives.
 class TestMotor : public Effector {
   SPARK_CLASS(TestMotor, Effector)
  public:
   static void describe(Description<TestMotor>& d) { d.doc("Notes its commands."); }
   std::string act(const Element& action) override {
     if (!action.at(1)) return "(" + name() + " <value>): expected a number.";
-    deeds().push_back(fmt::format("{} {} {}", agent()->outermost().number(), name(), action.at(1).number()));
+    actionLog().push_back(fmt::format("{} {} {}", agent()->outermost().number(), name(), action.at(1).number()));
     return {};
   }
 };
@@ -75,18 +75,18 @@ class TestInit : public Effector {
   std::string predicate() const override { return "init"; }
   std::string act(const Element& action) override {
     const Element team = action.named("teamname"), unum = action.named("unum");
-    deeds().push_back(fmt::format("{} init {} {}", agent()->outermost().number(), team ? team.at(1).text() : "",
-                                  unum ? unum.at(1).integer() : 0));
+    actionLog().push_back(fmt::format("{} init {} {}", agent()->outermost().number(), team ? team.at(1).text() : "",
+                                      unum ? unum.at(1).integer() : 0));
     return {};
   }
 };
 
-/// Reads who joins from `(init ...)`.
+/// Reads the team and number from `(init ...)`.
 class TestNames : public Node, public IJoinPolicy {
   SPARK_CLASS(TestNames, Node)
  public:
   static void describe(Description<TestNames>& d) {
-    d.doc("Reads who joins.");
+    d.doc("Reads team and number.");
     d.implements<IJoinPolicy>();
   }
   std::string_view predicate() const override { return "init"; }
@@ -108,8 +108,8 @@ class TestSync : public Effector, public ISyncEffector {
   std::string act(const Element&) override { return {}; }
 };
 
-/// Scene server whose files are known by heart: "robot", "mute" (no syn effector), "loud" (large percepts); all else is
-/// an error.
+/// A scene server with built-in files: "robot", "mute" (no syn effector), "loud" (large percepts). All other names are
+/// errors.
 class TestScenes : public Node, public ISceneServer {
   SPARK_CLASS(TestScenes, Node)
  public:
@@ -131,7 +131,7 @@ class TestScenes : public Node, public ISceneServer {
     root.create("TestMotor", "he2");
     root.create("TestInit", "init");
     if (file != "mute") root.create("TestSync", "syn");
-    for (const Value& v : arguments) deeds().push_back("argument " + v.text());
+    for (const Value& v : arguments) actionLog().push_back("argument " + v.text());
   }
   void markModified() override { ++modified_; }
   std::uint64_t modifiedCount() const override { return modified_; }
@@ -153,22 +153,22 @@ class Client {
   void leave() {
     if (fd_ >= 0) ::close(std::exchange(fd_, -1));
   }
-  /// A message behind its length.
+  /// Sends a message with its length prefix.
   void send(std::string_view message) {
     const auto n = htonl(static_cast<std::uint32_t>(message.size()));
     raw(std::string(reinterpret_cast<const char*>(&n), 4) + std::string(message));
   }
-  /// Bytes as they are; the server is polled when it has to make room. Stops when the server has closed.
+  /// Sends raw bytes. Polls the server when it has to make room. Stops when the server has closed the connection.
   void raw(std::string_view bytes);
-  /// Returns when everything sent is where the server's next poll finds it.
+  /// Returns when all sent bytes have arrived, so that the server's next poll reads them.
   void arrive() const;
-  /// The next message; polls the server until it is there. Empty when the connection was closed.
+  /// The next message; polls the server until it arrives. Empty if the connection was closed.
   std::optional<std::string> receive();
-  /// What is there now, without waiting.
+  /// The messages that have arrived, without waiting.
   std::vector<std::string> drain();
-  /// True when the server closes the connection (waits for it).
+  /// Waits until the server closes the connection; returns true when it has.
   bool closed();
-  /// Local port: how the server names this client in its log.
+  /// The local address, by which the log names this client.
   std::string name() const;
 
  private:
@@ -180,7 +180,7 @@ class Client {
   bool ended_ = false;
 };
 
-/// The house. Phases are driven by hand.
+/// The simulation. The test drives its phases.
 class Arena {
  public:
   House house;
@@ -191,7 +191,7 @@ class Arena {
   const bool lockstep;
 
   explicit Arena(bool waitsForAgents = false) : lockstep(waitsForAgents) {
-    deeds().clear();
+    actionLog().clear();
     kernel.registerClass<SceneNode>();
     kernel.registerClass<Transform>();
     for (const char* plugin : {"net-tcp", "gamecontrol", "parser-sexp", "parser-json"}) kernel.plugins().use(plugin);
@@ -218,7 +218,7 @@ class Arena {
     net = &kernel.create<IInputSource>("NetServer", "/sys/server/net");
     addPort("agents");
   }
-  /// A port of game control on a free port number.
+  /// Adds a port of game control on a free port number.
   void addPort(const std::string& name, const std::string& parser = {}) {
     kernel.create("TcpPort", "/sys/server/net/" + name);
     kernel.create("LengthPrefixFraming", "/sys/server/net/" + name + "/framing");
@@ -234,12 +234,12 @@ class Arena {
   Value get(const char* name) { return getProperty(*kernel.root().find("/sys/server/gamecontrol"), name); }
   std::size_t agents() const { return control->agents().size(); }
 
-  /// Takes input and runs one cycle, whether the gate is open or not.
+  /// Reads input and runs one cycle, even if the gate is closed.
   void cycle() {
     net->poll();
     run();
   }
-  /// As a run loop: takes input; runs one cycle if the gate is open.
+  /// Like a run loop: reads input, then runs one cycle if the gate is open.
   bool step() {
     net->poll();
     if (!gate->ready(lockstep)) return false;

@@ -5,27 +5,27 @@
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("Bad actions harm nothing but themselves") {
+TEST_CASE("Invalid actions do not affect the valid ones") {
   Arena a;
   Client c = robot(a);
   c.send("(nonsense 1)(he1)(he1 nan)((he1 2))()(he1 abc)atom(he1 3)");
-  realise(a, 3);
-  REQUIRE(deeds() == Deeds{"1 he1 nan", "1 he1 0", "1 he1 3"});
+  applyActions(a, 3);
+  REQUIRE(actionLog() == ActionLog{"1 he1 nan", "1 he1 0", "1 he1 3"});
   REQUIRE(a.logged("no effector registered for predicate nonsense"));
   REQUIRE(a.logged("agent 1 (" + c.name() + "): (he1 <value>): expected a number."));
 }
 
-TEST_CASE("A message with an error keeps what came before, the connection stays") {
+TEST_CASE("A message with an error is applied up to the error, and the connection stays open") {
   Arena a;
   Client c = robot(a);
   c.send("(he1 1))(he1 2)");
-  realise(a, 1);
+  applyActions(a, 1);
   c.send("(he1 3)" + std::string(60000, '('));
-  realise(a, 2);
+  applyActions(a, 2);
   c.send("\x01\x02\xff garbage");
   c.send("(he1 4)");
-  realise(a, 3);
-  REQUIRE(deeds() == Deeds{"1 he1 1", "1 he1 3", "1 he1 4"});
+  applyActions(a, 3);
+  REQUIRE(actionLog() == ActionLog{"1 he1 1", "1 he1 3", "1 he1 4"});
   REQUIRE(a.logged("the rest of that message is ignored"));
 }
 
@@ -36,24 +36,24 @@ TEST_CASE("200,000 nested parentheses over several messages close at most that c
   c.raw(std::string("\x00\x03\x0d\x40", 4));  // and once in a single message that is too long
   REQUIRE(c.closed());
   other.send("(he1 1)");
-  realise(a, 1);
+  applyActions(a, 1);
   REQUIRE(a.agents() == 1);
 }
 
-TEST_CASE("Complaints about one agent are limited") {
+TEST_CASE("The number of log lines about one agent is limited") {
   Arena a;
   Client c = robot(a);
   std::string flood;
   for (int i = 0; i < 5000; ++i) flood += "(bad 1)";
   c.send(flood + "(he1 1)");
-  realise(a, 1);
+  applyActions(a, 1);
   std::size_t lines = 0;
   for (std::size_t at = 0; (at = a.house.text.find("predicate bad", at)) != std::string::npos; ++at) ++lines;
   REQUIRE(lines >= 1);
   REQUIRE(lines <= 10);
 }
 
-TEST_CASE("Scenes that cannot be loaded leave the agent empty and say why") {
+TEST_CASE("A scene that cannot be loaded leaves the agent without a robot, and the log says why") {
   Arena a;
   Client c = a.client();
   a.until([&] { return a.agents() == 1; });
@@ -70,7 +70,7 @@ TEST_CASE("Scenes that cannot be loaded leave the agent empty and say why") {
   a.until([&] { return !(got = c.drain()).empty(); });
 }
 
-TEST_CASE("An agent that names bad scenes in every cycle is refused in the end, and does not fill the log") {
+TEST_CASE("An agent that names bad scenes in every cycle is finally refused and does not fill the log") {
   Arena a;
   Client c = a.client();
   a.until([&] { return a.agents() == 1; });
@@ -92,22 +92,22 @@ TEST_CASE("A second robot is refused") {
   Client c = robot(a);
   const auto children = a.control->agents()[0]->children().size();
   c.send("(scene robot)(he1 1)");
-  realise(a, 1);
+  applyActions(a, 1);
   REQUIRE(a.logged("it has a robot already"));
   REQUIRE(a.control->agents()[0]->children().size() == children);
 }
 
-TEST_CASE("Long texts of a client do not fill the log") {
+TEST_CASE("Long messages of a client do not fill the log") {
   Arena a;
   Client c = robot(a);
   a.house.text.clear();
   c.send("(" + std::string(60000, 'x') + " 1)(scene " + std::string(3000, 'y') + ")(he1 1)");
-  realise(a, 1);
+  applyActions(a, 1);
   REQUIRE(a.logged("no effector registered for predicate xxx"));
   REQUIRE(a.house.text.size() < 2000);
 }
 
-TEST_CASE("More agents than allowed are turned away") {
+TEST_CASE("Agents above maxAgents are refused") {
   Arena a;
   a.set("maxAgents", 1);
   Client one = robot(a);
@@ -116,7 +116,7 @@ TEST_CASE("More agents than allowed are turned away") {
   REQUIRE(a.logged("there are 1 agents already (maxAgents)"));
 }
 
-TEST_CASE("A client that never reads costs a bounded amount and does not disturb the others") {
+TEST_CASE("A client that never reads uses bounded memory and does not disturb the others") {
   Arena a;
   Client other = robot(a);
   Client deaf = a.client();

@@ -7,7 +7,7 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-/// Asks for a robot, then answers every message with `(he1 <messages so far>)`.
+/// Requests a robot, then answers every message with `(he1 <messages so far>)`.
 class TestBehavior : public Behavior {
   SPARK_CLASS(TestBehavior, Behavior)
  public:
@@ -25,7 +25,7 @@ class TestBehavior : public Behavior {
 };
 }  // namespace
 
-TEST_CASE("A behaviour drives an agent with the latency of a connection") {
+TEST_CASE("A behavior controls an agent with the latency of a connection") {
   Arena a;
   a.kernel.registerClass<TestBehavior>();
   auto& b = a.kernel.create<TestBehavior>("TestBehavior", "/usr/agent/b");
@@ -36,20 +36,20 @@ TEST_CASE("A behaviour drives an agent with the latency of a connection") {
   a.cycle();  // thinks
   REQUIRE(b.heard == 1);
   REQUIRE(b.first == Approx(3 * 0.02));
-  REQUIRE(deeds().empty());
+  REQUIRE(actionLog().empty());
   a.cycle();  // acts
-  REQUIRE(deeds() == std::vector<std::string>{"1 he1 1"});
+  REQUIRE(actionLog() == std::vector<std::string>{"1 he1 1"});
   a.cycle();
-  REQUIRE(deeds() == std::vector<std::string>{"1 he1 1", "1 he1 2"});
+  REQUIRE(actionLog() == std::vector<std::string>{"1 he1 1", "1 he1 2"});
 }
 
-TEST_CASE("What a behaviour is about to do and to hear is state") {
+TEST_CASE("The pending actions and percepts of a behavior are part of the state") {
   std::string saved;
   {
     Arena a;
     a.kernel.registerClass<TestBehavior>();
     a.kernel.create("TestBehavior", "/usr/agent/b");
-    for (int i = 0; i < 4; ++i) a.cycle();  // it has just thought of (he1 1)
+    for (int i = 0; i < 4; ++i) a.cycle();  // its last action is (he1 1)
     StateWriter out(true);
     saveTree(*a.kernel.root().find("/sys/server/gamecontrol"), out);
     saved = out.bytes();
@@ -67,15 +67,15 @@ TEST_CASE("What a behaviour is about to do and to hear is state") {
   StateWriter again(true);
   saveTree(control, again);
   REQUIRE(again.bytes() == saved);
-  deeds().clear();
+  actionLog().clear();
   b.first = 0;
   b.heard = 0;
   a.cycle();
-  REQUIRE(deeds() == std::vector<std::string>{"1 he1 1"});
+  REQUIRE(actionLog() == std::vector<std::string>{"1 he1 1"});
   REQUIRE(b.first == Approx(4 * 0.02));
 }
 
-TEST_CASE("Without percept delay a behaviour acts one cycle earlier") {
+TEST_CASE("Without percept delay a behavior acts one cycle earlier") {
   Arena a;
   a.set("perceptDelay", 0);
   a.kernel.registerClass<TestBehavior>();
@@ -85,10 +85,10 @@ TEST_CASE("Without percept delay a behaviour acts one cycle earlier") {
   a.cycle();
   REQUIRE(b.heard == 1);
   a.cycle();
-  REQUIRE(deeds() == std::vector<std::string>{"1 he1 1"});
+  REQUIRE(actionLog() == std::vector<std::string>{"1 he1 1"});
 }
 
-TEST_CASE("Behaviours are agents in tree order, before connections, and need no answer in lockstep") {
+TEST_CASE("Behaviors are agents in tree order and before connections, and lockstep does not wait for their answer") {
   Arena a;
   a.kernel.registerClass<TestBehavior>();
   a.kernel.create("TestBehavior", "/usr/agent/team/one");
@@ -96,13 +96,13 @@ TEST_CASE("Behaviours are agents in tree order, before connections, and need no 
   Client c = a.client();
   a.until([&] { return a.agents() == 3; });
   for (int i = 0; i < 6; ++i) a.cycle();
-  REQUIRE(deeds().size() >= 2);
-  REQUIRE(deeds()[0] == "1 he1 1");
-  REQUIRE(deeds()[1] == "2 he1 1");
+  REQUIRE(actionLog().size() >= 2);
+  REQUIRE(actionLog()[0] == "1 he1 1");
+  REQUIRE(actionLog()[1] == "2 he1 1");
   REQUIRE(a.step());
 }
 
-TEST_CASE("A removed behaviour takes its agent along") {
+TEST_CASE("Removing a behavior removes its agent") {
   Arena a;
   a.kernel.registerClass<TestBehavior>();
   Leaf& b = a.kernel.create("TestBehavior", "/usr/agent/b");
@@ -113,7 +113,7 @@ TEST_CASE("A removed behaviour takes its agent along") {
   REQUIRE(a.agents() == 0);
 }
 
-TEST_CASE("A behaviour written in Lua hears percepts and acts") {
+TEST_CASE("A behavior written in Lua receives percepts and acts") {
   Arena a;
   Leaf& b = a.kernel.create("ScriptBehavior", "/usr/agent/lua");
   scripts(a.kernel).attachText(b, R"lua(
@@ -125,10 +125,10 @@ TEST_CASE("A behaviour written in Lua hears percepts and acts") {
   )lua",
                                "test", true);
   for (int i = 0; i < 5; ++i) a.cycle();
-  REQUIRE(deeds() == std::vector<std::string>{"1 he1 6"});
+  REQUIRE(actionLog() == std::vector<std::string>{"1 he1 6"});
 }
 
-TEST_CASE("A behaviour for which no agent can be made is reported once") {
+TEST_CASE("A behavior that cannot get an agent is reported once") {
   Arena a;
   a.kernel.registerClass<TestBehavior>();
   a.set("createEffector", "NoSuchEffector");

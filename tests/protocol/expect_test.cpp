@@ -9,11 +9,11 @@ namespace {
 
 std::string init(const std::string& team, int unum) { return fmt::format("(init (unum {})(teamname {}))", unum, team); }
 
-/// How a client opens its session.
-/// stepByStep: scene, a message, init, a message, (syn). plain: a robot that has no init.
+/// How a client starts its session. stepByStep: scene, a message, init, a message, (syn). plain: a robot without an
+/// init effector.
 enum class Style { atOnce, inTurn, stepByStep, plain };
 
-/// A client that answers every message with `(he1 <number of the message>)(syn)`, once it is in.
+/// A client that, once it has joined, answers every message with `(he1 <size of the message>)(syn)`.
 struct Player {
   Player(Arena& a, std::string t, int u, Style s) : client(a.client()), team(std::move(t)), unum(u), style(s) {
     if (style == Style::atOnce) {
@@ -42,12 +42,12 @@ struct Player {
   std::string team;
   int unum;
   Style style;
-  int said = 0;  ///< of what brings it in, after its first message
+  int said = 0;  ///< number of joining steps sent, after its first message
   std::vector<std::string> heard;
 };
 
-/// Plays 40 cycles with players in this order of connecting; returns everything that was done, then what was heard
-/// first.
+/// Plays 40 cycles with players that connect in this order; returns all actions, then the first messages of every
+/// player.
 std::vector<std::string> match(const std::vector<int>& order, Style style, int threads = 1) {
   static const std::vector<std::pair<std::string, int>> kPlayers{
       {"Alpha", 1}, {"Alpha", 2}, {"Beta", 1}, {"Beta", 10}, {"Beta", 3}};
@@ -65,7 +65,7 @@ std::vector<std::string> match(const std::vector<int>& order, Style style, int t
     for (auto& p : players) p->play();
     return a.cycles() >= 40;
   });
-  auto all = deeds();
+  auto all = actionLog();
   std::sort(players.begin(), players.end(),
             [](const auto& x, const auto& y) { return std::tie(x->team, x->unum) < std::tie(y->team, y->unum); });
   for (const auto& p : players) all.insert(all.end(), p->heard.begin(), p->heard.begin() + 30);
@@ -74,7 +74,7 @@ std::vector<std::string> match(const std::vector<int>& order, Style style, int t
 
 }  // namespace
 
-TEST_CASE("The clock stands until the expected agents are there, in any mode") {
+TEST_CASE("The simulation waits for the expected agents with and without lockstep") {
   Arena a(true);
   a.set("expect", 2);
   Client one = a.client();
@@ -94,7 +94,7 @@ TEST_CASE("The clock stands until the expected agents are there, in any mode") {
   REQUIRE(a.logged("2 of 2 expected agents are ready."));
 }
 
-TEST_CASE("An expected agent is waited for until its (syn) after init is there, not still on its way") {
+TEST_CASE("The simulation waits for an expected agent until the (syn) after its init has arrived") {
   Arena a(true);
   a.set("expect", 1);
   Client c = a.client();
@@ -105,12 +105,12 @@ TEST_CASE("An expected agent is waited for until its (syn) after init is there, 
     a.net->poll();
     REQUIRE_FALSE(a.gate->ready(true));
   }
-  SECTION("in a message of its own") { c.send("(syn)"); }
+  SECTION("in a separate message") { c.send("(syn)"); }
   SECTION("before another init in one message") { c.send("(syn)" + init("A", 1)); }
   a.until([&] { return a.gate->ready(true); }, false);
 }
 
-TEST_CASE("Expected agents are numbered by team and number, whoever came first, and play the same match") {
+TEST_CASE("Expected agents are numbered by team and number in any connection order and play the same match") {
   const Style style = GENERATE(Style::atOnce, Style::inTurn);
   const auto first = match({0, 1, 2, 3, 4}, style);
   REQUIRE(std::vector<std::string>(first.begin(), first.begin() + 5) ==
@@ -124,8 +124,7 @@ TEST_CASE("Expected agents are numbered by team and number, whoever came first, 
 }
 
 TEST_CASE(
-    "Agents that wait for a message after each thing they say, and robots without init, start and play the same match "
-    "in any order") {
+    "Agents that send step by step and robots without init start and play the same match in any connection order") {
   const Style style = GENERATE(Style::stepByStep, Style::plain);
   const auto first = match({0, 1, 2, 3, 4}, style);
   const char* begin = style == Style::plain ? "argument \"Alpha1\"" : "1 init Alpha 1";
@@ -134,7 +133,7 @@ TEST_CASE(
   REQUIRE(match({2, 4, 0, 3, 1}, style) == first);
 }
 
-TEST_CASE("When nothing more comes for joinWait the match starts with who is there, and the others join as they come") {
+TEST_CASE("After joinWait without news the match starts with the agents that are ready, and the others join later") {
   Arena a(true);
   a.set("expect", 3);
   a.set("joinWait", 0.05);
@@ -142,23 +141,23 @@ TEST_CASE("When nothing more comes for joinWait the match starts with who is the
   first.send("(scene robot)" + init("A", 1) + "(syn)");
   Client mute = a.client();
   Client unfinished = a.client();
-  SECTION("one is ready, one has only named its robot") {
+  SECTION("with one agent ready and one that has only named its robot") {
     unfinished.send("(scene robot)");
     a.until([&] { return a.gate->ready(true); }, false);
     a.cycle();
     REQUIRE(a.agents() == 3);
     REQUIRE(
         a.logged("Of 3 expected agents 1 are ready, and nothing more came for 0.05 s (joinWait): the match starts."));
-    // One program makes its agents one after the other: the first one plays while the second one comes.
+    // One program creates its agents one after the other: the first plays while the second joins.
     Client second = a.client();
     second.send("(scene robot)" + init("A", 2) + "(syn)");
     a.until([&] {
       for (auto* c : {&first, &second})
         for (std::size_t n = c->drain().size(); n > 0; --n) c->send(c == &second ? init("A", 2) + "(syn)" : "(syn)");
-      return std::find(deeds().begin(), deeds().end(), "4 init A 2") != deeds().end();
+      return std::find(actionLog().begin(), actionLog().end(), "4 init A 2") != actionLog().end();
     });
   }
-  SECTION("never, when it is 0 or nobody named a robot") {
+  SECTION("not if joinWait is 0 or no agent has named its robot") {
     a.set("joinWait", GENERATE(0.0, 0.05));
     first.leave();
     if (a.get("joinWait").toNumber() == 0) unfinished.send("(scene robot)");
@@ -169,7 +168,7 @@ TEST_CASE("When nothing more comes for joinWait the match starts with who is the
   }
 }
 
-TEST_CASE("While it waits the host says whom it waits for and what each owes") {
+TEST_CASE("The host reports which agents it waits for and what each must send") {
   Arena a(true);
   a.set("expect", 6);
   a.set("holdReport", 0.01);
@@ -191,7 +190,7 @@ TEST_CASE("While it waits the host says whom it waits for and what each owes") {
   CHECK_FALSE(a.logged(ready.name()));
 }
 
-TEST_CASE("Where no game reads names, expected agents need none: their robot decides who is first") {
+TEST_CASE("Without a join policy expected agents need no init, and their robots determine the order") {
   Arena a(true);
   auto& control = a.kernel.root().require<Node>("/sys/server/gamecontrol");
   control.remove(*control.find("names"));
@@ -212,19 +211,19 @@ TEST_CASE("Where no game reads names, expected agents need none: their robot dec
   a.until([&] {
     for (auto* c : {&first, &second})
       for (std::size_t n = c->drain().size(); n > 0; --n) c->send("(he1 1)(syn)");
-    return std::count(deeds().begin(), deeds().end(), "2 he1 1") > 0;
+    return std::count(actionLog().begin(), actionLog().end(), "2 he1 1") > 0;
   });
-  REQUIRE(deeds().size() > 3);
-  CHECK(deeds()[0] == "argument \"Alpha\"");
-  CHECK(deeds()[1] == "argument \"Bravo\"");
-  CHECK(deeds()[2] == "1 init A 9");  // what it said during the hold
+  REQUIRE(actionLog().size() > 3);
+  CHECK(actionLog()[0] == "argument \"Alpha\"");
+  CHECK(actionLog()[1] == "argument \"Bravo\"");
+  CHECK(actionLog()[2] == "1 init A 9");  // the init sent during the hold
 }
 
-TEST_CASE("What agents are told does not depend on the number of threads") {
+TEST_CASE("The messages to agents do not depend on the number of threads") {
   REQUIRE(match({0, 1, 2, 3, 4}, Style::atOnce, 4) == match({0, 1, 2, 3, 4}, Style::atOnce, 1));
 }
 
-TEST_CASE("A client that waits for a first message gets a minimal one, the others none") {
+TEST_CASE("A client that waits for a first message gets a minimal one, and the others get none") {
   Arena a(true);
   a.set("expect", 2);
   a.set("holdWait", 0.01);
@@ -248,7 +247,7 @@ TEST_CASE("A client that waits for a first message gets a minimal one, the other
   REQUIRE(complete.drain().empty());
 }
 
-TEST_CASE("Who leaves during the hold is not counted, who comes on top joins afterwards") {
+TEST_CASE("An agent that leaves during the hold is not counted, and an additional agent joins afterwards") {
   Arena a(true);
   a.set("expect", 2);
   const auto ready = [&](const std::string& team, int unum) {
@@ -279,7 +278,7 @@ TEST_CASE("Who leaves during the hold is not counted, who comes on top joins aft
   a.until([&] {
     for (auto* c : {&late, &last})
       for (std::size_t n = c->drain().size(); n > 0; --n) c->send("(syn)");
-    return deeds().size() >= 2;
+    return actionLog().size() >= 2;
   });
-  REQUIRE(deeds() == std::vector<std::string>{"1 init A 9", "2 init B 5"});
+  REQUIRE(actionLog() == std::vector<std::string>{"1 init A 9", "2 init B 5"});
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Monitor messages as text: their shape, their numbers, and a list of nodes.
+/// Monitor messages as text: their shape, their numbers, and the entries of their environment.
 
 #include <cmath>
 #include <cstdlib>
@@ -11,9 +11,9 @@
 
 namespace spark::test {
 
-/// A message taken apart: what is no number, and the numbers.
+/// A message split into its shape and its numbers.
 struct FrameText {
-  std::string shape;  ///< every number is a '#'
+  std::string shape;  ///< the text, with a '#' for every number
   std::vector<double> numbers;
 
   explicit FrameText(const std::string& message) {
@@ -31,7 +31,7 @@ struct FrameText {
   }
 
  private:
-  /// The end of the number that is a whole word at `i`; `i` when there is none.
+  /// The end of the number that starts at `i` and is a whole word; `i` if there is none.
   static std::size_t numberEnd(const std::string& text, std::size_t i) {
     const std::size_t end = text.find_first_not_of("0123456789+-.e", i);
     const bool isNumber = end != std::string::npos && end > i && (text[end] == ' ' || text[end] == ')') &&
@@ -42,7 +42,7 @@ struct FrameText {
 
 inline bool isFull(const std::string& message) { return message.find(")(RSG 0 1)(") != std::string::npos; }
 
-/// What two messages differ in: "" when their shapes are the same and all numbers within `tolerance`.
+/// The first difference of two messages: "" if their shapes are equal and all numbers are within `tolerance`.
 inline std::string difference(const std::string& expected, const std::string& found, double tolerance) {
   const FrameText a(expected), b(found);
   if (a.shape != b.shape) {
@@ -58,7 +58,7 @@ inline std::string difference(const std::string& expected, const std::string& fo
   return {};
 }
 
-/// The value of an entry of the environment, e.g. "3" of `(play_mode 3)`; "" when the message has none.
+/// The value of an entry of the environment, e.g. "3" of `(play_mode 3)`; "" if the message has no such entry.
 inline std::string entry(const std::string& message, const std::string& name) {
   const std::size_t end = message.find(")(R"), at = message.find("(" + name + " ");
   if (at == std::string::npos || at > end) return {};

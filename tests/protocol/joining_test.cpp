@@ -2,22 +2,22 @@
 
 #include "arena.h"
 
-// How agents come into a match that goes on, in lockstep: who is waited for from when on, and who cannot stop the
-// others.
+// How agents join a running match in lockstep: from when on the simulation waits for an agent, and which agents cannot
+// block the others.
 
 using namespace spark;
 using namespace spark::test;
 
 namespace {
 
-/// Connects and cycles until the agent is there.
+/// Connects and runs cycles until the agent exists.
 Client connect(Arena& a) {
   const auto before = a.agents();
   Client c = a.client();
   a.until([&] { return a.agents() > before; });
   return c;
 }
-/// Waits for messages of `c`; counts those that come until some cycles in a row could not start.
+/// Counts the messages of `c` until the simulation is blocked (200 tries without a cycle).
 std::size_t messagesUntilBlocked(Arena& a, Client& c) {
   std::size_t n = 0;
   for (int blocked = 0; blocked < 200;) {
@@ -26,7 +26,7 @@ std::size_t messagesUntilBlocked(Arena& a, Client& c) {
   }
   return n;
 }
-/// Cycles until `c` has a message, `answering` answering theirs meanwhile; returns how many it has.
+/// Runs cycles until `c` has a message, while `answering` answer theirs; returns the number of messages.
 std::size_t firstMessages(Arena& a, Client& c, const std::vector<Client*>& answering = {}) {
   std::size_t n = 0;
   a.until([&] {
@@ -36,12 +36,12 @@ std::size_t firstMessages(Arena& a, Client& c, const std::vector<Client*>& answe
   });
   return n;
 }
-/// A client as the FC Portugal code base writes it: (scene ...) alone, a message, (init ...), three times (syn) and a
+/// A client like that of the FC Portugal code base: (scene ...) alone, a message, (init ...), three times (syn) and a
 /// message; then a (syn) for every message.
 class Portugal {
  public:
   Portugal(Arena& a, int unum) : client_(a.client()), unum_(unum) { client_.send("(scene robot)"); }
-  /// Reads what is there; answers as far as it has got.
+  /// Reads what has arrived and sends the next step.
   void play() {
     const auto messages = client_.drain();
     heard_ += messages.size();
@@ -61,13 +61,13 @@ class Portugal {
 
 }  // namespace
 
-TEST_CASE("(scene ...)(syn): the first percepts go out without a further (syn), the second do not") {
+TEST_CASE("After (scene ...)(syn) the first percepts need no further (syn), and the second do") {
   Arena a(true);
   Client c = connect(a);
   c.send("(scene robot)(syn)");
   c.arrive();
   REQUIRE(messagesUntilBlocked(a, c) == 1);
-  SECTION("an answer without (syn) is none") { c.send("(init (unum 1)(teamname A))"); }
+  SECTION("an answer without (syn) does not count") { c.send("(init (unum 1)(teamname A))"); }
   c.arrive();
   REQUIRE(messagesUntilBlocked(a, c) == 0);
   c.send("(syn)");
@@ -75,7 +75,7 @@ TEST_CASE("(scene ...)(syn): the first percepts go out without a further (syn), 
   REQUIRE(messagesUntilBlocked(a, c) == 1);
 }
 
-TEST_CASE("A (syn) of its own before (scene ...) counts as well") {
+TEST_CASE("A separate (syn) before (scene ...) counts as well") {
   Arena a(true);
   Client c = connect(a);
   c.send("(syn)");
@@ -86,7 +86,7 @@ TEST_CASE("A (syn) of its own before (scene ...) counts as well") {
   REQUIRE(messagesUntilBlocked(a, c) == 1);
 }
 
-TEST_CASE("What a client that sends (syn) beside (scene ...) answers first acts in the very next cycle") {
+TEST_CASE("The first answer of a client that sends (syn) with (scene ...) acts in the very next cycle") {
   Arena a(true);
   Client c = connect(a);
   c.send("(scene robot)(syn)");
@@ -94,11 +94,11 @@ TEST_CASE("What a client that sends (syn) beside (scene ...) answers first acts 
   messagesUntilBlocked(a, c);
   const auto before = a.cycles();
   c.send("(init (unum 1)(teamname A))(syn)");
-  a.until([&] { return !deeds().empty(); });
+  a.until([&] { return !actionLog().empty(); });
   REQUIRE(a.cycles() == before + 1);
 }
 
-TEST_CASE("A client that has never sent (syn) is not waited for and is told what every cycle brings") {
+TEST_CASE("The simulation does not wait for a client that has never sent (syn), and sends it every cycle's percepts") {
   Arena a(true);
   a.set("joinPace", 0);
   Client player = connect(a);
@@ -117,8 +117,8 @@ TEST_CASE("A client that has never sent (syn) is not waited for and is told what
     player.drain();
   }
   REQUIRE(told == 21);
-  REQUIRE(deeds() == std::vector<std::string>{"2 init A 2"});
-  SECTION("from its first (syn) on it is waited for") {
+  REQUIRE(actionLog() == std::vector<std::string>{"2 init A 2"});
+  SECTION("the simulation waits for it after its first (syn)") {
     watcher.send("(syn)");
     watcher.arrive();
     REQUIRE(messagesUntilBlocked(a, watcher) == 0);
@@ -135,7 +135,7 @@ TEST_CASE("A client that has never sent (syn) is not waited for and is told what
 }
 
 TEST_CASE(
-    "Clients that answer only when nothing more comes join also alone: cycles are paced until somebody sends (syn)") {
+    "A client that answers only after a pause can join alone, since cycles are paced until an agent sends (syn)") {
   Arena a(true);
   a.set("joinPace", 3600.0);
   Client c = connect(a);
@@ -153,7 +153,7 @@ TEST_CASE(
   REQUIRE(a.step());
 }
 
-TEST_CASE("A newcomer that never sends (syn) slows a match for its first messages only") {
+TEST_CASE("A new client that never sends (syn) slows a match only for its first messages") {
   Arena a(true);
   a.set("joinPace", 0.001);
   Client player = connect(a), watcher = connect(a);
@@ -169,8 +169,7 @@ TEST_CASE("A newcomer that never sends (syn) slows a match for its first message
   a.until([&] { return play(), told >= 60; });
 }
 
-TEST_CASE(
-    "Eleven clients that send scene and init without (syn) and wait join a match in lockstep, whoever plays in it") {
+TEST_CASE("Eleven clients that send scene and init without (syn) join a match in lockstep next to another player") {
   Arena a(true);
   a.set("joinPace", 0.0005);
   Client host = connect(a);
@@ -189,12 +188,12 @@ TEST_CASE(
   a.until([&] { return play(), a.cycles() >= from + 50; });
   REQUIRE(a.get("messagesDropped").toInteger() == 0);
   std::vector<std::string> inits;
-  for (const auto& deed : deeds())
-    if (deed.find("init") != deed.npos) inits.push_back(deed);
+  for (const auto& action : actionLog())
+    if (action.find("init") != action.npos) inits.push_back(action);
   REQUIRE(inits.size() == 11);
 }
 
-TEST_CASE("One program leads eleven agents, reads each in turn, and answers at once or when it has read all") {
+TEST_CASE("A program with eleven agents may answer each message at once or all after reading the last") {
   const bool atOnce = GENERATE(true, false);
   Arena a(true);
   a.set("answerWait", 0.001);
@@ -203,7 +202,7 @@ TEST_CASE("One program leads eleven agents, reads each in turn, and answers at o
     team.push_back(a.client());
     team.back().send("(scene robot)(syn)");
     team.back().arrive();
-    a.step();  // so that they do not come in one cycle
+    a.step();  // so that they join in different cycles
   }
   std::vector<std::size_t> told(team.size(), 0);
   for (int round = 0; round < 20; ++round) {
@@ -218,7 +217,8 @@ TEST_CASE("One program leads eleven agents, reads each in turn, and answers at o
   REQUIRE(a.agents() == 11);
 }
 
-TEST_CASE("An agent is waited for though another joins; for answerWait only until that one has its first percepts") {
+TEST_CASE(
+    "The simulation waits for a player while another agent joins, but only for answerWait before its first percepts") {
   Arena a(true);
   a.set("answerWait", 3600.0);
   Client player = connect(a);
@@ -239,7 +239,7 @@ TEST_CASE("An agent is waited for though another joins; for answerWait only unti
 }
 
 namespace {
-/// Plays with an agent until it is trusted: it answers every message.
+/// Plays with an agent until it is trusted, which means that it has answered enough messages.
 void playUntilTrusted(Arena& a, Client& player) {
   int answered = 0;
   a.until([&] {
@@ -249,12 +249,10 @@ void playUntilTrusted(Arena& a, Client& player) {
 }
 }  // namespace
 
-TEST_CASE(
-    "Strangers who join a match in lockstep and do not answer, again and again, keep it waiting for joinBudget in "
-    "sum") {
+TEST_CASE("New agents that join a match in lockstep and never answer delay it by at most joinBudget in total") {
   Arena a(true);
   a.set("joinBudget", 0.02);
-  a.set("joinPace", 3600.0);  // new agents that have not sent (syn) would stop it, too
+  a.set("joinPace", 3600.0);  // new agents that have not sent (syn) would block it, too
   a.set("syncTimeout", 3600.0);
   const bool says = GENERATE(true, false);
   Client player = a.client();
@@ -272,7 +270,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("Without agents that have proved themselves nobody is kept waiting: the budget is not touched") {
+TEST_CASE("Without trusted agents in the match the joinBudget does not apply") {
   Arena a(true);
   a.set("joinBudget", 0);
   a.set("syncTimeout", 0);
@@ -285,8 +283,7 @@ TEST_CASE("Without agents that have proved themselves nobody is kept waiting: th
   REQUIRE(a.cycles() == from);
 }
 
-TEST_CASE(
-    "In lockstep robots of strangers are built twice maxAgents at once and then few a second, expected ones always") {
+TEST_CASE("In lockstep robots of untrusted agents are built 2 maxAgents at once, then a few per second") {
   const bool crowd = GENERATE(false, true);
   Arena a(true);
   if (crowd) a.set("maxAgents", 1000);
@@ -306,7 +303,7 @@ TEST_CASE(
   REQUIRE(a.get("agentsSeen").toInteger() < (crowd ? 202 : 190));
 }
 
-TEST_CASE("Clients that connect, complain and leave again and again write a bounded number of lines") {
+TEST_CASE("Clients that repeatedly connect, cause errors and leave write a bounded number of log lines") {
   Arena a(true);
   for (int i = 0; i < 400; ++i) {
     Client stranger = a.client();
@@ -322,7 +319,7 @@ TEST_CASE("Clients that connect, complain and leave again and again write a boun
   REQUIRE(lines < 400);
 }
 
-TEST_CASE("Who cannot answer is not waited for") {
+TEST_CASE("The simulation does not wait for a client that cannot answer") {
   Arena a(true);
   Client c = connect(a);
   SECTION("an idle connection") {}
@@ -337,7 +334,7 @@ TEST_CASE("Who cannot answer is not waited for") {
   for (int i = 0; i < 40; ++i) REQUIRE(a.step());
 }
 
-TEST_CASE("A perceptor's turn does not depend on how long the client hesitated before it named its robot") {
+TEST_CASE("The cycles in which a perceptor senses do not depend on when the client names its robot") {
   Arena a(true);
   const int hesitation = GENERATE(0, 1, 2, 3, 4, 5);
   Client c = connect(a);
@@ -354,7 +351,7 @@ TEST_CASE("A perceptor's turn does not depend on how long the client hesitated b
   REQUIRE(seen.substr(0, 7) == "V..V..V");
 }
 
-TEST_CASE("Clients without a robot are closed after idleLimit, others not") {
+TEST_CASE("Clients without a robot are closed after idleLimit, and others are not") {
   Arena a(true);
   Client player = connect(a), silent = connect(a), chatty = connect(a);
   player.send("(scene robot)(syn)");
@@ -372,7 +369,7 @@ TEST_CASE("Clients without a robot are closed after idleLimit, others not") {
   REQUIRE(a.control->agents()[0]->number() == 1);
 }
 
-TEST_CASE("Idle connections take nobody's place") {
+TEST_CASE("Idle connections do not count towards maxAgents") {
   Arena a;
   a.set("maxAgents", 2);
   std::vector<Client> idle;
@@ -387,7 +384,7 @@ TEST_CASE("Idle connections take nobody's place") {
   REQUIRE(a.logged("there are 2 agents already (maxAgents)"));
 }
 
-TEST_CASE("On a full port the oldest client that never said anything makes room, one that spoke does not") {
+TEST_CASE("On a full port the oldest client that never sent anything is closed, and one that did is kept") {
   Arena a;
   setProperty(a.port(), "maxConnections", 3);
   setProperty(a.port(), "makeRoom", true);
@@ -410,12 +407,12 @@ TEST_CASE("On a full port the oldest client that never said anything makes room,
 }
 
 namespace {
-/// A run loop as game control sees it.
+/// The part of a run loop that game control uses.
 class TestLoop : public Node, public ISimulation {
   SPARK_CLASS(TestLoop, Node)
  public:
   static void describe(Description<TestLoop>& d) {
-    d.doc("Tells how its cycles come.");
+    d.doc("Reports its kind of cycles.");
     d.implements<ISimulation>();
   }
   void run() override {}
@@ -430,7 +427,7 @@ class TestLoop : public Node, public ISimulation {
   bool isPaced = true, waits = false;
 };
 
-/// How many of seven agents that ask for a robot at once have one after each cycle.
+/// The number of robots after each cycle, for seven agents that request one at the same time.
 std::vector<int> robotsByCycle(bool paced, bool lockstep, bool sync) {
   Arena a;
   a.kernel.registerClass<TestLoop>();
@@ -456,16 +453,16 @@ std::vector<int> robotsByCycle(bool paced, bool lockstep, bool sync) {
 }
 }  // namespace
 
-TEST_CASE("In real time a cycle loads loadsPerCycle robots and the next ones the others; elsewhere all load at once") {
+TEST_CASE("In real time each cycle loads at most loadsPerCycle robots, and otherwise all load at once") {
   CHECK(robotsByCycle(true, false, false) == std::vector<int>{3, 6, 7});
   CHECK(robotsByCycle(false, false, false) == std::vector<int>{7});
   CHECK(robotsByCycle(true, true, false) == std::vector<int>{7});
   CHECK(robotsByCycle(true, false, true) == std::vector<int>{7});
 }
 
-TEST_CASE("What an agent says while its robot waits to be loaded is kept for the robot") {
+TEST_CASE("Actions that arrive before the robot is loaded are kept for the robot") {
   for (const int loads : {1, 100}) {
-    deeds().clear();
+    actionLog().clear();
     Arena a;
     a.kernel.registerClass<TestLoop>();
     a.kernel.create("TestLoop", "/sys/server/simulation");
@@ -481,15 +478,15 @@ TEST_CASE("What an agent says while its robot waits to be loaded is kept for the
     a.cycle();
     say("(he1 7)");
     for (int cycle = 0; cycle < 10; ++cycle) a.cycle();
-    std::vector<std::string> found = deeds(), expected;
+    std::vector<std::string> found = actionLog(), expected;
     for (int agent = 1; agent <= 5; ++agent)
-      for (const char* deed : {" he1 7", " init t 1"}) expected.push_back(std::to_string(agent) + deed);
+      for (const char* action : {" he1 7", " init t 1"}) expected.push_back(std::to_string(agent) + action);
     std::sort(found.begin(), found.end());
     CHECK(found == expected);
   }
 }
 
-TEST_CASE("Robots are files below robotFolder") {
+TEST_CASE("Robot files must be below robotFolder") {
   Arena a;
   a.set("robotFolder", "rsg/agent/");
   Client c = connect(a);

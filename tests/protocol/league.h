@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The 3D league's house in process, cycle by cycle, without sockets.
+/// The 3D league in process, cycle by cycle, without sockets.
 
 #include <memory>
 #include <string>
@@ -14,11 +14,11 @@
 
 namespace spark::test {
 
-/// The league's house without its network: agents and monitors are fake connections.
+/// The league without its network: agents and monitors are fake connections.
 class League : public House {
  public:
-  /// `field`: its scene file; empty: the config's. `scenes`: a folder that holds rsg/..., asked first; empty: the
-  /// project's own. `settings`: as --set gives them.
+  /// `field`: its scene file; empty: the one of the config. `scenes`: a folder that holds rsg/... and takes precedence;
+  /// empty: only the project's scenes. `settings`: options in the format of --set.
   explicit League(const std::string& field = {}, const std::filesystem::path& scenes = {},
                   const std::vector<std::pair<std::string, Value>>& settings = {}) {
     const auto share = pluginFolder().parent_path() / "share" / "spark";

@@ -6,7 +6,7 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-/// Connects a robot and answers until the clock waits for it.
+/// Connects a robot and waits for its first percepts.
 Client joined(Arena& a, std::string_view scene = "(scene robot)(syn)") {
   Client c = a.client();
   const auto before = a.agents();
@@ -16,7 +16,7 @@ Client joined(Arena& a, std::string_view scene = "(scene robot)(syn)") {
   a.until([&] { return !(got = c.drain()).empty(); });
   return c;
 }
-/// Lockstep cycles until `n` tries in a row found the clock waiting.
+/// Runs cycles until the simulation is blocked (200 tries without a cycle); returns their number.
 int cyclesUntilBlocked(Arena& a) {
   int cycles = 0;
   for (int blocked = 0; blocked < 200;) {
@@ -29,7 +29,7 @@ int cyclesUntilBlocked(Arena& a) {
 }
 }  // namespace
 
-TEST_CASE("The clock waits for (syn), and each gives one cycle") {
+TEST_CASE("The simulation waits for (syn), and each (syn) allows one cycle") {
   Arena a(true);
   Client c = joined(a);
   REQUIRE(cyclesUntilBlocked(a) == 0);
@@ -41,7 +41,7 @@ TEST_CASE("The clock waits for (syn), and each gives one cycle") {
   }
 }
 
-TEST_CASE("Three syns in one message, or in three messages already there, give one cycle") {
+TEST_CASE("Three syns in one message or in three messages that have arrived allow one cycle") {
   Arena a(true);
   Client c = joined(a);
   cyclesUntilBlocked(a);
@@ -55,7 +55,7 @@ TEST_CASE("Three syns in one message, or in three messages already there, give o
   REQUIRE(cyclesUntilBlocked(a) == 1);
 }
 
-TEST_CASE("The position of (syn) does not matter, everything that was received is realised") {
+TEST_CASE("The position of (syn) does not matter, and all actions received are applied") {
   Arena a(true);
   Client c = joined(a);
   cyclesUntilBlocked(a);
@@ -63,10 +63,10 @@ TEST_CASE("The position of (syn) does not matter, everything that was received i
   c.send("(he2 2)");
   c.arrive();
   REQUIRE(cyclesUntilBlocked(a) == 1);
-  REQUIRE(deeds() == std::vector<std::string>{"1 he1 1", "1 he2 2"});
+  REQUIRE(actionLog() == std::vector<std::string>{"1 he1 1", "1 he2 2"});
 }
 
-TEST_CASE("All agents that have sent (syn) are waited for") {
+TEST_CASE("The simulation waits for all agents that have sent (syn)") {
   Arena a(true);
   Client one = joined(a);
   one.send("(syn)");
@@ -87,7 +87,7 @@ TEST_CASE("All agents that have sent (syn) are waited for") {
   REQUIRE(cyclesUntilBlocked(a) == 1);
 }
 
-TEST_CASE("An agent that falls silent is closed after syncTimeout, the others go on") {
+TEST_CASE("A silent agent is closed after syncTimeout, and the others continue") {
   Arena a(true);
   a.set("syncTimeout", 0.02);
   Client silent = joined(a);
@@ -97,7 +97,7 @@ TEST_CASE("An agent that falls silent is closed after syncTimeout, the others go
   REQUIRE(a.step());
 }
 
-TEST_CASE("A disconnect frees the clock") {
+TEST_CASE("A disconnect lets the simulation continue") {
   Arena a(true);
   Client c = joined(a);
   REQUIRE(cyclesUntilBlocked(a) == 0);
@@ -105,7 +105,7 @@ TEST_CASE("A disconnect frees the clock") {
   a.until([&] { return a.agents() == 0; });
 }
 
-TEST_CASE("Out of lockstep nobody is waited for, unless game control is told to") {
+TEST_CASE("Without lockstep the simulation does not wait for agents unless game control's sync is set") {
   Arena a(true);
   Client c = joined(a);
   REQUIRE(a.gate->ready(false));
@@ -113,14 +113,14 @@ TEST_CASE("Out of lockstep nobody is waited for, unless game control is told to"
   REQUIRE_FALSE(a.gate->ready(false));
 }
 
-TEST_CASE("With a longer step agents act and sense in some cycles only, and the clock waits for them only there") {
+TEST_CASE("With agentStep agents act and sense only in some cycles, and the simulation waits only in those") {
   Arena a(true);
   a.set("agentStep", 0.06);
   Client c = joined(a);
   c.send("(syn)");
   c.arrive();
   cyclesUntilBlocked(a);
-  // the clock waits: each answer lets three cycles pass and brings one message
+  // Each answer allows three cycles and brings one message.
   for (int i = 0; i < 4; ++i) {
     c.drain();
     c.send("(syn)");
@@ -129,7 +129,7 @@ TEST_CASE("With a longer step agents act and sense in some cycles only, and the 
     REQUIRE(c.receive().has_value());
     REQUIRE(c.drain().empty());
   }
-  a.set("agentStep", 0.024);  // due in less than 5 ms is due
+  a.set("agentStep", 0.024);  // a step that is due in less than 5 ms is due now
   c.send("(syn)");
   c.arrive();
   cyclesUntilBlocked(a);

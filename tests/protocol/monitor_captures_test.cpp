@@ -3,8 +3,8 @@
 #include "frame_text.h"
 #include "recorded_session.h"
 
-// What monitors get while recorded sessions are played again: the same messages at the same time, full or not, node by
-// node, with the same numbers to the last digit where nothing was random.
+// Monitor messages while recorded sessions are replayed: the same messages at the same time, full or not, node by node,
+// with the same numbers where the recording had no randomness.
 
 using namespace spark;
 using namespace spark::test;
@@ -15,7 +15,7 @@ struct Session {
   Recording recording;
   std::vector<std::string> frames;
 
-  /// `ownScenes`: the project's field and robots; else the original ones.
+  /// `ownScenes`: use the project's field and robots instead of the original ones.
   explicit Session(const std::string& name, int cycles = 1 << 20, bool ownScenes = true)
       : recording(referenceFolder() / "captures" / (name + ".jsonl")) {
     const bool spl = name.starts_with("spl/");
@@ -26,7 +26,7 @@ struct Session {
     replay.play(std::min(cycles, recording.cycles));
     frames = std::move(replay.frames);
   }
-  /// The SPL's meshes of goals are white; in all else the recordings are of the same field.
+  /// The goal meshes of the SPL are white. Otherwise the recordings show the same field.
   void paintGoals() {
     for (std::string& frame : recording.frames)
       for (const char* paint : {"naogoalnet yellow", "naogoalnet sky-blue"})
@@ -34,7 +34,7 @@ struct Session {
           frame.replace(at, 16, paint);
   }
   const std::string& recorded(std::size_t i) const { return recording.frames.at(i); }
-  /// What the first `count` messages differ in, with the message's number.
+  /// The first difference within the first `count` messages, with the message's number.
   std::string difference(std::size_t count, double tolerance) const {
     for (std::size_t i = 0; i < count; ++i) {
       if (i >= frames.size() || i >= recording.frames.size())
@@ -46,7 +46,7 @@ struct Session {
   }
 };
 
-/// Counts where a text stands.
+/// The number of occurrences of `what` in a text.
 int count(const std::string& text, const std::string& what) {
   int n = 0;
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
@@ -61,11 +61,11 @@ std::vector<std::string> linesOf(const std::filesystem::path& file) {
   return out;
 }
 
-/// What eight messages say that a command did: changes of the environment but for time, full messages, markers.
+/// The effects of a command that eight messages show: changes of the environment except time, full messages, markers.
 struct Effects {
   std::string env;
   int fulls = 0, marks = 0;
-  std::string moved;  ///< the message in which a whole robot moved first
+  std::string moved;  ///< the first message in which a whole robot moved
 
   void add(const std::string& message) {
     if (isFull(message)) {
@@ -79,7 +79,7 @@ struct Effects {
   }
 };
 
-/// Two robots of the SPL's server at rest, and a trainer.
+/// Two robots of the SPL server at rest, and a trainer.
 struct Rehearsal {
   League league{"", {}, {{"compat", "F"}, {"/sys/server/gamecontrol.sync", false}}};
   FakeConnection& monitor = league.connectMonitor();
@@ -99,7 +99,7 @@ struct Rehearsal {
     for (int i = 0; i < 3; ++i) next();
     league.fromAgent(*agents.back(), beam);
   }
-  /// The next message, "" when one is left out.
+  /// The next message, "" if no message is due.
   std::string next() {
     league.run(2);
     for (FakeConnection* a : agents) a->read();
@@ -113,7 +113,7 @@ void skipWithoutReference() {
 
 }  // namespace
 
-TEST_CASE("sessions of one robot give the recorded messages from the first full one on") {
+TEST_CASE("Sessions of one robot give the recorded messages from the first full one on") {
   skipWithoutReference();
   struct Row {
     const char* name;
@@ -128,8 +128,7 @@ TEST_CASE("sessions of one robot give the recorded messages from the first full 
   CHECK(session.difference(row.messages, 1e-5) == "");
 }
 
-TEST_CASE(
-    "a ball that a trainer throws takes the recorded way, begun at most one monitor period from the recorded time") {
+TEST_CASE("A ball moved by a trainer takes the recorded path and starts at most one monitor period off") {
   skipWithoutReference();
   const Session session(GENERATE("mainline/ball-bounce-and-roll", "spl/ball-bounce-and-roll"));
   CHECK(session.difference(20, 1e-5) == "");
@@ -156,12 +155,11 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "four robots of two teams: the full messages of connecting, loading, joining and being killed, and a marker") {
+TEST_CASE("Four robots of two teams give the recorded full messages and marker") {
   skipWithoutReference();
   const Session session("mainline/four-agents");
   REQUIRE(session.frames.size() + 1 >= session.recording.frames.size());
-  // The robots burst apart in another way each time, so only the shapes of full messages are compared.
+  // The robots separate differently each time, so only the shapes of full messages are compared.
   for (std::size_t i = 0; i < 4; ++i) {
     INFO("message " << i);
     CHECK(FrameText(session.recorded(i)).shape == FrameText(session.frames[i]).shape);
@@ -182,7 +180,7 @@ TEST_CASE(
   CHECK(FrameText(from(session.recording.frames, isFull)).shape == FrameText(from(session.frames, isFull)).shape);
 }
 
-TEST_CASE("each command of the recorded trainer has the recorded effect within eight messages") {
+TEST_CASE("Each command of the recorded trainer has the recorded effect within eight messages") {
   skipWithoutReference();
   const auto folder = referenceFolder() / "captures" / "spl";
   const auto recorded = linesOf(folder / "monitor-trainer-commands.txt");
@@ -192,7 +190,7 @@ TEST_CASE("each command of the recorded trainer has the recorded effect within e
     const std::size_t blank = line.find(' '), at = std::stoul(line);
     const std::string command = line.substr(blank + 1);
     INFO(at << " " << command);
-    // A coin decided for the right then.
+    // In the recording the random choice was the right team.
     rehearsal.league.fromMonitor(rehearsal.monitor, command == "(kickOff None)" ? "(kickOff Right)" : command);
     if (command == "(killsim)") {
       rehearsal.league.run(2);
@@ -211,8 +209,8 @@ TEST_CASE("each command of the recorded trainer has the recorded effect within e
     if (expected.moved.empty()) continue;
     const FrameText there(expected.moved), here(found.moved);
     REQUIRE(here.numbers.size() > 16);
-    // The torso. At a kick-off its height says only how it came to rest; when it is turned, its posture decides whether
-    // it is cleared from the circle.
+    // The torso. After a kick-off its height depends on how the robot came to rest. If the command turned it, its
+    // posture determines whether it is moved out of the circle.
     const bool kickOff = command.starts_with("(kickOff"),
                turned = command.find("(move") != std::string::npos || command.find("(rot") != std::string::npos;
     for (std::size_t i = turned ? 13 : 12; i < (kickOff ? 14u : 15u); ++i)

@@ -7,7 +7,7 @@
 #include "roboviz.h"
 #include "spark/script_server.h"
 
-// A match is recorded by one house and played by another: a monitor of the second sees what the first one logged.
+// One simulation records a match and another plays it: a monitor of the second must see what the first logged.
 
 using namespace spark;
 using namespace spark::test;
@@ -24,7 +24,7 @@ struct TemporaryFile {
   ~TemporaryFile() { std::filesystem::remove(path); }
 };
 
-/// The house of logplayer.lua without its network.
+/// The simulation of logplayer.lua without its network.
 struct Cinema : House {
   explicit Cinema(const std::filesystem::path& log) {
     const auto share = pluginFolder().parent_path() / "share" / "spark";
@@ -45,7 +45,7 @@ struct Cinema : House {
   std::optional<FakeConnection> connection;
 };
 
-/// A short match of spheres, logged.
+/// Records a short match of spheres; returns the lines of the log.
 std::vector<std::string> record(const std::filesystem::path& log, const std::string& encoder = "SexpMonitor") {
   House house;
   scripts(house.kernel).addFolder(pluginFolder().parent_path() / "share" / "spark" / "lua");
@@ -77,7 +77,7 @@ bool sameNodes(const std::vector<StrictMonitor::Node>& a, const std::vector<Stri
 
 }  // namespace
 
-TEST_CASE("a match that was logged plays to a monitor, record for record, with nothing lost") {
+TEST_CASE("A logged match is played to a monitor record by record without losses") {
   const TemporaryFile file, json;
   const std::vector<std::string> lines = record(file.path);
   REQUIRE(lines.size() == 101);
@@ -86,7 +86,7 @@ TEST_CASE("a match that was logged plays to a monitor, record for record, with n
   Cinema cinema(inJson ? json.path : file.path);
   REQUIRE(cinema.get("records") == 101);
   StrictMonitor logged, seen;
-  cinema.run(2);  // the monitor is noticed
+  cinema.run(2);  // accepts the monitor
   for (std::size_t i = 0; i < lines.size(); ++i) {
     CAPTURE(i);
     logged.read(lines[i]);

@@ -3,15 +3,14 @@
 #include "league.h"
 #include "roboviz.h"
 
-// What RoboViz needs of a server (it throws, or draws nothing, where it does not get it), as a checklist, in a match of
-// Naos.
+// The requirements of RoboViz as a checklist, in a match of Naos. If one is not met, RoboViz throws or draws nothing.
 
 using namespace spark;
 using namespace spark::test;
 
 namespace {
 
-/// Naos of all types in two teams, and the monitor.
+/// Naos of all types in two teams, and a monitor.
 struct Match {
   League league;
   StrictMonitor monitor;
@@ -37,7 +36,7 @@ struct Match {
     run(6);
   }
   void say(const std::string& command) {
-    REQUIRE(command.size() < 128);  // what it sends is no longer
+    REQUIRE(command.size() < 128);  // RoboViz sends no longer commands
     league.fromMonitor(connection, command);
     run(2);
   }
@@ -45,7 +44,7 @@ struct Match {
 
 }  // namespace
 
-TEST_CASE("the first message comes with the connection, is full, and tells all that the program asks for") {
+TEST_CASE("The first message comes with the connection, is full, and has every entry that RoboViz needs") {
   Match m;
   CHECK(m.monitor.fulls == 1);
   for (const char* key : {"FieldLength",
@@ -80,9 +79,7 @@ TEST_CASE("the first message comes with the connection, is full, and tells all t
     CHECK(m.monitor.mesh(own));
 }
 
-TEST_CASE(
-    "players show up with number, colour, head and body, each below a top-level node of its own, as soon as they have "
-    "a team") {
+TEST_CASE("Players get number, color, head and body below a top-level node of their own once they have a team") {
   Match m;
   int before = m.monitor.fulls;
   const auto grew = [&] { return std::exchange(before, m.monitor.fulls) < m.monitor.fulls; };
@@ -109,7 +106,7 @@ TEST_CASE(
       CHECK(mesh(std::regex("models/naobody" + std::to_string(type) + "\\.obj")));
       CHECK(mesh(std::regex(".*body.*\\.obj")));
     }
-  // Everything that is to be seen has (setVisible 1): only the markers have not.
+  // Every visible mesh has (setVisible 1); only the markers are hidden.
   int hidden = 0, shown = 0;
   StrictMonitor::find(m.monitor.scene, [&](const auto& n) {
     if (StrictMonitor::isMesh(n)) ++(n.visible ? shown : hidden);
@@ -119,7 +116,7 @@ TEST_CASE(
   CHECK(shown > 10 * 20);
 }
 
-TEST_CASE("diffs have the shape of the last full message through all that changes the tree") {
+TEST_CASE("Diffs have the shape of the last full message through all changes of the tree") {
   Match m;
   m.join("Red", 1, 0);
   m.join("Blue", 1, 4);
@@ -127,7 +124,7 @@ TEST_CASE("diffs have the shape of the last full message through all that change
   const int fulls = m.monitor.fulls, diffs = m.monitor.diffs;
   m.run(50);
   CHECK(m.monitor.fulls == fulls);
-  CHECK(m.monitor.diffs == diffs + 25);  // one in 0.04 s
+  CHECK(m.monitor.diffs == diffs + 25);  // one per 0.04 s
   m.say("(kill (unum 1)(team Right))");
   m.run(4);
   CHECK(m.monitor.fulls > fulls);
@@ -137,7 +134,7 @@ TEST_CASE("diffs have the shape of the last full message through all that change
   CHECK(!m.monitor.player(true, 1));
 }
 
-TEST_CASE("what the program sends is understood, with its formats, and a full state comes when it asks") {
+TEST_CASE("The commands of RoboViz are accepted in its format, and a full state follows its request") {
   Match m;
   m.join("Red", 3, 0);
   m.say("(kickOff Left)");
@@ -161,7 +158,7 @@ TEST_CASE("what the program sends is understood, with its formats, and a full st
   CHECK(m.league.kernel.stopRequested());
 }
 
-TEST_CASE("fouls are told once each, numbered from 1, with types the program knows") {
+TEST_CASE("Each foul is reported once, numbered from 1, with a type that RoboViz knows") {
   Match m;
   m.join("Red", 1, 0);
   m.say("(playMode PlayOn)");

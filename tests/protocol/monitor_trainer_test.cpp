@@ -3,15 +3,14 @@
 #include "frame_text.h"
 #include "stadium.h"
 
-// Every trainer command of the installed base with its effect, as it was recorded or as its users expect it, and what
-// is no command.
+// Every trainer command of existing programs with the effect that was recorded or is expected, and invalid commands.
 
 using namespace spark;
 using namespace spark::test;
 
 namespace {
 
-/// A left number 1 and a right number 2, and the ball at rest, in PlayOn.
+/// Left player 1, right player 2 and the ball at rest, in PlayOn.
 struct Training {
   Stadium s;
   Player &left, &right;
@@ -22,14 +21,14 @@ struct Training {
   std::string name(const Player& p) const {
     return fmt::format("(unum {})(team {})", p.unum, p.side == Side::left ? "Left" : "Right");
   }
-  /// Sends a command about the left player.
+  /// Sends a command for the left player.
   void about(const std::string& command, const std::string& parts = {}) {
     s.trainer("(" + command + " " + name(left) + parts + ")");
   }
   Value state(const char* property, int agent = 1) {
     return s.get(fmt::format("/usr/scene/AgentAspect{}/body/AgentState", agent), property);
   }
-  /// Axis 0, 1 or 2 of what moved in the last message.
+  /// Axis 0, 1 or 2 of the first pose in the last message.
   Vec3 axis(int i) const {
     const std::string& m = s.monitor().lastMessage();
     const FrameText matrix(m.substr(m.find("(SLT ")));
@@ -42,7 +41,7 @@ bool near(const Vec3& a, const Vec3& b, double d = 0.02) { return (a - b).norm()
 
 }  // namespace
 
-TEST_CASE("(playMode name) sets every mode by its exact name and leaves the ball where it is") {
+TEST_CASE("(playMode name) sets every mode by its exact name and does not move the ball") {
   Training t;
   t.s.trainer(Stadium::ballTo(2, 3));
   for (const char* mode : {"BeforeKickOff",
@@ -76,7 +75,7 @@ TEST_CASE("(playMode name) sets every mode by its exact name and leaves the ball
   }
 }
 
-TEST_CASE("(kickOff side) starts play for a side, None for whoever is due; other words do nothing") {
+TEST_CASE("(kickOff side) starts play for a side, with None for the side due to kick off, and other words do nothing") {
   Training t;
   t.s.trainer("(playMode BeforeKickOff)");
   for (const char* wild : {"(kickOff)", "(kickOff left)", "(kickOff 1)", "(kickOff (Left))", "(kickOff Both)"}) {
@@ -92,20 +91,20 @@ TEST_CASE("(kickOff side) starts play for a side, None for whoever is due; other
   CHECK(t.s.mode().starts_with("KickOff_"));
 }
 
-TEST_CASE("(ball ...) places and pushes the ball, each part by itself") {
+TEST_CASE("(ball ...) sets position and velocity of the ball independently") {
   Training t;
   t.s.trainer("(ball (pos 1 2 0.5) (vel 1 0 0))");
   CHECK(near(t.s.ball(), Vec3(1.02, 2, 0.496)));
   t.s.trainer("(ball (vel 0 0 5))");
   CHECK(t.s.ball().z() > 0.55);
   const double z = t.s.ball().z();
-  t.s.trainer("(ball (pos -4 -4 " + std::to_string(z) + "))");  // keeps its velocity
+  t.s.trainer("(ball (pos -4 -4 " + std::to_string(z) + "))");  // the velocity is kept
   CHECK(t.s.ball().z() > z + 0.05);
   t.s.trainer("(ball (pos 2 2 0.042)(vel 0 0 0))");
   CHECK(near(t.s.ball(), Vec3(2, 2, 0.042)));
 }
 
-TEST_CASE("(dropBall) lets play go on where the ball is, with players cleared from it") {
+TEST_CASE("(dropBall) resumes play at the ball's position and moves players away from it") {
   Training t;
   t.s.trainer("(playMode KickIn_Left)" + Stadium::ballTo(1, 1) + Stadium::put(t.left, 0.5, 1));
   t.s.trainer("(dropBall)");
@@ -114,14 +113,14 @@ TEST_CASE("(dropBall) lets play go on where the ball is, with players cleared fr
   CHECK(Stadium::distance(t.s.at(t.left), t.s.ball()) > 1.9);
 }
 
-TEST_CASE("(agent ...) moves, turns and changes the player that is named") {
+TEST_CASE("(agent ...) moves, turns and changes the named player") {
   Training t({{"Soccer.ConstantTemperature", false}});
   t.about("agent", "(pos -3 1 0.4)");
   CHECK(near(t.s.at(t.left), Vec3(-3, 1, 0.4)));
   t.about("agent", " (move -2 1.5 0.4 45)");
   CHECK(near(t.s.at(t.left), Vec3(-2, 1.5, 0.4)));
   const double h = std::sqrt(0.5);
-  CHECK(near(t.axis(0), Vec3(h, h, 0)));  // its x axis looks 45 degrees to the left of the field's
+  CHECK(near(t.axis(0), Vec3(h, h, 0)));  // its x axis is 45 degrees to the left of the field's
   t.about("agent", "(rot 0 0 90)");
   CHECK(near(t.s.at(t.left), Vec3(-2, 1.5, 0.4)));
   CHECK(near(t.axis(0), Vec3(0, 1, 0)));
@@ -134,7 +133,7 @@ TEST_CASE("(agent ...) moves, turns and changes the player that is named") {
   CHECK(near(t.s.at(t.right), Vec3(5, 2, 0.3)));
 }
 
-TEST_CASE("(select ...) shows the marker, (agent) moves who is selected away, (repos) puts him outside") {
+TEST_CASE("(select ...) shows the marker, (agent) moves the selected player away, and (repos) moves it off the field") {
   Training t;
   const auto selected = [&] {
     return std::pair(t.state("selected", 1) == Value(true), t.state("selected", 2) == Value(true));
@@ -158,7 +157,7 @@ TEST_CASE("(select ...) shows the marker, (agent) moves who is selected away, (r
   CHECK(near(t.s.at(t.right), Vec3(3, -10.5, 1), 0.05));
 }
 
-TEST_CASE("a robot's marker is switched in diffs, without a full message") {
+TEST_CASE("A robot's marker changes in diffs without a full message") {
   Stadium s;
   Player& p = s.connect();
   p.client.send("(scene rsg/agent/nao/nao.rsg)");
@@ -201,15 +200,15 @@ TEST_CASE("(time t) and (score ...) set the game's clock and score") {
   CHECK(t.s.time() == Approx(123.52));
   t.s.trainer("(score (left 2)(right 1))");
   CHECK(t.s.score() == std::pair(2, 1));
-  CHECK(t.s.monitor().tellsNow("score_left"));
+  CHECK(t.s.monitor().lastMessageHas("score_left"));
   t.s.run(1);
-  CHECK(!t.s.monitor().tellsNow("score_left"));
+  CHECK(!t.s.monitor().lastMessageHas("score_left"));
   t.s.trainer("(kickOff Right)");
-  t.s.trainer("(time 200)");  // later by more than a kick-off may take
+  t.s.trainer("(time 200)");  // later than the maximum duration of a kick-off
   CHECK(t.s.mode() == "PlayOn");
 }
 
-TEST_CASE("(reqfullstate) makes the next message full, (init) and (getAck) do nothing, (killsim) ends the server") {
+TEST_CASE("(reqfullstate) requests a full message, (init) and (getAck) do nothing, and (killsim) ends the server") {
   Training t;
   t.s.run(1);
   CHECK(!isFull(t.s.monitor().lastMessage()));
@@ -223,9 +222,7 @@ TEST_CASE("(reqfullstate) makes the next message full, (init) and (getAck) do no
   CHECK(t.s.over());
 }
 
-TEST_CASE(
-    "what is malformed or wild changes nothing, costs the trainer nothing, and only a command that is none is "
-    "answered") {
+TEST_CASE("Malformed or extreme commands change nothing, and only an unknown command is logged") {
   Training t;
   t.s.trainer("(select (unum 2)(team Right))" + Stadium::ballTo(1, 2));
   t.s.run(100);

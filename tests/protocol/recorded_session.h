@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A recorded lockstep session, and a house in which it is played again in process: same cycles, same messages, no
-/// network, no timing.
+/// A recorded lockstep session, and a simulation that replays it in process: same cycles, same messages, no network, no
+/// timing.
 
 #include <cmath>
 #include <fstream>
@@ -15,14 +15,14 @@
 
 namespace spark::test {
 
-/// What stands in a recording (`captures/*/*.jsonl`).
+/// The contents of a recording (`captures/*/*.jsonl`).
 struct Recording {
   std::vector<std::string> agents;                                       ///< their names, in order of connection
   std::map<int, std::vector<std::pair<std::size_t, std::string>>> sent;  ///< by cycle: agent's index, message
-  std::map<int, std::vector<std::string>> commands;                      ///< by cycle: what the monitor sent
-  std::vector<std::string> frames;  ///< what the monitor got, from its first message on
-  int start = 0;                    ///< the first answer tells of so many steps
-  int cycles = 0;                   ///< messages that the first agent got
+  std::map<int, std::vector<std::string>> commands;                      ///< by cycle: the commands of the monitor
+  std::vector<std::string> frames;  ///< the monitor's messages, from its first one on
+  int start = 0;                    ///< number of simulation steps before the first answer
+  int cycles = 0;                   ///< number of messages to the first agent
 
   explicit Recording(const std::filesystem::path& file) {
     std::ifstream in(file);
@@ -52,14 +52,14 @@ struct Recording {
   }
 };
 
-/// Plays a recording in a league: whatever an agent is answered, it sends what it sent then.
+/// Replays a recording in a league. Every agent sends its recorded messages, whatever the answers are.
 class Replay {
  public:
   Replay(League& league, const Recording& recording) : league_(league), recording_(recording) {}
 
-  std::vector<std::string> frames;  ///< what the monitor gets
+  std::vector<std::string> frames;  ///< the monitor's messages
 
-  /// `cycles`: so many answers of the first agent.
+  /// `cycles`: the number of answers to the first agent.
   void play(int cycles) {
     const bool early =
         recording_.frames.front().find("(nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1)))") == std::string::npos;

@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// A client with a robot, and what robots did.
+/// A client with a robot, and a helper that applies its actions.
 
 #include "arena.h"
 
 namespace spark::test {
 
-using Deeds = std::vector<std::string>;
+using ActionLog = std::vector<std::string>;
 
-/// Connects and cycles until the first percepts are there.
+/// Connects and runs cycles until the first percepts have arrived.
 inline Client robot(Arena& a, std::string_view scene = "(scene robot)", const std::string& port = "agents") {
   Client c = a.client(port);
   const auto before = a.agents();
@@ -19,12 +19,12 @@ inline Client robot(Arena& a, std::string_view scene = "(scene robot)", const st
   return c;
 }
 
-/// Delivers what clients sent and realises it in one cycle.
-inline void realise(Arena& a, std::size_t deedsWanted) {
+/// Runs cycles until the log has `wanted` actions.
+inline void applyActions(Arena& a, std::size_t wanted) {
   a.until(
       [&] {
         a.cycle();
-        return deeds().size() >= deedsWanted;
+        return actionLog().size() >= wanted;
       },
       false);
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A monitor as strict as the most used one, RoboViz: what would throw there throws here, what it would not draw is not
-/// there.
+/// A monitor as strict as RoboViz, the most widely used one: it throws where RoboViz throws, and it omits what RoboViz
+/// would not draw.
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace spark::test {
 
-/// Reads messages as that program does. Throws std::runtime_error where its receiver would end.
+/// Reads messages like RoboViz. Throws std::runtime_error where its receiver would end.
 class StrictMonitor {
  public:
   struct Node {
@@ -27,7 +27,7 @@ class StrictMonitor {
     std::string mesh;
     std::vector<std::string> materials;
     std::array<double, 3> scale{};
-    bool visible = false;  ///< unless (setVisible 1) says otherwise
+    bool visible = false;  ///< true only after (setVisible 1)
   };
   std::vector<Node> scene;  ///< top level
   std::map<std::string, std::string> env;
@@ -57,7 +57,7 @@ class StrictMonitor {
     }
   }
 
-  /// The first mesh whose name ends so, depth first; nullptr when there is none.
+  /// The first mesh whose name has this ending, depth first; nullptr if there is none.
   const Node* mesh(const std::string& ending) const {
     return find(scene, [&](const Node& n) { return isMesh(n) && n.mesh.ends_with(ending); });
   }
@@ -71,7 +71,7 @@ class StrictMonitor {
     }
     return found;
   }
-  /// Numbers of players of a side below one top-level node.
+  /// The sides and numbers of the players below one top-level node.
   static std::set<std::pair<bool, int>> playersBelow(const Node& top) {
     std::set<std::pair<bool, int>> out;
     for (const bool left : {true, false})

@@ -8,8 +8,8 @@
 #include "spark/script_server.h"
 #include "test_support.h"
 
-// Two teams of humanoids in the house of lua/soccer.lua that move all their motors, and all that is sensed, encoded and
-// sent meanwhile. They come over connections as others do, but without sockets.
+// Two teams of humanoids in lua/soccer.lua that move all their motors: sensing, encoding and sending must not allocate.
+// They use fake connections without sockets.
 
 using namespace spark;
 using namespace spark::test;
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kTeam = 11, kTypes = 3;
 
-/// A player at the far end of a connection.
+/// A player at the other end of a connection.
 class Player : public IConnection {
  public:
   Player(Node& port, int index) : port_(port), index_(index) {}
@@ -34,7 +34,7 @@ class Player : public IConnection {
   double stalledSeconds() const override { return 0; }
   void close(std::string_view why) override { FAIL(why); }
 
-  /// Says what comes next, once for every message that he was sent.
+  /// Sends the next message, once for every message received.
   void answer(IConnectionConsumer& control) {
     if (said_ > heard_) return;
     control.received(*this, words());
@@ -70,7 +70,7 @@ class Player : public IConnection {
   std::size_t longest_ = 0;
 };
 
-/// Brings what the players say.
+/// An input source that delivers the players' messages.
 class TestPlayers : public Node, public IInputSource {
   SPARK_CLASS(TestPlayers, Node)
  public:
@@ -114,11 +114,11 @@ struct Match : House {
 
 }  // namespace
 
-TEST_CASE("Two teams of moving humanoids with all they sense and are sent allocate nothing in steady state") {
+TEST_CASE("Two teams of moving humanoids with all their percepts and messages allocate nothing in steady state") {
   Match m(GENERATE(1, 2));
   m.play(250);
   const auto heard = m.team->players.back().heard();
-  const int one = Allocations::in([&] { m.play(1); });  // the call's own
+  const int one = Allocations::in([&] { m.play(1); });  // allocations of the call itself
   REQUIRE(Allocations::in([&] { m.play(100); }) == one);
   for (const Player& p : m.team->players) CHECK(p.longest() > 800);
   CHECK(m.team->players.back().heard() == heard + 101);

@@ -9,11 +9,11 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-/// Takes a number and does nothing.
+/// Reads a number and does nothing.
 class TestIdle : public Effector {
   SPARK_CLASS(TestIdle, Effector)
  public:
-  static void describe(Description<TestIdle>& d) { d.doc("Takes a number."); }
+  static void describe(Description<TestIdle>& d) { d.doc("Reads a number."); }
   std::string predicate() const override { return "idle"; }
   std::string act(const Element& action) override {
     sum_ += action.at(1).number();
@@ -38,7 +38,7 @@ struct Match : Arena {
     for (AgentAspect* agent : control->agents()) agent->create("TestIdle", "idle");
     play(20);
   }
-  /// Cycles with every agent answering; only the host's part is counted.
+  /// Runs cycles in which every agent answers; counts only the allocations of the host.
   void play(int cycles) {
     const auto end = this->cycles() + cycles;
     until(
@@ -59,7 +59,7 @@ struct Match : Arena {
 std::size_t heap() { return mallinfo2().uordblks; }
 }  // namespace
 
-TEST_CASE("A cycle of talking agents allocates nothing in steady state") {
+TEST_CASE("A cycle with sending agents allocates nothing in steady state") {
   Match m;
   m.play(20);
   Allocations::count = 0;

@@ -7,12 +7,12 @@ using namespace spark::test;
 
 namespace {
 
-/// Notes what a port delivers.
+/// Logs what a port delivers.
 class TestConsumer : public Node, public IConnectionConsumer {
   SPARK_CLASS(TestConsumer, Node)
  public:
   static void describe(Description<TestConsumer>& d) {
-    d.doc("Notes what a port delivers.");
+    d.doc("Logs what a port delivers.");
     d.implements<IConnectionConsumer>();
   }
   void connected(IConnection& c) override {
@@ -50,7 +50,7 @@ std::string framed(std::string_view message) {
 
 }  // namespace
 
-TEST_CASE("Messages are cut from the stream wherever segments end") {
+TEST_CASE("Messages are read from the stream with any segment boundaries") {
   Wire w;
   Client c = w.client();
   SECTION("several in one segment") { c.raw(framed("a") + framed("bc") + framed("") + framed("d")); }
@@ -82,7 +82,7 @@ TEST_CASE("Messages are delivered connection by connection in accept order, port
   REQUIRE(w.consumer->events == Wire::Events{"1:1", "2:2", "1:3"});
 }
 
-TEST_CASE("A length over the limit closes that connection only, with one line") {
+TEST_CASE("A length over the limit closes only its own connection, with one log line") {
   Wire w;
   Client good = w.client();
   Client bad = w.client();
@@ -96,7 +96,7 @@ TEST_CASE("A length over the limit closes that connection only, with one line") 
   REQUIRE(w.consumer->connections.size() == 1);
 }
 
-TEST_CASE("The longest message allowed passes") {
+TEST_CASE("A message of the maximum length is accepted") {
   Wire w;
   Client c = w.client();
   c.send(std::string(65536, 'x'));
@@ -104,7 +104,7 @@ TEST_CASE("The longest message allowed passes") {
   REQUIRE(w.consumer->events.back() == "1:long");
 }
 
-TEST_CASE("Half a message and then silence is closed after messageTimeout") {
+TEST_CASE("A client that sends part of a message and then nothing is closed after messageTimeout") {
   Wire w;
   setProperty(w.port(), "messageTimeout", 0.01);
   Client c = w.client();
@@ -125,7 +125,7 @@ TEST_CASE("A client that only waits is not closed") {
   w.until([&] { return w.consumer->events.back() == "1:b"; }, false);
 }
 
-TEST_CASE("A disconnect in the middle of a message is told and logged") {
+TEST_CASE("A disconnect in the middle of a message is reported and logged") {
   Wire w;
   {
     Client c = w.client();
@@ -137,7 +137,7 @@ TEST_CASE("A disconnect in the middle of a message is told and logged") {
   REQUIRE(w.logged("left in the middle of a message"));
 }
 
-TEST_CASE("What was sent before leaving is delivered") {
+TEST_CASE("Messages sent before a disconnect are delivered") {
   Wire w;
   {
     Client c = w.client();
@@ -147,7 +147,7 @@ TEST_CASE("What was sent before leaving is delivered") {
   REQUIRE(w.consumer->events == Wire::Events{"+1", "1:last words", "-1"});
 }
 
-TEST_CASE("200 clients come and go") {
+TEST_CASE("The server survives 200 clients that come and go") {
   Wire w;
   for (int i = 0; i < 200; ++i) {
     Client c = w.client();
@@ -165,7 +165,7 @@ TEST_CASE("200 clients come and go") {
   w.until([&] { return w.consumer->events.back().ends_with(":match goes on"); }, false);
 }
 
-TEST_CASE("Too many clients: the newcomer is closed with a line") {
+TEST_CASE("A client above maxConnections is closed with a log line") {
   Wire w;
   setProperty(w.port(), "maxConnections", 2);
   Client a = w.client(), b = w.client(), c = w.client();
@@ -178,7 +178,7 @@ TEST_CASE("Too many clients: the newcomer is closed with a line") {
   w.until([&] { return w.consumer->connections.size() == 2; }, false);
 }
 
-TEST_CASE("A client that does not read: the tail stays, newer messages are dropped and counted, framing holds") {
+TEST_CASE("A client that does not read still gets whole messages, and newer ones are dropped and counted") {
   Wire w;
   Client c = w.client();
   w.waitForEvents(1);
@@ -205,12 +205,12 @@ TEST_CASE("A client that does not read: the tail stays, newer messages are dropp
 }
 
 namespace {
-/// Sends to a connection until its client's buffers are full.
+/// Sends to a connection until the client's buffers are full.
 void fill(IConnection& connection) {
   while (connection.idle()) REQUIRE(connection.send(std::string(60000, 'x')));
 }
 
-/// The server's end of a client's connection: they live in one process.
+/// The server's end of a client's connection; both are in one process.
 int serverEnd(const Client& client) {
   for (int fd = 3; fd < 1024; ++fd) {
     sockaddr_in peer{};
@@ -230,7 +230,7 @@ int option(int fd, int level, int name) {
 }
 }  // namespace
 
-TEST_CASE("Clients whose machine has gone are noticed by TCP keep-alive, which those that only do not read outlive") {
+TEST_CASE("TCP keep-alive detects clients whose machine has failed and keeps clients that merely do not read") {
   Wire w;
   Client c = w.client();
   w.waitForEvents(1);
@@ -243,9 +243,7 @@ TEST_CASE("Clients whose machine has gone are noticed by TCP keep-alive, which t
   CHECK(option(fd, IPPROTO_TCP, TCP_USER_TIMEOUT) == 0);
 }
 
-TEST_CASE(
-    "When a port is full, of the clients that do not read the quietest makes room, one that never spoke first; readers "
-    "stay") {
+TEST_CASE("On a full port the client that neither reads nor sends for longest is closed, and readers stay") {
   Wire w;
   setProperty(w.port(), "maxConnections", 4);
   Client reader = w.client(), sender = w.client(), mute = w.client(), mute2 = w.client();
@@ -268,12 +266,12 @@ TEST_CASE(
                                               w.consumer->events.end()));
   };
 
-  SECTION("unless nobody has to") { REQUIRE(knock().second.empty()); }
-  SECTION("and not before it was quiet for long enough") {
+  SECTION("no client is closed by default") { REQUIRE(knock().second.empty()); }
+  SECTION("no client is closed before makeRoomAfter") {
     setProperty(w.port(), "makeRoomAfter", 1e6);
     REQUIRE(knock().second.empty());
   }
-  SECTION("in this order") {
+  SECTION("clients that never sent anything are closed first") {
     setProperty(w.port(), "makeRoomAfter", 1e-9);
     std::vector<Client> guests;
     for (const char* gone : {"-3", "-4", "-2"}) {
@@ -287,13 +285,13 @@ TEST_CASE(
     }
     CHECK(w.logged(mute.name() + " is closed: it said nothing, and its place is needed."));
     CHECK(w.logged(sender.name() + " is closed: it neither reads nor sends, and its place is needed."));
-    REQUIRE(knock().second.empty());  // all that are there read
+    REQUIRE(knock().second.empty());  // all remaining clients read
     reader.send("still here");
     w.until([&] { return w.consumer->events.back() == "1:still here"; }, false);
   }
 }
 
-TEST_CASE("A flood from one client does not keep the others waiting") {
+TEST_CASE("A flood from one client does not delay the others") {
   Wire w;
   Client flood = w.client();
   w.waitForEvents(1);
@@ -304,7 +302,7 @@ TEST_CASE("A flood from one client does not keep the others waiting") {
   other.send("hello");
   std::string_view rest = bytes;
   bool heard = false;
-  // As much as fits, one poll, again: in the poll that reads the flood the other is heard.
+  // The poll that reads the flood also reads the other client's message.
   flood.raw(rest.substr(0, 65536));
   for (int polls = 0; polls < 100 && !heard; ++polls) {
     w.net->poll();
@@ -313,7 +311,7 @@ TEST_CASE("A flood from one client does not keep the others waiting") {
   REQUIRE(heard);
 }
 
-TEST_CASE("A closed connection delivers nothing more and is told once") {
+TEST_CASE("A closed connection delivers nothing more and is reported once") {
   Wire w;
   Client c = w.client();
   w.waitForEvents(1);
@@ -334,7 +332,7 @@ TEST_CASE("Waiting ends with input, at the deadline, and on a stop request") {
   REQUIRE(w.net->wait(3600));
 }
 
-TEST_CASE("A port that cannot listen says why") {
+TEST_CASE("A port that cannot listen is an error that says why") {
   Wire w;
   const auto listen = [&](const std::string& name) {
     try {

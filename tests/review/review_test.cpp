@@ -6,15 +6,15 @@
 #include "../system/process.h"
 #include "test_support.h"
 
-// What newcomers and reviewers ran into, one config each: cases/NAME.lua is run as a child process and must end as its
-// first lines say. README.md lists what they may say.
+// Problems that users and reviewers found, one config each: cases/NAME.lua is run as a child process and must end with
+// the result in its first lines. README.md lists the keys of these lines.
 
 using namespace spark::test;
 namespace fs = std::filesystem;
 
 namespace {
 
-/// How a case is run and what must come of it.
+/// The command line of a case and its expected result.
 struct Case {
   std::string program = "sparkhost";
   std::vector<std::string> arguments{"--rate", "max", "--duration", "2"};
@@ -47,7 +47,7 @@ void take(Case& c, const std::string& key, const std::string& value) {
     throw std::runtime_error("expected expect, never, exit, args, program or limit, found '" + key + "'");
 }
 
-/// Reads the lines `-- key: value` that a case begins with, and plain comments among them.
+/// Reads the lines `-- key: value` at the start of a case; skips other comments between them.
 Case readCase(const fs::path& file) {
   Case c;
   std::ifstream in(file);
@@ -69,7 +69,7 @@ std::vector<fs::path> allCases() {
 
 }  // namespace
 
-TEST_CASE("Every case of the review ends as its first lines say") {
+TEST_CASE("Every case of the review has the result that its first lines specify") {
   const std::vector<fs::path> cases = allCases();
   REQUIRE(cases.size() >= 25);
   for (const fs::path& file : cases) {

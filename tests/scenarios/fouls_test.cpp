@@ -1,4 +1,4 @@
-// The automatic referee in a match: every foul, by what trainers do and monitors see.
+// The automatic referee in a match: every foul, caused by trainer commands and checked in monitor messages.
 #include "stadium.h"
 
 using namespace spark;
@@ -11,7 +11,7 @@ constexpr double kLying = 0.2, kCrouching = 0.4, kStanding = 0.6;  // m: heights
 /// A match in PlayOn with the ball far away at (0, -9).
 struct FoulMatch : Stadium {
   using Stadium::Stadium;
-  /// What was told since the last call: "index type team unum".
+  /// The fouls since the last call: "index type team unum".
   std::vector<std::string> fouls() {
     std::vector<std::string> out;
     for (; seen_ < monitor().fouls().size(); ++seen_) {
@@ -22,7 +22,7 @@ struct FoulMatch : Stadium {
   }
   void play() { trainer("(playMode PlayOn)" + ballTo(0, -9)); }
   bool isAt(const Player& p, double x, double y, double tolerance = 0.01) {
-    run(1);  // what the referee moves is seen in the next cycle
+    run(1);  // a move by the referee shows in the next cycle
     const Vec3 here = at(p);
     INFO("number " << p.unum << " is at " << here.transpose());
     CHECK(std::abs(here.x() - x) < tolerance);
@@ -36,7 +36,7 @@ struct FoulMatch : Stadium {
 
 using Fouls = std::vector<std::string>;
 
-/// `count` records of one foul from index `from` on.
+/// `count` records of one foul, starting at index `from`.
 Fouls records(int from, int count, const std::string& rest) {
   Fouls out;
   for (int i = 0; i < count; ++i) out.push_back(std::to_string(from + i) + " " + rest);
@@ -45,7 +45,7 @@ Fouls records(int from, int count, const std::string& rest) {
 
 }  // namespace
 
-TEST_CASE("A player on the ground for 15 s rises into the air for half a second and ends beside the field") {
+TEST_CASE("A player on the ground for 15 s is lifted for half a second and then moved off the field") {
   FoulMatch s({{"Soccer.GoalieGroundMaxTime", 17}});
   Player& goalie = s.join("A", 1, kLying);
   Player& a = s.join("A", 4, kLying);
@@ -58,7 +58,7 @@ TEST_CASE("A player on the ground for 15 s rises into the air for half a second 
   s.run(1);
   CHECK(s.fouls() == Fouls{"1 4 1 4", "2 4 2 4"});
   CHECK(s.time() - from == Approx(15.0).margin(0.001));
-  // monitors see him a step of falling later
+  // Monitors see the pose one step of free fall later.
   s.run(1);
   CHECK(s.at(a).z() == Approx(1.006).margin(0.001));
   s.run(23);
@@ -69,7 +69,7 @@ TEST_CASE("A player on the ground for 15 s rises into the air for half a second 
   CHECK(s.fouls().empty());
   s.isAt(a, -1.8, 10.5);
   s.isAt(b, 1.8, 10.5);
-  // the goalie has more time; who lies beside the field is left alone
+  // The goalie has more time; players off the field are not judged.
   s.run(850 - 778);
   CHECK(s.fouls().empty());
   s.run(1);
@@ -77,7 +77,7 @@ TEST_CASE("A player on the ground for 15 s rises into the air for half a second 
   CHECK(s.time() - from == Approx(17.0));
 }
 
-TEST_CASE("Who does not stand for too long is taken away; half a second of standing prevents it") {
+TEST_CASE("A player that does not stand up in time is removed, and half a second of standing prevents it") {
   FoulMatch s({{"Soccer.NotStandingMaxTime", 6}, {"Soccer.GoalieNotStandingMaxTime", 12}});
   Player& a = s.join("A", 2, kCrouching);
   Player& lucky = s.join("A", 3, kCrouching);
@@ -102,8 +102,7 @@ TEST_CASE("Who does not stand for too long is taken away; half a second of stand
   CHECK(s.fouls() == Fouls{"51 4 2 1"});
 }
 
-TEST_CASE(
-    "The fourth player in the own area is put out over the nearest edge, and so is another when the goalie comes") {
+TEST_CASE("The fourth player in its own area is moved across the nearest edge, and another when the goalie enters") {
   FoulMatch s;
   std::deque<Player*> a;
   for (int n = 1; n <= 5; ++n) a.push_back(&s.join("A", n, kStanding));
@@ -125,7 +124,7 @@ TEST_CASE(
   s.isAt(*a[4], -14, 3.4);
 }
 
-TEST_CASE("The third in a group of touching players has to leave it") {
+TEST_CASE("The third player in a group of touching players must leave it") {
   FoulMatch s;
   Player& a2 = s.join("A", 2, kStanding);
   Player& a3 = s.join("A", 3, kStanding);
@@ -135,12 +134,12 @@ TEST_CASE("The third in a group of touching players has to leave it") {
     s.trainer(s.put(a2, 0, 0) + s.put(third == &b2 ? a3 : b2, 0.298, 0) +
               (third ? s.put(*third, -0.298, 0) : std::string()));
   };
-  SECTION("the last to join, whose team has two of three") {
+  SECTION("the last to join is moved if its team has two of three") {
     stand(nullptr), stand(nullptr), stand(&a3);
     CHECK(s.fouls() == Fouls{"1 1 1 3"});
     s.isAt(a3, -0.698, 0, 0.02);
   }
-  SECTION("an opponent of the last to join, whose team has one of three") {
+  SECTION("an opponent of the last to join is moved if the last one's team has one of three") {
     s.trainer(s.put(a2, 0, 0) + s.put(a3, 0.298, 0));
     stand(&b2);
     const Fouls fouls = s.fouls();
@@ -150,7 +149,7 @@ TEST_CASE("The third in a group of touching players has to leave it") {
 }
 
 namespace {
-/// `runner` flies into `other`, who stands at the origin, from +x at `speed` m/s; both touch in the last of the cycles.
+/// `runner` flies from +x at `speed` m/s into `other` at the origin; they touch in the last of these cycles.
 void flyInto(FoulMatch& s, Player& runner, Player& other, double speed) {
   s.command(s.put(runner, 0.3 + 2.5 * speed * FoulMatch::kStep, 0, 0.4) + s.put(other, 0, 0));
   s.run(1);
@@ -159,7 +158,7 @@ void flyInto(FoulMatch& s, Player& runner, Player& other, double speed) {
 }
 }  // namespace
 
-TEST_CASE("Who runs into an opponent is sent off, unless he is slow or has just played the ball") {
+TEST_CASE("A player that runs into an opponent is sent off unless it is slow or has just played the ball") {
   FoulMatch s;
   Player& a = s.join("A", 2, kStanding);
   Player& b = s.join("B", 3, kStanding);
@@ -188,14 +187,14 @@ TEST_CASE("Who runs into an opponent is sent off, unless he is slow or has just 
     flyInto(s, b, a, 1.0);
     CHECK(s.fouls().at(0) == "1 6 2 3");
   }
-  SECTION("after a move by the referee") {
+  SECTION("after a trainer moved the opponent") {
     s.trainer("(repos (unum 2)(team Left))");
     flyInto(s, b, a, 1.0);
     CHECK(s.fouls().empty());
   }
 }
 
-TEST_CASE("With the historic distances a second player is sent away from a ball that an opponent is at") {
+TEST_CASE("With the historic distances the second player of a team near a contested ball is sent off") {
   FoulMatch s({{"Soccer.MinOppDistance", 0.8}, {"Soccer.Min2PlDistance", 0.4}, {"Soccer.Min3PlDistance", 1.0}});
   Player& a2 = s.join("A", 2, kStanding);
   Player& a3 = s.join("A", 3, kStanding);
@@ -209,18 +208,18 @@ TEST_CASE("With the historic distances a second player is sent away from a ball 
   s.isAt(a3, -2.4, 10.5);
 }
 
-TEST_CASE("In later servers a player may hold the ball beside an opponent for 5 s") {
+TEST_CASE("In later server versions a player may hold the ball near an opponent for 5 s") {
   FoulMatch s(Stadium::Settings{{"compat", "L"}});
   Player& a = s.join("A", 2, kStanding);
   Player& b = s.join("B", 2, kStanding);
   s.trainer("(playMode PlayOn)" + s.put(b, 0.6, 0));
-  for (int i = 0; i < 250; ++i) s.trainer(s.put(a, 0, 0, 0.4) + s.ballTo(0.1, 0));  // the ball below him
+  for (int i = 0; i < 250; ++i) s.trainer(s.put(a, 0, 0, 0.4) + s.ballTo(0.1, 0));  // the ball is below the player
   CHECK(s.fouls().empty());
   s.trainer(s.put(a, 0, 0, 0.4) + s.ballTo(0.1, 0));
   CHECK(s.fouls() == Fouls{"1 8 1 2"});
 }
 
-TEST_CASE("Nothing is judged before the kick-off and after a goal, and clocks begin anew") {
+TEST_CASE("No foul is judged before the kick-off and after a goal, and the timers restart") {
   FoulMatch s({{"Soccer.GroundMaxTime", 4}});
   Player& a = s.join("A", 2, kLying);
   s.trainer(s.put(a, -5, 0, 0.1));
@@ -237,7 +236,7 @@ TEST_CASE("Nothing is judged before the kick-off and after a goal, and clocks be
   CHECK(s.fouls().at(0) == "1 4 1 2");
 }
 
-TEST_CASE("Who would be placed where somebody stands is placed one radius further") {
+TEST_CASE("A removed player whose target is occupied is placed one radius further away") {
   FoulMatch s({{"Soccer.GroundMaxTime", 4}});
   Player& a = s.join("A", 4, kLying);
   Player& b = s.join("B", 2, kStanding);
@@ -258,7 +257,7 @@ double hinge(const Player& p, const std::string& name) {
 }
 }  // namespace
 
-TEST_CASE("A Nao whose feet run into each other has its legs frozen for 1 s, and then may move them for 2 s") {
+TEST_CASE("A Nao whose feet collide has its legs frozen for 1 s and is exempt for the next 2 s") {
   FoulMatch s;
   Player& p = s.connect();
   s.act(p, "(scene rsg/agent/nao/nao.rsg)");
@@ -267,12 +266,12 @@ TEST_CASE("A Nao whose feet run into each other has its legs frozen for 1 s, and
   s.run(3);
   p.side = Side::left, p.unum = 2;
   s.play();
-  // in the air: nothing but its legs moves
+  // The robot is held in the air, so only its legs move.
   const auto cycle = [&](const std::string& actions) {
     s.act(p, actions);
     s.trainer(s.put(p, -5, 0, 1));
   };
-  s.trainer("(time 20)");  // from 16 s to 64 s the clock of play is not slow
+  s.trainer("(time 20)");  // from 16 s to 64 s the single-precision time of play does not lag
   int cycles = 0;
   for (; s.fouls().empty() && cycles < 100; ++cycles) cycle("(rle2 2)(lle2 -2)(rle1 -2)(lle3 2)");
   REQUIRE(cycles < 100);
@@ -286,7 +285,7 @@ TEST_CASE("A Nao whose feet run into each other has its legs frozen for 1 s, and
   CHECK(hinge(p, "rlj2") == Approx(frozen).margin(0.5));
   for (int i = 0; i < 4; ++i) apart();
   CHECK(std::abs(hinge(p, "rlj2") - frozen) > 2);
-  // together again: spared for 2 s, counted from the thaw
+  // Together again: exempt for 2 s after the legs are released.
   for (int i = 0; i < 90; ++i) cycle("(rle2 1)(lle2 -1)");
   CHECK(s.fouls().empty());
   for (int i = 0; i < 10; ++i) cycle("(rle2 1)(lle2 -1)");

@@ -1,4 +1,4 @@
-// Goals, what forbids them, the pause after one, and the shoot-out.
+// Goals, the rules that prevent them, the pause after a goal, and the penalty shoot-out.
 #include "match.h"
 
 using namespace spark;
@@ -6,20 +6,20 @@ using namespace spark::test;
 
 namespace {}
 
-TEST_CASE("A goal counts for the side that attacks that goal, whoever touched the ball") {
+TEST_CASE("A goal counts for the side that attacks that goal, whichever team touched the ball") {
   Match m;
   const bool right = GENERATE(true, false), own = GENERATE(true, false);
   m.touchThen(right != own ? m.a1 : m.b1, right ? kInRightGoal : kInLeftGoal);
   CHECK(m.mode() == (right ? "Goal_Left" : "Goal_Right"));
   CHECK(m.score() == (right ? std::pair(1, 0) : std::pair(0, 1)));
-  m.checkTold(right ? "Goal_Left" : "Goal_Right");
+  m.checkModeSent(right ? "Goal_Left" : "Goal_Right");
   CHECK(m.a1.gs("sl") == (right ? "1" : "0"));
   CHECK(m.b2.gs("sr") == (right ? "0" : "1"));
 }
 
 TEST_CASE(
-    "After a goal: 3 s in which the ball is free, teams take their halves, beams work; then the other side's "
-    "kick-off") {
+    "For 3 s after a goal the ball is free, players are moved to their halves and may beam, then the other side kicks "
+    "off") {
   Match m;
   m.touchThen(m.a1, kInRightGoal);
   REQUIRE(m.mode() == "Goal_Left");
@@ -29,7 +29,7 @@ TEST_CASE(
   m.run(3);
   m.checkAt(m.a1, -2.5, 1);
   m.checkAt(m.a2, -3, -4);
-  m.checkAt(m.b1, 0.7, 0.6);  // of the side that kicks off next
+  m.checkAt(m.b1, 0.7, 0.6);  // its side kicks off next
   m.checkAt(m.b2, 2.5, 2);
   CHECK(m.ball().x() > 15);
   CHECK(m.until("KickOff_Right", 5) > 0);
@@ -38,14 +38,14 @@ TEST_CASE(
   m.checkBall(0, 0, 0.001);
   m.act(m.a2, "(beam -9 4 0)");
   m.run(3);
-  m.checkAt(m.a2, -3, -4);  // too late
+  m.checkAt(m.a2, -3, -4);  // too late to beam
   m.trainer("(playMode PlayOn)");
   m.touchThen(m.b1, kInLeftGoal);
   CHECK(m.until("KickOff_Left", 5) > 0);
   CHECK(m.score() == std::pair(1, 1));
 }
 
-TEST_CASE("A ball that flies through the goal line is a goal; above the bar or beside the post it is out") {
+TEST_CASE("A ball that crosses the goal line inside the goal scores, and above the bar or beside the post it is out") {
   Match m{{{"Soccer.RightGoalRecorder", "nowhere"}, {"Soccer.LeftGoalRecorder", "nowhere"}}};
   struct Case {
     double x, y, z;
@@ -58,7 +58,7 @@ TEST_CASE("A ball that flies through the goal line is a goal; above the bar or b
   CHECK(m.mode() == c.mode);
 }
 
-TEST_CASE("Straight from an indirect kick there is no goal, straight from a direct one only in the others' goal") {
+TEST_CASE("An indirect kick cannot score directly, and a direct kick only in the opponents' goal") {
   Match m;
   const std::string kick =
       GENERATE("KickIn_Left", "free_kick_left", "direct_free_kick_left", "corner_kick_left", "goal_kick_left");
@@ -67,19 +67,19 @@ TEST_CASE("Straight from an indirect kick there is no goal, straight from a dire
   m.trainer("(playMode " + kick + ")");
   m.run(55);
   m.touch(m.a1);
-  SECTION("into the others' goal") {
+  SECTION("into the opponents' goal") {
     m.trainer(m.apart() + (kick == "goal_kick_left" ? Match::ballTo(-10, 0) : ""));
     m.trainer(kInRightGoal);
     CHECK(m.mode() == (direct ? "Goal_Left" : "goal_kick_right"));
     CHECK(m.score().first == (direct ? 1 : 0));
   }
-  SECTION("into the own goal") {
+  SECTION("into its own goal") {
     m.trainer(m.apart() + (kick == "goal_kick_left" ? Match::ballTo(-10, 0) : ""));
     m.trainer(kInLeftGoal);
     CHECK(m.mode() == "corner_kick_right");
     CHECK(m.score() == std::pair(0, 0));
   }
-  SECTION("after another's touch") {
+  SECTION("after a touch by another player") {
     m.trainer(m.apart() + Match::ballTo(-10, 0));
     m.run(1);
     m.touchThen(m.a2, kInRightGoal);
@@ -87,7 +87,7 @@ TEST_CASE("Straight from an indirect kick there is no goal, straight from a dire
   }
 }
 
-TEST_CASE("In a mode without play nothing counts") {
+TEST_CASE("A ball in the goal does not count unless play is on") {
   Match m;
   const char* mode =
       GENERATE("BeforeKickOff", "KickOff_Left", "KickIn_Left", "goal_kick_right", "offside_left", "GameOver");
@@ -99,7 +99,7 @@ TEST_CASE("In a mode without play nothing counts") {
   CHECK(m.score() == std::pair(0, 0));
 }
 
-TEST_CASE("A trainer sets the score, and it is told") {
+TEST_CASE("A trainer sets the score, and agents and monitors receive it") {
   Match m;
   m.trainer("(score (left 2)(right 1))");
   CHECK(m.score() == std::pair(2, 1));
@@ -109,7 +109,7 @@ TEST_CASE("A trainer sets the score, and it is told") {
   CHECK(m.b1.gs("sl") == "2");
 }
 
-TEST_CASE("A shoot-out: straight from the kick-off counts, the goalie stays in his area, a goal ends it") {
+TEST_CASE("In a shoot-out the kick-off may score, the goalie must stay in its area, and a goal ends it") {
   Match m{{{"Soccer.PenaltyShootout", true}}};
   m.trainer(Match::put(m.b1, 14, 0.5) + Match::put(m.b2, 14, -2) + "(kickOff Left)(score (left 0)(right 0))");
   m.run(1);
@@ -121,14 +121,14 @@ TEST_CASE("A shoot-out: straight from the kick-off counts, the goalie stays in h
     CHECK(m.score() == std::pair(1, 0));
     CHECK(m.until("GameOver", 4) == Approx(3.0).margin(kCycle));
   }
-  SECTION("the goalie leaves his area") {
+  SECTION("the goalie leaves its area") {
     m.run(5);
     CHECK(m.mode() == "PlayOn");
     m.trainer(Match::put(m.b1, 13.1, 0.5));
     CHECK(m.mode() == "Goal_Left");
     CHECK(m.score() == std::pair(1, 0));
   }
-  SECTION("behind him is his goal") {
+  SECTION("the goalie may be in its goal") {
     m.trainer(Match::put(m.b1, 15.2, 0));
     m.run(2);
     CHECK(m.mode() == "PlayOn");

@@ -1,10 +1,10 @@
-// Time of play: halves, the change of sides, the end.
+// The time of play: halves, the change of sides, the end.
 #include "match.h"
 
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("After 300 s the second half waits for its kick-off; after 600 s the match is over") {
+TEST_CASE("After 300 s the second half waits for its kick-off, and after 600 s the match is over") {
   Match m;
   m.trainer("(time 299.9)");
   CHECK(m.until("BeforeKickOff", 1) > 0);
@@ -13,7 +13,7 @@ TEST_CASE("After 300 s the second half waits for its kick-off; after 600 s the m
   const double then = m.time();
   m.seconds(2);
   CHECK(m.time() == then);
-  m.checkTold("BeforeKickOff");
+  m.checkModeSent("BeforeKickOff");
   CHECK(m.a1.gs("t") == fmt::format("{:.2f}", then));
   m.checkBall(0, 0, 0.001);
   m.trainer("(kickOff None)");
@@ -22,13 +22,13 @@ TEST_CASE("After 300 s the second half waits for its kick-off; after 600 s the m
   CHECK(m.until("GameOver", 1) > 0);
   CHECK(m.time() == Approx(600.0).margin(kCycle));
   CHECK(m.monitor().number("half") == 2);
-  m.checkTold("GameOver");
+  m.checkModeSent("GameOver");
   m.seconds(11);
   CHECK(m.time() == Approx(600.0).margin(0.001));
   CHECK_FALSE(m.over());
 }
 
-TEST_CASE("The end is imposed again until the clock is set back; the half is not set back") {
+TEST_CASE("The match ends again until a trainer sets the time back, which does not set the half back") {
   Match m;
   m.trainer("(time 300)");
   m.run(1);
@@ -44,7 +44,7 @@ TEST_CASE("The end is imposed again until the clock is set back; the half is not
   CHECK(m.time() == Approx(100.12));
 }
 
-TEST_CASE("A trainer's GameOver lasts; its clock stands") {
+TEST_CASE("GameOver by a trainer persists and stops the time of play") {
   Match m;
   m.trainer("(playMode GameOver)");
   const double then = m.time();
@@ -57,14 +57,14 @@ TEST_CASE("A trainer's GameOver lasts; its clock stands") {
   CHECK(m.time() == Approx(then + 0.04));
 }
 
-TEST_CASE("With a single half the match is over after it") {
+TEST_CASE("With a single half the match is over after that half") {
   Match m{{{"Soccer.SingleHalfTime", true}, {"Soccer.RuleHalfTime", 2.0}}};
   CHECK(m.until("GameOver", 3) > 0);
   CHECK(m.monitor().number("half") == 1);
   CHECK(m.time() == Approx(2.0).margin(kCycle));
 }
 
-TEST_CASE("The house ends 10 s after the match when it is asked") {
+TEST_CASE("With AutomaticQuit the simulation ends 10 s after the match") {
   Match m{{{"Soccer.AutomaticQuit", true}}};
   m.trainer("(playMode GameOver)");
   m.seconds(9.96);
@@ -73,7 +73,7 @@ TEST_CASE("The house ends 10 s after the match when it is asked") {
   CHECK(m.over());
 }
 
-TEST_CASE("Teams change sides at half time: names, shirts, scores, start of the second half; agents are not told") {
+TEST_CASE("Teams change sides at half time with their names, shirts and scores, and agents are not notified") {
   Match m{{{"Soccer.ChangeSidesInSecondHalf", true}}};
   m.trainer("(score (left 2)(right 1))");
   const int full = m.monitor().fullMessages();
@@ -86,12 +86,12 @@ TEST_CASE("Teams change sides at half time: names, shirts, scores, start of the 
   CHECK(m.score() == std::pair(1, 2));
   m.a1.side = Side::right;
   m.b1.side = Side::left;
-  m.checkAt(m.a1, 2.5, 7);  // was in the left half, his opponents' now
+  m.checkAt(m.a1, 2.5, 7);  // it was in the left half, which is now the opponents' half
   m.checkAt(m.b1, -2.5, 7);
   CHECK(m.a1.gs("team").empty());
   CHECK(m.a1.gs("sr") == "2");
   m.trainer("(kickOff None)");
-  CHECK(m.mode() == "KickOff_Left");  // the other team, which stands on the left now
+  CHECK(m.mode() == "KickOff_Left");  // the other team, which now plays on the left
   m.trainer("(playMode PlayOn)");
   m.trainer(Match::ballTo(0, 0) + m.apart());
   m.run(2);

@@ -1,10 +1,10 @@
-// Before the kick-off, and the kick-off itself: who stands where, who may touch, when play goes on.
+// Before the kick-off, and the kick-off itself: positions of the players, allowed touches, start of play.
 #include "match.h"
 
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("Agents join, are told their team once, and stand at the start positions") {
+TEST_CASE("Agents join, receive their team once, and are at the start positions") {
   Stadium s;
   Player& a = s.join("A", 1);
   Player& b = s.join("B", 7);
@@ -19,7 +19,7 @@ TEST_CASE("Agents join, are told their team once, and stand at the start positio
   CHECK(a.gs("t") == "0.00");
 }
 
-TEST_CASE("Before the kick-off the ball is held, the clock stands, teams stay in their halves, beams work") {
+TEST_CASE("Before the kick-off ball and time are held, and players are kept in their halves and may beam") {
   Match m;
   m.trainer("(playMode BeforeKickOff)");
   const double then = m.time();
@@ -30,23 +30,24 @@ TEST_CASE("Before the kick-off the ball is held, the clock stands, teams stay in
   m.checkBall(0, 0);
   CHECK(m.ball().z() == Approx(0.042).margin(0.001));
   m.checkAt(m.a1, -2.5, 3);
-  m.checkAt(m.b1, 2.5, -5);  // some of him was in the other half
+  m.checkAt(m.b1, 2.5, -5);  // part of it was in the other half
   m.act(m.a1, "(beam -5 4 0)");
-  m.act(m.b1, "(beam 3 2 0)");  // ends at the middle line, and the referee moves him away from there
+  m.act(m.b1, "(beam 3 2 0)");  // ends at the middle line, and the referee moves it away from there
   m.run(3);
   m.checkAt(m.a1, -5, 4);
   m.checkAt(m.b1, 2.5, -2);
-  m.checkTold("BeforeKickOff");
+  m.checkModeSent("BeforeKickOff");
 }
 
-TEST_CASE("Before the kick-off nobody is moved when starts are free") {
+TEST_CASE("With StartAnyFieldPosition no player is moved before the kick-off") {
   Match m{{{"Soccer.StartAnyFieldPosition", true}}};
   m.trainer("(playMode BeforeKickOff)" + Match::put(m.a1, 4, 3));
   m.run(3);
   m.checkAt(m.a1, 4, 3);
 }
 
-TEST_CASE("At a kick-off the others leave the half and the circle, the kicking team may stand in the circle") {
+TEST_CASE(
+    "At a kick-off opponents are moved out of the half and the circle, and the kicking team may be in the circle") {
   Match m;
   m.trainer("(time 0)(kickOff Left)" + Match::put(m.a1, 3, 1) + Match::put(m.a2, 0.5, 0.6) + Match::put(m.b1, -3, 2) +
             Match::put(m.b2, 1.2, -0.5));
@@ -57,14 +58,14 @@ TEST_CASE("At a kick-off the others leave the half and the circle, the kicking t
   m.checkAt(m.a2, 0.5, 0.6);
   m.checkAt(m.b1, 2.5, 2);
   m.checkAt(m.b2, 2.5, -0.5);
-  m.checkTold("KickOff_Left");
-  CHECK(m.a1.gs("t") == "0.04");  // of the cycle before: what is sensed leaves with the next
+  m.checkModeSent("KickOff_Left");
+  CHECK(m.a1.gs("t") == "0.04");  // the percepts of the previous cycle
   m.touch(m.a2);
   CHECK(m.mode() == "PlayOn");
-  m.checkTold("PlayOn");
+  m.checkModeSent("PlayOn");
 }
 
-TEST_CASE("The right team's kick-off is the mirror image") {
+TEST_CASE("The right team's kick-off is the mirror image of the left team's") {
   Match m;
   m.trainer("(kickOff Right)" + Match::put(m.b1, -3, 1) + Match::put(m.b2, -0.5, 0.6) + Match::put(m.a1, 3, 2) +
             Match::put(m.a2, -1.2, -0.5));
@@ -74,11 +75,11 @@ TEST_CASE("The right team's kick-off is the mirror image") {
   m.checkAt(m.b2, -0.5, 0.6);
   m.checkAt(m.a1, -2.5, 2);
   m.checkAt(m.a2, -2.5, -0.5);
-  m.touch(m.a1, 1);  // anybody's touch starts the play
+  m.touch(m.a1, 1);  // a touch by any player starts play
   CHECK(m.mode() == "PlayOn");
 }
 
-TEST_CASE("A kick-off that nobody takes is a drop ball after 15 s") {
+TEST_CASE("A kick-off without a touch becomes a drop ball after 15 s") {
   Match m;
   m.trainer("(playMode BeforeKickOff)(time 0)");
   m.trainer("(kickOff Left)" + Match::put(m.a2, -0.6, 0));
@@ -87,10 +88,10 @@ TEST_CASE("A kick-off that nobody takes is a drop ball after 15 s") {
   m.run(1);
   CHECK(m.a1.gs("t") == "15.00");
   m.checkBall(0, 0);
-  m.checkAt(m.a2, -2.5, 0);  // cleared as everybody
+  m.checkAt(m.a2, -2.5, 0);  // moved away like all players
 }
 
-TEST_CASE("A trainer who sets the clock ahead ends a kick-off, as recorded of the installed base") {
+TEST_CASE("A trainer that advances the time of play ends a kick-off, as recorded with the original server") {
   Match m;
   m.trainer("(kickOff Right)");
   m.run(10);
@@ -99,7 +100,7 @@ TEST_CASE("A trainer who sets the clock ahead ends a kick-off, as recorded of th
   CHECK(m.time() == Approx(123.52));
 }
 
-TEST_CASE("Kick-off for nobody in particular: left, then a coin; in the second half the other team") {
+TEST_CASE("(kickOff None) gives left, then a random side, and in the second half the other team") {
   Match m;
   m.trainer("(playMode BeforeKickOff)(kickOff None)");
   CHECK(m.mode() == "KickOff_Left");
@@ -114,16 +115,17 @@ TEST_CASE("Kick-off for nobody in particular: left, then a coin; in the second h
   CHECK(m.until("BeforeKickOff", 1) >= 0);
   m.trainer("(kickOff None)");
   CHECK(m.mode() == "KickOff_Right");
-  m.trainer("(playMode PlayOn)(kickOff)(kickOff left)");  // no such side
+  m.trainer("(playMode PlayOn)(kickOff)(kickOff left)");  // invalid sides
   CHECK(m.mode() == "PlayOn");
 }
 
-TEST_CASE("A coin decides the first kick-off when it is asked") {
+TEST_CASE("With CoinTossForKickOff the first kick-off is random") {
   bool left = false, right = false;
   for (int agents = 0; agents < 12 && !(left && right); ++agents) {
     Stadium s{{{"Soccer.CoinTossForKickOff", true}}};
     s.join("A", 1);
-    for (int i = 0; i < agents; ++i) s.trainer("(dropBall)(playMode BeforeKickOff)");  // draws of the referee's dice
+    for (int i = 0; i < agents; ++i)
+      s.trainer("(dropBall)(playMode BeforeKickOff)");  // advances the referee's random numbers
     s.trainer("(kickOff None)");
     left |= s.mode() == "KickOff_Left";
     right |= s.mode() == "KickOff_Right";
@@ -132,51 +134,51 @@ TEST_CASE("A coin decides the first kick-off when it is asked") {
   CHECK(right);
 }
 
-TEST_CASE("An automatic kick-off comes when agents have been there for the wait") {
+TEST_CASE("An automatic kick-off comes WaitBeforeKickOff after the first agent connected") {
   Stadium s{{{"Soccer.AutomaticKickOff", true}, {"Soccer.WaitBeforeKickOff", 2.0}}};
   s.seconds(5);
   CHECK(s.mode() == "BeforeKickOff");
   s.connect();
-  CHECK(s.until("KickOff_Left", 5) == Approx(1.98));  // the cycle of the connection was the first
+  CHECK(s.until("KickOff_Left", 5) == Approx(1.98));  // counts the cycle of the connection
   CHECK(s.time() == 0);
   s.run(1);
   CHECK(s.time() == Approx(0.02));
 }
 
-TEST_CASE("Straight from the kick-off nobody scores") {
+TEST_CASE("A kick-off cannot score directly") {
   Match m;
   m.trainer("(playMode BeforeKickOff)");
   m.trainer("(kickOff Left)");
   m.run(1);
-  SECTION("into the others' goal: a goal kick") {
+  SECTION("a ball in the opponents' goal is a goal kick") {
     m.touchThen(m.a1, Match::ballTo(15.3, 0.2, 0.1));
     CHECK(m.mode() == "goal_kick_right");
     CHECK(m.score() == std::pair(0, 0));
   }
-  SECTION("into the own goal: a corner") {
+  SECTION("a ball in its own goal is a corner kick") {
     m.touchThen(m.a1, Match::ballTo(-15.3, 0.2, 0.1));
     CHECK(m.mode() == "corner_kick_right");
     CHECK(m.score() == std::pair(0, 0));
   }
-  SECTION("a team-mate inside the circle does not earn it") {
+  SECTION("a touch by a team-mate inside the circle is not enough") {
     m.touchThen(m.a1, Match::ballTo(1, 0));
     m.touchThen(m.a2, Match::ballTo(15.3, 0.2, 0.1));
     CHECK(m.mode() == "goal_kick_right");
   }
-  SECTION("a team-mate outside of the circle earns it") {
+  SECTION("a touch by a team-mate outside the circle is enough") {
     m.touchThen(m.a1, Match::ballTo(2.3, 0));
     m.touchThen(m.a2, Match::ballTo(15.3, 0.2, 0.1));
     CHECK(m.mode() == "Goal_Left");
     CHECK(m.score() == std::pair(1, 0));
   }
-  SECTION("an opponent's touch earns it") {
+  SECTION("a touch by an opponent is enough") {
     m.touchThen(m.a1, Match::ballTo(1, 0));
     m.touchThen(m.b2, Match::ballTo(15.3, 0.2, 0.1));
     CHECK(m.mode() == "Goal_Left");
   }
 }
 
-TEST_CASE("Two alone may score straight from the kick-off") {
+TEST_CASE("With one player per team the kick-off may score directly") {
   Stadium s;
   Player& a = s.join("A", 1);
   s.join("B", 1);

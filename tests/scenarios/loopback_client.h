@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A TCP client of a server in the same process and thread: what either side sent is known to have arrived, so nothing
-/// waits or guesses.
+/// A TCP client of a server in the same process and thread. It checks that sent bytes have arrived, so tests need no
+/// timing.
 
 #include <arpa/inet.h>
 #include <linux/sockios.h>
@@ -22,7 +22,7 @@
 
 namespace spark::test {
 
-/// One connection. After connecting, the server must be polled until accepted() says so.
+/// One connection. After connecting, poll the server until accepted() returns true.
 class LoopbackClient {
  public:
   explicit LoopbackClient(int port) : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -40,14 +40,14 @@ class LoopbackClient {
 
   /// Finds the server's end among this process's sockets; false while the server has not accepted.
   bool accepted() {
-    // Clients of two servers may have the same port: both ends count.
+    // Clients of two servers may have the same port, so both ends are compared.
     for (int fd = 3; fd < 1024 && peer_ < 0; ++fd)
       if (fd != fd_ && portOf(fd, ::getpeername) == portOf(fd_, ::getsockname) &&
           portOf(fd, ::getsockname) == portOf(fd_, ::getpeername))
         peer_ = fd;
     return peer_ >= 0;
   }
-  /// Sends a message behind its length, and returns when it is where the server's next read finds it.
+  /// Sends a message with its length prefix, and returns when the server's next read will find it.
   void send(std::string_view message) {
     const auto n = htonl(static_cast<std::uint32_t>(message.size()));
     const std::string bytes = std::string(reinterpret_cast<const char*>(&n), 4) + std::string(message);
@@ -57,10 +57,10 @@ class LoopbackClient {
     while (count(peer_, FIONREAD) < before + static_cast<int>(bytes.size())) {
     }
   }
-  /// All messages that the server has sent and that were not taken yet. The server must have nothing left to write.
+  /// All messages that the server has sent since the last call. The server must have nothing left to write.
   std::vector<std::string> take() {
     do readAll();
-    while (!ended_ && count(peer_, SIOCOUTQ) > 0);  // on its way: read again
+    while (!ended_ && count(peer_, SIOCOUTQ) > 0);  // in transit: read again
     std::vector<std::string> out;
     for (std::uint32_t n = 0; in_.size() >= 4; out.push_back(in_.substr(4, n)), in_.erase(0, 4 + n)) {
       std::memcpy(&n, in_.data(), 4);
@@ -69,7 +69,7 @@ class LoopbackClient {
     }
     return out;
   }
-  /// The server has closed the connection (seen by take()).
+  /// True if the server has closed the connection (detected by take()).
   bool ended() const { return ended_; }
 
  private:
@@ -80,7 +80,7 @@ class LoopbackClient {
     a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     return a;
   }
-  /// Port of one end in network order, as getsockname or getpeername tells it; -1 for what has none.
+  /// The port of one end in network order, from getsockname or getpeername; -1 if it has none.
   template <class Name>
   static int portOf(int fd, Name name) {
     sockaddr_in a{};
@@ -97,7 +97,7 @@ class LoopbackClient {
     ssize_t n;
     while ((n = ::recv(fd_, buffer, sizeof buffer, MSG_DONTWAIT)) > 0) in_.append(buffer, static_cast<std::size_t>(n));
     ended_ |= n == 0 || (errno != EAGAIN && errno != EWOULDBLOCK);
-    // bytes that were read are acknowledged at once, not when it suits
+    // Acknowledge the bytes at once instead of with the usual delay.
     const int on = 1;
     ::setsockopt(fd_, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
   }

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Two against two: what most scenarios begin with.
+/// Two against two, the start of most scenarios.
 
 #include "stadium.h"
 
 namespace spark::test {
 
-/// A1, A2 of the left team and B1, B2 of the right one, each in a corner of its half; PlayOn, the ball rests at the
-/// centre.
+/// A1, A2 of the left team and B1, B2 of the right one, each in a corner of its half; PlayOn with the ball at rest at
+/// the center.
 struct Match : Stadium {
   explicit Match(const Settings& settings = {})
       : Stadium(settings), a1(join("A", 1)), a2(join("A", 2)), b1(join("B", 1)), b2(join("B", 2)) {
@@ -17,12 +17,12 @@ struct Match : Stadium {
   Player &a1, &a2, &b1, &b2;
 
   std::string apart() const { return put(a1, -8, 7) + put(a2, -8, -7) + put(b1, 8, 7) + put(b2, 8, -7); }
-  /// The player touches the ball, once; then everybody stands apart and the ball is where the commands say.
+  /// The player touches the ball once. Then all players are apart and the commands act.
   void touchThen(const Player& p, const std::string& commands) {
     trainer(against(p));
     trainer(apart() + commands);
   }
-  /// The player touches the ball where it lies and stays there.
+  /// The player is moved against the ball and stays there.
   void touch(const Player& p, double side = -1) { trainer(against(p, side)); }
   void checkAt(const Player& p, double x, double y, double margin = 0.06) {
     const Vec3 where = at(p);
@@ -34,14 +34,14 @@ struct Match : Stadium {
     CHECK(where.x() == Approx(x).margin(margin));
     CHECK(where.y() == Approx(y).margin(margin));
   }
-  /// All players are told the mode, one cycle after it began.
-  void checkTold(const std::string& mode) {
+  /// Checks that all players receive the mode, one cycle after it began.
+  void checkModeSent(const std::string& mode) {
     run(1);
     for (const Player* p : {&a1, &a2, &b1, &b2}) CHECK(p->gs("pm") == mode);
   }
 };
 
-/// Puts the ball behind the line of a goal.
+/// Moves the ball behind the goal line.
 inline const std::string kInRightGoal = Match::ballTo(15.3, 0.2, 0.1), kInLeftGoal = Match::ballTo(-15.3, 0.2, 0.1);
 
 }  // namespace spark::test

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a monitor knows from the messages it got: environment, ball, players, fouls.
+/// The state of a monitor from the messages received: environment, ball, players, fouls.
 
 #include <array>
 #include <map>
@@ -18,7 +18,7 @@ class MonitorView {
   /// `(foul index type team unum)`.
   struct Foul {
     int index, type, team, unum;
-    double time;  ///< of play, in the message that told of it [s]
+    double time;  ///< time of play in the message that reported it [s]
   };
 
   void read(const std::string& message) {
@@ -26,9 +26,9 @@ class MonitorView {
     ++messages_;
     if (frame_.update.full) ++fullMessages_;
     last_ = message;
-    told_.clear();
+    lastKeys_.clear();
     for (const Element e : frame_.frame.env.predicates) {
-      told_.emplace_back(e.head());
+      lastKeys_.emplace_back(e.head());
       env_[std::string(e.head())] = e.at(1).isText() ? std::string(e.at(1).text()) : std::to_string(e.at(1).number());
       if (e.head() == "play_modes") names(e);
     }
@@ -38,12 +38,14 @@ class MonitorView {
                           number("time")});
   }
 
-  /// Of an environment key, as last told; 0 when it never was.
+  /// The last value of an environment key; 0 if it was never sent.
   double number(const std::string& key) const { return env_.count(key) ? std::stod(env_.at(key)) : 0; }
   std::string text(const std::string& key) const { return env_.count(key) ? env_.at(key) : std::string(); }
-  /// The newest message had that key.
-  bool tellsNow(std::string_view key) const { return std::find(told_.begin(), told_.end(), key) != told_.end(); }
-  /// Name of the play mode, by the names that the server sent.
+  /// True if the newest message has this key.
+  bool lastMessageHas(std::string_view key) const {
+    return std::find(lastKeys_.begin(), lastKeys_.end(), key) != lastKeys_.end();
+  }
+  /// Name of the play mode from the list that the server sent.
   std::string mode() const { return modes_.empty() ? "" : modes_.at(static_cast<std::size_t>(number("play_mode"))); }
   const std::vector<Foul>& fouls() const { return fouls_; }
   const std::string& lastMessage() const { return last_; }
@@ -53,9 +55,9 @@ class MonitorView {
   Vec3 ball() const {
     const auto at = find([](const FrameNode& n) { return n.visual && n.visual->load().ends_with("soccerball.obj"); });
     if (!at) throw Error("the monitor sees no ball");
-    return place(*at);
+    return worldPosition(*at);
   }
-  /// Position of the torso; nothing when there is no such player. Side as materials say it: matLeft or matRight.
+  /// Position of the torso; empty if there is no such player. The materials matLeft and matRight give the side.
   std::optional<Vec3> player(Side side, int unum) const {
     const std::string number = "matNum" + std::to_string(unum), shirt = side == Side::left ? "matLeft" : "matRight";
     const auto at = find([&](const FrameNode& n) {
@@ -64,7 +66,7 @@ class MonitorView {
       return std::find(m.begin(), m.end(), number) != m.end() && std::find(m.begin(), m.end(), shirt) != m.end();
     });
     if (!at) return {};
-    return place(*at);
+    return worldPosition(*at);
   }
 
  private:
@@ -78,8 +80,8 @@ class MonitorView {
       if (matches(frame_.frame.nodes[i])) return i;
     return {};
   }
-  /// In the world: all transforms above a node, multiplied.
-  Vec3 place(std::size_t node) const {
+  /// The position in the world: the product of all transforms above a node.
+  Vec3 worldPosition(std::size_t node) const {
     const auto& nodes = frame_.frame.nodes;
     Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
     int depth = nodes[node].depth;
@@ -93,7 +95,7 @@ class MonitorView {
 
   RecordedFrame frame_;
   std::map<std::string, std::string> env_;
-  std::vector<std::string> told_, modes_;
+  std::vector<std::string> lastKeys_, modes_;
   std::vector<Foul> fouls_;
   std::string last_;
   int messages_ = 0, fullMessages_ = 0;

@@ -1,21 +1,21 @@
-// Where the referee puts players.
+// The positions to which the referee moves players.
 #include "match.h"
 
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("Nobody is put onto another player") {
+TEST_CASE("No player is moved onto another player") {
   Match m;
   m.trainer("(kickOff Left)" + Match::put(m.b1, 2.5, 1) + Match::put(m.b2, 1, 1));
   m.run(1);
   m.checkAt(m.b1, 2.5, 1);
   const Vec3 b2 = m.at(m.b2);
   CHECK(Match::distance(b2, m.at(m.b1)) > 0.5);
-  // of the places a step of 0.4 m further out or further from the middle the nearest to him
+  // The nearest of the candidates, which are in steps of 0.4 m further out or further from the middle.
   m.checkAt(m.b2, 2.5, 1.8);
 }
 
-TEST_CASE("Nobody is put as the fourth into his own penalty area") {
+TEST_CASE("No player is moved as the fourth into its own penalty area") {
   Match m;
   Player& a3 = m.join("A", 3);
   Player& a4 = m.join("A", 4);
@@ -27,29 +27,29 @@ TEST_CASE("Nobody is put as the fourth into his own penalty area") {
   const Vec3 p = m.at(a4);
   CHECK(Match::distance(p, m.ball()) > 2);
   CHECK_FALSE((p.x() > -15.4 && p.x() < -12.8 && std::abs(p.y()) < 3.4));
-  // with room in the area he is put there
+  // With fewer players in the area it is moved there.
   m.trainer(Match::put(m.a1, -8, 7) + Match::put(a4, -11, 0.5));
   m.run(2);
   m.checkAt(a4, -14, 0.5);
 }
 
-TEST_CASE("Who would be put behind his goal line is put towards the middle") {
+TEST_CASE("A player that would be moved behind its goal line is moved towards the middle") {
   Match m;
   m.trainer("(playMode corner_kick_right)" + Match::put(m.a1, -14.5, 5));
   m.run(52);
   m.checkAt(m.a1, -14.5, (20 + 2.1) / 4 - 0.042 - 2.5);
 }
 
-TEST_CASE("Nobody is put beside the ball, but by the push off it") {
+TEST_CASE("A player is not moved next to the ball except when it is pushed away from it") {
   Match m;
-  // the target of the clearing before the kick-off is where the ball is held
+  // The target of the move before the kick-off is the position of the ball.
   m.trainer("(playMode BeforeKickOff)");
   m.trainer("(kickOff Left)" + Match::put(m.a1, 6, 0) + Match::ballTo(-2.5, 0.2));
   m.run(1);
   CHECK(Match::distance(m.at(m.a1), Vec3(-2.5, 0.2, 0)) >= 0.99);
 }
 
-TEST_CASE("A trainer puts a player outside: by number, on the side away from the ball") {
+TEST_CASE("A trainer moves a player off the field, by its number, to the side away from the ball") {
   Match m;
   m.trainer(Match::ballTo(0, -3));
   m.run(1);
@@ -65,14 +65,14 @@ TEST_CASE("A trainer puts a player outside: by number, on the side away from the
   m.checkAt(m.a2, -3, -10.5, 0.02);
 }
 
-TEST_CASE("With no attempts a player is put where the rule says, whoever stands there") {
+TEST_CASE("With MaxNumSafeRepositionAttempts 0 a player is moved to its target even if that is occupied") {
   Match m{{{"Soccer.MaxNumSafeRepositionAttempts", 0}}};
   m.trainer("(kickOff Left)" + Match::put(m.b1, 2.5, 1.35) + Match::put(m.b2, 1, 1));
   m.run(1);
   m.checkAt(m.b2, 2.5, 1);
 }
 
-TEST_CASE("A humanoid is moved as a whole and stands") {
+TEST_CASE("A humanoid is moved as a whole and remains upright") {
   Stadium s;
   Player& a = s.join("A", 1, "rsg/agent/nao/nao.rsg");
   Player& b = s.join("B", 2, "rsg/agent/nao/nao_hetero.rsg 4");
@@ -89,18 +89,18 @@ TEST_CASE("A humanoid is moved as a whole and stands") {
   CHECK(s.at(b).z() == Approx(z).margin(0.02));
   CHECK(s.at(b).x() == Approx(2.5).margin(0.05));
   s.trainer("(agent (unum 1)(team Left)(pos -0.1 0.055 0.38))");
-  CHECK(s.until("PlayOn", 1) >= 0);  // his feet reach the ball
+  CHECK(s.until("PlayOn", 1) >= 0);  // its feet reach the ball
   CHECK(a.gs("sl") == "0");
 }
 
-TEST_CASE("A team takes at most 7 robots of a type, 9 of any two, and three types") {
+TEST_CASE("A team has at most 7 robots of one type, 9 of any two types, and three types") {
   Stadium s;
-  SECTION("an eighth of a type is refused") {
+  SECTION("an eighth robot of one type is refused") {
     for (int n = 1; n <= 7; ++n) CHECK(s.join("A", n, 0.6, 0).side == Side::left);
     CHECK(s.join("A", 8, 0.6, 0).side == Side::none);
-    CHECK(s.join("A", 8, 0.6, 1).side == Side::left);  // the number is free
+    CHECK(s.join("A", 8, 0.6, 1).side == Side::left);  // the number is still free
   }
-  SECTION("a tenth of two types is refused") {
+  SECTION("a tenth robot of two types is refused") {
     for (int n = 1; n <= 9; ++n) CHECK(s.join("A", n, 0.6, n % 2).side == Side::left);
     CHECK(s.join("A", 10, 0.6, 0).side == Side::none);
     CHECK(s.join("A", 10, 0.6, 2).side == Side::left);

@@ -1,15 +1,15 @@
-// Kick-ins, corners, goal kicks, free kicks, drop balls: what awards them, the pause, who is moved, what ends them.
+// Kick-ins, corner kicks, goal kicks, free kicks, drop balls: their causes, the pause, the players moved, their end.
 #include "match.h"
 
 using namespace spark;
 using namespace spark::test;
 
 namespace {
-constexpr double kLine = 20.0 / 2 - 0.042, kEnd = 30.0 / 2 - 0.042;  // m: the ball just inside
+constexpr double kLine = 20.0 / 2 - 0.042, kEnd = 30.0 / 2 - 0.042;  // m: the ball just inside the field
 constexpr double kCorner = (20 + 2.1) / 4 - 0.042;                   // m
 }  // namespace
 
-TEST_CASE("Over the touch line: a kick-in for the others, where the ball was last on the field") {
+TEST_CASE("A ball over the touch line gives the opponents a kick-in where it left the field") {
   Match m;
   const bool left = GENERATE(true, false);
   const double y = GENERATE(1.0, -1.0);
@@ -17,27 +17,27 @@ TEST_CASE("Over the touch line: a kick-in for the others, where the ball was las
   const double took = m.until(left ? "KickIn_Left" : "KickIn_Right", 1);
   CHECK(took >= 0);
   CHECK(std::abs(m.ball().y()) > 10.042);
-  m.checkTold(left ? "KickIn_Left" : "KickIn_Right");
-  m.run(48);  // 0.98 s: until then the ball just rolls
+  m.checkModeSent(left ? "KickIn_Left" : "KickIn_Right");
+  m.run(48);  // 0.98 s: until then the ball rolls freely
   CHECK(std::abs(m.ball().y()) > 11);
   m.run(2);
   m.checkBall(3, kLine * y, 0.001);
 }
 
-TEST_CASE("A kick-in: the pause, opponents, the kicking team, the touch") {
+TEST_CASE("A kick-in has a pause, then opponents and kicking team are moved away, and a touch ends it") {
   Match m;
   m.touchThen(m.a1, Match::ballTo(3, 9.9, 0.042, 0, 3));
   REQUIRE(m.until("KickIn_Right", 0.2) >= 0);
   m.trainer(Match::put(m.a1, 3, 9) + Match::put(m.a2, 3, 7.7) + Match::put(m.b2, 3.2, 9.8));
-  m.run(48);  // 49 since the award
+  m.run(48);  // 49 cycles since the award
   m.checkAt(m.a1, 3, 9);
   m.checkAt(m.b2, 3.2, 9.8);
   m.run(2);
   CHECK(m.mode() == "KickIn_Right");
-  m.checkAt(m.a1, 0.5, 9);  // 2.5 m towards his own end
-  m.checkAt(m.a2, 3, 7.7);  // just outside
+  m.checkAt(m.a1, 0.5, 9);  // 2.5 m towards its own end
+  m.checkAt(m.a2, 3, 7.7);  // just outside the distance
   CHECK(Match::distance(m.at(m.b2), Vec3(3, kLine, 0)) == Approx(0.5).margin(0.01));
-  m.trainer(Match::put(m.b2, 3.25, 9.8));  // pushed only once
+  m.trainer(Match::put(m.b2, 3.25, 9.8));  // the kicking team is pushed only once
   m.run(2);
   m.checkAt(m.b2, 3.25, 9.8);
   m.checkBall(3, kLine, 0.001);
@@ -45,7 +45,7 @@ TEST_CASE("A kick-in: the pause, opponents, the kicking team, the touch") {
   CHECK(m.mode() == "PlayOn");
 }
 
-TEST_CASE("A touch takes a restart from 0.03 s after the pause on") {
+TEST_CASE("A touch ends a restart only from 0.03 s after the pause") {
   Match m;
   m.trainer("(playMode free_kick_left)");
   m.run(49);  // the next cycle is 1.02 s after the award
@@ -55,7 +55,7 @@ TEST_CASE("A touch takes a restart from 0.03 s after the pause on") {
   CHECK(m.mode() == "PlayOn");
 }
 
-TEST_CASE("Restarts that a trainer sets: position, pause, drop ball after 15 s") {
+TEST_CASE("A restart set by a trainer has its position, its pause, and a drop ball after 15 s") {
   Match m;
   struct Case {
     const char* mode;
@@ -78,11 +78,11 @@ TEST_CASE("Restarts that a trainer sets: position, pause, drop ball after 15 s")
   CHECK(m.mode() == c.mode);
   m.checkBall(c.x, c.y, 0.001);
   CHECK(m.ball().z() == Approx(0.042).margin(0.001));
-  m.checkTold(c.mode);
+  m.checkModeSent(c.mode);
   CHECK(m.until("PlayOn", 20) > 0);
   CHECK(m.time() - begin == Approx(15.0).margin(0.001));
   m.run(1);
-  // the drop ball lies outside of penalty areas
+  // The drop ball is placed outside the penalty areas.
   const bool inArea = std::abs(c.x) > 13.2 && std::abs(c.y) < 3;
   m.checkBall(inArea ? std::copysign(13.2, c.x) : c.x, inArea ? 3.0 : c.y);
 }
@@ -98,16 +98,16 @@ TEST_CASE("Every restart ends with a touch by either team") {
   CHECK(m.mode() == mode);
   m.touch(first ? m.a1 : m.b1);
   CHECK(m.mode() == "PlayOn");
-  m.checkTold("PlayOn");
+  m.checkModeSent("PlayOn");
 }
 
-TEST_CASE("Over the goal line: a goal kick or a corner, as who touched the ball last") {
+TEST_CASE("A ball over the goal line gives a goal kick or a corner kick, depending on the last touch") {
   Match m;
   const double end = GENERATE(1.0, -1.0), y = GENERATE(4.0, -4.0);
   const bool attackers = GENERATE(true, false);
   const Player& last = (end > 0) == attackers ? m.a1 : m.b1;
   m.touchThen(last, Match::ballTo(15.1 * end, y));
-  const std::string side = (end > 0) == attackers ? "right" : "left";  // the other team's
+  const std::string side = (end > 0) == attackers ? "right" : "left";  // the opponents of the last touch
   CHECK(m.mode() == (attackers ? "goal_kick_" : "corner_kick_") + side);
   m.run(52);
   if (attackers)
@@ -117,13 +117,13 @@ TEST_CASE("Over the goal line: a goal kick or a corner, as who touched the ball 
   CHECK(m.score() == std::pair(0, 0));
 }
 
-TEST_CASE("At the flag the goal line decides") {
+TEST_CASE("At the corner flag the goal line takes precedence") {
   Match m;
   m.touchThen(m.a1, Match::ballTo(15.02, 10.2));
   CHECK(m.mode() == "goal_kick_right");
 }
 
-TEST_CASE("A goal kick: the others leave the area, the ball must leave it too") {
+TEST_CASE("At a goal kick opponents leave the area, and the ball must leave it, too") {
   Match m;
   m.touchThen(m.a1, Match::ballTo(15.1, 4));
   REQUIRE(m.mode() == "goal_kick_right");
@@ -140,12 +140,12 @@ TEST_CASE("A goal kick: the others leave the area, the ball must leave it too") 
     m.run(1);
   }
   CHECK(m.mode() == "PlayOn");
-  // a goal kick is direct
+  // A goal kick is direct.
   m.trainer(Match::ballTo(-15.3, 0, 0.1));
   CHECK(m.mode() == "Goal_Right");
 }
 
-TEST_CASE("A goal kick over the own goal line is a corner") {
+TEST_CASE("A goal kick over its own goal line gives a corner kick") {
   Match m;
   m.trainer("(playMode goal_kick_left)");
   m.run(55);
@@ -155,20 +155,20 @@ TEST_CASE("A goal kick over the own goal line is a corner") {
   CHECK(m.mode() == "corner_kick_right");
 }
 
-TEST_CASE("A free kick of a trainer is taken where the ball was, outside of penalty areas") {
+TEST_CASE("A free kick set by a trainer is taken where the ball was, but outside the penalty areas") {
   Match m;
   m.trainer(Match::ballTo(-14, -1));
   m.run(1);
   m.trainer("(playMode free_kick_right)" + Match::put(m.a1, -12, -3) + Match::put(m.a2, -13.2, -1.5));
   m.run(52);
   m.checkBall(-13.2, -3, 0.001);
-  // towards the own end that would be behind the goal line: along y, towards the middle
+  // Towards its own end would be behind the goal line, so it is moved along y towards the middle.
   m.checkAt(m.a1, -12, -0.5, 0.5);
   CHECK(Match::distance(m.at(m.a1), m.ball()) > 2);
   CHECK(Match::distance(m.at(m.a2), m.ball()) > 2);
 }
 
-TEST_CASE("The taker's second touch is a free kick for the others") {
+TEST_CASE("A second touch by the kicker gives the opponents a free kick") {
   Match m;
   const char* mode =
       GENERATE("KickOff_Left", "KickIn_Left", "corner_kick_left", "free_kick_left", "direct_free_kick_left");
@@ -178,7 +178,7 @@ TEST_CASE("The taker's second touch is a free kick for the others") {
   m.touchThen(m.a1, Match::ballTo(3, 2));
   REQUIRE(m.mode() == "PlayOn");
   m.run(6);
-  SECTION("his own") {
+  SECTION("directly") {
     m.touch(m.a1);
     CHECK(m.mode() == "free_kick_right");
     m.trainer(m.apart());
@@ -199,7 +199,7 @@ TEST_CASE("The taker's second touch is a free kick for the others") {
   }
 }
 
-TEST_CASE("One contact that lasts is one touch") {
+TEST_CASE("A continuous contact counts as one touch") {
   Match m;
   m.trainer("(playMode KickOff_Left)");
   m.run(5);
@@ -211,7 +211,7 @@ TEST_CASE("One contact that lasts is one touch") {
   }
 }
 
-TEST_CASE("When nobody ever touched the ball nothing is awarded, and it comes back") {
+TEST_CASE("Without any touch so far a ball that goes out gives no restart and is moved back") {
   Match m;
   m.trainer(Match::ballTo(4, 9.9, 0.042, 0, 4));
   m.run(10);
@@ -219,7 +219,7 @@ TEST_CASE("When nobody ever touched the ball nothing is awarded, and it comes ba
   m.checkBall(4, 10, 0.1);
 }
 
-TEST_CASE("A trainer drops the ball: both teams are cleared, the ball falls from where it is") {
+TEST_CASE("At a trainer's drop ball players of both teams are moved away, and the ball falls from its position") {
   Match m;
   m.trainer(Match::ballTo(1, 2, 0.5, 1) + Match::put(m.a1, 0, 2) + Match::put(m.b1, 2, 3) + Match::put(m.b2, 4.5, 2));
   m.trainer("(dropBall)");
@@ -234,10 +234,10 @@ TEST_CASE("A trainer drops the ball: both teams are cleared, the ball falls from
   m.checkAt(m.b1, x + 2.5, 3);
   m.checkAt(m.b2, 4.5, 2);
   m.run(2);
-  CHECK(m.ball().x() == Approx(x).margin(0.01));  // at rest but for the fall
+  CHECK(m.ball().x() == Approx(x).margin(0.01));  // at rest except for the fall
 }
 
-TEST_CASE("A ball that is dropped in a penalty area lies at the area's corner") {
+TEST_CASE("A ball dropped in a penalty area is placed at the corner of the area") {
   Match m;
   m.trainer(Match::ballTo(14, -1));
   m.trainer("(dropBall)");
@@ -250,7 +250,7 @@ TEST_CASE("A ball that is dropped in a penalty area lies at the area's corner") 
   m.checkBall(-13.2, 3);
 }
 
-TEST_CASE("Offside is a mode for trainers: nothing happens in it") {
+TEST_CASE("Offside is a mode that only trainers set, and no rule acts in it") {
   Match m;
   const char* mode = GENERATE("offside_left", "offside_right");
   m.trainer(std::string("(playMode ") + mode + ")");
@@ -262,7 +262,7 @@ TEST_CASE("Offside is a mode for trainers: nothing happens in it") {
   CHECK(m.mode() == mode);
 }
 
-TEST_CASE("A rule that the config switches off is not judged, the others are") {
+TEST_CASE("A rule that the config disables is not judged, and the other rules are") {
   const std::string rules = "/sys/server/gamecontrol/SoccerRuleAspect/";
   const std::string off = GENERATE("DoubleTouchRule", "BallOutRule", "DropBallRule");
   INFO(off);

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The house of lua/soccer.lua in this process, with players and a trainer who come over TCP as everybody else's do.
-/// The test drives the clock cycle by cycle; before a cycle everything sent has arrived, after it everybody has read
-/// what he was sent. Nothing here can be late.
+/// The simulation of lua/soccer.lua in this process, with players and a trainer that connect over TCP like any client.
+/// The test runs it cycle by cycle. Before a cycle all sent bytes have arrived, and after it all clients have read
+/// their messages, so nothing depends on timing.
 
 #include <catch2/catch.hpp>
 #include <deque>
@@ -16,18 +16,18 @@
 
 namespace spark::test {
 
-/// s; the clock of play is summed in single precision, so that what lasts some seconds may end a cycle late.
+/// s; the time of play is summed in single precision, so a period of some seconds may end a cycle late.
 constexpr double kCycle = 0.0201;
 
-/// A player: an agent with a robot, and what it was told last.
+/// A player: an agent with a robot, and its last message.
 struct Player {
   LoopbackClient client;
   Side side = Side::none;
   int unum = 0;
-  std::string last;              ///< message
-  std::vector<std::string> all;  ///< messages
+  std::string last;              ///< the last message
+  std::vector<std::string> all;  ///< all messages
 
-  /// The atom behind `name` in the last GS, such as gs("pm"), gs("t"), gs("sl"); "" when there is none.
+  /// The atom after `name` in the last GS, such as gs("pm"), gs("t"), gs("sl"); "" if there is none.
   std::string gs(const std::string& name) const {
     Predicates p;
     readSexp(last, p);
@@ -43,7 +43,7 @@ class Stadium : House {
   using Settings = std::vector<std::pair<std::string, Value>>;
   static constexpr double kStep = 0.02;  ///< s
 
-  /// `settings`: as --set gives them. Monitors get a message in every cycle, beams have no noise.
+  /// `settings`: options in the format of --set. Monitors get a message in every cycle, beams have no noise.
   explicit Stadium(const Settings& settings = {}) {
     ScriptServer& lua = scripts(kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
@@ -73,12 +73,12 @@ class Stadium : House {
     run(1);
     return p;
   }
-  /// A player of team A or B, waiting beside the field line until somebody moves it. `height` of the robot [m].
+  /// Adds a player of team A or B, beside the field until it is moved. `height`: of the robot [m].
   Player& join(const std::string& team, int unum, double height = 0.6, int type = -1) {
     return join(team, unum,
                 "rsg/agent/scenario.rsg " + std::to_string(height) + " " + std::to_string(type < 0 ? unum % 3 : type));
   }
-  /// A player with another robot: its scene file and arguments.
+  /// Adds a player with another robot: `robot` is its scene file and arguments.
   Player& join(const std::string& team, int unum, const std::string& robot) {
     Player& p = connect();
     p.client.send("(scene " + robot + ")");
@@ -91,7 +91,7 @@ class Stadium : House {
     if (p.side != Side::none) p.unum = unum;
     return p;
   }
-  /// What a player does in the next cycle.
+  /// Sends a player's actions, which act in the next cycle.
   void act(Player& p, const std::string& actions) { p.client.send(actions); }
 
   // The trainer, and what the monitor shows.
@@ -102,7 +102,7 @@ class Stadium : House {
     command(commands);
     run(1);
   }
-  /// Puts players somewhere, upright where they stand; `z` of the torso [m].
+  /// A command that moves a player and keeps it upright; `z`: of the torso [m].
   static std::string put(const Player& p, double x, double y, double z = 0.3) {
     return "(agent (unum " + std::to_string(p.unum) + ")(team " + (p.side == Side::left ? "Left" : "Right") + ")(pos " +
            std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "))";
@@ -111,8 +111,8 @@ class Stadium : House {
     return "(ball (pos " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + ") (vel " +
            std::to_string(vx) + " " + std::to_string(vy) + " " + std::to_string(vz) + "))";
   }
-  /// A command that puts a player against the ball, so that it touches it in the next cycle: at `side` -1 on its -x
-  /// side, at 1 on its +x side.
+  /// A command that moves a player against the ball, so that it touches the ball in the next cycle: on the ball's -x
+  /// side for `side` -1, on its +x side for 1.
   std::string against(const Player& p, double side = -1) const {
     const Vec3 b = ball();
     return put(p, b.x() + side * (0.15 + 0.042 - 0.01), b.y());
@@ -143,17 +143,17 @@ class Stadium : House {
     }
   }
   void seconds(double s) { run(static_cast<int>(std::lround(s / kStep))); }
-  /// Runs until the monitor shows the mode, at most `limit` seconds; the seconds that it took, or -1.
+  /// Runs until the monitor shows the mode, for at most `limit` seconds; returns the time that it took [s], or -1.
   double until(const std::string& wanted, double limit) {
     const int cycles = static_cast<int>(std::lround(limit / kStep));
     for (int n = 0; n <= cycles; ++n, run(1))
       if (mode() == wanted) return n * kStep;
     return -1;
   }
-  /// The house has asked to end.
+  /// True if the simulation was asked to end.
   bool over() { return kernel.stopRequested(); }
 
-  // The house, for what no message shows.
+  // Access to the simulation, for state that no message shows.
   Leaf& node(std::string_view path) { return kernel.root().require<Leaf>(path); }
   Value get(std::string_view path, std::string_view property) { return getProperty(node(path), property); }
   const std::string& log() const { return text; }

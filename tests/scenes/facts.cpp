@@ -8,7 +8,7 @@ namespace spark::test {
 
 namespace {
 
-/// The shortest text that reads back as the same number.
+/// The shortest text that converts back to the same number.
 std::string exact(double v) { return Value(v).text(); }
 template <class Vector>
 std::string exactAll(const Vector& v) {
@@ -26,8 +26,7 @@ void addBody(const IRigidBody& body, Line& line) {
   const engine::BodyState s = body.state();
   line.add("position", exactAll(s.position));
   line.add("rotation", exactAll(s.rotation));
-  // The inertia has no property of its own: it is the head of the saved state, and so is everything else that the
-  // engine remembers.
+  // The inertia has no property. It is part of the saved state, and so is all other state of the engine.
   StateWriter state(false);
   saveTree(const_cast<IRigidBody&>(body).leaf(), state);
   line.add("state", fmt::format("{:x}", state.hash()));
@@ -55,7 +54,7 @@ void addVisual(const IVisual& visual, Line& line) {
     line.add("light", exact(c.r) + " " + exact(c.g) + " " + exact(c.b) + " " + exact(c.a));
 }
 
-/// The surface as far as it is in effect: what is switched off does not count.
+/// The parameters of the surface that are in effect; disabled ones are ignored.
 void addSurface(const engine::Surface& s, Line& line) {
   if (s.bounceOn) line.add("bounce", exact(s.bounce) + " " + exact(s.bounceVelocity));
   if (s.softErpOn) line.add("softErp", exact(s.softErp));

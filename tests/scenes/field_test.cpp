@@ -1,4 +1,4 @@
-// The field: what of it monitors are told, in which order, and that leagues change its size.
+// The field: what monitors receive of it, in which order, and that leagues can change its size.
 
 #include <catch2/catch.hpp>
 
@@ -10,7 +10,7 @@ using namespace spark::test;
 
 namespace {
 
-/// What monitors print of a subtree: transforms as [...], visual nodes by what they load.
+/// The monitor's view of a subtree: transforms as [...], visual nodes by the name of their mesh.
 std::string printed(const Node& root) {
   std::string out;
   for (const auto& child : root.children()) {
@@ -36,7 +36,7 @@ Vec3 pointAt(League& league, const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("monitors get the field's parts in the order they know") {
+TEST_CASE("Monitors get the parts of the field in the expected order") {
   League league;
   league.import("rsg/soccer/field.rsg", league.scene());
   const auto goal = [](const std::string& side) {
@@ -47,7 +47,7 @@ TEST_CASE("monitors get the field's parts in the order they know") {
                                        "[models/soccerball.obj]");
 }
 
-TEST_CASE("goals, flags and walls stand where the league's sizes put them") {
+TEST_CASE("Positions of goals, flags and walls follow the league's sizes") {
   League league({}, "FieldLength = 9, FieldWidth = 6, GoalWidth = 1.5, GoalDepth = 0.4");
   league.import("rsg/soccer/field.rsg", league.scene());
   CHECK((pointAt(league, "F1L") - Vec3(-4.5, 3, 0)).norm() < 1e-6);
@@ -59,7 +59,7 @@ TEST_CASE("goals, flags and walls stand where the league's sizes put them") {
   CHECK((high - Vec3(4.858, 0.708, 0.8)).norm() < 1e-5);
 }
 
-TEST_CASE("the field of 2004 shows its goals as plates and keeps its walls near") {
+TEST_CASE("The field of 2004 has goals of plates and walls near the field") {
   League league;
   league.import("rsg/soccer/field_2004.rsg", league.scene());
   CHECK_THAT(printed(league.scene()), Catch::Contains("[" + times(4, "[StdUnitBox]") + "[][]]"));

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A league's house without network and rules, from the same scripts as the configs.
+/// The simulation of a league without network and rules, from the same scripts as the configs.
 
 #include "api/agents.h"
 #include "spark/script_server.h"
@@ -8,7 +8,7 @@
 
 namespace spark::test {
 
-/// Spark's scenes; with `scenes`, a folder with rsg/... that is asked before them.
+/// Spark's scenes; `scenes` is a folder with rsg/... that takes precedence.
 struct League {
   House house;
   Kernel& kernel = house.kernel;
@@ -37,7 +37,7 @@ soccerVariables{)" +
   void importLoosely(const std::string& file, Node& root, const List& arguments = {}) {
     kernel.root().require<ISceneServer>("/sys/server/scene").importScene(file, root, arguments);
   }
-  /// Imports without a complaint.
+  /// Imports a file; throws if that logs a warning.
   void import(const std::string& file, Node& root, const List& arguments = {}) {
     house.text.clear();
     importLoosely(file, root, arguments);

@@ -1,4 +1,4 @@
-// The five types of the Nao, as their numbers say.
+// Checks the five types of the Nao against tables of numbers.
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -13,7 +13,7 @@ using namespace spark::test;
 
 namespace {
 
-/// A part: its body, and the joint that holds it.
+/// A part: its body, and the joint that connects it to its parent.
 struct Part {
   std::string name, body;
   double mass;
@@ -95,7 +95,7 @@ Part& part(std::vector<Part>& parts, const std::string& name) {
   throw std::out_of_range(name);
 }
 
-/// Longer limbs: elbows forwards, knees and feet down.
+/// Longer limbs: moves elbows forwards, knees and feet down.
 void stretch(std::vector<Part>& parts, double elbowY, double hipX, double thighZ, double ankleZ, double footZ) {
   for (const char* side : {"r", "l"}) {
     const std::string s = side;
@@ -114,7 +114,7 @@ void stretch(std::vector<Part>& parts, double elbowY, double hipX, double thighZ
   }
 }
 
-/// Each foot is divided into a foot and a toe.
+/// Divides each foot into a foot and a toe.
 void addToes(std::vector<Part>& parts) {
   std::vector<Part> out;
   for (Part& p : parts) {
@@ -193,7 +193,7 @@ std::string meshesOf(const Node& root) {
 
 }  // namespace
 
-TEST_CASE("the Nao's bodies and joints are those of its type, in their order") {
+TEST_CASE("The Nao's bodies and joints are those of its type in their order") {
   for (int type = 0; type < 5; ++type) {
     INFO("type " << type);
     League league;
@@ -221,7 +221,7 @@ TEST_CASE("the Nao's bodies and joints are those of its type, in their order") {
   }
 }
 
-TEST_CASE("the Nao senses in the order that agents know, and takes their commands") {
+TEST_CASE("The Nao has its perceptors and effectors in the order that agents expect") {
   for (int type : {0, 4}) {
     INFO("type " << type);
     League league;
@@ -254,7 +254,7 @@ TEST_CASE("the Nao senses in the order that agents know, and takes their command
   }
 }
 
-TEST_CASE("the Nao looks as monitors know it") {
+TEST_CASE("The Nao has the meshes and materials that monitors expect") {
   League league;
   Node& robot = league.agent();
   league.import("rsg/agent/nao/nao_hetero.rsg", robot, {2});
@@ -273,7 +273,7 @@ TEST_CASE("the Nao looks as monitors know it") {
         "models/lfoot.obj 0.08 matTeam,naowhite\n");
 }
 
-TEST_CASE("what the Nao's limbs may touch without a foul, and what is frozen when they touch more") {
+TEST_CASE("The Nao's colliders ignore adjacent parts, and a self-collision freezes the joints of the limb") {
   League league;
   Node& robot = league.agent();
   league.import("rsg/agent/nao/nao_hetero.rsg", robot, {4});
@@ -295,7 +295,7 @@ TEST_CASE("what the Nao's limbs may touch without a foul, and what is frozen whe
     CHECK_THAT(found, Catch::Contains(line + leg + "\n"));
 }
 
-TEST_CASE("a type that does not exist makes nothing") {
+TEST_CASE("An invalid type is an error and creates no nodes") {
   League league;
   for (const List& arguments : {List{5}, List{-1}, List{"1.5"}, List{"Nao"}, List{}}) {
     INFO(Value(arguments).text());
@@ -305,7 +305,7 @@ TEST_CASE("a type that does not exist makes nothing") {
   }
 }
 
-TEST_CASE("a robot cannot look like one type and count as another") {
+TEST_CASE("A robot's appearance and its counted type always agree") {
   League league;
   Node& robot = league.agent();
   league.import("rsg/agent/nao/nao_hetero.rsg", robot, {"0+3"});

@@ -1,4 +1,4 @@
-// The Nao V4, as its numbers say, and that its motors move it.
+// Checks the Nao V4 against its table of numbers, and that its motors move it.
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -13,7 +13,7 @@ using namespace spark::test;
 
 namespace {
 
-// Middle and right side; the left side is the mirror image.
+// Middle and right side; the left side is its mirror image.
 const char* const kHalf = R"(
 torso      1.04956 -0.00006 -1.0048  1.4577
 neck       0.06442 -0.00018 -1       1.5843
@@ -30,7 +30,7 @@ rankle     0.13416  0.05028 -0.99858 1.2223
 rfoot      0.16184  0.0533  -0.94511 1.1488
 )";
 
-// perceptor, effector, parts, anchor, axis, stops, greatest speed, torque, Ke, Kt, R, Tenv, and whether the left stops
+// perceptor, effector, parts, anchor, axis, stops, maximum speed, torque, Ke, Kt, R, Tenv, and whether the left stops
 // are mirrored
 const char* const kMotors = R"(
 hj1  he1  neck      torso      0      -1     1.61     0       0 1       -119.5   119.5  8.29382 10   0.397936 2.5  6     38 0
@@ -124,7 +124,7 @@ struct Robot {
 
 }  // namespace
 
-TEST_CASE("the Nao V4 has the bodies of its page") {
+TEST_CASE("The Nao V4 has the bodies of its specification") {
   Robot robot;
   std::istringstream in(kHalf);
   double mass = 0;
@@ -146,7 +146,7 @@ TEST_CASE("the Nao V4 has the bodies of its page") {
   CHECK(mass == Approx(5.04013));
 }
 
-TEST_CASE("the Nao V4 has the hinges and motors of its page, in their order") {
+TEST_CASE("The Nao V4 has the hinges and motors of its specification in their order") {
   Robot robot;
   std::vector<IJoint*> joints;
   robot.agent.collect(joints);
@@ -171,7 +171,7 @@ TEST_CASE("the Nao V4 has the hinges and motors of its page, in their order") {
   }
 }
 
-TEST_CASE("the Nao V4 senses in the order of its page") {
+TEST_CASE("The Nao V4 senses in the order of its specification") {
   Robot robot;
   std::vector<std::string> wanted{"GPS:torso",           "BatteryPerceptor:BAT", "TimePerceptor",
                                   "GameStatePerceptor",  "HearPerceptor",        "GyroRatePerceptor:torso",
@@ -186,7 +186,7 @@ TEST_CASE("the Nao V4 senses in the order of its page") {
   CHECK(classesAndNames<Effector>(robot.agent).size() == 4 + 2 * 22);
 }
 
-TEST_CASE("the Nao V4's motors hold it, turn at the commanded speed within their own, and go limp without stiffness") {
+TEST_CASE("The Nao V4's motors hold it, turn at the commanded speed up to their limit, and relax without stiffness") {
   Robot robot;
   robot.league.import("rsg/soccer/field.rsg", robot.league.scene());
   Predicates commands;

@@ -1,5 +1,5 @@
-// Spark's own scenes against those of the installed base, where these are present: the same in every bit, and they stay
-// so when they move.
+// Compares Spark's own scenes with the original ones, where those are present: they are equal in every bit, and remain
+// so in motion.
 
 #include <catch2/catch.hpp>
 #include <iostream>
@@ -19,7 +19,7 @@ std::filesystem::path reference() {
   std::exit(77);
 }
 
-/// Line by line: the first that differs says what.
+/// Compares line by line and reports the first difference.
 void checkEqual(const std::vector<std::string>& own, const std::vector<std::string>& wanted) {
   for (std::size_t i = 0; i < std::min(own.size(), wanted.size()); ++i)
     if (own[i] != wanted[i]) {
@@ -29,7 +29,7 @@ void checkEqual(const std::vector<std::string>& own, const std::vector<std::stri
   CHECK(own.size() == wanted.size());
 }
 
-/// All joints get a speed that changes from joint to joint and from second to second [rad/s].
+/// Gives each joint a different speed that changes over time [rad/s].
 void drive(Node& robot, int cycle) {
   std::vector<IJoint*> joints;
   robot.collect(joints);
@@ -50,7 +50,7 @@ struct Robot {
 
 }  // namespace
 
-TEST_CASE("Spark's Nao is the installed base's in every bit, in all five types") {
+TEST_CASE("Spark's Nao equals the original in every bit for all five types") {
   const auto folder = reference();
   for (int type = 0; type < 5; ++type) {
     INFO("type " << type);
@@ -60,7 +60,7 @@ TEST_CASE("Spark's Nao is the installed base's in every bit, in all five types")
   }
 }
 
-TEST_CASE("nao.rsg is type 0") {
+TEST_CASE("The robot of nao.rsg has type 0") {
   League own, wanted(reference());
   Node& a = own.agent();
   Node& b = wanted.agent();
@@ -69,7 +69,7 @@ TEST_CASE("nao.rsg is type 0") {
   checkEqual(nodeFacts(a), nodeFacts(b));
 }
 
-TEST_CASE("Spark's Nao and the installed base's fall, lie and struggle alike to the last bit") {
+TEST_CASE("Spark's Nao and the original move identically to the last bit") {
   const auto folder = reference();
   for (int type = 0; type < 5; ++type) {
     INFO("type " << type);
@@ -84,12 +84,11 @@ TEST_CASE("Spark's Nao and the installed base's fall, lie and struggle alike to 
   }
 }
 
-TEST_CASE("Spark's field for humanoids is the installed base's in every bit") {
+TEST_CASE("Spark's field for humanoids equals the original in every bit") {
   League own, wanted(reference());
   own.import("rsg/soccer/field.rsg", own.scene());
   wanted.importLoosely("rsg/agent/nao/soccer.rsg", wanted.scene());
-  // Known differences: two names, what may limit the ball's speed (it does not here), and goal marks that sonars hear
-  // too.
+  // Known differences: two names, a speed limit of the ball (disabled here), and goal posts that sonars detect as well.
   wanted.scene().require<Leaf>("Transform[4]").setName("sky");
   wanted.scene().require<Leaf>("Transform[3]").setName("ground");
   Leaf& limit = own.scene().require<Leaf>("Ball/physics/VelocityController");

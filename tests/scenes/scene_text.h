@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Vectors of tables in text, and of what a node's methods return.
+/// Vectors in text tables and as results of methods.
 
 #include <istream>
 
@@ -9,10 +9,10 @@
 
 namespace spark::test {
 
-/// Three numbers with blanks between them.
+/// Reads three numbers separated by blanks.
 inline std::istream& operator>>(std::istream& in, Vec3& v) { return in >> v.x() >> v.y() >> v.z(); }
 
-/// What a method without arguments returns.
+/// The result of a method without arguments.
 inline Vec3 vectorOf(Leaf& node, const char* method) {
   const Value value = callMethod(node, method, {});
   Args args{};

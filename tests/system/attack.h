@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What tests of bad input share: a host with a match going on, and a player in it who must not notice anything.
+/// Shared by tests of bad input: a host with a running match, and a player in it that must not be affected.
 
 #include <unistd.h>
 
@@ -16,7 +16,7 @@
 
 namespace spark::test {
 
-/// A player of his own who only watches. In lockstep it answers as long as it is asked what it sees.
+/// A well-behaved player that only observes. In lockstep it answers for as long as its observations are read.
 class Witness {
  public:
   Witness(unsigned short port, const std::string& team, int number, const std::string& robot = "rsg/agent/sphere.rsg")
@@ -25,15 +25,15 @@ class Witness {
     client_.receive();
     client_.send("(init (unum " + std::to_string(number) + ")(teamname " + team + "))(syn)");
   }
-  /// Waits until the clock has gone on for a few cycles after now.
+  /// Waits until simulated time has advanced by a few cycles from now.
   void mustSeeTimePass() {
-    while (client_.pending()) client_.receive();  // what was sent before now proves nothing
+    while (client_.pending()) client_.receive();  // messages sent before now prove nothing
     client_.send("(syn)");
     const double begin = time();
     for (double now = begin; now < begin + 0.1;) now = time();
   }
   Client& client() { return client_; }
-  /// Side or number that the host gave, once it did; reads messages until then, at most `messages`.
+  /// True once the host has assigned a side or a number; reads at most `messages` messages.
   bool hasTeam(int messages) {
     for (int i = 0; i < messages; ++i)
       if (client_.receive().find("(unum ") != std::string::npos) return true;

@@ -1,12 +1,12 @@
 #include "attack.h"
 
-// Bad input against a host with a match going on. After every attack a player who did nothing wrong is still told of a
-// clock that runs, the host has said what was wrong, and in the end its memory has not grown.
+// Bad input to a host with a running match. After every attack a well-behaved player still sees time advance and the
+// host has logged what was wrong. At the end of the test the host's memory has not grown.
 
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("Bytes that are no message close that connection, and nothing else") {
+TEST_CASE("Bytes that are not a message close their own connection and no other") {
   Arena a;
   const std::vector<std::pair<std::string, std::string>> attacks{
       {"GET / HTTP/1.1\r\n\r\n", "announces a message of"},
@@ -24,7 +24,7 @@ TEST_CASE("Bytes that are no message close that connection, and nothing else") {
   a.mustEndWell();
 }
 
-TEST_CASE("Half a message is waited for, but not for ever; leaving in the middle is noticed") {
+TEST_CASE("An incomplete message times out, and a disconnect in the middle of one is reported") {
   Arena a({"--set", "/sys/server/net/agents.messageTimeout=0.5"});
   {
     Client gone(a.agentPort);
@@ -45,7 +45,7 @@ TEST_CASE("Messages of length 0 are legal and ignored") {
   a.mustEndWell();
 }
 
-TEST_CASE("Deep nesting, unknown effectors, NaN and infinity harm nobody") {
+TEST_CASE("Deep nesting, unknown effectors, NaN and infinity cause no harm") {
   Arena a;
   for (const std::string& message :
        {std::string(60000, '('), std::string(30000, '(') + std::string(30000, ')'),
@@ -63,7 +63,7 @@ TEST_CASE("Deep nesting, unknown effectors, NaN and infinity harm nobody") {
   a.mustEndWell();
 }
 
-TEST_CASE("Scenes that are missing, folders, absolute or climbing are refused by name") {
+TEST_CASE("A scene path that is missing, a folder, absolute or leads upwards is refused with an error that names it") {
   Arena a;
   const std::vector<std::pair<std::string, std::string>> scenes{
       {"rsg/agent/none.rsg", "no resource 'rsg/agent/none.rsg'"},
@@ -82,7 +82,7 @@ TEST_CASE("Scenes that are missing, folders, absolute or climbing are refused by
   a.mustEndWell();
 }
 
-TEST_CASE("A 23rd player gets no place") {
+TEST_CASE("A 23rd player does not join a team") {
   Arena a;
   std::vector<std::unique_ptr<Witness>> players;
   for (int number = 2; number <= 11; ++number)
@@ -97,7 +97,7 @@ TEST_CASE("A 23rd player gets no place") {
   a.mustEndWell();
 }
 
-TEST_CASE("Clients that come in crowds, or come and go, leave no trace") {
+TEST_CASE("Clients that connect in large numbers or disconnect at once leave nothing behind") {
   Arena a;
   const auto crowd = [&] {
     std::vector<std::unique_ptr<Client>> clients;
@@ -121,17 +121,17 @@ TEST_CASE("Clients that come in crowds, or come and go, leave no trace") {
   a.mustEndWell();
 }
 
-TEST_CASE("Monitors that never read stay, cost a bounded amount, and their commands act") {
+TEST_CASE("Monitors that never read stay connected and use bounded memory, and their commands take effect") {
   Arena a({"--rate", "max", "--sync"});
   std::vector<std::unique_ptr<Client>> monitors;
   for (int i = 0; i < 5; ++i) monitors.push_back(std::make_unique<Client>(a.monitorPort));
   a.witness->mustSeeTimePass();
   const double before = a.memory();
   for (int i = 0; i < 1000; ++i)
-    a.witness->mustSeeTimePass();  // 100 s: far more frames than fit into the system's buffers
+    a.witness->mustSeeTimePass();  // 100 s: far more frames than fit into the socket buffers
   CAPTURE(before, a.memory());
   REQUIRE(a.memory() < before + 16);
-  REQUIRE(a.host.errors().find("monitors") == a.host.errors().rfind("monitors"));  // it listens; nothing else was said
+  REQUIRE(a.host.errors().find("monitors") == a.host.errors().rfind("monitors"));  // only the line that it listens
   monitors.back()->send("(killsim)");
   REQUIRE(nlohmann::json::parse(a.host.line())["cycles"].get<int>() > 5000);
   REQUIRE(a.host.wait() == 0);

@@ -1,14 +1,14 @@
 #include "attack.h"
 
-// Players, and trainers, that do not keep to the order or the measure of things (protocol sections 1.6, 1.7, 2.2
-// and 4.5).
+// Players and trainers that send messages out of order or with out-of-range values (protocol sections 1.6, 1.7, 2.2 and
+// 4.5).
 
 using namespace spark;
 using namespace spark::test;
 
 namespace {
 
-/// An agent without a team yet: its robot stands.
+/// An agent with a robot but no team yet.
 struct Robot : Client {
   explicit Robot(const Arena& a, const std::string& file = "rsg/agent/sphere.rsg") : Client(a.agentPort) {
     send("(scene " + file + ")(syn)");
@@ -19,10 +19,10 @@ std::string init(const std::string& team, const std::string& unum) {
   return "(init (unum " + unum + ")(teamname " + team + "))(syn)";
 }
 
-/// Messages in which an accepted init would long have been answered.
+/// The number of messages within which an accepted init would have been answered.
 constexpr int kSome = 25;
 
-/// The number that the host tells in one of the next messages; 0: none.
+/// The number that the host assigns within the next `messages` messages; 0 if there is none.
 std::int64_t numberIn(Client& c, int messages) {
   for (int i = 0; i < messages; ++i) {
     Predicates p;
@@ -32,18 +32,18 @@ std::int64_t numberIn(Client& c, int messages) {
   }
   return 0;
 }
-/// Sends init; the number that the host gives, 0 when it refuses.
+/// Sends init; returns the number that the host assigns, 0 if it refuses.
 std::int64_t ask(Client& c, const std::string& team, const std::string& unum) {
   while (c.pending()) c.receive();
   c.send(init(team, unum));
   return numberIn(c, kSome);
 }
 
-/// A monitor that gives commands and knows when they have acted.
+/// A monitor that sends commands and waits until they have taken effect.
 class Trainer {
  public:
   explicit Trainer(const Arena& a) : client_(a.monitorPort) {}
-  /// Returns when the commands have acted and a frame shows it; the frames until then must hold no strange number.
+  /// Returns when a frame shows that the commands have taken effect. No frame until then may contain NaN or infinity.
   void command(const std::string& commands) {
     const std::string mark = "(score_left " + std::to_string(++mark_) + ")";
     client_.send(commands);
@@ -62,10 +62,10 @@ class Trainer {
 
 }  // namespace
 
-TEST_CASE("init before scene, or beside it, is lost and takes no number") {
+TEST_CASE("An init sent before scene or in the same message is ignored and reserves no number") {
   Arena a;
   Client c(a.agentPort);
-  SECTION("in a message of its own") {
+  SECTION("in a separate message") {
     c.send("(init (unum 3)(teamname Calm))");
     c.send("(scene rsg/agent/sphere.rsg)(syn)");
   }
@@ -79,13 +79,13 @@ TEST_CASE("init before scene, or beside it, is lost and takes no number") {
   a.mustEndWell();
 }
 
-TEST_CASE("A number that was taken is refused, whoever asks, and one that was given back is not") {
+TEST_CASE("A number in use is refused to every agent, and a released number is available again") {
   Arena a;
   Robot one(a), two(a);
   REQUIRE(ask(one, "Calm", "5") == 5);
   REQUIRE(ask(two, "Calm", "5") == 0);
-  REQUIRE(ask(one, "Calm", "5") == 0);  // init twice, the same data
-  REQUIRE(ask(one, "Calm", "6") == 0);  // told once only, but it has 6 now
+  REQUIRE(ask(one, "Calm", "5") == 0);  // a second init with the same data
+  REQUIRE(ask(one, "Calm", "6") == 0);  // never confirmed again, but the agent has 6 now
   REQUIRE(ask(two, "Calm", "6") == 0);
   REQUIRE(ask(two, "Calm", "5") == 5);
   {
@@ -98,7 +98,8 @@ TEST_CASE("A number that was taken is refused, whoever asks, and one that was gi
   a.mustEndWell();
 }
 
-TEST_CASE("Third teams and numbers that do not exist are refused, number 0, none and words are the lowest free one") {
+TEST_CASE(
+    "A third team and a number out of range are refused, and 0, a word or no number gives the lowest free number") {
   Arena a;
   Robot other(a);
   REQUIRE(ask(other, "Other", "1") == 1);
@@ -118,7 +119,7 @@ TEST_CASE("Third teams and numbers that do not exist are refused, number 0, none
   a.mustEndWell();
 }
 
-TEST_CASE("A robot of a type of which the team has enough is refused and takes no number") {
+TEST_CASE("A robot is refused and takes no number when its team has the maximum of that type") {
   Arena a({}, "soccer.lua");
   const std::string heterogeneous = "rsg/agent/nao/nao_hetero.rsg ";
   std::vector<std::unique_ptr<Robot>> team;
@@ -126,7 +127,7 @@ TEST_CASE("A robot of a type of which the team has enough is refused and takes n
     team.push_back(std::make_unique<Robot>(a, heterogeneous + "0"));
     REQUIRE(ask(*team.back(), "Calm", std::to_string(unum)) == unum);
   }
-  // the witness is the seventh of type 0
+  // The witness is the seventh of type 0.
   Robot eighth(a, heterogeneous + "0");
   REQUIRE(ask(eighth, "Calm", "8") == 0);
   a.host.waitForError("robots of type 0 already");
@@ -136,7 +137,7 @@ TEST_CASE("A robot of a type of which the team has enough is refused and takes n
   a.mustEndWell();
 }
 
-TEST_CASE("Who is killed loses robot, number and connection, and may go on sending") {
+TEST_CASE("A killed agent loses its robot, number and connection, and may continue to send") {
   Arena a;
   Robot c(a);
   REQUIRE(ask(c, "Calm", "7") == 7);
@@ -153,7 +154,7 @@ TEST_CASE("Who is killed loses robot, number and connection, and may go on sendi
   a.mustEndWell();
 }
 
-TEST_CASE("Trainers' commands with missing and wild arguments end nothing and show nobody a strange number") {
+TEST_CASE("Trainer commands with missing or extreme arguments stop nothing and no monitor sees NaN or infinity") {
   Arena a({"--set", "/sys/server/monitor.interval=1"});
   Trainer trainer(a);
   for (const char* name : {"playMode", "kickOff", "ball", "agent", "kill", "repos", "select", "time", "score",
@@ -180,7 +181,7 @@ TEST_CASE("Trainers' commands with missing and wild arguments end nothing and sh
   a.mustEndWell();
 }
 
-TEST_CASE("Beams to nowhere stay on the field") {
+TEST_CASE("Beams to invalid positions leave the robot on the field") {
   Arena a;
   Trainer trainer(a);
   for (const char* beam :
@@ -194,7 +195,7 @@ TEST_CASE("Beams to nowhere stay on the field") {
   a.mustEndWell();
 }
 
-TEST_CASE("A thousand commands in one message, and a second robot, are nothing special") {
+TEST_CASE("A thousand commands in one message are accepted, and a second robot is refused") {
   Arena a;
   Robot c(a);
   REQUIRE(ask(c, "Calm", "2") == 2);
@@ -206,7 +207,7 @@ TEST_CASE("A thousand commands in one message, and a second robot, are nothing s
   a.mustEndWell();
 }
 
-TEST_CASE("An agent that falls silent in lockstep is closed when patience ends, the others play on") {
+TEST_CASE("A silent agent in lockstep is closed after the timeout, and the others play on") {
   Arena a({"--sync", "--rate", "max", "--set", "/sys/server/gamecontrol.syncTimeout=0.5"});
   Client& player = a.witness->client();
   Client silent(a.agentPort);
@@ -220,7 +221,7 @@ TEST_CASE("An agent that falls silent in lockstep is closed when patience ends, 
   a.mustEndWell();
 }
 
-TEST_CASE("An agent in lockstep that answers and never reads stops nobody") {
+TEST_CASE("An agent in lockstep that answers and never reads does not block the match") {
   Arena a({"--sync", "--rate", "max", "--set", "/sys/server/net/agents.sendBuffer=4096"});
   Client& player = a.witness->client();
   Client deaf(a.agentPort);
@@ -235,19 +236,19 @@ TEST_CASE("An agent in lockstep that answers and never reads stops nobody") {
   REQUIRE(a.host.wait() == 0);
 }
 
-TEST_CASE("Two hundred connections that say nothing keep nobody out") {
+TEST_CASE("Two hundred silent connections keep no other client out") {
   Arena a;
   std::vector<std::unique_ptr<Client>> idle;
   for (int i = 0; i < 200; ++i) idle.push_back(std::make_unique<Client>(a.agentPort));
   Robot c(a);
   REQUIRE(ask(c, "Calm", "2") == 2);
   for (int i = 0; i < 70; ++i) idle.push_back(std::make_unique<Client>(a.agentPort));
-  REQUIRE(ask(c, "Calm", "2") == 0);  // still there, and has its number
+  REQUIRE(ask(c, "Calm", "2") == 0);  // still connected, and it has its number already
   a.host.waitForError("it said nothing, and its place is needed");
   a.mustEndWell();
 }
 
-TEST_CASE("Clients that never get a robot are closed in the end") {
+TEST_CASE("Clients that never get a robot are closed after the idle limit") {
   Arena a({"--set", "/sys/server/gamecontrol.idleLimit=0.3"});
   Client silent(a.agentPort), chatty(a.agentPort);
   chatty.send("(hello)(scene rsg/agent/none.rsg)");

@@ -10,7 +10,7 @@
 #include "temporary_folder.h"
 #include "test_support.h"
 
-// Many worlds in one process and in several, as their users run them.
+// Many simulations in one process and in several processes, run the way users run them.
 
 using namespace spark::test;
 using Json = nlohmann::json;
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A match of two small teams inside the host; what the config reports of it.
+/// A match of two small teams inside the host, and the values that the config reports.
 const char* kMatch = R"(
 include "soccer-sphere.lua"
 results{ pushes = 0 }
@@ -45,15 +45,15 @@ std::vector<Json> rowsOf(const std::string& file) {
   return rows;
 }
 
-/// The rows without what a clock measured.
+/// The rows without wall-clock times.
 std::vector<Json> timelessRowsOf(const std::string& file) {
   std::vector<Json> rows = rowsOf(file);
   for (Json& row : rows) row.erase("cpuSeconds"), row.erase("wallSeconds");
   return rows;
 }
 
-/// mpirun for a machine that is alone, also as root and in a container: no other machine, network or privilege is asked
-/// for, and more processes than processors are fine.
+/// mpirun on one machine, also as root and in a container: it needs no other machine, network or privilege, and more
+/// processes than processors are allowed.
 std::vector<std::string> mpirun(int processes) {
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
@@ -63,7 +63,7 @@ std::vector<std::string> mpirun(int processes) {
 }
 }  // namespace
 
-TEST_CASE("A batch gives what sparkhost gives for each of its runs, whatever the number of threads") {
+TEST_CASE("A batch gives the results of sparkhost for each of its runs with any number of threads") {
   TemporaryFolder folder;
   const std::string config = folder.write("match.lua", kMatch);
   const std::vector<std::string> sweep =
@@ -105,7 +105,7 @@ TEST_CASE("A batch gives what sparkhost gives for each of its runs, whatever the
   REQUIRE(rows[0]["stateHash"] != rows[2]["stateHash"]);
 }
 
-TEST_CASE("An error ends its run and no other, and is run again when that is asked for") {
+TEST_CASE("An error ends only its own run, which is repeated on request") {
   TemporaryFolder folder;
   const std::string config = folder.write("some.lua", R"(
 include "house.lua"
@@ -132,7 +132,7 @@ if n == 4 then get("/sys/server/simulation"):on("act", function(self, event) if 
   REQUIRE(timelessRowsOf(table).size() == 4);
 }
 
-TEST_CASE("A rule or a script that fails while the run is on makes its row an error") {
+TEST_CASE("A rule or script that fails during a run makes its row an error") {
   TemporaryFolder folder;
   const std::string config = folder.write("rule.lua", R"(
 include "house.lua"
@@ -165,7 +165,7 @@ end)
   }
 }
 
-TEST_CASE("What is wrong with the command line or the first world is said before a table is begun") {
+TEST_CASE("Errors in the command line or the first simulation are reported before the table is created") {
   TemporaryFolder folder;
   const std::string table = (folder.path() / "t.csv").string();
   const std::string config =
@@ -191,7 +191,7 @@ TEST_CASE("What is wrong with the command line or the first world is said before
   }
 }
 
-TEST_CASE("An interrupted batch ends what runs, keeps its rows, and goes on where it was") {
+TEST_CASE("An interrupted batch ends its running simulations, keeps their rows, and resumes where it stopped") {
   TemporaryFolder folder;
   const std::string config = folder.write("match.lua", kMatch);
   const std::string straight = (folder.path() / "straight.jsonl").string(),
@@ -199,7 +199,7 @@ TEST_CASE("An interrupted batch ends what runs, keeps its rows, and goes on wher
   const std::vector<std::string> few = with(kTwoTeams, {"--duration", "4", "--threads", "2", "--runs", "6"});
   REQUIRE(runToEnd(batch(config, straight, few)).code == 0);
   {
-    // every world says when it begins: the signal comes while the first ones run
+    // Every simulation logs its start, so the signal arrives while the first ones run.
     Process p(batch(config, broken, with(few, {"--log-level", "info"})));
     p.waitForError("run 2: ");
     p.signal(SIGINT);
@@ -208,7 +208,7 @@ TEST_CASE("An interrupted batch ends what runs, keeps its rows, and goes on wher
     REQUIRE(code == (summary["done"] == 6 ? 0 : 3));
     REQUIRE(rowsOf(broken).size() == summary["done"]);
   }
-  std::ofstream(broken, std::ios::app) << "{\"run\":6,\"se";  // as if the machine had gone down
+  std::ofstream(broken, std::ios::app) << "{\"run\":6,\"se";  // as after a power failure
   REQUIRE(rowsOf(straight).size() == 6);
   const Finished rest = runToEnd(batch(config, broken, with(few, {"--resume"})));
   CAPTURE(rest.errors);
@@ -225,7 +225,7 @@ TEST_CASE("An interrupted batch ends what runs, keeps its rows, and goes on wher
   REQUIRE_THAT(again.errors, Contains("--resume"));
 }
 
-TEST_CASE("SIGTERM abandons what runs") {
+TEST_CASE("SIGTERM abandons the running simulations") {
   TemporaryFolder folder;
   const std::string config =
       folder.write("endless.lua", "include 'house.lua'\nfiles() simulation()\nlog.info('begins')\n");
@@ -237,7 +237,7 @@ TEST_CASE("SIGTERM abandons what runs") {
   REQUIRE(p.wait() == 3);
 }
 
-TEST_CASE("A config that never returns can be ended: the next signal does what it does to any program") {
+TEST_CASE("A second signal terminates a batch whose config never returns") {
   TemporaryFolder folder;
   const std::string config = folder.write("stuck.lua", "log.info('begins')\nwhile true do end\n");
   Process p(batch(config, (folder.path() / "t.csv").string(), {"--log-level", "info"}));
@@ -247,13 +247,13 @@ TEST_CASE("A config that never returns can be ended: the next signal does what i
     text << std::ifstream("/proc/" + std::to_string(p.pid()) + "/stat").rdbuf();
     return text.str().find(") Z ") != std::string::npos;
   };
-  // Several that come before it looks count as one.
+  // Several signals that arrive before the batch checks count as one.
   while (!gone()) p.signal(SIGTERM);
   REQUIRE(p.wait() == 128 + SIGTERM);
 }
 
 #ifdef SPARK_MPI
-TEST_CASE("Several processes give the table of one") {
+TEST_CASE("Several processes produce the same table as one") {
   TemporaryFolder folder;
   const std::string config = folder.write("match.lua", kMatch);
   const std::string one = (folder.path() / "one.jsonl").string();
@@ -275,7 +275,7 @@ TEST_CASE("Several processes give the table of one") {
   REQUIRE_THAT(wrong.errors, Contains("no-such.lua"));
 }
 #else
-TEST_CASE("Without MPI, a batch that mpirun starts ends with a sentence") {
+TEST_CASE("Without MPI a batch started by mpirun ends with an error message") {
   setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
   const Finished f = runToEnd(batch("boxes.lua", "none.csv"));
   unsetenv("OMPI_COMM_WORLD_SIZE");

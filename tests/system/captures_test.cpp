@@ -11,9 +11,8 @@
 #include "spark/predicates.h"
 #include "test_support.h"
 
-// The openings of recorded sessions, replayed against the default league with its own robots and with the original
-// scene files: agents are answered in every cycle with the same percepts, in the same order, and the host has nothing
-// to complain about.
+// The beginnings of recorded sessions, replayed against the default league with its own robots and with the original
+// scene files. In every cycle the agents get the same percepts in the same order, and the host logs no warning.
 
 using namespace spark;
 using namespace spark::test;
@@ -22,7 +21,7 @@ using Json = nlohmann::json;
 namespace {
 constexpr int kCycles = 20;
 
-/// What one cycle of a recording holds, by agent.
+/// The messages of a recording per cycle and agent.
 struct Session {
   std::map<int, std::vector<std::pair<std::string, std::string>>> sent;
   std::map<int, std::map<std::string, std::string>> answered;
@@ -47,8 +46,8 @@ Session load(const std::filesystem::path& file) {
   return s;
 }
 
-/// Names of the percepts in order: "time GS GYR:torso HJ:hj1 ...". The foot's pressure is left out: it is there while
-/// the foot touches something, and robots that are made inside each other burst apart in another way each time.
+/// Names of the percepts in order: "time GS GYR:torso HJ:hj1 ...". The foot pressure (FRP) is skipped: it is sent only
+/// while the foot touches something, and robots that are created inside each other separate differently each time.
 std::string order(const std::string& message) {
   Predicates p;
   readSexp(message, p);
@@ -62,7 +61,7 @@ std::string order(const std::string& message) {
   return out;
 }
 
-/// The number that the host gave the agent in this message, 0 when it says none.
+/// The number that the host assigns to the agent in this message, 0 if there is none.
 std::int64_t numberGiven(const std::string& message) {
   Predicates p;
   readSexp(message, p);
@@ -71,7 +70,7 @@ std::int64_t numberGiven(const std::string& message) {
   return 0;
 }
 
-/// `scenes`: a folder with scene files that are asked before the league's own; empty for none.
+/// `scenes`: a folder of scene files that take precedence over the league's own; empty for none.
 void replay(const std::filesystem::path& file, const std::filesystem::path& scenes) {
   const Session session = load(file);
   std::vector<std::string> command{(binFolder() / "sparkhost").string(),
@@ -95,8 +94,9 @@ void replay(const std::filesystem::path& file, const std::filesystem::path& scen
     if (const auto at = session.sent.find(cycle); at != session.sent.end())
       for (const auto& [name, message] : at->second) clients[name]->send(message);
   };
-  // An agent is waited for from the message on that names its robot: its number comes in the message in which it was
-  // recorded. Of several agents one may come a cycle before another, and be told more while that one joins.
+  // The host waits for an agent from the message that names its robot, so its number comes in the message in which it
+  // was recorded. With several agents, one may join a cycle before another and receive additional messages while that
+  // one joins.
   const bool alone = session.agents.size() == 1;
   std::map<std::string, std::vector<std::pair<int, std::int64_t>>> given, recorded;
   const auto note = [alone](auto& numbers, int cycle, const std::string& message) {
@@ -121,7 +121,7 @@ void replay(const std::filesystem::path& file, const std::filesystem::path& scen
 }
 }  // namespace
 
-TEST_CASE("The openings of recorded sessions replay without an error") {
+TEST_CASE("The beginnings of recorded sessions replay without an error") {
   const auto reference = referenceFolder();
   if (reference.empty()) std::exit(77);
   for (const char* name :

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A raw TCP client of a running host: sends and reads what a test wants, also nonsense.
+/// A raw TCP client of a running host. It sends and reads whatever a test needs, including invalid messages.
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -10,18 +10,18 @@
 
 namespace spark::test {
 
-/// One connection. Waits without limit: ctest ends a test that stalls, and with it the host. Functions throw
-/// boost::system::system_error when the host closed the connection, unless they say otherwise.
+/// One connection. It waits without a timeout: ctest ends a test that stalls, and with it the host. Functions throw
+/// boost::system::system_error when the host has closed the connection, unless stated otherwise.
 class Client {
  public:
   explicit Client(unsigned short port) { socket_.connect({boost::asio::ip::address_v4::loopback(), port}); }
 
-  /// Sends bytes as they are. A host that has closed the connection meanwhile is no error.
+  /// Sends raw bytes. It is no error if the host has closed the connection in the meantime.
   void sendRaw(const std::string& bytes) {
     boost::system::error_code ignored;
     boost::asio::write(socket_, boost::asio::buffer(bytes), ignored);
   }
-  /// Sends one message behind its length.
+  /// Sends one message with its length prefix.
   void send(const std::string& message) { sendRaw(prefix(static_cast<std::uint32_t>(message.size())) + message); }
   /// The next message.
   std::string receive() {
@@ -33,7 +33,7 @@ class Client {
     boost::asio::read(socket_, boost::asio::buffer(message));
     return message;
   }
-  /// True when bytes have come that were not received yet.
+  /// True if bytes have arrived that were not read yet.
   bool pending() { return socket_.available() > 0; }
   /// Reads until the host closes the connection.
   void waitForClose() {
@@ -41,7 +41,7 @@ class Client {
     boost::system::error_code ec;
     while (!ec) socket_.read_some(boost::asio::buffer(bytes), ec);
   }
-  /// Four bytes of length, big-endian.
+  /// The length prefix: four bytes, big-endian.
   static std::string prefix(std::uint32_t n) {
     return {static_cast<char>(n >> 24), static_cast<char>(n >> 16), static_cast<char>(n >> 8), static_cast<char>(n)};
   }

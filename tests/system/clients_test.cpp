@@ -9,9 +9,9 @@
 #include "spark/client/expression.h"
 #include "test_support.h"
 
-// Clients of the installed base, written from descriptions of how they behave on the wire: players of two code bases, a
-// program that makes its agents one after the other, a robot that is no soccer player, a utility that only sends, a
-// viewer that pauses, a learner.
+// Clients as existing programs implement them, written from descriptions of their behavior on the wire: players of two
+// code bases, a program that creates its agents one after the other, a robot that does not play soccer, a utility that
+// only sends, a viewer that pauses, a learner.
 
 using namespace spark::test;
 using spark::client::Connection;
@@ -48,15 +48,15 @@ std::string init(const std::string& team, int unum) {
   return "(init (unum " + std::to_string(unum) + ")(teamname " + team + "))";
 }
 
-/// A player that says one thing after the other, each when it has got a message, and then answers every message with
-/// the last one.
+/// A player with a list of messages. It sends the next one after each message that it receives, and repeats the last
+/// one.
 class ScriptedPlayer {
  public:
   ScriptedPlayer(int port, std::vector<std::string> words) : connection_("127.0.0.1", port), words_(std::move(words)) {
     say();
   }
-  /// Answers one message, if there is one: a host that is fast has the next one at once. False when the server has
-  /// closed.
+  /// Answers at most one message, because a fast host sends the next one at once. False when the server has closed the
+  /// connection.
   bool play() try {
     if (const auto message = connection_.receive(0.001)) {
       ++heard_;
@@ -83,7 +83,7 @@ class ScriptedPlayer {
   Expression last_;
 };
 
-/// How the two big code bases, a small one and a robot of another game begin.
+/// The first messages of the two large code bases, of a small one, and of a robot in another game.
 std::vector<std::string> stepByStep(int unum) { return {kNao, init("Porto", unum), "(syn)"}; }
 std::vector<std::string> inTurn(int unum) {
   return {std::string(kNao) + "(syn)", init("Austin", unum) + "(syn)", "(he1 0.5)(syn)"};
@@ -91,7 +91,7 @@ std::vector<std::string> inTurn(int unum) {
 std::vector<std::string> atOnce(int unum) { return {kNao + init("Small", unum) + "(syn)", "(syn)"}; }
 std::vector<std::string> plain(int) { return {"(scene rsg/agent/sphere.rsg)(syn)", "(syn)"}; }
 
-/// A match that starts when its players, which come in this order, are there; what it comes to.
+/// Runs a match that starts when these players, connected in this order, are ready; returns its state hash.
 std::string match(const std::vector<int>& order) {
   const std::vector<std::vector<std::string>> kinds{stepByStep(1), stepByStep(2), inTurn(1),
                                                     inTurn(9),     atOnce(4),     plain(0)};
@@ -109,7 +109,7 @@ std::string match(const std::vector<int>& order) {
   return result["stateHash"];
 }
 
-/// A sphere that keeps the clock of a match in lockstep running for `seconds`.
+/// A sphere that keeps a match in lockstep running for `seconds`.
 struct Pacemaker : ScriptedPlayer {
   explicit Pacemaker(int port)
       : ScriptedPlayer(port, {"(scene rsg/agent/sphere.rsg)(syn)", init("Pace", 1) + "(syn)", "(syn)"}) {}
@@ -124,16 +124,15 @@ std::string kindOf(const std::string& message) { return read(message)[1].name();
 
 }  // namespace
 
-TEST_CASE(
-    "Players that wait for messages at different places, and a robot without init, are expected: the same match in any "
-    "order") {
+TEST_CASE("With --expect the match is the same for any connection order of players that join in different ways") {
   const std::string first = match({0, 1, 2, 3, 4, 5});
   REQUIRE(match({5, 4, 3, 2, 1, 0}) == first);
   REQUIRE(match({2, 5, 0, 4, 1, 3}) == first);
 }
 
 TEST_CASE(
-    "A program that makes its agents one after the other plays with --expect: the match starts when no more comes") {
+    "With --expect a program that creates its agents one after the other plays, and the match starts when no more "
+    "come") {
   ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "3", "--set",
                     "/sys/server/gamecontrol.holdWait=0.02", "--set", "/sys/server/gamecontrol.joinWait=0.5"});
   std::vector<std::unique_ptr<ScriptedPlayer>> players;
@@ -153,7 +152,7 @@ TEST_CASE(
   CHECK(host.result()["agentsSeen"] == 3);
 }
 
-TEST_CASE("The host says whom it waits for") {
+TEST_CASE("The host reports which agents it waits for") {
   ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "2", "--set",
                     "/sys/server/gamecontrol.holdReport=0.05"});
   Connection half("127.0.0.1", host.agentPort);
@@ -164,14 +163,13 @@ TEST_CASE("The host says whom it waits for") {
   host.result();
 }
 
-TEST_CASE(
-    "A utility that opens the monitor port only to send commands, and never reads, is served as long as it likes") {
+TEST_CASE("A utility that only sends commands to the monitor port and never reads is never closed") {
   ServingHost host(
       {"--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "Soccer.AutomaticKickOff=false"});
   Connection utility("127.0.0.1", host.monitorPort);
   Pacemaker player(host.agentPort);
   player.run(0.1);
-  // 120 s: some ten times of what fits into the system's buffers
+  // 120 s: about ten times what fits into the socket buffers.
   for (int i = 0; i < 12; ++i) {
     const std::string mode = i % 2 == 0 ? "PlayOn" : "BeforeKickOff";
     utility.send("(playMode " + mode + ")");
@@ -185,19 +183,19 @@ TEST_CASE(
   host.result();
 }
 
-TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene when it asks for it") {
-  // the player keeps the match waiting while the viewer reads
+TEST_CASE("A viewer that pauses receives only whole messages afterwards and the full scene on request") {
+  // The player keeps the match waiting while the viewer reads.
   ServingHost host(
       {"--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "/sys/server/gamecontrol.syncTimeout=0"});
   Connection viewer("127.0.0.1", host.monitorPort);
   REQUIRE(kindOf(*viewer.receive()) == "RSG");
   Pacemaker player(host.agentPort);
   player.run(120);
-  const double now = player.last().find("GS").find("t")[1].number();  // monitors are told the match's clock
+  const double now = player.last().find("GS").find("t")[1].number();  // monitors get the time of the match
   REQUIRE(now > 60);
-  // What was under way when its buffers were full, a gap, and then what is now.
-  constexpr double kPatience = 0.1;  // s of wall time; TCP takes seconds until a full connection flows again, and the
-                                     // match is not to end meanwhile
+  // First the messages that were buffered, then a gap, then the current ones.
+  // s of wall time. TCP takes seconds until a full connection flows again, and the match must not end meanwhile.
+  constexpr double kPatience = 0.1;
   double last = 0, gap = 0;
   int messages = 0;
   while (last < now - 0.5) {
@@ -230,7 +228,7 @@ TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene w
   host.result();
 }
 
-TEST_CASE("A learner sees the truth with --set cheats=true, beside what a trainer that never reads does to it") {
+TEST_CASE("With cheats=true a learner sees the ground truth and the effect of a trainer that never reads") {
   const std::string config = GENERATE("training.lua", "soccer-sphere.lua");
   ServingHost host({"--config", config, "--sync", "--rate", "max", "--expect", "1", "--set", "cheats=true", "--set",
                     "Soccer.AutomaticKickOff=false"});
@@ -241,7 +239,7 @@ TEST_CASE("A learner sees the truth with --set cheats=true, beside what a traine
   while (player.heard() < 5) REQUIRE(player.play());
   trainer.send("(playMode PlayOn)(agent (unum 1)(team Left)(move -4 2 0.5 0))(ball (pos 3 1 0.05)(vel 0 0 0))");
   const auto number = [&](const char* name, std::size_t i) { return player.last().find("See").find(name)[i].number(); };
-  // It acts soon, and vision looks in every third cycle.
+  // The commands act within a few cycles, and vision is updated in every third cycle.
   while (!(player.last().find("See").size() > 1 && std::abs(number("mypos", 1) + 4) < 0.3 &&
            std::abs(number("mypos", 2) - 2) < 0.3 && std::abs(number("ballpos", 1) - 3) < 0.1 &&
            std::abs(number("ballpos", 2) - 1) < 0.1))

@@ -13,7 +13,7 @@ using Catch::Contains;
 namespace {
 std::string plugins() { return (binFolder().parent_path() / "tests" / "crash-plugins").string(); }
 
-/// A host with the plugin that fails, and a config that has all to do with it.
+/// Runs a host with the crashing plugin and a config that uses it.
 struct Crashing {
   TemporaryFolder folder;
   std::vector<std::string> command(const std::string& config, std::vector<std::string> more = {}) const {
@@ -32,7 +32,7 @@ struct Crashing {
     return "local h = new('CrashHook', '/usr/thing/h')\nh.how = '" + how + "'\nh.stopFile = '" + folder.file("go") +
            "'\n";
   }
-  /// An agent in the host whose robot has the sensor.
+  /// An agent inside the host; its robot has the crashing sensor.
   std::string agent(const std::string& how) const {
     folder.write("rsg/agent/robot.rsg", "(RSG 0 1)\n((nd TRF (nd CrashSensor (setName eye) (setHow " + how +
                                             ") (setStopFile " + folder.file("go") + "))))\n");
@@ -46,7 +46,7 @@ struct Crashing {
 };
 }  // namespace
 
-TEST_CASE("A sensor that crashes is named by the host's last words, and the host ends by the signal") {
+TEST_CASE("A host that a sensor crashes names the sensor in its last line and ends by the signal") {
   const Crashing c;
   for (const char* threads : {"1", "3"}) {
     auto more = c.scenes();
@@ -62,7 +62,7 @@ TEST_CASE("A sensor that crashes is named by the host's last words, and the host
   }
 }
 
-TEST_CASE("A handler that crashes is named, whatever kills it") {
+TEST_CASE("The crash message names the handler for every kind of crash") {
   const Crashing c;
   const std::vector<std::tuple<const char*, int, const char*>> ways{{"null", SIGSEGV, "SIGSEGV at address 0x0"},
                                                                     {"divide", SIGFPE, "SIGFPE"},
@@ -77,7 +77,7 @@ TEST_CASE("A handler that crashes is named, whatever kills it") {
   }
 }
 
-TEST_CASE("What crashes at set-up is named: properties by their name, constructors by their class") {
+TEST_CASE("A crash at set-up is reported with the name of the property or the class of the constructor") {
   const Crashing c;
   const Finished set = c.run(c.hook("null") + "h.atOnce = true\n");
   CHECK(set.code == 128 + SIGSEGV);
@@ -87,7 +87,7 @@ TEST_CASE("What crashes at set-up is named: properties by their name, constructo
   CHECK_THAT(made.errors, Contains(" in the constructor of class NullNode of plugin crashing."));
 }
 
-TEST_CASE("A signal that somebody sends ends the host as ever, with its words") {
+TEST_CASE("A signal sent from outside ends the host with the same message") {
   const Crashing c;
   Process p(c.command(""), 60);
   p.line();
@@ -96,7 +96,7 @@ TEST_CASE("A signal that somebody sends ends the host as ever, with its words") 
   CHECK_THAT(p.errors(), Contains("sparkhost: crashed by SIGSEGV"));
 }
 
-TEST_CASE("kernel() in a constructor and what a constructor throws are errors that name the class") {
+TEST_CASE("A constructor that calls kernel() or throws is an error that names the class") {
   const Crashing c;
   const Finished eager = c.run("new('EagerNode', '/usr/n')\n");
   CHECK(eager.code == 2);
@@ -119,7 +119,7 @@ TEST_CASE("A hook that throws in every cycle is logged once and counted") {
   CHECK(nlohmann::json::parse(f.out.substr(f.out.find('\n') + 1))["faults"] == 100);
 }
 
-TEST_CASE("A sensor that throws and a script that fails are counted, too") {
+TEST_CASE("A failing sensor and a failing script are counted, too") {
   const Crashing c;
   const Finished sensor = c.run(c.agent("throw"), c.scenes());
   CHECK(sensor.code == 0);
@@ -129,7 +129,7 @@ TEST_CASE("A sensor that throws and a script that fails are counted, too") {
   CHECK(nlohmann::json::parse(script.out.substr(script.out.find('\n') + 1))["faults"] == 50);
 }
 
-TEST_CASE("What hangs is named while it hangs, and once") {
+TEST_CASE("The watchdog names a hanging object once per report, while it hangs") {
   const Crashing c;
   for (const bool sensor : {true, false}) {
     auto more = sensor ? c.scenes() : std::vector<std::string>{"--duration", "2"};
@@ -145,17 +145,17 @@ TEST_CASE("What hangs is named while it hangs, and once") {
     p.line();
     CHECK(p.wait() == 0);
     const std::string said = p.errors(), words = "The simulation stands still";
-    CHECK(said.find(words) != said.rfind(words));  // when it hung, and when it was asked to end
+    CHECK(said.find(words) != said.rfind(words));  // once when it hung, once when it was asked to end
     CHECK(said.find(words, said.find(words) + 1) == said.rfind(words));
     std::filesystem::remove(c.folder.file("go"));
   }
 }
 
-TEST_CASE("A watchdog that is switched off says nothing") {
+TEST_CASE("A disabled watchdog reports nothing") {
   const Crashing c;
   Process p(c.command(c.hook("hang") + "get('/sys/host/watchdog').after = 0\n"), 60);
   p.line();
-  // Somebody else's words in the log follow the hang's end.
+  // Other log lines follow the end of the hang.
   std::ofstream(c.folder.file("go")) << "";
   p.signal(SIGTERM);
   p.line();

@@ -9,9 +9,9 @@
 #include "temporary_folder.h"
 #include "test_support.h"
 
-// What a plugin author does: installs Spark, builds a plugin with the installed headers and find_package(Spark), drops
-// it into a folder. The installed tree is moved in between, because it may be. What a team does: links its agent with
-// the installed client library. What the documentation shows is taken out of the installed pages.
+// What a plugin author does: install Spark, build a plugin with the installed headers and find_package(Spark), and drop
+// it into a folder. The installed tree is moved in between, because it is relocatable. What a team does: link its agent
+// with the installed client library. The examples are extracted from the installed documentation.
 
 using namespace spark::test;
 using Catch::Contains;
@@ -25,7 +25,7 @@ Finished must(const std::vector<std::string>& command) {
   return f;
 }
 
-/// The first block of a language in a page, behind `heading`.
+/// The first code block of a language in a page, after `heading`.
 std::string block(const fs::path& page, const std::string& language, const std::string& heading = "") {
   const std::string text = textOf(page), fence = "```" + language + "\n";
   const auto begin = text.find(fence, text.find(heading));
@@ -34,7 +34,7 @@ std::string block(const fs::path& page, const std::string& language, const std::
   return text.substr(begin + fence.size(), text.find("\n```", begin) + 1 - begin - fence.size());
 }
 
-/// An installed and moved Spark.
+/// An installed Spark that was moved to another folder.
 struct Installed {
   TemporaryFolder folder;
   fs::path prefix = folder.path() / "moved";
@@ -47,7 +47,7 @@ struct Installed {
 };
 }  // namespace
 
-TEST_CASE("A plugin built outside of the tree is found, described and used") {
+TEST_CASE("A plugin built outside the tree is found, described and used") {
   const Installed spark;
   const fs::path prefix = spark.prefix, work = spark.folder.path() / "work";
   fs::copy(SPARK_FIXTURES "/drop-in", work, fs::copy_options::recursive);
@@ -73,7 +73,7 @@ TEST_CASE("A plugin built outside of the tree is found, described and used") {
                Contains("there is no plugin 'metronome'"));
 }
 
-TEST_CASE("An agent built outside of the tree with the client library alone plays, and needs no other package") {
+TEST_CASE("An agent built outside the tree needs only the client library to play") {
   const Installed spark;
   const fs::path prefix = spark.prefix, work = spark.folder.path() / "client";
   fs::copy(SPARK_FIXTURES "/client", work, fs::copy_options::recursive);
@@ -95,7 +95,7 @@ TEST_CASE("An agent built outside of the tree with the client library alone play
   CHECK(host.wait() == 0);
 }
 
-TEST_CASE("What the pages show builds from the installed tree as it stands: a plugin, and a copied sensor") {
+TEST_CASE("The plugin and the copied sensor of the documentation build from the installed tree") {
   const Installed spark;
   const fs::path pages = spark.prefix / "share" / "doc" / "spark", guide = pages / "docs" / "plugin-guide.md";
   const TemporaryFolder& folder = spark.folder;
@@ -103,7 +103,7 @@ TEST_CASE("What the pages show builds from the installed tree as it stands: a pl
   folder.write("wind/wind.cpp", block(guide, "cpp wind.cpp", "## A plugin of your own"));
   folder.write("gyro/CMakeLists.txt", block(guide, "cmake", "## A copy of one of ours"));
   folder.write("gyro/my_sensors.cpp", block(guide, "cpp", "## A copy of one of ours"));
-  // As the guide says: copied, and the class renamed.
+  // As the guide says: copy the file and rename the class.
   std::string header = textOf(pages / "plugins" / "sensors" / "gyro_rate_perceptor.h");
   for (std::size_t at = header.find("GyroRatePerceptor"); at != header.npos; at = header.find("GyroRatePerceptor", at))
     header.replace(at, 17, "MyGyro");
@@ -131,7 +131,7 @@ TEST_CASE("What the pages show builds from the installed tree as it stands: a pl
   CHECK_THAT(describe("MyGyro"), Contains("plugin: my-sensors") && Contains("angular velocity"));
 }
 
-TEST_CASE("Documentation is installed where its links lead somewhere") {
+TEST_CASE("The pages that the installed documentation links to are installed") {
   const Installed spark;
   const fs::path pages = spark.prefix / "share" / "doc" / "spark";
   for (const char* page :

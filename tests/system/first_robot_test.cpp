@@ -6,7 +6,7 @@
 #include "temporary_folder.h"
 #include "test_support.h"
 
-// The program of docs/first-robot.md, as a newcomer copies it.
+// The program of docs/first-robot.md, as a reader copies it.
 
 using namespace spark::test;
 using Catch::Contains;
@@ -24,7 +24,7 @@ TEST_CASE("The robot of docs/first-robot.md joins, sees the ball, and drives") {
   CAPTURE(robot.out, robot.errors, host.errors());
   CHECK(robot.code == 0);
   CHECK_THAT(robot.out, Contains("the ball is 37.0 m away, at 90 degrees") && Contains("the ball is 3.") &&
-                            Contains("the ball is 2."));  // it beams, and drives
+                            Contains("the ball is 2."));  // it has beamed and driven
   CHECK_THAT(host.errors(), !Contains("warning"));
   host.signal(SIGTERM);
   CHECK(host.wait() == 0);

@@ -7,7 +7,7 @@
 #include "test_support.h"
 #include "web_client.h"
 
-// A game that is not soccer shows its score wherever a match of soccer does.
+// The score of a game other than soccer is shown in the same places.
 
 using namespace spark::test;
 using Json = nlohmann::json;
@@ -22,7 +22,7 @@ plugin "sumo"
 new("SumoBoard", "/usr/sumo")
 )";
 
-/// `program` with the sumo config and the plugin it needs.
+/// `program` with the sumo config and the plugin that it needs.
 std::vector<std::string> sumo(const char* name, const TemporaryFolder& folder, std::vector<std::string> more) {
   const std::string plugins = (binFolder().parent_path() / "tests" / "game-plugins").string();
   more.insert(more.begin(), {program(name), "--config", folder.write("sumo.lua", kSumo), "--plugin-path", plugins});
@@ -30,7 +30,7 @@ std::vector<std::string> sumo(const char* name, const TemporaryFolder& folder, s
 }
 }  // namespace
 
-TEST_CASE("Another game's score is in the status line, in the page's status, and in the host's last line") {
+TEST_CASE("The score of another game is in the status line, in the page's status, and in the host's last line") {
   TemporaryFolder folder;
   Process host(
       sumo("sparkhost", folder, {"--agent-port", "0", "--monitor-port", "0", "--web-port", "0", "--duration", "6"}),
@@ -56,7 +56,7 @@ TEST_CASE("Another game's score is in the status line, in the page's status, and
   CHECK(host.wait() == 0);
 }
 
-TEST_CASE("A batch of another game has its score in the table's columns") {
+TEST_CASE("A batch of another game writes the score to the table's columns") {
   TemporaryFolder folder;
   const std::string table = (folder.path() / "sumo.csv").string();
   const Finished run = runToEnd(sumo("sparkbatch", folder, {"--runs", "2", "--duration", "1", "--results", table}));
@@ -69,7 +69,7 @@ TEST_CASE("A batch of another game has its score in the table's columns") {
   CHECK_THAT(row, Contains(",Push,3,2,East,West,5,0.5,belt,"));
 }
 
-TEST_CASE("A game in Lua alone has its score in a batch's columns and in the host's last line") {
+TEST_CASE("The score of a game written only in Lua is in a batch's columns and in the host's last line") {
   TemporaryFolder folder;
   const std::string config = folder.write("lua.lua", R"(
 include "house.lua"

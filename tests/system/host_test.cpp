@@ -18,7 +18,7 @@ std::vector<std::string> host(std::vector<std::string> arguments) {
   return arguments;
 }
 
-/// A config with nothing but a run loop and a control socket.
+/// A config with only a run loop and a control socket.
 const char* kSmall = R"(
 include "house.lua"
 files()
@@ -26,7 +26,7 @@ simulation()
 control()
 answer = option{ name = "answer", default = 42, doc = "What to do?" }
 )";
-/// As kSmall, with agents and monitors.
+/// kSmall with agents and monitors.
 const char* kServing = R"(
 include "house.lua"
 files() scene() simulation()
@@ -34,7 +34,7 @@ agents{} monitors{} control()
 )";
 }  // namespace
 
-TEST_CASE("--check loads and wires, steps nothing, prints nothing on stdout") {
+TEST_CASE("--check loads and wires everything, executes no step, and prints nothing to stdout") {
   TemporaryFolder folder;
   const Finished good = runToEnd(host({"--config", folder.write("good.lua", kSmall), "--check"}));
   REQUIRE(good.code == 0);
@@ -45,7 +45,7 @@ TEST_CASE("--check loads and wires, steps nothing, prints nothing on stdout") {
   REQUIRE_THAT(bad.errors, Contains("bad.lua:7") && Contains("'Simulation'"));
 }
 
-TEST_CASE("--check fails for what a run only logs: missing scene files and misspelt methods") {
+TEST_CASE("--check fails for errors that a run only logs: missing scene files and misspelt methods") {
   TemporaryFolder folder;
   folder.write("rsg/whole.rsg", "(RSG 0 1)\n((nd Transform (setName a) (setLocalPos 0 0 1)))\n");
   folder.write("rsg/wheel.rsg", "(RSG 0 1)\n((nd Transform\n  (importScene rsg/weel.rsg)))\n");
@@ -78,13 +78,13 @@ TEST_CASE("--check fails for what a run only logs: missing scene files and missp
   CHECK(quiet.code == 2);
 }
 
-TEST_CASE("A config that is not there is an error that says where it was looked for") {
+TEST_CASE("A missing config is an error that lists the folders searched") {
   const Finished f = runToEnd(host({"--config", "no-such-config.lua"}));
   REQUIRE(f.code == 2);
   REQUIRE_THAT(f.errors, Contains("no-such-config.lua") && Contains("share/spark/lua"));
 }
 
-TEST_CASE("--set takes options and properties; an unknown name is an error with the nearest") {
+TEST_CASE("--set accepts options and properties, and an unknown name is an error with the nearest name") {
   TemporaryFolder folder;
   const std::string config = folder.write("small.lua", kSmall);
   REQUIRE(
@@ -99,7 +99,7 @@ TEST_CASE("--set takes options and properties; an unknown name is an error with 
   REQUIRE(runToEnd(host({"--config", config, "--check", "--set", "answer"})).code == 2);
 }
 
-TEST_CASE("A flag for what a house does not have is an error in the user's words") {
+TEST_CASE("A flag for a feature that the config lacks is an error that names the flag") {
   const auto error = [](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"--config", "boxes.lua", "--check"});
     const Finished f = runToEnd(host(arguments));
@@ -117,7 +117,7 @@ TEST_CASE("A flag for what a house does not have is an error in the user's words
   REQUIRE(runToEnd(host({"--config", "boxes.lua", "--check", "--web-port", "0", "--rate", "max", "--sync"})).code == 0);
 }
 
-TEST_CASE("A seed that is none, or needs more than 64 bits, is refused") {
+TEST_CASE("A seed that is not a number or exceeds 64 bits is refused") {
   TemporaryFolder folder;
   const std::string config = folder.write("small.lua", kSmall);
   for (const char* seed : {"-1", "18446744073709551616", "99999999999999999999", "1.5", "0x", "many", "1 "}) {
@@ -132,7 +132,7 @@ TEST_CASE("A seed that is none, or needs more than 64 bits, is refused") {
     REQUIRE(runToEnd(host({"--config", config, "--check", "--seed", seed})).code == 0);
 }
 
-TEST_CASE("A wrong command line ends with exit code 2 and says what is wrong") {
+TEST_CASE("A wrong command line ends with exit code 2 and an explanation") {
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{},
                                              {"--config", "x.lua", "--rate", "fast"},
@@ -146,7 +146,7 @@ TEST_CASE("A wrong command line ends with exit code 2 and says what is wrong") {
   }
 }
 
-TEST_CASE("stdout holds the ports first and the result last, and nothing else") {
+TEST_CASE("stdout holds only the ports in its first line and the result in its last") {
   TemporaryFolder folder;
   Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0",
                   "--rate", "max", "--duration", "2"}));
@@ -158,7 +158,7 @@ TEST_CASE("stdout holds the ports first and the result last, and nothing else") 
   REQUIRE(result["cycles"] == 100);
   REQUIRE(result["simSeconds"] == 2.0);
   REQUIRE(result["realTimeFactor"].get<double>() > 1);
-  REQUIRE_FALSE(result.contains("score"));  // nothing reports one
+  REQUIRE_FALSE(result.contains("score"));  // no object reports one
   REQUIRE(result["agentsSeen"] == 0);
   REQUIRE(result["messagesDropped"] == 0);
   REQUIRE(result["stateHash"].get<std::string>().size() == 16);
@@ -166,7 +166,7 @@ TEST_CASE("stdout holds the ports first and the result last, and nothing else") 
   REQUIRE(p.wait() == 0);
 }
 
-TEST_CASE("--histogram tells on stderr how late and how long cycles were") {
+TEST_CASE("--histogram prints the delays and durations of cycles to stderr") {
   TemporaryFolder folder;
   const std::string config = folder.write("small.lua", kSmall);
   const Finished f = runToEnd(host({"--config", config, "--rate", "max", "--duration", "0.1", "--histogram"}));
@@ -186,7 +186,7 @@ TEST_CASE("SIGINT and SIGTERM end a run with its result") {
   }
 }
 
-TEST_CASE("A host that waits for agents ends when it is told to") {
+TEST_CASE("A host that waits for agents ends on a signal") {
   TemporaryFolder folder;
   Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0",
                   "--sync", "--expect", "5"}));
@@ -196,7 +196,7 @@ TEST_CASE("A host that waits for agents ends when it is told to") {
   REQUIRE(p.wait() == 0);
 }
 
-TEST_CASE("A port that is taken is an error that names it") {
+TEST_CASE("A port in use is an error that names the port") {
   TemporaryFolder folder;
   const std::string config = folder.write("serving.lua", kServing);
   Process first(host({"--config", config, "--agent-port", "0", "--monitor-port", "0"}));
@@ -207,7 +207,7 @@ TEST_CASE("A port that is taken is an error that names it") {
   REQUIRE_THAT(second.errors, Contains(taken));
 }
 
-TEST_CASE("--list-plugins and --describe tell what is there") {
+TEST_CASE("--list-plugins and --describe print the available plugins and classes") {
   const Finished list = runToEnd(host({"--list-plugins"}));
   REQUIRE(list.code == 0);
   REQUIRE_THAT(list.out, Contains("simulation 1.0") && Contains("ControlServer"));
@@ -221,7 +221,7 @@ TEST_CASE("--list-plugins and --describe tell what is there") {
   REQUIRE_THAT(runToEnd(host({"--version"})).out, Contains("sparkhost"));
 }
 
-TEST_CASE("A folder of broken plugins is reported, and the host starts") {
+TEST_CASE("Broken plugins in a folder are reported, and the host starts") {
   TemporaryFolder folder;
   folder.write("broken/broken.so", "this is no library");
   const Finished f = runToEnd(host({"--config", folder.write("small.lua", kSmall), "--check", "--plugin-path",
@@ -230,7 +230,7 @@ TEST_CASE("A folder of broken plugins is reported, and the host starts") {
   REQUIRE_THAT(f.errors, Contains("broken.so"));
 }
 
-/// Runs sparkctl on a running house.
+/// Runs sparkctl on a running instance.
 static auto controlOf(const Process& p) {
   return [pid = std::to_string(p.pid())](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {program("sparkctl"), "--pid", pid});
@@ -238,7 +238,7 @@ static auto controlOf(const Process& p) {
   };
 }
 
-TEST_CASE("sparkctl shows the house and changes it") {
+TEST_CASE("sparkctl shows and changes a running simulation") {
   TemporaryFolder folder;
   Process p(
       host({"--config", folder.write("small.lua", std::string(kSmall) + "new(\"Node\", \"/usr/thing/inner\")\n")}));
@@ -257,7 +257,7 @@ TEST_CASE("sparkctl shows the house and changes it") {
   REQUIRE(ctl({"set", "/sys/server/simulation.step", "0.01"}).code == 0);
   REQUIRE_THAT(ctl({"get", "/sys/server/simulation.step"}).out, Contains("0.01 s"));
   REQUIRE(ctl({"set", "/sys/server/simulation.step", "soon"}).code == 1);
-  REQUIRE(ctl({"set", "/usr/thing/inner.name", "007"}).code == 0);  // text stays text
+  REQUIRE(ctl({"set", "/usr/thing/inner.name", "007"}).code == 0);  // text remains text
   REQUIRE_THAT(ctl({"get", "/usr/thing/007.name"}).out, Contains("name = 007"));
   REQUIRE(ctl({"call", "/usr/thing/007.setName", "1e3"}).code == 0);
   REQUIRE_THAT(ctl({"tree", "/usr"}).out, Contains("─ 1e3\n"));
@@ -267,7 +267,7 @@ TEST_CASE("sparkctl shows the house and changes it") {
   REQUIRE(p.wait() == 0);
 }
 
-TEST_CASE("sparkctl loads and unloads plugins of a running house") {
+TEST_CASE("sparkctl loads and unloads plugins of a running simulation") {
   TemporaryFolder folder;
   Process p(host({"--config", folder.write("small.lua", kSmall)}));
   p.line();
@@ -291,7 +291,7 @@ TEST_CASE("sparkctl loads and unloads plugins of a running house") {
   CHECK(p.wait() == 0);
 }
 
-TEST_CASE("sparkctl refuses what would leave a running house without its servers") {
+TEST_CASE("sparkctl refuses to rename or remove the servers of a running simulation") {
   TemporaryFolder folder;
   Process p(host({"--config", folder.write("serving.lua", kServing), "--agent-port", "0", "--monitor-port", "0"}));
   p.line();
@@ -314,7 +314,7 @@ TEST_CASE("sparkctl refuses what would leave a running house without its servers
   CHECK(p.wait() == 0);
 }
 
-TEST_CASE("sparkctl without a house says so") {
+TEST_CASE("sparkctl reports that there is no instance to connect to") {
   TemporaryFolder folder;
   setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);
   const Finished f = runToEnd({program("sparkctl"), "--pid", "1", "tree"});

@@ -16,15 +16,15 @@ using spark::Element;
 using spark::Predicates;
 
 namespace {
-/// Places of the robot's torso and the ball [m].
+/// Positions of the robot's torso and the ball [m].
 struct Look {
   humanoid::Vec3 torso = humanoid::Vec3::Zero(), ball = humanoid::Vec3::Zero();
 };
 
-/// A match of one player of the given robot type against nobody, in lockstep: a kick-off for him after three seconds.
+/// A match in lockstep with a single player of the given robot type, which kicks off after three seconds.
 class Training {
  public:
-  /// The clock stands until he is there: with the same seed the same happens.
+  /// Time does not advance before the player has joined, so the same seed gives the same match.
   Training(int type, int seed)
       : host_({(binFolder() / "sparkhost").string(),
                "--config",
@@ -56,14 +56,14 @@ class Training {
   }
   HumanoidPlayer& player() { return player_; }
 
-  /// One cycle of the player's.
+  /// One cycle in which the player acts.
   void play() {
     Predicates actions;
     player_.think(percepts_, actions);
     send(actions);
     receive();
   }
-  /// One cycle in which other hands move the robot, who knows what happens to him.
+  /// One cycle in which `message` moves the robot instead. The player gets its percepts, but its actions are discarded.
   void meddle(const std::string& message) {
     Predicates unused, actions;
     player_.think(percepts_, unused);
@@ -71,7 +71,7 @@ class Training {
     send(actions);
     receive();
   }
-  /// Plays until `done`, at most for `seconds` of simulated time; true when it was done.
+  /// Plays until `done`, for at most `seconds` of simulated time; returns whether it was done.
   bool playUntil(double seconds, const std::function<bool()>& done) {
     for (double t = 0; t < seconds; t += humanoid::kCycle) {
       if (done()) return true;
@@ -79,7 +79,7 @@ class Training {
     }
     return false;
   }
-  /// The same, with a monitor that looks once a second.
+  /// The same, with a check of the monitor's frame once a second.
   bool watchUntil(double seconds, const std::function<bool(const Look&)>& done) {
     for (double t = 0; t < seconds; ++t) {
       playUntil(1, [] { return false; });
@@ -87,11 +87,11 @@ class Training {
     }
     return false;
   }
-  /// What a monitor sees.
+  /// The positions in the next monitor frame.
   Look look() {
     Client monitor(ports_["monitorPort"].get<unsigned short>());
     Predicates scene;
-    play();  // a cycle in which the monitor is noticed
+    play();  // the host accepts the monitor between two cycles
     play();
     spark::readSexp(monitor.receive(), scene);
     Look found;
@@ -110,8 +110,7 @@ class Training {
     percepts_.clear();
     spark::readSexp(agent_.receive(), percepts_);
   }
-  /// Where the meshes of torso and ball hang. Every robot's body parts are children of a transform that stays where it
-  /// is.
+  /// Positions of the meshes of torso and ball. All body parts of a robot are children of one fixed transform.
   static void collect(const Element& node, humanoid::Vec3 place, Look& found) {
     if (!node.isList()) return;
     if (const Element m = node.named("SLT"))
@@ -130,15 +129,15 @@ class Training {
   Predicates percepts_;
 };
 
-constexpr double kStanding = 0.3;  // m, least height of a standing torso
+constexpr double kStanding = 0.3;  // m, minimum height of a standing torso
 }  // namespace
 
-/// Of so many attempts one must succeed: a walk over rough numbers may end in the wrong place on one machine and not on
-/// another.
+/// One of these attempts must succeed: the walk depends on rounding, so it may end in a wrong position on one machine
+/// only.
 constexpr int kAttempts = 6;
 
-/// "" when the robot that was thrown on its face (or back) got up, walked and pushed the ball; else what it failed to
-/// do.
+/// "" if the robot got up after a fall on its face (or back), walked and pushed the ball; otherwise the step that
+/// failed.
 std::string getUpWalkAndPush(int type, bool forward, int seed) {
   Training training(type, seed);
   HumanoidPlayer& player = training.player();
@@ -162,7 +161,7 @@ std::string getUpWalkAndPush(int type, bool forward, int seed) {
   return "";
 }
 
-TEST_CASE("A humanoid gets up after falling, on either side, walks to the ball and pushes it") {
+TEST_CASE("A humanoid gets up from either side, walks to the ball and pushes it") {
   for (int type = 0; type < humanoid::kRobotTypes; ++type)
     for (const bool forward : {true, false}) {
       std::string failed = "begin", all;

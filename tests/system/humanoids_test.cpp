@@ -35,7 +35,7 @@ std::unique_ptr<Process> startTeam(const char* name, const Json& ports, int play
 }
 }  // namespace
 
-TEST_CASE("Twenty-two humanoids play a short match in lockstep to its end, and no line of the log is a warning") {
+TEST_CASE("Twenty-two humanoids play a short match in lockstep to its end without a warning in the log") {
   const auto server = startHost({"--sync", "--rate", "max", "--expect", "22", "--seed", "7", "--log-level", "warning",
                                  "--set", "Soccer.RuleHalfTime=20", "--duration", "52"});
   const Json ports = Json::parse(server->line());
@@ -52,7 +52,7 @@ TEST_CASE("Twenty-two humanoids play a short match in lockstep to its end, and n
   REQUIRE_THAT(red->errors(), Contains("GameOver"));
 }
 
-TEST_CASE("A team of humanoids plays the same match again") {
+TEST_CASE("A match of a humanoid team is repeatable") {
   const auto play = [] {
     const auto server = startHost(
         {"--sync", "--rate", "max", "--expect", "6", "--seed", "3", "--log-level", "error", "--duration", "15"});
@@ -63,7 +63,7 @@ TEST_CASE("A team of humanoids plays the same match again") {
   REQUIRE(play() == play());
 }
 
-TEST_CASE("In real time the status line says whether the cycle was held") {
+TEST_CASE("In real time the status line reports whether the cycle time was kept") {
   const auto server = startHost({"--rate", "real", "--log-level", "info"});
   const Json ports = Json::parse(server->line());
   const auto red = startTeam("Red", ports, 2);

@@ -10,8 +10,8 @@
 #include "spark/predicates.h"
 #include "test_support.h"
 
-// Clients that behave, on the wire, as the programs of well-known teams do, join the default league: in lockstep and in
-// real time, one after the other or all at once, eleven on both sides.
+// Clients that join the default league in the way the programs of well-known teams do: in lockstep and in real time,
+// one after the other and all at once, eleven on each side.
 
 using namespace spark;
 using namespace spark::test;
@@ -46,7 +46,7 @@ struct Host {
   }
 };
 
-/// A player's connection and what it has been told.
+/// A player's connection and the state of its side, from the messages received.
 class Player {
  public:
   Player(unsigned short port, std::string team, int unum) : client_(port), team_(std::move(team)), unum_(unum) {}
@@ -55,7 +55,7 @@ class Player {
   std::string init() const { return "(init (unum " + std::to_string(unum_) + ")(teamname " + team_ + "))"; }
   void send(const std::string& message) { client_.send(message); }
   bool pending() { return client_.pending(); }
-  /// Reads one message; no two may be the same.
+  /// Reads one message, which must differ from the previous one.
   void receiveOne() {
     std::string message = client_.receive();
     REQUIRE(message != last_);
@@ -69,12 +69,12 @@ class Player {
       if (const Element number = e.named("unum")) REQUIRE(number.at(1).integer() == unum_);
     }
   }
-  /// Waits for a message and reads on until nothing more is there.
+  /// Waits for a message, then reads until no more are pending.
   void receive() {
     do receiveOne();
     while (pending());
   }
-  /// "left", "right", or "" while it was not told.
+  /// "left", "right", or "" before the server has sent it.
   const std::string& side() const { return side_; }
   int heard() const { return heard_; }
   const std::string& team() const { return team_; }
@@ -86,8 +86,8 @@ class Player {
 };
 using Team = std::vector<std::unique_ptr<Player>>;
 
-/// Joins as an agent of the FC Portugal code base does, while the same program leads `others`: it keeps them in step as
-/// long as it waits for the newcomer.
+/// Joins like an agent of the FC Portugal code base whose program also runs `others`: it keeps them in step while it
+/// waits for the new agent.
 std::unique_ptr<Player> joinPorto(unsigned short port, const std::string& team, int unum, Team& others) {
   auto p = std::make_unique<Player>(port, team, unum);
   const auto waitFor = [&] {
@@ -116,7 +116,8 @@ void requireSides(const Team& players) {
 
 }  // namespace
 
-TEST_CASE("One program brings in eleven players one after the other: scene alone, a message, init, three times (syn)") {
+TEST_CASE(
+    "A program adds eleven players one after the other with scene, init and three times (syn) in separate messages") {
   const bool lockstep = GENERATE(true, false);
   Host host(lockstep);
   Team players;
@@ -130,8 +131,7 @@ TEST_CASE("One program brings in eleven players one after the other: scene alone
 }
 
 TEST_CASE(
-    "Players of two teams, each for itself, join at once: scene and (syn), init and (syn), then (syn) until they have "
-    "a number") {
+    "Players of two teams join at once, each with scene and (syn), init and (syn), then (syn) until it has a number") {
   const bool lockstep = GENERATE(true, false);
   Host host(lockstep);
   Team players;
@@ -140,7 +140,8 @@ TEST_CASE(
       players.push_back(std::make_unique<Player>(host.port, team, unum));
       players.back()->send(players.back()->scene() + "(syn)");
       if (players.size() == 1)
-        players.back()->receiveOne(), players.back()->send(players.back()->init() + "(syn)");  // Alpha is left
+        players.back()->receiveOne(),
+            players.back()->send(players.back()->init() + "(syn)");  // Alpha gets the left side
     }
   const auto done = [](const auto& p) { return !p->side().empty() && p->heard() >= 20; };
   while (!std::all_of(players.begin(), players.end(), done))
@@ -154,14 +155,14 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "Players that send scene and init and wait for the rest of both teams, without (syn), join a match in lockstep") {
+    "Players that send scene and init without (syn) and wait for the rest of both teams join a match in lockstep") {
   Host host(true);
   Team players;
   Player& leader = *players.emplace_back(std::make_unique<Player>(host.port, "Alpha", 1));
   leader.send(leader.scene() + "(syn)");
   leader.receiveOne();
   leader.send(leader.init() + "(syn)");
-  // Everybody reads what comes; those who wait answer with init only, once.
+  // All players read what arrives; a waiting player answers only once, with init.
   const auto play = [&](bool all) {
     for (auto& p : players) {
       if (!p->pending()) continue;
@@ -181,7 +182,7 @@ TEST_CASE(
       while (p->side().empty()) play(false);
     }
   requireSides(players);
-  // The leader has waited for nobody, and now they all start.
+  // So far the leader alone has advanced the match; now all players do.
   for (std::size_t i = 1; i < players.size(); ++i) players[i]->send("(syn)");
   std::vector<int> before;
   for (auto& p : players) before.push_back(p->heard());

@@ -13,7 +13,7 @@ using Catch::Contains;
 
 namespace {
 
-/// A short match of two teams over TCP, in lockstep.
+/// A short match of two teams over TCP in lockstep.
 struct Match {
   std::string config = "soccer-sphere.lua";
   int players = 3, seed = 7;
@@ -83,14 +83,14 @@ struct Match {
   }
 };
 
-/// The reference: what every match with the same seed must end in.
+/// The state hash in which every match with the same seed must end.
 const std::string& referenceHash() {
   static const std::string hash = Match().hash();
   return hash;
 }
 }  // namespace
 
-TEST_CASE("Two runs with one seed end in the same state, another seed does not") {
+TEST_CASE("Two runs with one seed end in the same state, and another seed ends in another") {
   REQUIRE(Match().hash() == referenceHash());
   Match other;
   other.seed = 8;
@@ -127,7 +127,7 @@ TEST_CASE("Teams that speak JSON play the same match") {
   REQUIRE(m.hash() == referenceHash());
 }
 
-TEST_CASE("Two ports speak two languages at the same time") {
+TEST_CASE("Two ports use two message formats at the same time") {
   TemporaryFolder folder;
   Match m;
   m.config = folder.write("two-ports.lua", "include \"soccer-sphere.lua\"\nagentPort(\"json\", 0, \"JsonParser\")\n");
@@ -136,7 +136,7 @@ TEST_CASE("Two ports speak two languages at the same time") {
   REQUIRE(m.hash() == referenceHash());
 }
 
-TEST_CASE("Monitors hear JSON when the config says so") {
+TEST_CASE("Monitors receive JSON if the config selects it") {
   for (const bool json : {true, false}) {
     Match m;
     m.players = 1;
@@ -154,7 +154,7 @@ TEST_CASE("Monitors hear JSON when the config says so") {
   }
 }
 
-TEST_CASE("A match of behaviours inside the host is repeatable, goals and all") {
+TEST_CASE("A match of behaviors inside the host is repeatable, with its goals") {
   const auto play = [] {
     const Finished f = runToEnd({program("sparkhost"), "--config", "soccer-sphere.lua", "--set", "team=Red Blue",
                                  "--set", "players=4", "--rate", "max", "--duration", "20", "--seed", "3",

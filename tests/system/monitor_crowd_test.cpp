@@ -7,11 +7,11 @@
 #include "process.h"
 #include "test_support.h"
 
-// As many monitors as a tournament's audience may bring, and one that never reads.
+// As many monitors as the audience of a tournament may open, and one that never reads.
 
 using namespace spark::test;
 
-TEST_CASE("A hundred monitors get their messages while one never reads and a match goes on") {
+TEST_CASE("A hundred monitors get their messages during a match although one monitor never reads") {
   Process host({(binFolder() / "sparkhost").string(), "--config", "soccer-sphere.lua", "--set", "team=Red Blue",
                 "--set", "players=4", "--rate", "max", "--agent-port", "0", "--monitor-port", "0", "--log-level",
                 "warning"});
@@ -23,7 +23,7 @@ TEST_CASE("A hundred monitors get their messages while one never reads and a mat
   for (int round = 0; last < 1; ++round)
     for (auto& monitor : crowd) {
       const std::string message = monitor->receive();
-      REQUIRE((message.find(")(RSG 0 1)(") != std::string::npos) >= (round == 0));  // the first one is full
+      REQUIRE((message.find(")(RSG 0 1)(") != std::string::npos) >= (round == 0));  // the first one is the full scene
       const std::size_t at = message.find("(time ");
       REQUIRE(at != std::string::npos);
       last = std::max(last, std::stod(message.substr(at + 6)));

@@ -63,7 +63,7 @@ void Process::tooLong(const std::string& what) {
   throw std::runtime_error(fmt::format("{} took longer than {} s to {}; it said:\n{}", name_, limit_, what, errors()));
 }
 
-/// Reads once; false at the end.
+/// Reads once; false at the end of the stream.
 bool Process::fill() {
   struct pollfd p = {out_, POLLIN, 0};
   const int ready = poll(&p, 1, static_cast<int>(limit_ * 1000));

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Programs of this build as child processes: what they print, how they end.
+/// Programs of this build as child processes: their output and exit codes.
 
 #include <chrono>
 #include <filesystem>
@@ -9,11 +9,11 @@
 
 namespace spark::test {
 
-/// A child process. Its stdout is read line by line, its stderr is kept. Killed when this object goes. Functions throw
-/// std::runtime_error, with what the program said, when it takes longer than the limit.
+/// A child process. Its stdout is read line by line, its stderr is kept in a file. The destructor kills it. Functions
+/// throw std::runtime_error with the program's stderr when it exceeds the time limit.
 class Process {
  public:
-  /// Starts `command` (program and arguments). `limit`: for every wait [s].
+  /// Starts `command` (program and arguments). `limit`: the maximum time of every wait [s].
   explicit Process(const std::vector<std::string>& command, double limit = 240);
   ~Process();
   Process(const Process&) = delete;
@@ -21,13 +21,13 @@ class Process {
 
   /// The next line of stdout; throws at its end.
   std::string line();
-  /// All that remains on stdout.
+  /// The remaining output on stdout.
   std::string rest();
-  /// Waits for the end; the exit code, or 128 + signal.
+  /// Waits for the end of the process; returns the exit code, or 128 + signal.
   int wait();
   void signal(int number);
   int pid() const { return pid_; }
-  /// What it wrote to stderr so far.
+  /// Its output on stderr so far.
   std::string errors() const;
   /// Waits until stderr holds `text`.
   void waitForError(const std::string& text);
@@ -51,7 +51,7 @@ struct Finished {
 };
 Finished runToEnd(const std::vector<std::string>& command);
 
-/// What a file holds; "" when it is not there.
+/// The contents of a file; "" if it does not exist.
 std::string textOf(const std::filesystem::path& file);
 
 }  // namespace spark::test

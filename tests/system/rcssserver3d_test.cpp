@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// What pkill and killall compare with.
+/// The name that pkill and killall compare with.
 std::string processName(int pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/comm");
   std::string name;
@@ -25,7 +25,7 @@ std::string processName(int pid) {
 unsigned short portOf(const Json& ports, const char* name) { return ports[name].get<unsigned short>(); }
 }  // namespace
 
-TEST_CASE("Both names serve agents and monitors on the ports they are given, and are killed by name") {
+TEST_CASE("rcssserver3d and simspark use the given agent and monitor ports and can be killed by name") {
   for (const std::string name : {"rcssserver3d", "simspark"}) {
     CAPTURE(name);
     Process server({program(name), "--agent-port=0", "--server-port", "0"});
@@ -51,7 +51,7 @@ TEST_CASE("SIGTERM ends a server that waits for a silent agent") {
   REQUIRE(server.wait() == 0);
 }
 
-TEST_CASE("Two servers with different port options run beside each other") {
+TEST_CASE("Two servers with different port options run side by side") {
   Process first({program("rcssserver3d"), "--agent-port", "0", "--server-port", "0"});
   const Json ports = Json::parse(first.line());
   const std::string taken = std::to_string(portOf(ports, "agentPort"));
@@ -62,7 +62,7 @@ TEST_CASE("Two servers with different port options run beside each other") {
   REQUIRE_THAT(third.errors, Contains(taken));
 }
 
-TEST_CASE("Start-up scripts stand for configs") {
+TEST_CASE("A Lua start-up script replaces the config, and a Ruby script is reported") {
   TemporaryFolder folder;
   const std::string own = folder.write("own.lua", "include \"soccer.lua\"\nprint(\"own config\")\n");
   Process lua({program("rcssserver3d"), "--agent-port=0", "--server-port=0", "--script-path", own,
@@ -74,7 +74,7 @@ TEST_CASE("Start-up scripts stand for configs") {
   REQUIRE(Json::parse(ruby.line())["agentPort"] > 0);
 }
 
-TEST_CASE("What the programs do not know they name, and end") {
+TEST_CASE("An unknown option or argument is named and ends the program") {
   for (const char* wrong : {"--no-such-option", "surplus"}) {
     const Finished f = runToEnd({program("rcssserver3d"), wrong});
     REQUIRE(f.code == 2);

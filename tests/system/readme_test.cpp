@@ -9,8 +9,7 @@
 #include "temporary_folder.h"
 #include "test_support.h"
 
-// People copy the first example of a README: it has to be a config that runs as it stands. What a README starts has to
-// be there.
+// Users copy the first example of a README, so it must run unchanged. The programs that a README starts must exist.
 
 using namespace spark::test;
 namespace fs = std::filesystem;
@@ -24,7 +23,7 @@ std::set<std::string> matches(const std::string& text, const char* pattern) {
   return found;
 }
 
-/// The first Lua block of a file, "" when there is none.
+/// The first Lua block of a file, "" if there is none.
 std::string exampleOf(const fs::path& file) {
   const std::string text = textOf(file), fence = "```lua\n";
   const auto begin = text.find(fence);
@@ -33,7 +32,7 @@ std::string exampleOf(const fs::path& file) {
 }
 }  // namespace
 
-TEST_CASE("The first example of every plugin's README, and of the scripts', is a config that builds a house") {
+TEST_CASE("The first example in the README of every plugin and of the scripts is a valid config") {
   TemporaryFolder folder;
   std::vector<fs::path> readmes{fs::path(SPARK_SOURCES) / "lua" / "README.md"};
   for (const auto& plugin : fs::directory_iterator(fs::path(SPARK_SOURCES) / "plugins"))
@@ -54,7 +53,7 @@ TEST_CASE(
     "The target that tools/play builds makes every program that the README starts and every file that is installed") {
   const fs::path build = binFolder().parent_path();
   std::string listed;
-  for (const char* tool : {"query", "inputs"}) {  // what the target names, and what that is made of
+  for (const char* tool : {"query", "inputs"}) {  // the inputs of the target, and their own inputs
     const Finished f = runToEnd({"ninja", "-C", build.string(), "-t", tool, "programs"});
     INFO(f.errors);
     REQUIRE(f.code == 0);
@@ -85,7 +84,7 @@ TEST_CASE(
   REQUIRE(textOf(fs::path(SPARK_SOURCES) / "tools" / "play").find("build release programs") != std::string::npos);
 }
 
-TEST_CASE("Every line of the page for those who used to edit spark.rb is taken by the host") {
+TEST_CASE("The host accepts every option on the page for users of spark.rb") {
   const std::string page = textOf(fs::path(SPARK_SOURCES) / "docs" / "spark-rb.md");
   std::istringstream lines(page);
   std::set<std::string> settings;

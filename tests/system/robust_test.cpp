@@ -27,18 +27,18 @@ std::vector<std::string> host(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), program("sparkhost"));
   return arguments;
 }
-/// Runs a shell's command line.
+/// Runs a shell command line.
 Finished shell(const std::string& line) { return runToEnd({"sh", "-c", line}); }
 
 const char* kSmall = "include \"house.lua\"\nfiles() simulation() control()\n";
 
-/// Sockets of this test's own. sparkctl sees those in /tmp as well: say which house is meant.
+/// A socket folder for this test alone. sparkctl searches /tmp as well, so every call names the process.
 struct Runtime : TemporaryFolder {
   Runtime() { setenv("XDG_RUNTIME_DIR", path().c_str(), 1); }
   ~Runtime() { unsetenv("XDG_RUNTIME_DIR"); }
 };
 
-/// A program that listens at a Unix socket and never says a word.
+/// A program that listens on a Unix socket and never answers.
 class Mute {
  public:
   explicit Mute(const std::string& file, unsigned user = 0) {
@@ -77,7 +77,7 @@ std::string contentOf(const fs::path& file) {
 }
 }  // namespace
 
-TEST_CASE("A config that never returns ends at the first signal, and says where it was") {
+TEST_CASE("A config that never returns ends at the first signal and reports the line it was in") {
   TemporaryFolder folder;
   const std::string loops[] = {"log.info('here')\nwhile true do end\n",
                                "log.info('here')\nwhile true do pcall(function() while true do end end) end\n"};
@@ -91,7 +91,7 @@ TEST_CASE("A config that never returns ends at the first signal, and says where 
     }
 }
 
-TEST_CASE("A host whose terminal goes ends with its result and without its socket") {
+TEST_CASE("SIGHUP ends a host with its result and removes its socket") {
   Runtime runtime;
   Process p(host({"--config", runtime.write("small.lua", kSmall)}), 60);
   p.line();
@@ -103,7 +103,7 @@ TEST_CASE("A host whose terminal goes ends with its result and without its socke
   CHECK_FALSE(fs::exists(socket));
 }
 
-TEST_CASE("Under nohup a host stays when the terminal goes") {
+TEST_CASE("Under nohup a host survives SIGHUP") {
   Runtime runtime;
   Process p(
       {"sh", "-c", "trap '' HUP; exec " + program("sparkhost") + " --config " + runtime.write("small.lua", kSmall)},
@@ -115,7 +115,7 @@ TEST_CASE("Under nohup a host stays when the terminal goes") {
   CHECK(p.wait() == 0);
 }
 
-TEST_CASE("A result that cannot be written is on stderr, and the exit code says so") {
+TEST_CASE("A result that cannot be written to stdout is on stderr, and the exit code is 1") {
   TemporaryFolder folder;
   const Finished f = shell(program("sparkhost") + " --config " + folder.write("small.lua", kSmall) +
                            " --rate max --duration 1 > /dev/full");
@@ -130,7 +130,7 @@ TEST_CASE("A result that cannot be written is on stderr, and the exit code says 
              Contains("cannot write to stdout (No space left on device); this line is lost there: {\"runs\":1,"));
 }
 
-TEST_CASE("An answer of a house that cannot be written is an error of sparkctl") {
+TEST_CASE("An answer that cannot be written to stdout is an error of sparkctl") {
   Runtime runtime;
   Process p(host({"--config", runtime.write("small.lua", kSmall)}), 60);
   p.line();
@@ -139,7 +139,7 @@ TEST_CASE("An answer of a house that cannot be written is an error of sparkctl")
   CHECK_THAT(f.errors, Contains("cannot write to stdout: No space left on device"));
 }
 
-TEST_CASE("sparkctl does not wait for ever for a house that is stopped, nor for a mute one") {
+TEST_CASE("sparkctl times out when the simulation is stopped or never answers") {
   Runtime runtime;
   Process p(host({"--config", runtime.write("small.lua", kSmall)}), 60);
   p.line();
@@ -159,7 +159,7 @@ TEST_CASE("sparkctl does not wait for ever for a house that is stopped, nor for 
              Contains("did not answer within 0.3 s"));
 }
 
-TEST_CASE("sparkctl does not believe a folder that others could have made, nor another user's program") {
+TEST_CASE("sparkctl trusts neither a folder that other users can write to nor a program of another user") {
   Runtime runtime;
   const fs::path folder = runtime.path() / "spark";
   fs::create_directory(folder);
@@ -184,14 +184,14 @@ TEST_CASE("sparkctl does not believe a folder that others could have made, nor a
   CHECK_THAT(foreign.errors, Contains("is another user's; it is told nothing"));
 }
 
-TEST_CASE("What a config includes comes from beside it and from Spark, not from the folder the user happens to be in") {
+TEST_CASE("Includes are searched beside the config and in Spark, not in the working directory") {
   TemporaryFolder folder;
   folder.write("house.lua", "log.warning('taken over')\n");
   const std::string cd = "cd " + folder.path().string() + " && ";
   const Finished shared = shell(cd + program("sparkhost") + " --config boxes.lua --check");
   CHECK(shared.code == 0);
   CHECK_THAT(shared.errors, !Contains("taken over"));
-  // A config that is named there has its files there, wherever the user is.
+  // The files beside a config are used for any working directory.
   const std::string mine = folder.write("mine.lua", "include 'house.lua'\ninclude 'parts/a.lua'\n");
   folder.write("parts/a.lua", "include 'b.lua'\n");
   folder.write("parts/b.lua", "log.info('b is beside a')\n");
@@ -203,7 +203,7 @@ TEST_CASE("What a config includes comes from beside it and from Spark, not from 
   }
 }
 
-TEST_CASE("A misspelt global and a misspelt channel are errors with the nearest names") {
+TEST_CASE("A misspelt global and a misspelt channel are errors that suggest the nearest names") {
   TemporaryFolder folder;
   const auto failure = [&](const std::string& line) {
     const Finished f = runToEnd(host({"--config", folder.write("typo.lua", std::string(kSmall) + line), "--check"}));
@@ -216,7 +216,7 @@ TEST_CASE("A misspelt global and a misspelt channel are errors with the nearest 
              Contains("typo.lua:3: there is no event channel 'actt'") && Contains("Did you mean 'act'?"));
   CHECK_THAT(failure("get('/sys'):on('sence', function() end)\n"),
              Contains("typo.lua:3: there is no event channel 'sence'") && Contains("'sense'"));
-  // Before the run loop is there nobody knows.
+  // Channels are checked only once the run loop exists.
   const Finished early = runToEnd(host(
       {"--config", folder.write("early.lua", "include 'house.lua'\non('rule', function() end)\nfiles() simulation()\n"),
        "--check"}));
@@ -229,7 +229,7 @@ TEST_CASE("A misspelt global and a misspelt channel are errors with the nearest 
   CHECK_THAT(earlyTypo.errors, Contains("early.lua:2: there is no event channel 'rulle'"));
 }
 
-TEST_CASE("A pipe in a plugin folder is refused and holds nobody") {
+TEST_CASE("A named pipe in a plugin folder is refused and does not block the host") {
   TemporaryFolder folder;
   const fs::path broken = folder.path() / "broken";
   fs::create_directory(broken);
@@ -240,7 +240,7 @@ TEST_CASE("A pipe in a plugin folder is refused and holds nobody") {
   CHECK_THAT(f.errors, Contains("x.so: it is no regular file"));
 }
 
-TEST_CASE("Plugins with damaged headers are refused before the dynamic linker believes them") {
+TEST_CASE("Plugins with damaged headers are refused before the dynamic linker loads them") {
   TemporaryFolder folder;
   const fs::path broken = folder.path() / "broken";
   fs::create_directory(broken);

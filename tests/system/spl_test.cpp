@@ -6,7 +6,7 @@
 #include "spark/predicates.h"
 #include "test_support.h"
 
-// The league of the Nao V4: its field, its robot, what its agents are told.
+// The league of the Nao V4: its field, its robot and its percepts.
 
 using namespace spark;
 using namespace spark::test;
@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// The list of that head, as `name` where it has one; throws when it is missing.
+/// The list with this head, and with this `name` if one is given; throws if there is none.
 Element find(const Predicates& message, std::string_view head, std::string_view name = {}) {
   for (const Element e : message)
     if (e.head() == head &&
@@ -26,7 +26,7 @@ Element find(const Predicates& message, std::string_view head, std::string_view 
 
 }  // namespace
 
-TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and is told what its sensors say") {
+TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and receives its sensor values") {
   Process host({(binFolder() / "sparkhost").string(), "--config", "soccer-spl.lua", "--rate", "max", "--agent-port",
                 "0", "--monitor-port", "0", "--log-level", "error"});
   const Json ports = Json::parse(host.line());
@@ -55,7 +55,7 @@ TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and is told what it
   CHECK(find(message, "HJ", "hj1").named("ax").at(1).number() == Approx(0.5 * 59 * 0.02 * 180 / 3.14159265).margin(2));
   CHECK(find(message, "GPS", "torso").named("tf").size() == 17);
   CHECK(find(message, "GPS", "head").named("tf").size() == 17);
-  CHECK(find(message, "GPS", "torso").named("tf").at(12).number() == Approx(0.36).margin(0.03));  // it stands
+  CHECK(find(message, "GPS", "torso").named("tf").at(12).number() == Approx(0.36).margin(0.03));  // it is upright
   CHECK(find(message, "FRP", "rf").named("f").at(3).number() > 10);
   host.signal(15);
   host.line();

@@ -7,21 +7,21 @@
 #include "temporary_folder.h"
 #include "web_client.h"
 
-// Bad input at the web port of a host with a match going on. After every attack a player who did nothing wrong is still
-// told of a clock that runs, and somebody who watches still gets frames.
+// Bad input to the web port of a host with a running match. After every attack a well-behaved player still sees time
+// advance, and a viewer still gets frames.
 
 using namespace spark::test;
 using Catch::Contains;
 
 namespace {
 
-/// An arena with somebody in the stands.
+/// An arena with a web viewer.
 struct Stadium : Arena {
   explicit Stadium(std::vector<std::string> more = {}) : Arena(std::move(more)), fan(webPort) {
     REQUIRE(fan.watch() == 101);
     fan.binary();
   }
-  /// The player and the fan notice nothing.
+  /// The player and the viewer are not affected.
   void mustGoOn() {
     witness->mustSeeTimePass();
     while (fan.pending()) fan.next();
@@ -35,10 +35,10 @@ struct Stadium : Arena {
 std::string local(const Stadium& s) { return "Host: 127.0.0.1:" + std::to_string(s.webPort) + "\r\n"; }
 }  // namespace
 
-TEST_CASE("No path leads out of the folders that are served") {
+TEST_CASE("No path leads out of the served folders") {
   Stadium s({"--set", "webLogs=/usr/share/common-licenses"});
   const WebClient::Answer license = s.client().get("/logs/GPL-3");
-  const bool hasLicense = license.status == 200;  // a file that every Debian has, to see that this folder is served
+  const bool hasLicense = license.status == 200;  // a file of every Debian shows that the folder is served
   CHECK((!hasLicense || license.body.find("GNU") != std::string::npos));
   for (const char* target :
        {"/../../../../etc/passwd", "/logs/../../../etc/passwd", "/logs/..%2f..%2f..%2fetc%2fpasswd",
@@ -57,8 +57,7 @@ TEST_CASE("No path leads out of the folders that are served") {
 }
 
 TEST_CASE(
-    "Heads that are too long, bodies, unknown methods and bytes that are no request are refused, and the connection is "
-    "closed") {
+    "Oversized headers, bodies, unknown methods and bytes that are not HTTP are refused and close the connection") {
   Stadium s;
   const std::vector<std::pair<std::string, int>> requests{
       {"GET /" + std::string(20000, 'a') + " HTTP/1.1\r\n" + local(s) + "\r\n", 431},
@@ -80,7 +79,7 @@ TEST_CASE(
   s.mustEndWell();
 }
 
-TEST_CASE("Who is slow to ask, or says nothing, is closed") {
+TEST_CASE("A client that sends its request too slowly, or none, is closed") {
   Stadium s({"--set", "/sys/server/web.requestTimeout=0.5"});
   WebClient silent(s.webPort), slow(s.webPort);
   slow.sendRaw("GET / HTTP/1.1\r\nHost: ");
@@ -91,7 +90,7 @@ TEST_CASE("Who is slow to ask, or says nothing, is closed") {
   s.mustEndWell();
 }
 
-TEST_CASE("A name that is not ours, and a page from elsewhere, are turned away; a forwarded port is not") {
+TEST_CASE("Foreign host names and origins are refused, and a forwarded port is accepted") {
   Stadium s({"--set", "/sys/server/web.hosts={\"match.example\"}"});
   const auto page = [&](const std::string& host) { return s.client().get("/", "Host: " + host + "\r\n").status; };
   for (const char* ours : {"localhost", "LOCALHOST:8080", "127.0.0.1:1", "[::1]:3280", "192.168.0.7:3280",
@@ -117,7 +116,7 @@ TEST_CASE("A name that is not ours, and a page from elsewhere, are turned away; 
   s.mustEndWell();
 }
 
-TEST_CASE("Frames that break the WebSocket's rules, and messages that are too long, end their connection") {
+TEST_CASE("Frames that violate the WebSocket protocol and oversized messages close their connection") {
   Stadium s;
   const std::string invalid("\xff\xfe", 2);
   std::string huge = WebClient::frame("x");
@@ -149,7 +148,7 @@ TEST_CASE("Frames that break the WebSocket's rules, and messages that are too lo
   s.mustEndWell();
 }
 
-TEST_CASE("Messages that are nothing are answered with what was expected; too many of them end it") {
+TEST_CASE("Invalid messages are answered with an error, and too many of them close the connection") {
   Stadium s;
   for (const std::string& message :
        {std::string("hello"), std::string("[]"), std::string("{}"), std::string("{\"do\":7}"),
@@ -175,7 +174,7 @@ TEST_CASE("Messages that are nothing are answered with what was expected; too ma
   s.mustEndWell();
 }
 
-TEST_CASE("Only the token makes a referee, and it cannot be guessed or read") {
+TEST_CASE("Only the token grants referee rights, and it can be neither guessed nor read") {
   const std::string token = "a-token-of-the-test";
   Stadium s({"--set", "webToken=" + token});
   WebClient spectator(s.webPort);
@@ -211,14 +210,14 @@ TEST_CASE("Only the token makes a referee, and it cannot be guessed or read") {
   s.mustEndWell();
 }
 
-TEST_CASE("Who does not read costs a bounded amount and is closed after a while") {
+TEST_CASE("A viewer that does not read uses bounded memory and is closed after a timeout") {
   Stadium s({"--set", "/sys/server/web.stallTimeout=1", "--set", "/sys/server/web.share=0.5"});
   const double before = s.memory();
   std::vector<std::unique_ptr<WebClient>> deaf;
   for (int i = 0; i < 8; ++i) {
     deaf.push_back(std::make_unique<WebClient>(s.webPort, 4096));
     REQUIRE(deaf.back()->watch() == 101);
-    // The stream alone would take long to fill what the system holds back.
+    // The stream alone would take long to fill the socket buffers.
     for (int id = 0; id < 30; ++id) deaf.back()->say(R"({"do":"tree","path":"/","id":)" + std::to_string(id) + "}");
   }
   s.host.waitForError("you do not read what you are sent");
@@ -229,7 +228,7 @@ TEST_CASE("Who does not read costs a bounded amount and is closed after a while"
   s.mustEndWell();
 }
 
-TEST_CASE("Who asks for files and takes none of them leaves the host enough to open") {
+TEST_CASE("Clients that request files and never read them leave the host enough file descriptors") {
   constexpr rlim_t kFew = 700;
   TemporaryFolder folder;
   folder.write("long.log", std::string(4 << 20, 'x'));
@@ -238,7 +237,7 @@ TEST_CASE("Who asks for files and takes none of them leaves the host enough to o
   REQUIRE(limit.rlim_max >= 2 * kFew);
   limit.rlim_cur = kFew;
   REQUIRE(setrlimit(RLIMIT_NOFILE, &limit) == 0);
-  Stadium s({"--set", "webLogs=" + folder.path().string()});  // with as few as that
+  Stadium s({"--set", "webLogs=" + folder.path().string()});  // started with the low limit
   limit.rlim_cur = 2 * kFew;
   REQUIRE(setrlimit(RLIMIT_NOFILE, &limit) == 0);
   const std::string request = "GET /logs/long.log HTTP/1.1\r\n" + local(s) + "\r\n";
@@ -261,7 +260,7 @@ TEST_CASE("Who asks for files and takes none of them leaves the host enough to o
   s.mustEndWell();
 }
 
-TEST_CASE("Ten thousand connections take no place from those who watch, and a new one is still answered") {
+TEST_CASE("Ten thousand connections displace no viewer, and a new client is still answered") {
   Stadium s;
   rlimit limit{};
   REQUIRE(getrlimit(RLIMIT_NOFILE, &limit) == 0);

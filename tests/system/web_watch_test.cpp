@@ -8,7 +8,7 @@
 #include "test_support.h"
 #include "web_client.h"
 
-// The web port of the programs, as their users have it.
+// The web port of the programs, the way users run it.
 
 using namespace spark::test;
 using Json = nlohmann::json;
@@ -27,7 +27,7 @@ unsigned short portOf(const Json& firstLine) {
   return static_cast<unsigned short>(std::stoi(link.substr(17)));
 }
 
-/// The last line of a match, during which somebody may watch and ask.
+/// The last line of a match, during which viewers may watch and send requests.
 Json played(bool watched) {
   std::vector<std::string> match{
       "--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set", "players=3", "--rate",
@@ -54,13 +54,13 @@ Json played(bool watched) {
 }
 }  // namespace
 
-TEST_CASE("A match is the same, to the last digit, whether it is watched or not") {
+TEST_CASE("A match is identical to the last digit with and without viewers") {
   const Json alone = played(false), watched = played(true);
   CHECK(alone["cycles"] == 20000);
   CHECK(alone["stateHash"] == watched["stateHash"]);
 }
 
-TEST_CASE("A second host takes another port and says so; the page, the status and recorded games are there") {
+TEST_CASE("A second host reports and uses another port, and serves the page, the status and recorded games") {
   TemporaryFolder folder;
   const std::string game = "((time 0))(RSG 0 1)((nd))\n";
   folder.write("game one.log", game);
@@ -78,7 +78,7 @@ TEST_CASE("A second host takes another port and says so; the page, the status an
   CHECK_THAT(client.get("/").body, Contains("Spark"));
   CHECK(client.get("/logs/game%20one.log").body == game);
   CHECK(client.get("/logs/none.log").status == 404);
-  // Players inside the host join within its first cycles. A connection may ask 200 times only.
+  // Players inside the host join within its first cycles. Each connection is limited to 200 requests.
   for (;;) {
     const Json status = Json::parse(WebClient(other).get("/status.json").body);
     if (status["agents"].size() < 11) continue;
@@ -88,7 +88,7 @@ TEST_CASE("A second host takes another port and says so; the page, the status an
   }
 }
 
-TEST_CASE("The scene has the shapes of what touches") {
+TEST_CASE("The scene message contains the collision shapes") {
   Process host(sparkhost({"--config", "soccer-sphere.lua", "--web-port", "0"}), 60);
   WebClient viewer(portOf(Json::parse(host.line())));
   REQUIRE(viewer.watch() == 101);
@@ -106,7 +106,7 @@ TEST_CASE("The scene has the shapes of what touches") {
   viewer.binary();
 }
 
-TEST_CASE("A token that could be guessed, and an address that is none, are refused at the start") {
+TEST_CASE("A weak token is refused at the start, and an invalid address disables the web port") {
   const Finished weak =
       runToEnd(sparkhost({"--config", "soccer-sphere.lua", "--web-port", "0", "--set", "webToken=secret"}));
   CHECK(weak.code == 2);

@@ -1,4 +1,4 @@
-"""tools/check fails when nothing ran. Its ctest and cmake are replaced by ones that do what a test asks for."""
+"""tools/check fails when no test ran. Fake ctest and cmake programs give the results that a test needs."""
 import json
 import os
 import shutil
@@ -14,7 +14,7 @@ NO_TEST = '<testsuite name="x" tests="0"/>'
 
 
 class Check(unittest.TestCase):
-    """A tree with the scripts of tools/ and nothing else."""
+    """A tree that holds only the scripts of tools/."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -43,7 +43,7 @@ class Check(unittest.TestCase):
         file.chmod(0o755)
 
     def reports(self, text, of="*"):
-        """What ctest writes for the presets that `of` matches; one passed test for the others."""
+        """Sets the report of ctest for the presets that `of` matches; the others report one passed test."""
         self.program("ctest", 'while [ $# -gt 0 ]; do case $1 in --preset) preset=$2;; --output-junit) report=$2;; esac; shift; done\n'
                      f"case $preset in {of}) printf '{text}';; *) printf '{ONE_TEST}';; esac >$report")
 
@@ -88,15 +88,15 @@ class Check(unittest.TestCase):
             self.assertEqual(result.returncode, 1)
             self.assertIn("usage: tools/check [--all | --long]", result.stderr)
 
-    def test_a_file_that_is_formatted_otherwise_is_named(self):
+    def test_a_wrongly_formatted_file_is_named(self):
         self.program("clang-format-14", "echo 'core/kernel/src/a.cpp:3:1: error: code should be clang-formatted' >&2; exit 1")
         self.expect(1, "6 passed, 1 failed, 0 skipped", "format: clang-format-14 -i core/kernel/src/a.cpp")
 
-    def test_a_word_of_soccer_is_shown_with_its_place(self):
+    def test_a_word_of_soccer_is_shown_with_its_position(self):
         self.program(self.tree / "tools/lint-words", "echo \"core/kernel/src/a.cpp:3: 'ball' is soccer's\"; exit 1")
         self.expect(1, "6 passed, 1 failed, 0 skipped", "core/kernel/src/a.cpp:3: 'ball'", "words: tools/lint-words")
 
-    def test_what_clang_tidy_finds_is_shown(self):
+    def test_findings_of_clang_tidy_are_shown(self):
         self.program(self.tree / "tools/lint", "echo 'plugins/a.cpp:3:1: error: copied'; exit 1")
         self.expect(1, "6 passed, 1 failed, 0 skipped", "plugins/a.cpp:3:1: error: copied", "lint: tools/lint")
 
@@ -108,31 +108,31 @@ class Check(unittest.TestCase):
         self.reports("", "tsan")
         self.expect(1, "6 passed, 1 failed, 0 skipped", "tsan: ctest gave no report")
 
-    def test_skipped_tests_are_counted_as_such(self):
+    def test_skipped_tests_are_counted_as_skipped(self):
         self.reports('<testsuite name="x"><testcase name="a" status="notrun"><skipped/></testcase></testsuite>', "release")
         self.expect(0, "6 passed, 0 failed, 1 skipped")
 
-    def test_a_test_that_fails_is_named(self):
+    def test_a_failing_test_is_named(self):
         self.reports('<testsuite name="x"><testcase name="a" status="fail"><failure/></testcase></testsuite>', "release")
         self.expect(1, "6 passed, 1 failed, 0 skipped", "x: a")
 
-    def test_a_fuzzer_that_fails_is_named(self):
+    def test_a_failing_fuzzer_is_named(self):
         self.fuzzer("exit 1")
         self.expect(1, "6 passed, 1 failed, 0 skipped", "fuzz: fuzz-some")
 
-    def test_fuzzing_without_a_program_is_a_failure(self):
+    def test_a_missing_fuzz_program_is_a_failure(self):
         (self.tree / "build/fuzz/bin/fuzz-some").unlink()
         self.expect(1, "6 passed, 1 failed, 0 skipped", "fuzz: there is no program")
 
 
 class Presets(unittest.TestCase):
-    def test_running_no_test_is_an_error_in_each(self):
+    def test_every_preset_fails_without_tests(self):
         presets = json.loads((ROOT / "CMakePresets.json").read_text())["testPresets"]
         self.assertTrue(presets)
         for preset in presets:
             self.assertEqual(preset["execution"]["noTestsAction"], "error", preset["name"])
 
-    def test_ctest_fails_then(self):
+    def test_ctest_fails_if_no_test_matches(self):
         with tempfile.TemporaryDirectory() as folder:
             presets = json.loads((ROOT / "CMakePresets.json").read_text())
             presets["configurePresets"] = [{"name": p["configurePreset"], "generator": "Ninja", "binaryDir": folder} for p in presets["testPresets"]]

@@ -1,4 +1,4 @@
-"""tools/lint-words finds words of soccer where they do not belong, and nothing else."""
+"""tools/lint-words reports words of soccer outside the soccer plugins, and no other words."""
 import subprocess
 import sys
 import tempfile
@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 class LintWords(unittest.TestCase):
-    """A tree with the script and the files of a test."""
+    """A tree that holds the script and the files of a test."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -34,7 +34,7 @@ class LintWords(unittest.TestCase):
         return result.returncode, [line.split(" is a word of soccer: ")[0] for line in result.stdout.splitlines()
                                    if " is a word of soccer: " in line or line.startswith("tools/lint-words: ")]
 
-    def test_other_words_pass(self):
+    def test_words_from_other_fields_pass(self):
         self.assertEqual(self.lint(), (0, []))
 
     def test_each_word_is_named_with_file_and_line_however_it_is_written(self):
@@ -57,13 +57,13 @@ class LintWords(unittest.TestCase):
             self.write(name, "soccer\n")
         self.assertEqual(self.lint(), (0, []))
 
-    def test_an_exception_holds_for_its_files_and_words_only(self):
+    def test_an_exception_applies_to_its_files_and_words_only(self):
         self.write("plugins/physics/joints.h", "JointType::ball\nsoccer\n")
         self.write("plugins/sensors/b.h", "JointType::ball\n")
         self.assertEqual(self.lint(), (1, ["plugins/physics/joints.h:2: 'soccer'", "plugins/sensors/b.h:1: 'ball'"]))
         self.assertEqual(self.lint("plugins/physics/joints.h"), (1, ["plugins/physics/joints.h:2: 'soccer'"]))
 
-    def test_an_exception_that_nothing_needs_is_an_error(self):
+    def test_an_unused_exception_is_an_error(self):
         self.write("plugins/physics/joints.h", "JointType::hinge\n")
         code, lines = self.lint()
         self.assertEqual(code, 1)
@@ -105,7 +105,7 @@ class LintWords(unittest.TestCase):
         self.assertIn("none.h is no file of this tree", result.stderr)
         self.assertEqual(self.run_script(Path(__file__)).returncode, 2)
 
-    def test_this_tree_has_none(self):
+    def test_this_tree_passes(self):
         result = subprocess.run([ROOT / "tools/lint-words"], text=True, capture_output=True)
         self.assertEqual((result.returncode, result.stdout), (0, ""))
 

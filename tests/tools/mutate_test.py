@@ -1,4 +1,4 @@
-"""tools/mutate: what it changes, draws, counts, and that it puts everything back."""
+"""tools/mutate: its changes, draws and counts, and that it restores the files."""
 import importlib.machinery
 import importlib.util
 import sys
@@ -26,7 +26,7 @@ class Changes(unittest.TestCase):
         self.changed("  x = y + z - 2;", "  x = y - z - 2;", "  x = y + z + 2;", "  x = y + z - 3;")
         self.changed("  x = std::min(a, b);", "  x = std::max(a, b);")
 
-    def test_constants_are_off_by_one(self):
+    def test_constants_are_changed_by_one(self):
         self.changed("  double x = 0.5;", "  double x = 1.5;")
         self.changed("  x = v1[3];", "  x = v1[4];")
         self.changed("  x = true;", "  x = false;")
@@ -35,19 +35,19 @@ class Changes(unittest.TestCase):
         self.changed("  if (ready(x)) return;", "  if (!(ready(x))) return;")
         self.changed("  if (const auto* p = find()) {")
 
-    def test_calls_are_left_out_and_returns_come_early(self):
+    def test_calls_are_removed_and_functions_return_early(self):
         self.changed("  body.wake(x);", "  ;")
         self.changed("  Type name(x);")
         self.changed("void World::apply() {", "void World::apply() { return;")
         self.changed("  return place(x);", "  return {};")
         self.changed("  return {};")
 
-    def test_comments_texts_and_what_is_no_code_stay(self):
+    def test_comments_strings_and_declarations_are_unchanged(self):
         for line in ("  // a < b", "#include <x>", '  text("a < b && 1");'.replace("text", "auto t"), "  static_assert(a == 1);", "  prefetch(x + 1);", ""):
             self.changed(line)
         self.changed('  x = f("1 < 2", a < b);  // 1 + 1', '  x = f("1 < 2", a <= b);  // 1 + 1')
 
-    def test_templates_are_no_comparisons(self):
+    def test_template_brackets_are_unchanged(self):
         self.changed("  std::vector<int> x;")
 
 
@@ -66,10 +66,10 @@ class Draw(unittest.TestCase):
     def draw(self, seed="1"):
         return mutate.drawn([self.file], seed, self.root)
 
-    def test_the_seed_decides(self):
+    def test_the_draw_depends_on_the_seed(self):
         self.assertEqual(self.draw(), self.draw())
         self.assertNotEqual(self.draw("1"), self.draw("2"))
-        self.assertEqual(len(self.draw()), 20)  # one a line
+        self.assertEqual(len(self.draw()), 20)  # one per line
 
     def test_a_change_elsewhere_does_not_change_the_draw(self):
         before = [(m.before, m.after) for m in self.draw()]
@@ -78,7 +78,7 @@ class Draw(unittest.TestCase):
 
 
 class Judge(unittest.TestCase):
-    """The bench with builds and tests that a test makes up."""
+    """The bench with fake builds and tests."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -106,10 +106,10 @@ class Judge(unittest.TestCase):
         self.assertEqual(self.file.read_text(), before)
         return verdict
 
-    def test_survived(self):
+    def test_a_mutant_that_no_test_notices_survives(self):
         self.assertEqual(self.judge("one <= 1;"), ("survived", None))
 
-    def test_killed_by_the_fastest_that_notices(self):
+    def test_the_fastest_failing_test_kills(self):
         self.program("core-tree", f"! grep -q '<=' {self.file}")
         self.program("lua", "exit 1")
         self.assertEqual(self.judge("one <= 1;"), ("killed", "core-tree"))
@@ -118,14 +118,14 @@ class Judge(unittest.TestCase):
         self.program("lua", "kill -SEGV $$")
         self.assertEqual(self.judge("one <= 1;"), ("killed", "lua"))
 
-    def test_a_time_out_kills_with_all_that_was_started(self):
+    def test_a_timeout_kills_and_ends_all_child_processes(self):
         self.program("lua", "sleep 1000 & wait")
-        mutate.LEAST_TIMEOUT, least = 0.2, mutate.LEAST_TIMEOUT
+        mutate.LEAST_TIMEOUT, previous = 0.2, mutate.LEAST_TIMEOUT
         self.bench.seconds["lua"] = 0.01
         self.assertEqual(self.judge("one <= 1;"), ("killed", "lua"))
-        mutate.LEAST_TIMEOUT = least
+        mutate.LEAST_TIMEOUT = previous
 
-    def test_what_does_not_compile_is_not_counted_and_another_is_drawn(self):
+    def test_a_mutant_that_does_not_compile_is_replaced_by_another(self):
         texts = ["broken;", "one <= 1;", "one > 1;", "never reached;"]
         drawn = [mutate.Mutant("core/kernel/src/a.cpp", 1, "one < 1;", t) for t in texts]
         rows = mutate.judged(self.bench, drawn, 1, {("core/kernel/src/a.cpp", "one < 1;", "one <= 1;")})
@@ -134,7 +134,7 @@ class Judge(unittest.TestCase):
 
 
 class Lists(unittest.TestCase):
-    def test_named_mutants_fit_the_tree(self):
+    def test_named_mutants_apply_to_the_tree(self):
         blocks = mutate.read_list(ROOT / "tools/mutate.named")
         self.assertGreaterEqual(len(blocks), 6)
         for file, before, after, why in blocks:
@@ -144,7 +144,7 @@ class Lists(unittest.TestCase):
             self.assertTrue(why)
             mutate.folder_of(file)
 
-    def test_equivalent_mutants_fit_the_tree_and_have_a_reason(self):
+    def test_equivalent_mutants_apply_to_the_tree_and_have_a_reason(self):
         for file, before, after, why in mutate.read_list(ROOT / "tools/mutate.equivalent"):
             lines = [line.strip() for line in (ROOT / file).read_text().split("\n")]
             self.assertIn(before, lines)
@@ -157,7 +157,7 @@ class Verdict(unittest.TestCase):
         rows = [{"file": "a.cpp", "line": i, "verdict": "killed" if i < killed else "survived"} for i in range(counted)]
         return {"sums": {"all": [killed, counted]} if counted else {}, "mutants": rows}
 
-    def test_nine_of_ten_and_all_named(self):
+    def test_ninety_percent_and_all_named_mutants_must_be_killed(self):
         self.assertEqual(mutants.judged(self.report(36, 40), self.report(6, 6))[1], "pass")
         self.assertEqual(mutants.judged(self.report(35, 40), self.report(6, 6))[1], "FAIL")
         self.assertEqual(mutants.judged(self.report(40, 40), self.report(5, 6))[1], "FAIL")

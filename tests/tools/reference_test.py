@@ -1,4 +1,4 @@
-"""SPARK_REFERENCE_DIR is read when tests run, and naming a folder without recorded sessions fails. Argument: the build folder."""
+"""SPARK_REFERENCE_DIR is read at run time; a folder without recordings is an error. Argument: the build folder."""
 import os
 import subprocess
 import sys
@@ -24,13 +24,13 @@ class Reference(unittest.TestCase):
         self.path = Path(self.folder.name)
 
     def seen_by_tests(self, reference):
-        """The variable in a test that this build's ctest settings start."""
+        """The value of the variable in a test with the ctest settings of this build."""
         (self.path / "CTestTestfile.cmake").write_text(f'include("{BUILD}/environment.cmake")\nadd_test(probe sh -c "echo value=$SPARK_REFERENCE_DIR.")\n')
         result = run(["ctest", "-V"], reference, cwd=self.path)
         self.assertEqual(result.returncode, 0, result.stdout)
         return result.stdout.split("value=")[-1].split(".\n")[0]
 
-    def test_the_environment_wins_over_the_configuration(self):
+    def test_the_environment_overrides_the_configuration(self):
         self.assertEqual(self.seen_by_tests("/from/the/environment"), "/from/the/environment")
         self.assertEqual(self.seen_by_tests(""), "")
 
@@ -39,16 +39,16 @@ class Reference(unittest.TestCase):
         configured = next(line.partition("=")[2] for line in cache if line.startswith("SPARK_REFERENCE_DIR:"))
         self.assertEqual(self.seen_by_tests(UNSET), configured)
 
-    def test_no_test_has_a_frozen_value(self):
+    def test_no_test_stores_the_value_at_configuration(self):
         self.assertIn("environment.cmake", (BUILD / "CTestTestfile.cmake").read_text())
         for file in BUILD.rglob("CTestTestfile.cmake"):
             self.assertNotIn("SPARK_REFERENCE_DIR", file.read_text(), file)
 
-    def test_a_program_without_the_variable_is_skipped(self):
+    def test_without_the_variable_a_program_is_skipped(self):
         self.assertEqual(run([self.program()], UNSET).returncode, 77)
         self.assertEqual(run([self.program()], "").returncode, 77)
 
-    def test_a_folder_that_is_missing_or_empty_fails(self):
+    def test_a_missing_or_empty_folder_is_an_error(self):
         for folder in (self.path / "missing", self.path):
             result = run([self.program()], folder)
             self.assertEqual(result.returncode, 1, result.stdout)

@@ -1,6 +1,6 @@
-// Prints how many pictures a second the viewer draws of a replay of 22 humanoids: flat mode, 1280 x 720, WebGL in software.
+// Prints the viewer's frames per second for a replay of 22 humanoids: flat mode, 1280 x 720, WebGL in software.
 //
-//     node tests/web/frame_rate.mjs [SECONDS]      # of measuring, 10 by default; nothing else should run meanwhile
+//     node tests/web/frame_rate.mjs [SECONDS]      # of measuring, 10 by default, on an idle machine
 import { readFile } from "node:fs/promises";
 import { cpus } from "node:os";
 import { state, until } from "./support/app.mjs";
@@ -13,7 +13,7 @@ const seconds = Number(process.argv[2] ?? 10);
 const endings = [];
 const owner = { after: (ending) => endings.unshift(ending) };
 
-/** Pictures drawn while the page's own clock runs on. */
+/** Counts the frames drawn in a period of the page's own time. */
 function count(page) {
   return page.evaluate(
     (milliseconds) =>
@@ -30,7 +30,7 @@ function count(page) {
   );
 }
 
-/** What is drawn: how, and how many pixels. */
+/** Quality and size of the drawn picture. */
 function picture(page) {
   return page.evaluate(() => {
     const { canvas, quality } = window.spark.app.stage;
@@ -43,10 +43,10 @@ try {
   const page = await openPage(owner, `${await serveFiles(owner, viewer, { "match.log": match })}?file=match.log&quality=flat&view=broadcast&panel=none&at=5`);
   await until(page, "the match", (s) => s.source === "replay" && s.robots.length === 22 && s.playing);
   const { width } = await picture(page);
-  await page.setViewportSize({ width: 2 * 1280 - width, height: 720 });  // what stands beside the picture takes nothing of it
-  await page.evaluate(() => (window.spark.app.stage.adaptive = false));  // all of its pixels
+  await page.setViewportSize({ width: 2 * 1280 - width, height: 720 });  // makes room for the panels
+  await page.evaluate(() => (window.spark.app.stage.adaptive = false));  // full resolution
   const { frames } = await state(page);
-  await until(page, "that it runs smoothly", (s, least) => s.frames >= least, frames + 20);
+  await until(page, "that it runs smoothly", (s, minimum) => s.frames >= minimum, frames + 20);
   const measured = await count(page);
   console.log(JSON.stringify({ ...measured, ...(await picture(page)), robots: 22, cores: cpus().length }));
 } finally {

@@ -1,4 +1,4 @@
-// Looking into the host: a robot, its node in the tree, a property's value over time.
+// Inspecting the host: a robot, its node in the tree, a property's value over time.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { part, until } from "./support/app.mjs";
@@ -16,7 +16,7 @@ test("a click on a robot selects it, its node and its properties", async (t) => 
   const page = await openPage(t, `${host.url}?view=top&panel=inspect`);
   await until(page, "22 robots", (s) => s.robots.length === 22);
   const key = "left:3";
-  await until(page, "the robot, clicked on", (s, wanted) => {
+  await until(page, "the clicked robot", (s, wanted) => {
     const place = window.spark.where(wanted);
     if (s.selected === wanted) return true;
     const canvas = place && document.elementFromPoint(place.x, place.y);
@@ -32,7 +32,7 @@ test("a click on a robot selects it, its node and its properties", async (t) => 
   await shoot(page, "inspect-robot");
 });
 
-test("the tree leads to any node, numbers are plotted", async (t) => {
+test("any node can be reached in the tree, and numbers can be plotted", async (t) => {
   const host = await startHost(t, ...humanoidMatch);
   const page = await openPage(t, `${host.url}?panel=inspect&quality=flat`);
   await until(page, "22 robots", (s) => s.robots.length === 22);
@@ -41,7 +41,7 @@ test("the tree leads to any node, numbers are plotted", async (t) => {
   const time = property(page, "time");
   const shown = `Number.parseFloat(document.querySelector('[data-property="time"] [data-testid="property-value"]')?.textContent)`;
   await until(page, "the time", `() => ${shown} >= 0`);
-  await until(page, "that the time goes on", `(_, before) => ${shown} > before`, await page.evaluate(shown));
+  await until(page, "that time advances", `(_, before) => ${shown} > before`, await page.evaluate(shown));
   assert.equal(await time.locator('[data-testid="property-unit"]').innerText(), "s");
   await time.locator('[data-testid="property-plot"]').click();
   await part(page, "inspector-tab-plots").click();

@@ -1,25 +1,25 @@
-// The pictures that the README and the tutorial show, and that the page shows the tutorial's game.
+// Takes the pictures of the README and the tutorial, and checks that the page shows the tutorial's game.
 //
-//     SPARK_PICTURES=docs/pictures node tests/web/readme.test.mjs     takes them again
+//     SPARK_PICTURES=docs/pictures node tests/web/readme.test.mjs     updates them
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { test } from "node:test";
 import { drawn, part, until, untilText } from "./support/app.mjs";
 import { openPage } from "./support/browser.mjs";
 import { humanoidMatch, startHost, startHostIn, temporaryFolder } from "./support/host.mjs";
-import { colours, shootForPage } from "./support/pictures.mjs";
+import { colors, shootForPage } from "./support/pictures.mjs";
 import { sources } from "./support/places.mjs";
 
-/** What a picture of the README may weigh. */
-const mostBytes = 300000;
-/** Without shadows a picture is drawn in a tenth of the time. */
+/** Maximum size of a picture of the README. */
+const maxBytes = 300000;
+/** Rendering without shadows takes a tenth of the time. */
 const looks = `theme=dark&quality=${process.env.SPARK_PICTURES ? "quality" : "flat"}`;
 
 async function picture(page, name) {
   await drawn(page);
   const { pixels, bytes } = await shootForPage(page, name, process.env.SPARK_PICTURES);
-  assert.ok(colours(pixels) >= 16, "the picture is empty");
-  assert.ok(bytes <= mostBytes, `${name}.png has ${bytes} bytes`);
+  assert.ok(colors(pixels) >= 16, "the picture is empty");
+  assert.ok(bytes <= maxBytes, `${name}.png has ${bytes} bytes`);
 }
 
 test("22 humanoids play soccer", async (t) => {

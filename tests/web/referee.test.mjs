@@ -1,4 +1,4 @@
-// The referee's console: for who has the token, and nobody else.
+// The referee's console, which is only available with the token.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { part, until } from "./support/app.mjs";
@@ -7,10 +7,10 @@ import { startHost } from "./support/host.mjs";
 import { shoot } from "./support/pictures.mjs";
 
 const token = "whistle-of-the-tests";
-/** Nobody plays: what the referee decides stays until he decides again. */
+/** No team plays, so the state that the referee sets does not change by itself. */
 const ruled = ["--config", "soccer-sphere.lua", "--set", `webToken=${token}`, "--set", "Soccer.AutomaticKickOff=false"];
 
-/** The host's answer to a request on a connection of its own; runs in the page. */
+/** The host's answer to a request on a separate connection; runs in the page. */
 function ask(request) {
   return new Promise((heard) => {
     const socket = new WebSocket(new URL("stream", location.href.replace(/^http/, "ws")));
@@ -32,7 +32,7 @@ test("without the token there is no console, and the host refuses commands", asy
   await part(page, "token-field").fill("guess");
   await part(page, "token-submit").click();
   await page.locator('[data-testid="token-field"][aria-invalid="true"]').waitFor();
-  await until(page, "that it is no referee", (s) => !s.referee);
+  await until(page, "that there are no referee rights", (s) => !s.referee);
 
   for (const request of [
     { do: "command", text: "(score 5 5)" },
@@ -43,15 +43,15 @@ test("without the token there is no console, and the host refuses commands", asy
     assert.equal(answer.ok, false, request.do);
     assert.match(answer.error, /referee|token/i);
   }
-  const later = await until(page, "that time goes on", (s) => s.time > 1);
+  const later = await until(page, "that time advances", (s) => s.time > 1);
   assert.deepEqual(later.score, [0, 0]);
 });
 
-test("with the token's link the referee kicks off, sets the score and moves the ball", async (t) => {
+test("the referee's link allows kick-off, setting the score and moving the ball", async (t) => {
   const host = await startHost(t, ...ruled);
   const page = await openPage(t, `${host.url}?panel=referee#token=${token}`);
   await until(page, "the referee", (s) => s.referee);
-  assert.ok(!page.url().includes(token), "the token stays in the address");
+  assert.ok(!page.url().includes(token), "the token is still in the URL");
 
   await part(page, "kickoff-left").click();
   await until(page, "the kick-off", (s) => s.playMode === "KickOff_Left");
@@ -66,11 +66,11 @@ test("with the token's link the referee kicks off, sets the score and moves the 
   await part(page, "ball-y").fill("10");
   await part(page, "ball-z").fill("0");
   await part(page, "ball-move").click();
-  await until(page, "the ball there", (s) => Math.hypot(s.ball[0] - 20, s.ball[1] - 10) < 0.5);
+  await until(page, "the ball at its new position", (s) => Math.hypot(s.ball[0] - 20, s.ball[1] - 10) < 0.5);
   await shoot(page, "referee");
 });
 
-test("the token typed in opens the console", async (t) => {
+test("entering the token opens the console", async (t) => {
   const host = await startHost(t, ...ruled);
   const page = await openPage(t, `${host.url}?panel=referee`);
   await part(page, "token-field").fill(token);

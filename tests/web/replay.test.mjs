@@ -1,4 +1,4 @@
-// A recorded match: opened from a file or an address, paused, sought in, stepped through.
+// A recorded match: opening a file or a URL, pause, seek, step.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { dirname } from "node:path";
@@ -6,18 +6,18 @@ import { test } from "node:test";
 import { drawn, part, state, until } from "./support/app.mjs";
 import { openPage } from "./support/browser.mjs";
 import { goalSeed, recordMatch, sphereMatch, startHost } from "./support/host.mjs";
-import { colours, difference, shoot } from "./support/pictures.mjs";
+import { colors, difference, shoot } from "./support/pictures.mjs";
 
 const seconds = 40;
 
-/** A host that has the recorded match among its logs. */
+/** Starts a host that serves the recorded match as a log. */
 async function serveMatch(t) {
   const file = await recordMatch(t, seconds, ...sphereMatch, ...goalSeed);
   const host = await startHost(t, ...sphereMatch, "--set", `webLogs=${dirname(file)}`);
   return { file, url: host.url };
 }
 
-/** Drops a file onto the page, as from a file manager. */
+/** Drops a file onto the page like a file manager. */
 async function drop(page, file) {
   const dataTransfer = await page.evaluateHandle((text) => {
     const data = new DataTransfer();
@@ -27,7 +27,7 @@ async function drop(page, file) {
   for (const event of ["dragenter", "dragover", "drop"]) await page.dispatchEvent("body", event, { dataTransfer });
 }
 
-test("a log of an address is shown, sought in and played", async (t) => {
+test("a log from a URL is shown, and seek, step and playback work", async (t) => {
   const { url } = await serveMatch(t);
   const page = await openPage(t, `${url}?file=logs/match.log&paused&view=top`);
   const opened = await until(page, "the log with all robots", (s) => s.source === "replay" && s.robots.length === 22);
@@ -40,10 +40,10 @@ test("a log of an address is shown, sought in and played", async (t) => {
   assert.deepEqual((await state(page)).score, [0, 0]);
   await drawn(page);
   const first = await shoot(part(page, "stage"), "replay-start");
-  assert.ok(colours(first) >= 8, "the picture is empty");
+  assert.ok(colors(first) >= 8, "the picture is empty");
 
   await goals.first().click();
-  const there = await until(page, "the goal's instant", (s, time) => Math.abs(s.time - time) < 1, goal);
+  const there = await until(page, "the time of the goal", (s, time) => Math.abs(s.time - time) < 1, goal);
   assert.equal(there.playing, false);
   await part(page, "step-forward").click();
   await until(page, "the next record", (s, time) => s.time > time && s.score[0] + s.score[1] === 1, there.time);
@@ -53,21 +53,21 @@ test("a log of an address is shown, sought in and played", async (t) => {
 
   await part(page, "speed").selectOption("10");
   await part(page, "play-pause").click();
-  await until(page, "that it plays", (s, time) => s.playing && s.time > time + 5, goal);
+  await until(page, "playback", (s, time) => s.playing && s.time > time + 5, goal);
   await part(page, "play-pause").click();
-  const paused = await until(page, "that it stands", (s) => !s.playing);
+  const paused = await until(page, "the pause", (s) => !s.playing);
   await drawn(page);
   assert.equal((await state(page)).time, paused.time);
 });
 
-test("a log that is dropped onto a live match is played, by keys too, and so is one that is chosen", async (t) => {
+test("a log that is dropped onto a live match or chosen as a file is played, and keys control it", async (t) => {
   const { file, url } = await serveMatch(t);
   const page = await openPage(t, url);
   await until(page, "the live match", (s) => s.source === "live" && s.robots.length === 22);
   await drop(page, file);
   await until(page, "the log", (s) => s.source === "replay" && s.playing);
   await page.keyboard.press("Space");
-  await until(page, "that it stands", (s) => !s.playing);
+  await until(page, "the pause", (s) => !s.playing);
   await page.keyboard.press("End");
   await until(page, "its end", (s) => s.time > s.end - 1);
 

@@ -1,17 +1,17 @@
-// On a phone, and without a mouse.
+// The page on a phone, and without a mouse.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { drawn, part, until } from "./support/app.mjs";
 import { openPage } from "./support/browser.mjs";
 import { sphereMatch, startHost } from "./support/host.mjs";
-import { colours, shoot } from "./support/pictures.mjs";
+import { colors, shoot } from "./support/pictures.mjs";
 
-test("a phone shows the match, its score and every panel without scrolling sideways", async (t) => {
+test("a phone shows the match, its score and every panel without horizontal scrolling", async (t) => {
   const host = await startHost(t, ...sphereMatch);
   const page = await openPage(t, host.url, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 1 });
   await until(page, "22 robots", (s) => s.robots.length === 22);
   await drawn(page);
-  assert.ok(colours(await shoot(page, "phone")) >= 16, "the picture is empty");
+  assert.ok(colors(await shoot(page, "phone")) >= 16, "the picture is empty");
   for (const panel of ["players", "inspect", "referee", "host"]) {
     await part(page, `tab-${panel}`).tap();
     await part(page, `panel-${panel}`).waitFor();

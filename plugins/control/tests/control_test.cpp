@@ -23,7 +23,7 @@ namespace asio = boost::asio;
 namespace fs = std::filesystem;
 
 namespace {
-/// A folder of this test's own for the sockets.
+/// A separate folder for the sockets of a test.
 struct RuntimeFolder : test::TemporaryFolder {
   RuntimeFolder() { setenv("XDG_RUNTIME_DIR", path().c_str(), 1); }
 };
@@ -62,12 +62,12 @@ struct Fixture {
   }
 };
 
-/// Answers a request of its own.
+/// Handles additional requests.
 class Weatherman : public Leaf, public IRequestHandler {
   SPARK_CLASS(Weatherman, Leaf)
  public:
   static void describe(Description<Weatherman>& d) {
-    d.doc("Tells the weather.");
+    d.doc("Reports the weather.");
     d.implements<IRequestHandler>();
   }
   std::span<const std::string_view> requests() const override { return kRequests; }
@@ -91,7 +91,7 @@ TEST_CASE("Only the user can reach the control socket") {
   REQUIRE((s.st_mode & 0777) == 0700);
 }
 
-TEST_CASE("Sockets of houses that are gone are swept when one starts, others stay") {
+TEST_CASE("Sockets of ended processes are removed when a control server starts, and others stay") {
   RuntimeFolder folder;
   const fs::path sockets = folder.path() / "spark";
   fs::create_directory(sockets);
@@ -101,11 +101,11 @@ TEST_CASE("Sockets of houses that are gone are swept when one starts, others sta
     asio::local::stream_protocol::acceptor acceptor(io);
     acceptor.open();
     acceptor.bind(asio::local::stream_protocol::endpoint(file.string()));
-    return acceptor;  // closing it leaves the file
+    return acceptor;  // closing it keeps the file
   };
   const int gone = fork();
   if (gone == 0) _exit(0);
-  waitpid(gone, nullptr, 0);  // now no process has this number
+  waitpid(gone, nullptr, 0);  // no process has this id any more
   const fs::path dead = sockets / fmt::format("{}.sock", gone), second = sockets / fmt::format("{}-2.sock", gone),
                  starting = sockets / fmt::format("{}.sock", getppid()),
                  container = sockets / fmt::format("{}-3.sock", gone);
@@ -122,7 +122,7 @@ TEST_CASE("Sockets of houses that are gone are swept when one starts, others sta
   CHECK(fs::exists(container));
 }
 
-TEST_CASE("A socket folder that is open to others is not used, and the house stands without") {
+TEST_CASE("A socket folder that is open to other users is not used, and the simulation runs without a socket") {
   RuntimeFolder folder;
   fs::create_directory(folder.path() / "spark");
   chmod((folder.path() / "spark").c_str(), 0755);
@@ -133,7 +133,7 @@ TEST_CASE("A socket folder that is open to others is not used, and the house sta
   REQUIRE(house.text.find("open to other users") != std::string::npos);
 }
 
-TEST_CASE("Two houses of one process have a socket each, and take it away when they go") {
+TEST_CASE("Two simulations in one process have a socket each, and remove it when they end") {
   RuntimeFolder folder;
   test::House a, b;
   a.kernel.plugins().use("control");
@@ -156,14 +156,14 @@ TEST_CASE("A property is read with its value, unit and documentation") {
   REQUIRE(p["doc"] == "Simulated time of one cycle.");
 }
 
-TEST_CASE("A node without a property lists them all") {
+TEST_CASE("A request without a property lists all properties of the node") {
   Fixture f;
   f.connect();
   const Json a = f.ask({{"do", "get"}, {"path", "/sys/server/simulation"}});
   REQUIRE(a["properties"].size() >= 8);
 }
 
-TEST_CASE("set changes a property, also from typed text; wrong values are refused with the reason") {
+TEST_CASE("set changes a property, also from text, and wrong values are refused with the reason") {
   Fixture f;
   f.connect();
   REQUIRE(f.ask({{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", "0.01"}})["ok"] ==
@@ -176,7 +176,7 @@ TEST_CASE("set changes a property, also from typed text; wrong values are refuse
   REQUIRE(unknown["error"].get<std::string>().find("'step'") != std::string::npos);
 }
 
-TEST_CASE("call runs a method between cycles; the run loop cannot be nested or removed") {
+TEST_CASE("call runs a method between cycles, and the run loop can be neither nested nor removed") {
   Fixture f;
   f.connect();
   REQUIRE(f.ask({{"do", "call"}, {"path", "/sys/server/simulation"}, {"method", "getStep"}})["value"] == 0.02);
@@ -191,7 +191,7 @@ TEST_CASE("call runs a method between cycles; the run loop cannot be nested or r
   }
 }
 
-TEST_CASE("The tree comes with classes and documentation, as deep as asked") {
+TEST_CASE("The tree has classes and documentation down to the requested depth") {
   Fixture f;
   f.connect();
   const Json whole = f.ask({{"do", "tree"}, {"path", "/sys"}});
@@ -203,7 +203,7 @@ TEST_CASE("The tree comes with classes and documentation, as deep as asked") {
   REQUIRE(flat["tree"]["children"][0]["more"] == 2);
 }
 
-TEST_CASE("Who only looks gets no tree that takes long to tell, but every node of it when asked for it") {
+TEST_CASE("A client without rights gets a large tree in parts, but every node on request") {
   Fixture f;
   for (int i = 0; i < 60; ++i)
     for (int k = 0; k < 100; ++k) f.house.kernel.create("Node", fmt::format("/usr/wide{}/leaf{}", i, k));
@@ -220,7 +220,7 @@ TEST_CASE("Who only looks gets no tree that takes long to tell, but every node o
   REQUIRE(tree("/usr/wide59", false).size() == 100);
 }
 
-TEST_CASE("A watch tells every change and nothing else, and ends with its node") {
+TEST_CASE("A watch reports every change and nothing else, and ends with its node") {
   Fixture f;
   f.house.kernel.create("Node", "/usr/box");
   f.connect();
@@ -235,7 +235,7 @@ TEST_CASE("A watch tells every change and nothing else, and ends with its node")
   REQUIRE(f.receive()["ok"] == false);
 }
 
-TEST_CASE("Other servers' clients are answered too; who may not change the match can look and watch, not set or call") {
+TEST_CASE("Clients of other servers may get and watch, and need rights to set or call") {
   Fixture f;
   auto& requests = *f.control->as<IRequests>();
   control::Watch watch;
@@ -259,7 +259,7 @@ TEST_CASE("Other servers' clients are answered too; who may not change the match
   REQUIRE(ask({{"do", "tree"}, {"path", "/sys"}}, false)["ok"] == true);
 }
 
-TEST_CASE("Children of the control server answer requests of their own, whoever asks") {
+TEST_CASE("Children of the control server can handle additional requests for all clients") {
   Fixture f;
   f.connect();
   REQUIRE(f.ask({{"do", "weather"}})["error"] ==
@@ -275,7 +275,7 @@ TEST_CASE("Children of the control server answer requests of their own, whoever 
           "expected tree, get, set, call, watch, plugins, load, unload, weather, or forecast, found 'wether'");
 }
 
-TEST_CASE("Plugins are listed with what they provide") {
+TEST_CASE("Plugins are listed with their classes") {
   Fixture f;
   f.connect();
   const Json a = f.ask({{"do", "plugins"}});
@@ -285,7 +285,7 @@ TEST_CASE("Plugins are listed with what they provide") {
   REQUIRE(found);
 }
 
-TEST_CASE("Bad requests get an error and harm nobody") {
+TEST_CASE("Invalid requests get an error and cause no harm") {
   Fixture f;
   f.connect();
   for (const char* line : {"garbage", "[]", "{}", R"({"do":"dance"})", R"({"do":"get"})",
@@ -297,12 +297,12 @@ TEST_CASE("Bad requests get an error and harm nobody") {
   }
   const std::string deep = std::string(30000, '[') + std::string(30000, ']');
   f.send(R"({"do":"set","path":"/sys/server/simulation","property":"duration","value":)" + deep + "}");
-  for (int i = 0; i < 20; ++i) f.cycle();  // a part of it in each
+  for (int i = 0; i < 20; ++i) f.cycle();  // every cycle reads a part of it
   REQUIRE(f.receive()["error"].get<std::string>().find("nested at most") != std::string::npos);
   REQUIRE(f.ask({{"do", "plugins"}})["ok"] == true);
 }
 
-TEST_CASE("A client that never ends its line is turned away") {
+TEST_CASE("A client that never ends its line is disconnected") {
   Fixture f;
   f.connect();
   f.cycle();

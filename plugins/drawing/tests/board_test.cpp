@@ -24,7 +24,7 @@ Drawing label(int number, const std::string& text) {
   return d;
 }
 
-/// Name and x of each shape that is shown; of agents' texts the number.
+/// Set and x of each visible shape; for texts of agents the number of the agent.
 using Shown = std::multiset<std::pair<std::string, float>>;
 Shown shown(const DrawBoard& board) {
   Shown all;
@@ -34,7 +34,7 @@ Shown shown(const DrawBoard& board) {
   return all;
 }
 
-/// Takes what record() wrote, as a reader of a log does: packets of at most 512 bytes.
+/// Applies the output of record() like a reader of logs: packets of at most 512 bytes.
 void replay(const std::string& record, DrawBoard& board) {
   std::size_t at = 0;
   while (at < record.size()) {
@@ -61,7 +61,7 @@ void replay(const std::string& record, DrawBoard& board) {
 }
 }  // namespace
 
-TEST_CASE("shapes are shown by a swap of their set, or of sets whose names begin so, and replace what was shown") {
+TEST_CASE("a swap shows the shapes of a set, or of all sets below a prefix, and replaces those before") {
   DrawBoard board;
   board.add("red.1", point(1));
   board.add("red.2", point(2));
@@ -75,7 +75,7 @@ TEST_CASE("shapes are shown by a swap of their set, or of sets whose names begin
   CHECK(shown(board) == Shown{{"blue", 3}, {"red.1", 4}});
   const auto version = board.version();
   board.swap("nobody");
-  board.swap("red.2");  // shows nothing already
+  board.swap("red.2");  // it shows nothing already
   CHECK(board.version() == version);
   for (std::size_t i = 1; i < board.sets().size(); ++i) CHECK(board.sets()[i - 1].name < board.sets()[i].name);
   board.clear();
@@ -83,7 +83,7 @@ TEST_CASE("shapes are shown by a swap of their set, or of sets whose names begin
   CHECK(board.version() > version);
 }
 
-TEST_CASE("a set's version tells who changed") {
+TEST_CASE("the version of a set changes only with the set") {
   DrawBoard board;
   board.show("a", {point(1)});
   board.show("b", {point(2)});
@@ -94,7 +94,7 @@ TEST_CASE("a set's version tells who changed") {
   CHECK(board.version() > before);
 }
 
-TEST_CASE("agents' texts are shown at once, one each, and no swap touches them") {
+TEST_CASE("agents' texts are shown at once, one per agent, and are not affected by swaps") {
   DrawBoard board;
   board.setAgentText(label(3, "hello"));
   board.setAgentText(label(4, "you"));
@@ -109,7 +109,7 @@ TEST_CASE("agents' texts are shown at once, one each, and no swap touches them")
   CHECK(shown(board) == Shown{{DrawBoard::kAgents, 4}});
 }
 
-TEST_CASE("agents' texts come and go in any order") {
+TEST_CASE("agents' texts can be added and removed in any order") {
   DrawBoard board;
   std::set<int> there;
   for (int i = 0; i < 3000; ++i) {
@@ -131,7 +131,7 @@ TEST_CASE("agents' texts come and go in any order") {
   CHECK(board.sets()[0].shapes.size() == 1);
 }
 
-TEST_CASE("there is room for so much and no more, and room comes back") {
+TEST_CASE("the number of shapes and points is limited, and space is released again") {
   DrawBoard board;
   for (std::size_t i = 0; i < DrawBoard::kMaxShapes; ++i) REQUIRE(board.add("a", point(1)));
   CHECK_FALSE(board.add("a", point(1)));
@@ -149,7 +149,7 @@ TEST_CASE("there is room for so much and no more, and room comes back") {
   CHECK(board.show("d", std::vector<Drawing>(DrawBoard::kMaxShapes + 5, point(1))) == 5);
 }
 
-TEST_CASE("sets that show nothing give their place to others") {
+TEST_CASE("sets that show nothing make room for others") {
   DrawBoard board;
   for (std::size_t i = 0; i < DrawBoard::kMaxSets; ++i) REQUIRE(board.show(std::to_string(i), {point(1)}) == 0);
   CHECK_FALSE(board.add("one more", point(1)));
@@ -158,7 +158,7 @@ TEST_CASE("sets that show nothing give their place to others") {
   CHECK(board.sets().size() == DrawBoard::kMaxSets);
 }
 
-TEST_CASE("a reader of records knows what is shown, from any full one on") {
+TEST_CASE("a reader of records has the visible shapes after any full record") {
   DrawBoard board, always, late;
   late.show("old", {point(9)});
   late.add("older", point(9));
@@ -183,7 +183,7 @@ TEST_CASE("a reader of records knows what is shown, from any full one on") {
   }
 }
 
-TEST_CASE("nothing is recorded as long as nothing was drawn, and a record has its limit") {
+TEST_CASE("nothing is recorded before the first drawing, and the size of a record is limited") {
   DrawBoard board;
   std::string record;
   board.record(0, record);

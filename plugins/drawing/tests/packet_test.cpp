@@ -18,7 +18,7 @@ std::vector<Command> readAll(const std::string& text, bool* failed = nullptr) {
   return all;
 }
 
-/// The only command of a packet.
+/// The single command of a packet.
 Command readOne(const std::string& text) {
   bool failed = true;
   const auto all = readAll(text, &failed);
@@ -45,7 +45,7 @@ std::string complaintOf(const std::string& text) {
 }
 }  // namespace
 
-TEST_CASE("each command of the drawing port is read as the installed base's viewer reads it") {
+TEST_CASE("each command of the drawing port is read like the original viewer reads it") {
   using Kind = Drawing::Kind;
   const std::string rgb = bytes({255, 0, 51});
   Drawing d = readOne(bytes({1, 0}) + "-5.0002.50000.75002.0000" + rgb + zero("a.b")).drawing;
@@ -93,7 +93,7 @@ TEST_CASE("each command of the drawing port is read as the installed base's view
   CHECK(swapped.set == "a");
 }
 
-TEST_CASE("what is written is read again as it was") {
+TEST_CASE("commands are the same after writing and reading") {
   const std::string commands = sphere("a.b") + swap("a") + bytes({1, 0}) + "-5.0002.50000.75002.0000" +
                                bytes({1, 2, 3}) + zero("a.b") + bytes({1, 4, 2, 9, 8, 7, 6}) + "0.0000-1.500099999" +
                                "1.00000.00000.0001" + zero("c") + bytes({2, 0}) + "0.00001.00002.0000" +
@@ -121,7 +121,7 @@ TEST_CASE("what is written is read again as it was") {
   }
 }
 
-TEST_CASE("bad bytes end their packet, what came before them counts") {
+TEST_CASE("invalid bytes end their packet, and the commands before them take effect") {
   const std::string good = sphere("a");
   for (const std::string& bad : {bytes({1}), bytes({9, 9}), bytes({1, 5}), bytes({2, 3}), bytes({3, 1, 0}),
                                  bytes({1, 3}) + "nan   0.00000.00000.0000" + bytes({0, 0, 0}) + zero("n"),
@@ -140,13 +140,14 @@ TEST_CASE("bad bytes end their packet, what came before them counts") {
   }
 }
 
-TEST_CASE("names and texts come out short, in valid UTF-8, without control characters") {
+TEST_CASE("names and texts are truncated, valid UTF-8, and without control characters") {
   CHECK(drawing::cleanText("a\nb\x7f", 10) == "a b ");
   CHECK(drawing::cleanText("\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80", 100) == "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80");
-  CHECK(drawing::cleanText("\xff\xc3", 100) == "??");                   // no character, half of one
-  CHECK(drawing::cleanText("\xc0\x80|\xed\xa0\x80", 100) == "??|???");  // longer than needed, half of a pair
-  CHECK(drawing::cleanText("\xf5\x80\x80\x80", 100) == "????");         // beyond the last character
-  CHECK(drawing::cleanText("aaa\xe2\x82\xac", 5) == "aaa");             // cut between characters
+  CHECK(drawing::cleanText("\xff\xc3", 100) == "??");  // an invalid byte, an incomplete character
+  CHECK(drawing::cleanText("\xc0\x80|\xed\xa0\x80", 100) ==
+        "??|???");                                               // an overlong encoding, half of a surrogate pair
+  CHECK(drawing::cleanText("\xf5\x80\x80\x80", 100) == "????");  // above the last code point
+  CHECK(drawing::cleanText("aaa\xe2\x82\xac", 5) == "aaa");      // truncated between characters
   CHECK(readOne(bytes({0, 0}) + zero(std::string(500, 'x'))).set.size() == PacketReader::kMaxNameBytes);
 }
 
@@ -174,7 +175,7 @@ TEST_CASE("agents write shapes as lists") {
   CHECK(d.number == 7);
 }
 
-TEST_CASE("a shape that is none is refused with what was expected") {
+TEST_CASE("an invalid shape is refused with the expected format") {
   const std::pair<const char*, const char*> cases[] = {{"(cube (at 1 2 3))", "expected a circle"},
                                                        {"(circle (at 1 2))", "(radius number)"},
                                                        {"(circle (radius 1))", "(at x y)"},

@@ -6,7 +6,7 @@
 
 namespace spark::test {
 
-/// Bytes of a packet: `numbers` of six characters are written as they are.
+/// The bytes of a packet. Numbers of six characters are appended as text.
 inline std::string bytes(std::initializer_list<int> values) {
   std::string out;
   for (int v : values) out += static_cast<char>(v);
@@ -18,7 +18,7 @@ inline std::span<const std::byte> packet(const std::string& text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-/// A sphere of radius 0.5 at (1, 2, 3), red, in a set.
+/// A red sphere of radius 0.5 at (1, 2, 3) in a set.
 inline std::string sphere(const std::string& set) {
   return bytes({1, 3}) + "1.00002.00003.00000.5000" + bytes({255, 0, 0}) + zero(set);
 }

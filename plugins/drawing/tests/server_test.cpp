@@ -14,7 +14,7 @@ using namespace spark::test;
 using Udp = boost::asio::ip::udp;
 
 namespace {
-/// A house with a drawing server.
+/// A simulation with a drawing server.
 struct Studio : House {
   Studio() {
     for (const char* plugin : {"scene", "gamecontrol", "drawing"}) kernel.plugins().use(plugin);
@@ -28,7 +28,7 @@ struct Studio : House {
       if (s.name == set) return s.shapes.size();
     return 0;
   }
-  /// Opens the port; what is sent into the socket is there when the next poll looks: loopback keeps nothing under way.
+  /// Opens the port. The next poll receives what was sent, because loopback delivers at once.
   void open() {
     setProperty(*node, "port", 0);
     poll();
@@ -60,14 +60,14 @@ struct Artist : Studio {
 };
 }  // namespace
 
-TEST_CASE("nothing comes in unless a port is named") {
+TEST_CASE("no packets are received unless a port is set") {
   Studio studio;
   studio.poll();
   CHECK(studio.get("port") == -1);
   CHECK(studio.server->version() == 0);
 }
 
-TEST_CASE("packets that come in are shown") {
+TEST_CASE("received packets are shown") {
   Studio studio;
   studio.open();
   studio.send(sphere("red.1") + sphere("red.1"));
@@ -89,7 +89,7 @@ TEST_CASE("packets that come in are shown") {
   CHECK(studio.shapesIn("red.1") == 0);
 }
 
-TEST_CASE("a poll takes so many packets and no more") {
+TEST_CASE("a poll reads a bounded number of packets") {
   Studio studio;
   studio.open();
   for (int i = 0; i < 200; ++i) studio.send(swap("x"));
@@ -101,7 +101,7 @@ TEST_CASE("a poll takes so many packets and no more") {
   CHECK(studio.get("packets") > once);
 }
 
-TEST_CASE("packets go on to another viewer, whoever drew") {
+TEST_CASE("packets from the port and from agents are forwarded to another viewer") {
   Artist studio;
   Udp::socket viewer(studio.io, Udp::endpoint(boost::asio::ip::make_address("127.0.0.1"), 0));
   setProperty(*studio.node, "forward", "127.0.0.1:" + std::to_string(viewer.local_endpoint().port()));
@@ -120,7 +120,7 @@ TEST_CASE("packets go on to another viewer, whoever drew") {
   CHECK(viewer.available() == 0);
 }
 
-TEST_CASE("packets that are forwarded to the server itself do not go round") {
+TEST_CASE("packets that are forwarded to the server itself do not loop") {
   Artist studio;
   studio.open();
   setProperty(*studio.node, "forward", "127.0.0.1:" + std::to_string(studio.get("port")));
@@ -130,7 +130,7 @@ TEST_CASE("packets that are forwarded to the server itself do not go round") {
   CHECK(studio.get("packets") == 1);
 }
 
-TEST_CASE("a port or a viewer that cannot be had is told, and the house goes on") {
+TEST_CASE("a port or a viewer that is unavailable is reported, and the simulation continues") {
   Studio first, second;
   first.open();
   setProperty(*second.node, "port", first.get("port"));
@@ -146,7 +146,7 @@ TEST_CASE("a port or a viewer that cannot be had is told, and the house goes on"
   CHECK(second.get("port") > 0);
 }
 
-TEST_CASE("an agent's effector shows its shapes at once, in place of those before") {
+TEST_CASE("an agent's effector shows its shapes at once and replaces the previous ones") {
   Artist artist;
   CHECK(artist.effector->predicate() == "draw");
   CHECK(artist.draw("(draw (set plan) (line (from 0 0 0) (to 1 2 0)) (text (at 1 2 0) (say \"there\")))").empty());
@@ -166,9 +166,9 @@ TEST_CASE("an agent's effector shows its shapes at once, in place of those befor
   CHECK(artist.server->version() == version);
 }
 
-TEST_CASE("a config's drawing() opens a port only when it is named, and a house of a batch just knows the effector") {
-  const auto furnish = [](House& house, const char* host,
-                          std::initializer_list<std::pair<const char*, Value>> settings) {
+TEST_CASE("drawing() in a config opens a port only if one is set, and in a batch it only provides the effector") {
+  const auto configure = [](House& house, const char* host,
+                            std::initializer_list<std::pair<const char*, Value>> settings) {
     ScriptServer& lua = scripts(house.kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
     for (const auto& [name, value] : settings) lua.addOverride(name, value);
@@ -176,20 +176,20 @@ TEST_CASE("a config's drawing() opens a port only when it is named, and a house 
     return house.kernel.root().find("/sys/server/drawing");
   };
   House quiet, open, alone;
-  Leaf* server = furnish(quiet, "", {});
+  Leaf* server = configure(quiet, "", {});
   REQUIRE(server);
   server->as<IInputSource>()->poll();
   CHECK(getProperty(*server, "port") == Value(-1));
-  server = furnish(open, "", {{"drawings", 0}, {"forwardDrawings", "127.0.0.1:9"}});
+  server = configure(open, "", {{"drawings", 0}, {"forwardDrawings", "127.0.0.1:9"}});
   REQUIRE(server);
   server->as<IInputSource>()->poll();
   CHECK(getProperty(*server, "port").toInteger() > 0);
   CHECK(getProperty(*server, "forward").toString() == "127.0.0.1:9");
-  CHECK(furnish(alone, ", alone = true", {}) == nullptr);
+  CHECK(configure(alone, ", alone = true", {}) == nullptr);
   CHECK(alone.kernel.findClass("DrawEffector") != nullptr);
 }
 
-TEST_CASE("an agent may draw where nobody keeps drawings") {
+TEST_CASE("an agent may draw without a drawing server") {
   Artist artist;
   artist.kernel.root().require<Node>("/sys/server").remove(*artist.node);
   CHECK(artist.draw("(draw (point (at 1 2 0)))").empty());

@@ -55,7 +55,7 @@ struct Archive {
 
 }  // namespace
 
-TEST_CASE("members of an archive are resources, below a prefix if there is one") {
+TEST_CASE("members of an archive are resources, with an optional prefix") {
   Archive a;
   a.write({{"agent/", ""}, {"agent/x.rsg", "text"}, {"empty", ""}, {"../evil", "e"}});
   CHECK(a.server->read("agent/x.rsg") == "text");
@@ -68,7 +68,7 @@ TEST_CASE("members of an archive are resources, below a prefix if there is one")
   CHECK_FALSE(a.server->exists("agent/x.rsg"));
 }
 
-TEST_CASE("an archive that changed is read again, one that is not there has nothing") {
+TEST_CASE("a changed archive is read again, and a missing one has no members") {
   Archive a;
   CHECK_FALSE(a.server->exists("x"));
   a.write({{"x", "one"}});
@@ -79,7 +79,7 @@ TEST_CASE("an archive that changed is read again, one that is not there has noth
   CHECK(a.server->stamp("x") != before);
 }
 
-TEST_CASE("what is no archive, too large or encrypted is refused with the reason") {
+TEST_CASE("a file that is not an archive, too large or encrypted is refused with the reason") {
   Archive a;
   std::ofstream(a.file) << "no archive at all";
   CHECK(a.errorOf("x").find("cannot open archive") != std::string::npos);
@@ -92,7 +92,7 @@ TEST_CASE("what is no archive, too large or encrypted is refused with the reason
   CHECK(a.errorOf("x").find("encrypted") != std::string::npos);
 }
 
-TEST_CASE("a damaged member is refused, not half read") {
+TEST_CASE("a damaged member is refused completely") {
   Archive a;
   std::string noise(600, '\0');
   for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<char>(i * i * 31 + i / 7);

@@ -38,7 +38,7 @@ struct Files {
 
 }  // namespace
 
-TEST_CASE("a resource is read by its name, also in a form that is not normal") {
+TEST_CASE("a resource is read by its name, also in a form that is not normalized") {
   Files f;
   f.folder.write("rsg/a/b.rsg", "text");
   CHECK(f.server->read("rsg/a/b.rsg") == "text");
@@ -61,12 +61,12 @@ TEST_CASE("file systems are searched in order, and a prefix mounts a folder belo
   CHECK(f.server->stamp("rsg/a.rsg") != before);
 }
 
-TEST_CASE("the error for a missing resource names the places that were searched") {
+TEST_CASE("the error for a missing resource lists the folders searched") {
   Files f;
   CHECK(f.errorOf("rsg/none.rsg").find(f.folder.path().string()) != std::string::npos);
 }
 
-TEST_CASE("names that are absolute, climb out or are no names are refused") {
+TEST_CASE("names that are absolute, lead upwards or are invalid are refused") {
   Files f;
   f.folder.write("a", "a");
   for (const char* name :
@@ -89,7 +89,7 @@ TEST_CASE("a folder and a device are not files, and a folder does not hide a lat
   CHECK(f.server->read("rsg/agent") == "file");
 }
 
-TEST_CASE("a link inside the folder is followed, one that leaves it is refused") {
+TEST_CASE("a link inside the folder is followed, and one that leads out is refused") {
   Files f;
   test::TemporaryFolder outside;
   outside.write("secret", "s");
@@ -102,7 +102,7 @@ TEST_CASE("a link inside the folder is followed, one that leaves it is refused")
   CHECK(f.errorOf("outdir/secret").find("a link leads out") != std::string::npos);
 }
 
-TEST_CASE("a stamp changes with the file, and follows a link that leads elsewhere") {
+TEST_CASE("a stamp changes with the file and with the target of a link") {
   Files f;
   test::TemporaryFolder outside;
   outside.write("secret", "s");
@@ -116,21 +116,21 @@ TEST_CASE("a stamp changes with the file, and follows a link that leads elsewher
   f.folder.write("one.rsg", "1, but longer");
   CHECK(f.server->stamp("link") != one);
   const auto longer = f.server->stamp("link");
-  const auto lead = [&](const fs::path& to) {
+  const auto linkTo = [&](const fs::path& to) {
     fs::remove(link);
     fs::create_symlink(to, link);
   };
-  lead(f.folder.path() / "two.rsg");
+  linkTo(f.folder.path() / "two.rsg");
   CHECK(f.server->stamp("link") != longer);
-  lead(outside.path() / "secret");
+  linkTo(outside.path() / "secret");
   CHECK_THROWS_AS(f.server->stamp("link"), Error);
-  lead(f.folder.path() / "one.rsg");
+  linkTo(f.folder.path() / "one.rsg");
   CHECK(f.server->stamp("link") == longer);
   fs::remove(link);
   CHECK(f.server->stamp("link") == 0);
 }
 
-TEST_CASE("a file beyond the limit is refused") {
+TEST_CASE("a file above the size limit is refused") {
   Files f;
   f.folder.write("big", std::string(101, 'x'));
   Leaf& system = *f.house.kernel.root().find("/sys/server/file/one");

@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// The house of lua/soccer.lua with a humanoid in it, without a network.
+/// The simulation of lua/soccer.lua with a humanoid, without a network.
 struct League : House {
   explicit League(bool noise = false) : inspection(kernel) {
     ScriptServer& lua = scripts(kernel);
@@ -39,7 +39,7 @@ struct League : House {
     run(2);
   }
   Json ask(const Json& request) { return Json::parse(inspection.answer(request)); }
-  /// What the robot senses, in a cycle in which it sees (its eyes look in every third), or in one in which it does not.
+  /// The robot's percepts in the next cycle with vision (every third one), or in the next one without.
   Json percepts(bool seeing) {
     const auto sees = [&] {
       const auto& agent = kernel.root().require<AgentAspect>("/usr/scene/AgentAspect1");
@@ -57,22 +57,22 @@ struct League : House {
 
 Vec3 vec(const Json& j) { return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()}; }
 
-/// Greatest distance of what is seen from what is true [m]; fails when something is not known.
+/// The maximum distance between seen and true positions [m]; fails if a true position is missing.
 double error(const Json& percepts) {
-  double most = 0;
+  double maximum = 0;
   for (const Json& s : percepts["seen"]) {
     INFO(s.dump());
     REQUIRE(s.contains("true"));
-    most = std::max(most, (vec(s["seen"]) - vec(s["true"])).norm());
+    maximum = std::max(maximum, (vec(s["seen"]) - vec(s["true"])).norm());
   }
-  return most;
+  return maximum;
 }
 
 bool ends(const Json& path, std::string_view how) { return path.get_ref<const std::string&>().ends_with(how); }
 
 }  // namespace
 
-TEST_CASE("contacts say what touches what, where, and how hard where that is measured") {
+TEST_CASE("contacts have colliders and position, and the force if it is measured") {
   League league;
   setProperty(league.kernel.root().require<Leaf>("/sys/server/physics"), "measureForces", true);
   league.run(100);
@@ -82,7 +82,7 @@ TEST_CASE("contacts say what touches what, where, and how hard where that is mea
   int feet = 0;
   for (const Json& c : answer["contacts"]) {
     CHECK(std::abs(vec(c["normal"]).norm() - 1) < 1e-3);
-    if (c["solved"] == false) continue;  // something that only feels
+    if (c["solved"] == false) continue;  // a contact that is only detected
     const bool ball = ends(c["a"], "Ball/geometry") || ends(c["b"], "Ball/geometry");
     if (ball) {
       CHECK(vec(c["position"]).norm() < 0.1);
@@ -96,7 +96,7 @@ TEST_CASE("contacts say what touches what, where, and how hard where that is mea
   CHECK(onBall.z() == Approx(0.026 * 9.81).epsilon(0.1));
 }
 
-TEST_CASE("joints say how they stand and turn") {
+TEST_CASE("joints have angles and rates") {
   League league;
   const auto neck = [&] {
     const Json answer = league.ask({{"do", "joints"}, {"path", "/usr/scene/AgentAspect1"}});
@@ -120,7 +120,7 @@ TEST_CASE("joints say how they stand and turn") {
   CHECK(after["path"] == before["path"]);
 }
 
-TEST_CASE("what an agent sees is shown beside what is true, as both were when it saw") {
+TEST_CASE("an agent's vision is reported with the true positions of the same cycle") {
   League league;
   const Json seeing = league.percepts(true);
   REQUIRE(seeing["ok"] == true);
@@ -140,10 +140,10 @@ TEST_CASE("what an agent sees is shown beside what is true, as both were when it
   CHECK_FALSE(seeing["cones"][0].contains("range"));
   CHECK(seeing["head"] == seeing["cones"][0]["matrix"]);
   REQUIRE(seeing["head"].size() == 16);
-  CHECK(seeing["head"][0].get<double>() > 0.9);  // it looks along x
+  CHECK(seeing["head"][0].get<double>() > 0.9);  // it faces +x
   CHECK(seeing["head"][12].get<double>() == Approx(-2).margin(0.3));
 
-  // The robot falls and the ball goes elsewhere: what was seen stays what it was.
+  // The robot falls and the ball moves, and the seen positions remain unchanged.
   league.act("(lle3 3)(rle3 3)(he1 2)");
   league.run(20);
   Json moving = league.percepts(true);
@@ -155,12 +155,12 @@ TEST_CASE("what an agent sees is shown beside what is true, as both were when it
   for (const Json& p : blind["percepts"]) sees += p[0] == "See";
   CHECK(sees == 1);
 
-  // It is kept up to date for who goes on asking.
+  // The percepts are kept up to date while requests continue.
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (blind["seenTime"] == league.percepts(true)["seenTime"]) REQUIRE(std::chrono::steady_clock::now() < end);
 }
 
-TEST_CASE("any node of an agent stands for it; percepts are nested lists") {
+TEST_CASE("any node of an agent selects the agent, and percepts are nested lists") {
   League league;
   std::vector<Perceptor*> all;
   league.kernel.root().require<Node>("/usr/scene/AgentAspect1").collect(all);
@@ -172,18 +172,18 @@ TEST_CASE("any node of an agent stands for it; percepts are nested lists") {
   CHECK(answer["percepts"][0][1][1].is_number());
 }
 
-TEST_CASE("spheres see all around; who has not sensed has nothing to show") {
-  MatchHouse house;
-  house.importField();
-  house.join("A", 1), house.join("B", 2);
-  Inspection inspection(house.kernel);
+TEST_CASE("spheres have vision in all directions, and an agent without percepts has empty lists") {
+  SoccerMatch match;
+  match.importField();
+  match.join("A", 1), match.join("B", 2);
+  Inspection inspection(match.kernel);
   for (const char* agent : {"1", "2"}) {
     const std::string path = std::string("/usr/scene/AgentAspect") + agent;
     const Value off(false);
-    callMethod(house.at(path + "/body/VisionPerceptor"), "addNoise", std::span(&off, 1));
+    callMethod(match.at(path + "/body/VisionPerceptor"), "addNoise", std::span(&off, 1));
     Json answer;
     for (int i = 0; i < 4 && (answer.is_null() || answer["seen"].empty()); ++i) {
-      house.run(1);
+      match.run(1);
       answer = Json::parse(inspection.answer({{"do", "percepts"}, {"path", path}}));
     }
     CHECK(answer["seen"].size() == 10);
@@ -192,14 +192,14 @@ TEST_CASE("spheres see all around; who has not sensed has nothing to show") {
     CHECK(answer["cones"][0]["vertical"] == 180);
     CHECK(answer["head"][0].get<double>() == Approx(agent[0] == '1' ? 1 : -1));
   }
-  house.kernel.create("AgentAspect", "/usr/scene/nobody");
+  match.kernel.create("AgentAspect", "/usr/scene/nobody");
   const Json nothing = Json::parse(inspection.answer({{"do", "percepts"}, {"path", "/usr/scene/nobody"}}));
   CHECK(nothing["ok"] == true);
   for (const char* list : {"percepts", "seen", "lines", "cones"}) CHECK(nothing[list].empty());
   CHECK_FALSE(nothing.contains("head"));
 }
 
-TEST_CASE("a match goes the same way whether anybody inspects it or not") {
+TEST_CASE("a match is the same with and without inspection") {
   const auto play = [](bool inspect) {
     League league(true);
     league.act("(he1 1)(lle3 2)(rle4 -1)");
@@ -216,28 +216,28 @@ TEST_CASE("a match goes the same way whether anybody inspects it or not") {
   CHECK(play(true) == play(false));
 }
 
-TEST_CASE("inspection outlives what it looks at") {
-  MatchHouse house;
-  house.importField();
-  house.join("A", 1);
-  Inspection inspection(house.kernel);
+TEST_CASE("inspection supports the removal of inspected nodes") {
+  SoccerMatch match;
+  match.importField();
+  match.join("A", 1);
+  Inspection inspection(match.kernel);
   inspection.answer({{"do", "percepts"}, {"path", "/usr/scene/AgentAspect1"}});
-  auto& scene = house.kernel.root().require<Node>("/usr/scene");
-  scene.remove(house.at("/usr/scene/AgentAspect1"));
+  auto& scene = match.kernel.root().require<Node>("/usr/scene");
+  scene.remove(match.at("/usr/scene/AgentAspect1"));
   inspection.observe();
   CHECK(Json::parse(inspection.answer({{"do", "contacts"}}))["contacts"].empty());
   CHECK(Json::parse(inspection.answer({{"do", "percepts"}, {"path", "/usr/scene/AgentAspect1"}}))["ok"] == false);
-  house.run(3);
+  match.run(3);
   inspection.observe();
 }
 
-TEST_CASE("a child of the control server answers the same") {
-  MatchHouse house;
-  house.importField();
-  house.join("A", 1);
-  house.kernel.plugins().use("inspect");
-  auto handler = house.kernel.create("Inspector", "/usr/inspect").as<IRequestHandler>();
-  Inspection inspection(house.kernel);
+TEST_CASE("a child of the control server gives the same answers") {
+  SoccerMatch match;
+  match.importField();
+  match.join("A", 1);
+  match.kernel.plugins().use("inspect");
+  auto handler = match.kernel.create("Inspector", "/usr/inspect").as<IRequestHandler>();
+  Inspection inspection(match.kernel);
   handler->poll();
   for (const std::string_view what : handler->requests()) {
     const Json request{{"do", what}, {"path", "/usr/scene/AgentAspect1"}};
@@ -247,9 +247,9 @@ TEST_CASE("a child of the control server answers the same") {
   CHECK(Json::parse(handler->answer("junk"))["ok"] == false);
 }
 
-TEST_CASE("requests that are none get an answer that says why") {
-  MatchHouse house;
-  Inspection inspection(house.kernel);
+TEST_CASE("invalid requests get an answer with the reason") {
+  SoccerMatch match;
+  Inspection inspection(match.kernel);
   const std::pair<Json, const char*> cases[] = {{{{"do", "percepts"}}, "lacks a text"},
                                                 {{{"do", "percepts"}, {"path", 7}}, "lacks a text"},
                                                 {{{"do", "percepts"}, {"path", "/usr/scene"}}, "is no agent's"},

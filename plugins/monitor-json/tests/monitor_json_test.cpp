@@ -25,7 +25,7 @@ struct Encoder : House {
 
 }  // namespace
 
-TEST_CASE("a full message mirrors the S-expressions, numbers as numbers") {
+TEST_CASE("a full message mirrors the S-expressions with numbers as JSON numbers") {
   Encoder e;
   RecordedFrame f;
   fillFrame(f);
@@ -40,7 +40,7 @@ TEST_CASE("a full message mirrors the S-expressions, numbers as numbers") {
   CHECK(nlohmann::json::parse(e.encode(f.update)) == expected);
 }
 
-TEST_CASE("a diff names only what changed") {
+TEST_CASE("a diff contains only changes") {
   Encoder e;
   RecordedFrame f;
   fillFrame(f);
@@ -54,7 +54,7 @@ TEST_CASE("a diff names only what changed") {
         "0,0,0,1]]],[\"nd\",\"SMN\",[\"setVisible\",0]]]]");
 }
 
-TEST_CASE("odd names and numbers stay valid JSON") {
+TEST_CASE("unusual names and numbers give valid JSON") {
   Encoder e;
   MonitorFrame frame;
   frame.env.put(EnvPolicy::always, "team_left", "a\"b\\c\x01\n\xff\xc3\xa9");

@@ -8,7 +8,7 @@
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("every recorded monitor message, read and encoded again, is the same to the byte") {
+TEST_CASE("every recorded monitor message is identical after decoding and encoding") {
   const auto folder = referenceFolder();
   if (folder.empty()) std::exit(77);
   House house;

@@ -24,7 +24,7 @@ struct SexpEncoder : House {
 
 }  // namespace
 
-TEST_CASE("a full message has the blanks of the installed base") {
+TEST_CASE("a full message has the same whitespace as the original server's") {
   SexpEncoder e;
   RecordedFrame f;
   fillFrame(f);
@@ -37,7 +37,7 @@ TEST_CASE("a full message has the blanks of the installed base") {
         "(nd SMN (setVisible 0) (load StdUnitBox) (sSc 1 51 1) (sMat matGrey)))");
 }
 
-TEST_CASE("a diff names only what changed, and events follow the environment") {
+TEST_CASE("a diff contains only changes, and events follow the environment") {
   SexpEncoder e;
   RecordedFrame f;
   fillFrame(f);
@@ -50,7 +50,7 @@ TEST_CASE("a diff names only what changed, and events follow the environment") {
         "1)))(nd SMN (setVisible 0)))");
 }
 
-TEST_CASE("numbers are written as C writes %g") {
+TEST_CASE("numbers are formatted like %g in C") {
   SexpEncoder e;
   MonitorFrame frame;
   MonitorUpdate update{frame, true, {}, {}, {}};

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Decodes the binary frames as a viewer does; written from the description in README.md.
+/// Decodes the binary frames like a viewer; written from the description in README.md.
 
 #include <cmath>
 #include <cstring>
@@ -12,7 +12,7 @@
 
 namespace spark::web::test {
 
-/// The transforms as a viewer knows them. Throws std::runtime_error for a malformed frame.
+/// The transforms that a viewer has received. Throws std::runtime_error for a malformed frame.
 class FrameReader {
  public:
   explicit FrameReader(std::size_t transforms) : quantised(transforms) {}
@@ -58,7 +58,7 @@ class FrameReader {
   }
 
   std::vector<std::array<std::int64_t, 7>> quantised;
-  std::map<std::uint64_t, bool> visible;  ///< by node: of the last key frame and the deltas since
+  std::map<std::uint64_t, bool> visible;  ///< by node, from the last key frame and the deltas since
   std::uint32_t shape = 0, serial = 0;
   int positionBits = 0, rotationBits = 0;
   double time = 0;

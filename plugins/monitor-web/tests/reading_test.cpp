@@ -8,14 +8,14 @@
 #include "spark/error.h"
 #include "temporary_folder.h"
 
-// How bytes from outside are parsed and how messages are written.
+// How input bytes are parsed and how messages are written.
 
 using namespace spark;
 using namespace spark::web;
 using What = ViewerMessage::What;
 using Catch::Contains;
 
-TEST_CASE("Viewers' messages are parsed, or refused with what was expected") {
+TEST_CASE("Viewers' messages are parsed, or refused with the expected format") {
   CHECK(readViewerMessage(R"({"do":"view","rate":1000})").rate == kMaxRate);
   CHECK(readViewerMessage(R"({"do":"view","rate":-5})").rate == kMinRate);
   CHECK_FALSE(readViewerMessage(R"({"do":"view","rate":10})").fine.has_value());
@@ -39,7 +39,7 @@ TEST_CASE("Viewers' messages are parsed, or refused with what was expected") {
   CHECK_THROWS_WITH(readViewerMessage(nested(40)), Contains("32 deep"));
 }
 
-TEST_CASE("A token is 128 bits, another one each time, and only itself") {
+TEST_CASE("A token has 128 random bits and equals only itself") {
   const std::string token = makeToken();
   CHECK(token.size() == 32);
   CHECK(token.find_first_not_of("0123456789abcdef") == token.npos);
@@ -51,7 +51,7 @@ TEST_CASE("A token is 128 bits, another one each time, and only itself") {
   CHECK_FALSE(isToken("", ""));
 }
 
-TEST_CASE("Texts that are not UTF-8 and numbers that are not finite still give valid JSON") {
+TEST_CASE("Text that is not UTF-8 and numbers that are not finite still give valid JSON") {
   std::string out;
   JsonWriter(out, kWebJson)
       .beginArray()
@@ -77,7 +77,7 @@ TEST_CASE("Texts that are not UTF-8 and numbers that are not finite still give v
   CHECK(elements == R"([["team_left","nan"],["time",1.5],["foul",1,"left",["x",2000]],["name","inf","-"]])");
 }
 
-TEST_CASE("Paths below a folder are plain names") {
+TEST_CASE("Paths below a folder consist of plain names") {
   using Names = std::vector<std::string>;
   CHECK(plainComponents("a.log") == Names{"a.log"});
   CHECK(plainComponents("assets/index-1.js") == Names{"assets", "index-1.js"});
@@ -90,7 +90,7 @@ TEST_CASE("Paths below a folder are plain names") {
   }
 }
 
-TEST_CASE("Files are served with their type, by names that are there; without a viewer a plain page is") {
+TEST_CASE("Existing files are served with their type, and without a viewer there is a plain page") {
   spark::test::TemporaryFolder folder;
   folder.write("index.html", "<p>viewer");
   folder.write("secret", "root:");
@@ -125,7 +125,7 @@ TEST_CASE("Files are served with their type, by names that are there; without a 
   CHECK(plain.answer(request("/assets/index-1.js")).status == 404);
 }
 
-TEST_CASE("Hosts that cannot be rebound are accepted; pages of this server may watch") {
+TEST_CASE("Host names that cannot be rebound are accepted, and only pages of this server may open a stream") {
   const Site site({"", "", "", {"Match.Example"}});
   for (const char* ours : {"127.0.0.1", "127.0.0.1:80", "[::1]:80", "[fe80::1]", "10.1.2.3:5", "localhost",
                            "LocalHost:9", "a.localhost", "match.example:443"})

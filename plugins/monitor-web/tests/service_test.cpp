@@ -10,7 +10,7 @@
 #include "test_support.h"
 #include "web_client.h"
 
-// The whole server: the simulation runs in one thread, the server in its own, the viewers in this one.
+// The whole server: the simulation runs in one thread, the server in another, the viewers in this one.
 
 using namespace spark;
 using namespace spark::test;
@@ -20,7 +20,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Contributes a score and takes the command `(push n)`.
+/// Contributes a score and accepts the command `(push n)`.
 class Match : public Node, public IMonitorItem, public ITrainer {
   SPARK_CLASS(Match, Node)
  public:
@@ -43,7 +43,7 @@ class Match : public Node, public IMonitorItem, public ITrainer {
   bool goal = false;
 };
 
-/// A clock that stands still.
+/// A simulation whose time does not advance.
 class StillClock : public Node, public ISimulation {
   SPARK_CLASS(StillClock, Node)
  public:
@@ -59,9 +59,9 @@ class StillClock : public Node, public ISimulation {
   void setPaced(bool) override {}
 };
 
-/// A simulation with a moving robot, whose cycles run in a thread of their own until stop().
-struct Running : House {
-  Running() {
+/// A simulation with a moving robot; its cycles run in a separate thread until stop().
+struct RunningServer : House {
+  RunningServer() {
     makeFakeScene(kernel);
     kernel.registerClass<Match>();
     kernel.plugins().use("monitor");
@@ -81,7 +81,7 @@ struct Running : House {
     REQUIRE(port != 0);
     loop = std::thread([this] { run(); });
   }
-  ~Running() { stop(); }
+  ~RunningServer() { stop(); }
   void stop() {
     stopped = true;
     if (loop.joinable()) loop.join();
@@ -99,9 +99,9 @@ struct Running : House {
       std::this_thread::yield();
     }
   }
-  /// Ends the cycles, calls `first`, then keeps polling so that viewers are served.
+  /// Stops the cycles, calls `first`, then keeps polling so that viewers are served.
   template <class F>
-  void standStill(F first) {
+  void pauseAndServe(F first) {
     stop();
     first();
     stopped = false;
@@ -115,7 +115,7 @@ struct Running : House {
   }
   Transform* robot;
   unsigned short port = 0;
-  double time = 0;  ///< s, of the last cycle; to be read while nothing runs
+  double time = 0;  ///< s, of the last cycle; valid while the simulation is stopped
   std::atomic<bool> stopped{false};
   std::atomic<int> parts{0};
   std::thread loop;
@@ -124,9 +124,9 @@ struct Running : House {
 Json jsonWith(WebClient& client, std::string_view part) { return Json::parse(client.textWith(part)); }
 }  // namespace
 
-TEST_CASE("Viewers see the scene move, ask, and a referee changes it") {
-  Running house;
-  WebClient viewer(house.port), referee(house.port);
+TEST_CASE("Viewers see the scene move and send requests, and a referee changes the score") {
+  RunningServer server;
+  WebClient viewer(server.port), referee(server.port);
   REQUIRE(viewer.watch() == 101);
   REQUIRE(referee.watch() == 101);
   CHECK(jsonWith(viewer, "\"hello\"")["protocol"] == 1);
@@ -163,41 +163,40 @@ TEST_CASE("Viewers see the scene move, ask, and a referee changes it") {
   CHECK_THAT(viewer.textWith("\"id\":4"), Contains("no control server"));
 }
 
-TEST_CASE(
-    "An event has the time of its frame, however late it is sent; one between frames has that of the last frame") {
-  Running house;
-  WebClient viewer(house.port);
+TEST_CASE("An event has the time of its frame even if it is sent late, and between frames that of the last frame") {
+  RunningServer server;
+  WebClient viewer(server.port);
   REQUIRE(viewer.watch() == 101);
   viewer.binary();
   double now = 0;
-  house.standStill([&] {
-    now = house.time + 1;
-    house.kernel.registerClass<StillClock>();
-    house.kernel.create<Leaf>("StillClock", "/sys/server/simulation");
+  server.pauseAndServe([&] {
+    now = server.time + 1;
+    server.kernel.registerClass<StillClock>();
+    server.kernel.create<Leaf>("StillClock", "/sys/server/simulation");
     const auto publish = [&](double after) {
-      const auto cycle = static_cast<std::int64_t>(1) << 40;  // of those in which frames are due
-      house.kernel.events().channel(phase::kPublish).emit({"", now + after, 0.02, cycle, nullptr});
+      const auto cycle = static_cast<std::int64_t>(1) << 40;  // a cycle in which a frame is due
+      server.kernel.events().channel(phase::kPublish).emit({"", now + after, 0.02, cycle, nullptr});
     };
-    publish(0);  // the viewers have one to show for a while
-    house.kernel.root().require<Match>("/sys/server/monitor/match").goal = true;
+    publish(0);  // a frame that viewers show for a while
+    server.kernel.root().require<Match>("/sys/server/monitor/match").goal = true;
     publish(1);
     publish(2);
     Predicates between;
     between.open("between").close();
-    house.kernel.root().require<IFrameTaker>("/sys/server/monitor/web").event(Element(between, 0));
+    server.kernel.root().require<IFrameTaker>("/sys/server/monitor/web").event(Element(between, 0));
   });
   const Json goal = jsonWith(viewer, "\"goal\""), between = jsonWith(viewer, "\"between\"");
   CHECK(goal["time"].get<double>() == Approx(now + 1).margin(0.01));
   CHECK(between["time"].get<double>() == Approx(now + 2).margin(0.01));
 }
 
-TEST_CASE("A scene that changes is sent anew, before its first frame") {
-  Running house;
-  WebClient viewer(house.port);
+TEST_CASE("A changed scene is sent again before its first frame") {
+  RunningServer server;
+  WebClient viewer(server.port);
   REQUIRE(viewer.watch() == 101);
   viewer.binary();
   for (std::size_t parts = 1; parts <= 3; ++parts) {
-    house.parts = 1;
+    server.parts = 1;
     Json scene;
     do scene = jsonWith(viewer, "\"scene\"");
     while (scene["nodes"].size() < 3 + parts);
@@ -208,13 +207,13 @@ TEST_CASE("A scene that changes is sent anew, before its first frame") {
 }
 
 TEST_CASE("Pages are answered while the match runs") {
-  Running house;
-  WebClient client(house.port);
+  RunningServer server;
+  WebClient client(server.port);
   const auto page = client.get("/");
   CHECK(page.status == 200);
   CHECK_THAT(page.head, Contains("Content-Security-Policy: default-src 'self'") && Contains("nosniff"));
   CHECK_THAT(page.body, Contains("The viewer was not built"));
-  CHECK(client.get("/plain.js").status == 200);  // on the same connection
+  CHECK(client.get("/plain.js").status == 200);  // over the same connection
   CHECK(client.get("/", "", "HEAD").head.find("Content-Length: 0") == std::string::npos);
   CHECK(client.get("/none").status == 404);
   const Json status = Json::parse(client.get("/status.json").body);
@@ -223,16 +222,16 @@ TEST_CASE("Pages are answered while the match runs") {
 }
 
 TEST_CASE("The server may be removed while viewers watch, and a new one may be created") {
-  Running house;
-  WebClient viewer(house.port);
+  RunningServer server;
+  WebClient viewer(server.port);
   REQUIRE(viewer.watch() == 101);
   viewer.binary();
-  house.stop();
-  auto& servers = house.kernel.root().require<Node>("/sys/server");
+  server.stop();
+  auto& servers = server.kernel.root().require<Node>("/sys/server");
   servers.remove(*servers.child("web"));
   viewer.waitForClose();
-  house.kernel.events().channel(phase::kPublish).emit({"", 1, 0.02, 1000, nullptr});
-  Leaf& next = house.kernel.create<Leaf>("WebServer", "/sys/server/web");
+  server.kernel.events().channel(phase::kPublish).emit({"", 1, 0.02, 1000, nullptr});
+  Leaf& next = server.kernel.create<Leaf>("WebServer", "/sys/server/web");
   setProperty(next, "port", std::int64_t{0});
   callMethod(next, "listen", {});
   CHECK(WebClient(static_cast<unsigned short>(getProperty(next, "port").toInteger())).get("/").status == 200);

@@ -46,8 +46,8 @@ class TwoAgents : public Node, public IGameControl {
   std::vector<AgentAspect*> all;
 };
 
-struct Dohyo : House {
-  Dohyo() : House(false), report(kernel) {
+struct SumoMatch : House {
+  SumoMatch() : House(false), report(kernel) {
     kernel.registerClass<SceneNode>();
     kernel.registerClass<Transform>();
     kernel.registerClass<AgentAspect>();
@@ -66,27 +66,27 @@ struct Dohyo : House {
 
 }  // namespace
 
-TEST_CASE("the status of a game that is not soccer: known entries by name, all others as name and value") {
-  Dohyo house;
-  SECTION("with all words") {
-    house.game({{"round", 3, {}},
+TEST_CASE("the status of another game has known entries by name, and all others as name and value") {
+  SumoMatch match;
+  SECTION("with all known entries") {
+    match.game({{"round", 3, {}},
                 {"playMode", "Push", {}},
                 {"score", List{2, 1, 0}, {}},
                 {"teams", List{"East", "We\"st"}, {}},
                 {"wind", List{0.5, HUGE_VAL, true}, {}}});
-    const Json status = house.status();
+    const Json status = match.status();
     CHECK(status["playMode"] == "Push");
     CHECK(status["score"] == Json({2, 1, 0}));
     CHECK(status["teams"] == Json({"East", "We\"st"}));
     CHECK(status["status"] == Json::parse(R"([["round",3],["wind",[0.5,null,true]]])"));
     CHECK(status["agents"].empty());
   }
-  SECTION("without any") {
-    const Json nothing = house.status();
+  SECTION("without known entries") {
+    const Json nothing = match.status();
     for (const char* word : {"playMode", "score", "teams", "status"}) CHECK_FALSE(nothing.contains(word));
-    // an entry may have the name of a member of the message, or an unexpected type
-    house.game({{"time", "late", {}}, {"score", 7, {}}, {"empty", List{}, {}}});
-    const Json status = house.status();
+    // An entry may have the name of a member of the message, or an unexpected type.
+    match.game({{"time", "late", {}}, {"score", 7, {}}, {"empty", List{}, {}}});
+    const Json status = match.status();
     CHECK(status["time"] == 0);
     CHECK_FALSE(status.contains("score"));
     CHECK(status["status"] == Json::parse(R"([["time","late"],["score",7],["empty",[]]])"));
@@ -94,12 +94,12 @@ TEST_CASE("the status of a game that is not soccer: known entries by name, all o
 }
 
 TEST_CASE("team and number of an agent come from a node below it, at any depth") {
-  Dohyo house;
-  auto& control = house.kernel.create<TwoAgents>("TwoAgents", "/sys/server/gamecontrol");
+  SumoMatch match;
+  auto& control = match.kernel.create<TwoAgents>("TwoAgents", "/sys/server/gamecontrol");
   for (const char* name : {"one", "two"})
-    control.all.push_back(&house.kernel.create<AgentAspect>("AgentAspect", std::string("/usr/scene/") + name));
+    control.all.push_back(&match.kernel.create<AgentAspect>("AgentAspect", std::string("/usr/scene/") + name));
   control.all[0]->create<Transform>("Transform", "body").create("Wrestler", "anything");
-  CHECK(house.status()["agents"] ==
+  CHECK(match.status()["agents"] ==
         Json::parse(R"([{"path":"/usr/scene/one","team":"East \"1\"","number":4,"latency":12.5},
                         {"path":"/usr/scene/two","team":"","number":0,"latency":null}])"));
 }

@@ -8,7 +8,7 @@ using namespace spark::web;
 using spark::web::test::FrameReader;
 
 namespace {
-/// A position in metres and a rotation in degrees.
+/// A position in meters and a rotation in degrees.
 Matrix at(float x, float y, float z, float a = 0, float b = 0, float c = 0) {
   Matrix m = rotationDeg(a, b, c);
   m.block<3, 1>(0, 3) = Vec3f(x, y, z);
@@ -25,7 +25,7 @@ struct Scene {
 };
 }  // namespace
 
-TEST_CASE("A key frame has every transform to within its quantum") {
+TEST_CASE("A key frame has every transform with an error below its quantum") {
   Scene scene{{at(1, -2, 3), at(0.1234f, 0, 0, 10, 20, 30), at(-40, 25, 0.5f, 0, 0, 179)}, {1, 0, 1}, {1}, 7, 12.5};
   for (const Precision precision : {kFine, kCoarse}) {
     StreamEncoder encoder(precision);
@@ -59,7 +59,7 @@ TEST_CASE("Deltas add up to the next key frame") {
   CHECK(follower.serial == 100);
 }
 
-TEST_CASE("Transforms that do not move cost nothing, and neither does noise below the quantum") {
+TEST_CASE("Transforms that do not move cost no bytes, and neither does noise below the quantum") {
   Scene scene{std::vector<Matrix>(600, at(1, 2, 3, 10, 20, 30)), std::vector<std::uint8_t>(600, 1), {}};
   StreamEncoder encoder(kFine);
   encoder.advance(scene.instant());
@@ -76,7 +76,7 @@ TEST_CASE("Transforms that do not move cost nothing, and neither does noise belo
   CHECK(encoder.delta().size() == empty + 2 + 1 + 1 + 1);  // skip 300 (two bytes), one transform: mask and one number
 }
 
-TEST_CASE("A rotation keeps its sign from frame to frame, so that turning on and on never jumps") {
+TEST_CASE("A rotation keeps its quaternion's sign from frame to frame, so a continuous rotation never jumps") {
   Scene scene{{Matrix::Identity()}, {1}, {}};
   StreamEncoder encoder(kFine);
   encoder.advance(scene.instant());
@@ -108,7 +108,7 @@ TEST_CASE("Visibility is sent when it changes, and with every key frame") {
   CHECK(newcomer.visible == std::map<std::uint64_t, bool>{{2, true}});
 }
 
-TEST_CASE("Another shape begins anew") {
+TEST_CASE("A new shape starts with a key frame") {
   Scene scene{{Matrix::Identity(), at(1, 0, 0)}, {1, 1}, {}};
   StreamEncoder encoder(kFine);
   encoder.advance(scene.instant());
@@ -126,7 +126,7 @@ TEST_CASE("Another shape begins anew") {
   for (std::size_t i = 0; i < 3; ++i) CHECK(reader.isNear(i, scene.transforms[i]));
 }
 
-TEST_CASE("Matrices that are no rotations, or no numbers, give frames that can be read") {
+TEST_CASE("Matrices that are not rotations or not finite give frames that can be decoded") {
   const float nan = std::nanf("");
   Scene scene{{Matrix::Zero(), Matrix::Constant(nan), at(1e30f, -1e30f, 0), Matrix(at(1, 2, 3) * 5)}, {1, 1, 1, 1}, {}};
   StreamEncoder encoder(kFine);
@@ -139,7 +139,7 @@ TEST_CASE("Matrices that are no rotations, or no numbers, give frames that can b
   }
 }
 
-TEST_CASE("Numbers are written in seven bits a byte, the lowest first") {
+TEST_CASE("Numbers are encoded with seven bits per byte, lowest first") {
   const auto bytes = [](auto put, auto value) {
     std::string out;
     put(out, value);

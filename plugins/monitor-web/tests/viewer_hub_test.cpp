@@ -14,7 +14,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// A viewer whose messages are sent when the test says so.
+/// A viewer whose transmissions the test completes.
 class FakeViewer : public Viewer {
  public:
   explicit FakeViewer(std::uint64_t id) : Viewer(id, "test:" + std::to_string(id)) {}
@@ -42,7 +42,7 @@ class FakeViewer : public Viewer {
   void resume() override { ++resumed; }
 };
 
-/// A hub; the test plays the simulation thread.
+/// A hub without a simulation; the test provides the frames.
 struct HubFixture {
   HubFixture() {
     log.setSink([](Level, std::string_view) {});
@@ -121,7 +121,7 @@ TEST_CASE("Without viewers nothing is requested from the simulation") {
   CHECK_FALSE(t.frame());
 }
 
-TEST_CASE("A viewer gets hello, scene, environment, a key, then deltas") {
+TEST_CASE("A viewer gets hello, scene, environment, a key frame, then deltas") {
   HubFixture t;
   auto viewer = t.enter();
   REQUIRE(t.frame());
@@ -148,7 +148,7 @@ TEST_CASE("A viewer gets hello, scene, environment, a key, then deltas") {
   CHECK_THAT(viewer->said, Contains("[\"play_mode\",4]") && Contains("\"entry\":[\"foul\",7]"));
 }
 
-TEST_CASE("A viewer that lags skips frames and resumes with a key; the others get all frames") {
+TEST_CASE("A viewer that lags skips frames and resumes with a key frame, and the others get all frames") {
   HubFixture t;
   auto slow = t.enter(), quick = t.enter();
   t.frame();
@@ -173,7 +173,7 @@ TEST_CASE("A viewer that lags skips frames and resumes with a key; the others ge
   CHECK(other.quantised == reader.quantised);
 }
 
-TEST_CASE("Viewers of one lane share the bytes") {
+TEST_CASE("Viewers of one lane share the message buffers") {
   HubFixture t;
   auto a = t.enter(), b = t.enter();
   t.frame();
@@ -184,7 +184,7 @@ TEST_CASE("Viewers of one lane share the bytes") {
   CHECK(a->sending.bytes == b->sending.bytes);
 }
 
-TEST_CASE("Each viewer gets the rate and the detail that it asks for") {
+TEST_CASE("Each viewer gets the rate and the detail that it requests") {
   HubFixture t;
   auto fast = t.enter(), slow = t.enter();
   t.hub.onMessage(*slow, R"({"do":"view","rate":4.5,"detail":"coarse"})", t.now);
@@ -198,7 +198,7 @@ TEST_CASE("Each viewer gets the rate and the detail that it asks for") {
   CHECK(int(slow->lastFrame[1]) == kCoarse.position);
 }
 
-TEST_CASE("Another scene goes out before its first frame, but not in every frame while it keeps changing") {
+TEST_CASE("A new scene is sent before its first frame, but not in every frame while it keeps changing") {
   HubFixture t;
   auto viewer = t.enter();
   t.frame();
@@ -215,7 +215,7 @@ TEST_CASE("Another scene goes out before its first frame, but not in every frame
   CHECK_FALSE(viewer->lastIsKey());
 }
 
-TEST_CASE("A viewer that takes nothing for long is disconnected, and so is one with too long a queue") {
+TEST_CASE("A viewer that reads nothing for a long time or has too long a queue is disconnected") {
   HubFixture t;
   auto viewer = t.enter();
   t.frame();
@@ -228,7 +228,7 @@ TEST_CASE("A viewer that takes nothing for long is disconnected, and so is one w
   CHECK_THAT(other->why, Contains("too much"));
 }
 
-TEST_CASE("Each viewer has one request at a time with the simulation, and is not read while many are pending") {
+TEST_CASE("Each viewer has one pending request in the simulation, and is not read while it has many in the queue") {
   HubFixture t;
   auto eager = t.enter(), other = t.enter();
   t.requests(SimulationRequest::Kind::control);
@@ -249,7 +249,7 @@ TEST_CASE("Each viewer has one request at a time with the simulation, and is not
   CHECK_THAT(eager->said, Contains("{\"id\":20}"));
 }
 
-TEST_CASE("An update for several viewers is one message for all of them, and for no other") {
+TEST_CASE("An update for several viewers is one message shared by them, and other viewers do not get it") {
   HubFixture t;
   auto first = t.enter(), second = t.enter(), other = t.enter();
   for (auto& viewer : {first, second, other}) viewer->takeAll();
@@ -262,7 +262,7 @@ TEST_CASE("An update for several viewers is one message for all of them, and for
   CHECK_FALSE(other->sending.bytes);
 }
 
-TEST_CASE("Only a viewer with the token gives commands; one that guesses is disconnected") {
+TEST_CASE("Only a viewer with the token may give commands, and one that guesses tokens is disconnected") {
   HubFixture t;
   auto viewer = t.enter();
   t.requests(SimulationRequest::Kind::command);
@@ -286,7 +286,7 @@ TEST_CASE("Only a viewer with the token gives commands; one that guesses is disc
   CHECK_THAT(guesser->why, Contains("wrong tokens"));
 }
 
-TEST_CASE("The status is requested once a second, and without viewers when a page asks for it") {
+TEST_CASE("The status is requested once a second, and without viewers when a page requests it") {
   HubFixture t;
   std::string heard;
   t.hub.requestStatus(t.now, [&](const std::string& text) { heard = text; });
@@ -297,7 +297,7 @@ TEST_CASE("The status is requested once a second, and without viewers when a pag
   t.exchange.replies.put({SimulationReply::Kind::status, 0, "{\"type\":\"status\"}"});
   t.hub.collect(t.now);
   CHECK(heard == "{\"type\":\"status\"}");
-  // A host that does not answer: what was known last.
+  // If the host does not answer, the last known status is sent.
   heard.clear();
   t.hub.requestStatus(t.now + std::chrono::seconds(5), [&](const std::string& text) { heard = text; });
   t.hub.tick(t.now + std::chrono::seconds(5));
@@ -306,7 +306,7 @@ TEST_CASE("The status is requested once a second, and without viewers when a pag
   CHECK(heard == "{\"type\":\"status\"}");
 }
 
-TEST_CASE("A mailbox loses nothing and keeps each sender's order") {
+TEST_CASE("A mailbox loses no message and keeps the order of each sender") {
   Mailbox<std::pair<int, int>> box;
   constexpr int kEach = 2000;
   std::vector<std::thread> senders;

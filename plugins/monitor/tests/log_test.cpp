@@ -14,7 +14,7 @@ using namespace spark::test;
 
 namespace {
 
-/// A file that goes with the object.
+/// A file that is removed with the object.
 struct TemporaryFile {
   std::filesystem::path path =
       std::filesystem::temp_directory_path() / fmt::format("spark-log-{}-{}", ::getpid(), next()++);
@@ -35,7 +35,7 @@ struct TemporaryFile {
 
 bool isFull(const std::string& record) { return record.find(")(RSG 0 1)(") != std::string::npos; }
 
-/// Drawings of which only the changes are told.
+/// Drawings that record only the versions since the last record.
 class TestDrawings : public Node, public IDrawings {
   SPARK_CLASS(TestDrawings, Node)
  public:
@@ -83,7 +83,7 @@ struct Player : House {
     kernel.events().channel("act").emit(event);
     kernel.events().channel("publish").emit(event);
   }
-  /// So many records' time.
+  /// Runs for the duration of `n` records.
   void records(int n) {
     for (int i = 0; i < 10 * n; ++i) cycle();
   }
@@ -99,7 +99,7 @@ struct Player : House {
   std::int64_t cycles = 0;
 };
 
-/// A small log: three records full, diff, diff, the mesh 1, 2, 3 m up.
+/// A small log: three records (full, diff, diff) with the mesh 1, 2, 3 m high.
 const char* const kFull =
     "((FieldLength 30)(time 0)(score_left 0))(RSG 0 1)((nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1)"
     "(nd StaticMesh (setVisible 1) (load models/a.obj) (sSc 1 1 1)(resetMaterials x y))))";
@@ -116,9 +116,7 @@ std::string join(std::initializer_list<std::string> lines) {
 
 }  // namespace
 
-TEST_CASE(
-    "a log has a record every 0.2 s, the first one full, and a full one when the last is older than 3 s or the scene "
-    "changed") {
+TEST_CASE("a log has a record every 0.2 s, and full records at the start, after 3 s and after changes of the scene") {
   Recorded stage;
   for (int i = 0; i < 1000; ++i) {
     if (i == 600) stage.scene.markModified();
@@ -138,12 +136,12 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a log is complete whatever monitors were sent: its own diffs, every event once") {
+TEST_CASE("a log is complete independently of the monitors, with its own diffs and every event once") {
   Recorded stage;
   FakeConnection& monitor = stage.connect();
   Replica live, logged;
   live.take(monitor.read());
-  for (int i = 0; i < 502; ++i) {  // the last one is recorded
+  for (int i = 0; i < 502; ++i) {  // the log records the last one
     if (i % 37 == 0) stage.item->waiting = 2;
     stage.item->score = i / 50;
     stage.head->shown = (i / 20) % 2;
@@ -151,12 +149,12 @@ TEST_CASE("a log is complete whatever monitors were sent: its own diffs, every e
     if (!monitor.idle()) live.take(monitor.read());
   }
   for (const std::string& line : stage.file.lines()) logged.take(line);
-  CHECK(same(logged, newcomer(stage), 0.005001));
+  CHECK(same(logged, freshReplica(stage), 0.005001));
   CHECK(logged.events == live.events);
   CHECK(logged.events.size() > 20);
 }
 
-TEST_CASE("what agents drew stands in front of a record: all of it before a full one, else what changed") {
+TEST_CASE("drawings precede a record, all of them for a full record and the changes for a diff") {
   Recorded stage;
   stage.kernel.registerClass<TestDrawings>();
   auto& drawings = stage.kernel.create<TestDrawings>("TestDrawings", "/sys/server/drawing");
@@ -170,18 +168,18 @@ TEST_CASE("what agents drew stands in front of a record: all of it before a full
   for (std::size_t i = 0; i < lines.size(); ++i)
     if (lines[i].front() == '[') drawn.emplace_back(i, lines[i].substr(0, lines[i].find('(')));
   REQUIRE(drawn.size() == 3);
-  CHECK(drawn[0] == std::pair<std::size_t, std::string>(10, "[0, 2]"));  // from none to two
+  CHECK(drawn[0] == std::pair<std::size_t, std::string>(10, "[0, 2]"));  // from version 0 to 2
   CHECK(drawn[1] == std::pair<std::size_t, std::string>(15, "[2, 3]"));
-  CHECK(drawn[2] == std::pair<std::size_t, std::string>(16, "[0, 3]"));  // the full one
+  CHECK(drawn[2] == std::pair<std::size_t, std::string>(16, "[0, 3]"));  // the full record
   CHECK(isFull(lines[16]));
 
-  // The player takes the records, drawings or not.
+  // The player reads the records with and without drawings.
   Player player(stage.file.path);
   CHECK(getProperty(*player.player, "records") == Value(static_cast<std::int64_t>(lines.size())));
   CHECK(getProperty(*player.player, "damaged") == Value(0));
 }
 
-TEST_CASE("what was drawn in a recorded game is drawn again, and taken away when the game is seen from elsewhere") {
+TEST_CASE("drawings of a recorded game are shown again, and removed when the playback jumps") {
   Recorded stage;
   for (int i = 0; i < 100; ++i) stage.cycle();
   std::string text;
@@ -202,7 +200,7 @@ TEST_CASE("what was drawn in a recorded game is drawn again, and taken away when
   using Packets = std::vector<std::vector<int>>;
   CHECK(go(1).empty());
   CHECK(go(4) == Packets{{1, 128}, {127, 0}});
-  drawings.changes = 1;  // now something is shown
+  drawings.changes = 1;  // drawings are shown now
   const Packets again = go(5);
   REQUIRE(again.size() == 4);
   CHECK(again[0].size() == 6 + 3 * 256);
@@ -210,7 +208,7 @@ TEST_CASE("what was drawn in a recorded game is drawn again, and taken away when
   CHECK(go(0).size() == 1);
 }
 
-TEST_CASE("a log that cannot be written says so once, and the server goes on") {
+TEST_CASE("a log that cannot be written is reported once, and the server continues") {
   Stage stage;
   Leaf& log = stage.node().create("MonitorLog", "log");
   setProperty(log, "file", "/nonexistent/folder/x.log");
@@ -224,7 +222,7 @@ TEST_CASE("a log that cannot be written says so once, and the server goes on") {
   CHECK(stage.text.find("the log '/nonexistent", first + 1) == std::string::npos);
 }
 
-TEST_CASE("a recorded game plays: a monitor sees every record as it was logged, and late ones join") {
+TEST_CASE("a recorded game is played to a monitor record by record, and late monitors can join") {
   Recorded stage;
   for (int i = 0; i < 400; ++i) {
     if (i % 60 == 30) stage.item->waiting = 1;
@@ -237,13 +235,13 @@ TEST_CASE("a recorded game plays: a monitor sees every record as it was logged, 
   Player player(stage.file.path);
   CHECK(getProperty(*player.player, "records") == Value(static_cast<std::int64_t>(lines.size())));
   for (int i = 0; i < 50; ++i) player.cycle();
-  CHECK(player.at() == 0);  // nobody watches
+  CHECK(player.at() == 0);  // there is no monitor yet
   FakeConnection& monitor = player.connect();
   Replica seen, logged;
   seen.take(monitor.read());
   logged.take(lines[0]);
   CHECK(same(seen, logged, 0));
-  player.cycle(), player.cycle();  // the monitor is noticed
+  player.cycle(), player.cycle();  // the player detects the monitor
   for (std::size_t i = 1; i < lines.size(); ++i) {
     for (int k = 0; k < 10; ++k) {
       player.cycle();
@@ -256,16 +254,16 @@ TEST_CASE("a recorded game plays: a monitor sees every record as it was logged, 
     REQUIRE(seen.events == logged.events);
   }
   CHECK(seen.events.size() > 3);
-  CHECK(seen.fulls == 2);  // the first, and the hat
+  CHECK(seen.fulls == 2);  // the first one, and one for the hat
   player.records(5);
-  CHECK(player.at() == static_cast<std::int64_t>(lines.size()) - 1);  // it stands at its end
+  CHECK(player.at() == static_cast<std::int64_t>(lines.size()) - 1);  // it stops at the end
   Replica late;
   late.take(player.connect().read());
   CHECK(same(late, logged, 0));
   CHECK(late.lastEnv == std::vector<std::string>{"FieldLength", "time", "score"});
 }
 
-TEST_CASE("a player is stopped, stepped, turned, hurried and sent elsewhere") {
+TEST_CASE("a player can be paused, stepped, reversed, accelerated and moved to a record") {
   std::string text = join({kFull});
   for (int i = 1; i < 60; ++i) {
     std::string line = i % 15 == 0 ? kFull : i % 2 ? kSecond : kThird;
@@ -314,7 +312,7 @@ TEST_CASE("a player is stopped, stepped, turned, hurried and sent elsewhere") {
   CHECK(getProperty(*player.player, "speed") == Value(1.0));
 }
 
-TEST_CASE("in a log with one full record every place is shown as it was recorded, wherever one comes from") {
+TEST_CASE("in a log with one full record each record is shown correctly after any jump") {
   std::string text = join({kFull});
   constexpr int kRecords = 5000;
   for (int i = 1; i < kRecords; ++i)
@@ -333,21 +331,21 @@ TEST_CASE("in a log with one full record every place is shown as it was recorded
     return now.nodes.at(0).matrix[14];
   };
   FakeConnection& monitor = player.connect();
-  for (const int place : {4999, 4998, 4997, 100, 4000, 3999, 3998, 31, 32, 33, 4999, 2500, 2499, 1})
+  for (const int record : {4999, 4998, 4997, 100, 4000, 3999, 3998, 31, 32, 33, 4999, 2500, 2499, 1})
     for (const bool command : {false, true}) {
       if (command)
-        player.command(monitor, fmt::format("(record {})", place).c_str());
+        player.command(monitor, fmt::format("(record {})", record).c_str());
       else
-        setProperty(*player.player, "record", std::int64_t{place});
-      for (int i = 0; i < (command ? 100 : 3); ++i) player.cycle();  // a long way takes several frames
-      CAPTURE(place, command);
-      REQUIRE(player.at() == place);
-      REQUIRE(seen() == static_cast<float>(place));
+        setProperty(*player.player, "record", std::int64_t{record});
+      for (int i = 0; i < (command ? 100 : 3); ++i) player.cycle();  // a long jump takes several frames
+      CAPTURE(record, command);
+      REQUIRE(player.at() == record);
+      REQUIRE(seen() == static_cast<float>(record));
     }
 }
 
-TEST_CASE("steps back in a log with one full record do not begin there, and no frame goes a long way") {
-  // Records that are passed over are counted each time.
+TEST_CASE("steps back in a log with one full record do not restart from it, and no frame processes many records") {
+  // The player counts skipped records each time.
   std::string text = join({kFull});
   constexpr int kRecords = 20000;
   for (int i = 1; i < kRecords; ++i) text += "(())\n";
@@ -367,13 +365,13 @@ TEST_CASE("steps back in a log with one full record do not begin there, and no f
           for (int i = 0; i < 300; ++i) player.command(monitor, "(b)");
         }) <= 300 * 8);
   CHECK(player.at() == kRecords - 1 - 601);
-  setProperty(*player.player, "file", file.path.string());  // nothing is known of it again
+  setProperty(*player.player, "file", file.path.string());  // discards what is known of the file
   CHECK(passed([&] { player.consumer->received(monitor, "(record 19000)"), player.cycle(); }) <= 250);
   CHECK(getProperty(*player.player, "record") == Value(19000));
   CHECK(passed([&] { player.cycle(); }) <= 250);
 }
 
-TEST_CASE("a log on a pipe that nobody reads is refused with a sentence, and the match goes on") {
+TEST_CASE("a log on a pipe without a reader is refused with an error, and the match continues") {
   Stage stage;
   TemporaryFile pipe;
   REQUIRE(mkfifo(pipe.path.c_str(), 0600) == 0);
@@ -386,7 +384,7 @@ TEST_CASE("a log on a pipe that nobody reads is refused with a sentence, and the
   CHECK(stage.text.find("is a pipe that nobody reads") != std::string::npos);
 }
 
-TEST_CASE("a log on a pipe that is read is written there") {
+TEST_CASE("a log can be written to a pipe that has a reader") {
   Recorded stage;
   std::filesystem::remove(stage.file.path);
   REQUIRE(mkfifo(stage.file.path.c_str(), 0600) == 0);
@@ -398,7 +396,7 @@ TEST_CASE("a log on a pipe that is read is written there") {
   close(reader);
 }
 
-TEST_CASE("damaged lines of a log are passed over, draw commands are skipped") {
+TEST_CASE("damaged lines of a log and draw commands are skipped") {
   const std::string cut(kSecond, 60), huge(9u << 20, 'x'), deep(200, '(');
   const TemporaryFile file(
       join({"[1, 0, 3, 4][2, 1]", "", kSecond, std::string("[1, 0]") + kFull, cut, "garbage", "(())", deep, "(" + huge,
@@ -421,7 +419,7 @@ TEST_CASE("damaged lines of a log are passed over, draw commands are skipped") {
   CHECK(player.text.find("is passed over: ") != std::string::npos);
 }
 
-TEST_CASE("what is no log is refused with a sentence") {
+TEST_CASE("a file that is not a log is refused with an error") {
   const TemporaryFile empty(""), garbage("hello\nworld\n");
   for (const std::string& name :
        {std::string("/nonexistent.log"), std::string("/tmp"), empty.path.string(), garbage.path.string()}) {

@@ -5,7 +5,7 @@
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("a newcomer gets a full message at once, before any frame was made") {
+TEST_CASE("a new monitor gets a full message at once, even before the first frame") {
   Stage stage;
   FakeConnection& connection = stage.connect();
   REQUIRE(connection.sent == 1);
@@ -22,7 +22,7 @@ TEST_CASE("a newcomer gets a full message at once, before any frame was made") {
   }
 }
 
-TEST_CASE("frames leave in every interval-th cycle, as diffs that add up to the full scene") {
+TEST_CASE("every interval-th cycle sends a diff, and the diffs add up to the full scene") {
   Stage stage;
   setProperty(stage.node(), "precision", 0.0);
   FakeConnection& connection = stage.connect();
@@ -35,7 +35,7 @@ TEST_CASE("frames leave in every interval-th cycle, as diffs that add up to the 
     CHECK(connection.idle() == (stage.cycles % 2 != 0));
     if (connection.idle()) continue;
     replica.take(connection.read());
-    CHECK(same(replica, newcomer(stage), 0));
+    CHECK(same(replica, freshReplica(stage), 0));
   }
   CHECK(replica.fulls == 1);
   CHECK(replica.diffs == 10);
@@ -44,7 +44,7 @@ TEST_CASE("frames leave in every interval-th cycle, as diffs that add up to the 
   CHECK_FALSE(connection.idle());
 }
 
-TEST_CASE("a diff holds only what changed") {
+TEST_CASE("a diff contains only changes") {
   Stage stage;
   FakeConnection& connection = stage.connect();
   connection.read();
@@ -63,11 +63,11 @@ TEST_CASE("a diff holds only what changed") {
   stage.parts[1]->setLocalPos({0, 0.0051f, 0});
   CHECK(publish() ==
         "((time 0))(RDS 0 1)((nd)(nd(nd(nd StaticMesh)))(nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0.0051 0 1)(nd SMN)))");
-  stage.parts[1]->setLocalPos({0, 0.01f, 0});  // the reference is what was sent
+  stage.parts[1]->setLocalPos({0, 0.01f, 0});  // compared with the last value sent
   CHECK(publish() == "((time 0))(RDS 0 1)((nd)(nd(nd(nd StaticMesh)))(nd(nd SMN)))");
 }
 
-TEST_CASE("a full message follows when the scene changed, and on request, to everybody") {
+TEST_CASE("a full message goes to all monitors after a change of the scene and on request") {
   Stage stage;
   FakeConnection& a = stage.connect();
   FakeConnection& b = stage.connect();
@@ -86,7 +86,7 @@ TEST_CASE("a full message follows when the scene changed, and on request, to eve
   stage.parts[1]->create("FakeVisual", "new");
   CHECK(fulls());
   CHECK_FALSE(fulls());
-  stage.kernel.create("Node", "/usr/elsewhere");  // the tree changed, what is visible did not
+  stage.kernel.create("Node", "/usr/elsewhere");  // changes the tree, but not its visible part
   CHECK_FALSE(fulls());
   stage.monitor->received(b, "(reqfullstate)");
   CHECK(fulls());
@@ -96,7 +96,7 @@ TEST_CASE("a full message follows when the scene changed, and on request, to eve
   CHECK_FALSE(fulls());
 }
 
-TEST_CASE("five monitors of different speed each see everything and each event exactly once") {
+TEST_CASE("five monitors of different speed each get the whole scene and each event exactly once") {
   Stage stage;
   const int threads = GENERATE(1, 4);
   stage.kernel.jobs().setThreads(threads);
@@ -112,7 +112,7 @@ TEST_CASE("five monitors of different speed each see everything and each event e
     for (int i = 0; i < 5; ++i)
       if (frame % everyNth[i] == 0) replicas[i].take(clients[i]->read());
   }
-  for (int round = 0; round < 2; ++round) {  // what was in flight, then the newest
+  for (int round = 0; round < 2; ++round) {  // the message being sent, then the newest
     for (int i = 0; i < 5; ++i)
       if (!clients[i]->idle()) replicas[i].take(clients[i]->read());
     if (round == 0) stage.nextFrame();
@@ -120,7 +120,7 @@ TEST_CASE("five monitors of different speed each see everything and each event e
   std::vector<std::string> all;
   for (int i = 1; i <= stage.item->fouls; ++i) all.push_back(std::to_string(i));
   REQUIRE(all.size() > 20);
-  const Replica now = newcomer(stage);
+  const Replica now = freshReplica(stage);
   for (int i = 0; i < 5; ++i) {
     INFO("client " << i);
     CHECK(replicas[i].events == all);
@@ -130,7 +130,7 @@ TEST_CASE("five monitors of different speed each see everything and each event e
   CHECK(replicas[0].diffs == 201);
 }
 
-TEST_CASE("a monitor that never reads holds one message, costs no more and is never closed; the others go on") {
+TEST_CASE("a monitor that never reads has one message pending, costs no more and is never closed") {
   Stage stage;
   FakeConnection& deaf = stage.connect();
   FakeConnection& good = stage.connect();
@@ -152,9 +152,7 @@ TEST_CASE("a monitor that never reads holds one message, costs no more and is ne
   CHECK(getProperty(stage.node(), "clients") == Value(1));
 }
 
-TEST_CASE(
-    "a monitor that pauses gets whole messages again, and what it then shows is the scene; of very many events the "
-    "newest are told") {
+TEST_CASE("a monitor that pauses gets whole messages afterwards, the current scene and the newest events") {
   Stage stage;
   FakeConnection& viewer = stage.connect();
   Replica replica;
@@ -169,7 +167,7 @@ TEST_CASE(
   replica.take(viewer.read());
   stage.nextFrame();
   replica.take(viewer.read());
-  CHECK(same(replica, newcomer(stage), 0.005001));
+  CHECK(same(replica, freshReplica(stage), 0.005001));
   CHECK(replica.events.back() == "30000");
   CHECK(replica.events.size() > 1000);
   CHECK(replica.events.size() < 8192 / 2);
@@ -177,7 +175,7 @@ TEST_CASE(
     REQUIRE(std::stoi(replica.events[i]) == std::stoi(replica.events[i - 1]) + 1);
 }
 
-TEST_CASE("commands act in the cycle after a due one, in order of arrival, and bad ones are ignored with a line") {
+TEST_CASE("commands act in the cycle after a due one in order of arrival, and invalid ones are logged and ignored") {
   Stage stage;
   FakeConnection& a = stage.connect();
   FakeConnection& b = stage.connect();
@@ -193,7 +191,7 @@ TEST_CASE("commands act in the cycle after a due one, in order of arrival, and b
   CHECK(stage.text.find("command 'push' ignored: expected a number, found none") != std::string::npos);
   CHECK(stage.text.find("from client1: 1:") != std::string::npos);
   stage.monitor->received(a, "(push 6)");
-  stage.cycle();  // a frame is due, commands are not
+  stage.cycle();  // a frame is due, but not the commands
   CHECK(stage.trainer->pushed.size() == 5);
   stage.cycle();
   CHECK(stage.trainer->pushed.size() == 6);
@@ -205,7 +203,7 @@ TEST_CASE("commands act in the cycle after a due one, in order of arrival, and b
   CHECK(stage.kernel.stopRequested());
 }
 
-TEST_CASE("a parser below the server, or below the port before it, reads the commands") {
+TEST_CASE("a parser below the server or the port reads the commands, and that of the port takes precedence") {
   Stage stage;
   stage.kernel.registerClass<WordParser>();
   FakeConnection& a = stage.connect();
@@ -216,11 +214,11 @@ TEST_CASE("a parser below the server, or below the port before it, reads the com
   CHECK(stage.trainer->pushed == std::vector<std::int64_t>{5});
 }
 
-TEST_CASE("commands from inside the host act as those of monitors, and what is wrong with them is said") {
+TEST_CASE("commands from inside the host act like those of monitors, and their errors are returned") {
   Stage stage;
   FakeConnection& a = stage.connect();
   stage.kernel.registerClass<WordParser>();
-  stage.node().create("WordParser", "parser");  // for monitors
+  stage.node().create("WordParser", "parser");  // used for monitors only
   CHECK(stage.server->command("the browser", "(push 1)(push 2)") == "");
   stage.monitor->received(a, "word");
   CHECK(stage.server->command("the browser", "(push 3) (oh").starts_with("1:"));
@@ -233,13 +231,13 @@ TEST_CASE("commands from inside the host act as those of monitors, and what is w
   CHECK(stage.server->command("the browser", flood).find("dropped") != std::string::npos);
 }
 
-TEST_CASE("a command that no trainer takes is answered with the nearest one, and monitors' with a line now and then") {
+TEST_CASE("an unknown command is answered with the nearest name, and logged at a limited rate for monitors") {
   Stage stage;
   FakeConnection& a = stage.connect();
   CHECK(stage.server->command("the browser", "(pusch 3)") ==
-        "");  // a trainer that does not say what it takes may take anything
-  stage.kernel.registerClass<FrankTrainer>();
-  stage.node().create("FrankTrainer", "trainer2");
+        "");  // a trainer that does not list its commands may accept any
+  stage.kernel.registerClass<ListingTrainer>();
+  stage.node().create("ListingTrainer", "trainer2");
   CHECK(stage.server->command("the browser", "(pusch 3)") == "");
   stage.node().remove(*stage.node().child("trainer"));
   CHECK(stage.server->command("the browser", "(pull 1)(reqfullstate)") == "");
@@ -263,7 +261,7 @@ TEST_CASE("a command that no trainer takes is answered with the nearest one, and
   CHECK(a.sent == 1);
 }
 
-TEST_CASE("a frame's transforms are those of the scene") {
+TEST_CASE("the transforms of a frame are those of the scene") {
   Stage stage;
   stage.nextFrame();
   std::vector<Transform*> transforms;
@@ -272,7 +270,7 @@ TEST_CASE("a frame's transforms are those of the scene") {
   CHECK(transforms == std::vector<Transform*>{stage.parts[0], stage.parts[2], stage.parts[1]});
 }
 
-TEST_CASE("a flood of commands does not grow memory without end") {
+TEST_CASE("a flood of commands uses bounded memory") {
   Stage stage;
   FakeConnection& a = stage.connect();
   std::string flood;
@@ -289,7 +287,7 @@ TEST_CASE("a flood of commands does not grow memory without end") {
   CHECK(stage.trainer->pushed.back() == 7);
 }
 
-TEST_CASE("without an item the server says the time, and without a scene or an encoder it does not fall over") {
+TEST_CASE("without an item the server sends the time, and without a scene or an encoder it does not fail") {
   Stage stage;
   stage.node().remove(*stage.node().child("item"));
   FakeConnection& a = stage.connect();

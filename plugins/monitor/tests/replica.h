@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a monitor does with messages: it keeps a scene, replaces it by full messages and patches it by diffs.
+/// The scene of a monitor: full messages replace it, diffs patch it.
 
 #include <stdexcept>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace spark::test {
 
-/// A monitor's copy of the scene and of the environment. Throws std::runtime_error when a message does not fit.
+/// A monitor's copy of the scene and of the environment. Throws std::runtime_error if a message does not match it.
 class Replica {
  public:
   struct Node {

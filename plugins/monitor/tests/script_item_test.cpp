@@ -6,7 +6,7 @@
 #include "stage.h"
 #include "temporary_folder.h"
 
-// What a Lua script says to monitors through a ScriptItem.
+// Entries and events that a Lua script sends to monitors through a ScriptItem.
 
 using namespace spark;
 using namespace spark::test;
@@ -30,7 +30,7 @@ struct ScriptStage : Stage {
 };
 }  // namespace
 
-TEST_CASE("A script's entries are in a newcomer's message, and in the next one when they changed") {
+TEST_CASE("A script's entries are in the first message to a monitor, and in the next message after a change") {
   ScriptStage stage;
   stage.run("item.score_left, item.play_modes, item.play_mode = 2, {'Wait', 'Fight'}, 'Fight'");
   FakeConnection& monitor = stage.connect();
@@ -39,13 +39,13 @@ TEST_CASE("A script's entries are in a newcomer's message, and in the next one w
   CHECK_THAT(stage.next(monitor), Contains("((time 0.5))(RDS 0 1)"));
   stage.run("item.score_left = item.score_left + 1");
   CHECK_THAT(stage.next(monitor), Contains("((score_left 3)(time 0.5))(RDS 0 1)"));
-  stage.run("item.score_right = 1.5");  // an entry that is new
+  stage.run("item.score_right = 1.5");  // a new entry
   CHECK_THAT(stage.next(monitor), Contains("((score_right 1.5)(time 0.5))"));
   stage.run("item.score_right = nil");
   CHECK_THAT(stage.next(monitor), Contains("((time 0.5))"));
 }
 
-TEST_CASE("A script's clock takes the place of the server's") {
+TEST_CASE("A script's time replaces the server's") {
   ScriptStage stage;
   stage.run("item.time = 7");
   FakeConnection& monitor = stage.connect();
@@ -53,7 +53,7 @@ TEST_CASE("A script's clock takes the place of the server's") {
   CHECK_THAT(stage.next(monitor), Contains("((time 7))(RDS 0 1)"));
 }
 
-TEST_CASE("A script's event comes to each monitor once") {
+TEST_CASE("A script's event is sent to each monitor once") {
   ScriptStage stage;
   FakeConnection &one = stage.connect(), &other = stage.connect();
   one.read(), other.read();
@@ -64,7 +64,7 @@ TEST_CASE("A script's event comes to each monitor once") {
   CHECK_THAT(stage.next(one), !Contains("fell"));
 }
 
-TEST_CASE("What monitors could not read is refused with a sentence, and changes nothing") {
+TEST_CASE("An entry that monitors could not read is refused with an error and changes nothing") {
   ScriptStage stage;
   stage.run("item.team_left = 'Red'");
   const std::pair<const char*, const char*> wrong[] = {
@@ -86,7 +86,7 @@ TEST_CASE("What monitors could not read is refused with a sentence, and changes 
   CHECK_THAT(monitor.read(), Contains("((team_left Red)(time 0))"));
 }
 
-TEST_CASE("What a script says to monitors is the game's status, in the words of a status") {
+TEST_CASE("The entries of a script are also the game's status, under the status names") {
   ScriptStage stage;
   stage.run(
       "item.entries = { play_modes = {'Wait', 'Fight'}, play_mode = 1, score_left = 2, score_right = 0, team_left = "
@@ -106,7 +106,7 @@ TEST_CASE("What a script says to monitors is the game's status, in the words of 
   CHECK(status() == "{}");
 }
 
-TEST_CASE("A script attached to its item keeps the score in it, which is restored with the world") {
+TEST_CASE("A script attached to its item stores the score in it, and the score is restored with the world") {
   ScriptStage stage;
   TemporaryFolder folder;
   const std::string rule = folder.write("rule.lua",

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A monitor server with a small scene, driven by hand.
+/// A monitor server with a small scene. The test runs its cycles.
 
 #include <memory>
 
@@ -11,7 +11,7 @@
 
 namespace spark::test {
 
-/// Says a score and counts fouls up when told.
+/// Contributes a score and, on request, events with a running number.
 class TestItem : public Node, public IMonitorItem {
   SPARK_CLASS(TestItem, Node)
  public:
@@ -26,7 +26,7 @@ class TestItem : public Node, public IMonitorItem {
   int score = 0, fouls = 0, waiting = 0;
 };
 
-/// Takes `(push n)`.
+/// Accepts `(push n)`.
 class TestTrainer : public Node, public ITrainer {
   SPARK_CLASS(TestTrainer, Node)
  public:
@@ -42,19 +42,19 @@ class TestTrainer : public Node, public ITrainer {
   std::vector<std::int64_t> pushed;
 };
 
-/// Takes `(pull n)`, and says so.
-class FrankTrainer : public Node, public ITrainer {
-  SPARK_CLASS(FrankTrainer, Node)
+/// Accepts `(pull n)`, and lists it among its commands.
+class ListingTrainer : public Node, public ITrainer {
+  SPARK_CLASS(ListingTrainer, Node)
  public:
-  static void describe(Description<FrankTrainer>& d) {
+  static void describe(Description<ListingTrainer>& d) {
     d.implements<ITrainer>();
-    d.property("commands", &FrankTrainer::commands);
+    d.property("commands", &ListingTrainer::commands);
   }
   bool command(const Element& command, std::string&) override { return command.head() == "pull"; }
   std::vector<std::string> commands() const { return {"pull"}; }
 };
 
-/// A language of its own: every word is a push of its length.
+/// A message format of its own: every word is a push of its length.
 class WordParser : public Node, public IParser {
   SPARK_CLASS(WordParser, Node)
  public:
@@ -94,7 +94,7 @@ struct Stage : House {
     monitor->connected(*connections.back());
     return *connections.back();
   }
-  /// One cycle, due or not.
+  /// Runs one cycle, whether a frame is due or not.
   void cycle() {
     ++cycles;
     const Event event{"", 0.02 * cycles, 0.02, cycles, nullptr};
@@ -120,8 +120,8 @@ struct Stage : House {
   std::int64_t cycles = 0;
 };
 
-/// A full message now, as a newcomer gets it.
-inline Replica newcomer(Stage& stage) {
+/// The full message of a new client.
+inline Replica freshReplica(Stage& stage) {
   Replica replica;
   FakeConnection& connection = stage.connect();
   replica.take(connection.read());
@@ -129,7 +129,7 @@ inline Replica newcomer(Stage& stage) {
   return replica;
 }
 
-/// True when both show the same scene, matrices within `precision`.
+/// True if both show the same scene, with matrices equal to within `precision`.
 inline bool same(const Replica& a, const Replica& b, double precision) {
   if (a.nodes.size() != b.nodes.size() || a.score != b.score) return false;
   for (std::size_t i = 0; i < a.nodes.size(); ++i) {

@@ -7,7 +7,7 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-/// A client that takes everything at once and keeps nothing.
+/// A client that accepts every message at once and stores nothing.
 class Sink : public IConnection {
  public:
   explicit Sink(Node& port) : port_(port) {}
@@ -29,7 +29,7 @@ class Sink : public IConnection {
 };
 }  // namespace
 
-TEST_CASE("frames, diffs, events and full messages for several clients take nothing from the heap once all is warm") {
+TEST_CASE("frames, diffs, events and full messages for several clients allocate nothing in steady state") {
   Stage stage;
   stage.kernel.log().setLevel(Level::warning);
   Sink sinks[] = {Sink(*stage.port), Sink(*stage.port), Sink(*stage.port)};

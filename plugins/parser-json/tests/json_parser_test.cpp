@@ -14,7 +14,7 @@ struct Fixture {
     house.kernel.plugins().use("parser-json");
     parser = &house.kernel.create<IParser>("JsonParser", "/usr/parser");
   }
-  /// What was read, as S-expressions.
+  /// The predicates read, as S-expressions.
   std::string read(std::string_view text, std::string* error = nullptr) {
     Predicates p;
     const auto result = parser->parse(text, p);
@@ -51,7 +51,7 @@ TEST_CASE("JSON mirrors the S-expressions") {
   REQUIRE(f.read(text) == same);
 }
 
-TEST_CASE("Numbers arrive as numbers") {
+TEST_CASE("JSON numbers give number tokens") {
   Fixture f;
   Predicates p;
   f.parser->parse(R"(["he1",1.25,7])", p);
@@ -61,7 +61,7 @@ TEST_CASE("Numbers arrive as numbers") {
   REQUIRE(list.at(2).integer() == 7);
 }
 
-TEST_CASE("Bad JSON keeps what was complete before the error and says what is wrong") {
+TEST_CASE("Invalid JSON keeps what is complete before the error and reports the reason") {
   Fixture f;
   const auto [text, kept, what] = GENERATE(table<std::string, std::string, std::string>({
       {R"(["a"]["b")", "(a )", "expected"},
@@ -87,7 +87,7 @@ TEST_CASE("200,000 nested arrays are refused without harm") {
   REQUIRE_THAT(error, Catch::Contains("deeper than 64"));
 }
 
-TEST_CASE("JSON is written compact, with null for what JSON cannot say") {
+TEST_CASE("JSON is compact, and numbers that JSON cannot represent are null") {
   Fixture f;
   Predicates p;
   p.open("time").open("now").add(0.3).close().close();
@@ -98,7 +98,7 @@ TEST_CASE("JSON is written compact, with null for what JSON cannot say") {
   REQUIRE(f.written(p) == R"([["time",["now",0.3]],["See"],["x",null,null,1e+300,-0.001,3]])");
 }
 
-TEST_CASE("Any text comes out as valid UTF-8") {
+TEST_CASE("Any text is written as valid UTF-8") {
   Fixture f;
   Predicates p;
   p.open("hear").add("a\"b\\c\n").add("\xff").add("h\xc3\xa9").close();

@@ -22,7 +22,7 @@ struct SexpFixture {
 };
 }  // namespace
 
-TEST_CASE("S-expressions are written as the installed base's clients read them") {
+TEST_CASE("S-expressions are written in the format that existing clients expect") {
   SexpFixture f;
   Predicates p;
   p.open("time").open("now").add(7.359).close().close();
@@ -36,14 +36,14 @@ TEST_CASE("S-expressions are written as the installed base's clients read them")
   }
 }
 
-TEST_CASE("Not-a-number and infinity keep C's spelling") {
+TEST_CASE("Not-a-number and infinity are spelled as in C") {
   SexpFixture f;
   Predicates p;
   p.open("a").add(std::nan("")).add(HUGE_VAL).add(-HUGE_VAL).close();
   REQUIRE(f.written(p) == "(a nan inf -inf)");
 }
 
-TEST_CASE("A message with an error keeps what was complete before it") {
+TEST_CASE("A message with an error keeps what is complete before it") {
   SexpFixture f;
   const auto [text, kept] = GENERATE(table<std::string, std::string>({{"(a 1)(b 2", "(a 1)"},
                                                                       {"(a 1))(b 2)", "(a 1)"},

@@ -7,15 +7,15 @@
 using namespace spark;
 using namespace spark::test;
 
-// The interfaces by which plugins and programs that know no game use soccer.
+// The interfaces through which plugins and programs without knowledge of the game use soccer.
 
-TEST_CASE("soccer reports play mode and score, and nothing else") {
-  MatchHouse house;
-  house.importField();
-  const auto& game = house.kernel.root().require<IStatus>("/sys/server/gamecontrol/GameStateAspect");
-  house.setMode("PlayOn");
+TEST_CASE("the soccer status has only play mode and score") {
+  SoccerMatch match;
+  match.importField();
+  const auto& game = match.kernel.root().require<IStatus>("/sys/server/gamecontrol/GameStateAspect");
+  match.setMode("PlayOn");
   const List scores{3, 1};
-  callMethod(house.at("/sys/server/gamecontrol/GameStateAspect"), "setScores", scores);
+  callMethod(match.at("/sys/server/gamecontrol/GameStateAspect"), "setScores", scores);
   std::vector<StatusEntry> entries;
   game.report(entries);
   REQUIRE(entries.size() == 2);
@@ -23,30 +23,31 @@ TEST_CASE("soccer reports play mode and score, and nothing else") {
   CHECK(entries[0].value == Value("PlayOn"));
   CHECK(entries[1].name == "score");
   CHECK(entries[1].value == Value(List{3, 1}));
-  CHECK(entries[1].parts == std::vector<std::string>{"Left", "Right"});  // columns scoreLeft and scoreRight of a batch
+  CHECK(entries[1].parts ==
+        std::vector<std::string>{"Left", "Right"});  // the columns scoreLeft and scoreRight of a batch
   CHECK(std::all_of(entries.begin(), entries.end(), isStatusWord));
 }
 
-TEST_CASE("a player's state says who the player is, and sonars hear it as they hear goal posts") {
-  MatchHouse house;
-  house.importField();
-  house.connect("new");
-  house.join("Reds", 7);
-  const auto identity = [&](int agent) { return house.stateOf(agent).as<IAgentIdentity>(); };
+TEST_CASE("a player's state gives its team and number, and sonars detect it like a goal post") {
+  SoccerMatch match;
+  match.importField();
+  match.connect("new");
+  match.join("Reds", 7);
+  const auto identity = [&](int agent) { return match.stateOf(agent).as<IAgentIdentity>(); };
   REQUIRE(identity(1));
   CHECK(identity(1)->team().empty());
   CHECK(identity(1)->number() == 0);
   CHECK(identity(2)->team() == "Reds");
   CHECK(identity(2)->number() == 7);
-  CHECK(house.stateOf(1).as<IEchoTarget>());
+  CHECK(match.stateOf(1).as<IEchoTarget>());
   std::vector<IEchoTarget*> targets;
-  house.kernel.root().require<Node>("/usr/scene").collect(targets);
+  match.kernel.root().require<Node>("/usr/scene").collect(targets);
   CHECK(targets.size() == 2 + 4);  // two robots, four posts
 }
 
-TEST_CASE("soccer reads who joins from (init ...)") {
-  MatchHouse house;
-  const auto* policy = house.kernel.root().require<Node>("/sys/server/gamecontrol").childOf<IJoinPolicy>();
+TEST_CASE("soccer reads team and number from (init ...)") {
+  SoccerMatch match;
+  const auto* policy = match.kernel.root().require<Node>("/sys/server/gamecontrol").childOf<IJoinPolicy>();
   REQUIRE(policy);
   CHECK(policy->predicate() == "init");
   for (const auto& [text, team, number] :
@@ -62,9 +63,10 @@ TEST_CASE("soccer reads who joins from (init ...)") {
   }
 }
 
-TEST_CASE("eyes read their own percepts: things, parts of players, lines; what makes no sense is left out") {
-  MatchHouse house;
-  auto& agent = house.kernel.create<Node>("AgentAspect", "/usr/scene/eyes");
+TEST_CASE(
+    "vision perceptors parse their own percepts into things, parts of players and lines, and ignore invalid items") {
+  SoccerMatch match;
+  auto& agent = match.kernel.create<Node>("AgentAspect", "/usr/scene/eyes");
   Predicates percept;
   readSexp(
       "(See (B (pol 1 -20 3.5)) (F1L (pol 2 3)) (P (team Red) (id 3) (head (pol 4 5 6)) (lfoot (pol 7 8 9)))"

@@ -1,17 +1,17 @@
 #pragma once
 /// \file
-/// A match in which fouls are judged, and the fouls that monitors get.
+/// A match in which fouls are judged, and the fouls that monitors receive.
 
 #include "match_house.h"
 
 namespace spark::test {
 
 /// Teams A (left) and B (right) of spheres on the league's field, in PlayOn, with the ball far from all players. Agents
-/// are numbered A1, A2, ..., B1, B2, ... With a `radius` below 0.25 m they count as lying, else as standing. Players
-/// wait in a row at y = 8, 2 m apart.
-struct FoulMatch : MatchHouse {
+/// are numbered A1, A2, ..., B1, B2, ... A sphere with a `radius` below 0.25 m counts as lying, a larger one as
+/// standing. Players wait in a row at y = 8, 2 m apart.
+struct FoulMatch : SoccerMatch {
   FoulMatch(std::initializer_list<const char*> fouls, int left, int right, double radius = 0.4)
-      : MatchHouse(false), left_(left) {
+      : SoccerMatch(false), left_(left) {
     set("AgentRadius", radius);
     set("AgentMass", 10);
     set("MaxRobotTypeCount", 11), set("MinRobotTypesCount", 1), set("MaxSumTwoRobotTypes", 22);
@@ -37,7 +37,7 @@ struct FoulMatch : MatchHouse {
     bodyOf(agent).setVelocity(Vec3(vx, 0, 0));
   }
   Vec3 position(int agent) { return bodyOf(agent).state().position; }
-  /// The fouls that monitors got since the last call: "index type team unum".
+  /// The fouls since the last call, as monitors receive them: "index type team unum".
   std::vector<std::string> fouls() {
     Environment env;
     kernel.root().require<IMonitorItem>("/sys/fouls").contribute(env);

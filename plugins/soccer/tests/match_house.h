@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A match without a network: sphere players with actions that the test writes and percepts that it reads.
+/// A match without a network: sphere players whose actions the test sets and whose percepts it reads.
 
 #include <catch2/catch.hpp>
 
@@ -19,11 +19,11 @@ inline int count(const std::string& text, const std::string& what) {
   return n;
 }
 
-/// Sends the actions in `next` once, and keeps its percepts.
+/// Sends the actions in `next` once, and stores its percepts.
 class Puppet : public Behavior {
   SPARK_CLASS(Puppet, Behavior)
  public:
-  static void describe(Description<Puppet>& d) { d.doc("A player that a test moves."); }
+  static void describe(Description<Puppet>& d) { d.doc("A player controlled by a test."); }
   void start(Predicates& actions) override { readSexp("(scene " + robot + ")", actions); }
   void think(const Predicates& percepts, Predicates& actions) override {
     heard.clear();
@@ -38,9 +38,9 @@ class Puppet : public Behavior {
   std::string all;    ///< all percepts
 };
 
-/// The match. On the field of 2004, or on the league's if `sphere` is false.
-struct MatchHouse : House {
-  explicit MatchHouse(bool sphere = true) {
+/// A soccer match on the field of 2004, or on the current league's field if `sphere` is false.
+struct SoccerMatch : House {
+  explicit SoccerMatch(bool sphere = true) {
     for (const char* p : {"files", "scene", "scene-rsg", "physics", "physics-ode", "simulation", "parser-sexp",
                           "gamecontrol", "sensors", "effectors", "monitor", "soccer"})
       kernel.plugins().use(p);
@@ -94,13 +94,13 @@ struct MatchHouse : House {
   }
   void runSeconds(double seconds) { run(static_cast<int>(std::lround(seconds / 0.02))); }
 
-  /// Connects a puppet with a robot; it has no team yet.
+  /// Connects a puppet with a robot but without a team.
   Puppet& connect(const std::string& name) {
     auto& p = kernel.create<Puppet>("Puppet", "/usr/agent/" + name);
     run(5);
     return p;
   }
-  /// Sends actions and runs until they have acted.
+  /// Sends actions and runs until they have taken effect.
   void act(Puppet& p, const std::string& actions) {
     p.next = actions;
     run(2);
@@ -126,7 +126,7 @@ struct MatchHouse : House {
   }
   void placeAgent(int agent, double x, double y) { place(bodyOf(agent), x, y, 0.22); }
   void placeBall(double x, double y, double z = 0.111) { place(ball(), x, y, z); }
-  /// Puts the agent at the ball, on its -x side, so that it touches the ball.
+  /// Places the agent at the ball, on its -x side, so that it touches the ball.
   void touch(int agent) {
     const Vec3 b = ball().state().position;
     place(bodyOf(agent), b.x() - 0.3, b.y(), 0.22);

@@ -1,4 +1,4 @@
-// Offside, a rule that one line of the config adds.
+// Offside, a rule that a config can add with one line.
 #include "match_house.h"
 
 using namespace spark;
@@ -7,7 +7,7 @@ using namespace spark::test;
 namespace {
 
 /// A1 A2 A3 are agents 1..3, B1 B2 agents 4 and 5; A attacks towards +x.
-struct OffsideMatch : MatchHouse {
+struct OffsideMatch : SoccerMatch {
   explicit OffsideMatch(bool judged = true) {
     importField();
     if (judged) kernel.create("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect");
@@ -17,7 +17,7 @@ struct OffsideMatch : MatchHouse {
     run(1);
     formation(40);
   }
-  /// B's second-last player stands at x = 30; A2 at the given x; the ball and A1 at 20.
+  /// B's second-last player is at x = 30, A2 at x = `attacker`, the ball and A1 at 20.
   void formation(double attacker) {
     placeAgent(1, 18, 0), placeAgent(2, attacker, 10), placeAgent(3, -10, 0), placeAgent(4, 50, 0),
         placeAgent(5, 30, -10);
@@ -38,7 +38,7 @@ struct OffsideMatch : MatchHouse {
 
 }  // namespace
 
-TEST_CASE("a player behind the second-last opponent who gets the ball is offside", "[soccer]") {
+TEST_CASE("a player behind the second-last opponent is offside when it gets the ball", "[soccer]") {
   OffsideMatch h;
   h.pass();
   CHECK(h.get("/sys/server/gamecontrol/OffsideAspect", "marked").text() == "{2}");
@@ -51,7 +51,7 @@ TEST_CASE("a player behind the second-last opponent who gets the ball is offside
   CHECK((h.ball().state().position - spot).head<2>().norm() < 0.5);
 }
 
-TEST_CASE("offside is switched off and on during a match", "[soccer]") {
+TEST_CASE("the offside rule can be disabled and enabled during a match", "[soccer]") {
   OffsideMatch h;
   Leaf& aspect = *h.kernel.root().find("/sys/server/gamecontrol/OffsideAspect");
   h.pass();
@@ -62,16 +62,16 @@ TEST_CASE("offside is switched off and on during a match", "[soccer]") {
   CHECK(h.get("/sys/server/gamecontrol/OffsideAspect", "marked").text() == "{}");
   h.formation(40);
   setProperty(aspect, "enabled", true);
-  h.runSeconds(0.2);  // that touch was long ago
+  h.runSeconds(0.2);  // the previous touch has expired
   h.pass();
   h.receive(41);
   CHECK(h.mode() == "offside_left");
   setProperty(aspect, "enabled", false);
-  h.runSeconds(1.1);  // an offside that was called is still carried out
+  h.runSeconds(1.1);  // an offside that was already called is still carried out
   CHECK(h.mode() == "free_kick_right");
 }
 
-TEST_CASE("no offside: level with the defence, behind the ball, in the own half", "[soccer]") {
+TEST_CASE("a player level with the defense, behind the ball or in its own half is not offside", "[soccer]") {
   OffsideMatch h;
   const double x = GENERATE(29.0, 19.0, -5.0);
   h.formation(x);
@@ -98,7 +98,7 @@ TEST_CASE("without the aspect there is no offside", "[soccer]") {
   CHECK(h.mode() == "PlayOn");
 }
 
-TEST_CASE("the touch that takes a restart marks nobody", "[soccer]") {
+TEST_CASE("a touch that executes a restart marks no player", "[soccer]") {
   OffsideMatch h;
   h.setMode("KickIn_Left");
   h.runSeconds(1.2);

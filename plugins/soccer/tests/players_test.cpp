@@ -6,8 +6,8 @@
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("init gives team, number and a start position, and is announced once", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("init sets team, number and start position, which are announced once", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 7);
   CHECK(getProperty(h.stateOf(1), "side").toString() == "left");
@@ -25,8 +25,8 @@ TEST_CASE("init gives team, number and a start position, and is announced once",
   CHECK(h.bodyOf(2).state().position.x() == Approx(52 - 0.44).margin(0.01));
 }
 
-TEST_CASE("number 0, none or a word is the lowest free one", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("number 0, no number and a word give the lowest free number", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.join("A", 1);
   for (const auto& [name, action, unum] : {std::tuple{"x", "(init (unum 0)(teamname A))", 2},
@@ -38,8 +38,8 @@ TEST_CASE("number 0, none or a word is the lowest free one", "[soccer]") {
   }
 }
 
-TEST_CASE("an init that is refused drops the agent in the middle, with one line in the log", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("a refused init moves the agent above the center and logs one line", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.join("A", 1), h.join("B", 1);
   Puppet& c = h.connect("C");
@@ -69,7 +69,7 @@ TEST_CASE("an init that is refused drops the agent in the middle, with one line 
 }
 
 TEST_CASE("an agent that sends init in every cycle does not fill the log", "[soccer]") {
-  MatchHouse h;
+  SoccerMatch h;
   h.importField();
   h.join("A", 1);
   Puppet& b = h.connect("B");
@@ -84,8 +84,8 @@ TEST_CASE("an agent that sends init in every cycle does not fill the log", "[soc
   CHECK(std::count(h.text.begin(), h.text.end(), '\n') < 30);
 }
 
-TEST_CASE("a twelfth player of a team is refused; a number is free again when its player leaves", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("a twelfth player of a team is refused, and a number is free again after its player leaves", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   for (int n = 1; n <= 11; ++n) h.join("A", n);
   Puppet& late = h.connect("late");
@@ -100,8 +100,9 @@ TEST_CASE("a twelfth player of a team is refused; a number is free again when it
   CHECK(getProperty(h.stateOf(12), "unum").toInteger() == 4);
 }
 
-TEST_CASE("init again moves to the next start position before kick-offs, and not during play", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("a repeated init moves the robot to the next start position before kick-offs, and not during play",
+          "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   const bool before = GENERATE(true, false);
@@ -115,8 +116,8 @@ TEST_CASE("init again moves to the next start position before kick-offs, and not
   CHECK(getProperty(h.stateOf(1), "unum").toInteger() == (again.find("3") == again.npos ? 1 : 3));
 }
 
-TEST_CASE("a second init with another number gives the first one back", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("a second init with another number releases the first one", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 3);
   h.act(a, "(init (unum 9)(teamname A))");
@@ -127,8 +128,8 @@ TEST_CASE("a second init with another number gives the first one back", "[soccer
   CHECK(getProperty(h.stateOf(2), "unum").toInteger() == 3);
 }
 
-TEST_CASE("the league's limits of robot types hold", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("the league's limits of robot types apply", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.set("MaxRobotTypeCount", 1);
   h.join("A", 1);
@@ -137,22 +138,22 @@ TEST_CASE("the league's limits of robot types hold", "[soccer]") {
   h.act(b, "(init (unum 2)(teamname A))");
   h.run(1);
   CHECK(h.text.find("robots of type 0 already") != std::string::npos);
-  // the number was not used up
+  // The number is still free.
   h.set("MaxRobotTypeCount", 11);
   h.act(b, "(init (unum 2)(teamname A))");
   h.run(1);
   CHECK(getProperty(h.stateOf(2), "unum").toInteger() == 2);
 }
 
-TEST_CASE("beams are in the team's own view, and only before kick-offs", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("beams are in the team's coordinates and only allowed before kick-offs", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet &a = h.join("A", 1), &b = h.join("B", 1);
   a.next = b.next = "(beam -10 5 0)";
   h.run(3);
   CHECK(h.bodyOf(1).state().position.head<2>().isApprox(Eigen::Vector2d(-10, 5), 0.01));
   CHECK(h.bodyOf(2).state().position.head<2>().isApprox(Eigen::Vector2d(10, -5), 0.01));
-  h.act(a, "(beam 10 50 0)");  // beyond the centre line and the touch line
+  h.act(a, "(beam 10 50 0)");  // beyond the center line and the touch line
   h.run(1);
   CHECK(h.bodyOf(1).state().position.x() <= 0.0);
   CHECK(h.bodyOf(1).state().position.y() == Approx(34).margin(0.01));
@@ -161,8 +162,8 @@ TEST_CASE("beams are in the team's own view, and only before kick-offs", "[socce
   CHECK(h.bodyOf(1).state().position.x() > -15);
 }
 
-TEST_CASE("beams turn in single precision, step by step", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("the beam angle is computed in single precision, step by step", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   a.next = "(beam -10 5 -80.5377)";
@@ -174,8 +175,8 @@ TEST_CASE("beams turn in single precision, step by step", "[soccer]") {
   CHECK(std::atan2(r(1, 0), r(0, 0)) == Approx(static_cast<double>(yaw)).margin(6e-8).epsilon(0));
 }
 
-TEST_CASE("a kick's force follows the formula and lasts its steps", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("a kick's force follows the formula and lasts for the given number of steps", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 2);
   h.setMode("PlayOn");
@@ -195,14 +196,15 @@ TEST_CASE("a kick's force follows the formula and lasts its steps", "[soccer]") 
   CHECK(getProperty(kick, "stepsLeft").toInteger() == 0);
   CHECK(h.ball().state().linearVelocity.x() > 10);
   CHECK(h.ball().state().linearVelocity.z() > 3);
-  // out of reach: nothing
+  // Out of reach the kick has no effect.
   a.next = "(kick 0 100)";
   h.run(2);
   CHECK(getProperty(kick, "stepsLeft").toInteger() == 0);
 }
 
-TEST_CASE("a drive pushes until the next one, mirrored for the right team, and empties the battery", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("a drive force persists until the next one, is mirrored for the right team, and drains the battery",
+          "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet &a = h.join("A", 1), &b = h.join("B", 1);
   h.setMode("PlayOn");
@@ -216,7 +218,7 @@ TEST_CASE("a drive pushes until the next one, mirrored for the right team, and e
   CHECK(h.bodyOf(1).state().linearVelocity.x() > 8);
   CHECK(h.bodyOf(1).state().linearVelocity.x() < 10.5);
   CHECK(h.bodyOf(2).state().linearVelocity.x() < -8);
-  // 6000 N use a third of a percent in a second
+  // 6000 N drain a third of a percent per second.
   CHECK(getProperty(h.stateOf(1), "battery").toNumber() == Approx(100 - 2.0 / 3).margin(0.03));
   setProperty(h.stateOf(1), "battery", 0);
   h.act(b, "(drive 0 0 0)");
@@ -224,8 +226,8 @@ TEST_CASE("a drive pushes until the next one, mirrored for the right team, and e
   for (int agent : {1, 2}) CHECK(std::abs(h.bodyOf(agent).state().linearVelocity.x()) < 0.5);
 }
 
-TEST_CASE("what is not finite is refused", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("arguments that are not finite are refused", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   h.setMode("PlayOn");
@@ -238,8 +240,8 @@ TEST_CASE("what is not finite is refused", "[soccer]") {
   CHECK(h.text.find("expected a number as argument 2, found none") != std::string::npos);
 }
 
-TEST_CASE("only the goalie catches, inside his area", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("only the goalie can catch the ball, inside its area", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet &goalie = h.join("A", 1), &other = h.join("A", 2);
   h.join("B", 9);
@@ -253,15 +255,15 @@ TEST_CASE("only the goalie catches, inside his area", "[soccer]") {
   h.act(goalie, "(catch)");
   CHECK(h.ball().state().position.x() == Approx(-49 + 0.22 + 0.111 + 0.07).margin(0.05));
   CHECK(h.bodyOf(3).state().position.x() > -46);
-  // outside of the area
+  // Outside the area.
   h.placeBall(-20, 0);
   h.placeAgent(1, -20.8, 0);
   h.act(goalie, "(catch)");
   CHECK(h.ball().state().position.x() == Approx(-20).margin(0.05));
 }
 
-TEST_CASE("pan and tilt stay within their ranges and are told", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("pan and tilt stay within their ranges and are reported", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   setProperty(h.at("/usr/scene/AgentAspect1/body/PanTiltEffector"), "sigma", 0);
@@ -277,9 +279,9 @@ TEST_CASE("pan and tilt stay within their ranges and are told", "[soccer]") {
   CHECK(a.all.find("(AgentState (pan_tilt 90 20) (battery 100.00) (temp 23.00))") != std::string::npos);
 }
 
-TEST_CASE("robots without a team are in nobody's way, and get solid with their team", "[soccer]") {
+TEST_CASE("robots without a team collide with no other robot, and become solid when they join one", "[soccer]") {
   const bool detached = GENERATE(true, false);
-  MatchHouse h;
+  SoccerMatch h;
   setProperty(h.kernel.create("TeamlessAspect", "/sys/server/gamecontrol/TeamlessAspect"), "enabled", detached);
   h.importField();
   h.connect("x");

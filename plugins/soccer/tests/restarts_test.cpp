@@ -1,4 +1,4 @@
-// Restarts, goals and clocks: the rules of play.
+// Restarts, goals and the time of play.
 #include "match_house.h"
 
 using namespace spark;
@@ -6,8 +6,8 @@ using namespace spark::test;
 
 namespace {
 
-/// Two players on each side: A1 A2 are agents 1 and 2, B1 B2 agents 3 and 4. In PlayOn, all far from the ball.
-struct Match : MatchHouse {
+/// Two players per team: A1 A2 are agents 1 and 2, B1 B2 agents 3 and 4. In PlayOn, all far from the ball.
+struct Match : SoccerMatch {
   Match() {
     importField();
     join("A", 1), join("A", 2), join("B", 1), join("B", 2);
@@ -17,7 +17,7 @@ struct Match : MatchHouse {
     run(1);
   }
   void aside() { placeAgent(1, -30, 20), placeAgent(2, -30, -20), placeAgent(3, 30, 20), placeAgent(4, 30, -20); }
-  /// The agent touches the ball; then the ball is put at x, y.
+  /// The agent touches the ball, then the ball is moved to x, y.
   void lastTouchThenBallAt(int agent, double x, double y) {
     touch(agent);
     aside();
@@ -28,8 +28,8 @@ struct Match : MatchHouse {
 
 }  // namespace
 
-TEST_CASE("before the kick-off the ball is held and the clock stands", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("before the kick-off the ball is held and the time of play does not advance", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.join("A", 1);
   h.placeBall(5, 5);
@@ -40,8 +40,8 @@ TEST_CASE("before the kick-off the ball is held and the clock stands", "[soccer]
   CHECK(h.gameTime() == 0);
 }
 
-TEST_CASE("an empty field waits without a match", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("without agents no match starts", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.set("AutomaticKickOff", true);
   h.set("WaitBeforeKickOff", 0.1);
@@ -49,8 +49,8 @@ TEST_CASE("an empty field waits without a match", "[soccer]") {
   CHECK(h.mode() == "BeforeKickOff");
 }
 
-TEST_CASE("an automatic kick-off comes after the wait, for the left team", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("an automatic kick-off comes after the waiting time, for the left team", "[soccer]") {
+  SoccerMatch h;
   h.set("AutomaticKickOff", true);
   h.set("WaitBeforeKickOff", 1.0);
   h.importField();
@@ -62,7 +62,7 @@ TEST_CASE("an automatic kick-off comes after the wait, for the left team", "[soc
   CHECK(h.gameTime() > 0);
 }
 
-TEST_CASE("at a kick-off players stay in their halves and out of the circle; a touch starts play", "[soccer]") {
+TEST_CASE("at a kick-off players are kept in their halves and out of the circle, and a touch starts play", "[soccer]") {
   Match h;
   h.placeAgent(1, 20, 10);  // A in B's half
   h.placeAgent(3, -20, 0);  // B in A's half
@@ -94,10 +94,11 @@ TEST_CASE("a ball in the goal box is a goal, and the other side kicks off", "[so
   CHECK(h.score() == "{1, 1}");
 }
 
-TEST_CASE("a ball that flies through the goal line is a goal without the recorder, beside it is none", "[soccer]") {
+TEST_CASE("without the recorder a ball that crosses the goal line inside the goal is a goal, and beside it is not",
+          "[soccer]") {
   Match h;
   h.set("RightGoalRecorder", "nowhere");
-  h.connect("Bystander");  // the tree changed: paths are looked up again
+  h.connect("Bystander");  // changes the tree, so that paths are looked up again
   const double y = GENERATE(2.0, 5.0);
   h.touch(2);
   h.aside();
@@ -113,7 +114,7 @@ TEST_CASE("a ball over the touch line gives a kick-in to the other team", "[socc
   h.ball().setVelocity(Vec3(0, 20, 0));
   h.run(1);
   CHECK(h.mode() == "KickIn_Right");
-  // the pause, then the ball is pinned inside the line and the other team kept away
+  // After the pause the ball is fixed inside the line and the other team is kept away.
   h.placeAgent(1, 9, 33);
   h.runSeconds(1.1);
   const Vec3 b = h.ball().state().position;
@@ -125,9 +126,9 @@ TEST_CASE("a ball over the touch line gives a kick-in to the other team", "[socc
   CHECK(h.mode() == "PlayOn");
 }
 
-TEST_CASE("over the goal line it is a goal kick or a corner", "[soccer]") {
+TEST_CASE("a ball over the goal line gives a goal kick or a corner kick", "[soccer]") {
   Match h;
-  SECTION("the attackers' touch gives a goal kick") {
+  SECTION("a touch by the attackers gives a goal kick") {
     h.lastTouchThenBallAt(2, 52.3, 20);
     CHECK(h.mode() == "goal_kick_right");
     h.placeAgent(1, 45, 3);  // an opponent inside the area
@@ -141,7 +142,7 @@ TEST_CASE("over the goal line it is a goal kick or a corner", "[soccer]") {
     h.run(1);
     CHECK(h.mode() == "PlayOn");
   }
-  SECTION("the defenders' touch gives a corner") {
+  SECTION("a touch by the defenders gives a corner kick") {
     h.lastTouchThenBallAt(4, 52.3, -20);
     CHECK(h.mode() == "corner_kick_left");
     h.runSeconds(1.1);
@@ -153,7 +154,7 @@ TEST_CASE("over the goal line it is a goal kick or a corner", "[soccer]") {
   }
 }
 
-TEST_CASE("when nobody touched the ball it comes back and nothing is awarded", "[soccer]") {
+TEST_CASE("without any touch so far a ball that goes out is moved back and gives no restart", "[soccer]") {
   Match h;
   h.placeBall(20, 36);
   h.run(2);
@@ -161,7 +162,7 @@ TEST_CASE("when nobody touched the ball it comes back and nothing is awarded", "
   CHECK(h.ball().state().position.y() < 34.2);
 }
 
-TEST_CASE("a restart that nobody takes becomes a drop ball", "[soccer]") {
+TEST_CASE("a restart without a touch becomes a drop ball", "[soccer]") {
   Match h;
   h.set("RuleDropBallTime", 3);
   h.lastTouchThenBallAt(1, 10, 35);
@@ -174,7 +175,7 @@ TEST_CASE("a restart that nobody takes becomes a drop ball", "[soccer]") {
   for (int agent : {2, 4}) CHECK((h.bodyOf(agent).state().position - b).norm() > 8);
 }
 
-TEST_CASE("a drop ball in a penalty area is laid at its corner", "[soccer]") {
+TEST_CASE("a drop ball in a penalty area is placed at the area's corner", "[soccer]") {
   Match h;
   h.placeBall(48, -3);
   CHECK(h.trainer("(dropBall)").empty());
@@ -182,7 +183,7 @@ TEST_CASE("a drop ball in a penalty area is laid at its corner", "[soccer]") {
   CHECK(h.ball().state().position.isApprox(Vec3(52 - 16.5, -20.16, 0.111), 0.01));
 }
 
-TEST_CASE("the taker of a restart may not touch the ball twice", "[soccer]") {
+TEST_CASE("the player that executes a restart may not touch the ball twice", "[soccer]") {
   Match h;
   h.trainer("(kickOff Left)");
   h.run(3);
@@ -191,11 +192,11 @@ TEST_CASE("the taker of a restart may not touch the ball twice", "[soccer]") {
   h.aside();
   h.placeBall(3, 0);
   h.run(10);
-  SECTION("again: a free kick for the others") {
+  SECTION("a second touch gives the opponents a free kick") {
     h.touch(1);
     CHECK(h.mode() == "free_kick_right");
   }
-  SECTION("a team-mate in between: play goes on") {
+  SECTION("a touch by a team-mate in between is allowed") {
     h.touch(2);
     h.aside();
     h.run(10);
@@ -204,7 +205,7 @@ TEST_CASE("the taker of a restart may not touch the ball twice", "[soccer]") {
   }
 }
 
-TEST_CASE("a goal straight from the kick-off does not count", "[soccer]") {
+TEST_CASE("a goal directly from the kick-off does not count", "[soccer]") {
   Match h;
   h.trainer("(kickOff Left)");
   h.run(3);
@@ -216,7 +217,7 @@ TEST_CASE("a goal straight from the kick-off does not count", "[soccer]") {
   CHECK(h.score() == "{0, 0}");
 }
 
-TEST_CASE("halves: half time, the other kick-off, the end", "[soccer]") {
+TEST_CASE("half time, the second half's kick-off and the end come at their times", "[soccer]") {
   Match h;
   h.set("RuleHalfTime", 1);
   h.set("AutomaticKickOff", true);
@@ -231,12 +232,12 @@ TEST_CASE("halves: half time, the other kick-off, the end", "[soccer]") {
   CHECK(h.gameTime() == Approx(before).margin(0.25));
   h.runSeconds(1.2);
   CHECK(h.mode() == "GameOver");
-  h.setMode("PlayOn");  // re-imposed until the time is set back
+  h.setMode("PlayOn");  // set again until the time is set back
   h.run(1);
   CHECK(h.mode() == "GameOver");
 }
 
-TEST_CASE("teams change sides at half time when they are told to", "[soccer]") {
+TEST_CASE("with ChangeSidesInSecondHalf teams change sides at half time", "[soccer]") {
   Match h;
   h.set("RuleHalfTime", 1);
   h.set("ChangeSidesInSecondHalf", true);
@@ -248,7 +249,7 @@ TEST_CASE("teams change sides at half time when they are told to", "[soccer]") {
   CHECK(getProperty(h.stateOf(1), "side").toString() == "right");
 }
 
-TEST_CASE("with one half the match is over after it", "[soccer]") {
+TEST_CASE("with a single half the match is over after that half", "[soccer]") {
   Match h;
   h.set("RuleHalfTime", 1);
   h.set("SingleHalfTime", true);
@@ -257,7 +258,7 @@ TEST_CASE("with one half the match is over after it", "[soccer]") {
   CHECK(h.mode() == "GameOver");
 }
 
-TEST_CASE("the match is state: a saved one goes on alike", "[soccer]") {
+TEST_CASE("a match that is saved and restored continues identically", "[soccer]") {
   Match h;
   SECTION("in the pause of a kick-in") { h.lastTouchThenBallAt(1, 10, 35); }
   SECTION("after a kick-off, before the right to score") {

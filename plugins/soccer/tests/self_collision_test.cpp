@@ -1,4 +1,4 @@
-// Self-collisions: when they are fouls, which joints are frozen, and which boxes overlap.
+// Self-collisions: when they are fouls, which joints they freeze, and which boxes overlap.
 #include <unistd.h>
 
 #include <Eigen/Geometry>
@@ -12,7 +12,7 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-/// A2 is a boxer whose arms overlap; it is agent 2.
+/// A2 is a boxer whose arms overlap. It is agent 2.
 struct BoxerMatch : FoulMatch {
   explicit BoxerMatch(const char* overlap = "0.06") : FoulMatch({"SelfCollisionAspect"}, 1, 0) {
     setMode("BeforeKickOff");
@@ -23,7 +23,7 @@ struct BoxerMatch : FoulMatch {
     run(2);
     fouls();
     setMode("PlayOn");
-    trainer("(time 20)");  // from 16 s to 64 s the clock of play is exact
+    trainer("(time 20)");  // from 16 s to 64 s the single-precision time of play is exact
   }
   bool frozen(const char* effector) {
     std::vector<Effector*> all;
@@ -36,7 +36,7 @@ struct BoxerMatch : FoulMatch {
 };
 }  // namespace
 
-TEST_CASE("joints of overlapping parts are frozen for 1 s and then spared for 2 s", "[fouls]") {
+TEST_CASE("joints of overlapping parts are frozen for 1 s and then exempt for 2 s", "[fouls]") {
   BoxerMatch h;
   h.run(1);
   CHECK(h.fouls() == Fouls{"1 7 1 2"});
@@ -52,7 +52,7 @@ TEST_CASE("joints of overlapping parts are frozen for 1 s and then spared for 2 
   h.run(1);
   CHECK(h.fouls() == Fouls{"2 7 1 2"});
   CHECK(h.frozen("lae1"));
-  SECTION("a pause thaws") {
+  SECTION("a pause releases the joints") {
     h.setMode("BeforeKickOff");
     h.run(1);
     CHECK_FALSE(h.frozen("lae1"));
@@ -60,7 +60,7 @@ TEST_CASE("joints of overlapping parts are frozen for 1 s and then spared for 2 
     h.run(1);
     CHECK(h.fouls() == Fouls{"3 7 1 2"});
   }
-  SECTION("state is kept") {
+  SECTION("the freeze is part of the saved state") {
     StateWriter out(true);
     saveTree(h.kernel.root(), out);
     h.run(60);
@@ -77,7 +77,7 @@ TEST_CASE("joints of overlapping parts are frozen for 1 s and then spared for 2 
   }
 }
 
-TEST_CASE("late in a half a freeze lasts a cycle longer: the clock of play is summed in single precision", "[fouls]") {
+TEST_CASE("late in a half a freeze lasts one cycle longer because the time of play is in single precision", "[fouls]") {
   BoxerMatch h;
   REQUIRE(h.trainer("(time 90)").empty());
   h.run(1);
@@ -88,7 +88,7 @@ TEST_CASE("late in a half a freeze lasts a cycle longer: the clock of play is su
   CHECK_FALSE(h.frozen("lae1"));
 }
 
-TEST_CASE("a trainer who sets the clock back ends a freeze", "[fouls]") {
+TEST_CASE("a trainer that sets the time back ends a freeze", "[fouls]") {
   BoxerMatch h;
   REQUIRE(h.trainer("(time 90)").empty());
   h.run(1);
@@ -108,9 +108,9 @@ TEST_CASE("small overlaps of a robot's parts are tolerated", "[fouls]") {
   CHECK(h.fouls() == Fouls{"1 7 1 2"});
 }
 
-TEST_CASE("self-collisions may be penalised by a beam, or not at all", "[fouls]") {
+TEST_CASE("self-collisions may be penalized by a beam or not at all", "[fouls]") {
   BoxerMatch h;
-  SECTION("by a beam, not again before 10 s have passed") {
+  SECTION("by a beam, at most once per 10 s") {
     h.set("SelfCollisionBeamPenalty", true);
     h.run(1);
     CHECK(h.fouls() == Fouls{"1 7 1 2"});
@@ -126,7 +126,7 @@ TEST_CASE("self-collisions may be penalised by a beam, or not at all", "[fouls]"
     h.run(1);
     CHECK(h.countFouls() == 1);
   }
-  SECTION("and be written to a file, once each") {
+  SECTION("each self-collision is written to a file once") {
     const auto file = std::filesystem::temp_directory_path() / fmt::format("spark-self-collisions-{}.txt", getpid());
     std::filesystem::remove(file);
     h.set("SelfCollisionRecordFilename", file.string());
@@ -147,22 +147,22 @@ TEST_CASE("self-collisions may be penalised by a beam, or not at all", "[fouls]"
   }
 }
 
-TEST_CASE("of two boxes only the later one's word keeps them from being compared", "[fouls]") {
+TEST_CASE("a pair of boxes is ignored only if the later box excludes the earlier one", "[fouls]") {
   BoxerMatch h;
   h.setMode("BeforeKickOff");
   const std::string robot = "/usr/scene/AgentAspect2/robot/";
-  // The referee looks up the robot's boxes again when its nodes change.
+  // The referee searches for the robot's boxes again when its nodes change.
   const auto name = [&](const char* speaker, const char* named) {
     callMethod(h.at(robot + speaker), "addNotCollideWithColliderName", std::vector<Value>{named, true});
     h.kernel.create("Transform", robot + "change");
   };
-  SECTION("the later one names the earlier one") {
+  SECTION("the later one excludes the earlier one") {
     name("rarm/RightArm", "LeftArm");
     h.setMode("PlayOn");
     h.run(5);
     CHECK(h.fouls().empty());
   }
-  SECTION("the earlier one names the later one") {
+  SECTION("the earlier one excludes the later one") {
     name("larm/LeftArm", "RightArm");
     h.setMode("PlayOn");
     h.run(1);
@@ -194,7 +194,7 @@ bool overlap(double tolerance, const Vec3& half, double x, const Mat3& rotation)
 
 }  // namespace
 
-TEST_CASE("boxes overlap as deep as along a face's normal when that is least", "[fouls]") {
+TEST_CASE("the overlap depth of boxes is measured along a face normal if that gives the minimum", "[fouls]") {
   const Vec3 half(0.5, 0.5, 0.5);
   const Mat3 rotation = turned(90, 30, 50);
   const double touching = 0.5 + rotation.row(0).cwiseAbs().sum() * 0.5;
@@ -203,16 +203,16 @@ TEST_CASE("boxes overlap as deep as along a face's normal when that is least", "
   CHECK_FALSE(overlap(0, half, touching + 0.001, rotation));
 }
 
-TEST_CASE("where edges cross, the tolerance counts by the sine of their angle", "[fouls]") {
+TEST_CASE("for crossing edges the tolerance is scaled by the sine of their angle", "[fouls]") {
   const Vec3 half(0.05, 0.15, 0.05);
   const Mat3 rotation = turned(40, 40, 40);
   const double x = 0.05 + rotation.row(0).cwiseAbs().dot(half) - 0.06;
-  // The boxes overlap by 0.0303 m along the normal of their long edges, which enclose 71.3 degrees.
+  // The boxes overlap by 0.0303 m along the normal of their long edges, which are at 71.3 degrees.
   CHECK(overlap(0.0286, half, x, rotation));
   CHECK_FALSE(overlap(0.0288, half, x, rotation));
 }
 
-TEST_CASE("boxes that are parallel or nearly so are no foul, however deep they overlap", "[fouls]") {
+TEST_CASE("parallel or nearly parallel boxes are no foul at any depth of overlap", "[fouls]") {
   const Vec3 half(0.04, 0.035, 0.055);
   CHECK_FALSE(overlap(0.04, half, 0.001, Mat3::Identity()));
   CHECK_FALSE(overlap(0.04, half, 0.001, turned(8, 0, 0)));

@@ -1,4 +1,4 @@
-// Vision and hearing of players, messages for monitors, trainer commands.
+// Vision and hearing of players, messages to monitors, trainer commands.
 #include <algorithm>
 
 #include "match_house.h"
@@ -8,7 +8,7 @@ using namespace spark::test;
 
 namespace {
 
-void quiet(MatchHouse& h, int agent) {
+void disableVisionNoise(SoccerMatch& h, int agent) {
   const Value off(false);
   callMethod(h.at("/usr/scene/AgentAspect" + std::to_string(agent) + "/body/VisionPerceptor"), "addNoise",
              std::span(&off, 1));
@@ -16,12 +16,14 @@ void quiet(MatchHouse& h, int agent) {
 
 }  // namespace
 
-TEST_CASE("vision is along the field's axes as the team sees them, all around, without itself", "[soccer]") {
-  MatchHouse h;
+TEST_CASE(
+    "vision is relative to the field's axes from the team's view, covers all directions and excludes the player itself",
+    "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet &a = h.join("A", 1), &b = h.join("B", 2);
   h.setMode("PlayOn");
-  quiet(h, 1), quiet(h, 2);
+  disableVisionNoise(h, 1), disableVisionNoise(h, 2);
   h.placeAgent(1, -10, 0);
   h.placeAgent(2, 10, 0);
   h.placeBall(0, 10);
@@ -29,13 +31,13 @@ TEST_CASE("vision is along the field's axes as the team sees them, all around, w
   a.all.clear(), b.all.clear();
   h.run(6);
   INFO(a.all);
-  // A looks to +x: the ball is ahead to the left. B looks to -x: the ball is ahead to the right.
+  // A faces +x, so the ball is ahead to the left. B faces -x, so the ball is ahead to the right.
   CHECK(a.all.find("(B (pol 14.14 45.00 -0.4") != std::string::npos);
   CHECK(b.all.find("(B (pol 14.14 -45.00 -0.4") != std::string::npos);
   CHECK(a.all.find("(P (team B) (id 2) (pol 20.00 0.00 ") != std::string::npos);
   CHECK(b.all.find("(P (team A) (id 1) (pol 20.00 0.00 ") != std::string::npos);
   CHECK(a.all.find("(team A)") == std::string::npos);
-  // behind: the own corner flag, 42 m back and 34 m to the left
+  // Behind: its own corner flag, 42 m back and 34 m to the left.
   CHECK(a.all.find("(F1L (pol 54.04 141.01 -0.23))") != std::string::npos);
   CHECK(b.all.find("(F2R (pol 54.04 141.01 -0.23))") != std::string::npos);
   for (const char* mark : {"F1L", "F2L", "F1R", "F2R", "G1L", "G2L", "G1R", "G2R"})
@@ -43,8 +45,8 @@ TEST_CASE("vision is along the field's axes as the team sees them, all around, w
   CHECK(count(a.all, "(See ") == 2);  // every third cycle
 }
 
-TEST_CASE("vision has noise, small and different each time", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("vision has small noise that differs each time", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   h.setMode("PlayOn");
@@ -83,21 +85,22 @@ std::string seen(const std::string& percepts) {
 }
 }  // namespace
 
-TEST_CASE("who sees no farther than his range sees all that is nearer, in scene order", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("a player with limited vision range sees all objects within it in scene order", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.set("VisionNoise", false);
   struct {
     const char* team;
     int unum;
     double x, y;
-  } const places[] = {{"A", 1, 0, 0}, {"B", 9, -9, 0},     {"A", 7, 40, 30},  {"B", 2, 0, 11},
-                      {"A", 4, 5, 5}, {"B", 3, 9.5, -0.5}, {"A", 5, -40, -30}};
+  } const positions[] = {{"A", 1, 0, 0}, {"B", 9, -9, 0},     {"A", 7, 40, 30},  {"B", 2, 0, 11},
+                         {"A", 4, 5, 5}, {"B", 3, 9.5, -0.5}, {"A", 5, -40, -30}};
   std::vector<Puppet*> puppets;
-  for (const auto& p : places) puppets.push_back(&h.join(p.team, p.unum));
+  for (const auto& p : positions) puppets.push_back(&h.join(p.team, p.unum));
   h.setMode("PlayOn");
   const auto look = [&] {
-    for (std::size_t i = 0; i < puppets.size(); ++i) h.placeAgent(static_cast<int>(i) + 1, places[i].x, places[i].y);
+    for (std::size_t i = 0; i < puppets.size(); ++i)
+      h.placeAgent(static_cast<int>(i) + 1, positions[i].x, positions[i].y);
     h.placeBall(8, 8);
     h.run(2);
     for (Puppet* p : puppets) p->all.clear();
@@ -107,7 +110,7 @@ TEST_CASE("who sees no farther than his range sees all that is nearer, in scene 
   look();
   CHECK(seenBy(0) == "B9 A7 B2 A4 B3 A5 ");
   CHECK(puppets[0]->all.find("(B ") != std::string::npos);
-  // An eye with a longer range than those for which the grid was made.
+  // An eye with a longer range than those for which the grid was built.
   Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect1/body");
   setProperty(body.require<Leaf>("VisionPerceptor"), "range", 10);
   look();
@@ -126,7 +129,7 @@ TEST_CASE("who sees no farther than his range sees all that is nearer, in scene 
 }
 
 TEST_CASE("teams may be larger than in soccer", "[soccer]") {
-  MatchHouse h;
+  SoccerMatch h;
   h.importField();
   for (const char* limit : {"TeamSize", "MaxRobotTypeCount", "MaxSumTwoRobotTypes"}) h.set(limit, 14);
   for (int unum : {1, 12, 14, 15}) h.join("A", unum);
@@ -140,8 +143,8 @@ TEST_CASE("teams may be larger than in soccer", "[soccer]") {
   CHECK(h.get("/sys/server/gamecontrol/BallStateAspect", "lastUnum").toInteger() == 14);
 }
 
-TEST_CASE("cone vision sees what is in the cone, turned by pan", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("cone vision sees only objects in the cone, which pan turns", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   h.setMode("PlayOn");
@@ -164,7 +167,7 @@ TEST_CASE("cone vision sees what is in the cone, turned by pan", "[soccer]") {
 }
 
 TEST_CASE("cone vision in the head's frame looks along y", "[soccer]") {
-  MatchHouse h;
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   h.setMode("PlayOn");
@@ -192,7 +195,7 @@ namespace {
 
 /// Checks that all objects in the agent's last See are at the true positions that the eye reports. Returns their
 /// number.
-std::size_t checkedSights(MatchHouse& h, IEye& eye, int agent) {
+std::size_t checkedSights(SoccerMatch& h, IEye& eye, int agent) {
   auto& control = h.kernel.root().require<IGameControl>("/sys/server/gamecontrol");
   const auto& aspect = h.kernel.root().require<AgentAspect>("/usr/scene/AgentAspect" + std::to_string(agent));
   Element see;
@@ -210,7 +213,7 @@ std::size_t checkedSights(MatchHouse& h, IEye& eye, int agent) {
     REQUIRE(at != sights.end());
     const Vec3f place = eye.placeOf(polar.at(1).number(), polar.at(2).number(), polar.at(3).number());
     CHECK((place - at->place).norm() < 1e-3f);
-    // x of the view is ahead
+    // The x axis of the view points ahead.
     const Vec3f way = rigidInverse(eye.view()).block<3, 3>(0, 0) * (at->place - positionOf(eye.view()));
     CHECK(std::abs(radToDeg(std::atan2(way.y(), way.x()))) <= eye.cone()[0] / 2 + 0.01);
     ++checked;
@@ -234,8 +237,8 @@ std::size_t checkedSights(MatchHouse& h, IEye& eye, int agent) {
 
 }  // namespace
 
-TEST_CASE("an eye says where in the world its percepts lie, whichever way it looks", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("an eye converts its percepts to world positions in any orientation", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.join("A", 1), h.join("B", 2), h.join("B", 3);
   h.setMode("PlayOn");
@@ -245,7 +248,7 @@ TEST_CASE("an eye says where in the world its percepts lie, whichever way it loo
   const auto turn = [&](int agent, double x, double y) {
     h.bodyOf(agent).setPose({Vec3(x, y, 2), toPose(rotationDeg(17, 5, 40)).rotation});
   };
-  quiet(h, 1), quiet(h, 2);
+  disableVisionNoise(h, 1), disableVisionNoise(h, 2);
   turn(1, -8, 3), turn(2, 20, 1);
   for (const int agent : {1, 2}) {
     const std::string body = "/usr/scene/AgentAspect" + std::to_string(agent) + "/body";
@@ -276,8 +279,9 @@ TEST_CASE("an eye says where in the world its percepts lie, whichever way it loo
   }
 }
 
-TEST_CASE("what is said every cycle is heard every other cycle, by itself always", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("other players hear a message in every second cycle, and the speaker hears each of its messages",
+          "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet &a = h.join("A", 1), &mate = h.join("A", 2), &b = h.join("B", 1);
   h.setMode("PlayOn");
@@ -293,13 +297,14 @@ TEST_CASE("what is said every cycle is heard every other cycle, by itself always
     const std::string word = "m" + std::to_string(i) + ")";
     CHECK(count(a.all, "self " + word) == 1);
     CHECK(count(mate.all, "90.00 " + word) == (i % 2 == 0));
-    CHECK(count(b.all, "-0.00 " + word) + count(b.all, " 0.00 " + word) == (i % 2 == 0));  // ahead, as B sees the field
+    CHECK(count(b.all, "-0.00 " + word) + count(b.all, " 0.00 " + word) ==
+          (i % 2 == 0));  // ahead in B's view of the field
   }
   CHECK(mate.all.find("(hear A ") != std::string::npos);
 }
 
-TEST_CASE("messages that are too long, unprintable or out of range are not heard", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("messages that are too long, unprintable or out of range are not delivered", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet &a = h.join("A", 1), &mate = h.join("A", 2);
   h.setMode("PlayOn");
@@ -319,8 +324,8 @@ TEST_CASE("messages that are too long, unprintable or out of range are not heard
   CHECK(mate.all.find("180.00 12345678901234567890)") != std::string::npos);
 }
 
-TEST_CASE("monitors are told field, modes, teams, score and fouls", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("monitors receive field, modes, teams, score and fouls", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   const auto environment = [&h] {
     Environment env;
@@ -342,8 +347,9 @@ TEST_CASE("monitors are told field, modes, teams, score and fouls", "[soccer]") 
   CHECK(environment().find("foul") == std::string::npos);
 }
 
-TEST_CASE("trainers move ball and players, set modes and clocks; nonsense is ignored with a reason", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("trainers move ball and players and set modes and times, and invalid commands are ignored with a reason",
+          "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.join("A", 1), h.join("B", 2);
   CHECK(h.trainer("(playMode PlayOn)").empty());
@@ -354,7 +360,7 @@ TEST_CASE("trainers move ball and players, set modes and clocks; nonsense is ign
   CHECK(h.trainer("(agent (unum 1)(team Left)(pos -3 1 0.22))").empty());
   CHECK(h.bodyOf(1).state().position.isApprox(Vec3(-3, 1, 0.22), 0.001));
   CHECK(h.trainer("(agent (unum 2)(team Right)(move 5 6 0.22 -90)(battery 40))").empty());
-  CHECK(h.bodyOf(2).state().rotation(0, 1) == Approx(1).margin(1e-3));  // its y axis along +x
+  CHECK(h.bodyOf(2).state().rotation(0, 1) == Approx(1).margin(1e-3));  // its y axis points along +x
   CHECK(getProperty(h.stateOf(2), "battery").toNumber() == 40);
   CHECK(h.trainer("(time 12.5)").empty());
   CHECK(h.gameTime() == 12.5);
@@ -372,7 +378,7 @@ TEST_CASE("trainers move ball and players, set modes and clocks; nonsense is ign
   CHECK(h.trainer("(agent (unum 9)(team Left)(pos 0 0 0))") == "no such player");
   CHECK(h.trainer("(score (left 1))") == "expected (left a)(right b), both 0 or more");
   CHECK(h.trainer("(time -1)") == "expected a time of 0 to 1000000 s");
-  CHECK(h.trainer("(time 1e300)") == "expected a time of 0 to 1000000 s");  // infinite where numbers are single
+  CHECK(h.trainer("(time 1e300)") == "expected a time of 0 to 1000000 s");  // infinite in single precision
   CHECK(h.trainer("(ball (vel 1e300 0 0))") == "expected (pos x y z) or (vel x y z)");
   h.trainer("(agent (unum 1)(team Left)(temperature -1e300)(pos 1e300 0 0))");
   CHECK(getProperty(h.stateOf(1), "temperature").toNumber() == 20);
@@ -381,8 +387,8 @@ TEST_CASE("trainers move ball and players, set modes and clocks; nonsense is ign
   CHECK(h.gameTime() == 12.5);
 }
 
-TEST_CASE("a trainer that switches modes again and again does not fill the log", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("a trainer that repeatedly switches modes does not fill the log", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.join("A", 1);
   h.text.clear();
@@ -395,7 +401,7 @@ TEST_CASE("a trainer that switches modes again and again does not fill the log",
 }
 
 TEST_CASE("cone vision sees the visible part of field lines", "[soccer]") {
-  MatchHouse h;
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   h.setMode("PlayOn");
@@ -407,10 +413,10 @@ TEST_CASE("cone vision sees the visible part of field lines", "[soccer]") {
   callMethod(eye, "setStaticSenseAxis", std::span(&off, 1));
   callMethod(eye, "setSenseLine", std::span(&on, 1));
   callMethod(eye, "setViewCones", std::vector<Value>{90, 90});
-  h.placeAgent(1, 0, 24);  // 10 m before the touch line, which runs across from 10 m right to 10 m left
+  h.placeAgent(1, 0, 24);  // 10 m from the touch line, which is visible from 10 m right to 10 m left
   h.run(3);
   INFO(a.heard);
-  CHECK(a.heard.find("(L (pol 14.14 -45.00 -0.8") != std::string::npos);  // cut at both edges
+  CHECK(a.heard.find("(L (pol 14.14 -45.00 -0.8") != std::string::npos);  // clipped at both edges
   CHECK(a.heard.find(") (pol 14.14 45.00 -0.8") != std::string::npos);
   CHECK(a.heard.find("nan") == std::string::npos);
 }

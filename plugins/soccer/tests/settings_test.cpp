@@ -1,13 +1,12 @@
-// The variables Soccer.*: names and defaults of the 3D league's server.
+// The variables Soccer.*: names and defaults of the original 3D league server.
 #include "match_house.h"
 
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE(
-    "Every variable of the league has its default, is read by rules and scene files under its name, and can be set",
-    "[soccer]") {
-  MatchHouse h(false);
+TEST_CASE("Every variable of the league has its default, is available to rules and scene files, and can be set",
+          "[soccer]") {
+  SoccerMatch h(false);
   const std::vector<std::pair<const char*, Value>> defaults{
       {"FieldLength", 30.0},
       {"FieldWidth", 20.0},

@@ -1,4 +1,4 @@
-// The differences between versions of the installed base, property by property.
+// The differences between versions of the original server, property by property.
 #include <algorithm>
 
 #include "match_house.h"
@@ -9,7 +9,7 @@ using namespace spark::test;
 namespace {
 
 /// Replaces the agent's vision by cone vision.
-Leaf& giveEye(MatchHouse& h, int agent, int interval) {
+Leaf& useConeVision(SoccerMatch& h, int agent, int interval) {
   Node& body = h.kernel.root().require<Node>("/usr/scene/AgentAspect" + std::to_string(agent) + "/body");
   body.remove(*body.child("VisionPerceptor"));
   Leaf& eye = body.create("RestrictedVisionPerceptor", "eye");
@@ -20,8 +20,8 @@ Leaf& giveEye(MatchHouse& h, int agent, int interval) {
 
 }  // namespace
 
-TEST_CASE("GS tells who kicks off and all players' penalties where the league wants it", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("with ExtraGameState GS includes the kick-off side and the penalties of all players", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 7);
   h.join("B", 3), h.join("A", 2);
@@ -43,8 +43,8 @@ TEST_CASE("GS tells who kicks off and all players' penalties where the league wa
   CHECK(a.heard.find(") ()))") != std::string::npos);
 }
 
-TEST_CASE("messages of players are as long as the league lets them be", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("SayMsgSize limits the length of players' messages", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet &a = h.join("A", 1), &mate = h.join("A", 2);
   const std::string word(21, 'x');
@@ -57,8 +57,8 @@ TEST_CASE("messages of players are as long as the league lets them be", "[soccer
   CHECK(mate.all.find(word) != std::string::npos);
 }
 
-TEST_CASE("without the league's clamp beams leave the touch lines, but not the world", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("without BeamWithinFieldWidth beams may leave the field, but not exceed the maximum distance", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   h.set("BeamWithinFieldWidth", false);
@@ -71,14 +71,14 @@ TEST_CASE("without the league's clamp beams leave the touch lines, but not the w
   CHECK(h.bodyOf(1).state().rotation.allFinite());
 }
 
-TEST_CASE("penalty areas are as wide for the rules as the league says", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("the settings determine the width of penalty areas for the rules", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   h.set("MaxPlayersInsideOwnArea", 0);
   h.join("A", 1);
   h.set("PenaltyWidth", 3.9);
   h.set("GoalWidth", 2.1);
-  // a free kick inside an area is taken from the area's front corner
+  // A free kick inside an area is taken from the area's front corner.
   h.setMode("PlayOn");
   const auto dropAt = [&h](double x, double y) {
     callMethod(h.at("/sys/server/gamecontrol/SoccerRuleAspect"), "dropBall", std::vector<Value>{x, y, 0.111});
@@ -90,8 +90,8 @@ TEST_CASE("penalty areas are as wide for the rules as the league says", "[soccer
   CHECK(dropAt(-45, 1.5).y() == Approx(1.95).margin(1e-6));
 }
 
-TEST_CASE("agents are told their temperature only where the league does not keep it constant", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("agents receive their temperature only without ConstantTemperature", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   h.trainer("(agent (unum 1)(team Left)(temperature 31))");
@@ -103,12 +103,12 @@ TEST_CASE("agents are told their temperature only where the league does not keep
   CHECK(a.all.find("(temp 31.00)") != std::string::npos);
 }
 
-TEST_CASE("the league says how often robots look, whether they see lines, and whether there is noise", "[soccer]") {
-  MatchHouse h;
+TEST_CASE("the settings determine the vision interval, the visibility of lines and the noise", "[soccer]") {
+  SoccerMatch h;
   h.importField();
   Puppet& a = h.join("A", 1);
   h.setMode("PlayOn");
-  giveEye(h, 1, 3);
+  useConeVision(h, 1, 3);
   h.placeAgent(1, 0, 20);
   h.placeBall(10, 20);
   h.run(3);
@@ -120,7 +120,7 @@ TEST_CASE("the league says how often robots look, whether they see lines, and wh
   };
   CHECK(count(look(12), "(See ") == 4);
   CHECK(a.all.find("(L (pol") != std::string::npos);
-  CHECK(count(a.all, "(B (pol 10.00 0.00 ") == 0);  // a calibration error at least
+  CHECK(count(a.all, "(B (pol 10.00 0.00 ") == 0);  // at least a calibration error
   h.set("VisionInterval", 2);
   CHECK(count(look(12), "(See ") == 6);
   h.set("FieldLinesSeen", false);

@@ -1,4 +1,4 @@
--- Another active scene is stepped from that very cycle on.
+-- Changing the active scene takes effect in the same cycle.
 -- expect: after 50 cycles: here 50.00, there 45.00
 -- expect: after 100 cycles: here 45.00, there 45.00
 include "house.lua"

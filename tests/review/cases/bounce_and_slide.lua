@@ -1,4 +1,4 @@
--- Surfaces are those of the handlers on both sides, and a script hears each touch.
+-- The surface of a contact combines the handlers of both sides, and a script gets an event for each touch.
 -- expect: the bouncy ball rises to 1.0, the dead one stays at 0.2
 -- expect: the slippery box slides on, the sticky one stops
 -- expect: the ground hears touches of /usr/scene/

@@ -1,4 +1,4 @@
--- What stands behind the file's closing bracket is discarded, as the papers say; the strict importer says so.
+-- Text after the file's closing bracket is ignored by default, and the strict importer reports it.
 -- expect: lenient: true, 1 transform
 -- expect: rsg/review/brackets.rsg:2:1: expected nothing after the body that begins here, found more
 -- expect: strict: false, 0 transform

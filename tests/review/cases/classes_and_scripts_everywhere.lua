@@ -1,4 +1,4 @@
--- Class objects are nodes, scripts attach to nodes of every kind, and a running house takes further plugins and servers.
+-- Class objects are nodes, scripts attach to nodes of every kind, and plugins and servers can be added at run time.
 -- expect: HingeJoint derives from Generic6DOFJoint, of plugin physics
 -- expect: 2 transforms live
 -- expect: ../world is /usr/scene/world

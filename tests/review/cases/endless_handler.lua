@@ -1,4 +1,4 @@
--- A handler without end costs its budget once: it is switched off, and the house goes on.
+-- A handler with an endless loop uses its budget once, is then disabled, and the simulation continues.
 -- expect: stopped after 50000000 instructions: is there an endless loop?
 -- expect: It is switched off: it would take as long every time.
 -- expect: it ran 1 time

@@ -1,4 +1,4 @@
--- World and engine go, new ones come: a new world starts.
+-- World and engine can be removed and created again, which starts a new world.
 -- expect: the new ball fell to 44
 include "house.lua"
 files() scene() physics() simulation()

@@ -1,4 +1,4 @@
--- The engine may be replaced under a world: all go on where they were.
+-- The engine of a world can be replaced, and all bodies continue from their state.
 -- expect: the engine went: true a new one came: true
 -- expect: a new body: true
 -- expect: both fall

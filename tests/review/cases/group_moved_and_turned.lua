@@ -1,4 +1,4 @@
--- A group that is moved and turned takes bodies and walls with it in the same cycle.
+-- Moving and turning a group moves its bodies and walls in the same cycle.
 -- expect: cycle 1: body 1.0 0.0 1.0, wall 0.0 3.0 0.0
 -- expect: cycle 2: body 11.0 2.0 1.0, wall 10.0 5.0 0.0
 -- expect: cycle 4: body 10.0 3.0 1.0, wall 7.0 2.0 0.0

@@ -1,4 +1,4 @@
--- What is imported into a group that the config made and holds moves with the group.
+-- A node imported into a group that the config created moves with the group.
 -- expect: the room has 2 children
 -- expect: the chair is at 11
 include "house.lua"

@@ -1,4 +1,4 @@
--- Handlers that fail say where and stay; all others run on, and the faults are counted.
+-- A failing handler is reported with its line and stays active, the others run on, and the faults are counted.
 -- expect: has no property or method 'nosuch'
 -- expect: this node is gone: it was /usr/scene/deleted
 -- expect: expected 3 numbers, found a list of 2

@@ -1,4 +1,4 @@
--- An import that fails on the way says where, and keeps what it had made, as in the installed base.
+-- A failing import is reported with its position and keeps the nodes created so far, like the original server.
 -- expect: rsg/review/half.rsg:4:32: there is no class 'Boxx'. Did you mean 'Box'
 -- expect: there: one two
 -- never: three

@@ -1,4 +1,4 @@
--- Scripts are attached to joints by the name that no class uses; the short name says so.
+-- attachScript attaches a script to a joint, and an error about the joint's own attach says so.
 -- expect: attach is a method of class HingeJoint itself: write node:attachScript("scripts/count.lua") to attach a script to /usr/scene/arm/shoulder
 -- expect: the script of /usr/scene/arm/shoulder runs in cycle 3
 -- expect: the script of /usr/scene/arm runs in cycle 3

@@ -1,4 +1,4 @@
--- What is set before (attach ...) counts: the wheel turns about the axis that the file names.
+-- An axis that is set before (attach ...) takes effect.
 -- expect: axis 0 1 0, anchor 0 0 1
 -- expect: turned by 90 deg
 include "house.lua"

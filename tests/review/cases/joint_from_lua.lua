@@ -1,4 +1,4 @@
--- A joint is made, attached and moved by a config alone.
+-- A config alone can create, attach and move a joint.
 -- expect: the arm stopped at 30 deg
 -- args: --rate max --duration 2
 include "house.lua"

@@ -1,4 +1,4 @@
--- Joints of all kinds are made, attached, driven and stopped by a config alone.
+-- A config alone can create, attach, drive and stop joints of all kinds.
 -- expect: universal 20 and 20 deg
 -- expect: slider 0.30 m
 -- expect: steering 15 deg, wheel 180 deg/s

@@ -1,4 +1,4 @@
--- Very many nodes, and very deep trees: made in time that grows with their number; the depth has an end.
+-- Creating very many nodes takes linear time, and the depth of the tree is limited.
 -- expect: made 300000
 -- expect: the tree is at most 1000 levels deep
 -- expect: "cycles":5,

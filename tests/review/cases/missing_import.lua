@@ -1,4 +1,4 @@
--- A file that another one imports and that is not there is told with both places; the rest of the outer file is loaded, and --check fails.
+-- A missing imported file is reported with both positions, the rest of the outer file is loaded, and --check fails.
 -- exit: 2
 -- expect: rsg/review/outer.rsg:3:
 -- expect: there is no resource 'box.rsg'

@@ -1,4 +1,4 @@
--- Numbers that scripts share are in a group: every script reads and writes it, and it is part of the tree.
+-- A group of variables is shared by all scripts and is part of the tree.
 -- expect: the config sees 10
 -- expect: Sumo.bouts is 10 at /sys/variables/Sumo
 -- never: attempt to index

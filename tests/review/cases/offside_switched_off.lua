@@ -1,4 +1,4 @@
--- Offside can be switched off and on in a running match, and removed.
+-- The offside rule can be disabled and enabled in a running match, and removed.
 -- expect: enabled false, then true
 -- expect: every aspect can be switched off
 -- expect: "cycles":100,

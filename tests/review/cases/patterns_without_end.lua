@@ -1,4 +1,4 @@
--- Patterns that take exponential time, and large texts and tables, use up the budget of their handler like any loop.
+-- Patterns of exponential cost and large texts and tables use up the budget of a handler like a loop.
 -- expect: patterns_without_end.lua:8: stopped after 50000000 instructions
 -- expect: patterns_without_end.lua:9: stopped after 50000000 instructions
 -- expect: patterns_without_end.lua:10: stopped after 50000000 instructions

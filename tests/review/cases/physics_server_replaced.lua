@@ -1,4 +1,4 @@
--- The physics server may be replaced under a world, but not when a touch asks for its end in the middle of a step.
+-- The physics server of a world can be replaced, but not by a contact handler in the middle of a step.
 -- expect: the server went: true
 -- expect: from a touch: cannot remove /sys/server/physics now: it is in use: a step is under way
 -- expect: the ball lies at 0.2

@@ -1,4 +1,4 @@
--- A position that is no number, or beyond all bounds, ends the import with its place in the file.
+-- A position that is not finite or too large ends the import with its position in the file.
 -- expect: rsg/review/nowhere.rsg:3:30: expected a position of finite numbers from -1e9 to 1e9, found nan 0.0 1.0
 -- expect: rsg/review/far.rsg:2:29: expected a position of finite numbers from -1e9 to 1e9, found inf 0.0 0.0
 include "house.lua"

@@ -1,4 +1,4 @@
--- A seed gives scripts the same random numbers in every run, to each script its own, whatever others draw.
+-- With a seed each script gets its own random numbers, the same in every run and independent of other scripts.
 -- expect: first drew 0.700150
 -- expect: second drew 0.051372
 -- args: --rate max --duration 1 --seed 7

@@ -1,4 +1,4 @@
--- A touch removes a body after the step: the others stay who they are.
+-- A contact handler may remove a body after the step, and the other bodies are unaffected.
 -- expect: eaten
 -- expect: a fell 0.47 m, b 0.47, c 0.47
 include "house.lua"

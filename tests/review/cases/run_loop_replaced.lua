@@ -1,4 +1,4 @@
--- The run loop stays while it runs, and stop() ends it.
+-- The run loop cannot be removed while it runs, and stop() ends it.
 -- expect: cannot remove /sys/server/simulation now: it is in use: the run loop is at work; stop() ends it after the current cycle
 -- expect: cannot remove /sys/server now: /sys/server/simulation is in use
 -- expect: "cycles":60,

@@ -1,4 +1,4 @@
--- Servers and scenes are found by their paths: they keep their names while the house runs.
+-- Servers and scenes are found by their paths, so they cannot be renamed while the simulation runs.
 -- expect: cannot name /sys/server 'x' now
 -- expect: cannot name /sys/server/gamecontrol 'x' now: /sys is in use: servers keep their names while the run loop is at work
 -- expect: cannot name /sys/server/gamecontrol/GameStateAspect 'x' now

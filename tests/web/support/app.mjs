@@ -1,4 +1,4 @@
-// What tests do with the viewer's page: find its parts, know its state, wait for what it should become.
+// Access to the viewer's page for tests: find its parts, read its state, wait for a condition.
 import { patience } from "./browser.mjs";
 
 /** The part of the page with this data-testid. */
@@ -6,14 +6,14 @@ export function part(page, id) {
   return page.locator(`[data-testid="${id}"]`);
 }
 
-/** What the page says of itself (window.spark.state()); undefined before it runs. */
+/** The state that the page reports (window.spark.state()); undefined before it runs. */
 export function state(page) {
   return page.evaluate(() => window.spark?.state());
 }
 
 /**
- * Waits until `holds`, a function of the page's state and `argument`, is true; it runs in the page, whose content security policy
- * forbids playwright's own way of waiting. The state then.
+ * Waits until `holds`, a function of the page's state and `argument`, is true; returns the state. The function runs in
+ * the page, because the page's content security policy blocks playwright's own way of waiting.
  */
 export async function until(page, what, holds, argument, timeout = patience) {
   const condition = `Boolean(window.spark && (${holds})(window.spark.state(), ${JSON.stringify(argument ?? null)}))`;
@@ -25,14 +25,14 @@ export async function until(page, what, holds, argument, timeout = patience) {
   return state(page);
 }
 
-/** Waits until the text of a part is as `holds`, a function of it in the page, wants it; the text. */
+/** Waits until `holds`, a function of the text of a part that runs in the page, is true; returns the text. */
 export async function untilText(page, id, holds, argument) {
   const shown = `document.querySelector('[data-testid="${id}"]')?.textContent`;
   await until(page, `${id} as wanted`, `(_, argument) => { const text = ${shown}; return text !== undefined && (${holds})(text, argument); }`, argument);
   return page.evaluate(shown);
 }
 
-/** Waits until what is shown now has been drawn, with all its pixels: pictures of a match that stands still are drawn once only. */
+/** Waits until the current state has been drawn at full resolution, because a paused match is drawn only once. */
 export async function drawn(page) {
   await until(page, "the first picture", (s) => s.frames > 0);
   await page.evaluate(() => {

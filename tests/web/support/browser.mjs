@@ -1,4 +1,4 @@
-// Chromium without a screen or a graphics card.
+// Headless Chromium with software rendering.
 import assert from "node:assert/strict";
 import { chromium, skipUnlessPossible, viewerPackage } from "./places.mjs";
 
@@ -7,19 +7,19 @@ skipUnlessPossible();
 const software = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"];
 const sandbox = process.getuid?.() === 0 ? ["--no-sandbox"] : [];
 
-/** Milliseconds that a condition may take; generous, since machines are busy. */
+/** Timeout of a condition in milliseconds, long enough for a busy machine. */
 export const patience = 60000;
 
 const browsers = new WeakMap(); // by test
 
-/** Closes the pages of a test: before its host ends, or they would report that it is gone. */
+/** Closes the pages of a test. Call it before the host ends, or the pages report a lost connection. */
 export async function closePages(t) {
   for (const browser of browsers.get(t) ?? []) await browser.close();
 }
 
 /**
- * A page in a browser of its own, closed after the test. Whatever it reports as an error fails the test.
- * Options are those of playwright's contexts (viewport, hasTouch, colorScheme, ...).
+ * Opens a page in a separate browser and closes it after the test. Any error that the page reports fails the test.
+ * The options are those of playwright's contexts (viewport, hasTouch, colorScheme, ...).
  */
 export async function openPage(t, url, options = {}) {
   const browser = await viewerPackage("playwright-core").chromium.launch({ executablePath: chromium, args: [...software, ...sandbox] });

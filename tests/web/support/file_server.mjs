@@ -1,11 +1,11 @@
-// A small server of files on a free port of loopback, for what needs no host.
+// A small file server on a free loopback port, for pages that need no host.
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
 import { extname, join, normalize } from "node:path";
 
 const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
 
-/** Serves a folder until the test ends; its address, ending with a slash. `extra` adds contents by name. */
+/** Serves a folder until the test ends; returns its URL, which ends with a slash. `extra` adds contents by name. */
 export async function serveFiles(t, folder, extra = {}) {
   const server = createServer(async (request, response) => {
     const path = normalize(decodeURIComponent(new URL(request.url, "http://host").pathname)).slice(1) || "index.html";

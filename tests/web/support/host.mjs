@@ -1,4 +1,4 @@
-// A running sparkhost on free ports, as its users start it.
+// A running sparkhost on free ports, started the way users start it.
 import { execFile, spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -10,20 +10,20 @@ import { build } from "./places.mjs";
 
 const program = (name) => join(build, "bin", name);
 
-/** Two teams that play inside the host, in lockstep: the same match each time. */
+/** Two teams that play inside the host in lockstep, so every run gives the same match. */
 export const sphereMatch = ["--sync", "--config", "soccer-sphere.lua", "--set", "team=Red Blue"];
 export const humanoidMatch = ["--sync", "--config", "soccer.lua", "--set", "team=Red Blue", "--set", "Soccer.AutomaticKickOff=true", "--set", "Soccer.WaitBeforeKickOff=2"];
-/** With this seed the sphere match's first goal falls after some 14 s. */
+/** With this seed the first goal of the sphere match comes after about 14 s. */
 export const goalSeed = ["--seed", "26"];
 
-/** A folder that is gone after the test. */
+/** Creates a folder that is deleted after the test. */
 export function temporaryFolder(t) {
   const folder = mkdtempSync(join(tmpdir(), "spark-web-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
   return folder;
 }
 
-/** Starts a host that ends with the test. `url` is the spectators' link, `refereeUrl` the one with the token. */
+/** Starts a host that ends with the test. `url` is the link for spectators, `refereeUrl` the one with the token. */
 export async function startHost(t, ...options) {
   return startHostIn(undefined, t, ...options);
 }
@@ -46,12 +46,12 @@ export async function startHostIn(cwd, t, ...options) {
   return { url: said.web, refereeUrl: said.referee, said, log, ended, ctl: (...words) => ctl(child.pid, words) };
 }
 
-/** What sparkctl says of a host. */
+/** The output of sparkctl for a host. */
 async function ctl(pid, words) {
   return (await promisify(execFile)(program("sparkctl"), ["--pid", String(pid), ...words])).stdout.trim();
 }
 
-/** Plays a match as fast as it goes and returns its log's path. */
+/** Plays a match at maximum rate and returns the path of its log. */
 export async function recordMatch(t, seconds, ...options) {
   const file = join(temporaryFolder(t), "match.log");
   const host = await startHost(t, ...options, "--rate", "max", "--duration", String(seconds), "--set", `monitorLog=${file}`);

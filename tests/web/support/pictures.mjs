@@ -1,10 +1,10 @@
-// Screenshots: kept as files, and as pixels that can be compared.
+// Screenshots: stored as files, and as pixels for comparisons.
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { deflateSync, inflateSync } from "node:zlib";
 import { screenshots } from "./places.mjs";
 
-/** The pixels of a PNG as Chromium writes it: 8 bits a channel, RGB or RGBA, not interlaced. */
+/** The pixels of a PNG in Chromium's format: 8 bits per channel, RGB or RGBA, not interlaced. */
 export function decode(png) {
   const parts = [];
   let width, height, channels;
@@ -21,7 +21,7 @@ export function decode(png) {
   return { width, height, channels, data: unfilter(inflateSync(Buffer.concat(parts)), width, height, channels) };
 }
 
-/** Undoes PNG's filters: each byte is stored as the difference to a guess from its neighbours. */
+/** Reverses the filters of PNG: each byte is stored as the difference from a prediction by its neighbors. */
 function unfilter(raw, width, height, channels) {
   const row = width * channels;
   const data = new Uint8Array(row * height);
@@ -45,14 +45,14 @@ function guess(filter, left, up, corner) {
   return [0, left, up, (left + up) >> 1][filter];
 }
 
-/** How many colours there are, of 4 bits a channel. */
-export function colours({ channels, data }) {
+/** The number of colors, with 4 bits per channel. */
+export function colors({ channels, data }) {
   const seen = new Set();
   for (let i = 0; i < data.length; i += channels) seen.add(((data[i] >> 4) << 8) | ((data[i + 1] >> 4) << 4) | (data[i + 2] >> 4));
   return seen.size;
 }
 
-/** The share of pixels, 0..1, that are clearly others; 1 when the sizes differ. */
+/** The fraction of pixels, 0..1, that clearly differ; 1 if the sizes differ. */
 export function difference(a, b) {
   if (a.width !== b.width || a.height !== b.height) return 1;
   let others = 0;
@@ -61,14 +61,14 @@ export function difference(a, b) {
   return others / (a.width * a.height);
 }
 
-/** Takes a picture of a page or an element of it and keeps it as web-screenshots/NAME.png. */
+/** Takes a picture of a page or an element of it and stores it as web-screenshots/NAME.png. */
 export async function shoot(what, name) {
   const png = await what.screenshot();
   writeFileSync(join(screenshots, `${name}.png`), png);
   return decode(png);
 }
 
-/** Takes a picture for a page of the documentation: colours of 5 bits a channel, a third of the bytes. Returns pixels and bytes. */
+/** Takes a picture for a page of the documentation: colors have 5 bits per channel, which takes a third of the bytes. Returns pixels and bytes. */
 export async function shootForPage(what, name, folder = screenshots) {
   const pixels = decode(await what.screenshot());
   const data = pixels.data.map((value) => Math.min(255, (value + 4) & ~7));
@@ -78,7 +78,7 @@ export async function shootForPage(what, name, folder = screenshots) {
   return { pixels, bytes: png.length };
 }
 
-/** A PNG of 8 bits a channel, its rows as they are. */
+/** Encodes a PNG with 8 bits per channel and unfiltered rows. */
 export function encode({ width, height, channels, data }) {
   const row = width * channels;
   const raw = Buffer.alloc(height * (row + 1));
@@ -100,7 +100,7 @@ function chunk(kind, body) {
   return out;
 }
 
-/** CRC-32 as PNG has it (ISO 3309). */
+/** CRC-32 of PNG (ISO 3309). */
 function crc(bytes) {
   let sum = 0xffffffff;
   for (const byte of bytes) {

@@ -13,7 +13,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 
 namespace {
-/// A server of one client: sends raw bytes, reads framed messages.
+/// A server for one client. It sends raw bytes and reads framed messages.
 struct Server {
   asio::io_context io;
   tcp::acceptor acceptor{io, tcp::endpoint(asio::ip::address_v4::loopback(), 0)};
@@ -44,7 +44,7 @@ std::string roundTrip(Language& language, const char* sexp) {
 }
 }  // namespace
 
-TEST_CASE("Both languages carry the same predicates") {
+TEST_CASE("Both message formats transmit the same predicates") {
   for (const char* parser : {"SexpParser", "JsonParser"}) {
     const auto language = makeLanguage(parser, {test::pluginFolder()});
     CAPTURE(parser);
@@ -53,7 +53,7 @@ TEST_CASE("Both languages carry the same predicates") {
   }
 }
 
-TEST_CASE("JSON is JSON on the wire") {
+TEST_CASE("The JSON format is valid JSON on the wire") {
   const auto language = makeLanguage("JsonParser", {test::pluginFolder()});
   Predicates p;
   p.open("drive").add(1.5).add(0).close();
@@ -62,11 +62,11 @@ TEST_CASE("JSON is JSON on the wire") {
   REQUIRE(out == "[[\"drive\",1.5000,0]]");
 }
 
-TEST_CASE("A language that no plugin has is an error that names it") {
+TEST_CASE("A message format without a plugin is an error that names it") {
   REQUIRE_THROWS_WITH(makeLanguage("MorseParser", {test::pluginFolder()}), Catch::Contains("MorseParser"));
 }
 
-TEST_CASE("An agent sends its first message, answers each message, and learns of the end") {
+TEST_CASE("An agent sends its first message, answers each message, and is notified of the end") {
   Server server;
   std::string first, second, why;
   asio::io_context io;
@@ -100,7 +100,7 @@ TEST_CASE("An agent sends its first message, answers each message, and learns of
   REQUIRE(why == "the server closed the connection");
 }
 
-TEST_CASE("Messages in pieces and several at once are answered one by one, whether they are read or not") {
+TEST_CASE("Split and combined messages are answered one by one, whether they are parsed or not") {
   const bool listens = GENERATE(true, false);
   Server server;
   std::vector<std::string> answers;
@@ -135,7 +135,7 @@ TEST_CASE("Messages in pieces and several at once are answered one by one, wheth
   CHECK(agent.received() == 3);
 }
 
-TEST_CASE("A peer that speaks another protocol ends the connection") {
+TEST_CASE("A peer with a different protocol ends the connection") {
   Server server;
   asio::io_context io;
   const auto language = makeLanguage("SexpParser", {});
@@ -153,7 +153,7 @@ TEST_CASE("A peer that speaks another protocol ends the connection") {
   REQUIRE(why.find("another protocol") != std::string::npos);
 }
 
-TEST_CASE("Nobody listening is an error that names the address") {
+TEST_CASE("A refused connection is an error that names the address") {
   int port = 0;
   {
     Server server;

@@ -11,7 +11,7 @@
 using namespace spark::client;
 
 namespace {
-/// The other end: a server with one client.
+/// The peer: a server with one client.
 class Server {
  public:
   Server() {
@@ -52,7 +52,7 @@ std::string framed(const std::string& message) {
 }
 }  // namespace
 
-TEST_CASE("A client sends and receives whole messages, wherever segments end") {
+TEST_CASE("A client sends and receives whole messages with any segment boundaries") {
   Server server;
   Connection c("127.0.0.1", server.port, 5);
   server.accept();
@@ -78,7 +78,7 @@ TEST_CASE("A client sends and receives whole messages, wherever segments end") {
   CHECK_THROWS_WITH(moved.receive(), "the server closed the connection");
 }
 
-TEST_CASE("A client says what is wrong with a server") {
+TEST_CASE("A client reports errors of the server") {
   Server server;
   Connection c("127.0.0.1", server.port);
   server.accept();
@@ -94,7 +94,7 @@ TEST_CASE("A client says what is wrong with a server") {
                     Catch::Contains("there is no host 'no.such.host.invalid'"));
 }
 
-TEST_CASE("S-expressions are read into a tree") {
+TEST_CASE("S-expressions are parsed into a tree") {
   const Expression all = read("(time (now 1.25)) (HJ (n hj1)(ax -12.50))(say \"a \\\" b\" x)");
   REQUIRE(all.size() == 3);
   CHECK(all.find("time").find("now")[1].number() == 1.25);
@@ -106,7 +106,7 @@ TEST_CASE("S-expressions are read into a tree") {
   CHECK(all.find("none")[1].number() == 0);
 }
 
-TEST_CASE("What cannot be read ends a message, and what was complete before stays") {
+TEST_CASE("A syntax error ends a message, and what is complete before it is kept") {
   CHECK(read("(a 1)(b 2").size() == 1);
   CHECK(read("(a 1))(b 2)").size() == 1);
   CHECK(read("").size() == 0);

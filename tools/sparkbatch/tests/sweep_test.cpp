@@ -6,7 +6,7 @@
 using namespace sparkbatch;
 using Texts = std::vector<std::string>;
 
-TEST_CASE("Values are cut at commas outside of brackets and quotes") {
+TEST_CASE("Values are separated by commas outside brackets and quotes") {
   REQUIRE(splitValues("60,120") == Texts{"60", "120"});
   REQUIRE(splitValues("one") == Texts{"one"});
   REQUIRE(splitValues("{0,0,-9.81},{0,0,-1.6}") == Texts{"{0,0,-9.81}", "{0,0,-1.6}"});
@@ -14,7 +14,7 @@ TEST_CASE("Values are cut at commas outside of brackets and quotes") {
   REQUIRE(splitValues("a,,b") == Texts{"a", "", "b"});
 }
 
-TEST_CASE("A batch without a sweep is a run for each seed") {
+TEST_CASE("A batch without a sweep has one run per seed") {
   const Sweep sweep({}, 7, 3);
   REQUIRE(sweep.points() == 1);
   REQUIRE(sweep.runs() == 3);
@@ -25,7 +25,7 @@ TEST_CASE("A batch without a sweep is a run for each seed") {
   }
 }
 
-TEST_CASE("Every combination is run with every seed, the first seed first") {
+TEST_CASE("Every combination runs with every seed, ordered by seed") {
   const Sweep sweep({{"a", {"1", "2"}}, {"b", {"x", "y", "z"}}}, 5, 2);
   REQUIRE(sweep.points() == 6);
   REQUIRE(sweep.runs() == 12);
@@ -40,7 +40,7 @@ TEST_CASE("Every combination is run with every seed, the first seed first") {
   REQUIRE(all.size() == 12);
 }
 
-TEST_CASE("More seeds leave the numbers of the runs as they are") {
+TEST_CASE("More seeds do not change the numbers of the runs") {
   const std::vector<Parameter> parameters{{"a", {"1", "2"}}};
   const Sweep few(parameters, 1, 2), many(parameters, 1, 9);
   for (int n = 1; n <= few.runs(); ++n) {

@@ -38,7 +38,7 @@ std::string errorOf(F f) {
 }
 }  // namespace
 
-TEST_CASE("A row is in the file when it was added, and in order after sort()") {
+TEST_CASE("A row is in the file once it is added, and in order after sort()") {
   const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.csv");
   Table table(file, kBatch, Table::Open::fresh);
@@ -52,7 +52,7 @@ TEST_CASE("A row is in the file when it was added, and in order after sort()") {
   REQUIRE_FALSE(table.has(3));
 }
 
-TEST_CASE("A column that comes later is added; error and times stay at the end") {
+TEST_CASE("A new column is added later, and error and times remain at the end") {
   const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.csv");
   Table table(file, kBatch, Table::Open::fresh);
@@ -62,7 +62,7 @@ TEST_CASE("A column that comes later is added; error and times stay at the end")
           "run,end,speed,cpuSeconds,error\n1,duration,3,0.5,\n2,error,,1,\"no, \"\"that\"\"\\nis wrong\"\n");
 }
 
-TEST_CASE("Columns are in the order of their first run, whichever came first") {
+TEST_CASE("Columns are in the order of the first run that has them, in any order of arrival") {
   const spark::test::TemporaryFolder folder;
   Table table(folder.file("t.csv"), kBatch, Table::Open::fresh),
       other(folder.file("u.csv"), kBatch, Table::Open::fresh);
@@ -73,7 +73,7 @@ TEST_CASE("Columns are in the order of their first run, whichever came first") {
   REQUIRE(textOf(folder.file("u.csv")) == textOf(folder.file("t.csv")));
 }
 
-TEST_CASE("A table is taken up where it was left, without the line that was cut off") {
+TEST_CASE("A table is resumed without an incomplete last line") {
   for (const char* name : {"t.csv", "t.jsonl"}) {
     const spark::test::TemporaryFolder folder;
     const std::string file = folder.file(name);
@@ -96,7 +96,7 @@ TEST_CASE("A table is taken up where it was left, without the line that was cut 
   }
 }
 
-TEST_CASE("JSON lines keep what is a number and what is none") {
+TEST_CASE("JSON lines distinguish numbers and text") {
   const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.jsonl");
   Table table(file, kBatch, Table::Open::fresh);
@@ -104,7 +104,7 @@ TEST_CASE("JSON lines keep what is a number and what is none") {
   REQUIRE(textOf(file) == "{\"run\":1,\"a\":1.5,\"b\":\"1.5\",\"c\":[1,2]}\n");
 }
 
-TEST_CASE("Rows with an error are run again only when that is asked for") {
+TEST_CASE("Rows with an error are repeated only on request") {
   const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.csv");
   {
@@ -117,7 +117,7 @@ TEST_CASE("Rows with an error are run again only when that is asked for") {
   REQUIRE_FALSE(table.has(2));
 }
 
-TEST_CASE("What a table cannot be taken for is refused with a sentence") {
+TEST_CASE("A table that does not match the batch is refused with an error") {
   const spark::test::TemporaryFolder folder;
   const std::string file = folder.file("t.csv");
   { Table(file, kBatch, Table::Open::fresh).add(row(1, 1)); }

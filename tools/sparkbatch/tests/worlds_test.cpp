@@ -3,12 +3,12 @@
 
 #include "workers.h"
 
-// Several simulations in one process and several threads: nothing that they share may influence them.
+// Several simulations in one process and several threads must not influence each other through shared state.
 
 using namespace sparkbatch;
 
 namespace {
-/// Two humanoids and a ball.
+/// A match of two humanoids.
 Options match() {
   Options options;
   options.config = "soccer.lua";
@@ -18,7 +18,7 @@ Options match() {
   return options;
 }
 
-/// The rows of the runs 1..n, which get their number as seed, by number and without what a clock measured.
+/// The rows of the runs 1..n by number, without wall-clock times. Each run has its number as the seed.
 std::map<int, Row> simulateAll(const Options& options, int n, int threads) {
   Workers workers(threads, [&options](const Run& run, RunControl& control) { return simulate(options, run, control); });
   std::map<int, Row> rows;
@@ -37,7 +37,7 @@ std::map<int, Row> simulateAll(const Options& options, int n, int threads) {
 }
 }  // namespace
 
-TEST_CASE("Worlds that run in parallel in one process give the same rows as alone") {
+TEST_CASE("Simulations that run in parallel in one process give the same rows as alone") {
   const Options options = match();
   const auto together = simulateAll(options, 4, 3), alone = simulateAll(options, 4, 1);
   for (const auto& [number, row] : together) {
@@ -49,7 +49,7 @@ TEST_CASE("Worlds that run in parallel in one process give the same rows as alon
   REQUIRE(alone.at(1)["stateHash"] != alone.at(2)["stateHash"]);
 }
 
-TEST_CASE("A world that is abandoned has no row, and its thread is free again") {
+TEST_CASE("An abandoned simulation has no row, and its thread is free again") {
   Options options = match();
   options.duration = 0;
   Workers workers(2, [&options](const Run& run, RunControl& control) { return simulate(options, run, control); });

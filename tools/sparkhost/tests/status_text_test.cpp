@@ -19,7 +19,7 @@ std::string statusJson(const std::vector<StatusEntry>& entries) {
   return out;
 }
 
-/// Reports what the test says.
+/// Reports the entries that the test sets.
 class Reporter : public Node, public IStatus {
   SPARK_CLASS(Reporter, Node)
  public:
@@ -38,7 +38,7 @@ struct Reporters : House {
 };
 }  // namespace
 
-TEST_CASE("The status line has the play mode, the score behind it, and all else with its name") {
+TEST_CASE("The status line has the play mode, then the score, then all other entries with their names") {
   CHECK(statusText({{"playMode", "PlayOn", {}}, {"score", List{1, 0}, {"Left", "Right"}}}) == ", PlayOn 1:0");
   CHECK(statusText({{"score", List{3, 2, 1}, {}}, {"round", 7, {}}, {"wind", List{0.5, -1}, {}}}) ==
         ", score 3:2:1, round 7, wind 0.5 -1");
@@ -47,17 +47,17 @@ TEST_CASE("The status line has the play mode, the score behind it, and all else 
   CHECK(statusText({}).empty());
 }
 
-TEST_CASE("The host's last line has words that are understood as members, all else below status") {
+TEST_CASE("The host's last line has known entries as members, and all others in status") {
   CHECK(statusJson({{"playMode", "PlayOn", {}}, {"score", List{1, 0}, {"Left", "Right"}}}) ==
         R"({"playMode":"PlayOn","score":[1,0]})");
   CHECK(statusJson({{"round", 7, {}}, {"teams", List{"a\"b", "\n\\"}, {}}, {"x", List{Value(), HUGE_VAL, 0.5}, {}}}) ==
         R"({"teams":["a\"b","\n\\"],"status":{"round":7,"x":[null,null,0.5]}})");
-  // a word with a value of another type is none
+  // A known name with a value of another type counts as unknown.
   CHECK(statusJson({{"score", 3, {}}, {"playMode", 5, {}}}) == R"({"status":{"score":3,"playMode":5}})");
   CHECK(statusJson({}) == "{}");
 }
 
-TEST_CASE("All nodes below /sys and /usr report, in tree order; the first of a name counts") {
+TEST_CASE("All nodes below /sys and /usr report in tree order, and the first entry of a name counts") {
   Reporters house;
   StatusReporters reporters;
   CHECK(reporters.read(house.kernel).empty());

@@ -14,7 +14,7 @@ function sights(more: Partial<Sights> = {}): Sights {
   return { field, extent: 15, ball: null, head: null, aspect: 16 / 9, ...more };
 }
 
-/// Where a point of the world is in the picture, -1..1.
+/// The position of a world point in the picture, -1..1.
 function seen(camera: Camera, aspect: number, point: Vector3): Vector3 {
   const eye = new PerspectiveCamera(camera.pose.angle, aspect, 0.1, 1000);
   eye.position.copy(camera.pose.position);
@@ -27,7 +27,7 @@ function run(camera: Camera, seconds: number, rate: number): void {
   for (let n = 0; n < seconds * rate; n++) camera.step(1 / rate);
 }
 
-describe("the first view", () => {
+describe("the initial view", () => {
   it.each([16 / 9, 4 / 3, 9 / 19])("shows the whole field in pictures of aspect %f", aspect => {
     const camera = new Camera(sights({ aspect }));
     for (const mode of ["orbit", "top"] as const) {
@@ -40,14 +40,14 @@ describe("the first view", () => {
     }
   });
 
-  it("has the left team's goal on the left", () => {
+  it("shows the left team's goal on the left", () => {
     const camera = new Camera(sights());
     expect(seen(camera, 16 / 9, new Vector3(-15, 0, 0)).x).toBeLessThan(-0.5);
   });
 });
 
-describe("moves", () => {
-  it("come out the same at 10 and at 60 pictures a second", () => {
+describe("camera moves", () => {
+  it("give the same result at 10 and at 60 frames per second", () => {
     const ends = [10, 60].map(rate => {
       const ball = new Vector3(0, 0, 0);
       const camera = new Camera(sights({ ball }));
@@ -60,7 +60,7 @@ describe("moves", () => {
     expect(ends[0]!.distanceTo(ends[1]!)).toBeLessThan(0.15);
   });
 
-  it("between cameras are smooth and end", () => {
+  it("between cameras are smooth and finite", () => {
     const camera = new Camera(sights());
     run(camera, 1, 60);
     camera.mode = "top";
@@ -76,7 +76,7 @@ describe("moves", () => {
     expect(camera.step(1 / 60)).toBe(false);
   });
 
-  it("jump where motion is to be reduced", () => {
+  it("are immediate with reduced motion", () => {
     const camera = new Camera(sights());
     camera.reducedMotion = true;
     camera.mode = "top";
@@ -85,7 +85,7 @@ describe("moves", () => {
     expect(camera.pose.position.x).toBeCloseTo(0);
   });
 
-  it("of the broadcast keep the ball in the picture", () => {
+  it("in the broadcast mode keep the ball in view", () => {
     const ball = new Vector3(14, 9, 0.1);
     const camera = new Camera(sights({ ball }));
     camera.mode = "broadcast";
@@ -100,10 +100,10 @@ describe("moves", () => {
   });
 });
 
-describe("hands", () => {
+describe("manual control", () => {
   const key = (type: string, code: string, name: string) => ({ type, code, key: name, ctrlKey: false, metaKey: false, altKey: false, shiftKey: false }) as KeyboardEvent;
 
-  it("on the keyboard move the camera while keys are held", () => {
+  it("by keyboard moves the camera while keys are held", () => {
     const camera = new Camera(sights());
     run(camera, 1, 30);
     const before = camera.pose.position.clone();
@@ -118,7 +118,7 @@ describe("hands", () => {
     expect(camera.key(key("keydown", "KeyX", "x"))).toBe(false);
   });
 
-  it("that drag take over from the broadcast without a jump", () => {
+  it("by dragging takes over from the broadcast camera without a jump", () => {
     const camera = new Camera(sights({ ball: new Vector3(3, 1, 0) }));
     camera.mode = "broadcast";
     run(camera, 2, 30);
@@ -132,21 +132,21 @@ describe("hands", () => {
   });
 });
 
-describe("a head", () => {
-  it("looks where the robot looks, upright or fallen", () => {
+describe("the head camera", () => {
+  it("faces the robot's direction, upright or fallen", () => {
     const matrix = new Matrix4().makeRotationZ(Math.PI / 2).setPosition(1, 2, 0.5);
     const camera = new Camera(sights({ head: { matrix, rolls: false, radius: 0 } }));
     camera.mode = "head";
     run(camera, 2, 30);
-    // It looked to +y; a quarter turn to the left makes that -x.
+    // The robot faced +y; a quarter turn to the left makes that -x.
     const forward = new Vector3(0, 0, -1).applyQuaternion(camera.pose.rotation);
     expect(forward.x).toBeCloseTo(-1, 3);
     expect(camera.pose.position.distanceTo(new Vector3(1, 2, 0.5))).toBeLessThan(0.12);
   });
 });
 
-describe("what moves by itself", () => {
-  it("a follower arrives and never overshoots", () => {
+describe("automatic motion", () => {
+  it("of a follower reaches its target and never overshoots", () => {
     const follower = new Follower(3);
     const target = new Vector3(1, 0, 0);
     let last = 0;
@@ -159,7 +159,7 @@ describe("what moves by itself", () => {
     expect([ease(-1), ease(0.5), ease(2)]).toEqual([0, 0.5, 1]);
   });
 
-  it("a trail fades, and begins anew where the ball is put", () => {
+  it("a trail fades, and restarts when the ball is moved", () => {
     const trail = new Trail(10, 1);
     for (let n = 0; n <= 30; n++) trail.add(n * 0.1, n * 0.1, 0, 0);
     expect(trail.count).toBeGreaterThan(5);
@@ -174,8 +174,8 @@ describe("what moves by itself", () => {
   });
 });
 
-describe("what is seen", () => {
-  it("are spheres inside the picture, also those that only reach into it", () => {
+describe("the frustum", () => {
+  it("contains spheres that are at least partly in the picture", () => {
     const eye = new PerspectiveCamera(90, 1, 0.1, 100);
     eye.updateMatrixWorld();
     const frustum = new Frustum();
@@ -188,7 +188,7 @@ describe("what is seen", () => {
 });
 
 describe("the resolution", () => {
-  it("falls when pictures take long for a while, and comes back", () => {
+  it("falls when frames are slow for some time, and recovers", () => {
     const budget = new Budget();
     let changes = 0;
     for (let n = 0; n < 200; n++) if (budget.heard(60)) changes++;
@@ -198,13 +198,13 @@ describe("the resolution", () => {
     expect(budget.share).toBe(1);
   });
 
-  it("does not fall for a pause, or for a slow picture now and then", () => {
+  it("does not fall after a pause or a few slow frames", () => {
     const budget = new Budget();
     for (let n = 0; n < 500; n++) budget.heard(n % 10 === 0 ? 60 : n % 51 === 0 ? 5000 : 30);
     expect(budget.share).toBe(1);
   });
 
-  it("is told by times between pictures", () => {
+  it("frame times are summarized", () => {
     const times = new FrameTimes();
     for (let n = 0; n < 100; n++) times.add(n < 90 ? 20 : 40);
     expect(times.summary()).toMatchObject({ pictures: 100, median: 20, p95: 40 });

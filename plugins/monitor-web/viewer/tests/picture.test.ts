@@ -13,7 +13,7 @@ import { SyntheticWorld } from "./synthetic";
 const quarterTurn: [number, number, number, number] = [0, 0, Math.SQRT1_2, Math.SQRT1_2];
 
 describe("matrices", () => {
-  it("turn before they move", () => {
+  it("rotate before they translate", () => {
     const a: number[] = [], b: number[] = [], c = new Array<number>(16).fill(0);
     compose(a, 0, [1, 2, 3], quarterTurn);
     compose(b, 0, [1, 0, 0], [0, 0, 0, 1]);
@@ -27,7 +27,7 @@ describe("matrices", () => {
     expect(back[1]).toBeCloseTo(0);
   });
 
-  it("of the world follow their parents; meshes have that of their transform", () => {
+  it("in the world include the parents', and meshes use that of their transform", () => {
     const scene = new SyntheticWorld();
     const a = scene.transform(-1, [1, 0, 0]), b = scene.transform(a, [0, 2, 0]), mesh = scene.mesh(b, "StdUnitBox");
     const world = scene.world();
@@ -44,7 +44,7 @@ describe("forms", () => {
   it.each([1, 2, 5])("a rounded box of %i segments is closed and faces outwards", segments => expectClosed(roundedBox(segments)));
   it.each([6, 13])("a barrel of %i sides is closed and faces outwards", sides => expectClosed(barrel(sides)));
 
-  it("get finer where they are bigger in the picture", () => {
+  it("get finer with their size in the picture", () => {
     for (const form of ["block", "round", "barrel"] as const) {
       const counts = levels[form].map(level => level.make().index!.count);
       expect(counts).toEqual([...counts].sort((a, b) => a - b));
@@ -54,7 +54,7 @@ describe("forms", () => {
   });
 });
 
-/// Every edge belongs to two triangles, once in each direction; the volume is positive.
+/// Every edge belongs to two triangles, once in each direction, and the volume is positive.
 function expectClosed(geometry: ReturnType<typeof barrel>): void {
   const position = geometry.getAttribute("position"), index = geometry.index!.array;
   const edges = new Map<string, number>();
@@ -73,7 +73,7 @@ function expectClosed(geometry: ReturnType<typeof barrel>): void {
 }
 
 describe("pieces", () => {
-  it("stretch forms to the shapes of the scene", () => {
+  it("scale forms to the shapes of the scene", () => {
     const shape = { position: [0, 0, 0], rotation: [0, 0, 0, 1] } as const;
     const grey = materialColour("matGrey");
     expect(pieceOf({ ...shape, kind: "capsule", size: [0.1, 0.4] } as never, 0, -1, grey)).toMatchObject({ form: "round", half: [0.1, 0.1, 0.30000000000000004], rounding: 0.1 });
@@ -83,7 +83,7 @@ describe("pieces", () => {
     expect(standardShape("models/x.obj", [], [1, 1, 1])).toBeNull();
   });
 
-  it("dress humanoids in their team's colours, with numbers in front and behind", () => {
+  it("give humanoids their team's color, with numbers in front and behind", () => {
     const scene = new SyntheticWorld();
     scene.humanoid("left", 3, 0, 0);
     const robot = scene.humanoid("right", 4, 1, 0);
@@ -95,7 +95,7 @@ describe("pieces", () => {
     expect(picture.robotOf[robot.head]).toBe(1);
   });
 
-  it("leave out ground, goals, ball, and shapes that nobody should see", () => {
+  it("omit ground, goals, ball and hidden shapes", () => {
     const scene = new SyntheticWorld();
     const at = scene.transform(-1, [0, 0, 0], { shapes: [{ kind: "box", size: [1, 1, 1], position: [0, 0, 0], rotation: [0, 0, 0, 1] }] });
     scene.mesh(scene.transform(-1), "models/naosoccerfield.obj");
@@ -130,14 +130,14 @@ describe("the field", () => {
     expect(points.filter(([x, y]) => Math.abs(Math.hypot(x, y) - 2) < 1e-9)).toHaveLength(65);
   });
 
-  it("is mown from edge to edge without gaps", () => {
+  it("has stripes from edge to edge without gaps", () => {
     const field = fieldSizes(new Map(environment))!;
     const rows = stripes(field);
     rows.slice(1).forEach((row, k) => expect(row.from).toBeCloseTo(rows[k]!.to));
     expect(rows.at(-1)!.to).toBeCloseTo(15 + field.margin);
   });
 
-  it("has posts outside the mouths of its goals", () => {
+  it("has goal posts outside the goal mouths", () => {
     const field = fieldSizes(new Map(environment))!;
     expect([isInGoal(field, 15.2, 1), isInGoal(field, -15.2, -1), isInGoal(field, 14, 0), isInGoal(field, 15.2, 3), isInGoal(field, 25, 0)]).toEqual([true, true, false, false, false]);
     for (const { matrix, half } of goalPieces(field, 0)) {
@@ -147,14 +147,14 @@ describe("the field", () => {
   });
 });
 
-describe("colours", () => {
-  it("of the teams differ in brightness too, and from the grass", () => {
+describe("colors", () => {
+  it("of the teams differ in brightness, and lines from the grass", () => {
     const contrast = (a: number, b: number) => (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
     expect(contrast(luminance(teamColour("left")), luminance(teamColour("right")))).toBeGreaterThan(2.5);
     for (const { grass, line } of Object.values(surroundings)) expect(contrast(luminance(grass), luminance(line))).toBeGreaterThan(3);
   });
 
-  it("of materials follow the team, and are the same for the same name", () => {
+  it("of materials follow the team, and are equal for equal names", () => {
     const teams = { left: [1, 0, 0], right: [0, 1, 0] } as const;
     expect(materialColour("matLeft7", teams)).toBe(teams.left);
     expect(materialColour("somebody's")).toBe(materialColour("somebody's"));
@@ -165,7 +165,7 @@ describe("rays", () => {
   const matrix = new Float32Array(16);
   compose(matrix, 0, [0, 0, 5], quarterTurn);
 
-  it("meet boxes where these are, turned as they are", () => {
+  it("hit boxes at their position and orientation", () => {
     expect(hitBox([0, 0, 0], [0, 0, 1], matrix, 0, [1, 2, 3], 0)).toBeCloseTo(2);
     expect(hitBox([1.5, 0, 0], [0, 0, 1], matrix, 0, [1, 2, 3], 0)).toBeCloseTo(2);
     expect(hitBox([0, 1.5, 0], [0, 0, 1], matrix, 0, [1, 2, 3], 0)).toBe(Infinity);

@@ -1,6 +1,6 @@
 import type { Robot, SceneNode, World } from "../src/model";
 
-/// A world in a test: nodes with matrices, built from the top down.
+/// A synthetic world for tests: nodes with matrices, built top down.
 export class SyntheticWorld {
   private readonly nodes: SceneNode[] = [];
   private readonly matrices: number[][] = [];
@@ -15,7 +15,7 @@ export class SyntheticWorld {
     return this.add({ parent, kind: "mesh", load, scale: [1, 1, 1], visible: true, ...more }, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
   }
 
-  /// A torso and a head, as a humanoid has them.
+  /// Adds a humanoid with a torso and a head.
   humanoid(side: "left" | "right", number: number, x: number, y: number): Robot {
     const node = this.transform(-1);
     const team = side === "left" ? "matLeft" : "matRight";

@@ -8,13 +8,13 @@
 #include "spark/script_server.h"
 #include "test_support.h"
 
-// What one player of each type can do, alone on the field of lua/soccer.lua. Physics by the articulated solver, no
-// clock, no sockets: the same in every run.
+// The abilities of a single player of each type on the field of lua/soccer.lua. Physics by the articulated solver, no
+// real time, no sockets: every run is the same.
 
 using namespace spark;
 
 namespace {
-enum class Lie { belly, back, left, right };
+enum class LyingOn { belly, back, left, right };
 
 class Solo : public test::House {
  public:
@@ -31,7 +31,7 @@ class Solo : public test::House {
                         "p.type = 'Red', 10, {}",
                         type),
             "abilities");
-    run(1);  // it has found its place
+    run(1);  // it has beamed to its start position
     kernel.root().require<IPhysicsServer>("/sys/server/physics").bodies(kernel.root(), bodies_);
     ball_ = &kernel.root().require<IRigidBody>("/usr/scene/Ball/physics");
     std::erase(bodies_, ball_);
@@ -43,8 +43,8 @@ class Solo : public test::House {
     callMethod(kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles",
                std::vector<Value>{Value(static_cast<std::int64_t>(seconds / 0.02 + 0.5))});
   }
-  Vec3 place() const { return torso_->state().position; }
-  bool stands() const { return place().z() > 0.29 && torso_->state().rotation(2, 2) > 0.8; }
+  Vec3 position() const { return torso_->state().position; }
+  bool stands() const { return position().z() > 0.29 && torso_->state().rotation(2, 2) > 0.8; }
   Vec3 ball() const { return ball_->state().position; }
   void placeBall(const Vec3& where) {
     spark::Pose pose;
@@ -55,13 +55,14 @@ class Solo : public test::House {
   }
   std::string mode() { return getProperty(game(), "playMode").toString(); }
 
-  /// Turns the robot as it is about its torso, and drops it from a hand's breadth.
-  void lay(Lie lie) {
+  /// Rotates the robot about its torso without changing its joints, and drops it from a low height.
+  void layDown(LyingOn lyingOn) {
     constexpr double quarter = humanoid::kPi / 2;
-    const Vec3 middle = place(), forward = torso_->state().rotation.col(1), right = torso_->state().rotation.col(0);
-    const auto turn = lie == Lie::belly  ? Eigen::AngleAxisd(-quarter, right)
-                      : lie == Lie::back ? Eigen::AngleAxisd(quarter, right)
-                                         : Eigen::AngleAxisd(lie == Lie::right ? quarter : -quarter, forward);
+    const Vec3 middle = position(), forward = torso_->state().rotation.col(1), right = torso_->state().rotation.col(0);
+    const auto turn = lyingOn == LyingOn::belly ? Eigen::AngleAxisd(-quarter, right)
+                      : lyingOn == LyingOn::back
+                          ? Eigen::AngleAxisd(quarter, right)
+                          : Eigen::AngleAxisd(lyingOn == LyingOn::right ? quarter : -quarter, forward);
     std::vector<spark::Pose> poses;
     double lowest = 1;
     for (IRigidBody* b : bodies_) {
@@ -84,9 +85,9 @@ class Solo : public test::House {
   IRigidBody *torso_ = nullptr, *ball_ = nullptr;
 };
 
-/// s from being laid down until it has stood for one; 99: not within 15 s.
-double secondsToStand(Solo& solo, Lie lie) {
-  solo.lay(lie);
+/// Time from lying until it has been upright for one second [s]; 99: not within 15 s.
+double secondsToStand(Solo& solo, LyingOn lyingOn) {
+  solo.layDown(lyingOn);
   solo.run(0.4);
   double standing = 0, t = 0.4;
   for (; t < 15 && standing < 1; t += 0.1) {
@@ -103,23 +104,23 @@ TEST_CASE("Each type gets up from belly, back and both sides") {
   solo.placeBall({0, 9, 0.042});
   solo.run(1);
   REQUIRE(solo.stands());
-  for (const Lie lie : {Lie::belly, Lie::back, Lie::left, Lie::right}) {
-    const double took = secondsToStand(solo, lie);
-    CAPTURE(type, static_cast<int>(lie), took);
+  for (const LyingOn lyingOn : {LyingOn::belly, LyingOn::back, LyingOn::left, LyingOn::right}) {
+    const double took = secondsToStand(solo, lyingOn);
+    CAPTURE(type, static_cast<int>(lyingOn), took);
     CHECK(took < 12);
   }
 }
 
-TEST_CASE("Each type walks seven metres without a fall, takes the ball along and scores") {
+TEST_CASE("Each type walks seven meters without a fall, dribbles the ball and scores") {
   const int type = GENERATE(0, 1, 2, 3, 4);
   Solo solo(type);
   solo.placeBall({6, 0.5, 0.042});
   double t = 0, lowest = 1;
   for (; t < 150 && solo.mode() != "Goal_Left"; t += 0.1) {
     solo.run(0.1);
-    if (solo.place().x() < 5) lowest = std::min(lowest, solo.place().z());
+    if (solo.position().x() < 5) lowest = std::min(lowest, solo.position().z());
   }
-  CAPTURE(type, t, lowest, solo.place().transpose(), solo.ball().transpose());
+  CAPTURE(type, t, lowest, solo.position().transpose(), solo.ball().transpose());
   CHECK(lowest > 0.28);
   CHECK(solo.mode() == "Goal_Left");
 }

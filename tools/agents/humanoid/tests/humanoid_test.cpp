@@ -14,7 +14,7 @@ using namespace humanoid;
 namespace {
 Mat3 about(const Vec3& axis, double rad) { return Eigen::AngleAxisd(rad, axis.normalized()).toRotationMatrix(); }
 
-/// Where the sole is below the hip, and how it is turned, with the joints' axes as the robot's description has them.
+/// Position of the sole relative to the hip, and its orientation, from the joint axes in the robot's description.
 std::pair<Vec3, Mat3> soleOf(const Build& build, bool right, const Pose& pose) {
   const std::size_t first = index(right ? Joint::rHipYaw : Joint::lHipYaw);
   const double side = right ? 1 : -1;
@@ -32,7 +32,7 @@ spark::Predicates message(const std::string& text) {
   return p;
 }
 
-/// What a robot at `place` (left team's frame) with that heading, upright and looking ahead, sees of the marks.
+/// The marks that a robot at `place` (left team's frame) with this heading sees, upright and looking ahead.
 Percepts view(const Vec2& place, double heading, std::initializer_list<const char*> names) {
   Percepts p;
   p.side = "left";
@@ -56,13 +56,13 @@ Situation playing() {
 }
 }  // namespace
 
-TEST_CASE("Angles come back into one turn") {
+TEST_CASE("Angles are normalized to one turn") {
   REQUIRE(normalized(3 * kPi + 0.5) == Approx(-kPi + 0.5));
   REQUIRE(normalized(-kPi - 0.5) == Approx(kPi - 0.5));
   REQUIRE(normalized(0.25) == Approx(0.25));
 }
 
-TEST_CASE("A team of eleven keeps the league's limits of robot types") {
+TEST_CASE("A team of eleven respects the league's limits of robot types") {
   std::map<int, int> count;
   for (int unum = 1; unum <= 11; ++unum) ++count[robotType(unum)];
   REQUIRE(count.size() == kRobotTypes);
@@ -73,7 +73,7 @@ TEST_CASE("A team of eleven keeps the league's limits of robot types") {
   }
 }
 
-TEST_CASE("Legs put soles where they are wanted, with all builds and both legs") {
+TEST_CASE("Inverse kinematics puts the soles at the desired poses for all builds and both legs") {
   for (int type = 0; type < kRobotTypes; ++type)
     for (const bool right : {true, false})
       for (const double yaw : {0.0, right ? -0.4 : 0.4})
@@ -92,7 +92,7 @@ TEST_CASE("Legs put soles where they are wanted, with all builds and both legs")
         }
 }
 
-TEST_CASE("A place out of reach gives a straight leg in its direction") {
+TEST_CASE("A position out of reach gives a straight leg in its direction") {
   const Build& build = buildOf(0);
   Foot foot;
   foot.place = Vec3(0, 0, -1);
@@ -101,7 +101,7 @@ TEST_CASE("A place out of reach gives a straight leg in its direction") {
   REQUIRE(soleOf(build, true, pose).first.z() == Approx(-legLength(build)).margin(0.001));
 }
 
-TEST_CASE("Joints arrive, counting the command under way, and within their speed") {
+TEST_CASE("Joints reach their targets within their speed, including the pending command") {
   JointDrive drive(buildOf(2));
   Pose angle{}, wanted{}, underWay{};
   wanted[Joint::rKnee] = radians(-60);
@@ -109,7 +109,7 @@ TEST_CASE("Joints arrive, counting the command under way, and within their speed
   for (int cycle = 0; cycle < 40; ++cycle) {
     spark::Predicates out;
     drive.drive(wanted, angle, 0.8, out);
-    for (std::size_t i = 0; i < kJoints; ++i) angle.at(i) += underWay.at(i) * kCycle;  // a command acts one cycle late
+    for (std::size_t i = 0; i < kJoints; ++i) angle.at(i) += underWay.at(i) * kCycle;  // a command acts one cycle later
     for (const spark::Element e : out)
       for (std::size_t i = 0; i < kJoints; ++i)
         if (kJointFacts[i].effector == e.head()) underWay.at(i) = e.at(1).number();
@@ -121,7 +121,7 @@ TEST_CASE("Joints arrive, counting the command under way, and within their speed
   REQUIRE(degrees(angle[Joint::rAnkleRoll]) == Approx(20).margin(0.1));
 }
 
-TEST_CASE("A sense message is read: game, joints, feet, marks, ball, players, hearing") {
+TEST_CASE("A message is parsed into game, joints, feet, marks, ball, players and hearing") {
   Percepts p;
   read(message("(time (now 12.34))(GS (unum 7) (team right) (sl 1) (sr 2) (t 5.00) (pm KickOff_Left))(hear Red 5.00 "
                "self 1:2:3:4)"
@@ -141,14 +141,14 @@ TEST_CASE("A sense message is read: game, joints, feet, marks, ball, players, he
   REQUIRE(p.joints[Joint::lAnkleRoll] == Approx(radians(-3)));
   REQUIRE((p.leftFoot && !p.rightFoot));
   REQUIRE(p.sightings.size() == 1);
-  REQUIRE((p.sightings[0].place - Vec3(-10, 0, 0)).norm() < 1e-9);  // 90 degrees is to the left
+  REQUIRE((p.sightings[0].place - Vec3(-10, 0, 0)).norm() < 1e-9);  // 90 degrees is left
   REQUIRE((*p.ball - Vec3(0, std::sqrt(3.0), -1)).norm() < 1e-9);
   REQUIRE(p.players.at(0).unum == 3);
   read(message("(time (now 12.36))(GS (sl 1) (sr 2) (t 5.00) (pm PlayOn))"), "Red", p);
   REQUIRE((p.side == "right" && !p.seeing && !p.ball && p.heard.empty() && !p.leftFoot));
 }
 
-TEST_CASE("Two marks tell place and heading; from the right side the field is turned") {
+TEST_CASE("Two marks determine position and heading, and for the right team the field is rotated") {
   for (const double heading : {0.0, 0.7, -2.5}) {
     Localisation here;
     Percepts p = view({-4, 2}, heading, {"F1R", "G2R"});
@@ -165,7 +165,7 @@ TEST_CASE("Two marks tell place and heading; from the right side the field is tu
   }
 }
 
-TEST_CASE("Between sightings steps and turns are counted, and without any it does not believe for ever") {
+TEST_CASE("Between sightings the position follows steps and turns, and becomes unknown after a while") {
   Localisation here;
   here.update(view({0, 0}, 0, {"F1R", "F2R"}), Posture(), Vec2::Zero());
   Percepts blind;
@@ -180,7 +180,7 @@ TEST_CASE("Between sightings steps and turns are counted, and without any it doe
   REQUIRE_FALSE(here.known());
 }
 
-TEST_CASE("The posture tells on which side the robot lies") {
+TEST_CASE("The posture determines on which side the robot lies") {
   const auto lyingWith = [](const Vec3& acceleration) {
     Posture posture;
     Percepts p;
@@ -195,12 +195,12 @@ TEST_CASE("The posture tells on which side the robot lies") {
   Posture falling;
   Percepts p;
   p.acceleration = Vec3::Zero();
-  p.gyro = Vec3(-kPi / 2, 0, 0);  // forward, 90 degrees a second
+  p.gyro = Vec3(-kPi / 2, 0, 0);  // forward, at 90 degrees per second
   for (int i = 0; i < 25; ++i) falling.update(p);
   REQUIRE(degrees(falling.forward()) == Approx(45).margin(2));
 }
 
-TEST_CASE("A movement plays its frames in time, alike on both sides, and holds the first") {
+TEST_CASE("A movement plays its frames in time, symmetrically, and holds the first one") {
   static constexpr std::array<Keyframe, 2> frames{
       {{0.2, -40, 30, 10, 20, -15, 5, 60, -90, 30}, {0.1, 0, 0, 0, 0, 0, 0, 0, -20, 0}}};
   const Movement movement{frames};
@@ -227,20 +227,20 @@ TEST_CASE("A movement plays its frames in time, alike on both sides, and holds t
   REQUIRE(degrees(pose[Joint::rShoulderYaw]) == Approx(0).margin(1e-9));
 }
 
-TEST_CASE("Near the end of a movement the ankles keep the torso's lean") {
+TEST_CASE("Near the end of a movement the ankles control the torso's lean") {
   static constexpr std::array<Keyframe, 2> frames{
       {{0.1, 0, 0, 0, 0, 0, 0, 0, 0, 10}, {0.1, 0, 0, 0, 0, 0, 0, 0, 0, 10}}};
   const Movement movement{frames, 0.5, 0, 20, 20};
   GetUp getUp;
   Percepts percepts;
-  Posture posture;  // upright: 20 degrees less than wanted
+  Posture posture;  // upright: 20 degrees less than desired
   Pose pose{};
   getUp.start(movement, pose);
   while (getUp.playing()) getUp.step(percepts, posture, pose);
   REQUIRE(degrees(pose[Joint::rAnklePitch]) == Approx(20));
 }
 
-TEST_CASE("All types have movements for all lies, within the stops of their joints") {
+TEST_CASE("All types have movements for all lying postures within the joint limits") {
   for (int type = 0; type < kRobotTypes; ++type)
     for (const Lying lying : {Lying::onFront, Lying::onBack, Lying::onSide})
       for (const Keyframe& k : movementOf(type, lying).frames) {
@@ -254,7 +254,7 @@ TEST_CASE("All types have movements for all lies, within the stops of their join
       }
 }
 
-TEST_CASE("First things first: up, to the place, find the ball") {
+TEST_CASE("Getting up has priority over moving into position, and that over searching the ball") {
   Situation s = playing();
   s.tilt = radians(55);
   REQUIRE(decide(s).task == Task::fall);
@@ -272,7 +272,7 @@ TEST_CASE("First things first: up, to the place, find the ball") {
   REQUIRE(decide(s).task == Task::stand);
 }
 
-TEST_CASE("The nearest goes behind the ball and then through it, towards the goal") {
+TEST_CASE("The nearest player goes behind the ball and then through it, towards the goal") {
   Situation s = playing();
   s.place = {-2, 0.1};
   Decision d = decide(s);
@@ -285,20 +285,20 @@ TEST_CASE("The nearest goes behind the ball and then through it, towards the goa
   REQUIRE(std::abs(d.facing) < radians(20));
   s.heading = radians(90);  // turns first
   REQUIRE(decide(s).task == Task::walk);
-  s.place = {0.6, 0.05};  // before the ball: round it
+  s.place = {0.6, 0.05};  // in front of the ball: walk around it
   d = decide(s);
   REQUIRE(d.task == Task::walk);
   REQUIRE(std::abs(d.target.y()) > 0.3);
   REQUIRE(d.target.x() < 0.3);
 }
 
-TEST_CASE("Who is behind the ball is nearer to it than who must get round it") {
+TEST_CASE("The way to the ball is longer for a player that must walk around it") {
   REQUIRE(wayToBall({2, 0}, {5, 0}) == Approx(3));
   REQUIRE(wayToBall({6.2, 0}, {5, 0}) > 3);
   REQUIRE(wayToBall({6, 0}, {5, 0}) > wayToBall({5, 1}, {5, 0}));
 }
 
-TEST_CASE("In a duel the ball goes aside, but not near the goal") {
+TEST_CASE("In a duel the ball is played sideways, but not near the goal") {
   Situation s = playing();
   s.contested = true;
   for (const double x : {0.0, 12.0}) {
@@ -310,23 +310,23 @@ TEST_CASE("In a duel the ball goes aside, but not near the goal") {
   }
 }
 
-TEST_CASE("A place near by is walked to without a turn, back or aside, one further away is turned to") {
+TEST_CASE("A nearby position is approached without a turn, backwards or sideways, and a distant one is faced first") {
   REQUIRE(steer({0, -0.6}, 0).forward < -0.2);
   REQUIRE(steer({0, -0.6}, 0).turn == Approx(0).margin(1e-9));
   REQUIRE(steer({0.3, 0}, 0).right > 0.2);
   REQUIRE(steer({0, -5}, 0).forward == 0);
   REQUIRE(std::abs(steer({0, -5}, 0).turn) > 1);
-  REQUIRE(std::abs(steer({0, -0.6}, kPi).turn) > 1);  // he is to look that way anyway
+  REQUIRE(std::abs(steer({0, -0.6}, kPi).turn) > 1);  // the robot must face that direction anyway
 }
 
-TEST_CASE("A player does not walk past a ball that is not before his foot yet") {
+TEST_CASE("A player does not walk past a ball that is not in front of its foot yet") {
   REQUIRE(push({0, 0.3}, 0).forward == 1);
   const Steering aside = push({0.15, 0.15}, 0);
   REQUIRE((aside.right > 0.2 && aside.forward < 0.2));
   REQUIRE(push({0.15, 0.02}, 0).forward == 0);
 }
 
-TEST_CASE("Who took the restart leaves the ball to others") {
+TEST_CASE("The player that took the restart leaves the ball to others") {
   Situation s = playing();
   s.place = {-0.3, 0};
   s.barred = true;
@@ -334,14 +334,14 @@ TEST_CASE("Who took the restart leaves the ball to others") {
   REQUIRE(decide(s).target.x() < -1);
 }
 
-TEST_CASE("Players are passed on the side that is nearer, and only those in the way matter") {
+TEST_CASE("Players are passed on the nearer side, and only those in the way are considered") {
   REQUIRE((pass({0, 5}, {{0.1, 0.8}}) - Vec2(0, 5)).norm() > 1);
   REQUIRE(pass({0, 5}, {{0.1, 0.8}}).x() < 0);
   REQUIRE(pass({0, 5}, {{-0.1, 0.8}}).x() > 0);
   REQUIRE((pass({0, 5}, {{0, -0.5}, {1, 0.8}, {0, 3}}) - Vec2(0, 5)).norm() < 1e-9);
 }
 
-TEST_CASE("Others keep a distance, the goalie keeps the goal, and nobody goes near the others' restart") {
+TEST_CASE("Other players keep a distance, the goalie stays at its goal, and none approaches the opponents' restart") {
   Situation s = playing();
   s.nearest = false;
   s.place = {-0.3, 0};
@@ -360,7 +360,7 @@ TEST_CASE("Others keep a distance, the goalie keeps the goal, and nobody goes ne
   REQUIRE((decide(s).target - s.ball).norm() < 0.6);
 }
 
-TEST_CASE("Whoever is not there yet moves") {
+TEST_CASE("A player that is not at its target yet moves") {
   for (double bearing = -3.1; bearing <= 3.1; bearing += 0.1)
     for (const double distance : {0.2, 0.49, 0.51, 0.79, 0.81, 5.0}) {
       const Steering s = steer(Vec2(-std::sin(bearing), std::cos(bearing)) * distance, 0);
@@ -369,7 +369,7 @@ TEST_CASE("Whoever is not there yet moves") {
     }
 }
 
-TEST_CASE("Play modes: whose ball it is") {
+TEST_CASE("Play modes determine which team has the ball") {
   REQUIRE(theirBall("KickOff_Left", "right"));
   REQUIRE_FALSE(theirBall("KickOff_Left", "left"));
   REQUIRE(theirBall("goal_kick_right", "left"));
@@ -377,7 +377,7 @@ TEST_CASE("Play modes: whose ball it is") {
   REQUIRE((pausedMode("Goal_Left") && pausedMode("BeforeKickOff") && !pausedMode("GameOver")));
 }
 
-TEST_CASE("A player asks for robot and team, beams itself, and answers every message with all joints of its type") {
+TEST_CASE("A player requests robot and team, beams, and answers every message with all joints of its type") {
   for (const int type : {0, 4}) {
     HumanoidPlayer player("Red", 9, type);
     spark::Predicates actions;

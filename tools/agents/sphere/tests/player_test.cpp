@@ -3,13 +3,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-// The brain alone: percepts in, actions out.
+// Only the player's decisions: percepts in, actions out.
 
 using namespace spark;
 
 namespace {
 
-/// What a player at (x, y) would be told, without noise. The frame is the team's own.
+/// The percepts of a player at (x, y) without noise, in the team's own frame.
 struct World {
   double now = 1, x = -5, y = 0, ballX = 0, ballY = 0;
   std::string mode = "PlayOn", announce, others;
@@ -40,7 +40,7 @@ std::string think(SpherePlayer& player, const World& world) {
   return out;
 }
 
-/// The argument `i` of the action `name`, NaN when it was not chosen.
+/// The argument `i` of the action `name`, NaN if the player did not choose this action.
 double argument(const std::string& actions, std::string_view name, std::size_t i) {
   Predicates p;
   readSexp(actions, p);
@@ -49,7 +49,7 @@ double argument(const std::string& actions, std::string_view name, std::size_t i
   return NAN;
 }
 
-/// A player who knows his side.
+/// A player that has received its side.
 SpherePlayer playing(int unum, World& world, const char* side = "left") {
   SpherePlayer player("A", unum);
   world.announce = "(unum " + std::to_string(unum) + ") (team " + side + ") ";
@@ -61,7 +61,7 @@ SpherePlayer playing(int unum, World& world, const char* side = "left") {
 
 }  // namespace
 
-TEST_CASE("a player asks for its robot, then for its place in the team, and again after a while", "[sphere-team]") {
+TEST_CASE("a player requests its robot, then its number and team, and repeats that after a while", "[sphere-team]") {
   SpherePlayer player("A", 7);
   player.setScene("rsg/agent/other.rsg");
   Predicates actions;
@@ -87,7 +87,7 @@ TEST_CASE("a player knows the score from its own side", "[sphere-team]") {
   CHECK(right.side() == "right");
 }
 
-TEST_CASE("before the kick-off a player beams to its place once", "[sphere-team]") {
+TEST_CASE("before the kick-off a player beams to its position once", "[sphere-team]") {
   World w;
   w.mode = "BeforeKickOff";
   SpherePlayer player("A", 2);
@@ -105,14 +105,14 @@ TEST_CASE("the nearest player runs to the ball, another one does not", "[sphere-
   w.other("A", 9, -30, 10);
   const std::string running = think(near, w);
   CHECK(argument(running, "drive", 1) > 50);
-  // at its place in the formation, with a team-mate nearer to the ball
+  // At its position in the formation, with a team-mate nearer to the ball.
   w.others.clear();
   w.x = -4.5, w.y = 0.5;
   w.other("A", 9, -2, 0);
   CHECK(argument(think(near, w), "drive", 1) < 10);
 }
 
-TEST_CASE("behind the ball it kicks towards the goal, in front of it it runs round", "[sphere-team]") {
+TEST_CASE("behind the ball a player kicks towards the goal, and in front of it runs around the ball", "[sphere-team]") {
   World w;
   w.ballX = 35, w.x = 34.66;
   SpherePlayer player = playing(9, w);
@@ -124,7 +124,7 @@ TEST_CASE("behind the ball it kicks towards the goal, in front of it it runs rou
   CHECK(argument(round, "drive", 1) < 0);
 }
 
-TEST_CASE("at the opponents' restart it keeps away from the ball", "[sphere-team]") {
+TEST_CASE("at the opponents' restart a player keeps away from the ball", "[sphere-team]") {
   World w;
   w.mode = "KickIn_Right";
   w.ballX = -20, w.ballY = 33, w.x = -22, w.y = 30;
@@ -134,7 +134,7 @@ TEST_CASE("at the opponents' restart it keeps away from the ball", "[sphere-team
   CHECK(argument(away, "drive", 2) < 0);
 }
 
-TEST_CASE("who took a restart leaves the ball to a team-mate", "[sphere-team]") {
+TEST_CASE("the player that took a restart leaves the ball to a team-mate", "[sphere-team]") {
   World w;
   w.mode = "KickIn_Left";
   w.ballX = 10, w.ballY = 33, w.x = 10, w.y = 32.6;
@@ -144,13 +144,13 @@ TEST_CASE("who took a restart leaves the ball to a team-mate", "[sphere-team]") 
   w.mode = "PlayOn";
   w.now += 0.06;
   CHECK(think(taker, w).find("kick") == std::string::npos);
-  // and may go for it again later
+  // It may approach the ball again later.
   w.now += 4;
   w.y = 30;
   CHECK(argument(think(taker, w), "drive", 2) > 10);
 }
 
-TEST_CASE("the goalie stands between ball and goal and catches what is near", "[sphere-team]") {
+TEST_CASE("the goalie moves between ball and goal and catches a close ball", "[sphere-team]") {
   World w;
   w.x = -48, w.y = -10, w.ballX = -20, w.ballY = 20;
   SpherePlayer goalie = playing(1, w);
@@ -162,7 +162,7 @@ TEST_CASE("the goalie stands between ball and goal and catches what is near", "[
   CHECK(think(goalie, w) == "(catch )");
 }
 
-TEST_CASE("when it is over it stands still", "[sphere-team]") {
+TEST_CASE("after the match a player does not move", "[sphere-team]") {
   World w;
   SpherePlayer player = playing(4, w);
   w.mode = "GameOver";

@@ -18,7 +18,7 @@ function randomSteps(random: Random, count: number): number[][] {
   return Array.from({ length: count }, () => Array.from({ length: 7 }, (_, k) => (k < 3 ? random.whole(-60_000, 60_000) : random.whole(-1024, 1024))));
 }
 
-function expectPlaces(poses: Poses, transforms: number[], steps: number[][], bits: [number, number]): void {
+function expectPoses(poses: Poses, transforms: number[], steps: number[][], bits: [number, number]): void {
   transforms.forEach((node, i) => {
     const [x, y, z, ...q] = steps[i]!;
     expect([...poses.position.subarray(3 * node, 3 * node + 3)]).toEqual([x, y, z].map((s) => Math.fround(s! / 2 ** bits[0])));
@@ -28,9 +28,9 @@ function expectPlaces(poses: Poses, transforms: number[], steps: number[][], bit
   });
 }
 
-test("a frame is read byte by byte as the protocol has it", () => {
+test("a frame is decoded byte by byte according to the protocol", () => {
   const { decoder: d, poses } = decoder([0, 2], 3);
-  // One metre along x, turned by 180 degrees about z; node 1 vanishes.
+  // One meter along x, turned by 180 degrees about z; node 1 is hidden.
   const bytes = [1, 3, 4, 0, 1, 0, 0, 0, 9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x28, 0x40, 1, 1, 0b0100001, 16, 32, 0, 0, 1, 1, 0];
   expect(d.decode(Uint8Array.from(bytes), poses)).toBe("shown");
   expect(d.time).toBe(12);
@@ -39,7 +39,7 @@ test("a frame is read byte by byte as the protocol has it", () => {
   expect([...poses.visible]).toEqual([1, 0, 1]);
 });
 
-test("keys and deltas come out as they went in", () => {
+test("decoded key frames and deltas equal the encoded ones", () => {
   const random = new Random(5);
   for (let run = 0; run < 15; ++run) {
     const nodes = random.whole(1, 30);
@@ -54,26 +54,26 @@ test("keys and deltas come out as they went in", () => {
       const visible: [number, number][] = random.chance(0.3) ? [[random.whole(0, nodes - 1), random.whole(0, 1)]] : [];
       expect(d.decode(writeFrame({ key: false, shape: run, serial, time: serial / 25, bits, steps, before, visible }), poses)).toBe("shown");
       expect(d.time).toBe(serial / 25);
-      expectPlaces(poses, transforms, steps, bits);
+      expectPoses(poses, transforms, steps, bits);
       for (const [node, shown] of visible) expect(poses.visible[node]).toBe(shown);
     }
   }
 });
 
-test("a delta without its base waits for the next key", () => {
+test("a delta without its base waits for the next key frame", () => {
   const { decoder: d, poses } = decoder([0], 1);
   const a = [[1, 2, 3, 0, 0, 0, 1024]], b = [[2, 2, 3, 0, 0, 0, 1024]];
   const delta = (serial: number) => writeFrame(frame(b, { key: false, serial, before: a }));
   expect(d.decode(delta(1), poses)).toBe("waits");
   expect(d.decode(writeFrame(frame(a)), poses)).toBe("shown");
   expect(d.decode(delta(3), poses)).toBe("waits");
-  // Not even one that would fit: the frame before was missed.
+  // Even a delta that would fit waits, because the frame before was missed.
   expect(d.decode(delta(2), poses)).toBe("waits");
   expect(d.decode(writeFrame(frame(b, { serial: 4 })), poses)).toBe("shown");
   expect(d.decode(writeFrame(frame(b, { shape: 2, serial: 5 })), poses)).toBe("waits");
 });
 
-test("what is no frame is refused", () => {
+test("an invalid frame is refused", () => {
   const good = writeFrame(frame([[1, 2, 3, 0, 0, 0, 1024]]));
   const refused = (change: (bytes: number[]) => void) => {
     const { decoder: d, poses } = decoder([0], 1);
@@ -89,11 +89,11 @@ test("what is no frame is refused", () => {
   expect(refused((b) => b.pop())).toBe("broken");
   expect(refused((b) => (b[21] = 2))).toBe("broken");   // a run beyond the transforms
   expect(refused((b) => (b[22] = 0xff))).toBe("broken");   // a mask of eight bits
-  expect(refused((b) => b.splice(23, 1, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1))).toBe("broken");   // a number without end
+  expect(refused((b) => b.splice(23, 1, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1))).toBe("broken");   // a number that does not end
   expect(refused((b) => b.splice(12, 8, 0, 0, 0, 0, 0, 0, 0xf0, 0x7f))).toBe("broken");   // an infinite time
 });
 
-test("random and damaged bytes never throw, and never leave numbers that are none", () => {
+test("random and damaged bytes never throw and never give numbers that are not finite", () => {
   const random = new Random(11);
   const { decoder: d, poses } = decoder([0, 1, 3], 4);
   let shown = 0;

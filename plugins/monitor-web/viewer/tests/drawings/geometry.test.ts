@@ -21,7 +21,7 @@ function areaOf(points: Vec3[], triangles: number[]): number {
 }
 
 describe("a circle", () => {
-  it("closes, at its radius", () => {
+  it("is closed and has its radius", () => {
     const s = strokes((stroke) => circle(2, 3, 0.1, 1.5, 24, stroke));
     expect(s.length).toBe(24);
     for (const [a] of s) expect(Math.hypot(a[0] - 2, a[1] - 3)).toBeCloseTo(1.5);
@@ -41,12 +41,12 @@ describe("an arrow", () => {
     }
   });
 
-  it("is nothing without a length", () => {
+  it("has no strokes if its length is zero or not finite", () => {
     expect(strokes((stroke) => arrow(0, 0, 0, 0, 0, 0, 0.1, stroke))).toEqual([]);
     expect(strokes((stroke) => arrow(0, 0, 0, NaN, 0, 0, 0.1, stroke))).toEqual([]);
   });
 
-  it("stands beside what it stands beside", () => {
+  it("has a perpendicular unit vector", () => {
     for (const v of [[0, 0, 1], [0, 1, 0], [0.6, 0, 0.8]] as Vec3[]) {
       expect(dot(aside(...v), v)).toBeCloseTo(0);
       expect(Math.hypot(...aside(...v))).toBeCloseTo(1);
@@ -55,7 +55,7 @@ describe("an arrow", () => {
 });
 
 describe("polar coordinates", () => {
-  it("have x ahead, y to the left, z up", () => {
+  it("have x ahead, y to the left and z up", () => {
     const close = (a: Vec3, b: Vec3) => a.forEach((v, i) => expect(v).toBeCloseTo(b[i]!));
     close(fromPolar(2, 0, 0), [2, 0, 0]);
     close(fromPolar(2, 90, 0), [0, 2, 0]);
@@ -65,10 +65,10 @@ describe("polar coordinates", () => {
   });
 });
 
-describe("a cone of view", () => {
+describe("a view cone", () => {
   const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-  it("ends at its range, within its openings", () => {
+  it("ends at its range, within its angles", () => {
     const s = strokes((stroke) => viewCone(identity, 120, 60, 3, stroke));
     const edges = s.filter(([a]) => Math.hypot(...a) < 1e-9);
     expect(edges.length).toBe(4);
@@ -79,7 +79,7 @@ describe("a cone of view", () => {
     }
   });
 
-  it("has no edges when it goes all around", () => {
+  it("has no edges if it covers all directions", () => {
     const s = strokes((stroke) => viewCone(identity, 360, 180, 2, stroke));
     expect(s.length).toBeGreaterThan(20);
     for (const p of s.flat()) expect(Math.hypot(...p)).toBeCloseTo(2);
@@ -87,32 +87,32 @@ describe("a cone of view", () => {
 });
 
 describe("a polygon", () => {
-  it("is covered once by its triangles, whichever way it turns", () => {
+  it("is covered exactly once by its triangles in either orientation", () => {
     const square: Vec3[] = [[0, 0, 1], [2, 0, 1], [2, 2, 1], [0, 2, 1]];
     expect(areaOf(square, triangulate(square))).toBeCloseTo(4);
     expect(areaOf([...square].reverse(), triangulate([...square].reverse()))).toBeCloseTo(4);
   });
 
-  it("may have corners that turn inwards, and stand upright", () => {
+  it("may have concave corners and any plane", () => {
     const arrowhead: Vec3[] = [[0, 0, 0], [4, 0, 0], [1, 0, 1], [0, 0, 4]];
     const t = triangulate(arrowhead);
     expect(t.length).toBe(6);
     expect(areaOf(arrowhead, t)).toBeCloseTo(4);
   });
 
-  it("gives nothing for a line or less", () => {
+  it("has no triangles if it is a line or less", () => {
     expect(triangulate([[0, 0, 0], [1, 0, 0], [2, 0, 0]])).toEqual([]);
     expect(triangulate([[0, 0, 0], [1, 0, 0]])).toEqual([]);
     expect(triangulate([])).toEqual([]);
   });
 
-  it("ends even where lines cross each other", () => {
+  it("is triangulated even if its edges intersect", () => {
     expect(triangulate([[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 1, 0]]).length).toBe(6);
   });
 });
 
-describe("colours of depth", () => {
-  it("get darker with it, and stay within bounds", () => {
+describe("depth colors", () => {
+  it("get darker with depth, and stay within bounds", () => {
     const light = [0, 0.25, 0.5, 0.75].map((s) => rampColour(s).reduce((a, b) => a + b));
     expect([...light].sort((a, b) => b - a)).toEqual(light);
     expect(rampColour(-1)).toEqual(rampColour(0));
@@ -121,8 +121,8 @@ describe("colours of depth", () => {
   });
 });
 
-describe("a polygon of very many corners", () => {
-  it("is taken to be convex, so that it costs no time", () => {
+describe("a polygon with very many corners", () => {
+  it("is treated as convex to save time", () => {
     const corners = Array.from({ length: 255 }, (_, i): [number, number, number] => [Math.cos((2 * Math.PI * i) / 255), Math.sin((2 * Math.PI * i) / 255), 0]);
     const triangles = triangulate(corners);
     expect(triangles).toHaveLength(3 * 253);

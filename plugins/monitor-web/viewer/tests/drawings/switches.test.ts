@@ -1,18 +1,18 @@
 import { describe, expect, it } from "vitest";
 import { SetSwitches, setRows } from "../../src/drawings/switches";
 
-describe("switches of sets", () => {
-  it("show everything at first", () => {
+describe("set switches", () => {
+  it("show all sets initially", () => {
     expect(new SetSwitches().isOn("ball.path")).toBe(true);
   });
 
-  it("hold for all below a prefix, also for what comes later", () => {
+  it("apply to all sets below a prefix, including later ones", () => {
     const s = new SetSwitches();
     s.switch("ball", false);
     expect([s.isOn("ball"), s.isOn("ball.path.3"), s.isOn("balloon")]).toEqual([false, false, true]);
   });
 
-  it("let the longest rule decide, until the shorter one is switched again", () => {
+  it("follow the longest matching rule until a shorter one is switched again", () => {
     const s = new SetSwitches();
     s.switch("ball", false);
     s.switch("ball.path", true);
@@ -23,7 +23,7 @@ describe("switches of sets", () => {
     expect(s.isOn("ball.path.1")).toBe(true);
   });
 
-  it("can hide and show all", () => {
+  it("can hide and show all sets", () => {
     const s = new SetSwitches();
     s.switch("a", false);
     s.switch("", false);
@@ -36,13 +36,13 @@ describe("switches of sets", () => {
 });
 
 describe("the list of sets", () => {
-  it("puts sets with a common first part below a line of their own", () => {
+  it("groups sets with a common first part under one row", () => {
     const rows = setRows(["zone", "ball.path", "ball.aim"]);
     expect(rows.map((r) => [r.prefix, r.label, r.nested])).toEqual([["ball", "ball", false], ["ball.aim", ".aim", true], ["ball.path", ".path", true], ["zone", "zone", false]]);
     expect(rows[0]!.names).toEqual(["ball.aim", "ball.path"]);
   });
 
-  it("names what has no name", () => {
+  it("gives a label to a set without a name", () => {
     expect(setRows([""])[0]!.label).toBe("(no name)");
   });
 });

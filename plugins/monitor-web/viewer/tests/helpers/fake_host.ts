@@ -1,6 +1,6 @@
 import type { Socket } from "../../src/sources/connection";
 
-/// A host at the other end of a WebSocket that is none.
+/// A host at the other end of a fake WebSocket.
 export class FakeHost {
   readonly sockets: FakeSocket[] = [];
 
@@ -30,7 +30,7 @@ export class FakeHost {
     this.socket.onclose?.(undefined as never);
   }
 
-  /// What the viewer has said on this connection.
+  /// The viewer's messages on this connection.
   get heard(): Record<string, unknown>[] {
     return this.socket.sent.map((text) => JSON.parse(text) as Record<string, unknown>);
   }

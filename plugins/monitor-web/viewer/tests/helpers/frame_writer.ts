@@ -1,4 +1,4 @@
-/// Writes frames of the stream, as a host does.
+/// Writes frames of the stream like a host.
 
 export interface Frame {
   key: boolean;
@@ -6,7 +6,7 @@ export interface Frame {
   serial: number;
   time: number;
   bits: [number, number];
-  /// Steps of each transform, seven each; for deltas also those of the frame before.
+  /// Steps of each transform, seven each; for deltas also those of the previous frame.
   steps: number[][];
   before?: number[][];
   visible?: [number, number][];

@@ -1,4 +1,4 @@
-/// Makes logs for tests, in both languages: a ball, a humanoid's torso with head, a sphere robot.
+/// Creates logs for tests in both formats: a ball, a humanoid's torso with head, a sphere robot.
 
 export type List = (string | number | List)[];
 
@@ -28,7 +28,7 @@ export function scene(ballX: number, robotX: number, yaw = 0, team = "matLeft", 
   ];
 }
 
-/// The nodes of a partial message for scene(): what is null did not move.
+/// The nodes of a partial message for scene(); null means unchanged.
 export function changes(ball: number[] | null, torso: number[] | null, visible: number | null = null): List[] {
   const moved = (matrix: number[] | null, ...children: List[]): List => ["nd", ...(matrix ? [["SLT", ...matrix]] : []), ...children];
   const shown: List[] = visible === null ? [] : [["setVisible", visible]];

@@ -1,4 +1,4 @@
-/// What tests use of Node.js.
+/// The parts of Node.js that tests use.
 declare module "node:fs" {
   export function existsSync(path: string): boolean;
   export function readFileSync(path: string, encoding: "utf8"): string;

@@ -1,4 +1,4 @@
-/// Numbers that repeat for a seed (mulberry32).
+/// Random numbers that are repeatable for a seed (mulberry32).
 export class Random {
   constructor(private state: number) {}
 

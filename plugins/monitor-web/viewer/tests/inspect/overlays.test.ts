@@ -7,8 +7,8 @@ import { jointName } from "../../src/inspect/overlays/joints";
 import { errorOf, sexp, signsOf } from "../../src/inspect/overlays/percepts";
 import type { Surroundings } from "../../src/inspect/overlays/overlay";
 
-describe("arrows of forces", () => {
-  it("have a round scale that stays while it fits", () => {
+describe("force arrows", () => {
+  it("have a round scale that changes only when necessary", () => {
     expect(forceScale(0.01, 0)).toBe(0.01);
     expect(forceScale(0.01, 40)).toBe(0.01);
     expect(forceScale(0.01, 100)).toBeCloseTo(0.005);
@@ -17,8 +17,8 @@ describe("arrows of forces", () => {
   });
 });
 
-describe("names", () => {
-  it("say whose part it is", () => {
+describe("short names", () => {
+  it("include the owner of the part", () => {
     expect(shortName("/usr/scene/AgentAspect1/spacenao/body/TorsoCollider")).toBe("AgentAspect1 body");
     expect(shortName("/usr/scene/ground/PlaneCollider")).toBe("ground");
     expect(jointName("/a/neck/HingeJoint")).toBe("neck");
@@ -28,16 +28,16 @@ describe("names", () => {
 });
 
 describe("percepts", () => {
-  it("are told as agents get them", () => {
+  it("are shown as agents receive them", () => {
     expect(sexp(["See", ["B", ["pol", 3.751, -25, 0.5]]])).toBe("(See (B (pol 3.75 -25 0.50)))");
   });
 
-  it("name each player once, at the head if it is seen", () => {
+  it("label each player once, at the head if it is visible", () => {
     expect(signsOf(["B", "P Red 6 lfoot", "P Red 6 head", "P FC Bla u 11 rfoot", "P FC Bla u 11 lfoot"])).toEqual(["B", "", "Red 6", "FC Bla u 11", ""]);
     expect(signsOf(["P Blue 1", "P Blue 2", "P B 04 7"])).toEqual(["Blue 1", "Blue 2", "B 04 7"]);
   });
 
-  it("have an error where the truth is known", () => {
+  it("have an error if the true position is known", () => {
     expect(errorOf({ name: "B", seen: [1, 2, 2], true: [0, 0, 0] })).toBe(3);
     expect(errorOf({ name: "B", seen: [1, 2, 2] })).toBeNull();
   });
@@ -62,7 +62,7 @@ const settle = () => new Promise((done) => queueMicrotask(() => queueMicrotask((
 describe("overlays", () => {
   const by = (set: OverlaySet, id: string) => set.overlays.find((o) => o.id === id)!;
 
-  it("ask only while they are on, and only about a selected robot", async () => {
+  it("send requests only while they are on, and only for a selected robot", async () => {
     const { overlay, asked, around } = stage();
     const set = new OverlaySet(overlay);
     set.update(0, around);
@@ -83,7 +83,7 @@ describe("overlays", () => {
     expect(by(set, "joints").listing).toBeNull();
   });
 
-  it("list the selected robot's contacts, and draw all", async () => {
+  it("list the selected robot's contacts, and draw all contacts", async () => {
     const { overlay, around } = stage();
     const set = new OverlaySet(overlay);
     by(set, "contacts").on = true;
@@ -100,7 +100,7 @@ describe("overlays", () => {
     expect(contacts.listing).toBeNull();
   });
 
-  it("ask one question for cones and for what is seen", async () => {
+  it("share one request for cones and seen objects", async () => {
     const { overlay, asked, around } = stage();
     const set = new OverlaySet(overlay);
     by(set, "cones").on = true;

@@ -17,7 +17,7 @@ function plots() {
 }
 
 describe("a list of plots", () => {
-  it("watches a vector once and plots its parts", () => {
+  it("watches a vector once and plots its components", () => {
     const { source, list } = plots();
     expect(list.add("/usr/scene/Ball", info("position", [0, 0, 0]))).toBe(true);
     expect([...source.watched.keys()]).toEqual(["/usr/scene/Ball position"]);
@@ -26,7 +26,7 @@ describe("a list of plots", () => {
     expect(new Set(list.items.map((i) => i.colour)).size).toBe(3);
   });
 
-  it("ends the watch with the last part, and never before", () => {
+  it("ends the watch with the last component, and not before", () => {
     const { source, list } = plots();
     list.add("/a", info("p", [1, 2]));
     list.remove(list.items[0]!);
@@ -38,7 +38,7 @@ describe("a list of plots", () => {
     expect(list.has("/a", "p")).toBe(false);
   });
 
-  it("holds only so many, and nothing without numbers", () => {
+  it("has a maximum size, and accepts only numbers", () => {
     const { list } = plots();
     expect(list.add("/a", info("name", "x"))).toBe(false);
     for (let i = 0; i < 5; ++i) list.add(`/${i}`, info("p", [1, 2, 3]));
@@ -48,7 +48,7 @@ describe("a list of plots", () => {
     expect(list.items.length).toBe(0);
   });
 
-  it("puts one unit into one chart", () => {
+  it("has one chart per unit", () => {
     const { list } = plots();
     list.add("/a", info("p", 1, "m"));
     list.add("/a", info("v", 1, "m/s"));
@@ -56,7 +56,7 @@ describe("a list of plots", () => {
     expect([...list.charts()].map(([unit, items]) => [unit, items.length])).toEqual([["m", 2], ["m/s", 1]]);
   });
 
-  it("goes on gathering while its picture is paused", () => {
+  it("continues to collect points while the display is paused", () => {
     const { source, list } = plots();
     list.add("/a", info("p", 1));
     const { heard, failed } = source.watched.get("/a p")!;

@@ -9,7 +9,7 @@ function asker() {
   return { waiting, ask, settle };
 }
 
-it("never asks twice at once, nor before its time", async () => {
+it("has at most one pending request, and waits for the interval", async () => {
   const { waiting, ask, settle } = asker();
   const heard: string[] = [];
   const poller = new Poller(ask, (v) => heard.push(v), () => {}, 100);
@@ -25,7 +25,7 @@ it("never asks twice at once, nor before its time", async () => {
   expect(waiting.length).toBe(2);
 });
 
-it("rests for a second after a failure", async () => {
+it("waits for a second after a failure", async () => {
   const { waiting, ask, settle } = asker();
   const failures: string[] = [];
   const poller = new Poller(ask, () => {}, (why) => failures.push(why), 100);
@@ -39,7 +39,7 @@ it("rests for a second after a failure", async () => {
   expect(waiting.length).toBe(2);
 });
 
-it("does not hear what comes after it stopped", async () => {
+it("ignores answers that arrive after it stopped", async () => {
   const { waiting, ask, settle } = asker();
   const heard: string[] = [];
   const poller = new Poller(ask, (v) => heard.push(v), () => {});
@@ -52,7 +52,7 @@ it("does not hear what comes after it stopped", async () => {
   expect(heard).toEqual(["new"]);
 });
 
-it("a feed forgets the answer when it is about something else", async () => {
+it("a feed discards the answer when its subject changes", async () => {
   const { waiting, ask, settle } = asker();
   const subjects: string[] = [];
   const feed = new Feed<string>((subject) => (subjects.push(subject), ask()));

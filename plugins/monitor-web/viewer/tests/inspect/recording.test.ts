@@ -33,7 +33,7 @@ describe("a recording", () => {
     expect(scene.children![0]!.children![0]).toMatchObject({ name: "transform", class: "Transform", children: [], more: 1 });
   });
 
-  it("tells where things are", async () => {
+  it("gives positions of nodes", async () => {
     const w = world();
     expect(worldPosition(w, 1)).toEqual([1, 3, 0.5]);
     const info = await new Recording(w).node("/scene/left 3/transform");
@@ -42,7 +42,7 @@ describe("a recording", () => {
     await expect(new Recording(w).set()).rejects.toThrow("cannot be changed");
   });
 
-  it("tells watchers what changed, and when their node went", () => {
+  it("reports changes and lost nodes to watchers", () => {
     const w = world();
     const recording = new Recording(w);
     const heard: unknown[] = [];
@@ -60,7 +60,7 @@ describe("a recording", () => {
     expect(failed.length).toBe(1);
   });
 
-  it("knows which node has which path, also after the scene changed", () => {
+  it("maps nodes to paths, also after the scene changed", () => {
     const w = world();
     const recording = new Recording(w);
     const paths = new NodePaths(w, () => recording.pathsOf());

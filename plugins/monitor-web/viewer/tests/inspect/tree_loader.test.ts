@@ -3,8 +3,8 @@ import type { Inspectable, TreeAnswer } from "../../src/inspect/inspectable";
 import { TreeLoader } from "../../src/inspect/tree_loader";
 import { TreeModel } from "../../src/inspect/tree_model";
 
-/// A host whose answers come when the test says so.
-class Slow {
+/// A host whose answers the test sends.
+class SlowHost {
   ready = true;
   asked: string[] = [];
   private waiting: { give: (answer: TreeAnswer) => void; refuse: (why: Error) => void }[] = [];
@@ -22,8 +22,8 @@ class Slow {
   }
 }
 
-it("asks one question at a time until a path is revealed", async () => {
-  const host = new Slow();
+it("sends one request at a time until a path is revealed", async () => {
+  const host = new SlowHost();
   const model = new TreeModel();
   const loader = new TreeLoader(host as unknown as Inspectable, model);
   loader.reveal("/usr/scene/Ball");
@@ -37,8 +37,8 @@ it("asks one question at a time until a path is revealed", async () => {
   expect(model.rows.at(-1)!.path).toBe("/usr/scene/Ball");
 });
 
-it("asks again for what is open, and says what the host refuses", async () => {
-  const host = new Slow();
+it("reloads open nodes, and reports errors of the host", async () => {
+  const host = new SlowHost();
   const model = new TreeModel();
   const loader = new TreeLoader(host as unknown as Inspectable, model);
   loader.pump();
@@ -54,8 +54,8 @@ it("asks again for what is open, and says what the host refuses", async () => {
   expect(host.asked).toEqual(["/", "/", "/sys"]);
 });
 
-it("waits until somebody would answer", () => {
-  const host = new Slow();
+it("waits until the host is ready", () => {
+  const host = new SlowHost();
   host.ready = false;
   const loader = new TreeLoader(host as unknown as Inspectable, new TreeModel());
   loader.pump();
@@ -65,8 +65,8 @@ it("waits until somebody would answer", () => {
   expect(host.asked).toEqual(["/"]);
 });
 
-it("takes no answer after it was closed", async () => {
-  const host = new Slow();
+it("ignores an answer after it was closed", async () => {
+  const host = new SlowHost();
   const model = new TreeModel();
   const loader = new TreeLoader(host as unknown as Inspectable, model);
   loader.pump();

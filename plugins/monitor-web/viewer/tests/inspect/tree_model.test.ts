@@ -8,19 +8,19 @@ const inner = (name: string, children: TreeAnswer[], kind = "Node"): TreeAnswer 
 const closed = (name: string, more: number, kind = "Node"): TreeAnswer => ({ ...leaf(name, kind), children: [], more });
 const paths = (model: TreeModel) => model.rows.map((r) => r.path);
 
-function house(): TreeModel {
+function sampleTree(): TreeModel {
   const model = new TreeModel();
   model.fill("/", inner("", [closed("sys", 2), closed("usr", 1)]));
   return model;
 }
 
 describe("paths", () => {
-  it("count brothers of one name from the second one on", () => {
+  it("number siblings of one name from the second one on", () => {
     expect(childPaths("/usr", ["a", "b", "a", "a"])).toEqual(["/usr/a", "/usr/b", "/usr/a[2]", "/usr/a[3]"]);
     expect(childPaths("/", ["sys"])).toEqual(["/sys"]);
   });
 
-  it("know what is above and within", () => {
+  it("give ancestors and containment", () => {
     expect(pathsAbove("/usr/scene/Ball")).toEqual(["/", "/usr", "/usr/scene"]);
     expect(parentPath("/usr")).toBe("/");
     expect(parentPath("/")).toBeNull();
@@ -30,8 +30,8 @@ describe("paths", () => {
 });
 
 describe("a tree", () => {
-  it("asks for the children of what is opened, and shows them when they come", () => {
-    const model = house();
+  it("requests the children of an opened node, and shows them when they arrive", () => {
+    const model = sampleTree();
     expect(model.wanted()).toBeNull();
     model.setOpen("/usr", true);
     expect(model.wanted()).toBe("/usr");
@@ -40,15 +40,15 @@ describe("a tree", () => {
     expect(paths(model)).toEqual(["/", "/sys", "/usr", "/usr/scene"]);
   });
 
-  it("does not ask again for what the host would not tell", () => {
-    const model = house();
+  it("does not request children again after a failure", () => {
+    const model = sampleTree();
     model.setOpen("/usr", true);
     model.failed("/usr");
     expect(model.wanted()).toBeNull();
   });
 
-  it("keeps open what was open when robots come and go", () => {
-    const model = house();
+  it("keeps nodes open when robots come and go", () => {
+    const model = sampleTree();
     model.setOpen("/usr", true);
     model.fill("/usr", inner("usr", [closed("Robot", 1), closed("Ball", 1)]));
     model.setOpen("/usr/Ball", true);
@@ -59,8 +59,8 @@ describe("a tree", () => {
     expect(model.node("/usr/Robot")).toBeUndefined();
   });
 
-  it("forgets what is below a node that became another class", () => {
-    const model = house();
+  it("discards the children of a node whose class has changed", () => {
+    const model = sampleTree();
     model.fill("/usr", inner("usr", [inner("x", [leaf("y")], "A")]));
     expect(model.node("/usr/x/y")).toBeDefined();
     model.fill("/usr", inner("usr", [closed("x", 1, "B")]));
@@ -68,8 +68,8 @@ describe("a tree", () => {
     expect(model.node("/usr/x")!.children).toBeNull();
   });
 
-  it("tells step by step what must be known to reveal a path", () => {
-    const model = house();
+  it("reports step by step what to load to reveal a path", () => {
+    const model = sampleTree();
     expect(model.reveal("/usr/scene/Ball")).toBe("/usr");
     model.fill("/usr", inner("usr", [closed("scene", 1)]));
     expect(model.reveal("/usr/scene/Ball")).toBe("/usr/scene");
@@ -79,8 +79,8 @@ describe("a tree", () => {
     expect(model.reveal("/usr/nothing/Ball")).toBeNull();
   });
 
-  it("moves by keys as trees do", () => {
-    const model = house();
+  it("supports the usual keys of trees", () => {
+    const model = sampleTree();
     model.key("ArrowDown");
     expect(model.focus).toBe("/sys");
     model.key("End");
@@ -103,8 +103,8 @@ describe("a tree", () => {
     expect(model.node("/sys")!.open && model.node("/usr")!.open).toBe(true);
   });
 
-  it("shows with a filter what matches, what is above it, and looks for more", () => {
-    const model = house();
+  it("with a filter shows matches and their ancestors, and loads more nodes", () => {
+    const model = sampleTree();
     model.filter = "ball rigid";
     expect(model.wanted()).toBe("/sys");
     model.fill("/sys", inner("sys", [leaf("server")]));
@@ -116,15 +116,15 @@ describe("a tree", () => {
     expect(paths(model)).toEqual(["/", "/sys", "/usr"]);
   });
 
-  it("stops looking for more at its bound", () => {
+  it("stops loading at its limit", () => {
     const model = new TreeModel(3);
     model.fill("/", inner("", [closed("sys", 2), closed("usr", 1)]));
     model.filter = "x";
     expect(model.wanted()).toBeNull();
   });
 
-  it("takes the focus from rows that go", () => {
-    const model = house();
+  it("moves the focus away from removed rows", () => {
+    const model = sampleTree();
     model.focus = "/usr";
     model.fill("/", inner("", [closed("sys", 2)]));
     expect(model.focus).toBe("/");

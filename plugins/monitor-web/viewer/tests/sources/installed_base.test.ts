@@ -1,4 +1,4 @@
-/// Sessions recorded with the installed base, where they are at hand.
+/// Sessions recorded with the original server, if they are available.
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { describe, expect, test } from "vitest";
 import { openReplay, type Replay } from "../../src/sources";
@@ -20,7 +20,7 @@ async function at(replay: Replay, time: number): Promise<Replay> {
   return replay;
 }
 
-describe.skipIf(sessions.length === 0)("what a monitor of the installed base was sent", () => {
+describe.skipIf(sessions.length === 0)("a recorded monitor session of the original server", () => {
   test.each(sessions)("%s plays as a log", async (session) => {
     const sent = messages(session);
     const replay = await openReplay(new Blob([sent.join("\n")]), session);
@@ -32,7 +32,7 @@ describe.skipIf(sessions.length === 0)("what a monitor of the installed base was
       expect(replay.world.local.every(Number.isFinite)).toBe(true);
     }
     expect(replay.damaged).toBe(0);
-    // Who loaded a robot is seen; one that was killed at the end, too, before.
+    // Every agent that loaded a robot is visible, including one that was killed at the end.
     expect(robots).toBe(session.includes("four-agents") ? 4 : 1);
     for (const robot of replay.world.robots) {
       expect(replay.world.nodes[robot.torso]!.shapes).toEqual([expect.objectContaining({ kind: "box" })]);

@@ -19,8 +19,8 @@ const kScene = {
 };
 
 const kUnit = [0, 0, 0, 0, 0, 0, 1024];
-const ballAt = (metres: number): number[][] => [[Math.round(1024 * metres), 0, 0, 0, 0, 0, 1024], kUnit, kUnit];
-const key = (serial: number, time: number, metres: number): Uint8Array => writeFrame({ key: true, shape: 4, serial, time, bits: [10, 10], steps: ballAt(metres) });
+const ballAt = (meters: number): number[][] => [[Math.round(1024 * meters), 0, 0, 0, 0, 0, 1024], kUnit, kUnit];
+const key = (serial: number, time: number, meters: number): Uint8Array => writeFrame({ key: true, shape: 4, serial, time, bits: [10, 10], steps: ballAt(meters) });
 
 let host: FakeHost;
 let live: Live;
@@ -42,7 +42,7 @@ function begin(): void {
   host.say(kScene);
 }
 
-test("the scene of the host is the world's", () => {
+test("the world has the host's scene", () => {
   expect(live.state).toBe("connecting");
   begin();
   expect(live.state).toBe("open");
@@ -52,7 +52,7 @@ test("the scene of the host is the world's", () => {
   expect(live.world.versions.scene).toBe(1);
 });
 
-test("frames are shown smoothly, a little later than they came", () => {
+test("frames are shown smoothly with a small delay", () => {
   begin();
   let shown = 0, last = -1;
   for (let i = 0; i < 100; ++i) {
@@ -72,7 +72,7 @@ test("frames are shown smoothly, a little later than they came", () => {
   expect(last).toBeGreaterThan(3.96 - 0.12);
 });
 
-test("time may run at any speed", () => {
+test("time may run at any rate", () => {
   begin();
   for (let i = 0; i < 60; ++i) {
     host.frame(key(i + 1, i * 12, 0));
@@ -82,7 +82,7 @@ test("time may run at any speed", () => {
   expect(live.world.time).toBeGreaterThan(59 * 12 - 40);
 });
 
-test("environment and events tell what happens", () => {
+test("environment and events give the event list", () => {
   begin();
   host.say({ type: "environment", time: 1, full: true, entries: [["play_mode", 3], ["play_modes", "BeforeKickOff", "KickOff_Left", "KickOff_Right", "PlayOn", "KickIn_Left"], ["team_left", "Red"], ["score_left", 0], ["score_right", 0]] });
   expect(live.world.environment.get("team_left")).toBe("Red");
@@ -96,11 +96,11 @@ test("environment and events tell what happens", () => {
   ]);
 });
 
-test("a game that has no items in the environment tells mode, score and teams in its status", () => {
+test("without entries in the environment, mode, score and teams come from the status", () => {
   begin();
   const status = { type: "status", realTimeFactor: 1, cycle: 5, spectators: 1, agents: [], playMode: "Push", score: [1, 0], teams: ["East", "West"], status: [["round", 3], ["grip", [0.5, "belt"]]] };
   host.say({ ...status, time: 2 });
-  expect(live.world.environment.size).toBe(0); // what the environment has is not known yet
+  expect(live.world.environment.size).toBe(0); // the environment has not arrived yet
   expect(live.status?.facts).toEqual([["round", "3"], ["grip", "0.5 belt"]]);
   host.say({ type: "environment", time: 2, full: true, entries: [["FieldLength", 4]] });
   const { environment } = live.world;
@@ -110,7 +110,7 @@ test("a game that has no items in the environment tells mode, score and teams in
   expect(live.world.events).toEqual([{ time: 3, kind: "goal", text: "Goal for West", side: "right" }]);
 });
 
-test("what the environment tells is not changed by the status", () => {
+test("the status does not override the environment", () => {
   begin();
   host.say({ type: "environment", time: 1, full: true, entries: [["play_mode", 0], ["team_left", "Red"], ["team_right", "Blue"], ["score_left", 2], ["score_right", 0], ["time", 0]] });
   const before = Object.fromEntries(live.world.environment), version = live.world.versions.environment;
@@ -119,7 +119,7 @@ test("what the environment tells is not changed by the status", () => {
   expect(live.world.versions.environment).toBe(version);
 });
 
-test("robots without numbers get those that the host knows", () => {
+test("robots without numbers get those from the status", () => {
   begin();
   host.say({ type: "environment", time: 1, full: true, entries: [["team_left", "Red"], ["team_right", "Blue"]] });
   host.say({ type: "status", realTimeFactor: 1, cycle: 5, spectators: 1, agents: [{ path: "/usr/scene/AgentAspect0", team: "Red", number: 7, latency: null }] });
@@ -127,8 +127,8 @@ test("robots without numbers get those that the host knows", () => {
   expect(live.status?.agents[0]?.latency).toBeNull();
 });
 
-describe("asking", () => {
-  test("answers come to who asked", async () => {
+describe("requests", () => {
+  test("get their own answers", async () => {
     begin();
     const first = live.ask({ do: "get", path: "/a" }), second = live.ask({ do: "get", path: "/b" });
     const [a, b] = host.heard.map((m) => m.id);
@@ -138,7 +138,7 @@ describe("asking", () => {
     await expect(second).rejects.toThrow("There is no /b.");
   });
 
-  test("a loss is an answer, too", async () => {
+  test("are rejected when the connection is lost", async () => {
     await expect(live.ask({ do: "plugins" })).rejects.toThrow("no connection");
     begin();
     const asked = live.ask({ do: "plugins" });
@@ -146,7 +146,7 @@ describe("asking", () => {
     await expect(asked).rejects.toThrow("lost");
   });
 
-  test("watches outlive a loss, and end when nobody wants them", () => {
+  test("watches survive a lost connection, and end when cancelled", () => {
     const values: unknown[] = [], failures: string[] = [];
     const end = live.watch("/usr/x", "size", (value) => values.push(value), (why) => failures.push(why));
     begin();
@@ -162,7 +162,7 @@ describe("asking", () => {
     expect([values, failures]).toEqual([[3, 4], []]);
   });
 
-  test("the token makes a referee, and is shown again after a loss", async () => {
+  test("the token gives referee rights, and is sent again after a reconnect", async () => {
     begin();
     const wrong = live.login("guess");
     host.say({ type: "referee", ok: false, error: "no" });
@@ -183,8 +183,8 @@ describe("asking", () => {
   });
 });
 
-describe("a host that makes no sense", () => {
-  test("is asked anew, and the match goes on", () => {
+describe("a faulty host", () => {
+  test("causes a reconnect, and the match continues", () => {
     begin();
     host.frame(Uint8Array.of(9, 9, 9));
     expect(live.state).toBe("lost");
@@ -197,7 +197,7 @@ describe("a host that makes no sense", () => {
     expect(live.world.versions.scene).toBe(1);
   });
 
-  test("is asked more and more seldom", () => {
+  test("is contacted less and less often", () => {
     const waits: number[] = [];
     for (let i = 0; i < 10; ++i) {
       host.hangUp();

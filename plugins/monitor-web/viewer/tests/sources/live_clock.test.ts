@@ -2,7 +2,8 @@ import { expect, test } from "vitest";
 import { LiveClock } from "../../src/sources/live_clock";
 import { Random } from "../helpers/random";
 
-/// Frames every `period` ms that come up to `jitter` ms late, pictures every 16 ms; returns the steps of the time shown, after ten seconds.
+/// Simulates frames every `period` ms that arrive up to `jitter` ms late, and pictures every 16 ms; returns the steps
+/// of the shown time after ten seconds.
 function steps(period: number, jitter: number, speed: number): { steps: number[]; behind: number } {
   const random = new Random(4), clock = new LiveClock();
   const arrivals = Array.from({ length: Math.ceil(30_000 / period) }, (_, i) => ({ at: i * period + random.between(0, jitter), time: (i * period * speed) / 1000 }));
@@ -33,7 +34,7 @@ test.each([
   expect(behind).toBeLessThan(2 * period + 2 * jitter);
 });
 
-test("time that stands still is shown as it is, and goes on without a leap", () => {
+test("a paused time is shown as it is, and resumes without a jump", () => {
   const clock = new LiveClock();
   let last = 0;
   for (let now = 0; now <= 6000; now += 20) {
@@ -47,7 +48,7 @@ test("time that stands still is shown as it is, and goes on without a leap", () 
   expect(last).toBeGreaterThan(3.8);
 });
 
-test("a host that went back in time is followed", () => {
+test("a host that goes back in time is followed", () => {
   const clock = new LiveClock();
   for (let now = 0; now < 1000; now += 40) clock.arrived(500 + now / 1000, now);
   expect(clock.at(1000)).toBeGreaterThan(500);

@@ -16,32 +16,32 @@ async function seek(replay: Replay, time: number): Promise<Replay> {
 const ballX = (replay: Replay): number => replay.world.local[16 * replay.world.ball + 12]!;
 const open = (...lines: string[]): Promise<Replay> => openReplay(log(...lines), "x.log");
 
-describe("lines that make no sense", () => {
-  test("are passed over and counted", async () => {
+describe("invalid lines", () => {
+  test("are skipped and counted", async () => {
     const replay = await open("garbage", whole(0), moved(0.2, 1), "((time 0.3)(RDS", moved(0.6, 3), moved(0.8, 4).replace("(nd ((nd", "(nd").replace("(nd StaticMesh)", "(nd"), whole(1, 5));
     expect(replay.damaged).toBe(2);
     expect(ballX(await seek(replay, 0.4))).toBeCloseTo(2, 5);
-    // A record whose nodes are damaged shows what was there before.
+    // A record with damaged nodes shows the previous state.
     expect(ballX(await seek(replay, 0.8))).toBe(3);
     expect(replay.damaged).toBe(3);
     expect(ballX(await seek(replay, 1))).toBe(5);
   });
 
-  test("a last line that was cut off is one of them", async () => {
+  test("include a truncated last line", async () => {
     const replay = await openReplay(new Blob([`${whole(0)}\n${moved(0.2, 1)}\n${moved(0.4, 2).slice(0, -9)}`]));
     expect([replay.end, replay.damaged]).toEqual([0.2, 1]);
   });
 
-  test("a last line that lacks only its line feed is none", async () => {
+  test("do not include a last line that lacks only its line feed", async () => {
     expect((await openReplay(new Blob([`${whole(0)}\r\n\r\n${moved(0.2, 1)}`]))).end).toBe(0.2);
   });
 
-  test("clocks that leap for ever do not make the log that long", async () => {
+  test("with ever larger times do not extend the log", async () => {
     const replay = await open(whole(0), moved(1e15, 1), moved(2e15, 2), moved(3e306, 3));
     expect(replay.end).toBeCloseTo(0.6, 5);
   });
 
-  test("no number of events, robots or drawings holds up the page", async () => {
+  test("large numbers of events, robots or drawings do not block the page", async () => {
     const fouls = Array.from({ length: 400 }, (_, k): List => ["foul", 1, 2, `team${k}`, k]);
     const many = await open(whole(0), ...Array.from({ length: 60 }, (_, k) => moved(k + 1, 0, fouls.map((f) => [...f.slice(0, 4), 1000 * k + Number(f[4])]))));
     expect(many.timeline.length).toBeLessThanOrEqual(20_000);
@@ -56,13 +56,13 @@ describe("lines that make no sense", () => {
     expect(drawn.busy).toBe(false);
   });
 
-  test("the match begins with the first whole scene", async () => {
+  test("before the first full scene are skipped", async () => {
     const replay = await open(moved(0, 1), whole(0.2).replace("models/soccerball.obj", ""), moved(0.4, 2), whole(0.6, 7), moved(0.8, 8));
     expect([replay.start, replay.end, replay.damaged]).toEqual([0.4, 0.6, 3]);
     expect(ballX(replay)).toBe(7);
   });
 
-  test("a robot at nan stays where it was", async () => {
+  test("a robot at NaN stays at its last position", async () => {
     const replay = await open(whole(0, 1), moved(0.2, 2).replace(/SLT 1/, "SLT nan"), moved(0.4, 3));
     expect(ballX(await seek(replay, 0.2))).toBe(1);
     expect(ballX(await seek(replay, 0.4))).toBe(3);
@@ -76,25 +76,25 @@ describe("lines that make no sense", () => {
     ["changes of a scene that is missing", moved(0, 1), /without a whole scene/],
     ["a scene that was cut off", whole(0).slice(0, -4), /without a whole scene/],
     ["a scene that is damaged", `${whole(0).replace("TRF", "TRF (")}\n`, /holds no whole scene/],
-  ])("%s is no log", async (_, text, why) => {
+  ])("%s is refused", async (_, text, why) => {
     await expect(openReplay(new Blob([text]), "x.log")).rejects.toThrow(why);
   });
 });
 
-describe("the log's clock", () => {
-  test("goes on while the game's stands still, and when it is set", async () => {
+describe("the log's time", () => {
+  test("advances while the game's time is paused, and when it is set", async () => {
     const replay = await open(whole(0), moved(0, 1), moved(0, 2), moved(0.2, 3), moved(0.4, 4), moved(250, 5), moved(250.2, 6), moved(10, 7));
     expect(replay.end).toBeCloseTo(1.4, 6);
     expect(ballX(await seek(replay, 1))).toBe(5);
     expect(replay.world.environment.get("time")).toBe(250);
   });
 
-  test("knows other times between records, and pauses", async () => {
+  test("supports other intervals between records, and pauses", async () => {
     const replay = await open(whole(0), moved(0.04, 1), moved(0.08, 2), moved(0.2, 3), moved(0.24, 4));
     expect(replay.end).toBeCloseTo(0.24, 6);
   });
 
-  test("runs as fast as it is told, and stops at the end", async () => {
+  test("runs at the set speed, and stops at the end", async () => {
     const replay = await open(whole(0), ...Array.from({ length: 50 }, (_, i) => moved(0.2 * (i + 1), i)));
     replay.speed = 100;
     expect(replay.speed).toBe(10);
@@ -132,7 +132,7 @@ describe("drawings", () => {
   const point = packet(1, 2, "  1.50", " -2.00", "  0.00", "     5", 255, 0, 51, "a.b", 0);
   const swap = packet(0, 0, "a", 0);
 
-  test("come with the record that they stand in front of, and go when the way goes back", async () => {
+  test("appear with the record that follows them, and disappear when going back", async () => {
     const replay = await open(whole(0), point + moved(0.2, 1), point + swap + moved(0.4, 2), packet(2, 1, 130, 0, 0, 255, "hé", 0) + json(false, [["time", 0.6]], changes(null, null)), swap + moved(0.8, 2));
     const shown = async (time: number) => Object.fromEntries((await seek(replay, time)).world.drawings);
     const dot = { kind: "point", at: [1.5, -2, 0], size: 5, colour: [1, 0, 0.2, 1] };
@@ -145,7 +145,7 @@ describe("drawings", () => {
     expect(replay.damaged).toBe(0);
   });
 
-  test("that all come again with a whole scene need none from before", async () => {
+  test("that a full scene repeats do not need earlier ones", async () => {
     const clear = packet(0, 0, 0, 0, 0, 0), text = packet(2, 1, 2, 0, 0, 255, "x", 0);
     const replay = await open(text + point + swap + whole(0), moved(0.2, 1), clear + point + point + swap + whole(0.4), moved(0.6, 1));
     const shown = async (time: number) => [...(await seek(replay, time)).world.drawings].map(([name, set]) => [name, set.length]);
@@ -160,7 +160,7 @@ describe("drawings", () => {
   });
 });
 
-test("a file that is taken away is said, and what was shown stays", async () => {
+test("an unreadable file is reported, and the picture stays", async () => {
   const filler: List = ["messages", "x".repeat(400_000)];
   const lines = Array.from({ length: 12 }, (_, k) => (k === 0 ? whole(0) : moved(k / 5, k, [filler])));
   const file = log(...lines);
@@ -173,7 +173,7 @@ test("a file that is taken away is said, and what was shown stays", async () => 
   expect([replay.busy, ballX(replay)]).toEqual([false, 0]);
 });
 
-test("a foul that comes again while its player is held is one", async () => {
+test("a foul that is repeated while its player is held counts once", async () => {
   const foul = (index: number, number: number): List => ["foul", index, 4, 1, number];
   const replay = await open(whole(0), moved(0.2, 1, [foul(1, 3), foul(2, 3)]), moved(0.4, 1, [foul(3, 3), foul(4, 5)]), moved(0.6, 1, [foul(5, 3)]), moved(3, 1, [foul(6, 3)]));
   expect(replay.timeline.map((e) => [e.text, e.time])).toEqual([
@@ -183,14 +183,14 @@ test("a foul that comes again while its player is held is one", async () => {
   ]);
 });
 
-test("texts and numbers may look alike", async () => {
+test("text that looks like numbers is kept", async () => {
   const replay = await open(sexp(true, [["time", 0], ["team_left", "007"], ["half", "1e0"], ["odd", "1-2"], ["messages", "(x (side 1))"]], scene(0, 0)));
   expect([...replay.world.environment]).toEqual([["time", 0], ["team_left", "007"], ["half", 1], ["odd", "1-2"]]);
 });
 
-test("from wherever one comes, a place looks the same", async () => {
+test("a position looks the same after any jump", async () => {
   const random = new Random(21);
-  // Long lines, so that the log has many pages; a whole scene now and then, and sometimes another one.
+  // Long lines, so that the log has many pages; full scenes at intervals, some of them different.
   const filler: List = ["messages", "x".repeat(60_000)];
   const lines: string[] = [], positions: number[] = [];
   let team = "matLeft";
@@ -213,7 +213,7 @@ test("from wherever one comes, a place looks the same", async () => {
   }
 });
 
-test("damaged bytes never throw, wherever they are", async () => {
+test("damaged bytes never throw", async () => {
   const random = new Random(8);
   const text = [whole(0), ...Array.from({ length: 12 }, (_, i) => (i % 4 === 3 ? whole : moved)(0.2 * (i + 1), i))].join("\n");
   const bytes = new TextEncoder().encode(text);

@@ -40,7 +40,7 @@ describe.each([
     expect(world.environment.get("play_modes")).toEqual(kModes.slice(1));
   });
 
-  test("goes smoothly from record to record, but not where somebody jumped", async () => {
+  test("interpolates between records, except at jumps", async () => {
     const replay = await open();
     await seek(replay, 0.1);
     expect(ballX(replay)).toBeCloseTo(0.5, 5);
@@ -52,7 +52,7 @@ describe.each([
     expect(torsoX(replay)).toBeCloseTo(9, 5);
   });
 
-  test("takes visibility and goals when they happen", async () => {
+  test("changes visibility and score at their times", async () => {
     const replay = await open();
     expect(replay.timeline).toEqual([{ time: 0.4, kind: "goal", text: "Goal for Red", side: "left" }]);
     await seek(replay, 0.39);

@@ -9,7 +9,7 @@ async function shapesOf(...nodes: List[]) {
 
 const turned = [-1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0.001, 0, 0.0134, 1];
 
-test("bodies and heads get their shapes where they hang, not where their mesh is turned", async () => {
+test("bodies and heads get their shapes in the node's frame, not in the rotated frame of the mesh", async () => {
   const shapes = await shapesOf(
     transform(
       kIdentity,
@@ -23,7 +23,7 @@ test("bodies and heads get their shapes where they hang, not where their mesh is
   expect(shapes[7]).toEqual([["box", [0.07, 0.08, 0.06], [0, 0, 0]]]);
 });
 
-test("a foot is shorter by its toe", async () => {
+test("a foot with a toe is shorter", async () => {
   const foot = (y: number, z: number) => transform(kIdentity, mesh("models/lfoot.obj", [0.08, y, z], "matLeft"));
   const shapes = await shapesOf(transform(kIdentity, foot(0.08, 0.08)), transform(kIdentity, foot(0.062241, 0.08), foot(0.0228259, 0.04)));
   expect(shapes[1]).toEqual([["box", [0.08, 0.16, 0.02], [0, 0, 0]]]);
@@ -31,7 +31,7 @@ test("a foot is shorter by its toe", async () => {
   expect(shapes[6]).toEqual([["box", [0.08, 0.03552, 0.01], [0, 0, 0]]]);
 });
 
-test("plain bodies are what they are; marks and knobs have no shape", async () => {
+test("standard meshes get the corresponding shapes, and marks and knobs have none", async () => {
   const shapes = await shapesOf(
     transform(kIdentity, simple("StdUnitBox", [1, 51, 1], "matGrey")),
     transform(kIdentity, simple("StdUnitSphere", [0.22, 0.22, 0.22], "matLeft")),

@@ -1,4 +1,5 @@
-// The stage alone, with a log: ?file=URL&view=broadcast&quality=quality&theme=light&at=SECONDS&paused&fixed&select=left:3
+// Only the stage, with a log:
+// ?file=URL&view=broadcast&quality=quality&theme=light&at=SECONDS&paused&fixed&select=left:3
 import { openReplay } from "../../src/sources";
 import { type CameraMode, type Quality, Stage, type Theme } from "../../src/view/stage";
 

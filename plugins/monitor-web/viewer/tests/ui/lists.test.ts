@@ -9,10 +9,10 @@ const robot = (side: Robot["side"], number: number): Robot => ({ key: `${side ??
 
 describe("the list of players", () => {
   const robots = [robot("right", 2), robot(null, 0), robot("left", 11), robot("right", 1), robot("left", 2)];
-  it("goes by side and number, those without a team last", () => {
+  it("is ordered by side and number, with players without a team last", () => {
     expect(inOrder(robots).map((r) => r.key)).toEqual(["left:2", "left:11", "right:1", "right:2", "?:0"]);
   });
-  it("is walked through and round again", () => {
+  it("wraps around at its ends", () => {
     expect(neighbourOf(robots, null, 1)?.key).toBe("left:2");
     expect(neighbourOf(robots, null, -1)?.key).toBe("?:0");
     expect(neighbourOf(robots, "left:11", 1)?.key).toBe("right:1");
@@ -21,8 +21,8 @@ describe("the list of players", () => {
   });
 });
 
-describe("places", () => {
-  // a quarter turn about z at (1, 2, 0), within it a mesh, within that one metre along x
+describe("positions", () => {
+  // A quarter turn about z at (1, 2, 0), in it a mesh, in that one meter along x.
   const quarter = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 1, 2, 0, 1];
   const none = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
   const along = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0.5, 1];
@@ -34,11 +34,11 @@ describe("places", () => {
     ],
     local: new Float32Array([...quarter, ...none, ...along]),
   } as unknown as World;
-  it("are those of a node within all above it", () => {
+  it("of a node include all its ancestors", () => {
     expect(placeOf(world, 2)).toEqual([1, 3, 0.5]);
     expect(placeOf(world, 0)).toEqual([1, 2, 0]);
   });
-  it("are apart as far as the ground between them is long", () => {
+  it("have a distance that is measured on the ground", () => {
     expect(distance([0, 0, 5], [3, 4, 0])).toBe(5);
   });
 });
@@ -49,13 +49,13 @@ describe("a click on the field", () => {
   camera.position.set(0, -10, 10);
   camera.lookAt(0, 0, 0);
   camera.updateMatrixWorld();
-  it("means the point of the ground below it", () => {
+  it("gives the point of the ground below it", () => {
     const point = groundBelow(camera, 0.5, 0.5)!;
     expect(Math.hypot(...point)).toBeLessThan(1e-6);
     expect(groundBelow(camera, 0.75, 0.5)![0]).toBeGreaterThan(1);
     expect(groundBelow(camera, 0.5, 0.75)![1]).toBeLessThan(-1);
   });
-  it("means nothing above the horizon", () => {
+  it("gives no point above the horizon", () => {
     camera.lookAt(0, 0, 10);
     camera.updateMatrixWorld();
     expect(groundBelow(camera, 0.5, 0.2)).toBeNull();

@@ -3,24 +3,24 @@ import { luminance, rgb } from "../../src/view/palette";
 import { kDefaults, kPalettes, paletteFor, settingsFrom } from "../../src/ui/settings";
 
 describe("settings", () => {
-  it("are kept as they were", () => {
+  it("are restored as they were stored", () => {
     const settings = { theme: "light", quality: "quality", labels: false, view: "top", palette: 2 };
     expect(settingsFrom(JSON.stringify(settings))).toEqual(settings);
   });
-  it("begin anew where they make no sense", () => {
+  it("have defaults for invalid values", () => {
     for (const text of [null, "", "[", "7", "null", '{"theme":"pink","palette":99,"labels":"yes"}']) expect(settingsFrom(text)).toEqual(kDefaults);
   });
 });
 
-describe("team colours", () => {
-  it("differ in lightness, so that nobody needs hues to tell the teams apart", () => {
+describe("team colors", () => {
+  it("differ in lightness, so the teams can be distinguished without hues", () => {
     const light = (hex: string) => luminance(rgb(parseInt(hex.slice(1), 16))) + 0.05;
     for (const { left, right, name } of kPalettes) {
       const [a, b] = [light(left), light(right)];
       expect(Math.max(a, b) / Math.min(a, b), name).toBeGreaterThan(1.6);
     }
   });
-  it("follow the teams' names as long as nobody chose others", () => {
+  it("follow the teams' names unless the user chose others", () => {
     expect(paletteFor(0, "Red", "Blue")).toEqual({ name: "Red and Blue", left: "#f4593b", right: "#1f5fd6" });
     expect(paletteFor(0, "Violet", "Gold").name).toBe("Violet and gold");
     expect(paletteFor(3, "Red", "Blue")).toBe(kPalettes[3]);
