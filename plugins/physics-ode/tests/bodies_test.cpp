@@ -9,7 +9,7 @@ using namespace spark::test;
 using physics::BodyHandle;
 
 TEST_CASE("a falling body is where the solver's integration puts it, and near where physics does") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(9.81);
   const BodyHandle b = house.body({0, 0, 100});
   const double dt = 0.001;
@@ -21,7 +21,7 @@ TEST_CASE("a falling body is where the solver's integration puts it, and near wh
 }
 
 TEST_CASE("a force acts for one step, in proportion to mass") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(0);
   const BodyHandle b = house.body({0, 0, 0});
   house.world.setMass(b, {2.0, Vec3::Zero(), Mat3::Identity() * 0.5});
@@ -37,7 +37,7 @@ TEST_CASE("a force acts for one step, in proportion to mass") {
 }
 
 TEST_CASE("gravity can be taken from one body") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(9.81);
   const BodyHandle light = house.body({0, 0, 1}), heavy = house.body({3, 0, 1});
   house.world.setGravityMode(light, false);
@@ -47,7 +47,7 @@ TEST_CASE("gravity can be taken from one body") {
 }
 
 TEST_CASE("masses that no body can have are refused with a sentence") {
-  EngineHouse house;
+  EngineHost house;
   const BodyHandle b = house.body({0, 0, 0});
   CHECK_THROWS_WITH(house.world.setMass(b, {0, Vec3::Zero(), Mat3::Identity()}), Catch::Contains("mass above 0 kg"));
   CHECK_THROWS_WITH(house.world.setMass(b, {1, Vec3(0.1, 0, 0), Mat3::Identity()}), Catch::Contains("centre of mass"));
@@ -56,7 +56,7 @@ TEST_CASE("masses that no body can have are refused with a sentence") {
 }
 
 TEST_CASE("numbers that are none do not get into a body") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(0);
   const BodyHandle b = house.body({1, 2, 3});
   const double nan = std::nan(""), inf = HUGE_VAL;
@@ -73,7 +73,7 @@ TEST_CASE("numbers that are none do not get into a body") {
 }
 
 TEST_CASE("a body that flies apart is put back to its last good pose, at rest, and named once") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(0);
   const BodyHandle bad = house.body({1, 2, 3}), good = house.body({5, 0, 0});
   house.world.setLinearVelocity(bad, {1, 0, 0});
@@ -95,7 +95,7 @@ TEST_CASE("no force is so large that it ends the process, to the last digit or n
   for (const double most : {1e39, 1e155, 1e308})
     for (const bool exact : {false, true}) {
       INFO(most << (exact ? ", exact" : ""));
-      EngineHouse house(exact);
+      EngineHost house(exact);
       const BodyHandle a = house.world.createBody(), b = house.world.createBody(), other = house.world.createBody();
       for (const BodyHandle body : {a, b, other}) {
         house.world.setMass(body, {1, Vec3::Zero(), Mat3::Identity()});
@@ -120,7 +120,7 @@ TEST_CASE("no force is so large that it ends the process, to the last digit or n
 }
 
 TEST_CASE("a body at rest on the ground falls asleep after ten steps, and not in mid-air") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(9.81, true);
   house.geom(plane(0, 0, 1, 0));
   const BodyHandle b = house.body({0, 0, 0.4995}), floating = house.body({5, 0, 5});
@@ -138,7 +138,7 @@ TEST_CASE("a body at rest on the ground falls asleep after ten steps, and not in
 }
 
 TEST_CASE("drag slows what moves, and leaves what sleeps alone") {
-  EngineHouse house;
+  EngineHost house;
   const BodyHandle moving = house.body({0, 0, 5}), asleep = house.body({9, 0, 5});
   for (const BodyHandle b : {moving, asleep}) {
     house.world.setLinearVelocity(b, {2, 0, -1});
@@ -164,8 +164,8 @@ TEST_CASE("the plugin stays while an engine lives, and goes afterwards") {
 
 TEST_CASE("ODE is closed with the last engine, and its messages have no handler that could be gone") {
   {
-    EngineHouse one;
-    const EngineHouse other;
+    EngineHost one;
+    const EngineHost other;
     CHECK(dGetErrorHandler() != nullptr);
   }
   CHECK(dGetErrorHandler() == nullptr);
@@ -174,7 +174,7 @@ TEST_CASE("ODE is closed with the last engine, and its messages have no handler 
 }
 
 TEST_CASE("a body that is turned by its own rotation again and again keeps right angles") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(0);
   const BodyHandle b = house.body({0, 0, 0});
   Mat3 tilted = Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
@@ -192,7 +192,7 @@ TEST_CASE("a body that is turned by its own rotation again and again keeps right
 TEST_CASE("a body that flies away is put back before the space's cells end") {
   for (const bool exact : {false, true}) {
     CAPTURE(exact);
-    EngineHouse house(exact);
+    EngineHost house(exact);
     for (int i = 0; i < 2; ++i) {
       const BodyHandle b = house.body({1.0 * i, 0, 0});
       house.geom(round(engine::Shape::sphere, 0.01), b);
@@ -208,7 +208,7 @@ TEST_CASE("exact replay rounds every component of what crosses the engine, and n
   REQUIRE(rounded != v);
   for (const bool exact : {false, true}) {
     CAPTURE(exact);
-    EngineHouse house(exact);
+    EngineHost house(exact);
     const BodyHandle b = house.world.createBody();
     house.world.addForce(b, v);
     house.world.addTorque(b, v);

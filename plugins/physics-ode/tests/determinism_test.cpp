@@ -12,7 +12,7 @@ using physics::BodyHandle;
 namespace {
 
 /// A heap of thirty things over the ground; the same each time.
-struct Heap : EngineHouse {
+struct Heap : EngineHost {
   std::vector<BodyHandle> bodies;
   explicit Heap(bool autoDisable = true) {
     setGravity(9.81, autoDisable);
@@ -76,7 +76,7 @@ TEST_CASE("a heap goes on bit for bit from a saved state, in the same house and 
 }
 
 TEST_CASE("sleeping is ODE's: a box dropped by plain ODE calls falls asleep in the same step at the same place") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(9.81, true);
   house.geom(plane(0, 0, 1, 0));
   const BodyHandle b = house.body({0, 0, 0.6});

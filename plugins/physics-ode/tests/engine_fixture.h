@@ -9,13 +9,13 @@
 
 namespace spark::test {
 
-struct EngineHouse : House {
+struct EngineHost : House {
   engine::ICollision& collision;
   engine::IEngine& engine;
   physics::WorldModel world;
   physics::SpaceHandle space;
   engine::Contacts contacts;
-  explicit EngineHouse(bool exactReplay = false)
+  explicit EngineHost(bool exactReplay = false)
       : collision(make<engine::ICollision>(*this, "OdeCollision", "/sys/server/physics/collision")),
         engine(make<engine::IEngine>(*this, "OdeEngine", "/sys/server/physics/engine")),
         world(exactReplay),

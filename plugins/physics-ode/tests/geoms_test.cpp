@@ -33,7 +33,7 @@ double deepest(const engine::Contacts& contacts) {
 TEST_CASE("every pair of solids that overlap a little in z touches with a normal along z, and does not when apart") {
   for (const auto& first : kSolids)
     for (const auto& second : kSolids) {
-      EngineHouse house;
+      EngineHost house;
       house.setGravity(0);
       INFO(first << " above " << second);
       const bool meshes = first == "mesh" && second == "mesh";  // ODE finds them, with rough normals
@@ -65,7 +65,7 @@ TEST_CASE("every solid rests on a plane and on every other solid for a second") 
     for (const auto& second : grounds) {
       // Round on round rolls off; what is tested here is that the solver holds what lies flat.
       if ((first == "sphere" || first == "capsule") && (second == "sphere" || second == "capsule")) continue;
-      EngineHouse house;
+      EngineHost house;
       house.setGravity(9.81);
       INFO(first << " on " << second);
       const BodyHandle b = house.body({0, 0, 1.0});
@@ -82,7 +82,7 @@ TEST_CASE("a ray meets every solid and the plane at its distance") {
   targets.push_back("plane");
   for (const auto& name : targets)
     for (const bool attached : {false, true}) {
-      EngineHouse house;
+      EngineHost house;
       INFO("ray down on " << name << (attached ? ", on a body" : ", static"));
       const BodyHandle carrier = attached ? house.body({0.05, 0.02, 1.0}) : BodyHandle::none;
       // From 2 m above the origin down: the surface is 1.5 m away.
@@ -96,7 +96,7 @@ TEST_CASE("a ray meets every solid and the plane at its distance") {
 }
 
 TEST_CASE("rays and planes do not meet their like") {
-  EngineHouse house;
+  EngineHost house;
   house.geom(plane(0, 0, 1, 0));
   house.geom(plane(1, 0, 0, 0));
   house.geom(ray({0, 0, 2}, {1, 0, 0}, 3), house.body({0, 0, 0}));
@@ -108,7 +108,7 @@ TEST_CASE("rays and planes do not meet their like") {
 
 TEST_CASE("a geom at an offset collides where it is, on a body and in the world, for every shape") {
   for (const auto& name : kSolids) {
-    EngineHouse house;
+    EngineHost house;
     house.setGravity(0);
     INFO(name);
     house.geom(box(1, 1, 1));
@@ -127,7 +127,7 @@ TEST_CASE("a geom at an offset collides where it is, on a body and in the world,
 }
 
 TEST_CASE("a plane stays where its numbers put it, whatever body it is attached to") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(0);
   const BodyHandle carrier = house.body({0, 0, 10}), b = house.body({0, 0, 0.45});
   const auto ground = house.geom(plane(0, 0, 2, 0), carrier);  // a normal of length 2
@@ -140,7 +140,7 @@ TEST_CASE("a plane stays where its numbers put it, whatever body it is attached 
 }
 
 TEST_CASE("a shape can change, and collide or not") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(0);
   const BodyHandle b = house.body({0, 0, 2});
   const auto g = house.geom(round(Shape::sphere, 0.5), b);
@@ -161,7 +161,7 @@ TEST_CASE("a shape can change, and collide or not") {
 }
 
 TEST_CASE("geoms of one body, and bodies with a joint, do not collide") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(0);
   const BodyHandle a = house.body({0, 0, 0}), b = house.body({0.5, 0, 0}), c = house.body({0.9, 0, 0});
   house.geom(box(1, 1, 1), a);
@@ -180,7 +180,7 @@ TEST_CASE("geoms of one body, and bodies with a joint, do not collide") {
 }
 
 TEST_CASE("a space collides its own geoms once, or not at all, and its geoms with those around") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(0);
   const auto inner = house.world.createSpace(house.space);
   const auto put = [&](physics::SpaceHandle space, const Vec3& at) {
@@ -200,7 +200,7 @@ TEST_CASE("a space collides its own geoms once, or not at all, and its geoms wit
 }
 
 TEST_CASE("the filter refuses pairs and is given the owners") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(0);
   int first = 1, second = 2, third = 3;
   for (int* owner : {&first, &second, &third})
@@ -213,7 +213,7 @@ TEST_CASE("the filter refuses pairs and is given the owners") {
 }
 
 TEST_CASE("shapes that cannot be are refused with a sentence") {
-  EngineHouse house;
+  EngineHost house;
   CHECK_THROWS_WITH(house.geom(box(1, -1, 1)), Catch::Contains("edge of a box"));
   CHECK_THROWS_WITH(house.geom(round(Shape::sphere, std::nan(""))), Catch::Contains("radius"));
   CHECK_THROWS_WITH(house.geom(plane(0, 0, 0, 1)), Catch::Contains("normal"));
@@ -225,7 +225,7 @@ TEST_CASE("shapes that cannot be are refused with a sentence") {
 }
 
 TEST_CASE("a contact's force is the weight it carries, on whichever side the body is") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(9.81);
   const BodyHandle b = house.body({0, 0, 0.4995});
   house.world.setMass(b, {3.0, Vec3::Zero(), Mat3::Identity() * 0.5});

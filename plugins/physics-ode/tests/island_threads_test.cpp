@@ -13,7 +13,7 @@ namespace {
 
 /// Dolls of a trunk and four motorised limbs of two parts, each in a space of its own, that fall on a ground and on
 /// each other; between them balls, in the space around. All of it is the same each time.
-struct Crowd : EngineHouse {
+struct Crowd : EngineHost {
   std::vector<BodyHandle> bodies;
   std::vector<JointHandle> motors;
   int steps = 0;
@@ -48,7 +48,7 @@ struct Crowd : EngineHouse {
   };
   static Prepared prepared(bool exactReplay, int threads) { return {exactReplay, threads}; }
 
-  Crowd(Prepared p, int dolls) : EngineHouse(p.exactReplay) {
+  Crowd(Prepared p, int dolls) : EngineHost(p.exactReplay) {
     kernel.jobs().setThreads(p.threads);
     setGravity(9.81, true);
     geom(plane(0, 0, 1, 0));

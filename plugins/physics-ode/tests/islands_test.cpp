@@ -7,7 +7,7 @@ using physics::BodyHandle;
 namespace {
 
 /// A knot of boxes in one place, and a box that rests far away.
-struct Knot : EngineHouse {
+struct Knot : EngineHost {
   std::vector<BodyHandle> bodies;
   BodyHandle calm;
   Leaf& leaf;
@@ -60,7 +60,7 @@ TEST_CASE("a knot does not touch what is not in it") {
 }
 
 TEST_CASE("small islands are left to the direct solver, however many there are") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(9.81, true);
   house.geom(plane(0, 0, 1, 0));
   for (int i = 0; i < 200; ++i) house.geom(box(1, 1, 1), house.body({3.0 * i, 0, 0.4995}));

@@ -10,7 +10,7 @@ using physics::JointHandle;
 namespace {
 
 /// Two unit bodies, the upper one fixed to the world, in no gravity.
-struct Two : EngineHouse {
+struct Two : EngineHost {
   BodyHandle child, parent;
   Two() {
     setGravity(0);
@@ -106,7 +106,7 @@ TEST_CASE("driving a joint wakes its first body unless the speed is 0, and a joi
 TEST_CASE("with exact replay the last bits at a stop are those of single-precision degrees") {
   for (const bool exact : {false, true}) {
     INFO((exact ? "exact" : "not exact"));
-    EngineHouse house(exact);
+    EngineHost house(exact);
     const BodyHandle foot = house.world.createBody();
     const JointHandle j = house.world.createJoint(JointType::hinge);
     house.world.attach(j, foot, BodyHandle::none);

@@ -77,7 +77,7 @@ TEST_CASE("products and conversions of rotations have ODE's digits") {
 }
 
 TEST_CASE("the rotation of a body has the digits that ODE's body has") {
-  const EngineHouse keepsOde;  // which is initialised as long as a house lives
+  const EngineHost keepsOde;  // which is initialised as long as a house lives
   Plain plain;
   Numbers n;
   physics::WorldModel world;
@@ -94,7 +94,7 @@ TEST_CASE("the rotation of a body has the digits that ODE's body has") {
 }
 
 TEST_CASE("angles of joints are ODE's: to the last digit for hinges, in both orders of the bodies and with the world") {
-  const EngineHouse keepsOde;
+  const EngineHost keepsOde;
   Numbers n;
   for (const int order : {0, 1, 2, 3})
     for (int i = 0; i < 200; ++i) {

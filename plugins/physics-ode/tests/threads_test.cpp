@@ -11,7 +11,7 @@ namespace {
 
 /// Meshes and boxes in a heap; their places after a second.
 std::vector<double> fall() {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(9.81, true);
   house.geom(plane(0, 0, 1, 0));
   std::vector<BodyHandle> bodies;
@@ -38,7 +38,7 @@ TEST_CASE("houses in several threads step at once and give what one alone gives"
 }
 
 TEST_CASE("states are read by several threads between steps") {
-  EngineHouse house;
+  EngineHost house;
   house.setGravity(9.81);
   const BodyHandle a = house.body({0, 0, 3}), b = house.body({0, 0, 2});
   const auto g = house.geom(box(1, 1, 1), a, {Vec3(0, 0, 0.1), Mat3::Identity()});
