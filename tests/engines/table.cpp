@@ -12,7 +12,7 @@ using namespace spark::test;
 
 namespace {
 
-/// Energy that a pendulum of 1 m and 1 kg has gained after 10 s, as part of what it swings with.
+/// Energy that a pendulum of 1 m and 1 kg has gained after 10 s, as a fraction of its swing energy.
 double pendulum(EngineWorld& w) {
   const BodyHandle b = w.body({1, 0, 2}, 1, Mat3::Identity() * 1e-4);
   w.joint(JointType::hinge, b, BodyHandle::none, {0, 0, 2}, Vec3::UnitY());
@@ -24,7 +24,7 @@ double pendulum(EngineWorld& w) {
   return (energy() - before) / 9.81;
 }
 
-/// How far the points of a hinge are apart that carries 100 kg [m].
+/// Distance between the two anchor points of a hinge that carries 100 kg [m].
 double gap(EngineWorld& w) {
   const BodyHandle b = w.body({0.5, 0, 2}, 100, Mat3::Identity() * 10);
   const JointHandle j = w.joint(JointType::hinge, b, BodyHandle::none, {0, 0, 2}, Vec3::UnitZ());
@@ -34,7 +34,7 @@ double gap(EngineWorld& w) {
   return (a.position + a.rotation * joint.anchorA - joint.anchorB).norm();
 }
 
-/// How far a motor of 5 rad/s presses 10 kg m^2 beyond its stop [rad].
+/// How far a motor of 5 rad/s drives an inertia of 1 kg m^2 beyond a stop [rad].
 double overshoot(EngineWorld& w) {
   w.setGravity(0);
   const BodyHandle b = w.body({0, 0, 2}, 1, Mat3::Identity());
@@ -49,7 +49,7 @@ double overshoot(EngineWorld& w) {
   return farthest;
 }
 
-/// How deep the lowest of ten boxes of 1 kg is in the ground [m].
+/// How deep the lowest of ten stacked boxes of 1 kg sinks into the ground [m].
 double penetration(EngineWorld& w) {
   w.ground();
   std::vector<BodyHandle> stack;
@@ -58,7 +58,7 @@ double penetration(EngineWorld& w) {
   return 0.2 - w.position(stack[0]).z();
 }
 
-/// Processor time of a step of 100 boxes that lie on the ground [us].
+/// Time of a step of 100 boxes that lie on the ground [us].
 double boxesCost(EngineWorld& w) {
   w.ground();
   for (int i = 0; i < 100; ++i) w.block({(i % 10) * 1.0, (i / 10) * 1.0, 0.2}, {0.4, 0.4, 0.4});
@@ -68,7 +68,7 @@ double boxesCost(EngineWorld& w) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count() * w.dt;
 }
 
-/// Processor time of a step of eight trees of 23 bodies with moving motors [us].
+/// Time of a step of eight trees of 23 bodies with moving motors [us].
 double treesCost(EngineWorld& w) {
   w.setGravity(0);
   std::vector<JointHandle> joints;

@@ -18,7 +18,7 @@ TEST_CASE("A scan refuses each bad file with its name and the reason, and contin
   const std::pair<const char*, const char*> expected[] = {
       {"bad-name", "its name '../escaped' is none"},
       {"missing-dependency", "libspark-gone.so.1: cannot open shared object file"},
-      {"missing-symbol", "undefined symbol: _Z30sparkFunctionThatNobodyDefinesv"},
+      {"missing-symbol", "undefined symbol: _Z22sparkUndefinedFunctionv"},
       {"newer-abi", "it was built for the newer plugin ABI"},
       {"no-descriptor", "it has no symbol sparkPlugin"},
       {"no-headers", "it does not say which headers it was built with"},
