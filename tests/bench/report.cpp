@@ -70,7 +70,7 @@ std::string head(std::span<const char* const> columns) { return fmt::format("{}\
 
 double number(const Json& row, const char* name) { return row.value(name, 0.0); }
 
-/// A number, or nothing where the row has none.
+/// A number; "" if the row does not have it.
 std::string shown(const Json& row, const char* name, const char* format) {
   return row.contains(name) ? fmt::format(fmt::runtime(format), number(row, name)) : "";
 }
@@ -94,7 +94,7 @@ std::string processor() {
   return out;
 }
 
-/// The commit that `folder` is of; "" outside of a repository.
+/// The commit that is checked out in `folder`; "" outside of a repository.
 std::string commit(const fs::path& folder) {
   const std::string command = fmt::format("git -C '{}' rev-parse --short HEAD 2>/dev/null", folder.string());
   FILE* out = popen(command.c_str(), "r");
