@@ -7,7 +7,7 @@
 namespace spark::test {
 namespace {
 
-struct MjcfHouse : PhysicsHouse {
+struct MjcfHouse : PhysicsHost {
   TemporaryFolder folder;
   MjcfHouse() {
     for (const char* plugin : {"files", "scene-mjcf"}) kernel.plugins().use(plugin);
