@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Counts what a test program takes from the heap. One file of a program includes it: it replaces operator new for all.
-/// Not for programs with a sanitizer, which has an operator new of its own.
+/// Counts the heap allocations of a test program. Exactly one file of the program includes it: it replaces the global
+/// operator new. Not for builds with a sanitizer, which replaces operator new itself.
 
 #include <dlfcn.h>
 
@@ -12,13 +12,13 @@
 
 namespace spark::test {
 
-/// What all threads of the process take from the heap while `on`. Not counted: what ODE takes itself; its hash spaces
-/// do in every step.
+/// Counts the allocations of all threads of the process while `on`. ODE's own allocations are not counted: its hash
+/// spaces allocate in every step.
 struct Allocations {
   static inline std::atomic<bool> on = false;
   static inline std::atomic<int> count = 0;
 
-  /// How often `run` takes something.
+  /// The number of allocations during `run`.
   template <class F>
   static int in(F run) {
     count = 0;

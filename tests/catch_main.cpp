@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #if defined(__SANITIZE_THREAD__)
-/// ODE is not instrumented: a block that one thread's world leaves to another's through ODE's own atomics (it keeps the
-/// pose of the last geom that went) looks like a race.
+/// ODE is not instrumented. It keeps the pose block of the last destroyed geom and hands it to the next world, also of
+/// another thread, by its own atomics. To the thread sanitizer this looks like a race.
 extern "C" __attribute__((visibility("default"))) const char* __tsan_default_suppressions() {
   return "race:libode.so\n";
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Bodies, joints and colliders without an engine: tests set what they say.
+/// Bodies, joints and colliders without an engine. A test sets the values that they return.
 
 #include <array>
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace spark::test {
 
-/// A body that is where the test puts it and counts what is done to it.
+/// A body whose state a test sets. It adds up the forces that are applied to it.
 class FakeBody : public SceneNode, public IRigidBody {
   SPARK_CLASS(FakeBody, SceneNode)
  public:
@@ -35,7 +35,7 @@ class FakeBody : public SceneNode, public IRigidBody {
   bool awake = true;
 };
 
-/// A joint, and a modelled motor, with parameters and angles as the test sets them.
+/// A joint and a simulated motor whose parameters and angles a test sets.
 class FakeJoint : public SceneNode, public IJoint, public IMotor {
   SPARK_CLASS(FakeJoint, SceneNode)
  public:
@@ -127,7 +127,7 @@ inline void registerFakePhysics(Kernel& kernel) {
   kernel.registerClass<FakeBattery>();
 }
 
-/// What an agent would be sent, with two decimals.
+/// The predicates as an agent would receive them, with two decimals.
 inline std::string sexpOf(const Predicates& predicates) {
   std::string text;
   writeSexp(predicates, 2, text);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A scene without meshes, and a connection without a network: for tests of monitors.
+/// A scene without meshes and a connection without a network, for tests of monitors.
 
 #include <deque>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace spark::test {
 
-/// A visual node that is what the test says.
+/// A visual node whose properties a test sets.
 class FakeVisual : public SceneNode, public IVisual {
   SPARK_CLASS(FakeVisual, SceneNode)
  public:
@@ -50,7 +50,7 @@ class FakeSceneServer : public Node, public ISceneServer {
   std::uint64_t modified = 0;
 };
 
-/// A client: while it does not read, one message is in flight and the connection is not idle.
+/// The connection of a client. It holds one message in flight and is not idle until the client has read it.
 class FakeConnection : public IConnection {
  public:
   FakeConnection(Node& port, std::uint64_t id) : port_(port), id_(id), peer_("client" + std::to_string(id)) {}
@@ -66,7 +66,7 @@ class FakeConnection : public IConnection {
   bool idle() const override { return inFlight.empty(); }
   double stalledSeconds() const override { return stalled; }
   void close(std::string_view reason) override { closed = reason, ++closes; }
-  /// The client reads what is in flight, "" when there is nothing.
+  /// The client reads the message in flight; "" when there is none.
   std::string read() {
     if (inFlight.empty()) return {};
     std::string message = std::move(inFlight.front());

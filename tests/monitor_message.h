@@ -11,8 +11,8 @@
 
 namespace spark::test {
 
-/// A frame and what one client is to get of it, made from the text of a recorded message. Diffs must follow the full
-/// message of their shape.
+/// A frame and the update that one client gets from it, made from the text of a recorded message. A diff must follow
+/// the full message that has the same nodes.
 class RecordedFrame {
  public:
   RecordedFrame() : update{frame, false, {}, {}, {}} {}
@@ -110,8 +110,7 @@ class RecordedFrame {
   std::size_t next_ = 0;
 };
 
-/// A small frame made by hand: a light, a transform with a mesh, a box that is hidden, and an environment with a name
-/// of odd bytes.
+/// A small frame made by hand: a light, a transform with a mesh, a hidden box, and an environment.
 inline void fillFrame(RecordedFrame& f) {
   f.read(
       "((FieldLength 30)(time 0.42)(play_modes A B)(half 1))(RSG 0 1)"

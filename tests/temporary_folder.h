@@ -10,12 +10,12 @@
 
 namespace spark::test {
 
-/// An empty folder of its own that goes with the object.
+/// A new empty folder, removed with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "spark-test-XXXXXX")
-                           .string();  // mkdtemp puts letters of its own for the X
+    // mkdtemp replaces the X.
+    std::string name = (std::filesystem::temp_directory_path() / "spark-test-XXXXXX").string();
     path_ = ::mkdtemp(name.data());
   }
   ~TemporaryFolder() {
@@ -27,7 +27,7 @@ class TemporaryFolder {
   const std::filesystem::path& path() const { return path_; }
   /// Path of a file in it.
   std::string file(const std::string& name) const { return (path_ / name).string(); }
-  /// Writes a file below the folder (making folders) and returns its path.
+  /// Writes a file in the folder, creates its parent folders, and returns its path.
   std::string write(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((path_ / name).parent_path());
     std::ofstream(path_ / name) << text;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What tests share: a kernel that finds the built plugins and logs into a string, and the reference data if it is
-/// there.
+/// Shared by all tests: a kernel that finds the built plugins and logs into a string, and the folder of the reference
+/// data.
 
 #include <cstdio>
 #include <cstdlib>
@@ -23,9 +23,9 @@ inline std::filesystem::path binFolder() {
 }
 /// A program of this build, for a command line.
 inline std::string program(const std::string& name) { return (binFolder() / name).string(); }
-/// The reference data; empty where SPARK_REFERENCE_DIR is not set: a test that needs it then exits with 77. A folder
-/// that is named but holds no recorded sessions ends the program with exit code 1: a test that was meant to run must
-/// not pass as skipped.
+/// The folder of the reference data. Empty if SPARK_REFERENCE_DIR is not set; a test that needs the data then exits
+/// with 77. If the variable names a folder without recorded sessions, the program ends with exit code 1: a test that
+/// was meant to run must not count as skipped.
 inline std::filesystem::path referenceFolder() {
   const char* dir = std::getenv("SPARK_REFERENCE_DIR");
   if (!dir || !*dir) return {};
@@ -39,7 +39,7 @@ inline std::filesystem::path referenceFolder() {
   return dir;
 }
 
-/// True while a plugin's file is mapped: plugins run from private copies, which carry the file's name.
+/// True while a plugin's file is mapped. Plugins run from private copies, which have the file's name.
 inline bool isMapped(const std::filesystem::path& file) {
   const std::string copy = "/memfd:" + file.filename().string() + " (deleted)";
   std::ifstream maps("/proc/self/maps");
@@ -48,15 +48,16 @@ inline bool isMapped(const std::filesystem::path& file) {
   return false;
 }
 
-/// A kernel with the built plugins scanned; what it logs stands in `text`.
-struct House {
+/// A kernel that has scanned the built plugins and logs into `text`.
+struct TestHost {
   std::string text;
   Kernel kernel;
-  explicit House(bool scan = true) {
+  explicit TestHost(bool scan = true) {
     kernel.log().setSink([this](Level, std::string_view line) { text.append(line).append("\n"); });
     if (scan) kernel.plugins().scan(pluginFolder());
   }
-  ~House() { kernel.log().setSink({}); }
+  ~TestHost() { kernel.log().setSink({}); }
 };
+using House = TestHost;
 
 }  // namespace spark::test

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A raw HTTP and WebSocket client of a web server: sends what a test wants, also nonsense.
+/// A raw HTTP and WebSocket client of a web server. It sends any bytes, also invalid ones.
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
@@ -14,11 +14,11 @@
 
 namespace spark::test {
 
-/// One connection. Waits without limit: ctest ends a test that stalls. Functions throw boost::system::system_error when
-/// the server closed it, unless they say otherwise.
+/// One connection. Reads have no timeout: ctest ends a test that hangs. Functions throw boost::system::system_error
+/// when the server has closed the connection, unless they say otherwise.
 class WebClient {
  public:
-  /// `receiveBuffer`: bytes that the system takes for it while it does not read; 0: as many as usual.
+  /// `receiveBuffer`: size of the socket's receive buffer in bytes; 0: the system's default.
   explicit WebClient(unsigned short port, int receiveBuffer = 0) : port_(port) {
     const boost::asio::ip::tcp::endpoint server(boost::asio::ip::address_v4::loopback(), port);
     socket_.open(server.protocol());
@@ -26,22 +26,22 @@ class WebClient {
     socket_.connect(server);
   }
 
-  /// Sends bytes as they are. A server that has closed the connection meanwhile is no error.
+  /// Sends bytes unchanged. It is no error if the server has closed the connection.
   void sendRaw(std::string_view bytes) {
     boost::system::error_code ignored;
     boost::asio::write(socket_, boost::asio::buffer(bytes.data(), bytes.size()), ignored);
   }
-  /// A whole answer.
+  /// A complete response.
   struct Answer {
     int status = 0;
     std::string head, body;
   };
-  /// Asks and reads the answer. `headers`: whole lines, in place of Host.
+  /// Sends a request and reads the response. `headers`: complete lines that replace Host.
   Answer get(const std::string& target, const std::string& headers = "", const std::string& method = "GET") {
     sendRaw(method + " " + target + " HTTP/1.1\r\n" + (headers.empty() ? host() : headers) + "\r\n");
     return answer(method != "HEAD");
   }
-  /// Reads the next answer.
+  /// Reads the next response.
   Answer answer(bool body = true) {
     Answer out;
     while (buffer_.find("\r\n\r\n") == buffer_.npos) fill();
@@ -53,17 +53,17 @@ class WebClient {
     if (at != out.head.npos && body) out.body = take(std::stoul(out.head.substr(at + 16)));
     return out;
   }
-  /// Lines that ask for a WebSocket.
+  /// Header lines that request a WebSocket.
   static std::string upgrade(const std::string& host) {
     return host +
            "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: "
            "dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n";
   }
   std::string host() const { return "Host: 127.0.0.1:" + std::to_string(port_) + "\r\n"; }
-  /// Becomes a viewer; returns the answer's status, 101.
+  /// Connects as a viewer. Returns the status of the response: 101 on success.
   int watch() { return get("/stream", upgrade(host())).status; }
 
-  /// A frame of a WebSocket, as a client must send it.
+  /// A WebSocket frame as a client must send it.
   static std::string frame(std::string_view payload, int opcode = 1, bool masked = true, bool last = true) {
     std::string out(1, static_cast<char>((last ? 0x80 : 0) | opcode));
     const int mask = masked ? 0x80 : 0;
@@ -102,7 +102,7 @@ class WebClient {
       longSize(8);
     return {head[0] & 0x0f, take(size)};
   }
-  /// The next text message that holds `part`; other messages are passed over.
+  /// The next text message that contains `part`. Other messages are skipped.
   std::string textWith(std::string_view part) {
     for (;;) {
       Message message = next();
@@ -119,9 +119,9 @@ class WebClient {
       if (message.opcode == 2) return message.payload;
     }
   }
-  /// True when something has come that was not read yet.
+  /// True if there are unread bytes.
   bool pending() { return !buffer_.empty() || socket_.available() > 0; }
-  /// Reads until the server closes the connection; what came.
+  /// Reads until the server closes the connection, and returns all bytes.
   std::string waitForClose() {
     boost::system::error_code ec;
     std::string all = std::move(buffer_);

@@ -8,13 +8,13 @@
 #include "house.h"
 #include "micro.h"
 
-// What messages cost: percepts written, actions read, monitor frames written, as S-expressions and as JSON. `bytes` is
-// the message's size.
+// The cost of messages: writing percepts, reading actions and writing monitor frames, as S-expressions and as JSON.
+// `bytes` is the size of the message.
 
 namespace spark::bench {
 
 namespace {
-/// What a humanoid senses in a cycle with a view, as bytes.
+/// The percepts of a humanoid in a cycle with vision.
 constexpr std::string_view kPercepts =
     "(time (now 131.42))(GS (unum 9) (team left) (sl 0) (sr 1) (t 61.40) (pm PlayOn))(GYR (n torso) (rt 0.21 -3.07 "
     "1.15))"
@@ -34,13 +34,13 @@ constexpr std::string_view kPercepts =
     "22.74))(HJ (n llj6) (ax -2.98))"
     "(FRP (n lf) (c 0.02 0.01 -0.02) (f -0.37 0.52 23.18))";
 
-/// What it answers.
+/// The humanoid's reply.
 constexpr std::string_view kActions =
     "(he1 1.23)(he2 -0.50)(rae1 0.07)(rae2 -2.81)(rae3 0.00)(rae4 3.14)(lae1 -0.35)(lae2 0.92)(lae3 -0.01)(lae4 -3.02)"
     "(rle1 0.44)(rle2 -1.08)(rle3 2.65)(rle4 -4.17)(rle5 1.96)(rle6 0.30)(lle1 0.41)(lle2 1.12)(lle3 -2.44)(lle4 "
     "-0.50)(lle5 -1.71)(lle6 -0.28)(beam -5.50 2.25 0.00)(syn)";
 
-/// Copies with numbers where the text has some, as perceptors write them.
+/// Copies an element. Texts that are numbers become numbers, as perceptors write them.
 void addNumbers(const Element& from, Predicates& to) {
   if (from.isList()) {
     to.open();
@@ -70,7 +70,7 @@ const World& worldOf(std::string_view name) {
   return *std::find_if(worlds().begin(), worlds().end(), [name](const World& w) { return w.name == name; });
 }
 
-/// A humanoid match whose monitor frame is encoded, and the languages.
+/// A humanoid match whose monitor frame is encoded, with the parsers and encoders.
 class Stage {
  public:
   Stage() {
@@ -78,21 +78,21 @@ class Stage {
     for (const char* plugin : {"parser-sexp", "parser-json", "monitor-sexp", "monitor-json"})
       kernel().plugins().use(plugin);
   }
-  Kernel& kernel() { return house_.kernel(); }
+  Kernel& kernel() { return instance_.kernel(); }
   template <class T>
   T& helper(const char* type) {
-    auto* home = kernel().root().find<Node>("/bytes");
-    Leaf* leaf = home->find(type);
-    return *(leaf ? *leaf : home->create(type, type)).as<T>();
+    auto* parent = kernel().root().find<Node>("/bytes");
+    Leaf* leaf = parent->find(type);
+    return *(leaf ? *leaf : parent->create(type, type)).as<T>();
   }
   const MonitorFrame& frame() { return kernel().root().require<IMonitorServer>("/sys/server/monitor").frame(); }
 
  private:
   LocalEntrance entrance_;
-  House house_{{worldOf("rest22")}, entrance_};
+  Instance instance_{{worldOf("rest22")}, entrance_};
 };
 
-/// Made when the first benchmark runs, and once.
+/// Made once, when the first benchmark runs.
 Stage& stage() {
   static Stage it;
   return it;
@@ -112,7 +112,7 @@ void writePercepts(benchmark::State& state, const char* language) {
   count(state, out.size());
 }
 
-/// With the value of each number, as effectors ask for it.
+/// Also converts each number, as effectors do.
 void readActions(benchmark::State& state, const char* language) {
   auto& parser = stage().helper<IParser>(language);
   std::string message;
@@ -128,7 +128,7 @@ void readActions(benchmark::State& state, const char* language) {
   count(state, message.size());
 }
 
-/// A diff has every transform: nobody stands still.
+/// A diff contains every transform, as if all robots moved.
 void writeFrame(benchmark::State& state, const char* language, bool full) {
   auto& encoder = stage().helper<IMonitorEncoder>(language);
   const MonitorFrame& frame = stage().frame();

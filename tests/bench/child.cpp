@@ -65,7 +65,7 @@ Json Child::result() {
   waitpid(pid_, &status, 0);
   pid_ = -1;
   if (text.empty())
-    throw Error(fmt::format("the child that measured ended with status {:#x} and said nothing", status));
+    throw Error(fmt::format("the measuring process ended with status {:#x} and without a result", status));
   Json answer = Json::parse(text);
   if (answer.contains("error")) throw Error(answer["error"].get<std::string>());
   return answer["value"];

@@ -1,25 +1,26 @@
 #pragma once
 /// \file
-/// Work in a process of its own: memory is its own, and its CPU time is the host's alone.
+/// Runs work in a separate process, whose memory and CPU time are those of the host alone.
 
 #include <functional>
 #include <nlohmann/json.hpp>
 
 namespace spark::bench {
 
-/// Rows and numbers, in the order in which they are put.
+/// Rows and numbers in the order in which they are added.
 using Json = nlohmann::ordered_json;
 
 class Child {
  public:
-  /// Starts `work` in a fork; what it returns, or throws, comes back by result(). `line` is its end of a line to us.
+  /// Starts `work` in a forked process. result() gives its return value or exception. `line` is the child's end of a
+  /// socket to the parent.
   explicit Child(const std::function<Json(int line)>& work);
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
-  /// Our end of the line; closed when the child has ended.
+  /// The parent's end of the socket. The child's end is closed when the child has ended.
   int line() const { return line_; }
-  /// Waits for its end. Throws Error with what the child threw, or how it died.
+  /// Waits until the child ends. Throws Error with the child's exception, or with its exit status if it crashed.
   Json result();
 
  private:

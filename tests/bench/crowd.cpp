@@ -15,10 +15,10 @@
 
 namespace spark::bench {
 
-/// A connection: an agent, or a monitor, which has nothing to say.
+/// The connection of an agent, or of a monitor, which sends nothing.
 struct Crowd::Client {
-  Client(int port, std::optional<Dialogue> talk)
-      : socket(::socket(AF_INET, SOCK_STREAM, 0)), dialogue(std::move(talk)) {
+  Client(int port, std::optional<Dialogue> messages)
+      : socket(::socket(AF_INET, SOCK_STREAM, 0)), dialogue(std::move(messages)) {
     sockaddr_in to{};
     to.sin_family = AF_INET;
     to.sin_port = htons(static_cast<std::uint16_t>(port));
@@ -27,20 +27,21 @@ struct Crowd::Client {
       throw Error(fmt::format("cannot connect to port {}", port));
     const int on = 1;
     setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    speak();
+    sendNext();
   }
   ~Client() { close(socket); }
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  void speak() {
+  void sendNext() {
     if (!dialogue) return;
     const std::string_view text = dialogue->say(received++);
     const std::uint32_t size = htonl(static_cast<std::uint32_t>(text.size()));
     out.assign(reinterpret_cast<const char*>(&size), sizeof size).append(text);
-    if (::send(socket, out.data(), out.size(), MSG_NOSIGNAL) < 0) return;  // the host ends: the read that follows tells
+    if (::send(socket, out.data(), out.size(), MSG_NOSIGNAL) < 0)
+      return;  // the host has ended, which the next read detects
   }
-  /// Counts `n` bytes that came; true when they end a message.
+  /// Processes `n` received bytes; true if they complete a message.
   bool take(const char* bytes, std::size_t n) {
     bool whole = false;
     while (n > 0) {
@@ -68,10 +69,10 @@ struct Crowd::Client {
 };
 
 namespace {
-void watch(int events, int fd, void* who) {
+void watch(int events, int fd, void* data) {
   epoll_event e{};
   e.events = EPOLLIN;
-  e.data.ptr = who;
+  e.data.ptr = data;
   epoll_ctl(events, EPOLL_CTL_ADD, fd, &e);
 }
 }  // namespace
@@ -87,7 +88,7 @@ void Crowd::add(std::unique_ptr<Client> client) {
   clients_.push_back(std::move(client));
 }
 
-void Crowd::obey(const std::string& command) {
+void Crowd::execute(const std::string& command) {
   std::istringstream in(command);
   std::string word;
   in >> word;
@@ -97,24 +98,24 @@ void Crowd::obey(const std::string& command) {
   if (write(line_, "+", 1) != 1) over_ = true;
 }
 
-void Crowd::obey() {
+void Crowd::readCommands() {
   char buffer[256];
   const ssize_t n = read(line_, buffer, sizeof buffer);
   if (n <= 0)
     over_ = true;
   else
-    said_.append(buffer, static_cast<std::size_t>(n));
-  for (std::size_t end; !over_ && (end = said_.find('\n')) != std::string::npos; said_.erase(0, end + 1))
-    obey(said_.substr(0, end));
+    commands_.append(buffer, static_cast<std::size_t>(n));
+  for (std::size_t end; !over_ && (end = commands_.find('\n')) != std::string::npos; commands_.erase(0, end + 1))
+    execute(commands_.substr(0, end));
 }
 
-void Crowd::hear(Client& client) {
+void Crowd::receive(Client& client) {
   static char buffer[65536];
   const ssize_t n = recv(client.socket, buffer, sizeof buffer, MSG_DONTWAIT);
   if (n <= 0)
     epoll_ctl(events_, EPOLL_CTL_DEL, client.socket, nullptr);
   else if (client.take(buffer, static_cast<std::size_t>(n)))
-    client.speak();
+    client.sendNext();
 }
 
 void Crowd::serve() {
@@ -123,9 +124,9 @@ void Crowd::serve() {
     const int n = epoll_wait(events_, ready, 64, -1);
     for (int i = 0; i < n; ++i)
       if (auto* client = static_cast<Client*>(ready[i].data.ptr))
-        hear(*client);
+        receive(*client);
       else
-        obey();
+        readCommands();
   }
 }
 

@@ -14,7 +14,7 @@ constexpr std::array<const char*, 24> kMotors{"he1",  "he2",  "rae1", "rae2", "r
                                               "lle1", "lle2", "lle3", "lle4", "lle5", "lle6", "rle7", "lle7"};
 constexpr std::size_t kMotorsWithoutToes = 22;
 constexpr int kToedType = 4, kTypes = 5;
-constexpr std::size_t kDirections = 10;  // spheres drive in so many directions
+constexpr std::size_t kDirections = 10;  // number of directions in which spheres drive
 constexpr const char* kSync = "(syn)";
 
 double angle(std::int64_t n) { return 2 * std::numbers::pi * static_cast<double>(n % kPeriod) / kPeriod; }
@@ -71,14 +71,14 @@ Dialogue::Dialogue(const World& world, std::size_t agent)
   motions(world, agent);
 }
 
-/// Humanoids fill the left team first, spheres both alike.
+/// Humanoids fill the left team first; spheres join both teams alternately.
 std::string Dialogue::init() const {
   const std::size_t number = world_.humanoid() ? agent_ % 11 : agent_ / 2;
   const bool left = world_.humanoid() ? agent_ < 11 : agent_ % 2 == 0;
   return fmt::format("(init (unum {})(teamname {})){}", number + 1, left ? "Left" : "Right", kSync);
 }
 
-/// A place in the team's own half: four columns, three rows.
+/// A position in the team's own half: four columns, three rows.
 std::string Dialogue::beam() const {
   const auto column = static_cast<double>(agent_ % 11 % 4), row = static_cast<double>(agent_ % 11 / 4);
   return fmt::format("(beam {:.2f} {:.2f} 0){}", -(2 + 2.4 * column), 4 * (row - 1) + 0.3 * column, kSync);

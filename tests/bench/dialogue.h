@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What the bench's agents say: they load a robot, take a number and a place, and then move by numbers that the raw
-/// side knows as well.
+/// The messages of the benchmark's agents. They load a robot, choose a number and a position, and then move with speeds
+/// that the raw side uses as well.
 
 #include <cstdint>
 #include <string>
@@ -11,28 +11,28 @@
 
 namespace spark::bench {
 
-/// Humanoids come one after another, so many cycles apart: several in one place are a knot for the solver. Spheres come
-/// all at once.
+/// Cycles between two humanoids that join: humanoids at the same position would overlap and load the solver. Spheres
+/// join all at once.
 inline constexpr int kJoinCycles = 8;
-/// Cycles from the last one's coming until they begin to move: they have reached their places and stand.
+/// Cycles from the last agent's joining until they begin to move: by then they have their positions and stand.
 inline constexpr int kSettleCycles = 50;
-/// More of them for a heap, until it has fallen together.
+/// Additional cycles for a heap until it has collapsed.
 inline constexpr int kHeapCycles = 100;
-/// Motions repeat after so many cycles: messages are written beforehand and cost nothing while it is measured.
+/// Period of the motions in cycles. Their messages are prepared in advance and cost nothing during the measurement.
 inline constexpr int kPeriod = 100;
 
-/// Place of a humanoid's effector in the order of commands; -1 for one that is none of the motors.
+/// Index of a humanoid's effector in the order of commands; -1 if it is not a motor.
 int motorIndex(std::string_view effector);
-/// What motor `i` is told in its n-th cycle [rad/s], as printed: slow swings, each with a phase of its own.
+/// Commanded speed of motor `i` in its n-th cycle [rad/s], rounded as printed: slow swings with different phases.
 double motorSpeed(int i, std::int64_t n);
-/// How hard sphere `agent` drives in its n-th cycle, by axis, as printed.
+/// Drive power of sphere `agent` in its n-th cycle, by axis, rounded as printed.
 double drivePower(std::size_t agent, std::int64_t n, int axis);
 
-/// One agent's side.
+/// The messages of one agent.
 class Dialogue {
  public:
   Dialogue(const World& world, std::size_t agent);
-  /// Its message after `received` messages came; 0: the first, which nobody asked for. Valid until the next call.
+  /// The message to send after `received` messages; 0: the first one, which is sent at once. Valid until the next call.
   std::string_view say(std::int64_t received);
 
  private:

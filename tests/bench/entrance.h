@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How agents and a monitor get into a house: within the process or over TCP.
+/// How agents and a monitor connect to a simulation: within the process or over TCP.
 
 #include "local_port.h"
 
@@ -9,15 +9,15 @@ namespace spark::bench {
 class Entrance {
  public:
   virtual ~Entrance() = default;
-  /// The config ran; the house has not been stepped yet.
+  /// Called after the config has run and before the first cycle.
   virtual void open(Kernel& kernel) = 0;
-  /// Lets the next agent in: when this returns, its first message can be read.
+  /// Connects the next agent. When this returns, its first message can be read.
   virtual void admit(const World& world) = 0;
-  /// Lets a monitor in.
+  /// Connects a monitor.
   virtual void watch() = 0;
 };
 
-/// Within the process; the house has no network.
+/// Within the process, without a network.
 class LocalEntrance : public Entrance {
  public:
   void open(Kernel& kernel) override;

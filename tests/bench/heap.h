@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Robots on top of each other.
+/// A heap of robots.
 
 #include "spark/kernel.h"
 
 namespace spark::bench {
 
-/// Lays all agents down and on top of each other, two a layer, just above the ground: they fall into one heap within
-/// some 100 cycles.
+/// Lays all robots on top of each other, two per layer, just above the ground. They collapse into one heap within about
+/// 100 cycles.
 void pileUp(Kernel& kernel);
 
 }  // namespace spark::bench

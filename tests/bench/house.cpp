@@ -13,10 +13,10 @@ namespace spark::bench {
 namespace fs = std::filesystem;
 
 namespace {
-/// Heaps are solved exactly, however large: raw ODE knows nothing else.
+/// Heaps of any size are solved exactly, as by raw ODE.
 constexpr std::int64_t kAllRows = 1'000'000;
 
-/// ODE's engine: that of the physics server, or the one below the articulated engine, for islands that it defers.
+/// ODE's engine: the one of the physics server, or the one to which the articulated engine defers islands.
 Leaf& odeEngine(Kernel& kernel) {
   Leaf* below = kernel.root().find("/sys/server/physics/engine/deferred");
   return below ? *below : kernel.root().require<Leaf>("/sys/server/physics/engine");
@@ -24,7 +24,7 @@ Leaf& odeEngine(Kernel& kernel) {
 
 fs::path bin() { return fs::canonical("/proc/self/exe").parent_path(); }
 
-/// A ground and 1,000 boxes that fall on it, each for itself, and never sleep: every cycle has the same work.
+/// A ground and 1,000 separate boxes that fall on it and never sleep, so every cycle has the same work.
 constexpr const char* kBoxes = R"lua(
   include "house.lua"
   files() scene() physics() simulation()
@@ -47,7 +47,7 @@ constexpr const char* kBoxes = R"lua(
 )lua";
 }  // namespace
 
-House::House(const Setup& setup, Entrance& entrance) : setup_(setup), entrance_(entrance) {
+Instance::Instance(const Setup& setup, Entrance& entrance) : setup_(setup), entrance_(entrance) {
   kernel_.log().setLevel(Level::error);
   kernel_.plugins().scan(bin() / ".." / "plugins");
   build();
@@ -62,9 +62,9 @@ House::House(const Setup& setup, Entrance& entrance) : setup_(setup), entrance_(
   ready_ = played_;
 }
 
-House::~House() = default;
+Instance::~Instance() = default;
 
-void House::build() {
+void Instance::build() {
   const fs::path share = bin() / ".." / "share" / "spark";
   ScriptServer& lua = scripts(kernel_);
   lua.addFolder(share / "lua");
@@ -85,7 +85,7 @@ void House::build() {
   entrance_.open(kernel_);
 }
 
-void House::admitAgents() {
+void Instance::admitAgents() {
   const int count = setup_.world.agents();
   if (count == 0) return;
   for (int i = 0; i < count; ++i) {
@@ -97,14 +97,14 @@ void House::admitAgents() {
     throw Error(fmt::format("{}: expected {} agents with a robot, found {}", setup_.world.name, count, seen));
 }
 
-void House::run(std::int64_t cycles) {
+void Instance::run(std::int64_t cycles) {
   callMethod(*simulation_, "runCycles", std::vector<Value>{cycles});
   played_ += cycles;
 }
 
-void House::setThreads(int threads) { setProperty(*simulation_, "threads", threads); }
+void Instance::setThreads(int threads) { setProperty(*simulation_, "threads", threads); }
 
-Phases House::phases() {
+Phases Instance::phases() {
   Phases out;
   const Value means = getProperty(*simulation_, "phaseMicros");
   for (const Value& v : means.toList()) out.emplace_back(v.at(0u)->toString(), v.at(1)->toNumber());
@@ -112,6 +112,6 @@ Phases House::phases() {
   return out;
 }
 
-std::uint64_t House::hash() { return stateHash(kernel_.root()); }
+std::uint64_t Instance::hash() { return stateHash(kernel_.root()); }
 
 }  // namespace spark::bench

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The houses that are measured.
+/// The simulations that are measured.
 
 #include <memory>
 #include <string>
@@ -12,32 +12,33 @@
 
 namespace spark::bench {
 
-/// How a house is to be built.
+/// The parameters of an instance.
 struct Setup {
   World world;
   std::string solver = "dense";
   int threads = 1;
 };
 
-/// Mean µs of wall time per cycle, by part of the cycle.
+/// Mean wall time per cycle [µs], by phase of the cycle.
 using Phases = std::vector<std::pair<std::string, double>>;
 
-/// A kernel that plays one world: loaded, settled, and ready to be stepped.
-class House {
+/// A kernel that runs one world. After construction it is loaded, at rest, and ready to be stepped.
+class Instance {
  public:
-  /// Builds it and lets everybody come in through `entrance` (which outlives it) and take his place. Throws Error.
-  House(const Setup& setup, Entrance& entrance);
-  ~House();
+  /// Builds the world, and has all agents connect through `entrance` and go to their positions. `entrance` must outlive
+  /// the instance. Throws Error.
+  Instance(const Setup& setup, Entrance& entrance);
+  ~Instance();
   Kernel& kernel() { return kernel_; }
   const World& world() const { return setup_.world; }
   /// Steps the host.
   void run(std::int64_t cycles);
-  /// Cycles since it was ready, and agents began to move.
+  /// Cycles since construction, when agents begin to move.
   std::int64_t cycles() const { return played_ - ready_; }
   void setThreads(int threads);
-  /// Means since the last call.
+  /// Mean times since the last call.
   Phases phases();
-  /// Of the whole tree.
+  /// State hash of the whole tree.
   std::uint64_t hash();
 
  private:

@@ -8,9 +8,9 @@
 namespace spark::bench {
 
 namespace {
-constexpr std::size_t kJobs = 22;  // as many as agents in a match
+constexpr std::size_t kJobs = 22;  // as many as a match has agents
 
-/// What a percept takes, about [us of arithmetic].
+/// Arithmetic that takes about as long as a percept.
 void work(double& out) {
   for (int i = 0; i < 2000; ++i) out = out * 0.999 + 1;
 }

@@ -13,16 +13,16 @@
 #include "spark/error.h"
 #include "spark/script_server.h"
 
-// A match is deterministic, so the n-th cycle of every repetition does the same work, and the least of its times is
-// what that work costs. A quiet cycle is one with as many robots, all asleep, in which the same eyes are open (they see
-// in every third cycle); what is above it is the price of the change, the solver's work for the new robot, which is
-// awake, included.
+// A match is deterministic, so the n-th cycle of every repetition does the same work, and the minimum of its times is
+// the cost of that work. A quiet cycle has the same number of robots, all asleep, and the same vision perceptors are
+// due (vision runs in every third cycle). The excess over a quiet cycle is the cost of the change. It includes the
+// solver's work for the new robot, which is awake.
 
 namespace spark::bench {
 
 namespace {
 
-constexpr int kCyclesPerChange = 60, kShown = 8, kQuiet = 15, kEyes = 3, kKinds = 5;
+constexpr int kCyclesPerChange = 60, kShown = 8, kQuiet = 15, kVisionPeriod = 3, kKinds = 5;
 
 double cpuMicros() {
   timespec t{};
@@ -35,11 +35,11 @@ double heapKB() {
   return static_cast<double>(info.uordblks + info.hblkhd) / 1024;
 }
 
-/// Loads its robot, takes its place, and rests.
+/// Loads its robot, beams to its position, and rests.
 class Newcomer : public Behavior {
   SPARK_CLASS(Newcomer, Behavior)
  public:
-  static void describe(Description<Newcomer>& d) { d.doc("An agent that only comes."); }
+  static void describe(Description<Newcomer>& d) { d.doc("An agent that joins and then rests."); }
   int index = 0;
 
   void start(Predicates& actions) override {
@@ -61,7 +61,7 @@ class Newcomer : public Behavior {
   int thoughts_ = 0;
 };
 
-/// A soccer house that logs to nowhere, as costly as a monitor.
+/// A soccer simulation that writes its monitor log to /dev/null, which costs as much as a monitor.
 class Match {
  public:
   Match() {
@@ -141,14 +141,15 @@ Run play(Match& match, int robots) {
   return run;
 }
 
-void takeLeast(CycleCost& least, const CycleCost& other) {
-  least.total = std::min(least.total, other.total);
-  for (std::size_t i = 0; i < least.phases.size(); ++i) least.phases[i] = std::min(least.phases[i], other.phases[i]);
+void keepMinimum(CycleCost& minimum, const CycleCost& other) {
+  minimum.total = std::min(minimum.total, other.total);
+  for (std::size_t i = 0; i < minimum.phases.size(); ++i)
+    minimum.phases[i] = std::min(minimum.phases[i], other.phases[i]);
 }
 
-void takeLeast(std::vector<std::vector<CycleCost>>& least, const std::vector<std::vector<CycleCost>>& other) {
-  for (std::size_t i = 0; i < least.size(); ++i)
-    for (std::size_t k = 0; k < least[i].size(); ++k) takeLeast(least[i][k], other[i][k]);
+void keepMinimum(std::vector<std::vector<CycleCost>>& minimum, const std::vector<std::vector<CycleCost>>& other) {
+  for (std::size_t i = 0; i < minimum.size(); ++i)
+    for (std::size_t k = 0; k < minimum[i].size(); ++k) keepMinimum(minimum[i][k], other[i][k]);
 }
 
 double median(std::vector<double> v) {
@@ -156,12 +157,12 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// The median of those of the last cycles in which the same eyes are open as in cycle `k`.
+/// The median over those of the last cycles in which the same vision perceptors are due as in cycle `k`.
 CycleCost quietAs(std::size_t k, const std::vector<CycleCost>& cycles) {
   const auto over = [&](const auto& get) {
     std::vector<double> all;
     for (std::size_t i = cycles.size() - kQuiet; i < cycles.size(); ++i)
-      if (i % kEyes == k % kEyes) all.push_back(get(cycles[i]));
+      if (i % kVisionPeriod == k % kVisionPeriod) all.push_back(get(cycles[i]));
     return median(std::move(all));
   };
   CycleCost out;
@@ -195,7 +196,7 @@ void printRow(const Change& c) {
   fmt::print("\n");
 }
 
-/// Where the time of each shown cycle goes.
+/// Prints the excess of each shown cycle by phase.
 void printPhases(const Loading& loading, const Change& c) {
   fmt::print("by phase, with {} robots:\n", c.robots);
   for (std::size_t p = 0; p < loading.phases.size(); ++p) {
@@ -205,7 +206,7 @@ void printPhases(const Loading& loading, const Change& c) {
   }
 }
 
-/// The excess of the dearest cycle.
+/// The excess of the most expensive cycle.
 double worstOf(const Change& c) {
   double worst = 0;
   for (const CycleCost& cycle : c.excess) worst = std::max(worst, cycle.total);
@@ -226,17 +227,17 @@ Json rowOf(const Loading& loading) {
 }
 
 void print(const Loading& loading) {
-  fmt::print("CPU µs of a quiet cycle, and what the cycles from a robot's coming on take above it\n");
+  fmt::print("CPU µs of a quiet cycle, and the excess of the cycles from the one in which a robot joins\n");
   fmt::print("robots    quiet  +0: it connects  +1: it loads  +2: it senses ...\n");
   for (const Change& c : loading.joins) printRow(c);
   for (const auto* c : {&loading.joins.front(), &loading.joins.back()}) printPhases(loading, *c);
-  fmt::print("robots    quiet  +0: one leaves ...\n");
+  fmt::print("robots    quiet  +0: it leaves ...\n");
   for (const Change& c : loading.leaves) printRow(c);
   printPhases(loading, loading.leaves.front());
   const Json row = rowOf(loading);
   fmt::print(
-      "longest cycle of a join: {:.0f} µs above a quiet one at worst, median {:.0f}; of a leave {:.0f}; of the first "
-      "robot of all {:.0f}; heap {:.0f} kB per robot\n",
+      "excess of the longest cycle: at most {:.0f} µs after a join, median {:.0f}; after a leave at most {:.0f}; after "
+      "the first join {:.0f}; heap {:.0f} kB per robot\n",
       row["worstMicros"].get<double>(), row["medianMicros"].get<double>(), row["worstLeaveMicros"].get<double>(),
       row["firstMicros"].get<double>(), loading.kBPerRobot);
 }
@@ -245,21 +246,21 @@ void print(const Loading& loading) {
 
 Loading measureLoading(int robots, int repeats) {
   Loading loading;
-  Run least;
+  Run minimum;
   for (int i = 0; i < repeats; ++i) {
     Match match;
     if (loading.phases.empty()) loading.phases = match.phases();
     Run run = play(match, robots);
     loading.kBPerRobot = run.kBPerRobot;
     if (i == 0) {
-      least = std::move(run);
+      minimum = std::move(run);
     } else {
-      takeLeast(least.joins, run.joins);
-      takeLeast(least.leaves, run.leaves);
+      keepMinimum(minimum.joins, run.joins);
+      keepMinimum(minimum.leaves, run.leaves);
     }
   }
-  loading.joins = costs(least.joins, [](int i) { return i + 1; });
-  loading.leaves = costs(least.leaves, [robots](int i) { return robots - i - 1; });
+  loading.joins = costs(minimum.joins, [](int i) { return i + 1; });
+  loading.leaves = costs(minimum.leaves, [robots](int i) { return robots - i - 1; });
   return loading;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What it costs a running match when a robot comes or goes: each cycle by itself, against a quiet cycle of as many
-/// robots.
+/// The cost of a robot that joins or leaves a running match, for each cycle, relative to a quiet cycle with the same
+/// number of robots.
 
 #include <string>
 #include <vector>
@@ -10,34 +10,34 @@
 
 namespace spark::bench {
 
-/// One cycle.
+/// The cost of one cycle.
 struct CycleCost {
   double total = 0;            ///< CPU time [µs]
   std::vector<double> phases;  ///< wall time [µs], in the order of Loading::phases
 };
 
-/// What a robot's coming or going cost, cycle by cycle.
+/// The cost of a robot that joined or left, cycle by cycle.
 struct Change {
   int robots = 0;                 ///< afterwards
-  CycleCost quiet;                ///< a cycle with as many robots, all at rest
-  std::vector<CycleCost> excess;  ///< above such cycles, from the one in which it connects, or leaves
+  CycleCost quiet;                ///< a cycle with the same number of robots, all at rest
+  std::vector<CycleCost> excess;  ///< over such a cycle, from the cycle in which the robot connects or leaves
 };
 
-/// A match that filled up and emptied again.
+/// The costs of a match in which all robots join and leave.
 struct Loading {
   std::vector<std::string> phases;
   std::vector<Change> joins;   ///< the 1st robot, the 2nd, ...
   std::vector<Change> leaves;  ///< the last, the one before, ...
-  double kBPerRobot = 0;       ///< heap in use for each robot of a kind that was there before
+  double kBPerRobot = 0;       ///< heap memory of each robot whose type was loaded before
 };
 
-/// Lets `robots` humanoids of Spark's own kinds 0 to 4 join one by one, and leave again, on one thread. Every time is
-/// the least of `repeats` equal matches: the same cycle does the same work in each. Throws Error.
+/// Lets `robots` humanoids of types 0 to 4 join one by one and leave again, with one thread. Every time is the minimum
+/// over `repeats` equal matches, in which the same cycle does the same work. Throws Error.
 Loading measureLoading(int robots, int repeats);
 
-/// Measures a match of 22. A table of all changes and where the time of the dearest ones goes; with `json` an array of
-/// one row: the excess of the longest cycle, the worst and the median over the joins of kinds that were there before,
-/// the worst leave, the very first join [µs].
+/// Measures a match of 22 robots. Prints a table of all changes, and the phases of some of them. With `json`, prints an
+/// array of one row with the excess of the longest cycle [µs]: maximum and median over the joins of types that were
+/// loaded before, maximum over the leaves, and the very first join.
 void runLoading(bool json);
 
 }  // namespace spark::bench

@@ -16,7 +16,7 @@ bool LocalConnection::send(std::string_view message) {
 void LocalConnection::close(std::string_view reason) { throw Error(fmt::format("{} was closed: {}", peer_, reason)); }
 
 void LocalPort::describe(Description<LocalPort>& d) {
-  d.doc("Agents and a monitor in the process, for measurements.");
+  d.doc("Agents and a monitor within the process, for measurements.");
   d.implements<IInputSource>();
 }
 

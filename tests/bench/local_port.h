@@ -13,14 +13,14 @@
 
 namespace spark::bench {
 
-/// How many messages went out, and how long they were.
+/// Number and sizes of the messages sent.
 struct Traffic {
   std::int64_t messages = 0, bytes = 0, longest = 0;
   void add(std::int64_t size) { ++messages, bytes += size, longest = std::max(longest, size); }
   double mean() const { return messages ? static_cast<double>(bytes) / static_cast<double>(messages) : 0; }
 };
 
-/// A client that takes everything at once and keeps nothing of it.
+/// A client that accepts every message at once and discards it.
 class LocalConnection : public IConnection {
  public:
   LocalConnection(Node& port, std::uint64_t id);
@@ -30,7 +30,7 @@ class LocalConnection : public IConnection {
   bool send(std::string_view message) override;
   bool idle() const override { return true; }
   double stalledSeconds() const override { return 0; }
-  /// Nobody closes a connection in a good measurement: throws Error.
+  /// Throws Error: no connection is closed during a valid measurement.
   void close(std::string_view reason) override;
 
   Traffic traffic;
@@ -41,8 +41,8 @@ class LocalConnection : public IConnection {
   std::string peer_;
 };
 
-/// Agents and a monitor inside: a child of /sys/server, polled by the run loop. An agent answers each message once, in
-/// the cycle after.
+/// Agents and a monitor within the process: a child of /sys/server that the run loop polls. An agent replies to each
+/// message once, in the next cycle.
 class LocalPort : public Node, public IInputSource {
   SPARK_CLASS(LocalPort, Node)
  public:
@@ -51,13 +51,13 @@ class LocalPort : public Node, public IInputSource {
   bool wait(double) override { return false; }
   bool canWait() const override { return false; }
 
-  /// Connects one more agent of that world.
+  /// Connects one more agent of the world.
   void admit(const World& world);
-  /// Connects a monitor; it is sent a full message at once.
+  /// Connects a monitor, which gets a full message at once.
   void watch();
-  /// Counts from now on.
+  /// Resets the counters.
   void resetTraffic();
-  /// What all agents were sent, and the monitor.
+  /// Traffic to all agents, and to the monitor.
   Traffic percepts() const;
   Traffic frames() const { return monitor_ ? monitor_->traffic : Traffic{}; }
 

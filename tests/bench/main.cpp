@@ -12,7 +12,7 @@
 #include "report.h"
 #include "validate.h"
 
-// sparkbench: what the host adds to the solver's own time, in the standard worlds (README.md).
+// sparkbench measures what the host adds to the solver's own time in the standard worlds (README.md).
 
 using namespace spark;
 using namespace spark::bench;
@@ -38,7 +38,7 @@ std::vector<World> wanted(const Options& options) {
 
 bool wants(const Options& o, const char* way) { return std::find(o.ways.begin(), o.ways.end(), way) != o.ways.end(); }
 
-/// All rows of a world; that of raw ODE once.
+/// All rows of a world, with the row of raw ODE only once.
 Json measureWorld(const Setup& setup, const Options& options) {
   const int cycles = options.cycles > 0 ? options.cycles : setup.world.cycles;
   Json rows = Json::array();
@@ -60,7 +60,7 @@ void readOptions(CLI::App& app, Options& o) {
       ->delimiter(',')
       ->check(CLI::IsMember({"host", "tcp"}));
   app.add_option("--cycles", o.cycles, "Cycles to measure in each world")->check(CLI::Range(1, 1000000));
-  app.add_option("--threads", o.threads, "Measures with so many host threads too")
+  app.add_option("--threads", o.threads, "Also measures with this number of host threads")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   app.add_option("--solver", o.solvers, "The host's solvers; raw ODE is dWorldStep with each")
@@ -75,11 +75,11 @@ void readOptions(CLI::App& app, Options& o) {
       ->check(CLI::ExistingDirectory);
   app.add_flag("--json", o.json, "Prints a JSON array of rows instead of a table");
   app.add_flag("--validate-hash", o.validate,
-               "Instead of measuring: hashes of the same world measured, unmeasured, again, and with several threads");
-  app.add_flag("--loading", o.loading, "Instead: what a robot's coming and going costs the cycles of a match of 22");
-  app.add_flag("--micro", o.micro, "Instead: small parts by themselves");
+               "Instead: checks that a world has the same state hash measured, unmeasured, repeated, and with threads");
+  app.add_flag("--loading", o.loading, "Instead: the cost of a robot that joins or leaves, in a match of 22 robots");
+  app.add_flag("--micro", o.micro, "Instead: micro-benchmarks of small parts");
   app.add_option("--realtime", o.realtime,
-                 "Instead: so many seconds of real time over TCP, and how late and long its cycles were")
+                 "Instead: runs in real time over TCP for this time, and shows how late and how long the cycles were")
       ->type_name("SECONDS")
       ->check(CLI::Range(1.0, 3600.0));
 }
@@ -118,7 +118,7 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"What the host adds to the solver's own time.", "sparkbench"};
+  CLI::App app{"Measures what the host adds to the solver's own time.", "sparkbench"};
   Options options;
   readOptions(app, options);
   CLI11_PARSE(app, argc, argv);

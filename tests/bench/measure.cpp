@@ -15,7 +15,7 @@ namespace spark::bench {
 
 namespace {
 constexpr int kBlock = 10;  // cycles
-constexpr int kWarm = 20;   // cycles before memory is read
+constexpr int kWarm = 20;   // cycles before memory is measured
 
 /// CPU time of this process and wall time [us].
 struct Clocks {
@@ -37,7 +37,7 @@ Clocks perCycle(F run) {
   return {(end.cpu - start.cpu) / kBlock, (end.wall - start.wall) / kBlock};
 }
 
-/// Most memory that this process ever held [MB].
+/// Peak memory of this process [MB].
 double peakMegabytes() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -45,7 +45,7 @@ double peakMegabytes() {
   return 0;
 }
 
-/// What blocks of one kind gave.
+/// The measurements of all blocks of one kind.
 struct Series {
   std::vector<double> cpu, wall, ratio, speedup;
   std::vector<std::pair<std::string, std::vector<double>>> parts;
@@ -71,11 +71,11 @@ Json row(const World& world, const char* way, int threads, const std::string& so
   r["agentStepsPerSecond"] = 1e6 / wall * world.agents();
   r["cpuPerSimulatedSecond"] = 1e-6 * cpu / 0.02;
   for (const auto& [name, micros] : s.parts)
-    r[name] = quantile(micros, 0.25);  // wall time: what else the machine does only adds to it
+    r[name] = quantile(micros, 0.25);  // wall time: other load can only increase it
   return r;
 }
 
-/// Two equal houses, one of which the raw side has taken over.
+/// Two equal instances, one of which is stepped by the raw side.
 class Comparison {
  public:
   Comparison(const Setup& setup, Way way, Entrance& entrance)
@@ -92,11 +92,11 @@ class Comparison {
     for (int i = 0; i < blocks; ++i) block(i);
     return rows();
   }
-  House& host() { return host_; }
+  Instance& host() { return host_; }
 
  private:
   static Setup one(Setup s) { return s.threads = 1, s; }
-  /// For the raw side, which solves densely and is put where the host is: it needs no heap of its own.
+  /// For the raw side, which uses the dense solver. It gets the host's state, so it does not need to build a heap.
   static Setup dense(Setup s) {
     s.threads = 1;
     s.solver = "dense";
@@ -157,28 +157,28 @@ class Comparison {
 
   Setup setup_;
   Way way_;
-  House host_;
+  Instance host_;
   double memory_;
   LocalEntrance twinEntrance_;
-  House twin_;
+  Instance twin_;
   RawWorld raw_;
   Series raws_, alone_, together_;
   std::vector<double> contacts_, awake_;
 };
 
-/// Mean bytes of the messages, from some more cycles.
-Json bytes(House& house, LocalPort& port) {
+/// Sizes of the messages [bytes], measured over some more cycles.
+Json bytes(Instance& instance, LocalPort& port) {
   constexpr int kCycles = 20;
   Json out;
-  Leaf* monitor = house.kernel().root().find("/sys/server/monitor");
+  Leaf* monitor = instance.kernel().root().find("/sys/server/monitor");
   port.resetTraffic();
-  house.run(kCycles);
+  instance.run(kCycles);
   out["perceptBytes"] = port.percepts().mean();
   if (!monitor) return out;
   out["monitorPartialBytes"] = port.frames().mean();
   callMethod(*monitor, "requestFullState", {});
   port.resetTraffic();
-  house.run(kCycles);
+  instance.run(kCycles);
   out["monitorFullBytes"] = port.frames().longest;
   return out;
 }

@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// Small parts by themselves, with google-benchmark.
+/// Micro-benchmarks of small parts, with google-benchmark.
 
 namespace spark::bench {
 
 /// Runs all of them and prints google-benchmark's table, or its JSON.
 void runMicro(bool json);
 
-/// What it takes to wake the kernel's threads for a few jobs, and to run many small ones.
+/// Registers the cost of waking the kernel's threads for jobs, with and without work.
 void registerJobs();
-/// What messages cost: percepts and monitor frames written, actions read.
+/// Registers the cost of messages: writing percepts and monitor frames, reading actions.
 void registerBytes();
 
 }  // namespace spark::bench

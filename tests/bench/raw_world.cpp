@@ -17,14 +17,14 @@ struct RawWorld::Source {
   const engine::Model& model;
   const ode::WorldData& dynamics;
   const ode::CollisionWorld& collision;
-  explicit Source(House& house);
+  explicit Source(Instance& instance);
   dBodyID bodyOf(const IRigidBody& body) const;
   engine::Index indexOf(const IRigidBody* body) const;
   engine::Index indexOf(IJoint& joint) const;
 };
 
 namespace {
-/// The surface that two colliders' handlers give together (scene-language section 3.3).
+/// The combined surface of two colliders' handlers (scene-language section 3.3).
 dSurfaceParameters combine(const engine::Surface& a, const engine::Surface& b) {
   dSurfaceParameters s{};
   s.mu = (a.mu + b.mu) / 2;
@@ -53,23 +53,25 @@ const engine::Surface* surfaceOf(const Collider& c) {
   return h.contact ? h.contact->surface() : h.fallback ? fallback.surface() : nullptr;
 }
 
-IPhysicsServer& serverOf(House& house) { return house.kernel().root().require<IPhysicsServer>(IPhysicsServer::kPath); }
+IPhysicsServer& serverOf(Instance& instance) {
+  return instance.kernel().root().require<IPhysicsServer>(IPhysicsServer::kPath);
+}
 
-const std::vector<AgentAspect*>& agentsOf(House& house) {
-  return house.kernel().root().require<IGameControl>("/sys/server/gamecontrol").agents();
+const std::vector<AgentAspect*>& agentsOf(Instance& instance) {
+  return instance.kernel().root().require<IGameControl>("/sys/server/gamecontrol").agents();
 }
 }  // namespace
 
-// ---- taking over ----
+// ---- taking over an instance ----
 
-RawWorld::Source::Source(House& house)
-    : model(serverOf(house).model()),
-      dynamics(house.kernel().root().require<OdeEngine>("/sys/server/physics/engine").world(model)),
-      collision(house.kernel().root().require<OdeCollision>("/sys/server/physics/collision").world(model)) {
+RawWorld::Source::Source(Instance& instance)
+    : model(serverOf(instance).model()),
+      dynamics(instance.kernel().root().require<OdeEngine>("/sys/server/physics/engine").world(model)),
+      collision(instance.kernel().root().require<OdeCollision>("/sys/server/physics/collision").world(model)) {
   const auto expect = [&](const char* what, std::size_t found, std::size_t wanted) {
     if (found != wanted)
-      throw Error(
-          fmt::format("{}: expected {} {} in ODE as in the model, found {}", house.world().name, wanted, what, found));
+      throw Error(fmt::format("{}: expected {} {} in ODE as in the model, found {}", instance.world().name, wanted,
+                              what, found));
   };
   expect("bodies", dynamics.bodies.size(), model.bodies.size());
   expect("joints", dynamics.joints.size(), model.joints.size());
@@ -85,7 +87,7 @@ engine::Index RawWorld::Source::indexOf(const IRigidBody* body) const {
 
 dBodyID RawWorld::Source::bodyOf(const IRigidBody& body) const { return dynamics.bodies.at(indexOf(&body)).body; }
 
-/// The joint of that type between the same bodies: robots have no two of them.
+/// The joint of the same type between the same bodies. Robots do not have two such joints.
 engine::Index RawWorld::Source::indexOf(IJoint& joint) const {
   engine::Index a = indexOf(joint.body(0)), b = indexOf(joint.body(1));
   if (a == engine::kNone) std::swap(a, b);
@@ -96,22 +98,22 @@ engine::Index RawWorld::Source::indexOf(IJoint& joint) const {
   return static_cast<engine::Index>(found - model.joints.begin());
 }
 
-RawWorld::RawWorld(House& house) {
-  const Source from(house);
+RawWorld::RawWorld(Instance& instance) {
+  const Source from(instance);
   world_ = from.dynamics.id;
   root_ = from.collision.root;
   group_ = dJointGroupCreate(0);
   joints_ = static_cast<int>(from.dynamics.joints.size());
   perPair_ = static_cast<int>(
-      getProperty(house.kernel().root().require<Leaf>("/sys/server/physics"), "contactsPerPair").toInteger());
-  step_ = getProperty(house.kernel().root().require<Leaf>("/sys/server/simulation"), "step").toNumber();
+      getProperty(instance.kernel().root().require<Leaf>("/sys/server/physics"), "contactsPerPair").toInteger());
+  step_ = getProperty(instance.kernel().root().require<Leaf>("/sys/server/simulation"), "step").toNumber();
   takeBodies(from);
   takeGeoms(from);
   takeSurfaces(from);
-  takeDrags(house, from);
-  takeMotors(house, from);
-  takeDrivers(house, from);
-  follow(house);
+  takeDrags(instance, from);
+  takeMotors(instance, from);
+  takeDrivers(instance, from);
+  follow(instance);
 }
 
 void RawWorld::takeBodies(const Source& from) {
@@ -125,7 +127,7 @@ void RawWorld::takeGeoms(const Source& from) {
   for (const auto& s : from.collision.spaces)
     if (s->inner) spaces_.push_back(s->space);
   for (const auto& g : from.collision.geoms) {
-    // The host's geoms have no bodies in ODE: it places them itself.
+    // The host's geoms have no bodies in ODE: the host sets their poses itself.
     if (g->body != engine::kNone) {
       dGeomSetBody(g->geom, bodyIds_[g->body]);
       if (!g->centred) {
@@ -171,18 +173,18 @@ void RawWorld::takeSurfaces(const Source& from) {
 
 RawWorld::~RawWorld() { dJointGroupDestroy(group_); }
 
-void RawWorld::takeDrags(House& house, const Source& from) {
+void RawWorld::takeDrags(Instance& instance, const Source& from) {
   std::vector<BodyController*> controllers;
-  house.kernel().root().require<Node>("/usr/scene").collect(controllers);
+  instance.kernel().root().require<Node>("/usr/scene").collect(controllers);
   for (BodyController* c : controllers)
     if (c->classObject()->name() == "DragController" && c->ancestor<IRigidBody>())
       drags_.push_back({from.bodyOf(*c->ancestor<IRigidBody>()), getProperty(*c, "linearDrag").toNumber(),
                         getProperty(*c, "angularDrag").toNumber()});
 }
 
-void RawWorld::takeMotors(House& house, const Source& from) {
-  if (!house.world().humanoid() || house.world().motion == World::Motion::rest) return;
-  for (const AgentAspect* agent : agentsOf(house)) {
+void RawWorld::takeMotors(Instance& instance, const Source& from) {
+  if (!instance.world().humanoid() || instance.world().motion == World::Motion::rest) return;
+  for (const AgentAspect* agent : agentsOf(instance)) {
     std::vector<Effector*> effectors;
     agent->collect(effectors);
     for (const Effector* e : effectors) {
@@ -196,10 +198,10 @@ void RawWorld::takeMotors(House& house, const Source& from) {
   }
 }
 
-void RawWorld::takeDrivers(House& house, const Source& from) {
-  if (house.world().kind != World::Kind::spheres) return;
+void RawWorld::takeDrivers(Instance& instance, const Source& from) {
+  if (instance.world().kind != World::Kind::spheres) return;
   std::size_t index = 0;
-  for (const AgentAspect* agent : agentsOf(house)) {
+  for (const AgentAspect* agent : agentsOf(instance)) {
     std::vector<IRigidBody*> bodies;
     agent->collect(bodies);
     for (IRigidBody* b : bodies) drivers_.push_back({from.bodyOf(*b), index, index % 2 ? -60.0 : 60.0});
@@ -209,10 +211,10 @@ void RawWorld::takeDrivers(House& house, const Source& from) {
 
 // ---- stepping ----
 
-void RawWorld::follow(House& house) {
-  const std::vector<engine::DynamicState>& states = serverOf(house).state().bodies;
+void RawWorld::follow(Instance& instance) {
+  const std::vector<engine::DynamicState>& states = serverOf(instance).state().bodies;
   if (states.size() != bodyIds_.size())
-    throw Error(fmt::format("expected {} bodies as in the house's twin, found {}", bodyIds_.size(), states.size()));
+    throw Error(fmt::format("expected {} bodies as in the equal instance, found {}", bodyIds_.size(), states.size()));
   for (std::size_t i = 0; i < bodyIds_.size(); ++i) {
     const dBodyID to = bodyIds_[i];
     const engine::DynamicState& s = states[i];
@@ -224,7 +226,7 @@ void RawWorld::follow(House& house) {
     if (s.awake && !dBodyIsEnabled(to)) dBodyEnable(to);
     if (!s.awake) dBodyDisable(to);
   }
-  cycle_ = house.cycles();
+  cycle_ = instance.cycles();
 }
 
 int RawWorld::awake() const {

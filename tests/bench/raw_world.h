@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// The same problem without a host: plain ODE calls on the bodies, joints and geoms that a house made.
+/// The same problem without a host: plain ODE calls on the bodies, joints and geoms of an instance.
 ///
-/// Taken over once from the engine and the collision detection: ids of world, spaces, bodies, geoms, joints; which
-/// geoms collide; the surface of each pair of materials, combined beforehand. Geoms are attached to their bodies, which
-/// the host does not do. Then a cycle is what an ODE programmer would write: forces, motors, dSpaceCollide with a near
-/// callback that makes contact joints, dWorldStep, dJointGroupEmpty. ODE's own auto-disable is on where the house's is.
+/// The raw side takes these over once from the engine and the collision detection: the ids of world, spaces, bodies,
+/// geoms and joints; which geoms collide; the precomputed surface of each pair of materials. It attaches the geoms to
+/// their bodies, which the host does not do. Then a cycle is what an ODE programmer would write: forces, motors,
+/// dSpaceCollide with a near callback that makes contact joints, dWorldStep, dJointGroupEmpty. ODE's own auto-disable
+/// is on if the instance's is.
 
 #include <ode/ode.h>
 
@@ -17,16 +18,17 @@
 
 namespace spark::bench {
 
-/// A house's physics, stepped by hand. The house must not be stepped any more.
+/// The physics of an instance, stepped with plain ODE. The instance itself must no longer be stepped.
 class RawWorld {
  public:
-  /// Takes over a house with the dense solver that was stepped before, in its present state. The house must outlive it.
-  explicit RawWorld(House& house);
+  /// Takes over an instance in its current state. It must use the dense solver, have been stepped before, and outlive
+  /// this object.
+  explicit RawWorld(Instance& instance);
   ~RawWorld();
-  /// Puts all bodies where an equal house has them, as fast and as awake: both go on from one state.
-  void follow(House& house);
+  /// Gives all bodies the pose, the velocity and the sleep state of those of an equal instance.
+  void follow(Instance& instance);
   void run(std::int64_t cycles);
-  /// Bodies, those awake, joints, and contact joints of the last cycle.
+  /// Numbers of bodies, of awake bodies, of joints, and of contact joints in the last cycle.
   int bodies() const { return static_cast<int>(bodyIds_.size()); }
   int awake() const;
   int joints() const { return joints_; }
@@ -38,7 +40,7 @@ class RawWorld {
   struct Geom {
     std::size_t surface = 0;
     bool solid = false;
-    std::vector<const Geom*> never;  ///< told not to collide with these
+    std::vector<const Geom*> never;  ///< geoms with which it must not collide
   };
   struct Drag {
     dBodyID body;
@@ -55,14 +57,14 @@ class RawWorld {
     std::size_t agent;
     double factor;
   };
-  /// The model of a house, and ODE's objects with the same indices.
+  /// The model of an instance, and ODE's objects with the same indices.
   struct Source;
   void takeBodies(const Source& from);
   void takeGeoms(const Source& from);
   void takeSurfaces(const Source& from);
-  void takeDrags(House& house, const Source& from);
-  void takeMotors(House& house, const Source& from);
-  void takeDrivers(House& house, const Source& from);
+  void takeDrags(Instance& instance, const Source& from);
+  void takeMotors(Instance& instance, const Source& from);
+  void takeDrivers(Instance& instance, const Source& from);
   void act();
   void near(dGeomID a, dGeomID b);
   static void nearCallback(void* self, dGeomID a, dGeomID b);

@@ -24,20 +24,20 @@ Json toJson(const Value& v) {
 
 Json play(const Setup& setup, double seconds, int line) {
   TcpEntrance entrance(line);
-  House house(setup, entrance);
-  Leaf& loop = house.kernel().root().require<Leaf>("/sys/server/simulation");
+  Instance instance(setup, entrance);
+  Leaf& loop = instance.kernel().root().require<Leaf>("/sys/server/simulation");
   setProperty(loop, "sync", false);
   setProperty(loop, "rate", "real");
-  house.run(kWarm);
+  instance.run(kWarm);
   callMethod(loop, "resetTimers", {});
-  house.run(std::llround(seconds / kStep));
+  instance.run(std::llround(seconds / kStep));
   return {{"times", toJson(getProperty(loop, "cycleTimes"))},
           {"histogram", toJson(getProperty(loop, "histogram"))},
           {"lateCycles", toJson(getProperty(loop, "lateCycles"))},
           {"table", callMethod(loop, "paceTable", {}).toString()}};
 }
 
-/// Cycles that were done within a step, from buckets {from, late, long, done}.
+/// Number of cycles that were done within a step, from buckets {from, late, long, done}.
 std::int64_t withinStep(const Json& histogram) {
   std::int64_t sum = 0;
   for (const Json& bucket : histogram)

@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// Whether real time holds.
+/// Measures whether the host runs in real time.
 
 #include "measure.h"
 
 namespace spark::bench {
 
-/// Plays a world over TCP in real time for so long. One row: percentiles [us] of how late cycles began (`late`), how
-/// long they took (`long`), and when they were done after they were due (`done`); `withinStep`: cycles done within a
-/// step. `print`: a table with the histogram for people.
+/// Runs a world over TCP in real time for `seconds`. Returns one row: percentiles [us] of the delay with which cycles
+/// began (`late`), their duration (`long`), and the time from when they were due until they were done (`done`);
+/// `withinStep`: number of cycles done within a step. `print`: also prints a table with the histogram.
 Json realtime(const Setup& setup, double seconds, bool print);
 
 }  // namespace spark::bench

@@ -73,7 +73,7 @@ std::string head(std::span<const char* const> columns) { return fmt::format("{}\
 
 double number(const Json& row, const char* name) { return row.value(name, 0.0); }
 
-/// A number, or nothing where the row has none.
+/// A number; "" if the row does not have it.
 std::string shown(const Json& row, const char* name, const char* format) {
   return row.contains(name) ? fmt::format(fmt::runtime(format), number(row, name)) : "";
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Rows as people and programs read them.
+/// Output of rows as tables and as files.
 
 #include <filesystem>
 
@@ -9,12 +9,13 @@
 
 namespace spark::bench {
 
-/// The table's head.
+/// Prints the head of the table.
 void printHead();
-/// One world's rows.
+/// Prints the rows of one world.
 void printRows(const World& world, const Json& rows);
 
-/// All rows as comma-separated values, with a line of names; what a row does not have stays empty. Throws Error.
+/// Writes all rows as comma-separated values with a line of names. Values that a row does not have are empty. Throws
+/// Error.
 void writeCsv(const Json& rows, const std::filesystem::path& file);
 
 /// Draws the CPU time of a cycle in each world, by raw ODE and by the host in process with one thread, as SVG. Throws

@@ -10,7 +10,7 @@
 namespace spark::bench {
 
 namespace {
-constexpr std::int64_t kMostConnections = 1100;
+constexpr std::int64_t kMaxConnections = 1100;
 
 std::int64_t portOf(Kernel& kernel, const char* name) {
   return getProperty(kernel.root().require<Leaf>(fmt::format("/sys/server/net/{}", name)), "port").toInteger();
@@ -21,15 +21,15 @@ void TcpEntrance::open(Kernel& kernel) {
   Node& root = kernel.root();
   setProperty(root.require<Leaf>("/sys/server/simulation"), "sync", true);
   setProperty(root.require<Leaf>("/sys/server/gamecontrol"), "joinPace", 0.0);
-  setProperty(root.require<Leaf>("/sys/server/net/agents"), "maxConnections", kMostConnections);
+  setProperty(root.require<Leaf>("/sys/server/net/agents"), "maxConnections", kMaxConnections);
   callMethod(root.require<Leaf>("/sys/server/net"), "listen", {});
-  tell(fmt::format("open {} {}\n", portOf(kernel, "agents"), portOf(kernel, "monitors")));
+  command(fmt::format("open {} {}\n", portOf(kernel, "agents"), portOf(kernel, "monitors")));
 }
 
-void TcpEntrance::tell(const std::string& text) {
+void TcpEntrance::command(const std::string& text) {
   char answer = 0;
   if (write(line_, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || read(line_, &answer, 1) != 1)
-    throw Error("the crowd of agents is gone");
+    throw Error("the process of the agents has ended");
 }
 
 }  // namespace spark::bench

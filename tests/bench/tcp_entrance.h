@@ -1,22 +1,22 @@
 #pragma once
 /// \file
-/// The host's side of the way over TCP: agents are in another process, which is told over a line when to come.
+/// The host's side over TCP. The agents are in another process, which gets commands over a socket.
 
 #include "entrance.h"
 
 namespace spark::bench {
 
-/// Lockstep over the loopback. Lines to the crowd: `open AGENTPORT MONITORPORT`, `admit`, `watch`; each is answered by
-/// one byte.
+/// Lockstep over the loopback interface. Commands to the crowd, one per line: `open AGENTPORT MONITORPORT`, `admit`,
+/// `watch`. Each is acknowledged with one byte.
 class TcpEntrance : public Entrance {
  public:
   explicit TcpEntrance(int line) : line_(line) {}
   void open(Kernel& kernel) override;
-  void admit(const World&) override { tell("admit\n"); }
-  void watch() override { tell("watch\n"); }
+  void admit(const World&) override { command("admit\n"); }
+  void watch() override { command("watch\n"); }
 
  private:
-  void tell(const std::string& text);
+  void command(const std::string& text);
   int line_;
 };
 

@@ -12,9 +12,9 @@ std::string played(Setup setup, int threads, std::int64_t cycles) {
   setup.threads = threads;
   Child child([&](int) {
     LocalEntrance entrance;
-    House house(setup, entrance);
-    house.run(cycles);
-    return Json(fmt::format("{:016x}", house.hash()));
+    Instance instance(setup, entrance);
+    instance.run(cycles);
+    return Json(fmt::format("{:016x}", instance.hash()));
   });
   return child.result();
 }
@@ -35,7 +35,7 @@ Json validate(const Setup& setup, int cycles, bool print) {
   row["same"] = same;
   if (print)
     fmt::print("{:<12} {} cycles: {} {}\n", setup.world.name, run, row["measured"].get<std::string>(),
-               same ? "measured, unmeasured, again, with several threads" : "DIFFERS: " + row.dump());
+               same ? "measured, unmeasured, repeated, with several threads" : "DIFFERS: " + row.dump());
   std::fflush(stdout);
   return Json::array({row});
 }

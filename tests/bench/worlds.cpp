@@ -5,7 +5,7 @@
 namespace spark::bench {
 
 namespace {
-/// A heap takes the dense solver a quarter of a second for each cycle.
+/// The dense solver needs a quarter of a second for each cycle of a large heap.
 int cycles(World::Motion motion, int count) { return count < 11 ? 400 : motion == World::Motion::heap ? 40 : 200; }
 
 void addHumanoids(std::vector<World>& all, World::Motion motion, const char* name, const char* what) {

@@ -1,28 +1,28 @@
 #pragma once
 /// \file
-/// The standard worlds: what everybody's figures speak of.
+/// The standard worlds that are measured.
 
 #include <string>
 #include <vector>
 
 namespace spark::bench {
 
-/// A world by name: what stands in it and what that does.
+/// A named world: its contents and how they move.
 struct World {
   enum class Kind { field, humanoids, spheres, boxes } kind = Kind::field;
-  /// Humanoids only: upright without a command; upright, or fallen meanwhile, with all motors swinging; the same on top
-  /// of each other.
+  /// Humanoids only. rest: they stand and get no commands. moving: all motors swing, and some may fall. heap: the same
+  /// on top of each other.
   enum class Motion { rest, moving, heap } motion = Motion::rest;
   std::string name, title;
   int count = 0;     ///< humanoids, spheres or boxes
-  int cycles = 400;  ///< measured by default
+  int cycles = 400;  ///< number measured by default
 
-  /// Agents in it.
+  /// Number of agents.
   int agents() const { return kind == Kind::humanoids || kind == Kind::spheres ? count : 0; }
   bool humanoid() const { return kind == Kind::humanoids; }
 };
 
-/// All of them, in the order of the table.
+/// All worlds, in the order of the table.
 const std::vector<World>& worlds();
 
 }  // namespace spark::bench

@@ -11,15 +11,15 @@
 
 namespace spark::test {
 
-/// All plugins that the scan found.
+/// All plugins found by the scan.
 inline std::vector<Plugin*> pluginsOf(Kernel& kernel) {
   std::vector<Plugin*> out;
   for (const auto& p : kernel.root().child("plugins")->asNode()->children()) out.push_back(p->as<Plugin>());
   return out;
 }
 
-/// Every built plugin, registered.
-struct AllPlugins : House {
+/// A kernel in which every built plugin is registered.
+struct AllPlugins : TestHost {
   AllPlugins() {
     for (Plugin* p : pluginsOf(kernel)) kernel.plugins().use(p->name());
   }
@@ -32,7 +32,7 @@ struct AllPlugins : House {
   }
 };
 
-/// True when `type` holds numbers that a unit could make clear.
+/// True if a property of this type holds numbers that may have a unit.
 inline bool isNumeric(const std::string& type) {
   return type == "number" || type == "vec3" || type == "list of number";
 }

@@ -4,18 +4,18 @@
 #include "all_plugins.h"
 #include "spark/state.h"
 
-// What a plugin's author must have done, so that Lua, scene files, sparkctl, --describe and saved state work with his
+// Requirements on every plugin. With them, Lua, scene files, sparkctl, --describe and saved state work with its
 // classes.
 
 using namespace spark;
 using spark::test::AllPlugins;
 
 namespace {
-/// Calls `check` for every class of every plugin, within a section of its own.
+/// Calls `check` for every class of every plugin. Failures and exceptions are reported with plugin and class.
 template <class F>
-void forEachClass(AllPlugins& house, F check) {
-  for (Plugin* plugin : test::pluginsOf(house.kernel))
-    for (ClassObject* c : house.classesOf(*plugin)) {
+void forEachClass(AllPlugins& host, F check) {
+  for (Plugin* plugin : test::pluginsOf(host.kernel))
+    for (ClassObject* c : host.classesOf(*plugin)) {
       INFO("plugin " << plugin->name() << ", class " << c->name());
       try {
         check(*plugin, *c);
@@ -35,7 +35,7 @@ std::vector<const Property*> ownProperties(ClassObject& c) {
 
 bool isSentence(const std::string& text) { return text.size() >= 5 && text.back() == '.'; }
 
-/// True when a number's range or doc says that it has no unit.
+/// True if a number has no unit according to its range or doc.
 bool isPureNumber(const Property& p) {
   if (p.min && p.max) return true;
   static const char* words[] = {
@@ -59,12 +59,12 @@ std::string outOfRange(const Property& p, const Value& v) {
     if (p.max && !(d <= *p.max)) return v.text() + " is above " + Value(*p.max).text();
   } else if (v.isString() && !p.choices.empty() &&
              std::find(p.choices.begin(), p.choices.end(), v.toString()) == p.choices.end()) {
-    return v.text() + " is none of its choices";
+    return v.text() + " is not one of its choices";
   }
   return {};
 }
 
-/// Equal but for single precision.
+/// Equal up to single precision.
 bool isClose(const Value& a, const Value& b) {
   if (a.isNumber() && b.isNumber()) {
     const double x = a.toNumber(), y = b.toNumber();
@@ -78,7 +78,7 @@ bool isClose(const Value& a, const Value& b) {
   return true;
 }
 
-/// Another legal value for the property, nil when none is at hand.
+/// A different valid value of the property; nil if none is known.
 Value another(const Property& p, const Value& v) {
   if (v.isBool()) return !v.toBool();
   if (!p.choices.empty()) return p.choices.front() == v.plain() ? p.choices.back() : p.choices.front();
@@ -89,7 +89,8 @@ Value another(const Property& p, const Value& v) {
   return v.isInteger() ? Value(static_cast<std::int64_t>(d)) : Value(d);
 }
 
-/// Objects that are not linked: their setters must not need the tree.
+/// Sets a property and reads it back, on an object that is not linked: setters must not need the tree. Returns what is
+/// wrong, "" if nothing is.
 std::string roundTrip(Leaf& object, const Property& p) {
   const Value before = p.get(object);
   setProperty(object, p.name, before);
@@ -104,22 +105,22 @@ std::string roundTrip(Leaf& object, const Property& p) {
 }
 }  // namespace
 
-TEST_CASE("Every plugin registers with all others and says what it is") {
-  AllPlugins house;
-  REQUIRE(test::pluginsOf(house.kernel).size() > 10);
-  for (Plugin* p : test::pluginsOf(house.kernel)) {
+TEST_CASE("Every plugin can be registered with all others, and has a version and a description") {
+  AllPlugins host;
+  REQUIRE(test::pluginsOf(host.kernel).size() > 10);
+  for (Plugin* p : test::pluginsOf(host.kernel)) {
     INFO("plugin " << p->name());
     CHECK(p->registered());
     CHECK(p->file() == (test::pluginFolder() / (p->name() + ".so")).string());
     CHECK_FALSE(p->version().empty());
     CHECK(isSentence(p->doc()));
-    CHECK(house.classesOf(*p).size() == p->classes().size());
+    CHECK(host.classesOf(*p).size() == p->classes().size());
   }
 }
 
 TEST_CASE("Every class, property and method is documented, with type and unit") {
-  AllPlugins house;
-  forEachClass(house, [](Plugin&, ClassObject& c) {
+  AllPlugins host;
+  forEachClass(host, [](Plugin&, ClassObject& c) {
     CHECK(isSentence(c.doc()));
     for (const Property* p : ownProperties(c)) {
       INFO("property " << p->name << " (" << p->doc << ")");
@@ -143,9 +144,9 @@ TEST_CASE("Every class, property and method is documented, with type and unit") 
 }
 
 TEST_CASE("Every control aspect can be switched off") {
-  AllPlugins house;
+  AllPlugins host;
   int aspects = 0;
-  forEachClass(house, [&](Plugin&, ClassObject& c) {
+  forEachClass(host, [&](Plugin&, ClassObject& c) {
     if (!c.isA("ControlAspect")) return;
     ++aspects;
     const Property* p = c.property("enabled");
@@ -157,9 +158,9 @@ TEST_CASE("Every control aspect can be switched off") {
   CHECK(aspects > 20);
 }
 
-TEST_CASE("Members that hide what every node has in Lua are known") {
-  AllPlugins house;
-  forEachClass(house, [](Plugin&, ClassObject& c) {
+TEST_CASE("Members do not hide what every node has in Lua, with two known exceptions") {
+  AllPlugins host;
+  forEachClass(host, [](Plugin&, ClassObject& c) {
     for (const char* builtin :
          {"class", "parent", "alive", "find", "children", "new", "delete", "attachScript", "on"}) {
       INFO(builtin);
@@ -171,9 +172,9 @@ TEST_CASE("Members that hide what every node has in Lua are known") {
   });
 }
 
-TEST_CASE("Names of properties are words that Lua and scene files can write, and describe one thing each") {
-  AllPlugins house;
-  forEachClass(house, [](Plugin&, ClassObject& c) {
+TEST_CASE("Names of properties are unique and valid in Lua and scene files") {
+  AllPlugins host;
+  forEachClass(host, [](Plugin&, ClassObject& c) {
     std::set<std::string> seen;
     for (const Property* p : ownProperties(c)) {
       INFO("property " << p->name);
@@ -185,9 +186,9 @@ TEST_CASE("Names of properties are words that Lua and scene files can write, and
   });
 }
 
-TEST_CASE("Defaults lie in range") {
-  AllPlugins house;
-  forEachClass(house, [](Plugin&, ClassObject& c) {
+TEST_CASE("Default values are in range") {
+  AllPlugins host;
+  forEachClass(host, [](Plugin&, ClassObject& c) {
     if (c.isAbstract()) return;
     for (const Property* p : c.properties()) {
       INFO("property " << p->name);
@@ -197,9 +198,9 @@ TEST_CASE("Defaults lie in range") {
   });
 }
 
-TEST_CASE("What was set is read back, also before the object is linked") {
-  AllPlugins house;
-  forEachClass(house, [](Plugin&, ClassObject& c) {
+TEST_CASE("A property returns the value that was set, also before the object is linked") {
+  AllPlugins host;
+  forEachClass(host, [](Plugin&, ClassObject& c) {
     if (c.isAbstract()) return;
     for (const Property* p : c.properties()) {
       if (p->readOnly || p->name == "name") continue;
@@ -214,9 +215,9 @@ TEST_CASE("What was set is read back, also before the object is linked") {
   });
 }
 
-TEST_CASE("A property that is set out of range is left alone") {
-  AllPlugins house;
-  forEachClass(house, [](Plugin&, ClassObject& c) {
+TEST_CASE("A property that is set to a value out of range keeps its old value") {
+  AllPlugins host;
+  forEachClass(host, [](Plugin&, ClassObject& c) {
     if (c.isAbstract()) return;
     for (const Property* p : c.properties()) {
       if (p->readOnly || !p->min || p->type == "string") continue;
@@ -230,19 +231,19 @@ TEST_CASE("A property that is set out of range is left alone") {
   });
 }
 
-TEST_CASE("State that was saved is restored, to the same hash") {
-  AllPlugins house;
-  forEachClass(house, [](Plugin&, ClassObject& c) {
+TEST_CASE("Saved state is restored to the same hash") {
+  AllPlugins host;
+  forEachClass(host, [](Plugin&, ClassObject& c) {
     if (c.isAbstract()) return;
     const auto one = c.create(), two = c.create();
     for (const Property* p : c.properties()) {
       if (!p->state) continue;
       INFO("property " << p->name);
-      if (p->readOnly) continue;  // such an object restores it in loadState
+      if (p->readOnly) continue;  // restored by loadState
       if (const Value other = another(*p, p->get(*one)); !other.isNil()) try {
           setProperty(*one, p->name, other);
         } catch (const std::exception&) {
-          // Reported above: what cannot be set cannot be restored either.
+          // Another test case reports this. A property that cannot be set cannot be restored either.
         }
     }
     StateWriter out(true);
@@ -258,9 +259,9 @@ TEST_CASE("State that was saved is restored, to the same hash") {
   });
 }
 
-TEST_CASE("Objects come and go without a tree and leave nothing") {
-  AllPlugins house;
-  forEachClass(house, [](Plugin&, ClassObject& c) {
+TEST_CASE("Objects can be created and destroyed outside of the tree") {
+  AllPlugins host;
+  forEachClass(host, [](Plugin&, ClassObject& c) {
     const std::size_t before = c.living();
     if (c.isAbstract()) {
       CHECK_THROWS_AS(c.create(), Error);
@@ -272,13 +273,13 @@ TEST_CASE("Objects come and go without a tree and leave nothing") {
   });
 }
 
-TEST_CASE("Objects that are linked in an empty house either say what they miss or work") {
-  AllPlugins house;
-  forEachClass(house, [&](Plugin&, ClassObject& c) {
+TEST_CASE("An object in an otherwise empty tree works, or its error says what is missing") {
+  AllPlugins host;
+  forEachClass(host, [&](Plugin&, ClassObject& c) {
     if (c.isAbstract()) return;
-    Node& root = house.kernel.root();
+    Node& root = host.kernel.root();
     try {
-      Leaf& made = house.kernel.create(c.name(), "/lonely/" + c.name());
+      Leaf& made = host.kernel.create(c.name(), "/lonely/" + c.name());
       CHECK(made.isLinked());
       stateHash(root);
       made.parent()->remove(made);

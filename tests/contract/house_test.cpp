@@ -1,17 +1,15 @@
 #include "all_plugins.h"
 #include "spark/state.h"
 
-// Most classes are at home in a scene: a small house with a world and a body, into which one object of each class
-// moves.
+// Most classes are made for a scene. These tests add one object of each class to a small scene with a world and a body.
 
 using namespace spark;
 using spark::test::AllPlugins;
 
 namespace {
 /// Servers, a scene with world and space, a ground, and a transform with a body and a collider.
-struct SmallHouse : AllPlugins {
-  Node* place = nullptr;
-  SmallHouse() {
+struct SmallScene : AllPlugins {
+  SmallScene() {
     kernel.create("FileServer", "/sys/server/file");
     kernel.create("SceneServer", "/sys/server/scene");
     kernel.create("PhysicsServer", "/sys/server/physics");
@@ -25,25 +23,25 @@ struct SmallHouse : AllPlugins {
     kernel.create("Scene", "/usr/scene");
     kernel.create("World", "/usr/scene/world");
     kernel.create("Space", "/usr/scene/space");
-    place = &kernel.create<Node>("Transform", "/usr/scene/thing");
-    place->create("RigidBody", "body");
-    place->create<Node>("SphereCollider", "shape").create("ContactJointHandler", "surface");
+    Node& thing = kernel.create<Node>("Transform", "/usr/scene/thing");
+    thing.create("RigidBody", "body");
+    thing.create<Node>("SphereCollider", "shape").create("ContactJointHandler", "surface");
   }
-  /// Where an object of the class finds what it looks for above it: nodes that are made for another's inside go there.
-  std::vector<Node*> homes() {
+  /// Nodes under which an object may find what it needs above it.
+  std::vector<Node*> parents() {
     std::vector<Node*> out;
     for (const char* path :
          {"/usr/scene/thing", "/usr/scene/thing/shape", "/sys/server/gamecontrol", "/sys/server/monitor", "/lonely"})
       out.push_back(&kernel.root().require<Node>(path));
     return out;
   }
-  /// The object, linked at the first place that takes it; nullptr when none does.
-  Leaf* settle(ClassObject& c) {
-    for (Node* home : homes()) {
+  /// Makes an object of the class under the first node that accepts it; nullptr if none does.
+  Leaf* insert(ClassObject& c) {
+    for (Node* parent : parents()) {
       try {
-        return &home->create(c.name(), "guest");
+        return &parent->create(c.name(), "guest");
       } catch (const Error&) {
-        continue;  // not its home
+        continue;
       }
     }
     return nullptr;
@@ -53,20 +51,20 @@ struct SmallHouse : AllPlugins {
   }
 };
 
-/// Sockets and transports need more than a house.
-bool isForeign(const ClassObject& c) { return c.plugin()->name() == "net-tcp" || c.plugin()->name() == "control"; }
+/// Sockets and transports need more than a scene.
+bool needsNetwork(const ClassObject& c) { return c.plugin()->name() == "net-tcp" || c.plugin()->name() == "control"; }
 }  // namespace
 
-TEST_CASE("An object of each class lives in a house, is stepped with it, and leaves nothing") {
-  SmallHouse house;
-  house.kernel.create("Node", "/lonely");
-  house.run(1);
-  for (ClassObject* c : house.kernel.classes()) {
-    if (!c->plugin() || c->isAbstract() || isForeign(*c)) continue;
+TEST_CASE("An object of each class can be added to a scene, stepped, and removed without traces") {
+  SmallScene host;
+  host.kernel.create("Node", "/lonely");
+  host.run(1);
+  for (ClassObject* c : host.kernel.classes()) {
+    if (!c->plugin() || c->isAbstract() || needsNetwork(*c)) continue;
     INFO("plugin " << c->plugin()->name() << ", class " << c->name());
     const std::size_t before = c->living();
-    house.text.clear();
-    const Ref<Leaf> guest(house.settle(*c));
+    host.text.clear();
+    const Ref<Leaf> guest(host.insert(*c));
     REQUIRE(guest);
     for (const Property* p : c->properties()) {
       INFO("property " << p->name);
@@ -77,32 +75,32 @@ TEST_CASE("An object of each class lives in a house, is stepped with it, and lea
         FAIL_CHECK(e.what());
       }
     }
-    house.run(2);
-    if (guest) guest->parent()->remove(*guest);  // it may have left by itself
+    host.run(2);
+    if (guest) guest->parent()->remove(*guest);  // it may have removed itself
     CHECK(c->living() == before);
-    house.run(1);
-    CHECK_THAT(house.text, !Catch::Contains("no std::exception"));
+    host.run(1);
+    CHECK_THAT(host.text, !Catch::Contains("no std::exception"));
   }
 }
 
-TEST_CASE("A house's saved state goes on as it would have, to the same hash") {
-  SmallHouse house;
-  house.kernel.create("Node", "/lonely");
-  setProperty(house.kernel.root().require<Leaf>("/usr/scene/thing"), "localPos", List{0, 0, 3});
-  Leaf& controller = house.kernel.root().require<Node>("/usr/scene/thing/body").create("DragController");
+TEST_CASE("A scene that is restored from saved state continues with the same hash") {
+  SmallScene host;
+  host.kernel.create("Node", "/lonely");
+  setProperty(host.kernel.root().require<Leaf>("/usr/scene/thing"), "localPos", List{0, 0, 3});
+  Leaf& controller = host.kernel.root().require<Node>("/usr/scene/thing/body").create("DragController");
   setProperty(controller, "linearDrag", 0.5);
-  house.kernel.create("PlaneCollider", "/usr/scene/ground");
-  house.run(7);
+  host.kernel.create("PlaneCollider", "/usr/scene/ground");
+  host.run(7);
   StateWriter saved(true);
-  saveTree(house.kernel.root(), saved);
-  const std::uint64_t before = stateHash(house.kernel.root());
-  house.run(40);
-  const std::uint64_t after = stateHash(house.kernel.root());
+  saveTree(host.kernel.root(), saved);
+  const std::uint64_t before = stateHash(host.kernel.root());
+  host.run(40);
+  const std::uint64_t after = stateHash(host.kernel.root());
   CHECK(after != before);
   StateReader in(saved.bytes());
-  loadTree(house.kernel.root(), in);
+  loadTree(host.kernel.root(), in);
   CHECK(in.atEnd());
-  CHECK(stateHash(house.kernel.root()) == before);
-  house.run(40);
-  CHECK(stateHash(house.kernel.root()) == after);
+  CHECK(stateHash(host.kernel.root()) == before);
+  host.run(40);
+  CHECK(stateHash(host.kernel.root()) == after);
 }

@@ -3,7 +3,7 @@
 
 #include "all_plugins.h"
 
-// A plugin's README is where people look first: purpose, example, and a table that names every property of its classes.
+// Users read a plugin's README first. It has an example, and a table that names every property of the plugin's classes.
 
 using namespace spark;
 using spark::test::AllPlugins;
@@ -28,8 +28,8 @@ std::string tablesOf(const std::string& text) {
 }  // namespace
 
 TEST_CASE("Every plugin has a README with an example and a table that names its properties") {
-  AllPlugins house;
-  for (Plugin* plugin : test::pluginsOf(house.kernel)) {
+  AllPlugins host;
+  for (Plugin* plugin : test::pluginsOf(host.kernel)) {
     const fs::path file = fs::path(SPARK_PLUGIN_SOURCES) / plugin->name() / "README.md";
     INFO("plugin " << plugin->name() << ": " << file.string());
     REQUIRE(fs::exists(file));
@@ -37,7 +37,7 @@ TEST_CASE("Every plugin has a README with an example and a table that names its 
     CHECK(text.starts_with("# "));
     CHECK(text.find("```lua") != std::string::npos);
     std::string missing;
-    for (ClassObject* c : house.classesOf(*plugin)) {
+    for (ClassObject* c : host.classesOf(*plugin)) {
       if (text.find("--describe " + c->name()) != std::string::npos)
         continue;  // too many for a table: the README says how to list them
       for (const Property* p : c->properties()) {

@@ -1,12 +1,12 @@
 #include "all_plugins.h"
 
-// Each plugin comes, makes one of everything, and goes, for real: its file is no longer mapped.
+// Loads each plugin, makes an object of each of its classes, and unloads it. Then its file must no longer be mapped.
 
 using namespace spark;
-using spark::test::House;
+using spark::test::TestHost;
 
 namespace {
-/// Registers `name` and whatever provides the bases of its classes; returns them, bases last.
+/// Registers the plugin `name` and the plugins that provide the bases of its classes. Returns their names, bases last.
 std::vector<std::string> useWithBases(Kernel& kernel, const std::string& name) {
   std::vector<std::string> used{name};
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -23,34 +23,34 @@ std::vector<std::string> useWithBases(Kernel& kernel, const std::string& name) {
 }
 }  // namespace
 
-TEST_CASE("Every plugin unloads after its objects are gone, and is no longer mapped") {
+TEST_CASE("Every plugin can be unloaded once its objects are destroyed, and is then no longer mapped") {
   std::vector<std::string> names;
   {
-    House house;
-    for (Plugin* p : test::pluginsOf(house.kernel)) names.push_back(p->name());
+    TestHost host;
+    for (Plugin* p : test::pluginsOf(host.kernel)) names.push_back(p->name());
   }
   for (const std::string& name : names) {
     INFO("plugin " << name);
-    House house;
-    const std::string file = house.kernel.root().require<Plugin>("/plugins/" + name).file();
-    std::vector<std::string> used = useWithBases(house.kernel, name);
-    for (ClassObject* c : house.kernel.classes()) {
+    TestHost host;
+    const std::string file = host.kernel.root().require<Plugin>("/plugins/" + name).file();
+    std::vector<std::string> used = useWithBases(host.kernel, name);
+    for (ClassObject* c : host.kernel.classes()) {
       if (!c->plugin() || c->isAbstract()) continue;
       INFO("class " << c->name());
       c->create();
       try {
-        Leaf& made = house.kernel.create(c->name(), "/usr/" + c->name());
+        Leaf& made = host.kernel.create(c->name(), "/usr/" + c->name());
         made.parent()->remove(made);
       } catch (const Error&) {
-        // It may need a house; nothing of it may stay.
+        // The object may need a scene. No object may remain.
       }
       CHECK(c->living() == 0);
     }
-    // A plugin may be needed by one that was used later, so go round until all are gone.
+    // A plugin may be needed by one that was registered later, so repeat until all are unloaded.
     for (std::size_t round = 0; round < 10 && !used.empty(); ++round)
       std::erase_if(used, [&](const std::string& u) {
         try {
-          house.kernel.plugins().unload(u);
+          host.kernel.plugins().unload(u);
           return true;
         } catch (const Error&) {
           return false;

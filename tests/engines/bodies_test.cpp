@@ -1,11 +1,11 @@
 #include "engine_world.h"
 
-// What every engine does with bodies.
+// Bodies, in each engine.
 
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("a body falls as semi-implicit Euler has it, and near where physics has it") {
+TEST_CASE("a body falls as semi-implicit Euler integration predicts") {
   withEngines([](EngineWorld& w) {
     const BodyHandle b = w.body({0, 0, 100});
     w.dt = 0.001;
@@ -15,7 +15,7 @@ TEST_CASE("a body falls as semi-implicit Euler has it, and near where physics ha
   });
 }
 
-TEST_CASE("a force acts for one step in proportion to mass; gravity can be taken from a body") {
+TEST_CASE("a force acts for one step and accelerates by force / mass, and gravity can be switched off for a body") {
   withEngines([](EngineWorld& w) {
     const BodyHandle heavy = w.body({0, 0, 5}, 2, Mat3::Identity() * 0.5), falling = w.body({3, 0, 5});
     w.world.setGravityMode(heavy, false);
@@ -32,7 +32,7 @@ TEST_CASE("a force acts for one step in proportion to mass; gravity can be taken
   });
 }
 
-TEST_CASE("a torque-free body keeps its angular momentum about its axis of symmetry") {
+TEST_CASE("a torque-free body that spins about its axis of symmetry keeps its angular velocity") {
   withEngines(
       [](EngineWorld& w) {
         w.setGravity(0);
@@ -46,7 +46,7 @@ TEST_CASE("a torque-free body keeps its angular momentum about its axis of symme
       {&EngineKind::rotation});
 }
 
-TEST_CASE("a body that flies apart is put back, at rest, and named once; others go on") {
+TEST_CASE("a body that diverges is put back at rest and reported once, and the others continue") {
   withEngines([](EngineWorld& w) {
     w.setGravity(0);
     const BodyHandle bad = w.body({1, 2, 3}), good = w.body({5, 0, 0});
@@ -65,7 +65,7 @@ TEST_CASE("a body that flies apart is put back, at rest, and named once; others 
   });
 }
 
-TEST_CASE("what lies still falls asleep and is left alone; a touch wakes it; what flies does not sleep") {
+TEST_CASE("a resting body falls asleep and wakes on contact, and a floating body stays awake") {
   withEngines(
       [](EngineWorld& w) {
         w.setGravity(9.81, true);
@@ -75,9 +75,9 @@ TEST_CASE("what lies still falls asleep and is left alone; a touch wakes it; wha
         w.run(2);
         CHECK_FALSE(w.world.enabled(lying));
         CHECK(w.world.enabled(floating));
-        const Vec3 place = w.position(lying);
+        const Vec3 before = w.position(lying);
         w.run(0.5);
-        CHECK(w.position(lying) == place);
+        CHECK(w.position(lying) == before);
         const BodyHandle thrown = w.block({0, 0, 1.6}, {0.5, 0.5, 0.5});
         w.world.setLinearVelocity(thrown, {0, 0, -3});
         w.run(0.2);
@@ -86,7 +86,7 @@ TEST_CASE("what lies still falls asleep and is left alone; a touch wakes it; wha
       {&EngineKind::sleep});
 }
 
-TEST_CASE("a saved world goes on bit for bit, in the same house and in a new one") {
+TEST_CASE("a restored world continues bit for bit, in the same kernel and in a new one") {
   withEngines(
       [](EngineWorld& w) {
         const auto heap = [](EngineWorld& in) {

@@ -1,11 +1,11 @@
 #include "engine_world.h"
 
-// What every engine does with contacts.
+// Contacts, in each engine.
 
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("a box slides as its friction lets it, and stops") {
+TEST_CASE("friction decelerates a sliding box until it stops") {
   withEngines(
       [](EngineWorld& w) {
         w.ground();
@@ -22,7 +22,7 @@ TEST_CASE("a box slides as its friction lets it, and stops") {
       {&EngineKind::surfaces});
 }
 
-TEST_CASE("a stack stands, and each contact carries what lies on it") {
+TEST_CASE("a stack of boxes is stable, and its contacts carry the weight above them") {
   withEngines([](EngineWorld& w) {
     w.ground();
     std::vector<BodyHandle> stack;
@@ -44,7 +44,7 @@ TEST_CASE("a stack stands, and each contact carries what lies on it") {
   });
 }
 
-TEST_CASE("a ball bounces to the height of its restitution, or not at all") {
+TEST_CASE("a ball bounces to the height that its restitution gives") {
   withEngines(
       [](EngineWorld& w) {
         for (const double bounce : {0.0, 0.5, 0.8}) {
@@ -68,7 +68,7 @@ TEST_CASE("a ball bounces to the height of its restitution, or not at all") {
       {&EngineKind::surfaces});
 }
 
-TEST_CASE("contacts have their geoms, bodies and owners; a normal points into A") {
+TEST_CASE("a contact knows its geoms, bodies and owners, and its normal points into A") {
   withEngines([](EngineWorld& w) {
     int groundOwner = 0, ballOwner = 0;
     const GeomHandle floor = w.geom({.shape = Shape::plane}, BodyHandle::none, {}, &groundOwner);
@@ -88,7 +88,7 @@ TEST_CASE("contacts have their geoms, bodies and owners; a normal points into A"
   });
 }
 
-TEST_CASE("MuJoCo slides and bounces as the colliders' own numbers have it") {
+TEST_CASE("MuJoCo uses the friction and restitution parameters of the colliders") {
   for (const EngineKind& kind : kEngines) {
     if (std::string(kind.name) != "MujocoEngine" || !kind.built()) continue;
     EngineWorld w(kind);
@@ -113,7 +113,7 @@ TEST_CASE("MuJoCo slides and bounces as the colliders' own numbers have it") {
   }
 }
 
-TEST_CASE("the force of a contact is measured also when a body was moved by hand before the step") {
+TEST_CASE("contact forces are measured also if the state of a body was set before the step") {
   withEngines([](EngineWorld& w) {
     w.ground();
     const BodyHandle b = w.block({0, 0, 0.199}, {0.4, 0.4, 0.4}, 3), other = w.body({9, 0, 9});

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A world with one of the engines, and short ways to bodies, shapes and joints.
+/// A world with one of the engines, and helpers that make bodies, geoms and joints.
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -18,25 +18,25 @@ using physics::BodyHandle;
 using physics::GeomHandle;
 using physics::JointHandle;
 
-/// An engine, and what it leaves out.
+/// An engine and the features that it supports.
 struct EngineKind {
   const char* name;  ///< its class
   const char* plugin;
-  bool rotation = true;  ///< bodies turn
+  bool rotation = true;  ///< bodies rotate
   bool joints = true;
-  bool loops = true;        ///< joints may close loops, and motors may drive the angles of others
+  bool loops = true;        ///< joints may close loops, and angular motors may drive other joints
   bool jointForces = true;  ///< joints measure their load
-  bool armature = false;    ///< the inertia of rotors counts
-  bool sleep = true;        ///< what lies still is left alone
-  bool surfaces = true;     ///< a contact has the surface that it is given
-  bool restores = true;     ///< a saved state goes on bit for bit
+  bool armature = false;    ///< joints have the inertia of their rotors
+  bool sleep = true;        ///< bodies at rest fall asleep
+  bool surfaces = true;     ///< each contact has its own surface parameters
+  bool restores = true;     ///< a restored world continues bit for bit
   bool built() const {
     return std::string(plugin) == "point-masses" ||
            std::filesystem::exists(pluginFolder() / (std::string(plugin) + ".so"));
   }
 };
 
-/// All engines. The last is an example of how little one must do.
+/// All engines. The last one is an example of a minimal engine.
 inline const EngineKind kEngines[] = {
     {.name = "OdeEngine", .plugin = "physics-ode"},
     {.name = "ArticulatedEngine", .plugin = "physics-articulated", .armature = true},
@@ -56,7 +56,7 @@ inline const EngineKind kEngines[] = {
      .jointForces = false},
 };
 
-struct EngineWorld : House {
+struct EngineWorld : TestHost {
   const EngineKind& kind;
   engine::ICollision* collision;
   engine::IEngine* engine;
@@ -74,7 +74,7 @@ struct EngineWorld : House {
     makeCollision();
     setGravity(9.81);
   }
-  /// Its own, or ODE's.
+  /// Uses the engine's own collision detection, or ODE's if it has none.
   void makeCollision() {
     collision = engine->leaf().as<engine::ICollision>();
     if (!collision) collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision");
@@ -83,7 +83,7 @@ struct EngineWorld : House {
     engine = &kernel.create<engine::IEngine>(kind.name, "/sys/engine");
     if (std::string(kind.name) == "ArticulatedEngine") kernel.create("OdeEngine", "/sys/engine/deferred");
   }
-  /// Removes the engine, or the collision detection, and makes a new one.
+  /// Replaces the engine by a new one.
   void replaceEngine() {
     const bool both = &collision->leaf() == &engine->leaf();
     engine->leaf().parent()->remove(engine->leaf());
@@ -114,7 +114,7 @@ struct EngineWorld : House {
     world.setBody(g, b, offset);
     return g;
   }
-  /// A body with a box of its size and mass.
+  /// A body with the collider and the mass of a box.
   BodyHandle block(const Vec3& at, const Vec3& edges, double mass = 1) {
     const Vec3 squares = edges.cwiseProduct(edges);
     const BodyHandle b = body(at, mass, Mat3((Vec3::Constant(squares.sum()) - squares).asDiagonal()) * (mass / 12));
@@ -158,7 +158,7 @@ struct EngineWorld : House {
       c.surface = surface;
     }
   }
-  /// Steps in which all contacts are solved.
+  /// Steps the world. All contacts are solved.
   void run(double seconds) {
     for (int i = 0, n = static_cast<int>(std::lround(seconds / dt)); i < n; ++i) {
       detect();
@@ -175,7 +175,7 @@ struct EngineWorld : House {
   }
 };
 
-/// Runs a test once with each engine that has what it needs.
+/// Runs a test with each engine that has the features `needs`.
 template <class F>
 void withEngines(F&& f, std::initializer_list<bool EngineKind::*> needs = {}) {
   for (const EngineKind& kind : kEngines) {

@@ -1,13 +1,13 @@
 #include "engine_world.h"
 
-// What every engine with joints does with them.
+// Joints, in each engine that supports them.
 
 using namespace spark;
 using namespace spark::test;
 
 namespace {
 
-/// A child on a parent that is fixed to the world, in no gravity.
+/// A child body, and a parent that is fixed to the world, without gravity.
 struct Pair {
   EngineWorld& w;
   BodyHandle child, parent;
@@ -15,7 +15,7 @@ struct Pair {
     w.setGravity(0);
     w.joint(JointType::fixed, parent, BodyHandle::none, {0, 0, 1});
   }
-  /// How far the point of the child that was at the anchor is from it now.
+  /// Distance from the anchor to the child's point that was there at first.
   double apart() const {
     const engine::BodyState s = w.world.state(child);
     return (s.position + s.rotation * Vec3(0, 0, 0.5) - Vec3(0, 0, 0.5)).norm();
@@ -34,8 +34,8 @@ void withPairs(const std::function<void(EngineWorld&, Pair&)>& f,
 
 }  // namespace
 
-TEST_CASE("each joint takes from the child what its type takes, and no more") {
-  // Which rotations of the child about x, y and z, and which translation along z, are free.
+TEST_CASE("each joint type leaves exactly its degrees of freedom") {
+  // Whether rotations of the child about x, y and z, and its translation along z, are free.
   struct Freedom {
     JointType type;
     bool turns[3], slides;
@@ -74,7 +74,7 @@ TEST_CASE("a hinge's angle and rate are those of the first body relative to the 
   });
 }
 
-TEST_CASE("a motor has its speed soon, is as strong as its force, and stops drive it no further") {
+TEST_CASE("a motor reaches its speed, has no more than its maximum force, and does not pass a stop") {
   for (const JointType type : {JointType::hinge, JointType::universal, JointType::slider})
     withPairs([&](EngineWorld& w, const Pair& p) {
       CAPTURE(int(type));
@@ -98,7 +98,7 @@ TEST_CASE("a motor has its speed soon, is as strong as its force, and stops driv
   });
 }
 
-TEST_CASE("a wheel steers, rolls and is sprung") {
+TEST_CASE("a wheel rolls at its motor's speed, keeps a locked steering angle, and has a suspension") {
   withPairs([](EngineWorld& w, const Pair& p) {
     const BodyHandle wheel = w.body({0, 0.5, 1}, 1, Mat3::Identity() * 0.02);
     const JointHandle j = w.joint(JointType::hinge2, p.parent, wheel, {0, 0.5, 1}, Vec3::UnitZ(), Vec3::UnitX());
@@ -131,7 +131,7 @@ TEST_CASE("an angular motor drives its axes") {
       {&EngineKind::joints, &EngineKind::loops});
 }
 
-TEST_CASE("a chain of bodies and a closed loop hold together") {
+TEST_CASE("a hanging closed loop of bodies holds together") {
   withEngines(
       [](EngineWorld& w) {
         // A hanging ring of eight links.
@@ -152,7 +152,7 @@ TEST_CASE("a chain of bodies and a closed loop hold together") {
       {&EngineKind::joints, &EngineKind::loops});
 }
 
-TEST_CASE("a joint's feedback is its load") {
+TEST_CASE("a joint's feedback is the force that it carries") {
   withEngines(
       [](EngineWorld& w) {
         for (const bool worldFirst : {false, true}) {
@@ -173,7 +173,7 @@ TEST_CASE("a joint's feedback is its load") {
       {&EngineKind::joints, &EngineKind::jointForces});
 }
 
-TEST_CASE("a controller brings its axis to its target, with the force that it may use and no more") {
+TEST_CASE("a controller moves its axis to the target with at most its maximum force") {
   for (const JointType type : {JointType::hinge, JointType::slider})
     withPairs([&](EngineWorld& w, const Pair& p) {
       CAPTURE(int(type));
@@ -197,7 +197,7 @@ TEST_CASE("a controller brings its axis to its target, with the force that it ma
   });
 }
 
-TEST_CASE("damping slows an axis, dry friction stops it; a rotor's inertia counts where the engine has it") {
+TEST_CASE("damping slows an axis, dry friction holds it, and armature adds inertia if the engine supports it") {
   withPairs([](EngineWorld& w, const Pair& p) {
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
     w.world.setParameter(j, JointParameter::damping, 0, 0.2);
@@ -226,8 +226,7 @@ TEST_CASE("damping slows an axis, dry friction stops it; a rotor's inertia count
       {&EngineKind::joints, &EngineKind::armature});
 }
 
-TEST_CASE(
-    "a controller brings the angle to its target in every order of bodies, with the world, and about every axis") {
+TEST_CASE("a controller moves each axis of a joint to the target, with either order of bodies and with the world") {
   for (const JointType type : {JointType::hinge, JointType::slider, JointType::universal, JointType::hinge2})
     for (const int order : {0, 1, 2, 3})
       for (int axis = 0; axis < engine::axesOf(type); ++axis)
@@ -245,7 +244,7 @@ TEST_CASE(
         });
 }
 
-TEST_CASE("joints keep their places when something else comes and goes") {
+TEST_CASE("joints keep their positions when another body is created and destroyed") {
   for (const JointType type : {JointType::hinge, JointType::slider, JointType::universal, JointType::hinge2})
     for (const bool parentFirst : {false, true})
       withPairs([&](EngineWorld& w, const Pair& p) {
@@ -256,18 +255,18 @@ TEST_CASE("joints keep their places when something else comes and goes") {
         w.world.addForce(p.child, {0, 0, 3});
         w.run(3);
         const double before = w.world.angle(j, 0);
-        const Vec3 place = w.position(p.child);
+        const Vec3 position = w.position(p.child);
         CHECK(before == Approx(0.25).margin(0.02));
         const BodyHandle other = w.body({9, 9, 9});
         w.run(w.dt);
         w.world.destroyBody(other);
         w.run(w.dt);
         CHECK(w.world.angle(j, 0) == Approx(before).margin(1e-3));
-        CHECK((w.position(p.child) - place).norm() < 1e-3);
+        CHECK((w.position(p.child) - position).norm() < 1e-3);
       });
 }
 
-TEST_CASE("a controller that is removed acts no more, and one of a sleeping body piles up nothing") {
+TEST_CASE("a removed controller has no effect, and a controller accumulates no torque on a sleeping body") {
   withPairs([](EngineWorld& w, const Pair& p) {
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
     w.world.control(j, 0, {.force = 0.1});
@@ -292,7 +291,7 @@ TEST_CASE("a controller that is removed acts no more, and one of a sleeping body
       {&EngineKind::joints, &EngineKind::sleep});
 }
 
-TEST_CASE("the rotor of a slider between two bodies that turn adds no energy") {
+TEST_CASE("the armature of a slider between two rotating bodies adds no energy") {
   withEngines(
       [](EngineWorld& w) {
         w.setGravity(0);
@@ -300,12 +299,13 @@ TEST_CASE("the rotor of a slider between two bodies that turn adds no energy") {
         const BodyHandle a = w.body({0, 0, 0}), b = w.body({0, 0, 1});
         const JointHandle j = w.joint(JointType::slider, a, b, {0, 0, 0.5});
         w.world.setParameter(j, JointParameter::armature, 0, 5);
-        // Both as one rigid body about y, which their slider would let come apart but for its rotor.
+        // Both rotate about y like one rigid body. Their slider would let them move apart if it had no armature.
         for (const BodyHandle body : {a, b}) w.world.setAngularVelocity(body, {0, 0.5, 0});
         w.world.setLinearVelocity(a, {-0.25, 0, 0});
         w.world.setLinearVelocity(b, {0.25, 0, 0});
         w.run(1);
-        // 0.5 m apart, each feels 0.5 0.25 m/s^2 outwards, and their distance has an inertia of 0.5 + 5 kg.
+        // Each is 0.5 m from the axis and accelerates outwards by 0.5 * 0.25 m/s^2. Their distance has an inertia of
+        // 0.5 + 5 kg.
         CHECK(std::abs(w.world.angle(j, 0)) < 0.03);
         CHECK(std::abs(w.world.angleRate(j, 0)) < 0.06);
         CHECK(w.spin(a).y() == Approx(0.5).epsilon(0.05));

@@ -5,7 +5,7 @@
 
 #include "engine_world.h"
 
-// Rays and overlaps.
+// Ray casts and overlap queries.
 
 using namespace spark;
 using namespace spark::test;
@@ -21,7 +21,7 @@ engine::ShapeDescription meshOf(double edge) {
   return s;
 }
 
-/// One thing of each shape, turned at random, at random places.
+/// One body of each shape at a random pose.
 struct Things : EngineWorld {
   std::mt19937 random{5};
   std::vector<GeomHandle> geoms;
@@ -49,7 +49,7 @@ struct Things : EngineWorld {
 
 }  // namespace
 
-TEST_CASE("a ray meets what ODE's rays meet first, at the same place with the same normal") {
+TEST_CASE("a ray hits the same geom as ODE's ray hits first, at the same distance and with the same normal") {
   Things t;
   const GeomHandle probe = t.geom({.shape = Shape::ray, .length = 20});
   int met = 0;
@@ -75,7 +75,7 @@ TEST_CASE("a ray meets what ODE's rays meet first, at the same place with the sa
   CHECK(met > 200);
 }
 
-TEST_CASE("a ray from inside meets the surface where it leaves; what is too far or ignored is not met") {
+TEST_CASE("a ray from inside hits the surface where it exits, and no geom that is too far away or filtered out") {
   EngineWorld w(kEngines[0]);
   const BodyHandle b = w.block({0, 0, 1}, {2, 2, 2});
   const auto cast = [&](const Vec3& from, double length, const physics::Accepts& accepts = {}) {
@@ -88,11 +88,11 @@ TEST_CASE("a ray from inside meets the surface where it leaves; what is too far 
   CHECK_FALSE(cast({-3, 0, 2.01}, 10));
   CHECK_FALSE(cast({3, 0, 1}, 10));
   CHECK_FALSE(cast({-3, 0, 1}, 10, [](const engine::Geom&) { return false; }));
-  w.world.setPosition(b, {0, 0, 5});  // the answer is of now, before any step
+  w.world.setPosition(b, {0, 0, 5});  // a query uses current positions, before any step
   CHECK_FALSE(cast({-3, 0, 1}, 10));
 }
 
-TEST_CASE("a sphere overlaps what ODE's spheres touch") {
+TEST_CASE("a sphere overlaps the geoms that it touches in ODE") {
   Things t;
   const BodyHandle ball = t.body({0, 0, 0});
   const GeomHandle probe = t.geom({.shape = Shape::sphere, .radius = 0.3}, ball);
@@ -110,7 +110,7 @@ TEST_CASE("a sphere overlaps what ODE's spheres touch") {
     physics::findOverlaps(t.world.model(), t.world.state(), at, 0.3, found);
     std::erase(found, t.world.index(probe));
     CAPTURE(i);
-    // ODE meets a mesh from outside alone.
+    // ODE detects a mesh only from outside.
     for (std::vector<engine::Index>* list : {&expected, &found}) std::erase(*list, t.world.index(t.geoms[4]));
     CHECK(found == expected);
     touched += static_cast<int>(found.size());
@@ -118,7 +118,7 @@ TEST_CASE("a sphere overlaps what ODE's spheres touch") {
   CHECK(touched > 50);
 }
 
-TEST_CASE("several threads ask at once") {
+TEST_CASE("several threads can make queries at once") {
   Things t;
   std::vector<double> sums(4, 0);
   {

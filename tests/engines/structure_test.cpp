@@ -1,14 +1,14 @@
 #include "../../plugins/physics/queries.h"
 #include "engine_world.h"
 
-// Worlds that change while they are stepped.
+// Worlds whose structure changes between steps.
 
 using namespace spark;
 using namespace spark::test;
 
 namespace {
 
-/// A yard into which things fall and from which they are taken, at every moment of a step.
+/// A world to which a test adds bodies and joints, and from which it removes them, between steps.
 struct Traffic {
   EngineWorld& w;
   std::vector<BodyHandle> bodies;
@@ -30,7 +30,7 @@ struct Traffic {
     }
   }
   void removeBody(std::size_t i) {
-    w.world.destroyBody(bodies[i]);  // its geom stays, static
+    w.world.destroyBody(bodies[i]);  // its geom remains as a static one
     bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(i));
   }
   bool sound() const {
@@ -42,7 +42,7 @@ struct Traffic {
 
 }  // namespace
 
-TEST_CASE("bodies, geoms and joints come and go between any two steps") {
+TEST_CASE("bodies, geoms and joints can be created and destroyed between any two steps") {
   withEngines([](EngineWorld& w) {
     Traffic t(w);
     for (int i = 0; i < 120; ++i) {
@@ -52,7 +52,7 @@ TEST_CASE("bodies, geoms and joints come and go between any two steps") {
         w.world.destroyJoint(t.joints.back());
         t.joints.pop_back();
       }
-      if (i % 17 == 3) {  // comes and goes without having been seen
+      if (i % 17 == 3) {  // created and destroyed before the engine sees it
         const BodyHandle b = w.block({0, 0, 9}, {1, 1, 1});
         w.world.destroyBody(b);
       }
@@ -64,7 +64,7 @@ TEST_CASE("bodies, geoms and joints come and go between any two steps") {
   });
 }
 
-TEST_CASE("contacts between detection and step may be left out, or of bodies that are gone") {
+TEST_CASE("contacts can be removed between detection and step") {
   withEngines(
       [](EngineWorld& w) {
         w.ground();
@@ -78,7 +78,7 @@ TEST_CASE("contacts between detection and step may be left out, or of bodies tha
       {&EngineKind::surfaces});
 }
 
-TEST_CASE("engine and collision detection can be replaced at any time: the world goes on, bit for bit") {
+TEST_CASE("the engine and the collision detection can be replaced at any time, and the world continues bit for bit") {
   withEngines(
       [](EngineWorld& w) {
         EngineWorld other(w.kind);
@@ -95,7 +95,7 @@ TEST_CASE("engine and collision detection can be replaced at any time: the world
       {&EngineKind::restores});
 }
 
-TEST_CASE("a world may end before its engine, and an engine before the world") {
+TEST_CASE("a world may be destroyed before its engine, and an engine before the world") {
   withEngines([](EngineWorld& w) {
     {
       physics::WorldModel second;
@@ -112,7 +112,7 @@ TEST_CASE("a world may end before its engine, and an engine before the world") {
   });
 }
 
-TEST_CASE("a world that repeats itself gives the same numbers twice, and what one does not know of another") {
+TEST_CASE("two worlds with the same inputs give identical results") {
   withEngines([](EngineWorld& w) {
     EngineWorld other(w.kind);
     Traffic a(w), b(other);
@@ -124,7 +124,7 @@ TEST_CASE("a world that repeats itself gives the same numbers twice, and what on
   });
 }
 
-TEST_CASE("shapes and masses at the edge of sense end no engine") {
+TEST_CASE("engines tolerate degenerate shapes and extreme masses") {
   withEngines([](EngineWorld& w) {
     w.ground();
     const BodyHandle fine = w.block({3, 0, 2}, {0.4, 0.4, 0.4});
@@ -141,7 +141,7 @@ TEST_CASE("shapes and masses at the edge of sense end no engine") {
   });
 }
 
-TEST_CASE("contacts that are not solid push nothing, also when something changes between detection and step") {
+TEST_CASE("contacts that are not to be solved exert no force, even if the world changes after detection") {
   withEngines([](EngineWorld& w) {
     w.setGravity(0);
     w.geom({.shape = Shape::box, .lengths = {1, 1, 1}});
@@ -158,7 +158,7 @@ TEST_CASE("contacts that are not solid push nothing, also when something changes
   });
 }
 
-TEST_CASE("a geom that is removed is not met any more, before any step") {
+TEST_CASE("a ray does not hit a removed geom, even before the next step") {
   EngineWorld w(kEngines[0]);
   const GeomHandle g = w.geom({.shape = Shape::sphere, .radius = 1});
   const auto hit = [&] {
@@ -169,7 +169,7 @@ TEST_CASE("a geom that is removed is not met any more, before any step") {
   CHECK_FALSE(hit());
 }
 
-TEST_CASE("MuJoCo compiles a large world aside: what is unchanged goes on, what is new waits, what is gone is gone") {
+TEST_CASE("while MuJoCo compiles a large world in the background, only the unchanged bodies move") {
   for (const EngineKind& kind : kEngines) {
     if (std::string(kind.name) != "MujocoEngine" || !kind.built()) continue;
     std::vector<double> heights;
@@ -183,7 +183,7 @@ TEST_CASE("MuJoCo compiles a large world aside: what is unchanged goes on, what 
       const double before = w.position(third).z();
       const auto compilations = [&] { return getProperty(w.engine->leaf(), "compilations").toInteger(); };
       const std::int64_t atFirst = compilations();
-      // One goes and one comes: indices shift, and contacts of the removed body's geoms are nobody's.
+      // One body is removed and one is added: indices shift, and contacts of the removed body's geoms have no body.
       w.world.destroyBody(removed);
       const BodyHandle added = w.body({6, 0, 50});
       w.run(w.dt);
@@ -195,7 +195,7 @@ TEST_CASE("MuJoCo compiles a large world aside: what is unchanged goes on, what 
       CHECK(w.position(added).z() < 50);
       CHECK(w.velocity(third).z() == Approx(speed - 9.81 * 0.2).epsilon(0.05));
       CHECK(compilations() == atFirst + 1);
-      // A tree that is taken apart stands still until the model is in.
+      // A tree whose joint is removed stops until the new model is compiled.
       w.world.destroyJoint(joint);
       w.run(0.5);
       CHECK(compilations() == atFirst + 2);

@@ -60,7 +60,7 @@ double penetration(EngineWorld& w) {
   return 0.2 - w.position(stack[0]).z();
 }
 
-/// Processor time of a step of 100 boxes that lie on the ground [us].
+/// Time of a step of 100 boxes that lie on the ground [us].
 double boxesCost(EngineWorld& w) {
   w.ground();
   for (int i = 0; i < 100; ++i) w.block({(i % 10) * 1.0, (i / 10) * 1.0, 0.2}, {0.4, 0.4, 0.4});
@@ -70,7 +70,7 @@ double boxesCost(EngineWorld& w) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count() * w.dt;
 }
 
-/// Processor time of a step of eight trees of 23 bodies with moving motors [us].
+/// Time of a step of eight trees of 23 bodies with moving motors [us].
 double treesCost(EngineWorld& w) {
   w.setGravity(0);
   std::vector<JointHandle> joints;

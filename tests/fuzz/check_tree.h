@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What must hold of predicates whatever the bytes were.
+/// Invariants of predicates for any input.
 
 #include <cstdlib>
 
@@ -8,7 +8,7 @@
 
 namespace spark::fuzz {
 
-/// Walks all elements; aborts when lists do not nest or texts lie outside. Uses what effectors use.
+/// Visits all elements with the functions that effectors use. Aborts if lists are not properly nested.
 inline void checkElement(const Element& e, std::uint32_t end) {
   const Token& t = e.token();
   if (e.index() >= end) std::abort();

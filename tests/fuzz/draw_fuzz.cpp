@@ -1,5 +1,5 @@
-// Packets of the drawing port: whatever comes, what is kept of it is in bounds and valid, and what is written of it
-// reads the same again.
+// Packets of the drawing port. For any input, the stored shapes are valid and within limits, and a record of them can
+// be read back.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -1,4 +1,5 @@
-// The frame reader: frames lie inside the bytes, go forward, respect the limit, and survive framing.
+// The frame reader. Frames lie within the input, consume at least one byte, respect the size limit, and can be framed
+// again with the same bytes.
 #include <cstdint>
 #include <cstdlib>
 

@@ -1,4 +1,4 @@
-// The JSON reader: no crash, no exception, no runaway.
+// The JSON reader. It does not crash, throw or exceed its limits.
 #include <cstdint>
 #include <cstdlib>
 

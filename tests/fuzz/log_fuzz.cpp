@@ -1,5 +1,4 @@
-// Recorded monitor messages: whatever stands in a log, the scene stays one that can be encoded, and what is encoded of
-// it can be read again.
+// Recorded monitor messages. For any log, the scene can be encoded, and the encoded message can be read again.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

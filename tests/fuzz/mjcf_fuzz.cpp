@@ -1,7 +1,7 @@
 // The reader of MJCF files, run on arbitrary texts.
 //
-// Input: texts that end with a zero byte: the model a.xml, the file b.xml, which a.xml may include. Every mesh is a
-// tetrahedron. Whatever comes, the reader makes a model or throws an Error, within its limits.
+// Input: texts that end with a zero byte: the model a.xml, and the file b.xml, which a.xml may include. Every mesh is a
+// tetrahedron. For any input, the reader makes a model or throws an Error, within its limits.
 
 #include <cstdint>
 #include <string>
@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     };
     mjcf::readModel(document, tetrahedron, leftOver);
   } catch (const Error&) {
-    // the answer to most inputs
+    // Most inputs are invalid.
   }
   leftOver.sentences();
   return 0;

@@ -1,8 +1,8 @@
 // The importer of scene files, run on arbitrary files and arguments with all classes of the `scene` plugin.
 //
 // Input: one byte of switches, then chunks that end with a zero byte: the file a.rsg, the file b.rsg (which a.rsg may
-// import), arguments. Whatever comes, the import ends with success or an Error, within its limits, and the house can be
-// taken down.
+// import), and arguments. For any input, the import succeeds or throws an Error, within its limits, and the scene can
+// be removed.
 
 #include <cstdlib>
 #include <map>
@@ -21,7 +21,7 @@ using namespace spark;
 
 constexpr std::int64_t kMaxNodes = 200;
 
-/// The two files, new with each input.
+/// Two files whose contents are set for each input.
 class TwoFiles : public Leaf, public IFileServer {
   SPARK_CLASS(TwoFiles, Leaf)
  public:
@@ -40,13 +40,13 @@ class TwoFiles : public Leaf, public IFileServer {
   std::uint64_t round = 0;
 };
 
-struct House {
+struct Host {
   Kernel kernel;
   TwoFiles* files = nullptr;
   Leaf* importer = nullptr;
   ISceneServer* server = nullptr;
 
-  House() {
+  Host() {
     kernel.log().setLevel(Level::off);
     registerAll<SceneNode, Transform, Scene, SceneServer, Light, Camera, Axis, RenderNode, StaticMesh, SingleMatNode,
                 Box, Sphere, Capsule, Cylinder, MaterialSolid, MaterialServer, Variables, RsgImporter, TwoFiles>();
@@ -77,7 +77,7 @@ std::size_t count(const Node& node) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static House house;
+  static Host host;
   if (size == 0) return 0;
   const unsigned switches = data[0];
   std::vector<std::string> chunks(1);
@@ -87,27 +87,27 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     else
       chunks.back() += static_cast<char>(data[i]);
   }
-  house.files->files.clear();
-  ++house.files->round;
-  house.files->files["a.rsg"] = (switches & 1 ? "(RSG 0 1)" : "") + chunks[0];
-  if (chunks.size() > 1) house.files->files["b.rsg"] = (switches & 2 ? "(RSG 0 1)" : "") + chunks[1];
+  host.files->files.clear();
+  ++host.files->round;
+  host.files->files["a.rsg"] = (switches & 1 ? "(RSG 0 1)" : "") + chunks[0];
+  if (chunks.size() > 1) host.files->files["b.rsg"] = (switches & 2 ? "(RSG 0 1)" : "") + chunks[1];
   List arguments;
   for (std::size_t i = 2; i < chunks.size(); ++i) arguments.emplace_back(chunks[i]);
-  setProperty(*house.importer, "strict", (switches & 4) != 0);
-  setProperty(*house.importer, "defineByName", (switches & 8) == 0);
-  setProperty(*house.importer, "integerDivision", (switches & 16) != 0);
-  setProperty(*house.importer, "looseArguments", (switches & 32) == 0);
+  setProperty(*host.importer, "strict", (switches & 4) != 0);
+  setProperty(*host.importer, "defineByName", (switches & 8) == 0);
+  setProperty(*host.importer, "integerDivision", (switches & 16) != 0);
+  setProperty(*host.importer, "looseArguments", (switches & 32) == 0);
 
-  Node& scene = house.server->scene();
+  Node& scene = host.server->scene();
   for (int twice = 0; twice < 2; ++twice) {
     try {
-      house.server->importScene("a.rsg", scene, arguments);
+      host.server->importScene("a.rsg", scene, arguments);
     } catch (const Error&) {
     }
     if (count(scene) > static_cast<std::size_t>(kMaxNodes) * 2) std::abort();
-    house.server->place();
+    host.server->place();
   }
   scene.removeChildren();
-  scene.setName("scene");  // a file's top-level calls act on its root: it may have renamed it
+  scene.setName("scene");  // a file's top-level calls act on its root, so they may have renamed it
   return 0;
 }

@@ -1,4 +1,4 @@
-// The S-expression reader: no crash, no runaway; what it wrote, it reads again.
+// The S-expression reader. It does not crash or exceed its limits, and its result can be written.
 #include <cstdint>
 #include <cstdlib>
 
@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string text;
   spark::writeSexp(read, 2, text);
 
-  // A reader that is told to stop stops at an expression.
+  // A reader with a maximum number of expressions stops at the end of an expression.
   spark::Predicates one;
   spark::readSexp(bytes, one, limits, 1);
   spark::fuzz::checkTree(one);

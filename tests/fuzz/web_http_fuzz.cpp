@@ -4,8 +4,8 @@
 
 #include "../../plugins/monitor-web/http_request.h"
 
-// Requests as they come from a socket, in the pieces that the first byte says: what is answered is a refusal, a page of
-// ours, or a file below the folders that are served.
+// Requests as they arrive from a socket, in pieces of the size that the first byte gives. The reply is an error, a page
+// of the server, or a file below the served folders.
 
 using namespace spark::web;
 
@@ -17,10 +17,11 @@ const Site& site() {
 
 void check(const HttpReply& reply) {
   const bool known = reply.status == 200 || (reply.status >= 400 && reply.status < 500);
-  if (!known || reply.type.empty()) throw std::logic_error("an answer that is none");
+  if (!known || reply.type.empty()) throw std::logic_error("an invalid reply");
   if (reply.file.empty()) return;
   const std::string path = reply.file.lexically_normal().string();
-  if (path != reply.file.string() || !path.starts_with("/served/")) throw std::logic_error("a file elsewhere: " + path);
+  if (path != reply.file.string() || !path.starts_with("/served/"))
+    throw std::logic_error("a file outside the served folders: " + path);
 }
 }  // namespace
 
@@ -47,11 +48,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const HttpRequest request = requestIn(*parser);
     const HttpReply reply = site().answer(request);
     check(reply);
-    // Names alone decide which file is meant, whatever there is.
+    // Path components are plain names, so they cannot lead out of a folder.
     const auto names = plainComponents(request.target.substr(std::min<std::size_t>(1, request.target.size())));
     for (const std::string& name : names)
       if (name == ".." || name == "." || name.find('/') != name.npos)
-        throw std::logic_error("a name that is none: " + name);
+        throw std::logic_error("an invalid name: " + name);
     if (reply.close || reply.stream) return 0;
   }
   return 0;

@@ -6,8 +6,8 @@
 #include "../../plugins/monitor-web/viewer_socket.h"
 #include "spark/error.h"
 
-// Bytes behind the handshake of a WebSocket: frames are read as for a viewer, their messages too. What is too long or
-// breaks the rules ends it.
+// Bytes after the handshake of a WebSocket. Frames and messages are read as from a viewer. A message that is too long
+// or invalid ends the connection.
 
 using namespace spark::web;
 namespace beast = boost::beast;
@@ -31,7 +31,7 @@ void check(std::string_view text) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  check(bytes.substr(0, kMaxMessageBytes));  // as a message, too
+  check(bytes.substr(0, kMaxMessageBytes));  // also directly as a message
 
   boost::asio::io_context io;
   beast::test::stream browser(io);

@@ -1,9 +1,9 @@
-/// Worlds without clients have the committed state hash after a number of cycles (hashes.txt beside this file).
+/// Worlds without clients have the committed state hash after a number of cycles (hashes.txt in this folder).
 ///
-/// The first row is a hash of sines, powers and the like. Where it differs, the C library returns other digits than on
-/// the machine that wrote the file, and the worlds differ for that reason. glibc has variants of these functions for
-/// processors with FMA, with other last digits; they are switched off here, so that the rows hold on every x86-64
-/// machine with the same version of glibc.
+/// The first row is a hash of sines, powers and similar functions. If it differs, the C library returns other digits
+/// than on the machine that wrote the file, and the worlds differ for that reason. For processors with FMA, glibc has
+/// variants of these functions with other last digits. They are switched off here, so the rows are valid on every
+/// x86-64 machine with the same version of glibc.
 
 #include <unistd.h>
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kFile = SPARK_SOURCES "/tests/golden/hashes.txt";
 
-/// glibc reads the variable before main, so the program executes itself again after setting it.
+/// glibc reads the variable before main, so the program sets it and executes itself again.
 const bool restarted = [] {
   const std::string name = "GLIBC_TUNABLES", wanted = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2";
   if (const char* set = std::getenv(name.c_str()); set && set == wanted) return true;
@@ -53,17 +53,17 @@ std::uint64_t mathHash() {
 /// The state hash of a config after `cycles`.
 std::uint64_t worldHash(const std::string& config, const std::vector<std::pair<std::string, Value>>& settings,
                         int cycles) {
-  test::House house;
-  ScriptServer& lua = scripts(house.kernel);
+  test::TestHost host;
+  ScriptServer& lua = scripts(host.kernel);
   lua.addFolder(SPARK_SOURCES "/lua");
   lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = {}, alone = true }", "golden");
   for (const auto& [key, value] : settings) lua.addOverride(key, value);
   lua.runConfig(config);
-  Leaf& simulation = house.kernel.root().require<Leaf>("/sys/server/simulation");
+  Leaf& simulation = host.kernel.root().require<Leaf>("/sys/server/simulation");
   setProperty(simulation, "rate", "max");
-  if (Leaf* net = house.kernel.root().find("/sys/server/net")) setProperty(*net, "open", false);
+  if (Leaf* net = host.kernel.root().find("/sys/server/net")) setProperty(*net, "open", false);
   callMethod(simulation, "runCycles", std::vector<Value>{cycles});
-  return stateHash(house.kernel.root());
+  return stateHash(host.kernel.root());
 }
 
 struct Row {
@@ -100,8 +100,8 @@ TEST_CASE("Worlds have the committed state hash") {
     if (!line.starts_with("#")) committed.push_back(line);
   REQUIRE(committed.size() == rows.size());
   INFO(
-      "When a change means to move every match: SPARK_RENEW=1 build/release/tests/test-golden, and commit "
-      "tests/golden/hashes.txt.");
-  INFO("When `math` differs, the C library is another one.");
+      "If the change is meant to alter the course of matches: run SPARK_RENEW=1 build/release/tests/test-golden, and "
+      "commit tests/golden/hashes.txt.");
+  INFO("If `math` differs, the C library is a different one.");
   for (std::size_t i = 0; i < rows.size(); ++i) CHECK(lineOf(rows[i]) == committed[i]);
 }

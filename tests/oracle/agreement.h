@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// When an engine agrees with ODE.
+/// The limits within which an engine agrees with ODE.
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 
 namespace spark::oracle {
 
-/// Prints the differences, and fails unless velocities agree to 1e-8 of the largest, forces to 1e-6, all bodies on
-/// sleep and on having moved, and nothing was deferred.
+/// Prints the differences. Fails unless velocities agree to 1e-8 of the largest one, positions to 1e-8 m and forces to
+/// 1e-6 of the largest one, the same bodies are asleep and marked as moved, and no body was deferred.
 inline void expectAgreement(const std::string& world, const Agreement& a) {
   fmt::print("{:<44} {:>5} steps {:>7} bodies {:>6} forces   speed {:.1e}   spin {:.1e}   force {:.1e}\n", world,
              a.steps, a.compared, a.feedbacks, a.speed, a.spin, a.force);
@@ -24,7 +24,7 @@ inline void expectAgreement(const std::string& world, const Agreement& a) {
   CHECK(a.disagreedOnMoved == 0);
   CHECK(a.speed < 1e-8);
   CHECK(a.spin < 1e-8);
-  CHECK(a.place < 1e-8);
+  CHECK(a.position < 1e-8);
   CHECK(a.force < 1e-6);
 }
 

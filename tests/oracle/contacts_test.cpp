@@ -31,9 +31,9 @@ const std::pair<const char*, engine::Surface> kSurfaces[] = {{"hard", {}},
 
 }  // namespace
 
-TEST_CASE("single things fall, bounce, slide and come to rest as with ODE") {
+TEST_CASE("single bodies fall, bounce, slide and come to rest as with ODE") {
   for (const auto& [name, surface] : kSurfaces) {
-    OracleHouse h;
+    OracleHost h;
     h.ground();
     for (int i = 0; i < 4; ++i) {
       const BodyHandle b = h.body({3.0 * i, 0, 0.8});
@@ -45,21 +45,21 @@ TEST_CASE("single things fall, bounce, slide and come to rest as with ODE") {
       h.world.setLinearVelocity(b, {1, 0.5, 0});
     }
     h.run(200, surface);
-    expectAgreement(std::string("single things, ") + name, h.shadow.agreement());
+    expectAgreement(std::string("single bodies, ") + name, h.shadow.agreement());
   }
 }
 
-TEST_CASE("many boxes fall each for itself as with ODE") {
-  OracleHouse h;
+TEST_CASE("many separate boxes fall as with ODE") {
+  OracleHost h;
   h.ground();
   for (int i = 0; i < 100; ++i) h.block({i % 10 * 1.0, i / 10 * 1.0, 0.2 + 0.01 * (i % 40)}, {0.3, 0.3, 0.3}, 1);
   h.run(60, soft());
   expectAgreement("100 boxes", h.shadow.agreement());
 }
 
-TEST_CASE("a heap falls, is pushed and falls asleep as with ODE") {
+TEST_CASE("a heap of boxes falls and goes to sleep as with ODE") {
   for (const auto& [name, surface] : kSurfaces) {
-    OracleHouse h;
+    OracleHost h;
     h.ground();
     for (int i = 0; i < 12; ++i) {
       const BodyHandle b = h.block({0.13 * (i % 3), 0.17 * (i % 2), 0.4 + 0.4 * i}, {0.5, 0.4, 0.3}, 1 + 0.1 * i);
@@ -71,7 +71,7 @@ TEST_CASE("a heap falls, is pushed and falls asleep as with ODE") {
 }
 
 TEST_CASE("a ball wakes a row of sleeping boxes as with ODE") {
-  OracleHouse h;
+  OracleHost h;
   h.ground();
   std::vector<BodyHandle> row;
   for (int i = 0; i < 5; ++i) row.push_back(h.block({0.31 * i, 0, 0.1495}, {0.3, 0.3, 0.3}, 1));
@@ -89,8 +89,8 @@ TEST_CASE("a ball wakes a row of sleeping boxes as with ODE") {
   expectAgreement("ball against sleeping boxes", h.shadow.agreement());
 }
 
-TEST_CASE("what spins in the air without gravity goes on as with ODE") {
-  OracleHouse h;
+TEST_CASE("bodies that spin freely without gravity move as with ODE") {
+  OracleHost h;
   h.setGravity(0);
   for (int i = 0; i < 5; ++i) {
     const BodyHandle b = h.block({2.0 * i, 0, 0}, {0.9, 0.4, 0.1 + 0.1 * i}, 2, true);
@@ -101,8 +101,8 @@ TEST_CASE("what spins in the air without gravity goes on as with ODE") {
   expectAgreement("spinning", h.shadow.agreement());
 }
 
-TEST_CASE("forces and torques from outside act as with ODE, on what has no gravity too") {
-  OracleHouse h;
+TEST_CASE("external forces and torques act as with ODE, also on a body without gravity") {
+  OracleHost h;
   h.ground();
   const BodyHandle a = h.block({0, 0, 0.5}, {0.3, 0.4, 0.5}, 2), b = h.block({3, 0, 1}, {0.5, 0.4, 0.3}, 1);
   h.world.setGravityMode(b, false);

@@ -1,6 +1,6 @@
 #include "pitch.h"
 
-// Whole houses whose physics the articulated engine does, without a shadow.
+// Whole soccer simulations stepped by the articulated engine alone, without a shadow engine.
 
 using namespace spark;
 using namespace spark::oracle;
@@ -9,15 +9,15 @@ namespace {
 
 const Pitch::Settings kArticulated{{"solver", "articulated"}};
 
-/// Two robots that push each other, one that falls alone, and the ball among them.
-const std::vector<Pitch::Place> kPlaces{{-0.4, 0.1}, {-0.4, 0.1}, {-3, 1}, {-4, -1}};
+/// Two robots that run into each other near the ball, and two robots by themselves.
+const std::vector<Pitch::StartPose> kPoses{{-0.4, 0.1}, {-0.4, 0.1}, {-3, 1}, {-4, -1}};
 
 void stir(Pitch& p) {
   p.push(0, {1, 0, 0});
   p.push(1, {-1, 0, 0});
   p.playOn();
   p.ball().setVelocity({0.5, 0.1, 1});
-  // The same for all time: a loaded house need not know how long it went on.
+  // The speeds do not depend on the cycle: a restored simulation does not know how long it ran before.
   p.move([](std::size_t motor, int) { return 2 * std::sin(0.7 * static_cast<double>(motor)); });
 }
 
@@ -37,7 +37,7 @@ void load(Pitch& p, const std::string& bytes) {
 TEST_CASE("the result does not depend on the number of threads") {
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 2, 4}) {
-    Pitch p(kPlaces, kArticulated);
+    Pitch p(kPoses, kArticulated);
     setProperty(p.simulation(), "threads", threads);
     stir(p);
     p.run(120);
@@ -47,8 +47,8 @@ TEST_CASE("the result does not depend on the number of threads") {
   CHECK(hashes[2] == hashes[0]);
 }
 
-TEST_CASE("a saved world goes on bit for bit, in the same house and in another with another past") {
-  Pitch p(kPlaces, kArticulated), other(kPlaces, kArticulated);
+TEST_CASE("a restored world continues bit for bit, in the same simulation and in one with another history") {
+  Pitch p(kPoses, kArticulated), other(kPoses, kArticulated);
   stir(p);
   p.run(40);
   const std::string middle = saved(p);
@@ -65,7 +65,7 @@ TEST_CASE("a saved world goes on bit for bit, in the same house and in another w
   CHECK((saved(other) == end));
 }
 
-TEST_CASE("one word of the config says which engine steps") {
+TEST_CASE("an option of the config selects the engine") {
   for (const bool articulated : {false, true}) {
     Pitch p({{-2, 0}}, articulated ? kArticulated : Pitch::Settings{});
     Leaf& engine = p.kernel.root().require<Leaf>("/sys/server/physics/engine");
@@ -81,7 +81,7 @@ TEST_CASE("one word of the config says which engine steps") {
   }
 }
 
-TEST_CASE("what the two engines make of a second of play is the same to what anybody could measure") {
+TEST_CASE("after one second of motion the results of the two engines differ by less than a micrometer") {
   Pitch dense({{-2, 0}, {-3, 1}}), articulated({{-2, 0}, {-3, 1}}, kArticulated);
   for (Pitch* p : {&dense, &articulated}) {
     p->move();

@@ -8,10 +8,10 @@ namespace {
 constexpr JointType kTypes[] = {JointType::ball,   JointType::hinge,     JointType::hinge2,
                                 JointType::slider, JointType::universal, JointType::fixed};
 
-/// What is done to the axes of a chain's joints.
+/// How the axes of a chain's joints are driven and limited.
 enum class Drive { none, motors, weakMotors, stops, motorsAndStops, locked };
 
-void drive(OracleHouse& h, JointHandle j, Drive how, int i) {
+void drive(OracleHost& h, JointHandle j, Drive how, int i) {
   for (int axis = 0; axis < 2; ++axis) {
     const double sign = (i + axis) % 2 ? 1 : -1;
     if (how == Drive::motors) h.motor(j, axis, 1.5 * sign, 40);
@@ -22,9 +22,9 @@ void drive(OracleHouse& h, JointHandle j, Drive how, int i) {
   }
 }
 
-/// A chain that hangs from the world, or lies in the air, of bodies that stand at all angles. `order`: 0 older body
-/// first, 1 younger first, 2 in turn.
-struct Chain : OracleHouse {
+/// A chain of bodies with different orientations that hangs from the world or floats. `order`: which body is the first
+/// one of each joint: 0 the older, 1 the newer, 2 alternating.
+struct Chain : OracleHost {
   std::vector<BodyHandle> bodies;
   std::vector<JointHandle> joints;
   Chain(JointType type, int links, int order, Drive how, bool hangs = true, bool closed = false) {
@@ -53,7 +53,7 @@ struct Chain : OracleHouse {
 
 }  // namespace
 
-TEST_CASE("chains of every joint, in both orders of bodies, move as with ODE") {
+TEST_CASE("chains of each joint type, with both orders of bodies, move as with ODE") {
   for (const JointType type : kTypes)
     for (const int order : {0, 1, 2}) {
       Chain c(type, 6, order, Drive::none);
@@ -62,7 +62,7 @@ TEST_CASE("chains of every joint, in both orders of bodies, move as with ODE") {
     }
 }
 
-TEST_CASE("motors and stops of every joint act as with ODE") {
+TEST_CASE("motors and stops of each joint type act as with ODE") {
   const std::pair<Drive, const char*> ways[] = {{Drive::motors, "motors"},
                                                 {Drive::weakMotors, "weak motors"},
                                                 {Drive::stops, "stops"},
@@ -77,28 +77,29 @@ TEST_CASE("motors and stops of every joint act as with ODE") {
       }
 }
 
-TEST_CASE("chains that nothing holds fly as with ODE") {
+TEST_CASE("floating chains move as with ODE") {
   for (const JointType type : kTypes) {
     Chain c(type, 7, 2, Drive::motors, false);
     c.setGravity(0, true);
     c.run(80);
-    expectAgreement(fmt::format("flying chain of {}s", nameOf(type)), c.shadow.agreement());
+    expectAgreement(fmt::format("floating chain of {}s", nameOf(type)), c.shadow.agreement());
   }
 }
 
-TEST_CASE("closed loops of every joint move as with ODE, in the air and held by the world") {
+TEST_CASE("closed loops of each joint type move as with ODE, floating and attached to the world") {
   for (const JointType type : kTypes)
     for (const bool hangs : {false, true}) {
       Chain c(type, 6, 2, Drive::none, hangs, true);
       c.run(80);
-      expectAgreement(fmt::format("{} loop of {}s", hangs ? "hanging" : "flying", nameOf(type)), c.shadow.agreement());
+      expectAgreement(fmt::format("{} loop of {}s", hangs ? "hanging" : "floating", nameOf(type)),
+                      c.shadow.agreement());
     }
 }
 
-TEST_CASE("angular motors hold and turn balls as with ODE, in every frame, with stops, and by Euler angles") {
+TEST_CASE("angular motors drive ball joints as with ODE, in each frame, with stops, and with Euler angles") {
   for (const bool euler : {false, true})
     for (const int order : {0, 1, 2}) {
-      OracleHouse h;
+      OracleHost h;
       BodyHandle last = BodyHandle::none;
       std::vector<std::pair<JointHandle, int>> motors;
       for (int i = 0; i < 5; ++i) {
@@ -130,8 +131,8 @@ TEST_CASE("angular motors hold and turn balls as with ODE, in every frame, with 
     }
 }
 
-TEST_CASE("a tree of all joints falls on the ground, lies and is driven as with ODE") {
-  OracleHouse h;
+TEST_CASE("a tree of all joint types falls on the ground and is driven there as with ODE") {
+  OracleHost h;
   h.ground();
   const BodyHandle trunk = h.block({0, 0, 1.2}, {0.4, 0.4, 0.4}, 3);
   for (int limb = 0; limb < 6; ++limb) {
@@ -152,9 +153,9 @@ TEST_CASE("a tree of all joints falls on the ground, lies and is driven as with 
   expectAgreement("tree of all joints on the ground", h.shadow.agreement());
 }
 
-TEST_CASE("bodies that are half a turn away from where a joint wants them are turned back as with ODE") {
+TEST_CASE("a body rotated half a turn from the orientation that its joint requires is turned back as with ODE") {
   for (const JointType type : {JointType::fixed, JointType::slider}) {
-    OracleHouse h;
+    OracleHost h;
     const BodyHandle a = h.block({0, 0, 3}, {0.3, 0.12, 0.1}, 1, true),
                      b = h.block({0.4, 0, 3}, {0.3, 0.12, 0.1}, 1, true);
     h.join(type, a, b, {0.2, 0, 3});
@@ -166,7 +167,7 @@ TEST_CASE("bodies that are half a turn away from where a joint wants them are tu
 }
 
 TEST_CASE("a car on suspended wheels drives as with ODE") {
-  OracleHouse h;
+  OracleHost h;
   h.ground();
   const BodyHandle chassis = h.block({0, 0, 0.5}, {1.2, 0.6, 0.2}, 8);
   for (int i = 0; i < 4; ++i) {
@@ -195,11 +196,11 @@ TEST_CASE("a car on suspended wheels drives as with ODE") {
   CHECK(h.position(chassis).norm() > 0.5);
 }
 
-TEST_CASE("joints without any give, and of their own softness, act as with ODE") {
-  // Balls and fixed joints keep the world's parameters of the moment in which they are made; the others take them at
-  // each step.
+TEST_CASE("rigid and soft joints act as with ODE") {
+  // Ball and fixed joints keep the ERP and CFM that the world has when they are made. The others read them in each
+  // step.
   for (const JointType type : {JointType::ball, JointType::fixed, JointType::hinge}) {
-    OracleHouse h;
+    OracleHost h;
     engine::WorldParameters p;
     p.cfm = 0;
     p.erp = 0.5;
@@ -217,6 +218,6 @@ TEST_CASE("joints without any give, and of their own softness, act as with ODE")
       }
     }
     h.run(60);
-    expectAgreement(fmt::format("{}s of two softnesses", nameOf(type)), h.shadow.agreement());
+    expectAgreement(fmt::format("{}s of two compliances", nameOf(type)), h.shadow.agreement());
   }
 }

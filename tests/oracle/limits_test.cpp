@@ -1,25 +1,25 @@
 #include "oracle_house.h"
 
-// What an engine defers, and what no engine can solve.
+// Islands that the engine defers to ODE, and forces that no engine can handle.
 
 using namespace spark;
 using namespace spark::oracle;
 
 namespace {
 
-/// A knot of boxes in one place, far from it a chain that swings and a box that falls.
-struct Yard : test::EngineHouse {
-  std::vector<BodyHandle> knot, chain;
+/// A pile of overlapping boxes, and far from it a swinging chain and a falling box.
+struct Islands : test::EngineHost {
+  std::vector<BodyHandle> pile, chain;
   BodyHandle falling;
   /// Steps the world. The articulated one defers to an OdeEngine below it.
   Node& used;
-  explicit Yard(bool articulated) : used(articulated ? makeArticulated(kernel) : static_cast<Node&>(engine.leaf())) {
+  explicit Islands(bool articulated) : used(articulated ? makeArticulated(kernel) : static_cast<Node&>(engine.leaf())) {
     setGravity(9.81, true);
     geom(test::plane(0, 0, 1, 0));
     for (int i = 0; i < 20; ++i) {
-      knot.push_back(body({0.01 * i, 0.015 * (i * 7 % 11), 0.3 + 0.007 * (i * 5 % 13)}));
-      world.setMass(knot.back(), {1, Vec3::Zero(), Mat3::Identity() * 0.03});
-      geom(test::box(0.4, 0.4, 0.4), knot.back());
+      pile.push_back(body({0.01 * i, 0.015 * (i * 7 % 11), 0.3 + 0.007 * (i * 5 % 13)}));
+      world.setMass(pile.back(), {1, Vec3::Zero(), Mat3::Identity() * 0.03});
+      geom(test::box(0.4, 0.4, 0.4), pile.back());
     }
     BodyHandle last = BodyHandle::none;
     for (int i = 0; i < 4; ++i) {
@@ -54,26 +54,28 @@ struct Yard : test::EngineHouse {
   }
 };
 
-/// Greatest distance between the bodies of two yards.
-double apart(const Yard& a, const Yard& b, const std::vector<BodyHandle>& ofA, const std::vector<BodyHandle>& ofB) {
-  double most = 0;
-  for (std::size_t i = 0; i < ofA.size(); ++i) most = std::max(most, (a.position(ofA[i]) - b.position(ofB[i])).norm());
-  return most;
+/// Largest distance between corresponding bodies of two worlds.
+double apart(const Islands& a, const Islands& b, const std::vector<BodyHandle>& ofA,
+             const std::vector<BodyHandle>& ofB) {
+  double largest = 0;
+  for (std::size_t i = 0; i < ofA.size(); ++i)
+    largest = std::max(largest, (a.position(ofA[i]) - b.position(ofB[i])).norm());
+  return largest;
 }
 
 }  // namespace
 
 TEST_CASE(
-    "an island that is too large is deferred to ODE, which steps it as it does alone, bit for bit; the others are "
-    "solved beside it") {
-  Yard dense(false), articulated(true);
+    "an island that is too large is deferred to ODE with the same bits as from ODE alone, and the engine solves the "
+    "other islands") {
+  Islands dense(false), articulated(true);
   setProperty(dense.used, "directRows", 60);
   setProperty(articulated.used, "mostRows", 60);
   setProperty(*articulated.used.child("deferred"), "directRows", 60);
   for (int i = 0; i < 20; ++i) {
     dense.step(), articulated.step();
-    // The two count an island's rows in different ways: while it is a knot it is too large for both.
-    if (i < 5) REQUIRE((articulated.saved(articulated.knot) == dense.saved(dense.knot)));
+    // The two engines count an island's rows differently. In the first steps the pile is too large for both.
+    if (i < 5) REQUIRE((articulated.saved(articulated.pile) == dense.saved(dense.pile)));
   }
   REQUIRE(dense.counted("approximateSteps") >= 5);
   CHECK(articulated.counted("deferredIslands") >= 5);
@@ -82,17 +84,17 @@ TEST_CASE(
   CHECK(apart(dense, articulated, {dense.falling}, {articulated.falling}) < 1e-8);
 }
 
-TEST_CASE("numbers beyond all reason stay in their island, are put right, and harm nobody else") {
+TEST_CASE("absurd forces affect only their island, and its bodies are repaired") {
   for (const double absurd : {1e308, 1e200, 1e12}) {
     CAPTURE(absurd);
-    Yard calm(true), hit(true);
+    Islands calm(true), hit(true);
     for (int i = 0; i < 3; ++i) calm.step(), hit.step();
     hit.world.addForce(hit.chain[2], {absurd, -absurd, absurd});
     hit.world.addTorque(hit.chain[1], {absurd, absurd, 0});
     calm.step(), hit.step();
     CHECK_FALSE(hit.world.repaired().empty());
     for (int i = 0; i < 20; ++i) calm.step(), hit.step();
-    CHECK((hit.saved(hit.knot) == calm.saved(calm.knot)));
+    CHECK((hit.saved(hit.pile) == calm.saved(calm.pile)));
     CHECK((hit.saved({hit.falling}) == calm.saved({calm.falling})));
     for (const BodyHandle b : hit.chain) CHECK(hit.position(b).norm() < 1e3);
   }

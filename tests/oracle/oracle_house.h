@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A world that a shadow engine steps, and short ways to boxes, chains and loops.
+/// A world that is stepped by a shadow engine, and helpers that make bodies, joints and motors.
 
 #include <Eigen/Geometry>
 
@@ -15,11 +15,11 @@ using engine::Shape;
 using physics::BodyHandle;
 using physics::JointHandle;
 
-struct OracleHouse : test::EngineHouse {
+struct OracleHost : test::EngineHost {
   ShadowEngine& shadow;
-  OracleHouse() : shadow(watch(kernel, "/sys/shadow")) { setGravity(9.81, true); }
+  OracleHost() : shadow(watch(kernel, "/sys/shadow")) { setGravity(9.81, true); }
 
-  /// A body of a box's mass and, unless `ghost`, shape.
+  /// A body with the mass of a box and, unless `ghost`, its collider.
   BodyHandle block(const Vec3& at, const Vec3& edges, double mass, bool ghost = false) {
     const BodyHandle b = body(at);
     const Vec3 squares = edges.cwiseProduct(edges);
@@ -35,7 +35,7 @@ struct OracleHouse : test::EngineHouse {
   }
   void ground() { geom(test::plane(0, 0, 1, 0)); }
 
-  /// A joint at `at` with axes that suit its type; `turn` turns them. Forces are asked for.
+  /// A joint at `at` with axes that are valid for its type, rotated by `turn` [rad]. Its feedback is on.
   JointHandle join(JointType type, BodyHandle a, BodyHandle b, const Vec3& at, double turn = 0) {
     const JointHandle j = world.createJoint(type);
     world.attach(j, a, b);
@@ -60,7 +60,7 @@ struct OracleHouse : test::EngineHouse {
     world.setParameter(j, JointParameter::stopErp, axis, 0.4);
     world.setParameter(j, JointParameter::fudgeFactor, axis, 0.6);
   }
-  /// Steps in which each contact is solved and its force asked for.
+  /// Steps the world. Each contact is solved and its force is computed.
   void run(int steps, const engine::Surface& surface = {}) {
     for (int i = 0; i < steps; ++i) {
       contacts.clear();
@@ -71,7 +71,7 @@ struct OracleHouse : test::EngineHouse {
   }
 };
 
-/// As the soccer houses have it: forgiving, and each contact has one solution only.
+/// The surface of the soccer simulations. It is compliant, so the solution of each contact is unique.
 inline engine::Surface soft() {
   engine::Surface s;
   s.softErpOn = s.softCfmOn = s.slipOn = true;

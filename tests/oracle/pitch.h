@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// The house of lua/soccer.lua with humanoids inside it, without network, stepped cycle by cycle; with the engine that
-/// is asked for.
+/// The simulation of lua/soccer.lua with humanoids and a selectable engine, without network, stepped cycle by cycle.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,13 +15,13 @@
 
 namespace spark::oracle {
 
-/// A player that takes his place and then drives his motors as he is told.
+/// A player that beams to its start pose and then drives its motors as a test says.
 class Puppet : public Behavior {
   SPARK_CLASS(Puppet, Behavior)
  public:
   static void describe(Description<Puppet>& d) { d.doc("Drives its motors as a test says."); }
   int number = 0;                                             ///< from 0; every second one plays for the other team
-  double x = 0, y = 0, angle = 0;                             ///< where it stands [m, deg]
+  double x = 0, y = 0, angle = 0;                             ///< start pose [m, deg]
   std::vector<std::string> motors;                            ///< empty: stands still
   std::function<double(std::size_t motor, int cycle)> speed;  ///< rad/s
 
@@ -43,15 +42,15 @@ class Puppet : public Behavior {
   int thoughts_ = 0, cycle_ = 0;
 };
 
-class Pitch : test::House {
+class Pitch : test::TestHost {
  public:
-  struct Place {
+  struct StartPose {
     double x, y, angle = 0;
   };
   using Settings = std::vector<std::pair<std::string, Value>>;
 
-  /// Robots stand at `places`, each seen from its own team, after this.
-  explicit Pitch(const std::vector<Place>& places, const Settings& settings = {}) {
+  /// Makes a robot at each pose, which is in the frame of the robot's own team.
+  explicit Pitch(const std::vector<StartPose>& poses, const Settings& settings = {}) {
     ScriptServer& lua = scripts(kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
     lua.run("host = { share = '" SPARK_SOURCES "', scenePaths = {} }", "pitch");
@@ -66,9 +65,9 @@ class Pitch : test::House {
     lua.runConfig("soccer.lua");
     kernel.registerClass<Puppet>();
     kernel.create("Node", "/usr/agent");
-    for (const Place& place : places) addPuppet(place);
+    for (const StartPose& pose : poses) addPuppet(pose);
     run(25);
-    REQUIRE(robots().size() == places.size());
+    REQUIRE(robots().size() == poses.size());
     for (std::size_t i = 0; i < puppets_.size(); ++i) {
       std::vector<Effector*> effectors;
       robots()[i]->collect(effectors);
@@ -77,31 +76,31 @@ class Pitch : test::House {
       REQUIRE(puppets_[i]->motors.size() > 20);
     }
   }
-  using test::House::kernel;
+  using test::TestHost::kernel;
 
   const std::vector<AgentAspect*>& robots() {
     return kernel.root().require<IGameControl>("/sys/server/gamecontrol").agents();
   }
-  /// Soccer's ball.
+  /// The soccer ball.
   IRigidBody& ball() { return *kernel.root().require<Node>("/usr/scene/Ball").childOf<IRigidBody>(); }
   void run(int cycles) { callMethod(simulation(), "runCycles", std::vector<Value>{cycles}); }
   Leaf& simulation() { return kernel.root().require<Leaf>("/sys/server/simulation"); }
   std::uint64_t hash() { return stateHash(kernel.root().require<Leaf>("/usr/scene")); }
-  /// Has a ShadowEngine step the world from now on.
+  /// Replaces the engine by a ShadowEngine.
   ShadowEngine& watch() { return oracle::watch(kernel); }
 
-  /// From now on all motors of all robots swing, or do what `speed` says.
+  /// Sets the speeds of all motors of all robots from now on. By default they swing.
   void move(const std::function<double(std::size_t motor, int cycle)>& speed = swing) {
     for (Puppet* p : puppets_) p->speed = speed;
   }
   static double swing(std::size_t motor, int cycle) {
     return 0.8 * std::sin(0.06 * cycle + 0.7 * static_cast<double>(motor));
   }
-  /// As fast as the motors can, this way and that.
+  /// Full speed in changing directions.
   static double wild(std::size_t motor, int cycle) {
     return (cycle / 4 * 7919 + static_cast<int>(motor) * 104729) % 3 * 6.0 - 6;
   }
-  /// From now on the rules let the ball roll: before kick-off they put it back in each cycle.
+  /// Starts play, so that the ball can roll. Before kick-off the rules put it back in each cycle.
   void playOn() {
     setProperty(kernel.root().require<Leaf>("/sys/server/gamecontrol/GameStateAspect"), "playMode", "PlayOn");
   }
@@ -119,12 +118,12 @@ class Pitch : test::House {
   }
 
  private:
-  void addPuppet(const Place& place) {
+  void addPuppet(const StartPose& pose) {
     auto made = kernel.classOf("Puppet").create();
     auto& puppet = static_cast<Puppet&>(*made);
     puppet.number = static_cast<int>(puppets_.size());
     puppet.setName("puppet" + std::to_string(puppet.number));
-    puppet.x = place.x, puppet.y = place.y, puppet.angle = place.angle;
+    puppet.x = pose.x, puppet.y = pose.y, puppet.angle = pose.angle;
     puppets_.push_back(&puppet);
     kernel.root().require<Node>("/usr/agent").add(std::move(made));
     run(8);

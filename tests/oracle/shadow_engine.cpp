@@ -10,7 +10,7 @@ using engine::Index;
 using engine::kNone;
 
 void DeferralRecorder::describe(Description<DeferralRecorder>& d) {
-  d.doc("Remembers which bodies were deferred.");
+  d.doc("Records which bodies were deferred.");
   d.implements<IEngine>();
 }
 
@@ -95,7 +95,7 @@ void ShadowEngine::compare(const Result& tested, const engine::Step& judged) {
     ++agreement_.compared;
     record((a.linearVelocity - b.linearVelocity).norm() / speed, agreement_.speed);
     record((a.angularVelocity - b.angularVelocity).norm() / spin, agreement_.spin);
-    record((a.position - b.position).norm(), agreement_.place);
+    record((a.position - b.position).norm(), agreement_.position);
   }
   compareForces(tested, judged);
 }

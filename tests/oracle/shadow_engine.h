@@ -12,20 +12,20 @@
 
 namespace spark::oracle {
 
-/// Largest differences between the two steps from the same state, over many steps. Errors of velocities and forces are
-/// relative to the largest in the world, but at least to ODE's thresholds of sleep (0.01 m/s, 0.01 rad/s) and to 1 N or
-/// 1 Nm; errors of positions are in m.
+/// The largest differences between the two engines' steps from the same state, over many steps. Errors of velocities
+/// and forces are relative to the largest value in the world, but at least to ODE's sleep thresholds (0.01 m/s, 0.01
+/// rad/s) and to 1 N or 1 Nm. Errors of positions are in m.
 struct Agreement {
-  std::size_t steps = 0, compared = 0;               ///< compared: sum over all steps of the bodies that were compared
-  std::size_t deferred = 0;                          ///< bodies that were deferred
-  std::size_t feedbacks = 0;                         ///< forces of joints and contacts that were compared
-  std::size_t disagreedOnSleep = 0;                  ///< bodies that were awake after one of the steps only
-  std::size_t disagreedOnMoved = 0;                  ///< bodies that only one of the steps marked as moved
-  double speed = 0, spin = 0, place = 0, force = 0;  ///< linear and angular velocity, position, forces and torques
-  std::size_t worstStep = 0;                         ///< in which the last of the maxima was found
+  std::size_t steps = 0, compared = 0;                  ///< compared: number of compared bodies, summed over all steps
+  std::size_t deferred = 0;                             ///< bodies that were deferred
+  std::size_t feedbacks = 0;                            ///< forces of joints and contacts that were compared
+  std::size_t disagreedOnSleep = 0;                     ///< bodies that were awake after only one of the two steps
+  std::size_t disagreedOnMoved = 0;                     ///< bodies that only one of the two steps marked as moved
+  double speed = 0, spin = 0, position = 0, force = 0;  ///< linear and angular velocity, position, forces and torques
+  std::size_t worstStep = 0;                            ///< step with the last new maximum
 };
 
-/// The engine below a tested one: remembers which bodies were deferred, and leaves them unchanged.
+/// The engine to which a tested one defers. It records which bodies were deferred, and leaves them unchanged.
 class DeferralRecorder : public Leaf, public engine::IEngine {
   SPARK_CLASS(DeferralRecorder, Leaf)
  public:
@@ -44,7 +44,7 @@ class DeferralRecorder : public Leaf, public engine::IEngine {
 };
 
 /// An engine that lets its child `tested` step the world, keeps the result, restores the world and lets its child
-/// `judge` step it. So the world continues as with the judge alone, and no step inherits another's error.
+/// `judge` step it. The world continues as with the judge alone, so errors do not accumulate over steps.
 class ShadowEngine : public Node, public engine::IEngine {
   SPARK_CLASS(ShadowEngine, Node)
  public:
@@ -56,7 +56,7 @@ class ShadowEngine : public Node, public engine::IEngine {
   const Agreement& agreement() const { return agreement_; }
 
  private:
-  /// What a step writes.
+  /// The results of a step.
   struct Result {
     engine::State state;
     std::vector<Vec3> contactForces;
@@ -65,7 +65,7 @@ class ShadowEngine : public Node, public engine::IEngine {
   };
   void compare(const Result& tested, const engine::Step& judged);
   void compareForces(const Result& tested, const engine::Step& judged);
-  /// Counts an error. NaN is the worst one, and remains it.
+  /// Updates the largest error. NaN counts as the largest of all.
   void record(double error, double& worst);
 
   Link<engine::IEngine> tested_, judge_;

@@ -12,7 +12,7 @@ TEST_CASE("humanoids stand as with ODE") {
   expectAgreement("humanoids, standing", shadow.agreement());
 }
 
-TEST_CASE("humanoids that move all their motors, and fall, do it as with ODE") {
+TEST_CASE("humanoids that move all their motors and fall do so as with ODE") {
   Pitch p({{-2, 0}, {-3, 1}, {-4, -1}});
   const ShadowEngine& shadow = p.watch();
   p.move();
@@ -20,7 +20,7 @@ TEST_CASE("humanoids that move all their motors, and fall, do it as with ODE") {
   expectAgreement("humanoids, moving", shadow.agreement());
 }
 
-TEST_CASE("humanoids with all motors at full speed go wild as with ODE") {
+TEST_CASE("humanoids with all motors at full speed in changing directions move as with ODE") {
   Pitch p({{-2, 0}, {-3, 1}});
   const ShadowEngine& shadow = p.watch();
   p.move(Pitch::wild);
@@ -28,7 +28,7 @@ TEST_CASE("humanoids with all motors at full speed go wild as with ODE") {
   expectAgreement("humanoids, wild", shadow.agreement());
 }
 
-TEST_CASE("humanoids whose motors are too weak for what they are told sink as with ODE") {
+TEST_CASE("humanoids whose motors are too weak for the commanded speeds collapse as with ODE") {
   Pitch p({{-2, 0}, {-3, 1}});
   const ShadowEngine& shadow = p.watch();
   p.weaken(0.6);
@@ -52,7 +52,7 @@ TEST_CASE("humanoids that run into each other and into the ball fall into a heap
   expectAgreement("humanoids, in a heap", shadow.agreement());
 }
 
-TEST_CASE("a ball that is kicked bounces, rolls and hits a robot as with ODE") {
+TEST_CASE("a kicked ball bounces, rolls and hits a robot as with ODE") {
   Pitch p({{-2, 0.05}});
   const ShadowEngine& shadow = p.watch();
   std::vector<IRigidBody*> robot;

@@ -1,7 +1,7 @@
-/// saveState and loadState of living objects. A world runs and is saved again and again; each time the state is loaded
-/// into a second kernel whose equal world is some cycles behind, so that a field that is not restored keeps an old
-/// value. Every node must then save the same bytes, and both worlds must go on with equal hashes. The state of each
-/// class that saves some must differ from the default's at least once.
+/// saveState and loadState of objects in running worlds. A world runs and is saved at regular intervals. Each time the
+/// state is loaded into a copy of the world in a second kernel. The copy is some cycles behind, so a field that is not
+/// restored keeps an old value. Every node must then save the same bytes, and both worlds must continue with equal
+/// hashes. The state of each class with saveState must differ from that of a new object at least once.
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
@@ -15,7 +15,7 @@ using namespace spark::test;
 
 namespace {
 
-constexpr int kBetween = 25, kTogether = 15;  // cycles: from save to save, and in which both worlds run
+constexpr int kBetween = 25, kTogether = 15;  // cycles from save to save, and those in which both worlds run
 
 std::string treeState(const Leaf& leaf) {
   StateWriter out(true);
@@ -29,14 +29,14 @@ std::string propertyState(const Leaf& leaf) {
   return out.bytes();
 }
 
-/// A node's own part of saved state: its properties, and what it writes itself.
+/// A node's own part of the saved state: its properties, and what its saveState writes.
 struct Own {
   std::string path;
   ClassObject* type;
   std::string properties, hidden;
 };
 
-/// Appends the nodes from `leaf` on, and returns its saved state.
+/// Appends `leaf` and the nodes below it, and returns their saved state.
 std::string collect(const Leaf& leaf, std::vector<Own>& out) {
   const std::size_t mine = out.size();
   out.push_back({leaf.path(), leaf.classObject(), propertyState(leaf), {}});
@@ -55,7 +55,7 @@ std::vector<Own> nodesOf(World& world) {
   return out;
 }
 
-/// The hidden state of a new object, "" when it has none.
+/// What saveState writes for a new object; "" for nothing.
 std::string defaultState(ClassObject& type) {
   const auto object = type.create();
   std::vector<Own> out;
@@ -63,7 +63,7 @@ std::string defaultState(ClassObject& type) {
   return out.front().hidden;
 }
 
-/// Names of classes whose hidden state was another than the default, over all worlds.
+/// Names of classes whose saveState has written something else than for a new object, over all worlds.
 using Seen = std::set<std::string>;
 
 void note(const std::vector<Own>& nodes, Seen& seen) {
@@ -79,14 +79,14 @@ std::size_t firstDifference(const std::string& a, const std::string& b) {
          8;
 }
 
-/// Both worlds' nodes, one by one.
+/// Compares the state of both worlds node by node.
 void checkEqual(World& one, World& other) {
   const auto wanted = nodesOf(one), found = nodesOf(other);
   REQUIRE(found.size() == wanted.size());
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (found[i].properties == wanted[i].properties && found[i].hidden == wanted[i].hidden) continue;
     FAIL_CHECK(
-        found[i].path << " (" << found[i].type->name() << "): its state is not the saved one, from word "
+        found[i].path << " (" << found[i].type->name() << "): its state differs from the saved one from word "
                       << firstDifference(wanted[i].properties + wanted[i].hidden, found[i].properties + found[i].hidden)
                       << " on");
   }
@@ -123,17 +123,16 @@ void play(const Scenario& scenario, Seen& seen) {
 
 }  // namespace
 
-TEST_CASE("Living worlds are restored in another kernel, node by node, and go on as they would have") {
+TEST_CASE("The state of a running world is restored in another kernel, and both continue with equal hashes") {
   Seen seen;
   for (const Scenario& scenario : scenarios()) play(scenario, seen);
-  AllPlugins house;
+  AllPlugins host;
   std::string unseen;
-  for (Plugin* plugin : pluginsOf(house.kernel))
-    for (ClassObject* type : house.classesOf(*plugin))
+  for (Plugin* plugin : pluginsOf(host.kernel))
+    for (ClassObject* type : host.classesOf(*plugin))
       if (!type->isAbstract() && !seen.contains(type->name()) && !defaultState(*type).empty())
         unseen += " " + type->name();
   INFO(
-      "Classes whose saveState was not seen with another state than the default; add them to tests/state/scenarios.cpp:"
-      << unseen);
+      "Classes whose saveState only wrote the state of a new object. Add them to tests/state/scenarios.cpp:" << unseen);
   CHECK(unseen.empty());
 }

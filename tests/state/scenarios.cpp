@@ -9,7 +9,7 @@ constexpr double kLying = 0.2, kStanding = 0.6;  // m: heights of boxes
 
 std::string box(double height, int type) { return fmt::format("rsg/agent/scenario.rsg {} {}", height, type); }
 
-/// Puts player `unum` of a team somewhere.
+/// The trainer command that moves player `unum` of a team.
 std::string put(const char* team, int unum, double x, double y, double z = 0.3) {
   return fmt::format("(agent (unum {})(team {})(pos {} {} {}))", unum, team, x, y, z);
 }
@@ -17,9 +17,9 @@ std::string ball(double x, double y, double vx = 0, double vy = 0) {
   return fmt::format("(ball (pos {} {} 0.042)(vel {} {} 0))", x, y, vx, vy);
 }
 
-// ---- boxes as players, for the rules of play and all fouls ----
+// ---- boxes as players, which trigger the rules of play and all fouls ----
 
-enum { kA1, kA2, kA3, kA4, kA5, kB1, kB2, kB3, kLier };
+enum { kA1, kA2, kA3, kA4, kA5, kB1, kB2, kB3, kB4 };
 
 void makeFouls(World& w) {
   w.configure("soccer.lua", {{"exactReplay", false},
@@ -43,33 +43,33 @@ std::string apart() {
   return all + put("Right", 4, 8, 3, 0.1);
 }
 
-/// What the trainer and the players do in a cycle of the match.
+/// The commands of the trainer and the players in a cycle of the match.
 void inputFouls(World& w, int cycle) {
   const auto at = [cycle](int c) { return cycle == c; };
   const auto during = [cycle](int from, int to) { return cycle >= from && cycle < to; };
   if (at(1)) w.trainer("(playMode PlayOn)" + apart() + ball(0, -9)), w.player(kA2).next = "(say hello)";
-  // one too many in the own area
+  // too many players of a team in their own penalty area
   if (at(20))
     w.trainer(put("Left", 1, -13.5, 1.5) + put("Left", 2, -13.6, 0.5) + put("Left", 3, -14.5, -0.5) +
               put("Left", 4, -14.5, -1.5));
-  // three touch one another
+  // three players touch each other
   if (at(80)) w.trainer(apart() + put("Left", 2, 0, 0) + put("Right", 2, 0.298, 0));
   if (at(84)) w.trainer(put("Left", 3, -0.298, 0));
-  // one runs into another
+  // a player runs into an opponent
   if (at(120)) w.trainer(apart() + put("Right", 3, 0.35, 0, 0.4) + put("Left", 2, 0, 0));
   if (at(121)) w.player(kB3 + 0).next = "(force -200 0 0)";
-  // the ball is held beside an opponent
+  // a player holds the ball next to an opponent
   if (during(170, 230)) w.trainer(put("Right", 2, 0.6, 0) + put("Left", 2, 0, 0, 0.4) + ball(0.1, 0));
   // pass mode
   if (at(240)) w.trainer(apart() + put("Left", 2, -3, 0) + ball(-2.7, 0));
   if (at(250)) w.player(kA2).next = "(pass)";
   if (at(280)) w.trainer(ball(-2.7, 0, 1.5, 0.5));
-  // a pass to one who is offside
+  // a pass to a player in an offside position
   if (at(340)) w.trainer("(playMode PlayOn)" + apart() + put("Left", 3, 9, -2) + ball(2, 0));
   if (at(345)) w.trainer(put("Left", 2, 1.82, 0));
   if (at(350)) w.trainer(put("Left", 2, -3, 5) + ball(9.3, -2));
   if (at(352)) w.trainer(put("Left", 3, 9.12, -2));
-  // over each line
+  // the ball crosses each line
   if (at(420)) w.trainer("(playMode PlayOn)" + apart() + ball(5, 9.9, 0, 3));
   if (at(480)) w.trainer("(playMode PlayOn)" + ball(14.8, 5, 3, 0));
   if (at(540)) w.trainer("(playMode PlayOn)" + ball(14.5, 4) + put("Right", 2, 14.68, 4));
@@ -87,7 +87,7 @@ void inputFouls(World& w, int cycle) {
   if (cycle % 50 == 10) w.player(static_cast<std::size_t>(cycle / 50 % 9)).next += "(say now)";
 }
 
-// ---- robots with joints and all senses ----
+// ---- robots with joints and all perceptors ----
 
 void makeRobots(World& w) {
   w.configure("soccer.lua", {{"exactReplay", false}, {"Soccer.VisionNoise", true}});
@@ -98,14 +98,14 @@ void makeRobots(World& w) {
 
 void inputRobots(World& w, int cycle) {
   if (cycle == 1) w.trainer("(playMode PlayOn)" + ball(0, 0) + put("Left", 4, -3, 0, 0.4));
-  // one in the air beats its legs against each other, the others fall over
+  // one robot is held in the air and hits its legs against each other, the others fall over
   w.trainer(put("Left", 2, -5, 0, 1));
   w.player(0).next = cycle < 70 ? "(rle2 2)(lle2 -2)" : "(rle2 -2)(lle2 2)(he1 1)";
   w.player(1).next = fmt::format("(lle3 {0})(rle3 {0})(he1 {0})(lae1 -{0})", cycle % 40 < 20 ? 2 : -1);
   w.player(2).next = fmt::format("(lle3 {0})(he1 {0})(say hi)", cycle % 30 < 20 ? 1 : -1);
 }
 
-// ---- spheres, as in 2004 ----
+// ---- sphere robots ----
 
 void makeSpheres(World& w) {
   w.configure("soccer-sphere.lua", {});
@@ -144,7 +144,7 @@ void inputSpl(World& w, int cycle) {
   if (cycle == 30) w.trainer("(playMode PlayOn)" + ball(14.8, 2, 3, 0));
 }
 
-// ---- joints, controllers and sensors by themselves ----
+// ---- single joints, controllers and sensors ----
 
 Leaf& make(World& w, const std::string& type, const std::string& path) {
   return w.kernel.create(type, "/usr/scene/" + path);
@@ -201,9 +201,9 @@ void inputPieces(World& w, int cycle) {
   if (cycle == 20) call(at("flag"), "setLocalPos", {1.0, 2.0, 0.0}), call(at("mark"), "setMaterial", {"matYellow"});
 }
 
-// ---- a recorded game that is played again ----
+// ---- the replay of a recorded match ----
 
-/// A short match's log, written once.
+/// The log of a short match, recorded when it is first needed.
 const std::string& log() {
   static const TemporaryFolder folder;
   static const std::string file = [] {

@@ -67,7 +67,7 @@ std::string World::saved() {
 void World::load(const std::string& state) {
   StateReader in(state);
   loadTree(kernel.root(), in);
-  if (!in.atEnd()) throw Error("saved state has more than the world took");
+  if (!in.atEnd()) throw Error("the saved state is longer than the state of this world");
 }
 
 }  // namespace spark::test

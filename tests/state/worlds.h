@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Worlds that are made and moved by scripts of the test alone: built twice and given the same inputs, they do the
-/// same.
+/// Worlds that only the test drives. Two worlds that are built in the same way and get the same inputs behave
+/// identically.
 
 #include <functional>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace spark::test {
 
-/// A player without memory: does once what the script wrote into `next`.
+/// A player without internal state. It executes the actions in `next` once.
 class ScriptedPlayer : public Behavior {
   SPARK_CLASS(ScriptedPlayer, Behavior)
  public:
@@ -27,19 +27,19 @@ class ScriptedPlayer : public Behavior {
   std::string next;  ///< S-expressions
 };
 
-class World : public House {
+class World : public TestHost {
  public:
   using Settings = std::vector<std::pair<std::string, Value>>;
 
   /// Makes the world of one of Spark's configs, without sockets.
   void configure(const std::string& config, const Settings& settings);
-  /// Makes the world that a Lua text describes.
+  /// Makes the world of a config that is given as text.
   void configureByText(const std::string& text);
   Leaf& at(std::string_view path) { return kernel.root().require<Leaf>(path); }
-  /// A player of a team with that robot; takes some cycles.
+  /// Adds a player with a robot to a team. This takes some cycles.
   ScriptedPlayer& join(const std::string& team, int unum, const std::string& robot);
   ScriptedPlayer& player(std::size_t i) { return *players_.at(i); }
-  /// A trainer's commands, which act at once.
+  /// Executes trainer commands at once.
   void trainer(const std::string& commands);
   void cycle() { cycles(1); }
   void cycles(int count);
@@ -53,7 +53,7 @@ class World : public House {
   std::vector<ScriptedPlayer*> players_;
 };
 
-/// A kind of world: how it is made, and what comes from outside before each cycle.
+/// A kind of world: how it is made, and its inputs before each cycle.
 struct Scenario {
   const char* name;
   std::function<void(World&)> make;
@@ -61,7 +61,7 @@ struct Scenario {
   int cycles;
 };
 
-/// All of them.
+/// All scenarios.
 const std::vector<Scenario>& scenarios();
 
 }  // namespace spark::test

@@ -39,7 +39,7 @@ TEST_CASE("A class object knows its base, interfaces, properties and methods") {
   CHECK(getProperty(heavy, "base") == Value("Thing"));
 }
 
-TEST_CASE("Classes count what lives") {
+TEST_CASE("A class counts its live objects") {
   Core core;
   ClassObject& thing = core.kernel.classOf("Thing");
   CHECK(thing.living() == 1);
@@ -53,18 +53,18 @@ TEST_CASE("Classes count what lives") {
   CHECK(thing.living() == 1);
 }
 
-TEST_CASE("An abstract class cannot be made") {
+TEST_CASE("An abstract class cannot be instantiated") {
   Core core;
   CHECK(core.kernel.classOf("Idea").isAbstract());
   CHECK_THROWS_WITH(core.kernel.create("Idea", "/usr/i"), Catch::Contains("class Idea is a base for others"));
 }
 
-TEST_CASE("A class of that name cannot be registered twice") {
+TEST_CASE("A class name cannot be registered twice") {
   Core core;
   CHECK_THROWS_WITH(core.kernel.registerClass<Thing>(), Catch::Contains("class 'Thing' is registered already"));
 }
 
-TEST_CASE("Classes are listed by name") {
+TEST_CASE("Classes are sorted by name") {
   Core core;
   std::string before;
   for (const auto& c : core.kernel.root().child("classes")->asNode()->children()) {
@@ -91,7 +91,7 @@ TEST_CASE("Properties are read, written and checked") {
   CHECK(t.mass_ == 100);
 }
 
-TEST_CASE("A range holds for numbers that come as text, and for each number of a list") {
+TEST_CASE("A range applies to numbers given as text and to each number of a list") {
   Core core;
   Thing& t = *core.top;
   CHECK_THROWS_AS(setProperty(t, "mass", "-5"), Error);
@@ -108,7 +108,7 @@ TEST_CASE("A range holds for numbers that come as text, and for each number of a
   CHECK(t.mass_ == 1);
 }
 
-TEST_CASE("Choices are the only texts taken") {
+TEST_CASE("A property with choices accepts no other text") {
   Core core;
   setProperty(*core.top, "label", "green");
   CHECK_THROWS_WITH(setProperty(*core.top, "label", "blue"),
@@ -116,7 +116,7 @@ TEST_CASE("Choices are the only texts taken") {
   CHECK(core.top->label_ == "green");
 }
 
-TEST_CASE("A derived class refines its base's property") {
+TEST_CASE("A derived class can narrow a property of its base") {
   Core core;
   Leaf& heavy = core.top->create("HeavyThing");
   CHECK_THROWS_AS(setProperty(heavy, "mass", 10), Error);
@@ -126,7 +126,7 @@ TEST_CASE("A derived class refines its base's property") {
   CHECK(core.kernel.classOf("Idea").defaultOf(*core.kernel.classOf("Idea").property("name")).isNil());
 }
 
-TEST_CASE("Every property gives a setter and a getter, unless it is read only") {
+TEST_CASE("Every property has a getter, and a setter unless it is read only") {
   Core core;
   CHECK(call(*core.top, "setMass", {7}).isNil());
   CHECK(call(*core.top, "getMass", {}) == Value(7.0));
@@ -138,7 +138,7 @@ TEST_CASE("Every property gives a setter and a getter, unless it is read only") 
   CHECK(core.top->path() == "/usr/renamed");
 }
 
-TEST_CASE("Calls check number and type of their arguments") {
+TEST_CASE("A call checks the number and the types of its arguments") {
   Core core;
   Thing& t = *core.top;
   CHECK(call(t, "add", {1, 2.5}) == Value(3.5));
@@ -162,7 +162,7 @@ TEST_CASE("Calls check number and type of their arguments") {
   CHECK(t.count_ == 3);
 }
 
-TEST_CASE("Loose calls ignore what the installed base ignored and say why") {
+TEST_CASE("A loose call tolerates what the installed base tolerated, and reports why it fails otherwise") {
   Core core;
   Thing& t = *core.top;
   std::string why;
@@ -181,7 +181,7 @@ TEST_CASE("Loose calls ignore what the installed base ignored and say why") {
   CHECK(t.mass_ == 12);
 }
 
-TEST_CASE("Nodes have the names' and tree's methods of the installed base") {
+TEST_CASE("Nodes have the installed base's methods for names and for the tree") {
   Core core;
   Thing& a = core.make("a");
   core.make(a, "b");
@@ -195,7 +195,7 @@ TEST_CASE("Nodes have the names' and tree's methods of the installed base") {
   CHECK_THROWS_AS(call(core.kernel.classOf("Thing"), "unlinkLeaf", {}), Error);
 }
 
-TEST_CASE("Errors chain, and hints name what is near") {
+TEST_CASE("Errors have a chain of causes, and hints suggest similar names") {
   CHECK(std::string(Error("outer", Error("inner")).what()) == "outer\n  because: inner");
   CHECK(didYouMean("mas", {"mass", "map", "zebra"}) == " Did you mean 'map' or 'mass'?");
   CHECK(didYouMean("MASS", {"mass"}) == " Did you mean 'mass'?");

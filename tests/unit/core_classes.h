@@ -14,7 +14,7 @@
 
 namespace spark::test {
 
-/// An interface that is no class.
+/// An interface that is not a class of the kernel.
 struct ICounter {
   SPARK_INTERFACE(Counter, 1);
   virtual int count() const = 0;
@@ -103,7 +103,7 @@ class HeavyThing : public Thing {
   std::string shout(std::string text) { return text + "!"; }
 };
 
-/// Only a base.
+/// An abstract base.
 class Idea : public Leaf {
   SPARK_CLASS(Idea, Leaf)
  public:
@@ -113,9 +113,9 @@ class Idea : public Leaf {
   }
 };
 
-/// A kernel with these classes, and a node /usr/t to work below.
-struct Core : House {
-  Core() : House(false) {
+/// A kernel with these classes and a node /usr/t, under which tests make their nodes.
+struct Core : TestHost {
+  Core() : TestHost(false) {
     kernel.registerClass<Thing>();
     kernel.registerClass<HeavyThing>();
     kernel.registerClass<Idea>();

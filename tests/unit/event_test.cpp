@@ -9,7 +9,7 @@ using spark::test::Core;
 using spark::test::Thing;
 
 namespace {
-/// Things whose ticks write their name into one text.
+/// Makes things that append their name to `order` on each tick.
 struct Ticking : Core {
   std::string order;
   Channel& tick = kernel.events().define("tick", Order::parentsFirst, "For tests.");
@@ -26,7 +26,7 @@ struct Ticking : Core {
 };
 }  // namespace
 
-TEST_CASE("Handlers run in tree order, whatever the order in which they came") {
+TEST_CASE("Handlers run in tree order, in whatever order their nodes were made") {
   Ticking t;
   Thing& b = t.named(*t.top, "b");
   Thing& a = t.named(*t.top, "a");
@@ -37,7 +37,7 @@ TEST_CASE("Handlers run in tree order, whatever the order in which they came") {
   CHECK(t.emit() == "axby");
 }
 
-TEST_CASE("A channel may run children before parents") {
+TEST_CASE("A channel can run children before parents") {
   Ticking t;
   Channel& up = t.kernel.events().define("up", Order::childrenFirst, "For tests.");
   Thing &a = t.named(*t.top, "a"), &b = t.named(a, "b");
@@ -68,7 +68,7 @@ TEST_CASE("Events carry their data") {
   CHECK(text == "hello");
 }
 
-TEST_CASE("Handlers go with their node, and by number") {
+TEST_CASE("A handler is removed with its node, or by its number") {
   Ticking t;
   Thing& a = t.named(*t.top, "a");
   const auto first = t.tick.add(a, [&](Leaf&, const Event&) { t.order += "1"; });
@@ -87,7 +87,7 @@ TEST_CASE("Handlers go with their node, and by number") {
   CHECK_THROWS_WITH(t.tick.add(*loose, [](Leaf&, const Event&) {}), Catch::Contains("not linked"));
 }
 
-TEST_CASE("A handler that a running handler removes does not run, and its resources live until the end") {
+TEST_CASE("A handler that is removed during an event does not run, and its captures live until the event ends") {
   Ticking t;
   Thing &a = t.named(*t.top, "a"), &b = t.named(*t.top, "b"), &c = t.named(*t.top, "c");
   a.onTick = [&](Thing&, const Event&) {
@@ -108,7 +108,7 @@ TEST_CASE("A handler that a running handler removes does not run, and its resour
   CHECK(t.emit() == "c");
 }
 
-TEST_CASE("A node may remove itself and everything around it while its channel runs") {
+TEST_CASE("A node may remove itself and its siblings while its channel runs") {
   Ticking t;
   Thing& a = t.named(*t.top, "a");
   t.named(*t.top, "b");
@@ -121,7 +121,7 @@ TEST_CASE("A node may remove itself and everything around it while its channel r
   CHECK(t.top->children().empty());
 }
 
-TEST_CASE("What a handler adds runs from the next time on") {
+TEST_CASE("Handlers that are added during an event first run in the next event") {
   Ticking t;
   Thing& a = t.named(*t.top, "a");
   bool once = true;
@@ -136,7 +136,7 @@ TEST_CASE("What a handler adds runs from the next time on") {
   CHECK(t.emit() == "ah" + std::string(100, 'n') + "z");
 }
 
-TEST_CASE("What comes and goes within one event leaves nothing behind") {
+TEST_CASE("Nodes and handlers that are added and removed within one event leave nothing behind") {
   Ticking t;
   Thing& a = t.named(*t.top, "a");
   const auto held = std::make_shared<int>(0);
@@ -151,7 +151,7 @@ TEST_CASE("What comes and goes within one event leaves nothing behind") {
   CHECK(t.emit().empty());
 }
 
-TEST_CASE("A channel may be emitted within itself") {
+TEST_CASE("A handler may emit an event on its own channel") {
   Ticking t;
   Thing& a = t.named(*t.top, "a");
   t.named(*t.top, "b");
@@ -167,7 +167,7 @@ TEST_CASE("A channel may be emitted within itself") {
   CHECK(t.emit() == "b");
 }
 
-TEST_CASE("A handler that throws is reported with channel, node and class, and the others run") {
+TEST_CASE("A handler that throws is reported with channel, node and class, and the other handlers run") {
   Ticking t;
   Thing& a = t.named(*t.top, "a");
   t.named(*t.top, "b");
@@ -203,7 +203,7 @@ TEST_CASE("A handler that throws each time is reported once and counted each tim
   CHECK(t.text.find("broken 3") == std::string::npos);
 }
 
-TEST_CASE("What runs is known while it runs, and what ran around it afterwards") {
+TEST_CASE("The running handler is known, and after a nested event it is the outer one again") {
   Ticking t;
   Channel& inner = t.kernel.events().define("inner", Order::parentsFirst, "For tests.");
   Thing &a = t.named(*t.top, "a"), &b = t.named(*t.top, "b");
@@ -223,14 +223,14 @@ TEST_CASE("What runs is known while it runs, and what ran around it afterwards")
   CHECK(seen == std::vector<std::string>{"in inner of /usr/t/b (class Thing)", "in tick of /usr/t/a (class Thing)"});
   CHECK(words() == "outside of the code of nodes");
   CHECK(running().beats >= beats + 2);
-  // A second brother of that name, as paths say it; and only what there is room for.
+  // A second sibling of the same name is numbered as in paths. The text is cut to the size of the buffer.
   NowRunning now("x", &t.make(*t.top, "a"));
   CHECK(words() == "in x of /usr/t/a[2] (class Thing)");
   char narrow[6];
   CHECK(std::string(narrow, describeRunning(running(), narrow, sizeof narrow)) == "in x o");
 }
 
-TEST_CASE("One node alone can be told") {
+TEST_CASE("An event can be sent to one node only") {
   Ticking t;
   t.named(*t.top, "a");
   Thing& b = t.named(*t.top, "b");
@@ -239,7 +239,7 @@ TEST_CASE("One node alone can be told") {
   CHECK(t.order == "b!");
 }
 
-TEST_CASE("Listeners may come before definers, and a second definition must agree") {
+TEST_CASE("A channel may be used before it is defined, and a second definition must agree") {
   Core core;
   Channel& late = core.kernel.events().channel("late");
   core.kernel.events().channel("aaa");

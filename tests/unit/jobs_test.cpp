@@ -7,7 +7,7 @@
 
 using spark::Jobs;
 
-TEST_CASE("Every job runs once, for any number of threads") {
+TEST_CASE("Every job runs exactly once with any number of threads") {
   for (const int threads : {1, 2, 4, 8}) {
     Jobs jobs;
     jobs.setThreads(threads);
@@ -21,9 +21,9 @@ TEST_CASE("Every job runs once, for any number of threads") {
   }
 }
 
-TEST_CASE("Rounds do not overlap") {
-  // With a core for each thread they look for the next round; with many more threads than cores they sleep at once and
-  // often come too late.
+TEST_CASE("A round of jobs ends before the next one starts") {
+  // With a core for each thread, the threads spin for the next round. With many more threads than cores, they sleep at
+  // once and often wake up too late for it.
   const int threads = GENERATE(2, 4, 40);
   Jobs jobs;
   jobs.setThreads(threads);
@@ -57,7 +57,7 @@ TEST_CASE("A log is written from many threads at once, line by line") {
   CHECK(lines.count("line 199 ends") == 1);
 }
 
-TEST_CASE("Kernels live side by side in threads of their own") {
+TEST_CASE("Kernels in different threads do not disturb each other") {
   std::vector<std::thread> threads;
   std::atomic<int> made{0};
   for (int t = 0; t < 4; ++t)

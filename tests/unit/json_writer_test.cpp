@@ -8,7 +8,7 @@
 using namespace spark;
 
 namespace {
-/// The text that `write` makes.
+/// The text that `write` produces.
 template <class Write>
 std::string written(Write write, JsonStyle style = {}) {
   std::string out;
@@ -40,14 +40,14 @@ TEST_CASE("A JSON text is complete when its outermost bracket is closed") {
   CHECK(out == "before [[]]");
 }
 
-TEST_CASE("Members of an object that is JSON already join another object") {
+TEST_CASE("The members of a serialized JSON object can be added to another object") {
   CHECK(written([](JsonWriter& j) { j.beginObject().member("id", 7).members(R"({"ok":true,"n":[1]})").endObject(); }) ==
         R"({"id":7,"ok":true,"n":[1]})");
   CHECK(written([](JsonWriter& j) { j.beginObject().member("id", 7).members("{}").member("x", 1).endObject(); }) ==
         R"({"id":7,"x":1})");
 }
 
-TEST_CASE("JSON numbers have the digits that were asked for, and are null where they are not finite") {
+TEST_CASE("JSON numbers have the requested number of digits, and numbers that are not finite become null") {
   CHECK(written([](JsonWriter& j) {
           j.beginArray().value(1.0 / 3).value(1e-7).value(1e6).value(-0.0).value(0.1f).endArray();
         }) == "[0.333333,1e-07,1e+06,-0,0.1]");
@@ -64,7 +64,7 @@ TEST_CASE("JSON numbers have the digits that were asked for, and are null where 
   CHECK(written(odd, {.notFinite = "0"}) == "[0,0,0]");
 }
 
-TEST_CASE("JSON texts and keys are escaped, and what is no UTF-8 is replaced") {
+TEST_CASE("JSON strings and keys are escaped, and invalid UTF-8 is replaced") {
   const std::string odd = "quote\" back\\ \n\x01 \xff \xe2\x82\xac";
   const auto write = [&](JsonWriter& j) { j.beginObject().member(odd, odd).member("plain", "plain").endObject(); };
   const std::string utf8 = written(write), ascii = written(write, {.ascii = true});
@@ -76,7 +76,7 @@ TEST_CASE("JSON texts and keys are escaped, and what is no UTF-8 is replaced") {
   CHECK(nlohmann::json::parse(ascii) == nlohmann::json::parse(utf8));
 }
 
-TEST_CASE("A JSON text may be longer than any buffer") {
+TEST_CASE("A JSON text may be longer than the writer's buffer") {
   const std::string text = written([](JsonWriter& j) {
     j.beginArray();
     for (int i = 0; i < 5000; ++i) j.value(i).value(std::string(static_cast<std::size_t>(i % 7) * 1000, 'x'));

@@ -7,7 +7,7 @@
 #include "spark/describe.h"
 #include "spark/error.h"
 
-// A node says once what it works with; the kernel finds it, again whenever the tree has changed.
+// A node declares once which nodes it works with. The kernel finds them, and again after each change of the tree.
 
 using namespace spark;
 using spark::test::Core;
@@ -45,11 +45,11 @@ class Linked : public Node {
   Links<ICounter> children;
   std::string path;
   const Thing* atUnlink = nullptr;
-  bool* leftWithout = nullptr;
+  bool* onlyParentAtUnlink = nullptr;
 
  private:
   void onUnlink() override {
-    if (leftWithout) *leftWithout = !child && above;
+    if (onlyParentAtUnlink) *onlyParentAtUnlink = !child && above;
   }
 };
 
@@ -72,7 +72,7 @@ struct Forest : Core {
 };
 }  // namespace
 
-TEST_CASE("A link leads up, down, beside or along a path") {
+TEST_CASE("A link finds a node above, below or beside its owner, or at a path") {
   Forest t;
   Thing& heavy = t.make("heavy");
   Thing& outer = t.make(heavy, "outer");
@@ -98,7 +98,7 @@ TEST_CASE("A link leads up, down, beside or along a path") {
   CHECK(l.counter.leaf() == &before);
 }
 
-TEST_CASE("A link is empty as soon as its target has left, and finds the next one") {
+TEST_CASE("A link whose target is removed finds the next target, and is empty if there is none") {
   Forest t;
   Thing& outer = t.make("outer");
   Linked& l = t.linked(outer);
@@ -112,18 +112,18 @@ TEST_CASE("A link is empty as soon as its target has left, and finds the next on
   CHECK(l.above.get() == &outer);
 }
 
-TEST_CASE("What leaves has no links to what has left already, and still those to what is above") {
+TEST_CASE("A node that is being removed has no links to its removed children, but still those to nodes above") {
   Forest t;
   Thing& outer = t.make("outer");
   Linked& l = t.linked(outer);
   t.make(l, "a");
-  bool leftWithout = false;
-  l.leftWithout = &leftWithout;
+  bool onlyParent = false;
+  l.onlyParentAtUnlink = &onlyParent;
   t.top->remove(outer);
-  CHECK(leftWithout);
+  CHECK(onlyParent);
 }
 
-TEST_CASE("A link follows when its owner moves and when names change") {
+TEST_CASE("A link finds its new target when its owner moves or a node is renamed") {
   Forest t;
   Thing &one = t.make("one"), &two = t.make("two");
   Linked& l = t.linked(one);
@@ -135,7 +135,7 @@ TEST_CASE("A link follows when its owner moves and when names change") {
   CHECK(l.at.get() == &two);
 }
 
-TEST_CASE("A link along a property's path goes by what it says now") {
+TEST_CASE("A link along the path in a property follows changes of the property") {
   Forest t;
   Linked& l = t.linked(t.make("outer"));
   CHECK_FALSE(l.named);
@@ -145,7 +145,7 @@ TEST_CASE("A link along a property's path goes by what it says now") {
   CHECK_FALSE(l.named);  // no Thing
 }
 
-TEST_CASE("Links lead to all in tree order") {
+TEST_CASE("A list of links holds all targets in tree order") {
   Forest t;
   Linked& l = t.linked(t.make("outer"));
   CHECK(l.all.empty());
@@ -161,7 +161,7 @@ TEST_CASE("Links lead to all in tree order") {
   CHECK(l.all.size() == 1);
 }
 
-TEST_CASE("Links are there before their owner is linked, and go by the tree as it is then") {
+TEST_CASE("Links work before their owner is in the tree, and find more targets once it is") {
   Forest t;
   auto made = t.kernel.classOf("Linked").create();
   auto& l = static_cast<Linked&>(*made);
@@ -174,7 +174,7 @@ TEST_CASE("Links are there before their owner is linked, and go by the tree as i
   CHECK(l.child.get() == &a);
 }
 
-TEST_CASE("A class has the links of its bases") {
+TEST_CASE("A class inherits the links of its bases") {
   Forest t;
   Thing& outer = t.make("outer");
   auto& l = static_cast<MoreLinked&>(outer.create("MoreLinked"));
@@ -183,7 +183,7 @@ TEST_CASE("A class has the links of its bases") {
   CHECK(l.classObject()->links().size() == 11);
 }
 
-TEST_CASE("A missing target is said in words") {
+TEST_CASE("The error for a missing target says what was expected and where") {
   Forest t;
   Linked& l = t.linked(*t.kernel.root().find<Node>("/usr"));
   CHECK_THAT(t.text, Catch::Contains("/usr/linked: expected a Thing above it, found none. It hangs in the air."));
@@ -201,7 +201,7 @@ TEST_CASE("A missing target is said in words") {
   CHECK_THAT(problem(Link<Thing>()), Catch::Contains("d.link(&Class::member"));
 }
 
-TEST_CASE("A link that is no member of a node is looked up from the one that it names") {
+TEST_CASE("A link that is not a member of a node starts at the node that it names") {
   Forest t;
   const FreeLink<Thing> link(t.kernel.root(), At<Thing>("/usr/t/at"));
   CHECK_FALSE(link);

@@ -7,7 +7,7 @@
 using spark::Level;
 using spark::Log;
 
-TEST_CASE("Only what passes the level is written, and formatted only then") {
+TEST_CASE("Only messages that pass the level are formatted and written") {
   Log log;
   std::string text;
   log.setSink([&](Level, std::string_view line) { text.append(line).append("|"); });
@@ -20,7 +20,7 @@ TEST_CASE("Only what passes the level is written, and formatted only then") {
   log.error("nothing");
   CHECK(text == "this 1|and that|");
   CHECK_FALSE(log.enabled(Level::error));
-  CHECK(log.errors() == 2);  // counted all the same
+  CHECK(log.errors() == 2);  // errors are counted at any level
 }
 
 TEST_CASE("Text from outside cannot forge lines or control a terminal") {

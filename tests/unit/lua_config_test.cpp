@@ -1,4 +1,4 @@
-// Config files: lookup, include, options, and what is set from outside.
+// Config files: lookup, include, options, and values that are set from outside.
 #include "lua_fixture.h"
 #include "spark/script_server.h"
 
@@ -8,13 +8,13 @@ using Catch::Contains;
 using Catch::Equals;
 
 namespace {
-/// Works in another folder for a while.
+/// Changes the working folder while it lives.
 struct WorkingFolder {
   std::filesystem::path before = std::filesystem::current_path();
   explicit WorkingFolder(const std::filesystem::path& folder) { std::filesystem::current_path(folder); }
   ~WorkingFolder() { std::filesystem::current_path(before); }
 };
-/// Defines a channel when it comes.
+/// Defines a channel when it is linked.
 class Definer : public Leaf {
   SPARK_CLASS(Definer, Leaf)
  public:
@@ -28,7 +28,7 @@ class Misspelt : public Leaf {
   SPARK_CLASS(Misspelt, Leaf)
  public:
   static void describe(Description<Misspelt>& d) {
-    d.doc("Hooks on what nobody defines.");
+    d.doc("Has hooks on channels that are not defined.");
     d.on<&Misspelt::prepare>(ChannelName("prepar"));
     d.on<&Misspelt::prepare>(ChannelName("of my own"));
   }
@@ -36,8 +36,8 @@ class Misspelt : public Leaf {
 };
 }  // namespace
 
-TEST_CASE("a config is found in the working folder first, then in the added folders in order") {
-  LuaHouse h;
+TEST_CASE("a config is looked up in the working folder first, then in the added folders in order") {
+  LuaHost h;
   for (const char* sub : {"work", "second"}) std::filesystem::create_directory(h.folder / sub);
   scripts(h.kernel).addFolder(h.folder / "second");
   h.write("second/c.lua", "found = 'second'");
@@ -54,8 +54,8 @@ TEST_CASE("a config is found in the working folder first, then in the added fold
   CHECK(h.run("return found") == Value("second"));
 }
 
-TEST_CASE("a program sets globals of configs, tables of words and sequences among them") {
-  LuaHouse h;
+TEST_CASE("a program can set globals of configs, also tables with string keys and sequences") {
+  LuaHost h;
   scripts(h.kernel).setGlobal("host", List{List{"share", "/usr/share"}, List{"paths", List{"a", "b"}},
                                            List{"empty", List{}}, List{"alone", true}});
   h.write("c.lua", "found = host.share .. #host.paths .. host.paths[2] .. #host.empty .. tostring(host.alone)");
@@ -65,18 +65,18 @@ TEST_CASE("a program sets globals of configs, tables of words and sequences amon
   CHECK(h.run("return host").isNil());
 }
 
-TEST_CASE("a config that is not there says where it was sought and what is near") {
-  LuaHouse h;
+TEST_CASE("the error for a missing config lists the searched folders and similar names") {
+  LuaHost h;
   h.write("soccer.lua", "");
-  const std::string text = LuaHouse::errorOf([&] { scripts(h.kernel).runConfig("socer.lua"); });
+  const std::string text = LuaHost::errorOf([&] { scripts(h.kernel).runConfig("socer.lua"); });
   CHECK_THAT(text, Contains("there is no config 'socer.lua'. Looked in: " + std::filesystem::current_path().string() +
                             ", " + h.folder.string() + ". Did you mean 'soccer.lua'?"));
   std::filesystem::create_directory(h.folder / "folder");
-  CHECK_THAT(LuaHouse::errorOf([&] { scripts(h.kernel).runConfig("folder"); }), Contains("is a folder"));
+  CHECK_THAT(LuaHost::errorOf([&] { scripts(h.kernel).runConfig("folder"); }), Contains("is a folder"));
 }
 
-TEST_CASE("include runs a file in the environment of who includes it and gives its results") {
-  LuaHouse h;
+TEST_CASE("include runs a file in the environment of the including script and returns its results") {
+  LuaHost h;
   h.write("rooms.lua", "function room(name) return new('Thing', '/usr/' .. name) end return 42");
   CHECK(h.configFailure("answer = include 'rooms.lua'\nroom('kitchen')") == "");
   CHECK(h.run("return {answer, get('/usr/kitchen').path}") == Value(List{42, "/usr/kitchen"}));
@@ -84,8 +84,8 @@ TEST_CASE("include runs a file in the environment of who includes it and gives i
              Contains("config.lua:1: there is no script 'room.lua'") && Contains("Did you mean 'rooms.lua'?"));
 }
 
-TEST_CASE("include also looks beside the config that runs") {
-  LuaHouse h;
+TEST_CASE("include also looks in the folder of the running config") {
+  LuaHost h;
   std::filesystem::create_directory(h.folder / "mine");
   h.write("mine/a.lua", "include 'b.lua'");
   h.write("mine/b.lua", "b = 1");
@@ -93,8 +93,8 @@ TEST_CASE("include also looks beside the config that runs") {
   CHECK(h.run("return b") == Value(1));
 }
 
-TEST_CASE("what is included is found beside the file that includes it, and never in the working folder") {
-  LuaHouse h;
+TEST_CASE("an included file is found next to the file that includes it, and never in the working folder") {
+  LuaHost h;
   for (const char* sub : {"mine/parts", "work"}) std::filesystem::create_directories(h.folder / sub);
   h.write("mine/a.lua", "include 'parts/a.lua'");
   h.write("mine/parts/a.lua", "include 'b.lua'");
@@ -104,13 +104,13 @@ TEST_CASE("what is included is found beside the file that includes it, and never
   scripts(h.kernel).runConfig((h.folder / "mine/a.lua").string());
   CHECK(h.run("return b") == Value("beside"));
   std::filesystem::remove(h.folder / "mine/parts/b.lua");
-  const std::string text = LuaHouse::errorOf([&] { scripts(h.kernel).runConfig((h.folder / "mine/a.lua").string()); });
+  const std::string text = LuaHost::errorOf([&] { scripts(h.kernel).runConfig((h.folder / "mine/a.lua").string()); });
   CHECK_THAT(text, Contains("there is no script 'b.lua'. Looked in: ") && !Contains((h.folder / "work").string()));
   CHECK(h.run("return b") == Value("beside"));
 }
 
-TEST_CASE("a script that is attached may lie in the working folder, when it is nowhere else") {
-  LuaHouse h;
+TEST_CASE("an attached script is taken from the working folder only if no other folder has it") {
+  LuaHost h;
   std::filesystem::create_directory(h.folder / "work");
   const WorkingFolder there(h.folder / "work");
   h.write("work/s.lua", "self.label = 'work'");
@@ -122,9 +122,9 @@ TEST_CASE("a script that is attached may lie in the working folder, when it is n
   CHECK(a.label == "folder");
 }
 
-TEST_CASE("a config that does not return ends when the kernel is asked to end, whatever it catches") {
+TEST_CASE("a config in an endless loop ends when the kernel is stopped, even if it catches errors") {
   for (const char* loop : {"while true do end", "while true do pcall(function() while true do end end) end"}) {
-    LuaHouse h;
+    LuaHost h;
     h.kernel.requestStop();
     CHECK(h.configFailure("short = true") == "");
     CHECK_THAT(h.configFailure(std::string("before = 1\n") + loop),
@@ -132,27 +132,25 @@ TEST_CASE("a config that does not return ends when the kernel is asked to end, w
   }
 }
 
-TEST_CASE(
-    "a handler of a channel whose name is nearly another's is an error: at the config's end, in what runs at once") {
-  LuaHouse h;
+TEST_CASE("a handler for a misspelt channel is an error: at the end of a config, or at once in other scripts") {
+  LuaHost h;
   const auto define = [&] { h.kernel.events().define("prepare", Order::parentsFirst, "A phase."); };
-  CHECK(h.configFailure("on('prepair', function() end)") == "");  // nobody knows of such a channel
+  CHECK(h.configFailure("on('prepair', function() end)") == "");  // no channel has a similar name yet
   define();
   CHECK_THAT(h.configFailure("\non('prepair', function() end)"),
              Contains("config.lua:2: there is no event channel 'prepair': nothing would ever run this handler. Did you "
                       "mean 'prepare'?"));
   CHECK_THAT(h.failure("on('prepair', function() end)"), Contains("test:1: there is no event channel 'prepair'"));
   CHECK(h.failure("on('prepare', function() end) on('of my own', function() end)") == "");
-  LuaHouse late;
+  LuaHost late;
   late.kernel.registerClass<Definer>();
   CHECK_THAT(late.configFailure("on('prepair', function() end)\nnew('Definer', '/usr/d')"),
              Contains("config.lua:1: there is no event channel 'prepair'"));
   CHECK(late.configFailure("delete('/usr/d') on('prepare', function() end)\nnew('Definer', '/usr/d')") == "");
 }
 
-TEST_CASE(
-    "a class that hooks on a channel whose name is nearly another's is named at the config's end, once it lives") {
-  LuaHouse h;
+TEST_CASE("a class with a hook on a misspelt channel is reported at the end of the config, once it has an instance") {
+  LuaHost h;
   h.kernel.registerClass<Misspelt>();
   h.kernel.events().define("prepare", Order::parentsFirst, "A phase.");
   CHECK(h.configFailure("") == "");
@@ -163,8 +161,8 @@ TEST_CASE(
         "'prepare'?\n");
 }
 
-TEST_CASE("a global that is nil is answered with the nearest") {
-  LuaHouse h;
+TEST_CASE("the error for a global that is nil suggests a similar name") {
+  LuaHost h;
   h.write("rooms.lua", "function physics() end");
   CHECK_THAT(h.configFailure("include 'rooms.lua'\nphsyics()"),
              Contains("config.lua:2: attempt to call a nil value (global 'phsyics'). Did you mean 'physics'?"));
@@ -172,8 +170,8 @@ TEST_CASE("a global that is nil is answered with the nearest") {
              Contains("attempt to index a nil value (global 'maths'). Did you mean 'math'?"));
 }
 
-TEST_CASE("errors in configs name file and line, also through includes") {
-  LuaHouse h;
+TEST_CASE("errors in configs name file and line, also in included files") {
+  LuaHost h;
   h.write("inner.lua", "function wrong()\n  new('Nothing', '/usr/x')\nend");
   CHECK_THAT(h.configFailure("include 'inner.lua'\n\nwrong()"),
              Equals("inner.lua:2: there is no class 'Nothing'. Did you mean 'Thing'?\n  from config.lua:3"));
@@ -182,18 +180,18 @@ TEST_CASE("errors in configs name file and line, also through includes") {
              Equals("syntax.lua:2: unexpected symbol near <eof>\n  from config.lua:1"));
 }
 
-TEST_CASE("only text is run, no bytecode") {
-  LuaHouse h;
+TEST_CASE("bytecode is refused") {
+  LuaHost h;
   CHECK_THAT(h.configFailure("\x1bLua"), Contains("attempt to load a binary chunk"));
 }
 
-TEST_CASE("plugin names the nearest when there is none of that name") {
-  LuaHouse h;
+TEST_CASE("plugin reports a name that no plugin has") {
+  LuaHost h;
   CHECK_THAT(h.configFailure("plugin 'sensrs'"), Contains("config.lua:1: there is no plugin 'sensrs'."));
 }
 
-TEST_CASE("an option gives its default or what was set, and is listed") {
-  LuaHouse h;
+TEST_CASE("an option has its default or the value set from outside, and is listed") {
+  LuaHost h;
   scripts(h.kernel).addOverride("agents", Value(22));
   CHECK(h.configFailure("a = option{name = 'agents', default = 11, doc = 'Players a side.'}\n"
                         "b = option{name = 'parser', default = 'SexpParser', choices = {'SexpParser', 'JsonParser'}}\n"
@@ -205,8 +203,8 @@ TEST_CASE("an option gives its default or what was set, and is listed") {
   CHECK(scripts(h.kernel).options() == expected);
 }
 
-TEST_CASE("an option's value takes the type of its default") {
-  LuaHouse h;
+TEST_CASE("an option's value is converted to the type of its default") {
+  LuaHost h;
   scripts(h.kernel).addOverride("step", Value(1));
   scripts(h.kernel).addOverride("team", Value(42));
   scripts(h.kernel).addOverride("whole", Value(3.0));
@@ -215,8 +213,8 @@ TEST_CASE("an option's value takes the type of its default") {
   CHECK(h.run("return v") == Value(List{1.0, "42", 3}));
 }
 
-TEST_CASE("what a person types for an option or a property is text until its type is known") {
-  LuaHouse h;
+TEST_CASE("a value typed for an option or a property stays text until its type is known") {
+  LuaHost h;
   for (const char* key : {"team", "number", "list", "any", "/usr/a.label", "/usr/a.mass", "/usr/a.anything"})
     scripts(h.kernel).addOverride(key, Value::typed("007"));
   scripts(h.kernel).addOverride("list", Value::typed("{1, x}"));
@@ -229,8 +227,8 @@ TEST_CASE("what a person types for an option or a property is text until its typ
   CHECK(h.run("a = get '/usr/a' return {a.label, a.mass, a.anything}") == Value(List{"007", 7.0, 7}));
 }
 
-TEST_CASE("an option refuses another type and what is not among its choices") {
-  LuaHouse h;
+TEST_CASE("an option refuses values of another type and values that are not among its choices") {
+  LuaHost h;
   scripts(h.kernel).addOverride("agents", Value("many"));
   CHECK_THAT(h.configFailure("option{name = 'agents', default = 11}"),
              Equals("config.lua:1: cannot set option 'agents'\n  because: expected integer (its default is 11), found "
@@ -242,8 +240,8 @@ TEST_CASE("an option refuses another type and what is not among its choices") {
              Contains("the default of option 'x' is not among its choices"));
 }
 
-TEST_CASE("option checks how it is used") {
-  LuaHouse h;
+TEST_CASE("option checks its arguments") {
+  LuaHost h;
   CHECK_THAT(h.failure("option{name = 'a', defualt = 1}"),
              Contains("option knows no field 'defualt'. Did you mean 'default'?"));
   CHECK_THAT(h.failure("option('a')"), Contains("option expected a table"));
@@ -253,25 +251,25 @@ TEST_CASE("option checks how it is used") {
   CHECK_THAT(h.failure("option{name = 'a', default = 2}"), Contains("option 'a' is declared already"));
 }
 
-TEST_CASE("what is set from outside wins over the config, by assignment or by setter") {
-  LuaHouse h;
+TEST_CASE("a value set from outside takes precedence over assignments and setters in the config") {
+  LuaHost h;
   scripts(h.kernel).addOverride("/usr/a.mass", Value(9));
   CHECK(h.configFailure("a = new('Thing', '/usr/a')\natOnce = a.mass\na.mass = 3\na:setMass(4)\na.count = 5") == "");
   CHECK(h.run("return {atOnce, a.mass, a.count}") == Value(List{9.0, 9.0, 5}));
-  h.run("a.mass = 6");  // after the config, scripts are free
+  h.run("a.mass = 6");  // after the config, scripts may change it
   CHECK(h.run("return a.mass") == Value(6.0));
 }
 
-TEST_CASE("an ignored assignment is said at debug level") {
-  LuaHouse h;
+TEST_CASE("an ignored assignment is logged at debug level") {
+  LuaHost h;
   h.kernel.log().setLevel(Level::debug);
   scripts(h.kernel).addOverride("/usr/a.mass", Value(9));
   CHECK(h.configFailure("new('Thing', '/usr/a').mass = 3") == "");
   CHECK_THAT(h.text, Contains("/usr/a.mass stays 9: it was set from outside the config"));
 }
 
-TEST_CASE("what is set from outside also meets nodes made by node:new, made again, or made by others") {
-  LuaHouse h;
+TEST_CASE("a value set from outside also applies to nodes made by node:new, made again, or not made by the config") {
+  LuaHost h;
   scripts(h.kernel).addOverride("/usr/a.mass", Value(9));
   scripts(h.kernel).addOverride("/usr/scene/ball.mass", Value(5));
   CHECK(h.configFailure("get('/usr'):new('Thing', 'a') delete('/usr/a') again = get('/usr'):new('Thing', 'a').mass") ==
@@ -282,8 +280,8 @@ TEST_CASE("what is set from outside also meets nodes made by node:new, made agai
   CHECK(ball.mass == 5);
 }
 
-TEST_CASE("Namespace.Name is set as soon as the namespace exists") {
-  LuaHouse h;
+TEST_CASE("a value set for Namespace.Name applies as soon as the namespace exists") {
+  LuaHost h;
   scripts(h.kernel).addOverride("Field.mass", Value(12));
   scripts(h.kernel).addOverride("Soccer.FieldLength", Value(30));
   CHECK(h.configFailure("f = new('Thing', '/sys/variables/Field')\natOnce = {f.mass}\n"
@@ -292,7 +290,7 @@ TEST_CASE("Namespace.Name is set as soon as the namespace exists") {
   CHECK(h.run("return {atOnce, Field.mass, Soccer.FieldLength}") == Value(List{List{12.0, 30}, 12.0, 30}));
 }
 
-TEST_CASE("settings that meet nothing are errors with the nearest names") {
+TEST_CASE("settings without a target are errors that suggest similar names") {
   const std::string config =
       "option{name = 'agents', default = 11}\nnew('Thing', '/usr/ball')\nnew('Group', "
       "'/sys/variables/Soccer'):set('FieldLength', 30)";
@@ -307,23 +305,23 @@ TEST_CASE("settings that meet nothing are errors with the nearest names") {
       {"/usr/ball.mas",
        "unknown setting '/usr/ball.mas': /usr/ball (class Thing) has no property 'mas'. Did you mean 'mass'?"}};
   for (const auto& [key, expected] : cases) {
-    LuaHouse h;
+    LuaHost h;
     scripts(h.kernel).addOverride(key, Value(1));
     CHECK_THAT(h.configFailure(config), Contains(expected));
   }
 }
 
-TEST_CASE("a setting with a wrong value names the property and what was expected") {
-  LuaHouse h;
+TEST_CASE("the error for a wrong value names the property and the expected range") {
+  LuaHost h;
   scripts(h.kernel).addOverride("/usr/a.mass", Value(-1));
   CHECK_THAT(h.configFailure("new('Thing', '/usr/a')"),
              Equals("config.lua:1: cannot set /usr/a.mass\n  because: expected 0.0 to inf kg, found -1"));
-  CHECK_THAT(LuaHouse::errorOf([&] { scripts(h.kernel).addOverride("/usr/a", Value(1)); }),
+  CHECK_THAT(LuaHost::errorOf([&] { scripts(h.kernel).addOverride("/usr/a", Value(1)); }),
              Contains("expected /path.property"));
 }
 
 TEST_CASE("log and print write to the kernel's log") {
-  LuaHouse h;
+  LuaHost h;
   h.kernel.log().setLevel(Level::debug);
   h.run("log.debug('d') log.info('i', 1, {}) log.warning('w') log.error('e') print('p', 2.5)");
   CHECK(h.text == "d\ni 1 table\nw\ne\np 2.5\n");

@@ -1,4 +1,4 @@
-// What makes two runs the same.
+// The rules that make two runs identical.
 #include <set>
 
 #include "lua_fixture.h"
@@ -8,8 +8,8 @@ using namespace spark;
 using namespace spark::test;
 using Catch::Contains;
 
-TEST_CASE("pairs goes by key: numbers, then strings, then booleans, then nodes by age") {
-  LuaHouse h;
+TEST_CASE("pairs iterates in the order of keys: numbers, strings, booleans, then nodes by age") {
+  LuaHost h;
   h.thing("/usr/second");
   h.thing("/usr/a");
   CHECK(h.run("local t = {z = 1, [10] = 1, a = 1, [-2] = 1, [2.5] = 1, [true] = 1, [false] = 1, [get('/usr/a')] = 1, "
@@ -18,14 +18,14 @@ TEST_CASE("pairs goes by key: numbers, then strings, then booleans, then nodes b
         Value(List{-2, 2.5, 10, "a", "z", false, true, "/usr/second", "/usr/a"}));
 }
 
-TEST_CASE("pairs goes on when the table changes, and leaves out what has gone") {
-  LuaHouse h;
+TEST_CASE("pairs tolerates changes of the table, and skips removed and added keys") {
+  LuaHost h;
   CHECK(h.run("local t, k = {a = 1, b = 2, c = 3}, {} for key in pairs(t) do k[#k + 1] = key t.b = nil t['x' .. key] = "
               "1 end return k") == Value(List{"a", "c"}));
 }
 
-TEST_CASE("pairs honours __pairs and refuses keys without an order") {
-  LuaHouse h;
+TEST_CASE("pairs uses __pairs, and refuses keys that have no order") {
+  LuaHost h;
   CHECK(h.run("local t = setmetatable({}, {__pairs = function() return function(_, k) if not k then return 1, 2 end "
               "end end}) for k, v in pairs(t) do return {k, v} end") == Value(List{1, 2}));
   CHECK_THAT(h.failure("for k in pairs({[{}] = 1}) do end"),
@@ -34,16 +34,16 @@ TEST_CASE("pairs honours __pairs and refuses keys without an order") {
              Contains("pairs expected a table, found a node: use ipairs(node:children())"));
 }
 
-TEST_CASE("next goes by key as well") {
-  LuaHouse h;
+TEST_CASE("next iterates in the order of keys too") {
+  LuaHost h;
   CHECK(h.run("local t, k = {c = 3, [1] = 'x', b = 2}, {} local key, value = next(t) while key do k[#k + 1] = {key, "
               "value} key, value = next(t, key) end return k") ==
         Value(List{List{1, "x"}, List{"b", 2}, List{"c", 3}}));
   CHECK(h.run("return next({}) == nil") == Value(true));
 }
 
-TEST_CASE("table.sort is stable and sorts") {
-  LuaHouse h;
+TEST_CASE("table.sort sorts and is stable") {
+  LuaHost h;
   CHECK(
       h.run(
           "local t = {} for i = 1, 500 do t[i] = {i % 3, i} end table.sort(t, function(a, b) return a[1] < b[1] end)\n"
@@ -54,9 +54,9 @@ TEST_CASE("table.sort is stable and sorts") {
   CHECK_THAT(h.failure("table.sort({1, 'a'})"), Contains("attempt to compare"));
 }
 
-TEST_CASE("random numbers come from the kernel's seed, one stream for each script") {
+TEST_CASE("random numbers depend on the kernel's seed, with one stream for each script") {
   const auto draw = [](std::uint64_t seed) {
-    LuaHouse h;
+    LuaHost h;
     h.kernel.setSeed(seed);
     scripts(h.kernel).attachText(h.thing("/usr/a"), "self.anything = {math.random(), math.random(6), math.random(0)}",
                                  "script", true);
@@ -69,17 +69,17 @@ TEST_CASE("random numbers come from the kernel's seed, one stream for each scrip
   CHECK_FALSE(*once.at(std::size_t{0})->at(std::size_t{0}) == *once.at(std::size_t{1})->at(std::size_t{0}));
 }
 
-TEST_CASE("another script's draws do not change a script's own") {
+TEST_CASE("a script's random numbers do not depend on the draws of other scripts") {
   const auto draw = [](bool other) {
-    LuaHouse h;
+    LuaHost h;
     if (other) scripts(h.kernel).attachText(h.thing("/usr/other"), "math.random()", "script", true);
     return h.run("return math.random()");
   };
   CHECK(draw(false) == draw(true));
 }
 
-TEST_CASE("math.random keeps its ranges and randomseed repeats") {
-  LuaHouse h;
+TEST_CASE("math.random stays within its range, and randomseed repeats the sequence") {
+  LuaHost h;
   std::set<std::int64_t> seen;
   for (int i = 0; i < 300; ++i) seen.insert(h.run("return math.random(3, 5)").toInteger());
   CHECK(seen == std::set<std::int64_t>{3, 4, 5});
@@ -91,15 +91,15 @@ TEST_CASE("math.random keeps its ranges and randomseed repeats") {
   CHECK_THAT(h.failure("math.random(2, 1)"), Contains("interval is empty"));
 }
 
-TEST_CASE("a script whose node has gone has no stream") {
-  LuaHouse h;
+TEST_CASE("a script whose node is deleted has no random stream") {
+  LuaHost h;
   Thing& a = h.thing("/usr/a");
-  CHECK_THAT(LuaHouse::errorOf([&] { scripts(h.kernel).attachText(a, "self:delete() math.random()", "script", true); }),
+  CHECK_THAT(LuaHost::errorOf([&] { scripts(h.kernel).attachText(a, "self:delete() math.random()", "script", true); }),
              Contains("math.random has no stream: the script's node is gone"));
 }
 
-TEST_CASE("no text shows an address") {
-  LuaHouse h;
+TEST_CASE("no conversion to text shows an address") {
+  LuaHost h;
   CHECK(h.run("return {tostring({}), tostring(print), tostring(coroutine.create(print)), string.format('%s %5s %d', "
               "{}, print, 3), ('%s'):format({})}") ==
         Value(List{"table", "function", "thread", "table function 3", "table"}));
@@ -109,23 +109,23 @@ TEST_CASE("no text shows an address") {
   CHECK_THAT(h.failure("return string.format('%-10p', {})"), Contains("string.format knows no %p here"));
 }
 
-TEST_CASE("there is nothing in a script that reads files, clocks or bytecode") {
-  LuaHouse h;
+TEST_CASE("scripts have no access to files, clocks or bytecode") {
+  LuaHost h;
   CHECK(h.run("local found = {} for _, n in ipairs{'os', 'io', 'debug', 'package', 'require', 'dofile', 'loadfile', "
               "'load', 'collectgarbage', 'warn'} do\n"
               "if _G[n] ~= nil then found[#found + 1] = n end end return found") == Value(List{}));
   CHECK(h.run("return {string.dump, ('').dump}") == Value(List{}));
 }
 
-TEST_CASE("metatables cannot watch the garbage collector") {
-  LuaHouse h;
+TEST_CASE("metatables cannot observe the garbage collector") {
+  LuaHost h;
   CHECK_THAT(h.failure("setmetatable({}, {__gc = print})"), Contains("a metatable must not have __gc"));
   CHECK_THAT(h.failure("setmetatable({}, {__mode = 'k'})"), Contains("a metatable must not have __mode"));
   CHECK(h.run("return setmetatable({}, {__index = function() return 5 end}).x") == Value(5));
 }
 
-TEST_CASE("a script cannot reach what other scripts share") {
-  LuaHouse h;
+TEST_CASE("a script cannot modify the libraries that all scripts share") {
+  LuaHost h;
   CHECK(h.run("return {getmetatable(''), getmetatable(get('/'))}") == Value(List{"string", "node"}));
   scripts(h.kernel).attachText(h.thing("/usr/a"), "string.rep = nil pairs = nil math.floor = nil", "script", true);
   CHECK(h.run("return {('x'):rep(2), string.rep('y', 2), math.floor(1.5), type(pairs)}") ==

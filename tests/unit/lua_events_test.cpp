@@ -1,4 +1,4 @@
-// Events, attached scripts, and what happens when nodes die.
+// Events, attached scripts, and what happens when nodes are deleted.
 #include "lua_fixture.h"
 #include "spark/script_server.h"
 
@@ -8,11 +8,11 @@ using Catch::Contains;
 using Catch::Equals;
 
 namespace {
-/// Says goodbye when it leaves the tree.
+/// Emits an event when it leaves the tree.
 class Farewell : public Leaf {
   SPARK_CLASS(Farewell, Leaf)
  public:
-  static void describe(Description<Farewell>& d) { d.doc("Emits 'gone' when it goes."); }
+  static void describe(Description<Farewell>& d) { d.doc("Emits 'gone' when it leaves the tree."); }
 
  protected:
   void onUnlink() override { kernel().events().channel("gone").emit({"gone"}); }
@@ -20,7 +20,7 @@ class Farewell : public Leaf {
 }  // namespace
 
 TEST_CASE("a handler gets its node and the event") {
-  LuaHouse h;
+  LuaHost h;
   h.thing("/usr/a");
   h.run("get('/usr/a'):on('tick', function(self, e) seen = {self.path, e.name, e.time, e.step, e.cycle, e.data} end)");
   const Value data(List{1, "two"});
@@ -29,7 +29,7 @@ TEST_CASE("a handler gets its node and the event") {
 }
 
 TEST_CASE("on without a node listens at the root in configs and at self in attached scripts") {
-  LuaHouse h;
+  LuaHost h;
   h.run("on('tick', function(self) where = self.path end)");
   scripts(h.kernel).attachText(h.thing("/usr/a"),
                                "on('tock', function(node, e) node.label = e.name self.count = 9 end)", "script", true);
@@ -39,8 +39,8 @@ TEST_CASE("on without a node listens at the root in configs and at self in attac
   CHECK(h.run("return {get('/usr/a').label, get('/usr/a').count}") == Value(List{"tock", 9}));
 }
 
-TEST_CASE("a subscription can be removed, once and for all") {
-  LuaHouse h;
+TEST_CASE("a removed subscription stays removed, and removing it again does nothing") {
+  LuaHost h;
   h.run("n = 0; s = on('tick', function() n = n + 1 end)");
   h.emit("tick");
   h.run("s:remove()");
@@ -51,7 +51,7 @@ TEST_CASE("a subscription can be removed, once and for all") {
 }
 
 TEST_CASE("a handler may remove itself and delete its node while it runs") {
-  LuaHouse h;
+  LuaHost h;
   h.thing("/usr/a");
   h.run("n = 0; local s; s = on('tick', function() s:remove() n = n + 1 end)");
   h.run("get('/usr/a'):on('tick', function(self) self:delete() n = n + 10 end)");
@@ -61,8 +61,8 @@ TEST_CASE("a handler may remove itself and delete its node while it runs") {
   CHECK(h.text == "");
 }
 
-TEST_CASE("subscriptions go with their node") {
-  LuaHouse h;
+TEST_CASE("subscriptions are removed with their node") {
+  LuaHost h;
   h.thing("/usr/a");
   h.run("n = 0; s = get('/usr/a'):on('tick', function() n = n + 1 end)");
   h.run("delete('/usr/a')");
@@ -71,8 +71,8 @@ TEST_CASE("subscriptions go with their node") {
   CHECK(h.kernel.events().channel("tick").empty());
 }
 
-TEST_CASE("what an attached script subscribes elsewhere goes with its own node") {
-  LuaHouse h;
+TEST_CASE("handlers that an attached script adds to other nodes are removed with the script's node") {
+  LuaHost h;
   Thing& b = h.thing("/usr/b");
   scripts(h.kernel).attachText(h.thing("/usr/a"), "get('/usr/b'):on('tick', function(b) b.count = b.count + 1 end)",
                                "script", true);
@@ -85,8 +85,8 @@ TEST_CASE("what an attached script subscribes elsewhere goes with its own node")
   CHECK(h.kernel.events().channel("tick").empty());
 }
 
-TEST_CASE("a script file attaches to a node and runs at once in an environment of its own") {
-  LuaHouse h;
+TEST_CASE("a script file that is attached to a node runs at once in its own environment") {
+  LuaHost h;
   Thing& a = h.thing("/usr/a");
   Thing& b = h.thing("/usr/b");
   h.write("mark.lua", "counter = (counter or 0) + 1; self.count = counter; string.mine = true");
@@ -99,8 +99,8 @@ TEST_CASE("a script file attaches to a node and runs at once in an environment o
              Contains("test:1: there is no script 'marc.lua'") && Contains("Did you mean 'mark.lua'?"));
 }
 
-TEST_CASE("get in an attached script starts at its node") {
-  LuaHouse h;
+TEST_CASE("get in an attached script resolves paths from the script's node") {
+  LuaHost h;
   Thing& a = h.thing("/usr/a");
   h.thing("/usr/b").label = "neighbour";
   scripts(h.kernel).attachText(a, "self.label = get('../b').label", "script", true);
@@ -108,9 +108,9 @@ TEST_CASE("get in an attached script starts at its node") {
 }
 
 TEST_CASE("a script that fails while it is attached leaves no handlers") {
-  LuaHouse h;
+  LuaHost h;
   Thing& a = h.thing("/usr/a");
-  const std::string text = LuaHouse::errorOf([&] {
+  const std::string text = LuaHost::errorOf([&] {
     scripts(h.kernel).attachText(a, "on('tick', function() self.count = 1 end)\nerror('no')", "script", true);
   });
   CHECK_THAT(text, Equals("the script attached to /usr/a failed: script:2: no"));
@@ -118,8 +118,8 @@ TEST_CASE("a script that fails while it is attached leaves no handlers") {
   CHECK(a.count == 0);
 }
 
-TEST_CASE("an error in a handler is logged once for its line, and the handler stays") {
-  LuaHouse h;
+TEST_CASE("an error in a handler is logged once for each line of code, and the handler stays") {
+  LuaHost h;
   h.thing("/usr/a");
   h.run("n = 0\nget('/usr/a'):on('tick', function(self)\n  n = n + 1\n  local none\n  none.x = 1\nend)");
   for (int i = 0; i < 3; ++i) CHECK_NOTHROW(h.emit("tick"));
@@ -128,8 +128,8 @@ TEST_CASE("an error in a handler is logged once for its line, and the handler st
                             "  It stays; further errors of this line are not logged.\n"));
 }
 
-TEST_CASE("a handler's traceback shows who called whom") {
-  LuaHouse h;
+TEST_CASE("an error in a handler is logged with a traceback of the calls") {
+  LuaHost h;
   h.run(
       "local function deep()\n  error('boom')\nend\nlocal function top()\n  deep()\nend\non('tick', function()\n  "
       "top()\nend)");
@@ -138,7 +138,7 @@ TEST_CASE("a handler's traceback shows who called whom") {
 }
 
 TEST_CASE("an endless loop in a handler becomes an error that names script, line and node") {
-  LuaHouse h;
+  LuaHost h;
   h.thing("/usr/a");
   h.run("get('/usr/a'):on('tick', function(self)\n  while true do end\nend)");
   h.emit("tick");
@@ -146,8 +146,8 @@ TEST_CASE("an endless loop in a handler becomes an error that names script, line
                               "there an endless loop?"));
 }
 
-TEST_CASE("a handler that used up its budget is switched off, with a line for each") {
-  LuaHouse h;
+TEST_CASE("each handler that uses up its budget is switched off and logged") {
+  LuaHost h;
   Thing& a = h.thing("/usr/a");
   h.run(
       "n = 0\nfor i = 1, 2 do\n  get('/usr/a'):on('tick', function(self)\n    self.count = self.count + 1\n    while "
@@ -162,8 +162,8 @@ TEST_CASE("a handler that used up its budget is switched off, with a line for ea
   CHECK_THAT(h.text, Equals(line + line));
 }
 
-TEST_CASE("what works on much at once pays for it") {
-  LuaHouse h;
+TEST_CASE("functions that process much data at once are charged for it") {
+  LuaHost h;
   h.run("long = ('a'):rep(1000000) many = {} for i = 1, 200000 do many[i] = i % 1000 end");
   for (const char* forever :
        {"string.find(long, '.-.-.-b')", "long:match('(a*)*(a*)(a*)(a*)b')", "long:gsub('.-.-.-b', '')",
@@ -182,8 +182,8 @@ TEST_CASE("what works on much at once pays for it") {
   }
 }
 
-TEST_CASE("many small searches pay as much as a large one") {
-  LuaHouse h;
+TEST_CASE("many small searches are charged as much as a large one") {
+  LuaHost h;
   for (const char* search :
        {"('aaaaaaaa'):find('.-.-b')", "('aaaaaaaa'):match('a*a*a*b')", "('aaaaaaaa'):gsub('.-.-b', '')"}) {
     INFO(search);
@@ -194,8 +194,8 @@ TEST_CASE("many small searches pay as much as a large one") {
   }
 }
 
-TEST_CASE("neither pcall nor a coroutine saves an endless loop") {
-  LuaHouse h;
+TEST_CASE("an endless loop is stopped within pcall and coroutines too") {
+  LuaHost h;
   h.run("on('tick', function() while true do pcall(function() while true do end end) end end)");
   h.run("on('tick', function() while true do coroutine.wrap(function() while true do end end)() end end)");
   h.run(
@@ -205,21 +205,21 @@ TEST_CASE("neither pcall nor a coroutine saves an endless loop") {
   h.emit("tick");
   CHECK(h.run("return after") == Value(true));
   h.text.clear();
-  h.run("n = 0 on('tock', function() for i = 1, 100000 do n = n + 1 end end)");  // the next run has its budget again
+  h.run("n = 0 on('tock', function() for i = 1, 100000 do n = n + 1 end end)");  // the next run has a full budget
   h.emit("tock");
   CHECK(h.run("return n") == Value(100000));
   CHECK(h.text == "");
 }
 
 TEST_CASE("an attached script that never ends is stopped") {
-  LuaHouse h;
+  LuaHost h;
   Thing& a = h.thing("/usr/a");
-  CHECK_THAT(LuaHouse::errorOf([&] { scripts(h.kernel).attachText(a, "while true do end", "script", true); }),
+  CHECK_THAT(LuaHost::errorOf([&] { scripts(h.kernel).attachText(a, "while true do end", "script", true); }),
              Contains("the script attached to /usr/a failed: script:1: stopped after"));
 }
 
-TEST_CASE("handlers may raise events, but not without end") {
-  LuaHouse h;
+TEST_CASE("handlers may raise events, but only to a limited depth") {
+  LuaHost h;
   h.thing("/usr/a");
   h.run("get('/usr/a'):on('tick', function(self) self:raise('tock') end)");
   h.run("get('/usr/a'):on('tock', function(self) self.count = self.count + 1 end)");
@@ -230,8 +230,8 @@ TEST_CASE("handlers may raise events, but not without end") {
   CHECK_THAT(h.text, Contains("scripts entered each other more than 16 deep: does a handler raise its own event?"));
 }
 
-TEST_CASE("a handler pays for the handlers of the events that it raises, and no more than that") {
-  LuaHouse h;
+TEST_CASE("a handler is charged for the handlers of the events that it raises, and for nothing else") {
+  LuaHost h;
   h.thing("/usr/a");
   h.kernel.events().define("outer", Order::parentsFirst, "");
   h.kernel.events().define("inner", Order::parentsFirst, "");
@@ -249,7 +249,7 @@ TEST_CASE("a handler pays for the handlers of the events that it raises, and no 
   CHECK_THAT(h.text, Contains("stopped after 50000000 instructions"));
 }
 
-TEST_CASE("scripts end before the nodes: what nodes emit when they go reaches no script") {
+TEST_CASE("scripts end before nodes: events that nodes emit while the kernel is destroyed reach no script") {
   std::string text;
   {
     Kernel kernel;
@@ -267,8 +267,8 @@ TEST_CASE("scripts end before the nodes: what nodes emit when they go reaches no
   CHECK(text == "");
 }
 
-TEST_CASE("a script may remove the script server: it runs to its end, later ones need another server") {
-  LuaHouse h;
+TEST_CASE("a script that deletes the script server runs to its end, and later scripts use a new server") {
+  LuaHost h;
   h.thing("/usr/a");
   h.run("get('/usr/a'):on('bell', function(a) delete('/sys/server/script') a.count = a.count + 1 end)");
   h.emit("bell");

@@ -60,11 +60,11 @@ class Group : public Leaf {
   std::map<std::string, Value> values;
 };
 
-/// A house with these classes, an empty folder for scripts, and short ways to run them.
-struct LuaHouse : House {
+/// A kernel with these classes, an empty folder for scripts, and shortcuts to run them.
+struct LuaHost : TestHost {
   const TemporaryFolder home;
   const std::filesystem::path& folder = home.path();
-  LuaHouse() : House(false) {
+  LuaHost() : TestHost(false) {
     kernel.registerClass<Thing>();
     kernel.registerClass<Group>();
     scripts(kernel).addFolder(folder);
@@ -75,7 +75,7 @@ struct LuaHouse : House {
   std::string failure(std::string_view text) {
     return errorOf([&] { run(text); });
   }
-  /// As failure, for a config file that holds `text`.
+  /// Like failure, for a config file with the content `text`.
   std::string configFailure(const std::string& text) {
     write("config.lua", text);
     return errorOf([&] { scripts(kernel).runConfig("config.lua"); });

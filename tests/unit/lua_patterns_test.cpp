@@ -1,4 +1,4 @@
-// find, match, gmatch and gsub of scripts against those of Lua itself.
+// Compares find, match, gmatch and gsub of scripts with those of plain Lua.
 #include <lua.hpp>
 
 #include "lua_fixture.h"
@@ -7,8 +7,8 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-/// One script for both: draws patterns of all items, right and wrong ones, and gives a line for what each call returned
-/// or threw.
+/// A script that runs in both. It draws valid and invalid patterns of all items and returns one line for the result or
+/// the error of each call.
 const char* kCompare = R"--(
 local state = 20261122
 local function draw(n)
@@ -18,9 +18,9 @@ end
 local function oneOf(t) return t[draw(#t)] end
 
 local letters = {"a", "a", "a", "b", "b", "c", "A", "1", " ", "-", "]", "^", "%", ".", "(", ")", "$", "\0", "\n", "\233"}
-local function text(most)
+local function text(longest)
   local t = {}
-  for i = 1, draw(most + 1) - 1 do t[i] = oneOf(letters) end
+  for i = 1, draw(longest + 1) - 1 do t[i] = oneOf(letters) end
   return table.concat(t)
 end
 
@@ -82,7 +82,7 @@ for _ = 1, 8000 do
   note("gsub, " .. n .. " times", s, p, pcall(function() local t, k = s:gsub(p, r, n) return t, k end))
 end
 
--- What is no text, no number or too much.
+-- Arguments that are not strings, not numbers, or too large.
 local f = string
 local odd = {
   function() f.find() end, function() f.find("a") end, function() f.find("a", nil) end, function() f.find({}, "a") end, function() f.find("a", "a", "x") end,
@@ -103,7 +103,7 @@ lines[#lines + 1] = results .. " results, " .. failures .. " errors"
 return table.concat(lines, "\n")
 )--";
 
-/// What the script returns in a Lua without Spark.
+/// The result of the script in plain Lua.
 std::string plainly(const char* script) {
   const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), &lua_close);
   lua_State* const L = state.get();
@@ -125,8 +125,8 @@ std::vector<std::string> linesOf(const std::string& text) {
 }
 }  // namespace
 
-TEST_CASE("patterns give what Lua's own give, to the last error, whatever is drawn") {
-  LuaHouse h;
+TEST_CASE("random patterns give the same results and errors as in plain Lua") {
+  LuaHost h;
   const std::vector<std::string> expected = linesOf(plainly(kCompare)), found = linesOf(h.run(kCompare).toString());
   REQUIRE(expected.size() == found.size());
   int differences = 0;
@@ -136,7 +136,7 @@ TEST_CASE("patterns give what Lua's own give, to the last error, whatever is dra
       CHECK(found[i] == expected[i]);
     }
   CHECK(differences == 0);
-  // Both kinds were drawn often.
+  // The script has drawn many patterns of both kinds.
   int results = 0, errors = 0;
   REQUIRE(std::sscanf(expected.back().c_str(), "%d results, %d errors", &results, &errors) == 2);
   CHECK(results > 15'000);

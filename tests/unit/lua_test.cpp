@@ -8,7 +8,7 @@ using Catch::Contains;
 using Catch::Equals;
 
 TEST_CASE("a script reads and writes properties and calls methods by name") {
-  LuaHouse h;
+  LuaHost h;
   h.thing("/usr/a");
   h.run("local a = get('/usr/a'); a.mass = 2.5; a.count = 3; a.label = 'ball'");
   CHECK(h.run("return get('/usr/a').mass") == Value(2.5));
@@ -20,7 +20,7 @@ TEST_CASE("a script reads and writes properties and calls methods by name") {
 }
 
 TEST_CASE("every node has name, path, class, parent, alive, find and children") {
-  LuaHouse h;
+  LuaHost h;
   h.thing("/usr/a").create("Thing", "b");
   CHECK(h.run("return get('/usr/a/b').name") == Value("b"));
   CHECK(h.run("return get('/usr/a/b').path") == Value("/usr/a/b"));
@@ -37,13 +37,13 @@ TEST_CASE("every node has name, path, class, parent, alive, find and children") 
 }
 
 TEST_CASE("children are reached by find only") {
-  LuaHouse h;
+  LuaHost h;
   h.thing("/usr/a").create("Thing", "b");
   CHECK_THAT(h.failure("return get('/usr/a').b"), Contains("has no property or method 'b'"));
 }
 
 namespace {
-/// A class that calls two of its members as every node's built-ins are called.
+/// A class with two members that have the names of built-ins of every node.
 class Coupling : public Node {
   SPARK_CLASS(Coupling, Node)
  public:
@@ -57,8 +57,8 @@ class Coupling : public Node {
 };
 }  // namespace
 
-TEST_CASE("a member of the class goes before a built-in of the same name") {
-  LuaHouse h;
+TEST_CASE("a member of the class takes precedence over a built-in of the same name") {
+  LuaHost h;
   h.kernel.registerClass<Coupling>();
   Coupling& c = h.kernel.create<Coupling>("Coupling", "/usr/c");
   h.thing("/usr/a");
@@ -81,7 +81,7 @@ TEST_CASE("a member of the class goes before a built-in of the same name") {
 }
 
 TEST_CASE("nodes are equal by identity and work as table keys") {
-  LuaHouse h;
+  LuaHost h;
   h.thing("/usr/a");
   h.thing("/usr/b");
   CHECK(h.run("return get('/usr/a') == get('/usr'):find('a')") == Value(true));
@@ -90,7 +90,7 @@ TEST_CASE("nodes are equal by identity and work as table keys") {
 }
 
 TEST_CASE("scripts make and delete nodes") {
-  LuaHouse h;
+  LuaHost h;
   CHECK(h.run("return new('Thing', '/usr/x/y').path") == Value("/usr/x/y"));
   CHECK(h.run("return get('/usr/x'):new('Thing', 'z').path") == Value("/usr/x/z"));
   CHECK(h.run("return get('/usr/x'):new('Thing').name") == Value("Thing"));
@@ -98,15 +98,15 @@ TEST_CASE("scripts make and delete nodes") {
   CHECK(h.kernel.root().find<Node>("/usr/x")->children().empty());
 }
 
-TEST_CASE("what belongs to the kernel cannot be deleted") {
-  LuaHouse h;
+TEST_CASE("the kernel's own nodes cannot be deleted") {
+  LuaHost h;
   for (const char* path : {"/", "/classes", "/classes/Thing", "/plugins"})
     CHECK_THAT(h.failure(std::string("delete('") + path + "')"),
                Contains(std::string("cannot delete ") + path + ": it belongs to the kernel"));
 }
 
-TEST_CASE("a dead node says so and knows what it was") {
-  LuaHouse h;
+TEST_CASE("the error for using a deleted node names its former path") {
+  LuaHost h;
   h.thing("/usr/a");
   h.run("a = get('/usr/a') a:delete()");
   CHECK(h.run("return a.alive") == Value(false));
@@ -121,8 +121,8 @@ TEST_CASE("a dead node says so and knows what it was") {
   CHECK_THAT(h.failure("get('/usr/b').anything = a"), Contains("this node is gone"));
 }
 
-TEST_CASE("patterns match as the reference manual says") {
-  LuaHouse h;
+TEST_CASE("patterns match as described in the reference manual") {
+  LuaHost h;
   const std::vector<std::pair<const char*, Value>> cases{
       {"{('hello world'):find('wor')}", List{7, 9}},
       {"{('hello'):find('l+')}", List{3, 4}},
@@ -181,8 +181,8 @@ TEST_CASE("patterns match as the reference manual says") {
   CHECK_THAT(h.failure("('x'):rep(300):find(('x?'):rep(300) .. ('x'):rep(300))"), Contains("pattern too complex"));
 }
 
-TEST_CASE("values keep their type both ways") {
-  LuaHouse h;
+TEST_CASE("values keep their type between Lua and C++") {
+  LuaHost h;
   h.thing("/usr/a");
   const std::vector<std::pair<const char*, Value>> cases{{"nil", {}},
                                                          {"true", true},
@@ -202,21 +202,21 @@ TEST_CASE("values keep their type both ways") {
   CHECK(h.run("return math.type(get('/usr/a'):echo(3.0))") == Value("float"));
 }
 
-TEST_CASE("a table that is no sequence becomes a list of pairs, sorted by key") {
-  LuaHouse h;
+TEST_CASE("a table that is not a sequence becomes a list of pairs sorted by key") {
+  LuaHost h;
   CHECK(h.run("return {b = 1, a = 2, [3] = 'x', [1.5] = 'y'}") ==
         Value(List{List{1.5, "y"}, List{3, "x"}, List{"a", 2}, List{"b", 1}}));
   CHECK(h.run("return {1, nil, 3}") == Value(List{List{1, 1}, List{3, 3}}));
 }
 
-TEST_CASE("a node as a value is its path") {
-  LuaHouse h;
+TEST_CASE("a node is converted to its path") {
+  LuaHost h;
   h.thing("/usr/a");
   CHECK(h.run("return {get('/usr/a')}") == Value(List{"/usr/a"}));
 }
 
-TEST_CASE("what is no value is refused") {
-  LuaHouse h;
+TEST_CASE("functions and recursive tables are refused as values") {
+  LuaHost h;
   h.thing("/usr/a");
   CHECK_THAT(h.failure("get('/usr/a').anything = print"),
              Equals("test:1: expected a value (nil, boolean, number, string, table or node), found a function"));
@@ -224,8 +224,8 @@ TEST_CASE("what is no value is refused") {
              Contains("is nested more than 64 deep, or holds itself"));
 }
 
-TEST_CASE("an unknown name is answered with the nearest") {
-  LuaHouse h;
+TEST_CASE("the error for an unknown name suggests a similar name") {
+  LuaHost h;
   h.thing("/usr/a");
   CHECK_THAT(h.failure("return get('/usr/a').mas"),
              Equals("test:1: /usr/a (class Thing) has no property or method 'mas'. Did you mean 'mass'?"));
@@ -236,8 +236,8 @@ TEST_CASE("an unknown name is answered with the nearest") {
   CHECK_THAT(h.failure("new('Thin', '/usr/b')"), Contains("test:1: there is no class 'Thin'. Did you mean 'Thing'?"));
 }
 
-TEST_CASE("wrong values and arguments say what was expected") {
-  LuaHouse h;
+TEST_CASE("the error for a wrong value or argument says what was expected") {
+  LuaHost h;
   h.thing("/usr/a");
   CHECK_THAT(h.failure("get('/usr/a').mass = -1"),
              Equals("test:1: cannot set /usr/a.mass\n  because: expected 0.0 to inf kg, found -1"));
@@ -252,8 +252,8 @@ TEST_CASE("wrong values and arguments say what was expected") {
   CHECK_THAT(h.failure("get(5)"), Contains("expected a path (a string), found number"));
 }
 
-TEST_CASE("the variables of a group read and write like properties") {
-  LuaHouse h;
+TEST_CASE("the variables of a group are read and written like properties") {
+  LuaHost h;
   h.kernel.create<Group>("Group", "/sys/variables/Nao").values["UseTexture"] = "true";
   CHECK(h.run("return Nao.UseTexture") == Value("true"));
   h.run("Nao.UseTexture = 'false' Nao.New = 5");
@@ -263,7 +263,7 @@ TEST_CASE("the variables of a group read and write like properties") {
 }
 
 TEST_CASE("a script's error has file, line and a short traceback") {
-  LuaHouse h;
+  LuaHost h;
   CHECK_THAT(h.failure("local x = nil\nreturn x.y"), Equals("test:2: attempt to index a nil value (local 'x')"));
   CHECK_THAT(h.failure("function f()\n  error('boom')\nend\nlocal function g()\n  f()\nend\ng()"),
              Equals("test:2: boom\n  from test:5 in 'g'\n  from test:7"));
@@ -272,40 +272,40 @@ TEST_CASE("a script's error has file, line and a short traceback") {
 }
 
 TEST_CASE("an attached script gets arguments") {
-  LuaHouse house;
-  house.thing("/usr/a");
-  house.write("rule.lua",
-              "local args, more = ...\nself.count = args and args.limit or -1\nself.label = tostring(args and "
-              "args.who) .. tostring(more)\n"
-              "if args and args.call then args.call(self) end");
-  SECTION("from Lua, as they are: tables, nodes, functions") {
-    house.run(
+  LuaHost host;
+  host.thing("/usr/a");
+  host.write("rule.lua",
+             "local args, more = ...\nself.count = args and args.limit or -1\nself.label = tostring(args and "
+             "args.who) .. tostring(more)\n"
+             "if args and args.call then args.call(self) end");
+  SECTION("from Lua unchanged: tables, nodes and functions") {
+    host.run(
         "get('/usr/a'):attachScript('rule.lua', {limit = 3, who = get('/usr'), call = function(node) node.mass = 5 "
         "end}, 'x')");
-    CHECK(house.kernel.root().require<Thing>("/usr/a").count == 3);
-    CHECK(house.kernel.root().require<Thing>("/usr/a").label == "/usrx");
-    CHECK(house.kernel.root().require<Thing>("/usr/a").mass == 5);
+    CHECK(host.kernel.root().require<Thing>("/usr/a").count == 3);
+    CHECK(host.kernel.root().require<Thing>("/usr/a").label == "/usrx");
+    CHECK(host.kernel.root().require<Thing>("/usr/a").mass == 5);
   }
   SECTION("none") {
-    house.run("get('/usr/a'):attachScript('rule.lua')");
-    CHECK(house.kernel.root().require<Thing>("/usr/a").count == -1);
-    CHECK(house.kernel.root().require<Thing>("/usr/a").label == "nilnil");
+    host.run("get('/usr/a'):attachScript('rule.lua')");
+    CHECK(host.kernel.root().require<Thing>("/usr/a").count == -1);
+    CHECK(host.kernel.root().require<Thing>("/usr/a").label == "nilnil");
   }
   SECTION("from C++, as values") {
-    Thing& a = house.kernel.root().require<Thing>("/usr/a");
-    scripts(house.kernel).attach(a, "rule.lua", List{List{"limit", 4}, List{"who", "me"}});
+    Thing& a = host.kernel.root().require<Thing>("/usr/a");
+    scripts(host.kernel).attach(a, "rule.lua", List{List{"limit", 4}, List{"who", "me"}});
     CHECK(a.count == 4);
     CHECK(a.label == "menil");
-    house.write("list.lua", "local args = ...\nself.count = #args  self.anything = args");
-    scripts(house.kernel).attach(a, "list.lua", List{1, 2, List{3}});
+    host.write("list.lua", "local args = ...\nself.count = #args  self.anything = args");
+    scripts(host.kernel).attach(a, "list.lua", List{1, 2, List{3}});
     CHECK(a.count == 3);
     CHECK(a.anything == Value(List{1, 2, List{3}}));
   }
 }
 
-TEST_CASE("a script unloads plugins and loads them again") {
-  LuaHouse house;
-  CHECK_THAT(house.failure("unload 'nosuch'"),
+TEST_CASE("unload refuses a plugin that does not exist") {
+  LuaHost host;
+  CHECK_THAT(host.failure("unload 'nosuch'"),
              Catch::Contains("test:1: cannot unload plugin 'nosuch': there is none of that name"));
-  CHECK_THAT(house.failure("unload(3)"), Catch::Contains("expected a plugin's name"));
+  CHECK_THAT(host.failure("unload(3)"), Catch::Contains("expected a plugin's name"));
 }

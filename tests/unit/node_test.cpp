@@ -35,7 +35,7 @@ TEST_CASE("A leaf has nothing below it") {
   CHECK(leaf.find("..") == core.top);
 }
 
-TEST_CASE("Siblings of one name are told apart by number") {
+TEST_CASE("Siblings of the same name are numbered") {
   Core core;
   Thing &a = core.make("x"), &b = core.make("x"), &c = core.make("x");
   CHECK(a.path() == "/usr/t/x");
@@ -52,7 +52,7 @@ TEST_CASE("Siblings of one name are told apart by number") {
   CHECK(core.top->child("odd]") == &literal);
 }
 
-TEST_CASE("Names that no path can hold are refused") {
+TEST_CASE("Names that cannot be part of a path are refused") {
   Core core;
   Thing& a = core.make("a");
   for (const char* bad : {"x/y", "x\\y", ".", "..", ""}) {
@@ -67,7 +67,7 @@ TEST_CASE("Names that no path can hold are refused") {
   CHECK(core.kernel.structureVersion() > before);
 }
 
-TEST_CASE("An absolute path is the kernel's also for what is not linked") {
+TEST_CASE("An absolute path starts at the kernel's root also for a node outside the tree") {
   Core core;
   const auto loose = core.kernel.classOf("Thing").create();
   CHECK(loose->find("/usr/t") == core.top);
@@ -75,7 +75,7 @@ TEST_CASE("An absolute path is the kernel's also for what is not linked") {
   CHECK(loose->path() == "Thing");
 }
 
-TEST_CASE("A missing path says where it ends and what is near") {
+TEST_CASE("The error for a path that does not exist says where it ends and suggests similar names") {
   Core core;
   core.make("wheel");
   CHECK_THROWS_WITH(core.top->require<Thing>("/usr/t/wheal"), Catch::Contains("expected a Thing at '/usr/t/wheal'") &&
@@ -87,7 +87,7 @@ TEST_CASE("A missing path says where it ends and what is near") {
   CHECK(&core.top->require<ICounter>("wheel").leaf() == core.top->child("wheel"));
 }
 
-TEST_CASE("Interfaces are found through the class, bases included") {
+TEST_CASE("A node has the interfaces of its class and of the bases") {
   Core core;
   Leaf& heavy = core.top->create("HeavyThing", "h");
   CHECK(heavy.as<Thing>() != nullptr);
@@ -99,7 +99,7 @@ TEST_CASE("Interfaces are found through the class, bases included") {
   CHECK(core.top->as<ClassObject>() == nullptr);
 }
 
-TEST_CASE("Creating makes parents, refuses what exists, and names class and plugin") {
+TEST_CASE("create makes missing parents and refuses existing paths and unknown classes") {
   Core core;
   Leaf& deep = core.kernel.create("Thing", "/usr/x/y/z");
   CHECK(deep.path() == "/usr/x/y/z");
@@ -114,7 +114,7 @@ TEST_CASE("Creating makes parents, refuses what exists, and names class and plug
   CHECK(core.top->create("somewhere/Thing", "p").classObject()->name() == "Thing");
 }
 
-TEST_CASE("Only what a class made, without a parent, from this kernel can be added") {
+TEST_CASE("A node can only be added if a class of this kernel made it") {
   Core core, other;
   CHECK_THROWS_AS(core.top->add(nullptr), Error);
   CHECK_THROWS_WITH(core.top->add(std::make_unique<Thing>()), Catch::Contains("without a class"));
@@ -140,7 +140,7 @@ TEST_CASE("Parents are linked before children, and unlinked after them") {
   CHECK(order == "abcBCA");
 }
 
-TEST_CASE("When linking fails the tree is as before and what was linked is unlinked") {
+TEST_CASE("If linking fails, the linked nodes are unlinked and the tree is as before") {
   Core core;
   std::string order;
   auto tree = core.kernel.classOf("Thing").create();
@@ -163,7 +163,7 @@ TEST_CASE("When linking fails the tree is as before and what was linked is unlin
   CHECK(core.kernel.classOf("Thing").living() == 1);
 }
 
-TEST_CASE("A node may add and remove others while it is linked, but not itself") {
+TEST_CASE("While a node is being linked, it may add and remove other nodes but not itself or its parents") {
   Core core;
   Thing& victim = core.make("victim");
   auto made = core.kernel.classOf("Thing").create();
@@ -182,19 +182,19 @@ TEST_CASE("A node may add and remove others while it is linked, but not itself")
   CHECK(core.top->child("victim") == nullptr);
   CHECK(t.child("third")->isLinked());
 
-  auto suicidal = core.kernel.classOf("Thing").create();
-  suicidal->as<Thing>()->atLink = [](Thing& self) { self.parent()->remove(self); };
-  CHECK_THROWS_WITH(core.top->add(std::move(suicidal)), Catch::Contains("just being linked"));
+  auto removesItself = core.kernel.classOf("Thing").create();
+  removesItself->as<Thing>()->atLink = [](Thing& self) { self.parent()->remove(self); };
+  CHECK_THROWS_WITH(core.top->add(std::move(removesItself)), Catch::Contains("just being linked"));
 
   Thing& outer = core.make("outer");
-  auto sawing = core.kernel.classOf("Thing").create();
-  sawing->as<Thing>()->atLink = [&](Thing&) { core.top->remove(outer); };
-  CHECK_THROWS_WITH(core.make(outer, "inner").add(std::move(sawing)),
+  auto removesParent = core.kernel.classOf("Thing").create();
+  removesParent->as<Thing>()->atLink = [&](Thing&) { core.top->remove(outer); };
+  CHECK_THROWS_WITH(core.make(outer, "inner").add(std::move(removesParent)),
                     Catch::Contains("cannot remove /usr/t/outer now: /usr/t/outer/inner/Thing is just being linked"));
   CHECK(core.top->child("outer") == &outer);
 }
 
-TEST_CASE("What onUnlink throws is logged, and the node goes all the same") {
+TEST_CASE("If onUnlink throws, the error is logged and the node is removed") {
   Core core;
   core.make("x").atUnlink = [](Thing& self) { self.parent()->remove(self); };
   core.top->remove(*core.top->child("x"));
@@ -202,7 +202,7 @@ TEST_CASE("What onUnlink throws is logged, and the node goes all the same") {
   CHECK_THAT(core.text, Catch::Contains("/usr/t/x (class Thing) failed to leave the tree"));
 }
 
-TEST_CASE("What onUnlink makes goes too") {
+TEST_CASE("Children that onUnlink makes are removed too") {
   Core core;
   Thing& x = core.make("x");
   std::string order;
@@ -218,7 +218,7 @@ TEST_CASE("What onUnlink makes goes too") {
   CHECK(core.kernel.classOf("Thing").living() == 1);
 }
 
-TEST_CASE("Removing destroys children first, front to back") {
+TEST_CASE("Removing a node destroys its children first, from first to last") {
   Core core;
   std::string order;
   Thing& a = core.make("a");
@@ -239,7 +239,7 @@ TEST_CASE("References are empty before the first destructor runs") {
   REQUIRE(copy.get() == &a);
   CHECK(toB->count() == 0);
   bool seen = true;
-  b.atEnd = [&](Thing&) { seen = toA || toB || toC; };  // b goes first
+  b.atEnd = [&](Thing&) { seen = toA || toB || toC; };  // b is destroyed first
   core.top->remove(a);
   CHECK_FALSE(seen);
   CHECK_FALSE(copy);
@@ -250,7 +250,7 @@ TEST_CASE("References are empty before the first destructor runs") {
   CHECK_FALSE(copy);
 }
 
-TEST_CASE("A reference outlives the kernel") {
+TEST_CASE("A reference may outlive the kernel and is then empty") {
   Ref<Thing> ref;
   {
     Core core;
@@ -260,7 +260,7 @@ TEST_CASE("A reference outlives the kernel") {
   CHECK_FALSE(ref);
 }
 
-TEST_CASE("Reparenting keeps the object, tells all that moved, and appends") {
+TEST_CASE("Reparenting keeps the object, calls onMoved of the moved nodes, and appends the node to the new parent") {
   Core core;
   Thing &a = core.make("a"), &b = core.make("b"), &c = core.make(a, "c"), &d = core.make(c, "d");
   core.make(b, "first");
@@ -279,7 +279,7 @@ TEST_CASE("Reparenting keeps the object, tells all that moved, and appends") {
   CHECK_THROWS_AS(a.reparent(c, *core.top), Error);
 }
 
-TEST_CASE("A move that fails is taken back") {
+TEST_CASE("A move that fails is undone") {
   Core core;
   Thing &a = core.make("a"), &b = core.make("b"), &c = core.make(a, "c");
   c.atMove = [&](Thing& t) {
@@ -290,7 +290,7 @@ TEST_CASE("A move that fails is taken back") {
   CHECK(b.children().empty());
 }
 
-TEST_CASE("Moving to a tree that is not linked unlinks, and back links") {
+TEST_CASE("A node that moves out of the kernel's tree is unlinked, and linked when it moves back") {
   Core core;
   auto loose = core.kernel.classOf("Node").create();
   Thing& c = core.make("c");
@@ -305,7 +305,7 @@ TEST_CASE("Moving to a tree that is not linked unlinks, and back links") {
   CHECK(links == 1);
 }
 
-TEST_CASE("The kernel's own nodes cannot be removed, moved, renamed or joined") {
+TEST_CASE("The kernel's own nodes cannot be removed, moved, renamed or given other children") {
   Core core;
   Node& root = core.kernel.root();
   Leaf &classes = *root.child("classes"), &plugins = *root.child("plugins"), &thing = core.kernel.classOf("Thing");
@@ -339,7 +339,7 @@ TEST_CASE("Descendants of a type are collected depth first") {
   CHECK(core.top->ancestor<Thing>() == nullptr);
 }
 
-TEST_CASE("What is collected does not depend on whether the order is up to date") {
+TEST_CASE("collect gives the same nodes whether the tree order is up to date or not") {
   Core core;
   Thing &a = core.make("a"), &b = core.make(a, "b"), &c = core.make(b, "c"), &d = core.make("d");
   const auto collected = [](const Node& from, bool deep) {
@@ -376,7 +376,7 @@ TEST_CASE("What is collected does not depend on whether the order is up to date"
   check({&a, &d, &b, &c}, {&a, &d}, {});
 }
 
-TEST_CASE("What is not linked is collected all the same") {
+TEST_CASE("Nodes outside the kernel's tree are collected too") {
   Core core;
   core.kernel.updateOrder();
   auto made = core.kernel.classOf("Thing").create();
@@ -387,7 +387,7 @@ TEST_CASE("What is not linked is collected all the same") {
   CHECK(all == std::vector<Thing*>{inner.as<Thing>()});
 }
 
-TEST_CASE("A node knows when something changed below it") {
+TEST_CASE("A node knows when the tree below it last changed") {
   Core core;
   Thing &a = core.make("a"), &b = core.make("b");
   const auto changes = [&](const Node& node, const auto& act) {
@@ -409,7 +409,7 @@ TEST_CASE("A node knows when something changed below it") {
   CHECK(changes(a, [&] { a.reparent(*a.child("renamed"), b); }));
 }
 
-TEST_CASE("Ids are never used again, and several kernels live side by side") {
+TEST_CASE("Ids are not reused, and kernels have separate trees") {
   Core core, other;
   Thing& a = core.make("a");
   const std::uint64_t id = a.id();
@@ -418,7 +418,7 @@ TEST_CASE("Ids are never used again, and several kernels live side by side") {
   CHECK(other.kernel.root().find("/usr/t/b") == nullptr);
 }
 
-TEST_CASE("What is in use, and what is above it, can neither be removed nor moved nor renamed") {
+TEST_CASE("A node in use and the nodes above it cannot be removed, moved or renamed") {
   Core core;
   Thing &a = core.make("a"), &b = core.make(a, "b"), &c = core.make(b, "c"), &other = core.make("other");
   {
@@ -442,7 +442,7 @@ TEST_CASE("What is in use, and what is above it, can neither be removed nor move
   CHECK(core.top->children().empty());
 }
 
-TEST_CASE("Names below what is in use stay as far down as it says") {
+TEST_CASE("A use with a depth also protects the names of nodes below, down to that depth") {
   Core core;
   Thing &a = core.make("a"), &b = core.make(a, "b"), &c = core.make(b, "c");
   const InUse use(a, "paths lead there", 1);
@@ -452,9 +452,9 @@ TEST_CASE("Names below what is in use stay as far down as it says") {
   a.remove(b);
 }
 
-TEST_CASE("Uses end in any order, and with what was in use") {
+TEST_CASE("Several uses of a node may end in any order") {
   Core core;
-  auto kernel = std::make_unique<spark::test::House>(false);
+  auto kernel = std::make_unique<spark::test::TestHost>(false);
   Leaf& leaf = kernel->kernel.create("Node", "/usr/a");
   auto first = std::make_unique<InUse>(leaf, "one"), second = std::make_unique<InUse>(leaf, "two"),
        third = std::make_unique<InUse>(leaf, "three");
@@ -466,7 +466,7 @@ TEST_CASE("Uses end in any order, and with what was in use") {
   CHECK_NOTHROW(leaf.setName("b"));
 }
 
-TEST_CASE("Among very many children names lead to the same ones as among few") {
+TEST_CASE("Names are resolved correctly among hundreds of children") {
   Core core;
   std::vector<Thing*> all;
   for (int i = 0; i < 300; ++i) all.push_back(&core.make(i % 3 == 0 ? "same" : "n" + std::to_string(i)));
@@ -499,7 +499,7 @@ TEST_CASE("Among very many children names lead to the same ones as among few") {
   CHECK(core.top->child("same") == nullptr);
 }
 
-TEST_CASE("The tree has a greatest depth") {
+TEST_CASE("The depth of the tree is limited") {
   Core core;
   Node* at = core.top;
   const auto deeper = [&] { at = at->create("Node", "n").asNode(); };

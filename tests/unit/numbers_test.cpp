@@ -25,7 +25,7 @@ std::string general(double v) {
   return {text, putGeneral(text, v)};
 }
 
-/// A number and what is next to it, in both precisions.
+/// A number and its neighbours in both precisions.
 std::vector<double> around(double v) {
   const auto f = static_cast<float>(v);
   return {v,  std::nextafter(v, INFINITY),  std::nextafter(v, -INFINITY),
@@ -33,8 +33,8 @@ std::vector<double> around(double v) {
           -v, std::nextafter(-v, INFINITY)};
 }
 
-/// Numbers of every kind: any bits; sizes that are usual in messages; ties of few binary places; decimal ties; steps of
-/// ten.
+/// Numbers of every kind: random bits, magnitudes that are usual in messages, ties with few binary places, decimal
+/// ties, and powers of ten.
 std::vector<double> numbersOf(std::mt19937_64& random) {
   const std::uint64_t bits = random();
   const auto digits = static_cast<double>(static_cast<std::int64_t>(bits >> 20 & 0x1FFFFFF) - 0x1000000);
@@ -49,7 +49,7 @@ std::vector<double> numbersOf(std::mt19937_64& random) {
 }
 }  // namespace
 
-TEST_CASE("Numbers with fixed decimals are byte for byte what printf makes of them, ties included") {
+TEST_CASE("Numbers with fixed decimals are written byte for byte like printf writes them, ties included") {
   std::mt19937_64 random(1);
   for (int i = 0; i < 6000; ++i) {
     const int decimals = i % 11;
@@ -64,7 +64,7 @@ TEST_CASE("Numbers with fixed decimals are byte for byte what printf makes of th
   }
 }
 
-TEST_CASE("Numbers with six digits are byte for byte what printf's %g makes of them") {
+TEST_CASE("Numbers with six digits are written byte for byte like printf's %g writes them") {
   std::mt19937_64 random(2);
   for (int i = 0; i < 12000; ++i)
     for (const double v : numbersOf(random)) {
@@ -73,7 +73,7 @@ TEST_CASE("Numbers with six digits are byte for byte what printf's %g makes of t
     }
 }
 
-TEST_CASE("Six digits: zeros, steps of ten, what is not finite") {
+TEST_CASE("Zeros, powers of ten and non-finite numbers are written with up to six digits") {
   CHECK(general(0) == "0");
   CHECK(general(-0.0) == "-0");
   CHECK(general(1) == "1");
@@ -89,7 +89,7 @@ TEST_CASE("Six digits: zeros, steps of ten, what is not finite") {
   CHECK(general(-INFINITY) == "-inf");
 }
 
-TEST_CASE("Numbers are read to the last bit as atof reads them") {
+TEST_CASE("Numbers are read with the same bits as by atof") {
   std::mt19937_64 random(3);
   const auto check = [](const std::string& text) {
     const double found = readNumber(text), expected = std::atof(text.c_str());
@@ -132,7 +132,7 @@ TEST_CASE("Numbers are read to the last bit as atof reads them") {
     check(text);
 }
 
-TEST_CASE("Whole numbers are told from what only begins with one") {
+TEST_CASE("A text is read as a number only if all of it is the number") {
   for (const char* text : {"0", "-0", "+2", "1.", ".5", "-.5", "0x10", "1e3", "1E-300", "nan", "-inf",
                            "999999999999999", "9007199254740993", "123456789012345678901234567890"}) {
     CAPTURE(text);
@@ -150,7 +150,7 @@ TEST_CASE("Whole numbers are told from what only begins with one") {
   }
 }
 
-TEST_CASE("A writer's pieces arrive in order, long ones and a whole block of short ones too") {
+TEST_CASE("A writer writes short and long pieces in order, also beyond the size of its block") {
   const std::string longText(10000, 'x');
   std::string out = "a", expected = "a";
   {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Files of fixture plugins, and what is done to them.
+/// Files of fixture plugins, and functions to read and change them.
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -25,13 +25,13 @@ inline std::string bytesOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Writes into a file that is there, as cp does: whoever has it open sees it change.
+/// Writes into an existing file in place, like cp: a process that has it open sees the change.
 inline void overwrite(const fs::path& file, const std::string& bytes) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << bytes;
 }
 
-/// The bytes of a plugin with another version of the same length.
+/// The bytes of a plugin with its version string replaced by one of the same length.
 inline std::string withVersion(std::string bytes, const std::string& old, const std::string& now) {
   const std::size_t at = bytes.find(old + '\0');
   REQUIRE(at != std::string::npos);

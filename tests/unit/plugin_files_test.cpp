@@ -6,19 +6,19 @@
 
 #include "temporary_folder.h"
 
-// Which files are taken as plugins, and what is in memory of them. A refusal names file and reason, and nothing else
-// suffers.
+// Which files are accepted as plugins, and when their code is mapped. A refusal names the file and the reason, and has
+// no other effect.
 
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("Each bad file of a folder is refused by name and reason, and scanning goes on") {
-  House house(false);
-  const auto problems = house.kernel.plugins().scan(fixtures("bad-plugins"));
+TEST_CASE("A scan refuses each bad file with its name and the reason, and continues") {
+  TestHost host(false);
+  const auto problems = host.kernel.plugins().scan(fixtures("bad-plugins"));
   const std::pair<const char*, const char*> expected[] = {
       {"bad-name", "its name '../escaped' is none"},
       {"missing-dependency", "libspark-gone.so.1: cannot open shared object file"},
-      {"missing-symbol", "undefined symbol: _Z30sparkFunctionThatNobodyDefinesv"},
+      {"missing-symbol", "undefined symbol: _Z22sparkUndefinedFunctionv"},
       {"newer-abi", "it was built for the newer plugin ABI"},
       {"no-descriptor", "it has no symbol sparkPlugin"},
       {"no-headers", "it does not say which headers it was built with"},
@@ -31,34 +31,34 @@ TEST_CASE("Each bad file of a folder is refused by name and reason, and scanning
   REQUIRE(problems.size() == std::size(expected));
   for (std::size_t i = 0; i < std::size(expected); ++i) {
     CHECK_THAT(problems[i], Catch::Contains(bad(expected[i].first).string()) && Catch::Contains(expected[i].second));
-    CHECK_THAT(house.text, Catch::Contains(problems[i]));
+    CHECK_THAT(host.text, Catch::Contains(problems[i]));
   }
-  // Those that fail only when their classes are registered are listed.
+  // Plugins that fail only when their classes are registered are listed.
   std::vector<std::string> listed;
-  for (const auto& p : house.kernel.root().child("plugins")->asNode()->children()) listed.push_back(p->name());
+  for (const auto& p : host.kernel.root().child("plugins")->asNode()->children()) listed.push_back(p->name());
   CHECK(listed ==
         std::vector<std::string>{"duplicate-class", "own-base", "throws-no-exception", "throws-while-registering"});
   for (const auto& [name, reason] : expected) CHECK_FALSE(isMapped(bad(name)));
 }
 
-TEST_CASE("One file alone is refused with the same words") {
-  House house(false);
+TEST_CASE("useFile refuses bad files too and leaves nothing mapped") {
+  TestHost host(false);
   for (const char* name :
        {"bad-name", "missing-dependency", "missing-symbol", "newer-abi", "no-descriptor", "no-headers", "not-a-library",
         "older-abi", "other-headers", "other-sanitizer", "wrong-magic", "duplicate-class", "own-base",
         "throws-no-exception", "throws-while-registering"}) {
     CAPTURE(name);
-    CHECK_THAT(refusal([&] { house.kernel.plugins().useFile(bad(name)); }), Catch::Contains(bad(name).string()));
-    CHECK(house.kernel.root().child("plugins")->asNode()->children().empty());
+    CHECK_THAT(refusal([&] { host.kernel.plugins().useFile(bad(name)); }), Catch::Contains(bad(name).string()));
+    CHECK(host.kernel.root().child("plugins")->asNode()->children().empty());
     CHECK_FALSE(isMapped(bad(name)));
   }
-  CHECK_THAT(refusal([&] { house.kernel.plugins().useFile("/nowhere/x.so"); }),
+  CHECK_THAT(refusal([&] { host.kernel.plugins().useFile("/nowhere/x.so"); }),
              Catch::Contains("/nowhere/x.so") && Catch::Contains("No such file"));
 }
 
-TEST_CASE("A plugin fits as long as the headers that it includes are the host's, whatever their comments say") {
-  House house(false);
-  Loader& loader = house.kernel.plugins();
+TEST_CASE("A plugin is accepted if the headers that it includes equal the host's except for comments") {
+  TestHost host(false);
+  Loader& loader = host.kernel.plugins();
   const auto variant = [](const std::string& name) { return fixtures("abi-plugins") / (name + ".so"); };
   CHECK(loader.useFile(variant("other-comments")).registered());
   CHECK(loader.useFile(variant("other-unused")).registered());
@@ -68,24 +68,23 @@ TEST_CASE("A plugin fits as long as the headers that it includes are the host's,
                  Catch::Contains("Build it again with this host's headers"));
 }
 
-TEST_CASE("A file that is cut off, empty or a folder is refused") {
-  House house(false);
+TEST_CASE("A truncated file, an empty file and a folder are refused") {
+  TestHost host(false);
   const test::TemporaryFolder folder;
   fs::copy_file(good("fixture-base"), folder.path() / "cut.so");
   fs::resize_file(folder.path() / "cut.so", fs::file_size(good("fixture-base")) / 3);
   std::ofstream(folder.path() / "empty.so").flush();
   fs::create_directory(folder.path() / "folder.so");
-  std::ofstream(folder.path() / "readme.txt") << "not looked at";
-  const auto problems = house.kernel.plugins().scan(folder.path());
+  std::ofstream(folder.path() / "readme.txt") << "ignored";
+  const auto problems = host.kernel.plugins().scan(folder.path());
   REQUIRE(problems.size() == 3);
   CHECK_THAT(problems[0], Catch::Contains("cut.so") && Catch::Contains("it is cut off"));
   CHECK_THAT(problems[1], Catch::Contains("empty.so") && Catch::Contains("it is no shared library"));
   CHECK_THAT(problems[2], Catch::Contains("folder.so"));
-  CHECK_THAT(house.kernel.plugins().scan(folder.path() / "nowhere").at(0),
-             Catch::Contains("cannot read plugin folder"));
+  CHECK_THAT(host.kernel.plugins().scan(folder.path() / "nowhere").at(0), Catch::Contains("cannot read plugin folder"));
 }
 
-TEST_CASE("A file one of whose segments lies where nothing is loaded is refused") {
+TEST_CASE("A file with a segment outside of the loaded memory is refused") {
   const std::string whole = bytesOf(good("fixture-base"));
   Elf64_Ehdr head;
   REQUIRE(whole.size() > sizeof head);
@@ -104,46 +103,46 @@ TEST_CASE("A file one of whose segments lies where nothing is loaded is refused"
     ++moved;
   }
   REQUIRE(moved >= 2);
-  House house(false);
-  CHECK(house.kernel.plugins().scan(folder.path()).size() == moved);
+  TestHost host(false);
+  CHECK(host.kernel.plugins().scan(folder.path()).size() == moved);
 }
 
-TEST_CASE("A file that is overwritten while its plugin runs harms nobody, and loading again gives the new version") {
+TEST_CASE("Overwriting the file of a running plugin does no harm, and loading it again gives the new version") {
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "fixture-base.so";
   fs::copy_file(good("fixture-base"), file);
-  House house(false);
-  Loader& loader = house.kernel.plugins();
+  TestHost host(false);
+  Loader& loader = host.kernel.plugins();
   loader.scan(folder.path());
   loader.use("fixture-base");
   const std::string whole = bytesOf(file);
-  overwrite(file, whole.substr(0, whole.size() / 3));  // a copy that is under way
-  Leaf& made = house.kernel.create("FixtureBase", "/usr/a");
-  house.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
+  overwrite(file, whole.substr(0, whole.size() / 3));  // like an unfinished copy
+  Leaf& made = host.kernel.create("FixtureBase", "/usr/a");
+  host.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
   CHECK(getProperty(made, "number") == Value(2.0));
   overwrite(file, withVersion(whole, "1.2", "1.3"));
-  house.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
+  host.kernel.events().channel("fixtureTick").emit({"fixtureTick", 0, 0, 0, nullptr});
   CHECK(getProperty(made, "number") == Value(3.0));
-  CHECK(house.kernel.root().require<Plugin>("/plugins/fixture-base").version() == "1.2");
+  CHECK(host.kernel.root().require<Plugin>("/plugins/fixture-base").version() == "1.2");
   made.parent()->remove(made);
   loader.unload("fixture-base");
   CHECK_FALSE(isMapped(file));
   const Plugin& again = loader.use("fixture-base");  // without a scan
   CHECK(again.version() == "1.3");
   CHECK(again.file() == file.string());
-  CHECK(house.kernel.create("FixtureBase", "/usr/a").classObject()->plugin() == &again);
+  CHECK(host.kernel.create("FixtureBase", "/usr/a").classObject()->plugin() == &again);
 }
 
-TEST_CASE("A file that is broken when it is to be loaded again is refused, and may be repaired") {
+TEST_CASE("Loading a plugin again is refused while its file is broken, and works once it is repaired") {
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "fixture-base.so";
   fs::copy_file(good("fixture-base"), file);
   const std::string whole = bytesOf(file);
-  House house(false);
-  Loader& loader = house.kernel.plugins();
+  TestHost host(false);
+  Loader& loader = host.kernel.plugins();
   loader.useFile(file);
   loader.unload("fixture-base");
-  overwrite(file, whole.substr(0, 4000));  // of a file with debug information half would do
+  overwrite(file, whole.substr(0, 4000));  // half of the file could be intact if the rest is debug information
   CHECK_THAT(refusal([&] { loader.use("fixture-base"); }),
              Catch::Contains(file.string()) && Catch::Contains("it is cut off"));
   fs::remove(file);
@@ -152,14 +151,14 @@ TEST_CASE("A file that is broken when it is to be loaded again is refused, and m
   CHECK(loader.use("fixture-base").registered());
 }
 
-TEST_CASE("Kernels share a file that is the same, and each keeps the version that it loaded") {
+TEST_CASE("Kernels share the code of identical files, and each keeps the version that it loaded") {
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "fixture-base.so";
   fs::copy_file(good("fixture-base"), file);
-  const auto codeOf = [](House& house) {
-    return reinterpret_cast<const void*>(house.kernel.classOf("FixtureBase").hooks().front()->run);
+  const auto codeOf = [](TestHost& host) {
+    return reinterpret_cast<const void*>(host.kernel.classOf("FixtureBase").hooks().front()->run);
   };
-  House a(false), b(false), c(false);
+  TestHost a(false), b(false), c(false);
   a.kernel.plugins().useFile(file);
   b.kernel.plugins().useFile(file);
   CHECK(codeOf(a) == codeOf(b));
@@ -171,41 +170,41 @@ TEST_CASE("Kernels share a file that is the same, and each keeps the version tha
 }
 
 TEST_CASE("Debuggers find a plugin's code under its file's name") {
-  House house(false);
-  house.kernel.plugins().useFile(good("fixture-base"));
+  TestHost host(false);
+  host.kernel.plugins().useFile(good("fixture-base"));
   Dl_info info = {};
-  REQUIRE(dladdr(reinterpret_cast<const void*>(house.kernel.classOf("FixtureBase").hooks().front()->run), &info) != 0);
+  REQUIRE(dladdr(reinterpret_cast<const void*>(host.kernel.classOf("FixtureBase").hooks().front()->run), &info) != 0);
   CHECK(std::string(info.dli_fname) == good("fixture-base").string());
 }
 
-TEST_CASE("Where no private copy can be made the file itself is loaded") {
-  House house(false);
+TEST_CASE("If no private copy can be made, the file itself is loaded") {
+  TestHost host(false);
   rlimit before = {};
   REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
   const rlimit none{100, before.rlim_max};
   REQUIRE(setrlimit(RLIMIT_FSIZE, &none) == 0);
-  Plugin& plugin = house.kernel.plugins().useFile(good("fixture-base"));
+  Plugin& plugin = host.kernel.plugins().useFile(good("fixture-base"));
   setrlimit(RLIMIT_FSIZE, &before);
   CHECK(plugin.registered());
   CHECK(isMapped(good("fixture-base")));
-  house.kernel.plugins().unload("fixture-base");
+  host.kernel.plugins().unload("fixture-base");
   CHECK_FALSE(isMapped(good("fixture-base")));
 }
 
-TEST_CASE("A library that a plugin finds relative to its own file is found, and goes with it") {
+TEST_CASE("A library next to a plugin's file is found and is unloaded with the plugin") {
   const test::TemporaryFolder folder;
   fs::copy(fixtures("neighbour-plugins"), folder.path() / "elsewhere", fs::copy_options::recursive);
-  House house(false);
+  TestHost host(false);
   const fs::path file = folder.path() / "elsewhere" / "with-neighbour.so",
                  library = folder.path() / "elsewhere" / "lib" / "libfixture-neighbour.so";
-  house.kernel.plugins().useFile(file);
-  CHECK(getProperty(house.kernel.create("WithNeighbour", "/usr/a"), "answer") == Value(42));
+  host.kernel.plugins().useFile(file);
+  CHECK(getProperty(host.kernel.create("WithNeighbour", "/usr/a"), "answer") == Value(42));
   CHECK(isMapped(library));
-  house.kernel.root().child("usr")->asNode()->removeChildren();
-  house.kernel.plugins().unload("with-neighbour");
+  host.kernel.root().child("usr")->asNode()->removeChildren();
+  host.kernel.plugins().unload("with-neighbour");
   CHECK_FALSE(isMapped(file));
   CHECK_FALSE(isMapped(library));
   fs::remove(library);
-  CHECK_THAT(refusal([&] { house.kernel.plugins().use("with-neighbour"); }),
+  CHECK_THAT(refusal([&] { host.kernel.plugins().use("with-neighbour"); }),
              Catch::Contains(file.string()) && Catch::Contains("libfixture-neighbour.so: cannot open"));
 }

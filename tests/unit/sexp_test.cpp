@@ -7,8 +7,8 @@
 using namespace spark;
 
 namespace {
-/// Reads and shows the tokens: lists in brackets, atoms with a mark for quoted ones. An error follows as line:column
-/// message.
+/// Reads and shows the tokens: lists in brackets, quoted atoms with a leading '. An error follows as "!line:column
+/// message".
 std::string shown(std::string_view text, ReadLimits limits = {}, std::size_t maxExpressions = 0) {
   Predicates p;
   const ReadResult r = readSexp(text, p, limits, maxExpressions);
@@ -32,7 +32,7 @@ std::string shown(std::string_view text, ReadLimits limits = {}, std::size_t max
 }
 }  // namespace
 
-TEST_CASE("Expressions stand one after another, blanks between them or not") {
+TEST_CASE("Expressions follow each other with or without blanks between them") {
   CHECK(shown("(he1 1.2)(he2 -0.3)(syn)") == "[he1 1.2] [he2 -0.3] [syn]");
   CHECK(shown(" \t\r\n(a\n\t(b  c)\r)  ") == "[a [b c]]");
   CHECK(shown("").empty());
@@ -41,7 +41,7 @@ TEST_CASE("Expressions stand one after another, blanks between them or not") {
   CHECK(shown("top (x) level") == "top [x] level");
 }
 
-TEST_CASE("A comment starts where a token may start, and swallows the rest of the line") {
+TEST_CASE("A comment starts where a token may start, and extends to the end of the line") {
   CHECK(shown("(say ;zz)(he1 1)") == " !1:1 the list is not closed");
   CHECK(shown("(a ; one\n b) ;; two") == "[a b]");
   CHECK(shown("(setAxis 1 0 0 ;note\n)") == "[setAxis 1 0 0]");
@@ -49,7 +49,7 @@ TEST_CASE("A comment starts where a token may start, and swallows the rest of th
   CHECK(shown(";only") == "");
 }
 
-TEST_CASE("Double quotes make one atom and may touch their neighbours") {
+TEST_CASE("Double quotes enclose one atom and need no blanks around them") {
   CHECK(shown(R"(("NaoType["$type"]['UseToe']"))") == "['NaoType[ $type ']['UseToe']]");
   CHECK(shown(R"(("a b" c))") == "['a b c]");
   CHECK(shown(R"((a"b"c))") == "[a 'b c]");
@@ -74,7 +74,7 @@ TEST_CASE("A backslash escapes quotes, parentheses and itself, and nothing else"
   CHECK(shown("a\\") == "a\\");
 }
 
-TEST_CASE("Atoms are made of the bytes that the installed base takes") {
+TEST_CASE("Atoms may contain the bytes that the installed base accepts") {
   for (int c = 1; c < 256; ++c) {
     const bool atom = c == '!' || (c >= 0x23 && c <= 0x26) || (c >= 0x2A && c <= 0x7E && c != ';') || c > 0x7F;
     if (std::string_view(" \t\r\n();\"'\\").find(static_cast<char>(c)) != std::string_view::npos) continue;
@@ -89,12 +89,12 @@ TEST_CASE("Atoms are made of the bytes that the installed base takes") {
   CHECK(shown(std::string_view("(a \0b)", 6)) == " !1:4 byte 0x00 is no part of an atom");
 }
 
-TEST_CASE("A stray parenthesis ends the message; what came before stays") {
+TEST_CASE("A stray parenthesis ends the message, and the expressions before it are kept") {
   CHECK(shown("(a))(b)") == "[a] !1:4 ')' without '('");
   CHECK(shown(")") == " !1:1 ')' without '('");
 }
 
-TEST_CASE("In a file whose lines are indented the list that is not closed is found by the line behind it") {
+TEST_CASE("In an indented file, an unclosed list is located by the indentation of the next line") {
   const auto wrong = [](std::string_view text) {
     Predicates out;
     const ReadResult r = readSexp(text, out, ReadLimits{64, 1 << 16, true});
@@ -105,20 +105,20 @@ TEST_CASE("In a file whose lines are indented the list that is not closed is fou
   CHECK(wrong("(nd A\n  (nd B\n    (setX 1\n  (nd C))\n)") == "3:5 the list is not closed: line 4 begins beside it");
   CHECK(wrong("(nd A ; (\n  (say \"a ( \\\" ;\n\")\n  (nd B\n  (nd C))") ==
         "4:3 the list is not closed: line 5 begins beside it");
-  // Bare brackets have what is in them below them; the last line cannot say anything; some do not indent.
+  // No location: a bare bracket whose content is below it; an error in the last line; a file without indentation.
   CHECK(wrong("(\n(nd A)\n(nd B (c)\n)") == "1:1 the list is not closed");
   CHECK(wrong("(nd A\n  (nd B)\n  (nd C (d)") == "1:1 the list is not closed");
   CHECK(wrong("(nd A\n(nd B\n(c 1)\n)\n(nd D\n(e 1)\n") == "1:1 the list is not closed");
 }
 
-TEST_CASE("What is not closed is dropped, and the error says where it began") {
+TEST_CASE("An expression that is not closed is dropped, and the error says where it begins") {
   CHECK(shown("(a)\n  (b (c)") == "[a] !2:3 the list is not closed");
   CHECK(shown("(a \"bc)") == " !1:4 the string is not closed");
   CHECK(shown("(a\n '(b)") == " !1:1 the list is not closed");
   CHECK(shown("(a\n '((b)") == " !2:2 the quoted list is not closed");
 }
 
-TEST_CASE("Tokens know line and column, from 1") {
+TEST_CASE("Tokens know their line and column, counted from 1") {
   Predicates p;
   REQUIRE(readSexp("(a \"b\"\n  (c)\n)", p).message.empty());
   std::vector<std::pair<int, int>> at;
@@ -126,21 +126,21 @@ TEST_CASE("Tokens know line and column, from 1") {
   CHECK(at == std::vector<std::pair<int, int>>{{1, 1}, {1, 2}, {1, 4}, {2, 3}, {2, 4}});
 }
 
-TEST_CASE("Only as many expressions are read as wanted") {
+TEST_CASE("Reading stops after the requested number of expressions") {
   CHECK(shown("(a)(b)))", {}, 2) == "[a] [b]");
   Predicates p;
   CHECK(readSexp("(a) (b) (c)", p, {}, 2).consumed == 7);
   CHECK(readSexp("x (b)", p, {}, 1).consumed == 1);
 }
 
-TEST_CASE("Depth and number of tokens are limited") {
+TEST_CASE("The depth and the number of tokens are limited") {
   CHECK(shown("(((a)))", {3, 100}) == "[[[a]]]");
   CHECK(shown("(x)((((a))))", {3, 100}) == "[x] !1:7 lists nested deeper than 3");
   CHECK(shown("(a b)", {3, 3}) == "[a b]");
   CHECK(shown("(a b c)", {3, 3}) == " !1:6 more than 3 tokens");
 }
 
-TEST_CASE("200,000 nested parentheses are refused in no time, and read where they are allowed") {
+TEST_CASE("200000 nested parentheses are refused at the depth limit, and read if the limit allows them") {
   const std::string deep(200000, '(');
   CHECK(shown(deep) == " !1:65 lists nested deeper than 64");
   Predicates p;
@@ -150,7 +150,7 @@ TEST_CASE("200,000 nested parentheses are refused in no time, and read where the
   CHECK(p.tokens()[0].size == 200000);
 }
 
-TEST_CASE("Reading appends, and an error takes back only its own expression") {
+TEST_CASE("Reading appends, and an error removes only the faulty expression") {
   Predicates p;
   p.open("before").add(1).close();
   CHECK_FALSE(readSexp("(ok)(bad (x", p).message.empty());
@@ -159,7 +159,7 @@ TEST_CASE("Reading appends, and an error takes back only its own expression") {
   CHECK(out == "(before 1)(ok )");
 }
 
-TEST_CASE("Numbers are read from text as C does") {
+TEST_CASE("Numbers are read from text as in C") {
   Predicates p;
   readSexp("(1e-3 +2 0x10 nan inf abc 12abc -0 () -3.9)", p);
   const Element e = *p.begin();
@@ -181,7 +181,7 @@ TEST_CASE("Numbers are read from text as C does") {
   CHECK((*longNumber.begin()).number() == 1e100);
 }
 
-TEST_CASE("An element tells whether it is a number") {
+TEST_CASE("An element knows whether it is a number") {
   Predicates p;
   REQUIRE(readSexp("(he1 1.5 abc 1.5x (2) \"3\")", p).message.empty());
   const Element action = *p.begin();
@@ -197,7 +197,7 @@ TEST_CASE("An element tells whether it is a number") {
   CHECK((*written.begin()).at(2).asNumber() == 7);
 }
 
-TEST_CASE("Lists that were left open can be closed, and what comes next stands on its own") {
+TEST_CASE("balance closes open lists, and the next list starts at the top level") {
   Predicates p;
   p.open("GYR").open("rt").add(1);
   CHECK(p.isUnbalanced());
@@ -214,7 +214,7 @@ TEST_CASE("Lists that were left open can be closed, and what comes next stands o
   CHECK(p.balance() == 0);
 }
 
-TEST_CASE("Named parameters are the first sub-list of that name with a value") {
+TEST_CASE("A named parameter is the first sub-list with that name and a value") {
   Predicates p;
   readSexp("(init (unum) unum (x 1) (unum 7 8) (unum 9) (teamname \"A B\"))", p);
   const Element e = *p.begin();
@@ -245,7 +245,7 @@ TEST_CASE("Messages are written as the installed base expects them") {
   CHECK(out == "(a 0.333)");
 }
 
-TEST_CASE("Fixed numbers look as C prints them") {
+TEST_CASE("Numbers with fixed decimals look like those that C prints") {
   const auto text = [](double v, int decimals, DoubleRange doubles = {}) {
     std::string out;
     appendFixed(out, v, decimals, doubles);
@@ -267,7 +267,7 @@ TEST_CASE("Fixed numbers look as C prints them") {
   CHECK(text(1e308, 1000, kAllDouble).size() == 309 + 1 + 60);
 }
 
-TEST_CASE("Predicates copy, cut and reuse their memory") {
+TEST_CASE("Predicates can be copied, truncated and reused") {
   Predicates p;
   readSexp("(a (b 1) \"c d\")(e)", p);
   Predicates copy;
@@ -284,7 +284,7 @@ TEST_CASE("Predicates copy, cut and reuse their memory") {
   CHECK(p.size() == 0);
 }
 
-TEST_CASE("What was read before stays as it was when the rest is cut off") {
+TEST_CASE("Truncating keeps the expressions that were read before") {
   Predicates p;
   readSexp("(kept-and-longer-than-eight)", p);
   const auto size = static_cast<std::uint32_t>(p.size());
@@ -298,7 +298,7 @@ TEST_CASE("What was read before stays as it was when the rest is cut off") {
   }
 }
 
-TEST_CASE("Predicates become values and back") {
+TEST_CASE("Predicates can be converted to values and back") {
   Predicates p;
   readSexp("(a (b 1))", p);
   p.open("n").add(2.5).add(3).close();

@@ -16,7 +16,7 @@ std::string saved(const Leaf& root) {
   return out.bytes();
 }
 
-/// State that takes any number of plain arguments.
+/// A state property of any number of plain values.
 class Listing : public Leaf {
   SPARK_CLASS(Listing, Leaf)
  public:
@@ -47,7 +47,7 @@ TEST_CASE("Random streams depend on seed, path, class and purpose") {
   CHECK(first.size() == 4);
 }
 
-TEST_CASE("Equal streams differ by ordinal, and one more sensor does not change another's noise") {
+TEST_CASE("Two streams of one node and purpose differ, and a new node does not change another's stream") {
   Core core, more;
   Thing &a = core.make("a"), &b = more.make("a");
   RandomStream one(a, "n"), two(a, "n");
@@ -59,7 +59,7 @@ TEST_CASE("Equal streams differ by ordinal, and one more sensor does not change 
   CHECK(same.bits() == first);
 }
 
-TEST_CASE("Draws stay in their range and spread") {
+TEST_CASE("Random draws stay in their range and have the expected distribution") {
   RandomStream s(42);
   double sum = 0, squares = 0;
   std::array<int, 5> counts{};
@@ -81,7 +81,7 @@ TEST_CASE("Draws stay in their range and spread") {
   CHECK(cards != std::vector<int>{1, 2, 3, 4, 5, 6, 7, 8, 9});
 }
 
-TEST_CASE("The generator gives the published numbers") {
+TEST_CASE("The random generator gives the published numbers") {
   // splitmix64 of seed 0 as its author lists it; the stream's state starts with these four words.
   RandomStream s(0);
   const Value state = Convert<RandomStream>::to(s);
@@ -89,7 +89,7 @@ TEST_CASE("The generator gives the published numbers") {
   CHECK(static_cast<std::uint64_t>(state.at(1)->toInteger()) == 0x6e789e6aa1b965f4ull);
 }
 
-TEST_CASE("A stream saved in the middle goes on as it would have") {
+TEST_CASE("A restored random stream continues where it was saved") {
   Core core;
   RandomStream s(7);
   s.normal();
@@ -104,7 +104,7 @@ TEST_CASE("A stream saved in the middle goes on as it would have") {
   CHECK_THROWS_WITH(Convert<RandomStream>::from(badArgs), Catch::Contains("six numbers"));
 }
 
-TEST_CASE("The hash of bytes is the same everywhere") {
+TEST_CASE("The hash of bytes depends on the bytes and the seed only") {
   CHECK(hashBytes("") != hashBytes("", 1));
   CHECK(hashBytes("ab") != hashBytes("ba"));
   CHECK(hashBytes("spark") == hashBytes(std::string("spark")));
@@ -122,7 +122,7 @@ TEST_CASE("The hash of a state is the same in every build") {
   CHECK(out.hash() == 0x78450215be7f88e7ull);
 }
 
-TEST_CASE("The state hash sees every state property, hidden state and the order of nodes") {
+TEST_CASE("The state hash covers every state property, hidden state and the order of nodes") {
   Core core;
   Thing &a = core.make("a"), &b = core.make("b");
   std::set<std::uint64_t> hashes{stateHash(*core.top)};
@@ -143,7 +143,7 @@ TEST_CASE("The state hash sees every state property, hidden state and the order 
   CHECK(hashes.size() == 8);
 }
 
-TEST_CASE("The state hash does not see names, nor what is no state") {
+TEST_CASE("The state hash does not cover names and properties that are not state") {
   Core core;
   Thing& a = core.make("a");
   const std::uint64_t before = stateHash(*core.top);
@@ -198,7 +198,7 @@ TEST_CASE("State that does not fit is refused") {
   CHECK_THROWS_AS(in.readString(), Error);
 }
 
-TEST_CASE("What was written is read back") {
+TEST_CASE("A state reader returns the written values") {
   StateWriter out(true);
   out.write(-0.0);
   out.write(std::int64_t{-7});

@@ -33,14 +33,14 @@ TEST_CASE("A value knows its type") {
   CHECK(typeName(Value().type()) == "nil");
 }
 
-TEST_CASE("Values of another type differ, as integers and numbers do") {
+TEST_CASE("Values of different types differ, also integers and numbers") {
   CHECK(Value(3) == Value(3));
   CHECK(Value(3) != Value(3.0));
   CHECK(Value("true") != Value(true));
   CHECK(Value(List{1, "a"}) == Value(List{1, "a"}));
 }
 
-TEST_CASE("Text shows what a value is") {
+TEST_CASE("The text of a value shows its type") {
   CHECK(Value().text() == "nil");
   CHECK(Value(false).text() == "false");
   CHECK(Value(-3).text() == "-3");
@@ -54,7 +54,7 @@ TEST_CASE("Text shows what a value is") {
   CHECK(Value(std::nan("")).text() == "nan");
 }
 
-TEST_CASE("Numbers read back from their text unchanged") {
+TEST_CASE("Numbers are unchanged when read back from their text") {
   for (const double d : {0.1, -0.0, 1.0 / 3.0, 1e-310, 1.7976931348623157e308, 4503599627370497.5}) {
     const Value back = Value::fromText(Value(d).text());
     REQUIRE(back.type() == Value::Type::number);
@@ -64,7 +64,7 @@ TEST_CASE("Numbers read back from their text unchanged") {
   CHECK(Value::fromText("9223372036854775807").toInteger() == std::numeric_limits<std::int64_t>::max());
 }
 
-TEST_CASE("What a person types becomes the value it looks like") {
+TEST_CASE("A text becomes the value that it looks like") {
   CHECK(Value::fromText("true") == Value(true));
   CHECK(Value::fromText("nil").isNil());
   CHECK(Value::fromText("+5") == Value(5));
@@ -79,7 +79,7 @@ TEST_CASE("What a person types becomes the value it looks like") {
   CHECK(Value::fromText("").isString());
 }
 
-TEST_CASE("What a person types is read when it is known what it is for") {
+TEST_CASE("A typed-in text is converted when the expected type is known") {
   const auto read = [](const char* text, const char* type) { return Value::typed(text).readAs(type); };
   for (const char* text :
        {"007", "1e3", "0123456789012345678", "12345678901234567890", "nil", "true", "{a, b}", " x ", ""}) {
@@ -102,7 +102,7 @@ TEST_CASE("What a person types is read when it is known what it is for") {
   CHECK_FALSE(Value("12").isTyped());
 }
 
-TEST_CASE("A list that is not well formed is a string, and reading it ends") {
+TEST_CASE("A malformed list is read as a string") {
   for (const char* text : {"[1}", "{1]", "{", "{1", "[[1]", "{,}", "{1} x", "[}", "{{{{"}) {
     CAPTURE(text);
     CHECK(Value::fromText(text) == Value(text));
@@ -122,7 +122,7 @@ TEST_CASE("Lists of pairs are tables") {
   CHECK(Value(1).at(0) == nullptr);
 }
 
-TEST_CASE("Strict conversions take what is exact and refuse the rest") {
+TEST_CASE("Strict conversions accept exact values and refuse the rest") {
   CHECK(from<double>(3) == 3.0);
   CHECK(from<double>("2.5") == 2.5);
   CHECK(from<double>(List{7}) == 7.0);
@@ -162,7 +162,7 @@ TEST_CASE("64-bit integers keep all bits") {
   CHECK_THROWS_AS(from<std::uint64_t>(-1.0), Error);
 }
 
-TEST_CASE("Lists take one list or all that is left") {
+TEST_CASE("A list parameter takes one list or all remaining arguments") {
   CHECK(from<std::vector<double>>(List{1, 2.5}) == std::vector<double>{1, 2.5});
   const std::vector<Value> plain{1, 2, 3};
   Args args{plain};

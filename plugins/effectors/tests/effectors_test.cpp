@@ -9,8 +9,8 @@ using namespace spark::test;
 
 namespace {
 
-/// A robot of one transform `/usr/robot` with a body and a joint, to which tests add effectors.
-struct Robot : House {
+/// A robot with a single transform `/usr/robot`, a body and a joint. Tests add effectors to it.
+struct Robot : TestHost {
   Robot() {
     registerFakePhysics(kernel);
     kernel.plugins().use("effectors");
@@ -36,7 +36,7 @@ struct Robot : House {
 
 }  // namespace
 
-TEST_CASE("a hinge is driven at once, within its greatest speed, and keeps its speed") {
+TEST_CASE("a command sets the speed of a hinge at once, limited to its maximum speed") {
   Robot robot;
   auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
   CHECK(he1.predicate() == "he1");
@@ -51,7 +51,7 @@ TEST_CASE("a hinge is driven at once, within its greatest speed, and keeps its s
   CHECK(robot.joint->velocity(0) == 0.2);
 }
 
-TEST_CASE("text that is no number counts as in the installed base, and is remarked on") {
+TEST_CASE("text that is not a number is read as in the installed base, and is reported") {
   Robot robot;
   auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
   CHECK(robot.act(he1, "(he1 1.5x)") == "expected a number as argument 1, found '1.5x', which counts as 1.5");
@@ -68,7 +68,7 @@ TEST_CASE("text that is no number counts as in the installed base, and is remark
   CHECK(robot.body->force == Vec3(0, 0, 3));
 }
 
-TEST_CASE("bad arguments are refused with a sentence and change nothing") {
+TEST_CASE("invalid arguments are refused with an explanation and change nothing") {
   Robot robot;
   auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
   robot.act(he1, "(he1 2)");
@@ -82,7 +82,7 @@ TEST_CASE("bad arguments are refused with a sentence and change nothing") {
   CHECK(robot.joint->velocity(0) == 2);
 }
 
-TEST_CASE("at or beyond a stop commands are ignored unless that is switched off") {
+TEST_CASE("at or beyond a stop, commands are ignored unless ignoreCommandAtStop is off") {
   Robot robot;
   auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
   robot.joint->setParameter(engine::JointParameter::lowStop, 0, -1);
@@ -102,7 +102,7 @@ TEST_CASE("at or beyond a stop commands are ignored unless that is switched off"
   CHECK(robot.joint->velocity(0) == 4);
 }
 
-TEST_CASE("a frozen hinge goes on until a command comes, which sets speed 0") {
+TEST_CASE("a frozen hinge keeps its speed until the next command, which sets it to 0") {
   Robot robot;
   auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
   robot.act(he1, "(he1 2)");
@@ -119,7 +119,7 @@ TEST_CASE("a frozen hinge goes on until a command comes, which sets speed 0") {
   CHECK(robot.joint->velocity(0) == 3);
 }
 
-TEST_CASE("only a speed that is not zero wakes the body") {
+TEST_CASE("only a nonzero speed wakes the body") {
   Robot robot;
   auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
   robot.body->awake = false;
@@ -129,7 +129,7 @@ TEST_CASE("only a speed that is not zero wakes the body") {
   CHECK(robot.body->awake);
 }
 
-TEST_CASE("a command that does not reach the motor wakes the body all the same, unless its speed is zero") {
+TEST_CASE("a command with a nonzero speed wakes the body even if the motor ignores it") {
   Robot robot;
   auto& he1 = robot.add(engine::JointType::hinge, "HingeEffector", "he1");
   robot.body->awake = false;
@@ -151,10 +151,10 @@ TEST_CASE("a command that does not reach the motor wakes the body all the same, 
   CHECK(robot.joint->velocity(0) == 0);
 }
 
-TEST_CASE("the other joints have their own units and limits") {
+TEST_CASE("effectors of other joints have their own units and limits") {
   Robot robot;
   robot.joint->maxSpeeds = {2, 3, 0};
-  SECTION("universal: both axes, each clamped, no stops") {
+  SECTION("universal: both axes are limited to their maximum speeds, and stops are ignored") {
     auto& uj = robot.add(engine::JointType::universal, "UniversalJointEffector", "uj");
     robot.joint->angles = {9, 9, 0};
     robot.joint->setParameter(engine::JointParameter::highStop, 0, 1);
@@ -162,13 +162,13 @@ TEST_CASE("the other joints have their own units and limits") {
     CHECK(robot.joint->velocity(0) == -2);
     CHECK(robot.joint->velocity(1) == 3);
   }
-  SECTION("hinge2: degrees per second on the wheel's axis, no limit") {
+  SECTION("hinge2: degrees per second about the wheel's axis, without a limit") {
     auto& wheel = robot.add(engine::JointType::hinge2, "Hinge2Effector", "wheel");
     CHECK(robot.act(wheel, "(wheel 720)").empty());
     CHECK(robot.joint->velocity(1) == Approx(4 * kPi));
     CHECK(robot.joint->velocity(0) == 0);
   }
-  SECTION("angular motor: the hinge's limit counts too") {
+  SECTION("angular motor: the hinge's maximum speed applies too") {
     auto& motor = robot.joint->create<FakeJoint>("FakeJoint", "motor");
     motor.type = engine::JointType::angularMotor;
     auto& effector = motor.create<Effector>("AngularMotorEffector", "he1");
@@ -214,7 +214,7 @@ TEST_CASE("a control effector sets the controller of its joint") {
   }
 }
 
-TEST_CASE("bad commands of a control effector are refused and change nothing") {
+TEST_CASE("invalid commands of a control effector are refused and change nothing") {
   Robot robot;
   auto& he1 = robot.add(engine::JointType::hinge, "ControlEffector", "he1");
   const engine::Control& law = robot.joint->controls[0];
@@ -234,13 +234,13 @@ TEST_CASE("bad commands of a control effector are refused and change nothing") {
     CHECK(law.damping == 0.5);
     CHECK(law.force == 7);
   }
-  // Text counts as in the installed base.
+  // Text is read as in the installed base.
   CHECK(robot.act(he1, "(he1 1 2 3 4 x)") == "expected a number as argument 5, found 'x', which counts as 0");
   CHECK(law.stiffness == 3);
   CHECK(law.force == 0);
 }
 
-TEST_CASE("an actuator's control becomes a force beside its spring and damping") {
+TEST_CASE("an actuator's control sets a force in addition to its spring and damping") {
   Robot robot;
   auto& turn = robot.add(engine::JointType::hinge, "ActuatorEffector", "turn");
   const engine::Control& law = robot.joint->controls[0];
@@ -270,7 +270,7 @@ TEST_CASE("an actuator's control becomes a force beside its spring and damping")
   CHECK(law.force == 3 * -1 + 0.5);
 }
 
-TEST_CASE("bad commands of an actuator are refused and change nothing") {
+TEST_CASE("invalid commands of an actuator are refused and change nothing") {
   Robot robot;
   auto& turn = robot.add(engine::JointType::hinge, "ActuatorEffector", "turn");
   const engine::Control& law = robot.joint->controls[0];
@@ -284,7 +284,7 @@ TEST_CASE("bad commands of an actuator are refused and change nothing") {
   CHECK(law.force == 0);
 }
 
-TEST_CASE("an effector without its joint reports that") {
+TEST_CASE("an effector without its joint reports this") {
   Robot robot;
   auto& lost = robot.transform->create<Effector>("HingeEffector", "lost");
   CHECK(robot.act(lost, "(lost 1)") == "there is no HingeJoint above it");
@@ -294,7 +294,7 @@ TEST_CASE("an effector without its joint reports that") {
           "there is no joint above it");
 }
 
-TEST_CASE("a force acts once, in the prepare phase, the last command of a cycle alone") {
+TEST_CASE("only the last force command of a cycle acts, once in the prepare phase") {
   Robot robot;
   auto& force = robot.transform->create<Effector>("ForceEffector", "f");
   CHECK(force.predicate() == "force");
@@ -310,7 +310,7 @@ TEST_CASE("a force acts once, in the prepare phase, the last command of a cycle 
   CHECK(robot.body->force == Vec3(0, 0, 10));
 }
 
-TEST_CASE("fixed predicates, and syn marks an answer") {
+TEST_CASE("some effectors have a fixed predicate, and the one for syn is an ISyncEffector") {
   Robot robot;
   auto& syn = robot.transform->create<Effector>("AgentSyncEffector", "s");
   CHECK(syn.predicate() == "syn");
@@ -325,7 +325,7 @@ TEST_CASE("fixed predicates, and syn marks an answer") {
   robot.prepare();
 }
 
-TEST_CASE("create builds its file once below the agent, and a failure stays in the log") {
+TEST_CASE("create tries to build its scene once, and a failure is logged") {
   Robot robot;
   auto& agent = robot.kernel.create<AgentAspect>("AgentAspect", "/usr/agent1");
   auto& create = agent.create<Effector>("CreateEffector", "c");

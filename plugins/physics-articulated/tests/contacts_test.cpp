@@ -7,7 +7,7 @@ using engine::JointType;
 
 namespace {
 
-/// Random boxes above the ground, `spacing` [m] apart, and one above the other if that is below 0.5.
+/// Random boxes above the ground at distances of `spacing` [m]; if it is below 0.5, also at increasing heights.
 void addBoxes(Twins& t, int count, double spacing) {
   for (int i = 0; i < count; ++i) {
     const Vec3 lengths = {t.uniform(0.2, 0.4), t.uniform(0.2, 0.4), t.uniform(0.2, 0.4)};
@@ -48,7 +48,7 @@ void addChain(Twins& t, int length, const Vec3& origin, double maxForce) {
 
 }  // namespace
 
-TEST_CASE("boxes that fall, bounce and slip move as with ODE") {
+TEST_CASE("boxes fall, bounce and slip as with ODE") {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     INFO("seed " << seed);
     Twins t(seed);
@@ -77,7 +77,7 @@ TEST_CASE("a pile of boxes settles as with ODE") {
   }
 }
 
-TEST_CASE("no memory is allocated for islands that are deferred to the engine below") {
+TEST_CASE("an island that is far too large is deferred to the child engine") {
   Twins t;
   setProperty(t.articulated(), "mostRows", 1200);
   t.ground();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Humanoids of 23 bodies and 22 hinges with motors, of about 4.5 kg and 0.55 m.
+/// Humanoids with 23 bodies, 22 motorized hinges, a mass of about 4.5 kg and a height of 0.55 m.
 
 #include "twins.h"
 
@@ -9,7 +9,7 @@ namespace spark::test {
 /// The humanoids of a scene.
 struct Humanoids {
   Twins& twins;
-  std::vector<std::size_t> joints;  ///< of all humanoids, indices in Scene::joints
+  std::vector<std::size_t> joints;  ///< of all humanoids, as indices in Scene::joints
 
   explicit Humanoids(Twins& t) : twins(t) {}
 
@@ -36,7 +36,7 @@ struct Humanoids {
     }
   }
 
-  /// Sets the motors of all joints: speed(i) [rad/s] of joint i of `joints`, and the maximal torque [Nm].
+  /// Sets the motors of all joints: the speed of joint i of `joints` to speed(i) [rad/s], and the maximum torque [Nm].
   template <class F>
   void drive(Scene& scene, F&& speed, double maxTorque) {
     for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -46,8 +46,8 @@ struct Humanoids {
   }
 
  private:
-  /// Adds a box of the edges `lengths` [m] at `position`, and the hinge that connects it to `parent`; -1: none.
-  /// Positions are relative to origin_.
+  /// Adds a box with edge lengths `lengths` [m] at `position`, and the hinge that connects it to `parent`; -1: no
+  /// hinge. Positions are relative to origin_.
   std::size_t addLink(int parent, const Vec3& position, const Vec3& lengths, double mass, const Vec3& anchor,
                       const Vec3& axis) {
     const Vec3 squares = lengths.cwiseProduct(lengths);
@@ -55,7 +55,7 @@ struct Humanoids {
         (mass / 12 * Vec3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
             .asDiagonal();
     const std::size_t body = twins.body(origin_ + position, mass, inertia);
-    // Small links have no geom: they are inside of larger ones.
+    // Small links have no geom, because they are inside larger ones.
     if (lengths.minCoeff() > 0.05 || lengths.x() >= 0.1 || parent < 0) twins.box(lengths, body);
     if (parent < 0) return body;
     const std::size_t joint = twins.joint(engine::JointType::hinge, parent, static_cast<int>(body), false);

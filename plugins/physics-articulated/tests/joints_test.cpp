@@ -50,7 +50,7 @@ const char* kNames[] = {"ball", "hinge", "hinge2", "slider", "universal", "fixed
 
 }  // namespace
 
-TEST_CASE("a free body moves as with ODE, with gyroscopic torque and gravity mode") {
+TEST_CASE("free bodies move as with ODE, with gyroscopic torque, and with gravity on and off") {
   Twins t;
   const std::size_t a = t.randomBody({0, 0, 1}), b = t.randomBody({3, 0, 1});
   t.forBoth([&](Scene& s) { s.world.setGravityMode(s.bodies[b], false); });
@@ -59,7 +59,7 @@ TEST_CASE("a free body moves as with ODE, with gyroscopic torque and gravity mod
   t.checkSteps(50);
 }
 
-TEST_CASE("every joint type in both orders of its bodies, and with the world, moves as with ODE") {
+TEST_CASE("each joint type moves as with ODE, with either order of bodies and with the world") {
   for (int type = 0; type < 7; ++type)
     for (int order = 0; order < 4; ++order) {
       if (kTypes[type] == JointType::hinge2 && order > 1) continue;  // needs two bodies

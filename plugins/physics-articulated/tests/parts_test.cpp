@@ -7,7 +7,7 @@
 using namespace spark;
 using namespace spark::articulated;
 
-TEST_CASE("portableAtan2 is the mathematical library's atan2 in all directions") {
+TEST_CASE("portableAtan2 equals the C library's atan2 in all directions") {
   for (int i = -2000; i <= 2000; ++i) {
     const double angle = kPi * i / 2000, size = 1e-6 + std::abs(i);
     const double y = size * std::sin(angle), x = size * std::cos(angle);
@@ -18,7 +18,7 @@ TEST_CASE("portableAtan2 is the mathematical library's atan2 in all directions")
   CHECK(std::isnan(portableAtan2(std::nan(""), 1)));
 }
 
-TEST_CASE("the quaternion of a rotation matrix is the same rotation") {
+TEST_CASE("the quaternion of a rotation matrix represents the same rotation") {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int i = 0; i < 200; ++i) {
@@ -29,7 +29,7 @@ TEST_CASE("the quaternion of a rotation matrix is the same rotation") {
   }
 }
 
-TEST_CASE("Dantzig's algorithm meets every row's conditions") {
+TEST_CASE("the solution of Dantzig's algorithm satisfies the conditions of each row") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int round = 0; round < 100; ++round) {
@@ -51,7 +51,7 @@ TEST_CASE("Dantzig's algorithm meets every row's conditions") {
     }
     std::vector<RowState> states;
     REQUIRE(lcp.solve(states));
-    // Solve for the rows that hold, with the others at their bounds, and check the conditions.
+    // Solves the rows in state `holds`, with the others at their bounds, and checks the conditions.
     Eigen::VectorXd x(n);
     std::vector<Eigen::Index> holding;
     for (Eigen::Index i = 0; i < n; ++i) {

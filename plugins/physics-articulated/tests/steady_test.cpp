@@ -4,7 +4,7 @@
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("a world that repeats itself allocates nothing") {
+TEST_CASE("a step allocates no memory once the world has settled") {
   Twins t(3);
   t.ground();
   Humanoids humanoids(t);

@@ -1,12 +1,12 @@
-// Prints the time of a world's step with ODE's dense solver and with the articulated solver, with the same contacts:
-// medians of this thread's CPU time, in microseconds per robot (or box) and step.
+// Prints the time of a step with ODE's dense solver and with the articulated solver, for the same contacts: medians of
+// this thread's CPU time, in microseconds per robot (or box) and step.
 //
-//     dense   the world with OdeEngine
-//     world   the world with the articulated engine
-//     solver  the articulated solver's part of that
+//     dense   a step with OdeEngine
+//     world   a step with the articulated engine
+//     solver  the articulated solver's part of it
 //     times   dense / solver
 //
-// Nothing is asserted. Runs only on request: test-physics-articulated "[timing]".
+// It asserts nothing, and runs only on request: test-physics-articulated "[timing]".
 
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// The articulated engine in one thread, with a clock.
+/// The articulated engine in one thread, which measures its time.
 class TimedEngine : public spark::Node, public engine::IEngine {
   SPARK_CLASS(TimedEngine, spark::Node)
  public:
@@ -59,13 +59,13 @@ class TimedEngine : public spark::Node, public engine::IEngine {
     deferred_->forget(model);
   }
   articulated::Stepper stepper;
-  double spent = 0;  ///< in the last step [us]
+  double spent = 0;  ///< time of the last step [us]
 
  private:
   Link<engine::IEngine> deferred_;
 };
 
-/// A scene in both worlds, stepped in turns, and the times of all steps [us].
+/// A scene in two worlds that are stepped alternately, and the times of all steps [us].
 struct Timing {
   Twins twins;
   TimedEngine& timed;
@@ -93,8 +93,8 @@ struct Timing {
     (&scene == &twins.plain ? dense : world).push_back(now() - start);
     if (&scene == &twins.solved) solver.push_back(timed.spent);
   }
-  /// Steps both scenes in alternating blocks: within a block, a step finds the caches as the same world's last step
-  /// left them, as it does in a run. `before(scene, step)` sets the motors.
+  /// Steps both scenes in alternating blocks. Within a block the caches are warm from the same world's last step, as in
+  /// a real run. `before(scene, step)` sets the motors.
   template <class F>
   void run(int steps, F&& before) {
     constexpr int kBlock = 10;
@@ -105,7 +105,7 @@ struct Timing {
       });
     }
   }
-  /// Prints the medians per robot or box, of which there are `count`.
+  /// Prints the medians per robot or box. `count`: their number.
   void print(const char* name, int count) const {
     const double d = median(dense) / count, w = median(world) / count, a = median(solver) / count;
     const articulated::Stepper& s = timed.stepper;
@@ -117,14 +117,14 @@ struct Timing {
   }
 };
 
-/// What humanoids do.
+/// How humanoids move.
 struct Motion {
   const char* name;
   int robots;
   double height, spacing;  ///< m
   double maxTorque;        ///< of the motors [Nm]
-  double speed;            ///< largest of the motors [rad/s]
-  bool random;             ///< another speed in each step, else a sine
+  double speed;            ///< maximum of the motors [rad/s]
+  bool random;             ///< a random speed in each step, otherwise a sine
 };
 
 void timeHumanoids(const Motion& motion, int steps) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The same scene in two worlds: ODE's direct solver steps one, the articulated engine the other. Before each step the
-/// second takes over the first one's state; after it, states and forces of both must agree.
+/// The same scene in two worlds. ODE's direct solver steps one of them, the articulated engine the other. Before each
+/// step the state of the first is copied to the second; after it, the states and forces of both must agree.
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -20,7 +20,7 @@ inline constexpr engine::JointType kTypes[] = {
 /// A world with its engine, and its bodies and joints in order of creation.
 struct Scene {
   engine::ICollision& collision;
-  engine::IEngine* engine = nullptr;  ///< the kernel's
+  engine::IEngine* engine = nullptr;  ///< owned by the kernel
   physics::WorldModel world;
   physics::SpaceHandle space = world.createSpace(physics::SpaceHandle::none);
   engine::Contacts contacts;
@@ -36,11 +36,11 @@ struct Differences {
   double velocity = 0, position = 0, feedback = 0;
 };
 
-/// Builds the scene in both worlds and steps it. Random numbers come from `random` alone, so a scene depends only on
-/// its seed.
-class Twins : public House {
+/// Builds the scene in both worlds and steps it. All random numbers come from `random`, so a scene depends only on its
+/// seed.
+class Twins : public TestHost {
  public:
-  Scene plain, solved;  ///< by ODE alone; by the articulated engine
+  Scene plain, solved;  ///< stepped by ODE alone; stepped by the articulated engine
   engine::WorldParameters parameters;
   engine::Surface surface;  ///< of all contacts
   double dt = 0.02;         ///< s
@@ -74,16 +74,16 @@ class Twins : public House {
     f(solved);
   }
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
-  /// 0..n-1.
+  /// A random integer in 0..n-1.
   int randomInt(int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); }
-  /// Elements in -size..size.
+  /// A random vector with elements in -size..size.
   Vec3 randomVector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
   Mat3 randomRotation() {
     return (Eigen::AngleAxisd(uniform(-3, 3), Vec3::UnitX()) * Eigen::AngleAxisd(uniform(-3, 3), Vec3::UnitY()) *
             Eigen::AngleAxisd(uniform(-3, 3), Vec3::UnitZ()))
         .toRotationMatrix();
   }
-  /// Of a box with edges of size / 2 .. size [m], in a random rotation.
+  /// The inertia of a box with edges of size / 2 .. size [m] in a random orientation.
   Mat3 randomInertia(double mass, double size) {
     const Mat3 r = randomRotation();
     const Vec3 sizes(uniform(0.5, 1), uniform(0.5, 1), uniform(0.5, 1));
@@ -116,7 +116,7 @@ class Twins : public House {
       s.world.setBody(g, body < 0 ? physics::BodyHandle::none : s.bodies[static_cast<std::size_t>(body)], {});
     });
   }
-  /// Geoms that are added from now on are in a new space and do not collide with each other.
+  /// Makes a new space for the geoms that are added from now on. They do not collide with each other.
   void newSpace() {
     forBoth([&](Scene& s) {
       s.space = s.world.createSpace(physics::SpaceHandle::none);
@@ -167,8 +167,8 @@ class Twins : public House {
       });
     }
   }
-  /// Steps, each time from the state of `plain`, and checks that both agree: velocities and positions to 1e-8, feedback
-  /// to `forces`.
+  /// Steps both worlds, each time from the state of `plain`, and checks that they agree: velocities and positions to
+  /// 1e-8, feedback to `forces`.
   void checkSteps(int steps, double forces = 1e-6) {
     Differences worst;
     for (int i = 0; i < steps; ++i) {
@@ -184,7 +184,7 @@ class Twins : public House {
     CHECK(counted("deferredIslands") == 0);
   }
 
-  /// One step of both from the state of `plain`.
+  /// Makes one step of both worlds from the state of `plain`.
   Differences step() {
     copyState();
     Differences d;
@@ -196,7 +196,7 @@ class Twins : public House {
     compare(d);
     return d;
   }
-  /// Fills Scene::contacts.
+  /// Detects contacts and stores them in Scene::contacts.
   void detectContacts(Scene& s) {
     s.contacts.clear();
     s.world.detect(s.collision, nullptr, 4, s.contacts);

@@ -7,8 +7,8 @@ using engine::JointType;
 
 namespace {
 
-/// Bodies near each other, and joints of random types between random ones of them and the world: trees, loops, several
-/// joints between the same two bodies.
+/// Bodies near each other, with joints of random types between random bodies or between a body and the world. This
+/// gives trees, loops, and several joints between the same two bodies.
 void addRandomMechanism(Twins& t, int bodies, int joints, double cfm, bool boxes = true) {
   for (int i = 0; i < bodies; ++i) {
     const std::size_t b = t.randomBody({0.3 * (i % 4), 0.3 * (i / 4), 0.4 + 0.1 * t.uniform(0, 1)});
@@ -16,7 +16,7 @@ void addRandomMechanism(Twins& t, int bodies, int joints, double cfm, bool boxes
   }
   for (int k = 0; k < joints; ++k) {
     const JointType type = kTypes[t.randomInt(7)];
-    // The first joints connect each body to an earlier one, so that there is one tree; the others are anywhere.
+    // The first joints connect each body to an earlier one and form one tree. The others connect any bodies.
     int a = k < bodies - 1 ? k + 1 : t.randomInt(bodies),
         b = k < bodies - 1 ? t.randomInt(k + 1) : t.randomInt(bodies + 1) - 1;
     if (a == b) continue;
@@ -68,7 +68,7 @@ TEST_CASE("trees with a CFM of 0 move as with ODE") {
     t.apply();
     const int bodies = 2 + t.randomInt(6);
     addRandomMechanism(t, bodies, bodies - 1, 0, false);
-    // One contact point only: more would be redundant rows, which ODE cannot solve with a CFM of 0.
+    // Only one contact point: more of them would be redundant rows, which ODE cannot solve with a CFM of 0.
     t.ground();
     const std::size_t ball = t.body({3, 0, 0.095}, 1, Mat3::Identity() * 0.01);
     engine::ShapeDescription sphere;
@@ -80,7 +80,7 @@ TEST_CASE("trees with a CFM of 0 move as with ODE") {
   }
 }
 
-TEST_CASE("redundant contacts with a CFM of 0 do no harm") {
+TEST_CASE("a stack with redundant contacts is stable with a CFM of 0") {
   Twins t(5);
   t.parameters.cfm = 0;
   t.apply();
@@ -97,7 +97,7 @@ TEST_CASE("redundant contacts with a CFM of 0 do no harm") {
   }
 }
 
-TEST_CASE("humanoids that stand, walk, fall and push each other move as with ODE") {
+TEST_CASE("humanoids stand, walk, fall and push each other as with ODE") {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     INFO("seed " << seed);
     Twins t(seed);
@@ -115,7 +115,7 @@ TEST_CASE("humanoids that stand, walk, fall and push each other move as with ODE
   }
 }
 
-TEST_CASE("the warm start does not change a digit of the result") {
+TEST_CASE("the warm start does not change the result, bit for bit") {
   Twins used(9), fresh(9);
   for (Twins* t : {&used, &fresh}) {
     t->ground();
@@ -142,7 +142,7 @@ TEST_CASE("the warm start does not change a digit of the result") {
   CHECK(used.counted("passes") > used.counted("islands"));
 }
 
-TEST_CASE("several threads give the digits of one thread") {
+TEST_CASE("several threads give the same result as one, bit for bit") {
   const auto states = [](int threads) {
     Twins t(5);
     t.kernel.jobs().setThreads(threads);

@@ -11,8 +11,8 @@ using physics::BodyHandle;
 
 namespace {
 
-/// A heap of thirty things over the ground; the same each time.
-struct Heap : EngineHouse {
+/// A heap of thirty bodies above the ground, always built in the same way.
+struct Heap : EngineHost {
   std::vector<BodyHandle> bodies;
   explicit Heap(bool autoDisable = true) {
     setGravity(9.81, autoDisable);
@@ -47,7 +47,7 @@ struct Heap : EngineHouse {
 
 }  // namespace
 
-TEST_CASE("the same heap falls the same way twice, bit for bit") {
+TEST_CASE("two equal heaps fall in the same way, bit for bit") {
   Heap a, b;
   a.run(200);
   b.run(200);
@@ -55,7 +55,7 @@ TEST_CASE("the same heap falls the same way twice, bit for bit") {
   CHECK(a.position(a.bodies[5]).z() < 3);
 }
 
-TEST_CASE("a heap goes on bit for bit from a saved state, in the same house and in a new one, through sleep") {
+TEST_CASE("a restored heap continues bit for bit, in the same kernel and in a new one, also through sleep") {
   Heap a;
   a.run(60);
   const auto middle = a.saved();
@@ -75,12 +75,12 @@ TEST_CASE("a heap goes on bit for bit from a saved state, in the same house and 
                     Catch::Contains("saved state, found 5"));
 }
 
-TEST_CASE("sleeping is ODE's: a box dropped by plain ODE calls falls asleep in the same step at the same place") {
-  EngineHouse house;
-  house.setGravity(9.81, true);
-  house.geom(plane(0, 0, 1, 0));
-  const BodyHandle b = house.body({0, 0, 0.6});
-  house.geom(box(1, 1, 1), b);
+TEST_CASE("a dropped box falls asleep in the same step and position as with plain ODE calls") {
+  EngineHost host;
+  host.setGravity(9.81, true);
+  host.geom(plane(0, 0, 1, 0));
+  const BodyHandle b = host.body({0, 0, 0.6});
+  host.geom(box(1, 1, 1), b);
 
   const dWorldID world = dWorldCreate();
   dWorldSetGravity(world, 0, 0, -9.81);
@@ -95,7 +95,7 @@ TEST_CASE("sleeping is ODE's: a box dropped by plain ODE calls falls asleep in t
   const dJointGroupID group = dJointGroupCreate(0);
   bool slept = false;
   for (int i = 0; i < 300; ++i) {
-    house.step(0.02);
+    host.step(0.02);
     dContact c[4]{};
     const int n = dCollide(cube, ground, 4, &c[0].geom, sizeof(dContact));
     for (int k = 0; k < n; ++k) {
@@ -104,9 +104,9 @@ TEST_CASE("sleeping is ODE's: a box dropped by plain ODE calls falls asleep in t
     }
     dWorldStep(world, 0.02);
     dJointGroupEmpty(group);
-    REQUIRE(house.world.enabled(b) == bool(dBodyIsEnabled(plain)));
-    REQUIRE(house.position(b).z() == dBodyGetPosition(plain)[2]);
-    slept = slept || !house.world.enabled(b);
+    REQUIRE(host.world.enabled(b) == bool(dBodyIsEnabled(plain)));
+    REQUIRE(host.position(b).z() == dBodyGetPosition(plain)[2]);
+    slept = slept || !host.world.enabled(b);
   }
   CHECK(slept);
   dJointGroupDestroy(group);
@@ -115,7 +115,7 @@ TEST_CASE("sleeping is ODE's: a box dropped by plain ODE calls falls asleep in t
   dWorldDestroy(world);
 }
 
-TEST_CASE("worlds of two houses do not know of each other") {
+TEST_CASE("worlds in different kernels do not affect each other") {
   Heap a;
   a.run(30);
   {

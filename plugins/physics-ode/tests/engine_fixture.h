@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A world with ODE's collision detection and engine, and short ways to bodies and geoms.
+/// A world with ODE's collision detection and engine, and helpers that make bodies and geoms.
 
 #include <catch2/catch.hpp>
 
@@ -9,19 +9,19 @@
 
 namespace spark::test {
 
-struct EngineHouse : House {
+struct EngineHost : TestHost {
   engine::ICollision& collision;
   engine::IEngine& engine;
   physics::WorldModel world;
   physics::SpaceHandle space;
   engine::Contacts contacts;
-  explicit EngineHouse(bool exactReplay = false)
+  explicit EngineHost(bool exactReplay = false)
       : collision(make<engine::ICollision>(*this, "OdeCollision", "/sys/server/physics/collision")),
         engine(make<engine::IEngine>(*this, "OdeEngine", "/sys/server/physics/engine")),
         world(exactReplay),
         space(world.createSpace(physics::SpaceHandle::none)) {}
   template <class Interface>
-  static Interface& make(House& h, const char* name, const char* path) {
+  static Interface& make(TestHost& h, const char* name, const char* path) {
     h.kernel.plugins().use("physics-ode");
     return h.kernel.create<Interface>(name, path);
   }
@@ -42,11 +42,11 @@ struct EngineHouse : House {
     world.setBody(g, b, offset);
     return g;
   }
-  /// Appends to `contacts`.
+  /// Appends the detected contacts to `contacts`.
   void detect(int perPair = 4, engine::PairFilter filter = nullptr) {
     world.detect(collision, filter, perPair, contacts);
   }
-  /// One step of dt in which all contacts are solved with `surface`.
+  /// Makes one step of dt [s]. All contacts are solved with `surface`.
   void step(double dt = 0.02, const engine::Surface& surface = {}) {
     contacts.clear();
     detect();
@@ -83,7 +83,7 @@ inline engine::ShapeDescription ray(const Vec3& from, const Vec3& direction, dou
   s.length = length;
   return s;
 }
-/// A cube of edge `e` as triangles.
+/// A cube with edges of length `e` as a triangle mesh.
 inline engine::ShapeDescription mesh(double e) {
   engine::ShapeDescription s;
   s.shape = engine::Shape::mesh;

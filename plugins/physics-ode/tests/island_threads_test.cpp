@@ -11,16 +11,16 @@ using physics::JointHandle;
 
 namespace {
 
-/// Dolls of a trunk and four motorised limbs of two parts, each in a space of its own, that fall on a ground and on
-/// each other; between them balls, in the space around. All of it is the same each time.
-struct Crowd : EngineHouse {
+/// Dolls that fall on the ground and on each other, with balls between them. A doll has a trunk and four motorized
+/// limbs of two parts, in its own space; the balls are in the outer space. The scene is always built in the same way.
+struct Crowd : EngineHost {
   std::vector<BodyHandle> bodies;
   std::vector<JointHandle> motors;
   int steps = 0;
 
   Crowd(bool exactReplay, int threads, int dolls = 22) : Crowd(prepared(exactReplay, threads), dolls) {}
 
-  /// A step with other motor speeds than before.
+  /// Changes the motor speeds and makes a step.
   void next() {
     ++steps;
     for (std::size_t i = 0; i < motors.size(); ++i)
@@ -32,7 +32,7 @@ struct Crowd : EngineHouse {
     s.slip1 = s.slip2 = 0.005;
     step(0.02, s);
   }
-  /// Everything that another step could differ by: bodies, and contacts in their order.
+  /// All results of a step: the bodies, and the contacts in their order.
   std::vector<double> all() const {
     std::vector<double> out;
     for (const BodyHandle b : bodies) world.saveBody(b, out);
@@ -48,7 +48,7 @@ struct Crowd : EngineHouse {
   };
   static Prepared prepared(bool exactReplay, int threads) { return {exactReplay, threads}; }
 
-  Crowd(Prepared p, int dolls) : EngineHouse(p.exactReplay) {
+  Crowd(Prepared p, int dolls) : EngineHost(p.exactReplay) {
     kernel.jobs().setThreads(p.threads);
     setGravity(9.81, true);
     geom(plane(0, 0, 1, 0));
@@ -94,19 +94,19 @@ struct Crowd : EngineHouse {
 
 }  // namespace
 
-TEST_CASE("islands in several threads move as in one, bit for bit, with the same contacts in the same order") {
+TEST_CASE("several threads give the same motion and the same order of contacts as one thread, bit for bit") {
   const bool exactReplay = GENERATE(true, false);
   Crowd one(exactReplay, 1), two(exactReplay, 2), four(exactReplay, 4);
-  std::size_t mostContacts = 0;
+  std::size_t maxContacts = 0;
   for (int i = 0; i < 150; ++i) {
     one.next();
     two.next();
     four.next();
     REQUIRE(one.all() == two.all());
     REQUIRE(one.all() == four.all());
-    mostContacts = std::max(mostContacts, one.contacts.size());
+    maxContacts = std::max(maxContacts, one.contacts.size());
   }
-  CHECK(mostContacts > 60);
+  CHECK(maxContacts > 60);
 }
 
 TEST_CASE("the number of threads may change while a world runs") {
@@ -121,7 +121,7 @@ TEST_CASE("the number of threads may change while a world runs") {
   }
 }
 
-TEST_CASE("knots are solved as in one thread, whatever the others do") {
+TEST_CASE("islands that are solved approximately give the same result with several threads") {
   Crowd one(true, 1), two(true, 2);
   for (Crowd* c : {&one, &two}) setProperty(c->engine.leaf(), "directRows", 60);
   for (int i = 0; i < 60; ++i) {

@@ -6,12 +6,12 @@ using physics::BodyHandle;
 
 namespace {
 
-/// A knot of boxes in one place, and a box that rests far away.
-struct Knot : EngineHouse {
+/// A pile of overlapping boxes, and a box that rests far away from it.
+struct Pile : EngineHost {
   std::vector<BodyHandle> bodies;
   BodyHandle calm;
   Leaf& leaf;
-  explicit Knot(int n) : leaf(*kernel.root().find("/sys/server/physics/engine")) {
+  explicit Pile(int n) : leaf(*kernel.root().find("/sys/server/physics/engine")) {
     setGravity(9.81, true);
     geom(plane(0, 0, 1, 0));
     for (int i = 0; i < n; ++i) {
@@ -30,12 +30,12 @@ struct Knot : EngineHouse {
   }
 };
 
-std::int64_t approximate(const Knot& k) { return getProperty(k.leaf, "approximateSteps").toInteger(); }
+std::int64_t approximate(const Pile& p) { return getProperty(p.leaf, "approximateSteps").toInteger(); }
 
 }  // namespace
 
-TEST_CASE("an island that is too large for the direct solver is solved approximately, logged once, and repeatable") {
-  Knot a(40), b(40);
+TEST_CASE("an island too large for the direct solver is solved approximately, repeatably, and logged once") {
+  Pile a(40), b(40);
   for (int i = 0; i < 20; ++i) a.step(), b.step();
   CHECK(approximate(a) > 0);
   CHECK(a.saved() == b.saved());
@@ -47,8 +47,8 @@ TEST_CASE("an island that is too large for the direct solver is solved approxima
   CHECK(farthest < 50);
 }
 
-TEST_CASE("a knot does not touch what is not in it") {
-  Knot a(40), alone(0);
+TEST_CASE("a large island does not affect bodies outside of it") {
+  Pile a(40), alone(0);
   for (int i = 0; i < 30; ++i) a.step(), alone.step();
   REQUIRE(approximate(a) > 0);
   CHECK(approximate(alone) == 0);
@@ -59,12 +59,12 @@ TEST_CASE("a knot does not touch what is not in it") {
   CHECK_FALSE(a.world.enabled(a.calm));
 }
 
-TEST_CASE("small islands are left to the direct solver, however many there are") {
-  EngineHouse house;
-  house.setGravity(9.81, true);
-  house.geom(plane(0, 0, 1, 0));
-  for (int i = 0; i < 200; ++i) house.geom(box(1, 1, 1), house.body({3.0 * i, 0, 0.4995}));
-  house.step();
-  CHECK(house.contacts.size() == 800);
-  CHECK(getProperty(*house.kernel.root().find("/sys/server/physics/engine"), "approximateSteps").toInteger() == 0);
+TEST_CASE("any number of small islands is solved by the direct solver") {
+  EngineHost host;
+  host.setGravity(9.81, true);
+  host.geom(plane(0, 0, 1, 0));
+  for (int i = 0; i < 200; ++i) host.geom(box(1, 1, 1), host.body({3.0 * i, 0, 0.4995}));
+  host.step();
+  CHECK(host.contacts.size() == 800);
+  CHECK(getProperty(*host.kernel.root().find("/sys/server/physics/engine"), "approximateSteps").toInteger() == 0);
 }

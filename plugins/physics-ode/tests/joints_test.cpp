@@ -9,8 +9,8 @@ using physics::JointHandle;
 
 namespace {
 
-/// Two unit bodies, the upper one fixed to the world, in no gravity.
-struct Two : EngineHouse {
+/// Two unit bodies without gravity. The upper one is fixed to the world.
+struct Two : EngineHost {
   BodyHandle child, parent;
   Two() {
     setGravity(0);
@@ -29,7 +29,7 @@ struct Two : EngineHouse {
   void run(int steps) {
     for (int i = 0; i < steps; ++i) step(0.01);
   }
-  /// How far the point of the child that was at the anchor is from it now.
+  /// Distance from the anchor to the child's point that was there at first.
   double apart() const {
     const auto s = world.state(child);
     return (s.position + s.rotation * Vec3(0, 0, 0.5) - Vec3(0, 0, 0.5)).norm();
@@ -38,7 +38,7 @@ struct Two : EngineHouse {
 
 }  // namespace
 
-TEST_CASE("a ball joint keeps its point and lets all turns be") {
+TEST_CASE("a ball joint keeps its anchor and allows all rotations") {
   Two two;
   two.joint(JointType::ball);
   two.world.setAngularVelocity(two.child, {0.4, 0.3, 0.8});
@@ -49,7 +49,7 @@ TEST_CASE("a ball joint keeps its point and lets all turns be") {
   CHECK(std::abs(w.x()) > 0.1);
 }
 
-TEST_CASE("a hinge rotates about its axis only; angle and rate are those of the first body relative to the second") {
+TEST_CASE("a hinge rotates only about its axis; its angle and rate are of the first body relative to the second") {
   Two two;
   const JointHandle j = two.joint(JointType::hinge);
   two.world.setAxis(j, 0, {0, 0, 1}, 0);
@@ -63,7 +63,7 @@ TEST_CASE("a hinge rotates about its axis only; angle and rate are those of the 
   CHECK(two.world.angleRate(j, 0) == Approx(1).margin(0.02));
 }
 
-TEST_CASE("a hinge's motor drives it to its stop and not beyond") {
+TEST_CASE("a hinge's motor drives it to its stop but not beyond") {
   Two two;
   const JointHandle j = two.joint(JointType::hinge);
   two.world.setAxis(j, 0, {0, 0, 1}, 0);
@@ -81,7 +81,7 @@ TEST_CASE("a hinge's motor drives it to its stop and not beyond") {
   CHECK(two.world.angle(j, 0) == Approx(-0.3).margin(0.02));
 }
 
-TEST_CASE("driving a joint wakes its first body unless the speed is 0, and a joint detects that it is at a stop") {
+TEST_CASE("driving a joint wakes its first body unless the speed is 0, and atStop detects a stop") {
   Two two;
   const JointHandle j = two.joint(JointType::hinge);
   two.world.setAxis(j, 0, {0, 0, 1}, 0);
@@ -103,37 +103,37 @@ TEST_CASE("driving a joint wakes its first body unless the speed is 0, and a joi
   CHECK_FALSE(two.world.atStop(j, 0));
 }
 
-TEST_CASE("with exact replay the last bits at a stop are those of single-precision degrees") {
+TEST_CASE("with exact replay, atStop compares angles in single-precision degrees") {
   for (const bool exact : {false, true}) {
     INFO((exact ? "exact" : "not exact"));
-    EngineHouse house(exact);
-    const BodyHandle foot = house.world.createBody();
-    const JointHandle j = house.world.createJoint(JointType::hinge);
-    house.world.attach(j, foot, BodyHandle::none);
-    house.world.setAxis(j, 0, {0, 0, 1});
+    EngineHost host(exact);
+    const BodyHandle foot = host.world.createBody();
+    const JointHandle j = host.world.createJoint(JointType::hinge);
+    host.world.attach(j, foot, BodyHandle::none);
+    host.world.setAxis(j, 0, {0, 0, 1});
     const double stop = static_cast<float>(degToRad(75));
-    house.world.setParameter(j, JointParameter::highStop, 0, stop);
-    house.world.setParameter(j, JointParameter::lowStop, 0, -stop);
+    host.world.setParameter(j, JointParameter::highStop, 0, stop);
+    host.world.setParameter(j, JointParameter::lowStop, 0, -stop);
     int inside = 0, ignored = 0;
     for (const int sign : {-1, 1})
       for (int i = -40; i <= 40; ++i) {
         const double yaw = sign * (stop + i * 1e-8);
         Mat3 r;
         r << std::cos(yaw), -std::sin(yaw), 0, std::sin(yaw), std::cos(yaw), 0, 0, 0, 1;
-        house.world.setRotation(foot, r);
-        const double angle = house.world.angle(j, 0);
+        host.world.setRotation(foot, r);
+        const double angle = host.world.angle(j, 0);
         REQUIRE(std::abs(angle - yaw) < 1e-6);
         const float deg = static_cast<float>(radToDeg(angle));
         const bool atStop = exact ? std::abs(deg) >= stop * 180 / kPi : std::abs(angle) >= stop;
-        CHECK(house.world.atStop(j, 0) == atStop);
-        if (std::abs(angle) < stop) ++inside, ignored += house.world.atStop(j, 0);
+        CHECK(host.world.atStop(j, 0) == atStop);
+        if (std::abs(angle) < stop) ++inside, ignored += host.world.atStop(j, 0);
       }
     CHECK(inside > 0);
-    CHECK((ignored > 0) == exact);  // 75 degrees, as they are rounded, are beyond the stop
+    CHECK((ignored > 0) == exact);  // 75 degrees rounded to single precision are beyond the stop
   }
 }
 
-TEST_CASE("a motor is as strong as its maximal force") {
+TEST_CASE("a motor has at most its maximum force") {
   Two two;
   const JointHandle j = two.joint(JointType::hinge);
   two.world.setAxis(j, 0, {0, 0, 1}, 0);
@@ -143,7 +143,7 @@ TEST_CASE("a motor is as strong as its maximal force") {
   CHECK(two.world.angleRate(j, 0) == Approx(0.5).margin(0.01));  // 0.5 Nm for 1 s on 1 kg m^2
 }
 
-TEST_CASE("every parameter of every axis reads back what was set") {
+TEST_CASE("each parameter of each axis returns the value that was set") {
   Two two;
   for (const auto& [type, axes] : {std::pair{JointType::hinge, 1},
                                    {JointType::slider, 1},
@@ -173,7 +173,7 @@ TEST_CASE("every parameter of every axis reads back what was set") {
   CHECK(two.world.parameter(wheel, JointParameter::suspensionCfm, 0) == Approx(0.02));
 }
 
-TEST_CASE("a universal joint turns about both axes and not about the third") {
+TEST_CASE("a universal joint rotates about both of its axes but not about the third") {
   Two two;
   const JointHandle j = two.joint(JointType::universal);
   two.world.setAxis(j, 0, {1, 0, 0}, 0);
@@ -190,7 +190,7 @@ TEST_CASE("a universal joint turns about both axes and not about the third") {
 
 TEST_CASE("a hinge2 steers about its first axis and spins about its second") {
   Two two;
-  // ODE's hinge2: the first axis belongs to the first body, the second to the second.
+  // In ODE's hinge2 the first axis belongs to the first body and the second axis to the second.
   const JointHandle j = two.world.createJoint(JointType::hinge2);
   two.world.attach(j, two.parent, two.child);
   two.world.setAnchor(j, {0, 0, 0});
@@ -206,7 +206,7 @@ TEST_CASE("a hinge2 steers about its first axis and spins about its second") {
   CHECK(std::abs(two.world.angle(j, 0)) < 0.02);
 }
 
-TEST_CASE("a slider slides along its axis, does not turn, and stops") {
+TEST_CASE("a slider slides along its axis to its stop and does not rotate") {
   Two two;
   const JointHandle j = two.joint(JointType::slider);
   two.world.setAxis(j, 0, {0, 0, 1}, 0);
@@ -227,7 +227,7 @@ TEST_CASE("a slider slides along its axis, does not turn, and stops") {
   CHECK(lowest == Approx(-0.5).margin(0.02));
 }
 
-TEST_CASE("a fixed joint holds pose, also against the world in either order") {
+TEST_CASE("a fixed joint holds the pose, also relative to the world and with either order of bodies") {
   Two two;
   const JointHandle j = two.joint(JointType::fixed);
   two.world.setFixed(j);
@@ -260,7 +260,7 @@ TEST_CASE("an angular motor drives its axes") {
   CHECK_THROWS_WITH(two.world.setAngularMotor(j, 4, false), Catch::Contains("0 to 3"));
 }
 
-TEST_CASE("feedback is the load of a joint, whichever body comes first") {
+TEST_CASE("feedback is the force that a joint carries, with either order of bodies") {
   for (const bool worldFirst : {false, true}) {
     Two two;
     two.setGravity(9.81);
@@ -283,7 +283,7 @@ TEST_CASE("feedback is the load of a joint, whichever body comes first") {
   }
 }
 
-TEST_CASE("a joint whose body died does nothing and asks nothing") {
+TEST_CASE("a joint whose body is destroyed has no effect, and its values are 0") {
   Two two;
   for (const auto type : {JointType::ball, JointType::hinge, JointType::hinge2, JointType::slider, JointType::universal,
                           JointType::fixed, JointType::angularMotor}) {
@@ -305,13 +305,13 @@ TEST_CASE("a joint whose body died does nothing and asks nothing") {
                     Catch::Contains("with itself"));
 }
 
-TEST_CASE("a wheel without a chassis is refused with a sentence; an axis makes room for one parallel to it") {
+TEST_CASE("a wheel without a chassis is refused, and an axis is rotated away from a parallel one that is set") {
   Two two;
   const JointHandle j = two.world.createJoint(JointType::hinge2);
   CHECK_THROWS_WITH(two.world.attach(j, two.child, BodyHandle::none), Catch::Contains("needs two bodies"));
   CHECK_THROWS_WITH(two.world.attach(j, BodyHandle::none, two.child), Catch::Contains("needs two bodies"));
   two.world.attach(j, two.child, two.parent);
-  two.world.setAxis(j, 0, {0, 3, 0}, 0);  // where the second axis is from the beginning
+  two.world.setAxis(j, 0, {0, 3, 0}, 0);  // the initial direction of the second axis
   CHECK(two.world.axis(j, 0).isApprox(Vec3(0, 1, 0)));
   CHECK(std::abs(two.world.axis(j, 1).y()) < 1e-9);
   two.world.setAxis(j, 1, {0, -2, 0}, 0);

@@ -6,7 +6,7 @@
 
 #include "engine_fixture.h"
 
-// Rotations in the model have ODE's digits: recorded sessions depend on each of them.
+// Rotations in the model are bit-identical to ODE's, because recorded sessions depend on every digit.
 
 using namespace spark;
 using namespace spark::test;
@@ -54,7 +54,7 @@ struct Plain {
 
 }  // namespace
 
-TEST_CASE("products and conversions of rotations have ODE's digits") {
+TEST_CASE("products and conversions of rotations equal ODE's, bit for bit") {
   Numbers n;
   for (int i = 0; i < 2000; ++i) {
     const Quaternion a = n.quaternion(), b = n.quaternion();
@@ -76,8 +76,8 @@ TEST_CASE("products and conversions of rotations have ODE's digits") {
   }
 }
 
-TEST_CASE("the rotation of a body has the digits that ODE's body has") {
-  const EngineHouse keepsOde;  // which is initialised as long as a house lives
+TEST_CASE("the rotation of a body equals that of ODE's body, bit for bit") {
+  const EngineHost keepsOde;  // ODE is initialized while an engine exists
   Plain plain;
   Numbers n;
   physics::WorldModel world;
@@ -93,8 +93,8 @@ TEST_CASE("the rotation of a body has the digits that ODE's body has") {
   }
 }
 
-TEST_CASE("angles of joints are ODE's: to the last digit for hinges, in both orders of the bodies and with the world") {
-  const EngineHouse keepsOde;
+TEST_CASE("joint angles equal ODE's, for hinges bit for bit, with either order of bodies and with the world") {
+  const EngineHost keepsOde;
   Numbers n;
   for (const int order : {0, 1, 2, 3})
     for (int i = 0; i < 200; ++i) {

@@ -9,25 +9,25 @@ using physics::BodyHandle;
 
 namespace {
 
-/// Meshes and boxes in a heap; their places after a second.
+/// The state of a heap of meshes and boxes after falling for a second.
 std::vector<double> fall() {
-  EngineHouse house;
-  house.setGravity(9.81, true);
-  house.geom(plane(0, 0, 1, 0));
+  EngineHost host;
+  host.setGravity(9.81, true);
+  host.geom(plane(0, 0, 1, 0));
   std::vector<BodyHandle> bodies;
   for (int i = 0; i < 8; ++i) {
-    bodies.push_back(house.body({0.1 * (i % 3), 0.1 * (i % 2), 0.7 + 1.1 * i}));
-    house.geom(i % 2 ? mesh(1) : box(1, 1, 1), bodies.back());
+    bodies.push_back(host.body({0.1 * (i % 3), 0.1 * (i % 2), 0.7 + 1.1 * i}));
+    host.geom(i % 2 ? mesh(1) : box(1, 1, 1), bodies.back());
   }
-  for (int i = 0; i < 50; ++i) house.step();
+  for (int i = 0; i < 50; ++i) host.step();
   std::vector<double> out;
-  for (const BodyHandle b : bodies) house.world.saveBody(b, out);
+  for (const BodyHandle b : bodies) host.world.saveBody(b, out);
   return out;
 }
 
 }  // namespace
 
-TEST_CASE("houses in several threads step at once and give what one alone gives") {
+TEST_CASE("kernels that are stepped in several threads at once give the same result as one alone") {
   const auto alone = fall();
   std::vector<double> results[3];
   {
@@ -37,22 +37,22 @@ TEST_CASE("houses in several threads step at once and give what one alone gives"
   for (const auto& r : results) CHECK(r == alone);
 }
 
-TEST_CASE("states are read by several threads between steps") {
-  EngineHouse house;
-  house.setGravity(9.81);
-  const BodyHandle a = house.body({0, 0, 3}), b = house.body({0, 0, 2});
-  const auto g = house.geom(box(1, 1, 1), a, {Vec3(0, 0, 0.1), Mat3::Identity()});
-  const auto joint = house.world.createJoint(engine::JointType::hinge);
-  house.world.attach(joint, a, b);
-  house.world.setAnchor(joint, {0, 0, 2.5});
+TEST_CASE("several threads can read states between steps") {
+  EngineHost host;
+  host.setGravity(9.81);
+  const BodyHandle a = host.body({0, 0, 3}), b = host.body({0, 0, 2});
+  const auto g = host.geom(box(1, 1, 1), a, {Vec3(0, 0, 0.1), Mat3::Identity()});
+  const auto joint = host.world.createJoint(engine::JointType::hinge);
+  host.world.attach(joint, a, b);
+  host.world.setAnchor(joint, {0, 0, 2.5});
   for (int i = 0; i < 20; ++i) {
-    house.step();
+    host.step();
     double heights[4];
     {
       std::vector<std::jthread> threads;
       for (double& h : heights)
         threads.emplace_back([&] {
-          h = house.world.state(a).position.z() + house.world.pose(g).position.z() + house.world.angle(joint, 0);
+          h = host.world.state(a).position.z() + host.world.pose(g).position.z() + host.world.angle(joint, 0);
         });
     }
     for (double h : heights) CHECK(h == heights[0]);

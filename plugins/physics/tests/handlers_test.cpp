@@ -26,12 +26,12 @@ class CountingHandler : public ContactJointHandler {
   bool breaksRules = false;
 };
 
-struct Ground : PhysicsHouse {
+struct Ground : PhysicsHost {
   Node& ground;
   Node& box1;
   Ground() : ground(*scene.create("PlaneCollider", "ground").asNode()), box1(box("box", {0, 0, 0.49}, {1, 1, 1})) {}
   Node& collider() { return *box1.find("collider")->asNode(); }
-  /// How high the box is after half a second.
+  /// Height of the box after `steps` steps; by default after half a second.
   double heightAfter(int steps = 25) {
     step(steps);
     return body(box1).state().position.z();
@@ -40,7 +40,7 @@ struct Ground : PhysicsHouse {
 
 }  // namespace
 
-TEST_CASE("two colliders without handlers are solid by default, and bouncy") {
+TEST_CASE("two colliders without handlers are solid and bounce by default") {
   Ground g;
   g.box1.as<Transform>()->setLocalPos({0, 0, 3});
   double highest = 0;
@@ -49,10 +49,10 @@ TEST_CASE("two colliders without handlers are solid by default, and bouncy") {
     g.step();
     highest = std::max(highest, Ground::body(g.box1).state().position.z());
   }
-  CHECK(highest > 1.5);  // 0.8 of the speed of a fall from 2.5 m
+  CHECK(highest > 1.5);  // it rebounds with 0.8 of the speed of a fall from 2.5 m
 }
 
-TEST_CASE("a contact is solid only when both colliders have a contact joint handler or no handler at all") {
+TEST_CASE("a contact is solid only if each collider has a contact joint handler or no handler at all") {
   struct Case {
     const char *first, *second;
     bool solid;
@@ -74,7 +74,7 @@ TEST_CASE("a contact is solid only when both colliders have a contact joint hand
   }
 }
 
-TEST_CASE("the first contact joint handler decides the surface, whatever handlers are beside it") {
+TEST_CASE("the first contact joint handler of a collider determines its surface") {
   Ground g;
   g.collider().create("RecorderHandler");
   Leaf& first = g.collider().create("ContactJointHandler");
@@ -86,12 +86,12 @@ TEST_CASE("the first contact joint handler decides the surface, whatever handler
   Ground::call(below, "setContactMu", {0.0});
   Ground::body(g.box1).setVelocity({1, 0, 0});
   g.step(25);
-  // Without friction it glides on; with the second's bounce or friction it would not.
+  // Without friction the box keeps sliding. With the bounce or the friction of the second handler it would not.
   CHECK(Ground::body(g.box1).state().linearVelocity.x() == Approx(1).margin(0.05));
   CHECK(std::abs(Ground::body(g.box1).state().linearVelocity.z()) < 0.1);
 }
 
-TEST_CASE("a recorder remembers each collider once, from either side, until it is cleared") {
+TEST_CASE("a recorder of either collider lists each touched collider once until it is cleared") {
   Ground g;
   auto& upper = *g.collider().create("RecorderHandler").as<ICollisionRecorder>();
   auto& lower = *g.ground.create("RecorderHandler").as<ICollisionRecorder>();
@@ -111,17 +111,17 @@ TEST_CASE("a recorder remembers each collider once, from either side, until it i
   CHECK(getProperty(*g.ground.find("RecorderHandler"), "colliders").toList().empty());
 }
 
-TEST_CASE("static triggers detect each other; static colliders without handlers cost nothing") {
-  PhysicsHouse house;
-  Node& a = house.transform(house.scene, "a", {0, 0, 0});
-  Node& b = house.transform(house.scene, "b", {0.5, 0, 0});
+TEST_CASE("a static collider with a handler detects another static collider") {
+  PhysicsHost host;
+  Node& a = host.transform(host.scene, "a", {0, 0, 0});
+  Node& b = host.transform(host.scene, "b", {0.5, 0, 0});
   auto& seen = *a.create("BoxCollider").asNode()->create("RecorderHandler").as<ICollisionRecorder>();
   b.create("BoxCollider");
-  house.step();
+  host.step();
   CHECK(seen.colliders().size() == 1);
 }
 
-TEST_CASE("a handler gets direct and symmetric contacts, and afterwards the requested force") {
+TEST_CASE("a handler gets direct and symmetric contacts, and after the step the requested force") {
   Ground g;
   g.kernel.registerClass<CountingHandler>();
   auto& upper = static_cast<CountingHandler&>(g.collider().create("CountingHandler"));
@@ -135,8 +135,8 @@ TEST_CASE("a handler gets direct and symmetric contacts, and afterwards the requ
 }
 
 TEST_CASE(
-    "the contacts of the last step can be read, all with their force when it is measured, and handlers get no more "
-    "calls for that") {
+    "the contacts of the last step can be read, with measureForces all have their force, and handlers get no "
+    "additional calls") {
   Ground g;
   g.kernel.registerClass<CountingHandler>();
   auto& upper = static_cast<CountingHandler&>(g.collider().create("CountingHandler"));
@@ -172,7 +172,7 @@ TEST_CASE(
   CHECK(server.contacts().empty());
 }
 
-TEST_CASE("every contact has its force when forces are measured, even where no handler requested it") {
+TEST_CASE("with measureForces each contact has its force, even if no handler requests it") {
   Ground g;
   g.collider().create("ContactJointHandler");
   g.ground.create("ContactJointHandler");
@@ -183,7 +183,7 @@ TEST_CASE("every contact has its force when forces are measured, even where no h
   for (const engine::Contact& c : contacts) CHECK((c.feedback && c.forceOnA.norm() > 0));
 }
 
-TEST_CASE("a handler that changes the tree in the middle of a step is named, and nothing breaks") {
+TEST_CASE("a handler that changes the tree during a step is reported and does no harm") {
   Ground g;
   g.kernel.registerClass<CountingHandler>();
   static_cast<CountingHandler&>(g.collider().create("CountingHandler")).breaksRules = true;
@@ -192,43 +192,44 @@ TEST_CASE("a handler that changes the tree in the middle of a step is named, and
 }
 
 TEST_CASE(
-    "a transform collider without a handler of its own bounces by default, or takes the inner one's when switched") {
+    "a transform collider without its own handler bounces by default, or uses the inner collider's handlers if set") {
   for (const bool fallback : {true, false}) {
-    PhysicsHouse house;
-    setProperty(*house.kernel.root().find("/sys/server/physics"), "defaultHandlerOnTransformCollider", fallback);
-    house.scene.create("PlaneCollider", "ground");
-    Node& t = house.thing("thing", {0, 0, 0.49});
+    PhysicsHost host;
+    setProperty(*host.kernel.root().find("/sys/server/physics"), "defaultHandlerOnTransformCollider", fallback);
+    host.scene.create("PlaneCollider", "ground");
+    Node& t = host.thing("thing", {0, 0, 0.49});
     Node& inner = *t.create("TransformCollider", "outer").asNode()->create("BoxCollider", "inner").asNode();
-    // The inner handler alone would not make it solid.
+    // With only the inner handler, the collider is not solid.
     auto& seen = *inner.create("RecorderHandler").as<ICollisionRecorder>();
-    house.step(25);
+    host.step(25);
     INFO((fallback ? "default" : "inner"));
-    CHECK((house.body(t).state().position.z() > 0.4) == fallback);
+    CHECK((host.body(t).state().position.z() > 0.4) == fallback);
     CHECK(seen.colliders().empty() == fallback);
   }
 }
 
-TEST_CASE("a transform collider reports itself") {
-  PhysicsHouse house;
+TEST_CASE("a contact of a transform collider reports the transform collider and not the inner one") {
+  PhysicsHost host;
   auto& seen =
-      *house.scene.create("PlaneCollider", "ground").asNode()->create("RecorderHandler").as<ICollisionRecorder>();
-  Node& t = house.thing("thing", {0, 0, 0.49});
+      *host.scene.create("PlaneCollider", "ground").asNode()->create("RecorderHandler").as<ICollisionRecorder>();
+  Node& t = host.thing("thing", {0, 0, 0.49});
   Leaf& outer = t.create("TransformCollider", "outer");
   outer.asNode()->create("BoxCollider", "inner");
-  house.step();
+  host.step();
   REQUIRE(seen.colliders().size() == 1);
   CHECK(seen.colliders()[0].get() == &outer);
   CHECK(outer.as<ICollider>()->body() == t.find<IRigidBody>("body"));
 }
 
-TEST_CASE("addCollisionHandler makes a handler of the named class, and only of such") {
+TEST_CASE("addCollisionHandler makes a handler of the named class and refuses other classes") {
   Ground g;
   Ground::call(g.ground, "addCollisionHandler", {"oxygen/ContactJointHandler"});
   CHECK(g.ground.childOf<ContactJointHandler>() != nullptr);
   CHECK_THROWS(Ground::call(g.ground, "addCollisionHandler", {"Transform"}));
 }
 
-TEST_CASE("a script handler emits collide at itself, after the step, with what touched where") {
+TEST_CASE(
+    "after the step a ScriptHandler emits collide at itself with the other collider, the position and the depth") {
   Ground g;
   Leaf& handler = g.collider().create("ScriptHandler");
   std::vector<std::string> others;
@@ -243,7 +244,7 @@ TEST_CASE("a script handler emits collide at itself, after the step, with what t
     if (Leaf* ground = g.scene.find("ground")) g.scene.remove(*ground);
   });
   g.step();
-  // The ground went with the first of four points.
+  // The ground was removed at the first of four contact points.
   CHECK(others == std::vector<std::string>{"/usr/scene/ground"});
   CHECK(depth == Approx(0.01).margin(1e-6));
   CHECK(std::abs(position.x()) == Approx(0.5).margin(1e-6));
@@ -251,7 +252,7 @@ TEST_CASE("a script handler emits collide at itself, after the step, with what t
   CHECK(others.size() == 1);
 }
 
-TEST_CASE("a ScriptHandler emits every point until it is removed") {
+TEST_CASE("a ScriptHandler emits an event for each contact point until it is removed") {
   Ground g;
   Leaf& handler = g.collider().create("ScriptHandler");
   int events = 0, removeAt = 0;
@@ -265,7 +266,7 @@ TEST_CASE("a ScriptHandler emits every point until it is removed") {
   CHECK(events == 6);
 }
 
-TEST_CASE("Lua reacts to collisions") {
+TEST_CASE("a Lua script can handle collisions") {
   Ground g;
   scripts(g.kernel).attachText(g.collider().create("ScriptHandler"), R"(
     self:on("collide", function(self, event)
@@ -279,16 +280,16 @@ TEST_CASE("Lua reacts to collisions") {
              Catch::Contains("ScriptHandler") && Catch::Contains("met") && Catch::Contains("/usr/scene/ground"));
 }
 
-TEST_CASE("joined bodies do not collide") {
-  PhysicsHouse house;
-  Node& a = house.box("a", {0, 0, 5}, {1, 1, 1});
-  Node& b = house.box("b", {0.5, 0, 5}, {1, 1, 1});
+TEST_CASE("bodies that are connected by a joint do not collide") {
+  PhysicsHost host;
+  Node& a = host.box("a", {0, 0, 5}, {1, 1, 1});
+  Node& b = host.box("b", {0.5, 0, 5}, {1, 1, 1});
   auto& seen = *a.find("collider")->asNode()->create("RecorderHandler").as<ICollisionRecorder>();
   Leaf& joint = b.create("HingeJoint");
-  house.call(joint, "attach", {"../body", "../../a/body"});
-  house.step();
+  host.call(joint, "attach", {"../body", "../../a/body"});
+  host.step();
   CHECK(seen.colliders().empty());
   b.remove(joint);
-  house.step();
+  host.step();
   CHECK(seen.colliders().size() == 1);
 }

@@ -6,14 +6,15 @@ using engine::JointType;
 
 namespace {
 
-/// A body that hangs 1 m below a fixed one; the joint is at the child, rotated by 90 degrees about z.
-struct Pair : PhysicsHouse {
+/// A body 1 m below a fixed one. The joint is a child of the lower body's transform, which is rotated by 90 degrees
+/// about z.
+struct Pair : PhysicsHost {
   Node& child;
   Node& parent;
   Pair() : child(thing("child", {0, 0, 0})), parent(thing("parent", {0, 0, 1})) {
     call(*scene.find("world"), "setGravity", {0.0, 0.0, 0.0});
     call(child, "setLocalRotation", {0.0, 0.0, 90.0});
-    step();  // the child's body takes the turn
+    step();  // applies the rotation to the child's body
     Leaf& hold = parent.create("FixedJoint", "hold");
     call(hold, "attach", {"../body"});
     call(hold, "setFixed");
@@ -32,7 +33,7 @@ double number(Leaf& leaf, const char* method, const List& arguments = {}) {
 
 }  // namespace
 
-TEST_CASE("anchors and axes that are set before the bodies are attached count, as if they were set after") {
+TEST_CASE("anchors and axes can be set before or after the bodies are attached, with the same result") {
   const struct {
     const char* className;
     std::vector<std::pair<const char*, List>> calls;
@@ -74,7 +75,7 @@ TEST_CASE("anchors and axes that are set before the bodies are attached count, a
   }
 }
 
-TEST_CASE("what no axis and no anchor can be is refused before the bodies are attached, too") {
+TEST_CASE("invalid axes and anchors are refused also before the bodies are attached") {
   Pair p;
   Leaf& j = p.child.create("HingeJoint", "joint");
   CHECK_THROWS_WITH(p.call(j, "setAxis", {0.0, 0.0, 0.0}), Catch::Contains("expected an axis longer than 0"));
@@ -82,7 +83,7 @@ TEST_CASE("what no axis and no anchor can be is refused before the bodies are at
                     Catch::Contains("expected finite numbers for the anchor"));
 }
 
-TEST_CASE("a hinge: anchor and axis in the joint's frame, angles in degrees, motor in degrees, stops") {
+TEST_CASE("a hinge has its anchor and axis in the joint's frame, angles and motor speed in degrees, and stops") {
   Pair p;
   Leaf& j = p.joint("HingeJoint");
   p.call(j, "setAnchor", {0.0, 0.0, 0.5});
@@ -92,7 +93,7 @@ TEST_CASE("a hinge: anchor and axis in the joint's frame, angles in degrees, mot
     return Vec3(v.at(std::size_t(0))->toNumber(), v.at(std::size_t(1))->toNumber(), v.at(std::size_t(2))->toNumber());
   };
   CHECK(vec("getAnchor").isApprox(Vec3(0, 0, 0.5), 1e-6));
-  CHECK(vec("getAxis").isApprox(Vec3(0, 1, 0), 1e-6));  // x of a frame turned by 90 degrees
+  CHECK(vec("getAxis").isApprox(Vec3(0, 1, 0), 1e-6));  // x of a frame rotated by 90 degrees
   p.call(j, "setAxis", {0.0, 1.0, 0.0});
   CHECK(vec("getAxis").isApprox(Vec3(-1, 0, 0), 1e-6));
   CHECK_THROWS_WITH(p.call(j, "setAxis", {1.0, 2.0}), Catch::Contains("0, 1 or 2"));
@@ -116,7 +117,7 @@ TEST_CASE("a hinge: anchor and axis in the joint's frame, angles in degrees, mot
   CHECK_THROWS_WITH(p.call(j, "setMaxMotorForce", {1, 1.0}), Catch::Contains("axis 0"));
 }
 
-TEST_CASE("every setting of a joint has a getter that gives what was set") {
+TEST_CASE("each setting of a joint has a getter that returns the value that was set") {
   Pair p;
   Leaf& j = p.joint("UniversalJoint");
   for (const char* name : {"LowStopPos", "HighStopPos", "LowStopDeg", "HighStopDeg", "FudgeFactor", "Bounce", "CFM",
@@ -165,12 +166,12 @@ TEST_CASE("a wheel steers about z and rolls about x of the joint's frame once it
   p.call(j, "setHighStopDeg", {0, 0.0});
   p.step(50);
   CHECK(std::abs(number(j, "getAngleRate", {1})) == Approx(120).margin(3));
-  // x of the joint's frame is y of the world.
+  // The x axis of the joint's frame is the y axis of the world.
   CHECK(std::abs(p.childBody().state().angularVelocity.y()) == Approx(degToRad(120)).margin(0.05));
   CHECK(std::abs(number(j, "getAngle", {0})) < 2);
 }
 
-TEST_CASE("a slider slides along z of the joint's frame as it was when attached") {
+TEST_CASE("a slider slides along the z axis that the joint's frame had when it was attached") {
   Pair p;
   p.call(p.child, "setLocalRotation", {90.0, 0.0, 0.0});  // local z is world -y
   p.step();
@@ -187,7 +188,7 @@ TEST_CASE("a slider slides along z of the joint's frame as it was when attached"
   CHECK(number(j, "getHighStopPos", {0}) == 0.3);
 }
 
-TEST_CASE("a ball joint holds a point, a fixed joint a pose even without setFixed") {
+TEST_CASE("a ball joint holds its anchor, and a fixed joint holds the pose even without setFixed") {
   Pair p;
   Leaf& j = p.joint("BallJoint");
   p.call(j, "setAnchor", {0.0, 0.0, 0.5});
@@ -205,7 +206,7 @@ TEST_CASE("a ball joint holds a point, a fixed joint a pose even without setFixe
   CHECK((p.childBody().state().position - at).norm() < 0.03);
 }
 
-TEST_CASE("a path that leads nowhere is logged and means the static world") {
+TEST_CASE("a path without a body is logged and attaches the joint to the static world") {
   Pair p;
   Leaf& j = p.child.create("BallJoint", "joint");
   p.call(j, "attach", {"../body", "../../nobody/body"});
@@ -235,7 +236,7 @@ TEST_CASE("feedback gives the torque that a joint carries") {
   CHECK(j.as<IJoint>()->feedbackTorque() == 0);
 }
 
-TEST_CASE("an angular motor drives its hinge and holds the numbers of a real motor") {
+TEST_CASE("an angular motor drives its hinge and has the parameters of a real motor") {
   Pair p;
   Leaf& hinge = p.joint("HingeJoint");
   p.call(hinge, "setAnchor", {0.0, 0.0, 0.5});
@@ -281,7 +282,7 @@ TEST_CASE("an angular motor drives its hinge and holds the numbers of a real mot
   CHECK(getProperty(server, "jointHeating").toBool());
 }
 
-TEST_CASE("a modelled motor gets warm, drains its battery, and is weaker or disabled for it") {
+TEST_CASE("a simulated motor heats up and drains its battery, which makes it weaker or disables it") {
   Pair p;
   Leaf& hinge = p.joint("HingeJoint");
   p.call(hinge, "setAnchor", {0.0, 0.0, 0.0});
@@ -296,14 +297,14 @@ TEST_CASE("a modelled motor gets warm, drains its battery, and is weaker or disa
   p.call(m, "setBattery", {"/usr/scene/battery"});
   p.call(m, "setMaxTorque", {2.0});
   p.call(m, "setTorqueConstant", {2.0});
-  p.call(m, "setAngularMotorVelocity", {0, 20000.0});  // more than it can reach: it pulls with all it has
+  p.call(m, "setAngularMotorVelocity", {0, 20000.0});  // unreachable, so the motor uses its maximum torque
   const auto strength = [&] { return number(m, "getMaxMotorForce", {0}); };
   const auto value = [](const Leaf& leaf, const char* name) { return getProperty(leaf, name).toNumber(); };
 
   p.step();
   CHECK(strength() == 2);
   CHECK(value(m, "current") == Approx(1).epsilon(1e-3));
-  CHECK(value(m, "temperature") == 20);  // nothing is modelled yet
+  CHECK(value(m, "temperature") == 20);  // heating is not simulated yet
   CHECK(value(battery, "power") == 1000);
 
   auto& server = *p.kernel.root().find("/sys/server/physics");
@@ -333,11 +334,11 @@ TEST_CASE("a modelled motor gets warm, drains its battery, and is weaker or disa
   p.call(m, "setBattery", {"/usr/scene/full"});
   p.call(battery, "setPower", {0.0});
   CHECK(getProperty(m, "disabled") == Value(false));
-  p.call(m, "setBattery", {"/usr/scene/battery"});  // counts at once
+  p.call(m, "setBattery", {"/usr/scene/battery"});  // has an effect at once
   CHECK(getProperty(m, "disabled") == Value(true));
 }
 
-TEST_CASE("sensors and effectors of any plugin find motor and battery by their interfaces") {
+TEST_CASE("motors and batteries are available to other plugins through their interfaces") {
   Pair p;
   Leaf& store = p.scene.create("Battery", "battery");
   p.call(store, "setCapacity", {1000.0});
@@ -366,7 +367,7 @@ TEST_CASE("sensors and effectors of any plugin find motor and battery by their i
   CHECK(node.as<IJoint>()->feedback());
 }
 
-TEST_CASE("a cone twist joint is accepted and holds nothing") {
+TEST_CASE("a cone twist joint is accepted and constrains nothing") {
   Pair p;
   Leaf& j = p.joint("ConeTwistJoint");
   p.childBody().setVelocity({0, 0, -1});

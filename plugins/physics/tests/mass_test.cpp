@@ -33,7 +33,7 @@ void checkNear(const engine::Mass& a, const engine::Mass& b, double part) {
 
 }  // namespace
 
-TEST_CASE("mass: solids have the mass and inertia of their substance") {
+TEST_CASE("mass: solids have the mass and inertia that integration over their volume gives") {
   const double density = 700;
   const Vec3 edges(0.2, 0.4, 0.6);
   checkNear(boxMass(density * boxVolume(edges), edges), sum(density, edges / 2, [](const Vec3&) { return true; }),
@@ -50,13 +50,13 @@ TEST_CASE("mass: solids have the mass and inertia of their substance") {
             0.01);
 }
 
-TEST_CASE("mass: a ball of the field has 2/5 m r^2") {
+TEST_CASE("mass: a ball has an inertia of 2/5 m r^2") {
   const engine::Mass m = sphereMass(0.026, 0.042);
   CHECK(m.mass == 0.026);
   CHECK(m.inertia(1, 1) == Approx(0.4 * 0.026 * 0.042 * 0.042));
 }
 
-TEST_CASE("mass: two halves of a box are the box") {
+TEST_CASE("mass: two halves of a box have the mass and inertia of the box") {
   const engine::Mass half = boxMass(3, {0.5, 0.3, 0.2});
   engine::Mass whole{0, Vec3::Zero(), Mat3::Zero()};
   whole = addMass(whole, half, {Vec3(-0.25, 0, 0), Mat3::Identity()});
@@ -67,7 +67,7 @@ TEST_CASE("mass: two halves of a box are the box") {
   CHECK(whole.inertia.isApprox(box.inertia, 1e-12));
 }
 
-TEST_CASE("mass: centring takes away what the centre's place adds") {
+TEST_CASE("mass: centring removes the contribution of the center's offset") {
   const engine::Mass part = boxMass(2, {0.1, 0.2, 0.3});
   Mat3 turned;
   turned << 0, -1, 0, 1, 0, 0, 0, 0, 1;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A house with a scene, its world and space; steps by emitting the phases itself.
+/// A kernel with a scene, a world and a space. It steps the simulation by emitting the phases itself.
 
 #include <catch2/catch.hpp>
 
@@ -11,13 +11,13 @@
 
 namespace spark::test {
 
-struct PhysicsHouse : House {
+struct PhysicsHost : TestHost {
   Node& scene;
   double dt = 0.02;
   std::int64_t cycle = 0;
 
-  PhysicsHouse() : scene(make(*this)) {}
-  static Node& make(House& h) {
+  PhysicsHost() : scene(make(*this)) {}
+  static Node& make(TestHost& h) {
     for (const char* plugin : {"scene", "physics", "physics-ode"}) h.kernel.plugins().use(plugin);
     h.kernel.events().define(phase::kPrepare, Order::childrenFirst, "before the step");
     h.kernel.events().define(phase::kPhysics, Order::parentsFirst, "the step");
@@ -31,7 +31,7 @@ struct PhysicsHouse : House {
     h.kernel.create("Space", "/usr/scene/space");
     return *scene.asNode();
   }
-  /// Prepare, physics and place, n times.
+  /// Emits the phases prepare, physics and place n times.
   void step(int n = 1) {
     for (int i = 0; i < n; ++i, ++cycle)
       for (const ChannelName channel : {phase::kPrepare, phase::kPhysics, phase::kPlace})
@@ -49,7 +49,7 @@ struct PhysicsHouse : House {
     t.create("RigidBody", "body");
     return t;
   }
-  /// As thing, with a box collider of the given edges.
+  /// Like thing, with a box collider with the given edges.
   Node& box(const std::string& name, const Vec3& at, const Vec3& edges) {
     Node& t = thing(name, at);
     call(t.create("BoxCollider", "collider"), "setBoxLengths", {edges.x(), edges.y(), edges.z()});

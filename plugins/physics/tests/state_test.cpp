@@ -5,8 +5,8 @@ using namespace spark::test;
 
 namespace {
 
-/// Boxes and spheres that fall on one another and on the ground, and a pendulum with a motor.
-struct Heap : PhysicsHouse {
+/// Boxes and spheres that fall on each other and on the ground, a walker, and a pendulum with a motor.
+struct Heap : PhysicsHost {
   Heap() {
     Node& ground = *scene.create("PlaneCollider", "ground").asNode();
     call(ground.create("ContactJointHandler"), "setContactBounceMode", {false});
@@ -44,7 +44,7 @@ struct Heap : PhysicsHouse {
 
 }  // namespace
 
-TEST_CASE("the same house twice has the same hash, and the hash moves with the world") {
+TEST_CASE("two equal scenes have the same hash, and the hash changes with the state") {
   Heap a, b;
   CHECK(a.hash() == b.hash());
   const auto first = a.hash();
@@ -56,7 +56,7 @@ TEST_CASE("the same house twice has the same hash, and the hash moves with the w
   CHECK(a.hash() != b.hash());
 }
 
-TEST_CASE("a motor's speed and a body's mass are state") {
+TEST_CASE("a motor's speed and a body's mass are part of the state") {
   Heap a;
   const auto h0 = a.hash();
   a.call(*a.scene.find("pendulum/hinge"), "setAngularMotorVelocity", {0, 31.0});
@@ -66,7 +66,7 @@ TEST_CASE("a motor's speed and a body's mass are state") {
   CHECK(a.hash() != h1);
 }
 
-TEST_CASE("from a saved state a house goes on bit for bit, whatever it did before") {
+TEST_CASE("a restored scene continues bit for bit with any history") {
   Heap a;
   a.step(60);
   const std::string middle = a.saved();

@@ -18,7 +18,7 @@ Surface surface(bool bounce, double value, double velocity, double erp, double c
   return s;
 }
 
-// The surfaces of the default league as its scene files leave them.
+// The surfaces of the default league, as its scene files set them.
 const Surface kGround = surface(false, 0, 0, 0.2, 0, 5e-3);
 const Surface kBall = surface(true, 0.8, 0.8, 0.5, 0.05, 0.6);
 const Surface kFoot = surface(false, 0, 0, 0.6, 1e-4, 5e-3);
@@ -45,7 +45,7 @@ void check(const Surface& a, const Surface& b, bool bounce, double value, double
 
 }  // namespace
 
-TEST_CASE("surface: the default is bouncy without end of friction") {
+TEST_CASE("surface: the default bounces and has infinite friction") {
   CHECK(kGoal.bounceOn);
   CHECK(kGoal.bounce == 0.8);
   CHECK(kGoal.bounceVelocity == 2.0);
@@ -55,7 +55,7 @@ TEST_CASE("surface: the default is bouncy without end of friction") {
   CHECK_FALSE(kGoal.softCfmOn);
 }
 
-TEST_CASE("surface: pairs of the default league combine to the numbers that robots were tuned on") {
+TEST_CASE("surface: pairs of the default league combine to the values for which robots were tuned") {
   check(kFoot, kGround, false, 0, 0, 0.4, 1e-4, 5e-3);
   check(kBall, kGround, true, 0.8, 0.8, 0.35, 0.05, 0.3025);
   check(kBall, kFoot, true, 0.8, 0.8, 0.55, 0.02505, 0.3025);
@@ -64,7 +64,7 @@ TEST_CASE("surface: pairs of the default league combine to the numbers that robo
   check(kGoal, kGoal, true, 0.8, 2.0, 0, 0, 0);
 }
 
-TEST_CASE("surface: friction is the mean, and infinite stays infinite") {
+TEST_CASE("surface: friction is the mean, and infinite friction stays infinite") {
   Surface a, b;
   a.mu = 0.4, b.mu = 1.0;
   CHECK(physics::combine(a, b).mu == Approx(0.7));

@@ -1,4 +1,4 @@
-// Models in the tree.
+// Imports models into the tree.
 
 #include "../../physics/tests/physics_house.h"
 #include "api/agents.h"
@@ -7,9 +7,9 @@
 namespace spark::test {
 namespace {
 
-struct MjcfHouse : PhysicsHouse {
+struct MjcfHost : PhysicsHost {
   TemporaryFolder folder;
-  MjcfHouse() {
+  MjcfHost() {
     for (const char* plugin : {"files", "scene-mjcf"}) kernel.plugins().use(plugin);
     kernel.create("FileServer", "/sys/server/file");
     setProperty(kernel.create("DirectoryFileSystem", "/sys/server/file/folder"), "path", folder.path().string());
@@ -33,7 +33,7 @@ struct MjcfHouse : PhysicsHouse {
   T& at(const std::string& path) {
     return kernel.root().require<T>("/usr/scene/" + path);
   }
-  Vec3 place(const std::string& body) { return at<IRigidBody>(body).state().position; }
+  Vec3 position(const std::string& body) { return at<IRigidBody>(body).state().position; }
 };
 
 const char* const kArm = R"(<mujoco model='arm'><compiler autolimits='true'/><worldbody>
@@ -48,13 +48,13 @@ const char* const kArm = R"(<mujoco model='arm'><compiler autolimits='true'/><wo
 
 }  // namespace
 
-TEST_CASE("bodies, joints and colliders stand where the file has them") {
-  MjcfHouse h;
+TEST_CASE("bodies, joints and colliders have the poses of the file") {
+  MjcfHost h;
   h.import(kArm);
-  CHECK(h.place("arm/upper/body").isApprox(Vec3(0.5, 0, 1)));
-  // A hand without a joint is part of the arm below.
+  CHECK(h.position("arm/upper/body").isApprox(Vec3(0.5, 0, 1)));
+  // The hand has no joint, so it is part of the lower arm.
   CHECK(h.at<IRigidBody>("arm/lower/body").mass() == 2);
-  CHECK(h.place("arm/lower/body").isApprox(Vec3(1.75, 0, 1)));
+  CHECK(h.position("arm/lower/body").isApprox(Vec3(1.75, 0, 1)));
   auto& shoulder = h.at<IJoint>("arm/upper/shoulder");
   CHECK(shoulder.anchor().isApprox(Vec3(0, 0, 1)));
   CHECK(shoulder.axisNow(0).isApprox(Vec3::UnitY()));
@@ -69,24 +69,24 @@ TEST_CASE("bodies, joints and colliders stand where the file has them") {
   CHECK(toPose(h.at<Transform>("arm/upper/tip").worldNow()).position.isApprox(Vec3(1, 0, 1), 1e-6));
   CHECK(getProperty(h.at<ICollider>("arm/upper/bar").leaf(), "notCollideWith").toList().size() == 1);
   h.step(25);
-  CHECK(h.place("arm/lower/body").z() < 0.9);
+  CHECK(h.position("arm/lower/body").z() < 0.9);
 }
 
-TEST_CASE("a prefix stands before the names, a transform moves the whole, and the whole can be removed") {
-  MjcfHouse h;
-  Node& place = h.transform(h.scene, "place", {5, 0, 0});
+TEST_CASE("a model can be imported with a prefix for its names and below a transform, and be removed") {
+  MjcfHost h;
+  Node& parent = h.transform(h.scene, "place", {5, 0, 0});
   h.folder.write("m.xml", kArm);
-  h.call(place, "importScene", {"m.xml", "r-"});
-  CHECK(h.place("place/r-arm/r-upper/body").isApprox(Vec3(5.5, 0, 1)));
+  h.call(parent, "importScene", {"m.xml", "r-"});
+  CHECK(h.position("place/r-arm/r-upper/body").isApprox(Vec3(5.5, 0, 1)));
   h.import(kArm);
   h.step(2);
-  place.remove(*place.child("r-arm"));
+  parent.remove(*parent.child("r-arm"));
   h.step(2);
   CHECK(h.kernel.root().find("/usr/scene/arm/upper/body"));
 }
 
 TEST_CASE("a body with several joints gets light bodies between them") {
-  MjcfHouse h;
+  MjcfHost h;
   h.import(
       "<mujoco model='m'><worldbody><body name='b' pos='0 0 1'><joint name='x' axis='1 0 0'/><joint name='y' axis='0 1 "
       "0'/>"
@@ -99,8 +99,8 @@ TEST_CASE("a body with several joints gets light bodies between them") {
   h.step(10);
 }
 
-TEST_CASE("names that are alike do not mix up bodies and colliders") {
-  MjcfHouse h;
+TEST_CASE("similar names of bodies are kept apart") {
+  MjcfHost h;
   h.import(
       "<mujoco model='m'><worldbody><body name='a-1' pos='5 0 0'><freejoint/><geom size='.1'/></body>"
       "<body name='a' pos='0 0 1'><joint name='x' axis='1 0 0'/><joint name='y' axis='0 1 0'/><geom size='.1'/></body>"
@@ -111,17 +111,17 @@ TEST_CASE("names that are alike do not mix up bodies and colliders") {
   CHECK(h.at<IJoint>("m/b_~2/q").body(1) == &h.at<IRigidBody>("m/b_/body"));
 }
 
-TEST_CASE("the mass of a body may be that of a part alone") {
-  MjcfHouse h;
+TEST_CASE("a body may get all of its mass from a fixed child body") {
+  MjcfHost h;
   h.import(
       "<mujoco model='m'><worldbody><body name='b'><joint/><body pos='1 0 0'><geom type='box' size='.1 .2 "
       ".3'/></body></body></worldbody></mujoco>");
   CHECK(h.at<IRigidBody>("m/b/body").mass() == Approx(48));
-  CHECK(h.place("m/b/body").isApprox(Vec3(1, 0, 0)));
+  CHECK(h.position("m/b/body").isApprox(Vec3(1, 0, 0)));
 }
 
-TEST_CASE("options that cannot be set leave the world as it was") {
-  MjcfHouse h;
+TEST_CASE("if an option cannot be set, no parameter of the world is changed") {
+  MjcfHost h;
   CHECK_THAT(h.failure("<mujoco model='m'><option timestep='0.001' gravity='1e300 0 0'/></mujoco>"),
              Catch::Contains("m.xml:1:19: cannot set an option"));
   Leaf& world = *h.kernel.root().find("/usr/scene/world");
@@ -129,8 +129,8 @@ TEST_CASE("options that cannot be set leave the world as it was") {
   CHECK(getProperty(world, "gravity").toList()[2].toNumber() == -9.81);
 }
 
-TEST_CASE("strict covers what the tree cannot have") {
-  MjcfHouse h;
+TEST_CASE("with strict, a model that the tree cannot represent exactly is refused") {
+  MjcfHost h;
   setProperty(*h.kernel.root().find("/sys/server/scene/mjcf"), "strict", true);
   CHECK_THAT(
       h.failure("<mujoco model='m'><worldbody><body><joint/><joint/><geom size='1'/></body></worldbody></mujoco>"),
@@ -138,8 +138,8 @@ TEST_CASE("strict covers what the tree cannot have") {
   CHECK_FALSE(h.scene.child("m"));
 }
 
-TEST_CASE("options are the world's, unless the model is attached with a prefix") {
-  MjcfHouse h;
+TEST_CASE("the options of a model set the world's parameters, unless it is imported with a prefix") {
+  MjcfHost h;
   const char* const text =
       "<mujoco model='m'><option timestep='0.004' gravity='0 0 -1' density='1.2' cone='elliptic'/></mujoco>";
   h.import(text, {"p"});
@@ -152,8 +152,8 @@ TEST_CASE("options are the world's, unless the model is attached with a prefix")
   CHECK(getProperty(world, "gravity").toList()[2].toNumber() == -1);
 }
 
-TEST_CASE("kinds of geoms, and pairs that collide all the same") {
-  MjcfHouse h;
+TEST_CASE("geoms collide as contype and conaffinity say, and explicit pairs always collide") {
+  MjcfHost h;
   h.import(R"(<mujoco model='m'><worldbody><geom name='floor' type='plane' size='1 1 1' contype='2' conaffinity='2'/>
     <body name='through' pos='0 0 0.2'><freejoint/><geom size='0.1' contype='4' conaffinity='4'/></body>
     <body name='lies' pos='1 0 0.2'><freejoint/><geom size='0.1' contype='2' conaffinity='0'/></body>
@@ -161,24 +161,24 @@ TEST_CASE("kinds of geoms, and pairs that collide all the same") {
       <geom name='foot' size='0.1' contype='0' conaffinity='0'/></body></worldbody>
     <contact><pair geom1='foot' geom2='floor'/></contact></mujoco>)");
   h.step(50);
-  CHECK(h.place("m/through/body").z() < -1);
-  CHECK(h.place("m/lies/body").z() == Approx(0.1).margin(0.01));
-  CHECK(h.place("m/paired/body").z() == Approx(0.1).margin(0.01));
+  CHECK(h.position("m/through/body").z() < -1);
+  CHECK(h.position("m/lies/body").z() == Approx(0.1).margin(0.01));
+  CHECK(h.position("m/paired/body").z() == Approx(0.1).margin(0.01));
 }
 
-TEST_CASE("a mesh file is a collider") {
-  MjcfHouse h;
+TEST_CASE("a mesh file becomes a mesh collider") {
+  MjcfHost h;
   h.folder.write("meshes/tent.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   h.import(
       "<mujoco model='m'><compiler meshdir='meshes'/><asset><mesh name='t' file='tent.obj'/></asset><worldbody>"
       "<body name='b'><freejoint/><geom name='g' type='mesh' mesh='t' density='6'/></body></worldbody></mujoco>");
   CHECK(h.at<IRigidBody>("m/b/body").mass() == Approx(1));
-  CHECK(h.place("m/b/body").isApprox(Vec3(0.25, 0.25, 0.25)));
+  CHECK(h.position("m/b/body").isApprox(Vec3(0.25, 0.25, 0.25)));
   CHECK(h.at<ICollider>("m/b/g").shape()->triangles.size() == 12);
 }
 
-TEST_CASE("a model that cannot be made leaves nothing behind") {
-  MjcfHouse h;
+TEST_CASE("a model that cannot be imported leaves nothing in the tree") {
+  MjcfHost h;
   const auto in = [](const std::string& s) { return "<mujoco model='m'><worldbody>" + s + "</worldbody></mujoco>"; };
   const std::pair<std::string, const char*> cases[] = {
       {in("<body><freejoint/></body>"), "m.xml:1:30: a body that moves needs a mass above 0"},
@@ -201,7 +201,7 @@ TEST_CASE("a model that cannot be made leaves nothing behind") {
 }
 
 TEST_CASE("sensors and actuators become perceptors and effectors") {
-  MjcfHouse h;
+  MjcfHost h;
   for (const char* plugin : {"gamecontrol", "sensors", "effectors"}) h.kernel.plugins().use(plugin);
   h.import(R"(<mujoco model='m'><worldbody><body name='b' pos='0 0 1'>
     <joint name='j' axis='0 1 0' actuatorfrcrange='-3 3'/><geom size='0.1' pos='0.2 0 0' mass='1'/>

@@ -1,4 +1,4 @@
-// What the reader makes of MJCF texts.
+// Reads models from MJCF texts.
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -38,7 +38,8 @@ struct Read {
         leftOver);
   }
   const Body& body(std::size_t i) const { return model.bodies.at(i); }
-  std::string said() const {
+  /// The messages about unsupported elements and attributes, one per line.
+  std::string messages() const {
     std::string out;
     for (const std::string& s : leftOver.sentences()) out += s + "\n";
     return out;
@@ -57,11 +58,11 @@ std::string failure(const std::string& text, Files files = {}) {
 
 }  // namespace
 
-TEST_CASE("angles are degrees unless the compiler says otherwise, and orientations come in five ways") {
+TEST_CASE("angles are in degrees unless the compiler element says otherwise, and orientations have five notations") {
   const Mat3 quarter = Read(world("<body euler='0 0 90'/>")).body(1).pose.rotation;
   CHECK(quarter.col(0).isApprox(Vec3::UnitY()));
-  for (const char* way : {"quat='2 0 0 2'", "axisangle='0 0 3 90'", "xyaxes='0 2 0 -1 1 0'", "euler='0 0 90'"})
-    CHECK(Read(world("<body " + std::string(way) + "/>")).body(1).pose.rotation.isApprox(quarter, 1e-12));
+  for (const char* notation : {"quat='2 0 0 2'", "axisangle='0 0 3 90'", "xyaxes='0 2 0 -1 1 0'", "euler='0 0 90'"})
+    CHECK(Read(world("<body " + std::string(notation) + "/>")).body(1).pose.rotation.isApprox(quarter, 1e-12));
   CHECK(Read(world("<body zaxis='1 0 0'/>")).body(1).pose.rotation.col(2).isApprox(Vec3::UnitX()));
   const std::string radian =
       "<mujoco><compiler angle='radian' eulerseq='XYZ'/><worldbody><body euler='0.1 0.2 0.3'/></worldbody></mujoco>";
@@ -71,7 +72,7 @@ TEST_CASE("angles are degrees unless the compiler says otherwise, and orientatio
   CHECK(Read(radian).body(1).pose.rotation.isApprox(fixed));
 }
 
-TEST_CASE("default classes are nested, and bodies pass one on") {
+TEST_CASE("default classes can be nested, and child bodies inherit their parent's class") {
   const Read r(R"(<mujoco><default><geom size='1' friction='0.5'/><joint damping='3'/>
     <default class='leg'><joint armature='0.2'/><default class='toe'><joint damping='4'/></default></default></default>
     <worldbody><body childclass='leg'><joint name='a'/><geom/><body><joint class='toe'/><geom size='2'/>
@@ -84,10 +85,10 @@ TEST_CASE("default classes are nested, and bodies pass one on") {
   CHECK(r.body(1).geoms[0].shape.radius == 1);
   CHECK(r.body(2).geoms[0].shape.radius == 2);
   CHECK(r.body(2).geoms[0].contact.friction == Vec3(0.5, 0.005, 0.0001));
-  CHECK(r.said() == "");
+  CHECK(r.messages() == "");
 }
 
-TEST_CASE("a body without an inertial element weighs what its geoms weigh") {
+TEST_CASE("a body without an inertial element has the mass and inertia of its geoms") {
   const Read r(world(
       "<body><joint/><geom type='box' size='0.5 0.5 0.5' pos='1 0 0' density='10'/>"
       "<geom type='box' size='0.5 0.5 0.5' pos='-1 0 0' mass='30'/><geom size='1' group='4' density='0'/></body>"));
@@ -104,7 +105,7 @@ TEST_CASE("a body without an inertial element weighs what its geoms weigh") {
   CHECK(mesh.body(1).mass.inertia.isApprox(Mat3(Vec3(4, 10, 10).asDiagonal()), 1e-9));
 }
 
-TEST_CASE("a capsule may be given by its ends, and a joint's range is a limit") {
+TEST_CASE("a capsule can be given by its end points, and a joint's range limits the joint") {
   const Read r(
       world("<body><joint range='-90 45'/><joint range='1 2' limited='false'/><geom type='capsule' size='0.1' "
             "fromto='0 0 0 0 0 -2'/></body>"));
@@ -116,7 +117,7 @@ TEST_CASE("a capsule may be given by its ends, and a joint's range is a limit") 
   CHECK_FALSE(r.body(1).joints[1].limited);
 }
 
-TEST_CASE("actuators are forces along joints") {
+TEST_CASE("actuators are read as gain and bias of a force on a joint") {
   const Read r(R"(<mujoco><worldbody><body><joint name='j'/><geom size='1'/></body></worldbody><actuator>
     <motor joint='j' gear='3' forcerange='-2 2'/><position joint='j' kp='7'/>
     <velocity joint='j' kv='5' ctrlrange='-1 1'/>
@@ -129,10 +130,10 @@ TEST_CASE("actuators are forces along joints") {
   CHECK(a[2].bias == std::array<double, 3>{0, 0, -5});
   CHECK(a[2].controlRange == std::array<double, 2>{-1, 1});
   CHECK(a[3].gain == 4);
-  CHECK(r.said() == "a.xml:4:73: the element <muscle> is left out\n");
+  CHECK(r.messages() == "a.xml:4:73: the element <muscle> is left out\n");
 }
 
-TEST_CASE("files include others, and none includes itself") {
+TEST_CASE("a file can include others but not itself") {
   const Files files{{"arm.xml", "<mujoco><worldbody><body name='arm'/></worldbody></mujoco>"},
                     {"loop.xml", "<mujoco><include file='loop.xml'/></mujoco>"},
                     {"self.xml", "<mujoco><include file='a.xml'/></mujoco>"}};
@@ -145,18 +146,18 @@ TEST_CASE("files include others, and none includes itself") {
   CHECK(failure("<mujoco>\n <include file='no.xml'/></mujoco>").find("a.xml:2:2: cannot include 'no.xml'") == 0);
 }
 
-TEST_CASE("what is left out is named once, with its first place") {
+TEST_CASE("an unsupported element or attribute is reported once, with its first position") {
   const Read r(
       "<mujoco><worldbody>\n<body colour='red'><joint/><geom size='1' rgba='1 1 1 1' wings='1'/><geom size='1' "
       "wings='1'/></body>\n"
       "</worldbody><tendon/><keyframe/></mujoco>");
-  CHECK(r.said() ==
+  CHECK(r.messages() ==
         "a.xml:2:1: the attribute 'colour' of <body> is left out\n"
         "a.xml:2:28: the attribute 'wings' of <geom> is left out (and 1 more)\n"
         "a.xml:3:13: the element <tendon> is left out\n");
 }
 
-TEST_CASE("errors say where, what was expected and what was found") {
+TEST_CASE("errors have the position, what was expected, and what was found") {
   const std::pair<const char*, const char*> cases[] = {
       {"<mujoco><worldbody><body></worldbody></mujoco>", "a.xml:1:28: this is not XML: "},
       {"<robot/>", "a.xml:1:1: expected the element <mujoco>, found <robot>"},
@@ -177,14 +178,14 @@ TEST_CASE("errors say where, what was expected and what was found") {
   for (const auto& [text, message] : cases) CHECK_THAT(failure(text), Catch::StartsWith(message));
 }
 
-TEST_CASE("a model that is nested too deep is refused") {
+TEST_CASE("a model that is nested too deeply is refused") {
   std::string text;
   for (int i = 0; i < 300; ++i) text += "<body>";
   for (int i = 0; i < 300; ++i) text += "</body>";
   CHECK_THAT(failure(world(text)), Catch::Contains("expected at most 200 elements in each other"));
 }
 
-TEST_CASE("a shorter list of an element changes the first numbers of its default") {
+TEST_CASE("a short list of numbers replaces only the first numbers of the default") {
   const Read r(
       "<mujoco><default><geom solimp='.8 .9 .002 .4 3' size='.3 .3 .3'/></default><worldbody>"
       "<geom type='box' solimp='.7' size='.1 .15'/></worldbody></mujoco>");
@@ -193,7 +194,7 @@ TEST_CASE("a shorter list of an element changes the first numbers of its default
   CHECK(g.shape.lengths.isApprox(Vec3(.2, .3, .6)));
 }
 
-TEST_CASE("actuators of all tags have one default") {
+TEST_CASE("all types of actuators share one default") {
   const Read r(R"(<mujoco><default><motor gear='2'/><position kp='55'/></default>
     <worldbody><body><joint name='j'/><geom size='1'/></body></worldbody>
     <actuator><position joint='j' kp='100'/><general joint='j'/><motor joint='j'/></actuator></mujoco>)");
@@ -206,17 +207,17 @@ TEST_CASE("actuators of all tags have one default") {
   CHECK(a[2].bias[1] == 0);
 }
 
-TEST_CASE("an ellipsoid has a mass, and a box may be given by its ends") {
+TEST_CASE("an ellipsoid has a mass but does not collide, and a box can be given by its end points") {
   const Read r(
       world("<body><joint/><geom type='ellipsoid' size='.1 .2 .3' density='1000'/></body>"
             "<body><joint/><geom type='box' size='.1' fromto='0 0 0 0 0 1'/></body>"));
   CHECK(r.body(1).mass.mass == Approx(1000 * 4.0 / 3 * kPi * .006));
   CHECK_FALSE(r.body(1).geoms[0].collides());
   CHECK(r.body(2).geoms[0].shape.lengths.isApprox(Vec3(.2, .2, 1)));
-  CHECK_THAT(r.said(), Catch::Contains("the shape of an ellipsoid is left out"));
+  CHECK_THAT(r.messages(), Catch::Contains("the shape of an ellipsoid is left out"));
 }
 
-TEST_CASE("an ellipsoid's mass counts by the group that the file gives it, and only where it is above 0") {
+TEST_CASE("the mass of an ellipsoid is added only if its group is in inertiagrouprange") {
   const std::string start = "<mujoco><compiler inertiagrouprange='0 4'/><worldbody><body><joint/>";
   const std::string box = "<geom type='box' size='.5 .5 .5' density='1'/>", end = "</body></worldbody></mujoco>";
   const auto mass = [&](const std::string& ellipsoid) { return Read(start + box + ellipsoid + end).body(1).mass.mass; };
@@ -226,7 +227,7 @@ TEST_CASE("an ellipsoid's mass counts by the group that the file gives it, and o
   CHECK_THAT(failure(world("<body><geom type='ellipsoid'/></body>")), Catch::Contains("the 'size' of an ellipsoid"));
 }
 
-TEST_CASE("a flat mesh is refused only where its mass counts") {
+TEST_CASE("a flat mesh is refused only if its mass is needed") {
   const auto read = [](const std::string& content) {
     LeftOver leftOver;
     const std::string text =
@@ -246,14 +247,14 @@ TEST_CASE("a flat mesh is refused only where its mass counts") {
   CHECK_THROWS_WITH(read("<body><joint/>" + mesh + "</body>"), Catch::Contains("the mesh has no volume"));
 }
 
-TEST_CASE("unread attributes of a default are named, too") {
+TEST_CASE("unsupported attributes of a default are reported too") {
   const Read r(
       "<mujoco><default>\n<joint springdamper='.1 1'/></default><worldbody><body><joint/><geom "
       "size='1'/></body></worldbody></mujoco>");
-  CHECK(r.said() == "a.xml:2:1: the attribute 'springdamper' of <joint> is left out\n");
+  CHECK(r.messages() == "a.xml:2:1: the attribute 'springdamper' of <joint> is left out\n");
 }
 
-TEST_CASE("files that include the next one twice end with an error, not with the machine") {
+TEST_CASE("the total number of elements in included files is limited") {
   Files files;
   for (int i = 0; i < 40; ++i) {
     const std::string next = "<include file='" + std::to_string(i + 1) + ".xml'/>";

@@ -1,6 +1,6 @@
-// MuJoCo of today, as WebAssembly, moves a T1 by the actuators of its file: prints the angles of its joints as JSON.
+// Moves a T1 in a current MuJoCo (WebAssembly) with the actuators of its file, and prints its joint angles as JSON.
 //
-//     node second_oracle.mjs FOLDER ROBOT.xml standing|moving      FOLDER: where @mujoco/mujoco is installed
+//     node second_oracle.mjs FOLDER ROBOT.xml standing|moving      FOLDER: contains node_modules/@mujoco/mujoco
 //
 // The targets are those of trajectory_test.cpp.
 import { readFileSync } from "node:fs";

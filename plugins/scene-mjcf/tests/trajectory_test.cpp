@@ -1,4 +1,4 @@
-// A robot that came through importer, tree and engine moves as MuJoCo moves the file itself.
+// A robot that is imported and stepped by an engine moves as MuJoCo moves the original file.
 
 #include <mujoco/mujoco.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kStep = 0.005, kCycle = 0.02;
 
-/// The league's world: a plane, air, and steps of 5 ms. `content`: what is in it beside.
+/// The league's world: a plane, air, and steps of 5 ms. `content`: additional elements.
 std::string worldWith(const std::string& content) {
   return R"(<mujoco model="world">
   <option timestep="0.005" density="1.2" viscosity="2e-5"/>
@@ -33,28 +33,28 @@ std::string worldWith(const std::string& content) {
 }
 std::string include(const std::string& file) { return "<include file=\"" + file + "\"/>"; }
 
-/// The places of many robots, 2 m apart.
-Vec3 placeOf(int robot) { return {2.0 * (robot % 6), 2.0 * (robot / 6), 0}; }
+/// The origin of each of many robots, 2 m apart.
+Vec3 originOf(int robot) { return {2.0 * (robot % 6), 2.0 * (robot / 6), 0}; }
 std::string prefixOf(int robot) { return "r-" + std::to_string(robot) + "-"; }
 
-/// A target of a joint: angle and rate [rad, rad/s].
+/// The target of a joint: angle and rate [rad, rad/s].
 struct Target {
   double angle = 0, rate = 0;
 };
-/// The target of a joint of MuJoCo's.
+/// Computes the target of a MuJoCo joint.
 using Targets = Target (*)(const mjModel& m, int joint, double time);
 
-/// MuJoCo alone, with the file's joints controlled from outside.
+/// MuJoCo alone, with the file's joints controlled externally.
 struct Oracle {
   mjModel* m = nullptr;
   mjData* d = nullptr;
-  std::vector<double> maxForce;  ///< by joint; 0: the free one
+  std::vector<double> maxForce;  ///< by joint; 0 for the free joint
 
-  /// `count` above 1: so many of the robot, each with a prefix and a place of its own.
+  /// `count` above 1: this number of robots, each with its own prefix and origin.
   explicit Oracle(const std::string& robot, int count = 1) {
     std::ifstream file(SPARK_SOURCES "/scenes/robots/" + robot);
     std::string text(std::istreambuf_iterator<char>(file), {});
-    // 2.2.2 does not know that attribute. The actuators are what control() computes.
+    // MuJoCo 2.2.2 does not know this attribute. The actuators are removed because control() replaces them.
     const std::regex range(R"x(name="(\w+)"([^>]*) actuatorfrcrange="\S+ (\S+)")x");
     std::map<std::string, double> limits;
     for (std::sregex_iterator i(text.begin(), text.end(), range), end; i != end; ++i)
@@ -74,7 +74,7 @@ struct Oracle {
         std::string one = text.substr(bodies, tail - bodies);
         one = std::regex_replace(one, std::regex(R"x((name|body1|body2)=")x"), "$&" + prefixOf(i));
         const std::size_t at = one.find("pos=\"0 0 ");
-        one.replace(at + 5, 3, fmt::format("{} {}", placeOf(i).x(), placeOf(i).y()));
+        one.replace(at + 5, 3, fmt::format("{} {}", originOf(i).x(), originOf(i).y()));
         content += one;
       }
     }
@@ -108,7 +108,7 @@ struct Oracle {
     }
     mj_step2(m, d);
   }
-  /// Two parts of the robot touch each other.
+  /// True if two parts of the robot touch each other.
   bool touchesItself() const {
     for (int i = 0; i < d->ncon; ++i)
       if (m->geom_bodyid[d->contact[i].geom1] != 0 && m->geom_bodyid[d->contact[i].geom2] != 0) return true;
@@ -117,14 +117,14 @@ struct Oracle {
 };
 
 /// The same robot in the tree.
-struct MjcfHouse : House {
+struct MjcfHost : TestHost {
   Node* scene = nullptr;
   std::vector<IJoint*> joints;  ///< in the order of the file
   std::int64_t cycle = 0;
   TemporaryFolder folder;
 
-  /// As Oracle. `engine`: the class of the engine.
-  explicit MjcfHouse(const std::string& robot, int count = 1, const std::string& engine = "MujocoEngine") {
+  /// Parameters as for Oracle. `engine`: class of the engine.
+  explicit MjcfHost(const std::string& robot, int count = 1, const std::string& engine = "MujocoEngine") {
     for (const char* plugin :
          {"files", "scene", "scene-mjcf", "physics", "physics-ode", "physics-articulated", "physics-mujoco"})
       kernel.plugins().use(plugin);
@@ -146,9 +146,9 @@ struct MjcfHouse : House {
     folder.write("world.xml", worldWith(count == 1 ? include(robot) : ""));
     callMethod(*scene, "importScene", List{"world.xml"});
     for (int i = 0; count > 1 && i < count; ++i) {
-      Node& place = *scene->create("Transform").asNode();
-      callMethod(place, "setLocalPos", List{placeOf(i).x(), placeOf(i).y(), 0.0});
-      callMethod(place, "importScene", List{robot, prefixOf(i)});
+      Node& parent = *scene->create("Transform").asNode();
+      callMethod(parent, "setLocalPos", List{originOf(i).x(), originOf(i).y(), 0.0});
+      callMethod(parent, "importScene", List{robot, prefixOf(i)});
     }
     scene->collect(joints);
   }
@@ -164,13 +164,13 @@ Vec3 vectorOf(const Value& v) {
   return {list[0].toNumber(), list[1].toNumber(), list[2].toNumber()};
 }
 
-/// The largest difference of joint angles [rad] and of places of bodies [m] after each cycle, until `seconds` are over
-/// or the robot touches itself.
+/// The largest difference of joint angles [rad] and of body positions [m] over all cycles, until `seconds` are over or
+/// the robot touches itself. `reached`: the time until then [s].
 double distance(const std::string& robot, double kp, double kd, Targets targets, double seconds, double& reached) {
   Oracle oracle(robot);
-  MjcfHouse house(robot);
+  MjcfHost host(robot);
   std::map<std::string, IJoint*> byName;
-  for (IJoint* j : house.joints) byName[j->leaf().name()] = j;
+  for (IJoint* j : host.joints) byName[j->leaf().name()] = j;
   REQUIRE(byName.size() == static_cast<std::size_t>(oracle.m->njnt - 1));
   double worst = 0;
   for (int cycle = 0; cycle * kCycle < seconds - 1e-9; ++cycle) {
@@ -182,7 +182,7 @@ double distance(const std::string& robot, double kp, double kd, Targets targets,
           0, {.stiffness = kp, .damping = kd, .position = t.angle, .velocity = t.rate, .maxForce = oracle.maxForce[j]});
     }
     for (int i = 0; i < 4; ++i) oracle.step(kp, kd, targets, time);
-    house.step();
+    host.step();
     mj_kinematics(oracle.m, oracle.d);
     if (oracle.touchesItself()) break;
     reached = time + kCycle;
@@ -205,13 +205,13 @@ double distance(const std::string& robot, double kp, double kd, Targets targets,
 
 namespace {
 
-/// Straight, but a little off the stops: at a stop the rounding of a fall decides whether it acts.
+/// Straight, but a little away from the stops: at a stop, rounding errors decide whether it is active.
 Target straight(const mjModel& m, int joint, double) {
   const double* const range = m.jnt_range + 2 * joint;
   return {std::clamp(0.0, range[0] + 0.02, range[1] - 0.02), 0};
 }
 
-/// Every joint to and fro, each with its own frequency.
+/// All joints swing, each with its own frequency.
 Target swinging(const mjModel&, int joint, double t) {
   const double w = 2 * 3.14159265358979 * (0.5 + 0.07 * joint);
   return {0.12 * std::sin(w * t + 0.4 * joint), 0};
@@ -219,30 +219,30 @@ Target swinging(const mjModel&, int joint, double t) {
 
 }  // namespace
 
-TEST_CASE("A standing T1 moves as MuJoCo moves the file itself") {
+TEST_CASE("A standing T1 moves as in MuJoCo alone") {
   double reached = 0;
   const double worst = distance("t1.xml", 200, 5, straight, 2, reached);
-  WARN("2 s standing: at most " << worst << " m and rad");
+  WARN("2 s standing: largest difference " << worst << " m or rad");
   CHECK(reached == Approx(2));
   CHECK(worst < 1e-9);
 }
 
-TEST_CASE("A T1 that moves all joints moves as MuJoCo moves the file itself") {
+TEST_CASE("A T1 that swings all joints moves as in MuJoCo alone") {
   double reached = 0;
   const double worst = distance("t1.xml", 100, 3, swinging, 1, reached);
-  WARN("1 s moving: at most " << worst << " m and rad, without self-contact until " << reached << " s");
+  WARN("1 s moving: largest difference " << worst << " m or rad, without self-contact until " << reached << " s");
   CHECK(reached == Approx(1));
   CHECK(worst < 1e-9);
 }
 
 namespace {
 
-/// What many robots that swing all joints cost in one engine, beside MuJoCo alone in the same seconds.
+/// The cost of many robots that swing all joints in an engine, and in MuJoCo alone in the same run.
 struct Cost {
-  double plain = 0, own = 0;  ///< CPU time of a cycle, 4 steps of 5 ms [us]
-  double first = 0;           ///< of the first cycle [ms], in which a model is compiled
-  double join = 0;            ///< longest cycle while another robot joins, its import included; wall clock [ms]
-  double distance = 0;        ///< largest difference of a joint's angle at the end [rad]
+  double plain = 0, own = 0;  ///< CPU time of a cycle (4 steps of 5 ms) in MuJoCo alone and in the engine [us]
+  double first = 0;           ///< CPU time of the first cycle [ms], in which the model is compiled
+  double join = 0;            ///< wall time of the longest cycle while a robot joins, including the import [ms]
+  double distance = 0;        ///< largest difference of a joint angle at the end [rad]
 };
 
 double cpuTime() {
@@ -257,12 +257,12 @@ double median(std::vector<double> v) {
 }
 
 Cost costOf(const std::string& engine, int robots) {
-  constexpr int kCycles = 60, kJoints = 24;  // 1.2 s; joints of a robot
+  constexpr int kCycles = 60, kJoints = 24;  // 1.2 s; joints per robot
   const auto targets = [](const mjModel& m, int joint, double t) { return swinging(m, joint % kJoints, t); };
   Oracle oracle("t1.xml", robots);
-  MjcfHouse house("t1.xml", robots, engine);
+  MjcfHost host("t1.xml", robots, engine);
   std::map<std::string, IJoint*> byName;
-  for (IJoint* j : house.joints) byName[j->leaf().name()] = j;
+  for (IJoint* j : host.joints) byName[j->leaf().name()] = j;
   std::vector<std::pair<int, IJoint*>> joints;
   for (int j = 0; j < oracle.m->njnt; ++j)
     if (oracle.m->jnt_type[j] == mjJNT_HINGE) joints.emplace_back(j, byName.at(mj_id2name(oracle.m, mjOBJ_JOINT, j)));
@@ -279,7 +279,7 @@ Cost costOf(const std::string& engine, int robots) {
     const double start = cpuTime();
     for (int i = 0; i < 4; ++i) oracle.step(100, 3, targets, time);
     const double between = cpuTime();
-    house.step();
+    host.step();
     const double end = cpuTime();
     if (cycle == 0) cost.first = 1e-3 * (end - between);
     if (cycle < 10) continue;
@@ -293,15 +293,15 @@ Cost costOf(const std::string& engine, int robots) {
     const auto start = Clock::now();
     work();
     cost.join = std::max(cost.join, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-    std::this_thread::sleep_until(start + std::chrono::milliseconds(20));  // in real time
+    std::this_thread::sleep_until(start + std::chrono::milliseconds(20));  // real time
   };
-  Node& place = *house.scene->create("Transform").asNode();
-  callMethod(place, "setLocalPos", List{-3.0, 0.0, 0.0});
+  Node& parent = *host.scene->create("Transform").asNode();
+  callMethod(parent, "setLocalPos", List{-3.0, 0.0, 0.0});
   longest([&] {
-    callMethod(place, "importScene", List{"t1.xml", "late-"});
-    house.step();
+    callMethod(parent, "importScene", List{"t1.xml", "late-"});
+    host.step();
   });
-  for (int i = 0; i < 60; ++i) longest([&] { house.step(); });
+  for (int i = 0; i < 60; ++i) longest([&] { host.step(); });
   cost.plain = median(plain);
   cost.own = median(own);
   return cost;
@@ -309,14 +309,13 @@ Cost costOf(const std::string& engine, int robots) {
 
 }  // namespace
 
-// For tools/accept engines, which compares with MuJoCo of today (second_oracle.mjs): the angles of the joints at the
-// end.
-TEST_CASE("The angles of a T1 that stood and of one that moved", "[.angles]") {
+// For tools/accept engines, which compares the joint angles at the end with a current MuJoCo (second_oracle.mjs).
+TEST_CASE("Prints the joint angles of a T1 that stood and of one that moved", "[.angles]") {
   for (const bool standing : {true, false}) {
-    Oracle limits("t1.xml");  // only for its ranges and limits
-    MjcfHouse house("t1.xml");
+    Oracle limits("t1.xml");  // only for ranges and torque limits
+    MjcfHost host("t1.xml");
     std::map<std::string, IJoint*> byName;
-    for (IJoint* j : house.joints) byName[j->leaf().name()] = j;
+    for (IJoint* j : host.joints) byName[j->leaf().name()] = j;
     for (int cycle = 0; cycle < (standing ? 100 : 50); ++cycle) {
       for (int j = 1; j < limits.m->njnt; ++j) {
         const Target t = standing ? straight(*limits.m, j, 0) : swinging(*limits.m, j, cycle * kCycle);
@@ -327,7 +326,7 @@ TEST_CASE("The angles of a T1 that stood and of one that moved", "[.angles]") {
                           .velocity = t.rate,
                           .maxForce = limits.maxForce[j]});
       }
-      house.step();
+      host.step();
     }
     std::string angles;
     for (const auto& [name, joint] : byName)
@@ -336,8 +335,8 @@ TEST_CASE("The angles of a T1 that stood and of one that moved", "[.angles]") {
   }
 }
 
-// For tools/accept engines: a line of JSON for each engine and number of robots.
-TEST_CASE("Many T1 cost little more than in MuJoCo alone", "[.cost]") {
+// For tools/accept engines: prints a line of JSON for each engine and number of robots.
+TEST_CASE("Prints the cost of many T1 in each engine and in MuJoCo alone", "[.cost]") {
   for (const std::string engine : {"MujocoEngine", "ArticulatedEngine"})
     for (const int robots : {1, 14, 22}) {
       const Cost c = costOf(engine, robots);
@@ -349,12 +348,12 @@ TEST_CASE("Many T1 cost little more than in MuJoCo alone", "[.cost]") {
     }
 }
 
-TEST_CASE("K1 and PiPlus move as in MuJoCo") {
-  // The camera of PiPlus is part of its head here: the drag of the air differs.
+TEST_CASE("K1 and PiPlus move as in MuJoCo alone") {
+  // The camera of PiPlus is part of its head here, so the air drag differs.
   for (const auto& [robot, limit] : {std::pair{"k1.xml", 1e-9}, std::pair{"piplus.xml", 1e-6}}) {
     double reached = 0;
     const double worst = distance(robot, 100, 3, straight, 0.2, reached);
-    WARN(robot << ": at most " << worst << " m and rad in " << reached << " s");
+    WARN(robot << ": largest difference " << worst << " m or rad in " << reached << " s");
     CHECK(reached == Approx(0.2));
     CHECK(worst < limit);
   }

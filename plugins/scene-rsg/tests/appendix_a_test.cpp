@@ -1,4 +1,4 @@
-// What the installed base's scenes amount to: scene-language Appendix A, and the robots' bodies and joints.
+// The contents of the installed base's scenes: scene-language Appendix A, and the robots' bodies and joints.
 
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -20,7 +20,7 @@ std::filesystem::path reference() {
   std::exit(77);
 }
 
-/// A row of Appendix A. "joints" are those without angular motors.
+/// A row of Appendix A. `joints` does not include angular motors.
 struct Row {
   std::string file;
   List arguments;
@@ -49,7 +49,7 @@ const Row kRows[] = {
     {"rsg/jointtest/simspark.rsg", {}, false, 595, 105, 85, 736.67, 91, 50, 0, 0, 0, 114, 0, 1618},
 };
 
-void check(const Row& row, const Inventory& found, const ReferenceHouse& h) {
+void check(const Row& row, const Inventory& found, const ReferenceHost& h) {
   INFO(row.file);
   CHECK(found.nodes == row.nodes);
   CHECK(found.transforms == row.transforms);
@@ -63,8 +63,8 @@ void check(const Row& row, const Inventory& found, const ReferenceHouse& h) {
   CHECK(h.count("imports") == row.imports);
   CHECK(h.count("evals") == row.evals);
   CHECK(h.count("calls") == row.calls);
-  if (h.house.text.find("failed") != std::string::npos || h.house.text.find("no method") != std::string::npos)
-    FAIL(h.house.text);
+  if (h.host.text.find("failed") != std::string::npos || h.host.text.find("no method") != std::string::npos)
+    FAIL(h.host.text);
 }
 
 using Match = std::smatch;
@@ -72,7 +72,7 @@ double number(const std::string& text) { return std::stod(text); }
 Vec3 vector(const Match& m, std::size_t first) {
   return {number(m[first]), number(m[first + 1]), number(m[first + 2])};
 }
-/// The facts are written with five significant digits.
+/// True if the value agrees with the reference, which has five significant digits.
 bool fits(const Vec3& found, const Vec3& fact) {
   for (int i = 0; i < 3; ++i) {
     const double unit = fact[i] == 0 ? 1e-5 : std::pow(10.0, std::floor(std::log10(std::abs(fact[i]))) - 4);
@@ -82,7 +82,7 @@ bool fits(const Vec3& found, const Vec3& fact) {
 }
 std::string triple() { return R"(\['([^']*)', '([^']*)', '([^']*)'\])"; }
 
-/// A robot as the facts have it, line by line.
+/// The reference description of a robot, line by line.
 struct Facts {
   std::vector<std::string> lines;
   explicit Facts(const std::filesystem::path& file) {
@@ -155,7 +155,7 @@ void checkJoints(const Facts& facts, const Node& robot) {
   CHECK(next == joints.size());
 }
 
-/// The facts count a scene with one agent, its world, space and create effector.
+/// The reference includes the scene, its world and space, the agent and its create effector.
 void checkClasses(const Facts& facts, Inventory found) {
   for (const char* one : {"Scene", "World", "Space", "AgentAspect", "SceneEffector"}) ++found.classes[one];
   CHECK(facts.each("^  classes ", [&](const Match&, const std::string& line) {
@@ -167,7 +167,7 @@ void checkClasses(const Facts& facts, Inventory found) {
   }) == 1);
 }
 
-/// Perceptors and effectors in order, as [class, name]; names that the original made up are not compared.
+/// Compares class and name of perceptors or effectors in order. Names that the original generated are not compared.
 template <class T>
 void checkOrder(const Facts& facts, const char* title, const Node& robot, const char* skip) {
   std::vector<T*> all;
@@ -188,13 +188,13 @@ void checkOrder(const Facts& facts, const char* title, const Node& robot, const 
 
 }  // namespace
 
-TEST_CASE("every entry file that is there amounts to what the installed base makes of it") {
+TEST_CASE("each available scene file has the same contents as in the installed base") {
   const auto folder = reference();
   std::set<std::string> present;
   for (const Row& row : kRows) {
     if (!std::filesystem::exists(folder / "scenes-reference" / row.file)) continue;
     present.insert(row.file);
-    ReferenceHouse h(folder);
+    ReferenceHost h(folder);
     Node& root = row.robot ? h.agent("AgentAspect1") : *h.scene;
     h.import(row.file, root, row.arguments);
     Inventory found;
@@ -204,11 +204,11 @@ TEST_CASE("every entry file that is there amounts to what the installed base mak
   CHECK(present.size() >= 4);
 }
 
-TEST_CASE("the five robots have the bodies, joints, sensors and effectors of the installed base, each at its place") {
+TEST_CASE("the five robots have the bodies, joints, perceptors and effectors of the installed base at the same poses") {
   const auto folder = reference();
   for (int type = 0; type < 5; ++type) {
     INFO("type " << type);
-    ReferenceHouse h(folder);
+    ReferenceHost h(folder);
     Node& robot = h.agent("AgentAspect1");
     h.import("rsg/agent/nao/nao_hetero.rsg", robot, {type});
     Inventory found;
@@ -222,8 +222,8 @@ TEST_CASE("the five robots have the bodies, joints, sensors and effectors of the
   }
 }
 
-TEST_CASE("a second robot of a kind parses nothing") {
-  ReferenceHouse h(reference());
+TEST_CASE("loading a second robot parses no files again") {
+  ReferenceHost h(reference());
   h.import("rsg/agent/nao/nao_hetero.rsg", h.agent("AgentAspect1"), {0});
   const std::int64_t parsed = h.count("filesParsed");
   CHECK(parsed > 5);

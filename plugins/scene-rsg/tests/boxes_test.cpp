@@ -1,4 +1,4 @@
-// The smallest house with physics in it: lua/boxes.lua, run as a config.
+// The smallest simulation with physics: lua/boxes.lua, run as a config.
 
 #include <catch2/catch.hpp>
 
@@ -12,8 +12,8 @@ using namespace spark;
 namespace {
 
 struct Boxes {
-  test::House house;
-  Kernel& kernel = house.kernel;
+  test::TestHost host;
+  Kernel& kernel = host.kernel;
   Node* scene = nullptr;
   std::vector<IRigidBody*> bodies;
 
@@ -32,7 +32,7 @@ struct Boxes {
 
 }  // namespace
 
-TEST_CASE("54 bodies fall into the yard and stay there") {
+TEST_CASE("54 bodies fall between the walls and stay there") {
   Boxes b;
   REQUIRE(b.bodies.size() == 54);
   int boxes = 0, spheres = 0, capsules = 0;
@@ -57,11 +57,11 @@ TEST_CASE("54 bodies fall into the yard and stay there") {
     CHECK(std::abs(s.position.y()) < 6);
     CHECK((positionOf(body->bodyTransform()->world()).cast<double>() - s.position).norm() < 1e-5);
   }
-  CHECK(b.house.text.find("skipped") == std::string::npos);
-  CHECK(b.house.text.find("material") == std::string::npos);
+  CHECK(b.host.text.find("skipped") == std::string::npos);
+  CHECK(b.host.text.find("material") == std::string::npos);
 }
 
-TEST_CASE("two runs of the yard end in the same state") {
+TEST_CASE("two runs of the config end in the same state") {
   Boxes a, b;
   a.run(3);
   b.run(3);

@@ -39,7 +39,7 @@ TEST_CASE("expressions follow the usual precedence, with signs anywhere") {
   CHECK(text(".5 + 5.") == "5.5");
 }
 
-TEST_CASE("results that are no integers are single precision with six significant digits") {
+TEST_CASE("results that are not integers have single precision and six significant digits") {
   CHECK(text("3.14159265 * (351.77/180.0)") == "6.13954");
   CHECK(text("3.14159265 * " + text("351.77/180.0")) == "6.13955");
   CHECK(text("0.1 + 0.2") == "0.3");
@@ -60,7 +60,7 @@ TEST_CASE("the quotient of two integers is real, or rounded down with integerDiv
   CHECK(text("9223372036854775807 + 1") == "9.22337e+18");
 }
 
-TEST_CASE("variables are read by group and name, lists from 0, tables by key") {
+TEST_CASE("variables are read by group and name, lists by index from 0, and tables by key") {
   CHECK(text("Soccer.FieldLength / 2") == "15");
   CHECK(text("Soccer.Players * 2") == "22");
   CHECK(text("Nao.UseTexture ") == "true");
@@ -69,7 +69,7 @@ TEST_CASE("variables are read by group and name, lists from 0, tables by key") {
   CHECK(text("NaoType[1][\"X\"]") == "0.0729541");
 }
 
-TEST_CASE("the error for a malformed expression names what was expected") {
+TEST_CASE("malformed expressions are errors") {
   for (const char* wrong : {"",
                             " ",
                             "1 +",

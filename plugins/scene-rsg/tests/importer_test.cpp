@@ -5,8 +5,8 @@
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("the header decides: magic, version 0 1") {
-  SceneHouse h;
+TEST_CASE("a file is accepted only with a valid header and version 0 1") {
+  SceneHost h;
   for (const char* good :
        {"(RSG 0 1)(nd Probe)", "(RubySceneGraph 0 1)((nd Probe))", "; first\n(RSG 0 1) (nd Probe (setName x))"}) {
     INFO(good);
@@ -23,8 +23,8 @@ TEST_CASE("the header decides: magic, version 0 1") {
   CHECK(h.scene->children().size() == 3);
 }
 
-TEST_CASE("broken brackets change nothing, or empty the root with unlinkOnUnreadable") {
-  SceneHouse h;
+TEST_CASE("a file with unbalanced brackets changes nothing, or removes all nodes with unlinkOnUnreadable") {
+  SceneHost h;
   h.run("(nd Probe)");
   h.write("broken.rsg", "(RSG 0 1)\n((nd Probe)\n (nd Probe (tell x)\n)");
   CHECK_THROWS_WITH(h.import("broken.rsg"), Catch::StartsWith("broken.rsg:"));
@@ -36,8 +36,8 @@ TEST_CASE("broken brackets change nothing, or empty the root with unlinkOnUnread
   CHECK(h.scene->children().empty());
 }
 
-TEST_CASE("a second import of a file reads and parses nothing, a changed file is read again") {
-  SceneHouse h;
+TEST_CASE("a file is parsed again only if it has changed") {
+  SceneHost h;
   h.write("leg.rsg", "(RSG 0 1)((templ $n)(nd Probe (setName $n)))");
   h.write("robot.rsg", "(RSG 0 1)((importScene leg.rsg l)(importScene leg.rsg r))");
   h.import("robot.rsg");
@@ -52,8 +52,8 @@ TEST_CASE("a second import of a file reads and parses nothing, a changed file is
   CHECK(h.scene->children().size() == 8);
 }
 
-TEST_CASE("errors name file, line and column, and similar names") {
-  SceneHouse h;
+TEST_CASE("errors have file, line and column, and suggest similar names") {
+  SceneHost h;
   CHECK(h.failure("(nd\n  Transfrom)").find("test.rsg:2:3: there is no class 'Transfrom'. Did you mean 'Transform'") ==
         0);
   CHECK(h.failure("\n\n   (nd Probe (tell $what))").find("test.rsg:4:20: there is no variable $what here") == 0);
@@ -76,8 +76,8 @@ TEST_CASE("errors name file, line and column, and similar names") {
   CHECK(h.logged("class Probe has no method 'tel'. Did you mean 'tell'"));
 }
 
-TEST_CASE("a failing import within a file is logged with its way there, and the outer file goes on") {
-  SceneHouse h;
+TEST_CASE("a failing import within a file is logged with the chain of imports, and the outer file continues") {
+  SceneHost h;
   h.write("c.rsg", "(RSG 0 1)\n((nd Missing))");
   h.write("b.rsg", "(RSG 0 1)\n(\n(importScene c.rsg))");
   h.run("(importScene b.rsg)(nd Probe (setName after))(importScene none.rsg)(importScene)(importScene ../up.rsg)");
@@ -90,70 +90,70 @@ TEST_CASE("a failing import within a file is logged with its way there, and the 
   CHECK(h.failure("(importScene b.rsg)").find("c.rsg:2:3: there is no class 'Missing'") != std::string::npos);
 }
 
-TEST_CASE("template parameters and definitions have values of their own when arguments are missing or too many") {
-  SceneHouse h;
+TEST_CASE("missing or surplus arguments do not change the values of other parameters and definitions") {
+  SceneHost h;
   const std::string body = "(templ $a $b)(def $c 3)(def $d 4)(nd Probe (tell $a)(tell $c)(tell $d))";
   h.run(body, {"1"});
-  CHECK(deeds() == Texts{"link 0 0 0", "1", "3", "4"});
-  deeds().clear();
+  CHECK(records() == Texts{"link 0 0 0", "1", "3", "4"});
+  records().clear();
   h.run(body, {"1", "2", "surplus", "more"});
-  CHECK(deeds() == Texts{"link 0 0 0", "1", "3", "4"});
+  CHECK(records() == Texts{"link 0 0 0", "1", "3", "4"});
 }
 
-TEST_CASE("without defineByName, definitions drift onto other places as in the installed base") {
-  SceneHouse h;
+TEST_CASE("without defineByName, missing or surplus arguments shift definitions as in the installed base") {
+  SceneHost h;
   h.set("defineByName", false);
   CHECK(h.failure("(templ $a $b)(def $c 3)(def $d 4)(nd Probe (tell $b)(tell $c)(tell $d))", {"1"})
             .find("$d was not given") != std::string::npos);
-  CHECK(deeds() == Texts{"link 0 0 0", "3", "4"});
-  deeds().clear();
+  CHECK(records() == Texts{"link 0 0 0", "3", "4"});
+  records().clear();
   h.run("(templ $a)(def $b 5)(def $a 6)(nd Probe (tell $a)(tell $b))", {"1", "surplus"});
-  CHECK(deeds() == Texts{"link 0 0 0", "6", "surplus"});
+  CHECK(records() == Texts{"link 0 0 0", "6", "surplus"});
 }
 
-TEST_CASE("arguments are texts: numbers and bools from scripts are written as texts") {
-  SceneHouse h;
+TEST_CASE("arguments of scripts are converted to text") {
+  SceneHost h;
   h.run("(templ $a $b $c)(nd Probe (setName $a)(setNumber $b)(setFlag $c))", {"x", 2.5, true});
   CHECK(h.probe("x").number() == 2.5);
   CHECK(h.probe("x").flag());
   CHECK(h.failure("(templ $a)", {Value(List{1, 2})}).find("argument 1") != std::string::npos);
 }
 
-TEST_CASE("join concatenates, eval inside join and join inside eval") {
-  SceneHouse h;
+TEST_CASE("join concatenates, and join and eval can be nested in each other") {
+  SceneHost h;
   h.run(
       "(def $n 2)(nd Probe (tell (join ../ a $n /b))(tell (join x (eval $n * 2)))(tell (eval (join 1 0) + 1))(tell "
       "(join))(tell a$n)(tell "
       "'$n'))");
-  CHECK(deeds() == Texts{"link 0 0 0", "../a2/b", "x4", "11", "", "a$n", "2"});
+  CHECK(records() == Texts{"link 0 0 0", "../a2/b", "x4", "11", "", "a$n", "2"});
 }
 
-TEST_CASE("sel goes on in an existing child, pwd does no harm") {
-  SceneHouse h;
+TEST_CASE("sel continues in an existing child, and pwd has no effect") {
+  SceneHost h;
   h.run("(nd Transform (setName t)(nd Probe (setName p)))");
   h.run("(sel t pwd (select p (tell selected)))(pwd)");
-  CHECK(deeds().back() == "selected");
+  CHECK(records().back() == "selected");
 }
 
-TEST_CASE("class names may have a path in front") {
-  SceneHouse h;
+TEST_CASE("class names may be preceded by a path") {
+  SceneHost h;
   h.run("(nd oxygen/Transform (nd kerosin/Box (setName box)))");
   CHECK(h.scene->find("Transform/box"));
 }
 
-TEST_CASE("calls of nodes that are gone are logged, and a scene cannot remove its root") {
-  SceneHouse h;
+TEST_CASE("calls on removed nodes are logged, and a scene cannot remove its root") {
+  SceneHost h;
   h.run(
       "(nd Transform (nd Probe (tell never)) (unlinkChildren)) (nd Probe (tell before)(unlinkLeaf)) (nd Probe (tell "
       "after))");
   CHECK(h.timesLogged("was removed before it was made") == 2);
-  CHECK(deeds() == Texts{"link 0 0 0", "link 0 0 0", "link 0 0 0", "after"});
+  CHECK(records() == Texts{"link 0 0 0", "link 0 0 0", "link 0 0 0", "after"});
   CHECK(h.failure("(nd Transform (unlinkLeaf) (nd Probe))").find("was removed") != std::string::npos);
   CHECK(h.failure("(unlinkLeaf)").find("cannot remove the node") != std::string::npos);
 }
 
-TEST_CASE("delta scenes change the existing children in order") {
-  SceneHouse h;
+TEST_CASE("a delta scene changes the existing children in order") {
+  SceneHost h;
   h.run("(nd Transform (setName a)(nd Probe (setName p)))(nd Transform (setName b)(nd Probe))");
   h.write("delta.rsg",
           "(RDS 0 1)((nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1)(nd (setNumber 5)))(nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 "
@@ -166,8 +166,8 @@ TEST_CASE("delta scenes change the existing children in order") {
   CHECK_THROWS_WITH(h.import("delta.rsg"), Catch::Contains("expected at most 2 nodes"));
 }
 
-TEST_CASE("for monitors a complete scene replaces what was there") {
-  SceneHouse h;
+TEST_CASE("with unlinkOnCompleteScenes a complete scene replaces the existing nodes") {
+  SceneHost h;
   h.set("unlinkOnCompleteScenes", true);
   h.write("inner.rsg", "(RSG 0 1)((nd Probe))");
   h.run("(nd Probe)(importScene inner.rsg)");
@@ -176,7 +176,7 @@ TEST_CASE("for monitors a complete scene replaces what was there") {
 }
 
 namespace {
-/// Another format: "list", then files, each of which is imported below a probe of its own.
+/// An importer of another format: "list", followed by files. Each file is imported below its own probe.
 class ListImporter : public Node, public ISceneImporter {
   SPARK_CLASS(ListImporter, Node)
  public:
@@ -196,8 +196,8 @@ class ListImporter : public Node, public ISceneImporter {
 };
 }  // namespace
 
-TEST_CASE("importers of several formats nest, and an error has the chain of all of them") {
-  SceneHouse h;
+TEST_CASE("importers of different formats can be nested, and an error has the chain of all files") {
+  SceneHost h;
   h.kernel.registerClass<ListImporter>();
   h.kernel.create("ListImporter", "/sys/server/scene/list");
   h.write("inner.toy", "list\nleaf.rsg\nleaf.rsg\n");
@@ -218,8 +218,8 @@ TEST_CASE("importers of several formats nest, and an error has the chain of all 
   CHECK(text.find("gone.rsg") != std::string::npos);
 }
 
-TEST_CASE("strict turns into errors what is otherwise passed over") {
-  SceneHouse h;
+TEST_CASE("with strict, calls that are otherwise ignored are errors") {
+  SceneHost h;
   h.set("strict", true);
   CHECK(h.failure("(nd Probe (setVector 1 2))").find("test.rsg:2:13: ") == 0);
   CHECK(h.failure("(nd Probe (setNumber garbage))").find("expected number") != std::string::npos);

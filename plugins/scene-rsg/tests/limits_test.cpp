@@ -1,4 +1,4 @@
-// Scene names and arguments come from agents: whatever they send ends in an Error, not in a crash or an endless import.
+// Scene names and arguments come from agents. Invalid ones must cause an Error, not a crash or an endless import.
 
 #include <catch2/catch.hpp>
 
@@ -7,8 +7,8 @@
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("scenes that do not exist, climb out or are absolute are refused") {
-  SceneHouse h;
+TEST_CASE("scene names that do not exist, leave the folder or are absolute are refused") {
+  SceneHost h;
   for (const char* name : {"none.rsg", "", "/etc/passwd", "../x.rsg", "a/../../x", "rsg\\x.rsg", "."}) {
     INFO(name);
     CHECK_THROWS_AS(h.import(name), Error);
@@ -16,8 +16,8 @@ TEST_CASE("scenes that do not exist, climb out or are absolute are refused") {
   CHECK(h.scene->children().empty());
 }
 
-TEST_CASE("a file that imports itself ends") {
-  SceneHouse h;
+TEST_CASE("a file that imports itself is stopped at the depth limit") {
+  SceneHost h;
   h.run("(nd Probe)(importScene test.rsg)");
   CHECK(h.logged("deep: does a file import itself?"));
   CHECK(h.scene->children().size() == 32);
@@ -26,8 +26,8 @@ TEST_CASE("a file that imports itself ends") {
   CHECK(h.failure("(importScene test.rsg)").find("deep: does a file import itself?") != std::string::npos);
 }
 
-TEST_CASE("files that import each other many times end at the number of imports or nodes") {
-  SceneHouse h;
+TEST_CASE("the numbers of imports and of nodes are limited") {
+  SceneHost h;
   h.set("maxImports", 50);
   h.set("maxNodes", 100);
   std::string many;
@@ -40,8 +40,8 @@ TEST_CASE("files that import each other many times end at the number of imports 
   CHECK(h.failure("(importScene b.rsg)").empty());
 }
 
-TEST_CASE("compiled files are kept up to a limit, those of the running import always") {
-  SceneHouse h;
+TEST_CASE("compiled files are cached up to a limit, and always during the running import") {
+  SceneHost h;
   const std::string text = "(RSG 0 1)((nd Probe))" + std::string(979, ' ');
   for (const char* name : {"a.rsg", "b.rsg", "c.rsg"}) h.write(name, text);
   const auto parsed = [&](const char* name) {
@@ -64,15 +64,15 @@ TEST_CASE("compiled files are kept up to a limit, those of the running import al
   CHECK(parsed("d.rsg") == 2);
 }
 
-TEST_CASE("texts cannot grow without end") {
-  SceneHouse h;
+TEST_CASE("the length of texts is limited") {
+  SceneHost h;
   std::string body = "(def $a 0123456789)";
   for (int i = 0; i < 60; ++i) body += "(def $a (join $a $a $a))";
   CHECK(h.failure(body).find("at most 4096 bytes") != std::string::npos);
 }
 
-TEST_CASE("deep nesting is refused, not recursed into") {
-  SceneHouse h;
+TEST_CASE("deep nesting is refused without recursion") {
+  SceneHost h;
   CHECK(h.failure(std::string(200000, '(')) != "");
   CHECK(h.failure(std::string(200000, '(') + std::string(200000, ')')) != "");
   std::string eval = "1";
@@ -80,8 +80,8 @@ TEST_CASE("deep nesting is refused, not recursed into") {
   CHECK(h.failure("(nd Probe (tell " + eval + "))") != "");
 }
 
-TEST_CASE("numbers from outside are finite and of a sane size, names that look like them are texts") {
-  SceneHouse h;
+TEST_CASE("arguments that are infinite, NaN or huge numbers are refused, but similar texts are not") {
+  SceneHost h;
   for (const char* bad : {"nan", "inf", "-inf", "infinity", "+inf", "1e999", "-1e999", "1e12", "nan(7)"}) {
     INFO(bad);
     CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {bad}).find("argument 1 is '" + std::string(bad) + "'") !=
@@ -90,12 +90,12 @@ TEST_CASE("numbers from outside are finite and of a sane size, names that look l
   CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {std::string(5000, 'x')}).find("at most 4096 bytes") !=
         std::string::npos);
   CHECK(h.failure("(templ $x)(nd Probe (tell $x))", {"nano"}).empty());
-  CHECK(deeds().back() == "nano");
+  CHECK(records().back() == "nano");
   CHECK(h.failure("(templ $x)(nd Probe (tell (eval $x)))", {"1; os.exit()"}).find("test.rsg:2:") == 0);
 }
 
-TEST_CASE("arguments with odd bytes name nodes or are refused, nothing else") {
-  SceneHouse h;
+TEST_CASE("arguments with special characters are refused as names or used literally") {
+  SceneHost h;
   h.run("(templ $x)(nd Probe (setName $x)(tell $x))", {"a/b"});
   CHECK(h.logged("must not hold '/'"));
   CHECK_NOTHROW(h.run("(templ $x)(nd Probe (setName $x))", {std::string("\xff\x01\n[", 4)}));

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A house that can load the installed base's scene files, and what a loaded subtree amounts to.
+/// A simulation that can load the installed base's scene files, and an inventory of a loaded subtree.
 
 #include <map>
 
@@ -10,7 +10,7 @@
 
 namespace spark::test {
 
-/// What is below a node.
+/// Numbers of the nodes below a node, by kind.
 struct Inventory {
   int nodes = 0, transforms = 0, bodies = 0, colliders = 0, joints = 0, angularMotors = 0, perceptors = 0,
       effectors = 0;
@@ -36,14 +36,14 @@ struct Inventory {
   }
 };
 
-/// All servers that scenes of the humanoid league need, with the league's variables.
-struct ReferenceHouse {
-  House house;
-  Kernel& kernel = house.kernel;
+/// A kernel with all servers and variables that scenes of the humanoid league need.
+struct ReferenceHost {
+  TestHost host;
+  Kernel& kernel = host.kernel;
   Node* scene = nullptr;
   Leaf* importer = nullptr;
 
-  explicit ReferenceHouse(const std::filesystem::path& reference) {
+  explicit ReferenceHost(const std::filesystem::path& reference) {
     for (const char* plugin :
          {"files", "scene", "scene-rsg", "physics", "physics-ode", "gamecontrol", "sensors", "effectors", "soccer"})
       kernel.plugins().use(plugin);

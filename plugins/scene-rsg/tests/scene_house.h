@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Fixture of the importer's tests: a kernel with files in memory, and probes that record the calls of their methods.
+/// Fixture of the importer's tests: a kernel with files in memory, and probes that record calls of their methods.
 
 #include <map>
 
@@ -34,13 +34,13 @@ class MemoryFiles : public Leaf, public IFileSystem {
   std::uint64_t writes_ = 0;
 };
 
-/// Tells all probes' deeds.
-inline std::vector<std::string>& deeds() {
+/// The records of all probes.
+inline std::vector<std::string>& records() {
   static std::vector<std::string> all;
   return all;
 }
 
-/// Records when it was linked, where, and what was called.
+/// Records its position when it is linked, and calls of its methods.
 class Probe : public SceneNode {
   SPARK_CLASS(Probe, SceneNode)
  public:
@@ -65,14 +65,14 @@ class Probe : public SceneNode {
  protected:
   void onLink() override {
     const Vec3f p = transform() ? positionOf(transform()->worldNow()) : Vec3f::Zero();
-    deeds().push_back(fmt::format("link {:g} {:g} {:g}", p.x(), p.y(), p.z()));
+    records().push_back(fmt::format("link {:g} {:g} {:g}", p.x(), p.y(), p.z()));
   }
 
  private:
-  void tell(std::string text) { deeds().push_back(text); }
-  void attach(std::string path) { deeds().push_back(path + (find(path) ? " is there" : " is missing")); }
-  void tellScale(double v) { deeds().push_back(fmt::format("scale {:g}", v)); }
-  void tellMaterial(std::string name) { deeds().push_back("material " + name); }
+  void tell(std::string text) { records().push_back(text); }
+  void attach(std::string path) { records().push_back(path + (find(path) ? " is there" : " is missing")); }
+  void tellScale(double v) { records().push_back(fmt::format("scale {:g}", v)); }
+  void tellMaterial(std::string name) { records().push_back("material " + name); }
   double number_ = -1, slip_ = 0.005;
   int integer_ = -1;
   bool flag_ = false;
@@ -80,15 +80,15 @@ class Probe : public SceneNode {
 };
 
 /// A kernel with file, scene and material servers, the importer and files in memory.
-struct SceneHouse {
-  House house;
-  Kernel& kernel = house.kernel;
+struct SceneHost {
+  TestHost host;
+  Kernel& kernel = host.kernel;
   MemoryFiles* files = nullptr;
   Node* scene = nullptr;
   Leaf* importer = nullptr;
 
-  SceneHouse() {
-    deeds().clear();
+  SceneHost() {
+    records().clear();
     for (const char* plugin : {"files", "scene", "scene-rsg"}) kernel.plugins().use(plugin);
     kernel.registerClass<MemoryFiles>();
     kernel.registerClass<Probe>();
@@ -103,12 +103,12 @@ struct SceneHouse {
   void import(const std::string& name, const List& arguments = {}) {
     kernel.root().require<ISceneServer>("/sys/server/scene").importScene(name, *scene, arguments);
   }
-  /// Imports a body below the scene.
+  /// Imports a file with this body below the scene.
   void run(const std::string& body, const List& arguments = {}) {
     write("test.rsg", "(RSG 0 1)\n(" + body + ")");
     import("test.rsg", arguments);
   }
-  /// The error message of the import; "" when it succeeds.
+  /// The error message of such an import; "" if it succeeds.
   std::string failure(const std::string& body, const List& arguments = {}) {
     try {
       run(body, arguments);
@@ -120,10 +120,10 @@ struct SceneHouse {
   void set(const std::string& property, const Value& v) { setProperty(*importer, property, v); }
   std::int64_t count(const std::string& property) { return getProperty(*importer, property).toInteger(); }
   Probe& probe(const std::string& path) { return scene->require<Probe>(path); }
-  bool logged(const std::string& part) const { return house.text.find(part) != std::string::npos; }
+  bool logged(const std::string& part) const { return host.text.find(part) != std::string::npos; }
   std::size_t timesLogged(const std::string& part) const {
     std::size_t n = 0;
-    for (std::size_t i = house.text.find(part); i != std::string::npos; i = house.text.find(part, i + 1)) ++n;
+    for (std::size_t i = host.text.find(part); i != std::string::npos; i = host.text.find(part, i + 1)) ++n;
     return n;
   }
 };

@@ -13,7 +13,7 @@ using namespace spark;
 
 namespace {
 
-/// Counts the calls of follow(), and keeps the last matrix.
+/// Counts the calls of follow() and stores the last position.
 class Follower : public SceneNode, public IFollowsTransform {
   SPARK_CLASS(Follower, SceneNode)
  public:
@@ -29,7 +29,7 @@ class Follower : public SceneNode, public IFollowsTransform {
   Vec3f at = Vec3f::Zero();
 };
 
-/// One file.
+/// A file system with one file.
 class OneFile : public Leaf, public IFileSystem {
   SPARK_CLASS(OneFile, Leaf)
  public:
@@ -46,8 +46,8 @@ class OneFile : public Leaf, public IFileSystem {
 };
 
 struct Fixture {
-  test::House house;
-  Kernel& kernel = house.kernel;
+  test::TestHost host;
+  Kernel& kernel = host.kernel;
   Node* scene = nullptr;
   ISceneServer* server = nullptr;
   Fixture() {
@@ -65,7 +65,7 @@ List numbers(std::initializer_list<double> v) { return List(v.begin(), v.end());
 
 }  // namespace
 
-TEST_CASE("place brings world matrices up to date below what changed") {
+TEST_CASE("place updates the world matrices below changed transforms") {
   Fixture f;
   auto& a = f.scene->create<Transform>("Transform", "a");
   auto& b = a.create<Transform>("Transform", "b");
@@ -85,7 +85,7 @@ TEST_CASE("place brings world matrices up to date below what changed") {
   CHECK(positionOf(c.world()) == Vec3f(5, 2, 3));
 }
 
-TEST_CASE("what is below a transform moved by hand follows once, what a body moved does not") {
+TEST_CASE("followers below a transform that is set get one call, and none if a body moved it") {
   Fixture f;
   auto& a = f.scene->create<Transform>("Transform", "a");
   auto& b = a.create<Transform>("Transform", "b");
@@ -109,7 +109,7 @@ TEST_CASE("what is below a transform moved by hand follows once, what a body mov
   CHECK((follower.at - Vec3f(0, 9, 4)).norm() < 1e-5f);
 }
 
-TEST_CASE("a transform that is gone or new is noticed") {
+TEST_CASE("place handles removed and new transforms") {
   Fixture f;
   auto& a = f.scene->create<Transform>("Transform", "a");
   f.server->place();
@@ -124,7 +124,7 @@ TEST_CASE("a transform that is gone or new is noticed") {
   CHECK_THROWS_WITH(f.server->scene(), Catch::Contains("there is no scene at '/usr/scene'"));
 }
 
-TEST_CASE("the local matrix of a transform is state, and restoring it pulls nothing along") {
+TEST_CASE("the local matrix of a transform is state, and followers get no call when it is restored") {
   Fixture f;
   auto& a = f.scene->create<Transform>("Transform", "a");
   auto& follower = a.create<Follower>("Follower", "f");
@@ -145,7 +145,7 @@ TEST_CASE("the local matrix of a transform is state, and restoring it pulls noth
   CHECK(stateHash(*f.scene) == before);
 }
 
-TEST_CASE("another path may hold the active scene") {
+TEST_CASE("the active scene may be at another path") {
   Fixture f;
   callMethod(*f.kernel.root().find("/sys/server/scene"), "createScene", List{"/usr/other"});
   CHECK(f.server->scene().path() == "/usr/other");
@@ -153,7 +153,7 @@ TEST_CASE("another path may hold the active scene") {
   CHECK(&f.server->scene() == f.scene);
 }
 
-TEST_CASE("a position or matrix that is no place is refused") {
+TEST_CASE("positions, angles and matrices that are not finite or too large are refused") {
   Fixture f;
   auto& t = f.scene->create<Transform>("Transform", "t");
   callMethod(t, "setLocalPos", List{1.0, 2.0, -1e9});
@@ -177,7 +177,7 @@ TEST_CASE("a position or matrix that is no place is refused") {
                     Catch::Contains("cannot set /usr/scene/t.localPos") && Catch::Contains("found 0.0 nan 0.0"));
 }
 
-TEST_CASE("another active scene counts as a change of the tree") {
+TEST_CASE("changing the active scene counts as a change of the tree") {
   Fixture f;
   const auto before = f.kernel.structureVersion();
   f.kernel.create("Scene", "/usr/other");
@@ -187,7 +187,7 @@ TEST_CASE("another active scene counts as a change of the tree") {
   CHECK(f.kernel.structureVersion() > made);
 }
 
-TEST_CASE("the error for an import without an importer names what to add") {
+TEST_CASE("an import without an importer is an error") {
   Fixture f;
   CHECK_THROWS_WITH(f.server->importScene("x.rsg", *f.scene, {}), Catch::Contains("has no importer below it"));
 }
@@ -209,7 +209,7 @@ TEST_CASE("standard meshes have the names that monitors expect") {
   CHECK(load("Sphere", "setRadius", {0.5}).scale() == Vec3f(0.5f, 0.5f, 0.5f));
 }
 
-TEST_CASE("visible takes numbers as the installed base does: the text true hides") {
+TEST_CASE("setVisible reads its argument as a number like the installed base, so the text true hides") {
   Fixture f;
   Leaf& box = f.scene->create("Box");
   const auto& visual = *box.as<IVisual>();
@@ -227,7 +227,7 @@ TEST_CASE("visible takes numbers as the installed base does: the text true hides
   CHECK(visual.transparent());
 }
 
-TEST_CASE("a mesh has the materials of its file in alphabetical order, or those that were declared for it") {
+TEST_CASE("a mesh has the materials of its file in alphabetical order, or those declared for it") {
   Fixture f;
   auto& file = f.kernel.create<OneFile>("OneFile", "/sys/server/file/one");
   file.text =
@@ -258,23 +258,23 @@ TEST_CASE("a mesh has the materials of its file in alphabetical order, or those 
   CHECK(visual.materials() == std::vector<std::string>{"c"});
 }
 
-TEST_CASE("an unknown material is logged once, a known one never") {
+TEST_CASE("an unknown material is logged once, and a known one is not") {
   Fixture f;
   Leaf& materials = f.kernel.create("MaterialServer", "/sys/server/material");
   callMethod(materials, "define", List{"matRed", 1, 0, 0, 1});
   Leaf& box = f.scene->create("Box");
   callMethod(box, "setMaterial", List{"matRed"});
-  CHECK(f.house.text.find("material") == std::string::npos);
+  CHECK(f.host.text.find("material") == std::string::npos);
   callMethod(box, "setMaterial", List{"matRad"});
-  CHECK(f.house.text.find("'matRad'") != std::string::npos);
-  CHECK(f.house.text.find("Did you mean 'matRed'") != std::string::npos);
-  const auto once = f.house.text;
+  CHECK(f.host.text.find("'matRad'") != std::string::npos);
+  CHECK(f.host.text.find("Did you mean 'matRed'") != std::string::npos);
+  const auto once = f.host.text;
   callMethod(box, "setMaterial", List{"matRad"});
-  CHECK(f.house.text == once);
+  CHECK(f.host.text == once);
   CHECK(box.as<IVisual>()->materials() == std::vector<std::string>{"matRad"});
 }
 
-TEST_CASE("lights and cameras hold their values") {
+TEST_CASE("lights and cameras return the values that were set") {
   Fixture f;
   Leaf& light = f.scene->create("Light");
   callMethod(light, "setAmbient", numbers({0.1, 0.2, 0.3, 1}));
@@ -288,7 +288,7 @@ TEST_CASE("lights and cameras hold their values") {
   CHECK(callMethod(camera, "getFOV", {}) == Value(90.0));
 }
 
-TEST_CASE("a game in Lua reports by a group of variables, which are state") {
+TEST_CASE("a game in Lua reports its status with a group of variables, which are state") {
   Fixture f;
   f.kernel.create("StatusVariables", "/sys/variables/Status");
   scripts(f.kernel).run(
@@ -313,7 +313,7 @@ TEST_CASE("a game in Lua reports by a group of variables, which are state") {
   CHECK(stateHash(group) == hash);
 }
 
-TEST_CASE("variables are read by name, lists by the bare group") {
+TEST_CASE("variables are read by name, and a list by its group's name alone") {
   Fixture f;
   Leaf& soccer = f.kernel.create("Variables", "/sys/variables/Soccer");
   callMethod(soccer, "set", List{"FieldLength", 30.0});

@@ -10,15 +10,15 @@ using namespace spark::test;
 
 namespace {
 
-/// An echo target.
+/// An echo target without other features.
 class Post : public SceneNode, public IEchoTarget {
   SPARK_CLASS(Post, SceneNode)
  public:
   static void describe(Description<Post>& d) { d.implements<IEchoTarget>(); }
 };
 
-/// A robot of one transform `/usr/robot` with a body, to which tests add sensors.
-struct Robot : House {
+/// A robot with a single transform `/usr/robot` and a body. Tests add sensors to it.
+struct Robot : TestHost {
   Robot() {
     registerFakePhysics(kernel);
     kernel.plugins().use("sensors");
@@ -43,7 +43,7 @@ struct Robot : House {
 
 }  // namespace
 
-TEST_CASE("the time is simulated seconds") {
+TEST_CASE("the time perceptor reports simulated seconds") {
   Robot robot;
   CHECK(robot.sense(robot.transform->create("TimePerceptor", "t")) == "(time (now 7.36))");
 }
@@ -65,7 +65,7 @@ TEST_CASE("joint sensors report degrees in the formats of the installed base") {
     joint.angles = {degToRad(12.5), 1, 0};
     CHECK(robot.sense(joint.create("Hinge2Perceptor", "wheel")) == "(H2J (n wheel) (ax 0 12.50))");
   }
-  SECTION("a joint of another type above is passed over") {
+  SECTION("a joint of another type in between is skipped") {
     auto& outer = robot.joint(engine::JointType::hinge);
     outer.angles[0] = degToRad(5);
     auto& inner = outer.create<FakeJoint>("FakeJoint", "inner");
@@ -105,26 +105,26 @@ TEST_CASE("the joint sensor reports angle and rate, in degrees unless the joint 
   }
 }
 
-TEST_CASE("pose sensors report place and rotation of their transform in the world") {
+TEST_CASE("pose sensors report the position and the orientation of their transform in the world") {
   Robot robot;
   auto& head = robot.transform->create<Transform>("Transform", "head");
-  Leaf& place = head.create("PositionPerceptor", "head_pos");
+  Leaf& position = head.create("PositionPerceptor", "head_pos");
   Leaf& rotation = head.create("OrientationPerceptor", "head_quat");
-  CHECK(robot.sense(place) == "(pos (n head_pos) (p 0.00 0.00 0.00))");
+  CHECK(robot.sense(position) == "(pos (n head_pos) (p 0.00 0.00 0.00))");
   CHECK(robot.sense(rotation) == "(quat (n head_quat) (q 1.00 0.00 0.00 0.00))");
   robot.transform->setLocalPos({1, 2, 3});
   robot.transform->setLocalRotationDeg(0, 0, 90);
   head.setLocalPos({0.5f, 0, -0.25f});
-  CHECK(robot.sense(place) == "(pos (n head_pos) (p 1.00 2.50 2.75))");
+  CHECK(robot.sense(position) == "(pos (n head_pos) (p 1.00 2.50 2.75))");
   CHECK(robot.sense(rotation) == "(quat (n head_quat) (q 0.71 0.00 0.00 0.71))");
-  // As of the last place phase.
+  // The pose is that of the last place phase.
   robot.transform->setLocalRotationDeg(60, 0, 0);
   CHECK(robot.sense(rotation) == "(quat (n head_quat) (q 0.71 0.00 0.00 0.71))");
   head.updateWorld(true);
   CHECK(robot.sense(rotation) == "(quat (n head_quat) (q 0.87 0.50 0.00 0.00))");
 }
 
-TEST_CASE("the angular motor's sensor reports the items that are switched on, and a temperature only after a change") {
+TEST_CASE("the angular motor's sensor reports the enabled items, and the temperature only after a change") {
   Robot robot;
   auto& hinge = robot.joint(engine::JointType::hinge);
   hinge.angles[0] = degToRad(3);
@@ -152,7 +152,7 @@ TEST_CASE("the gyroscope reports degrees per second in the body's own frame") {
   CHECK(robot.sense(gyro) == "(GYR (n torso) (rt -0.00 -90.00 1.00))");
 }
 
-TEST_CASE("the accelerometer samples before the step and feels no free fall") {
+TEST_CASE("the accelerometer samples before the step and measures 0 in free fall") {
   Robot robot;
   Leaf& sensor = robot.transform->create("Accelerometer", "torso");
   CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 0.00))");
@@ -165,12 +165,12 @@ TEST_CASE("the accelerometer samples before the step and feels no free fall") {
   robot.body->now.linearVelocity = {0, 0, -2 * 9.81 * 0.02};
   robot.prepare();
   CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 0.00))");
-  robot.body->now.linearVelocity = Vec3::Zero();  // put down at once, as a beam does
+  robot.body->now.linearVelocity = Vec3::Zero();  // stopped at once, as by a beam
   robot.prepare();
   CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 29.43))");
 }
 
-TEST_CASE("a foot feels the weighted mean point and the sum of forces in its own frame, only when touched") {
+TEST_CASE("a foot sensor reports the force-weighted mean point and the total force in its frame, only on contact") {
   Robot robot;
   Leaf& sensor = robot.transform->create("ForceResistancePerceptor", "rf");
   auto& foot = robot.transform->create<FakeCollider>("FakeCollider", "foot");
@@ -200,11 +200,11 @@ TEST_CASE("a foot feels the weighted mean point and the sum of forces in its own
   robot.prepare();
   CHECK(robot.sense(sensor).empty());
 
-  robot.prepare();  // asleep: there are contacts, but no forces
+  robot.prepare();  // a sleeping body has contacts but no forces
   contact({1, 0, 0.4}, Vec3::Zero(), true, true);
   CHECK(robot.sense(sensor) == "(FRP (n rf) (c 0.05 0.00 -0.10) (f 0.00 0.00 40.00))");
 
-  robot.prepare();  // neither the second role nor what is not solved is felt
+  robot.prepare();  // symmetric contacts and contacts that are not solved are ignored
   CHECK_FALSE(contact({1, 0, 0.4}, {0, 0, 9}, false, true));
   contact({1, 0, 0.4}, {0, 0, 9}, true, false);
   CHECK(robot.sense(sensor).empty());
@@ -215,7 +215,7 @@ TEST_CASE("a foot feels the weighted mean point and the sum of forces in its own
   CHECK(robot.sense(sensor) == "(FRP (n rf) (c 0.20 0.00 -0.10) (f -0.00 -5.00 1.00))");
 }
 
-TEST_CASE("collision sensors report what touched since the last percept") {
+TEST_CASE("collision sensors report the contacts since the last percept") {
   Robot robot;
   auto& shell = robot.transform->create<FakeCollider>("FakeCollider", "shell");
   auto& ball = robot.kernel.create<FakeCollider>("FakeCollider", "/usr/ball");
@@ -269,7 +269,7 @@ TEST_CASE("the GPS reports the world matrix, row-major") {
         "(GPS (n torso) (tf 1.00 0.00 0.00 1.00 0.00 1.00 0.00 2.00 0.00 0.00 1.00 3.00 0.00 0.00 0.00 1.00))");
 }
 
-TEST_CASE("the battery's sensor is named as its node") {
+TEST_CASE("the battery sensor uses the name of its node, and is silent without a battery") {
   Robot robot;
   auto& battery = robot.transform->create<FakeBattery>("FakeBattery", "battery");
   CHECK(robot.sense(battery.create("BatteryPerceptor", "BAT")) == "(BAT 0.75)");
@@ -277,7 +277,7 @@ TEST_CASE("the battery's sensor is named as its node") {
   CHECK(robot.text.find("expected an IBattery above it, found none. It senses nothing.") != std::string::npos);
 }
 
-TEST_CASE("sensors that are only accepted keep their settings and are silent") {
+TEST_CASE("sensors that are accepted but not simulated keep their settings and are silent") {
   Robot robot;
   for (const char* name : {"ImagePerceptor", "HMDPPerceptor"})
     CHECK(robot.sense(robot.transform->create(name, name)).empty());
@@ -288,14 +288,14 @@ TEST_CASE("sensors that are only accepted keep their settings and are silent") {
   CHECK(getProperty(image, "fov") == Value(45.0));
 }
 
-TEST_CASE("a sonar detects the echo targets in its cone, except those of its own robot, nearest first") {
+TEST_CASE("a sonar reports the echo targets in its cone, nearest first, without those of its own robot") {
   Robot robot;
   robot.kernel.registerClass<Post>();
   const auto put = [&](const char* aspect, const char* name, const Vec3f& at, const char* mark) -> Node& {
-    auto& place = robot.kernel.create<Transform>(aspect, std::string("/usr/") + name);
-    place.setLocalPos(at);
-    place.create(mark, "mark");
-    return place;
+    auto& node = robot.kernel.create<Transform>(aspect, std::string("/usr/") + name);
+    node.setLocalPos(at);
+    node.create(mark, "mark");
+    return node;
   };
   auto& self = robot.kernel.create<Transform>("AgentAspect", "/usr/self");
   self.create("Post", "torso");

@@ -6,7 +6,7 @@ using spark::simulation::Histogram;
 using std::chrono::microseconds;
 using std::chrono::seconds;
 
-TEST_CASE("A histogram's buckets follow each other and are at most a sixteenth of their size wide") {
+TEST_CASE("The buckets of a histogram increase, and their width is at most a sixteenth of their lower bound") {
   for (std::size_t i = 0; i + 1 < Histogram::kBuckets; ++i) {
     const double from = Histogram::begin(i), to = Histogram::begin(i + 1);
     CAPTURE(i, from, to);
@@ -15,7 +15,7 @@ TEST_CASE("A histogram's buckets follow each other and are at most a sixteenth o
   }
 }
 
-TEST_CASE("A duration is counted in the bucket that holds it") {
+TEST_CASE("A duration is counted in the bucket that contains it") {
   for (const int micros : {0, 1, 31, 32, 33, 1000, 20000, 20479, 20480, 60'000'000}) {
     Histogram h;
     h.add(microseconds(micros));
@@ -26,7 +26,7 @@ TEST_CASE("A duration is counted in the bucket that holds it") {
   }
 }
 
-TEST_CASE("What is out of reach is counted at the ends") {
+TEST_CASE("Durations out of range are counted in the first or the last bucket") {
   Histogram h;
   h.add(microseconds(-5));
   h.add(seconds(1'000'000));
@@ -34,7 +34,7 @@ TEST_CASE("What is out of reach is counted at the ends") {
   CHECK(h.inBucket(Histogram::kBuckets - 1) == 1);
 }
 
-TEST_CASE("Percentiles are those of the counted durations, to a sixteenth") {
+TEST_CASE("Percentiles are accurate to a sixteenth") {
   Histogram h;
   CHECK(h.percentile(0.5) == 0);
   for (int i = 1; i <= 1000; ++i) h.add(microseconds(10 * i));

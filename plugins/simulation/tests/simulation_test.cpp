@@ -11,8 +11,7 @@
 using namespace spark;
 
 namespace {
-/// A source that plays a list of batches: each wait() takes the next one, poll() takes those marked as already
-/// received.
+/// An input source and gate that records its calls. The gate opens after a number of waits.
 class Batches : public Node, public IInputSource, public IInputGate {
   SPARK_CLASS(Batches, Node)
  public:
@@ -77,16 +76,16 @@ class Slow : public Node {
 };
 
 struct LoopFixture {
-  test::House house;
+  test::TestHost host;
   Leaf* simulation = nullptr;
   ISimulation* loop = nullptr;
   LoopFixture() {
-    house.kernel.registerClass<Batches>();
-    house.kernel.registerClass<Polled>();
-    house.kernel.registerClass<Slow>();
-    house.kernel.registerClass<ClosedForASecond>();
-    house.kernel.plugins().use("simulation");
-    simulation = &house.kernel.create("Simulation", "/sys/server/simulation");
+    host.kernel.registerClass<Batches>();
+    host.kernel.registerClass<Polled>();
+    host.kernel.registerClass<Slow>();
+    host.kernel.registerClass<ClosedForASecond>();
+    host.kernel.plugins().use("simulation");
+    simulation = &host.kernel.create("Simulation", "/sys/server/simulation");
     loop = simulation->as<ISimulation>();
     setProperty(*simulation, "rate", "max");
   }
@@ -95,12 +94,12 @@ struct LoopFixture {
 };
 }  // namespace
 
-TEST_CASE("A cycle runs its phases in the order of the design") {
+TEST_CASE("A cycle runs its phases in the designed order") {
   LoopFixture f;
   std::string order;
   for (const char* name : {"publish", "sense", "rule", "place", "physics", "prepare", "act"})
-    f.house.kernel.events().channel(name).add(f.house.kernel.root(),
-                                              [&](Leaf&, const Event& e) { order += std::string(e.name) + " "; });
+    f.host.kernel.events().channel(name).add(f.host.kernel.root(),
+                                             [&](Leaf&, const Event& e) { order += std::string(e.name) + " "; });
   f.runCycles(1);
   REQUIRE(order == "act prepare physics place rule sense publish ");
 }
@@ -109,9 +108,9 @@ TEST_CASE("Time is the sum of executed steps, and phases after the solver see th
   LoopFixture f;
   double act = -1, sense = -1, step = 0;
   std::int64_t cycle = 0;
-  f.house.kernel.events().channel("act").add(f.house.kernel.root(), [&](Leaf&, const Event& e) { act = e.time; });
-  f.house.kernel.events().channel("sense").add(
-      f.house.kernel.root(), [&](Leaf&, const Event& e) { sense = e.time, step = e.step, cycle = e.cycle; });
+  f.host.kernel.events().channel("act").add(f.host.kernel.root(), [&](Leaf&, const Event& e) { act = e.time; });
+  f.host.kernel.events().channel("sense").add(
+      f.host.kernel.root(), [&](Leaf&, const Event& e) { sense = e.time, step = e.step, cycle = e.cycle; });
   REQUIRE(f.loop->cycle() == 0);
   f.runCycles(1);
   REQUIRE(act == 0);
@@ -123,18 +122,18 @@ TEST_CASE("Time is the sum of executed steps, and phases after the solver see th
   REQUIRE(f.loop->time() == Approx(0.1));
 }
 
-TEST_CASE("run ends at its duration, neither a cycle early nor late") {
+TEST_CASE("run ends after exactly the cycles of its duration") {
   LoopFixture f;
   setProperty(*f.simulation, "duration", 600.0);
   f.run();
   REQUIRE(f.loop->cycle() == 30000);
 }
 
-TEST_CASE("run ends when the kernel or a script asks for it") {
+TEST_CASE("run ends when the kernel or a script requests a stop") {
   LoopFixture f;
-  f.house.kernel.events().channel("sense").add(f.house.kernel.root(), [&](Leaf&, const Event& e) {
+  f.host.kernel.events().channel("sense").add(f.host.kernel.root(), [&](Leaf&, const Event& e) {
     if (e.cycle == 7) callMethod(*f.simulation, "stop", {});
-    if (e.cycle == 9) f.house.kernel.requestStop();
+    if (e.cycle == 9) f.host.kernel.requestStop();
   });
   f.run();
   REQUIRE(f.loop->cycle() == 7);
@@ -144,14 +143,14 @@ TEST_CASE("run ends when the kernel or a script asks for it") {
   REQUIRE(f.loop->cycle() == 9);
 }
 
-TEST_CASE("A program steps, paces and stops the loop by its interface") {
+TEST_CASE("A program can step, pace and stop the loop through its interface") {
   LoopFixture f;
   f.loop->setPaced(true);
   REQUIRE(f.loop->paced());
   REQUIRE(getProperty(*f.simulation, "rate") == Value("real"));
   f.loop->setPaced(false);
   REQUIRE_FALSE(f.loop->paced());
-  f.house.kernel.events().channel("rule").add(f.house.kernel.root(), [&](Leaf&, const Event& e) {
+  f.host.kernel.events().channel("rule").add(f.host.kernel.root(), [&](Leaf&, const Event& e) {
     if (e.cycle == 3) f.loop->stop();
     if (e.cycle == 5) REQUIRE_THROWS_WITH(f.loop->runCycles(1), Catch::Contains("runs already"));
   });
@@ -164,9 +163,9 @@ TEST_CASE("A program steps, paces and stops the loop by its interface") {
   REQUIRE(f.loop->cycle() == 20);
 }
 
-TEST_CASE("The clock waits for closed gates, then reads once more what was received meanwhile") {
+TEST_CASE("A cycle waits until all gates are open, then polls its input once more") {
   LoopFixture f;
-  auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");
+  auto& source = f.host.kernel.create<Batches>("Batches", "/sys/server/net");
   source.waitsBeforeReady = 3;
   setProperty(*f.simulation, "sync", true);
   f.runCycles(1);
@@ -176,9 +175,9 @@ TEST_CASE("The clock waits for closed gates, then reads once more what was recei
   REQUIRE(f.loop->time() == Approx(0.02));
 }
 
-TEST_CASE("A stop request ends the wait at a gate that never opens") {
+TEST_CASE("A stop request ends the wait for a gate that never opens") {
   LoopFixture f;
-  auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");
+  auto& source = f.host.kernel.create<Batches>("Batches", "/sys/server/net");
   source.waitsBeforeReady = 1000000;
   source.stopAt = 5;
   f.run();
@@ -188,13 +187,13 @@ TEST_CASE("A stop request ends the wait at a gate that never opens") {
 
 TEST_CASE("A source that cannot wait is polled before every cycle") {
   LoopFixture f;
-  auto& polled = f.house.kernel.create<Polled>("Polled", "/sys/server/control");
+  auto& polled = f.host.kernel.create<Polled>("Polled", "/sys/server/control");
   f.runCycles(10);
   REQUIRE(polled.polls == 10);
   REQUIRE(polled.waits == 0);
 }
 
-TEST_CASE("In real time the clock never runs faster than wall time") {
+TEST_CASE("In real time the simulation is never faster than wall time") {
   LoopFixture f;
   setProperty(*f.simulation, "rate", "real");
   const auto start = std::chrono::steady_clock::now();
@@ -203,11 +202,11 @@ TEST_CASE("In real time the clock never runs faster than wall time") {
   REQUIRE(spent >= 5 * 0.02);
 }
 
-TEST_CASE("time that cycles lose in real time is reported; as fast as possible none is lost") {
+TEST_CASE("Lost time and late cycles are reported in real time only") {
   for (const char* rate : {"real", "max"}) {
     LoopFixture f;
     setProperty(*f.simulation, "rate", rate);
-    f.house.kernel.events().channel("physics").add(f.house.kernel.root(), [](Leaf&, const Event&) {
+    f.host.kernel.events().channel("physics").add(f.host.kernel.root(), [](Leaf&, const Event&) {
       const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(45);
       while (std::chrono::steady_clock::now() < end) {
       }
@@ -224,24 +223,24 @@ TEST_CASE("time that cycles lose in real time is reported; as fast as possible n
   }
 }
 
-TEST_CASE("Waiting for agents is no lost time") {
+TEST_CASE("Waiting for a gate does not count as lost time") {
   LoopFixture f;
   setProperty(*f.simulation, "rate", "real");
-  f.house.kernel.create<ClosedForASecond>("ClosedForASecond", "/sys/server/gate");
+  f.host.kernel.create<ClosedForASecond>("ClosedForASecond", "/sys/server/gate");
   f.runCycles(3);
   REQUIRE(getProperty(*f.simulation, "lostTime").toNumber() < 0.5);
 }
 
-TEST_CASE("Input is taken while real time passes") {
+TEST_CASE("Input is read while the loop waits for real time") {
   LoopFixture f;
-  auto& source = f.house.kernel.create<Batches>("Batches", "/sys/server/net");
+  auto& source = f.host.kernel.create<Batches>("Batches", "/sys/server/net");
   setProperty(*f.simulation, "rate", "real");
   f.runCycles(2);
   REQUIRE(source.log.find('w') != std::string::npos);
   REQUIRE(source.waited > 0);
 }
 
-TEST_CASE("Wall time is measured per phase and is no state") {
+TEST_CASE("Wall time is measured per phase and is not part of the state") {
   LoopFixture f, g;
   f.runCycles(3);
   g.runCycles(3);
@@ -256,7 +255,7 @@ TEST_CASE("Wall time is measured per phase and is no state") {
 TEST_CASE("A run within a run is refused and does no harm") {
   LoopFixture f;
   std::string refusal;
-  f.house.kernel.events().channel("rule").add(f.house.kernel.root(), [&](Leaf&, const Event& e) {
+  f.host.kernel.events().channel("rule").add(f.host.kernel.root(), [&](Leaf&, const Event& e) {
     if (e.cycle != 2) return;
     try {
       f.run();
@@ -281,21 +280,21 @@ TEST_CASE("Cycle and time are saved and restored") {
   REQUIRE(stateHash(*g.simulation) == stateHash(*f.simulation));
 }
 
-TEST_CASE("The number of threads follows the property") {
+TEST_CASE("The property threads sets the number of threads") {
   LoopFixture f;
   setProperty(*f.simulation, "threads", 4);
-  REQUIRE(f.house.kernel.jobs().threads() == 4);
+  REQUIRE(f.host.kernel.jobs().threads() == 4);
   REQUIRE_THROWS_AS(setProperty(*f.simulation, "threads", 0), Error);
 }
 
-TEST_CASE("Cycles are counted by how long they took, and in real time by how late they were") {
+TEST_CASE("Cycles are counted by their duration, and in real time also by their delay") {
   LoopFixture f;
-  f.house.kernel.create("Slow", "/usr/slow");
+  f.host.kernel.create("Slow", "/usr/slow");
   setProperty(*f.simulation, "step", 0.001);
   const auto row = [&f](std::size_t i) { return getProperty(*f.simulation, "cycleTimes").toList().at(i).toList(); };
   f.runCycles(3);
   CHECK(row(0)[0].toString() == "late");
-  CHECK(row(0)[1].toInteger() == 0);  // nothing is due as fast as it goes
+  CHECK(row(0)[1].toInteger() == 0);  // no cycle can be late at the maximum rate
   CHECK(row(1)[1].toInteger() == 3);
   CHECK(row(1)[2].toNumber() >= 3000);  // the median
   CHECK(row(1)[6].toNumber() >= row(1)[5].toNumber());
@@ -303,7 +302,7 @@ TEST_CASE("Cycles are counted by how long they took, and in real time by how lat
   setProperty(*f.simulation, "rate", "real");
   f.runCycles(3);
   CHECK(row(0)[1].toInteger() == 3);
-  CHECK(row(0)[6].toNumber() >= 2000);  // a cycle of 3 ms that is followed by one that was due after 1 ms
+  CHECK(row(0)[6].toNumber() >= 2000);  // a cycle takes 3 ms, and the next one is due after 1 ms
   CHECK(row(2)[1].toInteger() == 3);
   CHECK(row(2)[6].toNumber() >= 5000);
   std::int64_t counted = 0;
