@@ -58,6 +58,5 @@ struct TestHost {
   }
   ~TestHost() { kernel.log().setSink({}); }
 };
-using House = TestHost;
 
 }  // namespace spark::test

@@ -259,7 +259,7 @@ TEST_CASE("A perceptor that leaves lists open is named once, and the percepts of
   }
   const auto count = [&](const std::string& text) {
     int n = 0;
-    for (std::size_t at = a.house.text.find(text); at != std::string::npos; at = a.house.text.find(text, at + 1)) ++n;
+    for (std::size_t at = a.host.text.find(text); at != std::string::npos; at = a.host.text.find(text, at + 1)) ++n;
     return n;
   };
   CHECK(count("/usr/scene/AgentAspect1/open (TestSloppy) left 2 list(s) open in sense()") == 1);

@@ -183,8 +183,8 @@ class Client {
 /// The simulation. The test drives its phases.
 class Arena {
  public:
-  House house;
-  Kernel& kernel = house.kernel;
+  TestHost host;
+  Kernel& kernel = host.kernel;
   IInputSource* net = nullptr;
   IInputGate* gate = nullptr;
   IGameControl* control = nullptr;
@@ -255,11 +255,11 @@ class Arena {
         step();
       else
         net->poll();
-      if (std::chrono::steady_clock::now() > end) throw Error("The test waited 20 s in vain. The log:\n" + house.text);
+      if (std::chrono::steady_clock::now() > end) throw Error("The test waited 20 s in vain. The log:\n" + host.text);
       net->wait(0.0005);
     }
   }
-  bool logged(std::string_view text) const { return house.text.find(text) != std::string::npos; }
+  bool logged(std::string_view text) const { return host.text.find(text) != std::string::npos; }
   std::int64_t cycles() const { return cycle_; }
 
  private:

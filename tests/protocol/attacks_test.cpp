@@ -48,7 +48,7 @@ TEST_CASE("The number of log lines about one agent is limited") {
   c.send(flood + "(he1 1)");
   applyActions(a, 1);
   std::size_t lines = 0;
-  for (std::size_t at = 0; (at = a.house.text.find("predicate bad", at)) != std::string::npos; ++at) ++lines;
+  for (std::size_t at = 0; (at = a.host.text.find("predicate bad", at)) != std::string::npos; ++at) ++lines;
   REQUIRE(lines >= 1);
   REQUIRE(lines <= 10);
 }
@@ -80,8 +80,8 @@ TEST_CASE("An agent that names bad scenes in every cycle is finally refused and 
     a.cycle();
   }
   int lines = 0;
-  for (auto at = a.house.text.find("gets no robot"); at != std::string::npos;
-       at = a.house.text.find("gets no robot", at + 1))
+  for (auto at = a.host.text.find("gets no robot"); at != std::string::npos;
+       at = a.host.text.find("gets no robot", at + 1))
     ++lines;
   REQUIRE(lines == 10);
   REQUIRE(a.logged("no robot could be built too often"));
@@ -100,11 +100,11 @@ TEST_CASE("A second robot is refused") {
 TEST_CASE("Long messages of a client do not fill the log") {
   Arena a;
   Client c = robot(a);
-  a.house.text.clear();
+  a.host.text.clear();
   c.send("(" + std::string(60000, 'x') + " 1)(scene " + std::string(3000, 'y') + ")(he1 1)");
   applyActions(a, 1);
   REQUIRE(a.logged("no effector registered for predicate xxx"));
-  REQUIRE(a.house.text.size() < 2000);
+  REQUIRE(a.host.text.size() < 2000);
 }
 
 TEST_CASE("Agents above maxAgents are refused") {

@@ -136,8 +136,8 @@ TEST_CASE("A behavior that cannot get an agent is reported once") {
   a.cycle();
   a.cycle();
   a.cycle();
-  const auto at = a.house.text.find("cannot be made");
+  const auto at = a.host.text.find("cannot be made");
   REQUIRE(at != std::string::npos);
-  REQUIRE(a.house.text.find("cannot be made", at + 1) == std::string::npos);
+  REQUIRE(a.host.text.find("cannot be made", at + 1) == std::string::npos);
   REQUIRE(a.agents() == 0);
 }

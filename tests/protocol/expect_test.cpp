@@ -178,9 +178,9 @@ TEST_CASE("The host reports which agents it waits for and what each must send") 
   plain.send("(scene robot)(syn)");
   ready.send("(scene robot)" + init("A", 1) + "(syn)");
   for (auto* c : {&bare, &named, &plain, &ready}) c->arrive();
-  a.house.text.clear();
+  a.host.text.clear();
   a.until([&] { return a.gate->ready(true) || a.logged("is not connected"); }, false);
-  INFO(a.house.text);
+  INFO(a.host.text);
   CHECK(a.logged("Waiting for 5 of 6 agents: agent at " + silent.name() + " has said nothing; "));
   CHECK(a.logged("agent at " + bare.name() + " owes (scene ...) and (syn); "));
   CHECK(a.logged("agent at " + named.name() + " has named its robot and its team, owes (syn); "));
@@ -262,13 +262,13 @@ TEST_CASE("An agent that leaves during the hold is not counted, and an additiona
   a.until([&] { return a.gate->ready(true) || a.logged("1 of 2 expected agents are ready.\n0 of 2"); }, false);
   REQUIRE_FALSE(a.gate->ready(true));
   Client idle = a.client();
-  const auto seen = a.house.text.size() - 1;
+  const auto seen = a.host.text.size() - 1;
   Client late = ready("B", 5);
   REQUIRE_FALSE(a.gate->ready(true));
   a.until(
       [&] {
         a.gate->ready(true);
-        return a.house.text.rfind("1 of 2 expected agents are ready.\n") > seen;
+        return a.host.text.rfind("1 of 2 expected agents are ready.\n") > seen;
       },
       false);
   Client last = ready("A", 9);

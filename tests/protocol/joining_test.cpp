@@ -314,7 +314,7 @@ TEST_CASE("Clients that repeatedly connect, cause errors and leave write a bound
     stranger.leave();
     a.cycle();
   }
-  const auto lines = std::count(a.house.text.begin(), a.house.text.end(), '\n');
+  const auto lines = std::count(a.host.text.begin(), a.host.text.end(), '\n');
   REQUIRE(lines > 200);
   REQUIRE(lines < 400);
 }

@@ -15,7 +15,7 @@
 namespace spark::test {
 
 /// The league without its network: agents and monitors are fake connections.
-class League : public House {
+class League : public TestHost {
  public:
   /// `field`: its scene file; empty: the one of the config. `scenes`: a folder that holds rsg/... and takes precedence;
   /// empty: only the project's scenes. `settings`: options in the format of --set.

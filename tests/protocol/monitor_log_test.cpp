@@ -25,7 +25,7 @@ struct TemporaryFile {
 };
 
 /// The simulation of logplayer.lua without its network.
-struct Cinema : House {
+struct Cinema : TestHost {
   explicit Cinema(const std::filesystem::path& log) {
     const auto share = pluginFolder().parent_path() / "share" / "spark";
     scripts(kernel).addFolder(share / "lua");
@@ -47,21 +47,21 @@ struct Cinema : House {
 
 /// Records a short match of spheres; returns the lines of the log.
 std::vector<std::string> record(const std::filesystem::path& log, const std::string& encoder = "SexpMonitor") {
-  House house;
-  scripts(house.kernel).addFolder(pluginFolder().parent_path() / "share" / "spark" / "lua");
-  scripts(house.kernel)
+  TestHost host;
+  scripts(host.kernel).addFolder(pluginFolder().parent_path() / "share" / "spark" / "lua");
+  scripts(host.kernel)
       .run(fmt::format("host = {{ share = '{}', scenePaths = {{}} }}",
                        (pluginFolder().parent_path() / "share" / "spark").string()),
            "test");
   for (const char* port : {"agents", "monitors"})
-    scripts(house.kernel).addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
-  scripts(house.kernel).addOverride("team", "Red Blue");
-  scripts(house.kernel).addOverride("players", 3);
-  scripts(house.kernel).addOverride("monitor", encoder);
-  scripts(house.kernel).addOverride("monitorLog", log.string());
-  scripts(house.kernel).addOverride("/sys/server/simulation.rate", "max");
-  scripts(house.kernel).runConfig("soccer-sphere.lua");
-  callMethod(house.kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{1002});
+    scripts(host.kernel).addOverride(fmt::format("/sys/server/net/{}.port", port), 0);
+  scripts(host.kernel).addOverride("team", "Red Blue");
+  scripts(host.kernel).addOverride("players", 3);
+  scripts(host.kernel).addOverride("monitor", encoder);
+  scripts(host.kernel).addOverride("monitorLog", log.string());
+  scripts(host.kernel).addOverride("/sys/server/simulation.rate", "max");
+  scripts(host.kernel).runConfig("soccer-sphere.lua");
+  callMethod(host.kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{1002});
   std::ifstream in(log);
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);

@@ -93,7 +93,7 @@ class TestPlayers : public Node, public IInputSource {
   IConnectionConsumer* control_ = nullptr;
 };
 
-struct Match : House {
+struct Match : TestHost {
   TestPlayers* team;
   explicit Match(int threads) {
     kernel.log().setLevel(Level::warning);

@@ -79,8 +79,8 @@ TEST_CASE("Clients that come and go leave no memory behind") {
       c.leave();
       a.until([&] { return a.agents() == 0; });
     }
-    a.house.text.clear();
-    a.house.text.shrink_to_fit();
+    a.host.text.clear();
+    a.host.text.shrink_to_fit();
   };
   visit(100);
   const std::size_t before = heap();

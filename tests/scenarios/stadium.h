@@ -38,7 +38,7 @@ struct Player {
   bool heard(std::string_view text) const { return last.find(text) != std::string::npos; }
 };
 
-class Stadium : House {
+class Stadium : TestHost {
  public:
   using Settings = std::vector<std::pair<std::string, Value>>;
   static constexpr double kStep = 0.02;  ///< s

@@ -10,8 +10,8 @@ namespace spark::test {
 
 /// Spark's scenes; `scenes` is a folder with rsg/... that takes precedence.
 struct League {
-  House house;
-  Kernel& kernel = house.kernel;
+  TestHost host;
+  Kernel& kernel = host.kernel;
 
   explicit League(const std::filesystem::path& scenes = {}, const std::string& variables = "") {
     scripts(kernel).addFolder(std::filesystem::path(SPARK_SOURCES) / "lua");
@@ -39,9 +39,9 @@ soccerVariables{)" +
   }
   /// Imports a file; throws if that logs a warning.
   void import(const std::string& file, Node& root, const List& arguments = {}) {
-    house.text.clear();
+    host.text.clear();
     importLoosely(file, root, arguments);
-    if (!house.text.empty()) throw Error(file + " was imported, but: " + house.text);
+    if (!host.text.empty()) throw Error(file + " was imported, but: " + host.text);
   }
   void run(int cycles) {
     callMethod(kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles});

@@ -30,7 +30,7 @@ struct RuntimeFolder : test::TemporaryFolder {
 
 struct Fixture {
   RuntimeFolder folder;
-  test::House house;
+  test::TestHost host;
   Leaf* simulation = nullptr;
   Leaf* control = nullptr;
   asio::io_context io;
@@ -38,11 +38,11 @@ struct Fixture {
   asio::streambuf buffer;
 
   Fixture() {
-    house.kernel.plugins().use("simulation");
-    house.kernel.plugins().use("control");
-    simulation = &house.kernel.create("Simulation", "/sys/server/simulation");
+    host.kernel.plugins().use("simulation");
+    host.kernel.plugins().use("control");
+    simulation = &host.kernel.create("Simulation", "/sys/server/simulation");
     setProperty(*simulation, "rate", "max");
-    control = &house.kernel.create("ControlServer", "/sys/server/control");
+    control = &host.kernel.create("ControlServer", "/sys/server/control");
   }
   std::string socket() { return getProperty(*control, "socket").toString(); }
   void connect() { client.connect(asio::local::stream_protocol::endpoint(socket())); }
@@ -112,9 +112,9 @@ TEST_CASE("Sockets of ended processes are removed when a control server starts, 
   bind(dead), bind(second), bind(starting);
   auto listening = bind(container);
   listening.listen();
-  test::House house;
-  house.kernel.plugins().use("control");
-  Leaf& control = house.kernel.create("ControlServer", "/sys/server/control");
+  test::TestHost host;
+  host.kernel.plugins().use("control");
+  Leaf& control = host.kernel.create("ControlServer", "/sys/server/control");
   CHECK_FALSE(getProperty(control, "socket").toString().empty());
   CHECK_FALSE(fs::exists(dead));
   CHECK_FALSE(fs::exists(second));
@@ -126,16 +126,16 @@ TEST_CASE("A socket folder that is open to other users is not used, and the simu
   RuntimeFolder folder;
   fs::create_directory(folder.path() / "spark");
   chmod((folder.path() / "spark").c_str(), 0755);
-  test::House house;
-  house.kernel.plugins().use("control");
-  Leaf& control = house.kernel.create("ControlServer", "/sys/server/control");
+  test::TestHost host;
+  host.kernel.plugins().use("control");
+  Leaf& control = host.kernel.create("ControlServer", "/sys/server/control");
   REQUIRE(getProperty(control, "socket").toString().empty());
-  REQUIRE(house.text.find("open to other users") != std::string::npos);
+  REQUIRE(host.text.find("open to other users") != std::string::npos);
 }
 
 TEST_CASE("Two simulations in one process have a socket each, and remove it when they end") {
   RuntimeFolder folder;
-  test::House a, b;
+  test::TestHost a, b;
   a.kernel.plugins().use("control");
   b.kernel.plugins().use("control");
   const std::string first = getProperty(a.kernel.create("ControlServer", "/sys/server/control"), "socket").toString();
@@ -206,7 +206,7 @@ TEST_CASE("The tree has classes and documentation down to the requested depth") 
 TEST_CASE("A client without rights gets a large tree in parts, but every node on request") {
   Fixture f;
   for (int i = 0; i < 60; ++i)
-    for (int k = 0; k < 100; ++k) f.house.kernel.create("Node", fmt::format("/usr/wide{}/leaf{}", i, k));
+    for (int k = 0; k < 100; ++k) f.host.kernel.create("Node", fmt::format("/usr/wide{}/leaf{}", i, k));
   const auto tree = [&](const char* path, bool mayChange) {
     control::Watch watch;
     const Json request{{"do", "tree"}, {"path", path}};
@@ -222,11 +222,11 @@ TEST_CASE("A client without rights gets a large tree in parts, but every node on
 
 TEST_CASE("A watch reports every change and nothing else, and ends with its node") {
   Fixture f;
-  f.house.kernel.create("Node", "/usr/box");
+  f.host.kernel.create("Node", "/usr/box");
   f.connect();
   REQUIRE(f.ask({{"do", "watch"}, {"path", "/usr/box"}, {"property", "name"}})["value"] == "box");
   f.cycle();
-  Leaf* box = f.house.kernel.root().find("/usr/box");
+  Leaf* box = f.host.kernel.root().find("/usr/box");
   box->setName("crate");
   f.cycle();
   REQUIRE(f.receive()["value"] == "crate");
@@ -264,8 +264,8 @@ TEST_CASE("Children of the control server can handle additional requests for all
   f.connect();
   REQUIRE(f.ask({{"do", "weather"}})["error"] ==
           "expected tree, get, set, call, watch, plugins, load, or unload, found 'weather'");
-  f.house.kernel.registerClass<Weatherman>();
-  auto& handler = f.house.kernel.create<Weatherman>("Weatherman", "/sys/server/control/weather");
+  f.host.kernel.registerClass<Weatherman>();
+  auto& handler = f.host.kernel.create<Weatherman>("Weatherman", "/sys/server/control/weather");
   REQUIRE(f.ask({{"do", "weather"}, {"place", "Leipzig"}})["sky"] == "Leipzig is grey");
   REQUIRE(handler.polls == 1);
   control::Watch watch;

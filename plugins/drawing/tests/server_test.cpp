@@ -15,7 +15,7 @@ using Udp = boost::asio::ip::udp;
 
 namespace {
 /// A simulation with a drawing server.
-struct Studio : House {
+struct Studio : TestHost {
   Studio() {
     for (const char* plugin : {"scene", "gamecontrol", "drawing"}) kernel.plugins().use(plugin);
     node = &kernel.create("DrawingServer", "/sys/server/drawing");
@@ -167,15 +167,15 @@ TEST_CASE("an agent's effector shows its shapes at once and replaces the previou
 }
 
 TEST_CASE("drawing() in a config opens a port only if one is set, and in a batch it only provides the effector") {
-  const auto configure = [](House& house, const char* host,
+  const auto configure = [](TestHost& host, const char* parameters,
                             std::initializer_list<std::pair<const char*, Value>> settings) {
-    ScriptServer& lua = scripts(house.kernel);
+    ScriptServer& lua = scripts(host.kernel);
     lua.addFolder(SPARK_SOURCES "/lua");
     for (const auto& [name, value] : settings) lua.addOverride(name, value);
-    lua.run(std::string("host = { share = '', scenePaths = {}") + host + " } include 'house.lua' drawing()", "test");
-    return house.kernel.root().find("/sys/server/drawing");
+    lua.run(std::string("host = { share = '', scenePaths = {}") + parameters + " } include 'house.lua' drawing()", "test");
+    return host.kernel.root().find("/sys/server/drawing");
   };
-  House quiet, open, alone;
+  TestHost quiet, open, alone;
   Leaf* server = configure(quiet, "", {});
   REQUIRE(server);
   server->as<IInputSource>()->poll();

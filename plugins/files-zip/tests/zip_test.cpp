@@ -15,15 +15,15 @@ namespace {
 struct Archive {
   test::TemporaryFolder folder;
   const fs::path file = folder.path() / "a.zip";
-  test::House house;
+  test::TestHost host;
   IFileServer* server = nullptr;
   Leaf* system = nullptr;
 
   Archive() {
-    house.kernel.plugins().use("files");
-    house.kernel.plugins().use("files-zip");
-    server = &house.kernel.create<IFileServer>("FileServer", "/sys/server/file");
-    system = &house.kernel.create("ZipFileSystem", "/sys/server/file/zip");
+    host.kernel.plugins().use("files");
+    host.kernel.plugins().use("files-zip");
+    server = &host.kernel.create<IFileServer>("FileServer", "/sys/server/file");
+    system = &host.kernel.create("ZipFileSystem", "/sys/server/file/zip");
     setProperty(*system, "path", file.string());
   }
 

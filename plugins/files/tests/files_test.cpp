@@ -12,16 +12,16 @@ using namespace spark;
 namespace {
 
 struct Files {
-  test::House house;
+  test::TestHost host;
   test::TemporaryFolder folder;
   IFileServer* server = nullptr;
   Files() {
-    house.kernel.plugins().use("files");
-    server = &house.kernel.create<IFileServer>("FileServer", "/sys/server/file");
+    host.kernel.plugins().use("files");
+    server = &host.kernel.create<IFileServer>("FileServer", "/sys/server/file");
     mount("one", folder.path(), "");
   }
   Leaf& mount(const std::string& name, const fs::path& path, const std::string& prefix) {
-    Leaf& system = house.kernel.create("DirectoryFileSystem", "/sys/server/file/" + name);
+    Leaf& system = host.kernel.create("DirectoryFileSystem", "/sys/server/file/" + name);
     setProperty(system, "path", path.string());
     setProperty(system, "prefix", prefix);
     return system;
@@ -133,7 +133,7 @@ TEST_CASE("a stamp changes with the file and with the target of a link") {
 TEST_CASE("a file above the size limit is refused") {
   Files f;
   f.folder.write("big", std::string(101, 'x'));
-  Leaf& system = *f.house.kernel.root().find("/sys/server/file/one");
+  Leaf& system = *f.host.kernel.root().find("/sys/server/file/one");
   setProperty(system, "maxBytes", 100);
   CHECK(f.errorOf("big").find("too large: 101 bytes, at most 100") != std::string::npos);
   setProperty(system, "maxBytes", 101);

@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 namespace {
 
 /// The simulation of lua/soccer.lua with a humanoid, without a network.
-struct League : House {
+struct League : TestHost {
   explicit League(bool noise = false) : inspection(kernel) {
     ScriptServer& lua = scripts(kernel);
     lua.addFolder(SPARK_SOURCES "/lua");

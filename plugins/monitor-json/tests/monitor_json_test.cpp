@@ -10,7 +10,7 @@ using namespace spark::test;
 
 namespace {
 
-struct Encoder : House {
+struct Encoder : TestHost {
   Encoder() {
     kernel.plugins().use("monitor-json");
     encoder = &kernel.create<IMonitorEncoder>("JsonMonitor", "/usr/encoder");

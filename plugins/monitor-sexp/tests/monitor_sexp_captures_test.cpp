@@ -11,9 +11,9 @@ using namespace spark::test;
 TEST_CASE("every recorded monitor message is identical after decoding and encoding") {
   const auto folder = referenceFolder();
   if (folder.empty()) std::exit(77);
-  House house;
-  house.kernel.plugins().use("monitor-sexp");
-  auto& encoder = house.kernel.create<IMonitorEncoder>("SexpMonitor", "/usr/encoder");
+  TestHost host;
+  host.kernel.plugins().use("monitor-sexp");
+  auto& encoder = host.kernel.create<IMonitorEncoder>("SexpMonitor", "/usr/encoder");
   for (const char* name : {"nao0-rest", "ball-bounce-and-roll", "four-agents"}) {
     INFO(name);
     std::ifstream file(folder / "captures" / "mainline" / (std::string(name) + ".jsonl"));

@@ -9,7 +9,7 @@ using namespace spark::test;
 
 namespace {
 
-struct SexpEncoder : House {
+struct SexpEncoder : TestHost {
   SexpEncoder() {
     kernel.plugins().use("monitor-sexp");
     encoder = &kernel.create<IMonitorEncoder>("SexpMonitor", "/usr/encoder");

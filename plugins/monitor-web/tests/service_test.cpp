@@ -60,7 +60,7 @@ class StillClock : public Node, public ISimulation {
 };
 
 /// A simulation with a moving robot; its cycles run in a separate thread until stop().
-struct RunningServer : House {
+struct RunningServer : TestHost {
   RunningServer() {
     makeFakeScene(kernel);
     kernel.registerClass<Match>();

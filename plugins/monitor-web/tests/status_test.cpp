@@ -46,8 +46,8 @@ class TwoAgents : public Node, public IGameControl {
   std::vector<AgentAspect*> all;
 };
 
-struct SumoMatch : House {
-  SumoMatch() : House(false), report(kernel) {
+struct SumoMatch : TestHost {
+  SumoMatch() : TestHost(false), report(kernel) {
     kernel.registerClass<SceneNode>();
     kernel.registerClass<Transform>();
     kernel.registerClass<AgentAspect>();

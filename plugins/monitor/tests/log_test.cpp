@@ -61,7 +61,7 @@ struct Recorded : Stage {
 };
 
 /// A monitor server that plays a log.
-struct Player : House {
+struct Player : TestHost {
   explicit Player(const std::filesystem::path& file) {
     kernel.plugins().use("monitor");
     kernel.plugins().use("monitor-sexp");

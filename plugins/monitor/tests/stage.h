@@ -67,7 +67,7 @@ class WordParser : public Node, public IParser {
 };
 
 /// A monitor server with a small scene: a light, a robot of two parts, a box.
-struct Stage : House {
+struct Stage : TestHost {
   Stage() : scene(makeFakeScene(kernel)) {
     kernel.log().setLevel(Level::debug);
     kernel.registerClass<TestItem>();

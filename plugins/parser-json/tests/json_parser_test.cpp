@@ -8,11 +8,11 @@ using namespace spark;
 
 namespace {
 struct Fixture {
-  test::House house;
+  test::TestHost host;
   IParser* parser;
   Fixture() {
-    house.kernel.plugins().use("parser-json");
-    parser = &house.kernel.create<IParser>("JsonParser", "/usr/parser");
+    host.kernel.plugins().use("parser-json");
+    parser = &host.kernel.create<IParser>("JsonParser", "/usr/parser");
   }
   /// The predicates read, as S-expressions.
   std::string read(std::string_view text, std::string* error = nullptr) {
@@ -94,7 +94,7 @@ TEST_CASE("JSON is compact, and numbers that JSON cannot represent are null") {
   p.open("See").close();
   p.open("x").add(std::nan("")).add(HUGE_VAL).add(1e300).add(-0.001).add(3).close();
   REQUIRE(f.written(p) == R"([["time",["now",0.30]],["See"],["x",null,null,null,-0.00,3]])");
-  setProperty(*f.house.kernel.root().find("/usr/parser"), "decimals", -1);
+  setProperty(*f.host.kernel.root().find("/usr/parser"), "decimals", -1);
   REQUIRE(f.written(p) == R"([["time",["now",0.3]],["See"],["x",null,null,1e+300,-0.001,3]])");
 }
 

@@ -8,11 +8,11 @@ using namespace spark;
 
 namespace {
 struct SexpFixture {
-  test::House house;
+  test::TestHost host;
   IParser* parser;
   SexpFixture() {
-    house.kernel.plugins().use("parser-sexp");
-    parser = &house.kernel.create<IParser>("SexpParser", "/usr/parser");
+    host.kernel.plugins().use("parser-sexp");
+    parser = &host.kernel.create<IParser>("SexpParser", "/usr/parser");
   }
   std::string written(const Predicates& p) {
     std::string out;
@@ -31,7 +31,7 @@ TEST_CASE("S-expressions are written in the format that existing clients expect"
   p.open("GS").open("unum").add(3).close().open("t").add(0.0).close().close();
   REQUIRE(f.written(p) == "(time (now 7.36))(See )(HJ (n hj1) (ax -0.00))(GS (unum 3) (t 0.00))");
   SECTION("decimals are a property") {
-    setProperty(*f.house.kernel.root().find("/usr/parser"), "decimals", 3);
+    setProperty(*f.host.kernel.root().find("/usr/parser"), "decimals", 3);
     REQUIRE(f.written(p).starts_with("(time (now 7.359))"));
   }
 }

@@ -39,7 +39,7 @@ class Puppet : public Behavior {
 };
 
 /// A soccer match on the field of 2004, or on the current league's field if `sphere` is false.
-struct SoccerMatch : House {
+struct SoccerMatch : TestHost {
   explicit SoccerMatch(bool sphere = true) {
     for (const char* p : {"files", "scene", "scene-rsg", "physics", "physics-ode", "simulation", "parser-sexp",
                           "gamecontrol", "sensors", "effectors", "monitor", "soccer"})

@@ -28,8 +28,8 @@ class Reporter : public Node, public IStatus {
   std::vector<StatusEntry> entries;
 };
 
-struct Reporters : House {
-  Reporters() : House(false) { kernel.registerClass<Reporter>(); }
+struct Reporters : TestHost {
+  Reporters() : TestHost(false) { kernel.registerClass<Reporter>(); }
   Reporter& add(const std::string& path, std::vector<StatusEntry> entries) {
     auto& reporter = kernel.create<Reporter>("Reporter", path);
     reporter.entries = std::move(entries);
@@ -58,14 +58,14 @@ TEST_CASE("The host's last line has known entries as members, and all others in 
 }
 
 TEST_CASE("All nodes below /sys and /usr report in tree order, and the first entry of a name counts") {
-  Reporters house;
+  Reporters host;
   StatusReporters reporters;
-  CHECK(reporters.read(house.kernel).empty());
-  house.add("/usr/deep/down/game", {{"score", List{1, 2}, {}}, {"round", 3, {}}});
-  auto& first = house.add("/sys/server/any", {{"round", 8, {}}, {"wind", 0.5, {}}});
-  CHECK(statusText(reporters.read(house.kernel)) == ", round 8, wind 0.5, score 1:2");
+  CHECK(reporters.read(host.kernel).empty());
+  host.add("/usr/deep/down/game", {{"score", List{1, 2}, {}}, {"round", 3, {}}});
+  auto& first = host.add("/sys/server/any", {{"round", 8, {}}, {"wind", 0.5, {}}});
+  CHECK(statusText(reporters.read(host.kernel)) == ", round 8, wind 0.5, score 1:2");
   first.entries[0].value = 9;
-  CHECK(statusText(reporters.read(house.kernel)) == ", round 9, wind 0.5, score 1:2");
+  CHECK(statusText(reporters.read(host.kernel)) == ", round 9, wind 0.5, score 1:2");
   first.parent()->remove(first);
-  CHECK(statusText(reporters.read(house.kernel)) == ", score 1:2, round 3");
+  CHECK(statusText(reporters.read(host.kernel)) == ", score 1:2, round 3");
 }

@@ -16,7 +16,7 @@ using namespace spark;
 namespace {
 enum class LyingOn { belly, back, left, right };
 
-class Solo : public test::House {
+class Solo : public test::TestHost {
  public:
   explicit Solo(int type) {
     kernel.log().setLevel(Level::warning);
