@@ -173,6 +173,7 @@ TEST_CASE("While it waits the host says whom it waits for and what each owes") {
   Arena a(true);
   a.set("expect", 6);
   a.set("holdReport", 0.01);
+  a.set("joinWait", 3600.0);
   Client silent = a.client(), bare = a.client(), named = a.client(), plain = a.client(), ready = a.client();
   bare.send(init("A", 2));
   named.send("(scene robot)" + init("A", 3));
@@ -187,7 +188,7 @@ TEST_CASE("While it waits the host says whom it waits for and what each owes") {
   CHECK(a.logged("agent at " + named.name() + " has named its robot and its team, owes (syn); "));
   CHECK(a.logged("agent at " + plain.name() +
                  " has named its robot, owes (init ...) and (syn); if it has no init, (syn) to two messages; "));
-  CHECK(a.logged("1 is not connected; without any news the match starts in 60 s."));
+  CHECK(a.logged("1 is not connected; without any news the match starts in 3"));
   CHECK_FALSE(a.logged(ready.name()));
 }
 

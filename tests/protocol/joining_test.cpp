@@ -255,7 +255,6 @@ TEST_CASE(
   Arena a(true);
   a.set("joinBudget", 0.02);
   a.set("joinPace", 3600.0);  // new agents that have not sent (syn) would stop it, too
-  a.set("syncTimeout", 3600.0);
   const bool says = GENERATE(true, false);
   Client player = a.client();
   player.send("(scene robot)(syn)");
@@ -292,6 +291,7 @@ TEST_CASE(
   if (crowd) a.set("maxAgents", 1000);
   Client player = a.client();
   player.send("(scene robot)(syn)");
+  const auto begin = std::chrono::steady_clock::now();
   playUntilTrusted(a, player);
   for (int i = 0; i < 200; ++i) {
     Client stranger = a.client();
@@ -302,12 +302,15 @@ TEST_CASE(
       for (std::size_t n = player.drain().size(); n > 0; --n) player.send("(syn)");
     }
   }
-  REQUIRE(a.get("agentsSeen").toInteger() > (crowd ? 199 : 100));
-  REQUIRE(a.get("agentsSeen").toInteger() < (crowd ? 202 : 190));
+  const double few = 4 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const auto seen = static_cast<double>(a.get("agentsSeen").toInteger());
+  REQUIRE(seen > (crowd ? 199 : 100));
+  REQUIRE(seen < (crowd ? 202 : 132 + few));  // twice maxAgents are 128
 }
 
 TEST_CASE("Clients that connect, complain and leave again and again write a bounded number of lines") {
   Arena a(true);
+  const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < 400; ++i) {
     Client stranger = a.client();
     stranger.send("(scene robot)(nonsense)");
@@ -318,8 +321,10 @@ TEST_CASE("Clients that connect, complain and leave again and again write a boun
     a.cycle();
   }
   const auto lines = std::count(a.house.text.begin(), a.house.text.end(), '\n');
+  // 300 at once, and so few a second that the time of the test hardly counts, on a fast machine.
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   REQUIRE(lines > 200);
-  REQUIRE(lines < 400);
+  REQUIRE(static_cast<double>(lines) < 400 + 5 * seconds);
 }
 
 TEST_CASE("Who cannot answer is not waited for") {

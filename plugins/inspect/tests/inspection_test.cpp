@@ -156,7 +156,7 @@ TEST_CASE("what an agent sees is shown beside what is true, as both were when it
   CHECK(sees == 1);
 
   // It is kept up to date for who goes on asking.
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  const auto end = std::chrono::steady_clock::now() + kPatience;
   while (blind["seenTime"] == league.percepts(true)["seenTime"]) REQUIRE(std::chrono::steady_clock::now() < end);
 }
 
