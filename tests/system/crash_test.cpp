@@ -89,7 +89,7 @@ TEST_CASE("What crashes at set-up is named: properties by their name, constructo
 
 TEST_CASE("A signal that somebody sends ends the host as ever, with its words") {
   const Crashing c;
-  Process p(c.command(""), 60);
+  Process p(c.command(""));
   p.line();
   p.signal(SIGSEGV);
   CHECK(p.wait() == 128 + SIGSEGV);
@@ -134,18 +134,20 @@ TEST_CASE("What hangs is named while it hangs, and once") {
   for (const bool sensor : {true, false}) {
     auto more = sensor ? c.scenes() : std::vector<std::string>{"--duration", "2"};
     more.insert(more.end(), {"--rate", "max", "--set", "/sys/host/watchdog.after=0.5"});
-    Process p(c.command(sensor ? c.agent("hang") : c.hook("hang"), more), 60);
+    Process p(c.command(sensor ? c.agent("hang") : c.hook("hang"), more));
     p.line();
-    p.waitForError(sensor ? "/eye (class CrashSensor of plugin crashing)."
-                          : "it has been in prepare of /usr/thing/h (class CrashHook of plugin crashing).");
+    const std::string words = sensor ? "/eye (class CrashSensor of plugin crashing)."
+                                     : "it has been in prepare of /usr/thing/h (class CrashHook of plugin crashing).";
+    p.waitForError(words);
     p.signal(SIGTERM);
     p.waitForError("It was asked to end; a second signal ends it at once.");
     std::ofstream(c.folder.file("go")) << "";
     p.waitForError("The simulation goes on after ");
     p.line();
     CHECK(p.wait() == 0);
-    const std::string said = p.errors(), words = "The simulation stands still";
-    CHECK(said.find(words) != said.rfind(words));  // when it hung, and when it was asked to end
+    // When it hung, and when it was asked to end. On a slow machine other things may stand still, too.
+    const std::string said = p.errors();
+    CHECK(said.find(words) != said.rfind(words));
     CHECK(said.find(words, said.find(words) + 1) == said.rfind(words));
     std::filesystem::remove(c.folder.file("go"));
   }
@@ -153,12 +155,12 @@ TEST_CASE("What hangs is named while it hangs, and once") {
 
 TEST_CASE("A watchdog that is switched off says nothing") {
   const Crashing c;
-  Process p(c.command(c.hook("hang") + "get('/sys/host/watchdog').after = 0\n"), 60);
+  Process p(c.command(c.hook("hang") + "get('/sys/host/watchdog').after = 0\n"));
   p.line();
   // Somebody else's words in the log follow the hang's end.
   std::ofstream(c.folder.file("go")) << "";
   p.signal(SIGTERM);
   p.line();
   CHECK(p.wait() == 0);
-  CHECK_THAT(p.errors(), !Contains("stands still") && !Contains("goes on"));
+  CHECK_THAT(p.errors(), !Contains("it has been in prepare of /usr/thing/h"));
 }
