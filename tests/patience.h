@@ -7,7 +7,8 @@
 
 namespace spark::test {
 
-/// For one wait; a machine may be slow and busy.
-inline constexpr std::chrono::seconds kPatience{3600};
+/// For one wait, which may be for a whole match. Beside a busy neighbour, a program of low priority gets a hundredth of
+/// a processor.
+inline constexpr std::chrono::seconds kPatience{3 * 3600};
 
 }  // namespace spark::test

@@ -27,7 +27,7 @@ from pathlib import Path
 
 SOURCES = Path(__file__).resolve().parent.parent.parent
 NUMBER = r"-?[0-9]+(?:\.[0-9]+)?"
-SECONDS = 3600  # for a block of commands that hangs
+SECONDS = 10800  # for a block of commands that hangs
 
 
 def blocks(page):

@@ -198,6 +198,7 @@ TEST_CASE("Where no game reads names, expected agents need none: their robot dec
   control.remove(*control.find("names"));
   a.set("expect", 2);
   a.set("holdReport", 0.01);
+  a.set("joinWait", 3600.0);
   Client second = a.client(), first = a.client();
   second.send("(scene robot Bravo)");
   first.send("(scene robot Alpha)" + init("A", 9) + "(syn)");
