@@ -9,6 +9,11 @@ set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY TEST_INCLUDE_FILES ${
 # Tests run for seconds and are compiled for minutes.
 set(SPARK_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
 
+# Seconds after which a test is taken for one that hangs: a last resort, however slow and busy a machine is. The second
+# is for tests that take a minute on a fast one, or wait for programs with the patience of tests/patience.h.
+set(SPARK_TEST_TIMEOUT 3600)
+set(SPARK_LONG_TEST_TIMEOUT 21600)
+
 # Makes a test wait for a plugin; called last, when all plugins are known.
 function(spark_test_needs target plugin)
   if(TARGET plugin-${plugin})
@@ -73,7 +78,7 @@ function(spark_test name)
     add_test(NAME ${name} COMMAND ${target})
   endif()
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
+    set(ARG_TIMEOUT ${SPARK_TEST_TIMEOUT})
   endif()
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string>
 
+#include "patience.h"
 #include "spark/kernel.h"
 
 namespace spark::test {

@@ -53,7 +53,12 @@ class WebClient {
     if (at != out.head.npos && body) out.body = take(std::stoul(out.head.substr(at + 16)));
     return out;
   }
-  /// Header lines that request a WebSocket.
+  /// What /status.json says once the simulation has answered; until then it is empty.
+  static std::string status(unsigned short port) {
+    for (;;)
+      if (std::string body = WebClient(port).get("/status.json").body; body != "{}") return body;
+  }
+  /// Lines that ask for a WebSocket.
   static std::string upgrade(const std::string& host) {
     return host +
            "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: "
@@ -100,7 +105,9 @@ class WebClient {
       longSize(2);
     else if (size == 127)
       longSize(8);
-    return {head[0] & 0x0f, take(size)};
+    Message message{head[0] & 0x0f, take(size)};
+    if (message.opcode == 9) sendRaw(frame(message.payload, 10));  // who answers no ping is gone after a while
+    return message;
   }
   /// The next text message that contains `part`. Other messages are skipped.
   std::string textWith(std::string_view part) {

@@ -63,6 +63,9 @@ LockstepHost::LockstepHost(const std::vector<std::string>& settings) {
                                    "0",
                                    "--log-level",
                                    "warning"};
+  // The host waits for every answer, however slow the test is.
+  command = joined(command, withoutLimits());
+  command.insert(command.end(), {"--set", "/sys/server/gamecontrol.joinBudget=1e9"});
   for (const std::string& s : settings) command.insert(command.end(), {"--set", s});
   process_ = std::make_unique<Process>(command);
   const Json ports = Json::parse(process_->line());
@@ -70,7 +73,12 @@ LockstepHost::LockstepHost(const std::vector<std::string>& settings) {
   monitorPort = ports["monitorPort"];
 }
 
-void LockstepHost::halt(bool on) { process_->signal(on ? SIGSTOP : SIGCONT); }
+void LockstepHost::halt(bool on) {
+  if (on)
+    process_->halt();
+  else
+    process_->signal(SIGCONT);
+}
 
 std::string LockstepHost::end() {
   process_->signal(15);

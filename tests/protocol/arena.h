@@ -211,6 +211,8 @@ class Arena {
     kernel.create("Node", "/usr/scene");
     Leaf& server = kernel.create("GameControl", "/sys/server/gamecontrol");
     setProperty(server, "robotFolder", "");
+    // Limits of wall time are for the tests that set them.
+    for (const char* limit : {"syncTimeout", "joinWait", "idleLimit"}) setProperty(server, limit, 0);
     gate = server.as<IInputGate>();
     control = server.as<IGameControl>();
     kernel.create("SexpParser", "/sys/server/gamecontrol/parser");
@@ -247,15 +249,15 @@ class Arena {
     run();
     return true;
   }
-  /// Polls and runs cycles until `done`; fails after 20 s.
+  /// Polls and runs cycles until `done`; fails after kPatience.
   void until(const std::function<bool()>& done, bool cycles = true) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    const auto end = std::chrono::steady_clock::now() + kPatience;
     while (!done()) {
       if (cycles)
         step();
       else
         net->poll();
-      if (std::chrono::steady_clock::now() > end) throw Error("The test waited 20 s in vain. The log:\n" + host.text);
+      if (std::chrono::steady_clock::now() > end) throw Error("The test waited in vain. The log:\n" + host.text);
       net->wait(0.0005);
     }
   }

@@ -172,6 +172,7 @@ TEST_CASE("The host reports which agents it waits for and what each must send") 
   Arena a(true);
   a.set("expect", 6);
   a.set("holdReport", 0.01);
+  a.set("joinWait", 3600.0);
   Client silent = a.client(), bare = a.client(), named = a.client(), plain = a.client(), ready = a.client();
   bare.send(init("A", 2));
   named.send("(scene robot)" + init("A", 3));
@@ -186,7 +187,7 @@ TEST_CASE("The host reports which agents it waits for and what each must send") 
   CHECK(a.logged("agent at " + named.name() + " has named its robot and its team, owes (syn); "));
   CHECK(a.logged("agent at " + plain.name() +
                  " has named its robot, owes (init ...) and (syn); if it has no init, (syn) to two messages; "));
-  CHECK(a.logged("1 is not connected; without any news the match starts in 60 s."));
+  CHECK(a.logged("1 is not connected; without any news the match starts in 3"));
   CHECK_FALSE(a.logged(ready.name()));
 }
 
@@ -196,6 +197,7 @@ TEST_CASE("Without a join policy expected agents need no init, and their robots 
   control.remove(*control.find("names"));
   a.set("expect", 2);
   a.set("holdReport", 0.01);
+  a.set("joinWait", 3600.0);
   Client second = a.client(), first = a.client();
   second.send("(scene robot Bravo)");
   first.send("(scene robot Alpha)" + init("A", 9) + "(syn)");

@@ -252,8 +252,7 @@ void playUntilTrusted(Arena& a, Client& player) {
 TEST_CASE("New agents that join a match in lockstep and never answer delay it by at most joinBudget in total") {
   Arena a(true);
   a.set("joinBudget", 0.02);
-  a.set("joinPace", 3600.0);  // new agents that have not sent (syn) would block it, too
-  a.set("syncTimeout", 3600.0);
+  a.set("joinPace", 3600.0);  // new agents that have not sent (syn) would stop it, too
   const bool says = GENERATE(true, false);
   Client player = a.client();
   player.send("(scene robot)(syn)");
@@ -289,6 +288,7 @@ TEST_CASE("In lockstep robots of untrusted agents are built 2 maxAgents at once,
   if (crowd) a.set("maxAgents", 1000);
   Client player = a.client();
   player.send("(scene robot)(syn)");
+  const auto begin = std::chrono::steady_clock::now();
   playUntilTrusted(a, player);
   for (int i = 0; i < 200; ++i) {
     Client stranger = a.client();
@@ -299,12 +299,15 @@ TEST_CASE("In lockstep robots of untrusted agents are built 2 maxAgents at once,
       for (std::size_t n = player.drain().size(); n > 0; --n) player.send("(syn)");
     }
   }
-  REQUIRE(a.get("agentsSeen").toInteger() > (crowd ? 199 : 100));
-  REQUIRE(a.get("agentsSeen").toInteger() < (crowd ? 202 : 190));
+  const double few = 4 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const auto seen = static_cast<double>(a.get("agentsSeen").toInteger());
+  REQUIRE(seen > (crowd ? 199 : 100));
+  REQUIRE(seen < (crowd ? 202 : 132 + few));  // twice maxAgents are 128
 }
 
 TEST_CASE("Clients that repeatedly connect, cause errors and leave write a bounded number of log lines") {
   Arena a(true);
+  const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < 400; ++i) {
     Client stranger = a.client();
     stranger.send("(scene robot)(nonsense)");
@@ -315,8 +318,10 @@ TEST_CASE("Clients that repeatedly connect, cause errors and leave write a bound
     a.cycle();
   }
   const auto lines = std::count(a.host.text.begin(), a.host.text.end(), '\n');
+  // 300 at once, and so few a second that the time of the test hardly counts, on a fast machine.
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   REQUIRE(lines > 200);
-  REQUIRE(lines < 400);
+  REQUIRE(static_cast<double>(lines) < 400 + 5 * seconds);
 }
 
 TEST_CASE("The simulation does not wait for a client that cannot answer") {

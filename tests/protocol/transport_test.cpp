@@ -327,7 +327,7 @@ TEST_CASE("Waiting ends with input, at the deadline, and on a stop request") {
   REQUIRE_FALSE(w.net->wait(0.01));
   Client c = w.client();
   c.send("a");
-  while (w.consumer->events.size() < 2) REQUIRE(w.net->wait(20));
+  while (w.consumer->events.size() < 2) REQUIRE(w.net->wait(3600));
   w.kernel.requestStop();
   REQUIRE(w.net->wait(3600));
 }

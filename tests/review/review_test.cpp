@@ -19,7 +19,6 @@ struct Case {
   std::string program = "sparkhost";
   std::vector<std::string> arguments{"--rate", "max", "--duration", "2"};
   int exit = 0;
-  double limit = 120;  // s
   std::vector<std::string> expected, never;
 };
 
@@ -41,10 +40,8 @@ void take(Case& c, const std::string& key, const std::string& value) {
     c.arguments = words(value);
   else if (key == "program")
     c.program = value;
-  else if (key == "limit")
-    c.limit = std::stod(value);
   else
-    throw std::runtime_error("expected expect, never, exit, args, program or limit, found '" + key + "'");
+    throw std::runtime_error("expected expect, never, exit, args or program, found '" + key + "'");
 }
 
 /// Reads the lines `-- key: value` at the start of a case; skips other comments between them.
@@ -79,7 +76,7 @@ TEST_CASE("Every case of the review has the result that its first lines specify"
       std::vector<std::string> command{(binFolder() / c.program).string(), "--config", file.string(), "--scene-path",
                                        SPARK_CASES "/scenes"};
       command.insert(command.end(), c.arguments.begin(), c.arguments.end());
-      Process run(command, c.limit);
+      Process run(command);
       std::string said = run.rest();
       const int code = run.wait();
       said += run.errors();

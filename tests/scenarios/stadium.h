@@ -53,6 +53,7 @@ class Stadium : TestHost {
                                      {"/sys/server/net/agents.port", 0},
                                      {"/sys/server/net/monitors.port", 0},
                                      {"/sys/server/monitor.interval", 1},
+                                     {"/sys/server/gamecontrol.idleLimit", 0},  // of wall time
                                      {"Soccer.BeamNoiseXY", 0},
                                      {"Soccer.BeamNoiseAngle", 0}};
     for (const auto& [key, value] : settings) all[key] = value;

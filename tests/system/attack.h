@@ -16,40 +16,51 @@
 
 namespace spark::test {
 
-/// A well-behaved player that only observes. In lockstep it answers for as long as its observations are read.
+/// A player of his own who only watches. In lockstep it answers as long as it is asked what it sees, unless it never
+/// sends (syn).
 class Witness {
  public:
-  Witness(unsigned short port, const std::string& team, int number, const std::string& robot = "rsg/agent/sphere.rsg")
-      : client_(port) {
-    client_.send("(scene " + robot + ")(syn)");
+  Witness(unsigned short port, const std::string& team, int number, const std::string& robot = "rsg/agent/sphere.rsg",
+          bool answers = true)
+      : client_(port), syn_(answers ? "(syn)" : "") {
+    client_.send("(scene " + robot + ")" + syn_);
     client_.receive();
-    client_.send("(init (unum " + std::to_string(number) + ")(teamname " + team + "))(syn)");
+    client_.send("(init (unum " + std::to_string(number) + ")(teamname " + team + "))" + syn_);
   }
   /// Waits until simulated time has advanced by a few cycles from now.
   void mustSeeTimePass() {
-    while (client_.pending()) client_.receive();  // messages sent before now prove nothing
-    client_.send("(syn)");
+    while (client_.pending()) client_.receive();  // what was sent before now proves nothing
+    answer();
     const double begin = time();
     for (double now = begin; now < begin + 0.1;) now = time();
   }
   Client& client() { return client_; }
-  /// True once the host has assigned a side or a number; reads at most `messages` messages.
+  /// Reads messages until one tells the number that the host gave; returns false after `messages` without.
   bool hasTeam(int messages) {
     for (int i = 0; i < messages; ++i)
       if (client_.receive().find("(unum ") != std::string::npos) return true;
     return false;
+  }
+  /// Reads messages until one tells it.
+  void waitForTeam() {
+    while (!hasTeam(1)) {
+    }
   }
 
  private:
   double time() {
     Predicates p;
     readSexp(client_.receive(), p);
-    client_.send("(syn)");
+    answer();
     for (const Element e : p)
       if (e.head() == "time") return e.named("now").at(1).number();
     throw std::runtime_error("a message without time");
   }
+  void answer() {
+    if (!syn_.empty()) client_.send(syn_);
+  }
   Client client_;
+  std::string syn_;
 };
 
 /// A host with a witness in it.
@@ -58,8 +69,10 @@ struct Arena {
   unsigned short agentPort = 0, monitorPort = 0, webPort = 0;
   std::unique_ptr<Witness> witness;
 
-  explicit Arena(std::vector<std::string> more = {}, const std::string& config = "soccer-sphere.lua")
-      : host(command(std::move(more), config), 60) {
+  /// `answers`: what the witness does in lockstep. A host has no limits of wall time but those in `more`.
+  explicit Arena(std::vector<std::string> more = {}, const std::string& config = "soccer-sphere.lua",
+                 bool answers = true)
+      : host(command(std::move(more), config)) {
     const nlohmann::json ports = nlohmann::json::parse(host.line());
     agentPort = ports["agentPort"];
     monitorPort = ports["monitorPort"];
@@ -67,7 +80,8 @@ struct Arena {
       webPort = static_cast<unsigned short>(
           std::stoi(ports["web"].get<std::string>().substr(std::string("http://127.0.0.1:").size())));
     witness = std::make_unique<Witness>(
-        agentPort, "Calm", 1, config == "soccer-sphere.lua" ? "rsg/agent/sphere.rsg" : "rsg/agent/nao/nao.rsg");
+        agentPort, "Calm", 1, config == "soccer-sphere.lua" ? "rsg/agent/sphere.rsg" : "rsg/agent/nao/nao.rsg",
+        answers);
     witness->mustSeeTimePass();
   }
   static std::vector<std::string> command(std::vector<std::string> more, const std::string& config) {
@@ -80,8 +94,11 @@ struct Arena {
                                "0",
                                "--web-port",
                                "0"};
-    c.insert(c.end(), more.begin(), more.end());
-    return c;
+    return joined(joined(c, withoutLimits()), more);
+  }
+  /// Sets a property of the running host, such as a limit that others must not meet.
+  void set(const std::string& property, const std::string& value) {
+    REQUIRE(runToEnd(joined(sparkctl(host.pid()), {"set", property, value})).code == 0);
   }
   /// Resident memory of the host [MiB].
   double memory() {

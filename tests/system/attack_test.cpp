@@ -89,7 +89,7 @@ TEST_CASE("A 23rd player does not join a team") {
     players.push_back(std::make_unique<Witness>(a.agentPort, "Calm", number));
   for (int number = 1; number <= 11; ++number)
     players.push_back(std::make_unique<Witness>(a.agentPort, "Other", number));
-  for (const auto& p : players) REQUIRE(p->hasTeam(50));
+  for (const auto& p : players) p->waitForTeam();
   for (const char* team : {"Calm", "Other", "Third"}) {
     Witness late(a.agentPort, team, 0);
     REQUIRE_FALSE(late.hasTeam(25));

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -85,9 +86,12 @@ void replay(const std::filesystem::path& file, const std::filesystem::path& scen
                                    "0",
                                    "--log-level",
                                    "warning"};
+  command = joined(command, withoutLimits());
+  command.insert(command.end(), {"--set", "/sys/server/gamecontrol.joinBudget=1e9"});
   if (!scenes.empty()) command.insert(command.end(), {"--scene-path", scenes.string()});
   Process host(command);
   const auto port = Json::parse(host.line())["agentPort"].get<unsigned short>();
+  host.halt();  // all connect and name their robots in one cycle, as recorded
   std::map<std::string, std::unique_ptr<Client>> clients;
   for (const std::string& name : session.agents) clients[name] = std::make_unique<Client>(port);
   const auto send = [&](int cycle) {
@@ -103,6 +107,7 @@ void replay(const std::filesystem::path& file, const std::filesystem::path& scen
     if (const std::int64_t n = numberGiven(message)) numbers.emplace_back(alone ? cycle : 0, n);
   };
   send(0);
+  host.signal(SIGCONT);
   for (int cycle = 0; cycle < kCycles; ++cycle) {
     for (const auto& [name, message] : session.answered.at(cycle)) {
       CAPTURE(file.filename(), cycle, name);

@@ -33,8 +33,10 @@ class Client {
     boost::asio::read(socket_, boost::asio::buffer(message));
     return message;
   }
-  /// True if bytes have arrived that were not read yet.
-  bool pending() { return socket_.available() > 0; }
+  /// Bytes that have come and were not received yet.
+  std::size_t waiting() { return socket_.available(); }
+  /// True when there are any.
+  bool pending() { return waiting() > 0; }
   /// Reads until the host closes the connection.
   void waitForClose() {
     std::string bytes(4096, ' ');

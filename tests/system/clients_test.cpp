@@ -24,7 +24,7 @@ struct ServingHost {
   Process process;
   int agentPort = 0, monitorPort = 0;
 
-  explicit ServingHost(std::vector<std::string> arguments) : process(command(std::move(arguments)), 120) {
+  explicit ServingHost(std::vector<std::string> arguments) : process(command(std::move(arguments))) {
     const auto ports = nlohmann::json::parse(process.line());
     agentPort = ports["agentPort"];
     monitorPort = ports["monitorPort"];
@@ -32,8 +32,7 @@ struct ServingHost {
   static std::vector<std::string> command(std::vector<std::string> more) {
     std::vector<std::string> c{
         (binFolder() / "sparkhost").string(), "--agent-port", "0", "--monitor-port", "0", "--set", "web=false"};
-    c.insert(c.end(), more.begin(), more.end());
-    return c;
+    return joined(joined(c, withoutLimits()), more);
   }
   nlohmann::json result() {
     const auto line = nlohmann::json::parse(process.line());
@@ -143,9 +142,10 @@ TEST_CASE(
   }
   for (const double begin = players.back()->time(); players.back()->time() < begin + 1;)
     for (auto& p : players) REQUIRE(p->play());
+  // On a slow machine the first one may be waited for in vain, too.
   CHECK_THAT(host.process.errors(),
-             Catch::Contains(
-                 "Of 3 expected agents 1 are ready, and nothing more came for 0.5 s (joinWait): the match starts."));
+             Catch::Contains(" are ready, and nothing more came for 0.5 s (joinWait): the match starts.") &&
+                 !Catch::Contains("Of 3 expected agents 3 are ready"));
   Connection("127.0.0.1", host.monitorPort).send("(killsim)");
   while (players.front()->play()) {
   }
@@ -154,7 +154,7 @@ TEST_CASE(
 
 TEST_CASE("The host reports which agents it waits for") {
   ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "2", "--set",
-                    "/sys/server/gamecontrol.holdReport=0.05"});
+                    "/sys/server/gamecontrol.holdReport=0.05", "--set", "/sys/server/gamecontrol.joinWait=3600"});
   Connection half("127.0.0.1", host.agentPort);
   half.send(kNao);
   host.process.waitForError(" has named its robot, owes (init ...) and (syn); 1 is not connected; ");
@@ -183,23 +183,22 @@ TEST_CASE("A utility that only sends commands to the monitor port and never read
   host.result();
 }
 
-TEST_CASE("A viewer that pauses receives only whole messages afterwards and the full scene on request") {
-  // The player keeps the match waiting while the viewer reads.
-  ServingHost host(
-      {"--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "/sys/server/gamecontrol.syncTimeout=0"});
+TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene when it asks for it") {
+  // the player keeps the match waiting while the viewer reads
+  ServingHost host({"--config", "soccer-sphere.lua", "--sync", "--rate", "max"});
   Connection viewer("127.0.0.1", host.monitorPort);
   REQUIRE(kindOf(*viewer.receive()) == "RSG");
   Pacemaker player(host.agentPort);
   player.run(120);
   const double now = player.last().find("GS").find("t")[1].number();  // monitors get the time of the match
   REQUIRE(now > 60);
-  // First the messages that were buffered, then a gap, then the current ones.
-  // s of wall time. TCP takes seconds until a full connection flows again, and the match must not end meanwhile.
-  constexpr double kPatience = 0.1;
+  // What was under way when its buffers were full, a gap, and then what is now.
+  constexpr double kLook = 0.1;  // s of wall time; TCP takes seconds until a full connection flows again, and the
+                                 // match is not to end meanwhile
   double last = 0, gap = 0;
   int messages = 0;
   while (last < now - 0.5) {
-    auto message = viewer.receive(kPatience);
+    auto message = viewer.receive(kLook);
     if (!message) {
       player.run(0.04);
       continue;
@@ -217,7 +216,7 @@ TEST_CASE("A viewer that pauses receives only whole messages afterwards and the 
   viewer.send("(reqfullstate)");
   std::string kind;
   while (kind != "RSG") {
-    if (auto message = viewer.receive(kPatience))
+    if (auto message = viewer.receive(kLook))
       kind = kindOf(*message);
     else
       player.run(0.04);

@@ -89,7 +89,7 @@ TEST_CASE("A crash at set-up is reported with the name of the property or the cl
 
 TEST_CASE("A signal sent from outside ends the host with the same message") {
   const Crashing c;
-  Process p(c.command(""), 60);
+  Process p(c.command(""));
   p.line();
   p.signal(SIGSEGV);
   CHECK(p.wait() == 128 + SIGSEGV);
@@ -134,18 +134,20 @@ TEST_CASE("The watchdog names a hanging object once per report, while it hangs")
   for (const bool sensor : {true, false}) {
     auto more = sensor ? c.scenes() : std::vector<std::string>{"--duration", "2"};
     more.insert(more.end(), {"--rate", "max", "--set", "/sys/host/watchdog.after=0.5"});
-    Process p(c.command(sensor ? c.agent("hang") : c.hook("hang"), more), 60);
+    Process p(c.command(sensor ? c.agent("hang") : c.hook("hang"), more));
     p.line();
-    p.waitForError(sensor ? "/eye (class CrashSensor of plugin crashing)."
-                          : "it has been in prepare of /usr/thing/h (class CrashHook of plugin crashing).");
+    const std::string words = sensor ? "/eye (class CrashSensor of plugin crashing)."
+                                     : "it has been in prepare of /usr/thing/h (class CrashHook of plugin crashing).";
+    p.waitForError(words);
     p.signal(SIGTERM);
     p.waitForError("It was asked to end; a second signal ends it at once.");
     std::ofstream(c.folder.file("go")) << "";
     p.waitForError("The simulation goes on after ");
     p.line();
     CHECK(p.wait() == 0);
-    const std::string said = p.errors(), words = "The simulation stands still";
-    CHECK(said.find(words) != said.rfind(words));  // once when it hung, once when it was asked to end
+    // When it hung, and when it was asked to end. On a slow machine other things may stand still, too.
+    const std::string said = p.errors();
+    CHECK(said.find(words) != said.rfind(words));
     CHECK(said.find(words, said.find(words) + 1) == said.rfind(words));
     std::filesystem::remove(c.folder.file("go"));
   }
@@ -153,12 +155,12 @@ TEST_CASE("The watchdog names a hanging object once per report, while it hangs")
 
 TEST_CASE("A disabled watchdog reports nothing") {
   const Crashing c;
-  Process p(c.command(c.hook("hang") + "get('/sys/host/watchdog').after = 0\n"), 60);
+  Process p(c.command(c.hook("hang") + "get('/sys/host/watchdog').after = 0\n"));
   p.line();
   // Other log lines follow the end of the hang.
   std::ofstream(c.folder.file("go")) << "";
   p.signal(SIGTERM);
   p.line();
   CHECK(p.wait() == 0);
-  CHECK_THAT(p.errors(), !Contains("stands still") && !Contains("goes on"));
+  CHECK_THAT(p.errors(), !Contains("it has been in prepare of /usr/thing/h"));
 }

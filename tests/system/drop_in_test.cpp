@@ -83,8 +83,7 @@ TEST_CASE("An agent built outside the tree needs only the client library to play
   must({"cmake", "--build", (work / "build").string()});
 
   Process host({(prefix / "bin" / "sparkhost").string(), "--config", "training.lua", "--expect", "1", "--agent-port",
-                "0", "--monitor-port", "0", "--set", "web=false"},
-               120);
+                "0", "--monitor-port", "0", "--set", "web=false"});
   const auto ports = nlohmann::json::parse(host.line());
   const Finished played =
       must({(work / "build" / "client").string(), "127.0.0.1", std::to_string(ports["agentPort"].get<int>()),

@@ -17,8 +17,9 @@ TEST_CASE("The robot of docs/first-robot.md joins, sees the ball, and drives") {
   TemporaryFolder folder;
   const std::string program = folder.write("first_robot.py", page.substr(begin, page.find("\n```", begin) + 1 - begin));
 
-  Process host({(binFolder() / "sparkhost").string(), "--config", "soccer-sphere.lua", "--sync", "--rate", "max",
-                "--expect", "1", "--agent-port", "0", "--monitor-port", "0", "--set", "web=false"});
+  Process host(joined({(binFolder() / "sparkhost").string(), "--config", "soccer-sphere.lua", "--sync", "--rate", "max",
+                       "--expect", "1", "--agent-port", "0", "--monitor-port", "0", "--set", "web=false"},
+                      withoutLimits()));
   const int port = nlohmann::json::parse(host.line())["agentPort"];
   const Finished robot = runToEnd({"python3", program, std::to_string(port), "100"});
   CAPTURE(robot.out, robot.errors, host.errors());

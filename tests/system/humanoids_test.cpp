@@ -24,8 +24,7 @@ std::unique_ptr<Process> startHost(const std::vector<std::string>& more) {
                                    "Soccer.AutomaticKickOff=true",
                                    "--set",
                                    "Soccer.WaitBeforeKickOff=2"};
-  command.insert(command.end(), more.begin(), more.end());
-  return std::make_unique<Process>(command);
+  return std::make_unique<Process>(joined(joined(command, withoutLimits()), more));
 }
 
 std::unique_ptr<Process> startTeam(const char* name, const Json& ports, int players) {

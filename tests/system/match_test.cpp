@@ -42,8 +42,7 @@ struct Match {
                                      "0",
                                      "--log-level",
                                      "warning"};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    auto host = std::make_unique<Process>(command);
+    auto host = std::make_unique<Process>(joined(joined(command, withoutLimits()), arguments));
     ports = Json::parse(host->line());
     return host;
   }
@@ -75,8 +74,7 @@ struct Match {
 
  private:
   static std::string portOf(Process& host, const std::string& name) {
-    const Finished f = runToEnd(
-        {program("sparkctl"), "--pid", std::to_string(host.pid()), "get", "/sys/server/net/" + name + ".port"});
+    const Finished f = runToEnd(joined(sparkctl(host.pid()), {"get", "/sys/server/net/" + name + ".port"}));
     const std::size_t at = f.out.find("= ");
     REQUIRE(at != std::string::npos);
     return f.out.substr(at + 2, f.out.find('\n') - at - 2);

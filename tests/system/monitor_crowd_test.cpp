@@ -14,7 +14,7 @@ using namespace spark::test;
 TEST_CASE("A hundred monitors get their messages during a match although one monitor never reads") {
   Process host({(binFolder() / "sparkhost").string(), "--config", "soccer-sphere.lua", "--set", "team=Red Blue",
                 "--set", "players=4", "--rate", "max", "--agent-port", "0", "--monitor-port", "0", "--log-level",
-                "warning"});
+                "warning", "--set", "/sys/host/watchdog.after=0"});
   const auto port = nlohmann::json::parse(host.line())["monitorPort"].get<unsigned short>();
   Client deaf(port);
   std::vector<std::unique_ptr<Client>> crowd;

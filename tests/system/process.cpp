@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "test_support.h"
+
 extern char** environ;
 
 namespace spark::test {
@@ -21,8 +23,7 @@ namespace spark::test {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-Process::Process(const std::vector<std::string>& command, double limit)
-    : name_(fs::path(command.front()).filename()), limit_(limit) {
+Process::Process(const std::vector<std::string>& command) : name_(fs::path(command.front()).filename()) {
   char errorName[] = "/tmp/spark-stderr-XXXXXX";
   const int errors = mkostemp(errorName, O_CLOEXEC);
   errorFile_ = errorName;
@@ -55,18 +56,15 @@ Process::~Process() {
   fs::remove(errorFile_);
 }
 
-Clock::time_point Process::deadline() const {
-  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_));
-}
-
 void Process::tooLong(const std::string& what) {
-  throw std::runtime_error(fmt::format("{} took longer than {} s to {}; it said:\n{}", name_, limit_, what, errors()));
+  throw std::runtime_error(
+      fmt::format("{} took longer than {} s to {}; it said:\n{}", name_, kPatience.count(), what, errors()));
 }
 
 /// Reads once; false at the end of the stream.
 bool Process::fill() {
   struct pollfd p = {out_, POLLIN, 0};
-  const int ready = poll(&p, 1, static_cast<int>(limit_ * 1000));
+  const int ready = poll(&p, 1, static_cast<int>(std::chrono::milliseconds(kPatience).count()));
   if (ready == 0) tooLong("print a line");
   char bytes[4096];
   const ssize_t n = read(out_, bytes, sizeof bytes);
@@ -91,7 +89,7 @@ std::string Process::rest() {
 }
 
 int Process::wait() {
-  const auto last = deadline();
+  const auto last = Clock::now() + kPatience;
   while (!ended_) {
     const int got = waitpid(pid_, &status_, WNOHANG);
     if (got == pid_) {
@@ -107,16 +105,38 @@ int Process::wait() {
 
 void Process::signal(int number) { kill(pid_, number); }
 
+void Process::halt() {
+  kill(pid_, SIGSTOP);
+  if (waitpid(pid_, &status_, WUNTRACED) == pid_ && !WIFSTOPPED(status_)) ended_ = true;
+}
+
 std::string Process::errors() const { return textOf(errorFile_); }
 
 void Process::waitForError(const std::string& text) {
-  const auto last = deadline();
+  const auto last = Clock::now() + kPatience;
   while (errors().find(text) == std::string::npos) {
     if (Clock::now() > last) tooLong("say '" + text + "'");
     struct pollfd p = {out_, 0, 0};
     if (poll(&p, 1, 10) > 0 && errors().find(text) == std::string::npos)
       throw std::runtime_error(fmt::format("{} ended without saying '{}'; it said:\n{}", name_, text, errors()));
   }
+}
+
+std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+std::vector<std::string> withoutLimits() {
+  std::vector<std::string> out;
+  for (const char* limit : {"/sys/server/gamecontrol.syncTimeout", "/sys/server/gamecontrol.joinWait",
+                            "/sys/server/gamecontrol.idleLimit", "/sys/host/watchdog.after"})
+    out.insert(out.end(), {"--set", std::string(limit) + "=0"});
+  return out;
+}
+
+std::vector<std::string> sparkctl(int pid) {
+  return {program("sparkctl"), "--pid", std::to_string(pid), "--timeout", std::to_string(kPatience.count())};
 }
 
 std::string textOf(const std::filesystem::path& file) {

@@ -7,14 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "patience.h"
+
 namespace spark::test {
 
-/// A child process. Its stdout is read line by line, its stderr is kept in a file. The destructor kills it. Functions
-/// throw std::runtime_error with the program's stderr when it exceeds the time limit.
+/// A child process. Its stdout is read line by line, its stderr is kept. Killed when this object goes. Functions throw
+/// std::runtime_error, with what the program said, when a wait takes longer than kPatience.
 class Process {
  public:
-  /// Starts `command` (program and arguments). `limit`: the maximum time of every wait [s].
-  explicit Process(const std::vector<std::string>& command, double limit = 240);
+  /// Starts `command` (program and arguments).
+  explicit Process(const std::vector<std::string>& command);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -26,6 +28,8 @@ class Process {
   /// Waits for the end of the process; returns the exit code, or 128 + signal.
   int wait();
   void signal(int number);
+  /// Stops it, and returns when it stands still; it goes on with SIGCONT.
+  void halt();
   int pid() const { return pid_; }
   /// Its output on stderr so far.
   std::string errors() const;
@@ -35,11 +39,9 @@ class Process {
  private:
   bool fill();
   [[noreturn]] void tooLong(const std::string& what);
-  std::chrono::steady_clock::time_point deadline() const;
 
   std::string name_, buffer_;
   std::filesystem::path errorFile_;
-  double limit_;
   int pid_ = -1, out_ = -1, status_ = 0;
   bool ended_ = false;
 };
@@ -51,7 +53,16 @@ struct Finished {
 };
 Finished runToEnd(const std::vector<std::string>& command);
 
-/// The contents of a file; "" if it does not exist.
+/// Words of a command line, and more of them.
+std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more);
+
+/// Arguments for a sparkhost with agents: its own limits of wall time are off. What is set behind them wins.
+std::vector<std::string> withoutLimits();
+
+/// Arguments for sparkctl with all the patience there is; the command comes behind them.
+std::vector<std::string> sparkctl(int pid);
+
+/// What a file holds; "" when it is not there.
 std::string textOf(const std::filesystem::path& file);
 
 }  // namespace spark::test

@@ -83,7 +83,7 @@ TEST_CASE("A config that never returns ends at the first signal and reports the 
                                "log.info('here')\nwhile true do pcall(function() while true do end end) end\n"};
   for (const std::string& loop : loops)
     for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
-      Process p(host({"--config", folder.write("loop.lua", loop)}), 60);
+      Process p(host({"--config", folder.write("loop.lua", loop)}));
       p.waitForError("here");
       p.signal(number);
       CHECK(p.wait() == 2);
@@ -93,7 +93,7 @@ TEST_CASE("A config that never returns ends at the first signal and reports the 
 
 TEST_CASE("SIGHUP ends a host with its result and removes its socket") {
   Runtime runtime;
-  Process p(host({"--config", runtime.write("small.lua", kSmall)}), 60);
+  Process p(host({"--config", runtime.write("small.lua", kSmall)}));
   p.line();
   const fs::path socket = runtime.path() / "spark" / (std::to_string(p.pid()) + ".sock");
   REQUIRE(fs::exists(socket));
@@ -106,8 +106,7 @@ TEST_CASE("SIGHUP ends a host with its result and removes its socket") {
 TEST_CASE("Under nohup a host survives SIGHUP") {
   Runtime runtime;
   Process p(
-      {"sh", "-c", "trap '' HUP; exec " + program("sparkhost") + " --config " + runtime.write("small.lua", kSmall)},
-      60);
+      {"sh", "-c", "trap '' HUP; exec " + program("sparkhost") + " --config " + runtime.write("small.lua", kSmall)});
   p.line();
   p.signal(SIGHUP);
   p.signal(SIGTERM);
@@ -132,20 +131,21 @@ TEST_CASE("A result that cannot be written to stdout is on stderr, and the exit 
 
 TEST_CASE("An answer that cannot be written to stdout is an error of sparkctl") {
   Runtime runtime;
-  Process p(host({"--config", runtime.write("small.lua", kSmall)}), 60);
+  Process p(host({"--config", runtime.write("small.lua", kSmall)}));
   p.line();
-  const Finished f = shell(program("sparkctl") + " --pid " + std::to_string(p.pid()) + " plugins > /dev/full");
+  std::string command;
+  for (const std::string& word : sparkctl(p.pid())) command += word + " ";
+  const Finished f = shell(command + "plugins > /dev/full");
   CHECK(f.code == 1);
   CHECK_THAT(f.errors, Contains("cannot write to stdout: No space left on device"));
 }
 
 TEST_CASE("sparkctl times out when the simulation is stopped or never answers") {
   Runtime runtime;
-  Process p(host({"--config", runtime.write("small.lua", kSmall)}), 60);
+  Process p(host({"--config", runtime.write("small.lua", kSmall)}));
   p.line();
   const std::string pid = std::to_string(p.pid());
-  REQUIRE(runToEnd({program("sparkctl"), "--pid", pid, "--timeout", "60", "get", "/sys/server/simulation.step"}).code ==
-          0);
+  REQUIRE(runToEnd(joined(sparkctl(p.pid()), {"get", "/sys/server/simulation.step"})).code == 0);
   p.signal(SIGSTOP);
   const Finished stopped =
       runToEnd({program("sparkctl"), "--pid", pid, "--timeout", "0.3", "get", "/sys/server/simulation.step"});

@@ -26,9 +26,10 @@ Element find(const Predicates& message, std::string_view head, std::string_view 
 
 }  // namespace
 
-TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and receives its sensor values") {
-  Process host({(binFolder() / "sparkhost").string(), "--config", "soccer-spl.lua", "--rate", "max", "--agent-port",
-                "0", "--monitor-port", "0", "--log-level", "error"});
+TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and is told what its sensors say") {
+  Process host(joined({(binFolder() / "sparkhost").string(), "--config", "soccer-spl.lua", "--sync", "--rate", "max",
+                       "--agent-port", "0", "--monitor-port", "0", "--log-level", "error"},
+                      withoutLimits()));
   const Json ports = Json::parse(host.line());
   Client monitor(ports["monitorPort"].get<unsigned short>());
   CHECK_THAT(monitor.receive(),

@@ -21,6 +21,12 @@ std::vector<std::string> sparkhost(std::vector<std::string> more) {
   return c;
 }
 
+/// A host with a web server that keeps who is slow.
+std::vector<std::string> webHost(const std::vector<std::string>& more) {
+  return joined(
+      sparkhost({"--set", "/sys/server/web.requestTimeout=3600", "--set", "/sys/server/web.stallTimeout=3600"}), more);
+}
+
 unsigned short portOf(const Json& firstLine) {
   const std::string link = firstLine["web"];
   REQUIRE_THAT(link, Catch::StartsWith("http://127.0.0.1:") && Catch::EndsWith("/"));
@@ -32,10 +38,8 @@ Json played(bool watched) {
   std::vector<std::string> match{
       "--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set", "players=3", "--rate",
       "max",      "--duration",        "400"};
-  const std::vector<std::string> web =
-      watched ? std::vector<std::string>{"--web-port", "0"} : std::vector<std::string>{"--set", "web=false"};
-  match.insert(match.end(), web.begin(), web.end());
-  Process host(sparkhost(match), 120);
+  Process host(watched ? webHost(joined(match, {"--web-port", "0"}))
+                       : sparkhost(joined(match, {"--set", "web=false"})));
   const Json first = Json::parse(host.line());
   if (!watched) {
     CHECK(first["web"].is_null());
@@ -44,12 +48,12 @@ Json played(bool watched) {
   WebClient viewer(portOf(first)), curious(portOf(first));
   REQUIRE(viewer.watch() == 101);
   REQUIRE(curious.watch() == 101);
+  for (int i = 0; i < 5; ++i) viewer.binary();
   curious.say(R"({"do":"tree","id":1,"path":"/usr"})");
   curious.say(R"({"do":"watch","id":2,"path":"/usr/scene/Ball","property":"localPos"})");
   curious.say(R"({"do":"contacts","id":3})");
   CHECK_THAT(curious.textWith("\"id\":3"), Contains("\"ok\":true") && Contains("\"contacts\":["));
   curious.textWith("\"watched\"");
-  for (int i = 0; i < 5; ++i) viewer.binary();
   return Json::parse(host.line());
 }
 }  // namespace
@@ -64,11 +68,10 @@ TEST_CASE("A second host reports and uses another port, and serves the page, the
   TemporaryFolder folder;
   const std::string game = "((time 0))(RSG 0 1)((nd))\n";
   folder.write("game one.log", game);
-  Process first(sparkhost({"--config", "soccer-sphere.lua", "--web-port", "0"}), 60);
+  Process first(webHost({"--config", "soccer-sphere.lua", "--web-port", "0"}));
   const unsigned short port = portOf(Json::parse(first.line()));
-  Process second(sparkhost({"--config", "soccer-sphere.lua", "--web-port", std::to_string(port), "--set",
-                            "webLogs=" + folder.path().string(), "--set", "team=Red"}),
-                 60);
+  Process second(webHost({"--config", "soccer-sphere.lua", "--web-port", std::to_string(port), "--set",
+                          "webLogs=" + folder.path().string(), "--set", "team=Red"}));
   const unsigned short other = portOf(Json::parse(second.line()));
   CHECK(other != port);
   second.waitForError("port " + std::to_string(port) + " cannot be had");
@@ -80,7 +83,7 @@ TEST_CASE("A second host reports and uses another port, and serves the page, the
   CHECK(client.get("/logs/none.log").status == 404);
   // Players inside the host join within its first cycles. Each connection is limited to 200 requests.
   for (;;) {
-    const Json status = Json::parse(WebClient(other).get("/status.json").body);
+    const Json status = Json::parse(WebClient::status(other));
     if (status["agents"].size() < 11) continue;
     CHECK(status["agents"][0]["path"] == "/usr/scene/AgentAspect1");
     CHECK(status["score"] == Json({0, 0}));
@@ -88,8 +91,8 @@ TEST_CASE("A second host reports and uses another port, and serves the page, the
   }
 }
 
-TEST_CASE("The scene message contains the collision shapes") {
-  Process host(sparkhost({"--config", "soccer-sphere.lua", "--web-port", "0"}), 60);
+TEST_CASE("The scene has the shapes of what touches") {
+  Process host(webHost({"--config", "soccer-sphere.lua", "--web-port", "0"}));
   WebClient viewer(portOf(Json::parse(host.line())));
   REQUIRE(viewer.watch() == 101);
   const Json scene = Json::parse(viewer.textWith("\"scene\""));

@@ -20,7 +20,7 @@ test("the sphere match: all robots, names, clock, and a goal", async (t) => {
   await drawn(page);
   assert.ok(colors(await shoot(page, "sphere-match")) >= 16, "the picture is empty");
 
-  const after = await until(page, "a goal", (s) => s.score[0] + s.score[1] > 0, null, 120000);
+  const after = await until(page, "a goal", (s) => s.score[0] + s.score[1] > 0);
   await untilText(page, "score-left", (text, score) => text === score, String(after.score[0]));
   await drawn(page);
   await shoot(page, "sphere-goal");

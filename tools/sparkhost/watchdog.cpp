@@ -17,6 +17,7 @@ using namespace spark;
 
 namespace {
 constexpr std::size_t kLongest = 1000;  // bytes
+constexpr int kAnswerWait = 5000;       // ms; a thread of a busy machine gets its turn late
 
 char answer[kLongest + 1];
 std::atomic<std::size_t> answered{0};
@@ -52,7 +53,7 @@ const char* Watchdog::words() {
   answered = 0;
   answer[0] = 0;
   if (syscall(SYS_tgkill, getpid(), asked->thread.load(), questionSignal()) != 0) return "";
-  for (int i = 0; i < 100 && answered == 0; ++i) {
+  for (int i = 0; i < kAnswerWait && answered == 0; ++i) {
     const timespec pause{0, 1'000'000};
     nanosleep(&pause, nullptr);
   }

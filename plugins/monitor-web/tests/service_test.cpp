@@ -73,6 +73,7 @@ struct RunningServer : TestHost {
     kernel.create<Node>("MonitorServer", "/sys/server/monitor").create("Match", "match");
     Leaf& server = kernel.create<Leaf>("WebServer", "/sys/server/web");
     setProperty(server, "port", std::int64_t{0});
+    for (const char* limit : {"requestTimeout", "stallTimeout"}) setProperty(server, limit, 3600.0);
     const Value token("token-of-this-test");
     callMethod(server, "setToken", {&token, 1});
     kernel.create<Leaf>("WebMonitor", "/sys/server/monitor/web");
@@ -216,7 +217,7 @@ TEST_CASE("Pages are answered while the match runs") {
   CHECK(client.get("/plain.js").status == 200);  // over the same connection
   CHECK(client.get("/", "", "HEAD").head.find("Content-Length: 0") == std::string::npos);
   CHECK(client.get("/none").status == 404);
-  const Json status = Json::parse(client.get("/status.json").body);
+  const Json status = Json::parse(WebClient::status(server.port));
   CHECK(status["type"] == "status");
   CHECK(status["spectators"] == 0);
 }

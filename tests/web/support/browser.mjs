@@ -4,11 +4,11 @@ import { chromium, skipUnlessPossible, viewerPackage } from "./places.mjs";
 
 skipUnlessPossible();
 
-const software = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"];
+const software = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--disable-gpu-watchdog"];
 const sandbox = process.getuid?.() === 0 ? ["--no-sandbox"] : [];
 
-/** Timeout of a condition in milliseconds, long enough for a busy machine. */
-export const patience = 60000;
+/** Milliseconds after which a wait is taken for one without end: a machine may be slow, and busy. */
+export const patience = 1800000;
 
 const browsers = new WeakMap(); // by test
 
@@ -22,7 +22,7 @@ export async function closePages(t) {
  * The options are those of playwright's contexts (viewport, hasTouch, colorScheme, ...).
  */
 export async function openPage(t, url, options = {}) {
-  const browser = await viewerPackage("playwright-core").chromium.launch({ executablePath: chromium, args: [...software, ...sandbox] });
+  const browser = await viewerPackage("playwright-core").chromium.launch({ executablePath: chromium, args: [...software, ...sandbox], timeout: patience });
   browsers.set(t, [...(browsers.get(t) ?? []), browser]);
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, reducedMotion: "reduce", ...options });
   const page = await context.newPage();

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { promisify } from "node:util";
-import { closePages } from "./browser.mjs";
+import { closePages, patience } from "./browser.mjs";
 import { build } from "./places.mjs";
 
 const program = (name) => join(build, "bin", name);
@@ -16,7 +16,10 @@ export const humanoidMatch = ["--sync", "--config", "soccer.lua", "--set", "team
 /** With this seed the first goal of the sphere match comes after about 14 s. */
 export const goalSeed = ["--seed", "26"];
 
-/** Creates a folder that is deleted after the test. */
+/** However slow the browser is, the host keeps it. */
+const patient = ["--set", "/sys/server/web.requestTimeout=3600", "--set", "/sys/server/web.stallTimeout=3600"];
+
+/** A folder that is gone after the test. */
 export function temporaryFolder(t) {
   const folder = mkdtempSync(join(tmpdir(), "spark-web-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
@@ -31,7 +34,7 @@ export async function startHost(t, ...options) {
 /** The same in another working folder. */
 export async function startHostIn(cwd, t, ...options) {
   const log = [];
-  const child = spawn(program("sparkhost"), [...options, "--agent-port", "0", "--monitor-port", "0", "--web-port", "0"], { stdio: ["ignore", "pipe", "pipe"], cwd });
+  const child = spawn(program("sparkhost"), [...patient, ...options, "--agent-port", "0", "--monitor-port", "0", "--web-port", "0"], { stdio: ["ignore", "pipe", "pipe"], cwd });
   createInterface({ input: child.stderr }).on("line", (line) => log.push(line));
   const lines = createInterface({ input: child.stdout });
   const ended = new Promise((done) => child.once("exit", done));
@@ -48,7 +51,7 @@ export async function startHostIn(cwd, t, ...options) {
 
 /** The output of sparkctl for a host. */
 async function ctl(pid, words) {
-  return (await promisify(execFile)(program("sparkctl"), ["--pid", String(pid), ...words])).stdout.trim();
+  return (await promisify(execFile)(program("sparkctl"), ["--pid", String(pid), "--timeout", String(patience / 1000), ...words])).stdout.trim();
 }
 
 /** Plays a match at maximum rate and returns the path of its log. */

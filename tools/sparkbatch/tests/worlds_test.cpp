@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "patience.h"
 #include "workers.h"
 
 // Several simulations in one process and several threads must not influence each other through shared state.
@@ -57,7 +58,7 @@ TEST_CASE("An abandoned simulation has no row, and its thread is free again") {
   REQUIRE(workers.idle() == 1);
   while (workers.time() == 0) REQUIRE(workers.collect(std::chrono::milliseconds(5)).empty());
   workers.abandon();
-  const auto results = workers.collect(std::chrono::minutes(2));
+  const auto results = workers.collect(spark::test::kPatience);
   REQUIRE(results.size() == 1);
   REQUIRE_FALSE(results.front());
   REQUIRE(workers.idle() == 2);
