@@ -11,8 +11,8 @@ set(SPARK_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
 
 # Seconds after which a test is taken for one that hangs: a last resort, however slow and busy a machine is. The second
 # is for tests that take a minute on a fast one, or wait for programs with the patience of tests/patience.h.
-set(SPARK_TEST_TIMEOUT 3600)
-set(SPARK_LONG_TEST_TIMEOUT 21600)
+set(SPARK_TEST_TIMEOUT 2400)
+set(SPARK_LONG_TEST_TIMEOUT 4800)
 
 # Makes a test wait for a plugin; called last, when all plugins are known.
 function(spark_test_needs target plugin)

@@ -133,6 +133,9 @@ TEST_CASE("Monitors that never read stay connected and use bounded memory, and t
   REQUIRE(a.memory() < before + 16);
   REQUIRE(a.host.errors().find("monitors") == a.host.errors().rfind("monitors"));  // only the line that it listens
   monitors.back()->send("(killsim)");
+  REQUIRE_THROWS([&] {  // in lockstep the match ends with its next cycle
+    for (;;) a.witness->mustSeeTimePass();
+  }());
   REQUIRE(nlohmann::json::parse(a.host.line())["cycles"].get<int>() > 5000);
   REQUIRE(a.host.wait() == 0);
 }
