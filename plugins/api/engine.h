@@ -73,6 +73,8 @@ class IEngine {
   virtual bool controls() const { return false; }
   /// True: the engine applies JointAxis::damping itself. False: it comes as forces on the bodies.
   virtual bool damps() const { return controls(); }
+  /// True: the engine applies the springs of JointAxis itself. False: they come as forces on the bodies.
+  virtual bool springs() const { return false; }
   /// The length of step that suits the engine [s], of which a step of the simulation has a whole number; 0: any. That
   /// of the world (WorldParameters::timestep) comes first.
   virtual double usualStep() const { return 0; }

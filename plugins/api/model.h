@@ -153,6 +153,9 @@ struct JointAxis {
   double armature = 0;                              ///< inertia of the motor's rotor about the axis [kg m^2 or kg]
   double damping = 0;                               ///< force per velocity, against it [N m s or N s/m]
   double dryFriction = 0;                           ///< largest force of dry friction [Nm or N]
+  /// A passive spring: the force stiffness (springPosition - coordinate), beside motor and controller [Nm/rad or N/m].
+  double stiffness = 0;
+  double springPosition = 0;  ///< rad or m; counted as angles of joints are
   /// Read by ODE's solver and the articulated one; names as in the section "Stop and motor parameters" of the ODE
   /// manual.
   struct Ode {
@@ -324,10 +327,30 @@ struct JointState {
   Vec3 forceA = Vec3::Zero(), torqueA = Vec3::Zero(), forceB = Vec3::Zero(), torqueB = Vec3::Zero();
 };
 
+/// Where the axes of a joint are, as its stops count: continuous, so a hinge that has turned once is at 2 pi, not at 0.
+/// A pose has no turns. They are counted from step to step, and a step that turns an axis by pi or more is taken for
+/// one the other way round.
+struct JointCoordinates {
+  std::array<double, 3> angle{0, 0, 0};        ///< as the poses have it, -pi..pi [rad]
+  std::array<std::int32_t, 3> turns{0, 0, 0};  ///< whole turns beside it
+  /// The coordinate of a rotational axis [rad].
+  double at(std::size_t axis) const { return angle[axis] + 2 * kPi * turns[axis]; }
+};
+
+/// The angle that differs from `angle` by whole turns and is nearest to `near` [rad].
+inline double nearestTurn(double angle, double near) {
+  const double turns = std::round((near - angle) / (2 * kPi));
+  return turns == 0 ? angle : angle + 2 * kPi * turns;
+}
+
 /// Where everything in a world is, with the indices of the model.
 struct State {
   std::vector<DynamicState> bodies;
   std::vector<JointState> joints;
+  /// By joint, when a step begins: of hinges, universal joints, hinge2 and Euler motors. The plugin `physics` writes
+  /// them.
+  std::vector<JointCoordinates> coordinates;
+  std::size_t turned = 0;      ///< number of joints with turns other than 0
   std::vector<Motors> motors;  ///< by joint
   std::vector<AxisControl> controls;
   /// The bodies whose pose changed since the last detect(), each once, in the order in which they did.

@@ -52,7 +52,7 @@ class IRigidBody {
 /// A joint, for sensors and effectors. Offered by HingeJoint and all other joint classes.
 class IJoint {
  public:
-  SPARK_INTERFACE(IJoint, 4);
+  SPARK_INTERFACE(IJoint, 5);
   virtual ~IJoint() = default;
   /// The node that offers it.
   virtual Leaf& leaf() = 0;
@@ -69,7 +69,10 @@ class IJoint {
   virtual void setWorldAnchor(const Vec3& world) = 0;
   /// Sets the direction of an axis, world frame. Throws Error when its length is 0.
   virtual void setWorldAxis(int axis, const Vec3& world) = 0;
-  virtual double angle(int axis) const = 0;      ///< rad; slider: m
+  /// Continuous: a hinge that has turned once is at 2 pi [rad; slider: m].
+  virtual double angle(int axis) const = 0;
+  /// The angle as a perceptor of the installed base has it: with exactReplay within one turn, -pi..pi; else angle().
+  virtual double sensedAngle(int axis) const = 0;
   virtual double angleRate(int axis) const = 0;  ///< rad/s; slider: m/s
   /// A parameter of an axis; 0 where the joint does not have it.
   virtual double parameter(engine::JointParameter p, int axis) const = 0;

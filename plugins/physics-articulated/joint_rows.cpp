@@ -17,6 +17,7 @@ namespace {
 
 using engine::JointAxis;
 using engine::JointType;
+using engine::nearestTurn;
 
 /// Whether an axis is at a stop, and by how much it is beyond it [rad or m]: negative at the low stop.
 struct StopContact {
@@ -28,6 +29,7 @@ struct StopContact {
 struct JointWriter {
   const engine::Joint& joint;
   const engine::Motors& motors;
+  const engine::JointCoordinates& coordinates;
   RigidBodyState& a;
   RigidBodyState* b;
   const StepConstants& constants;
@@ -101,9 +103,12 @@ struct JointWriter {
     if (position >= axis.highStop) return {Stop::high, position - axis.highStop};
     return {};
   }
-  /// Whether a rotational axis has stops that it can reach.
-  static bool hasAngularStops(const JointAxis& axis) {
-    return (axis.lowStop >= -kPi || axis.highStop <= kPi) && axis.lowStop <= axis.highStop;
+  static bool hasStops(const JointAxis& axis) {
+    return (axis.lowStop > -HUGE_VAL || axis.highStop < HUGE_VAL) && axis.lowStop <= axis.highStop;
+  }
+  /// The same for a rotational axis, at an angle within one turn.
+  StopContact angularStopAt(std::size_t axis, double angle) const {
+    return stopAt(joint.axes[axis], nearestTurn(angle, coordinates.at(axis)));
   }
 
   /// The force of a motor at a stop. It presses with its full force, or drives away from the stop with a fraction of it
@@ -202,8 +207,8 @@ struct JointWriter {
     addAngular(q, errorGain() * error.dot(q), constants.cfm);
     // The angle is needed only for stops.
     StopContact contact;
-    if (hasAngularStops(joint.axes[0]))
-      contact = stopAt(joint.axes[0], hingeAngle(rotationSince(joint.initialRotationA), joint.axisA[0]));
+    if (hasStops(joint.axes[0]))
+      contact = angularStopAt(0, hingeAngle(rotationSince(joint.initialRotationA), joint.axisA[0]));
     addAngularAxis(0, axis, contact);
   }
 
@@ -221,9 +226,7 @@ struct JointWriter {
     // Motor and stops along the axis.
     if (!b && joint.reversed) axis = -axis;
     const JointAxis& limits = joint.axes[0];
-    const bool hasStops =
-        (limits.lowStop > -HUGE_VAL || limits.highStop < HUGE_VAL) && limits.lowStop <= limits.highStop;
-    const StopContact contact = hasStops ? stopAt(limits, -axis.dot(offset)) : StopContact{};
+    const StopContact contact = hasStops(limits) ? stopAt(limits, -axis.dot(offset)) : StopContact{};
     const double velocity = a.linearVelocity.dot(axis) - (b ? b->linearVelocity.dot(axis) : 0);
     // What the turning axis adds to the second derivative of the slider's place.
     double drift = 0;
@@ -242,7 +245,7 @@ struct JointWriter {
     const Vec3 axis1 = fromA(joint.axisA[0]), axis2 = fromB(joint.axisB[1]);
     const double cosine = axis1.dot(axis2);
     addAngular(axis1.cross(axis2 - cosine * axis1).normalized(), -errorGain() * cosine, constants.cfm);
-    const bool hasStops1 = hasAngularStops(joint.axes[0]), hasStops2 = hasAngularStops(joint.axes[1]);
+    const bool hasStops1 = hasStops(joint.axes[0]), hasStops2 = hasStops(joint.axes[1]);
     StopContact contact1, contact2;
     if (hasStops1 || hasStops2) {
       // The joint is two hinges in series with a cross between them: a turns about axis 1 relative to the cross, the
@@ -253,8 +256,8 @@ struct JointWriter {
           a.orientation.conjugate() * cross * Quaternion::of(joint.initialRotationA).conjugate();
       const Quaternion crossInB = (b ? b->orientation.conjugate() : Quaternion{}) * (exchange * cross) *
                                   Quaternion::of(joint.initialRotationB).conjugate();
-      if (hasStops1) contact1 = stopAt(joint.axes[0], hingeAngle(crossInA, joint.axisA[0]));
-      if (hasStops2) contact2 = stopAt(joint.axes[1], -hingeAngle(crossInB, joint.axisB[1]));
+      if (hasStops1) contact1 = angularStopAt(0, hingeAngle(crossInA, joint.axisA[0]));
+      if (hasStops2) contact2 = angularStopAt(1, -hingeAngle(crossInB, joint.axisB[1]));
     }
     addAngularAxis(0, axis1, contact1);
     addAngularAxis(1, axis2, contact2);
@@ -277,9 +280,9 @@ struct JointWriter {
     addAngular(normal.normalized(), errorGain() * (joint.cosAxes * sine - joint.sinAxes * cosine), constants.cfm);
     // Steering angle: of axis 2 in the plane perpendicular to axis 1. Axis 2 has a motor and no stops.
     StopContact contact;
-    if (hasAngularStops(joint.axes[0])) {
+    if (hasStops(joint.axes[0])) {
       const Vec3 axis2InA = a.rotation.transpose() * axis2;
-      contact = stopAt(joint.axes[0], -portableAtan2(joint.planeA[1].dot(axis2InA), joint.planeA[0].dot(axis2InA)));
+      contact = angularStopAt(0, -portableAtan2(joint.planeA[1].dot(axis2InA), joint.planeA[0].dot(axis2InA)));
     }
     addAngularAxis(0, axis1, contact);
     addAngularAxis(1, axis2, {});
@@ -318,7 +321,7 @@ struct JointWriter {
                              -portableAtan2(zero0.dot(axis[1]), zero0.dot(axis[1].cross(axis[2])))};
     // The velocity about direction i depends on the rate of angle i alone: it is perpendicular to the other two axes.
     const Vec3 directions[] = {axis[1].cross(axis[2]), axis[1], normal};
-    for (Index i = 0; i < 3; ++i) addAngularAxis(i, directions[i], stopAt(joint.axes[i], angles[i]));
+    for (Index i = 0; i < 3; ++i) addAngularAxis(i, directions[i], angularStopAt(i, angles[i]));
   }
 
   void write() {
@@ -343,9 +346,10 @@ struct JointWriter {
 
 }  // namespace
 
-Index writeJointRows(const engine::Joint& joint, const engine::Motors& motors, RigidBodyState& a, RigidBodyState* b,
+Index writeJointRows(const engine::Joint& joint, const engine::Motors& motors,
+                     const engine::JointCoordinates& coordinates, RigidBodyState& a, RigidBodyState* b,
                      const StepConstants& constants, Row* out) {
-  JointWriter writer{joint, motors, a, b, constants, out};
+  JointWriter writer{joint, motors, coordinates, a, b, constants, out};
   writer.write();
   return toIndex(static_cast<std::size_t>(writer.next - out));
 }

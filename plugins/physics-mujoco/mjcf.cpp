@@ -215,6 +215,17 @@ struct Writer {
     put(R"( limited="true" range="{:.17g} {:.17g}")", low - least, high + least);
   }
 
+  /// The spring that acts on a coordinate. Springs count as angles of the model do, coordinates as stops.
+  void putSpring(const Joint& j, int axis) {
+    const bool reversedUniversal = j.type == JointType::universal && j.reversed;
+    const engine::JointAxis& own = j.axes[reversedUniversal ? 1 - axis : axis];
+    const bool opposite = reversedUniversal             ? axis == 0
+                          : j.type == JointType::hinge2 ? axis == 1
+                                                        : j.type == JointType::hinge && j.reversed;
+    if (own.stiffness > 0)
+      put(R"( stiffness="{:.17g}" springref="{:.17g}")", own.stiffness, (opposite ? -1 : 1) * own.springPosition);
+  }
+
   /// The joint of a link, in the frame of its body. Coordinates are those of the child relative to the parent, which
   /// are the joint's, or their opposites where the child is body b.
   void putJoint(const Link& link) {
@@ -235,6 +246,7 @@ struct Writer {
       const engine::MujocoAxis& m = model.mujocoAxes[link.joint][own - j.axes.data()];
       put(R"( armature="{:.17g}" damping="{:.17g}" solreffriction="{:.17g}" solimpfriction="{:.17g}")", own->armature,
           own->damping, fmt::join(m.frictionSolref, " "), fmt::join(m.frictionSolimp, " "));
+      putSpring(j, static_cast<int>(own - j.axes.data()));
       if (limited) putRange(*own, m);
     };
     switch (j.type) {

@@ -214,8 +214,15 @@ void MujocoWorld::takeLink(const Model& model, const State& state, const Link& l
   }
   if (hingeCount == 0) return;
   const auto axis = [&](int i) { return toVec(m_->jnt_axis + 3 * i); };
+  // Poses do not say how often a joint has turned.
+  const auto setAngle = [&](int i, double angle) {
+    const DofMotor& at = motors_[m_->jnt_dofadr[i]];
+    const double sign = model.joints[at.joint].type == JointType::hinge2 && at.axis == 1 ? -1 : 1;
+    d_->qpos[m_->jnt_qposadr[i]] =
+        engine::nearestTurn(angle, sign * state.coordinates[at.joint].at(static_cast<std::size_t>(at.axis)));
+  };
   if (hingeCount == 1) {
-    d_->qpos[m_->jnt_qposadr[hinges[0]]] = angleAbout(delta, axis(hinges[0]));
+    setAngle(hinges[0], angleAbout(delta, axis(hinges[0])));
     d_->qvel[m_->jnt_dofadr[hinges[0]]] = spin.dot(child.rotation * axis(hinges[0]));
     return;
   }
@@ -224,8 +231,8 @@ void MujocoWorld::takeLink(const Model& model, const State& state, const Link& l
   Mat3 frame;
   frame << x, y, x.cross(y);
   const Mat3 r = frame.transpose() * delta * frame;
-  d_->qpos[m_->jnt_qposadr[hinges[0]]] = std::atan2(r(2, 1), r(1, 1));
-  d_->qpos[m_->jnt_qposadr[hinges[1]]] = std::atan2(r(0, 2), r(0, 0));
+  setAngle(hinges[0], std::atan2(r(2, 1), r(1, 1)));
+  setAngle(hinges[1], std::atan2(r(0, 2), r(0, 0)));
   d_->qvel[m_->jnt_dofadr[hinges[0]]] = spin.dot(parent.rotation * link.zero.rotation * x);
   d_->qvel[m_->jnt_dofadr[hinges[1]]] = spin.dot(child.rotation * y);
 }

@@ -146,7 +146,7 @@ void OdeEngine::compile(const Model& model, const engine::State& state) {
   w.joints.resize(kept);
   w.motors.resize(kept);
   compileBodies(w, model);
-  compileJoints(w, model);
+  compileJoints(w, model, state);
   w.jointRowsCounted = false;
   engine::warnOfArmature(model, *this, armatureSaid_);
   // Joints were set with the bodies at other places: their states have to be passed again.
@@ -282,6 +282,7 @@ void OdeEngine::step(engine::Step& step) {
   ++w.steps;
   w.awake = findNeeded(w, step);
   if (w.awake == 0) return;
+  passTurns(w, step.model, step.state);
   passMotors(w, step.state);
   writeState(w, step);
   addContactJoints(w, step);

@@ -64,13 +64,21 @@ void pass(const JointData& j, int name, double wanted, double& known) {
   setParameter(j, name, wanted);
 }
 
-void passParameters(JointData& j, const engine::Joint& from) {
+/// Passes the stops of an axis. ODE compares them with an angle within one turn: those of an axis that has turned move
+/// back by its turns.
+void passStops(JointData& j, const engine::Joint& from, int axis, std::int32_t turns) {
+  const JointAxis& a = from.axes[axis];
+  const double turned = 2 * kPi * turns;
+  pass(j, dParamLoStop + dParamGroup * axis, turns == 0 ? a.lowStop : a.lowStop - turned, j.axes[axis].lowStop);
+  pass(j, dParamHiStop + dParamGroup * axis, turns == 0 ? a.highStop : a.highStop - turned, j.axes[axis].highStop);
+}
+
+void passParameters(JointData& j, const engine::Joint& from, const engine::JointCoordinates& coordinates) {
   for (int axis = 0; axis < engine::axesOf(j.type); ++axis) {
     const JointAxis& a = from.axes[axis];
     JointAxis& known = j.axes[axis];
     const int group = dParamGroup * axis;
-    pass(j, dParamLoStop + group, a.lowStop, known.lowStop);
-    pass(j, dParamHiStop + group, a.highStop, known.highStop);
+    passStops(j, from, axis, coordinates.turns[axis]);
     pass(j, dParamFudgeFactor + group, a.ode.fudgeFactor, known.ode.fudgeFactor);
     pass(j, dParamBounce + group, a.ode.bounce, known.ode.bounce);
     pass(j, dParamCFM + group, a.ode.cfm, known.ode.cfm);
@@ -171,7 +179,7 @@ void assemble(const WorldData& w, const JointData& j, const engine::Joint& from)
 
 }  // namespace
 
-void compileJoints(WorldData& w, const Model& model) {
+void compileJoints(WorldData& w, const Model& model, const engine::State& state) {
   while (w.joints.size() < model.joints.size()) {
     const engine::Joint& from = model.joints[w.joints.size()];
     auto j = std::make_unique<JointData>();
@@ -209,13 +217,21 @@ void compileJoints(WorldData& w, const Model& model) {
   for (Index i = 0; i < w.joints.size(); ++i) {
     JointData& j = *w.joints[i];
     const engine::Joint& from = model.joints[i];
-    passParameters(j, from);
+    passParameters(j, from, state.coordinates[i]);
     if (from.wantsFeedback) w.measured.push_back(i);
     if (from.b != kNone) w.links.push_back({from.a, from.b});
     if (j.assembledAt == from.assembledAt || from.a == kNone) continue;
     assemble(w, j, from);
     j.assembledAt = from.assembledAt;
   }
+}
+
+void passTurns(WorldData& w, const Model& model, const engine::State& state) {
+  if (state.turned == 0 && !w.turned) return;
+  w.turned = state.turned > 0;
+  for (Index i = 0; i < w.joints.size(); ++i)
+    for (int axis = 0; axis < engine::axesOf(w.joints[i]->type); ++axis)
+      passStops(*w.joints[i], model.joints[i], axis, state.coordinates[i].turns[axis]);
 }
 
 void passMotors(WorldData& w, const engine::State& state) {

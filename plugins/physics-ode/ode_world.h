@@ -69,6 +69,7 @@ struct WorldData {
   int maxJointRows = 0;    ///< most rows of joints in a set of bodies that joints connect
   int maxJointBodies = 0;  ///< most bodies in such a set
   bool jointRowsCounted = false;
+  bool turned = false;  ///< ODE has the stops of joints that have turned
 
   std::vector<engine::Index> excluded;    ///< bodies disabled during a run of one of ODE's solvers
   std::vector<engine::Index> visitStack;  ///< of orderOfBodies()
@@ -87,7 +88,9 @@ inline constexpr int kContactRows = 3;
 int rowsOf(engine::JointType type);
 
 /// Brings ODE's joints up to date with the model (ode_joints.cpp).
-void compileJoints(WorldData& w, const engine::Model& model);
+void compileJoints(WorldData& w, const engine::Model& model, const engine::State& state);
+/// Passes the stops of joints that have turned.
+void passTurns(WorldData& w, const engine::Model& model, const engine::State& state);
 /// Passes the motors' speeds and forces, which change in every step.
 void passMotors(WorldData& w, const engine::State& state);
 /// Copies what ODE measured at the joints of the stepped bodies.

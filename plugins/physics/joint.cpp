@@ -57,6 +57,12 @@ void Joint::describe(Description<Joint>& d) {
   axis("DryFriction", &J::set<P::dryFriction>, &J::get<P::dryFriction>, "Nm or N",
        "Largest force of dry friction; of an axis with a controller.");
 
+  d.method("setSpring", &J::setSpring)
+      .parameters({"axis", "stiffness [Nm/rad]", "position [rad]"})
+      .doc("Passive spring beside motor and controller: stiffness (position - angle); of a slider N/m and m.");
+  axis("SpringStiffness", &J::setStiffness, &J::stiffness, "Nm/rad or N/m",
+       "Stiffness of the passive spring; 0: none.");
+  axis("SpringPosition", &J::setSpringPosition, &J::springPosition, "rad or m", "Where the passive spring is at rest.");
   d.method("setController", &J::setController)
       .parameters({"axis", "stiffness [Nm/rad]", "damping [N m s/rad]", "position [rad]", "velocity [rad/s]",
                    "force [Nm]", "maxForce [Nm]"})
@@ -213,6 +219,25 @@ void Joint::setMujoco(int axis, const std::vector<double>& numbers) {
   changeMujoco(axis, [&](engine::MujocoAxis& m) { physics::take(m.*Member, numbers, where()); });
 }
 
+void Joint::setSpring(int axis, double stiffness, double position) {
+  expectAxis(axis);
+  if (!(stiffness >= 0) || !std::isfinite(position))
+    throw RefusedValue(
+        fmt::format("{}: expected a stiffness of 0 or more and a finite position of the spring, found "
+                    "{} and {}",
+                    where(), stiffness, position));
+  if (world()) world()->setSpring(joint_, axis, stiffness, position);
+}
+
+double Joint::stiffness(int axis) const { return springOf(axis).first; }
+double Joint::springPosition(int axis) const { return springOf(axis).second; }
+
+std::pair<double, double> Joint::springOf(int axis) const {
+  if (axis < 0 || axis >= axes() || !world()) return {0, 0};
+  const engine::JointAxis& a = world()->model().joints[world()->index(joint_)].axes[static_cast<std::size_t>(axis)];
+  return {a.stiffness, a.springPosition};
+}
+
 void Joint::setController(int axis, double stiffness, double damping, double position, double velocity, double force,
                           double maxForce) {
   expectAxis(axis);
@@ -237,6 +262,7 @@ void Joint::saveState(StateWriter& out) const {
     if (!c) continue;
     for (const double v : {c->stiffness, c->damping, c->position, c->velocity, c->force, c->maxForce}) out.write(v);
   }
+  for (int axis = 0; axis < axes(); ++axis) out.write(world() ? world()->coordinate(joint_, axis) : 0.0);
 }
 
 void Joint::loadState(StateReader& in) {
@@ -248,6 +274,10 @@ void Joint::loadState(StateReader& in) {
     engine::Control c;
     for (double* v : {&c.stiffness, &c.damping, &c.position, &c.velocity, &c.force, &c.maxForce}) *v = in.readNumber();
     if (world()) world()->control(joint_, axis, c);
+  }
+  for (int axis = 0; axis < axes(); ++axis) {
+    const double coordinate = in.readNumber();
+    if (world()) world()->loadCoordinate(joint_, axis, coordinate);
   }
 }
 

@@ -21,6 +21,11 @@ class Joint : public PhysicsObject, public IJoint {
   Vec3 anchor() const override { return world() ? world()->anchor(joint_) : Vec3(Vec3::Zero()); }
   Vec3 axisNow(int axis) const override { return world() ? world()->axis(joint_, axis) : Vec3(Vec3::Zero()); }
   double angle(int axis) const override { return world() ? world()->angle(joint_, axis) : 0; }
+  double sensedAngle(int axis) const override {
+    return !world()                       ? 0
+           : world()->model().exactReplay ? world()->angleOfPoses(joint_, axis)
+                                          : world()->angle(joint_, axis);
+  }
   double angleRate(int axis) const override { return world() ? world()->angleRate(joint_, axis) : 0; }
   double parameter(engine::JointParameter p, int axis) const override {
     return world() ? world()->parameter(joint_, p, axis) : 0;
@@ -101,6 +106,13 @@ class Joint : public PhysicsObject, public IJoint {
   template <auto Member>
   void setMujoco(int axis, const std::vector<double>& numbers);
   void setMujocoMargin(int axis, double margin);
+  void setSpring(int axis, double stiffness, double position);
+  double stiffness(int axis) const;
+  double springPosition(int axis) const;
+  void setStiffness(int axis, double v) { setSpring(axis, v, springPosition(axis)); }
+  void setSpringPosition(int axis, double v) { setSpring(axis, stiffness(axis), v); }
+  /// Stiffness and position.
+  std::pair<double, double> springOf(int axis) const;
   void setController(int axis, double stiffness, double damping, double position, double velocity, double force,
                      double maxForce);
   void attach(std::string first, std::string second);

@@ -190,6 +190,22 @@ void WorldModel::applyDamping() {
         addAlong(j, axis, -j.axes[axis].damping * exactRate(i, axis));
 }
 
+void WorldModel::applySprings() {
+  for (Index i = 0; i < model_.joints.size(); ++i)
+    for (int axis = 0; axis < axesOf(model_.joints[i].type); ++axis)
+      if (const Joint& j = model_.joints[i]; j.axes[axis].stiffness > 0 && acts(j))
+        addAlong(j, axis, j.axes[axis].stiffness * (j.axes[axis].springPosition - angleOf(i, axis)));
+}
+
+void WorldModel::setSpring(JointHandle joint, int axis, double stiffness, double position) {
+  Joint& j = of(joint);
+  if (axis < 0 || axis >= axesOf(j.type) || !(stiffness >= 0) || !std::isfinite(position)) return;
+  j.axes[axis].stiffness = bounded(stiffness);
+  j.axes[axis].springPosition = position;
+  sprung_ |= stiffness > 0;
+  ++model_.dynamics;
+}
+
 bool WorldModel::atStop(JointHandle joint, int axis) const {
   const Joint& j = of(joint);
   if (axis < 0 || axis >= axesOf(j.type)) return false;
@@ -214,8 +230,7 @@ double WorldModel::hingeAngle(Index joint) const {
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
   const Quaternion relative = b ? timesConjugate(conjugateTimes(a->quaternion, b->quaternion), j.initialRotationA)
                                 : conjugateTimesConjugate(a->quaternion, j.initialRotationA);
-  const double found =
-      j.reversed ? -physics::hingeAngle(relative, j.axisA[0]) : physics::hingeAngle(relative, j.axisA[0]);
+  const double found = physics::hingeAngle(relative, j.axisA[0]);
   angle.store(found, std::memory_order_relaxed);
   at.store(poses_, std::memory_order_release);
   return found;
@@ -251,30 +266,27 @@ double WorldModel::eulerAngle(const Joint& j, int axis) const {
   return -std::atan2(zero0.dot(axes[1]), zero0.dot(axes[1].cross(axes[2])));
 }
 
-double WorldModel::angle(JointHandle joint, int axis) const { return angleOf(joints_[joint], axis); }
-
 double WorldModel::angleRate(JointHandle joint, int axis) const { return rateOf(joints_[joint], axis); }
 
-double WorldModel::angleOf(Index joint, int axis) const {
-  const Joint& j = model_.joints[joint];
-  if (axis < 0 || axis >= axesOf(j.type) || !attached(j)) return 0;
+double WorldModel::sliderPosition(const Joint& j) const {
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
+  const Vec3 along = times(a->rotation, j.axisA[0]);
+  const Vec3 offset = b ? Vec3(a->position - times(b->rotation, j.anchorB) - b->position) : a->position - j.anchorB;
+  const double position = dot(along, offset);
+  return !b && j.reversed ? -position : position;
+}
+
+double WorldModel::rawAngle(Index joint, int axis) const {
+  const Joint& j = model_.joints[joint];
   switch (j.type) {
     case JointType::hinge:
       return hingeAngle(joint);
-    case JointType::slider: {
-      const Vec3 along = times(a->rotation, j.axisA[0]);
-      const Vec3 offset = b ? Vec3(a->position - times(b->rotation, j.anchorB) - b->position) : a->position - j.anchorB;
-      const double position = dot(along, offset);
-      return !b && j.reversed ? -position : position;
-    }
     case JointType::universal:
-      if (!j.reversed) return universalAngle(j, axis);
-      return axis == 0 ? universalAngle(j, 1) : -universalAngle(j, 0);
+      return universalAngle(j, axis);
     case JointType::hinge2:
       return hinge2Angle(j, axis);
     default:
-      return axis >= j.motorAxes ? 0 : j.euler ? eulerAngle(j, axis) : j.userAngle[axis];
+      return eulerAngle(j, axis);
   }
 }
 

@@ -32,6 +32,7 @@ JointHandle WorldModel::createJoint(JointType type) {
   Joint& j = model_.joints.emplace_back();
   model_.mujocoAxes.emplace_back();
   state_.joints.emplace_back();
+  state_.coordinates.emplace_back();
   state_.motors.emplace_back();
   angles_.emplace_back();
   controlAt_.push_back({kNone, kNone, kNone});
@@ -65,6 +66,7 @@ void WorldModel::detach(Joint& j) {
   if (j.a != kNone) --model_.bodies[j.a].joints;
   if (j.b != kNone) --model_.bodies[j.b].joints;
   j.a = j.b = kNone;
+  startCoordinates(j);
   j.attachedAt = ++attachments_;
   ++model_.structure;
 }
@@ -203,6 +205,7 @@ void WorldModel::setUniversalFrames(Joint& j) {
 
 /// Hinge2: the zero direction of each angle is the other axis, made perpendicular to its own.
 void WorldModel::setHinge2Planes(Joint& j) {
+  startCoordinates(j);
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
   const Vec3 first = toWorld(a, j.axisA[0]), second = toWorld(b, j.axisB[1]);
   const Vec3 fromFirst = (second - first.dot(second) * first).normalized(),
@@ -229,6 +232,7 @@ void WorldModel::setSliderOffset(Joint& j) {
 /// Euler motor: the zero direction of each angle is the other body's axis.
 void WorldModel::setEulerReferences(Joint& j) {
   if (!attached(j)) return;
+  startCoordinates(j);
   const int first = j.reversed ? 2 : 0, second = 2 - first;
   j.reference2 = toBody(stateAt(j.b), toWorld(stateAt(j.a), j.axisA[first]));
   j.reference1 = toBody(stateAt(j.a), toWorld(stateAt(j.b), j.axisA[second]));
@@ -236,6 +240,7 @@ void WorldModel::setEulerReferences(Joint& j) {
 
 /// The numbers that depend on the relative rotation of the bodies.
 void WorldModel::setRelativeRotation(Joint& j) {
+  startCoordinates(j);
   switch (j.type) {
     case JointType::hinge:
       j.initialRotationA = relativeRotation(stateAt(j.a), stateAt(j.b));

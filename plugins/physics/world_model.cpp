@@ -341,7 +341,7 @@ void WorldModel::compact() {
   if (geoms_.removed() > 0) remap(model_.editedGeoms, geoms_.compact(model_.geoms, geomEdited_));
   if (joints_.removed() > 0) {
     const std::vector<Index> now =
-        joints_.compact(model_.joints, model_.mujocoAxes, state_.joints, state_.motors, angles_);
+        joints_.compact(model_.joints, model_.mujocoAxes, state_.joints, state_.coordinates, state_.motors, angles_);
     for (engine::AxisControl& c : state_.controls) remap(c.joint, now);
     std::erase_if(state_.controls, [](const engine::AxisControl& c) { return c.joint == kNone; });
     listControls();
@@ -449,10 +449,14 @@ void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, doubl
   if (first && model_.parameters.autoDisable && engine.sleeps()) putToSleep(contacts, dt);
   if (!engine.controls()) applyControls();
   if (!engine.damps() && damped_) applyDamping();
+  if (!engine.springs() && sprung_) applySprings();
+  if (turningAt_ != model_.structure) listTurning();
+  if (countedAt_ != poses_) countTurns();  // poses were set since the last step
   engine::Step step{model_, state_, contacts, rounded(dt), {}};
   engine.step(step);
   ++poses_;
   checkBodies();
+  countTurns();
 }
 
 void WorldModel::checkBodies() {

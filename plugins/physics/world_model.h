@@ -181,6 +181,8 @@ class WorldModel {
   void setMujoco(JointHandle joint, int axis, const engine::MujocoAxis& numbers);
   /// 0 for parameters and axes that the joint does not have.
   double parameter(JointHandle joint, engine::JointParameter p, int axis) const;
+  /// Sets the passive spring of an axis: stiffness [Nm/rad or N/m], 0: none, and where it is at rest [rad or m].
+  void setSpring(JointHandle joint, int axis, double stiffness, double position);
   /// Sets JointParameter::velocity; a speed other than 0 wakes the first body of attach().
   void drive(JointHandle joint, int axis, double speed);
   /// Puts a controller in place of the axis' motor, or changes its targets; numbers that make no sense are ignored. A
@@ -191,7 +193,14 @@ class WorldModel {
   void removeControl(JointHandle joint, int axis);
   /// True when the axis is at one of its stops or beyond.
   bool atStop(JointHandle joint, int axis) const;
-  double angle(JointHandle joint, int axis) const;      ///< first body relative to the second [rad; slider: m]
+  /// First body relative to the second [rad; slider: m]. Continuous: see engine::JointCoordinates.
+  double angle(JointHandle joint, int axis) const;
+  /// The same within one turn, -pi..pi, as its poses have it.
+  double angleOfPoses(JointHandle joint, int axis) const;
+  /// The continuous angle as the stops count it, for loadCoordinate() [rad]; 0 for axes that count no turns.
+  double coordinate(JointHandle joint, int axis) const;
+  /// Restores the turns of an axis.
+  void loadCoordinate(JointHandle joint, int axis, double angle);
   double angleRate(JointHandle joint, int axis) const;  ///< its rate [rad/s; slider: m/s]
   void setFeedback(JointHandle joint, bool on);         ///< true: steps measure forces and torques of the joint
   /// Force [N] and torque [Nm] on the first and the second body in the last step; zero without feedback.
@@ -260,6 +269,7 @@ class WorldModel {
   /// Add the forces of controllers and of damping to those on the bodies.
   void applyControls();
   void applyDamping();
+  void applySprings();
   /// False for a joint whose bodies sleep: forces on them would pile up.
   bool acts(const engine::Joint& joint) const;
   /// The rate of an axis' angle, or place, without ODE's rounding [rad/s or m/s].
@@ -268,7 +278,7 @@ class WorldModel {
   void listControls();
   void checkBodies();
 
-  // Joints (world_joints.cpp, world_axes.cpp).
+  // Joints (world_joints.cpp, world_axes.cpp, world_turns.cpp).
   engine::Assembly& remember(engine::Joint& joint, engine::Assembly::Kind kind, int axis, const Vec3& world);
   void anchorSet(engine::Joint& j, const Vec3& world);
   void axisSet(engine::Joint& j, int axis, const Vec3& world, int frame);
@@ -281,9 +291,23 @@ class WorldModel {
   std::array<Vec3, 3> eulerAxes(const engine::Joint& j) const;
   double eulerAngle(const engine::Joint& j, int axis) const;
   double angleOf(engine::Index joint, int axis) const;
+  /// The axis and the sign by which the angle of an axis is that of a stop; see Joint::reversed.
+  struct AxisView {
+    int axis;
+    double sign;
+  };
+  AxisView viewOf(const engine::Joint& j, int axis) const;
+  /// The angle of a rotational axis within one turn, as its stops count it.
+  double rawAngle(engine::Index joint, int axis) const;
+  /// The turns of an axis, at the present poses.
+  std::int32_t turnsNow(engine::Index joint, int axis, double raw) const;
+  void countTurns();
+  void listTurning();
+  void startCoordinates(const engine::Joint& j);
   double rateOf(engine::Index joint, int axis) const;
   double hingeAngle(engine::Index joint) const;
   double universalAngle(const engine::Joint& j, int axis) const;
+  double sliderPosition(const engine::Joint& j) const;
   double hinge2Angle(const engine::Joint& j, int axis) const;
   Vec3 worldAxis(const engine::Joint& j, int axis) const;
 
@@ -299,6 +323,15 @@ class WorldModel {
   std::uint64_t poses_ = 1;                              ///< changes when the angle of a joint may have changed
   std::vector<std::array<engine::Index, 3>> controlAt_;  ///< by joint and axis: its place in State::controls
   bool damped_ = false;                                  ///< an axis has damping
+  bool sprung_ = false;                                  ///< an axis has a spring
+  /// The joints that count turns, and their bodies; valid for turningAt_, a version of the structure.
+  struct Turning {
+    engine::Index joint, a, b;
+    int axes;
+  };
+  std::vector<Turning> turning_;
+  std::uint64_t turningAt_ = 0;
+  std::uint64_t countedAt_ = 0;  ///< poses_ when turns were counted last
   std::vector<BodyHandle> repaired_;
   struct KeptForce {
     BodyHandle body;

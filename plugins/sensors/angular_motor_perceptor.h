@@ -33,7 +33,7 @@ class AngularMotorPerceptor : public Perceptor {
     const IJoint& angles = hinge_ ? *hinge_ : *motor;  // a motor below a hinge has the hinge's angle
     const IMotor* const device = device_.get();
     out.open("HJ").pair("n", name());
-    if (senseAngle_) out.pair("ax", radToDeg(angles.angle(0)));
+    if (senseAngle_) out.pair("ax", radToDeg(angles.sensedAngle(0)));
     if (senseRate_) out.pair("rt", radToDeg(angles.angleRate(0)));
     if (senseTorque_) out.pair("tq", motor->feedbackTorque());
     if (senseTemperature_ && device) {

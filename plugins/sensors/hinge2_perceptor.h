@@ -16,7 +16,7 @@ class Hinge2Perceptor : public Perceptor {
     IJoint* const joint = joint_.get();
     if (!joint) return;
     out.open("H2J").pair("n", name());
-    out.open("ax").add(0).add(radToDeg(joint->angle(0))).close().close();
+    out.open("ax").add(0).add(radToDeg(joint->sensedAngle(0))).close().close();
   }
 
  private:

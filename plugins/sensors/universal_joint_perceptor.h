@@ -17,7 +17,7 @@ class UniversalJointPerceptor : public Perceptor {
     IJoint* const joint = joint_.get();
     if (!joint) return;
     out.open("UJ").pair("n", name());
-    out.pair("ax1", radToDeg(joint->angle(0))).pair("ax2", radToDeg(joint->angle(1))).close();
+    out.pair("ax1", radToDeg(joint->sensedAngle(0))).pair("ax2", radToDeg(joint->sensedAngle(1))).close();
   }
 
  private:

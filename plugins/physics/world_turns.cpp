@@ -1,0 +1,137 @@
+#include "joint_frames.h"
+#include "world_model.h"
+
+// Turns of joints. The poses of two bodies say where a joint's axis is within one turn; how often it has turned is
+// counted here, after each step of the engine: an angle that jumps by more than half a turn has passed +-pi. So stops,
+// controllers and percepts work on one continuous number, the coordinate.
+//
+//     poses     ... 2.9   3.1  -3.0  -2.8 ...
+//     turns          0     0     1     1
+//     coordinate    2.9   3.1   3.28  3.48
+//
+// Whoever sets poses between two steps changes the coordinate by at most half a turn. Setting a joint's bodies, anchor
+// or axes begins anew, at the angle of the poses.
+
+namespace spark::physics {
+
+using engine::axesOf;
+using engine::DynamicState;
+using engine::Index;
+using engine::Joint;
+using engine::JointCoordinates;
+using engine::JointType;
+using engine::kNone;
+
+namespace {
+
+/// The number of axes that count turns.
+int turningAxes(const Joint& j) {
+  switch (j.type) {
+    case JointType::hinge:
+    case JointType::universal:
+    case JointType::hinge2:
+      return axesOf(j.type);
+    case JointType::angularMotor:
+      return j.euler ? j.motorAxes : 0;
+    default:
+      return 0;
+  }
+}
+
+/// The turns of an angle that was `before`, with its turns, and is `now`.
+std::int32_t turnsAfter(double before, std::int32_t turns, double now) {
+  const double change = now - before;
+  return change > kPi ? turns - 1 : change < -kPi ? turns + 1 : turns;
+}
+
+bool isTurned(const JointCoordinates& c) { return c.turns != std::array<std::int32_t, 3>{}; }
+
+}  // namespace
+
+void WorldModel::startCoordinates(const Joint& j) {
+  JointCoordinates& c = state_.coordinates[static_cast<std::size_t>(&j - model_.joints.data())];
+  state_.turned -= isTurned(c);
+  c = {};
+  turningAt_ = 0;
+}
+
+void WorldModel::listTurning() {
+  turning_.clear();
+  state_.turned = 0;
+  for (Index i = 0; i < model_.joints.size(); ++i) {
+    state_.turned += isTurned(state_.coordinates[i]);
+    if (const Joint& j = model_.joints[i]; attached(j) && turningAxes(j) > 0)
+      turning_.push_back({i, j.a, j.b, turningAxes(j)});
+  }
+  turningAt_ = model_.structure;
+  countedAt_ = 0;
+}
+
+void WorldModel::countTurns() {
+  const auto moves = [&](Index body) { return body != kNone && state_.bodies[body].awake; };
+  for (const Turning& t : turning_) {
+    if (!moves(t.a) && !moves(t.b)) continue;
+    JointCoordinates& c = state_.coordinates[t.joint];
+    for (int axis = 0; axis < t.axes; ++axis) {
+      const double now = rawAngle(t.joint, axis);
+      const std::int32_t turns = turnsAfter(c.angle[axis], c.turns[axis], now);
+      c.angle[axis] = now;
+      if (turns == c.turns[axis]) continue;
+      state_.turned -= isTurned(c);
+      c.turns[axis] = turns;
+      state_.turned += isTurned(c);
+    }
+  }
+  countedAt_ = poses_;
+}
+
+std::int32_t WorldModel::turnsNow(Index joint, int axis, double raw) const {
+  const JointCoordinates& c = state_.coordinates[joint];
+  return turnsAfter(c.angle[axis], c.turns[axis], raw);
+}
+
+WorldModel::AxisView WorldModel::viewOf(const Joint& j, int axis) const {
+  if (!j.reversed) return {axis, 1};
+  if (j.type == JointType::hinge) return {axis, -1};
+  if (j.type == JointType::universal) return axis == 0 ? AxisView{1, 1} : AxisView{0, -1};
+  return {axis, 1};
+}
+
+double WorldModel::angleOf(Index joint, int axis) const {
+  const Joint& j = model_.joints[joint];
+  if (axis < 0 || axis >= axesOf(j.type) || !attached(j)) return 0;
+  if (j.type == JointType::slider) return sliderPosition(j);
+  if (axis >= turningAxes(j)) return axis < j.motorAxes ? j.userAngle[axis] : 0;
+  const AxisView view = viewOf(j, axis);
+  const double raw = rawAngle(joint, view.axis);
+  const std::int32_t turns = turnsNow(joint, view.axis, raw);
+  return view.sign * (turns == 0 ? raw : raw + 2 * kPi * turns);
+}
+
+double WorldModel::angle(JointHandle joint, int axis) const { return angleOf(joints_[joint], axis); }
+
+double WorldModel::angleOfPoses(JointHandle joint, int axis) const {
+  const Joint& j = of(joint);
+  if (axis < 0 || axis >= turningAxes(j) || !attached(j)) return angle(joint, axis);
+  const AxisView view = viewOf(j, axis);
+  return view.sign * rawAngle(joints_[joint], view.axis);
+}
+
+double WorldModel::coordinate(JointHandle joint, int axis) const {
+  const Joint& j = of(joint);
+  if (axis < 0 || axis >= turningAxes(j) || !attached(j)) return 0;
+  const double raw = rawAngle(joints_[joint], axis);
+  return raw + 2 * kPi * turnsNow(joints_[joint], axis, raw);
+}
+
+void WorldModel::loadCoordinate(JointHandle joint, int axis, double angle) {
+  // Far from +-pi turns are certain; near it the poses that are restored too decide.
+  if (axis < 0 || axis >= turningAxes(of(joint)) || !(std::abs(angle) < 1e9)) return;
+  JointCoordinates& c = state_.coordinates[joints_[joint]];
+  state_.turned -= isTurned(c);
+  c.turns[axis] = static_cast<std::int32_t>(std::round(angle / (2 * kPi)));
+  c.angle[axis] = angle - 2 * kPi * c.turns[axis];
+  state_.turned += isTurned(c);
+}
+
+}  // namespace spark::physics
