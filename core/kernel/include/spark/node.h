@@ -29,7 +29,7 @@ class Node : public Leaf {
   /// The children in order. Owned by this node; the list is valid until the tree changes.
   const std::vector<std::unique_ptr<Leaf>>& children() const { return children_; }
   /// The kernel's structureVersion() at the last change below this node: an object was added, removed, moved or
-  /// renamed. A cache of what is below is valid while this number stays.
+  /// renamed. A cache of descendants is valid while this number is unchanged.
   std::uint64_t changedAt() const { return changedAt_; }
   /// The first child of that name, or the k-th for `name[k]`; nullptr if there is none.
   Leaf* child(std::string_view name) const;
@@ -59,7 +59,7 @@ class Node : public Leaf {
   /// the child then is the last one of its old parent.
   void reparent(Leaf& child, Node& newParent);
   /// Appends all descendants that are a T to `out`, depth first in the order of children. `deep` false: descendants of
-  /// a match are left out. Reads a flat list if the kernel's order is up to date (Kernel::updateOrder), else walks the
+  /// a match are skipped. Reads a flat list if the kernel's order is up to date (Kernel::updateOrder), else walks the
   /// tree.
   template <class T>
   void collect(std::vector<T*>& out, bool deep = true) const {
