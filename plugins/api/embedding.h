@@ -13,7 +13,7 @@
 
 namespace spark {
 
-/// Where a Spark is, and what configs read about the program that runs them.
+/// The folders of a Spark installation, and what configs can read about the program that runs them.
 struct Installation {
   std::filesystem::path plugins;  ///< folder of the plugins' files
   std::filesystem::path share;    ///< folder with lua/ and scenes/
@@ -24,7 +24,7 @@ struct Installation {
 };
 
 #ifdef SPARK_PLUGIN_DIR
-/// The Spark that find_package(Spark) found.
+/// The installation that find_package(Spark) found.
 inline Installation installed() { return {.plugins = SPARK_PLUGIN_DIR, .share = SPARK_SHARE_DIR, .scenePaths = {}}; }
 #endif
 

@@ -54,11 +54,11 @@ TEST_CASE("A host that a sensor crashes names the sensor in its last line and en
     const Finished f = c.run(c.agent("null"), more);
     CHECK(f.code == 128 + SIGSEGV);
     CHECK_THAT(f.errors, Contains("sparkhost: crashed by SIGSEGV at address 0x0 in sense of "
-                                  "/usr/scene/AgentAspect1/TRF/eye (class CrashSensor of "
-                                  "plugin crashing). A debugger (gdb) shows the line.\n") ||
+                                  "/usr/scene/AgentAspect1/TRF/eye "
+                                  "(class CrashSensor of plugin crashing). A debugger (gdb) shows the line.\n") ||
                              Contains("sparkhost: crashed by SIGSEGV at address 0x0 in sense of "
-                                      "/usr/scene/AgentAspect1/Transform/eye (class CrashSensor of "
-                                      "plugin crashing). A debugger (gdb) shows the line.\n"));
+                                      "/usr/scene/AgentAspect1/Transform/eye "
+                                      "(class CrashSensor of plugin crashing). A debugger (gdb) shows the line.\n"));
   }
 }
 

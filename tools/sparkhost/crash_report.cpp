@@ -11,10 +11,10 @@
 
 #include "spark/running.h"
 
-// Signal handlers may allocate nothing and take no lock, so text goes into fixed buffers. Each thread that runs nodes
-// has a stack for its handlers: a thread that used up its own can be reported, too. The handler writes its report, puts
-// back what handled the signal before and returns. The instruction fails again and the process ends as if there had
-// been no handler: core, exit status, a sanitizer's report.
+// Signal handlers must not allocate or lock, so text is written into fixed buffers. Each thread that runs nodes has a
+// separate stack for its signal handlers, so that a stack overflow can be reported, too. The handler writes its report,
+// restores the previous handler and returns. Then the instruction fails again, and the process ends as if there had
+// been no handler: with a core file, exit status or sanitizer report.
 
 namespace sparkhost {
 
@@ -25,7 +25,7 @@ constexpr std::size_t kMostText = 1000;    // bytes of a report
 const char* programName = "";
 thread_local std::unique_ptr<char[]> handlerStack;
 
-/// A signal of a crash, and what handled it before.
+/// A crash signal and its previous handler.
 struct Crash {
   int signal;
   const char* name;
@@ -34,12 +34,12 @@ struct Crash {
 std::array crashes{Crash{SIGSEGV, "SIGSEGV"}, Crash{SIGBUS, "SIGBUS"}, Crash{SIGFPE, "SIGFPE"}, Crash{SIGILL, "SIGILL"},
                    Crash{SIGABRT, "SIGABRT"}};
 
-/// In one piece, or not at all: short texts are not cut.
+/// Appends the whole text or nothing, because short texts must not be cut.
 void print(const char* text, std::size_t size) {
   while (write(STDERR_FILENO, text, size) < 0 && errno == EINTR) continue;
 }
 
-/// Appends text to a buffer; what does not fit is left out.
+/// Appends text to a buffer; text that does not fit is dropped.
 class Text {
  public:
   Text& operator<<(const char* text) {
@@ -65,7 +65,7 @@ void onCrash(int number, siginfo_t* info, void*) {
   const char* name = "";
   for (const Crash& c : crashes)
     if (c.signal == number) {
-      sigaction(number, &c.before, nullptr);  // first: what follows may crash as well
+      sigaction(number, &c.before, nullptr);  // first, because the following code may crash, too
       name = c.name;
     }
   Text head;
@@ -78,13 +78,13 @@ void onCrash(int number, siginfo_t* info, void*) {
   else
     (Text() << "in a thread that runs no nodes").print();
   (Text() << ". A debugger (gdb) shows the line.\n").print();
-  // What the processor found it finds again; what was sent has to be sent again.
+  // A fault of the processor repeats when the handler returns; a signal that was sent must be sent again.
   if (info->si_code <= 0) syscall(SYS_tgkill, getpid(), syscall(SYS_gettid), number);
 }
 
 void giveHandlerStack() {
   stack_t old = {};
-  if (sigaltstack(nullptr, &old) != 0 || !(old.ss_flags & SS_DISABLE)) return;  // a sanitizer's
+  if (sigaltstack(nullptr, &old) != 0 || !(old.ss_flags & SS_DISABLE)) return;  // a sanitizer has set one already
   handlerStack = std::make_unique<char[]>(kStack);
   stack_t s = {};
   s.ss_sp = handlerStack.get();

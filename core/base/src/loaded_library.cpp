@@ -122,7 +122,7 @@ class Source {
         return;
       }
     }
-    throw Error(fmt::format("cannot load plugin {}: somebody is writing it. Try again when it is complete.", path));
+    throw Error(fmt::format("cannot load plugin {}: its file is being written. Try again when it is complete.", path));
   }
   /// The name under which the linker opens it.
   const std::string& name() const { return name_; }

@@ -21,8 +21,8 @@ Vec3 Localisation::level(const Vec3& inHead, const Percepts& percepts, const Pos
   return Eigen::AngleAxisd(nod_, Vec3::UnitX()) * (posture.level() * (head * inHead + Vec3(0, 0, kCameraHeight)));
 }
 
-/// While a robot walks, the lean by its accelerometer is wrong by several degrees. Landmarks of known height correct
-/// it.
+/// While a robot walks, the lean estimated from its accelerometer is wrong by several degrees. Landmarks of known
+/// height correct it.
 void Localisation::findHorizon(const Percepts& percepts, const Posture& posture) {
   double across = 0, along = 0;
   for (const Sighting& s : percepts.sightings) {

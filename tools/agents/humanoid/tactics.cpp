@@ -16,7 +16,7 @@
 namespace humanoid {
 
 namespace {
-constexpr double kTipping = radians(50);      // tilt from which no step prevents the fall
+constexpr double kTipping = radians(50);      // tilt beyond which no step prevents the fall
 constexpr double kKeepAway = 2.4;             // distance to the ball at opponents' restarts [m]
 constexpr double kBehind = 0.35;              // distance behind the ball at which it turns towards it [m]
 constexpr double kAround = 0.5;               // distance to the ball on the way around it [m]
