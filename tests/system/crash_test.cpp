@@ -145,7 +145,7 @@ TEST_CASE("The watchdog names a hanging object once per report, while it hangs")
     p.waitForError("The simulation goes on after ");
     p.line();
     CHECK(p.wait() == 0);
-    // When it hung, and when it was asked to end. On a slow machine other things may stand still, too.
+    // The report is repeated on the stop request. On a slow machine other calls may be reported as hanging, too.
     const std::string said = p.errors();
     CHECK(said.find(words) != said.rfind(words));
     CHECK(said.find(words, said.find(words) + 1) == said.rfind(words));
