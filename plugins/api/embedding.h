@@ -17,7 +17,7 @@ namespace spark {
 struct Installation {
   std::filesystem::path plugins;  ///< folder of the plugins' files
   std::filesystem::path share;    ///< folder with lua/ and scenes/
-  /// Folders with scenes of your own in rsg/, looked at before Spark's.
+  /// Folders with your own scenes in rsg/, searched before Spark's.
   std::vector<std::string> scenePaths;
   /// True: configs open no web page and no control socket.
   bool alone = true;

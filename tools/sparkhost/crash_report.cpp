@@ -20,7 +20,7 @@ namespace sparkhost {
 
 namespace {
 constexpr std::size_t kStack = 64u << 10;  // bytes for handlers
-constexpr std::size_t kMostText = 1000;    // bytes of a report
+constexpr std::size_t kMaxText = 1000;     // bytes of a report
 
 const char* programName = "";
 thread_local std::unique_ptr<char[]> handlerStack;
@@ -57,7 +57,7 @@ class Text {
   void print() const { sparkhost::print(bytes_, size_); }
 
  private:
-  char bytes_[kMostText];
+  char bytes_[kMaxText];
   std::size_t size_ = 0;
 };
 
@@ -72,7 +72,7 @@ void onCrash(int number, siginfo_t* info, void*) {
   head << "\n" << programName << ": crashed by " << name;
   if (number == SIGSEGV || number == SIGBUS) (head << " at address ").address(info->si_addr);
   (head << " ").print();
-  char words[kMostText];
+  char words[kMaxText];
   if (const spark::Running* mine = spark::runningHere())
     print(words, spark::describeRunning(*mine, words, sizeof words));
   else

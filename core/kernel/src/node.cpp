@@ -56,7 +56,7 @@ void Node::rememberName(Leaf& child) {
 }
 
 Node::~Node() {
-  // The list is emptied first, because the destructor of a child may look at it.
+  // The list is emptied first, because the destructor of a child may read it.
   forgetNames();
   const std::vector<std::unique_ptr<Leaf>> dying = std::move(children_);
   children_.clear();

@@ -35,7 +35,7 @@ class Node : public Leaf {
   Leaf* child(std::string_view name) const;
   /// The k in `name[k]` of a child: its position among the children of the same name, from 1.
   std::size_t ordinalOf(const Leaf& child) const;
-  /// The greatest depth of a tree.
+  /// The maximum depth of a tree.
   static constexpr int kMostLevels = 1000;
   /// Appends an object to the children, and links it if this node is linked. Throws Error if the object has a parent or
   /// another kernel, and what onLink() throws; the object is then destroyed and the tree as before.

@@ -9,7 +9,7 @@
 import type { Poses } from "../sources/poses";
 
 const kKey = 1, kDelta = 2, kHeader = 20;
-const kMostBits = 24;
+const kMaxBits = 24;
 const kPerTransform = 7;
 const kLargest = 2 ** 31;
 
@@ -49,7 +49,7 @@ export class FrameDecoder {
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     const kind = view.getUint8(0), position = view.getUint8(1), rotation = view.getUint8(2);
     const shape = view.getUint32(4, true), serial = view.getUint32(8, true), time = view.getFloat64(12, true);
-    if ((kind !== kKey && kind !== kDelta) || position > kMostBits || rotation > kMostBits || bytes[3] !== 0 || !Number.isFinite(time)) return "broken";
+    if ((kind !== kKey && kind !== kDelta) || position > kMaxBits || rotation > kMaxBits || bytes[3] !== 0 || !Number.isFinite(time)) return "broken";
     if (shape !== this.shape) return "waits";
     const bits = position << 8 | rotation;
     if (kind === kDelta && (this.serial < 0 || serial !== (this.serial + 1) >>> 0 || bits !== this.bits)) {

@@ -14,7 +14,7 @@ import type { Colour, Drawing } from "../model";
 
 const kNumber = 6;
 /// Limits on what agents may draw. Anything beyond them is ignored.
-const kMostShapes = 20_000, kMostSets = 2000;
+const kMaxShapes = 20_000, kMaxSets = 2000;
 /// Bytes; recorders write some 500.
 const kLongestPacket = 8192;
 
@@ -83,7 +83,7 @@ export class DrawingBoard {
     const drawing = group === 2 ? this.annotation() : this.shape(kind);
     const name = this.text();
     const set = this.hidden.get(name) ?? [];
-    if (this.shapes >= kMostShapes || (set.length === 0 && this.hidden.size >= kMostSets)) return false;
+    if (this.shapes >= kMaxShapes || (set.length === 0 && this.hidden.size >= kMaxSets)) return false;
     set.push(drawing);
     ++this.shapes;
     this.hidden.set(name, set);

@@ -15,7 +15,7 @@ export interface Head {
 
 const kMostNodes = 50_000;
 const kDeepest = 64;
-const kMostEntries = 512;
+const kMaxEntries = 512;
 
 /// These values stay strings: team names may look like numbers.
 const kWords = new Set(["team_left", "team_right", "play_modes"]);
@@ -163,7 +163,7 @@ export class RecordReader {
     for (;;) {
       const token = tokens.next();
       if (token === Token.close) return entries;
-      if (token === Token.end || entries.length >= kMostEntries) return null;
+      if (token === Token.end || entries.length >= kMaxEntries) return null;
       if (token === Token.atom) continue;
       const entry = this.entry();
       if (entry === null) return null;

@@ -14,7 +14,7 @@ const kParenOpen = 0x28, kParenClose = 0x29, kBracketOpen = 0x5b, kBracketClose 
 
 /// 10^0 .. 10^22 are exact. Other exponents are left to the JavaScript engine's parser.
 const kPowers = Array.from({ length: 23 }, (_, i) => 10 ** i);
-const kMostDigits = 15;
+const kMaxDigits = 15;
 
 const decoder = new TextDecoder();
 
@@ -109,7 +109,7 @@ export class Tokens {
       mantissa = mantissa * 10 + (c - 0x30);
       if (point) --exponent;
     }
-    if (!any || digits > kMostDigits) return this.slowNumber();
+    if (!any || digits > kMaxDigits) return this.slowNumber();
     if (at < to) {
       if ((bytes[at]! | 0x20) !== 0x65) return this.slowNumber();
       let scale = 0;

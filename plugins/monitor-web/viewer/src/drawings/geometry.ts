@@ -76,13 +76,13 @@ export function viewCone(matrix: readonly number[], horizontal: number, vertical
 }
 
 /// Ear clipping takes cubic time, so polygons with more corners are assumed to be convex.
-const kMostEars = 64;
+const kMaxEars = 64;
 
 /// Triangulates a flat polygon, convex or not: returns indices into its points. Collinear points give no triangles.
 export function triangulate(points: readonly Vec3[]): number[] {
   const n = normal(points);
   if (!n) return [];
-  if (points.length > kMostEars) return points.slice(2).flatMap((_, i) => [0, i + 1, i + 2]);
+  if (points.length > kMaxEars) return points.slice(2).flatMap((_, i) => [0, i + 1, i + 2]);
   // Project along the largest component of the normal, counter-clockwise.
   const axis = Math.abs(n[0]) > Math.abs(n[1]) ? (Math.abs(n[0]) > Math.abs(n[2]) ? 0 : 2) : Math.abs(n[1]) > Math.abs(n[2]) ? 1 : 2;
   const [u, v] = [(axis + 1) % 3, (axis + 2) % 3] as [0 | 1 | 2, 0 | 1 | 2];

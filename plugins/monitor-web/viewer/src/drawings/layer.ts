@@ -17,7 +17,7 @@ export interface Canvas {
   invalidate(): void;
 }
 
-const kMostWidths = 12;   // maximum number of combinations of width and transparency, each of which is a draw call
+const kMaxWidths = 12;   // maximum number of combinations of width and transparency, each of which is a draw call
 const kGround = 0.012;    // [m]; circles lie a little above the lines of the field
 const kTextSize = 13;     // [px]
 const kAboveHead = 0.2;   // [m]
@@ -121,7 +121,7 @@ export class DrawingsLayer {
   private linesOf(thickness: number, alpha: number): Lines {
     const width = Math.max(1, Math.min(12, Math.round(2 * thickness) / 2)) || 1;
     const opacity = Math.max(1, Math.round(8 * alpha)) / 8;
-    const key = this.lines.size < kMostWidths || this.lines.has(`${width} ${opacity}`) ? `${width} ${opacity}` : this.lines.keys().next().value!;
+    const key = this.lines.size < kMaxWidths || this.lines.has(`${width} ${opacity}`) ? `${width} ${opacity}` : this.lines.keys().next().value!;
     let lines = this.lines.get(key);
     if (!lines) {
       lines = new Lines({ width, opacity });

@@ -4,7 +4,7 @@ import { toLinear } from "./geometry";
 import { Glyphs, kCells } from "./glyphs";
 
 const kViewport = new Vector4();
-const kMostGlyphs = 20000;
+const kMaxGlyphs = 20000;
 
 const kVertex = `
 attribute vec3 anchor;
@@ -75,7 +75,7 @@ export class Texts {
   add(text: string, x: number, y: number, z: number, size: number, r: number, g: number, b: number, line = 0): void {
     const cell = 1.5 * size;
     let left = -0.5 * cell * this.widthOf(text);
-    for (let i = 0; i < text.length && this.count < kMostGlyphs;) {
+    for (let i = 0; i < text.length && this.count < kMaxGlyphs;) {
       const code = text.codePointAt(i)!;
       i += code > 0xffff ? 2 : 1;
       const glyph = this.glyphs.of(code);

@@ -8,7 +8,7 @@ export interface Component {
 }
 
 const kAxes = ["x", "y", "z", "w"];
-const kMostComponents = 24;
+const kMaxComponents = 24;
 
 /// A short text whose width stays about the same while the value changes.
 export function formatNumber(v: number): string {
@@ -61,9 +61,9 @@ function isPairs(value: unknown): value is [string, unknown][] {
 export function componentsOf(value: unknown): Component[] {
   if (typeof value === "number" || typeof value === "boolean") return [{ at: [], label: "" }];
   if (isPairs(value)) {
-    return value.flatMap(([name, v], i) => (typeof v === "number" ? [{ at: [i, 1], label: name }] : [])).slice(0, kMostComponents);
+    return value.flatMap(([name, v], i) => (typeof v === "number" ? [{ at: [i, 1], label: name }] : [])).slice(0, kMaxComponents);
   }
-  if (!isNumbers(value) || value.length > kMostComponents) return [];
+  if (!isNumbers(value) || value.length > kMaxComponents) return [];
   return value.map((_, i) => ({ at: [i], label: value.length <= 4 ? kAxes[i]! : String(i + 1) }));
 }
 

@@ -16,7 +16,7 @@ const kLongestLine = 8 << 20;
 const kPage = 1 << 20;
 const kPages = 12;
 /// Maximum size of drawings in memory, about [bytes].
-const kMostPackets = 64 << 20;
+const kMaxPackets = 64 << 20;
 const kNoPackets: Uint8Array[] = [];
 /// Bytes of a packet that swaps all sets twice, 0 0 \0 0 0 \0, which removes all drawings.
 const kAllSwapped = 6;
@@ -27,7 +27,7 @@ const kLikely = 10;
 /// Maximum plausible interval between two records [ms].
 const kLongestStep = 60_000;
 /// Limits of records and events, more than a season has. Anything beyond them is ignored.
-const kMostRecords = 4_000_000, kMostEvents = 20_000;
+const kMaxRecords = 4_000_000, kMostEvents = 20_000;
 
 export interface LogRecord {
   /// Bytes of the line in the file, including draw commands.
@@ -151,7 +151,7 @@ class Indexer {
     // Changes need a scene before them.
     if (!head) return this.passOver();
     this.partial = true;
-    if ((!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full) || this.records.length >= kMostRecords) return this.passOver();
+    if ((!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full) || this.records.length >= kMaxRecords) return this.passOver();
     takeEntries(this.environment, head.environment, head.full);
     const gameTime = Number(this.environment.get("time") ?? NaN);
     for (const event of this.eventReader.take(this.environment, head.environment, gameTime || 0)) if (this.found.length < kMostEvents) this.found.push({ event, record: this.records.length });
@@ -177,7 +177,7 @@ class Indexer {
   }
 
   private packets(bytes: Uint8Array, from: number, end: number): Uint8Array[] {
-    if (from === end || this.packetBytes > kMostPackets) return kNoPackets;
+    if (from === end || this.packetBytes > kMaxPackets) return kNoPackets;
     this.packetBytes += (end - from) / 4;
     return readPackets(bytes, from, end);
   }

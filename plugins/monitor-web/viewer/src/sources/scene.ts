@@ -47,7 +47,7 @@ const kSide = /^mat(Left|Right)(\d*)$/;
 const kNumber = /^matNum(\d+)$/;
 const kBody = /(^|\/)[^/]*body[^/]*\.obj$/;
 /// Maximum number of robots, more than any field holds. Further ones are not numbered, selected or labelled.
-const kMostRobots = 2048;
+const kMaxRobots = 2048;
 const kHead = /(^|\/)[^/]*head[^/]*\.obj$/;
 
 interface Found {
@@ -64,7 +64,7 @@ function findRobots(nodes: SceneNode[], top: Int32Array): Robot[] {
     if (node.kind !== "mesh" || !node.materials) return;
     const team = node.materials.some((m) => m === "matTeam" || kSide.test(m));
     const robot = found.get(top[i]!) ?? (team ? { side: null, number: 0, node: top[i]!, torso: -1, head: -1 } : undefined);
-    if (!robot || (found.size >= kMostRobots && !found.has(robot.node))) return;
+    if (!robot || (found.size >= kMaxRobots && !found.has(robot.node))) return;
     found.set(robot.node, robot);
     node.materials.forEach((material) => readMaterial(robot, material));
     if (robot.torso < 0 && kBody.test(node.load ?? "")) robot.torso = bearer(nodes, node);

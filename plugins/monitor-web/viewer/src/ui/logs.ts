@@ -25,7 +25,7 @@ export async function unpacked(packed: ReadableStream<Uint8Array>): Promise<Read
     cancel: (reason) => reader.cancel(reason),
   });
   if (!isPacked(bytes)) return whole;
-  return limited(whole.pipeThrough(new DecompressionStream("gzip") as unknown as ReadableWritablePair<Uint8Array, Uint8Array>), kMostUnpacked);
+  return limited(whole.pipeThrough(new DecompressionStream("gzip") as unknown as ReadableWritablePair<Uint8Array, Uint8Array>), kMaxUnpacked);
 }
 
 /// Reports progress, 0..1 of `total` bytes. Reports nothing if the total is unknown.
@@ -44,7 +44,7 @@ export function counted(stream: ReadableStream<Uint8Array>, total: number, heard
 }
 
 /// Maximum size of an unpacked log, which limits the effect of decompression bombs [bytes].
-const kMostUnpacked = 8 * 2 ** 30;
+const kMaxUnpacked = 8 * 2 ** 30;
 
 /// Fails if more than `most` bytes pass.
 export function limited(stream: ReadableStream<Uint8Array>, most: number): ReadableStream<Uint8Array> {
