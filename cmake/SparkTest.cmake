@@ -14,8 +14,8 @@ set(SPARK_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
 # Seconds after which a test is considered to hang. These are last resorts, long enough for slow and busy machines. The
 # second one is for tests that take a minute on a fast machine, or wait for programs with the patience of
 # tests/patience.h.
-set(SPARK_TEST_TIMEOUT 3600)
-set(SPARK_LONG_TEST_TIMEOUT 21600)
+set(SPARK_TEST_TIMEOUT 2400)
+set(SPARK_LONG_TEST_TIMEOUT 4800)
 
 # Makes a test depend on a plugin. It is called last, when all plugins are known.
 function(spark_test_needs target plugin)

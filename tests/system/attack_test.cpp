@@ -131,9 +131,12 @@ TEST_CASE("Monitors that never read stay connected and use bounded memory, and t
     a.witness->mustSeeTimePass();  // 100 s: far more frames than fit into the socket buffers
   CAPTURE(before, a.memory());
   REQUIRE(a.memory() < before + 16);
-  REQUIRE(a.host.errors().find("monitors") ==
-          a.host.errors().rfind("monitors"));  // only the line that reports the open port
+  // The only line about monitors reports the open port.
+  REQUIRE(a.host.errors().find("monitors") == a.host.errors().rfind("monitors"));
   monitors.back()->send("(killsim)");
+  REQUIRE_THROWS([&] {  // in lockstep the match ends with its next cycle
+    for (;;) a.witness->mustSeeTimePass();
+  }());
   REQUIRE(nlohmann::json::parse(a.host.line())["cycles"].get<int>() > 5000);
   REQUIRE(a.host.wait() == 0);
 }

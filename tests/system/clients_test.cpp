@@ -147,8 +147,8 @@ TEST_CASE(
              Catch::Contains(" are ready, and nothing more came for 0.5 s (joinWait): the match starts.") &&
                  !Catch::Contains("Of 3 expected agents 3 are ready"));
   Connection("127.0.0.1", host.monitorPort).send("(killsim)");
-  while (players.front()->play()) {
-  }
+  for (bool on = true; on;)  // in lockstep the match ends with its next cycle
+    for (auto& p : players) on &= p->play();
   CHECK(host.result()["agentsSeen"] == 3);
 }
 
