@@ -4,8 +4,8 @@
 
 namespace spark {
 
-/// `(he1 30 0 25 0.6 0)`: the controller of the joint above it, from now on: target angle [deg] and rate [deg/s],
-/// stiffness [Nm/rad], damping [N m s/rad] and torque [Nm].
+/// `(he1 30 0 25 0.6 0)`: sets the controller of the joint above it until the next command: target angle [deg] and rate
+/// [deg/s], stiffness [Nm/rad], damping [N m s/rad] and torque [Nm].
 class ControlEffector : public Effector {
   SPARK_CLASS(ControlEffector, Effector)
  public:
@@ -38,8 +38,8 @@ class ControlEffector : public Effector {
   double maxForce_ = HUGE_VAL;
 };
 
-/// `(name u)`: an actuator of MuJoCo on the joint above it: a force of gain u + bias - stiffness q - damping dq, for
-/// the joint's place q and rate dq [SI units].
+/// `(name u)`: a MuJoCo actuator on the joint above it. It applies the force gain u + bias - stiffness q - damping dq,
+/// with the joint's position q and rate dq [SI units].
 class ActuatorEffector : public Effector {
   SPARK_CLASS(ActuatorEffector, Effector)
  public:
@@ -52,8 +52,8 @@ class ActuatorEffector : public Effector {
     d.property("stiffness", &E::stiffness_).unit("Nm/rad").min(0).doc("Force per angle, against it; on a slider N/m.");
     d.property("damping", &E::damping_).unit("N m s").min(0).doc("Force per rate, against it; on a slider N s/m.");
     d.property("maxForce", &E::maxForce_).unit("Nm").min(0).doc("Largest force; on a slider N.");
-    d.property("least", &E::least_).unit("1").doc("Least control; smaller ones count as this.");
-    d.property("most", &E::most_).unit("1").doc("Largest control; larger ones count as this.");
+    d.property("least", &E::least_).unit("1").doc("Minimum control; smaller values are clamped to it.");
+    d.property("most", &E::most_).unit("1").doc("Maximum control; larger values are clamped to it.");
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();

@@ -21,7 +21,7 @@ std::vector<std::string> sparkhost(std::vector<std::string> more) {
   return c;
 }
 
-/// A host with a web server that keeps who is slow.
+/// A host whose web server does not disconnect slow clients.
 std::vector<std::string> webHost(const std::vector<std::string>& more) {
   return joined(
       sparkhost({"--set", "/sys/server/web.requestTimeout=3600", "--set", "/sys/server/web.stallTimeout=3600"}), more);
@@ -94,7 +94,7 @@ TEST_CASE("A second host reports and uses another port, and serves the page, the
   }
 }
 
-TEST_CASE("The scene has the shapes of what touches") {
+TEST_CASE("The scene contains the shapes of colliders") {
   Process host(webHost({"--config", "soccer-sphere.lua", "--web-port", "0"}));
   WebClient viewer(portOf(Json::parse(host.line())));
   REQUIRE(viewer.watch() == 101);
