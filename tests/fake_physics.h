@@ -52,6 +52,7 @@ class FakeJoint : public SceneNode, public IJoint, public IMotor {
   void setWorldAnchor(const Vec3&) override {}
   void setWorldAxis(int, const Vec3&) override {}
   double angle(int axis) const override { return angles[axis]; }
+  double sensedAngle(int axis) const override { return angles[axis]; }
   double angleRate(int axis) const override { return rates[axis]; }
   double parameter(engine::JointParameter p, int axis) const override {
     const auto found = parameters.find({p, axis});

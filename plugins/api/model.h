@@ -65,7 +65,10 @@ struct Body {
   /// whose place and velocity are its coordinates.
   Vec3 linkOrigin = Vec3::Zero();
   bool gravity = true;  ///< the world's gravity acts on the body
-  int joints = 0;       ///< number of attached joints
+  /// The body is no more than a link in a chain of joints, for a body with several joints: what it connects counts as
+  /// connected by one joint. An engine with joints of several axes may leave its mass to the next body.
+  bool connector = false;
+  int joints = 0;  ///< number of attached joints
 };
 
 /// Kinds of collision shapes.

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <iterator>
 
 namespace spark::mujoco {
@@ -114,6 +115,28 @@ Trees::Trees(const Model& model, const engine::State& state) {
     }
   for (Index i = 0; i < model.joints.size(); ++i)
     if (model.joints[i].a != kNone && !used[i]) leftOver.push_back(i);
+  mergeConnectors(model);
+}
+
+/// A connector with one child, without geoms, on a joint with one axis: a body of MuJoCo may have several of those.
+void Trees::mergeConnectors(const Model& model) {
+  const auto isMergeable = [&](const Link& link) {
+    if (link.joint == kNone || !model.bodies[link.body].connector) return false;
+    const JointType type = model.joints[link.joint].type;
+    return (type == JointType::hinge || type == JointType::slider) &&
+           std::none_of(model.geoms.begin(), model.geoms.end(), [&](const Geom& g) { return g.body == link.body; });
+  };
+  std::vector<int> children(links.size(), 0);
+  std::vector<Index> child(links.size(), kNone);
+  for (Index i = 0; i < links.size(); ++i)
+    if (links[i].parent != kNone) ++children[links[i].parent], child[links[i].parent] = i;
+  for (Index i = static_cast<Index>(links.size()); i-- > 0;) {
+    Link& link = links[i];
+    if (children[i] != 1 || links[child[i]].joint == kNone || !isMergeable(link)) continue;
+    const Link& next = links[child[i]];
+    link.carrier = next.carrier == kNone ? child[i] : next.carrier;
+    link.carrierInLink = next.carrier == kNone ? next.zero : compose(next.zero, next.carrierInLink);
+  }
 }
 
 std::string bodyName(Index body) { return fmt::format("b{}", body); }
@@ -232,11 +255,15 @@ struct Writer {
     if (link.joint == kNone) return put("<freejoint/>\n");
     const Joint& j = model.joints[link.joint];
     const double sign = link.childIsA ? 1 : -1;
-    const Vec3 at = (link.childIsA ? j.anchorA : j.anchorB) - model.bodies[link.body].linkOrigin;
+    // In the frame of the body that has the joint.
+    const Pose frame = inverse(link.carrierInLink);
+    const Index body = link.carrier == kNone ? link.body : trees.links[link.carrier].body;
+    const Vec3 anchor = link.childIsA ? j.anchorA : j.anchorB;
+    const Vec3 at = frame.position + frame.rotation * anchor - model.bodies[body].linkOrigin;
     const Mat3 parentInChild = link.zero.rotation.transpose();
     // Axis 1 is fixed in a, axis 2 in b; each in the child's frame, at zero.
     const auto inChild = [&](const Vec3& axis, bool inA) {
-      return Vec3(sign * (inA == link.childIsA ? axis : Vec3(parentInChild * axis)));
+      return Vec3(frame.rotation * (sign * (inA == link.childIsA ? axis : Vec3(parentInChild * axis))));
     };
     const auto axial = [&](int coordinate, const char* type, const Vec3& axis, const engine::JointAxis* own,
                            bool limited = true) {
@@ -300,20 +327,32 @@ struct Writer {
     }
   }
 
+  /// A link with its body, with the joints of the connectors before it, and all links below.
   void putLink(std::size_t index) {
+    Pose zero;
+    double merged = 0;  // mass of the connectors
+    const Index parent = trees.links[index].parent;
+    std::vector<std::size_t> chain;
+    for (;; index = children[index].front()) {
+      const Link& before = trees.links[index];
+      zero = compose(zero, before.zero);
+      chain.push_back(index);
+      if (before.carrier == kNone) break;
+      merged += model.bodies[before.body].mass;
+    }
     const Link& link = trees.links[index];
     const engine::Body& b = model.bodies[link.body];
     put(R"(<body name="{}")", bodyName(link.body));
-    Pose place = compose(link.zero, {b.linkOrigin, Mat3::Identity()});
-    if (link.parent != kNone) place.position -= model.bodies[trees.links[link.parent].body].linkOrigin;
+    Pose place = compose(zero, {b.linkOrigin, Mat3::Identity()});
+    if (parent != kNone) place.position -= model.bodies[trees.links[parent].body].linkOrigin;
     putPose(place);
     put(">\n");
     // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
     const auto [moments, axes] = principalAxes(b.inertia);
-    put(R"(<inertial mass="{:.17g}" diaginertia="{}")", b.mass, text(moments));
+    put(R"(<inertial mass="{:.17g}" diaginertia="{}")", b.mass + merged, text(moments));
     putPose({-b.linkOrigin, axes});
     put("/>\n");
-    putJoint(link);
+    for (const std::size_t i : chain) putJoint(trees.links[i]);
     for (const Index g : geoms[link.body]) putGeom(g);
     for (const Index child : children[index]) putLink(child);
     put("</body>\n");
@@ -330,7 +369,21 @@ struct Writer {
   }
 };
 
+/// One actuator for each coordinate with an axis; its numbers are written in each step.
+void putActuators(Writer& w) {
+  w.put("<actuator>\n");
+  for (const Link& link : w.trees.links) {
+    if (link.joint == kNone || w.model.joints[link.joint].type == JointType::ball) continue;
+    for (int c = 0; c < coordinatesOf(w.model.joints[link.joint].type); ++c)
+      w.put(R"(<general name="{0}" joint="{0}" gainprm="0" biastype="affine" biasprm="0 0 0"/>)",
+            jointName(link.joint, c));
+  }
+  w.put("</actuator>\n");
+}
+
 }  // namespace
+
+bool hasActuators(const Model& model) { return model.parameters.mujoco.integrator == "implicit"; }
 
 bool hasOwnDrag(const Model& model) {
   const engine::WorldParameters::Mujoco& o = model.parameters.mujoco;
@@ -360,7 +413,9 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, const Si
     if (model.geoms[i].body == kNone) w.putGeom(i);
   for (std::size_t i = 0; i < trees.links.size(); ++i)
     if (trees.links[i].parent == kNone) w.putLink(i);
-  w.put("</worldbody>\n</mujoco>\n");
+  w.put("</worldbody>\n");
+  if (hasActuators(model)) putActuators(w);
+  w.put("</mujoco>\n");
   return std::move(w.out);
 }
 

@@ -19,6 +19,9 @@ struct Link {
   Index joint = kNone;   ///< the joint to the parent, or of a root to the world; kNone: a root that is free
   bool childIsA = true;  ///< the body is body a of that joint
   Pose zero;             ///< of the body in its parent, or in the world, where the joint's coordinates are 0
+  /// A connector whose joint belongs to another body in MuJoCo: the link of that body; kNone: the link has a body.
+  Index carrier = kNone;
+  Pose carrierInLink;  ///< pose of the carrier in this link, where the coordinates between them are 0
 };
 
 /// The trees that joints make of the bodies of a model. Joints that close a loop, and angular motors, are left over.
@@ -26,6 +29,9 @@ struct Trees {
   std::vector<Link> links;
   std::vector<Index> leftOver;  ///< joints
   explicit Trees(const engine::Model& model, const engine::State& state);
+
+ private:
+  void mergeConnectors(const engine::Model& model);
 };
 
 /// Sizes of MuJoCo's buffers, which 2.2.2 has to be told.
@@ -45,6 +51,10 @@ int coordinatesOf(engine::JointType type);
 /// True when a medium drags at the bodies, and MuJoCo is not told: MujocoWorld does it, at a fraction of the cost. An
 /// implicit integrator needs MuJoCo's own.
 bool hasOwnDrag(const engine::Model& model);
+
+/// True when controllers are actuators of MuJoCo, named as their coordinates: an implicit integrator treats their
+/// damping implicitly.
+bool hasActuators(const engine::Model& model);
 
 /// The text. `step`: length of a step [s].
 std::string toMjcf(const engine::Model& model, const Trees& trees, double step, const Sizes& sizes);

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "api/joined_bodies.h"
+
 // Motors: MuJoCo solves dry friction of a joint as a constraint whose force is bounded, and which demands an
 // acceleration that brings the velocity to 0. With the motor's speed as reference in place of 0, and its force as the
 // bound, that is a motor as Spark has it: a constraint on the speed, with a bounded force.
@@ -62,8 +64,16 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, Trees trees, Co
     const Joint& j = model.joints[link.joint];
     from.joint = j.id;
     from.attachedAt = j.attachedAt;
-    if (j.type == JointType::ball) continue;
-    for (int c = 0; c < coordinatesOf(j.type); ++c) from.mujocoJoints[c] = id(mjOBJ_JOINT, jointName(link.joint, c));
+    for (int c = 0; c < coordinatesOf(j.type); ++c) {
+      const int joint = id(mjOBJ_JOINT, jointName(link.joint, c));
+      from.joints.push_back(joint);
+      if (j.type != JointType::ball) from.mujocoJoints[c] = joint;
+    }
+    std::sort(from.joints.begin(), from.joints.end());
+  }
+  if (hasActuators(model)) {
+    actuators_.assign(static_cast<std::size_t>(m_->njnt), -1);
+    for (int i = 0; i < m_->nu; ++i) actuators_[static_cast<std::size_t>(m_->actuator_trnid[2 * i])] = i;
   }
   geoms_.assign(m_->ngeom, 0);
   for (Index i = 0; i < model.geoms.size(); ++i)
@@ -105,20 +115,16 @@ void MujocoWorld::bind(const Model& model) {
   bodyId_.assign(model.bodies.size(), -1);
   motors_.assign(m_->nv, {});
   coordinates_.assign(model.joints.size(), {});
-  std::vector<std::uint8_t> inTree(model.joints.size(), 0);
   for (Index i = 0; i < trees_.links.size(); ++i) {
     Link& link = trees_.links[i];
     if (gone[rootOf_[i]]) link.body = link.joint = kNone;
     if (link.body == kNone) continue;
-    bodyId_[link.body] = origins_[i].mujocoBody;
+    bodyId_[link.body] = origins_[i].mujocoBody;  // -1: a connector without a body of its own
     if (link.joint == kNone) continue;
-    inTree[link.joint] = 1;
     bindMotors(model.joints[link.joint], link.joint, origins_[i].mujocoJoints);
   }
   joined_.clear();
-  for (Index i = 0; i < model.joints.size(); ++i)
-    if (const Joint& j = model.joints[i]; !inTree[i] && j.a != kNone && j.b != kNone)
-      joined_.push_back(pairOf(j.a, j.b));
+  engine::forEachJoined(model, [&](Index a, Index b) { joined_.push_back(pairOf(a, b)); });
   std::sort(joined_.begin(), joined_.end());
   geomOf_.assign(geoms_.size(), kNone);
   for (std::size_t i = 0; i < geoms_.size(); ++i) {
@@ -161,19 +167,22 @@ bool MujocoWorld::take(const Model& model, const State& state) {
       stale_[rootOf_[i]] = 1, any = true;
   if (!any) return false;
   for (Index i = 0; i < trees_.links.size(); ++i)
-    if (stale_[rootOf_[i]]) takeLink(model, state, trees_.links[i]);
+    if (stale_[rootOf_[i]] && trees_.links[i].body != kNone) takeLink(model, state, i);
   for (const DynamicState& s : state.bodies) s.mark = mark_;
   return true;
 }
 
-void MujocoWorld::takeLink(const Model& model, const State& state, const Link& link) {
+void MujocoWorld::takeLink(const Model& model, const State& state, Index index) {
+  const Link& link = trees_.links[index];
   const DynamicState& child = state.bodies[link.body];
   const DynamicState& parent = link.parent == kNone ? worldState() : state.bodies[trees_.links[link.parent].body];
-  const int body = bodyId_[link.body], first = m_->body_jntadr[body], count = m_->body_jntnum[body];
   const Mat3 delta = link.zero.rotation.transpose() * parent.rotation.transpose() * child.rotation;
   const Vec3 spin = child.angularVelocity - parent.angularVelocity;
   int hinges[2], hingeCount = 0;
-  for (int i = first; i < first + count; ++i) {
+  int free = 0;
+  std::span<const int> joints = origins_[index].joints;
+  if (link.joint == kNone) free = m_->body_jntadr[bodyId_[link.body]], joints = {&free, 1};
+  for (const int i : joints) {
     mjtNum *q = d_->qpos + m_->jnt_qposadr[i], *v = d_->qvel + m_->jnt_dofadr[i];
     switch (m_->jnt_type[i]) {
       case mjJNT_FREE: {
@@ -213,7 +222,7 @@ void MujocoWorld::takeLink(const Model& model, const State& state, const Link& l
     }
   }
   if (hingeCount == 0) return;
-  const auto axis = [&](int i) { return toVec(m_->jnt_axis + 3 * i); };
+  const auto axis = [&](int i) { return Vec3(link.carrierInLink.rotation * toVec(m_->jnt_axis + 3 * i)); };
   // Poses do not say how often a joint has turned.
   const auto setAngle = [&](int i, double angle) {
     const DofMotor& at = motors_[m_->jnt_dofadr[i]];
@@ -237,7 +246,38 @@ void MujocoWorld::takeLink(const Model& model, const State& state, const Link& l
   d_->qvel[m_->jnt_dofadr[hinges[1]]] = spin.dot(child.rotation * y);
 }
 
-void MujocoWorld::give(State& state) const {
+void MujocoWorld::giveConnector(const Model& model, State& state, Index index) const {
+  const Link& link = trees_.links[index];
+  const Joint& j = model.joints[link.joint];
+  const DynamicState& parent = link.parent == kNone ? worldState() : state.bodies[trees_.links[link.parent].body];
+  DynamicState& s = state.bodies[link.body];
+  const int id = origins_[index].joints.front();
+  const double q = d_->qpos[m_->jnt_qposadr[id]], rate = d_->qvel[m_->jnt_dofadr[id]];
+  const Pose zero = compose({parent.position, parent.rotation}, link.zero);
+  const Vec3 along = zero.rotation * link.carrierInLink.rotation * toVec(m_->jnt_axis + 3 * id);
+  if (j.type == JointType::slider) {
+    s.rotation = zero.rotation;
+    s.position = zero.position + q * along;
+    s.angularVelocity = parent.angularVelocity;
+    s.linearVelocity =
+        parent.linearVelocity + parent.angularVelocity.cross(s.position - parent.position) + rate * along;
+  } else {
+    const Vec3 anchor = zero.position + zero.rotation * (link.childIsA ? j.anchorA : j.anchorB);
+    const Mat3 turn = Eigen::AngleAxisd(q, along).toRotationMatrix();
+    s.rotation = turn * zero.rotation;
+    s.position = anchor + turn * (zero.position - anchor);
+    s.angularVelocity = parent.angularVelocity + rate * along;
+    s.linearVelocity = parent.linearVelocity + parent.angularVelocity.cross(anchor - parent.position) +
+                       s.angularVelocity.cross(s.position - anchor);
+  }
+  const Eigen::Quaterniond rotation(s.rotation);
+  s.quaternion = {rotation.w(), rotation.x(), rotation.y(), rotation.z()};
+  s.awake = true;
+  s.mark = mark_;
+  state.markMoved(link.body);
+}
+
+void MujocoWorld::give(const Model& model, State& state) const {
   for (Index i = 0; i < state.bodies.size(); ++i) {
     DynamicState& s = state.bodies[i];
     s.force.setZero();
@@ -253,6 +293,9 @@ void MujocoWorld::give(State& state) const {
     s.mark = mark_;
     state.markMoved(i);
   }
+  // Parents come first.
+  for (Index i = 0; i < trees_.links.size(); ++i)
+    if (trees_.links[i].carrier != kNone && trees_.links[i].body != kNone) giveConnector(model, state, i);
 }
 
 Vec3 MujocoWorld::armOf(int body) const {
@@ -399,7 +442,25 @@ void MujocoWorld::applyForces(const Model& model, const State& state) {
   }
 }
 
+void MujocoWorld::passControls(const State& state) {
+  for (int i = 0; i < m_->nu; ++i) mju_zero(m_->actuator_biasprm + mjNBIAS * i, 3);
+  for (const engine::AxisControl& c : state.controls) {
+    const auto [joint, sign] = coordinates_[c.joint][c.axis];
+    if (joint < 0) continue;
+    const int actuator = actuators_[static_cast<std::size_t>(joint)];
+    const engine::Control& own = c.control;
+    mjtNum* bias = m_->actuator_biasprm + mjNBIAS * actuator;
+    bias[0] = sign * (own.stiffness * own.position + own.damping * own.velocity + own.force);
+    bias[1] = -own.stiffness;
+    bias[2] = -own.damping;
+    m_->actuator_forcelimited[actuator] = std::isfinite(own.maxForce);
+    m_->actuator_forcerange[2 * actuator] = -own.maxForce;
+    m_->actuator_forcerange[2 * actuator + 1] = own.maxForce;
+  }
+}
+
 void MujocoWorld::applyControls(const State& state) {
+  if (!actuators_.empty()) return passControls(state);
   for (const engine::AxisControl& c : state.controls) {
     const auto [joint, sign] = coordinates_[c.joint][c.axis];
     if (joint < 0) continue;
@@ -475,7 +536,7 @@ void MujocoWorld::step(engine::Step& step) {
     take(step.model, step.state);
     prepareAgain(step.model);
   }
-  give(step.state);
+  give(step.model, step.state);
   // The physics server puts bodies back whose speed is none.
   for (const Index i : stopped) step.state.bodies[i].linearVelocity.setConstant(HUGE_VAL);
 }

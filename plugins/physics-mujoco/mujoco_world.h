@@ -44,9 +44,11 @@ class MujocoWorld {
   /// Writes to MuJoCo's coordinates the state of those trees in which other code has written a body. False: there was
   /// none.
   bool take(const engine::Model& model, const engine::State& state);
-  void takeLink(const engine::Model& model, const engine::State& state, const Link& link);
+  void takeLink(const engine::Model& model, const engine::State& state, Index index);
+  /// Computes pose and velocity of a connector whose joint belongs to another body in MuJoCo.
+  void giveConnector(const engine::Model& model, engine::State& state, Index index) const;
   /// Writes MuJoCo's poses and velocities to the state.
-  void give(engine::State& state) const;
+  void give(const engine::Model& model, engine::State& state) const;
   /// Positions, contacts and constraints of the present coordinates.
   void prepare(const engine::Model& model);
   /// The same in a step, where the contacts of the last detect() have another order then: their forces are not read.
@@ -60,6 +62,8 @@ class MujocoWorld {
   Vec3 velocityOf(int body) const;
   void passSpeeds(const engine::State& state);
   void applyControls(const engine::State& state);
+  /// Writes the controllers' numbers to the actuators.
+  void passControls(const engine::State& state);
   /// Steps from the present coordinates. Returns false when MuJoCo met numbers that are too large or
   /// none; all coordinates are to be reset then.
   bool run(engine::Step& step);
@@ -75,6 +79,7 @@ class MujocoWorld {
     std::uint64_t body = 0, joint = 0, attachedAt = 0;
     int mujocoBody = -1;
     std::array<int, 3> mujocoJoints{-1, -1, -1};
+    std::vector<int> joints;  ///< all of the link, in MuJoCo's order
   };
 
   Trees trees_;                       ///< kNone as body and joint of a link: its tree is gone
@@ -92,7 +97,8 @@ class MujocoWorld {
     double sign = 1;
   };
   std::vector<std::array<Coordinate, 3>> coordinates_;  ///< by joint and axis of the angle
-  std::vector<std::uint64_t> joined_;                   ///< pairs of bodies that a left over joint connects, sorted
+  std::vector<int> actuators_;                          ///< by MuJoCo's joint: its actuator; empty: there are none
+  std::vector<std::uint64_t> joined_;                   ///< pairs of bodies that joints connect, sorted
   std::vector<std::uint64_t> ghosts_;                   ///< pairs of geoms whose contacts are not solved, sorted
   /// A force, and its torque about the centre of mass of the tree.
   struct Wrench {

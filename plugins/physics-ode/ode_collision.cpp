@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "api/joined_bodies.h"
 #include "spark/prefetch.h"
 
 namespace spark {
@@ -200,10 +201,8 @@ void listByBody(CollisionWorld& w, const Model& model) {
     for (auto g = static_cast<Index>(model.geoms.size()); g-- > 0;)
       if (model.geoms[g].body != kNone) visit(model.geoms[g].body, g);
   });
-  sortByBody(w.firstJoined, w.joinedTo, [&](auto visit) {
-    for (const engine::Joint& j : model.joints)
-      if (j.b != kNone) visit(j.a, j.b), visit(j.b, j.a);
-  });
+  sortByBody(w.firstJoined, w.joinedTo,
+             [&](auto visit) { engine::forEachJoined(model, [&](Index a, Index b) { visit(a, b), visit(b, a); }); });
   for (std::size_t i = 0; i < n; ++i)
     std::sort(w.joinedTo.begin() + w.firstJoined[i], w.joinedTo.begin() + w.firstJoined[i + 1]);
 }

@@ -17,6 +17,10 @@ void RigidBody::describe(Description<RigidBody>& d) {
   d.property("angularVelocity", &B::angularVelocity, &B::setAngularVelocity)
       .unit("rad/s")
       .doc("Angular velocity, in the world.");
+  d.property("connector", &B::connector, &B::setConnector)
+      .doc(
+          "The body only links two joints of a body that has several: what it connects counts as connected by one "
+          "joint, and does not collide.");
   d.property("linkOrigin", &B::linkOrigin, &B::setLinkOrigin)
       .unit("m")
       .doc(
@@ -84,6 +88,7 @@ void RigidBody::onLink() {
   world_->setRotation(body_, pose.rotation);
   world_->setMass(body_, mass_);
   world_->setLinkOrigin(body_, linkOrigin_);
+  world_->setConnector(body_, connector_);
   world_->setGravityMode(body_, gravity_);
 }
 
@@ -154,6 +159,11 @@ void RigidBody::enable() {
 
 void RigidBody::disable() {
   if (world_) world_->setEnabled(body_, false);
+}
+
+void RigidBody::setConnector(bool on) {
+  connector_ = on;
+  if (world_) world_->setConnector(body_, on);
 }
 
 void RigidBody::setLinkOrigin(const Vec3& origin) {

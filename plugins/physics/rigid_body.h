@@ -107,6 +107,8 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   Vec3 angularVelocity() const { return state().angularVelocity; }
   void disable();
   const Vec3& linkOrigin() const { return linkOrigin_; }
+  bool connector() const { return connector_; }
+  void setConnector(bool on);
   void setLinkOrigin(const Vec3& origin);
   bool usesGravity() const { return gravity_; }
   void useGravity(bool on);
@@ -118,6 +120,7 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   Ref<World> worldNode_;
   Vec3 shift_ = Vec3::Zero();         ///< position of the original origin in the body's frame [m]
   Vec3 pendingShift_ = Vec3::Zero();  ///< the part of it that takeShift() has not returned yet [m]
+  bool connector_ = false;            ///< see Body::connector
   Vec3 linkOrigin_ = Vec3::Zero();    ///< see Body::linkOrigin
   bool gravity_ = true;
   bool placed_ = false;  ///< the body sleeps and its transform is up to date

@@ -202,6 +202,11 @@ void WorldModel::setLinkOrigin(BodyHandle body, const Vec3& origin) {
   ++model_.dynamics;
 }
 
+void WorldModel::setConnector(BodyHandle body, bool on) {
+  model_.bodies[bodies_[body]].connector = on;
+  ++model_.structure;
+}
+
 void WorldModel::setGravityMode(BodyHandle body, bool on) {
   model_.bodies[bodies_[body]].gravity = on;
   ++model_.dynamics;

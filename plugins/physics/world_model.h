@@ -124,6 +124,8 @@ class WorldModel {
   void setEnabled(BodyHandle body, bool on);
   /// False: the body sleeps.
   bool enabled(BodyHandle body) const { return of(body).awake; }
+  /// See Body::connector.
+  void setConnector(BodyHandle body, bool on);
   /// See Body::linkOrigin.
   void setLinkOrigin(BodyHandle body, const Vec3& origin);
   /// False: gravity does not act on the body.

@@ -89,7 +89,9 @@ void BodyBuilder::makeJoints(const PlacedBody& p) {
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     const std::string name = c_.names.body(fmt::format("{}-{}", p.body->name, k + 1), "between");
     Node& between = transformAt(name, bodyPose(p));
-    setPose(makeRigidBody(between, p, kBetween), bodyPose(p));
+    Leaf& connector = makeRigidBody(between, p, kBetween);
+    setProperty(connector, "connector", true);
+    setPose(connector, bodyPose(p));
     makeJoint(p, joints[k], between, parent);
     parent = bodyPath(name);
   }

@@ -93,8 +93,8 @@ class Shell:
 
     def __init__(self, home, build):
         self.home, self.build, self.shells, self.blocks = home, build, [], 0
-        self.sockets = home / ".sockets"  # of hosts of this page alone
-        self.sockets.mkdir(mode=0o700)
+        self.own = home / ".own"  # sparkctl looks for sockets of hosts in both folders: it must find this page's alone
+        self.own.mkdir(mode=0o700)
         self.state = home / ".state"
         self.state.write_text(f"cd {SOURCES}\n")
 
@@ -105,7 +105,7 @@ class Shell:
         """bash with these commands, which leave their folder and environment to the next block."""
         commands = re.sub(r"(\$PWD/)?build/release", lambda _: self.build, commands)
         script = f". {self.state}\nset -eo pipefail\n{commands}\n{{ export -p; echo \"cd '$PWD'\"; }} >{self.state}\n"
-        environment = {**os.environ, "HOME": str(self.home), "XDG_RUNTIME_DIR": str(self.sockets), "CXXFLAGS": "-Wall -Wextra -Werror", "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
+        environment = {**os.environ, "HOME": str(self.home), "XDG_RUNTIME_DIR": str(self.own), "TMPDIR": str(self.own), "CXXFLAGS": "-Wall -Wextra -Werror", "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
         environment.pop("PYTHONUNBUFFERED", None)  # a line in pieces would have others' lines between them
         return self.running(subprocess.Popen(["bash", "-c", script], stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT, env=environment,
                                              start_new_session=True))
