@@ -11,10 +11,10 @@ namespace spark::mjcf {
 /// Reads geoms: their shapes, their masses and their numbers of contacts. Its parts must outlive it.
 class GeomReader {
  public:
-  GeomReader(const Compiler& compiler, Meshes& meshes, LeftOver& leftOver)
-      : compiler_(compiler), meshes_(meshes), leftOver_(leftOver) {}
-  /// Reads an element `geom` of `body`; `frame`: of the `frame` elements around. nullopt for a geom that is left out,
-  /// or that is only seen and has a mesh. Throws Error.
+  GeomReader(const Compiler& compiler, Meshes& meshes, Unsupported& unsupported)
+      : compiler_(compiler), meshes_(meshes), unsupported_(unsupported) {}
+  /// Reads an element `geom` of `body`; `frame`: of the `frame` elements around. nullopt for a geom that is not
+  /// supported, or that is only seen and has a mesh. Throws Error.
   std::optional<Geom> read(Attributes& a, const Body& body, const Pose& frame);
 
  private:
@@ -24,7 +24,7 @@ class GeomReader {
 
   const Compiler& compiler_;
   Meshes& meshes_;
-  LeftOver& leftOver_;
+  Unsupported& unsupported_;
 };
 
 }  // namespace spark::mjcf

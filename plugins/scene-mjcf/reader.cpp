@@ -32,8 +32,8 @@ engine::MujocoAxis firmness(Attributes& a) {
 
 }  // namespace
 
-Model readModel(Document& document, const ReadMesh& readMesh, LeftOver& leftOver) {
-  return Reader(document, readMesh, leftOver).read();
+Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsupported) {
+  return Reader(document, readMesh, unsupported).read();
 }
 
 Model Reader::read() {
@@ -50,7 +50,7 @@ Model Reader::read() {
   for (const Element& e : sections)
     if (std::find(std::begin(kSections), std::end(kSections), e.tag()) == std::end(kSections) &&
         !kNotSimulated.contains(e.tag()))
-      leftOver_.element(e);
+      unsupported_.element(e);
   return std::move(model_);
 }
 
@@ -85,7 +85,7 @@ void Reader::count(const Element& e) {
 Attributes Reader::attributes(const Element& e, const std::string& childClass) {
   count(e);
   const char* const own = e.node.attribute("class").value();
-  return Attributes(e, defaults_, *own ? own : childClass, leftOver_);
+  return Attributes(e, defaults_, *own ? own : childClass, unsupported_);
 }
 
 // ---- options and assets ----
@@ -116,12 +116,44 @@ void Reader::option(const Element& e) {
     const std::string wanted = a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, "");
     const std::string taken = wanted == "RK4" ? "Euler" : wanted == "implicitfast" ? "implicit" : wanted;
     if (wanted != taken)
-      leftOver_.add(e, fmt::format("the integrator {} is left out; {} takes its place", wanted, taken));
+      unsupported_.add(e, fmt::format("the integrator {} is not supported; {} is used in its place", wanted, taken));
     set("mujocoIntegrator", taken);
   }
   a.ignore({"jacobian"});
   a.finish();
-  for (const Element& child : document_.children(e)) leftOver_.element(child);
+  for (const Element& child : document_.children(e))
+    if (child.tag() == "flag")
+      flags(child);
+    else
+      unsupported_.element(child);
+}
+
+void Reader::flags(const Element& e) {
+  Attributes a = attributes(e);
+  const auto on = [&](const char* name, const char* usual = "enable") {
+    return a.word(name, {"enable", "disable"}, usual) == "enable";
+  };
+  Flags& f = model_.flags;
+  f.contact = f.contact && on("contact");
+  f.limit = f.limit && on("limit");
+  f.frictionLoss = f.frictionLoss && on("frictionloss");
+  f.passive = f.passive && on("passive");
+  f.actuation = f.actuation && on("actuation");
+  f.clampControl = f.clampControl && on("clampctrl");
+  if (!on("constraint")) f.contact = f.limit = f.frictionLoss = false;
+  const auto set = [&](const char* property, Value v) { model_.options.push_back({e, property, std::move(v)}); };
+  if (!on("gravity")) set("gravity", List{0.0, 0.0, 0.0});
+  if (!f.passive) set("mujocoDensity", 0.0), set("mujocoViscosity", 0.0);
+  const auto refuse = [&](const char* name, bool is, const char* value) {
+    if (is) unsupported_.add(e, fmt::format("the flag {}=\"{}\" is not supported", name, value));
+  };
+  for (const char* const name : {"filterparent", "refsafe", "nativeccd", "eulerdamp", "midphase"})
+    refuse(name, !on(name), "disable");
+  for (const char* const name : {"override", "multiccd", "invdiscrete", "island"})
+    refuse(name, on(name, "disable"), "enable");
+  // Without effect here: there is nothing that they switch, or results are the same.
+  a.ignore({"equality", "warmstart", "sensor", "energy", "fwdinv", "sensornoise", "autoreset"});
+  a.finish();
 }
 
 void Reader::asset(const Element& e) {
@@ -129,7 +161,7 @@ void Reader::asset(const Element& e) {
     Attributes a = attributes(e);
     meshes_.add(a, document_.folder() + compiler_.meshFolder());
   } else if (e.tag() != "material" && e.tag() != "texture") {
-    leftOver_.element(e);
+    unsupported_.element(e);
   }
 }
 
@@ -153,7 +185,7 @@ void Reader::content(const Element& parent, const Scope& scope) {
     else if (tag == "inertial")
       inertial(e, model_.bodies[static_cast<std::size_t>(scope.body)]);
     else if (!kNotSimulated.contains(tag))
-      leftOver_.element(e);
+      unsupported_.element(e);
   }
 }
 
@@ -165,6 +197,9 @@ void Reader::body(const Element& e, const Scope& scope) {
   b.name = a.text("name");
   b.parent = scope.body;
   b.pose = compiler_.pose(a, scope.frame);
+  b.gravityCompensation = a.number("gravcomp", 0);
+  if (a.has("mocap") && a.flag("mocap", false))
+    unsupported_.add(e, "a body that a program moves (mocap) is not supported: it stays at its place");
   const std::string childClass = a.text("childclass", scope.childClass.c_str());
   a.ignore({"user"});
   a.finish();
@@ -214,7 +249,7 @@ Joint Reader::freeJoint(const Element& e) {
   j.from = e;
   j.kind = JointKind::free;
   count(e);
-  Attributes a(e, leftOver_);
+  Attributes a(e, unsupported_);
   j.name = a.text("name");
   a.ignore({"group", "align"});
   a.finish();
@@ -238,26 +273,36 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   j.position = scope.frame.position + scope.frame.rotation * j.position;
   if (!(j.axis.norm() > 1e-10)) throw e.error("expected an axis that is not 0");
   j.axis = scope.frame.rotation * j.axis.normalized();
-  const auto range = a.numbers("range", 2, 2);
+  j.reference = inUnits(a.number("ref", 0));
+  Limit limit, force;
+  limit.read(a, "limited", "range");
+  force.read(a, "actuatorfrclimited", "actuatorfrcrange");
   if (j.kind == JointKind::ball || j.kind == JointKind::free) {
     for (const char* name : {"range", "armature", "damping", "frictionloss", "stiffness"})
-      if (a.has(name)) leftOver_.add(e, fmt::format("the attribute '{}' of a {} joint is left out", name, kind));
-  } else {
-    j.limited = compiler_.limited(a, "limited", "range", range);
-    if (range) j.range = {inUnits((*range)[0]), inUnits((*range)[1])};
+      if (a.has(name))
+        unsupported_.add(e, fmt::format("the attribute '{}' of a {} joint is not supported", name, kind));
+  } else if (const auto range = compiler_.limit(e, "range", limit)) {
+    j.limited = true;
+    j.range = {inUnits((*range)[0]) - j.reference, inUnits((*range)[1]) - j.reference};
   }
   j.armature = a.number("armature", 0);
   j.damping = a.number("damping", 0);
   j.dryFriction = a.number("frictionloss", 0);
   j.stiffness = a.number("stiffness", 0);
-  j.springAngle = inUnits(a.number("springref", 0));
-  if (a.number("ref", 0) != 0)
-    leftOver_.add(e, "the attribute 'ref' of <joint> is left out: angles count from the initial pose");
-  const auto force = a.numbers("actuatorfrcrange", 2, 2);
-  if (compiler_.limited(a, "actuatorfrclimited", "actuatorfrcrange", force))
-    j.maxForce = std::max(std::abs((*force)[0]), std::abs((*force)[1]));
+  for (const auto& [name, value] : {std::pair{"armature", &j.armature}, std::pair{"damping", &j.damping},
+                                    std::pair{"frictionloss", &j.dryFriction}, std::pair{"stiffness", &j.stiffness}})
+    if (*value < 0) {
+      unsupported_.add(e, fmt::format("the attribute '{}' of <joint> below 0 is not supported", name));
+      *value = 0;
+    }
+  j.springPosition = inUnits(a.number("springref", 0)) - j.reference;
+  if (const auto range = compiler_.limit(e, "actuatorfrcrange", force)) {
+    j.maxForce = std::max(std::abs((*range)[0]), std::abs((*range)[1]));
+    if ((*range)[0] != -(*range)[1])
+      unsupported_.add(e, "an actuatorfrcrange that is not symmetric is taken as symmetric");
+  }
   j.numbers = firmness(a);
-  a.ignore({"group", "user", "limited"});
+  a.ignore({"group", "user"});
   a.finish();
   return j;
 }
@@ -291,12 +336,23 @@ void Reader::finishMasses() {
     }
     compiler_.raise(b.mass);
   }
+  scaleMasses();
+}
+
+void Reader::scaleMasses() {
+  double total = 0;
+  for (const Body& b : model_.bodies) total += b.mass.mass;
+  if (!(compiler_.totalMass() > 0) || !(total > 0)) return;
+  for (Body& b : model_.bodies) {
+    b.mass.mass *= compiler_.totalMass() / total;
+    b.mass.inertia *= compiler_.totalMass() / total;
+  }
 }
 
 // ---- contact, actuators, sensors ----
 
 void Reader::contact(const Element& e) {
-  if (e.tag() != "exclude" && e.tag() != "pair") return leftOver_.element(e);
+  if (e.tag() != "exclude" && e.tag() != "pair") return unsupported_.element(e);
   Attributes a = attributes(e);
   if (e.tag() == "exclude")
     model_.exclusions.push_back({e, a.text("body1"), a.text("body2")});
@@ -320,7 +376,8 @@ void Reader::sensor(const Element& e) {
   for (const char* object : {"joint", "site", "objname"})
     if (s.object.empty()) s.object = a.text(object);
   s.objectType = a.text("objtype");
-  a.ignore({"noise", "user"});
+  s.reference = a.text("refname");
+  a.ignore({"noise", "user", "reftype", "body", "actuator", "tendon", "dim", "datatype", "needstage"});
   a.finish();
   model_.sensors.push_back(s);
 }

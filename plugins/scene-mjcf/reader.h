@@ -13,8 +13,8 @@ namespace spark::mjcf {
 /// One run over a document.
 class Reader {
  public:
-  Reader(Document& document, const ReadMesh& readMesh, LeftOver& leftOver)
-      : document_(document), leftOver_(leftOver), meshes_(readMesh) {}
+  Reader(Document& document, const ReadMesh& readMesh, Unsupported& unsupported)
+      : document_(document), unsupported_(unsupported), meshes_(readMesh) {}
   Model read();
 
  private:
@@ -31,6 +31,7 @@ class Reader {
   Attributes attributes(const Element& e, const std::string& childClass = "");
   void section(const Element& e);
   void option(const Element& e);
+  void flags(const Element& e);
   void asset(const Element& e);
   void content(const Element& parent, const Scope& scope);
   void body(const Element& e, const Scope& scope);
@@ -42,18 +43,19 @@ class Reader {
   void geom(const Element& e, const Scope& scope);
   void site(const Element& e, const Scope& scope);
   void finishMasses();
+  void scaleMasses();
   void contact(const Element& e);
   void actuator(const Element& e);
   void sensor(const Element& e);
 
   Document& document_;
-  LeftOver& leftOver_;
+  Unsupported& unsupported_;
   Model model_;
   Compiler compiler_;
   Defaults defaults_;
   Meshes meshes_;
-  GeomReader geoms_{compiler_, meshes_, leftOver_};
-  ActuatorReader actuators_{compiler_, defaults_, leftOver_};
+  GeomReader geoms_{compiler_, meshes_, unsupported_};
+  ActuatorReader actuators_{compiler_, defaults_, unsupported_};
   std::size_t elements_ = 0;
 };
 
