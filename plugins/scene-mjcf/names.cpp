@@ -49,7 +49,7 @@ std::string Names::collider(const Node& parent, const std::string& given) {
                    [&](const std::string& name) { return !parent.child(name) && colliders_.insert(name).second; });
 }
 
-std::string Names::message(std::set<std::string>& taken, const std::string& given) {
+std::string Names::message(std::set<std::string, std::less<>>& taken, const std::string& given) {
   return firstFree(replaced(given, " ()\"';\\"), [&](const std::string& name) { return taken.insert(name).second; });
 }
 

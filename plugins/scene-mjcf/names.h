@@ -31,10 +31,10 @@ class Names {
 
  private:
   std::string treeName(const std::string& prefix, const std::string& given, const char* kind);
-  static std::string message(std::set<std::string>& taken, const std::string& given);
+  static std::string message(std::set<std::string, std::less<>>& taken, const std::string& given);
 
   std::string prefix_;
-  std::set<std::string> bodies_, colliders_, perceptors_, effectors_;
+  std::set<std::string, std::less<>> bodies_, colliders_, perceptors_, effectors_;
   int unnamed_ = 0;
 };
 

@@ -29,7 +29,7 @@ class SensorBuilder {
   void refuse(const Sensor& s, const std::string& why);
 
   Construction& c_;
-  std::map<std::string, Node*> frames_;  ///< transforms made for sensors, by kind and name of the object
+  std::map<std::string, Node*, std::less<>> frames_;  ///< transforms made for sensors, by kind and name of the object
 };
 
 }  // namespace spark::mjcf
