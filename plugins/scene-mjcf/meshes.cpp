@@ -87,10 +87,13 @@ void Meshes::load(Asset& m, Unsupported& unsupported) {
   Mesh mesh;
   mesh.surface = surfaceOf(m);
   mesh.surface.shape = engine::Shape::mesh;
+  // In single precision at each stage, as in MuJoCo.
+  const auto rounded = [](const Vec3& at) { return Vec3(at.cast<float>().cast<double>()); };
   std::vector<double>& v = mesh.surface.vertices;
   for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
     Eigen::Map<Vec3> at(v.data() + i);
-    at = (m.rotation.transpose() * (at - m.origin)).cwiseProduct(m.scale);
+    const Vec3 moved = rounded(rounded(at) - m.origin);
+    at = rounded(rounded(m.rotation.transpose() * moved).cwiseProduct(m.scale));
     if (!at.allFinite()) throw m.from.error("expected vertices of finite numbers");
   }
   try {
