@@ -1,10 +1,13 @@
-# The ABI of public headers: what a plugin was compiled with is compared with what its host was built with, header by header.
+# ABI check of public headers: the versions of the headers with which a plugin was compiled are compared with those of
+# its host, header by header.
 
-# spark_header_hash(<out> <header>): 16 digits of the text that the compiler works on, that is, without comments, blank lines and runs of blanks.
+# spark_header_hash(<out> <header>): a hash of 16 hexadecimal digits of the header's text without comments, blank lines
+# and repeated blanks.
 function(spark_header_hash out header)
   file(READ ${header} rest)
   set(text "")
-  # Code up to the next quote or slash, then a text or a character, in which // begins no comment, or a comment, or that one character.
+  # Matches code up to the next quote or slash, then one of: a string or character literal, in which // does not begin a
+  # comment; a comment; that single character.
   while(rest MATCHES "^([^\"'/]*)(\"([^\"\\\n]|\\\\.)*\"|'([^'\\\n]|\\\\.)*'|//[^\n]*|/[*]([^*]|[*]+[^*/])*[*]+/|.)")
     set(code "${CMAKE_MATCH_1}")
     set(token "${CMAKE_MATCH_2}")
@@ -22,9 +25,10 @@ function(spark_header_hash out header)
   set(${out} ${hash} PARENT_SCOPE)
 endfunction()
 
-# spark_stamp_headers(<out> <folder> <root>...): writes into <folder>, for each header spark/x.h or api/x.h of the include folders <root>, the
-# stamp spark/abi/api/x.h that the header includes; <out> is the list of "api/x.h HASH". Every object file lists the stamps of the headers that
-# it was compiled with in its section spark_headers; the linker joins the lists, and the plugin's descriptor says where the list is.
+# spark_stamp_headers(<out> <folder> <root>...): writes into <folder>, for each header spark/x.h or api/x.h of the
+# include folders <root>, the stamp spark/abi/api/x.h that the header includes; <out> is the list of "api/x.h HASH".
+# Every object file lists the stamps of its headers in the section spark_headers; the linker concatenates the lists, and
+# the plugin's descriptor points to the result.
 function(spark_stamp_headers out folder)
   set(stamps)
   foreach(root ${ARGN})

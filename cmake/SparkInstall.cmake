@@ -19,7 +19,7 @@ set(SPARK_INSTALL_SHARE ${CMAKE_INSTALL_DATADIR}/spark)
 configure_package_config_file(cmake/SparkConfig.cmake.in ${CMAKE_BINARY_DIR}/SparkConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Spark PATH_VARS SPARK_INSTALL_PLUGINS SPARK_INSTALL_SHARE)
 
-# Documentation: in the tree's own folders, so that links lead somewhere.
+# Documentation, in the same folders as in the source tree, so that links between pages work.
 file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} *.md LICENSE docs/*.md docs/pictures/*.png docs/pictures/*.svg lua/*.md scenes/*.md plugins/README.md plugins/*/README.md tools/*/README.md tools/agents/*/README.md tests/*/README.md
   plugins/sensors/gyro_rate_perceptor.h)
 foreach(page ${pages})

@@ -1,5 +1,5 @@
 # spark_plugin(<name> SOURCES ... [LIBRARIES ...]): one plugin, <name>.so, target plugin-<name>.
-# Used by Spark's own plugins and, from the installed package, by anybody's.
+# Used by Spark's own plugins and, from the installed package, by plugins of other projects.
 function(spark_plugin name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   set(target plugin-${name})

@@ -1,9 +1,9 @@
-# Everything that `cmake --install` copies is built by one target: `programs`.
+# The target `programs` builds everything that `cmake --install` copies.
 if(NOT TARGET programs)
   add_custom_target(programs)
 endif()
 
-# spark_program(<target>...): programs that are installed, and find the libraries of core/ beside them.
+# spark_program(<target>...): installs programs, which find the libraries of core/ by a relative path.
 function(spark_program)
   foreach(target ${ARGN})
     set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")

@@ -1,4 +1,4 @@
-# Compiler settings of the project itself, and what is generated for its headers.
+# Compiler settings of the project itself, and the generated headers.
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
@@ -10,12 +10,13 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} ${CCACHE})
 endif()
 
-# Several sources at a time: their headers are read and their templates made once. OFF shows what a source forgot to include.
+# Unity builds compile several sources at a time, so that headers are parsed and templates instantiated only once. With
+# OFF, missing includes are detected.
 option(SPARK_UNITY "Compile the sources of a target together" ON)
 set(CMAKE_UNITY_BUILD ${SPARK_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 
-# A faster linker, where there is one.
+# Use a faster linker if it is available.
 find_program(SPARK_MOLD mold)
 if(SPARK_MOLD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_link_options(-fuse-ld=mold)
@@ -26,19 +27,19 @@ set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 
-# g++ 12 warns falsely of std::variant members (maybe-uninitialized).
-# Same digits in every build: no contraction of a*b+c, no fast math.
+# g++ 12 has false positives of maybe-uninitialized for members of std::variant.
+# No contraction of a*b+c and no fast math, so that every build gives the same digits.
 add_compile_options(-Wall -Wextra -Wpedantic -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   add_compile_options(-Wno-gnu-zero-variadic-macro-arguments)
 endif()
 if(SPARK_SANITIZER STREQUAL "address")
-  # The four that are left out take a third of the compiler's time. Null pointers end a program anyway.
+  # The four disabled checks would take a third of the compile time. Null pointers end a program anyway.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=null,alignment,vptr,object-size -fno-sanitize-recover=undefined
     -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
 elseif(SPARK_SANITIZER STREQUAL "thread")
-  # Boost.Asio uses fences that the thread sanitizer does not model; g++ says so at every use.
+  # Boost.Asio uses fences that the thread sanitizer does not model; g++ warns about every use.
   add_compile_options(-fsanitize=thread -fno-omit-frame-pointer $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
   add_link_options(-fsanitize=thread)
 endif()

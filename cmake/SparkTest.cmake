@@ -1,20 +1,23 @@
-# SPARK_REFERENCE_DIR of the environment in which ctest runs counts; the value of the configuration is its default.
+# The tests use SPARK_REFERENCE_DIR of the environment in which ctest runs; the value from the configuration is the
+# default.
 file(WRITE ${CMAKE_BINARY_DIR}/environment.cmake "if(NOT DEFINED ENV{SPARK_REFERENCE_DIR})\n  set(ENV{SPARK_REFERENCE_DIR} [==[${SPARK_REFERENCE_DIR}]==])\nendif()\n")
 if(SPARK_SANITIZER STREQUAL "address")
-  # Until g++ 13 the leak detector takes some thread-local blocks for those of an old C library, reads beside them, and dies.
+  # Before g++ 13, the leak detector mistakes some thread-local blocks for those of an old C library, reads out of
+  # bounds and crashes.
   file(APPEND ${CMAKE_BINARY_DIR}/environment.cmake "set(ENV{ASAN_OPTIONS} \"intercept_tls_get_addr=0:\$ENV{ASAN_OPTIONS}\")\n")
 endif()
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_BINARY_DIR}/environment.cmake)
 
-# Tests run for seconds and are compiled for minutes.
+# Optimize for compile time: tests run for seconds, but compiling them takes minutes.
 set(SPARK_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
 
-# Seconds after which a test is taken for one that hangs: a last resort, however slow and busy a machine is. The second
-# is for tests that take a minute on a fast one, or wait for programs with the patience of tests/patience.h.
-set(SPARK_TEST_TIMEOUT 3600)
-set(SPARK_LONG_TEST_TIMEOUT 21600)
+# Seconds after which a test is considered to hang. These are last resorts, long enough for slow and busy machines. The
+# second one is for tests that take a minute on a fast machine, or wait for programs with the patience of
+# tests/patience.h.
+set(SPARK_TEST_TIMEOUT 2400)
+set(SPARK_LONG_TEST_TIMEOUT 4800)
 
-# Makes a test wait for a plugin; called last, when all plugins are known.
+# Makes a test depend on a plugin. It is called last, when all plugins are known.
 function(spark_test_needs target plugin)
   if(TARGET plugin-${plugin})
     add_dependencies(${target} plugin-${plugin})
@@ -23,10 +26,12 @@ function(spark_test_needs target plugin)
   endif()
 endfunction()
 
-# spark_test(<name> SOURCES ... [PROGRAM ...] [LIBRARIES ...] [LABELS ...] [PLUGINS ...] [NEEDS ...] [TIMEOUT ...]): a test of ctest's.
-# PROGRAM: the Catch2 program test-<program> that holds it, <name> by default. Several tests may name one program: their sources are compiled
-# together, and each runs the test cases of its own *_test.cpp in a process of its own.
-# PLUGINS: names of plugins that must be built first; NEEDS: other targets that must. Exit code 77 counts as skipped.
+# spark_test(<name> SOURCES ... [PROGRAM ...] [LIBRARIES ...] [LABELS ...] [PLUGINS ...] [NEEDS ...] [TIMEOUT ...]): a
+# ctest test.
+# PROGRAM: the Catch2 program test-<program> that contains it, <name> by default. Several tests may share a program:
+# their sources are compiled together, and each test runs the test cases of its own *_test.cpp in a separate process.
+# PLUGINS: names of plugins that must be built first; NEEDS: other targets that must be built first.
+# Exit code 77 counts as skipped.
 function(spark_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT;PROGRAM" "SOURCES;LIBRARIES;LABELS;PLUGINS;NEEDS" ${ARGN})
   if(NOT SPARK_BUILD_TESTS)

@@ -3,8 +3,9 @@
 --
 --     sparkhost --config crowd.lua --set agents=1000
 --
--- Agents join as in soccer: (scene rsg/agent/sphere.rsg), then (init (unum n)(teamname A)) or B, which moves them to
--- the field side by side, and (drive x y z) from then on; over the network, or as behaviours below /usr/agent.
+-- Agents join as in soccer: (scene rsg/agent/sphere.rsg), then (init (unum n)(teamname A)) or B, which places them side
+-- by side on the field, and (drive x y z) from then on. They connect over the network, or run as behaviours below
+-- /usr/agent.
 include "house.lua"
 include "materials.lua"
 include "soccer-house.lua"

@@ -1,4 +1,4 @@
--- The servers of a simulation, with their usual helpers. A config says
+-- Functions that create the servers of a simulation with their usual helpers. A config calls
 --
 --     include "house.lua"
 --     files() scene() physics() simulation()      -- in this order
@@ -12,7 +12,7 @@
 --
 -- `host` describes the program that runs the config: host.share (the folder with lua/ and scenes/, "" when there is
 -- none), host.scenePaths (folders from --scene-path) and host.alone (true in a batch). Programs that embed the kernel
--- may leave it out.
+-- may omit it.
 host = host or { share = "", scenePaths = {} }
 
 --- File server. Folders given by --scene-path contain rsg/... and are searched before the scenes that come with Spark.
@@ -42,15 +42,15 @@ function scene()
   return server
 end
 
---- Physics server with collision detection and engine, and a world with a space in the active scene. `engine`: the
---- engine's class, OdeEngine by default; `properties`: of the server, set before the world is made.
+--- Physics server with collision detection and engine, and a world with a space in the active scene. `engine`: class of
+--- the engine, OdeEngine by default; `properties`: properties of the server, set before the world is created.
 function physics(engine, properties, more)
   if more then error("physics(engine, properties): name the engine, such as physics(\"ArticulatedEngine\")", 2) end
   plugin "physics"
   plugin "physics-ode"
   local server = new("PhysicsServer", "/sys/server/physics")
   for name, value in pairs(properties or {}) do server[name] = value end
-  -- MuJoCo finds its own contacts.
+  -- MuJoCo has its own collision detection.
   if engine ~= "MujocoEngine" then new("OdeCollision", "/sys/server/physics/collision") end
   local plugins = { ArticulatedEngine = "physics-articulated", MujocoEngine = "physics-mujoco" }
   if plugins[engine] then plugin(plugins[engine]) end
@@ -61,8 +61,8 @@ function physics(engine, properties, more)
   return server
 end
 
---- The engine's class that --set solver=... or --set engine=... names, for physics(). `default`: the solver, "dense"
---- unless the config says otherwise.
+--- The engine class selected by --set solver=... or --set engine=..., for physics(). `default`: the default of
+--- `solver`, "dense" if omitted.
 function engineOption(default)
   local solver = option{ name = "solver", default = default or "dense", choices = { "dense", "articulated" },
                          doc = "dense: ODE's own, which repeats recorded sessions; articulated: the same physics, " ..
@@ -89,7 +89,7 @@ local function tcpPort(name, port, consumer)
   return node
 end
 
--- Every config loads both languages, so that --set parser=JsonParser is enough.
+-- Every config loads both languages, so that --set parser=JsonParser is sufficient.
 local function languages()
   plugin "parser-sexp"
   plugin "parser-json"
@@ -126,9 +126,9 @@ function monitors(t)
   return server
 end
 
---- The page on which browsers show the match: `--set web=false` leaves it out, `--set webPort=0` takes a free port,
---- `--set webLogs=FOLDER` lets the viewer play recorded games. After monitors(); without, it makes a monitor server
---- that has no port. A simulation of a batch has none.
+--- The web page that shows the match: `--set web=false` disables it, `--set webPort=0` selects a free port, `--set
+--- webLogs=FOLDER` lets the viewer play recorded games. Call it after monitors(); without monitors(), it creates a
+--- monitor server without a port. Simulations of a batch have no page.
 function web()
   local wanted = option{ name = "web", default = true, doc = "The match can be watched in a browser." }
   local port   = option{ name = "webPort", default = 3280, doc = "Its port; 0: a free one." }
@@ -147,8 +147,8 @@ function web()
   return server
 end
 
---- The socket of sparkctl; only the host's own user can open it. It and the page answer what touches, how
---- joints stand and what agents sense. A simulation of a batch has none.
+--- The socket of sparkctl, which only the host's own user can open. The socket and the page answer requests about
+--- contacts, joint angles and percepts. Simulations of a batch have no socket.
 function control()
   if host.alone then return end
   plugin "control"
@@ -159,8 +159,8 @@ function control()
 end
 
 --- Drawings of agents for viewers: --set drawings=32769 opens the UDP port of the installed base's viewer, --set
---- forwardDrawings=host:port forwards all packets to another one. A simulation of a batch keeps none, but robots may
---- have the effector.
+--- forwardDrawings=host:port forwards all packets to another one. Simulations of a batch keep no drawings, but robots
+--- may have the effector.
 function drawing()
   local port = option{ name = "drawings", default = -1, doc = "UDP port at which agents' drawings come in, e.g. 32769; -1: none, 0: any free one." }
   local forward = option{ name = "forwardDrawings", default = "", doc = "host:port of another viewer that gets agents' drawings too." }
@@ -172,8 +172,8 @@ function drawing()
 end
 
 --- The status of a game: Status.score = {2, 1}. The host's status line, the columns of a batch and the page show it.
---- `values`: what it is at first; playMode (text), score (numbers) and teams (names) are understood, all others are
---- shown by their names.
+--- `values`: initial values; playMode (text), score (numbers) and teams (names) have a meaning, all others are shown by
+--- their names.
 function status(values)
   plugin "scene"
   local group = new("StatusVariables", "/sys/variables/Status")

@@ -13,7 +13,7 @@ local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class 
 
 simulation()
 local server = monitors{ encoder = encoder }
-server.precision = 0                    -- the log says what moved
+server.precision = 0                    -- the log already contains only what moved
 local page = web()
 control()
 drawing()                               -- the log's drawings are shown on the page
@@ -23,5 +23,5 @@ local player = new("LogPlayer", "/sys/server/monitor/player")
 new("JsonParser", "/sys/server/monitor/player/parser").maxTokens = 262144   -- for logs that JsonMonitor wrote
 player.speed, player.waitForMonitor = speed, wait
 player.file = file
--- Viewers in browsers are no monitors of the server: the first one starts the game, too.
+-- Viewers in browsers are not monitors of the server, so the first one must also start the game.
 if page then page:on("act", function(self) if self.viewers > 0 then player.waitForMonitor = false end end) end

@@ -1,5 +1,5 @@
--- Materials and meshes that scenes name. Nothing in a simulation looks at either; monitors pass the names on to
--- viewers, and a name that is not known is warned about.
+-- Materials and meshes that scenes name. The simulation does not use them: monitors pass the names on to viewers. An
+-- unknown name causes a warning.
 --
 --     include "materials.lua"
 --     materials()             -- after scene()
@@ -12,8 +12,8 @@ local colours = {
   matTeam = { 0.5, 0.5, 0.5, 1 },  matNum = { 0.9, 0.9, 0.9, 1 },  matLeft = { 0, 0.75, 1, 1 },    matRight = { 1, 0.1, 0.1, 1 },
 }
 
--- Which materials the installed base's meshes have, in the order in which monitors get them. The meshes themselves are
--- the viewers'; where models/*.obj is there, the file decides.
+-- The materials of the installed base's meshes, in the order in which monitors get them. The meshes themselves belong
+-- to the viewers. If a file models/*.obj exists, it takes precedence.
 local function declareMeshes(server)
   local function mesh(name, ...) server:defineMesh("models/" .. name .. ".obj", ...) end
   mesh("naosoccerfield", "None_rcs-naofield.png")
@@ -34,7 +34,7 @@ local function declareMeshes(server)
   for _, part in ipairs { "lupperarm4", "rupperarm4", "lshank4", "rshank4" } do mesh(part, "matTeam", "naowhite") end
 end
 
---- Material server, with the usual materials, and what is known of the usual meshes.
+--- Material server, with the usual materials and the materials of the usual meshes.
 function materials()
   local server = new("MaterialServer", "/sys/server/material")
   for name, c in pairs(colours) do server:define(name, c[1], c[2], c[3], c[4]) end

@@ -1,4 +1,4 @@
--- A model in MJCF, MuJoCo's language, on the ground: by default a Booster T1 that stands.
+-- A model in MJCF, MuJoCo's model format, on the ground: by default a standing Booster T1.
 --
 --     sparkhost --config mjcf.lua
 --     sparkhost --config mjcf.lua --set model=rsg/robots/k1.xml
@@ -30,8 +30,8 @@ local place = get("/usr/scene"):new("Transform", "place")
 place:setLocalPos(0, 0, height)
 place:importScene(model)
 
--- A controller acts once in each of the engine's steps: one that is too stiff for the inertia that it moves, at least
--- that of its rotor, makes the joint swing ever more.
+-- A controller acts once in each step of the engine. If it is too stiff for the inertia that it moves (at least that of
+-- its rotor), the joint oscillates with growing amplitude.
 local function hold(node)
   for _, child in ipairs(node:children()) do
     if child.class == "HingeJoint" then

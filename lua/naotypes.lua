@@ -1,4 +1,4 @@
--- The five types of the heterogeneous Nao, as its scene files read them: NaoType[0]['UseToe']. Truth values are words
+-- The five types of the heterogeneous Nao, as its scene files read them: NaoType[0]['UseToe']. Booleans are texts
 -- there.
 local function naoType(t)
   return {

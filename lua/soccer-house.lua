@@ -16,11 +16,10 @@ function soccerVariables(values)
   return soccer
 end
 
---- Rules are control aspects below game control and run in this order; the referee makes the rules of play below
---- itself. `rules` sets their properties, or switches one off:
---- soccerRules{ PassModeRule = false, GoalRule = { enabled = true } }. Offside is another aspect:
---- new("OffsideAspect", ...). TeamlessAspect: robots collide with static colliders only until they have a team, because
---- all are created at one position.
+--- Rules are control aspects below game control and run in this order; the referee creates the rules of play below
+--- itself. `rules` sets their properties, or disables a rule: soccerRules{ PassModeRule = false, GoalRule = { enabled =
+--- true } }. Offside is another aspect: new("OffsideAspect", ...). TeamlessAspect: until robots have a team, they
+--- collide with static colliders only, because all are created at the same position.
 function soccerRules(rules)
   for _, class in ipairs { "TeamlessAspect", "GameStateAspect", "BallStateAspect", "SoccerRuleAspect" } do
     new(class, "/sys/server/gamecontrol/" .. class)
@@ -34,7 +33,7 @@ function soccerRules(rules)
 end
 
 --- The automatic referee of humanoids: each foul is a control aspect of its own, judged in this order after the rules
---- of play. Leave one out, or say --set /sys/server/gamecontrol/ChargingFoulAspect.enabled=false.
+--- of play. Remove one, or disable it by --set /sys/server/gamecontrol/ChargingFoulAspect.enabled=false.
 function soccerFouls()
   for _, class in ipairs { "PlayerContactAspect", "IncapableFoulAspect", "CrowdingFoulAspect", "IllegalDefenceAspect", "TouchingFoulAspect",
                            "ChargingFoulAspect", "BallHoldingAspect", "SelfCollisionAspect", "PenaltyAspect" } do
@@ -42,7 +41,7 @@ function soccerFouls()
   end
 end
 
---- Monitor items and trainer commands of the match, and its log if one is wanted.
+--- Monitor items and trainer commands of the match, and its log if requested.
 function soccerMonitor()
   for _, class in ipairs { "GameStateItem", "SoccerRuleItem", "TrainerCommandParser" } do
     new(class, "/sys/server/monitor/" .. class)
@@ -84,12 +83,13 @@ local versions = {
   },
 }
 
---- Sets the properties in which a version (M, F or L) differs. Each may be set by itself too, and what --set says wins.
+--- Sets the properties in which a version (M, F or L) differs. Each may also be set individually; values given by --set
+--- take precedence.
 function soccerCompat(version)
   for path, values in pairs(versions[version]) do
     local node = get(path)
     for name, value in pairs(values) do
-      if name ~= "decimals" or node.class == "SexpParser" then node[name] = value end   -- other languages write numbers their own way
+      if name ~= "decimals" or node.class == "SexpParser" then node[name] = value end   -- other languages have their own number format
     end
   end
 end

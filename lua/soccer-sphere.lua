@@ -1,10 +1,10 @@
 -- Soccer as in 2004: two teams of spheres on a field of 104 x 68 m.
 --
 --     sparkhost --config soccer-sphere.lua                            -- waits for teams from the network
---     sparkhost --config soccer-sphere.lua --set "team=Red Blue"      -- plays by itself; --set changes any option below
+--     sparkhost --config soccer-sphere.lua --set "team=Red Blue"      -- plays by itself; --set sets any option below
 --
--- Three statements suffice: plugin "x" loads classes, new("Class", "/path") makes a node, node.x = v sets a property.
--- The functions of the included files say just these, for one server and its helpers each.
+-- Three statements are sufficient: plugin "x" loads classes, new("Class", "/path") creates a node, node.x = v sets a
+-- property. The functions of the included files consist of these statements, each for one server and its helpers.
 include "house.lua"
 include "materials.lua"
 include "soccer-house.lua"

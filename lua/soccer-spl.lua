@@ -3,8 +3,8 @@
 --
 --     sparkhost --config soccer-spl.lua
 --
--- Motors get warm and draw on the battery with --set /sys/server/physics.jointHeating=true --set
--- /sys/server/physics.batteryDischarge=true.
+-- Options: --set /sys/server/physics.jointHeating=true (motors heat up) and --set
+-- /sys/server/physics.batteryDischarge=true (motors discharge the battery).
 league = {
   compat = "F",                                  -- percepts are those of the SPL's server
   variables = {

@@ -1,12 +1,11 @@
--- Soccer of the 3D league: 30 x 20 m, humanoids. Robots are scene files that agents name; --scene-path says where
--- others than Spark's are.
+-- Soccer of the 3D league: 30 x 20 m, humanoids. Robots are scene files that agents name; --scene-path adds folders
+-- with further ones.
 --
 --     sparkhost --config soccer.lua                                   -- waits for teams from the network
 --     sparkhost --config soccer.lua --set "team=Red Blue" --set Soccer.AutomaticKickOff=true    -- plays by itself
 --
--- Another league sets `league` and includes this file: `league.variables` are the Soccer.* in which it differs,
--- `league.compat` is the version that it follows and `league.solver` what solves its physics unless --set says
--- otherwise.
+-- Another league sets `league` and includes this file: `league.variables` are the Soccer.* values in which it differs,
+-- `league.compat` is the version that it follows, and `league.solver` is the default physics solver.
 local league = league or {}
 
 include "house.lua"

@@ -1,10 +1,10 @@
--- Soccer of the 3D league as fast as it goes, for training: the rules and robots of soccer.lua, physics by the
--- articulated solver, and a clock that waits for the agents only.
+-- Soccer of the 3D league at maximum speed, for training: the rules and robots of soccer.lua, the articulated solver,
+-- and a clock that waits only for the agents.
 --
 --     sparkhost --config training.lua --expect 22
 --
--- --set changes whatever soccer.lua lets it change; `--set solver=dense --set exactReplay=true` gives its physics to
--- the last digit.
+-- All options of soccer.lua are available; `--set solver=dense --set exactReplay=true` reproduces its physics to the
+-- last digit.
 league = { solver = "articulated" }
 include "soccer.lua"
 

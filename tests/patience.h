@@ -9,6 +9,6 @@ namespace spark::test {
 
 /// For one wait, which may be for a whole match. Beside a busy neighbour, a program of low priority gets a hundredth of
 /// a processor.
-inline constexpr std::chrono::seconds kPatience{3 * 3600};
+inline constexpr std::chrono::seconds kPatience{1800};
 
 }  // namespace spark::test

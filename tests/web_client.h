@@ -53,12 +53,12 @@ class WebClient {
     if (at != out.head.npos && body) out.body = take(std::stoul(out.head.substr(at + 16)));
     return out;
   }
-  /// What /status.json says once the simulation has answered; until then it is empty.
+  /// Waits until the simulation has answered, and returns the content of /status.json, which is empty until then.
   static std::string status(unsigned short port) {
     for (;;)
       if (std::string body = WebClient(port).get("/status.json").body; body != "{}") return body;
   }
-  /// Lines that ask for a WebSocket.
+  /// Header lines that request a WebSocket.
   static std::string upgrade(const std::string& host) {
     return host +
            "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: "
@@ -106,7 +106,8 @@ class WebClient {
     else if (size == 127)
       longSize(8);
     Message message{head[0] & 0x0f, take(size)};
-    if (message.opcode == 9) sendRaw(frame(message.payload, 10));  // who answers no ping is gone after a while
+    if (message.opcode == 9)
+      sendRaw(frame(message.payload, 10));  // the server disconnects clients that do not answer pings
     return message;
   }
   /// The next text message that contains `part`. Other messages are skipped.

@@ -13,8 +13,9 @@
 
 namespace spark {
 
-/// Numbers of messages that parsers write in double precision, all others in single: a clock of single precision stands
-/// still for some cycles after 18 hours, and clients end at two messages of one time.
+/// The range of numbers that parsers write in double precision; all others are written in single precision. After 18
+/// hours a single-precision clock would not advance in some cycles, and some clients exit if two messages have the same
+/// time.
 inline constexpr DoubleRange kLateClocks{65536, 1e9};
 
 /// Converts between message bytes and predicates. A child of game control, or of a port that speaks another language.

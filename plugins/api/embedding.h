@@ -13,18 +13,18 @@
 
 namespace spark {
 
-/// Where a Spark is, and what configs read about the program that runs them.
+/// The folders of a Spark installation, and what configs can read about the program that runs them.
 struct Installation {
   std::filesystem::path plugins;  ///< folder of the plugins' files
   std::filesystem::path share;    ///< folder with lua/ and scenes/
-  /// Folders with scenes of your own in rsg/, looked at before Spark's.
+  /// Folders with your own scenes in rsg/, searched before Spark's.
   std::vector<std::string> scenePaths;
   /// True: configs open no web page and no control socket.
   bool alone = true;
 };
 
 #ifdef SPARK_PLUGIN_DIR
-/// The Spark that find_package(Spark) found.
+/// The installation that find_package(Spark) found.
 inline Installation installed() { return {.plugins = SPARK_PLUGIN_DIR, .share = SPARK_SHARE_DIR, .scenePaths = {}}; }
 #endif
 

@@ -21,7 +21,7 @@ class IFileSystem {
   /// A number that differs when the resource's content may have changed (modification time, identity of the archive);
   /// 0 when it does not exist.
   virtual std::uint64_t stamp(const std::string& resource) = 0;
-  /// The place that it searches, for messages: "folder '/usr/share/spark'".
+  /// What it searches, for messages: "folder '/usr/share/spark'".
   virtual std::string where() const = 0;
 };
 
@@ -33,7 +33,7 @@ class IFileServer {
   static constexpr const char* kPath = "/sys/server/file";
   virtual ~IFileServer() = default;
   /// The content from the first file system that has the resource. Throws Error for a bad name, a folder, a file that
-  /// is too large, and when no file system has it; then the text names the places that were searched.
+  /// is too large, and when no file system has it; then the text names the file systems that were searched.
   virtual std::string read(std::string_view resource) = 0;
   /// True when a file system has the resource.
   virtual bool exists(std::string_view resource) = 0;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What plugins that know no game need to know about its agents: identity, joining, reading of vision percepts, sonar
-/// targets. The plugin of a game implements these interfaces.
+/// Interfaces through which plugins that are independent of the game use its agents: identity, joining, reading of
+/// vision percepts, sonar targets. The plugin of a game implements them.
 
 #include <string>
 #include <string_view>
@@ -32,7 +32,7 @@ class IJoinPolicy {
  public:
   SPARK_INTERFACE(IJoinPolicy, 1);
   virtual ~IJoinPolicy() = default;
-  /// Team and number that an agent asks for.
+  /// The team and number that an agent requests.
   struct Name {
     std::string_view team;    ///< a view into the action that was read
     std::int64_t number = 0;  ///< 0: none

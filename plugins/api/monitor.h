@@ -2,7 +2,7 @@
 /// \file
 /// Monitors. Monitor items contribute to a frame; the monitor server builds one immutable frame in each publish phase
 /// and computes the update of each client; encoders below it write the updates; trainers below it execute commands;
-/// viewers inside the host take the frames themselves.
+/// viewers inside the host receive the frames themselves.
 
 #include <vector>
 
@@ -110,16 +110,16 @@ class ITrainer {
   virtual bool command(const Element& command, std::string& why) = 0;
 };
 
-/// A viewer inside the host, such as a log or the server of browsers; it takes frames in the publish phase. A child of
-/// the monitor server.
+/// A viewer inside the host, such as a log or the web server; it receives frames in the publish phase. A child of the
+/// monitor server.
 class IFrameTaker {
  public:
   SPARK_INTERFACE(IFrameTaker, 1);
   virtual ~IFrameTaker() = default;
-  /// Takes a `once` entry of the frame that the next take() delivers. Valid during the call.
+  /// Receives a `once` entry of the frame that the next take() delivers. Valid during the call.
   virtual void event(const Element& event) = 0;
-  /// Takes the newest frame, in cycles in which one is due. All pointers in it are valid during the call. `encoder` is
-  /// the server's, nullptr when it has none; `event` is that of the publish phase.
+  /// Receives the newest frame, in cycles in which one is due. All pointers in it are valid during the call. `encoder`
+  /// is the server's, nullptr when it has none; `event` is that of the publish phase.
   virtual void take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) = 0;
 };
 

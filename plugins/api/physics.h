@@ -286,7 +286,7 @@ class IPhysicsServer {
   virtual std::span<const engine::Contact> contacts() const = 0;
   /// The first collider on the way from `from` along `direction` (any length above 0), at most `length` far [m];
   /// nothing below `except` counts. A collider that contains the origin is met where the ray leaves it. Throws Error
-  /// when there is no world. Several threads may ask at once in the sense phase; so it is for overlaps().
+  /// when there is no world. Several threads may call it at once in the sense phase; the same holds for overlaps().
   virtual std::optional<RayHit> castRay(const Vec3& from, const Vec3& direction, double length,
                                         const Node* except = nullptr) = 0;
   /// Appends the colliders that a sphere touches, in order of creation.

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Parts of a robot as rules of a game see them: boxes that may collide with each other, effectors that can be frozen.
+/// Parts of a robot that the rules of a game use: boxes that may collide with each other, effectors that can be frozen.
 
 #include <string>
 #include <vector>

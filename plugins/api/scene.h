@@ -19,7 +19,7 @@ class ISceneServer {
  public:
   SPARK_INTERFACE(ISceneServer, 2);
   static constexpr const char* kPath = "/sys/server/scene";
-  /// Where the active scene is until a config says otherwise, and where one is expected without a scene server.
+  /// The path of the active scene by default, and without a scene server.
   static constexpr const char* kDefaultScene = "/usr/scene";
   virtual ~ISceneServer() = default;
   /// The node that offers it.
@@ -49,7 +49,7 @@ class ISceneImporter {
   virtual bool recognises(std::string_view text) const = 0;
   /// Creates the nodes of the file below `root`. `arguments` are those of the file's template. Throws Error.
   virtual void import(std::string_view file, Node& root, const List& arguments) = 0;
-  /// True: all transforms that it makes mean something. False: the scene server removes those that are empty or contain
+  /// True: all transforms that it creates are kept. False: the scene server removes those that are empty or contain
   /// only transforms, as the installed base does.
   virtual bool keepsTransforms() const { return false; }
 };

@@ -3,18 +3,18 @@
 /// Requests of sparkctl and other clients: JSON in, JSON out, answered from the descriptions of classes.
 ///
 ///     {"do":"tree","path":"/sys","depth":2}         {"ok":true,"tree":{"name","class","doc","children":[...]}};
-///                                                   "more": number of children left out, because of depth or number;
+///                                                   "more": number of children omitted because of depth or number;
 ///                                                   with "links":true also "links":[{"to","paths"}, ...]
 ///     {"do":"get","path":"/x","property":"step"}    {"ok":true,"properties":[{"name","value","text","type",...}]}
 ///     {"do":"get","path":"/x"}                      all properties of the node
 ///     {"do":"set","path","property","value"}        as get, after the change
 ///     {"do":"call","path","method","arguments":[]}  {"ok":true,"text","value"}
-///     {"do":"watch","path","property"}              {"ok":true,"cycle","time","text","value"} now and after each
-///     change
+///     {"do":"watch","path","property"}              {"ok":true,"cycle","time","text","value"}, now and after changes
 ///     {"do":"load","name":"wind"}                   {"ok":true,"text"}: loads a plugin and registers its classes
 ///     {"do":"unload","name":"wind"}                 {"ok":true}
-///     {"do":"plugins"} {"ok":true,"plugins":[{"name","version","doc","file","classes",...}]} requests of the control
-///     server's children (IRequestHandler)
+///     {"do":"plugins"}                              {"ok":true,"plugins":[{"name","version","doc","file",...}]}
+///
+/// and the requests of the control server's children (IRequestHandler).
 ///
 /// Strings in "value" and "arguments" are parsed like user input (true, 3, {1,2}, words). Errors:
 /// {"ok":false,"error":"..."}.

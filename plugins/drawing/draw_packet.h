@@ -3,7 +3,7 @@
 /// The packets of the drawing port, in the format of RoboViz. A packet contains several commands, each a type, a
 /// subtype and arguments:
 ///
-///     0 0 name\0                              swap the buffers of all sets whose names begin so
+///     0 0 name\0                              swap the buffers of all sets with this name prefix
 ///     1 0 x y radius thickness rgb name\0     circle            1 3 x y z radius rgb name\0         sphere
 ///     1 1 x y z x y z thickness rgb name\0    line              1 4 n rgba n times (x y z) name\0   polygon
 ///     1 2 x y z size rgb name\0               point             2 0 x y z rgb text\0 name\0         text

@@ -9,8 +9,9 @@
 #include "draw_packet.h"
 #include "spark/error.h"
 
-// Anyone who can reach the port may send packets, so these must not harm the match: a poll reads a limited number for a
-// limited time (the system drops what comes faster), packets are validated, and the number of drawings is limited.
+// Any program that can reach the port may send packets, so these must not affect the match: a poll reads a limited
+// number for a limited time (the system drops what arrives faster), packets are validated, and the number of drawings
+// is limited.
 
 namespace spark {
 

@@ -11,9 +11,8 @@ class AngularMotorEffector : public Effector {
  public:
   static void describe(Description<AngularMotorEffector>& d) {
     d.doc(
-        "Drives the angular motor above it: (name speed) in rad/s, clamped to the maximum speeds of the motor and of "
-        "the "
-        "hinge above it. A disabled motor stops.");
+        "Drives the angular motor above it: (name speed) in rad/s, clamped to the maximum speeds of the motor and "
+        "of the hinge above it. A disabled motor stops.");
     d.link(&AngularMotorEffector::motor_, AngularMotorAbove()).required(kNoJointAbove);
     d.link(&AngularMotorEffector::hinge_, AngularMotorAbove().above<IJoint>());
     d.link(&AngularMotorEffector::device_, Above<IMotor>());

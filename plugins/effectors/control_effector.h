@@ -4,8 +4,8 @@
 
 namespace spark {
 
-/// `(he1 30 0 25 0.6 0)`: the controller of the joint above it, from now on: target angle [deg] and rate [deg/s],
-/// stiffness [Nm/rad], damping [N m s/rad] and torque [Nm].
+/// `(he1 30 0 25 0.6 0)`: sets the controller of the joint above it until the next command: target angle [deg] and rate
+/// [deg/s], stiffness [Nm/rad], damping [N m s/rad] and torque [Nm].
 ///
 /// The three parts may have gears and limits as the actuators of an MJCF file: the target is then a length, the gear
 /// times the angle. Vectors hold the numbers of position, rate and torque.
@@ -49,9 +49,9 @@ class ControlEffector : public Effector {
   Vec3 gears_{1, 1, 1}, least_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, most_{HUGE_VAL, HUGE_VAL, HUGE_VAL};
 };
 
-/// `(name u)`: an actuator of MuJoCo on the joint above it: a force of gain u + bias - (stiffness + gainStiffness u) q
-/// - (damping + gainDamping u) dq, for the joint's position q and rate dq [SI units]. The forces of several actuators
-/// of one joint add up.
+/// `(name u)`: a MuJoCo actuator on the joint above it. It applies the force gain u + bias - (stiffness + gainStiffness
+/// u) q - (damping + gainDamping u) dq, with the joint's position q and rate dq [SI units]. The forces of several
+/// actuators of one joint add up.
 class ActuatorEffector : public Effector {
   SPARK_CLASS(ActuatorEffector, Effector)
  public:
@@ -68,9 +68,9 @@ class ActuatorEffector : public Effector {
     d.property("maxForce", &E::maxForce_)
         .unit("Nm")
         .min(0)
-        .doc("Largest force of the joint's actuators; on a slider N.");
-    d.property("least", &E::least_).unit("1").doc("Least control; smaller ones count as this.");
-    d.property("most", &E::most_).unit("1").doc("Largest control; larger ones count as this.");
+        .doc("Maximum force of the joint's actuators; on a slider N.");
+    d.property("least", &E::least_).unit("1").doc("Minimum control; smaller values are clamped to it.");
+    d.property("most", &E::most_).unit("1").doc("Maximum control; larger values are clamped to it.");
     d.property("control", &E::control_).unit("1").state().doc("The control u.");
   }
   std::string act(const Element& action) override {

@@ -38,7 +38,7 @@ std::string ZipFileSystem::where() const {
 }
 
 bool ZipFileSystem::refresh() {
-  // Has the file changed?
+  // Check whether the file has changed.
   struct stat s {};
   if (path_.empty() || ::stat(path_.c_str(), &s) != 0) {
     archive_.reset();

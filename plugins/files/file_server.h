@@ -33,7 +33,7 @@ class FileServer : public Node, public IFileServer {
   /// Calls `visit` for the file systems, in order, until it returns true.
   template <class F>
   void forEach(F visit) const;
-  /// Throws Error with the places that were searched.
+  /// Throws Error with the file systems that were searched.
   [[noreturn]] void notFound(const std::string& name) const;
   std::string readText(const std::string& resource) { return read(resource); }
   bool hasResource(const std::string& resource) { return exists(resource); }

@@ -22,7 +22,7 @@ class AgentLog {
   void write(Level level, std::string_view line) {
     if (!log_->enabled(level)) return;
     if (!bucket_.take(Clock::now())) return void(++dropped_);
-    if (dropped_ > 0) log_->warning("{} further lines about agents were left out.", std::exchange(dropped_, 0));
+    if (dropped_ > 0) log_->warning("{} further lines about agents were dropped.", std::exchange(dropped_, 0));
     log_->write(level, line);
   }
 

@@ -341,8 +341,8 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
   return true;
 }
 
-/// An aspect may be removed from the tree at any time; it must not be listed until the next act phase removes the
-/// agent.
+/// An aspect may be removed from the tree at any time. Until the next act phase removes its agent, the agent exists,
+/// but is not listed.
 const std::vector<AgentAspect*>& GameControl::agents() const {
   if (!agentsTree_.changed(*this)) return agents_;
   agents_.clear();

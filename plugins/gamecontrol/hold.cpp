@@ -39,7 +39,7 @@ std::tuple<std::string_view, std::int64_t, std::string> sortKey(const Participan
   return {name.team, name.number, text};
 }
 
-/// What an agent has not sent: "agent at 127.0.0.1:4711 has named its robot, owes (init ...) and (syn)".
+/// The state of an agent, for the log: "agent at 127.0.0.1:4711 has named its robot, owes (init ...) and (syn)".
 std::string describeMissing(const Participant& p, const IJoinPolicy* policy) {
   const bool isIdentified = identified(p, policy);
   if (!p.heardFrom()) return fmt::format("{} has said nothing", p.label());

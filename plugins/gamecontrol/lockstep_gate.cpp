@@ -76,8 +76,8 @@ bool LockstepGate::mustPace(const List& participants, const Limits& limits, Cloc
 }
 
 /// Called when all trusted agents have answered, but untrusted ones have not, or the cycle must be paced for new ones.
-/// True if the cycle waits for these: always without trusted agents, since no one is delayed, otherwise within the
-/// budget. When the budget is used up, the gate stops to wait for agents that have not answered.
+/// True if the cycle waits for these: always if there are no trusted agents, which could be delayed, otherwise within
+/// the budget. When the budget is used up, the gate no longer waits for agents that have not answered.
 bool LockstepGate::waitForUntrusted(const List& participants, Clock::time_point now) {
   const auto delayed = [](const auto& p) { return !p->leaving() && p->mustSync() && p->trusted(); };
   if (std::none_of(participants.begin(), participants.end(), delayed)) return true;

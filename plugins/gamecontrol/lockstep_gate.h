@@ -29,7 +29,7 @@ class LockstepGate {
   };
   /// Sets the capacity of the budget [s].
   void setBudget(double seconds) { budget_.setCapacity(seconds); }
-  /// True if the next cycle may begin. May disconnect agents, or stop to wait for them.
+  /// True if the next cycle may begin. May disconnect agents, or give up waiting for them.
   bool isOpen(const List& participants, const List& newcomers, const Limits& limits);
   /// A cycle begins.
   void beginCycle(Clock::time_point now);

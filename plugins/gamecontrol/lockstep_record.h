@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What lockstep knows about the answers of one agent.
+/// Record of the answers of one agent in lockstep.
 
 namespace spark::gamecontrol {
 

@@ -30,7 +30,7 @@ void Participant::join(int number, AgentAspect& aspect) {
 void Participant::warn(AgentLog& log, std::int64_t cycle, std::string_view text) {
   if (!lines_.take(cycle)) return;
   if (const auto n = lines_.takeDropped())
-    log.write(Level::warning, fmt::format("{}: {} further lines were left out.", label_, n));
+    log.write(Level::warning, fmt::format("{}: {} further lines were dropped.", label_, n));
   log.write(Level::warning, fmt::format("{}: {}{}", label_, text.substr(0, kMaxLineLength),
                                         text.size() > kMaxLineLength ? " ..." : ""));
 }

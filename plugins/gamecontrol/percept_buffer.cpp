@@ -77,8 +77,7 @@ void PerceptBuffer::closeLists(std::size_t perceptor) {
 void PerceptBuffer::reportFaults(std::string_view label, AgentLog& log) {
   if (const Perceptor* p = unbalanced_ != kNone ? perceptors_[unbalanced_].get() : nullptr)
     log.write(Level::error, fmt::format("{}: {} ({}) {} in sense(); its percept is as if it had closed what it opened. "
-                                        "Each open() needs one close(). "
-                                        "This is said once.",
+                                        "Each open() needs one close(). This is reported once.",
                                         label, p->path(), p->classObject()->name(),
                                         openLists_ > 0 ? fmt::format("left {} list(s) open", openLists_)
                                                        : std::string("closed a list that was not open")));

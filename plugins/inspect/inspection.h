@@ -10,9 +10,9 @@
 ///                                       "seenTime","seen":[{"name","seen","true"}, ...],"lines":[[from, to], ...]}
 ///
 /// Metres, newtons, degrees (sliders: metres), world frame; normals and forces act on `a`. Matrices are column by
-/// column; eyes look along x, z is up. `p` is a node; for agents any node of the agent. Unknown values are left out:
-/// forces that are not measured, limits of joints without stops, unlimited range, true positions of things that have
-/// none.
+/// column; eyes look along x, z is up. `p` is a node; for agents any node of the agent. Unknown values are omitted:
+/// forces that are not measured, limits of joints without stops, unlimited range, true positions of objects without
+/// one.
 ///
 /// An agent sees in some cycles only, and its percept is to be compared with the true positions of that cycle. So
 /// agents whose percepts were requested recently are observed:

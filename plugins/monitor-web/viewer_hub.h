@@ -125,7 +125,7 @@ class ViewerHub {
   std::vector<StatusWaiter> statusWaiters_;
   Clock::time_point statusAt_{};   ///< when `status_` came
   Clock::time_point statusDue_{};  ///< when the status is requested again
-  Clock::time_point stallsDue_{};  ///< when stalled viewers are looked for again
+  Clock::time_point stallsDue_{};  ///< when to check for stalled viewers again
 };
 
 }  // namespace spark::web

@@ -19,7 +19,7 @@ class WebMonitor : public Node, public IFrameTaker {
   void take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) override;
 
   /// Hands over the last frame again if the I/O thread has requested one. The WebServer calls it between cycles while
-  /// the clock stands still.
+  /// the clock is paused.
   void takeAgain();
 
  private:

@@ -118,7 +118,7 @@ void WebServer::listen() {
     kernel().log().info("Web: {} (referee: {})", link(), refereeLink());
     std::error_code none;
     if (!std::filesystem::is_regular_file(std::filesystem::path(viewerFolder_) / "index.html", none))
-      kernel().log().info("Web: the viewer was not built{}{}; a plain page with the live numbers stands in for it.",
+      kernel().log().info("Web: the viewer was not built{}{}; a plain page with live numbers is served instead.",
                           viewerLacks_.empty() ? "" : ", missing is ", viewerLacks_);
   } catch (const std::exception& e) {
     kernel().log().warning("Nobody can watch in a browser: {}", e.what());
@@ -149,7 +149,7 @@ void WebServer::poll() {
   requests_->process({share_, inspection_ == "everybody", refereeChanges_}, service_->viewers());
 }
 
-/// While the clock stands still, for example until the expected agents have connected, there is no publish phase. New
+/// While the clock is paused, for example until the expected agents have connected, there is no publish phase. New
 /// viewers then get the last frame.
 void WebServer::handOverAgain() {
   const auto* clock = kernel().root().find<ISimulation>();

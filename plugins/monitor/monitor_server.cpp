@@ -74,7 +74,8 @@ std::string MonitorServer::queueCommands(IParser* parser, std::string_view from,
   }
   if (result.message.empty()) {
     std::string unknown = describeUnknown(before);
-    // Only the log and the caller learn of it: the protocol has no replies, and monitors could not parse one.
+    // The error is only logged and returned to the caller: the protocol has no replies, and monitors could not parse
+    // one.
     if (!unknown.empty() && (!unknownLoggedAt_ || last_.cycle - *unknownLoggedAt_ >= kLogInterval)) {
       unknownLoggedAt_ = last_.cycle;
       kernel().log().info("{}: from {}: {}", path(), from, unknown);

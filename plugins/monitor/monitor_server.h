@@ -31,8 +31,8 @@ namespace spark {
 /// the same cycle; the next one is full. Two frames are never skipped in a row.
 ///
 /// A client that does not read is never disconnected: utilities open the port only to send commands, viewers pause. It
-/// skips frames, and costs one unsent message and some waiting events. The transport detects clients whose machine is
-/// gone.
+/// skips frames, and costs one unsent message and some waiting events. The transport detects clients whose machine has
+/// failed.
 class MonitorServer : public Node, public IMonitorServer, public IConnectionConsumer {
   SPARK_CLASS(MonitorServer, Node)
  public:

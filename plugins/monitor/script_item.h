@@ -13,7 +13,8 @@ namespace spark {
 
 /// A child of the monitor server. Lua reads and writes its entries like properties: `item.score_left = 3` adds
 /// `(score_left 3)` to every full message, and to the next message after the value changed. Entries are state: a rule
-/// that keeps its score here is restored with the world. The host's status line and a batch's columns show them, too.
+/// that stores its score here is restored with the simulation. The host's status line and a batch's columns show them,
+/// too.
 class ScriptItem : public Node, public IMonitorItem, public IStatus {
   SPARK_CLASS(ScriptItem, Node)
  public:

@@ -20,7 +20,7 @@ class RateLimitedLog {
   void write(Log& log, Level level, std::string_view line) {
     const auto now = std::chrono::steady_clock::now();
     if (now - periodStart_ > kPeriod) {
-      if (dropped_ > 0) log.warning("{} further lines about connections were left out.", dropped_);
+      if (dropped_ > 0) log.warning("{} further lines about connections were dropped.", dropped_);
       periodStart_ = now;
       written_ = dropped_ = 0;
     }

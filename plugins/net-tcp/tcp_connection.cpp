@@ -20,8 +20,8 @@ std::string describePeer(const tcp::socket& socket) {
   return ec ? std::string("(gone)") : fmt::format("{}:{}", end.address().to_string(), end.port());
 }
 
-/// Detects clients whose machine is gone: after 30 s of silence the system sends probes, and ends the connection after
-/// six unanswered ones. TCP_USER_TIMEOUT is not set, since it would also end clients that merely do not read.
+/// Detects clients whose machine has failed: after 30 s of silence the system sends probes, and ends the connection
+/// after six unanswered ones. TCP_USER_TIMEOUT is not set, since it would also end clients that merely do not read.
 void enableKeepAlive(tcp::socket& socket) {
   constexpr int kIdle = 30, kInterval = 10, kProbes = 6;  // s, s, number
   using Idle = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>;

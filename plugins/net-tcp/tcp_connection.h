@@ -2,9 +2,9 @@
 /// \file
 /// A client of a port, with its input that is not split into messages yet and its unsent output.
 ///
-/// Callbacks of Asio only note that a socket became readable or writable. Bytes are read when the port calls read(), in
-/// the port's order: the order of delivery depends on what has arrived, not on the order in which the operating system
-/// reports it.
+/// Callbacks of Asio only record that a socket became readable or writable. Bytes are read when the port calls read(),
+/// in the port's order: the order of delivery depends on what has arrived, not on the order in which the operating
+/// system reports it.
 
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
@@ -62,9 +62,9 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   void consume(std::size_t bytes);
   /// True if it has ever sent a complete message.
   bool spoken() const { return spoken_; }
-  /// Notes that it has sent a complete message.
+  /// Records that it has sent a complete message.
   void markSpoken();
-  /// Notes whether the input ends with an incomplete message, for partialSeconds().
+  /// Records whether the input ends with an incomplete message, for partialSeconds().
   void markPartial(bool partial);
   /// Seconds of wall time since the incomplete message began; 0 if there is none.
   double partialSeconds(Clock::time_point now) const;

@@ -280,7 +280,7 @@ bool TcpPort::deliverMessages(TcpConnection& connection) {
   return at > 0;
 }
 
-/// Removes closed connections and tells the consumer; true if there were any.
+/// Removes closed connections and notifies the consumer; true if there were any.
 bool TcpPort::removeClosed() {
   for (auto& c : connections_)
     if (c->closing()) closed_.push_back(c);

@@ -10,7 +10,8 @@ namespace spark::json {
 
 namespace {
 
-/// Input iterator for nlohmann's parser that keeps its position outside, so that the next value is read after the last.
+/// Input iterator for nlohmann's parser. Its position is stored outside of it, so that reading can continue with the
+/// next value after the parser has finished one.
 class Cursor {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -25,7 +26,8 @@ class Cursor {
     ++*at_;
     return *this;
   }
-  /// `end`: any cursor of the same bytes; true until all bytes are read.
+  /// True until all bytes are read. `end` may be any cursor over the same bytes, because only the number of bytes is
+  /// used.
   bool operator!=(const Cursor& end) const { return *at_ < end.bytes_.size(); }
   bool operator==(const Cursor& end) const { return !(*this != end); }
 

@@ -228,7 +228,7 @@ bool isMagic(std::string_view word) {
   return word == "RSG" || word == "RubySceneGraph" || word == "RDS" || word == "RubyDeltaScene";
 }
 
-/// An Error at a place in a file.
+/// An Error at a location in a file.
 Error errorAt(std::string_view resource, std::uint32_t line, std::uint32_t column, std::string_view text) {
   return Error(fmt::format("{}:{}:{}: {}", resource, line, column, text));
 }

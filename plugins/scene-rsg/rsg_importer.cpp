@@ -24,9 +24,8 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
       .doc("Calls with wrong arguments are skipped with a warning, once for each place.");
   d.property("defineByName", &I::rule<&R::defineByName>, &I::setRule<&R::defineByName>)
       .doc(
-          "Each name has its own value. false: definitions and parameters share one list, in which names refer to "
-          "wrong "
-          "values when arguments are missing.");
+          "Each name has its own value. false: definitions and parameters share one list, in which names "
+          "refer to wrong values when arguments are missing.");
   d.property("looseTrailingParen", &I::rule<&R::looseTrailingParen>, &I::setRule<&R::looseTrailingParen>)
       .doc("Text after the body of a file is ignored.");
   d.property("unlinkOnCompleteScenes", &I::unlinkOnCompleteScenes_)

@@ -21,8 +21,8 @@ inline constexpr std::size_t kMaxText = 4096;
 ///       (nd RigidBody
 ///         (setMass 2)))        all other calls are queued with evaluated arguments, and made at the end of the file
 ///
-/// So a joint may name bodies that come later in its file, and a body is linked below a transform that is in place.
-/// After an error no further statements run; the queued calls are still made, and then the error is thrown.
+/// So a joint may name bodies that come later in its file, and a body is linked below a transform that already has its
+/// pose. After an error no further statements run; the queued calls are still made, and then the error is thrown.
 class Run {
  public:
   /// `importer` and `program` must outlive the run. `arguments` are those of the program's template.
@@ -65,8 +65,8 @@ class Run {
   Value variable(std::string_view group, std::string_view member) const;
   /// Reports a problem that the installed base ignores: throws Error when `strict`, else logs it once per statement.
   void complain(const Statement& s, Level level, const std::string& text);
-  /// Calls `f` and prefixes the message of an exception with file:line:column, unless it has a place of this run
-  /// already.
+  /// Calls `f` and prefixes the message of an exception with file:line:column, unless it already has a location of this
+  /// run.
   template <class F>
   decltype(auto) located(const Site& site, F f) const;
 

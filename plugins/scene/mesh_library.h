@@ -27,8 +27,8 @@ class MeshLibrary {
   std::map<std::string, Entry, std::less<>> read_;
 };
 
-/// The names after `usemtl` in the text of an OBJ file, each once, in alphabetical order. Names without a face are left
-/// out.
+/// The names after `usemtl` in the text of an OBJ file, each once, in alphabetical order. Names without a face are
+/// skipped.
 std::vector<std::string> objMaterials(std::string_view text);
 
 }  // namespace spark

@@ -13,9 +13,8 @@ class AngularMotorPerceptor : public Perceptor {
   static void describe(Description<AngularMotorPerceptor>& d) {
     using P = AngularMotorPerceptor;
     d.doc(
-        "Senses the angular motor above it: (HJ (n name) (ax deg) (rt deg/s) (tq Nm) (tp C) (ct mA)), each item if it "
-        "is "
-        "switched on.");
+        "Senses the angular motor above it: (HJ (n name) (ax deg) (rt deg/s) (tq Nm) (tp C) (ct mA)), each "
+        "item if it is switched on.");
     d.link(&P::motor_, AngularMotorAbove()).required(kNoJointAbove);
     d.link(&P::hinge_, AngularMotorAbove().above<IJoint>());
     d.link(&P::device_, Above<IMotor>());

@@ -7,12 +7,12 @@
 
 namespace spark {
 
-/// `(pos (n torso_pos) (p 1.5 0 0.67))`: place of its transform in the world [m].
+/// `(pos (n torso_pos) (p 1.5 0 0.67))`: position of its transform in the world frame [m].
 class PositionPerceptor : public Perceptor {
   SPARK_CLASS(PositionPerceptor, Perceptor)
  public:
   static void describe(Description<PositionPerceptor>& d) {
-    d.doc("Senses the place of its transform in the world: (pos (n name) (p x y z)) in m.");
+    d.doc("Senses the position of its transform in the world frame: (pos (n name) (p x y z)) in m.");
   }
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;
@@ -22,7 +22,7 @@ class PositionPerceptor : public Perceptor {
   }
 };
 
-/// `(quat (n torso_quat) (q 1 0 0 0))`: rotation of its transform in the world, w x y z, of length 1.
+/// `(quat (n torso_quat) (q 1 0 0 0))`: orientation of its transform in the world frame, as a unit quaternion w x y z.
 class OrientationPerceptor : public Perceptor {
   SPARK_CLASS(OrientationPerceptor, Perceptor)
  public:

@@ -14,7 +14,7 @@ class Histogram {
  public:
   using Duration = std::chrono::steady_clock::duration;
 
-  /// Counts a duration. Negative ones count as 0, ones beyond the last bucket in it.
+  /// Counts a duration. Negative durations count as 0; those beyond the last bucket are counted in the last bucket.
   void add(Duration d);
   /// Removes all counts.
   void reset() { *this = {}; }

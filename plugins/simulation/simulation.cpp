@@ -30,7 +30,7 @@ namespace spark {
 namespace {
 constexpr double kSlice = 0.02;    // longest single wait [s]: bounds the delay of a stop request and of polled sources
 constexpr double kJitter = 0.002;  // lateness [s] that the next cycles may make up for; more is lost time
-constexpr const char* kTakesInput = "it takes input just now";  // reason why a source cannot be removed
+constexpr const char* kTakesInput = "it takes input just now";  // reason why a source cannot be removed during a call
 constexpr const char* kInput = "input";  // name of the input part, for crash reports and watchdogs
 using simulation::Part;
 
@@ -63,9 +63,8 @@ void Simulation::describe(Description<Simulation>& d) {
   d.property("cycleTimes", &Simulation::cycleTimes)
       .doc(
           "Three lists {name, cycles, p50, p90, p99, p99.9, longest} of wall time since resetTimers() [microseconds]: "
-          "late, from the time a cycle was due to its beginning; long, from its beginning to its end; done, from the "
-          "time "
-          "it was due to its end.");
+          "late, from the time a cycle was due to its beginning; long, from its beginning to its end; done, from "
+          "the time it was due to its end.");
   d.property("histogram", &Simulation::histogram)
       .doc(
           "The same as a histogram, a list {from, late, long, done} for each bucket that is not empty: its lower end "

@@ -26,7 +26,7 @@ class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget
   /// 2. A player therefore hears one message of each team every two cycles.
   static constexpr int kHearCost = 2, kHearMax = 2, kHearInc = 1;
 
-  /// A message that the player hears in this cycle: stored in the act phase, sent in the sense phase.
+  /// A message that the player hears in this cycle. It is stored in the act phase and sent in the sense phase.
   struct Message {
     bool pending = false;
     double directionDeg = 0;  ///< to the speaker, relative to the x axis of the hearer's team frame

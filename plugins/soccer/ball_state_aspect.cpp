@@ -8,7 +8,7 @@ void BallStateAspect::describe(Description<BallStateAspect>& d) {
   using B = BallStateAspect;
   d.doc("The state of the ball in this cycle: touches, out, goals.");
   d.property("lastTeam", &B::lastTeam).doc("Side that touched the ball last: left, right or none.");
-  d.property("lastUnum", &B::lastUnum).doc("Number of the player who touched the ball last; 0: none yet.");
+  d.property("lastUnum", &B::lastUnum).doc("Number of the player that touched the ball last; 0: none yet.");
   d.property("onField", &B::onField).doc("The ball is on the field.");
   d.property("lastValid", &B::lastValid).unit("m").doc("The ball's last position on the field.");
 }

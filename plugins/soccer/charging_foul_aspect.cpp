@@ -99,7 +99,7 @@ std::array<bool, 2> ChargingFoulAspect::chargesByConduct(const std::array<Motion
   if (charges[0] || charges[1] || std::abs(a.ballDistance - b.ballDistance) <= s.chargingMinDeltaDist) return charges;
 
   // Neither does: the player farther from the ball charges when the angles towards each other differ clearly, or when
-  // the other stands.
+  // the other is slow.
   const int farther = a.ballDistance > b.ballDistance ? 0 : 1;
   charges[farther] = std::abs(a.opponentAngle - b.opponentAngle) > s.chargingMinDeltaAng ||
                      pair[1 - farther].speed < s.chargingMinSpeed;

@@ -7,11 +7,11 @@
 namespace spark {
 
 /// Charging: a player runs into an opponent. The rule of the installed base. It judges each pair of opponents that
-/// touch while both stand, neither serves a penalty and the referee has moved neither within the last second:
+/// touch while both are upright, neither serves a penalty and the referee has moved neither within the last second:
 ///
 ///  1. Conduct. If the ball is within ChargingMaxBallRulesDist of one of them, a player charges when it moves towards
 ///     the opponent rather than towards the ball. If neither does, the player farther from the ball charges when it
-///     moves more directly towards the other, or when the other stands. If the ball is far away, both may charge.
+///     moves more directly towards the other, or when the other is slow. If the ball is far away, both may charge.
 ///  2. Speed. A player that charges has at least ChargingMinSpeed, and ChargingMinCollisionSpeed towards the contact.
 ///  3. No foul if both charge, or if the contact is within ChargingMinCollBallDist of the ball. Immune for
 ///     ChargingImmunityTime are players that touched the ball and players that an immune one has charged; always immune
@@ -36,7 +36,7 @@ class ChargingFoulAspect : public FoulAspect {
   static constexpr double kMovedTime = 1.0;  ///< immunity after a move by the referee [s]
   static constexpr double kLongAgo = -1e9;   ///< s
 
-  /// What is remembered of a player. Times are simulated times [s].
+  /// The history of a player. Times are simulated times [s].
   struct History {
     std::array<Vec2, kCycles> velocities{Vec2(0, 0), Vec2(0, 0), Vec2(0, 0)};  ///< of the torso [m/s], newest first
     int known = 0;                                                             ///< number of velocities
@@ -63,7 +63,7 @@ class ChargingFoulAspect : public FoulAspect {
 
   void updateHistories(double now);
   void judgePair(const Pair& contact, double now);
-  /// The player may be judged: it stands, serves no penalty and was not moved by the referee.
+  /// The player may be judged: it is upright, serves no penalty and was not moved by the referee.
   bool isEligible(std::size_t player) const;
   Motion motion(std::size_t player, std::size_t opponent) const;
   /// Step 1: which of the two charges by its conduct.

@@ -41,7 +41,7 @@ class BeamEffector : public Effector {
     // The installed base clamps after the noise.
     if (!s.startAnyFieldPosition) x = std::clamp(x, static_cast<float>(-s.fieldLength / 2), 0.0F);
     if (const auto maxY = static_cast<float>(s.fieldWidth / 2); s.beamWithinFieldWidth) y = std::clamp(y, -maxY, maxY);
-    // Leagues without these limits: keep the numbers within what the engine can handle.
+    // In leagues without these limits, keep the numbers within the range of the engine.
     x = std::clamp(x, -kMaxCoordinate, kMaxCoordinate), y = std::clamp(y, -kMaxCoordinate, kMaxCoordinate);
 
     // Robots look along their y axis: angle 0 faces the opponents' goal.

@@ -26,7 +26,7 @@ class PenaltyAspect : public SoccerControlAspect {
     d.property("fouls", &PenaltyAspect::count_).readOnly().doc("Number of fouls called since the start.");
   }
   void rule(const Event& event) override;
-  /// Disabled: all players are free.
+  /// Disabled: no player serves a penalty.
   void rest(const Event&) override { records_.reset(); }
 
   /// Matches the records to the players of this cycle. Fouls call it before they judge.

@@ -14,7 +14,7 @@ Bounds Player::bounds() const {
   Bounds all;
   Vec3 low, high;
   for (std::size_t i = 0; i < colliders.size(); ++i) {
-    // The solver leaves no collider in the caches: the one after the next two is fetched meanwhile.
+    // The solver has displaced the colliders from the CPU caches, so prefetch the collider three positions ahead.
     if (i + kAhead < colliders.size()) prefetch(colliders[i + kAhead], kColliderBytes);
     colliders[i]->bounds(low, high);
     all.low = all.low.cwiseMin(low);

@@ -113,14 +113,15 @@ class Pitch {
   /// Simulated time [s].
   double now() const { return simulation_ ? simulation_->time() : 0; }
 
-  // Moves of the referee. They keep orientations, zero velocities and record the time for movedWithin(): rules that
-  // spare players who have just been moved read it. Bodies move at once, transforms follow in the next place phase.
+  // Moves of the referee. They keep orientations, zero velocities and record the time for movedWithin(), which is used
+  // by rules that exempt players that have just been moved. Bodies move at once; transforms follow in the next place
+  // phase.
 
   /// Moves the player to `target` [m] or the first safe position near it. `avoidBall`: not close to the ball.
   void moveSafely(const Player& player, const Vec3& target, bool avoidBall) const;
   /// Moves the player to `target` [m], even if that position is occupied.
   void relocate(const Player& player, const Vec3& target) const;
-  /// Moves the player to its place beside the field, on the side away from the ball, at height `z` [m].
+  /// Moves the player to its position beside the field, on the side away from the ball, at height `z` [m].
   void moveOffField(const Player& player, double z) const;
   /// True when the referee moved the player less than `seconds` ago.
   bool movedWithin(const Player& player, double seconds) const { return now() - player.state->movedAt() < seconds; }

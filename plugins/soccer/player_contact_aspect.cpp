@@ -25,7 +25,7 @@ void PlayerContactAspect::rule(const Event&) {
         addContact(std::min(self, other), std::max(self, other), r.point);
       }
     }
-    // Up to here `point` is a sum.
+    // So far, `point` is the sum of the contact points.
     for (Pair& p : pairs_) p.point /= p.points;
   }
   reports_.clear();

@@ -75,8 +75,8 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   bool staticAxis_ = true, senseMyPos_ = false, senseMyOrien_ = false, senseBallPos_ = false, senseLine_ = false,
        senseLineName_ = false;
   float range_ = soccer::VisibleObjects::kUnlimited;
-  /// The direction of a tested point, cached from the previous percept: angles are expensive, and many robots stand
-  /// still.
+  /// The direction of a tested point, cached from the previous percept: angles are expensive to compute, and many
+  /// robots do not move.
   struct CachedDirection {
     Vec3f view = Vec3f::Constant(std::numeric_limits<float>::quiet_NaN());  ///< the point in the view frame [m]
     bool inCone = false;

@@ -54,7 +54,7 @@ SafeReposition::Candidate SafeReposition::takeNearest() {
 bool SafeReposition::isSafe(const Pitch& pitch, const Player& player, double x, double y, bool avoidBall) const {
   const SoccerSettings& s = pitch.settings();
 
-  // One player too many in the own penalty area?
+  // Reject a position that brings too many players into the own penalty area.
   const Area own = pitch.penaltyArea(player.side());
   if (own.contains(x, y, s.agentRadius)) {
     int inside = 0;
@@ -63,15 +63,15 @@ bool SafeReposition::isSafe(const Pitch& pitch, const Player& player, double x, 
     if (inside >= s.maxPlayersInsideOwnArea) return false;
   }
 
-  // Behind a goal?
+  // Reject a position behind a goal.
   if (std::abs(x) > s.fieldLength / 2 && std::abs(y) < s.goalWidth / 2 + s.agentRadius) return false;
 
-  // Near the ball?
+  // Reject a position near the ball.
   const Vec3 ball = pitch.ballPosition();
   if (avoidBall && std::hypot(x - ball.x(), y - ball.y()) < std::max(2 * s.agentRadius, s.passModeMinOppBallDist))
     return false;
 
-  // Inside another player?
+  // Reject a position inside another player.
   const Vec3 centre(x, y, s.agentRadius);
   return std::none_of(obstacles_.begin(), obstacles_.end(),
                       [&](const Bounds& b) { return b.intersectsSphere(centre, s.agentRadius); });

@@ -10,7 +10,7 @@ using soccer::Side;
 
 namespace {
 constexpr std::size_t kMaxFouls = 64;
-/// In the order in which they judge.
+/// The rules, in the order in which they judge.
 constexpr const char* kRules[] = {"BeforeKickOffRule", "KickOffRule",     "RestartRule", "GoalKickRule",
                                   "PassModeRule",      "DoubleTouchRule", "GoalRule",    "PenaltyShootoutRule",
                                   "BallOutRule",       "DropBallRule"};

@@ -6,7 +6,7 @@ void TouchingFoulAspect::judgePlay(const Event& event) {
   follow(members_);
   if (!contacts()) return;
   const int count = static_cast<int>(players().size());
-  // A group is named after its first player.
+  // A group is identified by its first player.
   for (int first = 0; first < count; ++first) {
     if (contacts()->group(first) != first) continue;
     group_.clear();
@@ -44,7 +44,7 @@ void TouchingFoulAspect::judgeGroup() {
   if (last < 0) return;
   const Side side = players()[last].side();
   const auto mates = std::count_if(group_.begin(), group_.end(), [&](int i) { return players()[i].side() == side; });
-  // The offender's team has at least half of the group?
+  // Check whether the offender's team has at least half of the group.
   const bool ownFault = 2 * mates >= static_cast<std::ptrdiff_t>(group_.size());
   if (ownFault && !isGoalie(last)) return penalise(last);
   const Side offenders = ownFault ? side : opponent(side);

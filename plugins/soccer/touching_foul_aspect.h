@@ -11,7 +11,7 @@ class TouchingFoulAspect : public FoulAspect {
   SPARK_CLASS(TouchingFoulAspect, FoulAspect)
  public:
   static void describe(Description<TouchingFoulAspect>& d) {
-    d.doc("Joining too large a group of players who touch each other is a foul.");
+    d.doc("Joining too large a group of players that touch each other is a foul.");
     d.property("random", &TouchingFoulAspect::random_).state().doc("The stream that chooses among equal offenders.");
   }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What both vision perceptors share: the objects they test, polar coordinates, noise.
+/// Code shared by both vision perceptors: the objects that they test, polar coordinates, noise.
 
 #include <algorithm>
 #include <memory>
@@ -78,7 +78,7 @@ class VisionNoise {
   Vec3f calibration_ = Vec3f::Zero();
 };
 
-/// What an eye works with: the visible objects, its agent, the settings. Without settings it has visible objects of its
+/// The context of an eye: the visible objects, its agent, the settings. Without settings it has visible objects of its
 /// own.
 class EyeContext {
  public:

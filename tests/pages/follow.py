@@ -35,7 +35,7 @@ from pathlib import Path
 
 SOURCES = Path(__file__).resolve().parent.parent.parent
 NUMBER = r"-?[0-9]+(?:\.[0-9]+)?"
-SECONDS = 10800  # for a block of commands that hangs
+SECONDS = 2400  # for a block of commands that hangs
 SKIP = "skip:"
 UNTIL_STOPPED = "until Ctrl-C"
 

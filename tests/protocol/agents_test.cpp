@@ -222,7 +222,7 @@ TEST_CASE("Control aspects are notified of agents that connect and leave") {
   REQUIRE(actionLog() == ActionLog{"come /usr/scene/AgentAspect1", "go /usr/scene/AgentAspect1"});
 }
 
-TEST_CASE("A perceptor or effector that throws is named in the log, and its agent and the host go on") {
+TEST_CASE("A perceptor or effector that throws is named in the log, and its agent and the host continue") {
   Arena a;
   a.kernel.registerClass<TestFault>();
   a.kernel.registerClass<TestBomb>();

@@ -71,7 +71,7 @@ class TestMotor : public Effector {
 class TestInit : public Effector {
   SPARK_CLASS(TestInit, Effector)
  public:
-  static void describe(Description<TestInit>& d) { d.doc("Notes who the agent is."); }
+  static void describe(Description<TestInit>& d) { d.doc("Records the team and number of the agent."); }
   std::string predicate() const override { return "init"; }
   std::string act(const Element& action) override {
     const Element team = action.named("teamname"), unum = action.named("unum");
@@ -211,7 +211,7 @@ class Arena {
     kernel.create("Node", "/usr/scene");
     Leaf& server = kernel.create("GameControl", "/sys/server/gamecontrol");
     setProperty(server, "robotFolder", "");
-    // Limits of wall time are for the tests that set them.
+    // Wall-clock limits are off, unless a test sets them.
     for (const char* limit : {"syncTimeout", "joinWait", "idleLimit"}) setProperty(server, limit, 0);
     gate = server.as<IInputGate>();
     control = server.as<IGameControl>();

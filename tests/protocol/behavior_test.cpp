@@ -12,7 +12,7 @@ class TestBehavior : public Behavior {
   SPARK_CLASS(TestBehavior, Behavior)
  public:
   static void describe(Description<TestBehavior>& d) {
-    d.doc("Counts what it hears.");
+    d.doc("Counts the messages that it receives.");
     d.property("heard", &TestBehavior::heard).doc("Messages.");
   }
   void start(Predicates& actions) override { actions.open("scene").add("robot").close(); }

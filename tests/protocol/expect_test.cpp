@@ -133,7 +133,8 @@ TEST_CASE(
   REQUIRE(match({2, 4, 0, 3, 1}, style) == first);
 }
 
-TEST_CASE("After joinWait without news the match starts with the agents that are ready, and the others join later") {
+TEST_CASE(
+    "After joinWait without progress the match starts with the agents that are ready, and the others join later") {
   Arena a(true);
   a.set("expect", 3);
   a.set("joinWait", 0.05);

@@ -318,7 +318,7 @@ TEST_CASE("Clients that repeatedly connect, cause errors and leave write a bound
     a.cycle();
   }
   const auto lines = std::count(a.host.text.begin(), a.host.text.end(), '\n');
-  // 300 at once, and so few a second that the time of the test hardly counts, on a fast machine.
+  // 300 at once, and then so few per second that the duration of the test hardly matters on a fast machine.
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   REQUIRE(lines > 200);
   REQUIRE(static_cast<double>(lines) < 400 + 5 * seconds);

@@ -147,7 +147,7 @@ TEST_CASE("Messages sent before a disconnect are delivered") {
   REQUIRE(w.consumer->events == Wire::Events{"+1", "1:last words", "-1"});
 }
 
-TEST_CASE("The server survives 200 clients that come and go") {
+TEST_CASE("The server survives 200 clients that connect and disconnect") {
   Wire w;
   for (int i = 0; i < 200; ++i) {
     Client c = w.client();

@@ -16,8 +16,8 @@
 
 namespace spark::test {
 
-/// A player of his own who only watches. In lockstep it answers as long as it is asked what it sees, unless it never
-/// sends (syn).
+/// A separate player that only observes the match. In lockstep it answers a message only when the test calls one of its
+/// functions, and so keeps the match running; with `answers` false it never sends (syn).
 class Witness {
  public:
   Witness(unsigned short port, const std::string& team, int number, const std::string& robot = "rsg/agent/sphere.rsg",
@@ -29,19 +29,19 @@ class Witness {
   }
   /// Waits until simulated time has advanced by a few cycles from now.
   void mustSeeTimePass() {
-    while (client_.pending()) client_.receive();  // what was sent before now proves nothing
+    while (client_.pending()) client_.receive();  // messages from before this call do not count
     answer();
     const double begin = time();
     for (double now = begin; now < begin + 0.1;) now = time();
   }
   Client& client() { return client_; }
-  /// Reads messages until one tells the number that the host gave; returns false after `messages` without.
+  /// Reads messages until one contains the number that the host assigned; returns false if the next `messages` do not.
   bool hasTeam(int messages) {
     for (int i = 0; i < messages; ++i)
       if (client_.receive().find("(unum ") != std::string::npos) return true;
     return false;
   }
-  /// Reads messages until one tells it.
+  /// Reads messages until one contains that number.
   void waitForTeam() {
     while (!hasTeam(1)) {
     }
@@ -69,7 +69,8 @@ struct Arena {
   unsigned short agentPort = 0, monitorPort = 0, webPort = 0;
   std::unique_ptr<Witness> witness;
 
-  /// `answers`: what the witness does in lockstep. A host has no limits of wall time but those in `more`.
+  /// `answers`: whether the witness answers in lockstep. All wall-clock limits of the host are off, except those in
+  /// `more`.
   explicit Arena(std::vector<std::string> more = {}, const std::string& config = "soccer-sphere.lua",
                  bool answers = true)
       : host(command(std::move(more), config)) {
@@ -96,7 +97,7 @@ struct Arena {
                                "0"};
     return joined(joined(c, withoutLimits()), more);
   }
-  /// Sets a property of the running host, such as a limit that others must not meet.
+  /// Sets a property of the running host, such as a limit that must not apply while the arena is set up.
   void set(const std::string& property, const std::string& value) {
     REQUIRE(runToEnd(joined(sparkctl(host.pid()), {"set", property, value})).code == 0);
   }

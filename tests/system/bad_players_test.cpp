@@ -22,8 +22,8 @@ std::string init(const std::string& team, const std::string& unum) {
 /// The number of messages within which an accepted init would have been answered.
 constexpr int kSome = 25;
 
-/// The number that the host tells in one of the next messages; 0: none. What it had sent before it could know what was
-/// said last does not count as one of them.
+/// The number that the host assigns in one of the next `messages`; 0: none. Messages that had already arrived before
+/// this call are not counted, because they cannot be a reply to the last request.
 std::int64_t numberIn(Client& c, int messages) {
   auto earlier = static_cast<std::ptrdiff_t>(c.waiting());
   for (int i = 0; i < messages;) {
@@ -90,7 +90,7 @@ TEST_CASE("A number in use is refused to every agent, and a released number is a
   REQUIRE(ask(one, "Calm", "5") == 5);
   REQUIRE(ask(two, "Calm", "5") == 0);
   REQUIRE(ask(one, "Calm", "5") == 0);  // a second init with the same data
-  REQUIRE(ask(one, "Calm", "6") == 0);  // never confirmed again, but the agent has 6 now
+  REQUIRE(ask(one, "Calm", "6") == 0);  // no second confirmation, but the agent has number 6 now
   REQUIRE(ask(two, "Calm", "6") == 0);
   REQUIRE(ask(two, "Calm", "5") == 5);
   {
@@ -132,7 +132,7 @@ TEST_CASE("A robot is refused and takes no number when its team has the maximum 
     team.push_back(std::make_unique<Robot>(a, heterogeneous + "0"));
     REQUIRE(ask(*team.back(), "Calm", std::to_string(unum)) == unum);
   }
-  // The witness is the seventh of type 0.
+  // The witness is the seventh robot of type 0.
   Robot eighth(a, heterogeneous + "0");
   REQUIRE(ask(eighth, "Calm", "8") == 0);
   a.host.waitForError("robots of type 0 already");
@@ -159,7 +159,8 @@ TEST_CASE("A killed agent loses its robot, number and connection, and may contin
   a.mustEndWell();
 }
 
-TEST_CASE("Trainer commands with missing or extreme arguments stop nothing and no monitor sees NaN or infinity") {
+TEST_CASE(
+    "Trainer commands with missing or extreme arguments do not stop the match, and no monitor gets NaN or infinity") {
   Arena a({"--set", "/sys/server/monitor.interval=1"});
   Trainer trainer(a);
   for (const char* name : {"playMode", "kickOff", "ball", "agent", "kill", "repos", "select", "time", "score",
@@ -212,8 +213,8 @@ TEST_CASE("A thousand commands in one message are accepted, and a second robot i
   a.mustEndWell();
 }
 
-TEST_CASE("An agent that falls silent in lockstep is closed when patience ends, the others play on") {
-  // The witness never sends (syn): it could be too slow for half a second, too.
+TEST_CASE("An agent that stops answering in lockstep is closed after a timeout, and the others continue") {
+  // The witness never sends (syn), because on a slow machine it could exceed the timeout of half a second, too.
   Arena a({"--sync", "--rate", "max", "--set", "/sys/server/gamecontrol.syncTimeout=0.5"}, "soccer-sphere.lua", false);
   Client silent(a.agentPort);
   silent.send("(scene rsg/agent/sphere.rsg)(syn)");
@@ -244,14 +245,14 @@ TEST_CASE("Two hundred silent connections keep no other client out") {
   Robot c(a);
   REQUIRE(ask(c, "Calm", "2") == 2);
   for (int i = 0; i < 70; ++i) idle.push_back(std::make_unique<Client>(a.agentPort));
-  REQUIRE(ask(c, "Calm", "2") == 0);  // still connected, and it has its number already
+  REQUIRE(ask(c, "Calm", "2") == 0);  // still connected: it already has its number
   a.host.waitForError("it said nothing, and its place is needed");
   a.mustEndWell();
 }
 
-TEST_CASE("Clients that never get a robot are closed in the end") {
+TEST_CASE("Clients that never get a robot are closed after a time limit") {
   Arena a;
-  a.set("/sys/server/gamecontrol.idleLimit", "0.3");  // now that the witness has his robot
+  a.set("/sys/server/gamecontrol.idleLimit", "0.3");  // set now, because the witness already has its robot
   Client silent(a.agentPort), chatty(a.agentPort);
   chatty.send("(hello)(scene rsg/agent/none.rsg)");
   silent.waitForClose();

@@ -33,9 +33,9 @@ class Client {
     boost::asio::read(socket_, boost::asio::buffer(message));
     return message;
   }
-  /// Bytes that have come and were not received yet.
+  /// Number of bytes that have arrived and were not received yet.
   std::size_t waiting() { return socket_.available(); }
-  /// True when there are any.
+  /// True if there are any.
   bool pending() { return waiting() > 0; }
   /// Reads until the host closes the connection.
   void waitForClose() {

@@ -130,8 +130,8 @@ TEST_CASE("With --expect the match is the same for any connection order of playe
 }
 
 TEST_CASE(
-    "With --expect a program that creates its agents one after the other plays, and the match starts when no more "
-    "come") {
+    "With --expect a program that creates its agents one after the other can play, and the match starts when no more "
+    "connect") {
   ServingHost host({"--config", "soccer.lua", "--sync", "--rate", "max", "--expect", "3", "--set",
                     "/sys/server/gamecontrol.holdWait=0.02", "--set", "/sys/server/gamecontrol.joinWait=0.5"});
   std::vector<std::unique_ptr<ScriptedPlayer>> players;
@@ -142,13 +142,13 @@ TEST_CASE(
   }
   for (const double begin = players.back()->time(); players.back()->time() < begin + 1;)
     for (auto& p : players) REQUIRE(p->play());
-  // On a slow machine the first one may be waited for in vain, too.
+  // On a slow machine the wait for the first agent may time out, too.
   CHECK_THAT(host.process.errors(),
              Catch::Contains(" are ready, and nothing more came for 0.5 s (joinWait): the match starts.") &&
                  !Catch::Contains("Of 3 expected agents 3 are ready"));
   Connection("127.0.0.1", host.monitorPort).send("(killsim)");
-  while (players.front()->play()) {
-  }
+  for (bool on = true; on;)  // in lockstep the match ends with its next cycle
+    for (auto& p : players) on &= p->play();
   CHECK(host.result()["agentsSeen"] == 3);
 }
 
@@ -183,8 +183,8 @@ TEST_CASE("A utility that only sends commands to the monitor port and never read
   host.result();
 }
 
-TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene when it asks for it") {
-  // the player keeps the match waiting while the viewer reads
+TEST_CASE("A viewer that pauses gets complete messages again, and the complete scene on request") {
+  // While the viewer reads, the player does not answer, so the match waits.
   ServingHost host({"--config", "soccer-sphere.lua", "--sync", "--rate", "max"});
   Connection viewer("127.0.0.1", host.monitorPort);
   REQUIRE(kindOf(*viewer.receive()) == "RSG");
@@ -192,9 +192,9 @@ TEST_CASE("A viewer that pauses gets whole messages again, and the whole scene w
   player.run(120);
   const double now = player.last().find("GS").find("t")[1].number();  // monitors get the time of the match
   REQUIRE(now > 60);
-  // What was under way when its buffers were full, a gap, and then what is now.
-  constexpr double kLook = 0.1;  // s of wall time; TCP takes seconds until a full connection flows again, and the
-                                 // match is not to end meanwhile
+  // The viewer gets the messages that were in the buffers when these were full, then a gap, then the current messages.
+  constexpr double kLook = 0.1;  // s of wall time; TCP needs seconds to resume a full connection, and the
+                                 // match must not end meanwhile
   double last = 0, gap = 0;
   int messages = 0;
   while (last < now - 0.5) {

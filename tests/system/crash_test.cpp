@@ -54,11 +54,11 @@ TEST_CASE("A host that a sensor crashes names the sensor in its last line and en
     const Finished f = c.run(c.agent("null"), more);
     CHECK(f.code == 128 + SIGSEGV);
     CHECK_THAT(f.errors, Contains("sparkhost: crashed by SIGSEGV at address 0x0 in sense of "
-                                  "/usr/scene/AgentAspect1/TRF/eye (class CrashSensor of "
-                                  "plugin crashing). A debugger (gdb) shows the line.\n") ||
+                                  "/usr/scene/AgentAspect1/TRF/eye "
+                                  "(class CrashSensor of plugin crashing). A debugger (gdb) shows the line.\n") ||
                              Contains("sparkhost: crashed by SIGSEGV at address 0x0 in sense of "
-                                      "/usr/scene/AgentAspect1/Transform/eye (class CrashSensor of "
-                                      "plugin crashing). A debugger (gdb) shows the line.\n"));
+                                      "/usr/scene/AgentAspect1/Transform/eye "
+                                      "(class CrashSensor of plugin crashing). A debugger (gdb) shows the line.\n"));
   }
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("The watchdog names a hanging object once per report, while it hangs")
     p.waitForError("The simulation goes on after ");
     p.line();
     CHECK(p.wait() == 0);
-    // When it hung, and when it was asked to end. On a slow machine other things may stand still, too.
+    // The report is repeated on the stop request. On a slow machine other calls may be reported as hanging, too.
     const std::string said = p.errors();
     CHECK(said.find(words) != said.rfind(words));
     CHECK(said.find(words, said.find(words) + 1) == said.rfind(words));

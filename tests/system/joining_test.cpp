@@ -85,8 +85,8 @@ class Player {
 };
 using Team = std::vector<std::unique_ptr<Player>>;
 
-/// Joins as an agent of the FC Portugal code base does, while the same program leads `others`: it keeps them in step as
-/// long as it waits for the newcomer. In lockstep it has a side after three cycles; in real time the host may be a few
+/// Joins as an agent of the FC Portugal code base does, while the same program leads `others`: it answers for them
+/// while it waits for the newcomer. In lockstep it has a side after three cycles; in real time the host may be a few
 /// cycles ahead.
 std::unique_ptr<Player> joinPorto(unsigned short port, const std::string& team, int unum, Team& others, bool lockstep) {
   auto p = std::make_unique<Player>(port, team, unum);

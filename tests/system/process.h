@@ -11,8 +11,8 @@
 
 namespace spark::test {
 
-/// A child process. Its stdout is read line by line, its stderr is kept. Killed when this object goes. Functions throw
-/// std::runtime_error, with what the program said, when a wait takes longer than kPatience.
+/// A child process. Its stdout is read line by line, its stderr is kept. The destructor kills it. Functions throw
+/// std::runtime_error, with the stderr output of the program, when a wait takes longer than kPatience.
 class Process {
  public:
   /// Starts `command` (program and arguments).
@@ -28,12 +28,12 @@ class Process {
   /// Waits for the end of the process; returns the exit code, or 128 + signal.
   int wait();
   void signal(int number);
-  /// Stops it, and returns when it stands still; it goes on with SIGCONT.
+  /// Stops the process and returns when it has stopped; SIGCONT continues it.
   void halt();
   int pid() const { return pid_; }
   /// Its output on stderr so far.
   std::string errors() const;
-  /// Waits until stderr holds `text`.
+  /// Waits until stderr contains `text`.
   void waitForError(const std::string& text);
 
  private:
@@ -53,16 +53,16 @@ struct Finished {
 };
 Finished runToEnd(const std::vector<std::string>& command);
 
-/// Words of a command line, and more of them.
+/// Appends words to a command line.
 std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more);
 
-/// Arguments for a sparkhost with agents: its own limits of wall time are off. What is set behind them wins.
+/// Arguments for a sparkhost with agents that switch off its wall-clock limits. Later arguments override them.
 std::vector<std::string> withoutLimits();
 
-/// Arguments for sparkctl with all the patience there is; the command comes behind them.
+/// Arguments for sparkctl with a timeout of kPatience; the command follows them.
 std::vector<std::string> sparkctl(int pid);
 
-/// What a file holds; "" when it is not there.
+/// The content of a file; "" if it does not exist.
 std::string textOf(const std::filesystem::path& file);
 
 }  // namespace spark::test

@@ -26,7 +26,7 @@ Element find(const Predicates& message, std::string_view head, std::string_view 
 
 }  // namespace
 
-TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and is told what its sensors say") {
+TEST_CASE("A Nao V4 joins soccer-spl.lua, drives its motors, and receives its percepts") {
   Process host(joined({(binFolder() / "sparkhost").string(), "--config", "soccer-spl.lua", "--sync", "--rate", "max",
                        "--agent-port", "0", "--monitor-port", "0", "--log-level", "error"},
                       withoutLimits()));

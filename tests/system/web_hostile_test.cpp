@@ -18,7 +18,7 @@ using Catch::Contains;
 
 namespace {
 
-/// The web server's own limits of wall time are far off, but those that a test sets behind them.
+/// Sets the web server's wall-clock limits to an hour. Options in `more` follow, so a test can override them.
 std::vector<std::string> withoutWebLimits(const std::vector<std::string>& more) {
   std::vector<std::string> all{"--set", "/sys/server/web.requestTimeout=3600", "--set",
                                "/sys/server/web.stallTimeout=3600"};
@@ -26,46 +26,47 @@ std::vector<std::string> withoutWebLimits(const std::vector<std::string>& more) 
   return all;
 }
 
-/// An arena with somebody in the stands.
-struct Stadium : Arena {
-  explicit Stadium(const std::vector<std::string>& more = {}) : Arena(withoutWebLimits(more)) { takeSeat(); }
-  /// The fan watches, on a new connection. With a short limit of wall time he may be too slow, and tries again.
-  void takeSeat() {
-    for (bool seated = false; !seated;) {
+/// An arena with a connected viewer.
+struct WatchedArena : Arena {
+  explicit WatchedArena(const std::vector<std::string>& more = {}) : Arena(withoutWebLimits(more)) { connectViewer(); }
+  /// Connects the viewer. Retries, because the viewer may be too slow for a short time limit of the test.
+  void connectViewer() {
+    for (bool connected = false; !connected;) {
       try {
-        fan.emplace(webPort);
-        REQUIRE(fan->watch() == 101);
-        fan->binary();
-        seated = true;
+        viewer.emplace(webPort);
+        REQUIRE(viewer->watch() == 101);
+        viewer->binary();
+        connected = true;
       } catch (const boost::system::system_error&) {
       }
     }
   }
-  /// The fan takes what there is. He is asked every now and then whether he is still there.
-  void look() {
-    while (fan->pending()) fan->next();
+  /// Reads all frames that have arrived. Call it regularly, so that the viewer answers pings and its buffers do not
+  /// fill up.
+  void readFrames() {
+    while (viewer->pending()) viewer->next();
   }
-  /// The player and the viewer are not affected.
-  void mustGoOn() {
+  /// Checks that the player and the viewer are not affected.
+  void mustContinue() {
     witness->mustSeeTimePass();
-    look();
-    fan->binary();
-    fan->binary();
+    readFrames();
+    viewer->binary();
+    viewer->binary();
   }
   WebClient client() {
-    look();
+    readFrames();
     return WebClient(webPort);
   }
-  std::optional<WebClient> fan;
+  std::optional<WebClient> viewer;
 };
 
-std::string local(const Stadium& s) { return "Host: 127.0.0.1:" + std::to_string(s.webPort) + "\r\n"; }
+std::string local(const WatchedArena& s) { return "Host: 127.0.0.1:" + std::to_string(s.webPort) + "\r\n"; }
 }  // namespace
 
-TEST_CASE("No path leads out of the served folders") {
-  Stadium s({"--set", "webLogs=/usr/share/common-licenses"});
+TEST_CASE("No path reaches files outside of the served folders") {
+  WatchedArena s({"--set", "webLogs=/usr/share/common-licenses"});
   const WebClient::Answer license = s.client().get("/logs/GPL-3");
-  const bool hasLicense = license.status == 200;  // a file of every Debian shows that the folder is served
+  const bool hasLicense = license.status == 200;  // a file that every Debian has proves that the folder is served
   CHECK((!hasLicense || license.body.find("GNU") != std::string::npos));
   for (const char* target :
        {"/../../../../etc/passwd", "/logs/../../../etc/passwd", "/logs/..%2f..%2f..%2fetc%2fpasswd",
@@ -79,13 +80,13 @@ TEST_CASE("No path leads out of the served folders") {
   }
   for (const char* target : {"http://127.0.0.1/", "index.html", "*", "\\..\\x"})
     CHECK(s.client().get(target).status == 400);
-  s.mustGoOn();
+  s.mustContinue();
   s.mustEndWell();
 }
 
 TEST_CASE(
     "Oversized headers, bodies, unknown methods and bytes that are not HTTP are refused and close the connection") {
-  Stadium s;
+  WatchedArena s;
   const std::vector<std::pair<std::string, int>> requests{
       {"GET /" + std::string(20000, 'a') + " HTTP/1.1\r\n" + local(s) + "\r\n", 431},
       {"GET / HTTP/1.1\r\n" + local(s) + "X: " + std::string(20000, 'a') + "\r\n\r\n", 431},
@@ -98,28 +99,28 @@ TEST_CASE(
   };
   for (const auto& [request, status] : requests) {
     INFO(request.substr(0, 60));
-    s.look();
+    s.readFrames();
     WebClient client(s.webPort);
     client.sendRaw(request);
     CHECK_THAT(client.waitForClose(), Catch::StartsWith("HTTP/1.1 " + std::to_string(status)));
   }
-  s.mustGoOn();
+  s.mustContinue();
   s.mustEndWell();
 }
 
 TEST_CASE("A client that sends its request too slowly, or none, is closed") {
-  Stadium s({"--set", "/sys/server/web.requestTimeout=0.5"});
+  WatchedArena s({"--set", "/sys/server/web.requestTimeout=0.5"});
   WebClient silent(s.webPort), slow(s.webPort);
   slow.sendRaw("GET / HTTP/1.1\r\nHost: ");
   slow.sendRaw("localhost\r\nX-A: b\r\n");
   slow.waitForClose();
   silent.waitForClose();
-  s.mustGoOn();
+  s.mustContinue();
   s.mustEndWell();
 }
 
 TEST_CASE("Foreign host names and origins are refused, and a forwarded port is accepted") {
-  Stadium s({"--set", "/sys/server/web.hosts={\"match.example\"}"});
+  WatchedArena s({"--set", "/sys/server/web.hosts={\"match.example\"}"});
   const auto page = [&](const std::string& host) { return s.client().get("/", "Host: " + host + "\r\n").status; };
   for (const char* ours : {"localhost", "LOCALHOST:8080", "127.0.0.1:1", "[::1]:3280", "192.168.0.7:3280",
                            "x.localhost", "match.example:80"})
@@ -140,12 +141,12 @@ TEST_CASE("Foreign host names and origins are refused, and a forwarded port is a
     CHECK(stream("localhost:8080", origin) == (*origin ? 403 : 101));
   CHECK(stream("evil.example", "http://evil.example") == 421);
   CHECK(s.client().get("/stream").status == 426);
-  s.mustGoOn();
+  s.mustContinue();
   s.mustEndWell();
 }
 
 TEST_CASE("Frames that violate the WebSocket protocol and oversized messages close their connection") {
-  Stadium s;
+  WatchedArena s;
   const std::string invalid("\xff\xfe", 2);
   std::string huge = WebClient::frame("x");
   huge.replace(1, 1, std::string("\xff\x7f\xff\xff\xff\xff\xff\xff\xff", 9));
@@ -167,32 +168,32 @@ TEST_CASE("Frames that violate the WebSocket protocol and oversized messages clo
   };
   for (const auto& [what, bytes] : attacks) {
     INFO(what);
-    s.look();
+    s.readFrames();
     WebClient bad(s.webPort);
     REQUIRE(bad.watch() == 101);
     bad.sendRaw(bytes);
     bad.waitForClose();
   }
-  s.mustGoOn();
+  s.mustContinue();
   s.mustEndWell();
 }
 
 TEST_CASE("Invalid messages are answered with an error, and too many of them close the connection") {
-  Stadium s;
+  WatchedArena s;
   for (const std::string& message :
        {std::string("hello"), std::string("[]"), std::string("{}"), std::string("{\"do\":7}"),
         std::string("{\"do\":\"get\"}"), std::string(16000, '['), std::string("{\"do\":\"view\",\"rate\":\"many\"}"),
         std::string("{\"do\":\"fly\",\"id\":1}"), std::string("{\"do\":\"get\",\"id\":1,\"path\":7}"),
         std::string("{\"do\":\"get\",\"id\":1,\"path\":\"/nowhere\"}")}) {
     INFO(message.substr(0, 60));
-    s.look();
+    s.readFrames();
     WebClient client(s.webPort);
     REQUIRE(client.watch() == 101);
     client.say(message);
     CHECK_THAT(client.textWith("\"answer\""), Contains("\"ok\":false"));
   }
   for (const int opcode : {1, 9}) {
-    s.look();
+    s.readFrames();
     WebClient flood(s.webPort);
     REQUIRE(flood.watch() == 101);
     std::string many;
@@ -201,13 +202,13 @@ TEST_CASE("Invalid messages are answered with an error, and too many of them clo
     flood.waitForClose();
     s.host.waitForError("too many messages");
   }
-  s.mustGoOn();
+  s.mustContinue();
   s.mustEndWell();
 }
 
 TEST_CASE("Only the token grants referee rights, and it can be neither guessed nor read") {
   const std::string token = "a-token-of-the-test";
-  Stadium s({"--set", "webToken=" + token});
+  WatchedArena s({"--set", "webToken=" + token});
   WebClient spectator(s.webPort);
   REQUIRE(spectator.watch() == 101);
   const auto refused = [&](const std::string& message) {
@@ -225,7 +226,7 @@ TEST_CASE("Only the token grants referee rights, and it can be neither guessed n
   for (int i = 0; i < 4; ++i) {
     guesser.say(R"({"do":"login","token":")" + token.substr(0, 17 + i % 2) + "\"}");
     CHECK_THAT(guesser.textWith("\"referee\""), Contains("\"ok\":false"));
-    s.look();
+    s.readFrames();
   }
   guesser.say(R"({"do":"login","token":""})");
   guesser.waitForClose();
@@ -238,12 +239,12 @@ TEST_CASE("Only the token grants referee rights, and it can be neither guessed n
   referee.say(R"~({"do":"command","id":5,"text":"(playMode corner_kick_left)"})~");
   CHECK_THAT(referee.textWith("\"id\":5"), Contains("\"ok\":true"));
   spectator.textWith("[\"play_mode\",");
-  s.mustGoOn();
+  s.mustContinue();
   s.mustEndWell();
 }
 
 TEST_CASE("A viewer that does not read uses bounded memory and is closed after a timeout") {
-  Stadium s({"--set", "/sys/server/web.stallTimeout=1", "--set", "/sys/server/web.share=0.5"});
+  WatchedArena s({"--set", "/sys/server/web.stallTimeout=1", "--set", "/sys/server/web.share=0.5"});
   const double before = s.memory();
   std::vector<std::unique_ptr<WebClient>> deaf;
   for (int i = 0; i < 8; ++i) {
@@ -254,12 +255,12 @@ TEST_CASE("A viewer that does not read uses bounded memory and is closed after a
   }
   s.host.waitForError("you do not read what you are sent");
   CHECK(s.memory() < before + 64);
-  // All are gone before one of them is read.
+  // All must be disconnected before the test reads from any of them.
   while (nlohmann::json::parse(WebClient::status(s.webPort))["spectators"] > 1)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   for (auto& client : deaf) client->waitForClose();
-  s.takeSeat();  // on a slow machine he may have been deaf for a second, too
-  s.mustGoOn();
+  s.connectViewer();  // on a slow machine the viewer may have been closed, too
+  s.mustContinue();
   s.mustEndWell();
 }
 
@@ -272,7 +273,7 @@ TEST_CASE("Clients that request files and never read them leave the host enough 
   REQUIRE(limit.rlim_max >= 2 * kFew);
   limit.rlim_cur = kFew;
   REQUIRE(setrlimit(RLIMIT_NOFILE, &limit) == 0);
-  Stadium s({"--set", "webLogs=" + folder.path().string()});  // started with the low limit
+  WatchedArena s({"--set", "webLogs=" + folder.path().string()});  // started with the low limit
   limit.rlim_cur = 2 * kFew;
   REQUIRE(setrlimit(RLIMIT_NOFILE, &limit) == 0);
   const std::string request = "GET /logs/long.log HTTP/1.1\r\n" + local(s) + "\r\n";
@@ -284,7 +285,7 @@ TEST_CASE("Clients that request files and never read them leave the host enough 
     socket.connect({boost::asio::ip::address_v4::loopback(), s.webPort});
     boost::system::error_code ignored;
     boost::asio::write(socket, boost::asio::buffer(request), ignored);
-    s.look();
+    s.readFrames();
   }
   CHECK(s.client().get("/status.json").status == 200);
   const auto open =
@@ -292,12 +293,12 @@ TEST_CASE("Clients that request files and never read them leave the host enough 
   CHECK(static_cast<rlim_t>(open) < kFew - 100);
   Witness newcomer(s.agentPort, "Late", 2);
   newcomer.mustSeeTimePass();
-  s.mustGoOn();
+  s.mustContinue();
   s.mustEndWell();
 }
 
 TEST_CASE("Ten thousand connections displace no viewer, and a new client is still answered") {
-  Stadium s;
+  WatchedArena s;
   rlimit limit{};
   REQUIRE(getrlimit(RLIMIT_NOFILE, &limit) == 0);
   limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, 11000);
@@ -310,15 +311,15 @@ TEST_CASE("Ten thousand connections displace no viewer, and a new client is stil
     if (crowd.size() == atOnce) crowd.clear();
     crowd.emplace_back(io).connect({boost::asio::ip::address_v4::loopback(), s.webPort});
     if (i % 1000 == 999)
-      s.mustGoOn();
+      s.mustContinue();
     else if (i % 50 == 0)
-      s.look();
+      s.readFrames();
   }
   CHECK(s.client().get("/status.json").status == 200);
   WebClient viewer(s.webPort);
   REQUIRE(viewer.watch() == 101);
   viewer.binary();
-  s.mustGoOn();
+  s.mustContinue();
   viewer.say(R"({"do":"get","id":1,"path":"/sys/server/web"})");
   CHECK_THAT(viewer.textWith("\"id\":1"), Contains("\"viewers\",\"value\":2"));
   s.mustEndWell();

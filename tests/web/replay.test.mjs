@@ -54,7 +54,7 @@ test("a log from a URL is shown, and seek, step and playback work", async (t) =>
   await part(page, "speed").selectOption("10");
   await part(page, "play-pause").click();
   await until(page, "that it plays", (s, time) => s.time > time + 5, goal);
-  if ((await state(page)).playing) await part(page, "play-pause").click();  // a slow page may come to the end before
+  if ((await state(page)).playing) await part(page, "play-pause").click();  // playback may have ended already
   const paused = await until(page, "that it stands", (s) => !s.playing);
   await drawn(page);
   assert.equal((await state(page)).time, paused.time);

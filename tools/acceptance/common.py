@@ -1,4 +1,4 @@
-"""What the judges of all milestones use: running programs and tests."""
+"""Shared code of all milestones: running programs and tests."""
 import re
 import subprocess
 import sys
@@ -16,7 +16,7 @@ def say(text):
 
 
 def run(command, **options):
-    """A finished process with its output; stderr goes through unless it is wanted."""
+    """A finished process with its output; stderr is passed through unless it is captured."""
     return subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, text=True, **options)
 
 

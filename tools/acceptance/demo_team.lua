@@ -28,7 +28,8 @@ end
 
 local function add(name, by) result[name] = result[name] + by end
 
---- A fall ends when he has stood for a while; where the referee takes him up it does not count as getting up.
+--- A fall ends when the player has stood for a while. If the referee lifts the player, this does not count as getting
+--- up.
 local function look(p, seconds)
   local height = p.body.worldTransform[15]
   add("playerSeconds", seconds)

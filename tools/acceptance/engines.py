@@ -1,4 +1,4 @@
-"""The milestone `engines`: a contract for engines in the field's words, and engines that meet it."""
+"""The milestone `engines`: a contract for engines in the terms of the field, and engines that fulfil it."""
 import json
 import re
 import shutil
@@ -24,7 +24,7 @@ def suite():
 
 
 def example():
-    """The example engine runs boxes.lua: things fall, and lie on the ground at the end."""
+    """The example engine runs boxes.lua: the boxes fall, and rest on the ground at the end."""
     lines = len(EXAMPLE.read_text().splitlines())
     with tempfile.TemporaryDirectory() as folder:
         config = Path(folder) / "points.lua"
@@ -46,12 +46,12 @@ def t1():
     return f"{figures} (at most 1e-9 wanted); {today}", PASS if good and same else FAIL
 
 
-# A MuJoCo of today, in WebAssembly: a second oracle where there is Node.js.
+# A current MuJoCo in WebAssembly, as a second reference if Node.js is available.
 TODAY = "@mujoco/mujoco@3.9.0"
 
 
 def mujoco_of_today():
-    """(what was measured, it was alike or could not be asked): the largest difference of a joint's angle at the end."""
+    """(measured value, whether it agrees or is unavailable): the largest difference of a joint's angle at the end."""
     if not shutil.which("npm"):
         return "no Node.js for the second oracle", True
     folder = ROOT / "build/mujoco-wasm"

@@ -1,4 +1,4 @@
-"""Draws sentences from comments and test names, and reads the table in which people judged them.
+"""Draws random sentences from comments and test names, and reads the table with their verdicts by people.
 
     python3 tools/acceptance/english.py SEED     prints 60 sentences, half of the product and half of tests, as rows of english.md
 
@@ -22,7 +22,7 @@ def is_test(path):
 
 
 def paragraphs(path):
-    """(line, text) of each comment and each name of a test; comments on lines one after the other are one."""
+    """(line, text) of each comment and each test name; comments on consecutive lines are one."""
     mark = "#" if path.suffix == ".py" else "//"
     comment = re.compile(r"^\s*(?:///?<?|#)\s?(.*)$" if mark == "//" else r"^\s*#\s(.*)$")
     trailing = re.compile(r'\S\s+' + mark + r'[/<!]*\s(.+)$')

@@ -1,4 +1,4 @@
-"""The milestone `fast`: every target against what is measured now. The machine should do nothing else meanwhile."""
+"""The milestone `fast`: compares every target with a new measurement. The machine should be idle otherwise."""
 import functools
 import json
 import statistics
@@ -10,10 +10,10 @@ from pathlib import Path
 from acceptance.common import BIN, FAIL, OPEN, PASS, ROOT, run, say, tests
 
 STEP = 0.02  # s of a cycle
-RAW = 3406  # us: a cycle of raw ODE with 22 moving humanoids where the targets in microseconds were set
+RAW = 3406  # us: a cycle of raw ODE with 22 moving humanoids on the machine for which the targets in microseconds were set
 PAGE = ROOT / "docs/performance.md"
 HISTORY = ROOT / "tests/bench/history"
-history = False  # whether what is measured is kept
+history = False  # whether measurements are stored
 BEGIN, END = "<!-- written by tools/accept fast --write -->", "<!-- end of what is written -->"
 
 
@@ -38,12 +38,12 @@ def judge(*good):
 
 @functools.lru_cache(maxsize=None)
 def slowness():
-    """How many times slower than there raw ODE runs now; 1 where it is faster."""
+    """How many times slower raw ODE runs now than on the machine of RAW; 1 if it is faster."""
     return max(1, row(bench("--only", "moving22", "--way", "host"), "moving22", "raw")["cpuMicros"] / RAW)
 
 
 def within(micros, most):
-    """Targets in microseconds hold at the speed of the machine that they were set for."""
+    """Targets in microseconds are scaled by the speed relative to the machine that they were set for."""
     return micros <= most * slowness()
 
 
@@ -121,7 +121,7 @@ def solver():
 
 
 def batch(folder, runs, threads, seconds):
-    """What sparkbatch says of some matches of 22 humanoids that play inside the host."""
+    """The result of sparkbatch for some matches of 22 humanoids that play inside the host."""
     results = Path(folder) / f"{len(list(Path(folder).iterdir()))}.csv"
     output = run([BIN / "sparkbatch", "--config", "soccer.lua", "--set", "team=Red Blue", "--set", "Soccer.AutomaticKickOff=true", "--set", "Soccer.WaitBeforeKickOff=2", "--runs", str(runs),
                   "--threads", str(threads), "--duration", str(seconds), "--results", results], stderr=subprocess.DEVNULL)
@@ -179,7 +179,7 @@ def processor():
 
 
 def phases():
-    """Where the time of a cycle goes: the worlds that were measured for the points."""
+    """How the time of a cycle is distributed, for the worlds that were measured for the points."""
     parts = ("input", "act", "prepare", "physics", "place", "rule", "sense", "publish")
     lines = ["| world, way, solver | CPU us | x raw ODE | " + " | ".join(parts) + " |", "|---|" + "---:|" * (2 + len(parts))]
     for arguments in (("--only", "moving22", "--threads", "2"), ("--only", "rest22", "--threads", "2"), ("--only", "moving22,rest22", "--threads", "2", "--solver", "articulated")):
@@ -191,7 +191,7 @@ def phases():
 
 
 def write(rows):
-    """Puts the table of this run into the page. Points that were not run are not in it."""
+    """Writes the table of this run into the page. It contains only the points that were run."""
     commit = run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"]).stdout.strip()
     lines = [f"{processor()}; {datetime.now(timezone.utc):%Y-%m-%d}, commit {commit}.", "", "| target | measured | verdict |", "|---|---|---|"]
     lines += [f"| {title.replace('|', '/')} | {measured.replace('|', '/')} | {verdict} |" for title, measured, verdict in rows]

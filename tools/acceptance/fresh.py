@@ -1,4 +1,4 @@
-"""What a newcomer does: clones into an empty folder, gives the README's commands with an empty compiler cache."""
+"""The steps of a new user: clones into an empty folder and runs the README's commands with an empty compiler cache."""
 import contextlib
 import os
 import subprocess
@@ -58,7 +58,7 @@ def fresh_clone():
 
 @contextlib.contextmanager
 def busy(loops):
-    """Meanwhile as many processes of a session of their own do nothing but use a processor."""
+    """A context in which this many busy processes run, in a separate session."""
     running = [subprocess.Popen(["sh", "-c", "while :; do :; done"], start_new_session=True) for _ in range(loops)]
     try:
         yield

@@ -1,4 +1,4 @@
-"""The milestone `front-door`: both commands pass on every machine, and a stranger finds the way in."""
+"""The milestone `front-door`: both commands pass on every machine, and a new user finds the entry points."""
 import re
 import subprocess
 import sys
@@ -12,7 +12,7 @@ PAGES = ROOT / "tests/pages"
 LINES = 100
 STOPS = 0.1  # share of sentences that may stop a reader
 
-fresh = False  # points 1 and 2 give the commands in a fresh clone
+fresh = False  # points 1 and 2 run the commands in a fresh clone
 
 
 def newcomer():
@@ -31,7 +31,7 @@ def newcomer():
 
 
 def slow_machine():
-    """With the builds there already: the tests are what has deadlines."""
+    """With existing builds, because only the tests have deadlines."""
     if not fresh:
         return "--fresh judges this", OPEN
     with fresh_clone() as clone:

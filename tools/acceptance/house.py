@@ -5,7 +5,7 @@ import subprocess
 from acceptance.common import FAIL, OPEN, PASS, ROOT, last_check, run, say, tests
 
 KERNEL_LINES = 3500
-# Floors, lowest first, with those whose headers each may include.
+# The libraries ("floors") of core, lowest first, each with the ones whose headers it may include.
 FLOORS = {
     "core/base": [],
     "core/message": ["core/base"],
@@ -19,13 +19,13 @@ def sources(folder):
 
 
 def code_lines(folder):
-    """Lines that are neither empty nor a comment, and all lines."""
+    """Number of lines that are neither empty nor comments, and of all lines."""
     lines = [line for p in sources(folder) for line in p.read_text().splitlines()]
     return sum(not re.match(r"\s*(//|$)", line) for line in lines), len(lines)
 
 
 def arrows():
-    """Includes of core's headers against the floors."""
+    """Checks that core's headers include only headers of permitted floors."""
     owners = {p.relative_to(ROOT / floor / "include").as_posix(): floor for floor in FLOORS for p in (ROOT / floor / "include").rglob("*.h")}
     wrong = []
     for floor, below in FLOORS.items():

@@ -9,7 +9,7 @@ COUNT, SEED, WANTED = 40, "1", 0.9
 
 
 def killed_mutants():
-    """(measured, verdict): at least nine of ten mutants are killed by the tests nearest to them, and each that once survived is."""
+    """(measured, verdict): at least nine of ten mutants are killed by the tests nearest to them, and so are all that once survived."""
     with tempfile.TemporaryDirectory() as folder:
         say("Building and testing mutants")
         reports = [Path(folder) / "sample.json", Path(folder) / "named.json"]

@@ -6,7 +6,7 @@ from acceptance.common import FAIL, OPEN, PASS, ROOT, last_check, run, say, test
 from acceptance.fresh import fresh_clone, unit
 
 SESSIONS = 13
-# CPU time from an empty compiler cache, by that of compiling tests/catch_main.cpp.
+# CPU time with an empty compiler cache, as a multiple of that of compiling tests/catch_main.cpp.
 PLAY_UNITS, CHECK_UNITS = 90, 250
 OTHERS = ("first-match", "robocup3d", "fast", "web")
 

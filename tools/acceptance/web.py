@@ -1,4 +1,4 @@
-"""The milestone `web`: the viewer in the browser. For the points with figures the machine should do nothing else meanwhile."""
+"""The milestone `web`: the viewer in the browser. For the points with figures the machine should be idle otherwise."""
 import contextlib
 import json
 import os
@@ -12,9 +12,9 @@ from acceptance.common import BIN, FAIL, OPEN, PASS, REPORTS, ROOT, last_check, 
 
 SPECTATORS = 100
 CYCLE = 0.02  # s
-ROUNDS = 7  # of blocks, one with each crowd
-BLOCK, CHANGE = 100, 50  # cycles of a block, and between two, in which spectators come or go
-FIRST = 300  # cycle of the first block: the robots are there and walk
+ROUNDS = 7  # number of rounds, each with one block per crowd
+BLOCK, CHANGE = 100, 50  # cycles of a block, and cycles between two blocks, in which spectators connect or disconnect
+FIRST = 300  # cycle of the first block, when the robots exist and walk
 FUZZERS = ("fuzz-web-http", "fuzz-web-socket", "fuzz-draw")
 SCREENSHOTS = ROOT / "build/release/web-screenshots"
 
@@ -70,13 +70,13 @@ class Match:
         self.host.wait()
 
     def used(self):
-        """Cycles so far, and seconds of processor that the simulation thread took for them."""
+        """Number of cycles so far, and processor seconds that the simulation thread has used for them."""
         cycle = run([BIN / "sparkctl", "--pid", str(self.host.pid), "get", "/sys/server/simulation.cycle"]).stdout
         thread = Path(f"/proc/{self.host.pid}/task/{self.host.pid}/schedstat").read_text()
         return int(re.search(r"= (\d+)", cycle)[1]), int(thread.split()[0]) * 1e-9
 
     def wait(self, cycle):
-        """Until that cycle, in the match's own pace."""
+        """Waits until that cycle; the match runs at its own pace."""
         while (left := cycle - self.used()[0]) > 0:
             time.sleep(left * CYCLE)
 
@@ -94,13 +94,13 @@ class Match:
 
 
 class Crowd:
-    """Spectators on loopback; all are connected and see the match within."""
+    """Spectators over loopback; inside the context all are connected and receive the match."""
 
     def __init__(self, match, *arguments):
         self.command = [str(c) for c in (BIN / "web-spectators", "--port", match.port, *arguments)]
 
     def __enter__(self):
-        # lower priority: on few processors the crowd itself must not push the host aside
+        # lower priority, so that on few processors the crowd does not take processor time from the host
         self.program = subprocess.Popen(self.command, stdout=subprocess.PIPE, text=True, preexec_fn=lambda: os.nice(10))
         self.program.stdout.readline()
         return self
@@ -159,7 +159,7 @@ def spectators():
 # ---- the rest ----
 
 def fuzzed():
-    """What the last tools/check said of this milestone's fuzzers."""
+    """The result of the last tools/check for this milestone's fuzzers."""
     failures = (REPORTS / "failures").read_text() if (REPORTS / "failures").exists() else ""
     missing = [f for f in FUZZERS if not (REPORTS / f"{f}.log").exists()]
     failed = [f for f in FUZZERS if f in failures]

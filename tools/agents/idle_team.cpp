@@ -8,7 +8,7 @@
 #include "team.h"
 
 // Load for a server: agents that load a robot, join a team and then only send (syn); monitors that discard what they
-// read. One process and one thread with almost no work of its own, so that measurements show the server.
+// read. One process and one thread that use almost no processor time, so that measurements show the server.
 
 namespace {
 namespace asio = boost::asio;

@@ -46,7 +46,7 @@ class TeamProgram {
     double patience = 10;
     bool reverse = false, quiet = false;
   };
-  /// `most`: largest number of players.
+  /// `most`: maximum number of players.
   TeamProgram(std::string name, const std::string& description, int most = 11);
   ~TeamProgram();
   /// Adds an option. `value` is the default and receives the value; it must outlive run().

@@ -48,7 +48,7 @@ std::string configText(const std::string& config) {
   return {};
 }
 
-/// What must be the same for all rows of a table. The number of runs may change.
+/// The settings that must be the same for all rows of a table. The number of runs may change.
 Json batchOf(const Options& o) {
   Json batch{{"config", o.config},
              {"config's text (hash)", fmt::format("{:016x}", spark::hashBytes(configText(o.config)))},

@@ -65,9 +65,8 @@ std::unique_ptr<Cluster> Cluster::join() {
   return std::make_unique<MpiCluster>();
 #else
   throw spark::Error(
-      "mpirun started this program, which was built without MPI: every process would run the whole batch. Install "
-      "libopenmpi-dev and "
-      "openmpi-bin, configure and build again.");
+      "mpirun started this program, which was built without MPI: every process would run the whole batch. "
+      "Install libopenmpi-dev and openmpi-bin, configure and build again.");
 #endif
 }
 

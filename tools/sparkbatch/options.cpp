@@ -86,9 +86,8 @@ std::optional<int> readOptions(int argc, char** argv, bool print, Options& out) 
   sparkhost::addCommonOptions(app, out.pluginPaths, out.scenePaths, out.logLevel,
                               "Minimum level of log lines of worlds on stderr");
   app.footer(
-      "stdout: one JSON line at the end. Exit code 0: every run has a row; 1: some rows are errors; 2: nothing was "
-      "run; 3: it was "
-      "interrupted.");
+      "stdout: one JSON line at the end. Exit code 0: every run has a row; 1: some rows are errors; 2: nothing "
+      "was run; 3: it was interrupted.");
   try {
     app.parse(argc, argv);
     checkResults(out.results);

@@ -19,8 +19,8 @@ class Table {
   /// How to open the file: `fresh`: it must not exist; `resume`: continue it; `retry`: also remove rows with an error.
   enum class Open { fresh, resume, retry };
 
-  /// `batch`: an object with all that must be the same for the rows of a table. Throws spark::Error if the file exists
-  /// and must not, belongs to another batch (the text says what differs), is damaged, or is in use.
+  /// `batch`: an object with all settings that must be the same for the rows of a table. Throws spark::Error if the
+  /// file exists and must not, belongs to another batch (the text says what differs), is damaged, or is in use.
   Table(std::string file, const Json& batch, Open open);
   ~Table();
   Table(const Table&) = delete;

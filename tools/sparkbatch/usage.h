@@ -6,8 +6,8 @@
 
 namespace sparkbatch {
 
-/// Memory is in MB of 10^6 bytes: the peak of the process, and the part of it since construction per worker thread. Of
-/// several processes the largest values count; threads and CPU time are summed.
+/// Memory is in MB of 10^6 bytes: the peak of the process, and the part of it since construction per worker thread.
+/// With several processes, memory is the maximum over the processes; threads and CPU time are summed.
 class Usage {
  public:
   /// `threads`: number of worker threads of this process.

@@ -33,7 +33,7 @@ std::vector<fs::path> folders() {
   return out;
 }
 
-/// Why the folder cannot be trusted; "" if only this user can have created its files.
+/// The reason why the folder cannot be trusted; "" if only this user can have created its files.
 std::string problem(const fs::path& folder) {
   struct stat s = {};
   if (lstat(folder.c_str(), &s) != 0) return {};  // there is none

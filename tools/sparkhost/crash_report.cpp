@@ -11,21 +11,21 @@
 
 #include "spark/running.h"
 
-// Signal handlers may allocate nothing and take no lock, so text goes into fixed buffers. Each thread that runs nodes
-// has a stack for its handlers: a thread that used up its own can be reported, too. The handler writes its report, puts
-// back what handled the signal before and returns. The instruction fails again and the process ends as if there had
-// been no handler: core, exit status, a sanitizer's report.
+// Signal handlers must not allocate or lock, so text is written into fixed buffers. Each thread that runs nodes has a
+// separate stack for its signal handlers, so that a stack overflow can be reported, too. The handler writes its report,
+// restores the previous handler and returns. Then the instruction fails again, and the process ends as if there had
+// been no handler: with a core file, exit status or sanitizer report.
 
 namespace sparkhost {
 
 namespace {
 constexpr std::size_t kStack = 64u << 10;  // bytes for handlers
-constexpr std::size_t kMostText = 1000;    // bytes of a report
+constexpr std::size_t kMaxText = 1000;     // bytes of a report
 
 const char* programName = "";
 thread_local std::unique_ptr<char[]> handlerStack;
 
-/// A signal of a crash, and what handled it before.
+/// A crash signal and its previous handler.
 struct Crash {
   int signal;
   const char* name;
@@ -34,12 +34,12 @@ struct Crash {
 std::array crashes{Crash{SIGSEGV, "SIGSEGV"}, Crash{SIGBUS, "SIGBUS"}, Crash{SIGFPE, "SIGFPE"}, Crash{SIGILL, "SIGILL"},
                    Crash{SIGABRT, "SIGABRT"}};
 
-/// In one piece, or not at all: short texts are not cut.
+/// Appends the whole text or nothing, because short texts must not be cut.
 void print(const char* text, std::size_t size) {
   while (write(STDERR_FILENO, text, size) < 0 && errno == EINTR) continue;
 }
 
-/// Appends text to a buffer; what does not fit is left out.
+/// Appends text to a buffer; text that does not fit is dropped.
 class Text {
  public:
   Text& operator<<(const char* text) {
@@ -57,7 +57,7 @@ class Text {
   void print() const { sparkhost::print(bytes_, size_); }
 
  private:
-  char bytes_[kMostText];
+  char bytes_[kMaxText];
   std::size_t size_ = 0;
 };
 
@@ -65,26 +65,26 @@ void onCrash(int number, siginfo_t* info, void*) {
   const char* name = "";
   for (const Crash& c : crashes)
     if (c.signal == number) {
-      sigaction(number, &c.before, nullptr);  // first: what follows may crash as well
+      sigaction(number, &c.before, nullptr);  // first, because the following code may crash, too
       name = c.name;
     }
   Text head;
   head << "\n" << programName << ": crashed by " << name;
   if (number == SIGSEGV || number == SIGBUS) (head << " at address ").address(info->si_addr);
   (head << " ").print();
-  char words[kMostText];
+  char words[kMaxText];
   if (const spark::Running* mine = spark::runningHere())
     print(words, spark::describeRunning(*mine, words, sizeof words));
   else
     (Text() << "in a thread that runs no nodes").print();
   (Text() << ". A debugger (gdb) shows the line.\n").print();
-  // What the processor found it finds again; what was sent has to be sent again.
+  // A fault of the processor repeats when the handler returns; a signal that was sent must be sent again.
   if (info->si_code <= 0) syscall(SYS_tgkill, getpid(), syscall(SYS_gettid), number);
 }
 
 void giveHandlerStack() {
   stack_t old = {};
-  if (sigaltstack(nullptr, &old) != 0 || !(old.ss_flags & SS_DISABLE)) return;  // a sanitizer's
+  if (sigaltstack(nullptr, &old) != 0 || !(old.ss_flags & SS_DISABLE)) return;  // a sanitizer has set one already
   handlerStack = std::make_unique<char[]>(kStack);
   stack_t s = {};
   s.ss_sp = handlerStack.get();

@@ -24,7 +24,7 @@ void HangWatch::install(Kernel& kernel) {
 
 HangWatch::~HangWatch() { stop(); }
 
-/// The host may end between two checks; then the call that hung has returned.
+/// Logs the end of a hang. The host may end between two checks; the call that hung has returned then.
 void HangWatch::onUnlink() {
   stop();
   if (reported_) reportEnd();
@@ -57,7 +57,7 @@ void HangWatch::watch() {
   while (!wake_.wait_for(lock, kInterval, [this] { return ending_; })) check();
 }
 
-/// Counts checks, not time: a host that was suspended, or got no processor time, does not hang.
+/// Counts checks instead of time, because a host that was suspended, or got no processor time, does not hang.
 void HangWatch::check() {
   if (watchdog_->gotOn()) {
     if (reported_) reportEnd();

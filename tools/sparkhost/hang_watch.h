@@ -50,7 +50,7 @@ class HangWatch : public spark::Node {
   Clock::time_point lastProgress_{};
   double stuck_ = 0;           ///< s without progress, as counted by check()
   bool reported_ = false;      ///< the hang was logged
-  bool stopReported_ = false;  ///< ... together with the request to stop
+  bool stopReported_ = false;  ///< the hang was logged again after a request to stop
 };
 
 }  // namespace sparkhost

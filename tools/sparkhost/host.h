@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A simulation from the command line to the last line on stdout.
+/// Runs a simulation, from the command line to the last line on stdout.
 
 #include <filesystem>
 #include <string>

@@ -64,12 +64,11 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
       ->type_name("CLASS")
       ->excludes("--config");
   app.footer(
-      "stdout: a first JSON line with the ports and the page for browsers, a last one with the result; all else is on "
-      "stderr.\n"
-      "Exit code 0: done; 1: it failed on the way, or a line could not be written to stdout; 2: the command line, the "
-      "config or what "
-      "--check looks at "
-      "is wrong.\nSIGINT, SIGTERM and SIGHUP end a run with its result, a second one ends it at once.");
+      "stdout: a first JSON line with the ports and the page for browsers, a last one with the result; all else is "
+      "on stderr.\n"
+      "Exit code 0: done; 1: it failed on the way, or a line could not be written to stdout; 2: the command line, "
+      "the config or what --check looks at is wrong.\n"
+      "SIGINT, SIGTERM and SIGHUP end a run with its result, a second one ends it at once.");
   try {
     app.parse(argc, argv);
     for (const std::string& s : sets) out.overrides.push_back(splitOverride(s));

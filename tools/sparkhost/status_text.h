@@ -11,7 +11,7 @@
 namespace sparkhost {
 
 /// ", PlayOn 1:0, round 3": the play mode and a score after it without names; other entries as `name value`. Empty
-/// values are left out.
+/// values are omitted.
 std::string statusText(const std::vector<spark::StatusEntry>& entries);
 
 /// Writes members into the current object: `"playMode":"PlayOn","score":[1,0],"status":{"round":3}`.

@@ -8,8 +8,8 @@
 #include <csignal>
 #include <utility>
 
-// The watchdog sends a signal to the thread that hangs, which describes itself in the signal's handler: the nodes that
-// it names cannot change meanwhile.
+// The watchdog sends a signal to the thread that hangs. The signal handler of that thread describes what it is running.
+// The nodes that it names cannot change meanwhile, because their thread is interrupted.
 
 namespace sparkhost {
 
@@ -17,7 +17,7 @@ using namespace spark;
 
 namespace {
 constexpr std::size_t kLongest = 1000;  // bytes
-constexpr int kAnswerWait = 5000;       // ms; a thread of a busy machine gets its turn late
+constexpr int kAnswerWait = 5000;       // ms; on a busy machine a thread may be scheduled late
 
 char answer[kLongest + 1];
 std::atomic<std::size_t> answered{0};
@@ -45,7 +45,7 @@ bool Watchdog::gotOn() {
   return std::exchange(seen_, now) != now || idle;
 }
 
-/// A thread of a pool that runs a node is what the watched one waits for.
+/// If a worker thread runs a node, the watched thread is waiting for it, so the worker is described instead.
 const char* Watchdog::words() {
   const Running* asked = &watched_;
   for (const Running& r : runningThreads())

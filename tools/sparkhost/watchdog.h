@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Whether a thread gets on.
+/// Checks whether a thread makes progress.
 
 #include <cstdint>
 
@@ -8,8 +8,8 @@
 
 namespace sparkhost {
 
-/// Looks whether the thread that made it gets on. At most one object a process at a time; its functions are called by
-/// another thread.
+/// Checks whether the thread that created it makes progress. At most one such object may exist per process; its
+/// functions are called by another thread.
 class Watchdog {
  public:
   /// Watches the calling thread.
@@ -17,10 +17,10 @@ class Watchdog {
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
-  /// True when the thread did something new since the last call, or runs no node's code.
+  /// True if the thread has made progress since the last call, or runs no node's code.
   bool gotOn();
-  /// What the thread runs, or the thread that it waits for, in words of at most 1000 bytes; "" when there is no answer
-  /// within some 0.1 s. Interrupts that thread for a moment.
+  /// Describes what the thread, or the thread that it waits for, is running, in at most 1000 bytes; "" if that thread
+  /// does not answer in time. Interrupts that thread briefly.
   const char* words();
 
  private:

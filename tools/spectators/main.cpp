@@ -63,7 +63,7 @@ void printLine(const std::string& line) {
   std::fflush(stdout);
 }
 
-/// Prints what was received since all were connected.
+/// Prints the statistics since all spectators were connected.
 void report(const Options& o, const std::vector<Tally>& before, const std::vector<Tally>& after, double seconds) {
   std::vector<double> bytes, frames;
   Tally sum;

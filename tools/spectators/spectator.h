@@ -33,7 +33,7 @@ class Spectator {
   /// `stalled`: does not read after the handshake.
   static std::shared_ptr<Spectator> make(boost::asio::io_context& io, const Settings& settings, bool stalled);
   virtual ~Spectator() = default;
-  /// Connects. Calls `watching` after the first frame; a stalled one after the handshake.
+  /// Connects. Calls `watching` after the first frame, or after the handshake if the spectator is stalled.
   virtual void start(std::function<void()> watching) = 0;
   virtual const Tally& tally() const = 0;
 };

@@ -6,7 +6,7 @@
 namespace spark {
 
 void detail::assertionFailed(const char* condition, const char* file, int line) {
-  // The same form as a compiler's message, so that editors find the place.
+  // The format of a compiler message, so that editors can jump to the location.
   std::fprintf(stderr, "%s:%d: the precondition does not hold: %s\n", file, line, condition);
   std::abort();
 }

@@ -17,7 +17,7 @@ Error::~Error() = default;
 namespace {
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; }
 
-/// The Levenshtein distance of two names, ignoring case: the least number of insertions, deletions and substitutions
+/// The Levenshtein distance of two names, ignoring case: the minimum number of insertions, deletions and substitutions
 /// that turn one into the other. Wagner and Fischer 1974, with one row of the table in memory.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);  // row[j]: distance of a's first i letters from b's first j

@@ -21,7 +21,7 @@ namespace {
 /// most doubles that cost.
 constexpr std::chrono::microseconds kSpin{20};
 
-/// Tells the processor that this is a spinning loop.
+/// Hints to the processor that this is a spin loop.
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
@@ -53,14 +53,14 @@ struct Jobs::Impl {
   std::atomic<std::size_t> working{0};                    ///< workers in this round; written under the mutex
   std::size_t asleep = 0;                                 ///< workers that wait for `start`
   bool open = false;                                      ///< workers may still join the round
-  bool ending = false;                                    ///< workers return
+  bool ending = false;                                    ///< workers must return
   bool spins = false;                                     ///< threads spin before they sleep
 
   /// Claims and runs jobs until none is left.
   void work() {
     for (std::size_t i = next.fetch_add(1); i < n; i = next.fetch_add(1)) (*job)(i);
   }
-  /// A worker's life. `seen`: the last round that it need not join.
+  /// The loop of a worker. `seen`: the last round that it need not join.
   void loop(std::uint64_t seen) {
     while (true) {
       if (spins) spinUntil([&] { return round != seen; });
@@ -127,7 +127,7 @@ void Jobs::setThreads(int count) {
 int Jobs::threads() const { return static_cast<int>(impl_->threads.size()) + 1; }
 
 void Jobs::run(std::size_t n, const std::function<void(std::size_t)>& job) {
-  // Nothing to share: no round.
+  // Without workers, or with a single job, no round is needed.
   if (impl_->threads.empty() || n < 2) {
     for (std::size_t i = 0; i < n; ++i) job(i);
     return;

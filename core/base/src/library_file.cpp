@@ -19,7 +19,7 @@
 namespace spark {
 
 namespace {
-/// True if [begin, begin + size) is part of [from, from + length). Sums that overflow are no problem.
+/// True if [begin, begin + size) is part of [from, from + length). Overflowing sums are handled.
 bool within(std::uint64_t begin, std::uint64_t size, std::uint64_t from, std::uint64_t length) {
   return begin >= from && begin - from <= length && size <= length - (begin - from);
 }
@@ -88,13 +88,13 @@ class DynamicSection {
   bool isTerminated() const {
     return std::any_of(entries_.begin(), entries_.end(), [](const Elf64_Dyn& d) { return d.d_tag == DT_NULL; });
   }
-  /// Names and symbols are there, and a table of relocations comes with its size and kind.
+  /// True if names and symbols exist, and each table of relocations has a size and a kind.
   bool hasRequired() const {
     return has(DT_STRTAB) && has(DT_STRSZ) && has(DT_SYMTAB) &&
            (!has(DT_RELA) || (has(DT_RELASZ) && has(DT_RELAENT))) &&
            (!has(DT_JMPREL) || (has(DT_PLTRELSZ) && has(DT_PLTREL)));
   }
-  /// Entries have the sizes of this machine, and tables hold whole entries.
+  /// True if entries have the sizes of this machine, and tables contain complete entries.
   bool sizesAgree() const {
     return isAbsentOr(DT_SYMENT, sizeof(Elf64_Sym)) && isAbsentOr(DT_RELAENT, sizeof(Elf64_Rela)) &&
            isAbsentOr(DT_PLTREL, DT_RELA) && isAbsentOrMultiple(DT_RELASZ, sizeof(Elf64_Rela)) &&
@@ -103,7 +103,7 @@ class DynamicSection {
            isAbsentOrMultiple(DT_FINI_ARRAYSZ, sizeof(Elf64_Addr)) &&
            (!has(DT_RELACOUNT) || (has(DT_RELASZ) && value(DT_RELACOUNT) <= value(DT_RELASZ) / sizeof(Elf64_Rela)));
   }
-  /// Every table is inside a loaded segment.
+  /// True if every table is inside a loaded segment.
   bool tablesLoaded() const {
     return std::all_of(std::begin(kTables), std::end(kTables), [&](const Table& t) {
       const Elf64_Dyn* size = t.size == DT_NULL ? nullptr : find(t.size);
@@ -115,7 +115,7 @@ class DynamicSection {
       return p.p_type == PT_LOAD && within(address, std::max<std::uint64_t>(size, 1), p.p_vaddr, p.p_memsz);
     });
   }
-  /// Every name begins inside the string table.
+  /// True if every name begins inside the string table.
   bool namesFit() const {
     const std::uint64_t size = value(DT_STRSZ);
     for (const Elf64_Dyn& d : entries_) {

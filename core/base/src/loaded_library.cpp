@@ -72,7 +72,7 @@ std::vector<Elf64_Phdr> segmentsOf(int file) {
 }
 
 /// The length of the part that the linker loads [bytes], from the beginning of a file of `size` bytes; debug
-/// information comes behind it. 0: the file is not a library and needs no copy.
+/// information follows it. 0: the file is not a library and needs no copy.
 std::uint64_t loadedBytes(int file, std::uint64_t size) {
   const std::vector<Elf64_Phdr> segments = segmentsOf(file);
   std::uint64_t end = 0;
@@ -95,7 +95,7 @@ bool copyBytes(int from, int to, std::uint64_t count) {
   return true;
 }
 
-/// True if this process may write a file of `size` bytes.
+/// True if the resource limits of this process permit a file of `size` bytes.
 bool allowsSize(std::uint64_t size) {
   rlimit limit = {};
   return getrlimit(RLIMIT_FSIZE, &limit) == 0 && (limit.rlim_cur == RLIM_INFINITY || size <= limit.rlim_cur);
@@ -122,14 +122,14 @@ class Source {
         return;
       }
     }
-    throw Error(fmt::format("cannot load plugin {}: somebody is writing it. Try again when it is complete.", path));
+    throw Error(fmt::format("cannot load plugin {}: its file is being written. Try again when it is complete.", path));
   }
   /// The name under which the linker opens it.
   const std::string& name() const { return name_; }
   bool isCopy() const { return name_ != path_; }
   /// The file's stamp before it was copied.
   const FileStamp& stamp() const { return stamp_; }
-  /// Gives up the copy.
+  /// Discards the copy.
   void useFileItself() { name_ = path_; }
   /// The linker's error text with the name of the file instead of the copy's.
   std::string withFileName(std::string text) const {

@@ -42,7 +42,7 @@ void Log::write(Level level, std::string_view line) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
     const auto byte = static_cast<unsigned char>(c);
-    // Lines after the first are indented, so that text from a client cannot look like a message of its own.
+    // Lines after the first are indented, so that text from a client cannot imitate another log message.
     if (byte == '\n')
       clean += i + 1 < line.size() && line[i + 1] == ' ' ? "\n" : "\n  ";
     else if (byte == '\t' || (byte >= 0x20 && byte != 0x7f))

@@ -46,7 +46,7 @@ Value scalarFromText(std::string_view t) {
   if (t == "true") return true;
   if (t == "false") return false;
   const char* end = t.data() + t.size();
-  // from_chars takes no leading '+'.
+  // from_chars does not accept a leading '+'.
   const char* begin = t.size() > 1 && t.front() == '+' && t[1] != '-' ? t.data() + 1 : t.data();
   std::int64_t i = 0;
   if (auto r = std::from_chars(begin, end, i); r.ec == std::errc() && r.ptr == end) return i;

@@ -99,7 +99,7 @@ std::string countProblem(const Method& m, std::span<const Value> arguments, bool
   return fmt::format("{} expected {} arguments, found {}", signature(m), wanted, scalars);
 }
 
-/// The texts that loose conversion has read as numbers although they are none, one line each, if all parameters are
+/// One line for each text that loose conversion has read as a number although it is not one, if all parameters are
 /// numbers.
 std::string readAsNumbers(const Method& m, std::span<const Value> arguments) {
   const auto wantsNumbers = [](const std::string& parameter) {

@@ -163,7 +163,7 @@ bool ClassObject::isA(std::string_view className) {
 }
 
 void ClassObject::fillCasts() {
-  // Own interfaces first: a derived class overrides the casts of its bases.
+  // The class's own interfaces are added first, so that a derived class overrides the casts of its bases.
   std::vector<Cast> all;
   for (const ClassObject* c = this; c; c = c->base_)
     for (const auto& i : c->description_.interfaces)

@@ -93,7 +93,8 @@ void Channel::emit(const Event& event) {
   NowRunning now(name_.c_str());
   now.beat();
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    // Fetch the node of a later handler, and the parent of a nearer one, whose node has arrived meanwhile.
+    // Prefetch the node of a handler far ahead, and the parent of a nearer handler, whose node was prefetched earlier
+    // and is in the cache by now.
     if (i + kFar < entries_.size()) prefetch(entries_[i + kFar].node, kNode);
     if (const Leaf* next = i + kNear < entries_.size() ? entries_[i + kNear].node : nullptr; next && next->parent())
       prefetch(next->parent() + 1, kAbove);

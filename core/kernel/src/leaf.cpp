@@ -62,7 +62,7 @@ bool Leaf::isLinked() const { return linked_; }
 
 std::string Leaf::path() const {
   if (!parent_) return linked_ ? "/" : name_;
-  // From this object up, then the names from the top down.
+  // Collect the ancestors from this object upwards, then write their names from the top downwards.
   std::vector<const Leaf*> ancestors;
   const Leaf* top = this;
   for (; top->parent_; top = top->parent_) ancestors.push_back(top);
@@ -78,7 +78,7 @@ std::string Leaf::path() const {
 Leaf* Leaf::find(std::string_view path) const {
   const Leaf* at = this;
   if (!path.empty() && (path.front() == '/' || path.front() == '\\')) {
-    // An object that is not linked has a kernel too, whose root is meant.
+    // An absolute path begins at the root of the object's kernel, even if the object is not linked.
     if (class_ && class_->kernel_.tree().root()) at = class_->kernel_.tree().root();
     while (at->parent_) at = at->parent_;
   }

@@ -12,7 +12,7 @@ namespace spark {
 namespace {
 using Search = AnyRoute::Search;
 
-/// The name of what a step searches.
+/// The name of the class or interface that a step searches for.
 std::string_view nameOf(const AnyRoute::Step& step) {
   return step.what.empty() ? std::string_view(step.id.name) : step.what;
 }
@@ -22,7 +22,7 @@ const char* articleOf(std::string_view name) {
   return vowel ? "an" : "a";
 }
 
-/// The place of a step in words, as seen from `origin`.
+/// Where a step searches, in words, as seen from `origin`.
 std::string placeOf(const AnyRoute::Step& step, const std::string& origin) {
   switch (step.search) {
     case Search::above:

@@ -17,16 +17,15 @@
 
 // The life of a plugin.
 //
-//   scan(folder)   opens every *.so (all symbols resolved, names local), reads its descriptor, checks magic, ABI word
-//   and
-//                  headers, and lists it under /plugins. No code of the plugin runs.
+//   scan(folder)   opens every *.so (all symbols resolved, names local), reads its descriptor, checks magic number, ABI
+//                  word and headers, and lists the plugin under /plugins. No code of the plugin runs.
 //   use(name)      calls registerClasses: the classes appear under /classes. If it throws, the classes that it has
 //                  registered are removed again.
 //   unload(name)   is refused while objects of its classes exist, a class of another plugin derives from them, or
 //                  handlers run, whose code may be the plugin's. It runs the atUnload actions, removes the classes and
-//                  the entry under /plugins, and unmaps the library. The path of the file is kept: the next use() opens
-//                  the file again, which may be a new version then.
-//   unloadLater    is unload() if no handler runs; else settle() unloads, which the run loop calls between two cycles.
+//                  the entry under /plugins, and unmaps the library. The path of the file is kept: the next use()
+//                  opens the file again, which may be a new version then.
+//   unloadLater    is unload() if no handler runs; otherwise settle() unloads, which the run loop calls between cycles.
 //
 // The library that is mapped is a copy of the file, and kernels that load the same file share it (loaded_library.cpp).
 
@@ -136,7 +135,7 @@ Loader::~Loader() {
     libraries.push_back(std::move(plugin.library_));
   }
   // Classes contain functions of their plugins, so they are removed before the libraries. An object outside the tree
-  // that outlives the kernel still needs its class and its code: both then stay in memory.
+  // that outlives the kernel still needs its class and its code, so both stay in memory in that case.
   bool keep = false;
   std::vector<ClassObject*> foreign;
   for (const auto& [name, c] : kernel_.registry().all()) {

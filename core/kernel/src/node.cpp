@@ -13,7 +13,7 @@
 namespace spark {
 
 namespace {
-constexpr std::size_t kManyChildren = 64;  // from here on children are found by an index of names
+constexpr std::size_t kManyChildren = 64;  // from this number on, children are found by an index of names
 
 /// True for /classes and /plugins, whose children only the kernel adds.
 bool isKernelFolder(const Node& node) {
@@ -56,7 +56,7 @@ void Node::rememberName(Leaf& child) {
 }
 
 Node::~Node() {
-  // The list is emptied first, because the destructor of a child may look at it.
+  // The list is emptied first, because the destructor of a child may read it.
   forgetNames();
   const std::vector<std::unique_ptr<Leaf>> dying = std::move(children_);
   children_.clear();
@@ -136,7 +136,7 @@ void Node::remove(Leaf& child) {
 }
 
 void Node::removeChildren() {
-  // All or none.
+  // Check all children first, so that either all or none are removed.
   for (const auto& c : children_) kernel().tree().refuseFixed(*c, "remove");
   while (!children_.empty()) remove(*children_.front());
 }

@@ -16,7 +16,7 @@ namespace spark {
 
 namespace {
 constexpr std::size_t kRecords = 128;  // threads that run nodes at the same time; further ones are not watched
-constexpr std::size_t kDeepest = 64;   // names of a path; of a longer one the last are shown
+constexpr std::size_t kDeepest = 64;   // maximum number of names in a path; of a longer path the last names are shown
 
 Running records[kRecords];
 /// The record of this thread. This TLS model reads it without a call that could allocate.

@@ -106,7 +106,7 @@ Leaf& Tree::attach(Node& parent, std::unique_ptr<Leaf> leaf) {
 
 Leaf& Tree::attachSorted(Node& parent, std::unique_ptr<Leaf> leaf) {
   Leaf& added = attach(parent, std::move(leaf));
-  // attach() has counted the change.
+  // attach() has already counted the change.
   auto& list = parent.children_;
   for (std::size_t i = list.size() - 1; i > 0 && list[i]->name() < list[i - 1]->name(); --i)
     std::swap(list[i], list[i - 1]);
@@ -133,7 +133,7 @@ std::unique_ptr<Leaf> Tree::take(Leaf& child) {
 void Tree::move(Leaf& child, Node& to) {
   Node& from = *child.parent_;
   if (child.linked_ && !to.linked_) unlink(child);
-  // Room is made first, so that nothing can fail between the two parents.
+  // Memory is reserved first, so that the move between the two parents cannot fail.
   const auto carryTo = [&](Node& target) {
     Node& source = *child.parent_;
     target.children_.reserve(target.children_.size() + 1);
@@ -177,7 +177,7 @@ void Tree::emptyReferences(Leaf& leaf) {
 /// Destroys all descendants, children before parents and first to last. They are unlinked, and references to them are
 /// empty.
 void Tree::destroyBelow(Node& node) {
-  // A destructor may add children: look again.
+  // A destructor may add children, so the list is read again.
   while (!node.children_.empty()) {
     node.forgetNames();
     std::vector<std::unique_ptr<Leaf>> dying = std::move(node.children_);
@@ -265,7 +265,7 @@ void Tree::moved(Leaf& leaf) {
     for (std::size_t i = 0; i < node->children_.size(); ++i) moved(*node->children_[i]);
 }
 
-// Objects that must stay.
+// Objects that must not be removed.
 
 void Tree::refuseUsed(const Leaf& leaf, bool rename, const std::string& doing) const {
   // The number of levels that `low` is below `high`; -1 if it is not below it.

@@ -16,18 +16,18 @@ namespace spark::detail {
 ///
 /// Linking an object: its onLink(), its hooks, then its children. If one of them throws, everything that was linked is
 /// unlinked again, and attach() throws. Unlinking: the children, its onUnlink(), then its handlers. onLink() and
-/// onUnlink() may change the tree around them, so lists of children are walked by index and looked at again; only an
-/// object that is being linked or unlinked must stay (`changing_`). When everything is unlinked, references become
-/// empty, and then destructors run, so that none of them sees another object half destroyed.
+/// onUnlink() may change the tree around them, so lists of children are iterated by index and re-read after each call;
+/// only an object that is being linked or unlinked must not be removed (`changing_`). When everything is unlinked,
+/// references become empty, and then destructors run, so that none of them sees another object half destroyed.
 class Tree {
  public:
   explicit Tree(Kernel& kernel) : kernel_(kernel) {}
 
   /// Makes `root` the root of the tree, with /classes and /plugins.
   void plant(std::unique_ptr<Leaf> root);
-  /// Destroys everything but /classes and /plugins.
+  /// Destroys everything except /classes and /plugins.
   void fell();
-  /// Destroys the rest.
+  /// Destroys the rest of the tree.
   void uproot();
   /// The root; nullptr before plant().
   Node* root() const { return root_.get(); }

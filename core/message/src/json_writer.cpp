@@ -61,7 +61,7 @@ JsonWriter& JsonWriter::raw(std::string_view json) {
 }
 
 JsonWriter& JsonWriter::members(std::string_view object) {
-  // Without the braces it is written like one value; "{}" has no members.
+  // Without its braces, the text is written like one value. "{}" has no members.
   if (object.size() > 2) raw(object.substr(1, object.size() - 2));
   return *this;
 }

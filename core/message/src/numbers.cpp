@@ -152,7 +152,7 @@ constexpr auto kLayouts = [] {
 constexpr std::array kBounds{1e-22, 1e-21, 1e-20, 1e-19, 1e-18, 1e-17, 1e-16, 1e-15, 1e-14, 1e-13,
                              1e-12, 1e-11, 1e-10, 1e-9,  1e-8,  1e-7,  1e-6,  1e-5,  1e-4,  1e-3,
                              1e-2,  1e-1,  1e0,   1e1,   1e2,   1e3,   1e4,   1e5,   1e6};
-/// The decimal exponent of a number from 1e-21 to 1e6 whose binary exponent is `binary`.
+/// The decimal exponent of a number from 1e-21 to 1e6 with the binary exponent `binary`.
 inline int decimalExponent(double v, int binary) {
   const int guess = binary * 315653 >> 20;  // floor(binary * log10(2)): the exponent, or one less
   return guess + (v >= kBounds[guess + 1 - kMinExponent]);
@@ -228,8 +228,8 @@ char* putGeneral(char* to, double v) {
   const auto leadingZeros = static_cast<std::uint32_t>(std::countl_zero((text ^ kSixZeros) | 1));
   const int count = 8 - static_cast<int>(leadingZeros / 8);  // at least one
 
-  // The layout is filled in without branches, because a processor could not predict where a matrix has its points. Each
-  // piece is copied as a whole, and the next one overwrites what was too much.
+  // The layout is filled in without branches, because a processor could not predict the positions of the decimal points
+  // in a matrix. Each piece is copied with its full length, and the next one overwrites the excess.
   const Layout& layout = kLayouts[exponent - kMinExponent];
   std::memcpy(to, layout.before, sizeof layout.before);
   to += layout.beforeSize;

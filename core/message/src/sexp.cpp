@@ -25,7 +25,7 @@ constexpr auto kClasses = [] {
 bool is(Class what, char c) { return kClasses[static_cast<unsigned char>(c)] & what; }
 bool isEscapable(char c) { return c == '"' || c == '\'' || c == '(' || c == ')' || c == '\\'; }
 
-/// A list that lacks its ')', and the line from which that is concluded.
+/// A list without its ')', and the line at which this was detected.
 struct Unclosed {
   std::uint32_t line = 0, column = 0;  ///< of the list
   std::uint32_t siblingLine = 0;
@@ -76,7 +76,7 @@ class Indentation {
     if (end == '"') ++at_;
   }
   void open() {
-    // Compare a list that begins its line with the innermost open one that does.
+    // Compare a list that begins its line with the innermost open list that begins a line.
     if (fresh_)
       for (std::size_t i = lists_.size(); i-- > 0;) {
         List& outer = lists_[i];
@@ -101,7 +101,7 @@ class Indentation {
   std::size_t at_ = 0, lineStart_ = 0;
   std::uint32_t line_ = 1;
   bool fresh_ = true;        ///< this line has only blanks so far
-  bool isFlatText_ = false;  ///< the author does not indent elements: lines tell nothing
+  bool isFlatText_ = false;  ///< elements are not indented, so the layout gives no hint
   std::vector<List> lists_;
   std::optional<Unclosed> found_;
 };
@@ -175,7 +175,7 @@ class Reader {
     result_.line = place.line;
     result_.column = place.column;
   }
-  /// The text ended inside a list. In a file, which people indent, the indentation shows which list that is.
+  /// Handles a text that ended inside a list. In an indented file, the indentation shows which list that is.
   void failUnclosed(Place place) {
     const std::optional<Unclosed> guess = limits_.places ? findUnclosed(bytes_) : std::nullopt;
     if (!guess) return fail("the list is not closed", place);
@@ -268,7 +268,7 @@ class Reader {
   bool failed_ = false;
 };
 
-/// Room for any token but a long text, with the brackets and blanks around it [bytes].
+/// Buffer size for any token except a long text, with the brackets and blanks around it [bytes].
 constexpr std::size_t kTokenRoom = kFixedRoom + 16;
 
 /// How numbers are written.
@@ -277,9 +277,9 @@ struct Style {
   DoubleRange doubles;
 };
 
-/// Writes the elements of tokens [t, end), separated by blanks. `at` must have kTokenRoom, and the place that is
-/// returned has it too. The place is passed by value so that it stays in a register; the writer's own position would be
-/// stored and loaded for each byte.
+/// Writes the elements of tokens [t, end), separated by blanks. `at` must have kTokenRoom bytes available, and so has
+/// the returned pointer. The pointer is passed by value so that it stays in a register; the writer's own position would
+/// be stored and loaded for each byte.
 char* writeElements(const Predicates& from, const Token* t, const Token* end, const Style& style, ByteWriter& out,
                     char* at) {
   const auto more = [&out](char* to) { return out.end(to), out.room(kTokenRoom); };
@@ -331,7 +331,7 @@ void writeSexp(const Predicates& predicates, int decimals, std::string& bytes, D
   for (const Token* t = predicates.tokens().data(); t < end;) {
     const bool list = t->kind == Token::Kind::list;
     const Token* const next = t + (list ? t->size : 1);
-    // A predicate without arguments has a blank behind its name.
+    // A predicate without arguments has a blank after its name.
     if (list && t->size == 2) {
       *at++ = '(';
       at = writeElements(predicates, t + 1, next, style, out, at);

@@ -15,7 +15,7 @@
 // The library of all scripts. It is Lua's own, made deterministic: traversal in order of key, a stable sort (Lua's
 // depends on the clock), random numbers from the kernel's streams, no addresses in texts, nothing that depends on the
 // garbage collector, no files, no clock, no load. Untrusted scripts get a part of it, whose functions charge for the
-// size of their arguments. That part has no metatables, which let a C function loop for ever, and no patterns, which
+// size of their arguments. That part has no metatables, which let a C function loop forever, and no patterns, which
 // take exponential time.
 //
 // The table of globals of a state is the model: every environment gets a copy, and scripts cannot reach the model.

@@ -394,8 +394,8 @@ static int search(lua_State* L, bool find) {
 static int find(lua_State* L) { return search(L, true); }
 static int match(lua_State* L) { return search(L, false); }
 
-/// The iterator of gmatch. Upvalues: subject, pattern, the offset at which to go on, and the offset at which the last
-/// match ended (-1 before the first).
+/// The iterator of gmatch. Upvalues: subject, pattern, the offset at which to continue, and the offset at which the
+/// last match ended (-1 before the first).
 static int nextMatch(lua_State* L) {
   const std::string_view subject = text(L, lua_upvalueindex(1)), pattern = text(L, lua_upvalueindex(2));
   Matcher m(L, subject, pattern);

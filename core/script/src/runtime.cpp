@@ -25,7 +25,7 @@ void Runtime::close() {
     if (const auto state = weak.lock()) state->close();
 }
 
-// The user names a config, so the working folder comes first.
+// The user chooses the config, so the working folder is searched first.
 Script Runtime::readConfig(std::string_view file) {
   std::vector<fs::path> places{fs::current_path()};
   if (!configFolder.empty()) places.push_back(configFolder);
@@ -33,8 +33,8 @@ Script Runtime::readConfig(std::string_view file) {
   return read(file, "config", places);
 }
 
-// Included files are not searched in the working folder, whose files may belong to another user, unless the config is
-// from there.
+// Included files are not searched in the working folder, whose files may belong to another user, unless the config
+// itself is in it.
 Script Runtime::readInclude(std::string_view file, lua_State* includer) {
   std::vector<fs::path> places;
   if (const auto beside = folderOf(includer); !beside.empty()) places.push_back(beside);
@@ -52,10 +52,10 @@ fs::path Runtime::folderOf(lua_State* L) const {
   return known == origins_.end() ? fs::path() : known->second;
 }
 
-/// Reads the first file of that name in `places`. `what` names its kind in errors.
+/// Reads the first file of that name in the folders `places`. `what` names its kind in errors.
 Script Runtime::read(std::string_view file, std::string_view what, std::vector<fs::path> places) {
   if (fs::path(file).is_absolute()) places = {fs::path(file).parent_path()};
-  std::vector<std::string> looked, names;  // for the error: the places, and the scripts there
+  std::vector<std::string> looked, names;  // for the error: the searched folders, and the scripts in them
   for (const fs::path& place : places) {
     const fs::path path = place / file;  // the file itself if it is absolute
     std::error_code ec;
@@ -144,7 +144,8 @@ void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkNa
   throw Error(fmt::format("the script attached to {} failed: {}", path, failure->text));
 }
 
-// Scripts to attach are also searched in the working folder: the user names them, or a config that expects them there.
+// Scripts to attach are also searched in the working folder, because they are named by the user or by a config that
+// expects them there.
 void Runtime::attachFile(Leaf& node, std::string_view file, lua_State* from, const State::Body& pushArguments) {
   std::vector<fs::path> places;
   if (const auto beside = folderOf(from); !beside.empty()) places.push_back(beside);
@@ -161,7 +162,8 @@ bool Runtime::isChannel(std::string_view name) const {
   return false;
 }
 
-/// The names nearest to that of an undefined channel, as a sentence. "" if the channel is defined or no name is near.
+/// The names most similar to that of an undefined channel, as a sentence. "" if the channel is defined or no name is
+/// similar.
 std::string Runtime::nearChannels(std::string_view name) const {
   std::vector<std::string> names;
   if (isChannel(name)) return {};
@@ -191,7 +193,7 @@ void Runtime::checkChannels() {
 }
 
 std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::string_view channel) {
-  // A config may define the channel later: checkChannels() looks again.
+  // A config may define the channel later: checkChannels() checks again.
   if (inConfig && !isChannel(channel)) {
     luaL_where(L, 1);
     listened_.emplace_back(channel, lua_tostring(L, -1));

@@ -33,7 +33,7 @@ class Runtime : public std::enable_shared_from_this<Runtime> {
   void close();
 
   /// Finds and reads a config: in the working folder, in the folder of the running config, in the folders. Throws Error
-  /// with the places that were searched.
+  /// with the folders that were searched.
   Script readConfig(std::string_view file);
   /// Finds and reads a file that a script includes: in the folder of that script, in the folder of the running config,
   /// in the folders. `includer`: the Lua thread that calls include(). Throws as readConfig().
@@ -41,8 +41,8 @@ class Runtime : public std::enable_shared_from_this<Runtime> {
   /// Finds a script (as an include, then in the working folder) and attaches it. `from`: the Lua thread that attaches
   /// it, nullptr if none does. Throws as readConfig() and attach().
   void attachFile(Leaf& node, std::string_view file, lua_State* from, const State::Body& pushArguments);
-  /// Checks the channels of handlers and hooks after a config. A handler of an undefined channel whose name is near
-  /// that of a defined one throws Error; such a hook of a class that has objects is logged.
+  /// Checks the channels of handlers and hooks after a config. If a handler's channel is undefined and its name is
+  /// similar to that of a defined one, throws Error; such a hook of a class that has objects is logged.
   void checkChannels();
   /// Compiles text and pushes the function, whose environment is the table at `environment` (an absolute index or an
   /// upvalue). Raises a Lua error.
@@ -58,7 +58,7 @@ class Runtime : public std::enable_shared_from_this<Runtime> {
   void attach(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted,
               const State::Body& pushArguments = {});
   /// Pops a function and adds it as a handler at `node`. Throws Error if the channel does not exist and its name is
-  /// near that of another one.
+  /// similar to that of another one.
   std::shared_ptr<Subscription> subscribe(lua_State* L, Leaf& node, std::string_view channel);
   /// Logs the failure of a handler, unless it only repeats one of the same line.
   void report(const Failure& failure, const Subscription& subscription);

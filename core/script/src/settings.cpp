@@ -141,7 +141,7 @@ bool Settings::shields(const Leaf& leaf, std::string_view member) {
   return false;
 }
 
-/// The keys nearest to one that has had no effect, as a sentence.
+/// The keys most similar to one that has had no effect, as a sentence.
 std::string Settings::hint(const Override& o) const {
   std::vector<std::string> names;
   // Options, and variables as Namespace.Name.

@@ -91,7 +91,7 @@ void State::countHook(lua_State* L, lua_Debug* ar) {
   State& state = of(L);
   state.left_ -= lua_gethookcount(L);
   if (state.left_ <= 0) state.throwExhausted(L, ar);
-  // A config may loop for ever, which has no budget.
+  // A config has no budget and may loop forever, so a stop request must end it.
   if (state.runtime_.inConfig && state.runtime_.kernel.stopRequested())
     throwForGood(L, ar, "stopped before the config was done: the host was asked to end. Does this loop end?");
   if (lua_gethookcount(L) != kHookInterval) lua_sethook(L, &State::countHook, LUA_MASKCOUNT, kHookInterval);
@@ -116,7 +116,7 @@ void State::throwExhausted(lua_State* L, lua_Debug* ar) {
 void State::charge(lua_State* L, std::uint64_t instructions) {
   left_ -= static_cast<std::int64_t>(std::min<std::uint64_t>(instructions, kHandlerBudget));
   if (left_ > 0) return;
-  // The place of the script that called the C function.
+  // The location in the script that called the C function.
   lua_Debug ar{};
   if (!lua_getstack(L, 1, &ar)) lua_getstack(L, 0, &ar);
   throwExhausted(L, &ar);
@@ -157,7 +157,7 @@ int State::describeError(lua_State* L) {
   Failure failure;
   appendText(L, 1, failure.text);
   failure.text += nearGlobals(L, failure.text);
-  // The traceback: one line for each Lua function. The first is omitted if the message begins with its place.
+  // The traceback: one line for each Lua function. The first is omitted if the message begins with its location.
   lua_Debug ar{};
   int lines = 0;
   for (int level = 1; lua_getstack(L, level, &ar); ++level) {
@@ -185,7 +185,7 @@ std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
         fmt::format("scripts entered each other more than {} deep: does a handler raise its own event?", kMaxDepth),
         ""};
 
-  // Each depth has a thread and a budget of its own.
+  // Each nesting depth has a Lua thread and a budget of its own.
   const std::int64_t outerLeft = left_, outerBudget = budget_;
   const std::size_t outerLimit = memoryLimit_;
   lua_State* L = threads_[depth_++];

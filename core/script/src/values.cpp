@@ -220,7 +220,7 @@ Value toValue(lua_State* L, int index) { return toValueNested(L, lua_absindex(L,
 
 lua_Integer pushSortedKeys(lua_State* L, int table) {
   table = lua_absindex(L, table);
-  // A sequence of the keys as they come, and their order.
+  // A sequence of the keys in the order of traversal, and the permutation that sorts them.
   std::vector<Key> keys;
   lua_newtable(L);
   const int unsorted = lua_gettop(L);
@@ -232,7 +232,7 @@ lua_Integer pushSortedKeys(lua_State* L, int table) {
   }
   State::of(L).charge(L, 4 * keys.size());  // as for table.sort
   std::sort(keys.begin(), keys.end());
-  // The sequence in order.
+  // The sorted sequence.
   lua_createtable(L, static_cast<int>(keys.size()), 0);
   lua_Integer i = 0;
   for (const Key& k : keys) {
@@ -244,7 +244,7 @@ lua_Integer pushSortedKeys(lua_State* L, int table) {
 }
 
 void pushNextKey(lua_State* L, int table, int after) {
-  // The least key that is greater than `low`.
+  // The smallest key that is greater than `low`.
   std::optional<Key> low, best;
   if (after != 0) low = keyAt(L, after);
   lua_pushnil(L);

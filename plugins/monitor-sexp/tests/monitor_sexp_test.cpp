@@ -31,9 +31,9 @@ TEST_CASE("a full message has the same whitespace as the original server's") {
   CHECK(e.encode(f.update) ==
         "((FieldLength 30)(time 0.42)(play_modes A B)(half 1))(RSG 0 1)"
         "((nd Light (setDiffuse 1 1 1 1) (setAmbient 0.8 0.8 0.8 1) (setSpecular 0.1 0.1 0.1 1))"
-        "(nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0.0403208 1)(nd StaticMesh (setVisible 1) (setTransparent) (load "
-        "StdCapsule 0.015 0.08) (sSc 0.042 1 "
-        "1)(resetMaterials matLeft naowhite))(nd TRF (SLT 1 -8.74228e-08 0 0 0 1 0 0 0 0 1 0 0 0 0 1)))"
+        "(nd TRF (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0.0403208 1)(nd StaticMesh (setVisible 1) (setTransparent) "
+        "(load StdCapsule 0.015 0.08) (sSc 0.042 1 1)(resetMaterials matLeft naowhite))"
+        "(nd TRF (SLT 1 -8.74228e-08 0 0 0 1 0 0 0 0 1 0 0 0 0 1)))"
         "(nd SMN (setVisible 0) (load StdUnitBox) (sSc 1 51 1) (sMat matGrey)))");
 }
 

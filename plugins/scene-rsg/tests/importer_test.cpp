@@ -122,9 +122,8 @@ TEST_CASE("arguments of scripts are converted to text") {
 TEST_CASE("join concatenates, and join and eval can be nested in each other") {
   SceneHost h;
   h.run(
-      "(def $n 2)(nd Probe (tell (join ../ a $n /b))(tell (join x (eval $n * 2)))(tell (eval (join 1 0) + 1))(tell "
-      "(join))(tell a$n)(tell "
-      "'$n'))");
+      "(def $n 2)(nd Probe (tell (join ../ a $n /b))(tell (join x (eval $n * 2)))(tell (eval (join 1 0) + 1))"
+      "(tell (join))(tell a$n)(tell '$n'))");
   CHECK(records() == Texts{"link 0 0 0", "../a2/b", "x4", "11", "", "a$n", "2"});
 }
 

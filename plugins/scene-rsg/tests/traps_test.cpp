@@ -154,9 +154,8 @@ TEST_CASE("transforms that contain only transforms are removed, and world poses 
   SceneHost h;
   h.run(
       "(nd Transform (setName outer)(setLocalPos 0 0 1)(setLocalRotation 0 0 90)"
-      " (nd Transform (setName a)(setLocalPos 1 0 0)(nd Probe)) (nd Transform (setName b)(setLocalPos 2 0 0)(nd "
-      "Probe)) (nd Transform "
-      "(setName empty)))"
+      " (nd Transform (setName a)(setLocalPos 1 0 0)(nd Probe)) (nd Transform (setName b)(setLocalPos 2 0 0)(nd Probe))"
+      " (nd Transform (setName empty)))"
       "(nd Transform (setName alone))");
   CHECK(h.scene->children().size() == 2);
   CHECK_FALSE(h.scene->child("outer"));
@@ -214,8 +213,7 @@ TEST_CASE("methods and classes have short names") {
   SceneHost h;
   h.run(
       "(nd Probe (sSc 2)(sMat matRed)(att ../x)) (node TRF (setName t)(SLT 1 0 0 0 0 1 0 0 0 0 1 0 7 8 9 1)(nd Probe)) "
-      "(nd BN (setName b)) "
-      "(nd SMN (setName s))");
+      "(nd BN (setName b)) (nd SMN (setName s))");
   CHECK(records() == Texts{"link 0 0 0", "link 7 8 9", "scale 2", "material matRed", "../x is missing"});
   CHECK(h.scene->require<Transform>("t").localPos() == Vec3f(7, 8, 9));
   CHECK(h.scene->child("b")->classObject()->name() == "BaseNode");

@@ -231,9 +231,8 @@ TEST_CASE("a mesh has the materials of its file in alphabetical order, or those 
   Fixture f;
   auto& file = f.kernel.create<OneFile>("OneFile", "/sys/server/file/one");
   file.text =
-      "# a\n# b\nmtllib x.mtl\no x\nv 0 0 0\nusemtl white\r\nf 1/1/1 1/1/1 1/1/1\nusemtl matTeam\r\nf 1//1 1//1 "
-      "1//1\nusemtl "
-      "unused\nusemtl white\nf 1//1 1//1 1//1\n";
+      "# a\n# b\nmtllib x.mtl\no x\nv 0 0 0\nusemtl white\r\nf 1/1/1 1/1/1 1/1/1\nusemtl matTeam\r\n"
+      "f 1//1 1//1 1//1\nusemtl unused\nusemtl white\nf 1//1 1//1 1//1\n";
   Leaf& mesh = f.scene->create("StaticMesh");
   callMethod(mesh, "load", List{"models/x.obj"});
   auto& visual = *mesh.as<IVisual>();

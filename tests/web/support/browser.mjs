@@ -7,7 +7,7 @@ skipUnlessPossible();
 const software = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--disable-gpu-watchdog"];
 const sandbox = process.getuid?.() === 0 ? ["--no-sandbox"] : [];
 
-/** Milliseconds after which a wait is taken for one without end: a machine may be slow, and busy. */
+/** Milliseconds after which a wait is considered endless; long, because a machine may be slow and busy. */
 export const patience = 1800000;
 
 const browsers = new WeakMap(); // by test

@@ -16,10 +16,10 @@ export const humanoidMatch = ["--sync", "--config", "soccer.lua", "--set", "team
 /** With this seed the first goal of the sphere match comes after about 14 s. */
 export const goalSeed = ["--seed", "26"];
 
-/** However slow the browser is, the host keeps it. */
+/** The host does not disconnect a browser that is slow. */
 const patient = ["--set", "/sys/server/web.requestTimeout=3600", "--set", "/sys/server/web.stallTimeout=3600"];
 
-/** A folder that is gone after the test. */
+/** Creates a folder that is removed after the test. */
 export function temporaryFolder(t) {
   const folder = mkdtempSync(join(tmpdir(), "spark-web-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));

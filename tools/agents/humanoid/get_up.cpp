@@ -6,7 +6,7 @@ namespace humanoid {
 
 namespace {
 constexpr double kHold = 0.3;  // of the first frame [s]
-constexpr double kMost = 25;   // largest correction of the ankles [deg]
+constexpr double kMost = 25;   // maximum correction of the ankles [deg]
 
 /// Joints about the vertical and the forward axis have the opposite sign on the left side.
 void apply(const Keyframe& k, Pose& pose) {

@@ -19,9 +19,8 @@ struct Keyframe {
 struct Movement {
   std::span<const Keyframe> frames;
   double straighten = 0,
-         damp =
-             0;  ///< of the ankles in the last two frames, for a degree of lean beyond what is wanted, for a degree/s
-  double squatLean = 0, endLean = 0;  ///< wanted in the last frame but one, and at the end [deg]
+         damp = 0;  ///< of the ankles in the last two frames, per degree of lean beyond the target, and per degree/s
+  double squatLean = 0, endLean = 0;  ///< target lean in the last frame but one, and at the end [deg]
 };
 
 /// The movement with which a robot of `type` (0..4) gets up from belly or back; from a side it first rolls over.

@@ -7,8 +7,8 @@
 
 namespace humanoid {
 
-/// Drives all joints of one robot. A command acts two messages after the percepts that it answers, so the previous
-/// command, which has not acted yet, is taken into account.
+/// Drives all joints of one robot. A command takes effect two messages after the percepts that it answers, so the
+/// previous command, which has not taken effect yet, is included in the calculation.
 class JointDrive {
  public:
   explicit JointDrive(const Build& build) : build_(build) {}
@@ -18,7 +18,7 @@ class JointDrive {
 
  private:
   const Build& build_;
-  Pose underWay_{};  ///< speeds of the command that has not acted yet [rad/s]
+  Pose underWay_{};  ///< speeds of the command that has not taken effect yet [rad/s]
 };
 
 }  // namespace humanoid

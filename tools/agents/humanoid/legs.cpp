@@ -11,7 +11,8 @@
 //
 // with s = 1 for the right leg, -1 for the left.
 //
-// The position of the hip in the frame of the sole determines ankle and knee; the hip does the rest of the rotation.
+// The position of the hip in the frame of the sole determines ankle and knee; the hip joints make the rest of the
+// rotation.
 
 namespace humanoid {
 

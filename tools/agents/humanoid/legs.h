@@ -15,8 +15,8 @@ struct Foot {
          roll = 0;  ///< rad about x and y of the torso: positive lifts the toes, and the side to the left of the foot
 };
 
-/// Sets the six joint angles of a leg so that the sole has this pose. Out of reach the leg is stretched in that
-/// direction. `right`: the right leg, else the left.
+/// Sets the six joint angles of a leg so that the sole has this pose. If the pose is out of reach, the leg is stretched
+/// in that direction. `right`: the right leg, else the left.
 void placeFoot(const Build& build, bool right, const Foot& foot, Pose& pose);
 /// Distance from hip to sole of a straight leg [m].
 double legLength(const Build& build);

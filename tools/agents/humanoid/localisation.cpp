@@ -9,9 +9,9 @@ namespace {
 /// Rotates robot axes to field axes. With heading 0 the robot's forward axis (y) is the field's x.
 Eigen::Rotation2Dd rotation(double heading) { return Eigen::Rotation2Dd(heading - kPi / 2); }
 
-constexpr double kTorsoHeight = 0.35;         // of a robot that stands or walks [m]
-constexpr double kNod = 0.4, kMostNod = 0.4;  // fraction of a measured correction; limit [rad]
-constexpr double kNear = 25;                  // a single landmark farther away is not used [m]
+constexpr double kTorsoHeight = 0.35;        // of a robot that stands or walks [m]
+constexpr double kNod = 0.4, kMaxNod = 0.4;  // fraction of a measured correction; limit [rad]
+constexpr double kNear = 25;                 // a single landmark farther away is not used [m]
 }  // namespace
 
 Vec3 Localisation::level(const Vec3& inHead, const Percepts& percepts, const Posture& posture) const {
@@ -21,8 +21,8 @@ Vec3 Localisation::level(const Vec3& inHead, const Percepts& percepts, const Pos
   return Eigen::AngleAxisd(nod_, Vec3::UnitX()) * (posture.level() * (head * inHead + Vec3(0, 0, kCameraHeight)));
 }
 
-/// While a robot walks, the lean by its accelerometer is wrong by several degrees. Landmarks of known height correct
-/// it.
+/// While a robot walks, the lean estimated from its accelerometer is wrong by several degrees. Landmarks of known
+/// height correct it.
 void Localisation::findHorizon(const Percepts& percepts, const Posture& posture) {
   double across = 0, along = 0;
   for (const Sighting& s : percepts.sightings) {
@@ -31,7 +31,7 @@ void Localisation::findHorizon(const Percepts& percepts, const Posture& posture)
     along += place.y() * place.y();
   }
   if (along > 1 && posture.lying() == Lying::no)
-    nod_ = std::clamp(nod_ + kNod * std::atan2(across, along), -kMostNod, kMostNod);
+    nod_ = std::clamp(nod_ + kNod * std::atan2(across, along), -kMaxNod, kMaxNod);
 }
 
 Vec2 Localisation::toField(const Vec2& fromRobot) const { return place_ + rotation(heading_) * fromRobot; }

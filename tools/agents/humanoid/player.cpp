@@ -19,7 +19,7 @@ constexpr double kTouch = 0.2;            // distance at which a player has touc
 constexpr double kDuel = 1.0;             // distance of an opponent to the ball in a duel [m]
 constexpr double kBarred = 8;             // after this time another player is assumed to have touched the ball [s]
 constexpr double kRest = 0.1;             // smallest time to lie before getting up [s]
-constexpr double kMostRest = 0.35;        // after this time it gets up even if it still rolls [s]
+constexpr double kMaxRest = 0.35;         // after this time it gets up even if it still rolls [s]
 constexpr double kUpright = radians(40);  // largest tilt
 constexpr double
     kPropped = 1,
@@ -27,7 +27,7 @@ constexpr double
 constexpr double kStill = 1;        // angular speed of a robot at rest [rad/s]
 constexpr double kSlip = 0.78;      // real speed as a fraction of the commanded one
 constexpr double kSettling = 0.03;  // change of angles per cycle towards the stance [rad]
-constexpr double kForgets = 6;      // after this time attempts to get up are counted anew [s]
+constexpr double kForgets = 6;      // after this time the count of attempts to get up is reset [s]
 constexpr double kSteady = 0.5;     // time of stepping on the spot after getting up [s]
 constexpr double kBeamEvery = 0.1;  // between two beams [s]
 constexpr double kBeamTime = 1.0;   // from the start of a pause in which it beams [s]
@@ -242,7 +242,7 @@ void HumanoidPlayer::takePlace(const Vec2& place, spark::Predicates& actions) {
 void HumanoidPlayer::getUp() {
   walking_ = false;
   const double lain = percepts_.now - lyingSince_;
-  if (lain < kRest || (percepts_.gyro.norm() > kStill && lain < kMostRest)) return;
+  if (lain < kRest || (percepts_.gyro.norm() > kStill && lain < kMaxRest)) return;
   fell_ = lying();
   // After two failures try the movement for another side.
   static constexpr std::array other{Lying::onSide, Lying::onSide, Lying::onSide, Lying::onBack};

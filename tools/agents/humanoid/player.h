@@ -36,7 +36,7 @@ class HumanoidPlayer {
   Task task() const { return task_; }
 
  private:
-  /// What a team-mate has said.
+  /// The last message of a team-mate.
   struct Mate {
     double heardAt = -10, toBall = 1e9;  ///< time of the message [s]; length of its path to the ball [m]
   };

@@ -16,7 +16,7 @@
 namespace humanoid {
 
 namespace {
-constexpr double kTipping = radians(50);      // tilt from which no step prevents the fall
+constexpr double kTipping = radians(50);      // tilt beyond which no step prevents the fall
 constexpr double kKeepAway = 2.4;             // distance to the ball at opponents' restarts [m]
 constexpr double kBehind = 0.35;              // distance behind the ball at which it turns towards it [m]
 constexpr double kAround = 0.5;               // distance to the ball on the way around it [m]
@@ -37,7 +37,7 @@ constexpr double kClear = 0.65;               // distance between two robots tha
 constexpr double kLookOut = 1.4;              // distance ahead within which other robots are avoided [m]
 constexpr double kForward = 0.7, kBackward = 0.35, kSideways = 0.18;  // typical walking speeds [m/s]
 constexpr double kTurn = 1;                                           // typical turning speed [rad/s]
-constexpr double kMostBackward = 0.5, kMostSideways = 0.25;           // largest wanted speeds [m/s]
+constexpr double kMaxBackward = 0.5, kMaxSideways = 0.25;             // largest wanted speeds [m/s]
 const Vec2 kTheirGoal(15, 0), kOwnGoal(-15, 0);
 
 constexpr std::array<std::array<double, 2>, 12> kFormation{{{0, 0},
@@ -180,7 +180,7 @@ Steering steer(const Vec2& target, double facing) {
   if (straight > turned)
     return {std::abs(bearing) > radians(60) ? 0 : std::cos(bearing) * std::min(distance, 1.0), 0, 2 * bearing};
   const Vec2 speed = 1.8 * target;
-  const double slower = std::max({1.0, std::abs(speed.x()) / kMostSideways, speed.y(), -speed.y() / kMostBackward});
+  const double slower = std::max({1.0, std::abs(speed.x()) / kMaxSideways, speed.y(), -speed.y() / kMaxBackward});
   return {speed.y() / slower, speed.x() / slower, 1.8 * facing};
 }
 

@@ -235,8 +235,8 @@ SpherePlayer::Point SpherePlayer::formation() const {
   return p;
 }
 
-/// True for the player of the team nearest to the future position of the ball. The goalie counts at goal kicks only,
-/// the taker of a restart not for a while.
+/// True for the player of the team nearest to the future position of the ball. The goalie counts only at goal kicks,
+/// and the taker of a restart is excluded for a while.
 bool SpherePlayer::goesToBall() const {
   const Point soon = ballSoon(0.3);
   const auto cost = [&](int unum, Point place) {

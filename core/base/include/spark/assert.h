@@ -5,7 +5,7 @@
 #include "spark/abi/spark/assert.h"
 
 namespace spark::detail {
-/// Prints the condition and its place to stderr, then aborts.
+/// Prints the condition and its source location to stderr, then aborts.
 [[noreturn]] void assertionFailed(const char* condition, const char* file, int line);
 }  // namespace spark::detail
 

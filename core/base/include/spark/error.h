@@ -11,8 +11,8 @@
 
 namespace spark {
 
-/// The exception of all set-up code: configs, plugins, scenes, access to properties. Its text says where the error is,
-/// what was expected, what was found and what to do. The step path never throws.
+/// The exception thrown by all set-up code: configs, plugins, scenes, access to properties. Its text says where the
+/// error is, what was expected, what was found and what to do. The step path never throws.
 class Error : public std::exception {
  public:
   /// An error without a cause. `message` is its whole text.
@@ -27,14 +27,15 @@ class Error : public std::exception {
   std::string text_;
 };
 
-/// A value that even the lenient calls of scene files refuse. It ends the import, which adds the place in the file.
+/// A value that even the lenient calls of scene files refuse. It ends the import, which adds the location in the file
+/// to the text.
 class RefusedValue : public Error {
  public:
   using Error::Error;
 };
 
 /// Suggests up to three of the `candidates` that are spelt most like `wanted`, as a sentence that follows another one:
-/// " Did you mean 'a' or 'b'?". Returns "" if no candidate is near.
+/// " Did you mean 'a' or 'b'?". Returns "" if no candidate is similar.
 std::string didYouMean(std::string_view wanted, const std::vector<std::string>& candidates);
 
 }  // namespace spark

@@ -34,7 +34,7 @@ class ClassObject : public Leaf {
   const std::string& doc() const { return description_.doc; }
   /// The name of the base class, "" for Leaf.
   const std::string& baseName() const { return description_.base; }
-  /// True if the class is only a base and makes no objects.
+  /// True if the class is abstract: only a base, without objects of its own.
   bool isAbstract() const { return !description_.make; }
   /// The plugin that registered the class; nullptr for classes of the program itself.
   Plugin* plugin() const { return plugin_; }

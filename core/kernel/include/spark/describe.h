@@ -30,13 +30,13 @@ class PropertyBuilder {
   PropertyBuilder& doc(std::string text) { return get().doc = std::move(text), *this; }
   /// Its unit, such as "m" or "rad/s".
   PropertyBuilder& unit(std::string text) { return get().unit = std::move(text), *this; }
-  /// The least number allowed.
+  /// The minimum of each number.
   PropertyBuilder& min(double v) { return get().min = v, *this; }
-  /// The greatest number allowed.
+  /// The maximum of each number.
   PropertyBuilder& max(double v) { return get().max = v, *this; }
-  /// The numbers allowed: `lo` to `hi`, both included.
+  /// The range of each number: `lo` to `hi`, both included.
   PropertyBuilder& range(double lo, double hi) { return min(lo).max(hi); }
-  /// The only texts allowed.
+  /// The allowed texts; all others are refused.
   PropertyBuilder& choices(std::vector<std::string> texts) { return get().choices = std::move(texts), *this; }
   /// The property is part of the state hash and of saved state.
   PropertyBuilder& state() { return get().state = true, *this; }
@@ -232,7 +232,7 @@ class Description {
     d_.hooks.push_back({channel.text(), [](Leaf& l, const Event& e) { (static_cast<T&>(l).*F)(e); }});
   }
 
-  /// The class is only a base and makes no objects.
+  /// The class is abstract: only a base, without objects of its own.
   void abstract() { d_.make = nullptr; }
 
  private:

@@ -15,7 +15,7 @@
 
 namespace spark {
 
-/// An event as its handlers see it. Valid during the call only.
+/// The event that is passed to handlers. Valid during the call only.
 struct Event {
   std::string_view name;        ///< of the channel
   double time = 0;              ///< clock of the emitter [s]
@@ -41,7 +41,7 @@ class Channel {
   /// Adds a handler to a linked node until the node is unlinked. Returns a number for remove(). Throws Error if the
   /// node is not linked.
   std::uint64_t add(Leaf& node, Handler handler);
-  /// Removes the handler that add() returned the number of. Ignores 0 and unknown numbers.
+  /// Removes the handler for which add() returned this number. Ignores 0 and unknown numbers.
   void remove(std::uint64_t subscription);
   /// True if the channel has no handlers.
   bool empty() const { return entries_.empty() && pending_.empty(); }

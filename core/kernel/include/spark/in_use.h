@@ -13,7 +13,7 @@ namespace spark {
 /// leaf or one of its ancestors then throws Error. The simulation's thread only.
 class InUse {
  public:
-  /// All descendants keep their names too: for servers, which are found by their paths.
+  /// Also protects the names of all descendants, for servers, which are found by their paths.
   static constexpr int kAllBelow = 1 << 20;
   /// `why` completes the sentence "it is in use: ..." and must outlive the guard. Descendants down to `namesBelow`
   /// levels below the leaf cannot be renamed either.

@@ -26,7 +26,8 @@ namespace detail {
 class ClassRegistry;
 }
 
-/// One simulation: its tree and all that belongs to it. Unless said otherwise, only the simulation's thread may use it.
+/// One simulation: its tree and everything that belongs to it. Unless stated otherwise, only the simulation's thread
+/// may use it.
 class Kernel {
  public:
   /// A kernel with the classes and folders of an empty simulation.
@@ -76,8 +77,8 @@ class Kernel {
   /// and the number of earlier calls with the same three. Thread safe.
   std::uint64_t streamSeed(const Leaf& owner, std::string_view purpose);
 
-  /// A counter of changes of the tree: objects that join, leave or move, and new names. A cache is valid while it
-  /// stays. The reference is valid as long as the kernel.
+  /// A counter of changes of the tree: objects that are added, removed, moved or renamed. A cache is valid while the
+  /// counter is unchanged. The reference is valid for the lifetime of the kernel.
   const std::uint64_t& structureVersion() const;
   /// Lists and numbers all linked objects in tree order, if the tree has changed since the last call. Channel::emit
   /// calls it; so should code that changes the tree and then collects from large parts of it.
@@ -88,16 +89,16 @@ class Kernel {
   /// The id of the newest object, see Leaf::id.
   std::uint64_t lastId() const;
 
-  /// Asks the host to end. Safe in signal handlers and from any thread.
+  /// Requests the end of the run. Safe in signal handlers and from any thread.
   void requestStop();
   /// True after requestStop(). Safe from any thread.
   bool stopRequested() const;
-  /// True while the kernel is being destroyed: objects that leave the tree then need no replacement and no report. Safe
+  /// True while the kernel is being destroyed: objects that are removed then need not be replaced or reported. Safe
   /// from any thread.
   bool isEnding() const;
 
-  /// Counts an exception of a plugin or a script that was caught while the simulation ran; the log shows only the first
-  /// of each place. Thread safe.
+  /// Counts an exception of a plugin or a script that was caught while the simulation ran; only the first one of each
+  /// place is logged. Thread safe.
   void countFault();
   /// The number of faults so far. Not part of the state. Thread safe.
   std::int64_t faults() const;

@@ -69,7 +69,7 @@ class Leaf {
   /// True if this object is part of the tree, that is, it is the kernel's root or below it.
   bool isLinked() const;
 
-  /// This object as class or interface T, which it is looked up as in the table of its class. Empty if it is not a T.
+  /// This object as class or interface T, by a lookup in the table of its class. Empty if it is not a T.
   template <class T>
   Found<T> as() const {
     T* object = static_cast<T*>(query(T::kInterface));

@@ -171,7 +171,8 @@ class LinkBase {
   LinkBase() = default;
   LinkBase(const LinkBase&) = delete;
   LinkBase& operator=(const LinkBase&) = delete;
-  /// Makes the next read look the link up, because something else than the tree has changed that the route depends on.
+  /// Makes the next read look the link up again, because the route depends on something outside the tree that has
+  /// changed.
   void lookAgain() { at_.store(kStale, std::memory_order_relaxed); }
 
  protected:

@@ -29,13 +29,13 @@ class Node : public Leaf {
   /// The children in order. Owned by this node; the list is valid until the tree changes.
   const std::vector<std::unique_ptr<Leaf>>& children() const { return children_; }
   /// The kernel's structureVersion() at the last change below this node: an object was added, removed, moved or
-  /// renamed. A cache of what is below is valid while this number stays.
+  /// renamed. A cache of descendants is valid while this number is unchanged.
   std::uint64_t changedAt() const { return changedAt_; }
   /// The first child of that name, or the k-th for `name[k]`; nullptr if there is none.
   Leaf* child(std::string_view name) const;
   /// The k in `name[k]` of a child: its position among the children of the same name, from 1.
   std::size_t ordinalOf(const Leaf& child) const;
-  /// The greatest depth of a tree.
+  /// The maximum depth of a tree.
   static constexpr int kMostLevels = 1000;
   /// Appends an object to the children, and links it if this node is linked. Throws Error if the object has a parent or
   /// another kernel, and what onLink() throws; the object is then destroyed and the tree as before.
@@ -59,7 +59,7 @@ class Node : public Leaf {
   /// the child then is the last one of its old parent.
   void reparent(Leaf& child, Node& newParent);
   /// Appends all descendants that are a T to `out`, depth first in the order of children. `deep` false: descendants of
-  /// a match are left out. Reads a flat list if the kernel's order is up to date (Kernel::updateOrder), else walks the
+  /// a match are skipped. Reads a flat list if the kernel's order is up to date (Kernel::updateOrder), else walks the
   /// tree.
   template <class T>
   void collect(std::vector<T*>& out, bool deep = true) const {

@@ -17,7 +17,7 @@ namespace spark {
 
 class Leaf;
 
-/// The record of a thread. Only that thread writes it.
+/// The record of a thread. It is written by that thread only.
 struct Running {
   /// The node whose code runs; the class object while a constructor runs; nullptr outside of nodes.
   std::atomic<const Leaf*> node{nullptr};
@@ -52,7 +52,7 @@ class NowRunning {
   }
   NowRunning(const NowRunning&) = delete;
   NowRunning& operator=(const NowRunning&) = delete;
-  /// The thread goes on with another node.
+  /// The thread continues with another node.
   void at(const Leaf* node) { now_.node.store(node, std::memory_order_relaxed); }
   /// Records progress, see Running::beat.
   void beat() { now_.beat(); }

@@ -23,7 +23,7 @@ struct JsonStyle {
   const char* notFinite = "null";  ///< written for numbers that are not finite
 };
 
-/// Appends one JSON value to a string. Call its functions in the order of the text; brackets and keys are not checked.
+/// Appends one JSON value to a string. Call its functions in the order of the text: brackets and keys are not checked.
 /// The text is complete in the string when the outermost bracket is closed, or when the writer is destroyed.
 class JsonWriter {
  public:

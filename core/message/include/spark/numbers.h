@@ -15,11 +15,11 @@
 
 namespace spark {
 
-/// The room that putFixed() and putGeneral() need [bytes].
+/// The buffer sizes that putFixed() and putGeneral() need [bytes].
 inline constexpr std::size_t kFixedRoom = 400, kGeneralRoom = 32;
 
-/// The numbers that are written in double precision: from `begin` to below `end`. All others are rounded to single
-/// precision first.
+/// The range of numbers that are written in double precision: from `begin` to below `end`. All others are rounded to
+/// single precision first.
 struct DoubleRange {
   double begin = 0, end = 0;
 };
@@ -71,7 +71,7 @@ class ByteWriter {
   /// Appends an integer in decimal.
   void integer(std::int64_t v);
 
-  /// Returns a place for `n` bytes, at most kMostRoom. The caller writes some of them and passes their end to end().
+  /// Returns a buffer for `n` bytes, at most kMostRoom. The caller writes some of them and passes their end to end().
   char* room(std::size_t n) {
     SPARK_ASSERT(n <= kMostRoom);
     if (static_cast<std::size_t>(block_ + sizeof block_ - at_) < n) flush();

@@ -184,7 +184,7 @@ class Predicates {
   /// Closes all open lists. Returns their number, or -1 if none was open but close() was called once too often, or 0 if
   /// there was no error.
   int balance();
-  /// Sets the place in the text, from 1, of the token that was added last.
+  /// Sets the line and column, from 1, of the token that was added last.
   void mark(std::uint32_t line, std::uint32_t column);
   /// Removes token `index` and all that follow, such as an expression that a reader could not finish.
   void truncate(std::uint32_t index);
@@ -213,8 +213,8 @@ class Predicates {
   };
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
   std::size_t store(std::string_view text);
-  /// Adds a token. Perceptors add most of theirs here: without the way of a full vector it is a few instructions in
-  /// each of them.
+  /// Adds a token. It is always inlined, because perceptors add most of their tokens here. The slow path for a full
+  /// vector is a separate function, so that the fast path is only a few instructions.
   [[gnu::always_inline]] void push(const Token& t) {
     if (tokens_.size() == tokens_.capacity()) [[unlikely]]
       grow();

@@ -20,10 +20,9 @@ class IScriptServer {
   static constexpr const char* kPath = "/sys/server/script";
   virtual ~IScriptServer() = default;
   /// Attaches a script file to a node. The script runs at once, in an environment of its own with `self` set to the
-  /// node, and may add event handlers by on(), which are removed with the node. The script reads `arguments` by `local
-  /// args =
-  /// ...`; a list of pairs whose keys are strings is a table there ({{"limit", 3}} is {limit = 3}). Throws Error if the
-  /// file is missing or the script fails; its handlers are then removed.
+  /// node, and may add event handlers by on(), which are removed with the node. In the script, `...` is `arguments`; a
+  /// list of pairs whose keys are strings becomes a table ({{"limit", 3}} is {limit = 3}). Throws Error if the file is
+  /// missing or the script fails; its handlers are then removed.
   virtual void attach(Leaf& node, std::string_view file, const Value& arguments = {}) = 0;
 };
 

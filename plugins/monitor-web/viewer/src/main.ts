@@ -17,7 +17,7 @@ function run(): void {
 try {
   run();
 } catch (error) {
-  // no WebGL 2: a page that says so instead of an empty one
+  // without WebGL 2, the page shows an error message
   root.className = "sorry";
   root.textContent = `The match cannot be drawn here: ${error instanceof Error ? error.message : String(error)}`;
   console.error(error);

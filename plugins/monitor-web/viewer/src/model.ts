@@ -1,7 +1,8 @@
-/// What all parts of the viewer share. A source (the live stream, a log file) fills a World; views and panels read it.
-/// Metres, seconds, z up, the left team's goal at -x. Matrices are column by column, as in the monitor protocol.
+/// Types that all parts of the viewer share. A source (the live stream, a log file) fills a World; views and panels
+/// read it. Metres, seconds, z up, the left team's goal at -x. Matrices are column by column, as in the monitor
+/// protocol.
 
-/// A robot's own shape, from the colliders of its scene, in the frame of the transform that it hangs below.
+/// The shape of a collider, in the frame of its parent transform.
 export interface Shape {
   kind: "box" | "sphere" | "capsule" | "cylinder";
   /// box: full edges [m]; sphere: [radius]; capsule and cylinder: [radius, length without caps], along z.
@@ -18,7 +19,7 @@ export interface SceneNode {
   kind: "transform" | "light" | "mesh";
   /// Path in the host's tree; missing in logs.
   path?: string;
-  /// Transforms: what touches there; missing in logs and where nothing does.
+  /// Transforms: the colliders; missing in logs and if there are none.
   shapes?: Shape[];
   /// Meshes: "models/naohead.obj", "StdUnitBox", "StdCapsule 0.015 0.08"; scale; material names in the mesh's order.
   load?: string;
@@ -32,11 +33,12 @@ export type Side = "left" | "right";
 
 /// A robot, found in the scene by the materials of its meshes (matNum3, matLeft).
 export interface Robot {
-  /// "left:3"; "?:<node>" for one that has no team yet.
+  /// "left:3"; "?:<node>" for a robot without a team.
   key: string;
   side: Side | null;
   number: number;
-  /// Index of its topmost transform, and of those that carry its torso and its head (the topmost when there is none).
+  /// Indices of its topmost transform and of the transforms of torso and head (the topmost one if there is no torso or
+  /// head).
   node: number;
   torso: number;
   head: number;
@@ -44,13 +46,13 @@ export interface Robot {
   path?: string;
 }
 
-/// Named values of the environment, as the monitor protocol has them: play_mode, score_left, team_left, FieldLength...
+/// Named values of the environment, as in the monitor protocol: play_mode, score_left, team_left, FieldLength...
 export type Value = string | number;
 export type Environment = Map<string, Value | Value[]>;
 
 export type Colour = [number, number, number, number];   // 0..1, with alpha
 
-/// What agents drew: the commands of the drawing port, in world coordinates.
+/// Drawings of agents: the commands of the drawing port, in world coordinates.
 export type Drawing =
   | { kind: "circle"; centre: [number, number]; radius: number; thickness: number; colour: Colour }
   | { kind: "line"; from: [number, number, number]; to: [number, number, number]; thickness: number; colour: Colour }
@@ -60,20 +62,20 @@ export type Drawing =
   | { kind: "text"; at: [number, number, number]; text: string; colour: Colour }
   | { kind: "agentText"; side: Side; number: number; text: string; colour: Colour };
 
-/// Something that happened: a goal, a foul, another play mode.
+/// An event: a goal, a foul, a change of play mode.
 export interface GameEvent {
   time: number;
   kind: "goal" | "foul" | "mode";
-  /// For people: "Goal for Red", "foul: illegal defence of left 3".
+  /// Display text: "Goal for Red", "foul: illegal defence of left 3".
   text: string;
   side?: Side;
 }
 
-/// Counters that increase with each change; a reader keeps the last value and updates when it differs.
+/// Counters that increase with each change. A reader stores the last value and updates when it differs.
 export interface Versions {
-  /// Nodes, shapes, meshes, materials or robots are others: build anew.
+  /// Nodes, shapes, meshes, materials or robots changed: readers must rebuild.
   scene: number;
-  /// Transforms or visibility are others.
+  /// Transforms or visibility changed.
   frame: number;
   environment: number;
   events: number;
@@ -82,12 +84,13 @@ export interface Versions {
 
 export interface World {
   nodes: SceneNode[];
-  /// 16 numbers for each node that is a transform (identity for others): relative to the transform above. What is shown now, interpolated.
+  /// Local matrices, 16 numbers per node (identity for nodes that are not transforms), relative to the parent
+  /// transform. Interpolated for the current time.
   local: Float32Array;
   robots: Robot[];
-  /// Index of the ball's transform; -1: there is none.
+  /// Index of the ball's transform; -1: no ball.
   ball: number;
-  /// Simulated seconds of what is shown now.
+  /// Simulated time that is shown [s].
   time: number;
   environment: Environment;
   events: GameEvent[];
@@ -95,22 +98,22 @@ export interface World {
   versions: Versions;
 }
 
-/// How the host is doing; live only, once a second.
+/// Status of the host; live only, updated once a second.
 export interface Status {
   realTimeFactor: number;
   cycle: number;
   spectators: number;
-  /// For each agent: its path, and the wall time from its percepts to its answer [ms]; null when not known.
+  /// For each agent: its path, and the wall time from its percepts to its answer [ms]; null if unknown.
   agents: { path: string; team: string; number: number; latency: number | null }[];
-  /// What the game reports besides mode, score and teams: name and value.
+  /// Status entries of the game other than mode, score and teams: name and value.
   facts: [string, string][];
 }
 
-/// Where a World comes from.
+/// A source of a World.
 export interface Source {
   readonly world: World;
   readonly kind: "live" | "replay";
-  /// Brings the world to this instant of wall time [ms, as performance.now()]; called once for each picture.
+  /// Updates the world to this wall time [ms, as performance.now()]; called once per picture.
   update(now: number): void;
   close(): void;
 }
@@ -119,22 +122,23 @@ export interface Source {
 export interface LiveSource extends Source {
   readonly kind: "live";
   readonly connected: boolean;
-  /// "lost": it was open, and is tried again and again.
+  /// "lost": it was open, and reconnection attempts are being made.
   readonly state: "connecting" | "open" | "lost";
   readonly status: Status | null;
-  /// True when the host took our token.
+  /// True if the host accepted the token.
   readonly referee: boolean;
-  /// Asks the host (requests of the control plugin: tree, get, set, call; and contacts, percepts, joints); rejects with the host's words.
+  /// Sends a request to the host (of the control plugin: tree, get, set, call; also contacts, percepts, joints).
+  /// Rejects with the host's error text.
   ask<T = unknown>(request: Record<string, unknown>): Promise<T>;
-  /// Hears a property's value now and after every change, until the returned function is called.
+  /// Calls back with a property's current value and after every change, until the returned function is called.
   watch(path: string, property: string, heard: (value: unknown, time: number) => void, failed: (why: string) => void): () => void;
-  /// A trainer's command, "(kickOff Left)"; rejects when this viewer is no referee.
+  /// Sends a trainer command, "(kickOff Left)". Rejects if this viewer is not a referee.
   command(text: string): Promise<void>;
-  /// Hands over the token printed by the host; false when it is wrong.
+  /// Sends the token printed by the host; resolves to false if it is wrong.
   login(token: string): Promise<boolean>;
-  /// Wanted pictures a second, 1..50; detail "fine" or "coarse".
+  /// Requested frames per second, 1..50; detail "fine" or "coarse".
   setRate(rate: number, detail: "fine" | "coarse"): void;
-  /// World.drawings is kept up to date from now on, or empty; off at first.
+  /// Switches updates of World.drawings on or off (then it is empty). Initially off.
   setDrawings(on: boolean): void;
   onchange: (() => void) | null;
 }
@@ -143,19 +147,19 @@ export interface LiveSource extends Source {
 export interface ReplaySource extends Source {
   readonly kind: "replay";
   readonly name: string;
-  /// Simulated seconds of the first and last record.
+  /// Simulated time of the first and last record [s].
   readonly start: number;
   readonly end: number;
-  /// All events of the whole log, in ascending time; World.events holds those up to what is shown now.
+  /// All events of the log in chronological order. World.events contains those up to the current time.
   readonly timeline: GameEvent[];
-  /// Lines of the log that are damaged and were passed over, as far as is known by now.
+  /// Number of damaged lines that were skipped so far.
   readonly damaged: number;
-  /// Why the log cannot be read any more (its file was changed or removed), or null.
+  /// Why the log can no longer be read (its file was changed or removed), or null.
   readonly error: string | null;
   playing: boolean;
   /// 0.1..10
   speed: number;
   seek(time: number): void;
-  /// One record forward (1) or back (-1); pauses.
+  /// Moves one record forward (1) or back (-1) and pauses.
   step(direction: 1 | -1): void;
 }

@@ -123,12 +123,12 @@ TEST_CASE("Joints reach their targets within their speed, including the pending 
 
 TEST_CASE("A message is parsed into game, joints, feet, marks, ball, players and hearing") {
   Percepts p;
-  read(message("(time (now 12.34))(GS (unum 7) (team right) (sl 1) (sr 2) (t 5.00) (pm KickOff_Left))(hear Red 5.00 "
-               "self 1:2:3:4)"
+  read(message("(time (now 12.34))(GS (unum 7) (team right) (sl 1) (sr 2) (t 5.00) (pm KickOff_Left))"
+               "(hear Red 5.00 self 1:2:3:4)"
                "(hear Red 5.00 -12.00 2:100:-50:33)(hear Blue 5.00 3.00 secret)(GYR (n torso) (rt 90.00 0.00 -0.09))"
-               "(ACC (n torso) (a 0.00 0.10 9.81))(HJ (n hj1) (ax 45.00))(See (G2R (pol 10.00 90.00 0.00)) (B (pol "
-               "2.00 0.00 -30.00)) "
-               "(P (team Blue) (id 3) (head (pol 1.00 0.00 0.00))) (L (pol 1.00 2.00 3.00) (pol 1.00 2.00 3.00)))"
+               "(ACC (n torso) (a 0.00 0.10 9.81))(HJ (n hj1) (ax 45.00))(See (G2R (pol 10.00 90.00 0.00)) "
+               "(B (pol 2.00 0.00 -30.00)) (P (team Blue) (id 3) (head (pol 1.00 0.00 0.00))) "
+               "(L (pol 1.00 2.00 3.00) (pol 1.00 2.00 3.00)))"
                "(HJ (n llj6) (ax -3.00))(FRP (n lf) (c 0.00 0.00 0.00) (f 0.00 0.00 20.00))"),
        "Red", p);
   REQUIRE(p.now == 12.34);

@@ -1,39 +1,41 @@
-/// The binary frames of the stream: quantised places of a scene's transforms, whole or as differences to the frame before.
+/// The binary frames of the stream: quantised poses of a scene's transforms, complete or as differences to the previous
+/// frame.
 ///
-///   u8 kind (1 key, 2 delta), u8 position bits, u8 rotation bits, u8 0, u32 shape, u32 serial, f64 time [s], little endian; then runs:
-///   varint skip, varint count (0 ends), count times: u8 mask (x y z of the position, x y z w of the rotation), for each set bit a zigzag
-///   varint. A value is a whole number of steps of 2^-bits. At the end varint n, n times: varint node, u8 visible.
+///   u8 kind (1 key, 2 delta), u8 position bits, u8 rotation bits, u8 0, u32 shape, u32 serial, f64 time [s], little
+///   endian; then runs: varint skip, varint count (0 ends), count times: u8 mask (x y z of the position, x y z w of the
+///   rotation), for each set bit a zigzag varint. A value is a whole number of quanta of 2^-bits. At the end varint n,
+///   n times: varint node, u8 visible.
 
 import type { Poses } from "../sources/poses";
 
 const kKey = 1, kDelta = 2, kHeader = 20;
-const kMostBits = 24;
+const kMaxBits = 24;
 const kPerTransform = 7;
 const kLargest = 2 ** 31;
 
 export type Decoded =
-  /// `poses` are those of the frame now.
+  /// `poses` now holds this frame.
   | "shown"
-  /// It builds on a frame that is missing, or belongs to another scene: the next key will do.
+  /// The frame depends on a missing frame or belongs to another scene. The next key frame resynchronizes.
   | "waits"
-  /// It is no frame. The poses are spoilt until the next key.
+  /// The bytes are not a valid frame. The poses are invalid until the next key frame.
   | "broken";
 
 export class FrameDecoder {
-  /// Of the last frame that was shown [s].
+  /// Time of the last decoded frame [s].
   time = 0;
 
   private steps = new Int32Array(0);
   private transforms: Int32Array = new Int32Array(0);
   private shape = -1;
   private serial = -1;
-  /// Steps belong to this many bits.
+  /// Precision of the current quanta, in bits.
   private bits = 0;
   private bytes: Uint8Array = new Uint8Array(0);
   private at = 0;
   private good = true;
 
-  /// Frames of this shape follow; `transforms` are the indices of its transforms, ascending.
+  /// Prepares for frames of this shape. `transforms` are the indices of its transforms, ascending.
   setScene(shape: number, transforms: Int32Array): void {
     this.shape = shape;
     this.transforms = transforms;
@@ -41,13 +43,13 @@ export class FrameDecoder {
     this.serial = -1;
   }
 
-  /// Decodes a frame into `poses`, which must be what the last call left there.
+  /// Decodes a frame into `poses`, which must still hold the result of the previous call.
   decode(bytes: Uint8Array, poses: Poses): Decoded {
     if (bytes.length < kHeader + 3) return "broken";
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     const kind = view.getUint8(0), position = view.getUint8(1), rotation = view.getUint8(2);
     const shape = view.getUint32(4, true), serial = view.getUint32(8, true), time = view.getFloat64(12, true);
-    if ((kind !== kKey && kind !== kDelta) || position > kMostBits || rotation > kMostBits || bytes[3] !== 0 || !Number.isFinite(time)) return "broken";
+    if ((kind !== kKey && kind !== kDelta) || position > kMaxBits || rotation > kMaxBits || bytes[3] !== 0 || !Number.isFinite(time)) return "broken";
     if (shape !== this.shape) return "waits";
     const bits = position << 8 | rotation;
     if (kind === kDelta && (this.serial < 0 || serial !== (this.serial + 1) >>> 0 || bits !== this.bits)) {
@@ -126,7 +128,7 @@ export class FrameDecoder {
     return 0;
   }
 
-  /// At most 2^49: no frame has larger numbers.
+  /// Reads a varint of at most 2^49. Valid frames have no larger numbers.
   private varint(): number {
     let value = 0;
     for (let scale = 1, k = 0; k < 7; ++k, scale *= 128) {

@@ -1,22 +1,24 @@
-/// The packets of the drawing port, in which agents draw: several commands in each, shapes into sets by name that are shown by a swap.
+/// The packets of the drawing port, which agents use to draw. A packet contains several commands. Shapes are added to
+/// named sets; a swap shows them.
 ///
 ///   0 0 name\0                       swap all sets whose name begins so
 ///   1 0 x y r thick rgb name\0       circle        1 3 x y z r rgb name\0             sphere
 ///   1 1 x y z x y z thick rgb name\0 line          1 4 n rgba (x y z)*n name\0        polygon
 ///   1 2 x y z size rgb name\0        point         2 0 x y z rgb text\0 name\0        text
-///   2 1 agent rgb text\0             text at an agent (number - 1, and 128 for the right team)    2 2 agent   none any more
+///   2 1 agent rgb text\0             text at an agent (number - 1, plus 128 for the right team)
+///   2 2 agent                        remove the text
 ///
-/// Numbers are six characters each, colours one byte for each part.
+/// Numbers are six characters each, colours one byte per channel.
 
 import type { Colour, Drawing } from "../model";
 
 const kNumber = 6;
-/// Limits of what agents may draw; what is more is left out.
-const kMostShapes = 20_000, kMostSets = 2000;
+/// Limits on what agents may draw. Anything beyond them is ignored.
+const kMaxShapes = 20_000, kMaxSets = 2000;
 /// Bytes; recorders write some 500.
 const kLongestPacket = 8192;
 
-/// The set that holds texts at agents, which know no swap.
+/// The set of texts at agents. It is not double-buffered.
 export const kAgentTexts = "agents";
 
 const decoder = new TextDecoder();
@@ -24,7 +26,7 @@ const decoder = new TextDecoder();
 class Damaged extends Error {}
 
 export class DrawingBoard {
-  /// What is shown, by name; sets without shapes are gone.
+  /// The visible shapes by set name. Sets without shapes are removed.
   readonly shown = new Map<string, Drawing[]>();
   private readonly hidden = new Map<string, Drawing[]>();
   private readonly texts = new Map<number, Drawing>();
@@ -39,7 +41,7 @@ export class DrawingBoard {
     this.shapes = 0;
   }
 
-  /// Takes a packet; bad bytes end it. True when something else is shown now.
+  /// Executes a packet up to the first malformed byte. Returns true if the visible drawings changed.
   take(packet: Uint8Array): boolean {
     this.bytes = packet;
     this.at = 0;
@@ -58,7 +60,7 @@ export class DrawingBoard {
     if (group === 1 || (group === 2 && kind === 0)) return this.draw(group, kind);
     if (group === 2 && kind === 1) return this.write(this.byte());
     if (group === 2 && kind === 2) return this.erase(this.byte());
-    // Selections are the viewer's own matter.
+    // Selection commands are ignored: the user of this viewer selects.
     if (group === 3 && kind === 0) return this.byte() < 0;
     throw new Damaged();
   }
@@ -81,7 +83,7 @@ export class DrawingBoard {
     const drawing = group === 2 ? this.annotation() : this.shape(kind);
     const name = this.text();
     const set = this.hidden.get(name) ?? [];
-    if (this.shapes >= kMostShapes || (set.length === 0 && this.hidden.size >= kMostSets)) return false;
+    if (this.shapes >= kMaxShapes || (set.length === 0 && this.hidden.size >= kMaxSets)) return false;
     set.push(drawing);
     ++this.shapes;
     this.hidden.set(name, set);
@@ -157,7 +159,8 @@ export class DrawingBoard {
   }
 }
 
-/// The packets in front of a recorded message: [1, 0, ...][...], bytes from 0 to 255 or -128 to 127. Bytes [from, end) hold nothing else.
+/// Parses the packets in front of a recorded message: [1, 0, ...][...], bytes from 0 to 255 or -128 to 127. Bytes
+/// [from, end) must contain nothing else.
 export function readPackets(line: Uint8Array, from: number, end: number): Uint8Array[] {
   const packets: Uint8Array[] = [];
   for (let at = from; at < end; ) {

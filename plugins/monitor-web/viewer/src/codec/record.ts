@@ -1,5 +1,6 @@
-/// One message of the monitor protocol: an environment, a header, the nodes; all of them ("RSG") or what changed ("RDS").
-/// The environment's head is cheap to read and is all that an index needs; the nodes are read when they are shown.
+/// One message of the monitor protocol: environment, header and nodes, either complete ("RSG") or only the changes
+/// ("RDS"). Environment and header are cheap to read and sufficient for an index. The nodes are read when they are
+/// shown.
 
 import type { SceneNode, Value } from "../model";
 import { Poses } from "../sources/poses";
@@ -14,9 +15,9 @@ export interface Head {
 
 const kMostNodes = 50_000;
 const kDeepest = 64;
-const kMostEntries = 512;
+const kMaxEntries = 512;
 
-/// Names of teams may look like numbers.
+/// These values stay strings: team names may look like numbers.
 const kWords = new Set(["team_left", "team_right", "play_modes"]);
 
 export class RecordReader {
@@ -24,11 +25,11 @@ export class RecordReader {
   private readonly matrix = new Float64Array(16);
   private readonly stack = new Int32Array(kDeepest);
 
-  /// Reads environment and header of the message in bytes [from, end); null when it is none. The nodes come next.
+  /// Reads environment and header of the message in bytes [from, end); null if it is not a message. The nodes follow.
   head(bytes: Uint8Array, from: number, end: number): Head | null {
     const { tokens } = this;
     tokens.start(bytes, from, end);
-    // A JSON message is one list of three.
+    // A JSON message is a list of three elements.
     if (bytes[tokens.at] === 0x5b) tokens.next();
     const environment = this.environment();
     if (!environment || tokens.next() !== Token.open || tokens.next() !== Token.atom) return null;
@@ -37,7 +38,7 @@ export class RecordReader {
     return tokens.skip() ? { full, environment } : null;
   }
 
-  /// The nodes of a full message, after head(); null when they are damaged.
+  /// Reads the nodes of a full message, after head(); null if they are malformed.
   nodes(): { nodes: SceneNode[]; poses: Poses } | null {
     const nodes: SceneNode[] = [];
     const matrices: number[] = [];
@@ -51,7 +52,8 @@ export class RecordReader {
     return { nodes, poses };
   }
 
-  /// Changes the poses by a partial message, after head(); false when it is damaged or made for other nodes (the poses are spoilt then).
+  /// Applies a partial message to the poses, after head(). Returns false if it is malformed or belongs to other nodes;
+  /// the poses are invalid then.
   patch(nodes: SceneNode[], poses: Poses): boolean {
     let next = 0;
     const sound = this.walk(
@@ -67,7 +69,8 @@ export class RecordReader {
     return sound && next === nodes.length;
   }
 
-  /// Goes through the list of nodes: begin(parent) gives a new node's index or -1, attribute(node) reads the list whose name was just read.
+  /// Iterates over the list of nodes: begin(parent) returns a new node's index or -1, attribute(node) reads the list
+  /// whose name was just read.
   private walk(begin: (parent: number) => number, attribute: (node: number) => boolean): boolean {
     const { tokens, stack } = this;
     if (tokens.next() !== Token.open) return false;
@@ -126,7 +129,8 @@ export class RecordReader {
     return tokens.skip();
   }
 
-  /// `count` numbers and the list's end. Robots that burst apart are at "nan": no damage of the message.
+  /// Reads `count` numbers and the end of the list. The values may be "nan" after the simulation of a robot became
+  /// unstable; the message is still valid.
   private numbers(out: number[] | Float64Array, at: number, count: number): boolean {
     for (let i = 0; i < count; ++i) {
       if (this.tokens.next() !== Token.atom) return false;
@@ -135,7 +139,7 @@ export class RecordReader {
     return this.tokens.skip();
   }
 
-  /// All atoms up to the list's end.
+  /// Reads all atoms up to the end of the list.
   private words(): string[] | null {
     const words: string[] = [];
     for (;;) {
@@ -159,7 +163,7 @@ export class RecordReader {
     for (;;) {
       const token = tokens.next();
       if (token === Token.close) return entries;
-      if (token === Token.end || entries.length >= kMostEntries) return null;
+      if (token === Token.end || entries.length >= kMaxEntries) return null;
       if (token === Token.atom) continue;
       const entry = this.entry();
       if (entry === null) return null;
@@ -167,7 +171,7 @@ export class RecordReader {
     }
   }
 
-  /// Name and values; lists in it are left out.
+  /// Reads name and values; nested lists are skipped.
   private entry(): Value[] | null {
     const { tokens } = this;
     const values: Value[] = [];

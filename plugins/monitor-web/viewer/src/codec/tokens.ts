@@ -1,30 +1,30 @@
-/// Reads lists of atoms from bytes, in both languages of monitor messages: (time 0.8) and ["time",0.8].
-/// Moves over the bytes without copying; an atom becomes a number or a string only when asked.
+/// Reads lists of atoms from bytes, in both languages of monitor messages: (time 0.8) and ["time",0.8]. Scans the bytes
+/// without copying. An atom is converted to a number or a string only on request.
 
 export const enum Token {
   open,
   close,
   atom,
-  /// The bytes are used up.
+  /// End of the bytes.
   end,
 }
 
 const kSpace = 0x20, kQuote = 0x22, kComma = 0x2c, kBackslash = 0x5c;
 const kParenOpen = 0x28, kParenClose = 0x29, kBracketOpen = 0x5b, kBracketClose = 0x5d;
 
-/// 10^0 .. 10^22 are exact; beyond that the engine's own reader is asked.
+/// 10^0 .. 10^22 are exact. Other exponents are left to the JavaScript engine's parser.
 const kPowers = Array.from({ length: 23 }, (_, i) => 10 ** i);
-const kMostDigits = 15;
+const kMaxDigits = 15;
 
 const decoder = new TextDecoder();
 
 export class Tokens {
-  /// The atom read last: bytes [from, to), without quotes.
+  /// The last atom: bytes [from, to), without quotes.
   from = 0;
   to = 0;
-  /// It stood in quotes: a word, whatever it looks like.
+  /// The atom was quoted, so it is a string even if it looks like a number.
   quoted = false;
-  /// Where the next token is looked for.
+  /// Offset of the next token.
   at = 0;
 
   private bytes: Uint8Array = new Uint8Array();
@@ -32,7 +32,7 @@ export class Tokens {
   private json = false;
   private escaped = false;
 
-  /// Begins at `from`; JSON when the first list opens with a bracket.
+  /// Starts at `from`. The language is JSON if the first list opens with a bracket.
   start(bytes: Uint8Array, from: number, end: number): void {
     this.bytes = bytes;
     this.at = from;
@@ -61,7 +61,7 @@ export class Tokens {
     return Token.atom;
   }
 
-  /// Leaves the list that was opened last; false when the bytes end before.
+  /// Skips to the end of the innermost open list. Returns false if the bytes end first.
   skip(): boolean {
     for (let depth = 1; depth > 0; ) {
       const token = this.next();
@@ -72,7 +72,7 @@ export class Tokens {
     return true;
   }
 
-  /// Is the atom this word? Plain ASCII only.
+  /// Returns true if the atom is this word. ASCII only.
   is(word: string): boolean {
     if (this.to - this.from !== word.length) return false;
     for (let i = 0; i < word.length; ++i) if (this.bytes[this.from + i] !== word.charCodeAt(i)) return false;
@@ -90,7 +90,7 @@ export class Tokens {
     }
   }
 
-  /// The atom as a number; NaN when it is none.
+  /// The atom as a number; NaN if it is not one.
   number(): number {
     const { bytes, to } = this;
     let at = this.from;
@@ -109,7 +109,7 @@ export class Tokens {
       mantissa = mantissa * 10 + (c - 0x30);
       if (point) --exponent;
     }
-    if (!any || digits > kMostDigits) return this.slowNumber();
+    if (!any || digits > kMaxDigits) return this.slowNumber();
     if (at < to) {
       if ((bytes[at]! | 0x20) !== 0x65) return this.slowNumber();
       let scale = 0;
@@ -128,7 +128,7 @@ export class Tokens {
     return negative ? -value : value;
   }
 
-  /// The atom as what it looks like.
+  /// The atom as a number if it looks like one, otherwise as a string.
   value(): string | number {
     if (this.quoted) return this.text();
     const number = this.number();

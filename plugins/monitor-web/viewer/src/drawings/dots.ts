@@ -9,7 +9,7 @@ export interface DotLook {
 const kMatrix = new Matrix4();
 const kColour = new Color();
 
-/// Balls, all in one call to the graphics card; their shading is painted on, so that they need no lights.
+/// Balls, drawn in one call. Their shading is precomputed, so they need no lights.
 export class Dots {
   object!: InstancedMesh;
   private readonly geometry: IcosahedronGeometry;
@@ -28,7 +28,7 @@ export class Dots {
     this.count = 0;
   }
 
-  /// A ball at a place [m] with a screen colour 0..1.
+  /// Adds a ball at a position [m] with a screen colour 0..1.
   add(x: number, y: number, z: number, radius: number, r: number, g: number, b: number): void {
     if (this.count === this.room) this.grow();
     kMatrix.makeScale(radius, radius, radius).setPosition(x, y, z);

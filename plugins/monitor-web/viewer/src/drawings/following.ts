@@ -1,10 +1,10 @@
-/// Decides when things attached to robots must be placed again: with each new frame, and once more in the picture after it, because only then
-/// the picture knows where everything in that frame is.
+/// Decides when objects attached to robots must be repositioned: with each new frame, and again when the next picture
+/// is drawn, because only then the world matrices of that frame are known.
 export class Following {
   private frame = -1;
   private left = 0;
 
-  /// `anew`: what follows is other than before.
+  /// `anew`: the attached objects themselves changed.
   due(frame: number, anew = false): boolean {
     if (frame !== this.frame || anew) {
       this.frame = frame;

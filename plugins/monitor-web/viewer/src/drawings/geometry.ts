@@ -1,9 +1,9 @@
-/// Geometry of what is drawn over the scene: plain numbers, no three.js.
+/// Geometry of drawings over the scene: plain numbers, no three.js.
 
 export type Vec3 = readonly [number, number, number];
-/// Takes the two ends of a stroke.
+/// Receives the two ends of a stroke.
 export type Stroke = (ax: number, ay: number, az: number, bx: number, by: number, bz: number) => void;
-/// Colours for the screen, 0..1 each.
+/// Screen colours, 0..1 per channel.
 export type Rgb = readonly [number, number, number];
 
 /// A circle on the ground.
@@ -15,12 +15,12 @@ export function circle(x: number, y: number, z: number, radius: number, segments
   }
 }
 
-/// As many segments as a circle of this radius [m] needs to look round.
+/// The number of segments with which a circle of this radius [m] looks round.
 export function circleSegments(radius: number): number {
   return Math.max(12, Math.min(96, Math.ceil(24 * Math.sqrt(Math.abs(radius)) + 12)));
 }
 
-/// A shaft with four barbs; `head` is their length [m].
+/// An arrow: a shaft with four barbs of length `head` [m].
 export function arrow(x: number, y: number, z: number, dx: number, dy: number, dz: number, head: number, stroke: Stroke): void {
   const length = Math.hypot(dx, dy, dz);
   if (!(length > 1e-9)) return;
@@ -37,27 +37,27 @@ export function arrow(x: number, y: number, z: number, dx: number, dy: number, d
   }
 }
 
-/// A unit vector at right angles to this one.
+/// A unit vector perpendicular to this one.
 export function aside(x: number, y: number, z: number): [number, number, number] {
   const [a, b, c] = Math.abs(z) < 0.9 ? [y, -x, 0] : [0, z, -y];
   const length = Math.hypot(a, b, c);
   return [a / length, b / length, c / length];
 }
 
-/// From polar coordinates [m, deg, deg] in a frame with x ahead, y to the left, z up.
+/// Converts polar coordinates [m, deg, deg] in a frame with x forward, y to the left, z up.
 export function fromPolar(distance: number, horizontal: number, vertical: number): [number, number, number] {
   const h = (horizontal * Math.PI) / 180;
   const v = (vertical * Math.PI) / 180;
   return [distance * Math.cos(v) * Math.cos(h), distance * Math.cos(v) * Math.sin(h), distance * Math.sin(v)];
 }
 
-/// A point of the frame given by a matrix (16 numbers, column by column), in the world.
+/// Transforms a point from the frame given by a matrix (16 numbers, column by column) to the world frame.
 export function toWorld(m: readonly number[], p: Vec3): [number, number, number] {
   return [0, 1, 2].map((i) => m[i]! * p[0] + m[4 + i]! * p[1] + m[8 + i]! * p[2] + m[12 + i]!) as [number, number, number];
 }
 
-/// What lies within half the opening angles to each side of x and within the range: its edges, and a net on the far side.
-/// An opening of 360 degrees has no edges to the sides.
+/// The edges of a field of view, which extends half the opening angles to each side of x and up to the range, and a
+/// grid on its far side. An opening of 360 degrees has no side edges.
 export function viewCone(matrix: readonly number[], horizontal: number, vertical: number, range: number, stroke: Stroke): void {
   const around = horizontal >= 360;
   const half = Math.min(horizontal, 360) / 2;
@@ -75,15 +75,15 @@ export function viewCone(matrix: readonly number[], horizontal: number, vertical
   for (const h of [-half, half]) for (const v of [-up, up]) line(eye, at(h, v));
 }
 
-/// Cutting off ears takes the cube of the corners: polygons with more are taken to be convex.
-const kMostEars = 64;
+/// Ear clipping takes cubic time, so polygons with more corners are assumed to be convex.
+const kMaxEars = 64;
 
-/// Triangles of a flat polygon, convex or not: indices into its points. Points that lie in one line give nothing.
+/// Triangulates a flat polygon, convex or not: returns indices into its points. Collinear points give no triangles.
 export function triangulate(points: readonly Vec3[]): number[] {
   const n = normal(points);
   if (!n) return [];
-  if (points.length > kMostEars) return points.slice(2).flatMap((_, i) => [0, i + 1, i + 2]);
-  // Seen along the greatest part of the normal, counter-clockwise.
+  if (points.length > kMaxEars) return points.slice(2).flatMap((_, i) => [0, i + 1, i + 2]);
+  // Project along the largest component of the normal, counter-clockwise.
   const axis = Math.abs(n[0]) > Math.abs(n[1]) ? (Math.abs(n[0]) > Math.abs(n[2]) ? 0 : 2) : Math.abs(n[1]) > Math.abs(n[2]) ? 1 : 2;
   const [u, v] = [(axis + 1) % 3, (axis + 2) % 3] as [0 | 1 | 2, 0 | 1 | 2];
   const turn = n[axis]! > 0 ? 1 : -1;
@@ -100,7 +100,8 @@ export function triangulate(points: readonly Vec3[]): number[] {
 
 type Area = (a: Vec3, b: Vec3, c: Vec3) => number;
 
-/// A corner that can be cut off: it turns inwards and no other point is in it. The first one when lines cross each other.
+/// Finds an ear: a convex corner whose triangle contains no other point. Returns the first corner if edges cross each
+/// other.
 function findEar(points: readonly Vec3[], left: readonly number[], area: Area): number {
   for (let i = 0; i < left.length; ++i) {
     const [ia, ib, ic] = [left[(i + left.length - 1) % left.length]!, left[i]!, left[(i + 1) % left.length]!];
@@ -112,7 +113,7 @@ function findEar(points: readonly Vec3[], left: readonly number[], area: Area): 
   return 0;
 }
 
-/// Twice the area times the unit normal (Newell); null for nothing flat.
+/// Twice the area times the unit normal (Newell); null if the polygon has no area.
 function normal(points: readonly Vec3[]): Vec3 | null {
   const n: [number, number, number] = [0, 0, 0];
   points.forEach((p, i) => {
@@ -126,7 +127,8 @@ function normal(points: readonly Vec3[]): Vec3 | null {
 
 const kDepthColours: Rgb[] = [[0.99, 0.91, 0.14], [0.37, 0.79, 0.38], [0.13, 0.57, 0.55], [0.23, 0.32, 0.55], [0.55, 0.2, 0.75]];
 
-/// A colour for a share 0..1: yellow, green, blue, violet; ordered in brightness too, for eyes that tell few colours.
+/// Color map for values 0..1: yellow, green, blue, violet. Brightness is monotonic, too, for users with color
+/// blindness.
 export function rampColour(share: number): Rgb {
   const at = Math.max(0, Math.min(1, Number.isFinite(share) ? share : 0)) * (kDepthColours.length - 1);
   const i = Math.min(Math.floor(at), kDepthColours.length - 2);
@@ -134,7 +136,7 @@ export function rampColour(share: number): Rgb {
   return [0, 1, 2].map((k) => a[k]! + (b[k]! - a[k]!) * (at - i)) as unknown as Rgb;
 }
 
-/// Colours of the screen as light, which is what three.js calculates with.
+/// Converts screen colours (sRGB) to linear light, which three.js calculates with.
 export function toLinear(c: number): number {
   return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
 }

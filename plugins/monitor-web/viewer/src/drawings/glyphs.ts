@@ -1,11 +1,11 @@
 import { CanvasTexture, LinearFilter } from "three";
 
-/// Where glyphs lie in their picture; drawn when first needed.
+/// Position and size of a glyph in the atlas.
 export interface Glyph {
-  /// Column and row of its cell.
+  /// Column and row of the cell.
   column: number;
   row: number;
-  /// Width of the glyph as a share of a cell.
+  /// Width of the glyph as a fraction of the cell.
   advance: number;
 }
 
@@ -14,7 +14,8 @@ const kCell = 64;                // [px]
 const kFont = `600 ${Math.round(kCell * 0.62)}px system-ui, "DejaVu Sans", sans-serif`;
 const kUnknown = 0xfffd;
 
-/// A picture of glyphs, white with a black rim, and where each one is. When it is full, what is new shows as a question mark.
+/// A texture atlas of glyphs, white with a black outline. Glyphs are added on first use; when it is full, new ones are
+/// shown as question marks.
 export class Glyphs {
   readonly texture: CanvasTexture;
   private readonly context: CanvasRenderingContext2D;
@@ -34,7 +35,7 @@ export class Glyphs {
     this.draw(kUnknown, "?");
   }
 
-  /// The glyph of this code point.
+  /// The glyph for this code point.
   of(code: number): Glyph {
     const known = this.glyphs.get(code);
     if (known) return known;

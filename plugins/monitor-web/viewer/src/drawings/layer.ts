@@ -9,7 +9,7 @@ import { Points } from "./points";
 import type { SetSwitches } from "./switches";
 import { Texts } from "./texts";
 
-/// What it needs of the picture.
+/// The part of the stage that the layer uses.
 export interface Canvas {
   readonly overlay: Group;
   /// The 16 numbers of a node's world matrix, column by column.
@@ -17,7 +17,7 @@ export interface Canvas {
   invalidate(): void;
 }
 
-const kMostWidths = 12;   // of lines, with their transparencies: each is a call of its own
+const kMaxWidths = 12;   // maximum number of combinations of width and transparency, each of which is a draw call
 const kGround = 0.012;    // [m]; circles lie a little above the lines of the field
 const kTextSize = 13;     // [px]
 const kAboveHead = 0.2;   // [m]
@@ -25,7 +25,8 @@ const kAboveNumber = 2.2; // lines
 
 type AgentText = Extract<Drawing, { kind: "agentText" }>;
 
-/// Draws the sets of drawings that are switched on. Geometry is built when drawings change; only texts that belong to robots follow them.
+/// Draws the sets of drawings that are switched on. Geometry is rebuilt when drawings change. Only texts at robots are
+/// repositioned with every frame.
 export class DrawingsLayer {
   visible = true;
   readonly group = new Group();
@@ -120,7 +121,7 @@ export class DrawingsLayer {
   private linesOf(thickness: number, alpha: number): Lines {
     const width = Math.max(1, Math.min(12, Math.round(2 * thickness) / 2)) || 1;
     const opacity = Math.max(1, Math.round(8 * alpha)) / 8;
-    const key = this.lines.size < kMostWidths || this.lines.has(`${width} ${opacity}`) ? `${width} ${opacity}` : this.lines.keys().next().value!;
+    const key = this.lines.size < kMaxWidths || this.lines.has(`${width} ${opacity}`) ? `${width} ${opacity}` : this.lines.keys().next().value!;
     let lines = this.lines.get(key);
     if (!lines) {
       lines = new Lines({ width, opacity });

@@ -13,10 +13,10 @@ export interface LineLook {
   through?: boolean;
 }
 
-/// Strokes of one width, in one buffer that grows by doubling and is written anew between begin() and end().
+/// Strokes of one width, in one buffer that grows by doubling and is rewritten between begin() and end().
 export class Lines {
   readonly object: LineSegments2;
-  /// Takes a stroke in the colour of the last colour().
+  /// Adds a stroke in the colour set by the last colour().
   readonly stroke = (ax: number, ay: number, az: number, bx: number, by: number, bz: number): void => {
     if (this.count === this.room) this.grow();
     const at = 6 * this.count++;
@@ -50,7 +50,7 @@ export class Lines {
     this.count = 0;
   }
 
-  /// Screen colours 0..1 of the strokes to come.
+  /// Sets the screen colour, 0..1, of the following strokes.
   colour(r: number, g: number, b: number): void {
     this.red = toLinear(r), this.green = toLinear(g), this.blue = toLinear(b);
   }
@@ -71,7 +71,7 @@ export class Lines {
   private grow(): void {
     const [ends, colours] = [this.ends, this.colours];
     this.room = Math.max(64, 2 * this.room);
-    // Another size means other buffers on the graphics card.
+    // Another size needs another buffer on the graphics card.
     if (ends) this.geometry.dispose();
     this.ends = this.attribute(["instanceStart", "instanceEnd"], ends?.array);
     this.colours = this.attribute(["instanceColorStart", "instanceColorEnd"], colours?.array);

@@ -21,7 +21,7 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-/// Round points of a size on the screen.
+/// Round points with a fixed size on the screen.
 export class Points {
   readonly object: ThreePoints<BufferGeometry, ShaderMaterial>;
   private readonly geometry = new BufferGeometry();
@@ -50,7 +50,7 @@ export class Points {
     this.count = 0;
   }
 
-  /// A point at a place [m], of a size [px]; screen colours 0..1, with alpha.
+  /// Adds a point at a position [m], with a size [px] and a screen colour 0..1 with alpha.
   add(x: number, y: number, z: number, size: number, r: number, g: number, b: number, a: number): void {
     if (this.count === this.room) this.grow();
     this.places.setXYZ(this.count, x, y, z);

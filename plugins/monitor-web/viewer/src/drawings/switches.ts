@@ -1,5 +1,5 @@
-/// Which sets of drawings are shown. Names have parts, "ball.path.3": a rule for "ball" holds for all below it, also for those to come;
-/// the longest rule that fits decides, and without any a set is shown.
+/// Which sets of drawings are shown. Names have parts, "ball.path.3". A rule for "ball" applies to all sets below it,
+/// including future ones; the longest matching rule decides. A set that matches no rule is shown.
 export class SetSwitches {
   private readonly rules = new Map<string, boolean>();
   version = 0;
@@ -12,7 +12,7 @@ export class SetSwitches {
     }
   }
 
-  /// Switches a set, or all whose names begin with this prefix ("": all of them).
+  /// Switches a set on or off, or all sets whose names begin with this prefix ("": all sets).
   switch(prefix: string, on: boolean): void {
     for (const rule of [...this.rules.keys()]) if (covers(prefix, rule)) this.rules.delete(rule);
     if (this.rules.size === 0 && prefix === "") {
@@ -28,16 +28,16 @@ function covers(prefix: string, name: string): boolean {
   return prefix === "" || name === prefix || name.startsWith(`${prefix}.`);
 }
 
-/// A line of the list of sets: a set, or all that share the first part of their names.
+/// A line of the list of sets: one set, or all sets whose names have the same first part.
 export interface SetRow {
   prefix: string;
   label: string;
-  /// Names of its sets.
+  /// Names of the sets in the group.
   names: string[];
   nested: boolean;
 }
 
-/// Sets in the order of their names; those with a common first part below a line of their own.
+/// Lists the sets by name. Sets with a common first part are grouped below a line of their own.
 export function setRows(names: Iterable<string>): SetRow[] {
   const groups = new Map<string, string[]>();
   for (const name of [...names].sort()) {

@@ -4,7 +4,7 @@ import { toLinear } from "./geometry";
 import { Glyphs, kCells } from "./glyphs";
 
 const kViewport = new Vector4();
-const kMostGlyphs = 20000;
+const kMaxGlyphs = 20000;
 
 const kVertex = `
 attribute vec3 anchor;
@@ -34,7 +34,8 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-/// Texts at positions in the world that face the viewer, of the same size from near and far: one instance a glyph, one call for all.
+/// Texts at world positions that face the viewer and have a fixed size on screen. Each glyph is an instance; all are
+/// drawn in one call.
 export class Texts {
   readonly object: Mesh<InstancedBufferGeometry, ShaderMaterial>;
   private drawnGlyphs: Glyphs | null = null;
@@ -69,11 +70,12 @@ export class Texts {
     this.count = 0;
   }
 
-  /// A text centred above a place [m]; `size` = height of a line [px]; `line` lines up from there. Screen colours 0..1.
+  /// Adds a text centred above a position [m]. `size`: line height [px]; `line`: offset upwards in lines. Screen
+  /// colours 0..1.
   add(text: string, x: number, y: number, z: number, size: number, r: number, g: number, b: number, line = 0): void {
     const cell = 1.5 * size;
     let left = -0.5 * cell * this.widthOf(text);
-    for (let i = 0; i < text.length && this.count < kMostGlyphs;) {
+    for (let i = 0; i < text.length && this.count < kMaxGlyphs;) {
       const code = text.codePointAt(i)!;
       i += code > 0xffff ? 2 : 1;
       const glyph = this.glyphs.of(code);
@@ -102,7 +104,7 @@ export class Texts {
     this.drawnGlyphs?.dispose();
   }
 
-  /// Made with the first text: most texts are never switched on.
+  /// Created for the first text, because texts are off most of the time.
   private get glyphs(): Glyphs {
     if (!this.drawnGlyphs) {
       this.drawnGlyphs = new Glyphs();

@@ -1,7 +1,7 @@
 import type { LiveSource } from "../model";
 import type { Inspectable, NodeInfo, PropertyInfo, TreeAnswer } from "./inspectable";
 
-/// The running host.
+/// Inspects the running host.
 export class Host implements Inspectable {
   readonly first = "/usr/scene";
 

@@ -17,12 +17,12 @@ import { Recording } from "./recording";
 import { Tabs } from "./tabs";
 import { TreeView } from "./tree_view";
 
-/// Mounts the inspector: objects and their properties, plots, overlays and drawings.
+/// Mounts the inspector: object tree, properties, plots, overlays and drawings.
 export function mountInspector(container: HTMLElement, app: App): Panel {
   return new Inspector(container, app);
 }
 
-const kPeriod = 100;          // [ms] between two looks at the page
+const kPeriod = 100;          // [ms] between two updates of the page
 const kTreePeriod = 1000;     // [ms] between two refreshes of the tree while the scene changes
 
 class Inspector implements Panel {
@@ -121,7 +121,7 @@ class Inspector implements Panel {
     this.showSelection();
   }
 
-  /// Robots come and go: the tree is asked again.
+  /// Requests the tree again, because robots may have been added or removed.
   private followScene(now: number): void {
     const version = this.app.world.versions.scene;
     if (version === this.scene || !this.treePace.due(now)) return;
@@ -129,7 +129,7 @@ class Inspector implements Panel {
     this.tree.refresh();
   }
 
-  /// The host is there again: what could not be answered is asked anew.
+  /// The connection is restored: repeats requests that were not answered.
   private followHost(): void {
     const ready = this.inspectable?.ready ?? false;
     if (ready === this.ready) return;
@@ -176,7 +176,7 @@ class Inspector implements Panel {
   }
 }
 
-/// Read anew with each picture, without anything being made for it.
+/// Updated with each picture, without allocation.
 function aroundOf(app: App): Surroundings {
   return {
     canvas: app.stage,

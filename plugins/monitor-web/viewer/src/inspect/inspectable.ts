@@ -1,6 +1,6 @@
-/// What the panels look into: the running host, or a recording. Both answer the same questions.
+/// The source that the panels inspect: the running host or a recording, with the same interface.
 
-/// A node and, as far as they were asked for, its children; `more` counts those that were left out.
+/// A node and, as far as requested, its children. `more`: number of omitted children.
 export interface TreeAnswer {
   name: string;
   class: string;
@@ -30,13 +30,14 @@ export interface NodeInfo {
 }
 
 export interface Inspectable {
-  /// False while there would be no answer.
+  /// False while requests cannot be answered.
   readonly ready: boolean;
-  /// The node that is shown first, opened with all above it.
+  /// The node that is selected first, with its ancestors expanded.
   readonly first: string;
   tree(path: string, depth: number): Promise<TreeAnswer>;
   node(path: string): Promise<NodeInfo>;
-  /// Hears the value now and after every change, until the returned function is called. Time in simulated seconds.
+  /// Calls back with the current value and after every change, until the returned function is called. Time in simulated
+  /// seconds.
   watch(path: string, property: string, heard: (value: unknown, time: number) => void, failed: (why: string) => void): () => void;
   /// Rejects with the reason. Only where `editable`.
   set(path: string, property: string, text: string): Promise<PropertyInfo>;

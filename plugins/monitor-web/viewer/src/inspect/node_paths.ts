@@ -1,7 +1,7 @@
 import type { World } from "../model";
 import { isWithin, parentPath } from "./paths";
 
-/// Which node of the picture belongs to which path, kept up to date with the scene.
+/// Maps tree paths to nodes of the picture, and is updated with the scene.
 export class NodePaths {
   private version = -1;
   private readonly indices = new Map<string, number>();
@@ -14,7 +14,7 @@ export class NodePaths {
     return this.paths[node];
   }
 
-  /// The node at this path, or the next one above that is in the picture; -1: none.
+  /// The node at this path, or its nearest ancestor that is in the picture; -1: none.
   nodeAt(path: string): number {
     this.refresh();
     for (let up: string | null = path; up !== null; up = parentPath(up)) {
@@ -24,7 +24,7 @@ export class NodePaths {
     return -1;
   }
 
-  /// The key of the robot that this path is a part of.
+  /// The key of the robot that contains this path.
   robotAt(path: string): string | null {
     const robot = this.world.robots.find((r) => {
       const top = r.path ?? this.pathOf(r.node);
@@ -33,13 +33,13 @@ export class NodePaths {
     return robot?.key ?? null;
   }
 
-  /// Where the robot begins in the tree.
+  /// Path of the robot's topmost node.
   ofRobot(key: string | null): string | undefined {
     const robot = this.world.robots.find((r) => r.key === key);
     return robot && (robot.path ?? this.pathOf(robot.node));
   }
 
-  /// "left 3" where a robot begins; empty elsewhere, and where the path says so itself.
+  /// "left 3" for the topmost node of a robot; empty for other nodes and if the path already contains it.
   titleOf(path: string): string {
     const robot = this.world.robots.find((r) => r.path === path);
     return robot?.side ? `${robot.side} ${robot.number}` : "";

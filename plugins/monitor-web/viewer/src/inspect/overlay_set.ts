@@ -7,7 +7,7 @@ import { JointsOverlay, type Joints } from "./overlays/joints";
 import { LabelsOverlay } from "./overlays/labels";
 import type { Overlay, Surroundings } from "./overlays/overlay";
 
-/// The overlays and the questions that feed them; a question is asked only while an overlay wants its answer.
+/// The overlays and the requests that feed them. A request is sent only while an overlay needs its answer.
 export class OverlaySet {
   readonly overlays: readonly Overlay[];
   private readonly contacts = new Feed<Contacts>(() => this.ask({ do: "contacts" }));

@@ -2,7 +2,7 @@ import { h, setHidden, setText } from "../ui/dom";
 import type { Listing, Overlay } from "./overlays/overlay";
 import { SeenOverlay } from "./overlays/percepts";
 
-/// A table whose cells are changed in place.
+/// A table whose cells are updated in place.
 class Table {
   readonly element = h("table", { class: "insp-table" });
   private readonly head = this.element.createTHead();
@@ -26,7 +26,7 @@ function fillRows(section: HTMLTableSectionElement, rows: readonly string[][], c
   });
 }
 
-/// A switch, and below all switches what the overlay says while it is on.
+/// A switch, and the note and table of the overlay, which are shown below all switches while it is on.
 class OverlayItem {
   readonly label: HTMLElement;
   readonly details: HTMLElement;
@@ -45,7 +45,7 @@ class OverlayItem {
     this.details = h("section", { class: "insp-overlay", "data-testid": "overlay-list", "data-overlay": overlay.id, hidden: true }, h("h3", {}, overlay.title), h("p", { class: "insp-doc" }, overlay.doc), below);
   }
 
-  /// `missing`: a recording does not have it.
+  /// `missing`: unavailable for recordings.
   update(missing: boolean): void {
     this.box.checked = this.overlay.on && !missing;
     this.box.disabled = missing;

@@ -3,7 +3,7 @@ import { lastName, parentPath } from "./paths";
 import { Series } from "./series";
 import { componentsOf, numberAt } from "./values";
 
-/// What is plotted: one number of one property.
+/// A plotted value: one number of one property.
 export interface Plotted {
   path: string;
   property: string;
@@ -12,7 +12,7 @@ export interface Plotted {
   colour: string;
   at: number[];
   series: Series;
-  /// Why nothing comes any more.
+  /// The error that ended the updates.
   ended: string;
 }
 
@@ -26,10 +26,10 @@ interface Watch {
   end: () => void;
 }
 
-/// Everything that is plotted: each property is watched once, whatever the number of its parts that are wanted.
+/// All plotted values. Each property is watched only once, even if several of its numbers are plotted.
 export class PlotList {
   readonly items: Plotted[] = [];
-  /// Counts up when items come or go.
+  /// Incremented when items are added or removed.
   version = 0;
   private readonly watches = new Map<string, Watch>();
   private paused: number | null = null;
@@ -40,7 +40,7 @@ export class PlotList {
     return this.watches.has(key(path, property));
   }
 
-  /// False: there is no room for it, or it holds no number.
+  /// Returns false if the list is full or the property contains no number.
   add(path: string, info: PropertyInfo): boolean {
     const components = componentsOf(info.value);
     const room = kMostPlotted - this.items.length;
@@ -82,14 +82,14 @@ export class PlotList {
     for (const item of [...this.items]) this.remove(item);
   }
 
-  /// Those with the same unit share a chart.
+  /// Items with the same unit share a chart.
   charts(): Map<string, Plotted[]> {
     const out = new Map<string, Plotted[]>();
     for (const p of this.items) out.set(p.unit, [...(out.get(p.unit) ?? []), p]);
     return out;
   }
 
-  /// Pausing stops the picture, not the gathering.
+  /// Pausing freezes the charts, but values are still recorded.
   pause(time: number | null): void {
     this.paused = time;
     ++this.version;
@@ -99,7 +99,7 @@ export class PlotList {
     return this.paused !== null;
   }
 
-  /// The last instant to be shown, when it is `now` at the source [s].
+  /// The right end of the time axis when the source is at `now` [s].
   until(now: number): number {
     if (this.paused !== null) return this.paused;
     return this.items.reduce((t, p) => (p.series.length > 0 ? Math.max(t, p.series.time(p.series.length - 1)) : t), now);
@@ -110,7 +110,7 @@ function key(path: string, property: string): string {
   return `${path} ${property}`;
 }
 
-/// The last two names: mostly enough to tell what is meant.
+/// The last two names of the path, which are usually sufficient.
 export function shortPath(path: string): string {
   const above = parentPath(path);
   return above === null || above === "/" ? lastName(path) : `${lastName(above)}/${lastName(path)}`;

@@ -64,7 +64,7 @@ function optionsOf(items: Plotted[], width: number): uPlot.Options {
   };
 }
 
-/// Room above and below; something around a constant.
+/// Adds a margin above and below, also around a constant.
 function rangeOf(low: number | null, high: number | null): [number, number] {
   if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [-1, 1];
   const room = high > low ? 0.08 * (high - low) : Math.max(0.1 * Math.abs(high), 0.01);
@@ -76,7 +76,7 @@ function shortTick(v: number): string {
   return size !== 0 && (size >= 1e5 || size < 1e-3) ? v.toExponential(1) : String(+v.toFixed(4));
 }
 
-/// All charts, and what can be done with them.
+/// All charts and their controls.
 export class PlotView {
   readonly element: HTMLElement;
   private readonly charts = h("div", { class: "insp-charts" });
@@ -106,12 +106,12 @@ export class PlotView {
     this.built = -1;
   }
 
-  /// Builds anew with the page's colours.
+  /// Rebuilds the charts with the page's colours.
   restyle(): void {
     this.built = -1;
   }
 
-  /// To be called while it is seen, with the simulated time [s].
+  /// Call it while the view is visible, with the simulated time [s].
   update(now: number): void {
     if (!this.list) return;
     const first = this.built < 0;

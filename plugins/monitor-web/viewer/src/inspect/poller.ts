@@ -1,5 +1,5 @@
-/// Asks again and again while it is on, never twice at once, and not more often than every `interval` ms; after a failure it waits a second.
-/// An answer that comes after stop() is not heard.
+/// Repeats a request while it is on: one at a time, at most every `interval` ms, and one second after a failure. An
+/// answer that arrives after stop() is ignored.
 export class Poller<T> {
   private running = 0;
   private waiting = false;
@@ -12,7 +12,7 @@ export class Poller<T> {
     private readonly interval = 100,
   ) {}
 
-  /// To be called often, with the time of the page [ms].
+  /// Call it frequently, with the time of the page [ms].
   tick(now: number): void {
     if (this.waiting || now < this.next) return;
     this.waiting = true;

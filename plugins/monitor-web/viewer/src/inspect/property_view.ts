@@ -3,15 +3,15 @@ import type { Inspectable, NodeInfo, PropertyInfo } from "./inspectable";
 import { reason } from "./poller";
 import { componentsOf, editText, formatValue } from "./values";
 
-const kInLine = 18;   // letters; longer values have a line of their own
+const kInLine = 18;   // characters; longer values have a line of their own
 
 export interface PlotAsker {
-  /// True when any number of this property is plotted.
+  /// True if any number of this property is plotted.
   has(path: string, property: string): boolean;
   toggle(path: string, property: PropertyInfo): void;
 }
 
-/// A property of the selected node. It is watched while it is seen.
+/// A property of the selected node. It is watched while it is visible.
 class PropertyRow {
   readonly element: HTMLElement;
   private readonly value = h("output", { class: "insp-value", "data-testid": "property-value" });
@@ -110,7 +110,7 @@ function editorOf(info: PropertyInfo, commit: (text: string) => void, cancel: ()
   return select;
 }
 
-/// The selected node: what it is, and its properties as they change.
+/// The selected node: class, documentation and current property values.
 export class PropertyView {
   readonly element: HTMLElement;
   private readonly title = h("h3", { class: "insp-path", "data-testid": "inspector-selected" });
@@ -135,7 +135,7 @@ export class PropertyView {
     this.show(null, true);
   }
 
-  /// Shows this node; `again` even if it is shown already.
+  /// Shows this node. `again`: rebuilds the view even if the node is already shown.
   show(path: string | null, again = false): void {
     if (path === this.path && !again) return;
     this.path = path;
@@ -150,7 +150,7 @@ export class PropertyView {
     );
   }
 
-  /// Asleep it asks for nothing.
+  /// While asleep it sends no requests.
   setAwake(awake: boolean): void {
     if (awake === this.awake) return;
     this.awake = awake;

@@ -13,8 +13,8 @@ interface Watcher {
   failed: (why: string) => void;
 }
 
-/// A recorded match: its scene and its state as a tree. Recordings hold no properties of the host's objects; what is shown here is what
-/// the picture itself is made of.
+/// A recorded match: its scene and state as a tree. Recordings do not contain the properties of the host's objects, so
+/// the tree shows the data from which the picture is drawn.
 export class Recording implements Inspectable {
   readonly ready = true;
   readonly first = kScene;
@@ -22,7 +22,7 @@ export class Recording implements Inspectable {
   private readonly watchers = new Set<Watcher>();
   private paths: string[] = [];
   private indices = new Map<string, number>();
-  /// By the node above, -1 at the top.
+  /// By parent; -1: the top level.
   private brothers = new Map<number, number[]>();
   private version = -1;
 
@@ -180,7 +180,7 @@ function property(name: string, value: unknown, type: string, unit: string, doc:
   return { name, value, text: JSON.stringify(value), type, unit, doc, readOnly: true };
 }
 
-/// The origin of a transform in the world [m].
+/// The origin of a transform in the world frame [m].
 export function worldPosition(world: World, node: number): [number, number, number] {
   let [x, y, z] = [0, 0, 0];
   for (let up = node; up >= 0; up = world.nodes[up]!.parent) {

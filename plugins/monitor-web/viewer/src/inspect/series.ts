@@ -1,4 +1,5 @@
-/// A number over simulated time, in a ring of fixed size: the oldest points go first. Values hold until the next one.
+/// A number over simulated time, in a ring buffer of fixed size that overwrites the oldest points. A value holds until
+/// the next point.
 export class Series {
   private readonly times: Float64Array;
   private readonly values: Float64Array;
@@ -22,7 +23,8 @@ export class Series {
     return this.values[(this.first + i) % this.capacity]!;
   }
 
-  /// A second value for the same instant replaces the first. Time that goes back (a new match, a log sought back) drops what comes after; an unknown time nothing.
+  /// A second value for the same time replaces the first. If time goes back (a new match, a seek in a log), later
+  /// points are dropped. A point without a known time is ignored.
   push(time: number, value: number): void {
     if (!Number.isFinite(time)) return;
     while (this.count > 0 && this.time(this.count - 1) >= time) --this.count;
@@ -36,7 +38,7 @@ export class Series {
     ++this.count;
   }
 
-  /// Index of the newest point not after this time; -1: all are later.
+  /// Index of the last point at or before this time; -1: all are later.
   indexAt(time: number): number {
     let low = 0;
     let high = this.count;
@@ -71,7 +73,7 @@ export class Columns {
       for (let s = 0; s < series.length; ++s) {
         if (next[s]! < series[s]!.length && series[s]!.time(next[s]!) === time) now[s] = series[s]!.value(next[s]++);
       }
-      // What was before the window counts from its beginning on.
+      // A value from before the window is placed at its beginning.
       if (time < from && this.length > 0) this.length = 0;
       this.row(Math.max(time, from), now);
     }
@@ -92,7 +94,7 @@ export class Columns {
   }
 }
 
-/// A table for other programs: a line of names, then one for each time.
+/// A table for other programs: a line of names, then one line per time.
 export function toCsv(names: readonly string[], table: Columns): string {
   const quoted = (name: string) => (/[",\n]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name);
   const lines = [["time [s]", ...names].map(quoted).join(",")];

@@ -6,7 +6,7 @@ export interface Tab {
   panel: HTMLElement;
 }
 
-/// Panels one of which is seen, chosen by mouse or arrow keys.
+/// A tab view: one panel is visible, selected by mouse or arrow keys.
 export class Tabs {
   readonly element: HTMLElement;
   chosen: string;
@@ -35,7 +35,7 @@ export class Tabs {
     this.changed();
   }
 
-  /// A title with what is in it: "Plots 3".
+  /// A title with the number of its items: "Plots 3".
   count(id: string, n: number): void {
     const at = this.tabs.findIndex((t) => t.id === id);
     setText(this.buttons[at]!, n > 0 ? `${this.tabs[at]!.title} ${n}` : this.tabs[at]!.title);

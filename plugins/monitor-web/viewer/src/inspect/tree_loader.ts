@@ -4,9 +4,9 @@ import type { TreeModel } from "./tree_model";
 
 const kSearchDepth = 4;
 
-/// Asks for what a tree wants, one question at a time.
+/// Requests the nodes that a tree needs, one request at a time.
 export class TreeLoader {
-  /// What went wrong last, until something goes right.
+  /// The last error; cleared by the next successful request.
   error = "";
   private stale: string[] = [];
   private goal: string | null = null;
@@ -15,19 +15,19 @@ export class TreeLoader {
 
   constructor(private readonly source: Inspectable, private readonly model: TreeModel) {}
 
-  /// Opens all above this path, as soon as it is known.
+  /// Expands the ancestors of this path as soon as they are known.
   reveal(path: string): void {
     this.goal = path;
     this.pump();
   }
 
-  /// Asks again for what is open.
+  /// Requests the expanded nodes again.
   refresh(): void {
     this.stale = this.model.loaded();
     this.pump();
   }
 
-  /// To be called when the model may want something.
+  /// Call it when the model may need nodes.
   pump(): void {
     if (this.busy || this.closed || !this.source.ready) return;
     const path = this.next();

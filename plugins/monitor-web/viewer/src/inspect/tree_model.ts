@@ -8,23 +8,24 @@ export interface TreeNode {
   doc: string;
   depth: number;
   parent: TreeNode | null;
-  /// null: not asked for yet.
+  /// null: not requested yet.
   children: TreeNode[] | null;
   /// False: a leaf.
   inner: boolean;
   open: boolean;
-  /// Its place among its brothers, from 0.
+  /// Index among its siblings, from 0.
   index: number;
 }
 
-/// The rows that are shown, in order: `version` counts up whenever they may differ.
+/// The visible rows, in order. `version` is incremented whenever they may have changed.
 ///
-/// Children are asked for when their parent is opened: `wanted` names what is missing, `fill` takes the answers. An answer about a known
-/// node is merged, so that what was open stays open while robots come and go. With a filter the tree shows what matches and what is above
-/// it, as if all of that were open, and wants one unknown node after the other, breadth first, up to a bound.
+/// Children are requested when their parent is expanded: `wanted` returns the next missing node, `fill` stores an
+/// answer. An answer about a known node is merged, so that expanded nodes stay expanded while robots are added and
+/// removed. With a filter the tree shows the matches and their ancestors as if all were expanded, and requests unknown
+/// nodes one by one, breadth first, up to a limit.
 export class TreeModel {
   version = 0;
-  /// Path of the row that has the keyboard.
+  /// Path of the row with the keyboard focus.
   focus = "/";
   private readonly root: TreeNode;
   private readonly known = new Map<string, TreeNode>();
@@ -55,7 +56,7 @@ export class TreeModel {
     return this.shown;
   }
 
-  /// Several words: all must be found in the name or the class.
+  /// If the filter has several words, all must occur in the name or the class.
   set filter(text: string) {
     const words = text.toLowerCase().split(/\s+/).filter((w) => w !== "");
     if (words.join(" ") === this.words.join(" ")) return;
@@ -79,15 +80,15 @@ export class TreeModel {
     ++this.version;
   }
 
-  /// The next node whose children are needed for what is to be seen; null: all is there.
+  /// The next node whose children are needed for the visible rows; null: none is missing.
   wanted(): string | null {
     if (this.filtering) return this.known.size < this.searchBound ? this.firstUnknown() : null;
     for (const node of this.rows) if (node.open && node.inner && !node.children) return node.path;
     return null;
   }
 
-  /// Opens all above, as far as they are known; the path that must be asked for before it can go on, or null when the node is there or
-  /// cannot be.
+  /// Expands the ancestors of a path as far as they are known. Returns the path that must be requested to continue, or
+  /// null if the node is known or does not exist.
   reveal(path: string): string | null {
     for (const above of pathsAbove(path)) {
       const node = this.known.get(above);
@@ -105,7 +106,7 @@ export class TreeModel {
     ++this.version;
   }
 
-  /// The host would not tell: it is not asked again before the next fill from above.
+  /// The request failed. It is not repeated before the next fill of an ancestor.
   failed(path: string): void {
     const node = this.known.get(path);
     if (!node || node.children) return;
@@ -113,7 +114,7 @@ export class TreeModel {
     ++this.version;
   }
 
-  /// What was asked for is not there any more.
+  /// The requested node no longer exists.
   remove(path: string): void {
     const node = this.known.get(path);
     if (!node || !node.parent) return;
@@ -122,12 +123,12 @@ export class TreeModel {
     ++this.version;
   }
 
-  /// Paths whose children are known: what has to be asked again after the tree changed.
+  /// Paths whose children are known. They must be requested again after the tree changed.
   loaded(): string[] {
     return [...this.known.values()].filter((n) => n.children && (n.open || n === this.root)).map((n) => n.path);
   }
 
-  /// Moves the focus, or opens and closes, as the tree pattern of ARIA has it. True when the key was one of its own.
+  /// Moves the focus, expands or collapses, as in the ARIA tree pattern. Returns true if it handles the key.
   key(key: string): boolean {
     const rows = this.rows;
     if (rows.length === 0) return false;
@@ -183,7 +184,7 @@ export class TreeModel {
     node.doc = answer.doc;
     node.inner = answer.children !== undefined;
     if (!node.inner) return this.replaceChildren(node, null);
-    if (answer.more !== undefined && answer.more > 0) return;  // there are children, but they are not told here
+    if (answer.more !== undefined && answer.more > 0) return;  // the answer omits the children
     const names = answer.children!.map((c) => c.name);
     const children = childPaths(node.path, names).map((path, index) => this.child(node, path, answer.children![index]!, index));
     this.replaceChildren(node, children);

@@ -11,7 +11,7 @@ interface Row {
   kind: HTMLSpanElement;
 }
 
-/// The object tree: a filter above, rows below. Rows are kept by path, and only what changed is touched.
+/// The object tree: a filter above, rows below. Rows are reused by path, and only changes are written to the page.
 export class TreeView {
   readonly element: HTMLElement;
   private readonly filter = h("input", {
@@ -27,12 +27,12 @@ export class TreeView {
   private loader: TreeLoader | null = null;
   private drawn = "";
   private selected: string | null = null;
-  /// The node that a source opens with; null once that is done.
+  /// The node to select first; null once that is done.
   private opened: string | null = null;
-  /// A row to be brought into view as soon as it is there.
+  /// Path of the row to scroll into view as soon as it exists.
   private sought: string | null = null;
 
-  /// `titled`: what people call a node, if they have a word for it.
+  /// `titled`: the display name of a node, if it has one.
   constructor(private readonly chosen: (path: string) => void, private readonly titled: (path: string) => string) {
     const again = h("button", { type: "button", class: "insp-icon", title: "Ask the host again", "aria-label": "Refresh the tree", onclick: () => this.loader?.refresh() }, "↻");
     this.element = h("section", { class: "insp-objects" }, h("div", { class: "insp-bar" }, this.filter, again), this.tree, this.note);
@@ -52,7 +52,7 @@ export class TreeView {
     this.opened = source.first;
   }
 
-  /// Shows this row as the selected one, and opens the way to it.
+  /// Selects this row and expands its ancestors.
   select(path: string | null): void {
     if (path === this.selected) return;
     this.selected = path;
@@ -66,7 +66,7 @@ export class TreeView {
     this.loader?.refresh();
   }
 
-  /// Brings the page up to date; to be called while it is seen.
+  /// Updates the page. Call it while the view is visible.
   update(): void {
     this.loader?.pump();
     this.openFirst();

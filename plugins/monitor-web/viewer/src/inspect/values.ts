@@ -1,16 +1,16 @@
-/// How values of properties are shown, and which numbers are in them.
+/// Formats property values and extracts the numbers in them.
 
-/// A number that can be plotted: which one of the value, and what people call it.
+/// A number in a value that can be plotted, and its display name.
 export interface Component {
-  /// Steps into nested lists; empty: the value itself.
+  /// Indices into nested lists; empty: the value itself.
   at: number[];
   label: string;
 }
 
 const kAxes = ["x", "y", "z", "w"];
-const kMostComponents = 24;
+const kMaxComponents = 24;
 
-/// Short, and of about the same width while it changes.
+/// A short text whose width stays about the same while the value changes.
 export function formatNumber(v: number): string {
   if (!Number.isFinite(v)) return Number.isNaN(v) ? "nan" : v > 0 ? "∞" : "−∞";
   const size = Math.abs(v);
@@ -23,7 +23,7 @@ function sign(v: number): string {
   return v < 0 ? "−" : "";
 }
 
-/// Lines of text: one for most values, one a row for matrices and for lists of named values.
+/// Lines of text: one for most values, one per row for matrices and lists of named values.
 export function formatValue(value: unknown, type = ""): string[] {
   if (type === "matrix" && isNumbers(value) && value.length === 16) return matrixRows(value);
   if (isPairs(value)) return value.map(([name, v]) => `${name}  ${formatValue(v)[0]}`);
@@ -57,24 +57,24 @@ function isPairs(value: unknown): value is [string, unknown][] {
     value.every((v) => Array.isArray(v) && v.length === 2 && typeof v[0] === "string" && !Array.isArray(v[1]));
 }
 
-/// The numbers of a value, in its order; booleans count as 0 and 1. Empty for what has none.
+/// The numbers of a value, in order; booleans count as 0 and 1. Empty if there are none.
 export function componentsOf(value: unknown): Component[] {
   if (typeof value === "number" || typeof value === "boolean") return [{ at: [], label: "" }];
   if (isPairs(value)) {
-    return value.flatMap(([name, v], i) => (typeof v === "number" ? [{ at: [i, 1], label: name }] : [])).slice(0, kMostComponents);
+    return value.flatMap(([name, v], i) => (typeof v === "number" ? [{ at: [i, 1], label: name }] : [])).slice(0, kMaxComponents);
   }
-  if (!isNumbers(value) || value.length > kMostComponents) return [];
+  if (!isNumbers(value) || value.length > kMaxComponents) return [];
   return value.map((_, i) => ({ at: [i], label: value.length <= 4 ? kAxes[i]! : String(i + 1) }));
 }
 
-/// NaN where there is no such number any more.
+/// NaN if the number no longer exists.
 export function numberAt(value: unknown, at: readonly number[]): number {
   let v = value;
   for (const step of at) v = Array.isArray(v) ? v[step] : undefined;
   return typeof v === "number" ? v : typeof v === "boolean" ? Number(v) : NaN;
 }
 
-/// The value as people type it: true, 3, {1, 2}, words.
+/// The value as typed by a user: true, 3, {1, 2}, words.
 export function editText(value: unknown): string {
   if (Array.isArray(value)) return `{${value.map(editText).join(", ")}}`;
   return value === null || value === undefined ? "" : String(value);

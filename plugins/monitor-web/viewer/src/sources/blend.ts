@@ -1,20 +1,21 @@
 import { Poses, writeMatrix } from "./poses";
 import type { Scene } from "./scene";
 
-/// Shows a scene between two instants. What jumps in between (a beam, a kick-in) stays until the second one; parts of a robot stay together.
+/// Interpolates a scene between two instants. Objects that jump in between (a beam, a kick-in) stay until the second
+/// instant; the parts of a robot jump together.
 
-/// Farther than this [m] plus speed [m/s] times the time in between is no movement.
+/// A distance above this [m] plus speed [m/s] times the time in between is a jump, not a movement.
 const kJump = 0.3;
 const kWalker = 5;
 const kSphere = 15;
 const kBall = 35;
-/// While the referee may place the ball it is no kick that makes it so fast.
+/// Maximum speed while the referee may place the ball: a faster ball was placed, not kicked.
 const kPlacedBall = 8;
-/// Longer apart than this [s]: nothing is known of the way.
+/// Instants further apart than this [s] are not interpolated.
 const kLongest = 1.01;
 
 export class Blend {
-  /// Transforms that move, and how many of the list count.
+  /// Indices of moving transforms, and the number of valid entries.
   private moving = new Int32Array(0);
   private movingCount = 0;
   private limit = new Float32Array(0);
@@ -22,7 +23,8 @@ export class Blend {
   private from: Poses | null = null;
   private to: Poses | null = null;
 
-  /// Takes two instants of the scene, `seconds` apart, and writes the first one to `out`. `ballIsFree`: play goes on at both.
+  /// Sets the two instants of the scene, `seconds` apart, and writes the first one to `out`. `ballIsFree`: the ball is
+  /// in play at both.
   prepare(scene: Scene, from: Poses, to: Poses, seconds: number, ballIsFree: boolean, out: Float32Array): void {
     const count = scene.nodes.length;
     if (this.moving.length < count) {
@@ -42,14 +44,14 @@ export class Blend {
     }
   }
 
-  /// Writes what moves, at `share` (0..1) of the way.
+  /// Writes the poses of moving transforms at the fraction `share` (0..1) of the interval.
   write(share: number, out: Float32Array): void {
     const { from, to, moving } = this;
     if (!from || !to) return;
     for (let k = 0; k < this.movingCount; ++k) writeBetween(from, to, moving[k]!, share, out);
   }
 
-  /// True when nothing changes between the two.
+  /// True if nothing changes between the two instants.
   get still(): boolean {
     return this.movingCount === 0;
   }
@@ -75,7 +77,7 @@ function differs(a: Poses, b: Poses, i: number): boolean {
   return false;
 }
 
-/// Positions on the straight line, rotations on the shorter arc.
+/// Interpolates positions linearly and rotations along the shorter arc.
 function writeBetween(a: Poses, b: Poses, i: number, share: number, out: Float32Array): void {
   const p = 3 * i, q = 4 * i;
   const ax = a.rotation[q]!, ay = a.rotation[q + 1]!, az = a.rotation[q + 2]!, aw = a.rotation[q + 3]!;

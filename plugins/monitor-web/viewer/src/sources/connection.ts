@@ -1,6 +1,6 @@
-/// A WebSocket that comes back: after a loss it is opened again, soon at first and then more seldom.
+/// A WebSocket that reconnects after a loss, with increasing delays.
 
-/// What is needed of a WebSocket; tests bring their own.
+/// The part of WebSocket that is used; tests substitute their own.
 export interface Socket {
   binaryType: string;
   onopen: ((event: never) => void) | null;
@@ -56,17 +56,17 @@ export class Connection {
     socket.onclose = socket.onerror = () => this.lost();
   }
 
-  /// What came makes sense: after the next loss it is tried again soon.
+  /// The data was valid: the next reconnection starts with a short delay.
   proven(): void {
     this.wait = kFirstWait;
   }
 
-  /// Begins anew: what came made no sense.
+  /// Reconnects, because the data was invalid.
   again(): void {
     this.lost();
   }
 
-  /// False if there is no host.
+  /// Returns false if there is no connection.
   send(message: unknown): boolean {
     if (this.state !== "open" || !this.socket) return false;
     this.socket.send(JSON.stringify(message));
@@ -94,7 +94,7 @@ export class Connection {
     this.socket = null;
     if (!socket) return;
     socket.onopen = socket.onmessage = socket.onclose = null;
-    // Ignore errors of a socket that is given up.
+    // Ignore errors of an abandoned socket.
     socket.onerror = () => {};
     socket.close();
   }

@@ -1,16 +1,16 @@
 import type { Environment, GameEvent, Side, Value } from "../model";
 import type { Entry } from "../codec/record";
 
-/// Takes entries into an environment; a full message says all there is.
+/// Adds entries to an environment. A full message replaces all entries.
 export function takeEntries(environment: Environment, entries: Entry[], full: boolean): void {
   if (full) environment.clear();
   for (const [name, ...values] of entries) if (!kOnce.has(name)) environment.set(name, values.length === 1 ? values[0]! : values);
 }
 
-/// Entries that say what happened, not how things are.
+/// Entries that are events, not state.
 const kOnce = new Set(["foul", "messages"]);
 
-/// Names of modes on the wire, by their numbers, when a message does not bring its own list.
+/// Protocol names of play modes, by number, if a message does not contain its own list.
 const kModes =
   "BeforeKickOff KickOff_Left KickOff_Right PlayOn KickIn_Left KickIn_Right corner_kick_left corner_kick_right goal_kick_left goal_kick_right offside_left offside_right GameOver Goal_Left Goal_Right free_kick_left free_kick_right direct_free_kick_left direct_free_kick_right pass_left pass_right".split(
     " ",
@@ -31,11 +31,11 @@ const kModeWords: Record<string, string> = {
   pass: "Pass",
 };
 
-/// A foul of the same player within this time is the same one [s].
+/// Fouls of the same player within this time are one foul [s].
 const kSameFoul = 1;
 const kFouls = ["crowding", "touching", "illegal defence", "illegal attack", "incapable", "illegal kick-off", "charging", "self collision", "ball holding", "double touching", "hand"];
 
-/// The play mode's name on the wire; "" when it is not known.
+/// The play mode's protocol name; "" if unknown.
 export function modeName(environment: Environment): string {
   const mode = environment.get("play_mode");
   const names = environment.get("play_modes");
@@ -48,7 +48,7 @@ export function modeSide(name: string): Side | undefined {
   return side === undefined ? undefined : (side.toLowerCase() as Side);
 }
 
-/// A mode in words: "Corner kick for Red".
+/// The display text of a mode: "Corner kick for Red".
 export function modeWords(name: string, environment: Environment): string {
   const side = modeSide(name);
   const plain = name.replace(/_(left|right)$/i, "");
@@ -57,26 +57,28 @@ export function modeWords(name: string, environment: Environment): string {
   return `${words} ${words === "Offside" ? "of" : "for"} ${teamName(environment, side)}`;
 }
 
-/// What a team scores: a goal, unless the game brings modes of its own and none is about goals and kicks.
+/// The word for what a team scores: a goal, unless the game has modes of its own and none of them mentions goals or
+/// kicks.
 function pointWord(environment: Environment): string {
   const names = environment.get("play_modes");
   return Array.isArray(names) && !names.some((name) => /goal|kick/i.test(String(name))) ? "Point" : "Goal";
 }
 
-/// "Red", or "left" as long as the team has no name.
+/// "Red", or "left" while the team has no name.
 export function teamName(environment: Environment, side: Side): string {
   const name = environment.get(`team_${side}`);
   return name === undefined || name === "" ? side : String(name);
 }
 
-/// Tells from one environment after the other what happened in between.
+/// Detects events by comparing successive environments.
 export class EventReader {
   private score: Record<Side, number | null> = { left: null, right: null };
   private mode: string | null = null;
-  /// When a foul's words were heard last: while a player is held, his foul comes again and again.
+  /// Time when each foul was last received. While a player is held, its foul is repeated in every message.
   private readonly fouls = new Map<string, number>();
 
-  /// `environment` holds these entries already; `entries` are looked at for fouls. `time` [s] on any clock, the same for all calls.
+  /// `environment` already contains these entries; `entries` are searched for fouls. `time` [s] may be of any clock,
+  /// but the same for all calls.
   take(environment: Environment, entries: Entry[], time: number): GameEvent[] {
     const events: GameEvent[] = [];
     for (const entry of entries) if (entry[0] === "foul") this.takeFoul(foul(entry, environment, time), events);
@@ -90,7 +92,7 @@ export class EventReader {
     const mode = modeName(environment);
     const changed = this.mode !== null && mode !== "" && mode !== this.mode;
     if (mode !== "") this.mode = mode;
-    // A goal tells itself by the score.
+    // A goal is detected by the score.
     if (changed && !/^goal_(left|right)$/i.test(mode)) events.push(withSide({ time, kind: "mode", text: modeWords(mode, environment) }, modeSide(mode)));
     return events;
   }
@@ -102,7 +104,7 @@ export class EventReader {
   }
 }
 
-/// (foul index type team number); without the index in older logs.
+/// Parses (foul index type team number); older logs have no index.
 function foul(entry: Entry, environment: Environment, time: number): GameEvent {
   const values = entry.slice(entry.length > 4 ? 2 : 1) as Value[];
   const what = kFouls[Number(values[0])] ?? "unknown";

@@ -4,17 +4,17 @@ import type { Scene } from "./scene";
 
 const kFrames = 24;
 
-/// The last frames of a stream, and the way between two of them. Its buffers are made once for a scene.
+/// The last frames of a stream, and interpolation between two of them. The buffers are allocated once per scene.
 export class FrameRing {
   private frames: { time: number; free: boolean; poses: Poses }[] = [];
-  /// Frames taken since the scene began.
+  /// Number of frames received since the scene began.
   private count = 0;
   private readonly blend = new Blend();
-  /// The frame from which the blend goes to the next one; -1: none.
+  /// The first frame of the current interpolation; -1: none.
   private prepared = -1;
   private share = -1;
 
-  /// Another scene: all frames are forgotten.
+  /// Starts a new scene and discards all frames.
   begin(poses: Poses): void {
     this.frames = Array.from({ length: kFrames }, () => ({ time: 0, free: false, poses: new Poses(0) }));
     for (const frame of this.frames) frame.poses.copy(poses);
@@ -30,9 +30,9 @@ export class FrameRing {
     return this.count === 0;
   }
 
-  /// Keeps a copy. `free`: the ball moves by itself.
+  /// Stores a copy. `free`: the ball is in play.
   take(time: number, poses: Poses, free: boolean): void {
-    // The host went back in time: what was is no longer before it.
+    // The host went back in time: discard older frames.
     if (this.count > 0 && time < this.frame(this.count - 1).time) this.clear();
     const frame = this.frame(this.count);
     frame.time = time;
@@ -42,14 +42,14 @@ export class FrameRing {
     if (this.prepared >= 0 && this.prepared <= this.count - kFrames) this.prepared = -1;
   }
 
-  /// Writes what is there at `time` to `out`; returns the frame that was reached, or null when nothing changed.
+  /// Writes the scene at `time` to `out`. Returns the frame that was reached, or null if nothing changed.
   show(time: number, scene: Scene, out: Float32Array): Poses | null {
     const index = this.indexAt(time);
     const from = this.frame(index), to = this.frame(Math.min(index + 1, this.count - 1));
     const seconds = to.time - from.time;
     const share = seconds > 0 ? Math.min(1, Math.max(0, (time - from.time) / seconds)) : 0;
     const ends = index === this.count - 1;
-    // The newest frame was prepared without a successor: it is again when there is one.
+    // The newest frame was prepared without a successor. Prepare it again when there is one.
     const wanted = ends ? -2 - index : index;
     if (this.prepared === wanted && this.share === share) return null;
     if (this.prepared !== wanted) this.blend.prepare(scene, from.poses, to.poses, seconds, from.free && to.free, out);
@@ -59,7 +59,7 @@ export class FrameRing {
     return from.poses;
   }
 
-  /// The last frame that is not later; the oldest kept one when all are.
+  /// The last frame at or before this time; the oldest frame if all are later.
   private indexAt(time: number): number {
     const oldest = Math.max(0, this.count - kFrames);
     let index = this.count - 1;

@@ -11,8 +11,9 @@ import { kNoScene, makeScene, sameNodes, type Scene } from "./scene";
 import { isRecord, readScene } from "./scene_message";
 import { emptyWorld, showScene } from "./world";
 
-/// The running match. Frames are shown a little later than they come, smoothly; the rest when it comes. What makes no sense ends the
-/// connection, and the next one begins with a whole scene: nothing that a host sends is an error of the viewer.
+/// The running match. Frames are shown with a small delay, so that motion is smooth; everything else is shown when it
+/// arrives. Invalid data closes the connection, and the next connection begins with a complete scene, so no message of
+/// a host causes an error in the viewer.
 
 const kMostEvents = 1000;
 
@@ -30,16 +31,16 @@ export class Live implements LiveSource {
   private readonly clock = new LiveClock();
   private events = new EventReader();
   private scene: Scene = kNoScene;
-  /// As decoded last; frames are differences to it.
+  /// The last decoded poses; delta frames refer to them.
   private poses = new Poses();
   private free = false;
   private token: string | null = null;
   private logins: ((ok: boolean) => void)[] = [];
   private view: { rate: number; detail: string } | null = null;
   private drawings = false;
-  /// Names of the entries that the host's environment has; null before it came.
+  /// Names of the entries in the host's environment; null before the first message.
   private told: Set<string> | null = null;
-  /// Mode, score and teams as the status has them, in the environment's words.
+  /// Mode, score and teams of the status, as entries of the environment.
   private words: Entry[] = [];
 
   constructor(url: string, connect: Connect = connectSocket) {
@@ -93,7 +94,7 @@ export class Live implements LiveSource {
     this.token = token;
     return new Promise((resolve) => {
       this.logins.push(resolve);
-      // Without a connection the token waits for it.
+      // Without a connection, the token is sent later.
       this.connection.send({ do: "login", token });
     });
   }
@@ -137,7 +138,7 @@ export class Live implements LiveSource {
     if (!isRecord(message) || !this.take(message)) this.connection.again();
   }
 
-  /// False when the message makes no sense. Types that are not known are of a newer host.
+  /// Returns false if the message is invalid. Unknown types are ignored: they come from newer hosts.
   private take(message: Record<string, unknown>): boolean {
     switch (message.type) {
       case "scene":
@@ -165,7 +166,7 @@ export class Live implements LiveSource {
   private takeScene(message: Record<string, unknown>): boolean {
     const read = readScene(message);
     if (!read) return false;
-    // After a loss most often the same scene comes again.
+    // After a loss, the host usually sends the same scene again.
     if (!sameNodes(this.scene.nodes, read.nodes) || this.scene === kNoScene) this.scene = makeScene(read.nodes);
     this.poses = read.poses;
     this.decoder.setScene(read.shape, this.scene.transforms);
@@ -192,7 +193,7 @@ export class Live implements LiveSource {
     if (!Array.isArray(message.entries) || !message.entries.every(isEntry)) return false;
     const entries = message.entries as Entry[];
     const time = Number(message.time) || 0;
-    // The host began anew.
+    // The host was restarted.
     if (message.full === true && time < world.time - 1) this.forget();
     if (message.full === true) this.told = new Set();
     for (const [name] of entries) this.told?.add(name);
@@ -210,7 +211,7 @@ export class Live implements LiveSource {
     if (entries.some(([name]) => name === "team_left" || name === "team_right")) this.nameRobots();
   }
 
-  /// A game without an item of the monitor server tells mode, score and teams in its status only.
+  /// A game without a monitor item reports mode, score and teams only in its status.
   private fillIn(time: number): void {
     const { told, words, world } = this;
     if (!told || words.length === 0) return;
@@ -276,7 +277,7 @@ export class Live implements LiveSource {
     if (changed) this.onchange?.();
   }
 
-  /// The host also knows robots that wear no number.
+  /// Completes the robots with data of the host, which also knows robots without a visible number.
   private nameRobots(): void {
     const agents = new Map(this.status?.agents.map((a) => [a.path, a]));
     const teams = { left: teamName(this.world.environment, "left"), right: teamName(this.world.environment, "right") };

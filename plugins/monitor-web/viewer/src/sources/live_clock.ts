@@ -1,28 +1,28 @@
-/// Which instant of a running match to show. Frames arrive unevenly, and simulated time runs at any speed: the clock follows the straight line
-/// through the last arrivals, and shows the state as old as the longest of the last pauses between two frames.
+/// Chooses the instant of a running match to show. Frames arrive with jitter, and simulated time may run at any speed.
+/// The clock follows a line fitted to the last arrivals, delayed by the longest recent interval between two frames.
 
 const kArrivals = 32;
 /// Limits of the delay [ms].
 const kShortest = 20, kLongest = 1200;
-/// What is left of the longest pause after each arrival: half of it after a second.
+/// Decay of the longest interval: half of it remains after a second.
 const kFading = 0.97;
-/// How fast a wrong clock is put right [ms].
+/// Time constant with which a wrong clock is corrected [ms].
 const kSettling = 250;
-/// A clock that is wrong by more wall time than this is set anew [ms].
+/// A clock that is wrong by more wall time than this is reset [ms].
 const kTooWrong = 700;
 
 export class LiveClock {
   private readonly walls = new Float64Array(kArrivals);
   private readonly times = new Float64Array(kArrivals);
   private count = 0;
-  /// The longest pause between two frames, fading [ms].
+  /// The longest recent interval between two frames, decaying [ms].
   private pause = 40;
   private shown = NaN;
   private last = NaN;
   private rate = 0.001;
   private line = NaN;
 
-  /// Forgets everything: another host, or another scene.
+  /// Resets the clock for another host or scene.
   reset(): void {
     this.count = 0;
     this.shown = NaN;
@@ -34,7 +34,7 @@ export class LiveClock {
     if (this.count > 0) {
       const newest = (this.count - 1) % kArrivals;
       const passed = now - this.walls[newest]!;
-      // Time went back, or stood still for long: what was is no guide.
+      // Time went back or was paused for long: start over.
       if (time < this.times[newest]! || passed > 2000) this.reset();
       else this.pause = Math.max(passed, kFading * this.pause);
     }
@@ -44,7 +44,7 @@ export class LiveClock {
     this.fit();
   }
 
-  /// The simulated time to show at wall time `now`; NaN before the first frame. Never runs back, except after a reset.
+  /// The simulated time to show at wall time `now`; NaN before the first frame. Monotonic, except after a reset.
   at(now: number): number {
     if (this.count === 0) return NaN;
     const newest = this.times[(this.count - 1) % kArrivals]!;
@@ -58,7 +58,7 @@ export class LiveClock {
     return (this.shown = Math.min(newest, Math.max(this.shown, next)));
   }
 
-  /// The line through the arrivals: `rate` [s/ms], and `line`, its value at the newest one.
+  /// Fits the line through the arrivals: `rate` [s/ms], and `line`, its value at the newest arrival.
   private fit(): void {
     const n = Math.min(this.count, kArrivals), newest = (this.count - 1) % kArrivals;
     let w = 0, t = 0;

@@ -3,46 +3,48 @@ import { readPackets } from "../codec/packets";
 import { RecordReader } from "../codec/record";
 import { EventReader, modeName, takeEntries } from "./events";
 
-/// The index of a recorded match, one monitor message a line, and its bytes, page by page: a log may be longer than memory.
+/// The index of a recorded match, which has one monitor message per line, and its bytes, loaded by page: a log may be
+/// larger than memory.
 ///
-/// Only the heads of the lines are read, which takes well under a second for 100 MB. Logs do not say when their records were made: the game's
-/// clock stands still before the kick-off and after the end, and trainers set it. The log's own clock begins at 0, and goes on by what the
-/// game's clock says as long as that is likely, and by the usual time between two records otherwise.
+/// Only the heads of the lines are read, which takes well under a second for 100 MB. Logs do not contain the times of
+/// their records: the game clock is paused before the kick-off and after the end, and trainers set it. So the log has a
+/// clock of its own, which begins at 0. It advances with the game clock if that is plausible, and otherwise by the
+/// usual interval between two records.
 
 const kSlice = 1 << 20;
 const kLongestLine = 8 << 20;
 const kPage = 1 << 20;
 const kPages = 12;
 /// Maximum size of drawings in memory, about [bytes].
-const kMostPackets = 64 << 20;
+const kMaxPackets = 64 << 20;
 const kNoPackets: Uint8Array[] = [];
-/// Bytes of a packet that swaps all sets twice, 0 0 \0 0 0 \0: nothing is left then.
+/// Bytes of a packet that swaps all sets twice, 0 0 \0 0 0 \0, which removes all drawings.
 const kAllSwapped = 6;
-/// Between two records, unless the log says otherwise [s].
+/// Default interval between two records [s].
 const kUsual = 0.2;
-/// A longer time than this multiple of the usual one is a gap, not a pause between two records.
+/// A time longer than this multiple of the usual interval is a gap in the log.
 const kLikely = 10;
-/// No monitor waits longer between two records [ms].
+/// Maximum plausible interval between two records [ms].
 const kLongestStep = 60_000;
-/// More records and events than a season has; what is more is left out.
-const kMostRecords = 4_000_000, kMostEvents = 20_000;
+/// Limits of records and events, more than a season has. Anything beyond them is ignored.
+const kMaxRecords = 4_000_000, kMostEvents = 20_000;
 
 export interface LogRecord {
-  /// Bytes of the line in the file, draw commands included.
+  /// Bytes of the line in the file, including draw commands.
   offset: number;
   size: number;
   full: boolean;
-  /// Bytes of draw commands in front of the message, and their packets.
+  /// Bytes of draw commands in front of the message, and the number of their packets.
   drawings: number;
   packets: Uint8Array[];
-  /// They bring all there is: they begin with an end of all that was.
+  /// The draw commands are complete: they begin by removing all drawings.
   redrawn: boolean;
-  /// The referee lets play go on: the ball moves by itself.
+  /// The ball is in play: it moves freely.
   free: boolean;
-  /// By the game's clock and by the log's own [s].
+  /// Time of the game clock, and of the log's own clock [s].
   gameTime: number;
   clock: number;
-  /// Lines passed over just before.
+  /// Number of lines skipped just before.
   gap: number;
   page: number;
 }
@@ -50,11 +52,11 @@ export interface LogRecord {
 export interface LogIndex {
   records: LogRecord[];
   events: GameEvent[];
-  /// Lines passed over.
+  /// Number of skipped lines.
   damaged: number;
 }
 
-/// Reads through the log. Rejects with words for people when it is none.
+/// Reads through the log. Rejects with a readable message if it is not a log.
 export async function indexLog(data: Blob, name: string, progress: (share: number) => void = () => {}): Promise<LogIndex> {
   if (data.size === 0) throw new Error(`${name} is empty. Choose a log of a monitor, such as sparkmonitor.log.`);
   const indexer = new Indexer(name);
@@ -90,12 +92,12 @@ class Indexer {
   private tooLong = false;
   private first = "";
   private packetBytes = 0;
-  /// There was the head of a message at least.
+  /// At least one head of a message was found.
   private partial = false;
 
   constructor(private readonly name: string) {}
 
-  /// Takes all whole lines; returns the bytes that were used up.
+  /// Processes all complete lines; returns the number of consumed bytes.
   lines(bytes: Uint8Array, offset: number, last: boolean): number {
     let from = 0;
     for (;;) {
@@ -108,7 +110,7 @@ class Indexer {
       if (!closed) break;
     }
     if (bytes.length - from <= kLongestLine) return from;
-    // No end in sight: what was read of this line is thrown away, the rest will be no record either.
+    // The line is too long: discard its beginning. The rest will not be a record either.
     this.passOver();
     this.tooLong = true;
     return bytes.length;
@@ -146,10 +148,10 @@ class Indexer {
     this.tooLong = false;
     if (cut || end - from > kLongestLine) return this.passOver();
     const head = this.reader.head(bytes, message, end);
-    // The scene must be known before its changes are.
+    // Changes need a scene before them.
     if (!head) return this.passOver();
     this.partial = true;
-    if ((!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full) || this.records.length >= kMostRecords) return this.passOver();
+    if ((!closed && !balanced(bytes, message, end)) || (this.records.length === 0 && !head.full) || this.records.length >= kMaxRecords) return this.passOver();
     takeEntries(this.environment, head.environment, head.full);
     const gameTime = Number(this.environment.get("time") ?? NaN);
     for (const event of this.eventReader.take(this.environment, head.environment, gameTime || 0)) if (this.found.length < kMostEvents) this.found.push({ event, record: this.records.length });
@@ -175,7 +177,7 @@ class Indexer {
   }
 
   private packets(bytes: Uint8Array, from: number, end: number): Uint8Array[] {
-    if (from === end || this.packetBytes > kMostPackets) return kNoPackets;
+    if (from === end || this.packetBytes > kMaxPackets) return kNoPackets;
     this.packetBytes += (end - from) / 4;
     return readPackets(bytes, from, end);
   }
@@ -189,12 +191,12 @@ class Indexer {
       const likely = step > 0.5 * usual && step < kLikely * usual * lines;
       record.clock = before.clock + (likely ? step : usual * lines);
     }
-    // Sums of tenths: as people write them.
+    // Round sums of tenths to short decimals.
     for (const record of records) record.clock = Math.round(record.clock * 1000) / 1000;
   }
 }
 
-/// The time between two records that is found most often, in milliseconds.
+/// The most frequent interval between two records, in milliseconds.
 function usualStep(records: LogRecord[]): number {
   const counts = new Map<number, number>();
   let best = 0, usual = 0;
@@ -208,7 +210,8 @@ function usualStep(records: LogRecord[]): number {
   return usual > 0 ? usual / 1000 : kUsual;
 }
 
-/// Some recorders write draw commands in front of a message: [1, 0, ...][...]; a message in JSON begins with two brackets.
+/// Some recorders write draw commands in front of a message, [1, 0, ...][...]; a message in JSON begins with two
+/// brackets.
 function skipDrawings(bytes: Uint8Array, from: number, end: number): number {
   let at = from;
   while (at < end && bytes[at] === 0x5b && bytes[at + 1] !== 0x5b) {
@@ -220,7 +223,7 @@ function skipDrawings(bytes: Uint8Array, from: number, end: number): number {
   return at;
 }
 
-/// Are all lists closed? The last line of a log that was cut off is not to be trusted.
+/// Returns true if all lists are closed. The last line of a truncated log may be incomplete.
 function balanced(bytes: Uint8Array, from: number, end: number): boolean {
   let depth = 0;
   for (let at = from; at < end; ++at) {
@@ -231,15 +234,15 @@ function balanced(bytes: Uint8Array, from: number, end: number): boolean {
   return depth === 0;
 }
 
-/// The log's bytes, the few pages that were wanted last.
+/// The log's bytes: a cache of the last few pages.
 export class LogPages {
-  /// Page -> its bytes, in the order of their last use; null while they are on their way.
+  /// Page -> its bytes, in the order of last use; null while they are being loaded.
   private readonly pages = new Map<number, Uint8Array | null>();
   private readonly firsts: number[] = [];
   private closed = false;
-  /// Why the file cannot be read any more.
+  /// Why the file can no longer be read.
   error: string | null = null;
-  /// Called when a page arrived, or could not.
+  /// Called when a page was loaded or loading it failed.
   onpage: (() => void) | null = null;
 
   constructor(
@@ -249,7 +252,7 @@ export class LogPages {
     records.forEach((record, k) => (this.firsts[record.page] ??= k));
   }
 
-  /// The page that holds the record; null: it was asked for, and is not there yet.
+  /// The page that contains the record; null: it was requested and is not loaded yet.
   page(record: LogRecord): Uint8Array | null {
     const bytes = this.pages.get(record.page);
     if (bytes) {
@@ -261,7 +264,7 @@ export class LogPages {
     return null;
   }
 
-  /// Where the page begins in the file.
+  /// Offset of the page in the file.
   start(page: number): number {
     return this.records[this.firsts[page]!]!.offset;
   }
@@ -270,7 +273,7 @@ export class LogPages {
     return this.firsts.length;
   }
 
-  /// Asks for a page that will be wanted soon.
+  /// Prefetches a page that will be needed soon.
   foresee(page: number): void {
     if (page >= 0 && page < this.firsts.length && !this.pages.has(page)) void this.load(page);
   }

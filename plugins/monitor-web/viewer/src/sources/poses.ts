@@ -1,4 +1,5 @@
-/// Where all nodes of a scene are at one instant: positions, rotations, visibility. Nodes that are no transforms keep their zeros.
+/// Positions, rotations and visibility of all nodes of a scene at one instant. Entries of nodes that are not transforms
+/// stay zero.
 export class Poses {
   position: Float32Array;
   /// Unit quaternions x, y, z, w.
@@ -25,7 +26,8 @@ export class Poses {
     this.visible.set(other.visible);
   }
 
-  /// Takes node i's place from a matrix, column by column; stays where it is, and false, when a number is none.
+  /// Sets the pose of node i from a matrix, column by column. Returns false and keeps the pose if a number is not
+  /// finite.
   setMatrix(i: number, m: ArrayLike<number>): boolean {
     for (let k = 0; k < 16; ++k) if (!Number.isFinite(m[k]!)) return false;
     for (let k = 0; k < 3; ++k) this.position[3 * i + k] = m[12 + k]!;
@@ -33,14 +35,15 @@ export class Poses {
     return true;
   }
 
-  /// Node i's matrix into out[at..at+15].
+  /// Writes the matrix of node i to out[at..at+15].
   getMatrix(i: number, out: Float32Array, at: number): void {
     const p = this.position, q = this.rotation;
     writeMatrix(out, at, p[3 * i]!, p[3 * i + 1]!, p[3 * i + 2]!, q[4 * i]!, q[4 * i + 1]!, q[4 * i + 2]!, q[4 * i + 3]!);
   }
 }
 
-/// The rotation of a matrix (column by column) as a unit quaternion; scale in it is left out, what is no rotation becomes none.
+/// The rotation of a matrix (column by column) as a unit quaternion. Scale is removed; a degenerate matrix gives the
+/// identity.
 function setRotation(out: Float32Array, at: number, m: ArrayLike<number>): void {
   const sx = Math.hypot(m[0]!, m[1]!, m[2]!) || 1, sy = Math.hypot(m[4]!, m[5]!, m[6]!) || 1, sz = Math.hypot(m[8]!, m[9]!, m[10]!) || 1;
   const m00 = m[0]! / sx, m10 = m[1]! / sx, m20 = m[2]! / sx;
@@ -81,7 +84,7 @@ function setRotation(out: Float32Array, at: number, m: ArrayLike<number>): void 
   out[at + 3] = good ? w / length : 1;
 }
 
-/// Position and unit quaternion as a matrix, column by column.
+/// Writes position and unit quaternion as a matrix, column by column.
 export function writeMatrix(out: Float32Array, at: number, px: number, py: number, pz: number, x: number, y: number, z: number, w: number): void {
   const xx = 2 * x * x, yy = 2 * y * y, zz = 2 * z * z, xy = 2 * x * y, xz = 2 * x * z, yz = 2 * y * z, wx = 2 * w * x, wy = 2 * w * y, wz = 2 * w * z;
   out[at] = 1 - yy - zz;

@@ -1,7 +1,7 @@
 import type { Connection } from "./connection";
 import { isRecord } from "./scene_message";
 
-/// What was asked of the host and is not answered yet, and what is watched. Watches come back after a loss; questions do not.
+/// Pending requests to the host, and watches. Watches are restored after a connection loss; requests are not.
 
 interface Question {
   resolve(answer: unknown): void;
@@ -51,7 +51,7 @@ export class Questions {
     for (const { reject } of asked) reject(new Error("The connection to the host was lost."));
   }
 
-  /// An "answer" or "watched" of the host.
+  /// Handles an "answer" or "watched" message of the host.
   answered(message: Record<string, unknown>): void {
     const id = Number(message.id);
     const watch = this.watches.get(id);

@@ -9,17 +9,18 @@ import { kNoScene, makeScene, sameNodes, type Scene } from "./scene";
 import { addShapes } from "./shapes";
 import { emptyWorld, showScene } from "./world";
 
-/// A recorded match. Time runs on the log's own clock. The world is shown between two records; they are decoded when they are wanted: from the
-/// last one that was, from the full record before, or from a snapshot on the way, whichever is nearest.
+/// A recorded match. Time is that of the log's own clock. The world is interpolated between two records, which are
+/// decoded on demand, starting from the nearest of the last decoded record, the previous full record and a snapshot in
+/// between.
 
-/// Decoding never takes longer than this at a time [ms]: a leap over many records is made in several pictures.
+/// Maximum time spent on decoding per picture [ms]: a seek over many records takes several pictures.
 const kBudget = 10;
-/// Distance of snapshots [records], where no full record is nearer.
+/// Distance between snapshots [records], unless a full record is nearer.
 const kSnapshots = 64;
-/// A picture that comes later than this [ms] does not make time run faster.
+/// Maximum time step of a picture [ms]; after a longer delay playback does not catch up.
 const kLongestPicture = 1000;
 
-/// The log at one record.
+/// The decoded state of the log at one record.
 class Moment {
   index = -1;
   scene: Scene = kNoScene;
@@ -46,18 +47,18 @@ export class Replay implements ReplaySource {
   private readonly reader = new RecordReader();
   private readonly blend = new Blend();
   private readonly snapshots = new Map<number, Moment>();
-  /// Shown between these two; the second one is the first one's successor, or the same at the end.
+  /// The scene is interpolated between these two; the second one is the first one's successor, or the same at the end.
   private from = new Moment();
   private to = new Moment();
-  /// The record that `blend` was prepared for, and the last share of the way that was written.
+  /// The record that `blend` was prepared for, and the last fraction that was written.
   private prepared = -1;
   private shownShare = -1;
   private shownTime = NaN;
   private shownEvents = 0;
   private readonly board = new DrawingBoard();
-  /// The first record whose drawings are not on the board.
+  /// The first record whose drawings are not yet on the board.
   private drawn = 0;
-  /// Packets of that record that are on it already.
+  /// Number of packets of that record that are already on the board.
   private taken = 0;
   private position: number;
   private running = false;
@@ -66,7 +67,7 @@ export class Replay implements ReplaySource {
   private late = true;
   private passedOver: number;
   private readonly bad = new Set<number>();
-  /// `to` is no neighbour of the record that is decoded next.
+  /// `to` is not adjacent to the record that is decoded next.
   private leaping = true;
 
   constructor(
@@ -86,7 +87,7 @@ export class Replay implements ReplaySource {
     return this.passedOver;
   }
 
-  /// True while what is wanted is not shown yet.
+  /// True while the requested time is not shown yet.
   get busy(): boolean {
     return this.late && !this.pages.error;
   }
@@ -145,7 +146,7 @@ export class Replay implements ReplaySource {
     this.snapshots.clear();
   }
 
-  /// Resolves when what is wanted is shown, or cannot be.
+  /// Resolves when the requested time is shown or showing it has failed.
   async settled(): Promise<void> {
     for (;;) {
       this.update(this.last);
@@ -165,7 +166,7 @@ export class Replay implements ReplaySource {
     return low;
   }
 
-  /// Decodes until `from` is this record and `to` the next one. False: it goes on in the next picture.
+  /// Decodes until `from` is this record and `to` the next one. False: decoding continues in the next picture.
   private reach(record: number): boolean {
     const next = Math.min(record + 1, this.records.length - 1);
     if (this.from.index === record && this.to.index === next) return true;
@@ -175,13 +176,13 @@ export class Replay implements ReplaySource {
       if (!this.advance(record)) return false;
       if (this.to.index < record && performance.now() - began > kBudget) return false;
     }
-    // Both at the end, or on the only record.
+    // At the end, or if there is only one record, both are the same.
     if (this.to.index === record) this.from.copy(this.to);
     this.prepared = -1;
     return this.from.index === record;
   }
 
-  /// The latest record up to this one from which decoding may begin.
+  /// The latest record at or before this one from which decoding may begin.
   private nearest(record: number): number {
     for (let k = record; k > 0; --k) if ((this.records[k]!.full && !this.bad.has(k)) || this.snapshots.has(k)) return k;
     return 0;
@@ -194,11 +195,12 @@ export class Replay implements ReplaySource {
     this.from.index = -1;
     this.leaping = !snapshot;
     if (snapshot) this.to.copy(snapshot);
-    // The scene stays: most full records bring the same one again.
+    // Keep the scene: most full records repeat the same one.
     else this.to.index = nearest - 1;
   }
 
-  /// Decodes the record behind `to`, which becomes `from`, on the way to the wanted one. False: its bytes are not there yet.
+  /// Decodes the record after `to`, which becomes `from`, on the way to the requested record. False: its bytes are not
+  /// loaded yet.
   private advance(wanted: number): boolean {
     const index = this.to.index + 1, record = this.records[index]!;
     const page = this.pages.page(record);
@@ -239,7 +241,7 @@ export class Replay implements ReplaySource {
     return true;
   }
 
-  /// A damaged record shows what was there before.
+  /// A damaged record repeats the previous state.
   private passOver(index: number, moment: Moment): void {
     if (!this.bad.has(index)) ++this.passedOver;
     this.bad.add(index);
@@ -286,7 +288,8 @@ export class Replay implements ReplaySource {
     for (let i = 0; i < nodes.length; ++i) if (nodes[i]!.kind === "mesh") nodes[i]!.visible = moment.poses.visible[i] === 1;
   }
 
-  /// Draws what was drawn since; anew when the way goes back, or when a record on the way brings all there is.
+  /// Applies the drawings of the records since the last call. Starts over after a step back, or at a record with
+  /// complete drawings.
   private showDrawings(record: number): void {
     const { board, records, world } = this;
     const back = record + 1 < this.drawn;

@@ -1,11 +1,11 @@
 import type { Robot, SceneNode, Side } from "../model";
 
-/// What a list of nodes means: robots, ball, and what belongs together.
+/// Interprets a list of nodes: finds robots and ball, and groups their parts.
 export interface Scene {
   nodes: SceneNode[];
   robots: Robot[];
   ball: number;
-  /// For each node the topmost node above it (itself at the top): a robot's parts share one.
+  /// For each node its topmost ancestor (itself at the top), which all parts of a robot share.
   top: Int32Array;
   /// Indices of the transforms, ascending.
   transforms: Int32Array;
@@ -20,7 +20,7 @@ export function makeScene(nodes: SceneNode[]): Scene {
   return { nodes, robots: findRobots(nodes, top), ball: findBall(nodes), top, transforms };
 }
 
-/// Would both look alike? Visibility aside, which changes from frame to frame.
+/// Returns true if both scenes look the same, apart from visibility, which changes from frame to frame.
 export function sameNodes(a: SceneNode[], b: SceneNode[]): boolean {
   return a.length === b.length && a.every((node, i) => sameNode(node, b[i]!));
 }
@@ -41,12 +41,13 @@ function findBall(nodes: SceneNode[]): number {
   return mesh ? mesh.parent : -1;
 }
 
-/// Monitors know robots by materials alone: matLeft or matRight (matTeam before they joined one), with matNum3 or matLeft3 for the number.
+/// Monitors identify robots only by their materials: matLeft or matRight (matTeam before the robot joins a team), with
+/// matNum3 or matLeft3 for the number.
 const kSide = /^mat(Left|Right)(\d*)$/;
 const kNumber = /^matNum(\d+)$/;
 const kBody = /(^|\/)[^/]*body[^/]*\.obj$/;
-/// More robots than any field holds: what else looks like one is not numbered, selected or labelled.
-const kMostRobots = 2048;
+/// Maximum number of robots, more than any field holds. Further ones are not numbered, selected or labelled.
+const kMaxRobots = 2048;
 const kHead = /(^|\/)[^/]*head[^/]*\.obj$/;
 
 interface Found {
@@ -63,7 +64,7 @@ function findRobots(nodes: SceneNode[], top: Int32Array): Robot[] {
     if (node.kind !== "mesh" || !node.materials) return;
     const team = node.materials.some((m) => m === "matTeam" || kSide.test(m));
     const robot = found.get(top[i]!) ?? (team ? { side: null, number: 0, node: top[i]!, torso: -1, head: -1 } : undefined);
-    if (!robot || (found.size >= kMostRobots && !found.has(robot.node))) return;
+    if (!robot || (found.size >= kMaxRobots && !found.has(robot.node))) return;
     found.set(robot.node, robot);
     node.materials.forEach((material) => readMaterial(robot, material));
     if (robot.torso < 0 && kBody.test(node.load ?? "")) robot.torso = bearer(nodes, node);
@@ -79,15 +80,16 @@ function readMaterial(robot: Found, material: string): void {
   if (side?.[2] || number) robot.number = Number(number?.[1] ?? side?.[2]);
 }
 
-/// The transform that carries a robot's part: meshes of bodies and heads hang below one that turns only them.
+/// The transform of a robot's part. Meshes of bodies and heads are below an additional transform that only rotates the
+/// mesh.
 export function bearer(nodes: SceneNode[], mesh: SceneNode): number {
   const own = mesh.parent, above = own < 0 ? -1 : nodes[own]!.parent;
   if (own < 0 || above < 0 || nodes[above]!.kind !== "transform") return own;
-  // The part's transform has other children or is no child of a mere group.
+  // The transform of the part has other children or is not a child of a mere group.
   return nodes[above]!.parent >= 0 ? above : own;
 }
 
-/// Spheres and the like have no torso: the first transform that carries a mesh in team colours is it.
+/// Robots such as spheres have no torso: the first transform with a mesh in team colours is used instead.
 function findBearers(nodes: SceneNode[], top: Int32Array, found: Map<number, Found>): void {
   const first = new Map<number, number>();
   nodes.forEach((n, i) => {
@@ -96,7 +98,7 @@ function findBearers(nodes: SceneNode[], top: Int32Array, found: Map<number, Fou
   for (const robot of found.values()) if (robot.torso < 0) robot.torso = Math.max(first.get(robot.node) ?? -1, -1) >= 0 ? first.get(robot.node)! : robot.node;
 }
 
-/// Spheres wear no numbers: they get the lowest free ones in their order.
+/// Spheres have no visible numbers: they get the lowest free numbers, in order.
 function named(nodes: SceneNode[], found: Found[]): Robot[] {
   const used = new Set<string>();
   const take = (robot: Found): string => {

@@ -1,7 +1,7 @@
 import type { SceneNode, Shape } from "../model";
 import { Poses } from "./poses";
 
-/// Reads the stream's scene message: what is wrong in it makes it null.
+/// Parses the scene message of the stream. Returns null if it is invalid.
 
 const kMostNodes = 100_000;
 const kKinds = new Set(["transform", "light", "mesh"]);

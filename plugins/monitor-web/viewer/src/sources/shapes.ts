@@ -2,8 +2,8 @@ import type { SceneNode, Shape } from "../model";
 import type { Poses } from "./poses";
 import { bearer } from "./scene";
 
-/// Logs name only meshes. This gives the transforms of a log the shapes that the same meshes go with in the scenes of this project, where
-/// colliders say what touches: boxes in metres, frame x right, y forwards, z up.
+/// Logs contain only mesh names. This adds shapes to the transforms of a log: those of the colliders that accompany the
+/// same meshes in the scenes of this project. Boxes in metres, frame x right, y forward, z up.
 
 const kNothing: [number, number, number, number] = [0, 0, 0, 1];
 
@@ -21,7 +21,7 @@ const kParts: [RegExp, number, Shape][] = [
   [/^[lr]shank\d*$/, 0.08, box(0.08, 0.07, 0.11)],
 ];
 
-/// Toes have the mesh of a foot, half as high; the foot in front of which they are is shorter.
+/// Toes have the mesh of a foot at half its height; a foot with toes is shorter.
 const kFoot = { scale: 0.08, length: 0.16, height: 0.02 };
 
 /// Adds shapes to the transforms of a log; the poses are those of its first message.
@@ -46,7 +46,7 @@ export function addShapes(nodes: SceneNode[], poses: Poses): void {
     if (/^soccerball$/.test(name)) add(nodes[node.parent]!, { kind: "sphere", size: [scale[0]], position: [0, 0, 0], rotation: kNothing });
     const part = kParts.find(([pattern]) => pattern.test(name));
     if (!part) continue;
-    // Bodies and heads hang below a transform that turns their mesh: the shape belongs to the one above.
+    // Bodies and heads are below a transform that rotates their mesh: the shape belongs to its parent.
     const target = /^nao/.test(name) ? bearer(nodes, node) : node.parent;
     const at = target === node.parent ? [0, 0, 0] : poses.position.subarray(3 * node.parent, 3 * node.parent + 3);
     add(nodes[target]!, { ...scaled(part[2], scale[0] / part[1]), position: [at[0]!, at[1]!, at[2]!] });
@@ -61,7 +61,8 @@ function scaled(shape: Shape, by: number): Shape {
   return { ...shape, size: shape.size.map((s) => s * by) };
 }
 
-/// Boxes, spheres and the like have a shape of their own; what is only there to be seen (marks of selection, knobs between joints) has none.
+/// Boxes, spheres and other primitives are shapes themselves. Purely visual meshes (selection markers, knobs between
+/// joints) have none.
 function standardShape(mesh: SceneNode, scale: [number, number, number]): Shape | null {
   const [name, ...parameters] = mesh.load!.split(" ");
   const [radius = 1, length = 1] = parameters.map(Number).map((n) => (Number.isFinite(n) ? n : 1));

@@ -15,7 +15,7 @@ export function emptyWorld(): World {
   };
 }
 
-/// Puts another scene into the world; nothing when it is there already. All nodes are at the origin then.
+/// Replaces the scene of the world and places all nodes at the origin. Does nothing if the scene is the same.
 export function showScene(world: World, scene: Scene): void {
   if (world.nodes === scene.nodes) return;
   world.nodes = scene.nodes;

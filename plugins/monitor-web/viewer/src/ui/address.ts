@@ -1,4 +1,4 @@
-/// What the page's address asks for.
+/// Parameters in the page's address.
 import type { CameraMode, Quality, Theme } from "./app";
 
 export const kPanels = ["players", "events", "inspect", "referee", "host", "view"] as const;
@@ -7,13 +7,13 @@ export type PanelName = (typeof kPanels)[number];
 export interface Wishes {
   /// A log to open; null: the live match.
   file: string | null;
-  /// Where in the log [s].
+  /// Start time in the log [s].
   at: number | null;
   paused: boolean;
   view: CameraMode | null;
   quality: Quality | null;
   theme: Theme | null;
-  /// null: not said.
+  /// null: not given.
   panel: PanelName | "none" | null;
   token: string | null;
 }
@@ -38,7 +38,7 @@ export function wishesOf(address: string): Wishes {
   };
 }
 
-/// The address without the token, to be shown and copied.
+/// The address without the token, for display and copying.
 export function withoutToken(address: string): string {
   const url = new URL(address);
   const rest = new URLSearchParams(url.hash.slice(1));
@@ -47,14 +47,14 @@ export function withoutToken(address: string): string {
   return url.href.replace(/#$/, "");
 }
 
-/// The address of the live match: without the log and the place in it.
+/// The address of the live match: without the log and the start time.
 export function withoutLog(address: string): string {
   const url = new URL(address);
   for (const name of ["file", "at", "paused"]) url.searchParams.delete(name);
   return url.href;
 }
 
-/// Where the page's own host sends its stream.
+/// The stream address of the page's own host.
 export function streamOf(address: string): string {
   const url = new URL("stream", address);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
@@ -62,7 +62,7 @@ export function streamOf(address: string): string {
   return url.href;
 }
 
-/// The last part of a log's address, for people.
+/// The last component of a log's address, for display.
 export function fileNameOf(address: string): string {
   const path = address.split(/[?#]/, 1)[0] ?? address;
   const name = path.split("/").filter(Boolean).at(-1) ?? address;

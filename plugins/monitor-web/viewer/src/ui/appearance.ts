@@ -1,4 +1,4 @@
-/// Theme, team colours and quality as chosen, told to the page and to the picture.
+/// Applies the chosen theme, team colours and quality to the page and the stage.
 import { css, inkOn, type Rgb, rgb } from "../view/palette";
 import type { CameraMode, Quality, Stage, Theme } from "./app";
 import { keepSettings, kPalettes, type Palette, paletteFor, type Settings } from "./settings";
@@ -31,14 +31,14 @@ export class Appearance {
     return paletteFor(this.settings.palette, ...this.teams);
   }
 
-  /// Now and then: colours follow the teams' names.
+  /// Call it periodically: team colours depend on the teams' names.
   setTeams(left: string, right: string): void {
     if (this.teams[0] === left && this.teams[1] === right) return;
     this.teams = [left, right];
     this.coloursChanged();
   }
 
-  /// Back to what the system says when that is the same.
+  /// Switches between dark and light. If the result is the system's theme, the setting becomes "system" again.
   switchTheme(): void {
     const other: Theme = this.theme === "dark" ? "light" : "dark";
     this.settings.theme = (other === "light") === this.system.matches ? "system" : other;

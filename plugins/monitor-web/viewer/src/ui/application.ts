@@ -1,4 +1,4 @@
-/// The whole page: puts the picture, the panels and what is shown together, and runs the one loop.
+/// The whole page: connects the stage, the panels and the source, and runs the main loop.
 import { mountInspector } from "../inspect";
 import type { LiveSource, ReplaySource, Robot, Source, World } from "../model";
 import { withoutLog, withoutToken, wishesOf, type Wishes } from "./address";
@@ -31,7 +31,7 @@ import { passed } from "./timeline_maths";
 import { Toasts } from "./toasts";
 import { Tools } from "./tools";
 
-/// Numbers are written at most so often [ms], lists so often.
+/// Minimum interval between two updates of numbers, and of lists [ms].
 const kNumbers = 100;
 const kLists = 300;
 
@@ -46,7 +46,7 @@ export class Application implements App {
   readonly openings = new Openings((file) => void this.showing.openLog(file));
   readonly picker: FieldPicker;
   readonly refereePanel: RefereePanel;
-  /// Pictures drawn since the start.
+  /// Number of pictures drawn since the start.
   frames = 0;
 
   private readonly inspector: Panel;
@@ -78,7 +78,7 @@ export class Application implements App {
   private environmentSeen = -1;
   private eventTime = NaN;
   private wasReferee = false;
-  /// When the present source began to be shown [ms].
+  /// When the current source was first shown [ms].
   private since = 0;
 
   constructor(root: HTMLElement, address: string) {
@@ -189,7 +189,7 @@ export class Application implements App {
     this.toast(`Team colours: ${this.appearance.palette.name}`);
   }
 
-  /// One picture.
+  /// Updates and draws one picture.
   frame(now: number): void {
     this.timeline.seekWanted();
     this.inspector.update(now);
@@ -200,7 +200,7 @@ export class Application implements App {
     if (this.numbers.due(now)) this.refresh(now);
   }
 
-  /// What is written in words and numbers.
+  /// Updates texts and numbers.
   private refresh(now: number): void {
     this.showNotice(now);
     this.scoreboard.update(this.world);
@@ -233,7 +233,7 @@ export class Application implements App {
     else this.showing.watchLive();
   }
 
-  /// The token does not stay in the address bar, where it would be copied with the link.
+  /// Removes the token from the address bar, where it would be copied with the link.
   private takeToken({ token }: Wishes): void {
     if (!token) return;
     this.login.keep(token);
@@ -279,7 +279,7 @@ export class Application implements App {
     this.tools.update({ camera: stage.camera.mode, quality: stage.quality, labels: stage.labels, colours: appearance.palette.name, theme: appearance.theme });
   }
 
-  /// Beside the picture; on a phone in a sheet of their own.
+  /// The panels are beside the picture, or in a sheet of their own on a phone.
   private placeTools(): void {
     const narrow = window.matchMedia("(max-width: 720px)");
     const sheet = this.side.panel("view");
@@ -309,14 +309,15 @@ export class Application implements App {
     else this.notice.hide();
   }
 
-  /// Goals and fouls as the picture reaches them.
+  /// Shows a toast for each event (goal, foul) that the shown time has passed since the last call.
   private tellEvents(): void {
     const { time, events } = this.world;
     for (const event of passed(events, this.eventTime, time)) this.toasts.event(event);
     this.eventTime = time;
   }
 
-  /// A selected robot stays selected in another scene, where its node is another one; a robot that left is no longer selected.
+  /// Updates the selection after a change of scene: a selected robot is found again by its key, because its node may
+  /// have another index; a robot that no longer exists is deselected.
   private followScene(): void {
     const { world, chosen } = this;
     if (world.versions.scene === this.sceneSeen) return;

@@ -1,4 +1,4 @@
-/// Which key does what. Panels add theirs; W A S D, Q E, R F, + and - move the camera.
+/// Key bindings. Panels add their own; W A S D, Q E, R F, + and - move the camera.
 import type { Application } from "./application";
 import type { PanelName } from "./address";
 import type { Binding } from "./keyboard";
@@ -30,7 +30,7 @@ function looks(app: Application): Binding[] {
   ];
 }
 
-/// Told here, done by the picture.
+/// Listed here for the help; the stage handles them.
 function cameraHelp(): Binding[] {
   const line = (combo: string, title: string): Binding => ({ combo, title, group: "Move the camera" });
   return [line("w a s d", "Slide"), line("q e", "Turn"), line("r f", "Tilt"), line("+ -", "Closer, further")];
@@ -46,7 +46,7 @@ function panels(app: Application): Binding[] {
   ];
 }
 
-/// Of one thing after the other.
+/// Cancels one thing per call: picking, then the focus, then the selection, then the panel.
 function letGo(app: Application): void {
   const focused = document.activeElement;
   if (app.picker.picking) app.picker.finish(null);
@@ -108,7 +108,7 @@ function replay(app: Application): Binding[] {
   ];
 }
 
-/// Only while the console is open, so that no kick-off happens by accident.
+/// Active only while the console is open, to prevent an accidental kick-off.
 function referee(app: Application): Binding[] {
   const when = () => (app.live?.referee ?? false) && app.side.open === "referee";
   const line = (combo: string, title: string, run: () => void): Binding => ({ combo, title, group: "Referee, with the console open", run, when });

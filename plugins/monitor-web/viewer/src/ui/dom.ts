@@ -1,9 +1,9 @@
-/// Elements in one line, and setters that leave the page alone when nothing changed.
+/// Creates elements in one line, and sets properties only if they changed.
 
 type Attribute = string | number | boolean | null | undefined | ((event: never) => void);
 type Child = Node | string | null | undefined | false;
 
-/// `h("button", { class: "button", onclick: run }, "Text")`; functions become listeners, true is an empty attribute.
+/// `h("button", { class: "button", onclick: run }, "Text")`. Functions become listeners; true is an empty attribute.
 export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Record<string, Attribute> = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -19,7 +19,7 @@ export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/// null takes the attribute away.
+/// null removes the attribute.
 export function setAttribute(element: Element, name: string, value: string | null): void {
   if (element.getAttribute(name) === value) return;
   if (value === null) element.removeAttribute(name);
@@ -30,7 +30,7 @@ export function setHidden(element: HTMLElement, hidden: boolean): void {
   if (element.hidden !== hidden) element.hidden = hidden;
 }
 
-/// True once every `period` milliseconds at most.
+/// Returns true at most once every `period` milliseconds.
 export class Pace {
   private last = -Infinity;
   constructor(private readonly period: number) {}
@@ -39,7 +39,7 @@ export class Pace {
     this.last = now;
     return true;
   }
-  /// The next one is due at once.
+  /// Makes the next call return true.
   hurry(): void {
     this.last = -Infinity;
   }

@@ -1,4 +1,4 @@
-/// What happened so far, newest first; in a replay all of it, to go there.
+/// The list of events, newest first. A replay lists all events of the log, as links to their times.
 import type { GameEvent } from "../model";
 import type { App } from "./app";
 import { h, setHidden } from "./dom";
@@ -19,7 +19,7 @@ export class EventsPanel {
   update(): void {
     const { replay, world } = this.app;
     const events = replay ? replay.timeline : world.events;
-    // a replay's list is whole from the start
+    // the list of a replay is complete from the start
     const version = replay ? 0 : world.versions.events;
     if (this.seen === world && this.version === version) return;
     this.seen = world;

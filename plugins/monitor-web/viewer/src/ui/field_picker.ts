@@ -1,12 +1,13 @@
-/// Asks for a point on the field: the next click on the picture says where.
+/// Lets the user pick a point on the field with the next click on the picture.
 import { type Camera, Vector3 } from "three";
 import { h } from "./dom";
 import type { Point } from "./places";
 
-/// Further than this the pointer was dragged: the camera moves, nothing is picked [px].
+/// A pointer that moved further than this is a drag, which moves the camera and picks nothing [px].
 const kSlip = 6;
 
-/// Where the ray through a point of the picture (0..1 from the left and the top) meets z = 0; null above the horizon.
+/// Intersection of the plane z = 0 with the ray through a point of the picture (0..1 from the left and the top); null
+/// above the horizon.
 export function groundBelow(camera: Camera, right: number, down: number): Point | null {
   const from = new Vector3(right * 2 - 1, 1 - down * 2, -1).unproject(camera);
   const to = new Vector3(right * 2 - 1, 1 - down * 2, 1).unproject(camera);

@@ -1,4 +1,4 @@
-/// Numbers and clocks for people.
+/// Formats numbers and clocks for display.
 import type { Environment, Side, Value } from "../model";
 import { teamName } from "../sources";
 
@@ -20,13 +20,13 @@ export function half(number: number): string {
   return number === 1 ? "1st half" : number === 2 ? "2nd half" : "";
 }
 
-/// "0.98×"; "–" while it is not known.
+/// "0.98×"; "–" while unknown.
 export function factor(value: number | null | undefined): string {
   if (value == null || !Number.isFinite(value)) return "–";
   return `${value < 10 ? value.toFixed(2) : value < 100 ? value.toFixed(1) : value.toFixed(0)}×`;
 }
 
-/// "3.2 ms", "41 ms"; "–" while it is not known.
+/// "3.2 ms", "41 ms"; "–" while unknown.
 export function latency(milliseconds: number | null): string {
   if (milliseconds == null || !Number.isFinite(milliseconds)) return "–";
   return `${milliseconds < 10 ? milliseconds.toFixed(1) : milliseconds.toFixed(0)} ms`;
@@ -46,20 +46,20 @@ function single(environment: Environment, key: string): Value | undefined {
   return Array.isArray(value) ? value[0] : value;
 }
 
-/// A number of the environment; `otherwise` where there is none.
+/// A number of the environment; `otherwise` if there is none.
 export function numberOf(environment: Environment, key: string, otherwise: number): number {
   const value = single(environment, key);
   const number = value === undefined || value === "" ? NaN : Number(value);
   return Number.isFinite(number) ? number : otherwise;
 }
 
-/// The team's name; "Left" or "Right" as long as it has none.
+/// The team's name; "Left" or "Right" while it has none.
 export function teamTitle(environment: Environment, side: Side): string {
   const name = teamName(environment, side);
   return name === side ? name[0]!.toUpperCase() + name.slice(1) : name;
 }
 
-/// All modes' names as the host knows them; none before it said.
+/// The names of all modes of the host; empty before the host has sent them.
 export function modeNames(environment: Environment): string[] {
   const names = environment.get("play_modes");
   return Array.isArray(names) ? names.map(String) : [];

@@ -1,4 +1,4 @@
-/// Pictures a second, over the last second or so.
+/// Pictures per second, averaged over about the last second.
 export class FrameRate {
   private count = 0;
   private since = NaN;
@@ -8,7 +8,7 @@ export class FrameRate {
     ++this.count;
   }
 
-  /// Now and then [ms].
+  /// Call it periodically, with the time [ms].
   update(now: number): void {
     if (now - this.since < 1000) return;
     if (!Number.isNaN(this.since)) this.value = (this.count * 1000) / (now - this.since);

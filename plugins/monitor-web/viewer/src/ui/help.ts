@@ -1,4 +1,4 @@
-/// All keys, in a window of their own.
+/// The help window, which lists all keys.
 import { h } from "./dom";
 import { icon } from "./icons";
 import { capsOf, type Keyboard } from "./keyboard";

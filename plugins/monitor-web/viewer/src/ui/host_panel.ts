@@ -1,4 +1,4 @@
-/// How the host is doing: speed, spectators, how long agents take to answer; and how fast pictures are drawn here.
+/// Status of the host: speed, spectators, latency of agents; also the frame rate of this viewer.
 import type { Status } from "../model";
 import type { App } from "./app";
 import { h, setHidden, setText } from "./dom";
@@ -6,7 +6,7 @@ import { count, factor, latency } from "./format";
 
 type Agent = Status["agents"][number];
 
-/// Which team an agent's word means: a side, or the name of one.
+/// The team that an agent's status refers to, by side or by name.
 function sideOf(team: string, app: App): string | null {
   const lower = team.toLowerCase();
   if (lower === "left" || lower === "right") return lower;
@@ -32,7 +32,7 @@ export class HostPanel {
     container.append(this.list, this.table);
   }
 
-  /// Once a second or so; `frameRate` in pictures a second, drawn here.
+  /// Call it about once a second. `frameRate`: pictures per second of this viewer.
   update(connection: string, frameRate: number): void {
     const status = this.app.live?.status ?? null;
     this.fact("Source", connection);

@@ -1,4 +1,4 @@
-/// Line icons on a grid of 24, drawn for this viewer.
+/// Line icons on a 24 x 24 grid, drawn for this viewer.
 const kPaths = {
   orbit: "M12 3v18 M3 12h18 M9.5 5.5L12 3l2.5 2.5 M9.5 18.5L12 21l2.5-2.5 M5.5 9.5L3 12l2.5 2.5 M18.5 9.5L21 12l-2.5 2.5",
   broadcast: "M3 8.5A1.5 1.5 0 0 1 4.5 7h9A1.5 1.5 0 0 1 15 8.5v7a1.5 1.5 0 0 1-1.5 1.5h-9A1.5 1.5 0 0 1 3 15.5z M15 11l6-3.5v9L15 13",
@@ -39,7 +39,7 @@ export function icon(name: IconName): SVGSVGElement {
   return svg;
 }
 
-/// Shows another icon in the place of the one there.
+/// Replaces an icon.
 export function changeIcon(svg: SVGSVGElement, name: IconName): void {
   const path = svg.firstElementChild!;
   if (path.getAttribute("d") !== kPaths[name]) path.setAttribute("d", kPaths[name]);

@@ -1,6 +1,6 @@
-/// Keys and what they do: one table for the handler and the help.
+/// Key bindings: one table for the handler and the help.
 
-/// As much of a KeyboardEvent as a combination needs.
+/// The part of KeyboardEvent that determines a combination.
 export interface Stroke {
   key: string;
   code: string;
@@ -12,7 +12,8 @@ export interface Stroke {
 
 const kNamed: Record<string, string> = { " ": "space", arrowleft: "left", arrowright: "right", arrowup: "up", arrowdown: "down", escape: "esc" };
 
-/// "x", "shift+3", "?", "shift+left": digits by their place on the keyboard, signs by what they print.
+/// "x", "shift+3", "?", "shift+left": digits by their position on the keyboard, symbols by the character that they
+/// produce.
 export function comboOf(stroke: Stroke): string {
   const digit = /^Digit(\d)$/.exec(stroke.code)?.[1];
   const lower = stroke.key.toLowerCase();
@@ -39,7 +40,7 @@ const kPrinted: Record<string, string> = {
   alt: "Alt",
 };
 
-/// The caps to print in the help: "shift+left" is Shift and ←.
+/// The key caps shown in the help: "shift+left" is Shift and ←.
 export function capsOf(combo: string): string[] {
   if (combo === "+") return ["+"];
   return combo.split("+").map((part) => kPrinted[part] ?? part.toUpperCase());
@@ -49,15 +50,15 @@ export interface Binding {
   combo: string;
   title: string;
   group: string;
-  /// Undefined: the key is listed in the help only; another part handles it.
+  /// Undefined: the key is only listed in the help; another component handles it.
   run?: () => void;
-  /// Only then; always when left out.
+  /// The key is active only if this returns true; undefined: always.
   when?: () => boolean;
-  /// Not in the help: another line tells of it.
+  /// Not listed in the help, because another line covers it.
   hidden?: boolean;
 }
 
-/// Keys that a focused control needs itself.
+/// Keys that a focused control handles itself.
 export function belongsToControl(combo: string, target: Element | null): boolean {
   if (!target || combo === "esc") return false;
   if (target.closest("input:not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable=true]")) return true;
@@ -65,7 +66,7 @@ export function belongsToControl(combo: string, target: Element | null): boolean
   return pressed && target.closest("button, a, summary, input, [role=option], [role=treeitem], [role=tab]") !== null;
 }
 
-/// What moves while a key is held down.
+/// The camera, which moves while a key is held down.
 export interface CameraKeys {
   key(event: KeyboardEvent): boolean;
   release(): void;
@@ -91,7 +92,7 @@ export class Keyboard {
     return binding !== undefined;
   }
 
-  /// For the help: groups in the order in which they were bound.
+  /// The bindings for the help, in groups, in the order in which they were added.
   groups(): Map<string, Binding[]> {
     const groups = new Map<string, Binding[]>();
     for (const binding of this.bindings) {
@@ -101,11 +102,11 @@ export class Keyboard {
     return groups;
   }
 
-  /// Listens for as long as the page lives. Keys without an action go to `camera`.
+  /// Listens for the lifetime of the page. Keys without an action are passed to `camera`.
   listen(target: Window, camera: CameraKeys): void {
     target.addEventListener("keydown", (event) => {
       const combo = comboOf(event);
-      // a window over the page has the keyboard to itself
+      // a dialog over the page gets all keys
       if (document.querySelector("dialog[open]")) return;
       if (event.defaultPrevented || event.isComposing || belongsToControl(combo, event.target as Element | null)) return;
       if (this.run(combo) || (isPlain(event) && camera.key(event))) event.preventDefault();

@@ -1,4 +1,5 @@
-/// The referee's token: from the address or the field, kept while the tab lives, handed over after every connection.
+/// The referee's token: from the address or the input field, kept for the lifetime of the tab, and sent after every
+/// connection.
 import type { LiveSource } from "../model";
 
 const kKey = "spark-token";
@@ -7,7 +8,7 @@ export class Login {
   private live: LiveSource | null = null;
   private tried = false;
 
-  /// `refused`: a kept token was no longer good.
+  /// `refused`: a stored token was no longer valid.
   constructor(private readonly refused: () => void) {}
 
   keep(token: string): void {
@@ -26,7 +27,7 @@ export class Login {
     return taken;
   }
 
-  /// Now and then: logs in once for each connection.
+  /// Call it periodically: logs in once per connection.
   update(live: LiveSource | null): void {
     if (live !== this.live || live?.state !== "open") this.tried = false;
     this.live = live;

@@ -1,8 +1,8 @@
-/// Logs as they come from a file or an address: unpacked, and counted while they are read.
+/// Reads logs from a file or an address: decompresses them and reports progress.
 
 const isPacked = (head: ArrayLike<number>) => head[0] === 0x1f && head[1] === 0x8b;
 
-/// Unpacks what begins as gzip does; everything else passes as it is.
+/// Decompresses data that begins with the gzip signature; passes other data unchanged.
 export async function unpacked(packed: ReadableStream<Uint8Array>): Promise<ReadableStream<Uint8Array>> {
   const reader = packed.getReader();
   const head: Uint8Array[] = [];
@@ -25,10 +25,10 @@ export async function unpacked(packed: ReadableStream<Uint8Array>): Promise<Read
     cancel: (reason) => reader.cancel(reason),
   });
   if (!isPacked(bytes)) return whole;
-  return limited(whole.pipeThrough(new DecompressionStream("gzip") as unknown as ReadableWritablePair<Uint8Array, Uint8Array>), kMostUnpacked);
+  return limited(whole.pipeThrough(new DecompressionStream("gzip") as unknown as ReadableWritablePair<Uint8Array, Uint8Array>), kMaxUnpacked);
 }
 
-/// Tells how much went through: 0..1 of `total` bytes; nothing when the total is not known.
+/// Reports progress, 0..1 of `total` bytes. Reports nothing if the total is unknown.
 export function counted(stream: ReadableStream<Uint8Array>, total: number, heard: (share: number) => void): ReadableStream<Uint8Array> {
   if (!(total > 0)) return stream;
   let passed = 0;
@@ -43,10 +43,10 @@ export function counted(stream: ReadableStream<Uint8Array>, total: number, heard
   );
 }
 
-/// Unpacked bytes that are taken: what claims to be more was made to fill the disk.
-const kMostUnpacked = 8 * 2 ** 30;
+/// Maximum size of an unpacked log, which limits the effect of decompression bombs [bytes].
+const kMaxUnpacked = 8 * 2 ** 30;
 
-/// Fails when more than `most` bytes come.
+/// Fails if more than `most` bytes pass.
 export function limited(stream: ReadableStream<Uint8Array>, most: number): ReadableStream<Uint8Array> {
   let passed = 0;
   return stream.pipeThrough(
@@ -62,18 +62,18 @@ export function limited(stream: ReadableStream<Uint8Array>, most: number): Reada
 
 const blobOf = (stream: ReadableStream<Uint8Array>) => new Response(stream).blob();
 
-/// A chosen file, unpacked; `heard` is told how far that is (0..1).
+/// Decompresses a file. `heard` is called with the progress (0..1).
 export async function unpackedFile(file: Blob, heard: (share: number) => void): Promise<Blob> {
   const head = new Uint8Array(await file.slice(0, 2).arrayBuffer());
   return isPacked(head) ? blobOf(await unpacked(counted(file.stream(), file.size, heard))) : file;
 }
 
-/// A log fetched from an address; rejects with words for people.
+/// Fetches a log from an address. Rejects with a readable message.
 export async function fetchedLog(address: string, heard: (share: number) => void): Promise<Blob> {
   const response = await fetch(address).catch(() => null);
   if (!response) throw new Error(`${address} cannot be reached.`);
   if (!response.ok || !response.body) throw new Error(`${address}: the server says ${response.status} ${response.statusText}`.trim() + ".");
-  // with a content encoding the length is that of other bytes than those that come here
+  // with a content encoding, the length is that of the encoded bytes, not of those received here
   const total = response.headers.has("content-encoding") ? 0 : Number(response.headers.get("content-length"));
   return blobOf(await unpacked(counted(response.body, total, heard)));
 }

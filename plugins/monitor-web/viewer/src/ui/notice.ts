@@ -1,4 +1,4 @@
-/// The notice in the middle of an empty picture: waiting, loading, or why there is nothing.
+/// The notice in the middle of an empty picture: waiting, loading, or the reason why nothing is shown.
 import { h, setHidden, setText } from "./dom";
 
 export interface NoticeAction {
@@ -21,7 +21,7 @@ export class Notice {
   );
   private shown = "";
 
-  /// `share` 0..1 of what is loading; null: nothing is.
+  /// `share`: progress of loading, 0..1; null: nothing is being loaded.
   show(title: string, words: string, share: number | null, actions: NoticeAction[]): void {
     setHidden(this.element, false);
     setText(this.title, title);

@@ -1,4 +1,4 @@
-/// What to say where there is no match to show.
+/// Chooses the notice if there is no match to show.
 import type { NoticeAction } from "./notice";
 import type { Openings } from "./openings";
 import type { Showing } from "./showing";
@@ -6,15 +6,16 @@ import type { Showing } from "./showing";
 export interface NoticeText {
   title: string;
   words: string;
-  /// 0..1 of what is loading; null: nothing is.
+  /// Progress of loading, 0..1; null: nothing is being loaded.
   share: number | null;
   actions: NoticeAction[];
 }
 
-/// Delay before the notice that the connection is being made [ms].
+/// Delay before the notice "connecting" is shown [ms].
 const kPatience = 1200;
 
-/// null: there is something to see. `waited` [ms] since the source is shown; `host` as in the address bar.
+/// Returns null if there is a match to show. `waited`: time since the source was selected [ms]; `host` as in the
+/// address bar.
 export function noticeOf(showing: Showing, waited: number, host: string, openings: Pick<Openings, "choose">): NoticeText | null {
   const open: NoticeAction = { text: "Open a log", testid: "notice-open", run: () => openings.choose() };
   if (showing.loading) return { title: `Opening ${showing.loading.name}`, words: "", share: showing.loading.share, actions: [] };

@@ -1,4 +1,4 @@
-/// Ways to bring a log in: chosen, dropped, or by its address.
+/// Ways to open a log: file dialog, drag and drop, or address.
 import { h } from "./dom";
 
 export class Openings {
@@ -18,7 +18,7 @@ export class Openings {
       event.preventDefault();
       this.zone.hidden = false;
     });
-    // leaving the window has no element to go to
+    // leaving the window: there is no related element
     window.addEventListener("dragleave", (event) => event.relatedTarget === null && (this.zone.hidden = true));
     window.addEventListener("drop", (event) => {
       this.zone.hidden = true;

@@ -1,9 +1,9 @@
-/// Positions of things in a world.
+/// Positions of objects in a world.
 import type { World } from "../model";
 
 export type Point = [number, number, number];
 
-/// Position of a node in the field's frame [m]: its transform within all above it.
+/// Position of a node in the field's frame [m], from its transform and all ancestors.
 export function placeOf(world: World, node: number): Point {
   const m = world.local;
   let [x, y, z] = [0, 0, 0];

@@ -1,4 +1,4 @@
-/// The robots of both teams, as a list to choose from.
+/// A list of the robots of both teams, for selection.
 import type { Robot } from "../model";
 import type { App } from "./app";
 import { h, setAttribute, setHidden, setText } from "./dom";
@@ -6,13 +6,13 @@ import { teamTitle } from "./format";
 import { icon } from "./icons";
 import { distance, placeOf } from "./places";
 
-/// Left before right before none, by number.
+/// Orders by side (left, right, none), then by number.
 export function inOrder(robots: readonly Robot[]): Robot[] {
   const rank = (r: Robot) => (r.side === "left" ? 0 : r.side === "right" ? 1 : 2);
   return [...robots].sort((a, b) => rank(a) - rank(b) || a.number - b.number || a.node - b.node);
 }
 
-/// The next (1) or previous (-1) of the list, and round again; the first when none is selected.
+/// The next (1) or previous (-1) robot of the list, wrapping around; the first one if none is selected.
 export function neighbourOf(robots: readonly Robot[], key: string | null, direction: 1 | -1): Robot | null {
   const order = inOrder(robots);
   const at = order.findIndex((r) => r.key === key);

@@ -1,4 +1,4 @@
-/// The referee's console: all that a trainer may tell the host; before it, the field for the token.
+/// The referee's console with all trainer commands, preceded by the input field for the token.
 import type { Side } from "../model";
 import { modeName, modeWords } from "../sources";
 import type { App } from "./app";
@@ -11,13 +11,13 @@ import * as trainer from "./trainer";
 
 export interface RefereeActions {
   login(token: string): Promise<boolean>;
-  /// Asks for a click on the field; null when it was called off.
+  /// Waits for a click on the field; null if it was cancelled.
   pick(what: string): Promise<Point | null>;
 }
 
-/// A second press within this time removes [ms].
+/// A second press within this time removes the agent [ms].
 const kArmedFor = 3000;
-/// A match that did not follow until then does not follow [ms].
+/// A command without effect on the match after this time has failed [ms].
 const kPatience = 2500;
 
 function numberField(testid: string, text: string, value = ""): { label: HTMLElement; name: HTMLElement; input: HTMLInputElement } {
@@ -115,7 +115,7 @@ export class RefereePanel {
     this.update();
   }
 
-  /// Ten times a second: looks whether the match did what it was told.
+  /// Call it ten times a second: checks whether commands have taken effect.
   follow(now: number): void {
     const { awaited } = this;
     if (!awaited) return;
@@ -126,8 +126,8 @@ export class RefereePanel {
     this.say(done ? `${awaited.what}: done.` : `${awaited.what}: sent, but the match did not follow.`, done);
   }
 
-  /// Sends what `build` writes, and says how that went; `what` in words. The host takes a command without saying what became of it:
-  /// where `done` can tell by the match, it is awaited.
+  /// Sends the command that `build` returns and reports the result; `what` describes the command. The host does not
+  /// report the effect of a command, so the panel waits until `done` recognizes it from the match, if given.
   private async send(what: string, build: () => string, done?: () => boolean): Promise<void> {
     this.awaited = null;
     try {
@@ -198,7 +198,7 @@ export class RefereePanel {
       return { side: robot.side, number: robot.number };
     };
     const name = () => this.players.selectedOptions[0]?.textContent ?? "Player";
-    // an empty height keeps the one that the player has
+    // without a height, the player keeps its own
     const height = () => trainer.typed(z.input.value, "z") ?? this.heightOf(this.players.value);
     const move = () =>
       void this.send(`Move ${name()}`, () => trainer.movePlayer(who(), trainer.typed(x.input.value, "x"), trainer.typed(y.input.value, "y"), height(), trainer.typed(angle.input.value, "turn")));
@@ -246,7 +246,7 @@ export class RefereePanel {
     return h("button", { type: "button", class: "button", "data-testid": testid, onclick: run }, icon("target"), "Pick on the field");
   }
 
-  /// Removing an agent cannot be undone: it needs a second press.
+  /// Removing an agent cannot be undone, so it needs a second press.
   private removal(run: () => void): HTMLElement {
     const button = h("button", { type: "button", class: "button careful", "data-testid": "player-kill" }, "Remove");
     const disarm = () => {
@@ -300,7 +300,7 @@ export class RefereePanel {
     if (players.some((r) => r.key === kept)) this.players.value = kept;
   }
 
-  /// The fields follow the score until the user types in them.
+  /// The input fields show the score until the user edits them.
   private showScore(): void {
     const { environment } = this.app.world;
     const goals = [numberOf(environment, "score_left", 0), numberOf(environment, "score_right", 0)].map(String);

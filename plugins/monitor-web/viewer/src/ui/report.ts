@@ -1,4 +1,4 @@
-/// What tests and curious people may ask of the page: `spark.state()` in the browser's console.
+/// The state of the page for tests and debugging: `spark.state()` in the browser's console.
 import { Vector3 } from "three";
 import { modeName } from "../sources";
 import type { Application } from "./application";
@@ -6,7 +6,7 @@ import { numberOf } from "./format";
 import { placeOf, type Point } from "./places";
 import { type Connection, connectionOf } from "./status_line";
 
-/// Fresh plain data on every call.
+/// Returns a new plain object on every call.
 export interface Report {
   source: "live" | "replay";
   connection: Connection;
@@ -14,21 +14,21 @@ export interface Report {
   /// Robot.key of each.
   robots: string[];
   selected: string | null;
-  /// Path of what is selected, where it is known.
+  /// Path of the selection, if known.
   path: string | null;
   ball: Point | null;
   time: number;
-  /// Of the replay; 0 and 0 in a live match.
+  /// Time range of the replay; 0 and 0 in a live match.
   start: number;
   end: number;
   playing: boolean;
   speed: number;
-  /// Pictures drawn since the page was opened.
+  /// Number of pictures drawn since the page was opened.
   frames: number;
   camera: string;
   quality: string;
   score: [number, number];
-  /// As on the wire.
+  /// The protocol name of the mode.
   playMode: string;
   events: number;
 }
@@ -36,7 +36,7 @@ export interface Report {
 export interface Spark {
   app: Application;
   state(): Report;
-  /// Where a robot's torso is in the page; null behind the camera.
+  /// Position of a robot's torso on the page; null if it is behind the camera.
   where(key: string): { x: number; y: number } | null;
 }
 

@@ -1,4 +1,4 @@
-/// Names, score, clock and play mode, as on television.
+/// The score board: team names, score, clock and play mode.
 import type { World } from "../model";
 import { modeName, modeSide, modeWords } from "../sources";
 import { h, setAttribute, setText } from "./dom";

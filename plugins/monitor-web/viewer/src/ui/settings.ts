@@ -1,4 +1,4 @@
-/// What this viewer's owner chose, kept in the browser.
+/// The user's settings, stored in the browser.
 import type { CameraMode, Quality, Theme } from "./app";
 
 export interface Palette {
@@ -8,8 +8,9 @@ export interface Palette {
   right: string;
 }
 
-/// Pairs that people with any kind of colour vision can tell apart: they differ in lightness, or in blue against yellow.
-/// The first one gives way to the teams' own names: Red is not to play in blue.
+/// Colour pairs that are distinguishable with any kind of colour vision: they differ in lightness or along the
+/// blue-yellow axis. With the first pair, teams that are named after colours get those colours: Red must not play in
+/// blue.
 export const kPalettes: readonly Palette[] = [
   { name: "Blue and orange", left: "#1f5fd6", right: "#ffa21a" },
   { name: "Blue and red", left: "#1f5fd6", right: "#f4593b" },
@@ -18,7 +19,8 @@ export const kPalettes: readonly Palette[] = [
   { name: "Green and pink", left: "#0b7a5b", right: "#f2a9d2" },
 ];
 
-/// The chosen pair; or, while that is the first one, the pair whose colours are the teams' names, the right way round.
+/// The chosen pair. If that is the first one and the teams are named after the colours of a pair, that pair in the
+/// right order.
 export function paletteFor(chosen: number, leftTeam: string, rightTeam: string): Palette {
   const names = [leftTeam, rightTeam].map((team) => team.toLowerCase());
   for (const palette of chosen === 0 ? kPalettes : []) {
@@ -42,14 +44,14 @@ export const kDefaults: Settings = { theme: "system", quality: "flat", labels: t
 
 const kKey = "spark-viewer";
 
-/// What was kept, with defaults for what is missing or makes no sense.
+/// Parses stored settings. Missing or invalid values are replaced by defaults.
 export function settingsFrom(text: string | null): Settings {
   let kept: Record<string, unknown> = {};
   try {
     const parsed: unknown = JSON.parse(text ?? "{}");
     if (parsed && typeof parsed === "object") kept = parsed as Record<string, unknown>;
   } catch {
-    // an older or foreign text: begin anew
+    // not valid JSON: use the defaults
   }
   const one = <T>(value: unknown, allowed: readonly T[], otherwise: T): T => (allowed.includes(value as T) ? (value as T) : otherwise);
   return {
@@ -73,6 +75,6 @@ export function keepSettings(settings: Settings): void {
   try {
     localStorage.setItem(kKey, JSON.stringify(settings));
   } catch {
-    // then it lasts as long as the page
+    // without storage, the settings are lost when the page is closed
   }
 }

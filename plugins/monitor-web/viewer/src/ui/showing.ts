@@ -1,17 +1,18 @@
-/// Which source is shown: the live match, or a log that was opened; and how far opening is, or why it failed.
+/// Manages the source that is shown: the live match or an opened log, with the progress of opening or the reason for a
+/// failure.
 import type { LiveSource, ReplaySource, Source } from "../model";
 import { openLive, openReplay } from "../sources";
 import { emptyWorld } from "../sources/world";
 import { fileNameOf, streamOf } from "./address";
 import { fetchedLog, unpackedFile } from "./logs";
 
-/// Before the first log is open: an empty stage.
+/// The source before the first log is open: an empty stage.
 function nothing(): Source {
   return { world: emptyWorld(), kind: "replay", update: () => undefined, close: () => undefined };
 }
 
 export interface LogWishes {
-  /// Where to begin [s of the log]; null: at its start.
+  /// Start time [s of the log]; null: the beginning.
   at: number | null;
   paused: boolean;
 }
@@ -20,12 +21,12 @@ export class Showing {
   source: Source = nothing();
   live: LiveSource | null = null;
   replay: ReplaySource | null = null;
-  /// What is being opened, and how far that is (0..1).
+  /// The log that is being opened, and the progress (0..1).
   loading: { name: string; share: number } | null = null;
   failure: { title: string; words: string } | null = null;
-  /// Another source is shown.
+  /// Called when another source is shown.
   onchange: () => void = () => undefined;
-  /// Only what was asked for last is shown.
+  /// Counts requests: only the result of the last one is shown.
   private turn = 0;
 
   constructor(private readonly address: string) {}
@@ -47,7 +48,7 @@ export class Showing {
     this.failure = null;
     heard(0);
     try {
-      // half of the way is reading, half is understanding
+      // reading is half of the progress, indexing the other half
       const reading = (share: number) => heard(share / 2);
       const log = typeof from === "string" ? await fetchedLog(from, reading) : await unpackedFile(from, reading);
       const replay = await openReplay(log, name, (share) => heard(0.5 + share / 2));
@@ -63,7 +64,7 @@ export class Showing {
     }
   }
 
-  /// Goes on with what was shown before the failure.
+  /// Continues with the source that was shown before the failure.
   forgive(): void {
     this.failure = null;
   }

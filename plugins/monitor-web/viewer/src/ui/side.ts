@@ -56,7 +56,7 @@ export class Side {
     setHidden(this.element, name === null);
   }
 
-  /// Closes, and gives the focus back to the tab.
+  /// Closes the panel and returns the focus to the tab.
   private leave(): void {
     const tab = this.chosen && this.tabs.get(this.chosen);
     this.show(null);

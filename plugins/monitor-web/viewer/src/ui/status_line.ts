@@ -1,4 +1,4 @@
-/// Live or replay, connected or not, how fast, watched by how many.
+/// The status line: live or replay, connection state, speed, number of spectators.
 import type { App } from "./app";
 import { h, setAttribute, setHidden, setText } from "./dom";
 import { count, factor, speed } from "./format";

@@ -1,4 +1,4 @@
-/// How often, and how finely, this page wants to hear from the host.
+/// The frame rate and level of detail that this page requests from the host.
 import type { LiveSource } from "../model";
 
 export interface StreamWish {
@@ -13,7 +13,7 @@ export function streamWish(hidden: boolean, savesData: boolean): StreamWish {
   return savesData ? { rate: 10, detail: "coarse" } : { rate: 25, detail: "fine" };
 }
 
-/// Tells the host what is wanted now.
+/// Sends the current request to the host.
 export function tellWish(live: LiveSource | null): void {
   const line = (navigator as Navigator & { connection?: { saveData?: boolean } }).connection;
   const { rate, detail } = streamWish(document.hidden, line?.saveData ?? false);

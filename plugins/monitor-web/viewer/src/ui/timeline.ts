@@ -1,4 +1,4 @@
-/// The bar below a replay: where we are, what happened when, and the buttons of a tape recorder.
+/// The bar below a replay: current time, event marks and playback buttons.
 import type { GameEvent, ReplaySource } from "../model";
 import { h, setAttribute, setHidden, setText } from "./dom";
 import { clock, speed, spokenClock } from "./format";
@@ -98,14 +98,14 @@ export class Timeline {
     if (this.replay) this.setSpeed(otherSpeed(this.replay.speed, direction));
   }
 
-  /// Once a picture, before it is drawn: dragging asks for many times, the last one counts.
+  /// Call it once per picture, before drawing. Dragging requests many times; only the last one is used.
   seekWanted(): void {
     if (this.wanted === null || !this.replay) return;
     this.replay.seek(this.wanted);
     this.wanted = null;
   }
 
-  /// Ten times a second.
+  /// Call it ten times a second.
   update(): void {
     const { replay } = this;
     if (!replay) return;
@@ -211,7 +211,7 @@ export class Timeline {
     this.track.addEventListener("pointerleave", () => this.hideTip());
   }
 
-  /// What a slider does with these; all other keys are the whole page's.
+  /// The keys that the slider handles; all other keys are handled by the page.
   private pageKeys(event: KeyboardEvent): void {
     const way = { PageUp: 30, PageDown: -30, ArrowUp: 5, ArrowDown: -5 }[event.key];
     if (way === undefined) return;

@@ -1,7 +1,7 @@
-/// Times, shares of the bar, and which marks are drawn where many fall together.
+/// Conversion between times and positions on the bar, and merging of nearby marks.
 import type { GameEvent } from "../model";
 
-/// 0..1; 0 for a log of one record.
+/// Position on the bar, 0..1; 0 for a log of one record.
 export function shareOf(time: number, start: number, end: number): number {
   return end > start ? Math.min(1, Math.max(0, (time - start) / (end - start))) : 0;
 }
@@ -15,13 +15,14 @@ export interface Mark {
   side: GameEvent["side"];
   time: number;
   share: number;
-  /// All that happened there, one line each.
+  /// Texts of the events, one line each.
   texts: string[];
 }
 
 const kRank: Record<GameEvent["kind"], number> = { goal: 2, foul: 1, mode: 0 };
 
-/// One mark for all events that lie closer than `gap` pixels on a bar of `width`; the weightiest gives kind, side and place.
+/// Merges events closer than `gap` pixels on a bar of `width` into one mark. The most important event determines kind,
+/// side and position.
 export function marksOf(events: readonly GameEvent[], start: number, end: number, width: number, gap: number): Mark[] {
   const marks: Mark[] = [];
   let first = -Infinity;
@@ -41,7 +42,7 @@ export function marksOf(events: readonly GameEvent[], start: number, end: number
 
 const kSteps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600];
 
-/// Round times for the scale: at most `most` of them, and one.
+/// Round times for the scale, at most `most` + 1 of them.
 export function ticksOf(start: number, end: number, most: number): number[] {
   const longest = 7200 * Math.max(1, Math.ceil((end - start) / Math.max(1, most) / 7200));
   const step = kSteps.find((s) => (end - start) / s <= most) ?? longest;
@@ -50,9 +51,10 @@ export function ticksOf(start: number, end: number, most: number): number[] {
   return ticks;
 }
 
-/// The next event after (1) or before (-1) `time` that is not mere change of mode; failing that the next at all.
+/// The next event after (1) or before (-1) `time` that is not just a change of mode; if there is none, the next event
+/// of any kind.
 export function neighbour(events: readonly GameEvent[], time: number, direction: 1 | -1): GameEvent | null {
-  // jumping back right after a jump would find the same one again
+  // otherwise a second jump back would find the same event again
   const beyond = (e: GameEvent) => (direction > 0 ? e.time > time + 0.05 : e.time < time - 1);
   const candidates = events.filter(beyond);
   const weighty = candidates.filter((e) => e.kind !== "mode");
@@ -68,7 +70,7 @@ export function otherSpeed(speed: number, direction: 1 | -1): number {
   return next ?? speed;
 }
 
-/// Events that became visible while time went from `since` to `now` in the flow of play; none after a jump.
+/// Events between `since` and `now` in normal playback; none after a jump.
 export function passed(events: readonly GameEvent[], since: number, now: number, longest = 3): GameEvent[] {
   if (!(now > since) || now - since > longest) return [];
   return events.filter((e) => e.time > since && e.time <= now);

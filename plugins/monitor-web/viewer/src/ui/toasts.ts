@@ -8,7 +8,7 @@ const kMost = 4;
 
 export class Toasts {
   readonly element = h("div", { class: "toasts" });
-  /// Not seen, but read aloud.
+  /// Invisible, but read by screen readers.
   readonly announcer = h("div", { class: "unseen", "data-testid": "announcer", role: "log", "aria-live": "polite" });
 
   show(text: string, tone: Tone = "plain", side?: Side): void {
@@ -19,7 +19,7 @@ export class Toasts {
     this.say(text);
   }
 
-  /// Goals and fouls are shown; a change of mode is on the score board already.
+  /// Shows goals and fouls. Changes of mode are already on the score board.
   event(event: GameEvent): void {
     if (event.kind === "mode") return;
     this.show(event.text, event.kind, event.side);

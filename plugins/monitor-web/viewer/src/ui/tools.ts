@@ -1,4 +1,4 @@
-/// Cameras, looks, logs and help: a bar beside the picture; on a phone the contents of a sheet.
+/// The toolbar for cameras, appearance, logs and help; on a phone it is in a sheet.
 import type { CameraMode, Quality, Theme } from "./app";
 import { h, setAttribute, setText } from "./dom";
 import { changeIcon, icon, type IconName } from "./icons";

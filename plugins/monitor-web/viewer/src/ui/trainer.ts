@@ -1,4 +1,5 @@
-/// The referee's commands as the host reads them. Empty fields are null; a command that lacks something says what.
+/// Builds the referee's commands in the format of the host. Empty fields are null; if a required field is missing, an
+/// error names it.
 import type { Side } from "../model";
 
 export class Incomplete extends Error {}
@@ -25,7 +26,7 @@ function natural(value: number | null, name: string): number {
   return number;
 }
 
-/// At most three decimals: millimetres.
+/// Formats with at most three decimals (millimetres).
 const shown = (value: number) => String(Number(value.toFixed(3)));
 const sideWord = (side: Side) => (side === "left" ? "Left" : "Right");
 
@@ -42,13 +43,13 @@ export const playMode = (name: string) => `(playMode ${name})`;
 export const kill = (who: Who) => `(kill ${whoText(who)})`;
 export const repos = (who: Who) => `(repos ${whoText(who)})`;
 
-/// Puts the ball somewhere, at rest.
+/// Places the ball at a position, at rest.
 export function moveBall(x: number | null, y: number | null, z: number | null): string {
   const place = [needed(x, "x"), needed(y, "y"), needed(z, "z")].map(shown).join(" ");
   return `(ball (pos ${place})(vel 0 0 0))`;
 }
 
-/// Puts a player somewhere; with an angle [deg] it is turned, too.
+/// Places a player at a position, and with an angle [deg] also rotates it.
 export function movePlayer(who: Who, x: number | null, y: number | null, z: number | null, angleDeg: number | null): string {
   const place = [needed(x, "x"), needed(y, "y"), needed(z, "z")].map(shown).join(" ");
   return `(agent ${whoText(who)}${angleDeg === null ? `(pos ${place})` : `(move ${place} ${shown(angleDeg)})`})`;
@@ -66,7 +67,7 @@ export function time(text: string): string {
   return `(time ${shown(seconds)})`;
 }
 
-/// A command typed by hand: balanced parentheses around it, added where there are none.
+/// A command typed by the user. Enclosing parentheses are added if they are missing; they must be balanced.
 export function raw(text: string): string {
   const trimmed = text.trim();
   if (trimmed === "") throw new Incomplete("type a command, such as (dropBall)");

@@ -1,4 +1,5 @@
-/// Matrices as 16 numbers, column by column, whose last row is 0 0 0 1; many of them behind each other in one array, so all functions take offsets.
+/// Matrices as 16 numbers, column by column, whose last row is 0 0 0 1. Many are stored consecutively in one array, so
+/// all functions take offsets.
 
 export type Numbers = Float32Array | Float64Array | number[];
 
@@ -19,7 +20,7 @@ export function multiply(out: Numbers, o: number, a: Numbers, i: number, b: Numb
   out[o + 15] = 1;
 }
 
-/// A rotation (x, y, z, w) and a position.
+/// Writes a rotation (x, y, z, w) and a position as a matrix.
 export function compose(out: Numbers, o: number, position: readonly number[], rotation: readonly number[]): void {
   const [x, y, z, w] = rotation as [number, number, number, number];
   out[o] = 1 - 2 * (y * y + z * z);
@@ -44,7 +45,7 @@ export function identity(out: Numbers, o: number): void {
   compose(out, o, [0, 0, 0], [0, 0, 0, 1]);
 }
 
-/// Where a world point is in the frame of a matrix without scale.
+/// Transforms a world point into the frame of a matrix without scale.
 export function toLocal(matrix: Numbers, o: number, point: readonly [number, number, number], out: [number, number, number]): void {
   rotateBack(matrix, o, [point[0] - matrix[o + 12]!, point[1] - matrix[o + 13]!, point[2] - matrix[o + 14]!], out);
 }

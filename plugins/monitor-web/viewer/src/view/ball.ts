@@ -16,7 +16,7 @@ const pattern = /* glsl */ `
     return smoothstep(0.925, 0.945, nearest);
   }`;
 
-/// The ball, never smaller than a few pixels, and where it came from.
+/// The ball, drawn at least a few pixels wide, and its trail.
 export class Ball {
   readonly group = new Group();
   readonly trail = new Trail(trailPoints, trailSeconds);
@@ -44,7 +44,7 @@ export class Ball {
     this.radius = shape?.size[0] ?? (typeof told === "number" && told > 0 ? told : mesh?.scale?.[0]) ?? 0.05;
   }
 
-  /// For another frame: where the ball is.
+  /// Updates the position of the ball for a new frame.
   update(worlds: Float32Array, node: number, time: number): void {
     this.group.visible = node >= 0;
     if (node < 0) return;
@@ -53,7 +53,7 @@ export class Ball {
     this.trail.add(time, this.position.x, this.position.y, this.position.z);
   }
 
-  /// For every picture: `pixel` = metres of one at a distance of one metre.
+  /// Call it for every picture. `pixel`: size of a pixel at a distance of one metre [m].
   fit(eye: Vector3, pixel: number, time: number, withTrail: boolean): void {
     if (!this.group.visible) return;
     const size = Math.max(this.radius, 4.2 * pixel * eye.distanceTo(this.position));
@@ -74,7 +74,7 @@ export class Ball {
     }
   }
 
-  /// A strip through the trail's points that faces the eye and gets thinner backwards.
+  /// A strip through the trail's points that faces the camera and gets thinner towards its end.
   private layRibbon(eye: Vector3, size: number, time: number): void {
     const { points, count } = this.trail;
     const position = this.ribbon.geometry.getAttribute("position") as BufferAttribute, strength = this.ribbon.geometry.getAttribute("strength") as BufferAttribute;

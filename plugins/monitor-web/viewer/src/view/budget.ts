@@ -1,13 +1,14 @@
-/// Resolution that a slow machine can keep up with: fewer pixels when pictures take too long for a while, more when there is time to spare.
+/// Adapts the resolution to the machine: fewer pixels if pictures take too long for a while, more if there is time to
+/// spare.
 export class Budget {
-  /// Share of the full resolution along each edge, 0.5..1.
+  /// Fraction of the full resolution along each edge, 0.5..1.
   share = 1;
   private slow = 0;
   private fast = 0;
 
-  /// Hears how long the last of a row of pictures took [ms]; true: the share is another.
+  /// Receives the duration of the last of consecutive pictures [ms]. Returns true if the fraction changed.
   heard(milliseconds: number): boolean {
-    // One long picture is a scene being built, or a page that was away; many are a slow machine.
+    // A single long picture is a scene being built or a page that was hidden; many are a slow machine.
     if (milliseconds > 3000) return false;
     this.slow = milliseconds > 38 ? this.slow + Math.min(6, milliseconds / 38) : Math.max(0, this.slow - 2);
     this.fast = milliseconds < 21 ? this.fast + 1 : 0;

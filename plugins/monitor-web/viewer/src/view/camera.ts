@@ -5,24 +5,25 @@ import { Orbit } from "./orbit";
 import { Pose } from "./pose";
 import type { CameraMode, CameraView } from "./stage";
 
-/// What the cameras look at.
+/// The input of the cameras.
 export interface Sights {
   field: FieldSizes | null;
-  /// Half the edge of what there is to see without a field [m].
+  /// Half the edge of the scene if there is no field [m].
   extent: number;
-  /// Null: there is none.
+  /// null: no ball.
   ball: Vector3 | null;
-  /// World matrix of the head to look out of; null: none. Upright: it rolls (a sphere), look at the ball from above it.
+  /// World matrix of the head for the head camera; null: none. Upright: the head rolls (a sphere), so the camera looks
+  /// at the ball from above it.
   head: { matrix: Matrix4; rolls: boolean; radius: number } | null;
   /// Width of the picture over its height.
   aspect: number;
 }
 
-const flight = 0.8;              // s, from one mode to another
+const flight = 0.8;              // s, duration of the move from one mode to another
 const angles: Record<CameraMode, number> = { orbit: 40, broadcast: 34, head: 78, top: 40 };
 const up = new Vector3(0, 0, 1);
 
-/// Held keys: what they do in a second.
+/// Movement per second while a key is held.
 const keys: Record<string, { slide?: [number, number]; turn?: [number, number]; zoom?: number }> = {
   KeyW: { slide: [0, 1] }, KeyS: { slide: [0, -1] }, KeyA: { slide: [-1, 0] }, KeyD: { slide: [1, 0] },
   KeyQ: { turn: [-1, 0] }, KeyE: { turn: [1, 0] }, KeyR: { turn: [0, 0.6] }, KeyF: { turn: [0, -0.6] },
@@ -33,7 +34,7 @@ const keys: Record<string, { slide?: [number, number]; turn?: [number, number]; 
 export class Camera implements CameraView {
   readonly pose = new Pose();
   onmode: ((mode: CameraMode) => void) | null = null;
-  /// Jumps instead of flying.
+  /// Switches modes immediately instead of flying.
   reducedMotion = false;
 
   private current: CameraMode = "orbit";
@@ -49,7 +50,7 @@ export class Camera implements CameraView {
   private sinceChange = flight;
   private readonly held = new Set<string>();
   private isHome = true;
-  /// What the first view was made for.
+  /// The parameters for which the initial view was computed.
   private readonly homeFor = { aspect: 0, extent: 0, field: null as FieldSizes | null };
 
   constructor(private readonly sights: Sights) {
@@ -71,7 +72,7 @@ export class Camera implements CameraView {
     this.onmode?.(mode);
   }
 
-  /// After another scene came: looks at all of it.
+  /// Resets the view to show all of a new scene.
   reset(): void {
     this.isHome = true;
     this.closeness = 1;
@@ -110,13 +111,13 @@ export class Camera implements CameraView {
     this.held.clear();
   }
 
-  /// Dragged by shares of the picture's height.
+  /// Handles a drag, in fractions of the picture's height.
   drag(right: number, down: number): void {
     if (this.current === "top") this.slide(right, down);
     else this.handled().turn(-right * 3.2, down * 2.4);
   }
 
-  /// The ground is dragged along.
+  /// The ground follows the pointer.
   slide(right: number, down: number): void {
     const orbit = this.handled();
     const metres = 2 * orbit.distance * Math.tan((this.pose.angle * Math.PI) / 360);
@@ -128,12 +129,12 @@ export class Camera implements CameraView {
     else this.handled().zoom(factor);
   }
 
-  /// Twisted by two fingers [rad].
+  /// Handles a rotation by two fingers [rad].
   twist(angle: number): void {
     if (this.current !== "top") this.handled().turn(angle, 0);
   }
 
-  /// To the next picture, `seconds` after the last; true when the view is another.
+  /// Advances to the next picture, `seconds` after the last. Returns true if the view changed.
   step(seconds: number): boolean {
     if (this.isHome && this.isElsewhere()) this.goHome();
     this.moveByKeys(seconds);
@@ -157,12 +158,12 @@ export class Camera implements CameraView {
     else (view === "top" ? this.above : this.orbit).pose(wanted);
   }
 
-  /// From the side line, along with the ball.
+  /// The broadcast camera: from the side line, following the ball.
   private aimAtBall(seconds: number): void {
     const { field, ball, extent, aspect } = this.sights;
     const distance = (field ? 4.2 + 0.42 * field.width : 1.9 * extent) * this.closeness;
     focus.copy(ball ?? origin);
-    // Not quite to the edges: the ball leads, but the game around it stays in the picture.
+    // Not quite to the edges: the camera follows the ball, but keeps the game around it in the picture.
     if (field) focus.set(limit(focus.x, field.length / 2 - 0.12 * aspect * distance), limit(focus.y, field.width / 2), 0);
     focus.set(focus.x, 0.72 * focus.y, 0.3);
     if (this.following) this.follower.step(seconds, focus);
@@ -195,7 +196,7 @@ export class Camera implements CameraView {
     this.wanted.rotation.copy(headPose.rotation);
   }
 
-  /// All of the field in the picture: from the side line, in tall pictures from behind the left goal.
+  /// A view of the whole field: from the side line, or in tall pictures from behind the left goal.
   private goHome(): void {
     const { field, extent, aspect } = this.sights;
     const isTall = aspect < 0.8;
@@ -225,7 +226,7 @@ export class Camera implements CameraView {
     return isOtherPlace || sights.aspect !== homeFor.aspect;
   }
 
-  /// The orbit that a hand moves now; the automatic cameras give way to the free one.
+  /// The orbit that the user moves. Automatic cameras switch to the free one.
   private handled(): Orbit {
     this.isHome = false;
     if (this.current === "top") return this.above;
@@ -256,7 +257,7 @@ export class Camera implements CameraView {
   }
 }
 
-/// Tall pictures, as on phones, open wider, so that as much is seen across.
+/// Tall pictures, as on phones, have a larger vertical angle, so that the same width is visible.
 function angleOf(mode: CameraMode, aspect: number): number {
   return aspect < 1 ? Math.min(85, angles[mode] * (0.6 + 0.4 / aspect)) : angles[mode];
 }

@@ -7,7 +7,8 @@ interface Finger {
   y: number;
 }
 
-/// Mouse and touch: one finger or the left button turns, two fingers or another button slide, wheel and pinch zoom. Short presses are clicks.
+/// Mouse and touch: one finger or the left button rotates, two fingers or another button pan, wheel and pinch zoom.
+/// Short presses are clicks.
 export class Controls {
   onclick: ((x: number, y: number) => void) | null = null;
   private readonly fingers = new Map<number, Finger>();

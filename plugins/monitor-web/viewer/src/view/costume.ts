@@ -2,7 +2,7 @@ import type { Robot, Shape } from "../model";
 import { compose } from "./affine";
 import { materialColour, robot as colours, teamColour, type Rgb, type TeamColours } from "./palette";
 
-/// What a robot's part wears: shapes around those that the scene gives it. A robot looks to +y, its right is +x.
+/// Decorative shapes of a robot's part, around the shapes in the scene. A robot looks towards +y; +x is its right.
 export interface Dress {
   parts: { shape: Shape; colour: Rgb; rounding?: number }[];
   decals: { matrix: number[]; size: number }[];
@@ -10,7 +10,7 @@ export interface Dress {
 
 type Part = "body" | "head" | "upperarm" | "lowerarm" | "thigh" | "shank" | "foot";
 
-/// Meshes of things that the view draws itself: ground, sky, goals, ball.
+/// Meshes of objects that the view draws itself: ground, sky, goals, ball.
 export function isSceneryMesh(name: string): boolean {
   return /soccerfield|skybox|soccergoal|soccerball/.test(name);
 }
@@ -21,7 +21,7 @@ function partOf(name: string): Part | null {
   return match ? (match[1] as Part) : null;
 }
 
-/// The dress of a robot's part; null for parts that have none.
+/// The decoration of a robot's part; null if it has none.
 export function dress(name: string, shapes: readonly Shape[], robot: Robot, materials: readonly string[], teams: TeamColours): Dress | null {
   const part = partOf(name);
   const core = shapes[0];
@@ -33,7 +33,7 @@ function teamOf(materials: readonly string[], teams: TeamColours): Rgb {
   return materialColour(materials.find(name => /^mat(Left|Right|Team)/.test(name)) ?? "matTeam", teams);
 }
 
-/// Cuts the dress of one part to its shape's measure.
+/// Scales the decoration of a part to the size of its shape.
 class Tailor {
   private readonly dress: Dress = { parts: [], decals: [] };
 

@@ -10,13 +10,14 @@ export interface FieldSizes {
   circle: number;
   penaltyLength: number;
   penaltyWidth: number;
-  /// Of a line.
+  /// Width of a line.
   lineWidth: number;
-  /// Of the grass beyond the lines.
+  /// Width of the grass beyond the lines.
   margin: number;
 }
 
-/// Sizes as the environment tells them; what it leaves out in the proportions of the 3D league. Null: no field here.
+/// Sizes from the environment. Missing sizes are computed with the proportions of the 3D league. null: there is no
+/// field.
 export function fieldSizes(environment: Environment): FieldSizes | null {
   const number = (name: string) => {
     const value = environment.get(name);
@@ -39,7 +40,7 @@ export function fieldSizes(environment: Environment): FieldSizes | null {
 
 export type Point = [number, number];
 
-/// The lines of a field as chains of points; the circle closes.
+/// The lines of a field as polylines; that of the circle is closed.
 export function fieldLines(f: FieldSizes): Point[][] {
   const [x, y] = [f.length / 2, f.width / 2];
   const lines: Point[][] = [
@@ -53,7 +54,7 @@ export function fieldLines(f: FieldSizes): Point[][] {
   return lines;
 }
 
-/// Twelve stripes between the goal lines; the outermost go on to the edge of the grass.
+/// Twelve stripes between the goal lines; the outermost ones extend to the edge of the grass.
 export function stripes(field: FieldSizes): { from: number; to: number; alternate: boolean }[] {
   const width = field.length / 12;
   return Array.from({ length: 12 }, (_, k) => ({

@@ -1,12 +1,12 @@
 import { BufferAttribute, InstancedBufferGeometry } from "three";
 
-/// All solids come from three forms, stretched in the vertex shader: a vertex is corner * (half - rounding) + normal * rounding. So boxes keep round
-/// edges of any radius, and a sphere or a capsule is a box that is all rounding.
+/// All solids are made of three forms, stretched in the vertex shader: a vertex is corner * (half - rounding) + normal
+/// * rounding. So boxes can have round edges of any radius, and a sphere or a capsule is a box with maximum rounding.
 export type Form = "block" | "round" | "barrel";
 
 type Vector = [number, number, number];
 
-/// Collects vertices and triangles; triangles turn by themselves so that they face outwards.
+/// Collects vertices and triangles; orients triangles so that they face outwards.
 class Mould {
   readonly corners: number[] = [];
   readonly normals: number[] = [];
@@ -40,7 +40,7 @@ class Mould {
     return geometry;
   }
 
-  /// As it is with half edges of 1 and rounding 0.5.
+  /// The geometry for half edges of 1 and rounding 0.5.
   private position(vertex: number): Vector {
     return [0, 1, 2].map(k => 0.5 * this.corners[3 * vertex + k]! + 0.5 * this.normals[3 * vertex + k]!) as Vector;
   }
@@ -48,7 +48,8 @@ class Mould {
 
 const signs = [1, -1];
 
-/// A box with round edges: eight eighths of a sphere, `segments` pieces along each quarter circle, and what lies between them.
+/// A box with round edges: eight octants of a sphere, with `segments` pieces along each quarter circle, and the faces
+/// between them.
 export function roundedBox(segments: number): InstancedBufferGeometry {
   const mould = new Mould();
   const eighths = new Map<string, number>();

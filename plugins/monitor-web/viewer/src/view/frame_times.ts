@@ -1,6 +1,6 @@
 export interface FrameSummary {
   pictures: number;
-  /// Pictures a second.
+  /// Pictures per second.
   rate: number;
   /// Time between pictures [ms].
   median: number;
@@ -10,7 +10,7 @@ export interface FrameSummary {
 
 const kept = 3000;
 
-/// Times between pictures that followed each other, the last few thousand.
+/// Times between consecutive pictures, for the last few thousand.
 export class FrameTimes {
   private readonly times = new Float32Array(kept);
   private count = 0;

@@ -1,6 +1,6 @@
 import type { PerspectiveCamera } from "three";
 
-/// What a camera sees, as quick tests for spheres.
+/// The view volume of a camera, with fast tests for spheres.
 export class Frustum {
   private readonly m = new Float64Array(12);
   private tanX = 1;
@@ -17,7 +17,7 @@ export class Frustum {
     this.slantY = Math.hypot(1, this.tanY);
   }
 
-  /// Distance along the view of a sphere's centre; negative when nothing of it is seen.
+  /// Distance of a sphere's centre along the view direction; negative if the sphere is invisible.
   depth(x: number, y: number, z: number, radius: number): number {
     const m = this.m;
     const depth = -(m[8]! * x + m[9]! * y + m[10]! * z + m[11]!);

@@ -3,18 +3,18 @@ import type { FieldSizes } from "./field_sizes";
 import { robot } from "./palette";
 import { type Piece, pieceOf } from "./pieces";
 
-/// Goals of posts and nets, where the scene has the goals' meshes; goals of plates are boxes of the scene.
+/// Goals with posts and nets, for scenes with goal meshes. Goals made of plates are boxes of the scene.
 export function hasNetGoals(world: World): boolean {
   return world.nodes.some(node => node.load?.includes("soccergoal"));
 }
 
-/// True for a place inside a goal [m].
+/// True for a position inside a goal [m].
 export function isInGoal(f: FieldSizes, x: number, y: number): boolean {
   const behind = Math.abs(x) - f.length / 2;
   return behind > -0.1 && behind < f.goalDepth + 0.2 && Math.abs(y) < f.goalWidth / 2 + 0.2;
 }
 
-/// Posts, bars and the frames that hold the nets; `fixed` = the node that never moves.
+/// Posts, bars and the frames of the nets. `fixed`: the node that never moves.
 export function goalPieces(f: FieldSizes, fixed: number): Piece[] {
   const radius = Math.max(0.025, 0.022 * f.goalHeight), thin = 0.4 * radius;
   const [y, z] = [f.goalWidth / 2 + radius, f.goalHeight + radius];

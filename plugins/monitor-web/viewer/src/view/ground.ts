@@ -8,10 +8,10 @@ import type { Quality } from "./stage";
 
 /// Half the edge of the ground of scenes without a field [m].
 const plainHalf = 12;
-/// How far the ground goes on around it [m].
+/// Width of the surrounding ground [m].
 const farGround = 900;
 
-/// Triangles with a colour for each corner.
+/// Triangles with vertex colours.
 class Quilt {
   private readonly positions: number[] = [];
   private readonly colours: number[] = [];
@@ -27,7 +27,7 @@ class Quilt {
     this.quad([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]], [colour, colour, colour, colour]);
   }
 
-  /// The frame between a rectangle of these half edges and one that is wider by `width`.
+  /// The border between a rectangle with these half edges and one that is larger by `width` on each side.
   frame(x: number, y: number, width: number, inner: Rgb, outer: Rgb): void {
     const near: [number, number][] = [[-x, -y], [x, -y], [x, y], [-x, y]];
     const far = near.map(([a, b]) => [a + Math.sign(a) * width, b + Math.sign(b) * width] as [number, number]);
@@ -49,7 +49,7 @@ export function mix(a: Rgb, b: Rgb, share: number): Rgb {
   return [0, 1, 2].map(k => a[k]! + (b[k]! - a[k]!) * share) as unknown as Rgb;
 }
 
-/// Ground, lines, nets and sky: what never moves but with the window.
+/// Ground, lines, nets and sky: the static parts of the scene.
 export class Ground {
   readonly group = new Group();
   private readonly sky: Mesh;
@@ -63,7 +63,7 @@ export class Ground {
     for (const child of this.group.children) child.frustumCulled = false;
   }
 
-  /// Keeps the sky around the camera.
+  /// Centres the sky on the camera.
   follow(x: number, y: number): void {
     this.sky.position.set(x, y, 0);
   }
@@ -98,7 +98,7 @@ function layer<T extends Mesh>(mesh: T, order: Layer): T {
   return mesh;
 }
 
-/// Light near the grass, darker outside, and the horizon's colour at the end.
+/// Light near the grass, darker outside, and the colour of the horizon at the edge.
 function addFloor(quilt: Quilt, x: number, y: number, around: Surroundings): void {
   const size = Math.min(x, y);
   const steps: [number, Rgb][] = [
@@ -111,7 +111,7 @@ function addFloor(quilt: Quilt, x: number, y: number, around: Surroundings): voi
   }
 }
 
-/// Mown in stripes across; returns half its edges.
+/// Adds grass with mown stripes; returns its half edges.
 function addGrass(quilt: Quilt, field: FieldSizes, around: Surroundings): [number, number] {
   const [x, y] = [field.length / 2 + field.margin, field.width / 2 + field.margin];
   for (const { from, to, alternate } of stripes(field)) quilt.rectangle(from, -y, to, y, alternate ? around.grassAlternate : around.grass);
@@ -123,7 +123,7 @@ function gridLines(): [number, number][][] {
   return steps.flatMap(s => [[[s, -plainHalf], [s, plainHalf]], [[-plainHalf, s], [plainHalf, s]]] as [number, number][][]);
 }
 
-/// Strips along the chains, cut into pieces so that thin ones fade bit by bit with the distance.
+/// Strips along the polylines, divided into pieces so that thin lines fade gradually with distance.
 function lineGeometry(chains: readonly (readonly [number, number])[][], width: number): BufferGeometry {
   const positions: number[] = [], across: number[] = [], indices: number[] = [];
   for (const chain of chains) {
@@ -147,7 +147,7 @@ function lineGeometry(chains: readonly (readonly [number, number])[][], width: n
   return geometry;
 }
 
-/// Points of a straight line, which goes on beyond its ends so that corners are full.
+/// Points of a straight line, extended beyond its ends so that corners are filled.
 function straight(from: readonly [number, number], to: readonly [number, number], extra: number): [number, number][] {
   const length = Math.hypot(to[0] - from[0], to[1] - from[1]), pieces = Math.ceil(length / 2.5);
   return Array.from({ length: pieces + 1 }, (_, k) => {
@@ -156,7 +156,7 @@ function straight(from: readonly [number, number], to: readonly [number, number]
   });
 }
 
-/// A dome, the colour of the horizon below and of the zenith above.
+/// A dome with the colour of the horizon at the bottom and of the zenith at the top.
 function skyGeometry(around: Surroundings): BufferGeometry {
   const quilt = new Quilt();
   const radius = 800, sides = 24, heights = [-0.03, 0, 0.06, 0.16, 0.35, 0.7, 1];
@@ -172,7 +172,7 @@ function skyGeometry(around: Surroundings): BufferGeometry {
   return quilt.geometry();
 }
 
-/// Meshes of both goals: back, top and sides.
+/// Nets of both goals: back, top and sides.
 function netGeometry(f: FieldSizes): BufferGeometry {
   const points: number[] = [];
   const cell = Math.max(0.1, f.goalWidth / 22);

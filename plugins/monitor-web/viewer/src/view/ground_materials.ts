@@ -1,9 +1,10 @@
 import { CustomBlending, OneFactor, OneMinusSrcAlphaFactor, ShaderMaterial, SrcAlphaFactor, Vector3, ZeroFactor } from "three";
 import type { Rgb } from "./palette";
 
-// The ground and its lines are drawn first and without a depth test, in the order of Layer: nothing flickers, and hidden ground costs no test. They
-// must come before the solids, so lines are blended though three counts them as opaque. Shadows and rings come after the solids: they also lie on
-// flat boxes that scenes have for a ground.
+// The ground and its lines are drawn first and without a depth test, in the order of Layer: nothing flickers, and
+// hidden ground costs no test. They must come before the solids, so lines are blended though three counts them as
+// opaque. Shadows and rings are drawn after the solids, because they also lie on flat boxes that some scenes use as
+// ground.
 
 export enum Layer {
   Sky = -20,
@@ -14,12 +15,12 @@ export enum Layer {
 }
 
 const flatOnGround = { depthTest: false, depthWrite: false } as const;
-// The canvas stays opaque: its alpha is left alone.
+// Alpha is not written, so that the canvas stays opaque.
 const blended = {
   blending: CustomBlending, blendSrc: SrcAlphaFactor, blendDst: OneMinusSrcAlphaFactor, blendSrcAlpha: ZeroFactor, blendDstAlpha: OneFactor,
 } as const;
 
-/// Colours of the vertices as they are: no light, no conversion.
+/// Vertex colours without lighting and conversion.
 export function plainMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     ...flatOnGround,
@@ -33,7 +34,8 @@ export function plainMaterial(): ShaderMaterial {
   });
 }
 
-/// Lines on the ground that never get thinner than a pixel; they fade instead. `screen` = half the canvas in pixels.
+/// Lines on the ground that are at least a pixel wide; they fade instead of getting thinner. `screen`: half the canvas
+/// size in pixels.
 export function lineMaterial(colour: Rgb, screen: Vector3): ShaderMaterial {
   return new ShaderMaterial({
     ...flatOnGround, ...blended,
@@ -65,7 +67,8 @@ export function lineMaterial(colour: Rgb, screen: Vector3): ShaderMaterial {
   });
 }
 
-/// Spots on the ground, each an instance: `spot` = x, y, radius, strength; the mesh's x and y in units of the radius, z the share of the strength.
+/// Spots on the ground, each an instance. `spot`: x, y, radius, strength. In the mesh, x and y are in units of the
+/// radius, and z is the fraction of the strength.
 export function spotMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4,
@@ -83,7 +86,7 @@ export function spotMaterial(): ShaderMaterial {
   });
 }
 
-/// Thin nets of goals.
+/// Thin goal nets.
 export function netMaterial(colour: Rgb): ShaderMaterial {
   return new ShaderMaterial({
     transparent: true, depthWrite: false,

@@ -5,7 +5,8 @@ import { css, type Surroundings } from "./palette";
 /// Pixels of the longer edge.
 const resolution = 2048;
 
-/// The ground for quality mode: grass with stripes, blades and lines, or a floor with a grid, between -x..x and -y..y [m].
+/// Paints the ground for quality mode: grass with stripes, blades and lines, or a floor with a grid, between -x..x and
+/// -y..y [m].
 export function paintField(field: FieldSizes | null, x: number, y: number, around: Surroundings): CanvasTexture {
   const scale = resolution / Math.max(2 * x, 2 * y);
   const canvas = document.createElement("canvas");
@@ -39,7 +40,7 @@ function paintFloor(paint: CanvasRenderingContext2D, x: number, y: number, aroun
   for (let s = -Math.floor(y); s <= y; s++) paint.fillRect(-x, s - 0.01, 2 * x, 0.02);
 }
 
-/// Small light and dark specks, the same in every picture.
+/// Small light and dark specks, the same on every page load.
 function paintNoise(paint: CanvasRenderingContext2D, x: number, y: number, scale: number): void {
   const tile = document.createElement("canvas");
   tile.width = tile.height = 256;

@@ -6,7 +6,8 @@ import type { Decal } from "./pieces";
 
 const cellWidth = 96, cellHeight = 64;
 
-/// Signs with the robots' numbers: a label above each head, of a size that can be read from everywhere, and the numbers on their torsos.
+/// The robots' numbers: a label above each head, with a size that is legible at any distance, and the numbers on the
+/// torsos.
 export class Labels {
   readonly group = new Group();
   private readonly texture: CanvasTexture;
@@ -28,12 +29,12 @@ export class Labels {
     if (this.numbers) this.group.add(this.numbers);
   }
 
-  /// Labels above the heads; the numbers on the torsos stay.
+  /// Shows or hides the labels above the heads; the numbers on the torsos stay visible.
   set visible(on: boolean) {
     this.heads.visible = on;
   }
 
-  /// For another frame; `tops` has the height of each robot's label above its head [m].
+  /// Updates the labels for a new frame. `tops`: height of each robot's label above its head [m].
   update(worlds: Float32Array, tops: Float32Array): void {
     this.robots.forEach(({ head }, n) => {
       const o = 16 * head + 12;
@@ -79,7 +80,8 @@ export class Labels {
   }
 }
 
-/// Where in the atlas the signs of these robots are: left, bottom, width, height. Labels in the lower half of rows, numbers in the upper.
+/// Rectangles of these robots in the atlas: left, bottom, width, height. Labels are in the lower half of the rows,
+/// numbers in the upper half.
 function cells(robots: readonly number[], columns: number, count: number, half: 0 | 1): InstancedBufferAttribute {
   const rows = Math.ceil(count / columns);
   const values = robots.flatMap(robot => {
@@ -131,7 +133,7 @@ function paintNumber(paint: CanvasRenderingContext2D, x: number, y: number, text
   paint.fillText(text, x, y + 4);
 }
 
-/// A sign as wide as 0.3 m would be, but legible: between these heights in pixels.
+/// Labels are as large as a sign of 0.3 m width, but clamped to this range of heights in pixels.
 function headMaterial(atlas: Texture, screen: Vector3): ShaderMaterial {
   return new ShaderMaterial({
     transparent: true, premultipliedAlpha: true, depthWrite: false,

@@ -1,18 +1,18 @@
 import { Vector3 } from "three";
 
-// Motions that come out the same at every frame rate: each step is the exact solution over its time.
+// Motions that do not depend on the frame rate: each step is the exact solution for its duration.
 
-/// Share of the way to go in `seconds` when the distance left falls to 1/e in `constant` seconds.
+/// Fraction of the remaining distance to cover in `seconds` if that distance decays with time constant `constant` [s].
 export function approach(seconds: number, constant: number): number {
   return 1 - Math.exp(-seconds / constant);
 }
 
-/// A point pulled to another by a spring that never overshoots.
+/// A point pulled towards another by a critically damped spring.
 export class Follower {
   readonly position = new Vector3();
   readonly velocity = new Vector3();
 
-  /// `stiffness`: how fast it follows [1/s].
+  /// `stiffness`: natural frequency of the spring [1/s].
   constructor(private readonly stiffness: number) {}
 
   jump(to: Vector3): void {
@@ -31,7 +31,7 @@ export class Follower {
 
 const offset = new Vector3(), pull = new Vector3();
 
-/// 0..1 with no jerk at either end.
+/// A smooth step from 0 to 1.
 export function ease(share: number): number {
   const s = Math.min(1, Math.max(0, share));
   return s * s * s * (s * (6 * s - 15) + 10);

@@ -4,15 +4,15 @@ import type { Pose } from "./pose";
 
 const lowest = 0.03, highest = Math.PI / 2 - 0.002;
 
-/// A camera that circles a point. Handling changes where it wants to be; it glides there.
+/// A camera that orbits a point. User input changes its target pose, to which it moves smoothly.
 export class Orbit {
   readonly target = new Vector3();
   azimuth = -Math.PI / 2;
   elevation = 0.6;
   distance = 20;
-  /// Distance is kept in 0.3..this [m].
+  /// The distance is limited to 0.3..this [m].
   farthest = 300;
-  /// How far from the origin the target may be [m].
+  /// Maximum distance of the target from the origin [m].
   reach = 100;
   private readonly shown = { target: new Vector3(), azimuth: this.azimuth, elevation: this.elevation, distance: this.distance };
 
@@ -25,7 +25,7 @@ export class Orbit {
     this.distance = Math.min(this.farthest, Math.max(0.3, this.distance * factor));
   }
 
-  /// Slides over the ground: to the right and forwards, as seen [m].
+  /// Moves over the ground, to the right and forwards as seen in the picture [m].
   slide(right: number, forwards: number): void {
     const [sin, cos] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
     this.target.x += -sin * right - cos * forwards;
@@ -34,7 +34,7 @@ export class Orbit {
     if (far > this.reach) this.target.multiplyScalar(this.reach / far);
   }
 
-  /// Is at once where it wants to be.
+  /// Jumps to the target pose.
   settle(): void {
     this.shown.target.copy(this.target);
     this.shown.azimuth = this.azimuth;
@@ -55,7 +55,7 @@ export class Orbit {
     return out.around(target, azimuth, elevation, distance);
   }
 
-  /// Takes over from another camera: looks the same way, circles the point of the ground it looks at.
+  /// Takes over from another camera: keeps its view direction and orbits the point on the ground that it looks at.
   adopt(pose: Pose): void {
     const forward = new Vector3(0, 0, -1).applyQuaternion(pose.rotation);
     const down = -forward.z;

@@ -13,13 +13,14 @@ export function css(colour: Rgb): string {
   return "#" + colour.map(c => Math.round(c * 255).toString(16).padStart(2, "0")).join("");
 }
 
-/// How bright a colour looks, 0..1 (relative luminance of WCAG 2).
+/// Relative luminance of a colour as in WCAG 2, 0..1.
 export function luminance(colour: Rgb): number {
   const [r, g, b] = colour.map(c => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
   return 0.2126 * r! + 0.7152 * g! + 0.0722 * b!;
 }
 
-/// Blue against orange: apart for every kind of colour blindness, and in a grey print, since one is dark and the other bright.
+/// Blue against orange: distinguishable with every kind of colour blindness and in greyscale, because one is dark and
+/// the other bright.
 export interface TeamColours {
   left: Rgb;
   right: Rgb;
@@ -38,10 +39,10 @@ export function inkOn(colour: Rgb): Rgb {
   return luminance(colour) > 0.18 ? rgb(0x14181d) : rgb(0xffffff);
 }
 
-/// Parts of robots that are no team's.
+/// Parts of robots without a team colour.
 export const robot = { shell: rgb(0xf2f4f5), joint: rgb(0x3a4048), sole: rgb(0x555d66), visor: rgb(0x15181c), eye: rgb(0x7fe3ff) };
 
-/// Materials of scenes, toned down from the pure colours that their names promise.
+/// Materials of scenes, less saturated than the pure colours that their names suggest.
 const materials: Record<string, Rgb> = {
   matYellow: rgb(0xf2c53d), matOrange: rgb(0xee7f33), matRed: rgb(0xd6483f), matRedGlow: rgb(0xff6a55), matMagenta: rgb(0xc44a9e),
   matBlue: rgb(0x3c6fd1), matLightBlue: rgb(0x63b4e6), matGreen: rgb(0x4fa05a), matWhite: rgb(0xf1f2f3), matGrey: rgb(0x8b939c),
@@ -51,7 +52,7 @@ const materials: Record<string, Rgb> = {
 
 const others = [0x6f8fb0, 0xb08f6f, 0x7fa37a, 0xa37a9c, 0x8d86c4, 0xbba35f].map(rgb);
 
-/// The colour of a material; one of a few muted ones for unknown names, always the same for the same name.
+/// The colour of a material. An unknown name is mapped to one of a few muted colours, always to the same one.
 export function materialColour(name: string | undefined, teams = usualTeams): Rgb {
   if (name === undefined) return materials.matGrey!;
   const known = materials[name];
@@ -64,13 +65,13 @@ export function materialColour(name: string | undefined, teams = usualTeams): Rg
   return others[hash % others.length]!;
 }
 
-/// What is around the robots.
+/// Colours of the surroundings.
 export interface Surroundings {
   zenith: Rgb;
   horizon: Rgb;
   /// The ground beyond the grass.
   floor: Rgb;
-  /// The same further away, where less light falls.
+  /// The same further away, where it is darker.
   floorFar: Rgb;
   floorLine: Rgb;
   grass: Rgb;

@@ -7,16 +7,16 @@ import { materialColour, robot as robotColours, teamColour, usualTeams, type Rgb
 /// One solid: a form in the frame of a transform.
 export interface Piece {
   form: Form;
-  /// The transform it moves with.
+  /// The transform that it is attached to.
   node: number;
-  /// The mesh that it is seen for: hidden when that is; -1: always seen.
+  /// The mesh that it represents, whose visibility it has; -1: always visible.
   mesh: number;
   /// Rotation and position in the transform's frame, 16 numbers.
   matrix: number[];
   /// Half edges, and radius of the edges [m].
   half: [number, number, number];
   rounding: number;
-  /// Null: as walls look in the surroundings.
+  /// null: the colour of walls in the surroundings.
   colour: Rgb | null;
 }
 
@@ -28,7 +28,7 @@ export interface Decal {
   size: number;
 }
 
-/// A flat ring on the ground around a transform, seen while its mesh is.
+/// A flat ring on the ground around a transform, visible while its mesh is.
 export interface Mark {
   node: number;
   mesh: number;
@@ -46,7 +46,8 @@ export interface Picture {
 /// Grey boxes longer than this are walls [m].
 const wallLength = 5;
 
-/// What to draw for a scene: robots in their costumes, other visible meshes as they are named. Ground, goals and ball are drawn elsewhere.
+/// The pieces of a scene: robots with their decorations, and other visible meshes by their names. Ground, goals and
+/// ball are drawn elsewhere.
 export function makePicture(world: World, teams: TeamColours = usualTeams): Picture {
   return new PictureMaker(world, teams).picture;
 }
@@ -85,7 +86,7 @@ class PictureMaker {
     }
     const isSphereOfRobot = robot && shape.kind === "sphere";
     if (isSphereOfRobot && shape.size[0]! < 0.02) {
-      // The tiny balls between a humanoid's joints: bigger, so that its limbs hang together.
+      // The tiny balls between a humanoid's joints are enlarged, so that its limbs look connected.
       this.add({ ...shape, size: [0.031] }, mesh.parent, index, robotColours.joint);
       return;
     }
@@ -94,7 +95,7 @@ class PictureMaker {
     if (isSphereOfRobot) this.addBelt(shape.size[0]!, mesh.parent, index);
   }
 
-  /// What makes a sphere's rolling visible.
+  /// A pattern that makes the rolling of a sphere visible.
   private addBelt(radius: number, node: number, mesh: number): void {
     this.add({ kind: "cylinder", size: [1.012 * radius, 0.24 * radius], position: [0, 0, 0], rotation: [0, 0, 0, 1] }, node, mesh, robotColours.shell);
   }
@@ -102,7 +103,7 @@ class PictureMaker {
   private addModel(name: string, mesh: SceneNode, index: number, robot: Robot | null): void {
     const part = this.carrier(mesh.parent);
     this.covered.add(part);
-    // A model of which nothing is known is at least a box.
+    // An unknown model is drawn as a box.
     const shapes = this.world.nodes[part]!.shapes ?? [standardShape("StdUnitBox", [], mesh.scale ?? [0.1, 0.1, 0.1])!];
     const dressed = robot && dress(name, shapes, robot, mesh.materials ?? [], this.teams);
     if (!dressed) {
@@ -113,7 +114,7 @@ class PictureMaker {
     for (const decal of dressed.decals) this.picture.decals.push({ ...decal, node: part, robot: this.picture.robotOf[index]! });
   }
 
-  /// The transform whose shapes a model represents: its own, or the nearest above that has some.
+  /// The transform whose shapes a model represents: its own, or the nearest ancestor with shapes.
   private carrier(at: number): number {
     for (let n = at; n >= 0; n = this.world.nodes[n]!.parent) if (this.world.nodes[n]!.shapes?.length) return n;
     return at;
@@ -158,7 +159,7 @@ export function standardShape(name: string, sizes: readonly number[], scale: rea
   }
 }
 
-/// A shape as a form. Boxes get edges as round as suits their size, unless told.
+/// Converts a shape to a form. The edge radius of boxes depends on their size unless given.
 export function pieceOf(shape: Shape, node: number, mesh: number, colour: Rgb | null, rounding?: number): Piece {
   const matrix = new Array<number>(16);
   compose(matrix, 0, shape.position, shape.rotation);

@@ -1,6 +1,6 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 
-/// Where a camera is and how it looks: along its -z, its y upwards in the picture.
+/// The pose of a camera, which looks along -z with y upwards in the picture.
 export class Pose {
   readonly position = new Vector3();
   readonly rotation = new Quaternion();
@@ -14,7 +14,7 @@ export class Pose {
     return this;
   }
 
-  /// Between two poses, share 0..1.
+  /// Interpolates between two poses, share 0..1.
   blend(from: Pose, to: Pose, share: number): this {
     this.position.lerpVectors(from.position, to.position, share);
     this.rotation.slerpQuaternions(from.rotation, to.rotation, share);
@@ -22,14 +22,14 @@ export class Pose {
     return this;
   }
 
-  /// Looks along `forward`, with `up` as upright as it can be.
+  /// The rotation that looks along `forward` with `up` as vertical as possible.
   aim(forward: Vector3, up: Vector3): this {
     back.copy(forward).negate().normalize();
     right.crossVectors(up, back).normalize();
     return this.setBasis();
   }
 
-  /// A pose at `distance` from a point, at these angles around it [rad], that looks at it; also straight from above.
+  /// A pose that looks at a point from `distance`, at these angles around it [rad]; straight from above is possible.
   around(target: Vector3, azimuth: number, elevation: number, distance: number): this {
     back.set(Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation));
     right.set(-Math.sin(azimuth), Math.cos(azimuth), 0);

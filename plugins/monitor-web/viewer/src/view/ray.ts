@@ -4,7 +4,8 @@ type Vector = [number, number, number];
 
 const from: Vector = [0, 0, 0], along: Vector = [0, 0, 0];
 
-/// How far along a ray (direction of length 1) a box is met, its centre and axes in a matrix without scale; infinite when it is not.
+/// Distance along a ray (direction of length 1) to a box, whose centre and axes are in a matrix without scale; infinite
+/// if the ray misses it.
 export function hitBox(origin: Readonly<Vector>, direction: Readonly<Vector>, matrix: Float32Array, o: number, half: readonly number[], wider: number): number {
   toLocal(matrix, o, origin, from);
   rotateBack(matrix, o, direction, along);

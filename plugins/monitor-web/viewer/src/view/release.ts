@@ -1,6 +1,6 @@
 import { type Material, Mesh, type Object3D, LineSegments } from "three";
 
-/// Frees what a tree of objects holds on the graphics card.
+/// Frees the GPU resources of a tree of objects.
 export function disposeOf(root: Object3D): void {
   root.traverse(object => {
     if (!(object instanceof Mesh || object instanceof LineSegments)) return;

@@ -18,7 +18,7 @@ export interface Looks {
   teams: TeamColours;
 }
 
-/// A dark disc below something that moves: its node, and its size [m].
+/// The shadow of a moving object: its node, and the radius of the disc [m].
 interface Blob {
   node: number;
   radius: number;
@@ -26,14 +26,14 @@ interface Blob {
 
 const black: Rgb = [0, 0, 0], white: Rgb = [1, 1, 1], marked = rgb(0x35e0d2);
 
-/// Everything that is drawn of a world, built for one scene in one look.
+/// All objects drawn for a world, built for one scene and one appearance.
 export class Scenery {
   readonly group = new Group();
   readonly matrices = new WorldMatrices();
   readonly field: FieldSizes | null;
   readonly ball: Ball;
   readonly robotOf: Int32Array;
-  /// Half the edge of what there is to see [m].
+  /// Half the edge of the visible scene [m].
   readonly extent: number;
   private readonly picture: Picture;
   private readonly ground: Ground;
@@ -76,12 +76,12 @@ export class Scenery {
     this.labels.visible = on;
   }
 
-  /// True while it is built for what the world is now.
+  /// True if it is up to date with the world's scene.
   fits(world: World): boolean {
     return JSON.stringify(fieldSizes(world.environment)) === JSON.stringify(this.field);
   }
 
-  /// For another frame of the same scene.
+  /// Updates it for a new frame of the same scene.
   updateFrame(): void {
     const { world, matrices, hidden } = this;
     matrices.update(world.local);
@@ -93,26 +93,26 @@ export class Scenery {
     this.layRings();
   }
 
-  /// For every picture. `pixel` = metres of one at a distance of one metre.
+  /// Call it for every picture. `pixel`: size of a pixel at a distance of one metre [m].
   updateView(eye: PerspectiveCamera, pixel: number, withTrail: boolean): void {
     this.ground.follow(eye.position.x, eye.position.y);
     this.solids.arrange(eye, pixel);
     this.ball.fit(eye.position, pixel, this.world.time, withTrail);
   }
 
-  /// Marks a node with all below it; -1: none.
+  /// Highlights a node and its descendants; -1: none.
   select(node: number): void {
     this.selected = node;
     const { nodes } = this.world;
     const below = new Uint8Array(nodes.length);
     nodes.forEach((each, index) => (below[index] = index === node || (each.parent >= 0 && below[each.parent]) ? 1 : 0));
-    // A robot keeps its colours: the ring marks it.
+    // A robot keeps its colours; a ring marks it instead.
     const isRobot = this.world.robots.some(robot => robot.node === node);
     this.solids.highlight(index => !isRobot && below[index] === 1);
     this.layRings();
   }
 
-  /// The node first met by a ray, and how far that is; null: none.
+  /// The first node that a ray hits, and its distance; null: none.
   hit(origin: Vector3, direction: Vector3, pixel: number): { node: number; distance: number } | null {
     const found = this.solids.hit(origin.toArray(), direction.toArray(), pixel);
     const { ball } = this;
@@ -127,7 +127,7 @@ export class Scenery {
     return out.fromArray(this.matrices.values, 16 * node);
   }
 
-  /// Radius of the sphere that a robot is; 0 when it has limbs.
+  /// Radius of a spherical robot; 0 if it has limbs.
   sphereRadius(robotIndex: number): number {
     const robot = this.world.robots[robotIndex]!;
     if (robot.head !== robot.torso) return 0;
@@ -138,7 +138,7 @@ export class Scenery {
     for (const part of [this.ground, this.solids, this.ball, this.labels, this.shadows, this.rings]) part?.dispose();
   }
 
-  /// Goals of plates come in yellow and blue, which would look like teams' colours.
+  /// Goals made of plates are yellow and blue in scenes, which would look like team colours.
   private bleachGoals(field: FieldSizes): void {
     const { values } = this.matrices;
     for (const piece of this.picture.pieces) {
@@ -156,7 +156,7 @@ export class Scenery {
     this.shadows.show();
   }
 
-  /// The higher a thing is, the wider and weaker its shadow.
+  /// The higher an object is, the wider and weaker is its shadow.
   private layShadow(shadows: Spots, node: number, radius: number): void {
     const { values } = this.matrices, o = 16 * node + 12;
     const height = Math.max(0, values[o + 2]! - radius);
@@ -188,7 +188,8 @@ export class Scenery {
     return this.picture.pieces.some(piece => piece.node === node);
   }
 
-  /// A robot with limbs casts one around its torso and one for each foot, everything else that is not too big one for each piece.
+  /// A robot with limbs has one shadow around its torso and one per foot; other objects that are not too large have one
+  /// per piece.
   private findBlobs(): Blob[] {
     const { pieces } = this.picture;
     const blobs = new Map<number, Blob>();
@@ -205,7 +206,7 @@ export class Scenery {
     return [...blobs.values()];
   }
 
-  /// How far above the middle of a head its label begins.
+  /// Height of a label's lower edge above the centre of the head.
   private topOf(head: number): number {
     const sizes = this.picture.pieces.filter(piece => piece.node === head && piece.form === "round").map(piece => piece.half[2]);
     return Math.max(0.06, ...sizes) + 0.05;

@@ -1,13 +1,13 @@
 import { type Material, MeshDepthMaterial, MeshStandardMaterial, ShaderMaterial, Vector3 } from "three";
 import type { Surroundings } from "./palette";
 
-/// Towards the sun: high, from the side of the broadcast camera, a little from the left.
+/// Direction to the sun: high, on the side of the broadcast camera, slightly to the left.
 export const towardsSun = new Vector3(-0.6, -0.32, 0.74).normalize();
 
-/// How forms stretch, in every shader that draws them.
+/// The stretching of forms, shared by all shaders that draw them.
 const stretch = "corner * (size.xyz - size.w) + normal * size.w";
 
-/// Flat mode: light of the sky and the sun for each vertex, nothing for each pixel.
+/// Flat mode: light of sky and sun is computed per vertex, nothing per pixel.
 export function flatSolidMaterial(around: Surroundings): ShaderMaterial {
   return new ShaderMaterial({
     uniforms: {
@@ -50,7 +50,7 @@ export function fineSolidMaterial(): MeshStandardMaterial {
       .replace("#include <common>", "#include <common>\nvarying vec4 vTint;")
       .replace("#include <color_fragment>", "diffuseColor.rgb = vTint.rgb;")
       .replace("#include <emissivemap_fragment>", `
-        // Smooth shells mirror the sky at their rims.
+        // Smooth surfaces reflect the sky at their edges.
         float rim = 1.0 - clamp(dot(normal, normalize(vViewPosition)), 0.0, 1.0);
         totalEmissiveRadiance += vec3(0.55, 0.65, 0.8) * 0.3 * rim * rim * rim * rim + 0.35 * vTint.a * (vTint.rgb + 0.3);`);
   };

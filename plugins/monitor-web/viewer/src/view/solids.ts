@@ -9,7 +9,7 @@ import { hitBox } from "./ray";
 import { fineSolidMaterial, flatSolidMaterial, solidDepthMaterial } from "./shade";
 import type { Quality } from "./stage";
 
-/// One form in one detail: a draw call, with those pieces that are shown so.
+/// One form at one level of detail: a draw call with the pieces that use it.
 class Batch {
   readonly mesh: InstancedMesh;
   private readonly sizes: InstancedBufferAttribute;
@@ -55,7 +55,7 @@ class Batch {
     this.mesh.dispose();
   }
 
-  /// Only what is used of it.
+  /// Only the used part is uploaded.
   private upload(attribute: InstancedBufferAttribute): void {
     attribute.clearUpdateRanges();
     attribute.addUpdateRange(0, attribute.itemSize * this.mesh.count);
@@ -63,7 +63,7 @@ class Batch {
   }
 }
 
-/// Everything solid. The detail of a piece depends on its size in the picture; invisible pieces are not drawn.
+/// All solid pieces. The level of detail of a piece depends on its size in the picture; invisible pieces are not drawn.
 export class Solids {
   readonly group = new Group();
   private readonly batches: Record<Form, Batch[]>;
@@ -87,7 +87,7 @@ export class Solids {
     this.batches = { block: this.makeBatches("block"), round: this.makeBatches("round"), barrel: this.makeBatches("barrel") };
   }
 
-  /// For another frame; `hidden` has a 1 for each node that is not to be seen.
+  /// Updates the pieces for a new frame. `hidden` is 1 for each invisible node.
   update(worlds: Float32Array, hidden: Uint8Array): void {
     for (let n = 0; n < this.pieces.length; n++) {
       const piece = this.pieces[n]!;
@@ -96,7 +96,7 @@ export class Solids {
     }
   }
 
-  /// For every picture. `pixel` = metres of one at a distance of one metre.
+  /// Call it for every picture. `pixel`: size of a pixel at a distance of one metre [m].
   arrange(eye: PerspectiveCamera, pixel: number): void {
     const { matrices, batches } = this;
     const isFlat = this.quality === "flat";
@@ -107,7 +107,7 @@ export class Solids {
       if (matrices[o + 15] === 0) continue;
       let depth = this.frustum.depth(matrices[o + 12]!, matrices[o + 13]!, matrices[o + 14]!, radius);
       if (depth < 0) {
-        // What is not seen may cast a shadow that is.
+        // An object outside the picture may cast a shadow into it.
         if (isFlat) continue;
         depth = 20;
       }
@@ -119,12 +119,13 @@ export class Solids {
     for (const form in batches) for (const batch of batches[form as Form]) batch.end();
   }
 
-  /// Lights up the pieces of these transforms.
+  /// Highlights the pieces of these transforms.
   highlight(isMarked: (node: number) => boolean): void {
     this.pieces.forEach((piece, n) => (this.tints[4 * n + 3] = isMarked(piece.node) ? 1 : 0));
   }
 
-  /// The piece nearest along a ray: its node and how far; null: none. `pixel` = metres of one at a distance of one metre: a few of them do not matter.
+  /// The nearest piece along a ray: its node and distance; null: none. `pixel`: size of a pixel at a distance of one
+  /// metre [m], for a tolerance of a few pixels.
   hit(origin: [number, number, number], direction: [number, number, number], pixel: number): { node: number; distance: number } | null {
     let nearest: { node: number; distance: number } | null = null;
     this.pieces.forEach(({ node, half }, n) => {

@@ -2,7 +2,7 @@ import { BufferAttribute, DynamicDrawUsage, InstancedBufferAttribute, InstancedB
 import { Layer, spotMaterial } from "./ground_materials";
 import type { Rgb } from "./palette";
 
-/// Flat round things on the ground, all in one draw call: shadows or rings. Set them one by one, then show().
+/// Flat round spots on the ground (shadows or rings), all in one draw call. Set them one by one, then call show().
 export class Spots {
   readonly mesh: Mesh;
   private readonly geometry: InstancedBufferGeometry;
@@ -46,7 +46,7 @@ export class Spots {
   }
 }
 
-/// Dark in the middle, nothing at the rim.
+/// Dark in the centre, transparent at the rim.
 function shadow(): InstancedBufferGeometry {
   return circles([[0, 1], [0.45, 0.72], [1, 0]], 12);
 }
@@ -56,7 +56,7 @@ function ring(): InstancedBufferGeometry {
   return circles([[0.72, 0], [0.78, 1], [0.94, 1], [1, 0]], 40);
 }
 
-/// Circles around the origin: radius and strength of each, joined by triangles.
+/// Concentric circles, each with a radius and a strength, joined by triangles.
 function circles(profile: readonly [number, number][], sides: number): InstancedBufferGeometry {
   const positions: number[] = [], indices: number[] = [];
   for (const [radius, strength] of profile) for (let n = 0; n < sides; n++) {

@@ -12,43 +12,46 @@ export type Quality = "flat" | "quality";
 export type Theme = "dark" | "light";
 export type CameraMode = "orbit" | "broadcast" | "head" | "top";
 
-/// What was clicked: the node that carries the shape, its robot if it is a part of one, and where the ray met it.
+/// A clicked object: the node with the shape, the robot that it belongs to (if any), and the position of the hit.
 export interface Pick {
   node: number;
   robot: Robot | null;
   point: Vector3;
 }
 
-/// Where the picture is taken from. Every change is a smooth move.
+/// The camera mode. Changes are smooth moves.
 export interface CameraView {
-  /// "head" looks out of the selected robot (the one nearest to the ball when none is selected). Dragging leaves "broadcast" and "head" for "orbit".
+  /// "head" is the view of the selected robot (of the one nearest to the ball if none is selected). Dragging switches
+  /// from "broadcast" and "head" to "orbit".
   mode: CameraMode;
   /// Called after every change of mode.
   onmode: ((mode: CameraMode) => void) | null;
-  /// Jumps instead of flying from mode to mode.
+  /// Switches modes immediately instead of flying.
   reducedMotion: boolean;
-  /// Hands over a keydown or keyup; true when it moved the camera: W A S D slide, Q E turn, R F tilt, + - zoom (held keys go on moving).
+  /// Handles a keydown or keyup. Returns true if it moved the camera: W A S D pan, Q E rotate, R F tilt, + - zoom
+  /// (while a key is held, the camera keeps moving).
   key(event: KeyboardEvent): boolean;
-  /// Lets go of all held keys (window lost the focus).
+  /// Releases all held keys (the window lost the focus).
   release(): void;
-  /// Moves to the first view of the whole field.
+  /// Moves to the initial view of the whole field.
   home(): void;
-  /// Looks at this point from `distance` metres, in orbit mode.
+  /// Looks at this point from `distance` [m], in orbit mode.
   lookAt(point: Vector3, distance?: number): void;
 }
 
 /// The picture: everything drawn from a World, in a canvas that fills the container.
 export class Stage {
-  /// Things of others (overlays, drawings), in world coordinates, z up. Call invalidate() after changing them.
+  /// Objects added by other modules (overlays, drawings), in world coordinates, z up. Call invalidate() after changing
+  /// them.
   readonly overlay = new Group();
   readonly camera: CameraView;
-  /// three's camera: for projecting points; do not move it.
+  /// The three.js camera, for projecting points; do not move it.
   readonly eye = new PerspectiveCamera(42, 1, 0.05, 1200);
-  /// Times between pictures that were drawn one after the other: for measuring.
+  /// Times between consecutive pictures, for measurements.
   readonly times = new FrameTimes();
-  /// False keeps the full resolution however slow the pictures come; true lowers it when they take too long.
+  /// False: full resolution even if drawing is slow; true: the resolution is lowered if pictures take too long.
   adaptive = true;
-  /// Called when something, or null for the ground or sky, was clicked or tapped.
+  /// Called with the clicked or tapped object; null for ground and sky.
   onpick: ((pick: Pick | null) => void) | null = null;
 
   private readonly scene = new Scene();
@@ -56,7 +59,7 @@ export class Stage {
   private readonly rig = new Camera(this.sights);
   private readonly budget = new Budget();
   private readonly observer: ResizeObserver;
-  /// Half the canvas in pixels, and pixels of a length on screen that is 1 on an ordinary one.
+  /// Half the canvas size in pixels, and the device pixel ratio.
   private readonly screen = new Vector3(1, 1, 1);
   private renderer: WebGLRenderer;
   private controls: Controls;
@@ -67,7 +70,7 @@ export class Stage {
   private showLabels = true;
   private showTrail = true;
   private selection: string | number | null = null;
-  /// Robot that the head camera chose itself; it stays with it, since the nearest robot changes too often.
+  /// The robot that the head camera has chosen. It is kept, because the nearest robot changes too often.
   private ridden: string | null = null;
   private seen = { scene: -1, frame: -1, environment: -1 };
   private last = 0;
@@ -76,7 +79,7 @@ export class Stage {
   private readonly headMatrix = new Matrix4();
   private readonly headSight = { matrix: this.headMatrix, rolls: false, radius: 0 };
 
-  /// Draws inside this element and follows its size. Throws where there is no WebGL 2.
+  /// Draws inside this element and follows its size. Throws if WebGL 2 is unavailable.
   constructor(private readonly container: HTMLElement) {
     this.camera = this.rig;
     this.eye.up.set(0, 0, 1);
@@ -101,7 +104,7 @@ export class Stage {
     if (quality === this.looks.quality) return;
     this.looks = { ...this.looks, quality };
     this.strike();
-    // Smooth edges are chosen when a canvas begins, so each mode has its own.
+    // Antialiasing is fixed when a canvas is created, so each mode has its own canvas.
     this.closeRenderer();
     this.renderer = this.makeRenderer();
     this.controls = this.makeControls();
@@ -128,7 +131,7 @@ export class Stage {
     this.strike();
   }
 
-  /// Labels above the robots' heads; on at first.
+  /// Shows labels above the robots' heads; initially on.
   get labels(): boolean {
     return this.showLabels;
   }
@@ -139,7 +142,7 @@ export class Stage {
     this.invalidate();
   }
 
-  /// The ball's trail; on at first.
+  /// Shows the ball's trail; initially on.
   get trail(): boolean {
     return this.showTrail;
   }
@@ -157,7 +160,7 @@ export class Stage {
     this.rig.reducedMotion = on;
   }
 
-  /// Shows this source's world from now on; null: an empty stage.
+  /// Shows the world of this source; null: an empty stage.
   setSource(source: Source | null): void {
     this.source = source;
     this.selection = null;
@@ -165,7 +168,8 @@ export class Stage {
     this.seen.scene = -1;
   }
 
-  /// Brings the source to this instant (calls its update) and draws if anything changed [ms, as performance.now()]. True: it drew.
+  /// Updates the source to this time [ms, as performance.now()] and draws if anything changed. Returns true if it has
+  /// drawn.
   render(now: number): boolean {
     const passed = now - this.last;
     this.last = now;
@@ -181,12 +185,12 @@ export class Stage {
     return (this.drewLast = true);
   }
 
-  /// Draws at the next render() even if nothing seems to have changed.
+  /// Makes the next render() draw even if no change is detected.
   invalidate(): void {
     this.dirty = true;
   }
 
-  /// Follows the container's size; called by itself when that changes.
+  /// Adapts to the container's size; called automatically when that changes.
   resize(): void {
     const [width, height] = [Math.max(1, this.container.clientWidth), Math.max(1, this.container.clientHeight)];
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1) * this.budget.share);
@@ -196,19 +200,19 @@ export class Stage {
     this.invalidate();
   }
 
-  /// Marks a robot by its key or a node by its index (with what hangs below it); null: nothing.
+  /// Highlights a robot (by key) or a node (by index) with its descendants; null: nothing.
   select(what: string | number | null): void {
     this.selection = what;
     this.scenery?.select(this.selectedNode());
     this.invalidate();
   }
 
-  /// The 16 numbers of a node's world matrix in the frame shown, copied into `out` (column by column).
+  /// Copies a node's world matrix in the current frame into `out` (16 numbers, column by column).
   matrixOf(node: number, out: Float32Array | number[]): void {
     for (let k = 0; k < 16; k++) out[k] = this.scenery?.matrices.values[16 * node + k] ?? (k % 5 === 0 ? 1 : 0);
   }
 
-  /// Where a world point is in the container [CSS pixels]; false when it is behind the camera.
+  /// Projects a world point into the container [CSS pixels]. Returns false if it is behind the camera.
   project(point: Vector3, out: { x: number; y: number }): boolean {
     projected.copy(point).applyMatrix4(this.eye.matrixWorldInverse);
     const isAhead = projected.z < -this.eye.near;
@@ -224,7 +228,7 @@ export class Stage {
     this.closeRenderer();
   }
 
-  /// Builds anew what another scene, another field or other looks made stale, and follows the frames.
+  /// Rebuilds the objects that are outdated after a change of scene, field or appearance, and applies new frames.
   private followWorld(): void {
     const world = this.source?.world;
     if (!world) return;
@@ -257,7 +261,7 @@ export class Stage {
     }
   }
 
-  /// Takes down what was built; the next render() builds it again.
+  /// Disposes of the built objects; the next render() builds them again.
   private strike(): void {
     if (this.sunlight) this.scene.remove(this.sunlight.group);
     this.sunlight?.dispose();
@@ -268,7 +272,7 @@ export class Stage {
     this.invalidate();
   }
 
-  /// Tells the cameras where ball and head are.
+  /// Passes the poses of ball and head to the cameras.
   private lookAround(): void {
     const { scenery, sights } = this;
     const world = this.source?.world;
@@ -284,7 +288,7 @@ export class Stage {
     sights.head = this.headSight;
   }
 
-  /// Index of the robot whose eyes to look out of: the selected one, else the one nearest to the ball; -1: there is none.
+  /// Index of the robot for the head camera: the selected one, otherwise the one nearest to the ball; -1: none.
   private robotToBe(): number {
     const { robots } = this.source!.world;
     const chosen = typeof this.selection === "string" ? this.selection : this.ridden;
@@ -320,12 +324,12 @@ export class Stage {
     this.renderer.render(this.scene, eye);
   }
 
-  /// Metres of a pixel at a distance of one metre.
+  /// Size of a pixel at a distance of one metre [m].
   private pixel(): number {
     return Math.tan((this.eye.fov * Math.PI) / 360) / this.screen.y;
   }
 
-  /// Shadows around the point that the middle of the picture shows.
+  /// Centres the shadow map on the point in the middle of the picture.
   private coverView(): void {
     const forward = this.eye.getWorldDirection(direction);
     const extent = this.sights.extent * 1.15;

@@ -17,10 +17,10 @@ export class Sunlight {
     this.group.add(this.sun, this.sun.target, new HemisphereLight(0xdbe8ff, 0x8fa78f, isDark ? 1.8 : 2.1));
   }
 
-  /// Shadows for what is within `reach` metres around a point.
+  /// Casts shadows within `reach` metres around a point.
   cover(point: Vector3, reach: number): void {
     const { camera } = this.sun.shadow;
-    // In steps, so that the edges of shadows do not crawl while the camera moves.
+    // Move in steps, so that shadow edges do not flicker while the camera moves.
     const step = reach / 16;
     this.sun.target.position.set(Math.round(point.x / step) * step, Math.round(point.y / step) * step, 0);
     this.sun.position.copy(this.sun.target.position).addScaledVector(towardsSun, 2.5 * reach);

@@ -1,4 +1,4 @@
-/// Where something has been lately: points with their times, the newest last, in arrays that stay.
+/// The recent positions of an object with their times, the newest last, in reused arrays.
 export class Trail {
   readonly points: Float32Array;
   count = 0;
@@ -10,7 +10,7 @@ export class Trail {
     this.times = new Float64Array(capacity);
   }
 
-  /// Adds a point; begins anew when time went back, or the thing was put elsewhere (faster than 60 m/s).
+  /// Adds a point. Starts over if time went back or the object was moved (faster than 60 m/s).
   add(time: number, x: number, y: number, z: number): void {
     const last = this.count - 1;
     if (last >= 0) {
@@ -18,7 +18,7 @@ export class Trail {
       const moved = Math.hypot(x - this.points[3 * last]!, y - this.points[3 * last + 1]!, z - this.points[3 * last + 2]!);
       if (passed < 0 || passed > 1 || moved > 0.5 + 60 * passed) this.count = 0;
     }
-    // The newest point goes along with the thing until it is far enough in time from the one before.
+    // The newest point follows the object until enough time has passed since the point before it.
     if (this.count > 1 && time - this.times[this.count - 2]! < this.seconds / this.capacity) this.count--;
     this.forget(time);
     if (this.count === this.capacity) this.drop(1);
@@ -26,7 +26,7 @@ export class Trail {
     this.times[this.count++] = time;
   }
 
-  /// Strength of a point at this time: 1 just now, 0 at the end.
+  /// Strength of a point at this time: 1 if it is new, 0 at the end of the trail.
   strength(index: number, time: number): number {
     return Math.max(0, 1 - (time - this.times[index]!) / this.seconds);
   }

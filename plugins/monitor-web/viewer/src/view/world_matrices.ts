@@ -1,14 +1,15 @@
 import type { SceneNode } from "../model";
 import { identity, multiply } from "./affine";
 
-/// World matrices of all nodes, made once for each frame in an array that stays. Meshes and lights have that of their transform.
+/// World matrices of all nodes, computed once per frame in a reused array. Meshes and lights have that of their
+/// transform.
 export class WorldMatrices {
-  /// 16 numbers for each node, and at the end those of what never moves.
+  /// 16 numbers per node, followed by an identity matrix for static objects.
   values = new Float32Array(16);
   private parents = new Int32Array(0);
   private isTransform = new Uint8Array(0);
 
-  /// For another scene: parents before their children.
+  /// Prepares for a new scene, whose nodes are in order: parents before children.
   rebuild(nodes: readonly SceneNode[]): void {
     this.values = new Float32Array(16 * nodes.length + 16);
     identity(this.values, 16 * nodes.length);
@@ -16,7 +17,7 @@ export class WorldMatrices {
     this.isTransform = Uint8Array.from(nodes, node => (node.kind === "transform" ? 1 : 0));
   }
 
-  /// For another frame of the same scene.
+  /// Computes the matrices of a new frame of the same scene.
   update(local: Float32Array): void {
     const { values, parents, isTransform } = this;
     for (let node = 0; node < parents.length; node++) {

@@ -12,11 +12,11 @@ export interface Contact {
   normal: [number, number, number];
   /// [m]
   depth: number;
-  /// [N]; missing where it was not measured.
+  /// [N]; missing if it was not measured.
   force?: [number, number, number] | null;
   a: string;
   b: string;
-  /// False: something was felt there, but nothing was held apart.
+  /// False: the contact was detected, but the solver did not separate the bodies (a sensor contact).
   solved?: boolean;
 }
 
@@ -24,15 +24,15 @@ export interface Contacts {
   contacts: Contact[];
 }
 
-const kDeep = 0.01;        // [m]; deeper ones look the same
+const kDeep = 0.01;        // [m]; deeper contacts have the same colour
 const kNormal = 0.1;       // [m]
-const kLongest = 0.6;      // [m] of an arrow before the scale changes
+const kLongest = 0.6;      // length of an arrow at which the scale changes [m]
 const kShortest = 0.1;
 const kCut = 1;            // [m]; arrows are never longer
 const kMostRows = 40;
 const kFelt: [number, number, number] = [0.6, 0.63, 0.67];
 
-/// Contacts of the last step: a dot coloured by depth, the normal, and the force where it is measured.
+/// Contacts of the last step: a dot coloured by depth, the normal, and the force if it is measured.
 export class ContactsOverlay extends FedOverlay<Contacts> {
   readonly id = "contacts";
   readonly title = "Contacts";
@@ -93,7 +93,7 @@ export class ContactsOverlay extends FedOverlay<Contacts> {
     for (const part of [this.normals, this.forces, this.dots]) part.end();
   }
 
-  /// Those of others than the selected robot may be off the scale.
+  /// The scale follows the contacts of the selected robot; others may exceed it.
   private drawForce(x: number, y: number, z: number, [fx, fy, fz]: [number, number, number]): void {
     const scale = Math.min(this.scale, kCut / Math.hypot(fx, fy, fz));
     arrow(x, y, z, fx * scale, fy * scale, fz * scale, 0.04, this.forces.stroke);
@@ -113,7 +113,7 @@ export class ContactsOverlay extends FedOverlay<Contacts> {
   }
 }
 
-/// Metres of arrow for a newton, in steps 1, 2, 5: kept while the longest arrow is neither too long nor too short.
+/// Arrow length per newton, in steps of 1, 2, 5. It is kept while the longest arrow is neither too long nor too short.
 export function forceScale(before: number, greatest: number): number {
   if (!(greatest > 0)) return before;
   if (greatest * before <= kLongest && greatest * before >= kShortest) return before;
@@ -123,13 +123,13 @@ export function forceScale(before: number, greatest: number): number {
   return step * power;
 }
 
-/// "left 3 rfoot": whose and which part.
+/// "left 3 rfoot": the robot and its part.
 function partName(path: string, robots: readonly Robot[]): string {
   const robot = robots.find((r) => r.path !== undefined && isWithin(path, r.path));
   return robot ? `${nameOf(robot)} ${shortName(path).split(" ").pop()}` : shortName(path);
 }
 
-/// "AgentAspect1 rfoot": what a scene calls its colliders says less.
+/// "AgentAspect1 rfoot". Names of colliders in scenes are less informative.
 export function shortName(path: string): string {
   const parts = path.replace(/^\/usr\/scene\//, "").split("/").filter((p) => p !== "");
   if (parts.length <= 2) return parts[0] ?? path;

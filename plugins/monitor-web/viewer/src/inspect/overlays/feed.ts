@@ -1,21 +1,21 @@
 import { Poller } from "../poller";
 
-/// The newest answer to a request that is repeated while it is needed.
+/// The latest answer to a request that is repeated while it is needed.
 export class Feed<T> {
   answer: T | null = null;
-  /// What the host said instead.
+  /// Error text of the host, if the request failed.
   error = "";
-  /// Counts up with each answer and error.
+  /// Incremented with each answer and error.
   version = 0;
   private subject: string | null = null;
   private readonly poller: Poller<T>;
 
-  /// `ask` gets the subject that was given to tick().
+  /// `ask` receives the subject passed to tick().
   constructor(ask: (subject: string) => Promise<T>) {
     this.poller = new Poller<T>(() => ask(this.subject!), (answer) => this.take(answer, ""), (why) => this.take(null, why));
   }
 
-  /// null: not needed, or there is no subject. Another subject forgets the last answer.
+  /// `null`: not needed, or there is no subject. A different subject discards the last answer.
   tick(now: number, subject: string | null): void {
     if (subject !== this.subject) {
       this.subject = subject;

@@ -24,10 +24,10 @@ export interface Joints {
   joints: Joint[];
 }
 
-const kHalf = 0.07;   // [m] of an axis to each side
+const kHalf = 0.07;   // half the drawn length of an axis [m]
 const kColours: [number, number, number][] = [[0.35, 0.78, 1], [1, 0.65, 0.15], [0.75, 0.9, 0.3]];
 
-/// The joints' axes of the selected robot, and their angles.
+/// The joint axes of the selected robot, and their angles.
 export class JointsOverlay extends FedOverlay<Joints> {
   readonly id = "joints";
   readonly title = "Joint axes";
@@ -87,7 +87,7 @@ function jointRow(joint: Joint): string[] {
   return [jointName(joint.path), many(joint.angles, 1), limits, many(joint.rates, 0), fixed(joint.torque, 2)];
 }
 
-/// Joints hang below the part that they move, mostly without a name of their own.
+/// Joints are children of the part that they move, and most have no name of their own.
 export function jointName(path: string): string {
   const parts = path.split("/");
   const own = parts[parts.length - 1]!;

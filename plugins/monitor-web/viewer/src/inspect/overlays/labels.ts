@@ -5,7 +5,7 @@ import { Texts } from "../../drawings/texts";
 import type { Listing, Overlay, Surroundings } from "./overlay";
 import { fixed, nameOf } from "./overlay";
 
-const kPeriod = 250;   // [ms] between two readings of speed and latency
+const kPeriod = 250;   // [ms] between two updates of speed and latency
 const kSize = 12;      // [px]
 const kBelow = -2;     // lines below the feet: numbers are above the heads
 
@@ -15,7 +15,7 @@ interface Label {
   place: Float32Array;
 }
 
-/// What each robot does, below its feet: its speed, and how long its agent takes to answer.
+/// Labels below each robot's feet: its speed, and the latency of its agent.
 export class LabelsOverlay implements Overlay {
   readonly id = "labels";
   readonly title = "Agent labels";
@@ -66,7 +66,7 @@ export class LabelsOverlay implements Overlay {
     this.readTime = NaN;
   }
 
-  /// False while time stands still: what was read last stays.
+  /// False while the clock is paused; the last values are kept.
   private read(now: number, { canvas, live }: Surroundings, world: World): boolean {
     const seconds = world.time - this.readTime;
     this.readAt = now;

@@ -1,41 +1,41 @@
 import type { LiveSource, Robot, World } from "../../model";
 import type { Canvas } from "../../drawings/layer";
 
-/// What overlays look at.
+/// The input of overlays.
 export interface Surroundings {
   readonly canvas: Canvas;
   readonly world: World | null;
   readonly live: LiveSource | null;
-  /// The selected robot, if one is.
+  /// The selected robot, if any.
   readonly robot: Robot | null;
 }
 
-/// A table of the panel: rows of cells under a head.
+/// A table in the panel: rows of cells below a header.
 export interface Listing {
   head: string[];
   rows: string[][];
 }
 
-/// Something to be switched on that is drawn over the scene and listed in the panel.
+/// An optional layer that is drawn over the scene and listed in the panel.
 export interface Overlay {
   readonly id: string;
   readonly title: string;
   readonly doc: string;
   readonly key: string;
-  /// Why there is nothing to see in a recording; null: it works there as well.
+  /// The reason why it is unavailable for recordings; null: it supports them.
   readonly missing: string | null;
   on: boolean;
-  /// One line on what is shown, or why nothing is.
+  /// One line that describes what is shown, or why nothing is shown.
   readonly note: string;
   readonly listing: Listing | null;
-  /// Counts up when note or listing may differ.
+  /// Incremented when note or listing may have changed.
   readonly version: number;
-  /// With each picture.
+  /// Called for each picture.
   update(now: number, around: Surroundings): void;
   dispose(): void;
 }
 
-/// What overlays that ask the host have in common: they draw anew when the answer is another one.
+/// Base of overlays that send requests to the host. They redraw when the answer changes.
 export abstract class FedOverlay<T> implements Overlay {
   abstract readonly id: string;
   abstract readonly title: string;
@@ -66,7 +66,7 @@ export abstract class FedOverlay<T> implements Overlay {
   abstract dispose(): void;
   protected abstract draw(answer: T, around: Surroundings): void;
   protected abstract clear(): void;
-  /// What to say while there is no answer.
+  /// The note while there is no answer.
   protected abstract waiting(around: Surroundings): string;
 }
 
@@ -76,7 +76,7 @@ export function waitingForRobot(around: Surroundings): string {
   return "Asking the host…";
 }
 
-/// "0.12", with a real minus sign.
+/// "0.12", with a typographic minus sign.
 export function fixed(v: number | null | undefined, digits: number): string {
   return v === null || v === undefined || !Number.isFinite(v) ? "–" : v.toFixed(digits).replace("-", "−");
 }

@@ -7,15 +7,15 @@ import type { Feed } from "./feed";
 import { FedOverlay, fixed, waitingForRobot, type Surroundings } from "./overlay";
 
 export interface Percepts {
-  /// When they were sensed, and when it saw what it saw [s].
+  /// Time of the percepts, and of the last vision percept [s].
   time: number;
   seenTime?: number;
   percepts: unknown[];
-  /// World matrix of what it looks with: 16 numbers, column by column.
+  /// World matrix of the eye: 16 numbers, column by column.
   head?: number[];
   cones: { path: string; matrix: number[]; horizontal: number; vertical: number; range?: number | null }[];
   seen: { name: string; seen: [number, number, number]; true?: [number, number, number] | null }[];
-  /// Field lines as it saw them, from and to.
+  /// Field lines as the robot saw them, from and to.
   lines?: [[number, number, number], [number, number, number]][];
 }
 
@@ -24,7 +24,7 @@ const kTrue = 7;
 const kBelow = -2;   // lines; players' numbers are above
 const kFar = 2.5;    // [m]; how far a cone without a range is drawn
 
-/// How far the selected robot's eyes reach.
+/// The fields of view of the selected robot.
 export class ConesOverlay extends FedOverlay<Percepts> {
   readonly id = "cones";
   readonly title = "Perceptor cones";
@@ -64,14 +64,14 @@ export class ConesOverlay extends FedOverlay<Percepts> {
   }
 }
 
-/// Where the selected robot sees things, and where they are.
+/// Where the selected robot sees objects, and their true positions.
 export class SeenOverlay extends FedOverlay<Percepts> {
   readonly id = "seen";
   readonly title = "Seen against true";
   readonly doc = "Where the selected robot sees things and field lines (orange) and where things are (blue), joined by a red line; the list tells the errors.";
   readonly key = "v";
   readonly missing = "Recordings do not hold what agents sensed.";
-  /// The percepts as S-expressions, one a line.
+  /// The percepts as S-expressions, one per line.
   told = "";
   private readonly group = new Group();
   private readonly lines = new Lines({ width: 2, through: true });
@@ -124,12 +124,13 @@ export class SeenOverlay extends FedOverlay<Percepts> {
   }
 }
 
-/// [m]; null when it is not known where the thing is.
+/// [m]; null if the true position is unknown.
 export function errorOf(s: Percepts["seen"][number]): number | null {
   return s.true ? Math.hypot(s.seen[0] - s.true[0], s.seen[1] - s.true[1], s.seen[2] - s.true[2]) : null;
 }
 
-/// What is written at each thing: of a player's parts ("P Red 6 lfoot") one has his name, the head if it is among them.
+/// The label of each object. Of a player's parts ("P Red 6 lfoot") only one is labelled with the player: the head if it
+/// is seen.
 export function signsOf(names: readonly string[]): string[] {
   const player = (name: string) => /^P (.+ \d+)(?: (\D\S*))?$/.exec(name);
   const bearers = new Map<string, string>();
@@ -143,7 +144,7 @@ export function signsOf(names: readonly string[]): string[] {
   });
 }
 
-/// Nested lists as agents get them.
+/// Nested lists as sent to agents.
 export function sexp(value: unknown): string {
   if (Array.isArray(value)) return `(${value.map(sexp).join(" ")})`;
   if (typeof value === "number") return Number.isInteger(value) ? String(value) : value.toFixed(2);
