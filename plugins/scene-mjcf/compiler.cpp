@@ -31,7 +31,7 @@ void Compiler::read(Attributes& a) {
   totalMass_ = a.number("settotalmass", totalMass_);
   if (a.text("coordinate", "local") != "local") throw a.element().error("expected the coordinate frame 'local'");
   // Bodies without joints become part of their parents in any case.
-  a.ignore({"texturedir", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
+  a.ignore({"texturedir", "fitaabb", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
             "exactmeshinertia", "alignfree"});
   a.finish();
 }
