@@ -129,6 +129,10 @@ void BodyBuilder::makeJoint(const PlacedBody& p, const Joint& j, Node& child, co
     callMethod(made.leaf(), "attach", List{"../body", parent});
     if (j.kind != JointKind::slide) made.setWorldAnchor(p.world.position + p.world.rotation * j.position);
     if (j.kind != JointKind::ball) setAxis(made, j, p.world, c_.flags);
+    if (!c_.flags.passive && j.damping > 0)
+      c_.unsupported.add(j.from,
+                         "the flag passive=\"disable\" removes a damping as a whole; MuJoCo 2.2.2 keeps the "
+                         "part of its implicit integration");
     if (!j.name.empty() && !c_.joints.emplace(j.name, Construction::MadeJoint{&j, &made}).second)
       throw Error(fmt::format("there are two joints '{}'", j.name));
   } catch (const Error& e) {

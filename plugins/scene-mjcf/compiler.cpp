@@ -26,13 +26,14 @@ void Compiler::read(Attributes& a) {
   meshFolder_ = folder;
   inertiaFromGeom_ = a.word("inertiafromgeom", {"auto", "true", "false"}, inertiaFromGeom_.c_str());
   a.take("inertiagrouprange", inertiaGroups_);
+  exactMeshInertia_ = a.flag("exactmeshinertia", exactMeshInertia_);
   boundMass_ = a.number("boundmass", boundMass_);
   boundInertia_ = a.number("boundinertia", boundInertia_);
   totalMass_ = a.number("settotalmass", totalMass_);
   if (a.text("coordinate", "local") != "local") throw a.element().error("expected the coordinate frame 'local'");
   // Bodies without joints become part of their parents in any case.
   a.ignore({"texturedir", "fitaabb", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
-            "exactmeshinertia", "alignfree"});
+            "alignfree"});
   a.finish();
 }
 

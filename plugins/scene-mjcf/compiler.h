@@ -30,6 +30,8 @@ class Compiler {
   const std::string& inertiaFromGeom() const { return inertiaFromGeom_; }
   /// Geoms of this group add to the masses of their bodies.
   bool weighs(int group) const { return group >= inertiaGroups_[0] && group <= inertiaGroups_[1]; }
+  /// False: MuJoCo 2.2.2 estimates masses of meshes as if they were convex.
+  bool exactMeshInertia() const { return exactMeshInertia_; }
   /// What the masses of all bodies are scaled to [kg]; 0 or less: they stay.
   double totalMass() const { return totalMass_; }
   /// Raises mass and moments of inertia to the least ones of the file; a mass of 0 stays when there is no least mass.
@@ -55,6 +57,7 @@ class Compiler {
  private:
   bool degrees_ = true;
   bool autolimits_ = true;
+  bool exactMeshInertia_ = false;
   std::string eulerSequence_ = "xyz";
   std::string meshFolder_;
   std::string inertiaFromGeom_ = "auto";

@@ -45,7 +45,7 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
   const bool ellipsoid = type == "ellipsoid";
   if (type != "plane" && !weightless && compiler_.weighs(g.group)) {
     const engine::Mass own = ellipsoid        ? ellipsoidMass(g.shape.lengths / 2, weight())
-                             : type == "mesh" ? shapeMass(meshes_.get(a, unsupported_).surface, weight(), g.from)
+                             : type == "mesh" ? meshMass(a, weight(), g.from)
                                               : shapeMass(g.shape, weight(), g.from);
     if (own.mass > 0) g.mass = moved(own, g.pose);
   }
@@ -57,6 +57,19 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
   }
   a.finish();
   return g;
+}
+
+engine::Mass GeomReader::meshMass(Attributes& a, const Weight& weight, const Element& geom) {
+  const Mesh& mesh = meshes_.get(a, unsupported_);
+  const engine::Mass mass = shapeMass(mesh.surface, weight, geom);
+  constexpr double kSame = 1e-6;  // relative
+  const Weight byVolume{1, std::nullopt};
+  if (!compiler_.exactMeshInertia() &&
+      shapeMass(mesh.surface, byVolume, geom).mass < (1 - kSame) * shapeMass(mesh.hull, byVolume, geom).mass)
+    unsupported_.add(geom,
+                     "the mass of a <mesh> that is not convex is exact, as with exactmeshinertia; MuJoCo 2.2.2 "
+                     "estimates it");
+  return mass;
 }
 
 void GeomReader::contact(Attributes& a, Geom& g) const {

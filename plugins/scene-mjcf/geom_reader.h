@@ -3,6 +3,7 @@
 /// Reads the geoms of an MJCF model.
 
 #include "compiler.h"
+#include "geom_mass.h"
 #include "meshes.h"
 #include "model.h"
 
@@ -19,6 +20,7 @@ class GeomReader {
 
  private:
   void contact(Attributes& a, Geom& geom) const;
+  engine::Mass meshMass(Attributes& a, const Weight& weight, const Element& geom);
   void place(Attributes& a, const std::string& type, const Pose& frame, Geom& geom);
   engine::ShapeDescription shape(Attributes& a, const std::string& type, const Vec3& size);
 

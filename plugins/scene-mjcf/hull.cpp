@@ -18,13 +18,7 @@ constexpr std::uint32_t kUnused = UINT32_MAX;
 /// One run of Qhull. Its facets are triangles.
 class Hull {
  public:
-  explicit Hull(std::vector<double>& points) : messages_(std::tmpfile(), std::fclose) {
-    qh_zero(&qh_, messages_.get());
-    char command[] = "qhull Qt";
-    const int count = static_cast<int>(points.size() / 3);
-    if (qh_new_qhull(&qh_, 3, count, points.data(), False, command, nullptr, messages_.get()) != 0)
-      throw Error(fmt::format("expected vertices that span a volume, found {} that do not", count));
-  }
+  Hull() : messages_(std::tmpfile(), std::fclose) { qh_zero(&qh_, messages_.get()); }
   ~Hull() {
     qh_freeqhull(&qh_, qh_ALL);
     int now = 0, total = 0;
@@ -33,6 +27,13 @@ class Hull {
   Hull(const Hull&) = delete;
   Hull& operator=(const Hull&) = delete;
 
+  /// Throws Error if the points lie in a plane. They must outlive the run.
+  void run(std::vector<double>& points) {
+    char command[] = "qhull Qt";
+    const int count = static_cast<int>(points.size() / 3);
+    if (qh_new_qhull(&qh_, 3, count, points.data(), False, command, nullptr, messages_.get()) != 0)
+      throw Error(fmt::format("expected vertices that span a volume, found {} that do not", count));
+  }
   /// Indices of points, three for each triangle, which point outwards.
   std::vector<std::uint32_t> triangles() {
     std::vector<std::uint32_t> out;
@@ -62,7 +63,9 @@ ShapeDescription hullOf(const ShapeDescription& mesh) {
     throw Error(fmt::format("expected at least 4 vertices of a volume, found {}", points.size() / 3));
   ShapeDescription out;
   out.shape = engine::Shape::mesh;
-  out.triangles = Hull(points).triangles();
+  Hull hull;
+  hull.run(points);
+  out.triangles = hull.triangles();
   // The vertices that no triangle has are dropped.
   std::vector<std::uint32_t> place(points.size() / 3, kUnused);
   for (const std::uint32_t v : out.triangles) place[v] = 0;
