@@ -30,7 +30,7 @@ void Compiler::read(Attributes& a) {
   boundMass_ = a.number("boundmass", boundMass_);
   boundInertia_ = a.number("boundinertia", boundInertia_);
   totalMass_ = a.number("settotalmass", totalMass_);
-  if (a.text("coordinate", "local") != "local") throw a.element().error("expected the coordinate frame 'local'");
+  global_ = a.word("coordinate", {"local", "global"}, global_ ? "global" : "local") == "global";
   // Bodies without joints become part of their parents in any case.
   a.ignore({"texturedir", "fitaabb", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
             "alignfree"});

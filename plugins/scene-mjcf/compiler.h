@@ -30,6 +30,8 @@ class Compiler {
   const std::string& inertiaFromGeom() const { return inertiaFromGeom_; }
   /// Geoms of this group add to the masses of their bodies.
   bool weighs(int group) const { return group >= inertiaGroups_[0] && group <= inertiaGroups_[1]; }
+  /// Poses in the file are world poses.
+  bool global() const { return global_; }
   /// False: MuJoCo 2.2.2 estimates masses of meshes as if they were convex.
   bool exactMeshInertia() const { return exactMeshInertia_; }
   /// What the masses of all bodies are scaled to [kg]; 0 or less: they stay.
@@ -56,6 +58,7 @@ class Compiler {
 
  private:
   bool degrees_ = true;
+  bool global_ = false;
   bool autolimits_ = true;
   bool exactMeshInertia_ = false;
   std::string eulerSequence_ = "xyz";

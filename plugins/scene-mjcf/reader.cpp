@@ -30,6 +30,8 @@ engine::MujocoAxis firmness(Attributes& a) {
   return n;
 }
 
+Pose inverseOf(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
+
 }  // namespace
 
 Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsupported) {
@@ -41,6 +43,7 @@ Model Reader::read() {
   model_.name = root.node.attribute("model").as_string("model");
   model_.bodies.emplace_back();
   model_.bodies.front().from = root;
+  globalPoses_.emplace_back();
   const std::vector<Element> sections = document_.children(root);
   for (const std::string_view tag : kSections) {
     for (const Element& e : sections)
@@ -183,7 +186,7 @@ void Reader::content(const Element& parent, const Scope& scope) {
     else if (tag == "site")
       site(e, scope);
     else if (tag == "inertial")
-      inertial(e, model_.bodies[static_cast<std::size_t>(scope.body)]);
+      inertial(e, scope);
     else if (!kNotSimulated.contains(tag))
       unsupported_.element(e);
   }
@@ -196,16 +199,25 @@ void Reader::body(const Element& e, const Scope& scope) {
   b.from = e;
   b.name = a.text("name");
   b.parent = scope.body;
-  b.pose = compiler_.pose(a, scope.frame);
+  Scope inner{static_cast<int>(model_.bodies.size()), "", {}, scope.depth + 1};
+  if (compiler_.global()) {
+    // Everything inside is in the world frame too. A body without a position has its frame at its centre of mass.
+    b.isFrameOpen = !a.has("pos");
+    const Pose given = compiler_.pose(a, {}), own = b.isFrameOpen ? Pose{} : given;
+    b.pose = compose(inverseOf(globalPoses_[static_cast<std::size_t>(scope.body)]), own);
+    globalPoses_.push_back(own);
+    inner.frame = inverseOf(own);
+  } else {
+    b.pose = compiler_.pose(a, scope.frame);
+  }
   b.gravityCompensation = a.number("gravcomp", 0);
   if (a.has("mocap") && a.flag("mocap", false))
     unsupported_.add(e, "a body that a program moves (mocap) is not supported: it stays at its place");
-  const std::string childClass = a.text("childclass", scope.childClass.c_str());
+  inner.childClass = a.text("childclass", scope.childClass.c_str());
   a.ignore({"user"});
   a.finish();
-  const int index = static_cast<int>(model_.bodies.size());
   model_.bodies.push_back(std::move(b));
-  content(e, {index, childClass, {}, scope.depth + 1});
+  content(e, inner);
 }
 
 void Reader::frame(const Element& e, Scope scope) {
@@ -218,7 +230,8 @@ void Reader::frame(const Element& e, Scope scope) {
   content(e, scope);
 }
 
-void Reader::inertial(const Element& e, Body& b) {
+void Reader::inertial(const Element& e, const Scope& scope) {
+  Body& b = model_.bodies[static_cast<std::size_t>(scope.body)];
   Attributes a = attributes(e);
   if (!a.has("mass")) throw e.error("expected an attribute 'mass'");
   b.mass.mass = a.number("mass", 0);
@@ -233,6 +246,8 @@ void Reader::inertial(const Element& e, Body& b) {
     a.take("diaginertia", diagonal);
     b.mass.inertia = turn * diagonal.asDiagonal() * turn.transpose();
   }
+  b.mass.center = scope.frame.position + scope.frame.rotation * b.mass.center;
+  b.mass.inertia = scope.frame.rotation * b.mass.inertia * scope.frame.rotation.transpose();
   b.hasInertial = true;
   a.finish();
 }
@@ -337,6 +352,23 @@ void Reader::finishMasses() {
     compiler_.raise(b.mass);
   }
   scaleMasses();
+  placeOpenFrames();
+}
+
+/// Moves frames that the file does not give to centres of mass.
+void Reader::placeOpenFrames() {
+  std::vector<Vec3> shifts(model_.bodies.size(), Vec3::Zero());
+  for (std::size_t i = 1; i < model_.bodies.size(); ++i) {
+    Body& b = model_.bodies[i];
+    b.pose.position -= shifts[static_cast<std::size_t>(b.parent)];
+    if (!b.isFrameOpen) continue;
+    const Vec3 shift = shifts[i] = b.mass.center;
+    b.pose.position += b.pose.rotation * shift;
+    b.mass.center.setZero();
+    for (Joint& j : b.joints) j.position -= shift;
+    for (Geom& g : b.geoms) g.pose.position -= shift;
+    for (Site& site : b.sites) site.pose.position -= shift;
+  }
 }
 
 void Reader::scaleMasses() {

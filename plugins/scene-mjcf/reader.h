@@ -22,7 +22,7 @@ class Reader {
   struct Scope {
     int body = 0;
     std::string childClass;
-    Pose frame;  ///< of `frame` elements around
+    Pose frame;  ///< of `frame` elements around; with global coordinates the world's, as seen from the body
     int depth = 0;
   };
   /// Counts an element. Throws Error when there are too many.
@@ -36,7 +36,8 @@ class Reader {
   void content(const Element& parent, const Scope& scope);
   void body(const Element& e, const Scope& scope);
   void frame(const Element& e, Scope scope);
-  void inertial(const Element& e, Body& body);
+  void inertial(const Element& e, const Scope& scope);
+  void placeOpenFrames();
   void joint(const Element& e, const Scope& scope);
   Joint freeJoint(const Element& e);
   Joint typedJoint(const Element& e, const Scope& scope);
@@ -56,6 +57,7 @@ class Reader {
   Meshes meshes_;
   GeomReader geoms_{compiler_, meshes_, unsupported_};
   ActuatorReader actuators_{compiler_, defaults_, unsupported_};
+  std::vector<Pose> globalPoses_;  ///< of bodies, with global coordinates
   std::size_t elements_ = 0;
 };
 

@@ -36,7 +36,7 @@ std::string treeName(std::string name) {
 
 struct BodyPose {
   Vec3 center;
-  Mat3 rotation;
+  Mat3 rotation;  ///< since the start: a body whose frame the file does not give may have another one
 };
 /// Coordinates of joints [rad or m], counted from the pose of the file, and poses of bodies, by name.
 struct Snapshot {
@@ -44,6 +44,10 @@ struct Snapshot {
   std::map<std::string, BodyPose> bodies;
 };
 using Motion = std::vector<Snapshot>;  // one for each of kTimes
+
+void makeRelative(Snapshot& s, const Snapshot& start) {
+  for (auto& [name, pose] : s.bodies) pose.rotation = pose.rotation * start.bodies.at(name).rotation.transpose();
+}
 
 /// The first step at or behind a time.
 long stepAt(double time, double timestep) { return std::lround(time / timestep); }
@@ -75,6 +79,9 @@ struct Oracle {
   }
   Motion move() {
     Motion motion;
+    mj_kinematics(m, d);
+    mj_comPos(m, d);
+    const Snapshot start = snapshot();
     for (int i = 0; i < m->nu; ++i) d->ctrl[i] = kControl;
     long step = 0;
     for (const double time : kTimes) {
@@ -82,6 +89,7 @@ struct Oracle {
       mj_kinematics(m, d);
       mj_comPos(m, d);
       motion.push_back(snapshot());
+      makeRelative(motion.back(), start);
     }
     return motion;
   }
@@ -153,12 +161,14 @@ struct ModelHost : TestHost {
     control(oracle);
     const double dt = oracle.m->opt.timestep;
     Motion motion;
+    const Snapshot start = snapshot();
     std::int64_t step = 0;
     for (const double time : kTimes) {
       for (; step < stepAt(time, dt); ++step)
         for (const ChannelName channel : {phase::kPrepare, phase::kPhysics, phase::kPlace})
           kernel.events().channel(channel).emit(Event{channel, double(step) * dt, dt, step, nullptr});
       motion.push_back(snapshot());
+      makeRelative(motion.back(), start);
     }
     return motion;
   }

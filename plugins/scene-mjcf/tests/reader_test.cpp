@@ -456,3 +456,33 @@ TEST_CASE("flags of the options are read") {
         "a.xml:1:17: the flag override=\"enable\" is not supported\n");
   CHECK_THAT(failure("<mujoco><option><flag contact='off'/></option></mujoco>"), Catch::Contains("expected enable"));
 }
+
+TEST_CASE("poses may be given in the world frame") {
+  const auto read = [](const std::string& content) {
+    return Read("<mujoco><compiler coordinate='global'/><worldbody>" + content + "</worldbody></mujoco>");
+  };
+  SECTION("bodies with a frame") {
+    const Read r(
+        read("<body pos='0 0 1' euler='0 0 90'><joint axis='0 1 0' pos='0.1 0 1'/><site pos='1 1 1'/>"
+             "<geom type='box' size='.1 .2 .3' pos='.2 0 1'/><body pos='0 3 1'><inertial pos='0 4 1' mass='1' "
+             "diaginertia='1 2 3'/></body></body>"));
+    CHECK(r.body(1).joints[0].position.isApprox(Vec3(0, -0.1, 0)));
+    CHECK(r.body(1).joints[0].axis.isApprox(Vec3::UnitX()));
+    CHECK(r.body(1).sites[0].pose.position.isApprox(Vec3(1, -1, 0)));
+    CHECK(r.body(1).mass.center.isApprox(Vec3(0, -0.2, 0)));
+    CHECK(r.body(2).pose.position.isApprox(Vec3(3, 0, 0)));
+    CHECK(compose(r.body(1).pose, r.body(2).pose).rotation.isApprox(Mat3(Mat3::Identity())));
+    CHECK(r.body(2).mass.center.isApprox(Vec3(0, 1, 0)));
+  }
+  SECTION("a body without a position has its frame at its centre of mass") {
+    const Read r(
+        read("<body euler='0 0 30'><joint pos='0 0 1'/><geom type='capsule' size='.05' fromto='0 0 1 .4 0 1'/>"
+             "<body><joint pos='.4 0 1'/><geom size='.1' pos='.4 .3 1'/></body></body>"));
+    CHECK(r.body(1).pose.position.isApprox(Vec3(0.2, 0, 1)));
+    CHECK(r.body(1).mass.center.norm() < 1e-12);
+    CHECK(r.body(1).joints[0].position.isApprox(Vec3(-0.2, 0, 0)));
+    CHECK(r.body(2).pose.position.isApprox(Vec3(0.2, 0.3, 0)));
+    CHECK(r.body(2).joints[0].position.isApprox(Vec3(0, -0.3, 0)));
+  }
+  CHECK_THAT(failure("<mujoco><compiler coordinate='x'/></mujoco>"), Catch::Contains("expected local or global"));
+}
