@@ -63,18 +63,27 @@ class Perceptor : public SceneNode {
     d.doc("A sensor of the agent above it.");
     d.property("interval", &Perceptor::interval_).min(1).doc("Senses in every n-th cycle of its agent.");
     d.property("predicateName", &Perceptor::predicateName_).doc("Name of the percept, where the class allows another.");
+    d.property("messageName", &Perceptor::messageName, &Perceptor::setMessageName)
+        .doc("The sensor's name in messages: the node's unless another is set.");
     d.abstract();
   }
   /// Cycles of the agent from one percept to the next, at least 1.
   int interval() const { return interval_; }
   /// Name of the percept; "": the class's own.
   const std::string& predicateName() const { return predicateName_; }
+  /// The sensor's name in messages: that of the node, unless another was set, such as one that no node can have.
+  const std::string& messageName() const { return messageName_.empty() ? name() : messageName_; }
+  /// Sets that name; "": the node's.
+  void setMessageName(std::string name) { messageName_ = std::move(name); }
   /// Appends zero or more top-level lists to `out`. `event` is that of the sense phase. Must not throw.
   virtual void sense(Predicates& out, const Event& event) = 0;
 
  protected:
   int interval_ = 1;
   std::string predicateName_;
+
+ private:
+  std::string messageName_;
 };
 
 /// Data that several perceptors share, such as the visible objects of the scene: it is updated once, before the first
@@ -119,17 +128,25 @@ class Effector : public SceneNode {
   static void describe(Description<Effector>& d) {
     d.doc("An actuator of the agent above it, addressed by its predicate.");
     d.property("predicate", &Effector::predicate).doc("The predicate it answers to.");
+    d.property("messageName", &Effector::messageName, &Effector::setMessageName)
+        .doc("The effector's name in messages: the node's unless another is set.");
     d.abstract();
   }
-  /// The predicate it answers to: the node's name for joints, a fixed word for others. Read again when the tree
-  /// changed.
-  virtual std::string predicate() const { return name(); }
+  /// The predicate it answers to: messageName() for joints, a fixed word for others. Read again when the tree changed.
+  virtual std::string predicate() const { return messageName(); }
+  /// The effector's name in messages: that of the node, unless another was set, such as one that no node can have.
+  const std::string& messageName() const { return messageName_.empty() ? name() : messageName_; }
+  /// Sets that name, before the agent's effectors are listed; "": the node's.
+  void setMessageName(std::string name) { messageName_ = std::move(name); }
   /// Executes `(predicate arguments...)`, in the act phase. Immediate effectors act now; others store the command and
   /// act in the prepare phase. Returns "" or one line that says what was wrong (expected, found). Must not throw.
   virtual std::string act(const Element& action) = 0;
 
   /// The innermost agent aspect above; nullptr outside of agents.
   AgentAspect* agent() const { return ancestor<AgentAspect>(); }
+
+ private:
+  std::string messageName_;
 };
 
 /// A rule of the simulation; a child of game control. Rules run in the rule phase, in child order. Registered by

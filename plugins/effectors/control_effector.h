@@ -6,6 +6,9 @@ namespace spark {
 
 /// `(he1 30 0 25 0.6 0)`: sets the controller of the joint above it until the next command: target angle [deg] and rate
 /// [deg/s], stiffness [Nm/rad], damping [N m s/rad] and torque [Nm].
+///
+/// The three parts may have gears and limits as the actuators of an MJCF file: the target is then a length, the gear
+/// times the angle. Vectors hold the numbers of position, rate and torque.
 class ControlEffector : public Effector {
   SPARK_CLASS(ControlEffector, Effector)
  public:
@@ -14,6 +17,12 @@ class ControlEffector : public Effector {
     d.doc("Sets the controller of the joint above it: (name deg deg/s stiffness damping torque).");
     d.link(&E::joint_, Above<IJoint>()).required(kNoJointAbove);
     d.property("maxForce", &E::maxForce_).unit("Nm").min(0).doc("Largest torque of the controller.");
+    d.property("gears", &E::gears_).unit("1").doc("Gears of position, rate and torque; not 0.");
+    d.property("leastControls", &E::least_)
+        .unit("SI")
+        .doc("Least position, rate and torque that count [rad, rad/s, Nm].");
+    d.property("mostControls", &E::most_).unit("SI").doc("Largest position, rate and torque that count.");
+    d.property("reference", &E::reference_).unit("rad").doc("Angle in messages where the joint's is 0; on a slider m.");
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();
@@ -24,22 +33,25 @@ class ControlEffector : public Effector {
       if (!read(i, n[i])) return read.remark();
     if (n[2] < 0 || n[3] < 0) return "expected a stiffness and a damping of 0 or more";
     const double unit = joint->jointType() == engine::JointType::slider ? 1 : degToRad(1);
-    joint->control(0, {.stiffness = n[2],
-                       .damping = n[3],
-                       .position = unit * n[0],
-                       .velocity = unit * n[1],
-                       .force = n[4],
+    joint->control(0, {.stiffness = gears_[0] * gears_[0] * n[2],
+                       .damping = gears_[1] * gears_[1] * n[3],
+                       .position = limited(0, unit * n[0]) / gears_[0] - reference_,
+                       .velocity = limited(1, unit * n[1]) / gears_[1],
+                       .force = gears_[2] * limited(2, n[4]),
                        .maxForce = maxForce_});
     return read.remark();
   }
 
  private:
+  double limited(int part, double v) const { return std::max(least_[part], std::min(most_[part], v)); }
   Link<IJoint> joint_;
-  double maxForce_ = HUGE_VAL;
+  double maxForce_ = HUGE_VAL, reference_ = 0;
+  Vec3 gears_{1, 1, 1}, least_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, most_{HUGE_VAL, HUGE_VAL, HUGE_VAL};
 };
 
-/// `(name u)`: a MuJoCo actuator on the joint above it. It applies the force gain u + bias - stiffness q - damping dq,
-/// with the joint's position q and rate dq [SI units].
+/// `(name u)`: a MuJoCo actuator on the joint above it. It applies the force gain u + bias - (stiffness + gainStiffness
+/// u) q - (damping + gainDamping u) dq, with the joint's position q and rate dq [SI units]. The forces of several
+/// actuators of one joint add up.
 class ActuatorEffector : public Effector {
   SPARK_CLASS(ActuatorEffector, Effector)
  public:
@@ -51,25 +63,41 @@ class ActuatorEffector : public Effector {
     d.property("bias", &E::bias_).unit("Nm").doc("Constant force; on a slider N.");
     d.property("stiffness", &E::stiffness_).unit("Nm/rad").min(0).doc("Force per angle, against it; on a slider N/m.");
     d.property("damping", &E::damping_).unit("N m s").min(0).doc("Force per rate, against it; on a slider N s/m.");
-    d.property("maxForce", &E::maxForce_).unit("Nm").min(0).doc("Largest force; on a slider N.");
+    d.property("gainStiffness", &E::gainStiffness_).unit("Nm/rad").doc("Stiffness per control.");
+    d.property("gainDamping", &E::gainDamping_).unit("N m s").doc("Damping per control.");
+    d.property("maxForce", &E::maxForce_)
+        .unit("Nm")
+        .min(0)
+        .doc("Maximum force of the joint's actuators; on a slider N.");
     d.property("least", &E::least_).unit("1").doc("Minimum control; smaller values are clamped to it.");
     d.property("most", &E::most_).unit("1").doc("Maximum control; larger values are clamped to it.");
+    d.property("control", &E::control_).unit("1").state().doc("The control u.");
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();
     if (!joint) return "there is no joint above it";
     NumberArguments read(action);
-    if (double u = 0; read(0, u))
-      joint->control(0, {.stiffness = stiffness_,
-                         .damping = damping_,
-                         .force = gain_ * std::max(least_, std::min(most_, u)) + bias_,
-                         .maxForce = maxForce_});
+    if (double u = 0; read(0, u)) {
+      control_ = u;
+      engine::Control sum;
+      for (const auto& sibling : parent()->children())
+        if (const auto actuator = sibling->as<ActuatorEffector>()) actuator->addTo(sum);
+      joint->control(0, sum);
+    }
     return read.remark();
   }
 
  private:
+  void addTo(engine::Control& sum) const {
+    const double u = std::max(least_, std::min(most_, control_));
+    sum.stiffness += std::max(0.0, stiffness_ + gainStiffness_ * u);
+    sum.damping += std::max(0.0, damping_ + gainDamping_ * u);
+    sum.force += gain_ * u + bias_;
+    sum.maxForce = std::min(sum.maxForce, maxForce_);
+  }
   Link<IJoint> joint_;
-  double gain_ = 1, bias_ = 0, stiffness_ = 0, damping_ = 0, maxForce_ = HUGE_VAL, least_ = -HUGE_VAL, most_ = HUGE_VAL;
+  double gain_ = 1, bias_ = 0, stiffness_ = 0, damping_ = 0, gainStiffness_ = 0, gainDamping_ = 0, maxForce_ = HUGE_VAL,
+         least_ = -HUGE_VAL, most_ = HUGE_VAL, control_ = 0;
 };
 
 }  // namespace spark

@@ -8,7 +8,20 @@
 
 namespace spark::mjcf {
 
+namespace {
+
+bool isLimited(const std::array<double, 2>& range) { return std::isfinite(range[0]) || std::isfinite(range[1]); }
+
+/// As std::clamp, for ranges of any order.
+double clampTo(const std::array<double, 2>& range, double v) { return std::max(range[0], std::min(range[1], v)); }
+
+/// True when the force depends on the joint's position or rate.
+bool hasFeedback(const Actuator& x) { return x.gain[1] != 0 || x.gain[2] != 0 || x.bias[1] != 0 || x.bias[2] != 0; }
+
+}  // namespace
+
 void ActuatorBuilder::build() {
+  if (!c_.flags.actuation) return;
   // By joint, in the order of the file.
   std::vector<std::pair<std::string, Actuators>> groups;
   for (const Actuator& x : c_.model.actuators) {
@@ -19,73 +32,151 @@ void ActuatorBuilder::build() {
   for (const auto& [name, all] : groups) {
     const Element& from = all.front()->from;
     const auto joint = c_.joints.find(name);
-    if (joint != c_.joints.end())
+    const bool free = c_.freeJoints.contains(name);
+    if (joint == c_.joints.end() && !free) throw from.error(fmt::format("there is no joint '{}' to act on", name));
+    if (!free && joint->second.joint->kind != JointKind::ball) {
       onJoint(all, joint->second);
-    else if (c_.freeJoints.contains(name))
-      c_.leftOver.add(from, fmt::format("a <{}> on a free joint is left out", from.tag()));
-    else
-      throw from.error(fmt::format("there is no joint '{}' to act on", name));
+      continue;
+    }
+    for (const Actuator* x : all)
+      c_.unsupported.add(x->from, fmt::format("{} acts on a {} joint, which is not supported", x->from.named(),
+                                              free ? "free" : "ball"));
   }
 }
 
 void ActuatorBuilder::onJoint(const Actuators& all, const Construction::MadeJoint& on) {
-  const Actuator& first = *all.front();
-  if (on.joint->kind == JointKind::ball)
-    return c_.leftOver.add(first.from, fmt::format("a <{}> on a ball joint is left out", first.from.tag()));
-  const double maxForce = std::min(on.joint->maxForce, all.size() == 1 ? first.maxForce : HUGE_VAL);
-  if (makeController(all, on, maxForce)) return;
-  for (std::size_t i = 1; i < all.size(); ++i)
-    c_.leftOver.add(all[i]->from, fmt::format("a second <{}> on a joint is left out", all[i]->from.tag()));
-  makeActuator(first, on, maxForce);
+  if (const auto parts = partsOf(all)) return makeController(*parts, on);
+  engine::Control sum;
+  sum.maxForce = on.joint->maxForce;
+  for (const Actuator* x : all) {
+    auto law = lawOf(*x, *on.joint, all.size() == 1);
+    if (!law) continue;
+    law->maxForce = std::min(law->maxForce, on.joint->maxForce);
+    const double u = std::max(law->least, std::min(law->most, 0.0));
+    sum.stiffness += law->stiffness + law->gainStiffness * u;
+    sum.damping += law->damping + law->gainDamping * u;
+    sum.force += law->bias + law->gain * u;
+    sum.maxForce = std::min(sum.maxForce, law->maxForce);
+    makeActuator(*x, *law, on);
+  }
+  on.made->control(0, sum);
 }
 
-/// Makes one controller of name_pos, name_vel and name_tau. Returns false where these are not all that there is.
-bool ActuatorBuilder::makeController(const Actuators& all, const Construction::MadeJoint& on, double maxForce) {
+std::array<double, 2> ActuatorBuilder::controlRange(const Actuator& x) const {
+  return c_.flags.clampControl ? x.controlRange : std::array{-HUGE_VAL, HUGE_VAL};
+}
+
+/// Of an actuator without feedback: the range of controls that keeps its force within bounds as well.
+std::array<double, 2> ActuatorBuilder::constantRange(const Actuator& x) const {
+  const std::array<double, 2> range = controlRange(x);
+  if (x.gain[0] == 0 || !isLimited(x.forceRange)) return range;
+  std::array<double, 2> byForce{(x.forceRange[0] - x.bias[0]) / x.gain[0], (x.forceRange[1] - x.bias[0]) / x.gain[0]};
+  if (x.gain[0] < 0) std::swap(byForce[0], byForce[1]);
+  return {clampTo(byForce, range[0]), clampTo(byForce, range[1])};
+}
+
+/// nullopt for an actuator that is not supported. `alone`: it is the only one of its joint.
+std::optional<ActuatorBuilder::Law> ActuatorBuilder::lawOf(const Actuator& x, const Joint& joint, bool alone) {
+  const double gear = x.gear, square = gear * gear, offset = gear * joint.reference;
+  Law law{.gain = gear * (x.gain[0] + x.gain[1] * offset),
+          .bias = gear * (x.bias[0] + x.bias[1] * offset),
+          .stiffness = -square * x.bias[1],
+          .damping = -square * x.bias[2],
+          .gainStiffness = -square * x.gain[1],
+          .gainDamping = -square * x.gain[2]};
+  const bool feedback = hasFeedback(x);
+  const std::array<double, 2> range = feedback ? controlRange(x) : constantRange(x);
+  law.least = range[0], law.most = range[1];
+  const auto refuse = [&](const char* why) { c_.unsupported.add(x.from, x.from.named() + why); };
+  if (!feedback && x.gain[0] == 0) law.bias = gear * clampTo(x.forceRange, x.bias[0]);
+  if (feedback && isLimited(x.forceRange)) {
+    if (alone)
+      law.maxForce = std::abs(gear) * std::max(std::abs(x.forceRange[0]), std::abs(x.forceRange[1]));
+    else
+      refuse(" has a force range beside other actuators of its joint, which is not supported: its force is unlimited");
+    if (alone && x.forceRange[0] != -x.forceRange[1])
+      refuse(" has a force range that is not symmetric, which is not supported: it is taken as symmetric");
+  }
+  const auto least = [&](double constant, double perControl) {
+    return perControl == 0 ? constant : constant + std::min(perControl * law.least, perControl * law.most);
+  };
+  if (least(law.stiffness, law.gainStiffness) < 0 || least(law.damping, law.gainDamping) < 0) {
+    refuse(" drives its joint away from a target, or speeds it up, which is not supported");
+    return std::nullopt;
+  }
+  return law;
+}
+
+/// The parts of a controller, where they are all that acts on a joint.
+std::optional<ActuatorBuilder::Parts> ActuatorBuilder::partsOf(const Actuators& all) const {
   const auto ending = [&](const char* end, bool (*fits)(const Actuator&)) -> const Actuator* {
     for (const Actuator* x : all)
-      if (x->name.ends_with(end) && fits(*x)) return x;
+      if (x->name.ends_with(end) && x->gain[1] == 0 && x->gain[2] == 0 && x->gear != 0 && fits(*x)) return x;
     return nullptr;
   };
-  const Actuator* position = ending("_pos", [](const Actuator& x) { return x.bias[1] == -x.gain && x.bias[2] == 0; });
-  const Actuator* velocity = ending("_vel", [](const Actuator& x) { return x.bias[2] == -x.gain && x.bias[1] == 0; });
-  const Actuator* torque = ending("_tau", [](const Actuator& x) { return x.bias == std::array<double, 3>{}; });
-  const bool plain = std::all_of(all.begin(), all.end(), [](const Actuator* x) {
-    return x->gear == 1 && std::isinf(x->maxForce) && std::isinf(x->controlRange[1]);
-  });
-  if (all.size() != 3 || !position || !velocity || !torque || !plain || torque->gain != 1) return false;
-  if (on.joint->stiffness > 0)
-    c_.leftOver.add(on.joint->from,
-                    "the attribute 'stiffness' of <joint> is left out where the joint has a controller");
-  on.made->control(0, {.stiffness = position->gain, .damping = velocity->gain, .maxForce = maxForce});
-  if (!c_.has("ControlEffector")) return true;
-  const std::string name = position->name.substr(0, position->name.size() - 4);
-  Leaf& effector = on.made->leaf().asNode()->create("ControlEffector", name);
-  setProperty(effector, "maxForce", maxForce);
-  return true;
+  using A = Actuator;
+  const Parts p{ending("_pos",
+                       [](const A& x) {
+                         return x.bias == std::array{0.0, -x.gain[0], 0.0} && x.gain[0] >= 0;
+                       }),
+                ending("_vel",
+                       [](const A& x) {
+                         return x.bias == std::array{0.0, 0.0, -x.gain[0]} && x.gain[0] >= 0;
+                       }),
+                ending("_tau", [](const A& x) {
+                  return x.bias == std::array{0.0, 0.0, 0.0};
+                })};
+  if (all.size() != 3 || !p.position || !p.velocity || !p.torque) return std::nullopt;
+  return p;
 }
 
-void ActuatorBuilder::makeActuator(const Actuator& x, const Construction::MadeJoint& on, double maxForce) {
-  // The joint's spring acts beside the actuator.
-  const double spring = on.joint->stiffness, gear2 = x.gear * x.gear;
-  const double bias = x.gear * x.bias[0] + spring * on.joint->springAngle;
-  const double atFirst = std::clamp(0.0, x.controlRange[0], x.controlRange[1]);
-  const engine::Control law{.stiffness = spring - gear2 * x.bias[1],
-                            .damping = -gear2 * x.bias[2],
-                            .force = bias + x.gear * x.gain * atFirst,
-                            .maxForce = maxForce};
-  if (law.stiffness < 0 || law.damping < 0)
-    return c_.leftOver.add(x.from, "an actuator that drives a joint away from its target is left out");
-  on.made->control(0, law);
+void ActuatorBuilder::makeController(const Parts& p, const Construction::MadeJoint& on) {
+  for (const Actuator* x : {p.position, p.velocity})
+    if (isLimited(x->forceRange))
+      c_.unsupported.add(x->from, x->from.named() +
+                                      " has a force range beside other actuators of its joint, which is "
+                                      "not supported: its force is unlimited");
+  const double g = p.position->gear, h = p.velocity->gear, t = p.torque->gear * p.torque->gain[0];
+  const std::array<double, 2> angle = controlRange(*p.position), rate = controlRange(*p.velocity),
+                              torque = constantRange(*p.torque);
+  on.made->control(0, {.stiffness = g * g * p.position->gain[0],
+                       .damping = h * h * p.velocity->gain[0],
+                       .position = clampTo(angle, 0) / g - on.joint->reference,
+                       .velocity = clampTo(rate, 0) / h,
+                       .force = t * clampTo(torque, 0),
+                       .maxForce = on.joint->maxForce});
+  if (!c_.has("ControlEffector")) return;
+  const std::string name = p.position->name.substr(0, p.position->name.size() - 4);
+  Leaf& effector = makeEffector("ControlEffector", name, on, p.position->from);
+  setProperty(effector, "maxForce", on.joint->maxForce);
+  setProperty(effector, "gears", toList(Vec3(g, h, t)));
+  setProperty(effector, "leastControls", toList(Vec3(angle[0], rate[0], torque[0])));
+  setProperty(effector, "mostControls", toList(Vec3(angle[1], rate[1], torque[1])));
+  setProperty(effector, "reference", on.joint->reference);
+}
+
+void ActuatorBuilder::makeActuator(const Actuator& x, const Law& law, const Construction::MadeJoint& on) {
   if (!c_.has("ActuatorEffector")) return;
-  const std::string& name = x.name.empty() ? on.joint->name : x.name;
-  Leaf& effector = on.made->leaf().asNode()->create("ActuatorEffector", name);
-  setProperty(effector, "gain", x.gear * x.gain);
-  setProperty(effector, "bias", bias);
+  Leaf& effector = makeEffector("ActuatorEffector", x.name.empty() ? on.joint->name : x.name, on, x.from);
+  setProperty(effector, "gain", law.gain);
+  setProperty(effector, "bias", law.bias);
   setProperty(effector, "stiffness", law.stiffness);
   setProperty(effector, "damping", law.damping);
-  setProperty(effector, "maxForce", maxForce);
-  setProperty(effector, "least", x.controlRange[0]);
-  setProperty(effector, "most", x.controlRange[1]);
+  setProperty(effector, "gainStiffness", law.gainStiffness);
+  setProperty(effector, "gainDamping", law.gainDamping);
+  setProperty(effector, "maxForce", law.maxForce);
+  setProperty(effector, "least", law.least);
+  setProperty(effector, "most", law.most);
+}
+
+Leaf& ActuatorBuilder::makeEffector(const char* className, const std::string& name, const Construction::MadeJoint& on,
+                                    const Element& from) {
+  Node& parent = *on.made->leaf().asNode();
+  Leaf& effector = parent.create(className, c_.names.unprefixed(parent, name, "actuator"));
+  const std::string message = c_.names.effector(name.empty() ? effector.name() : name);
+  if (message != effector.name()) setProperty(effector, "messageName", message);
+  if (message != name) c_.unsupported.add(from, fmt::format("{} is called {} in messages", from.named(), message));
+  return effector;
 }
 
 }  // namespace spark::mjcf

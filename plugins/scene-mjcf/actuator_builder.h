@@ -15,9 +15,26 @@ class ActuatorBuilder {
 
  private:
   using Actuators = std::vector<const Actuator*>;
+  /// The force of an actuator for the joint's own coordinate q, which is 0 in the pose of the file, and a control u:
+  /// gain u + bias - (stiffness + gainStiffness u) q - (damping + gainDamping u) dq.
+  struct Law {
+    double gain = 0, bias = 0, stiffness = 0, damping = 0, gainStiffness = 0, gainDamping = 0;
+    double least = -HUGE_VAL, most = HUGE_VAL;  ///< range of u
+    double maxForce = HUGE_VAL;                 ///< of the whole force
+  };
+  /// The actuators of a controller: NAME_pos, NAME_vel and NAME_tau.
+  struct Parts {
+    const Actuator *position = nullptr, *velocity = nullptr, *torque = nullptr;
+  };
   void onJoint(const Actuators& all, const Construction::MadeJoint& joint);
-  bool makeController(const Actuators& all, const Construction::MadeJoint& joint, double maxForce);
-  void makeActuator(const Actuator& x, const Construction::MadeJoint& joint, double maxForce);
+  std::optional<Parts> partsOf(const Actuators& all) const;
+  void makeController(const Parts& parts, const Construction::MadeJoint& joint);
+  std::optional<Law> lawOf(const Actuator& x, const Joint& joint, bool alone);
+  void makeActuator(const Actuator& x, const Law& law, const Construction::MadeJoint& joint);
+  Leaf& makeEffector(const char* className, const std::string& name, const Construction::MadeJoint& joint,
+                     const Element& from);
+  std::array<double, 2> controlRange(const Actuator& x) const;
+  std::array<double, 2> constantRange(const Actuator& x) const;
 
   Construction& c_;
 };

@@ -18,72 +18,91 @@ std::optional<Actuator> ActuatorReader::read(const Element& e) {
   Actuator x;
   x.from = e;
   x.name = e.node.attribute("name").value();
-  x.joint = e.node.attribute("joint").value();
+  // The coordinate of a hinge or slider is the same in both frames.
+  for (const char* const target : {"joint", "jointinparent"})
+    if (x.joint.empty()) x.joint = e.node.attribute(target).value();
   std::vector<Element> chain{e};
   defaults_.forEach(e, kTags, e.node.attribute("class").value(), [&](const Element& d) { chain.push_back(d); });
-  // The outermost default comes first. A later element may lift the refusal of an earlier one.
-  std::string refusal;
-  for (std::size_t i = chain.size(); i-- > 0;) apply(chain[i], x, refusal);
-  if (refusal.empty() && x.joint.empty()) refusal = fmt::format("a <{}> that acts on no joint is left out", e.tag());
-  if (!refusal.empty()) {
-    leftOver_.add(e, refusal);
+  // The outermost default comes first, since later elements override.
+  Functions f;
+  for (std::size_t i = chain.size(); i-- > 0;) apply(chain[i], f);
+  std::string refused = refusal(e, f);
+  if (refused.empty() && x.joint.empty())
+    refused = fmt::format("{} does not act on a joint, which is not supported", e.named());
+  if (!refused.empty()) {
+    unsupported_.add(e, refused);
     return std::nullopt;
   }
-  x.maxForce = x.gear == 0 ? 0 : std::abs(x.gear) * x.forceRange;
+  // Limits count once all defaults are applied.
+  x.gear = f.gear;
+  const bool affine = f.gainType == "affine";
+  x.gain = {f.gain[0], affine ? f.gain[1] : 0, affine ? f.gain[2] : 0};
+  if (f.biasType == "affine") x.bias = {f.bias[0], f.bias[1], f.bias[2]};
+  if (const auto range = compiler_.limit(e, "ctrlrange", f.control)) x.controlRange = *range;
+  if (const auto range = compiler_.limit(e, "forcerange", f.force)) x.forceRange = *range;
   return x;
 }
 
-/// Applies what one element says. `refusal`: why the actuator is left out, "" if it is not.
-void ActuatorReader::apply(const Element& e, Actuator& x, std::string& refusal) {
-  Attributes a(e, leftOver_);
-  std::array<double, 6> gear{x.gear, 0, 0, 0, 0, 0};
+std::string ActuatorReader::refusal(const Element& e, const Functions& f) const {
+  for (const std::string_view tag : {"intvelocity", "cylinder", "muscle", "adhesion", "plugin"})
+    if (e.tag() == tag) return fmt::format("the actuator {} is not supported", e.named());
+  if (f.dynamics != "none")
+    return fmt::format("{} has the dyntype '{}', which is not supported", e.named(), f.dynamics);
+  for (const std::string& type : {f.gainType, f.biasType})
+    if (type == "muscle" || type == "user")
+      return fmt::format("{} is of the type '{}', which is not supported", e.named(), type);
+  return "";
+}
+
+void ActuatorReader::apply(const Element& e, Functions& f) {
+  Attributes a(e, unsupported_);
+  std::array<double, 6> gear{f.gear, 0, 0, 0, 0, 0};
   a.fill("gear", gear);
-  x.gear = gear[0];
-  applyLaw(a, x, refusal);
-  applyLimits(a, x);
+  f.gear = gear[0];
+  f.control.read(a, "ctrllimited", "ctrlrange");
+  f.force.read(a, "forcelimited", "forcerange");
   a.ignore({"name", "class", "joint", "group", "user", "tendon", "site", "body", "jointinparent", "cranksite",
-            "slidersite"});
-  if (refusal.empty()) a.finish();
+            "slidersite", "lengthrange"});
+  if (applyLaw(a, f)) a.finish();
 }
 
-void ActuatorReader::applyLaw(Attributes& a, Actuator& x, std::string& refusal) {
+/// What MuJoCo's shortcuts mean; each leaves what it does not name. Returns false for an unsupported one.
+bool ActuatorReader::applyLaw(Attributes& a, Functions& f) {
   const std::string_view tag = a.element().tag();
+  const auto types = [&](const char* gain, const char* bias, const char* dynamics) {
+    f.gainType = gain, f.biasType = bias, f.dynamics = dynamics;
+  };
   if (tag == "motor") {
-    x.gain = 1, x.bias = {0, 0, 0}, refusal.clear();
+    f.gain = {1};
+    types("fixed", "none", "none");
   } else if (tag == "position") {
-    x.gain = a.number("kp", x.gain);
-    x.bias = {0, -x.gain, -a.number("kv", 0)}, refusal.clear();
+    f.gain = {a.number("kp", f.gain[0])};
+    f.bias = {0, -f.gain[0], -a.number("kv", 0)};
+    types("fixed", "affine", "none");
   } else if (tag == "velocity") {
-    x.gain = a.number("kv", x.gain);
-    x.bias = {0, 0, -x.gain}, refusal.clear();
+    f.gain = {a.number("kv", f.gain[0])};
+    f.bias = {0, 0, -f.gain[0]};
+    types("fixed", "affine", "none");
+  } else if (tag == "damper") {  // a damping that is proportional to the control
+    f.gain = {0, 0, -a.number("kv", 0)};
+    f.control.word = "true";
+    types("affine", "none", "none");
   } else if (tag == "general") {
-    applyGeneral(a, x, refusal);
+    applyGeneral(a, f);
   } else {
-    refusal = fmt::format("the element <{}> is left out", tag);
+    types("fixed", "affine", tag == "intvelocity" ? "integrator" : tag == "cylinder" ? "filter" : "none");
+    return false;
   }
+  return true;
 }
 
-void ActuatorReader::applyGeneral(Attributes& a, Actuator& x, std::string& refusal) {
-  std::array<double, 10> gain{x.gain}, bias{x.bias[0], x.bias[1], x.bias[2]};
-  a.fill("gainprm", gain);
-  a.fill("biasprm", bias);
-  x.gain = gain[0];
-  const bool affine = x.bias != std::array<double, 3>{};
-  const std::string kind = a.word("biastype", {"none", "affine", "muscle", "user"}, affine ? "affine" : "none");
-  x.bias = kind == "affine" ? std::array<double, 3>{bias[0], bias[1], bias[2]} : std::array<double, 3>{};
-  if (a.word("gaintype", {"fixed", "affine", "muscle", "user"}, "fixed") != "fixed" ||
-      a.text("dyntype", "none") != "none" || kind == "muscle" || kind == "user")
-    refusal = "a <general> whose gain is not fixed, or that has dynamics, is left out";
-  a.ignore({"dynprm"});
-}
-
-void ActuatorReader::applyLimits(Attributes& a, Actuator& x) {
-  const auto control = a.numbers("ctrlrange", 2, 2), force = a.numbers("forcerange", 2, 2);
-  if (compiler_.limited(a, "ctrllimited", "ctrlrange", control)) x.controlRange = {(*control)[0], (*control)[1]};
-  if (!compiler_.limited(a, "forcelimited", "forcerange", force)) return;
-  x.forceRange = std::max(std::abs((*force)[0]), std::abs((*force)[1]));
-  if ((*force)[0] != -(*force)[1])
-    leftOver_.add(a.element(), "a force range that is not symmetric is taken as symmetric");
+void ActuatorReader::applyGeneral(Attributes& a, Functions& f) {
+  a.fill("gainprm", f.gain);
+  a.fill("biasprm", f.bias);
+  f.gainType = a.word("gaintype", {"fixed", "affine", "muscle", "user"}, f.gainType.c_str());
+  f.biasType = a.word("biastype", {"none", "affine", "muscle", "user"}, f.biasType.c_str());
+  f.dynamics = a.text("dyntype", f.dynamics.c_str());
+  a.ignore({"dynprm", "actlimited", "actrange"});
 }
 
 }  // namespace spark::mjcf

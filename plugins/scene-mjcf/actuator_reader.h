@@ -10,20 +10,28 @@ namespace spark::mjcf {
 /// Reads actuators with their chains of defaults. Its parts must outlive it.
 class ActuatorReader {
  public:
-  ActuatorReader(const Compiler& compiler, const Defaults& defaults, LeftOver& leftOver)
-      : compiler_(compiler), defaults_(defaults), leftOver_(leftOver) {}
-  /// Reads an element in `actuator`; nullopt for one that is left out. Throws Error.
+  ActuatorReader(const Compiler& compiler, const Defaults& defaults, Unsupported& unsupported)
+      : compiler_(compiler), defaults_(defaults), unsupported_(unsupported) {}
+  /// Reads an element in `actuator`; nullopt for one that is not supported. Throws Error.
   std::optional<Actuator> read(const Element& e);
 
  private:
-  void apply(const Element& e, Actuator& x, std::string& refusal);
-  void applyLaw(Attributes& a, Actuator& x, std::string& refusal);
-  void applyGeneral(Attributes& a, Actuator& x, std::string& refusal);
-  void applyLimits(Attributes& a, Actuator& x);
+  /// The functions and limits of an actuator, as its chain of elements leaves them.
+  struct Functions {
+    double gear = 1;
+    std::array<double, 10> gain{1}, bias{};
+    std::string gainType = "fixed", biasType = "none", dynamics = "none";
+    Limit control, force;
+  };
+  void apply(const Element& e, Functions& f);
+  /// Why the actuator of an element is not supported; "" if it is.
+  std::string refusal(const Element& e, const Functions& f) const;
+  bool applyLaw(Attributes& a, Functions& f);
+  void applyGeneral(Attributes& a, Functions& f);
 
   const Compiler& compiler_;
   const Defaults& defaults_;
-  LeftOver& leftOver_;
+  Unsupported& unsupported_;
 };
 
 }  // namespace spark::mjcf

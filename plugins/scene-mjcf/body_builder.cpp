@@ -31,16 +31,25 @@ void setPose(Leaf& body, const Pose& world) {
 
 std::string bodyPath(const std::string& transform) { return "../../" + transform + "/body"; }
 
+/// A spring is a law of its own, beside the joint's controller and its limits.
+void setSpring(IJoint& made, const Joint& j) {
+  if (!(j.stiffness > 0)) return;
+  if (made.leaf().classObject()->method("setSpring"))
+    callMethod(made.leaf(), "setSpring", List{0, j.stiffness, j.springPosition});
+  else
+    made.control(0, {.stiffness = j.stiffness, .position = j.springPosition});
+}
+
 /// `world`: pose of the child link's frame.
-void setAxis(IJoint& made, const Joint& j, const Pose& world) {
+void setAxis(IJoint& made, const Joint& j, const Pose& world, const Flags& flags) {
   made.setWorldAxis(0, world.rotation * j.axis);
-  if (j.limited) {
+  if (j.limited && flags.limit) {
     made.setParameter(JointParameter::lowStop, 0, j.range[0]);
     made.setParameter(JointParameter::highStop, 0, j.range[1]);
   }
   made.setParameter(JointParameter::armature, 0, j.armature);
-  made.setParameter(JointParameter::damping, 0, j.damping);
-  made.setParameter(JointParameter::dryFriction, 0, j.dryFriction);
+  made.setParameter(JointParameter::damping, 0, flags.passive ? j.damping : 0);
+  made.setParameter(JointParameter::dryFriction, 0, flags.frictionLoss ? j.dryFriction : 0);
   const engine::MujocoAxis& n = j.numbers;
   Leaf& leaf = made.leaf();
   callMethod(leaf, "setMujocoStopSolref", List{0, toList(n.stopSolref)});
@@ -48,8 +57,9 @@ void setAxis(IJoint& made, const Joint& j, const Pose& world) {
   callMethod(leaf, "setMujocoStopMargin", List{0, n.stopMargin});
   callMethod(leaf, "setMujocoFrictionSolref", List{0, toList(n.frictionSolref)});
   callMethod(leaf, "setMujocoFrictionSolimp", List{0, toList(n.frictionSolimp)});
-  // A passive joint: its spring, or nothing beside dry friction.
-  made.control(0, {.stiffness = j.stiffness, .position = j.springAngle});
+  // Without a motor: nothing but dry friction.
+  made.control(0, {});
+  if (flags.passive) setSpring(made, j);
 }
 
 }  // namespace
@@ -64,14 +74,26 @@ void BodyBuilder::build() {
 void BodyBuilder::makeBody(PlacedBody& p) {
   const Body& b = *p.body;
   if (!(p.mass.mass > 0)) throw b.from.error("a body that moves needs a mass above 0");
-  p.node = &transformAt(c_.names.body(b.name, "body"), bodyPose(p));
+  p.node = &transformAt(c_.names.body(c_.top, b.name, "body"), bodyPose(p));
   try {
     Leaf& body = makeRigidBody(*p.node, p, 1);
     setProperty(body, "linkOrigin", toList(Vec3(-p.mass.center)));
     setPose(body, bodyPose(p));
+    compensateGravity(p, body);
   } catch (const Error& e) {
     throw Error(fmt::format("{}: cannot make the body '{}'", b.from.where(), b.name), e);
   }
+}
+
+/// A body has gravity or has none, so parts of it cannot be spared alone.
+void BodyBuilder::compensateGravity(const PlacedBody& p, Leaf& body) {
+  if (p.compensatedMass == 0 || !c_.flags.passive) return;
+  if (std::abs(p.compensatedMass - p.mass.mass) <= 1e-9 * p.mass.mass)
+    setProperty(body, "gravityOn", false);
+  else
+    c_.unsupported.add(p.body->from, fmt::format("{} has a gravcomp other than 1, or not of all bodies that move with "
+                                                 "it, which is not supported",
+                                                 p.body->from.named()));
 }
 
 void BodyBuilder::makeJoints(const PlacedBody& p) {
@@ -83,11 +105,11 @@ void BodyBuilder::makeJoints(const PlacedBody& p) {
   std::string parent = p.above == 0 ? "" : bodyPath(c_.bodies[p.above].node->name());
   // A joint has one axis: between two of them there is a light body.
   if (joints.size() > 1)
-    c_.leftOver.add(joints[0].from,
-                    fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass",
-                                joints.size(), kBetween));
+    c_.unsupported.add(joints[0].from,
+                       fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass",
+                                   joints.size(), kBetween));
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
-    const std::string name = c_.names.body(fmt::format("{}-{}", p.body->name, k + 1), "between");
+    const std::string name = c_.names.body(c_.top, fmt::format("{}-{}", p.body->name, k + 1), "between");
     Node& between = transformAt(name, bodyPose(p));
     Leaf& connector = makeRigidBody(between, p, kBetween);
     setProperty(connector, "connector", true);
@@ -105,10 +127,14 @@ void BodyBuilder::makeJoint(const PlacedBody& p, const Joint& j, Node& child, co
                            : j.kind == JointKind::slide ? "SliderJoint"
                                                         : "BallJoint";
   try {
-    auto& made = child.create<IJoint>(kind, c_.names.name(j.name, "joint"));
+    auto& made = child.create<IJoint>(kind, c_.names.in(child, j.name, "joint"));
     callMethod(made.leaf(), "attach", List{"../body", parent});
     if (j.kind != JointKind::slide) made.setWorldAnchor(p.world.position + p.world.rotation * j.position);
-    if (j.kind != JointKind::ball) setAxis(made, j, p.world);
+    if (j.kind != JointKind::ball) setAxis(made, j, p.world, c_.flags);
+    if (!c_.flags.passive && j.damping > 0)
+      c_.unsupported.add(j.from,
+                         "the flag passive=\"disable\" removes a damping as a whole; MuJoCo 2.2.2 keeps the "
+                         "part of its implicit integration");
     if (!j.name.empty() && !c_.joints.emplace(j.name, Construction::MadeJoint{&j, &made}).second)
       throw Error(fmt::format("there are two joints '{}'", j.name));
   } catch (const Error& e) {

@@ -15,6 +15,7 @@ class BodyBuilder {
 
  private:
   void makeBody(PlacedBody& b);
+  void compensateGravity(const PlacedBody& b, Leaf& body);
   void makeJoints(const PlacedBody& b);
   void makeJoint(const PlacedBody& b, const Joint& joint, Node& child, const std::string& parentPath);
   Node& transformAt(const std::string& name, const Pose& world);

@@ -30,23 +30,41 @@ Leaf* worldAround(Node& node) {
 
 void Builder::build(Node& root) {
   Names names(prefix_);
-  Node& top = *root.create("Space", names.name(model_.name, "model")).asNode();
+  Node& top = *root.create("Space", names.in(root, model_.name, "model")).asNode();
   try {
-    Construction c{model_, leftOver_, top, std::move(names), PlacedBodies(model_, poseAround(top))};
+    Construction c{model_, unsupported_, top, std::move(names), PlacedBodies(model_, poseAround(top))};
+    if (prefix_.empty()) c.flags = model_.flags;
     BodyBuilder(c).build();
     GeomBuilder(c).build();
     ActuatorBuilder(c).build();
     SensorBuilder(c).build();
     withoutParts_ = c.withoutParts;
     if (!model_.options.empty() && !prefix_.empty())
-      leftOver_.add(model_.options.front().from,
-                    "the options of an attached model are left out: the world has its own");
-    if (const auto left = leftOver_.sentences(); strict_ && !left.empty())
+      unsupported_.add(model_.options.front().from,
+                       "the options of an attached model are ignored: the world has its own");
+    if (prefix_.empty()) compareTimesteps(root);
+    if (const auto left = unsupported_.sentences(); strict_ && !left.empty())
       throw Error(fmt::format("{}", fmt::join(left, "; ")));
     if (prefix_.empty()) setOptions(root);
   } catch (...) {
     root.remove(top);
     throw;
+  }
+}
+
+/// A cycle has a whole number of steps, so their length may differ from that of the file.
+void Builder::compareTimesteps(Node& root) {
+  const Leaf* const simulation = root.kernel().root().find("/sys/server/simulation");
+  if (!simulation || !simulation->classObject()->property("step")) return;
+  const double cycle = getProperty(*simulation, "step").toNumber();
+  for (const Option& o : model_.options) {
+    if (std::string_view(o.property) != "timestep") continue;
+    const double wanted = o.value.toNumber(), steps = std::max(1.0, std::round(cycle / wanted));
+    if (cycle > 0 && std::abs(cycle / steps - wanted) > 1e-9 * wanted)
+      unsupported_.add(
+          o.from, fmt::format("the timestep of {} s does not divide the cycle of {} s: {} of {:.6g} s each "
+                              "are used in its place",
+                              wanted, cycle, steps == 1 ? "steps" : fmt::format("{} steps", steps), cycle / steps));
   }
 }
 

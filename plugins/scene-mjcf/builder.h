@@ -14,9 +14,9 @@ namespace spark::mjcf {
 class Builder {
  public:
   /// `prefix` stands before all names, except those of perceptors and effectors.
-  /// `strict`: what is left out is an error.
-  Builder(const Model& model, std::string prefix, bool strict, LeftOver& leftOver)
-      : model_(model), prefix_(std::move(prefix)), strict_(strict), leftOver_(leftOver) {}
+  /// `strict`: what is not supported is an error.
+  Builder(const Model& model, std::string prefix, bool strict, Unsupported& unsupported)
+      : model_(model), prefix_(std::move(prefix)), strict_(strict), unsupported_(unsupported) {}
   /// Builds below `root`. Throws Error with file:line:column; the tree is then as before.
   void build(Node& root);
   /// After build(): sensors and actuators have no perceptors and effectors, because those classes are not there.
@@ -24,11 +24,12 @@ class Builder {
 
  private:
   void setOptions(Node& root);
+  void compareTimesteps(Node& root);
 
   const Model& model_;
   std::string prefix_;
   bool strict_;
-  LeftOver& leftOver_;
+  Unsupported& unsupported_;
   bool withoutParts_ = false;
 };
 

@@ -26,12 +26,14 @@ void Compiler::read(Attributes& a) {
   meshFolder_ = folder;
   inertiaFromGeom_ = a.word("inertiafromgeom", {"auto", "true", "false"}, inertiaFromGeom_.c_str());
   a.take("inertiagrouprange", inertiaGroups_);
+  exactMeshInertia_ = a.flag("exactmeshinertia", exactMeshInertia_);
   boundMass_ = a.number("boundmass", boundMass_);
   boundInertia_ = a.number("boundinertia", boundInertia_);
-  if (a.text("coordinate", "local") != "local") throw a.element().error("expected the coordinate frame 'local'");
+  totalMass_ = a.number("settotalmass", totalMass_);
+  global_ = a.word("coordinate", {"local", "global"}, global_ ? "global" : "local") == "global";
   // Bodies without joints become part of their parents in any case.
-  a.ignore({"texturedir", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
-            "exactmeshinertia", "alignfree"});
+  a.ignore({"texturedir", "fitaabb", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
+            "alignfree"});
   a.finish();
 }
 
@@ -99,14 +101,19 @@ std::optional<Compiler::Span> Compiler::fromTo(Attributes& a, const Pose& frame)
   return Span{compose(frame, {(from + to) / 2, turnTo(from - to)}), length};
 }
 
-bool Compiler::limited(Attributes& a, const char* flag, const char* name,
-                       const std::optional<std::vector<double>>& range) const {
-  const std::string word = a.word(flag, {"true", "false", "auto"}, "auto");
-  const bool on = word == "auto" ? range && autolimits_ : word == "true";
-  if (on && (!range || !((*range)[0] < (*range)[1])))
-    throw a.element().error(fmt::format("expected a lower and a higher number for '{}' of <{}>, which is limited", name,
-                                        a.element().tag()));
-  return on;
+void Limit::read(Attributes& a, const char* flag, const char* name) {
+  word = a.word(flag, {"true", "false", "auto"}, word.c_str());
+  if (auto found = a.numbers(name, 2, 2)) range = std::move(found);
+}
+
+std::optional<std::array<double, 2>> Compiler::limit(const Element& e, const char* name, const Limit& l) const {
+  const std::array<double, 2> range = l.range ? std::array{(*l.range)[0], (*l.range)[1]} : std::array{0.0, 0.0};
+  const bool on = l.word == "auto" ? autolimits_ && (range[0] != 0 || range[1] != 0) : l.word == "true";
+  if (!on) return std::nullopt;
+  if (!(range[0] < range[1]))
+    throw e.error(
+        fmt::format("expected a lower and a higher number for '{}' of <{}>, which is limited", name, e.tag()));
+  return range;
 }
 
 }  // namespace spark::mjcf

@@ -10,6 +10,15 @@
 
 namespace spark::mjcf {
 
+/// A pair of attributes such as `limited` and `range`. Default classes may set one and elements the other, so both are
+/// read first, and checked by Compiler::limit().
+struct Limit {
+  std::string word = "auto";
+  std::optional<std::vector<double>> range;
+  /// Reads the attributes `flag` and `name`; what is not there stays. Throws Error.
+  void read(Attributes& a, const char* flag, const char* name);
+};
+
 /// Reads angles, orientations, poses and limits.
 class Compiler {
  public:
@@ -21,6 +30,12 @@ class Compiler {
   const std::string& inertiaFromGeom() const { return inertiaFromGeom_; }
   /// Geoms of this group add to the masses of their bodies.
   bool weighs(int group) const { return group >= inertiaGroups_[0] && group <= inertiaGroups_[1]; }
+  /// Poses in the file are world poses.
+  bool global() const { return global_; }
+  /// False: MuJoCo 2.2.2 estimates masses of meshes as if they were convex.
+  bool exactMeshInertia() const { return exactMeshInertia_; }
+  /// What the masses of all bodies are scaled to [kg]; 0 or less: they stay.
+  double totalMass() const { return totalMass_; }
   /// Raises mass and moments of inertia to the least ones of the file; a mass of 0 stays when there is no least mass.
   void raise(engine::Mass& mass) const;
 
@@ -37,18 +52,20 @@ class Compiler {
   };
   /// nullopt where there is no `fromto`. Throws Error.
   std::optional<Span> fromTo(Attributes& a, const Pose& frame) const;
-  /// Whether `range`, the attribute `name`, is a limit: as `flag` says, or because it is there. Throws Error.
-  bool limited(Attributes& a, const char* flag, const char* name,
-               const std::optional<std::vector<double>>& range) const;
+  /// The range that `limit`, with the attribute `name` of `e`, sets; nullopt if it sets none. Throws Error if a limit
+  /// has no valid range.
+  std::optional<std::array<double, 2>> limit(const Element& e, const char* name, const Limit& limit) const;
 
  private:
   bool degrees_ = true;
+  bool global_ = false;
   bool autolimits_ = true;
+  bool exactMeshInertia_ = false;
   std::string eulerSequence_ = "xyz";
   std::string meshFolder_;
   std::string inertiaFromGeom_ = "auto";
   std::array<int, 2> inertiaGroups_{0, 5};
-  double boundMass_ = 0, boundInertia_ = 0;
+  double boundMass_ = 0, boundInertia_ = 0, totalMass_ = 0;
 };
 
 }  // namespace spark::mjcf

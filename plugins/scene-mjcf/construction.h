@@ -8,7 +8,7 @@
 
 namespace spark::mjcf {
 
-/// A model on its way into the tree.
+/// A model on its way into the tree. Names in the maps are those of the file.
 struct Construction {
   /// A joint of the file and the node that was made of it.
   struct MadeJoint {
@@ -25,14 +25,15 @@ struct Construction {
   bool has(const char* className);
 
   const Model& model;
-  LeftOver& leftOver;
+  Unsupported& unsupported;
   Node& top;  ///< all is below it
   Names names;
   PlacedBodies bodies;
   std::map<std::string, MadeJoint, std::less<>> joints{};
   std::set<std::string, std::less<>> freeJoints{};
   std::map<std::string, Node*, std::less<>> sites{}, colliders{};  ///< colliders: by the names of geoms
-  bool withoutParts = false;                                       ///< has() found no class for a sensor or an actuator
+  Flags flags{};              ///< those of the file, unless the model is attached to a world with flags of its own
+  bool withoutParts = false;  ///< has() found no class for a sensor or an actuator
 };
 
 Pose inverse(const Pose& p);

@@ -33,6 +33,11 @@ std::string Element::where() const {
   return fmt::format("{}:{}", file->name, lineAndColumn(file->text, offset));
 }
 
+std::string Element::named() const {
+  const std::string_view name = node.attribute("name").value();
+  return name.empty() ? fmt::format("<{}>", tag()) : fmt::format("<{}> '{}'", tag(), name);
+}
+
 // ---- documents ----
 
 Document::Document(const std::string& name, ReadFile read) : folder_(folderOf(name)), read_(std::move(read)) {
@@ -108,7 +113,8 @@ void Defaults::add(Document& document, const Element& element, const std::string
 
 void Defaults::forEach(const Element& user, std::span<const std::string_view> tags, const std::string& name,
                        const std::function<void(const Element&)>& visit) const {
-  std::string at = name;
+  // The outermost class is called main, whatever else it is called.
+  std::string at = name == "main" && !classes_.contains(name) ? "" : name;
   for (int i = 0; i <= Document::kMaxDepth + 1; ++i) {
     const auto found = classes_.find(at);
     if (found == classes_.end()) {
@@ -124,9 +130,9 @@ void Defaults::forEach(const Element& user, std::span<const std::string_view> ta
   }
 }
 
-// ---- what is left out ----
+// ---- what is not supported ----
 
-void LeftOver::add(const Element& e, const std::string& what) {
+void Unsupported::add(const Element& e, const std::string& what) {
   if (const auto known = known_.find(what); known != known_.end())
     ++entries_[known->second].times;
   else if (entries_.size() == kMaxKinds)
@@ -135,25 +141,26 @@ void LeftOver::add(const Element& e, const std::string& what) {
     known_.emplace(what, entries_.size()), entries_.push_back({what, e.where(), 1});
 }
 
-void LeftOver::element(const Element& e) { add(e, fmt::format("the element <{}> is left out", e.tag())); }
+void Unsupported::element(const Element& e) { add(e, fmt::format("the element <{}> is not supported", e.tag())); }
 
-void LeftOver::attribute(const Element& e, const std::string& name) {
-  add(e, fmt::format("the attribute '{}' of <{}> is left out", name, e.tag()));
+void Unsupported::attribute(const Element& e, const std::string& name) {
+  add(e, fmt::format("the attribute '{}' of <{}> is not supported", name, e.tag()));
 }
 
-std::vector<std::string> LeftOver::sentences() const {
+std::vector<std::string> Unsupported::sentences() const {
   std::vector<std::string> out;
   for (const Entry& x : entries_)
     out.push_back(
         fmt::format("{}: {}{}", x.where, x.what, x.times > 1 ? fmt::format(" (and {} more)", x.times - 1) : ""));
-  if (more_ > 0) out.push_back(fmt::format("{} more elements and attributes are left out", more_));
+  if (more_ > 0) out.push_back(fmt::format("{} more elements and attributes are not supported", more_));
   return out;
 }
 
 // ---- attributes ----
 
-Attributes::Attributes(const Element& e, const Defaults& defaults, const std::string& className, LeftOver& leftOver)
-    : element_(e), chain_{e}, leftOver_(leftOver) {
+Attributes::Attributes(const Element& e, const Defaults& defaults, const std::string& className,
+                       Unsupported& unsupported)
+    : element_(e), chain_{e}, unsupported_(unsupported) {
   const std::string_view tags[] = {e.tag()};
   defaults.forEach(e, tags, className, [&](const Element& d) { chain_.push_back(d); });
 }
@@ -232,7 +239,7 @@ int Attributes::integer(const char* name, int otherwise) {
 void Attributes::finish() {
   for (const Element& e : chain_)
     for (const pugi::xml_attribute a : e.node.attributes())
-      if (!known_.contains(a.name())) leftOver_.attribute(e, a.name());
+      if (!known_.contains(a.name())) unsupported_.attribute(e, a.name());
 }
 
 }  // namespace spark::mjcf

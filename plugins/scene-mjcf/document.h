@@ -32,6 +32,8 @@ struct Element {
   std::string where() const;
   /// The place and a text, to be thrown.
   Error error(const std::string& text) const { return Error(where() + ": " + text); }
+  /// "<motor> 'name'", or "<motor>" without a name.
+  std::string named() const;
 };
 
 /// Reads a file by its name. Throws Error.
@@ -82,14 +84,14 @@ class Defaults {
   std::map<std::string, Class, std::less<>> classes_;
 };
 
-/// What of a model is left out: elements and attributes that are not read.
-class LeftOver {
+/// What of a model is not supported, or is changed: elements, attributes and combinations of them.
+class Unsupported {
  public:
   void element(const Element& e);
   void attribute(const Element& e, const std::string& name);
   /// Something else: one sentence per `what`, with the first place.
   void add(const Element& e, const std::string& what);
-  /// "a.xml:3:4: the element <tendon> is left out (and 3 more)", in order of the first places.
+  /// "a.xml:3:4: the element <tendon> is not supported (and 3 more)", in order of the first places.
   std::vector<std::string> sentences() const;
 
  private:
@@ -107,9 +109,9 @@ class LeftOver {
 class Attributes {
  public:
   /// `className` "": the default class of the whole model.
-  Attributes(const Element& e, const Defaults& defaults, const std::string& className, LeftOver& leftOver);
+  Attributes(const Element& e, const Defaults& defaults, const std::string& className, Unsupported& unsupported);
   /// Of the element alone.
-  Attributes(const Element& e, LeftOver& leftOver) : element_(e), chain_{e}, leftOver_(leftOver) {}
+  Attributes(const Element& e, Unsupported& unsupported) : element_(e), chain_{e}, unsupported_(unsupported) {}
   const Element& element() const { return element_; }
   bool has(const char* name) { return find(name) != nullptr; }
   /// "" where it is not there.
@@ -152,7 +154,7 @@ class Attributes {
   std::optional<std::vector<double>> parse(const Element& e, const char* name, std::size_t least, std::size_t most);
   Element element_;
   std::vector<Element> chain_;  ///< the element, then its defaults
-  LeftOver& leftOver_;
+  Unsupported& unsupported_;
   std::set<std::string, std::less<>> known_{"class"};
 };
 

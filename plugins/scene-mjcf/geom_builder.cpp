@@ -86,7 +86,7 @@ void GeomBuilder::makeGeoms(PlacedBody& p) {
                                  [](const Geom& g) { return g.visible() && g.shape.shape != Shape::mesh; });
   for (const Geom& g : geoms) {
     try {
-      if (g.collides() || inPair(g.name)) makeCollider(g, p);
+      if (c_.flags.contact && (g.collides() || inPair(g.name))) makeCollider(g, p);
       if (g.visible() || !drawn) makeVisible(g, p);
     } catch (const Error& e) {
       throw Error(fmt::format("{}: cannot make the geom '{}'", g.from.where(), g.name), e);
@@ -98,7 +98,8 @@ void GeomBuilder::makeCollider(const Geom& g, PlacedBody& p) {
   const char* const kinds[] = {
       "BoxCollider", "SphereCollider", "CapsuleCollider", "CylinderCollider", "PlaneCollider", "", "TriMeshCollider"};
   const char* const kind = kinds[static_cast<int>(g.shape.shape)];
-  Node& collider = *c_.nodeOf(p).create(kind, c_.names.collider(g.name)).asNode();
+  Node& parent = c_.nodeOf(p);
+  Node& collider = *parent.create(kind, c_.names.collider(parent, g.name)).asNode();
   p.colliders.push_back(&collider);
   if (!g.name.empty() && !c_.colliders.emplace(g.name, &collider).second)
     throw Error(fmt::format("there are two geoms '{}'", g.name));
@@ -111,8 +112,9 @@ void GeomBuilder::makeVisible(const Geom& g, const PlacedBody& p) {
   const char* const kinds[] = {"Box", "Sphere", "Capsule", "Cylinder"};
   const auto kind = static_cast<std::size_t>(s.shape);
   if (kind >= std::size(kinds)) return;
-  const std::string name = c_.names.name(g.name.empty() ? "" : g.name + "-shape", "shape");
-  Leaf& shape = c_.transform(c_.nodeOf(p), name, c_.inNode(p, g.pose)).create(kinds[kind]);
+  Node& parent = c_.nodeOf(p);
+  const std::string name = c_.names.in(parent, g.name.empty() ? "" : g.name + "-shape", "shape");
+  Leaf& shape = c_.transform(parent, name, c_.inNode(p, g.pose)).create(kinds[kind]);
   if (s.shape == Shape::box)
     callMethod(shape, "setExtents", toList(s.lengths));
   else if (s.shape == Shape::sphere)
@@ -124,7 +126,8 @@ void GeomBuilder::makeVisible(const Geom& g, const PlacedBody& p) {
 
 void GeomBuilder::makeSites(const PlacedBody& p) {
   for (const Site& s : p.body->sites) {
-    Node& made = c_.transform(c_.nodeOf(p), c_.names.name(s.name, "site"), c_.inNode(p, s.pose));
+    Node& parent = c_.nodeOf(p);
+    Node& made = c_.transform(parent, c_.names.in(parent, s.name, "site"), c_.inNode(p, s.pose));
     if (!s.name.empty()) c_.sites.emplace(s.name, &made);
   }
 }
@@ -137,6 +140,7 @@ void GeomBuilder::exclude(const Exclusion& x) {
 }
 
 void GeomBuilder::pair(const Pair& p) {
+  if (!c_.flags.contact) return;
   const auto first = c_.colliders.find(p.geom1), second = c_.colliders.find(p.geom2), none = c_.colliders.end();
   if (first == none || second == none)
     throw p.from.error(fmt::format("there is no geom '{}'", first == none ? p.geom1 : p.geom2));

@@ -26,13 +26,13 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
   };
   a.ignore({"material", "rgba", "user", "hfield", "fitscale", "mass"});
 
-  // What is left out, and what is only seen: its mesh is not loaded.
+  // What is not supported, and what is only seen: its mesh is not loaded.
   const auto without = [&](const std::string& what) {
-    leftOver_.add(g.from, what);
+    unsupported_.add(g.from, what);
     return std::nullopt;
   };
-  if (type == "hfield" || type == "sdf") return without(fmt::format("a <geom> of type {} is left out", type));
-  if (type != "mesh" && a.has("mesh")) return without("a <geom> that is fitted to a mesh is left out");
+  if (type == "hfield" || type == "sdf") return without(fmt::format("a <geom> of type {} is not supported", type));
+  if (type != "mesh" && a.has("mesh")) return without("a <geom> that is fitted to a mesh is not supported");
   const bool world = body.parent < 0, counts = !body.hasInertial || compiler_.inertiaFromGeom() == "true";
   const bool weightless = !counts || weight().of(1) == 0;
   if (type == "mesh" && !g.collides() && (weightless || world)) {
@@ -44,18 +44,32 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
   place(a, type, frame, g);
   const bool ellipsoid = type == "ellipsoid";
   if (type != "plane" && !weightless && compiler_.weighs(g.group)) {
-    const engine::Mass own =
-        ellipsoid ? ellipsoidMass(g.shape.lengths / 2, weight()) : shapeMass(g.shape, weight(), g.from);
+    const engine::Mass own = ellipsoid        ? ellipsoidMass(g.shape.lengths / 2, weight())
+                             : type == "mesh" ? meshMass(a, weight(), g.from)
+                                              : shapeMass(g.shape, weight(), g.from);
     if (own.mass > 0) g.mass = moved(own, g.pose);
   }
   if (ellipsoid) {
     // Only its mass counts: nothing collides with it, and no viewer shows it.
-    leftOver_.add(g.from, "the shape of an ellipsoid is left out");
+    unsupported_.add(g.from, "the shape of an ellipsoid is not supported");
     g.contactTypes = g.contactAffinities = 0;
     g.group = kHidden;
   }
   a.finish();
   return g;
+}
+
+engine::Mass GeomReader::meshMass(Attributes& a, const Weight& weight, const Element& geom) {
+  const Mesh& mesh = meshes_.get(a, unsupported_);
+  const engine::Mass mass = shapeMass(mesh.surface, weight, geom);
+  constexpr double kSame = 1e-6;  // relative
+  const Weight byVolume{1, std::nullopt};
+  if (!compiler_.exactMeshInertia() &&
+      shapeMass(mesh.surface, byVolume, geom).mass < (1 - kSame) * shapeMass(mesh.hull, byVolume, geom).mass)
+    unsupported_.add(geom,
+                     "the mass of a <mesh> that is not convex is exact, as with exactmeshinertia; MuJoCo 2.2.2 "
+                     "estimates it");
+  return mass;
 }
 
 void GeomReader::contact(Attributes& a, Geom& g) const {
@@ -111,7 +125,7 @@ ShapeDescription GeomReader::shape(Attributes& a, const std::string& type, const
   } else if (type == "plane") {
     s.shape = Shape::plane;
   } else {
-    s = meshes_.shape(a);
+    s = meshes_.get(a, unsupported_).hull;
   }
   return s;
 }

@@ -3,6 +3,7 @@
 /// Reads the geoms of an MJCF model.
 
 #include "compiler.h"
+#include "geom_mass.h"
 #include "meshes.h"
 #include "model.h"
 
@@ -11,20 +12,21 @@ namespace spark::mjcf {
 /// Reads geoms: their shapes, their masses and their numbers of contacts. Its parts must outlive it.
 class GeomReader {
  public:
-  GeomReader(const Compiler& compiler, Meshes& meshes, LeftOver& leftOver)
-      : compiler_(compiler), meshes_(meshes), leftOver_(leftOver) {}
-  /// Reads an element `geom` of `body`; `frame`: of the `frame` elements around. nullopt for a geom that is left out,
-  /// or that is only seen and has a mesh. Throws Error.
+  GeomReader(const Compiler& compiler, Meshes& meshes, Unsupported& unsupported)
+      : compiler_(compiler), meshes_(meshes), unsupported_(unsupported) {}
+  /// Reads an element `geom` of `body`; `frame`: of the `frame` elements around. nullopt for a geom that is not
+  /// supported, or that is only seen and has a mesh. Throws Error.
   std::optional<Geom> read(Attributes& a, const Body& body, const Pose& frame);
 
  private:
   void contact(Attributes& a, Geom& geom) const;
+  engine::Mass meshMass(Attributes& a, const Weight& weight, const Element& geom);
   void place(Attributes& a, const std::string& type, const Pose& frame, Geom& geom);
   engine::ShapeDescription shape(Attributes& a, const std::string& type, const Vec3& size);
 
   const Compiler& compiler_;
   Meshes& meshes_;
-  LeftOver& leftOver_;
+  Unsupported& unsupported_;
 };
 
 }  // namespace spark::mjcf

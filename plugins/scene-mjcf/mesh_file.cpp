@@ -3,9 +3,13 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <array>
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstring>
+#include <sstream>
 
 #include "spark/error.h"
 
@@ -19,20 +23,75 @@ struct NoFiles : Assimp::IOSystem {
   Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
   void Close(Assimp::IOStream*) override {}
 };
+
+/// MuJoCo's format: the numbers of vertices, normals, texture coordinates and faces, then these arrays, in the byte
+/// order of x86 (MuJoCo's documentation, "MSH file").
+engine::ShapeDescription readMsh(const std::string& bytes) {
+  std::array<std::int32_t, 4> counts{};
+  constexpr std::size_t kHeader = sizeof counts;
+  if (bytes.size() < kHeader)
+    throw Error(fmt::format("expected a header of {} bytes, found {}", kHeader, bytes.size()));
+  std::memcpy(counts.data(), bytes.data(), kHeader);
+  std::size_t expected = kHeader;
+  const std::size_t numbers[] = {3, 3, 2, 3};
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (counts[i] < 0) throw Error("expected numbers of 0 or more in the header");
+    expected += 4 * numbers[i] * static_cast<std::size_t>(counts[i]);
+  }
+  if (bytes.size() != expected) throw Error(fmt::format("expected {} bytes, found {}", expected, bytes.size()));
+  engine::ShapeDescription s;
+  const auto vertices = static_cast<std::size_t>(counts[0]), faces = static_cast<std::size_t>(counts[3]);
+  for (std::size_t i = 0; i < 3 * vertices; ++i) {
+    float v = 0;
+    std::memcpy(&v, bytes.data() + kHeader + 4 * i, 4);
+    if (!std::isfinite(v)) throw Error("expected finite numbers");
+    s.vertices.push_back(v);
+  }
+  for (std::size_t i = 0; i < 3 * faces; ++i) {
+    std::uint32_t v = 0;
+    std::memcpy(&v, bytes.data() + bytes.size() - 12 * faces + 4 * i, 4);
+    if (v >= vertices) throw Error(fmt::format("expected indices of the {} vertices in faces, found {}", vertices, v));
+    s.triangles.push_back(v);
+  }
+  if (s.vertices.empty()) throw Error("expected vertices, found none");
+  return s;
+}
+
+/// The vertices of an OBJ file without faces.
+std::vector<double> readPoints(const std::string& bytes) {
+  std::vector<double> out;
+  std::istringstream lines(bytes);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    Vec3 v;
+    if (words >> kind && kind == "v" && words >> v.x() >> v.y() >> v.z()) out.insert(out.end(), v.data(), v.data() + 3);
+  }
+  return out;
+}
+
 }  // namespace
 
 engine::ShapeDescription readMesh(const std::string& name, const std::string& bytes) {
+  const std::size_t dot = name.rfind('.');
+  std::string format = dot == std::string::npos ? "" : name.substr(dot + 1);
+  for (char& c : format) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  if (format == "msh") return readMsh(bytes);
+  engine::ShapeDescription s;
+  s.shape = engine::Shape::mesh;
+  // Assimp refuses a file without faces.
+  if (format == "obj" && bytes.find("\nf") == std::string::npos && !bytes.starts_with("f")) {
+    s.vertices = readPoints(bytes);
+    if (s.vertices.empty()) throw Error("expected vertices, found none");
+    return s;
+  }
   Assimp::Importer importer;
   importer.SetIOHandler(new NoFiles);  // which owns it
-  const std::size_t dot = name.rfind('.');
-  const std::string format = dot == std::string::npos ? "" : name.substr(dot + 1);
   const aiScene* const scene = importer.ReadFileFromMemory(
       bytes.data(), bytes.size(),
       aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices | aiProcess_SortByPType,
       format.c_str());
   if (!scene) throw Error(importer.GetErrorString());
-  engine::ShapeDescription s;
-  s.shape = engine::Shape::mesh;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh& mesh = *scene->mMeshes[m];
     if (mesh.mPrimitiveTypes != aiPrimitiveType_TRIANGLE) continue;

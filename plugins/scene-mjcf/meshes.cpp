@@ -2,47 +2,109 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <filesystem>
 
+#include "hull.h"
+
 namespace spark::mjcf {
+
+namespace {
+
+/// The faces of a mesh that is written in the model.
+std::vector<std::uint32_t> readFaces(Attributes& a, std::size_t vertices) {
+  std::vector<std::uint32_t> out;
+  const auto numbers = a.numbers("face", 3, kMaxMeshNumbers);
+  if (!numbers) return out;
+  if (numbers->size() % 3 != 0)
+    throw a.element().error(
+        fmt::format("expected three numbers for each triangle of 'face', found {}", numbers->size()));
+  for (const double n : *numbers) {
+    if (n < 0 || n >= double(vertices) || n != std::floor(n))
+      throw a.element().error(fmt::format("expected indices of the {} vertices for 'face', found {}", vertices, n));
+    out.push_back(static_cast<std::uint32_t>(n));
+  }
+  return out;
+}
+
+}  // namespace
 
 void Meshes::add(Attributes& a, const std::string& folder) {
   Asset m;
   m.from = a.element();
   m.folder = folder;
   m.file = a.text("file");
+  if (auto vertices = a.numbers("vertex", 12, kMaxMeshNumbers)) m.vertices = std::move(*vertices);
+  if (m.vertices.size() % 3 != 0)
+    throw m.from.error(fmt::format("expected three numbers for each vertex, found {}", m.vertices.size()));
+  m.faces = readFaces(a, m.vertices.size() / 3);
   a.take("scale", m.scale);
+  a.take("refpos", m.origin);
+  if (std::array<double, 4> q{}; a.take("refquat", q)) {
+    const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
+    if (!(rotation.norm() > 1e-10)) throw m.from.error("expected a quaternion that is not 0 for 'refquat'");
+    m.rotation = rotation.normalized().toRotationMatrix();
+  }
   std::string name = a.text("name");
   if (name.empty()) {
     const std::size_t slash = m.file.rfind('/'), start = slash == std::string::npos ? 0 : slash + 1;
     name = m.file.substr(start, m.file.rfind('.') - start);
   }
-  a.ignore({"smoothnormal", "texcoord", "normal", "maxhullvert", "content_type"});
+  a.ignore({"smoothnormal", "texcoord", "normal", "maxhullvert", "content_type", "inertia"});
   a.finish();
   assets_[name] = std::move(m);
 }
 
-engine::ShapeDescription Meshes::shape(Attributes& a) {
+const Mesh& Meshes::get(Attributes& a, Unsupported& unsupported) {
   const std::string name = a.text("mesh");
   const auto found = assets_.find(name);
   if (found == assets_.end()) throw a.element().error(fmt::format("there is no <mesh> '{}'", name));
   Asset& m = found->second;
-  if (!m.loaded) load(m);
-  numbers_ += m.loaded->vertices.size() + m.loaded->triangles.size();
+  if (!m.loaded) load(m, unsupported);
+  numbers_ += m.loaded->surface.vertices.size() + m.loaded->surface.triangles.size();
   if (numbers_ > kMaxMeshNumbers)
     throw a.element().error(fmt::format("the meshes of all geoms have more than {} numbers", kMaxMeshNumbers));
   return *m.loaded;
 }
 
-void Meshes::load(Asset& m) {
-  if (m.file.empty()) throw m.from.error("expected an attribute 'file'");
+/// As the file or the element has it. A mesh without faces has no triangles.
+engine::ShapeDescription Meshes::surfaceOf(const Asset& m) const {
+  if (!m.vertices.empty()) {
+    engine::ShapeDescription s;
+    s.vertices = m.vertices;
+    s.triangles = m.faces;
+    return s;
+  }
+  if (m.file.empty()) throw m.from.error("expected an attribute 'file' or 'vertex'");
   try {
-    m.loaded = read_(std::filesystem::path(m.folder + m.file).lexically_normal().string());
+    return read_(std::filesystem::path(m.folder + m.file).lexically_normal().string());
   } catch (const Error& e) {
     throw Error(fmt::format("{}: cannot read the mesh '{}'", m.from.where(), m.file), e);
   }
-  m.loaded->shape = engine::Shape::mesh;
-  for (std::size_t i = 0; i < m.loaded->vertices.size(); ++i) m.loaded->vertices[i] *= m.scale[static_cast<int>(i % 3)];
+}
+
+void Meshes::load(Asset& m, Unsupported& unsupported) {
+  Mesh mesh;
+  mesh.surface = surfaceOf(m);
+  mesh.surface.shape = engine::Shape::mesh;
+  // In single precision at each stage, as in MuJoCo.
+  const auto rounded = [](const Vec3& at) { return Vec3(at.cast<float>().cast<double>()); };
+  std::vector<double>& v = mesh.surface.vertices;
+  for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
+    Eigen::Map<Vec3> at(v.data() + i);
+    const Vec3 moved = rounded(rounded(at) - m.origin);
+    at = rounded(rounded(m.rotation.transpose() * moved).cwiseProduct(m.scale));
+    if (!at.allFinite()) throw m.from.error("expected vertices of finite numbers");
+  }
+  try {
+    mesh.hull = hullOf(mesh.surface);
+  } catch (const Error& e) {
+    if (mesh.surface.triangles.empty()) throw Error(m.from.where() + ": the mesh has no convex hull", e);
+    unsupported.add(m.from, "a flat <mesh> has no convex hull: its triangles collide");
+    mesh.hull = mesh.surface;
+  }
+  if (mesh.surface.triangles.empty()) mesh.surface = mesh.hull;
+  m.loaded = std::move(mesh);
 }
 
 }  // namespace spark::mjcf

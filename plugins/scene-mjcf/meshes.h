@@ -8,29 +8,38 @@
 
 namespace spark::mjcf {
 
-/// The meshes of the element `asset`. A file is loaded when the first geom needs it, and only once.
+/// A mesh: its surface, from which its mass follows, and its convex hull, which collides.
+struct Mesh {
+  engine::ShapeDescription surface, hull;
+};
+
+/// The meshes of the element `asset`. A mesh is loaded when the first geom needs it, and only once.
 class Meshes {
  public:
   /// `read` must outlive the meshes.
   explicit Meshes(const ReadMesh& read) : read_(read) {}
   /// Adds an element `mesh`. `folder`: of the mesh files, "" or "a/". Throws Error.
   void add(Attributes& a, const std::string& folder);
-  /// The shape of the mesh that the geom `a` names. Throws Error for unknown meshes, files that cannot be read, and
-  /// when all geoms have more than kMaxMeshNumbers together.
-  engine::ShapeDescription shape(Attributes& a);
+  /// The mesh that the geom `a` names. Throws Error for unknown meshes, meshes that cannot be read, and when all geoms
+  /// have more than kMaxMeshNumbers together.
+  const Mesh& get(Attributes& a, Unsupported& unsupported);
 
  private:
   struct Asset {
     Element from;
     std::string folder, file;
-    Vec3 scale{1, 1, 1};
-    std::optional<engine::ShapeDescription> loaded;
+    std::vector<double> vertices;  ///< written in the model itself, as the faces
+    std::vector<std::uint32_t> faces;
+    Vec3 scale{1, 1, 1}, origin = Vec3::Zero();
+    Mat3 rotation = Mat3::Identity();
+    std::optional<Mesh> loaded;
   };
-  void load(Asset& asset);
+  engine::ShapeDescription surfaceOf(const Asset& asset) const;
+  void load(Asset& asset, Unsupported& unsupported);
 
   const ReadMesh& read_;
   std::map<std::string, Asset, std::less<>> assets_;  ///< by name
-  std::size_t numbers_ = 0;                           ///< of all shapes returned so far
+  std::size_t numbers_ = 0;                           ///< of all meshes returned so far
 };
 
 }  // namespace spark::mjcf

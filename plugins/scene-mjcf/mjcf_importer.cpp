@@ -13,7 +13,7 @@ void MjcfImporter::describe(Description<MjcfImporter>& d) {
   d.doc("Imports models in MJCF, MuJoCo's language. Argument: a prefix for the names of its nodes.");
   d.implements<ISceneImporter>();
   d.property("strict", &MjcfImporter::strict_)
-      .doc("Elements and attributes that it leaves out are errors; else they are named in the log.");
+      .doc("Unsupported elements and attributes are errors; otherwise they are logged.");
   d.property("imports", &MjcfImporter::imports_).readOnly().doc("Models imported so far.");
 }
 
@@ -36,11 +36,11 @@ void MjcfImporter::import(std::string_view file, Node& root, const List& argumen
     throw Error(
         fmt::format("cannot import '{}': expected one argument, a prefix for names, found {}", file, arguments.size()));
   auto& files = kernel().root().require<IFileServer>();
-  mjcf::LeftOver leftOver;
+  mjcf::Unsupported unsupported;
   mjcf::Document document(std::string(file), [&](const std::string& name) { return files.read(name); });
   const mjcf::Model model = mjcf::readModel(
-      document, [&](const std::string& name) { return mjcf::readMesh(name, files.read(name)); }, leftOver);
-  mjcf::Builder builder(model, arguments.empty() ? "" : arguments.front().plain(), strict_, leftOver);
+      document, [&](const std::string& name) { return mjcf::readMesh(name, files.read(name)); }, unsupported);
+  mjcf::Builder builder(model, arguments.empty() ? "" : arguments.front().plain(), strict_, unsupported);
   builder.build(root);
   ++imports_;
   if (builder.withoutParts())
@@ -48,7 +48,7 @@ void MjcfImporter::import(std::string_view file, Node& root, const List& argumen
         "{}: its sensors and actuators become no perceptors and effectors: those are of the plugins gamecontrol, "
         "sensors and effectors",
         file);
-  for (const std::string& sentence : leftOver.sentences()) kernel().log().warning("{}", sentence);
+  for (const std::string& sentence : unsupported.sentences()) kernel().log().warning("{}", sentence);
 }
 
 }  // namespace spark

@@ -31,7 +31,7 @@ struct Geom {
 };
 
 enum class JointKind { free, ball, slide, hinge };
-/// A joint of a body with its parent.
+/// A joint of a body with its parent. Its coordinate is 0 in the pose of the file, where MuJoCo's is `reference`.
 struct Joint {
   Element from;
   std::string name;
@@ -39,9 +39,10 @@ struct Joint {
   Vec3 position = Vec3::Zero(), axis = Vec3::UnitZ();
   bool limited = false;
   std::array<double, 2> range{0, 0};
+  double reference = 0;  ///< MuJoCo's coordinate in the pose of the file [rad or m]
   double armature = 0, damping = 0, dryFriction = 0;
-  double stiffness = 0, springAngle = 0;  ///< of a spring to that place
-  double maxForce = HUGE_VAL;             ///< limit of the sum of its actuators
+  double stiffness = 0, springPosition = 0;  ///< of a spring, and where it rests [rad or m]
+  double maxForce = HUGE_VAL;                ///< limit of the sum of its actuators
   engine::MujocoAxis numbers;
 };
 
@@ -56,27 +57,30 @@ struct Body {
   int parent = -1;                                   ///< index; -1: this is the world
   Pose pose;                                         ///< in its parent
   engine::Mass mass{0, Vec3::Zero(), Mat3::Zero()};  ///< inertia about its centre of mass, body axes; mass 0: none
+  bool isFrameOpen = false;                          ///< its frame is where its centre of mass is
   bool hasInertial = false;                          ///< an inertial element says so
+  double gravityCompensation = 0;                    ///< part of the gravity that does not act on it
   std::vector<Joint> joints;
   std::vector<Geom> geoms;
   std::vector<Site> sites;
 };
 
-/// A force along a joint: gear (gain u + bias[0] + bias[1] gear q + bias[2] gear dq), u being the control.
+/// A force along a joint: gear clamp(g u + b), where u is the control, clamped to its range, g is
+/// gain[0] + gain[1] l + gain[2] v, b is the same of bias, l = gear q and v = gear dq for the joint's coordinate q.
 struct Actuator {
   Element from;
   std::string name, joint;
-  double gear = 1, gain = 1;
-  std::array<double, 3> bias{0, 0, 0};
+  double gear = 1;
+  std::array<double, 3> gain{1, 0, 0}, bias{0, 0, 0};
   std::array<double, 2> controlRange{-HUGE_VAL, HUGE_VAL};
-  double forceRange = HUGE_VAL;  ///< of the actuator's own force
-  double maxForce = HUGE_VAL;    ///< of the force along the joint
+  std::array<double, 2> forceRange{-HUGE_VAL, HUGE_VAL};  ///< of the actuator's own force, before the gear
 };
 
 struct Sensor {
   Element from;
   std::string kind, name;
-  std::string object, objectType;  ///< the joint, site or body that it belongs to, and what that is
+  std::string object, objectType;  ///< the joint, site, body or geom that it belongs to, and what that is
+  std::string reference;           ///< the object in whose frame it senses; "": the world
 };
 
 /// Two bodies that do not collide.
@@ -98,10 +102,16 @@ struct Option {
   Value value;
 };
 
+/// The flags of the element `option` that change how the model moves.
+struct Flags {
+  bool contact = true, limit = true, frictionLoss = true, passive = true, actuation = true, clampControl = true;
+};
+
 /// A whole model. bodies[0] is the world; parents come before their children.
 struct Model {
   std::string name;
   std::vector<Option> options;
+  Flags flags;
   std::vector<Body> bodies;
   std::vector<Actuator> actuators;
   std::vector<Sensor> sensors;
@@ -115,7 +125,7 @@ using ReadMesh = std::function<engine::ShapeDescription(const std::string& file)
 /// Limits of a model: bodies, elements with attributes, and numbers of all meshes.
 inline constexpr std::size_t kMaxBodies = 20'000, kMaxElements = 200'000, kMaxMeshNumbers = 30'000'000;
 
-/// Reads a model. What it does not take is named in `leftOver`. Throws Error with file:line:column.
-Model readModel(Document& document, const ReadMesh& readMesh, LeftOver& leftOver);
+/// Reads a model. What it does not take is named in `unsupported`. Throws Error with file:line:column.
+Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsupported);
 
 }  // namespace spark::mjcf

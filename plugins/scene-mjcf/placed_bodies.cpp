@@ -36,6 +36,7 @@ void PlacedBodies::place(std::size_t index, const Body& b) {
   const Mat3& r = p.inCarrier.rotation;
   carrier.mass = physics::together(
       carrier.mass, {b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()});
+  carrier.compensatedMass += b.gravityCompensation * b.mass.mass;
   if (!b.name.empty() && !byName_.emplace(b.name, &p).second)
     throw b.from.error(fmt::format("there are two bodies '{}'", b.name));
 }

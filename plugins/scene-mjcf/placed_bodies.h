@@ -16,6 +16,7 @@ struct PlacedBody {
   Pose inCarrier;                                    ///< of the body's frame
   Pose world;                                        ///< of the body's frame, when built
   engine::Mass mass{0, Vec3::Zero(), Mat3::Zero()};  ///< of a carrier: all of it, centre in its frame
+  double compensatedMass = 0;                        ///< of a carrier: the part of its mass that gravity spares
   int above = 0;                                     ///< of a carrier: the carrier that its joints connect it to
   Node* node = nullptr;                              ///< of a carrier: its transform, once made
   std::vector<Node*> colliders;                      ///< of the body's own geoms, once made

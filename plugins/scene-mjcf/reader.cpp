@@ -30,10 +30,12 @@ engine::MujocoAxis firmness(Attributes& a) {
   return n;
 }
 
+Pose inverseOf(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
+
 }  // namespace
 
-Model readModel(Document& document, const ReadMesh& readMesh, LeftOver& leftOver) {
-  return Reader(document, readMesh, leftOver).read();
+Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsupported) {
+  return Reader(document, readMesh, unsupported).read();
 }
 
 Model Reader::read() {
@@ -41,6 +43,7 @@ Model Reader::read() {
   model_.name = root.node.attribute("model").as_string("model");
   model_.bodies.emplace_back();
   model_.bodies.front().from = root;
+  globalPoses_.emplace_back();
   const std::vector<Element> sections = document_.children(root);
   for (const std::string_view tag : kSections) {
     for (const Element& e : sections)
@@ -50,7 +53,7 @@ Model Reader::read() {
   for (const Element& e : sections)
     if (std::find(std::begin(kSections), std::end(kSections), e.tag()) == std::end(kSections) &&
         !kNotSimulated.contains(e.tag()))
-      leftOver_.element(e);
+      unsupported_.element(e);
   return std::move(model_);
 }
 
@@ -85,7 +88,7 @@ void Reader::count(const Element& e) {
 Attributes Reader::attributes(const Element& e, const std::string& childClass) {
   count(e);
   const char* const own = e.node.attribute("class").value();
-  return Attributes(e, defaults_, *own ? own : childClass, leftOver_);
+  return Attributes(e, defaults_, *own ? own : childClass, unsupported_);
 }
 
 // ---- options and assets ----
@@ -116,12 +119,44 @@ void Reader::option(const Element& e) {
     const std::string wanted = a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, "");
     const std::string taken = wanted == "RK4" ? "Euler" : wanted == "implicitfast" ? "implicit" : wanted;
     if (wanted != taken)
-      leftOver_.add(e, fmt::format("the integrator {} is left out; {} takes its place", wanted, taken));
+      unsupported_.add(e, fmt::format("the integrator {} is not supported; {} is used in its place", wanted, taken));
     set("mujocoIntegrator", taken);
   }
   a.ignore({"jacobian"});
   a.finish();
-  for (const Element& child : document_.children(e)) leftOver_.element(child);
+  for (const Element& child : document_.children(e))
+    if (child.tag() == "flag")
+      flags(child);
+    else
+      unsupported_.element(child);
+}
+
+void Reader::flags(const Element& e) {
+  Attributes a = attributes(e);
+  const auto on = [&](const char* name, const char* usual = "enable") {
+    return a.word(name, {"enable", "disable"}, usual) == "enable";
+  };
+  Flags& f = model_.flags;
+  f.contact = f.contact && on("contact");
+  f.limit = f.limit && on("limit");
+  f.frictionLoss = f.frictionLoss && on("frictionloss");
+  f.passive = f.passive && on("passive");
+  f.actuation = f.actuation && on("actuation");
+  f.clampControl = f.clampControl && on("clampctrl");
+  if (!on("constraint")) f.contact = f.limit = f.frictionLoss = false;
+  const auto set = [&](const char* property, Value v) { model_.options.push_back({e, property, std::move(v)}); };
+  if (!on("gravity")) set("gravity", List{0.0, 0.0, 0.0});
+  if (!f.passive) set("mujocoDensity", 0.0), set("mujocoViscosity", 0.0);
+  const auto refuse = [&](const char* name, bool is, const char* value) {
+    if (is) unsupported_.add(e, fmt::format("the flag {}=\"{}\" is not supported", name, value));
+  };
+  for (const char* const name : {"filterparent", "refsafe", "nativeccd", "eulerdamp", "midphase"})
+    refuse(name, !on(name), "disable");
+  for (const char* const name : {"override", "multiccd", "invdiscrete", "island"})
+    refuse(name, on(name, "disable"), "enable");
+  // Without effect here: there is nothing that they switch, or results are the same.
+  a.ignore({"equality", "warmstart", "sensor", "energy", "fwdinv", "sensornoise", "autoreset"});
+  a.finish();
 }
 
 void Reader::asset(const Element& e) {
@@ -129,7 +164,7 @@ void Reader::asset(const Element& e) {
     Attributes a = attributes(e);
     meshes_.add(a, document_.folder() + compiler_.meshFolder());
   } else if (e.tag() != "material" && e.tag() != "texture") {
-    leftOver_.element(e);
+    unsupported_.element(e);
   }
 }
 
@@ -151,9 +186,9 @@ void Reader::content(const Element& parent, const Scope& scope) {
     else if (tag == "site")
       site(e, scope);
     else if (tag == "inertial")
-      inertial(e, model_.bodies[static_cast<std::size_t>(scope.body)]);
+      inertial(e, scope);
     else if (!kNotSimulated.contains(tag))
-      leftOver_.element(e);
+      unsupported_.element(e);
   }
 }
 
@@ -164,13 +199,25 @@ void Reader::body(const Element& e, const Scope& scope) {
   b.from = e;
   b.name = a.text("name");
   b.parent = scope.body;
-  b.pose = compiler_.pose(a, scope.frame);
-  const std::string childClass = a.text("childclass", scope.childClass.c_str());
+  Scope inner{static_cast<int>(model_.bodies.size()), "", {}, scope.depth + 1};
+  if (compiler_.global()) {
+    // Everything inside is in the world frame too. A body without a position has its frame at its centre of mass.
+    b.isFrameOpen = !a.has("pos");
+    const Pose given = compiler_.pose(a, {}), own = b.isFrameOpen ? Pose{} : given;
+    b.pose = compose(inverseOf(globalPoses_[static_cast<std::size_t>(scope.body)]), own);
+    globalPoses_.push_back(own);
+    inner.frame = inverseOf(own);
+  } else {
+    b.pose = compiler_.pose(a, scope.frame);
+  }
+  b.gravityCompensation = a.number("gravcomp", 0);
+  if (a.has("mocap") && a.flag("mocap", false))
+    unsupported_.add(e, "a body that a program moves (mocap) is not supported: it stays at its place");
+  inner.childClass = a.text("childclass", scope.childClass.c_str());
   a.ignore({"user"});
   a.finish();
-  const int index = static_cast<int>(model_.bodies.size());
   model_.bodies.push_back(std::move(b));
-  content(e, {index, childClass, {}, scope.depth + 1});
+  content(e, inner);
 }
 
 void Reader::frame(const Element& e, Scope scope) {
@@ -183,7 +230,8 @@ void Reader::frame(const Element& e, Scope scope) {
   content(e, scope);
 }
 
-void Reader::inertial(const Element& e, Body& b) {
+void Reader::inertial(const Element& e, const Scope& scope) {
+  Body& b = model_.bodies[static_cast<std::size_t>(scope.body)];
   Attributes a = attributes(e);
   if (!a.has("mass")) throw e.error("expected an attribute 'mass'");
   b.mass.mass = a.number("mass", 0);
@@ -198,6 +246,8 @@ void Reader::inertial(const Element& e, Body& b) {
     a.take("diaginertia", diagonal);
     b.mass.inertia = turn * diagonal.asDiagonal() * turn.transpose();
   }
+  b.mass.center = scope.frame.position + scope.frame.rotation * b.mass.center;
+  b.mass.inertia = scope.frame.rotation * b.mass.inertia * scope.frame.rotation.transpose();
   b.hasInertial = true;
   a.finish();
 }
@@ -214,7 +264,7 @@ Joint Reader::freeJoint(const Element& e) {
   j.from = e;
   j.kind = JointKind::free;
   count(e);
-  Attributes a(e, leftOver_);
+  Attributes a(e, unsupported_);
   j.name = a.text("name");
   a.ignore({"group", "align"});
   a.finish();
@@ -238,26 +288,36 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   j.position = scope.frame.position + scope.frame.rotation * j.position;
   if (!(j.axis.norm() > 1e-10)) throw e.error("expected an axis that is not 0");
   j.axis = scope.frame.rotation * j.axis.normalized();
-  const auto range = a.numbers("range", 2, 2);
+  j.reference = inUnits(a.number("ref", 0));
+  Limit limit, force;
+  limit.read(a, "limited", "range");
+  force.read(a, "actuatorfrclimited", "actuatorfrcrange");
   if (j.kind == JointKind::ball || j.kind == JointKind::free) {
     for (const char* name : {"range", "armature", "damping", "frictionloss", "stiffness"})
-      if (a.has(name)) leftOver_.add(e, fmt::format("the attribute '{}' of a {} joint is left out", name, kind));
-  } else {
-    j.limited = compiler_.limited(a, "limited", "range", range);
-    if (range) j.range = {inUnits((*range)[0]), inUnits((*range)[1])};
+      if (a.has(name))
+        unsupported_.add(e, fmt::format("the attribute '{}' of a {} joint is not supported", name, kind));
+  } else if (const auto range = compiler_.limit(e, "range", limit)) {
+    j.limited = true;
+    j.range = {inUnits((*range)[0]) - j.reference, inUnits((*range)[1]) - j.reference};
   }
   j.armature = a.number("armature", 0);
   j.damping = a.number("damping", 0);
   j.dryFriction = a.number("frictionloss", 0);
   j.stiffness = a.number("stiffness", 0);
-  j.springAngle = inUnits(a.number("springref", 0));
-  if (a.number("ref", 0) != 0)
-    leftOver_.add(e, "the attribute 'ref' of <joint> is left out: angles count from the initial pose");
-  const auto force = a.numbers("actuatorfrcrange", 2, 2);
-  if (compiler_.limited(a, "actuatorfrclimited", "actuatorfrcrange", force))
-    j.maxForce = std::max(std::abs((*force)[0]), std::abs((*force)[1]));
+  for (const auto& [name, value] : {std::pair{"armature", &j.armature}, std::pair{"damping", &j.damping},
+                                    std::pair{"frictionloss", &j.dryFriction}, std::pair{"stiffness", &j.stiffness}})
+    if (*value < 0) {
+      unsupported_.add(e, fmt::format("the attribute '{}' of <joint> below 0 is not supported", name));
+      *value = 0;
+    }
+  j.springPosition = inUnits(a.number("springref", 0)) - j.reference;
+  if (const auto range = compiler_.limit(e, "actuatorfrcrange", force)) {
+    j.maxForce = std::max(std::abs((*range)[0]), std::abs((*range)[1]));
+    if ((*range)[0] != -(*range)[1])
+      unsupported_.add(e, "an actuatorfrcrange that is not symmetric is taken as symmetric");
+  }
   j.numbers = firmness(a);
-  a.ignore({"group", "user", "limited"});
+  a.ignore({"group", "user"});
   a.finish();
   return j;
 }
@@ -291,12 +351,40 @@ void Reader::finishMasses() {
     }
     compiler_.raise(b.mass);
   }
+  scaleMasses();
+  placeOpenFrames();
+}
+
+/// Moves frames that the file does not give to centres of mass.
+void Reader::placeOpenFrames() {
+  std::vector<Vec3> shifts(model_.bodies.size(), Vec3::Zero());
+  for (std::size_t i = 1; i < model_.bodies.size(); ++i) {
+    Body& b = model_.bodies[i];
+    b.pose.position -= shifts[static_cast<std::size_t>(b.parent)];
+    if (!b.isFrameOpen) continue;
+    const Vec3 shift = shifts[i] = b.mass.center;
+    b.pose.position += b.pose.rotation * shift;
+    b.mass.center.setZero();
+    for (Joint& j : b.joints) j.position -= shift;
+    for (Geom& g : b.geoms) g.pose.position -= shift;
+    for (Site& site : b.sites) site.pose.position -= shift;
+  }
+}
+
+void Reader::scaleMasses() {
+  double total = 0;
+  for (const Body& b : model_.bodies) total += b.mass.mass;
+  if (!(compiler_.totalMass() > 0) || !(total > 0)) return;
+  for (Body& b : model_.bodies) {
+    b.mass.mass *= compiler_.totalMass() / total;
+    b.mass.inertia *= compiler_.totalMass() / total;
+  }
 }
 
 // ---- contact, actuators, sensors ----
 
 void Reader::contact(const Element& e) {
-  if (e.tag() != "exclude" && e.tag() != "pair") return leftOver_.element(e);
+  if (e.tag() != "exclude" && e.tag() != "pair") return unsupported_.element(e);
   Attributes a = attributes(e);
   if (e.tag() == "exclude")
     model_.exclusions.push_back({e, a.text("body1"), a.text("body2")});
@@ -320,7 +408,8 @@ void Reader::sensor(const Element& e) {
   for (const char* object : {"joint", "site", "objname"})
     if (s.object.empty()) s.object = a.text(object);
   s.objectType = a.text("objtype");
-  a.ignore({"noise", "user"});
+  s.reference = a.text("refname");
+  a.ignore({"noise", "user", "reftype", "body", "actuator", "tendon", "dim", "datatype", "needstage"});
   a.finish();
   model_.sensors.push_back(s);
 }

@@ -13,8 +13,8 @@ namespace spark::mjcf {
 /// One run over a document.
 class Reader {
  public:
-  Reader(Document& document, const ReadMesh& readMesh, LeftOver& leftOver)
-      : document_(document), leftOver_(leftOver), meshes_(readMesh) {}
+  Reader(Document& document, const ReadMesh& readMesh, Unsupported& unsupported)
+      : document_(document), unsupported_(unsupported), meshes_(readMesh) {}
   Model read();
 
  private:
@@ -22,7 +22,7 @@ class Reader {
   struct Scope {
     int body = 0;
     std::string childClass;
-    Pose frame;  ///< of `frame` elements around
+    Pose frame;  ///< of `frame` elements around; with global coordinates the world's, as seen from the body
     int depth = 0;
   };
   /// Counts an element. Throws Error when there are too many.
@@ -31,29 +31,33 @@ class Reader {
   Attributes attributes(const Element& e, const std::string& childClass = "");
   void section(const Element& e);
   void option(const Element& e);
+  void flags(const Element& e);
   void asset(const Element& e);
   void content(const Element& parent, const Scope& scope);
   void body(const Element& e, const Scope& scope);
   void frame(const Element& e, Scope scope);
-  void inertial(const Element& e, Body& body);
+  void inertial(const Element& e, const Scope& scope);
+  void placeOpenFrames();
   void joint(const Element& e, const Scope& scope);
   Joint freeJoint(const Element& e);
   Joint typedJoint(const Element& e, const Scope& scope);
   void geom(const Element& e, const Scope& scope);
   void site(const Element& e, const Scope& scope);
   void finishMasses();
+  void scaleMasses();
   void contact(const Element& e);
   void actuator(const Element& e);
   void sensor(const Element& e);
 
   Document& document_;
-  LeftOver& leftOver_;
+  Unsupported& unsupported_;
   Model model_;
   Compiler compiler_;
   Defaults defaults_;
   Meshes meshes_;
-  GeomReader geoms_{compiler_, meshes_, leftOver_};
-  ActuatorReader actuators_{compiler_, defaults_, leftOver_};
+  GeomReader geoms_{compiler_, meshes_, unsupported_};
+  ActuatorReader actuators_{compiler_, defaults_, unsupported_};
+  std::vector<Pose> globalPoses_;  ///< of bodies, with global coordinates
   std::size_t elements_ = 0;
 };
 

@@ -14,12 +14,22 @@ class SensorBuilder {
   void build();
 
  private:
+  /// Where a sensor is: a pose in a body of the file.
+  struct Place {
+    PlacedBody* body;
+    Pose pose;
+  };
   void onJoint(const Sensor& s);
   void onBody(const Sensor& s, const char* className);
   void onFrame(const Sensor& s, const char* className);
-  Node& frame(const Sensor& s);
+  Place bodyPlace(const Sensor& s);
+  std::optional<Place> geomPlace(const std::string& name);
+  Node& transformOf(const Sensor& s, const Place& place, const char* what);
+  void makePerceptor(const Sensor& s, Node& parent, const char* className);
+  void refuse(const Sensor& s, const std::string& why);
 
   Construction& c_;
+  std::map<std::string, Node*, std::less<>> frames_;  ///< transforms made for sensors, by kind and name of the object
 };
 
 }  // namespace spark::mjcf

@@ -27,7 +27,7 @@ class Accelerometer : public Perceptor {
   }
   void sense(Predicates& out, const Event&) override {
     if (!body_) return;
-    out.open("ACC").pair("n", name()).open("a");
+    out.open("ACC").pair("n", messageName()).open("a");
     for (const float a : acceleration_) out.add(a);
     out.close().close();
   }

@@ -31,7 +31,7 @@ class AngularMotorPerceptor : public Perceptor {
     if (!motor) return;
     const IJoint& angles = hinge_ ? *hinge_ : *motor;  // a motor below a hinge has the hinge's angle
     const IMotor* const device = device_.get();
-    out.open("HJ").pair("n", name());
+    out.open("HJ").pair("n", messageName());
     if (senseAngle_) out.pair("ax", radToDeg(angles.sensedAngle(0)));
     if (senseRate_) out.pair("rt", radToDeg(angles.angleRate(0)));
     if (senseTorque_) out.pair("tq", motor->feedbackTorque());

@@ -17,7 +17,7 @@ class BatteryPerceptor : public Perceptor {
     const IBattery* const battery = battery_.get();
     if (!battery) return;
     const double capacity = battery->capacity();
-    out.pair(name(), capacity > 0 ? battery->power() / capacity : 0.0);
+    out.pair(messageName(), capacity > 0 ? battery->power() / capacity : 0.0);
   }
 
  private:

@@ -43,7 +43,7 @@ class ForceResistancePerceptor : public Perceptor {
     if (weight_ > 0) point_ = weightedPoint_ / weight_, force_ = sum_;
 
     const Matrix local = transform() ? transform()->local() : Matrix(Matrix::Identity());
-    out.open("FRP").pair("n", name());
+    out.open("FRP").pair("n", messageName());
     put(out, "c", intoFrame(local, point_) - intoFrame(local, positionOf(local)));
     put(out, "f", intoFrame(local, force_));
     out.close();

@@ -14,7 +14,7 @@ class GPS : public Perceptor {
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;
     const Matrix& world = transform()->world();
-    out.open("GPS").pair("n", name()).open("tf");
+    out.open("GPS").pair("n", messageName()).open("tf");
     for (int row = 0; row < 4; ++row)
       for (int column = 0; column < 4; ++column) out.add(double(world(row, column)));
     out.close().close();

@@ -24,7 +24,7 @@ class GyroRatePerceptor : public Perceptor {
     const Vec3f world = body->state().angularVelocity.cast<float>();
     const Vec3f local = intoFrame(transform()->world(), world);
 
-    out.open("GYR").pair("n", name()).open("rt");
+    out.open("GYR").pair("n", messageName()).open("rt");
     for (const float rate : local) out.add(radToDeg(rate));
     out.close().close();
   }

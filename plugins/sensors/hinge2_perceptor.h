@@ -15,7 +15,7 @@ class Hinge2Perceptor : public Perceptor {
   void sense(Predicates& out, const Event&) override {
     IJoint* const joint = joint_.get();
     if (!joint) return;
-    out.open("H2J").pair("n", name());
+    out.open("H2J").pair("n", messageName());
     out.open("ax").add(0).add(radToDeg(joint->sensedAngle(0))).close().close();
   }
 

@@ -16,7 +16,7 @@ class HingePerceptor : public Perceptor {
   [[gnu::flatten]] void sense(Predicates& out, const Event&) override {
     IJoint* const joint = joint_.get();
     if (!joint) return;
-    out.open("HJ").pair("n", name()).pair("ax", radToDeg(joint->sensedAngle(0))).close();
+    out.open("HJ").pair("n", messageName()).pair("ax", radToDeg(joint->sensedAngle(0))).close();
   }
 
  private:

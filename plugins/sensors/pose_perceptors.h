@@ -16,7 +16,7 @@ class PositionPerceptor : public Perceptor {
   }
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;
-    out.open("pos").pair("n", name()).open("p");
+    out.open("pos").pair("n", messageName()).open("p");
     for (const float v : positionOf(transform()->world())) out.add(double(v));
     out.close().close();
   }
@@ -32,7 +32,7 @@ class OrientationPerceptor : public Perceptor {
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;
     const Eigen::Quaterniond q(toPose(transform()->world()).rotation);
-    out.open("quat").pair("n", name()).open("q");
+    out.open("quat").pair("n", messageName()).open("q");
     for (const double v : {q.w(), q.x(), q.y(), q.z()}) out.add(v);
     out.close().close();
   }

@@ -32,7 +32,7 @@ class SonarPerceptor : public Perceptor {
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;
     listen();
-    out.open("US").add(name()).open();
+    out.open("US").add(messageName()).open();
     const std::size_t count = maxEchoes_;
     for (std::size_t i = 0; i < count; ++i) out.add(i < echoes_.size() ? echoes_[i] : maxRange_);
     out.close().close();

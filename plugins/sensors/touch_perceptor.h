@@ -12,7 +12,7 @@ class TouchPerceptor : public CollisionPerceptor {
     d.doc("Senses whether its transform's colliders were touched: (TCH (n name) (val 0 or 1)).");
   }
   void sense(Predicates& out, const Event&) override {
-    out.open("TCH").pair("n", name()).pair("val", wasTouched() ? 1 : 0).close();
+    out.open("TCH").pair("n", messageName()).pair("val", wasTouched() ? 1 : 0).close();
     clear();
   }
 };

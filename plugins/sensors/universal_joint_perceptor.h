@@ -16,7 +16,7 @@ class UniversalJointPerceptor : public Perceptor {
   void sense(Predicates& out, const Event&) override {
     IJoint* const joint = joint_.get();
     if (!joint) return;
-    out.open("UJ").pair("n", name());
+    out.open("UJ").pair("n", messageName());
     out.pair("ax1", radToDeg(joint->sensedAngle(0))).pair("ax2", radToDeg(joint->sensedAngle(1))).close();
   }
 

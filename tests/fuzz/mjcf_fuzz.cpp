@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view input(reinterpret_cast<const char*>(data), size);
   const std::size_t end = std::min(input.find('\0'), input.size());
   const std::string a(input.substr(0, end)), b(input.substr(std::min(end + 1, input.size())));
-  mjcf::LeftOver leftOver;
+  mjcf::Unsupported unsupported;
   try {
     mjcf::Document document("a.xml", [&](const std::string& name) {
       if (name == "a.xml") return a;
@@ -28,10 +28,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       s.triangles = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
       return s;
     };
-    mjcf::readModel(document, tetrahedron, leftOver);
+    mjcf::readModel(document, tetrahedron, unsupported);
   } catch (const Error&) {
     // Most inputs are invalid.
   }
-  leftOver.sentences();
+  unsupported.sentences();
   return 0;
 }

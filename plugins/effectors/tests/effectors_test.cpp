@@ -270,6 +270,59 @@ TEST_CASE("an actuator's control sets a force in addition to its spring and damp
   CHECK(law.force == 3 * -1 + 0.5);
 }
 
+TEST_CASE("actuators of one joint add up, and a control can set stiffness and damping") {
+  Robot robot;
+  auto& a = robot.add(engine::JointType::hinge, "ActuatorEffector", "a");
+  auto& b = a.parent()->create<Effector>("ActuatorEffector", "b");
+  const engine::Control& law = robot.joint->controls[0];
+  setProperty(a, "bias", 0.5);
+  setProperty(a, "stiffness", 10.0);
+  setProperty(a, "maxForce", 9.0);
+  setProperty(b, "gain", 3.0);
+  setProperty(b, "gainStiffness", 2.0);
+  setProperty(b, "gainDamping", 4.0);
+  CHECK(robot.act(a, "(a 2)").empty());
+  CHECK(robot.act(b, "(b 1.5)").empty());
+  CHECK(law.force == 2 + 0.5 + 4.5);
+  CHECK(law.stiffness == 10 + 3);
+  CHECK(law.damping == 6);
+  CHECK(law.maxForce == 9);
+  CHECK(robot.act(a, "(a 0)").empty());
+  CHECK(law.force == 0.5 + 4.5);
+  // A spring cannot push away.
+  CHECK(robot.act(b, "(b -99)").empty());
+  CHECK(law.stiffness == 10);
+  CHECK(law.damping == 0);
+}
+
+TEST_CASE("a control effector may have gears, limits and a reference") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "ControlEffector", "he1");
+  const engine::Control& law = robot.joint->controls[0];
+  setProperty(he1, "gears", List{2.0, 3.0, 4.0});
+  setProperty(he1, "leastControls", List{-1.0, -2.0, -3.0});
+  setProperty(he1, "mostControls", List{1.0, 2.0, 3.0});
+  setProperty(he1, "reference", 0.25);
+  CHECK(robot.act(he1, "(he1 28.64788975654116 0 25 0.6 1.5)").empty());
+  CHECK(law.position == Approx(0.5 / 2 - 0.25));
+  CHECK(law.stiffness == 100);
+  CHECK(law.damping == Approx(5.4));
+  CHECK(law.force == 6);
+  CHECK(robot.act(he1, "(he1 90 -900 25 0.6 -9)").empty());
+  CHECK(law.position == Approx(1.0 / 2 - 0.25));
+  CHECK(law.velocity == Approx(-2.0 / 3));
+  CHECK(law.force == -12);
+}
+
+TEST_CASE("an effector may have another name in messages than in the tree") {
+  Robot robot;
+  auto& effector = robot.add(engine::JointType::hinge, "ControlEffector", "arm_j");
+  CHECK(effector.predicate() == "arm_j");
+  setProperty(effector, "messageName", "arm/j");
+  CHECK(effector.predicate() == "arm/j");
+  CHECK(effector.name() == "arm_j");
+}
+
 TEST_CASE("invalid commands of an actuator are refused and change nothing") {
   Robot robot;
   auto& turn = robot.add(engine::JointType::hinge, "ActuatorEffector", "turn");

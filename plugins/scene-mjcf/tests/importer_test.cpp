@@ -1,40 +1,9 @@
 // Imports models into the tree.
 
-#include "../../physics/tests/physics_house.h"
-#include "api/agents.h"
-#include "temporary_folder.h"
+#include "mjcf_host.h"
 
 namespace spark::test {
 namespace {
-
-struct MjcfHost : PhysicsHost {
-  TemporaryFolder folder;
-  MjcfHost() {
-    for (const char* plugin : {"files", "scene-mjcf"}) kernel.plugins().use(plugin);
-    kernel.create("FileServer", "/sys/server/file");
-    setProperty(kernel.create("DirectoryFileSystem", "/sys/server/file/folder"), "path", folder.path().string());
-    kernel.create("MjcfImporter", "/sys/server/scene/mjcf");
-  }
-  void import(const std::string& text, const List& arguments = {}) {
-    folder.write("m.xml", text);
-    List all{"m.xml"};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    call(scene, "importScene", all);
-  }
-  std::string failure(const std::string& text) {
-    try {
-      import(text);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  }
-  template <class T>
-  T& at(const std::string& path) {
-    return kernel.root().require<T>("/usr/scene/" + path);
-  }
-  Vec3 position(const std::string& body) { return at<IRigidBody>(body).state().position; }
-};
 
 const char* const kArm = R"(<mujoco model='arm'><compiler autolimits='true'/><worldbody>
   <body name='upper' pos='0 0 1'><joint name='shoulder' axis='0 1 0' range='-90 90'/>
@@ -201,8 +170,7 @@ TEST_CASE("a model that cannot be imported leaves nothing in the tree") {
 }
 
 TEST_CASE("sensors and actuators become perceptors and effectors") {
-  MjcfHost h;
-  for (const char* plugin : {"gamecontrol", "sensors", "effectors"}) h.kernel.plugins().use(plugin);
+  RobotHost h;
   h.import(R"(<mujoco model='m'><worldbody><body name='b' pos='0 0 1'>
     <joint name='j' axis='0 1 0' actuatorfrcrange='-3 3'/><geom size='0.1' pos='0.2 0 0' mass='1'/>
     <body name='c'><joint name='k' axis='0 0 1'/><geom size='0.1' mass='1'/><site name='s'/></body></body></worldbody>
@@ -221,6 +189,108 @@ TEST_CASE("sensors and actuators become perceptors and effectors") {
   std::vector<Perceptor*> perceptors;
   h.scene.collect(perceptors);
   CHECK(perceptors.size() == 4);
+}
+
+TEST_CASE("a spring counts from its own position") {
+  MjcfHost h;
+  h.import(R"(<mujoco model='m'><compiler angle='radian'/><option gravity='0 0 0'/><worldbody>
+    <body name='b'><joint name='j' axis='0 0 1' stiffness='4' springref='0.3' ref='0.1' damping='1'/>
+    <geom size='.1' pos='.5 0 0' mass='1'/></body><body name='c'><joint name='k' type='slide' stiffness='40' damping='9'
+    springref='0.3' axis='1 0 0'/><geom size='.1' mass='1'/></body></worldbody></mujoco>)");
+  h.step(1000);
+  CHECK(h.at<IJoint>("m/b/j").angle(0) == Approx(0.2).margin(1e-2));
+  CHECK(h.at<IJoint>("m/c/k").angle(0) == Approx(0.3).margin(1e-2));
+}
+
+TEST_CASE("flags switch limits, springs, contacts and actuators off") {
+  const auto model = [](const std::string& flag) {
+    return "<mujoco model='m'><option gravity='0 0 0'><flag " + flag + R"(/></option><worldbody>
+      <body name='b'><joint name='j' axis='0 0 1' range='-10 10' damping='2' frictionloss='3' stiffness='4'
+      springref='5'/><geom name='g' size='.1'/></body></worldbody>
+      <actuator><motor name='t' joint='j' ctrlrange='-1 1'/></actuator></mujoco>)";
+  };
+  using P = engine::JointParameter;
+  {
+    RobotHost h;
+    h.import(model("limit='disable' clampctrl='disable'"));
+    CHECK(std::isinf(h.at<IJoint>("m/b/j").parameter(P::highStop, 0)));
+    CHECK(h.at<IJoint>("m/b/j").parameter(P::damping, 0) == 2);
+    CHECK(std::isinf(getProperty(*h.find("m/b/j/t"), "most").toNumber()));
+  }
+  {
+    RobotHost h;
+    h.import(model("passive='disable' contact='disable'"));
+    CHECK(h.at<IJoint>("m/b/j").parameter(P::damping, 0) == 0);
+    CHECK(h.at<IJoint>("m/b/j").parameter(P::dryFriction, 0) == 3);
+    CHECK_FALSE(h.find("m/b/g"));
+    h.step(20);
+    CHECK(h.at<IJoint>("m/b/j").angle(0) == Approx(0).margin(1e-9));
+  }
+  {
+    RobotHost h;
+    h.import(model("constraint='disable' actuation='disable'"));
+    CHECK(h.at<IJoint>("m/b/j").parameter(P::dryFriction, 0) == 0);
+    CHECK_FALSE(h.find("m/b/j/t"));
+  }
+  {
+    RobotHost h;  // an attached model has the flags of its world
+    h.import(model("limit='disable'"), {"p-"});
+    CHECK_FALSE(std::isinf(h.at<IJoint>("p-m/p-b/p-j").parameter(P::highStop, 0)));
+  }
+}
+
+TEST_CASE("gravity can be compensated for whole bodies") {
+  MjcfHost h;
+  h.import(R"(<mujoco model='m'><worldbody><body name='a' gravcomp='1'><freejoint/><geom size='.1'/>
+    <body gravcomp='1'><geom size='.1'/></body></body>
+    <body name='b' pos='3 0 0' gravcomp='0.5'><freejoint/><geom size='.1'/></body></worldbody></mujoco>)");
+  CHECK_FALSE(getProperty(*h.kernel.root().find("/usr/scene/m/a/body"), "gravityOn").toBool());
+  CHECK(getProperty(*h.kernel.root().find("/usr/scene/m/b/body"), "gravityOn").toBool());
+  CHECK_THAT(h.text, Catch::Contains("m.xml:3:5: <body> 'b' has a gravcomp other than 1"));
+}
+
+TEST_CASE("mesh files may be MSH files, and OBJ files without faces") {
+  MjcfHost h;
+  const auto model = [](const std::string& file) {
+    return "<mujoco model='m'><asset><mesh name='t' file='" + file +
+           "'/></asset><worldbody><body name='b'><freejoint/><geom name='g' type='mesh' mesh='t' density='6'/></body>"
+           "</worldbody></mujoco>";
+  };
+  const auto check = [&] {
+    CHECK(h.at<IRigidBody>("m/b/body").mass() == Approx(1));
+    CHECK(h.at<ICollider>("m/b/g").shape()->triangles.size() == 12);
+    h.scene.remove(*h.scene.child("m"));
+  };
+  h.folder.write("points.obj", "# a tetrahedron\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n");
+  h.import(model("points.obj"));
+  check();
+  std::string msh;
+  const auto put = [&](auto v) { msh.append(reinterpret_cast<const char*>(&v), sizeof v); };
+  for (const std::int32_t count : {4, 0, 0, 4}) put(count);
+  for (const float v : {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}) put(v);
+  for (const std::int32_t v : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}) put(v);
+  h.folder.write("t.MSH", msh);
+  h.import(model("t.MSH"));
+  check();
+  h.folder.write("short.msh", msh.substr(0, msh.size() - 1));
+  CHECK_THAT(h.failure(model("short.msh")), Catch::Contains("expected 112 bytes, found 111"));
+  h.folder.write("empty.obj", "# nothing\n");
+  CHECK_THAT(h.failure(model("empty.obj")), Catch::Contains("expected vertices, found none"));
+}
+
+TEST_CASE("a timestep that does not divide the cycle is reported") {
+  MjcfHost h;
+  h.kernel.plugins().use("simulation");
+  setProperty(h.kernel.create("Simulation", "/sys/server/simulation"), "step", 0.02);
+  for (const char* const fits : {"0.02", "0.01", "0.005", "0.002"})
+    h.import(std::string("<mujoco model='m'><option timestep='") + fits + "'/></mujoco>");
+  CHECK(h.text.find("timestep") == std::string::npos);
+  h.import("<mujoco model='m'><option timestep='0.003'/></mujoco>");
+  CHECK_THAT(h.text,
+             Catch::Contains("m.xml:1:19: the timestep of 0.003 s does not divide the cycle of 0.02 s: 7 steps of "
+                             "0.00285714 s each are used in its place"));
+  h.import("<mujoco model='m'><option timestep='0.05'/></mujoco>");
+  CHECK_THAT(h.text, Catch::Contains("the timestep of 0.05 s does not divide the cycle of 0.02 s"));
 }
 
 }  // namespace spark::test

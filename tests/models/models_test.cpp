@@ -1,0 +1,291 @@
+// Each model of this folder moves in Spark as in MuJoCo alone, or expected.txt says why not.
+//
+// A model is loaded by libmujoco and by the importer, with MujocoEngine, and moves for 1 s in steps of its own length.
+// All controls are 0.3. At 0.1, 0.5 and 1 s the coordinates of all joints, and the centres of mass and rotations of all
+// bodies, must agree to 1e-6. Bodies, joints and actuators of a model need names.
+
+#include <mujoco/mujoco.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+
+#include "api/agents.h"
+#include "api/phases.h"
+#include "api/physics.h"
+#include "spark/access.h"
+#include "test_support.h"
+
+namespace spark::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kFolder = SPARK_SOURCES "/tests/models";
+constexpr double kTimes[] = {0.1, 0.5, 1};
+constexpr double kTolerance = 1e-6, kControl = 0.3;
+
+/// A name of the file as the importer writes it in the tree.
+std::string treeName(std::string name) {
+  for (char& c : name)
+    if (std::string_view("/\\[]").find(c) != std::string_view::npos) c = '_';
+  return name;
+}
+
+struct BodyPose {
+  Vec3 center;
+  Mat3 rotation;  ///< since the start: a body whose frame the file does not give may have another one
+};
+/// Coordinates of joints [rad or m], counted from the pose of the file, and poses of bodies, by name.
+struct Snapshot {
+  std::map<std::string, double> joints;
+  std::map<std::string, BodyPose> bodies;
+};
+using Motion = std::vector<Snapshot>;  // one for each of kTimes
+
+void makeRelative(Snapshot& s, const Snapshot& start) {
+  for (auto& [name, pose] : s.bodies) pose.rotation = pose.rotation * start.bodies.at(name).rotation.transpose();
+}
+
+/// The first step at or behind a time.
+long stepAt(double time, double timestep) { return std::lround(time / timestep); }
+
+// ---- MuJoCo ----
+
+struct Oracle {
+  mjModel* m = nullptr;
+  mjData* d = nullptr;
+  std::string error;
+
+  explicit Oracle(const fs::path& file) {
+    char text[1000] = "";
+    m = mj_loadXML(file.c_str(), nullptr, text, sizeof text);
+    if (!m) error = text;
+    if (m) d = mj_makeData(m);
+  }
+  ~Oracle() {
+    if (d) mj_deleteData(d);
+    if (m) mj_deleteModel(m);
+  }
+  Oracle(const Oracle&) = delete;
+  Oracle& operator=(const Oracle&) = delete;
+
+  std::string nameOf(int type, int id) const {
+    const char* const name = mj_id2name(m, type, id);
+    if (!name || !*name) throw Error(fmt::format("the object {} of type {} has no name", id, mju_type2Str(type)));
+    return treeName(name);
+  }
+  Motion move() {
+    Motion motion;
+    mj_kinematics(m, d);
+    mj_comPos(m, d);
+    const Snapshot start = snapshot();
+    for (int i = 0; i < m->nu; ++i) d->ctrl[i] = kControl;
+    long step = 0;
+    for (const double time : kTimes) {
+      for (; step < stepAt(time, m->opt.timestep); ++step) mj_step(m, d);
+      mj_kinematics(m, d);
+      mj_comPos(m, d);
+      motion.push_back(snapshot());
+      makeRelative(motion.back(), start);
+    }
+    return motion;
+  }
+  /// Bodies without joints are parts of those above.
+  Snapshot snapshot() const {
+    Snapshot s;
+    for (int j = 0; j < m->njnt; ++j)
+      if (m->jnt_type[j] == mjJNT_HINGE || m->jnt_type[j] == mjJNT_SLIDE)
+        s.joints[nameOf(mjOBJ_JOINT, j)] = d->qpos[m->jnt_qposadr[j]] - m->qpos0[m->jnt_qposadr[j]];
+    for (int b = 1; b < m->nbody; ++b) {
+      if (m->body_dofnum[b] == 0) continue;
+      double mass = 0;
+      Vec3 center = Vec3::Zero();
+      for (int k = 1; k < m->nbody; ++k) {
+        if (m->body_weldid[k] != b) continue;
+        mass += m->body_mass[k];
+        center += m->body_mass[k] * Vec3(d->xipos + 3 * k);
+      }
+      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(d->xmat + 9 * b);
+      s.bodies[nameOf(mjOBJ_BODY, b)] = {center / mass, rotation};
+    }
+    return s;
+  }
+};
+
+// ---- Spark ----
+
+struct ModelHost : TestHost {
+  Node* scene = nullptr;
+
+  explicit ModelHost(const std::string& file) {
+    for (const char* plugin :
+         {"files", "scene", "scene-mjcf", "physics", "physics-mujoco", "gamecontrol", "sensors", "effectors"})
+      kernel.plugins().use(plugin);
+    kernel.events().define(phase::kPrepare, Order::childrenFirst, "before the step");
+    kernel.events().define(phase::kPhysics, Order::parentsFirst, "the step");
+    kernel.events().define(phase::kPlace, Order::parentsFirst, "after the step");
+    kernel.create("FileServer", "/sys/server/file");
+    setProperty(kernel.create("DirectoryFileSystem", "/sys/server/file/models"), "path", kFolder.string());
+    kernel.create("SceneServer", "/sys/server/scene");
+    kernel.create("MjcfImporter", "/sys/server/scene/mjcf");
+    kernel.create("PhysicsServer", "/sys/server/physics");
+    kernel.create("MujocoEngine", "/sys/server/physics/engine");
+    scene = kernel.create("Scene", "/usr/scene").asNode();
+    kernel.create("World", "/usr/scene/world");
+    callMethod(*scene, "importScene", List{file});
+  }
+  /// Sends each effector its control. A controller's stiffness and damping are those of the file.
+  void control(const Oracle& oracle) {
+    std::vector<Effector*> effectors;
+    scene->collect(effectors);
+    const auto gain = [&](const std::string& name) {
+      const int id = mj_name2id(oracle.m, mjOBJ_ACTUATOR, name.c_str());
+      return id < 0 ? 0 : oracle.m->actuator_gainprm[mjNGAIN * id];
+    };
+    for (Effector* e : effectors) {
+      const std::string& name = e->messageName();
+      const std::string text = e->classObject()->name() == "ActuatorEffector"
+                                   ? fmt::format("(a {})", kControl)
+                                   : fmt::format("(a {0} {0} {1} {2} {3})", radToDeg(kControl), gain(name + "_pos"),
+                                                 gain(name + "_vel"), kControl);
+      Predicates action;
+      readSexp(text, action);
+      const std::string remark = e->act(*action.begin());
+      if (!remark.empty()) throw Error(name + ": " + remark);
+    }
+  }
+  Motion move(const Oracle& oracle) {
+    control(oracle);
+    const double dt = oracle.m->opt.timestep;
+    Motion motion;
+    const Snapshot start = snapshot();
+    std::int64_t step = 0;
+    for (const double time : kTimes) {
+      for (; step < stepAt(time, dt); ++step)
+        for (const ChannelName channel : {phase::kPrepare, phase::kPhysics, phase::kPlace})
+          kernel.events().channel(channel).emit(Event{channel, double(step) * dt, dt, step, nullptr});
+      motion.push_back(snapshot());
+      makeRelative(motion.back(), start);
+    }
+    return motion;
+  }
+  Snapshot snapshot() const {
+    Snapshot s;
+    std::vector<IJoint*> joints;
+    std::vector<IRigidBody*> bodies;
+    scene->collect(joints);
+    scene->collect(bodies);
+    for (IJoint* j : joints)
+      if (j->axes() == 1) s.joints[j->leaf().name()] = j->angle(0);
+    for (IRigidBody* b : bodies) {
+      const engine::BodyState state = b->state();
+      s.bodies[b->leaf().parent()->name()] = {state.position, state.rotation};
+    }
+    return s;
+  }
+};
+
+// ---- the comparison ----
+
+/// What became of a model.
+struct Result {
+  bool loads = false, agrees = false;
+  double worst = 0;
+  std::string where;               ///< of the worst difference; or why it does not load
+  std::vector<std::string> named;  ///< what the importer reported
+};
+
+void compare(const Snapshot& expected, const Snapshot& found, double time, Result& r) {
+  const auto note = [&](double difference, const std::string& what) {
+    if (difference <= r.worst) return;
+    r.worst = difference;
+    r.where = fmt::format("{} at {} s", what, time);
+  };
+  for (const auto& [name, q] : expected.joints) {
+    const auto own = found.joints.find(name);
+    note(own == found.joints.end() ? HUGE_VAL : std::abs(own->second - q), "joint " + name);
+  }
+  for (const auto& [name, pose] : expected.bodies) {
+    const auto own = found.bodies.find(name);
+    const bool none = own == found.bodies.end();
+    note(none ? HUGE_VAL : (own->second.center - pose.center).cwiseAbs().maxCoeff(), "centre of " + name);
+    if (!none) note((own->second.rotation - pose.rotation).cwiseAbs().maxCoeff(), "rotation of " + name);
+  }
+}
+
+Result resultOf(const std::string& file) {
+  Result r;
+  Oracle oracle(kFolder / file);
+  if (!oracle.m) throw Error(fmt::format("MuJoCo refuses {}: {}", file, oracle.error));
+  // Before the plugin is loaded, whose callbacks would count here too.
+  const Motion expected = oracle.move();
+  try {
+    ModelHost host(file);
+    r.loads = true;
+    const Motion found = host.move(oracle);
+    for (std::size_t i = 0; i < std::size(kTimes); ++i) compare(expected[i], found[i], kTimes[i], r);
+    r.agrees = r.worst <= kTolerance;
+    std::istringstream lines(host.text);
+    for (std::string line; std::getline(lines, line);)
+      if (const std::size_t at = line.find(file + ":"); at != std::string::npos)
+        r.named.push_back(line.substr(at + file.size() + 1));
+      else if (line.find("MuJoCo reports") != std::string::npos)
+        r.named.push_back(line);
+  } catch (const Error& e) {
+    r.where = e.what();
+  }
+  return r;
+}
+
+/// The rows of expected.txt: file | why it does not agree.
+std::map<std::string, std::string> expectedDifferences() {
+  std::map<std::string, std::string> rows;
+  std::ifstream in(kFolder / "expected.txt");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t bar = line.find(" | ");
+    if (line.starts_with("#") || bar == std::string::npos) continue;
+    rows[line.substr(0, bar)] = line.substr(bar + 3);
+  }
+  return rows;
+}
+
+std::vector<std::string> modelFiles() {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(kFolder))
+    if (entry.path().extension() == ".xml") files.push_back(entry.path().filename().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+TEST_CASE("Models in MJCF move as in MuJoCo alone, or a table says why not") {
+  std::map<std::string, std::string> rows = expectedDifferences();
+  std::size_t loads = 0, agrees = 0;
+  const std::vector<std::string> files = modelFiles();
+  for (const std::string& file : files) {
+    const Result r = resultOf(file);
+    const auto row = rows.find(file);
+    const std::string why = row == rows.end() ? "" : row->second;
+    loads += r.loads;
+    agrees += r.agrees;
+    fmt::print("{} | {} | {} | {:.1e}{} | {}{}\n", file, r.loads ? "loads" : "REFUSED", r.agrees ? "agrees" : "DIFFERS",
+               r.worst, r.agrees || r.where.empty() ? "" : " " + r.where, fmt::join(r.named, "; "),
+               why.empty() ? "" : " [" + why + "]");
+    if (why.empty()) {
+      INFO(file << ": " << r.worst << " " << r.where);
+      CHECK((r.loads && r.agrees));
+    } else if (r.agrees) {
+      WARN(file << " agrees: its row in expected.txt can go");
+    }
+    if (row != rows.end()) rows.erase(row);
+  }
+  fmt::print("{} models: {} load, {} agree\n", files.size(), loads, agrees);
+  for (const auto& [file, why] : rows) FAIL_CHECK("expected.txt has a row for " << file << ", which is not there");
+  CHECK(files.size() >= 60);
+}
+
+}  // namespace spark::test
