@@ -26,15 +26,22 @@ void Compiler::read(Attributes& a) {
   meshFolder_ = folder;
   inertiaFromGeom_ = a.word("inertiafromgeom", {"auto", "true", "false"}, inertiaFromGeom_.c_str());
   a.take("inertiagrouprange", inertiaGroups_);
+  fitsBounds_ = a.flag("fitaabb", fitsBounds_);
+  stripsPaths_ = a.flag("strippath", stripsPaths_);
   exactMeshInertia_ = a.flag("exactmeshinertia", exactMeshInertia_);
   boundMass_ = a.number("boundmass", boundMass_);
   boundInertia_ = a.number("boundinertia", boundInertia_);
   totalMass_ = a.number("settotalmass", totalMass_);
   global_ = a.word("coordinate", {"local", "global"}, global_ ? "global" : "local") == "global";
   // Bodies without joints become part of their parents in any case.
-  a.ignore({"texturedir", "fitaabb", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
+  a.ignore({"texturedir", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
             "alignfree"});
   a.finish();
+}
+
+std::string Compiler::fileName(const std::string& name) const {
+  const std::size_t slash = name.find_last_of("/\\");
+  return stripsPaths_ && slash != std::string::npos ? name.substr(slash + 1) : name;
 }
 
 void Compiler::raise(engine::Mass& mass) const {

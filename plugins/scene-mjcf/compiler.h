@@ -32,6 +32,10 @@ class Compiler {
   bool weighs(int group) const { return group >= inertiaGroups_[0] && group <= inertiaGroups_[1]; }
   /// Poses in the file are world poses.
   bool global() const { return global_; }
+  /// Shapes are fitted to the bounds of meshes, not to their inertia.
+  bool fitsBounds() const { return fitsBounds_; }
+  /// The name of a file as the file system has it.
+  std::string fileName(const std::string& name) const;
   /// False: MuJoCo 2.2.2 estimates masses of meshes as if they were convex.
   bool exactMeshInertia() const { return exactMeshInertia_; }
   /// What the masses of all bodies are scaled to [kg]; 0 or less: they stay.
@@ -60,7 +64,7 @@ class Compiler {
   bool degrees_ = true;
   bool global_ = false;
   bool autolimits_ = true;
-  bool exactMeshInertia_ = false;
+  bool exactMeshInertia_ = false, fitsBounds_ = false, stripsPaths_ = false;
   std::string eulerSequence_ = "xyz";
   std::string meshFolder_;
   std::string inertiaFromGeom_ = "auto";

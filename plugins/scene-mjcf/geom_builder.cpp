@@ -86,7 +86,7 @@ void GeomBuilder::makeGeoms(PlacedBody& p) {
                                  [](const Geom& g) { return g.visible() && g.shape.shape != Shape::mesh; });
   for (const Geom& g : geoms) {
     try {
-      if (c_.flags.contact && (g.collides() || inPair(g.name))) makeCollider(g, p);
+      if (c_.flags.contact && g.isShape && (g.collides() || inPair(g.name))) makeCollider(g, p);
       if (g.visible() || !drawn) makeVisible(g, p);
     } catch (const Error& e) {
       throw Error(fmt::format("{}: cannot make the geom '{}'", g.from.where(), g.name), e);
@@ -142,6 +142,9 @@ void GeomBuilder::exclude(const Exclusion& x) {
 void GeomBuilder::pair(const Pair& p) {
   if (!c_.flags.contact) return;
   const auto first = c_.colliders.find(p.geom1), second = c_.colliders.find(p.geom2), none = c_.colliders.end();
+  for (const std::string& name : {p.geom1, p.geom2})
+    if (c_.model.unsupportedGeoms.contains(name))
+      return c_.unsupported.add(p.from, fmt::format("a <pair> of the unsupported geom '{}' is not supported", name));
   if (first == none || second == none)
     throw p.from.error(fmt::format("there is no geom '{}'", first == none ? p.geom1 : p.geom2));
   callMethod(*first->second, "addCollideWithColliderName", List{second->second->name(), true});

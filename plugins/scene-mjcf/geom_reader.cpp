@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "geom_mass.h"
+#include "mesh_fit.h"
 
 namespace spark::mjcf {
 
@@ -18,13 +19,12 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
   g.name = a.text("name");
   contact(a, g);
   const std::string type =
-      a.word("type", {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"},
-             a.has("mesh") ? "mesh" : "sphere");
+      a.word("type", {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"}, "sphere");
   const double density = a.number("density", 1000);
   const auto weight = [&] {
     return Weight{density, a.has("mass") ? std::optional(a.number("mass", 0)) : std::nullopt};
   };
-  a.ignore({"material", "rgba", "user", "hfield", "fitscale", "mass"});
+  a.ignore({"material", "rgba", "user", "hfield", "fitscale", "mass", "mesh"});
 
   // What is not supported, and what is only seen: its mesh is not loaded.
   const auto without = [&](const std::string& what) {
@@ -32,10 +32,11 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
     return std::nullopt;
   };
   if (type == "hfield" || type == "sdf") return without(fmt::format("a <geom> of type {} is not supported", type));
-  if (type != "mesh" && a.has("mesh")) return without("a <geom> that is fitted to a mesh is not supported");
+  if (type != "mesh" && a.has("mesh") && compiler_.fitsBounds())
+    return without("a <geom> that is fitted to the bounds of a mesh (fitaabb) is not supported");
   const bool world = body.parent < 0, counts = !body.hasInertial || compiler_.inertiaFromGeom() == "true";
   const bool weightless = !counts || weight().of(1) == 0;
-  if (type == "mesh" && !g.collides() && (weightless || world)) {
+  if (type == "mesh" && !g.collides() && (weightless || world) && !inPairs_.contains(g.name)) {
     a.ignore({"pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "size", "fromto"});
     a.finish();
     return std::nullopt;
@@ -52,6 +53,7 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
   if (ellipsoid) {
     // Only its mass counts: nothing collides with it, and no viewer shows it.
     unsupported_.add(g.from, "the shape of an ellipsoid is not supported");
+    g.isShape = false;
     g.contactTypes = g.contactAffinities = 0;
     g.group = kHidden;
   }
@@ -101,6 +103,12 @@ void GeomReader::place(Attributes& a, const std::string& type, const Pose& frame
       size[1] = span->length / 2;
   } else {
     g.pose = compiler_.pose(a, frame);
+  }
+  if (type != "mesh" && a.has("mesh")) {
+    const Weight byVolume{1, std::nullopt};
+    const EquivalentBox box = equivalentBox(shapeMass(meshes_.get(a, unsupported_).surface, byVolume, g.from));
+    g.pose = compose(g.pose, box.pose);
+    size = a.number("fitscale", 1) * fittedSize(type, box.halfEdges);
   }
   // Each kind needs some of its lengths.
   const int needed = type == "sphere" ? 1 : type == "capsule" || type == "cylinder" ? 2 : thick ? 3 : 0;

@@ -14,6 +14,8 @@ class GeomReader {
  public:
   GeomReader(const Compiler& compiler, Meshes& meshes, Unsupported& unsupported)
       : compiler_(compiler), meshes_(meshes), unsupported_(unsupported) {}
+  /// Says that an element `pair` names a geom; to be called before the geom is read.
+  void addToPairs(const std::string& geom) { inPairs_.insert(geom); }
   /// Reads an element `geom` of `body`; `frame`: of the `frame` elements around. nullopt for a geom that is not
   /// supported, or that is only seen and has a mesh. Throws Error.
   std::optional<Geom> read(Attributes& a, const Body& body, const Pose& frame);
@@ -27,6 +29,7 @@ class GeomReader {
   const Compiler& compiler_;
   Meshes& meshes_;
   Unsupported& unsupported_;
+  std::set<std::string, std::less<>> inPairs_;
 };
 
 }  // namespace spark::mjcf

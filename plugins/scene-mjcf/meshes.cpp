@@ -29,11 +29,11 @@ std::vector<std::uint32_t> readFaces(Attributes& a, std::size_t vertices) {
 
 }  // namespace
 
-void Meshes::add(Attributes& a, const std::string& folder) {
+void Meshes::add(Attributes& a, const std::string& folder, const Compiler& compiler) {
   Asset m;
   m.from = a.element();
   m.folder = folder;
-  m.file = a.text("file");
+  m.file = compiler.fileName(a.text("file"));
   if (auto vertices = a.numbers("vertex", 12, kMaxMeshNumbers)) m.vertices = std::move(*vertices);
   if (m.vertices.size() % 3 != 0)
     throw m.from.error(fmt::format("expected three numbers for each vertex, found {}", m.vertices.size()));

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "compiler.h"
 #include "model.h"
 
 namespace spark::mjcf {
@@ -19,7 +20,7 @@ class Meshes {
   /// `read` must outlive the meshes.
   explicit Meshes(const ReadMesh& read) : read_(read) {}
   /// Adds an element `mesh`. `folder`: of the mesh files, "" or "a/". Throws Error.
-  void add(Attributes& a, const std::string& folder);
+  void add(Attributes& a, const std::string& folder, const Compiler& compiler);
   /// The mesh that the geom `a` names. Throws Error for unknown meshes, meshes that cannot be read, and when all geoms
   /// have more than kMaxMeshNumbers together.
   const Mesh& get(Attributes& a, Unsupported& unsupported);

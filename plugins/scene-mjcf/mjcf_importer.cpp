@@ -23,7 +23,10 @@ bool MjcfImporter::recognises(std::string_view text) const {
   // Declaration and comments come first.
   while (true) {
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-    const std::string_view end = text.starts_with("<!--") ? "-->" : text.starts_with("<?") ? "?>" : "";
+    const std::string_view end = text.starts_with("<!--") ? "-->"
+                                 : text.starts_with("<?") ? "?>"
+                                 : text.starts_with("<!") ? ">"
+                                                          : "";
     if (end.empty()) return text.starts_with("<mujoco");
     const std::size_t at = text.find(end);
     if (at == std::string_view::npos) return false;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Geom {
   Pose pose;                     ///< in its body
   engine::Geom::Mujoco contact;  ///< its numbers of contacts
   int contactTypes = 1, contactAffinities = 1;
+  bool isShape = true;  ///< false: only its mass counts
   int group = 0;
   std::optional<engine::Mass> mass;  ///< nullopt: none, because the body has an inertial element
   bool collides() const { return contactTypes != 0 || contactAffinities != 0; }
@@ -117,6 +119,7 @@ struct Model {
   std::vector<Sensor> sensors;
   std::vector<Exclusion> exclusions;
   std::vector<Pair> pairs;
+  std::set<std::string, std::less<>> unsupportedGeoms;  ///< names of geoms that cannot collide
 };
 
 /// Vertices and triangles of a mesh file: `read` reads it. Throws Error.

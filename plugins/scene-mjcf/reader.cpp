@@ -45,6 +45,8 @@ Model Reader::read() {
   model_.bodies.front().from = root;
   globalPoses_.emplace_back();
   const std::vector<Element> sections = document_.children(root);
+  for (const Element& e : sections)
+    if (e.tag() == "contact") notePairs(e);
   for (const std::string_view tag : kSections) {
     for (const Element& e : sections)
       if (e.tag() == tag) section(e);
@@ -162,7 +164,7 @@ void Reader::flags(const Element& e) {
 void Reader::asset(const Element& e) {
   if (e.tag() == "mesh") {
     Attributes a = attributes(e);
-    meshes_.add(a, document_.folder() + compiler_.meshFolder());
+    meshes_.add(a, document_.folder() + compiler_.meshFolder(), compiler_);
   } else if (e.tag() != "material" && e.tag() != "texture") {
     unsupported_.element(e);
   }
@@ -325,7 +327,10 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
 void Reader::geom(const Element& e, const Scope& scope) {
   Body& b = model_.bodies[static_cast<std::size_t>(scope.body)];
   Attributes a = attributes(e, scope.childClass);
-  if (auto g = geoms_.read(a, b, scope.frame)) b.geoms.push_back(std::move(*g));
+  const std::string name = a.text("name");
+  auto g = geoms_.read(a, b, scope.frame);
+  if (!g || !g->isShape) model_.unsupportedGeoms.insert(name);
+  if (g) b.geoms.push_back(std::move(*g));
 }
 
 void Reader::site(const Element& e, const Scope& scope) {
@@ -382,6 +387,12 @@ void Reader::scaleMasses() {
 }
 
 // ---- contact, actuators, sensors ----
+
+void Reader::notePairs(const Element& e) {
+  for (const Element& child : document_.children(e))
+    if (child.tag() == "pair")
+      for (const char* const name : {"geom1", "geom2"}) geoms_.addToPairs(child.node.attribute(name).value());
+}
 
 void Reader::contact(const Element& e) {
   if (e.tag() != "exclude" && e.tag() != "pair") return unsupported_.element(e);

@@ -45,6 +45,7 @@ class Reader {
   void site(const Element& e, const Scope& scope);
   void finishMasses();
   void scaleMasses();
+  void notePairs(const Element& e);
   void contact(const Element& e);
   void actuator(const Element& e);
   void sensor(const Element& e);

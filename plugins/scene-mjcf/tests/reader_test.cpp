@@ -486,3 +486,55 @@ TEST_CASE("poses may be given in the world frame") {
   }
   CHECK_THAT(failure("<mujoco><compiler coordinate='x'/></mujoco>"), Catch::Contains("expected local or global"));
 }
+
+TEST_CASE("shapes can be fitted to meshes by their inertia") {
+  // A cuboid of 1 m x 2 m x 3 m, turned so that its longest edge is along x.
+  const auto read = [](const std::string& geom) {
+    return Read(
+        "<mujoco><asset><mesh name='m' vertex='0 0 0 3 0 0 3 0 1 0 0 1 0 2 0 3 2 0 3 2 1 0 2 1'/></asset>"
+        "<worldbody><body><joint/><geom mesh='m' " +
+        geom + "/></body></worldbody></mujoco>");
+  };
+  const auto shape = [&](const std::string& geom) { return read(geom).body(1).geoms.at(0).shape; };
+  const Read box = read("type='box' pos='1 0 0'");
+  const Geom& g = box.body(1).geoms.at(0);
+  CHECK(g.shape.lengths.isApprox(Vec3(1, 2, 3)));
+  CHECK(g.pose.position.isApprox(Vec3(2.5, 1, 0.5)));
+  CHECK(std::abs(g.pose.rotation(0, 2)) == Approx(1));
+  CHECK(box.body(1).mass.mass == Approx(6000));
+  CHECK(shape("").radius == Approx(1));
+  CHECK(shape("type='sphere' fitscale='2'").radius == Approx(2));
+  CHECK(shape("type='capsule'").radius == Approx(0.75));
+  CHECK(shape("type='capsule'").length == Approx(2.25));
+  CHECK(shape("type='cylinder'").length == Approx(3));
+  CHECK(read("type='ellipsoid'").body(1).mass.mass == Approx(kPi * 1000));
+}
+
+TEST_CASE("file names can be stripped of their folders") {
+  std::string opened;
+  Unsupported unsupported;
+  const std::string text =
+      "<mujoco><compiler meshdir='m' strippath='true'/><asset><mesh name='c' file='C:\\x\\y/z/cube.stl'/></asset>"
+      "<worldbody><geom type='mesh' mesh='c'/></worldbody></mujoco>";
+  Document document("a.xml", [&](const std::string&) { return text; });
+  const auto read = [&](const std::string& file) {
+    opened = file;
+    engine::ShapeDescription s{.shape = engine::Shape::mesh};
+    s.vertices = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    return s;
+  };
+  readModel(document, read, unsupported);
+  CHECK(opened == "m/cube.stl");
+}
+
+TEST_CASE("a pair names geoms that are only seen otherwise") {
+  const auto read = [](const std::string& geoms) {
+    return Read("<mujoco><asset><mesh name='m' file='m.stl'/></asset><worldbody>" + geoms +
+                "</worldbody><contact><pair geom1='a' geom2='b'/></contact></mujoco>");
+  };
+  const std::string mesh = "<geom name='a' type='mesh' mesh='m' contype='0' conaffinity='0'/>";
+  const Read r = read(mesh + "<geom name='b' size='1'/>");
+  CHECK(r.body(0).geoms.size() == 2);
+  CHECK(r.model.unsupportedGeoms.empty());
+  CHECK(read(mesh + "<geom name='b' type='ellipsoid' size='1 1 1'/>").model.unsupportedGeoms.contains("b"));
+}
