@@ -61,7 +61,7 @@ class TestMotor : public Effector {
  public:
   static void describe(Description<TestMotor>& d) { d.doc("Notes its commands."); }
   std::string act(const Element& action) override {
-    if (!action.at(1)) return "(" + name() + " <value>): expected a number.";
+    if (!action.at(1)) return "expected a number, found none";
     actionLog().push_back(fmt::format("{} {} {}", agent()->outermost().number(), name(), action.at(1).number()));
     return {};
   }
